@@ -1,0 +1,252 @@
+//! Points and displacements on the sheet, in millimetres: x to the right, y up, origin at the lower left.
+//!
+//! A [`Point`] is a place and a [`Vec2`] is a way from one place to another. Two places cannot be added:
+//!
+//! ```compile_fail
+//! # use plotter_motion::Point;
+//! let nonsense = Point::new(1.0, 2.0) + Point::new(3.0, 4.0);
+//! ```
+
+use core::ops::{Add, AddAssign, Mul, Neg, Sub};
+
+/// A place on the sheet, in mm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Point {
+    /// To the right, mm.
+    pub x: f64,
+    /// Up, mm.
+    pub y: f64,
+}
+
+/// A displacement on the sheet, in mm (or, divided by a time, a velocity in mm/s).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Vec2 {
+    /// To the right.
+    pub x: f64,
+    /// Up.
+    pub y: f64,
+}
+
+impl Point {
+    /// The lower left corner of the sheet.
+    pub const ORIGIN: Self = Self { x: 0.0, y: 0.0 };
+
+    /// The place `x` mm right of and `y` mm above the origin.
+    #[must_use]
+    pub const fn new(x: f64, y: f64) -> Self {
+        Self { x, y }
+    }
+
+    /// Straight distance to `other`, mm.
+    ///
+    /// ```
+    /// # use plotter_motion::Point;
+    /// assert_eq!(Point::new(1.0, 1.0).distance(Point::new(4.0, 5.0)), 5.0);
+    /// ```
+    #[must_use]
+    pub fn distance(self, other: Self) -> f64 {
+        (other - self).length()
+    }
+
+    /// The place the share `t` of the way from here to `other`: 0 is here, 1 is there.
+    #[must_use]
+    pub fn lerp(self, other: Self, t: f64) -> Self {
+        self + (other - self) * t
+    }
+
+    /// Whether both coordinates are finite numbers.
+    #[must_use]
+    pub fn is_finite(self) -> bool {
+        self.x.is_finite() && self.y.is_finite()
+    }
+}
+
+impl Vec2 {
+    /// The displacement by `x` to the right and `y` up.
+    #[must_use]
+    pub const fn new(x: f64, y: f64) -> Self {
+        Self { x, y }
+    }
+
+    /// Length; never negative, and free of overflow for large components.
+    #[must_use]
+    pub fn length(self) -> f64 {
+        libm::hypot(self.x, self.y)
+    }
+
+    /// Square of the length; cheaper than [`Vec2::length`] where only the order matters.
+    #[must_use]
+    pub fn length_squared(self) -> f64 {
+        self.dot(self)
+    }
+
+    /// Scalar product: |a| |b| cos of the angle between.
+    #[must_use]
+    pub fn dot(self, other: Self) -> f64 {
+        self.x * other.x + self.y * other.y
+    }
+
+    /// Third component of the vector product: |a| |b| sin of the angle from `self` to `other`, positive
+    /// when `other` lies counter-clockwise.
+    ///
+    /// ```
+    /// # use plotter_motion::Vec2;
+    /// assert_eq!(Vec2::new(1.0, 0.0).cross(Vec2::new(0.0, 2.0)), 2.0);
+    /// ```
+    #[must_use]
+    pub fn cross(self, other: Self) -> f64 {
+        self.x * other.y - self.y * other.x
+    }
+
+    /// The same direction with length 1; `None` for a displacement without direction (zero, not finite).
+    #[must_use]
+    pub fn normalized(self) -> Option<Self> {
+        let length = self.length();
+        (length > 0.0 && length.is_finite()).then(|| Self::new(self.x / length, self.y / length))
+    }
+
+    /// A quarter turn counter-clockwise: the left-hand normal, of the same length.
+    #[must_use]
+    pub fn perpendicular(self) -> Self {
+        Self::new(-self.y, self.x)
+    }
+
+    /// Turned counter-clockwise by `angle_rad`.
+    #[must_use]
+    pub fn rotated(self, angle_rad: f64) -> Self {
+        let (sin, cos) = (libm::sin(angle_rad), libm::cos(angle_rad));
+        Self::new(self.x * cos - self.y * sin, self.x * sin + self.y * cos)
+    }
+}
+
+impl Sub for Point {
+    type Output = Vec2;
+    fn sub(self, other: Self) -> Vec2 {
+        Vec2::new(self.x - other.x, self.y - other.y)
+    }
+}
+
+impl Add<Vec2> for Point {
+    type Output = Self;
+    fn add(self, by: Vec2) -> Self {
+        Self::new(self.x + by.x, self.y + by.y)
+    }
+}
+
+impl Sub<Vec2> for Point {
+    type Output = Self;
+    fn sub(self, by: Vec2) -> Self {
+        Self::new(self.x - by.x, self.y - by.y)
+    }
+}
+
+impl AddAssign<Vec2> for Point {
+    fn add_assign(&mut self, by: Vec2) {
+        *self = *self + by;
+    }
+}
+
+impl Add for Vec2 {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y)
+    }
+}
+
+impl Sub for Vec2 {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y)
+    }
+}
+
+impl Mul<f64> for Vec2 {
+    type Output = Self;
+    fn mul(self, by: f64) -> Self {
+        Self::new(self.x * by, self.y * by)
+    }
+}
+
+impl Neg for Vec2 {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y)
+    }
+}
+
+/// A straight line from one place to another.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Segment {
+    /// Where it starts.
+    pub from: Point,
+    /// Where it ends.
+    pub to: Point,
+}
+
+impl Segment {
+    /// The straight line from `from` to `to`.
+    #[must_use]
+    pub const fn new(from: Point, to: Point) -> Self {
+        Self { from, to }
+    }
+
+    /// Length, mm.
+    #[must_use]
+    pub fn length(self) -> f64 {
+        self.from.distance(self.to)
+    }
+
+    /// The place on the segment nearest to `point`; the start for a segment without length.
+    #[must_use]
+    pub fn nearest(self, point: Point) -> Point {
+        let along = self.to - self.from;
+        let square = along.length_squared();
+        if square > 0.0 {
+            let t = (point - self.from).dot(along) / square;
+            self.from.lerp(self.to, t.clamp(0.0, 1.0))
+        } else {
+            self.from
+        }
+    }
+
+    /// Distance of `point` from the nearest place of the segment, mm.
+    ///
+    /// ```
+    /// # use plotter_motion::{Point, Segment};
+    /// let base = Segment::new(Point::new(0.0, 0.0), Point::new(10.0, 0.0));
+    /// assert_eq!(base.distance(Point::new(5.0, 2.0)), 2.0); // beside it
+    /// assert_eq!(base.distance(Point::new(13.0, 4.0)), 5.0); // past its end: 3-4-5
+    /// ```
+    #[must_use]
+    pub fn distance(self, point: Point) -> f64 {
+        self.nearest(point).distance(point)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_segment_measures_like_a_point() {
+        let dot = Segment::new(Point::new(1.0, 1.0), Point::new(1.0, 1.0));
+        assert_eq!(dot.distance(Point::new(4.0, 5.0)), 5.0);
+    }
+
+    #[test]
+    fn a_zero_displacement_has_no_direction() {
+        assert_eq!(Vec2::default().normalized(), None);
+        assert_eq!(Vec2::new(f64::NAN, 1.0).normalized(), None);
+        assert_eq!(Vec2::new(0.0, -3.0).normalized(), Some(Vec2::new(0.0, -1.0)));
+    }
+
+    #[test]
+    fn a_quarter_turn_moves_right_to_up() {
+        assert_eq!(Vec2::new(2.0, 0.0).perpendicular(), Vec2::new(0.0, 2.0));
+        let turned = Vec2::new(2.0, 0.0).rotated(core::f64::consts::FRAC_PI_2);
+        assert!((turned - Vec2::new(0.0, 2.0)).length() < 1e-15);
+    }
+}

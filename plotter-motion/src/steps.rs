@@ -1,0 +1,55 @@
+//! Motor positions as integers: microsteps of a stepper, or counts of an encoder.
+//!
+//! Integers are the truth on the machine; millimetres are a view of them, made in one place. The two are
+//! different types and do not mix:
+//!
+//! ```compile_fail
+//! # use plotter_motion::{Point, StepPoint};
+//! let wrong: Point = StepPoint { x: 40, y: 0 };
+//! ```
+
+/// Position of both motors, in microsteps or encoder counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct StepPoint {
+    /// First motor.
+    pub x: i32,
+    /// Second motor.
+    pub y: i32,
+}
+
+impl StepPoint {
+    /// The position `x`, `y`.
+    #[must_use]
+    pub const fn new(x: i32, y: i32) -> Self {
+        Self { x, y }
+    }
+}
+
+/// Steps for a length: `mm * steps_per_mm`, rounded to nearest with halves away from zero, saturating at
+/// the ends of `i32`; a NaN gives 0.
+///
+/// ```
+/// # use plotter_motion::from_mm;
+/// assert_eq!(from_mm(60.0, 40.0), 2400);
+/// assert_eq!(from_mm(-0.0125, 40.0), -1); // a half, away from zero
+/// ```
+#[must_use]
+pub fn from_mm(mm: f64, steps_per_mm: f64) -> i32 {
+    #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates, which is what is promised")]
+    let steps = libm::round(mm * steps_per_mm) as i32;
+    steps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_saturates_and_survives_nan() {
+        assert_eq!(from_mm(1e12, 80.0), i32::MAX);
+        assert_eq!(from_mm(-1e12, 80.0), i32::MIN);
+        assert_eq!(from_mm(f64::NAN, 80.0), 0);
+        assert_eq!(from_mm(2.5, 1.0), 3);
+    }
+}
