@@ -2,19 +2,37 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+mod axis;
 mod config;
+pub mod control;
+mod encoder;
+pub mod firmware;
 mod geom;
+mod pid;
+pub mod plant;
+mod profile;
+pub mod protocol;
+mod safety;
 mod steps;
+mod sync_stop;
 mod toolpath;
 
+pub use axis::{Axis, Direction};
 pub use config::{
     AreaConfig, AxisConfig, ContouringConfig, ControlConfig, ControllerChoice, Decoding, EncoderConfig,
     LoadConfig, Machine, MachineConfig, MachineName, MotorConfig, PublishedConfig, SerialConfig,
     SyncStopConfig,
 };
+pub use encoder::{Phases, QuadratureX1, QuadratureX4};
 pub use geom::{Point, Segment, Vec2};
+pub use pid::{Pid, PidState, SumPid, SumPidState};
+pub use profile::{MotionLimits, ProfileError, ProfilePoint, SCurve};
+pub use safety::{Demand, Drive, Duty, DutyError, LimitSwitches, SafetyGate};
 pub use steps::{StepPoint, from_mm};
-pub use toolpath::PlotOp;
+pub use sync_stop::SyncStop;
+pub use toolpath::{Pen, PenMove, PlotOp};

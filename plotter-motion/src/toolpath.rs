@@ -1,8 +1,30 @@
 //! [`PlotOp`]: what every front end (vectorizer, HPGL, G-code) emits and every back end (controller, writer,
 //! splitter, canvas) takes.
 
-use crate::Point;
+use crate::{Point, StepPoint};
 use core::time::Duration;
+
+/// Whether the pen touches the sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+pub enum Pen {
+    /// Lifted.
+    #[default]
+    Up,
+    /// On the sheet.
+    Down,
+}
+
+/// A straight move of both motors to a target, with the pen up or down: what a drawing becomes for a
+/// controller that takes targets one by one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PenMove {
+    /// The pen during the move.
+    pub pen: Pen,
+    /// Where to, encoder counts or steps.
+    pub target: StepPoint,
+}
 
 /// One thing for a plotter to do. All coordinates are absolute, in mm on the sheet.
 ///

@@ -1,0 +1,265 @@
+//! Contouring control: a planned speed along the line, and the errors along and across it led to zero.
+
+use super::{LineController, ShaftEstimator};
+use crate::{Axis, Demand, Direction, Drive, Duty, Machine, MotionLimits, MotorConfig, SCurve, StepPoint};
+use core::f64::consts::TAU;
+use core::time::Duration;
+
+/// Ours: leads both motors along a line at a planned speed, whatever its direction.
+///
+/// ```text
+///            target                 reference: a point that moves along the line as planned (SCurve)
+///         r ╱                       along-track error:  how far the pen is behind it
+///     e ╱ ╱   e = along + across    cross-track error:  how far beside the line
+///      ●╱
+///    ╱ pen                          demand = planned voltage + gains * (along, across) - estimated load
+/// start
+/// ```
+///
+/// There is no slope in it, so vertical and steep lines are like any other. Position and speed between the
+/// encoder's edges come from a [`ShaftEstimator`] for each axis; the voltage that the plan needs comes from
+/// the motor's equation, solved for it (spec 1.8). When the pen lags behind the reference, the reference slows
+/// down and finally waits: if one motor stalls, the other waits, and both go on when it is freed.
+///
+/// The pen arrives when both shafts have stood within the arrival tolerance of the middle of the target's
+/// counts for the settling time; resting there, no trembling can reach an edge.
+///
+/// Source of the split into along and across: Y. Koren, "Cross-Coupled Biaxial Computer Control for
+/// Manufacturing Systems" (1980).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contouring {
+    settings: Settings,
+    x: ContouredAxis,
+    y: ContouredAxis,
+    start: StepPoint,
+    target: StepPoint,
+    /// Unit vector of the line in counts.
+    direction: [f32; 2],
+    plan: SCurve,
+    /// Time along the plan, s; it stands still while the reference waits.
+    plan_s: f64,
+    estimated_at: Duration,
+    settled_for: Duration,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Settings {
+    limits: MotionLimits,
+    period: Duration,
+    along: Gains,
+    across: Gains,
+    tolerance_counts: f32,
+    settle: Duration,
+    wait_from_counts: f32,
+    wait_counts: f32,
+}
+
+/// Gains of a critically damped position loop: 1/s^2 and 1/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Gains {
+    position: f32,
+    speed: f32,
+}
+
+impl Gains {
+    fn new(natural_hz: f64) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
+        let w = (natural_hz * TAU) as f32;
+        Self { position: w * w, speed: 2.0 * w }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct ContouredAxis {
+    estimator: ShaftEstimator,
+    motor: MotorConfig,
+    applied_v: f32,
+    /// What rounding to the timer's steps left over last time, as a duty.
+    rounding: f32,
+    duty: Duty,
+}
+
+impl Contouring {
+    /// A controller at rest at the origin.
+    #[must_use]
+    pub fn new(machine: &Machine) -> Self {
+        let config = machine.config();
+        let contouring = &config.control.contouring;
+        let axis = |axis: &crate::AxisConfig| ContouredAxis {
+            estimator: ShaftEstimator::new(axis, contouring.observer_hz),
+            motor: axis.motor,
+            applied_v: 0.0,
+            rounding: 0.0,
+            duty: Duty::ZERO,
+        };
+        // The plan is made in counts of the finer axis, so that no axis exceeds its limits.
+        let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);
+        let period_us = 1e6 / contouring.loop_hz;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "f32 loop; checked ranges"
+        )]
+        let settings = Settings {
+            limits: MotionLimits {
+                speed_mm_s: contouring.feed_mm_s * counts_per_mm,
+                accel_mm_s2: contouring.accel_mm_s2 * counts_per_mm,
+                jerk_mm_s3: contouring.jerk_mm_s3 * counts_per_mm,
+            },
+            period: Duration::from_micros(libm::round(period_us).max(1.0) as u64),
+            along: Gains::new(contouring.bandwidth_hz),
+            across: Gains::new(contouring.bandwidth_hz),
+            tolerance_counts: contouring.arrival_tolerance_counts as f32,
+            settle: Duration::from_micros((contouring.settle_ms * 1e3) as u64),
+            // The reference slows down from a tenth of the allowed deviation on, and waits at half of it.
+            wait_from_counts: 0.1 * config.sync_stop.offset_counts as f32,
+            wait_counts: 0.5 * config.sync_stop.offset_counts as f32,
+        };
+        Self {
+            settings,
+            x: axis(&config.x),
+            y: axis(&config.y),
+            start: StepPoint::default(),
+            target: StepPoint::default(),
+            direction: [1.0, 0.0],
+            plan: SCurve::default(),
+            plan_s: 0.0,
+            estimated_at: Duration::ZERO,
+            settled_for: Duration::ZERO,
+        }
+    }
+
+    /// Brings both estimates up to `now`.
+    fn predict(&mut self, now: Duration) {
+        let dt_s = now.saturating_sub(self.estimated_at).as_secs_f32();
+        self.estimated_at = self.estimated_at.max(now);
+        for axis in [&mut self.x, &mut self.y] {
+            axis.estimator.predict(dt_s, axis.applied_v);
+        }
+    }
+
+    fn demand(&self) -> Demand {
+        Demand { x: self.x.duty, y: self.y.duty }
+    }
+
+    /// One run of the control law.
+    fn control(&mut self) {
+        let Settings { along, across, period, .. } = self.settings;
+        let [ux, uy] = self.direction;
+        let point = self.plan.at(self.plan_s);
+
+        // Errors against the reference, in counts; the distance along the line is kept in f64 until here.
+        let reference = |axis: &ContouredAxis, start: i32, unit: f32| {
+            let distance = point.distance_mm * f64::from(unit);
+            let whole = libm::round(distance);
+            #[expect(clippy::cast_possible_truncation, reason = "a checked machine has at most 99999 counts")]
+            let (count, rest) = (start.saturating_add(whole as i32), (distance - whole) as f32);
+            rest - axis.estimator.distance_from(count)
+        };
+        let (ex, ey) = (reference(&self.x, self.start.x, ux), reference(&self.y, self.start.y, uy));
+        let (vx, vy) = (self.x.estimator.speed_counts_s(), self.y.estimator.speed_counts_s());
+        let (e_along, e_across) = (ex * ux + ey * uy, ey * ux - ex * uy);
+        let (v_along, v_across) = (vx * ux + vy * uy, vy * ux - vx * uy);
+
+        // How fast the reference goes on: 1 as planned, 0 waiting for a pen that does not follow.
+        let lag = libm::hypotf(ex, ey);
+        let Settings { wait_from_counts, wait_counts, .. } = self.settings;
+        let rate =
+            (1.0 - (lag - wait_from_counts).max(0.0) / (wait_counts - wait_from_counts)).clamp(0.0, 1.0);
+
+        #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
+        let (speed, accel) = (point.speed_mm_s as f32 * rate, point.accel_mm_s2 as f32 * rate * rate);
+        let a_along = accel + along.position * e_along + along.speed * (speed - v_along);
+        let a_across = across.position * e_across - across.speed * v_across;
+
+        self.x.drive(a_along * ux - a_across * uy, speed * ux, ex);
+        self.y.drive(a_along * uy + a_across * ux, speed * uy, ey);
+        self.plan_s = (self.plan_s + period.as_secs_f64() * f64::from(rate)).min(self.plan.duration_s());
+
+        let settled = self.plan_s >= self.plan.duration_s()
+            && ex.abs() <= self.settings.tolerance_counts
+            && ey.abs() <= self.settings.tolerance_counts
+            && self.position() == self.target;
+        self.settled_for = if settled { self.settled_for + period } else { Duration::ZERO };
+    }
+}
+
+impl ContouredAxis {
+    /// Chooses the duty that gives the acceleration `accel` at the planned `speed`.
+    fn drive(&mut self, accel: f32, speed: f32, error: f32) {
+        // At rest only an error worth the wear breaks the shaft loose.
+        const LOOSE_COUNTS: f32 = 0.1;
+        let model = self.estimator.model();
+        let sense = if speed != 0.0 {
+            speed
+        } else if error.abs() > LOOSE_COUNTS {
+            error
+        } else {
+            0.0
+        };
+        let friction = if sense == 0.0 { 0.0 } else { libm::copysignf(model.dry_friction, sense) };
+        let push = accel + model.damping_per_s * speed + friction - self.estimator.load_counts_s2();
+        let wanted = push / (model.accel_per_volt * model.supply_v);
+        // What rounding to whole timer steps took or gave is made up for in the next run.
+        let steps = f32::from(u16::try_from(self.motor.pwm_steps).unwrap_or(u16::MAX));
+        let duty =
+            Duty::saturating(libm::roundf(Duty::saturating(wanted + self.rounding).value() * steps) / steps);
+        self.rounding = (wanted + self.rounding - duty.value()).clamp(-1.0 / steps, 1.0 / steps);
+        self.duty = duty;
+    }
+}
+
+impl LineController for Contouring {
+    fn period(&self) -> Option<Duration> {
+        Some(self.settings.period)
+    }
+
+    fn start(&mut self, now: Duration, target: StepPoint) -> Demand {
+        self.predict(now);
+        self.start = self.target;
+        self.target = target;
+        let dx = f64::from(target.x) - f64::from(self.start.x);
+        let dy = f64::from(target.y) - f64::from(self.start.y);
+        let length = libm::hypot(dx, dy);
+        if length > 0.0 {
+            #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
+            let direction = [(dx / length) as f32, (dy / length) as f32];
+            self.direction = direction;
+        }
+        self.plan = SCurve::plan(length, self.settings.limits).unwrap_or_default();
+        self.plan_s = 0.0;
+        self.settled_for = Duration::ZERO;
+        self.demand()
+    }
+
+    fn edge(&mut self, now: Duration, axis: Axis, direction: Direction) -> Demand {
+        self.predict(now);
+        match axis {
+            Axis::X => self.x.estimator.edge(direction),
+            Axis::Y => self.y.estimator.edge(direction),
+        }
+        self.demand()
+    }
+
+    fn tick(&mut self, now: Duration) -> Demand {
+        self.predict(now);
+        self.x.estimator.no_edge();
+        self.y.estimator.no_edge();
+        self.control();
+        self.demand()
+    }
+
+    fn applied(&mut self, drive: Drive) {
+        for (axis, duty) in [(&mut self.x, drive.x()), (&mut self.y, drive.y())] {
+            axis.applied_v = duty.value() * axis.estimator.model().supply_v;
+        }
+    }
+
+    fn position(&self) -> StepPoint {
+        StepPoint::new(self.x.estimator.count(), self.y.estimator.count())
+    }
+
+    fn has_arrived(&self) -> bool {
+        self.settled_for >= self.settings.settle
+    }
+}

@@ -1,0 +1,152 @@
+//! Published PID line tracking: x leads, y follows the slope.
+
+use super::LineController;
+use crate::{
+    Axis, Demand, Direction, Drive, Duty, Machine, PublishedConfig, StepPoint, SumPid, SumPidState, SyncStop,
+};
+use core::time::Duration;
+
+/// PID line tracking as published (spec 1.6 and 1.7, and the thesis' appendix A, which settles the order of
+/// things).
+///
+/// With `dx`, `dy` counted from the start of the line and `m` its slope:
+///
+/// ```text
+///   e_x = x_target - x          e_y = m dx - dy        (on a vertical line e_y = y_target - y)
+///   u = Kp e + Ki sum(e) + Kd (e - e_prev)             cut to whole steps of 255, limited
+/// ```
+///
+/// The sign of u is the direction; in the call in which it flips, u is halved. While
+/// `|dy - m dx| > 10 |m| + 10`, with the values of the *previous* call, x gets nothing. It runs only when an
+/// edge or a target comes: when both motors stand, nothing can change any more, wherever they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineTracking {
+    config: PublishedConfig,
+    sync_stop: SyncStop,
+    position: StepPoint,
+    start: StepPoint,
+    target: StepPoint,
+    x: TrackedAxis,
+    y: TrackedAxis,
+    /// Slope and deviation `dy - m dx` of the previous call.
+    slope: f32,
+    deviation: f32,
+    demand: Demand,
+}
+
+/// What the controller remembers of an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct TrackedAxis {
+    pid: SumPid,
+    state: SumPidState,
+    forwards: bool,
+}
+
+impl TrackedAxis {
+    fn output(&mut self, error: f32) -> f32 {
+        self.pid.update(&mut self.state, error)
+    }
+
+    /// Sets the direction from the sign of `u`, halves `u` if it flipped, and cuts it to whole duty steps.
+    fn duty(&mut self, u: f32, limit: f32) -> Duty {
+        // The sign is taken of u cut to a whole number, so what is below 1 counts as forwards.
+        let forwards = libm::truncf(u) >= 0.0;
+        let flipped = forwards != self.forwards;
+        self.forwards = forwards;
+        let size = libm::truncf(if flipped { u / 2.0 } else { u }.abs()).min(limit);
+        Duty::saturating(if forwards { size } else { -size } / FULL_DUTY)
+    }
+}
+
+/// The published duty runs from 0 to 255.
+const FULL_DUTY: f32 = 255.0;
+
+impl LineTracking {
+    /// A controller at rest at the origin, with the machine's gains and limits.
+    #[must_use]
+    pub fn new(machine: &Machine) -> Self {
+        let config = machine.config().control.published;
+        let axis = |kd| TrackedAxis {
+            pid: SumPid { kp: config.kp, ki: config.ki, kd },
+            state: SumPidState::default(),
+            forwards: true,
+        };
+        Self {
+            config,
+            sync_stop: SyncStop::new(machine.config().sync_stop),
+            position: StepPoint::default(),
+            start: StepPoint::default(),
+            target: StepPoint::default(),
+            x: axis(config.kd_x),
+            y: axis(config.kd_y),
+            slope: 0.0,
+            deviation: 0.0,
+            demand: Demand::NONE,
+        }
+    }
+
+    fn run(&mut self) -> Demand {
+        let to_target = difference(self.target, self.position);
+        let line = difference(self.target, self.start);
+        let done = difference(self.position, self.start);
+
+        let u_x = self.x.output(to_target.0);
+        self.demand.x = if self.sync_stop.must_wait(self.slope, self.deviation) {
+            Duty::ZERO
+        } else {
+            self.x.duty(u_x, self.config.duty_limit_x)
+        };
+
+        let (error, limit) = if line.0 == 0.0 {
+            (to_target.1, self.config.duty_limit_y_vertical)
+        } else {
+            self.slope = line.1 / line.0;
+            self.deviation = done.1 - self.slope * done.0;
+            (-self.deviation, self.config.duty_limit_y)
+        };
+        let u_y = self.y.output(error);
+        self.demand.y = self.y.duty(u_y, limit);
+        self.demand
+    }
+}
+
+/// `a - b`, exact as long as the counts have at most 24 bits, which a checked machine's have.
+fn difference(a: StepPoint, b: StepPoint) -> (f32, f32) {
+    #[expect(clippy::cast_precision_loss, reason = "a checked machine has at most 99999 counts")]
+    let difference = (a.x.saturating_sub(b.x) as f32, a.y.saturating_sub(b.y) as f32);
+    difference
+}
+
+impl LineController for LineTracking {
+    fn period(&self) -> Option<Duration> {
+        None
+    }
+
+    fn start(&mut self, _now: Duration, target: StepPoint) -> Demand {
+        self.start = self.target;
+        self.target = target;
+        self.run()
+    }
+
+    fn edge(&mut self, _now: Duration, axis: Axis, direction: Direction) -> Demand {
+        match axis {
+            Axis::X => self.position.x = self.position.x.saturating_add(direction.sign()),
+            Axis::Y => self.position.y = self.position.y.saturating_add(direction.sign()),
+        }
+        self.run()
+    }
+
+    fn tick(&mut self, _now: Duration) -> Demand {
+        self.demand
+    }
+
+    fn applied(&mut self, _drive: Drive) {}
+
+    fn position(&self) -> StepPoint {
+        self.position
+    }
+
+    fn has_arrived(&self) -> bool {
+        self.position == self.target
+    }
+}

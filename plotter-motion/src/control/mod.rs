@@ -1,0 +1,42 @@
+//! Controllers that lead two motors along a straight line.
+//!
+//! [`LineTracking`] is the published one, [`Contouring`] ours; both are a [`LineController`], and a
+//! machine's description chooses between them.
+
+mod contouring;
+mod line_tracking;
+mod shaft_estimator;
+
+pub use contouring::Contouring;
+pub use line_tracking::LineTracking;
+pub use shaft_estimator::ShaftEstimator;
+
+use crate::{Axis, Demand, Direction, Drive, StepPoint};
+use core::time::Duration;
+
+/// Leads two motors from target to target along straight lines, from what their encoders say.
+///
+/// All positions are encoder counts. The caller keeps the time: it calls [`tick`](Self::tick) every
+/// [`period`](Self::period), if there is one, and hands over every counted edge when it happens.
+pub trait LineController {
+    /// How often [`tick`](Self::tick) wants to be called; `None` for a controller that only answers to edges.
+    fn period(&self) -> Option<Duration>;
+
+    /// Takes the next target; the line to it begins where the last one ended.
+    fn start(&mut self, now: Duration, target: StepPoint) -> Demand;
+
+    /// Takes an edge that an encoder's decoder counted.
+    fn edge(&mut self, now: Duration, axis: Axis, direction: Direction) -> Demand;
+
+    /// Takes note that time has passed.
+    fn tick(&mut self, now: Duration) -> Demand;
+
+    /// Learns what became of its last demand: less, if a limit switch or an emergency stop was in the way.
+    fn applied(&mut self, drive: Drive);
+
+    /// Where the motors stand, encoder counts.
+    fn position(&self) -> StepPoint;
+
+    /// Whether the motors stand at the target.
+    fn has_arrived(&self) -> bool;
+}

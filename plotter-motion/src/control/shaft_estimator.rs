@@ -1,0 +1,228 @@
+//! Where a shaft is between two edges of its encoder, how fast it turns, and what holds it back.
+
+use crate::{AxisConfig, Decoding, Direction};
+use core::f64::consts::TAU;
+
+/// Estimates position, speed and load of a motor's shaft from the times of its encoder's edges and the
+/// voltage on it.
+///
+/// An edge says exactly where the shaft is at that moment; between edges the motor's equation (spec 1.8, with
+/// the armature's quick current left out) says how it goes on. Each edge corrects the three states with the
+/// gains of a critically damped fading-memory filter of third order, `1 - z³`, `3/2 (1-z)²(1+z)/T`,
+/// `(1-z)³/T²` with `z = exp(-2 pi f T)` for the time `T` since the last correction.
+///
+/// Source of the gains: E. Brookner, "Tracking and Kalman Filtering Made Easy" (1998), section 1.2.9 and table
+/// 1.2-1 (critically damped g-h-k filter).
+///
+/// It also knows what *no* edge says: the shaft is still between the two edges next to it. And it resolves the
+/// ambiguity of ×1 decoding (see [`QuadratureX1`](crate::QuadratureX1)): a reversal of the count may mean that the
+/// shaft turned a whole interval, or that it trembled; the place nearer to the estimate is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShaftEstimator {
+    model: ShaftModel,
+    decoding: Decoding,
+    observer_rad_s: f32,
+    load_limit: f32,
+    /// Count of the interval the shaft is in.
+    count: i32,
+    /// Place relative to `count`, in counts.
+    offset: f32,
+    speed: f32,
+    load: f32,
+    last_edge: Option<Direction>,
+    since_correction_s: f32,
+}
+
+/// A motor and its load as the control loop sees them, in encoder counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShaftModel {
+    /// Acceleration by voltage, counts/s^2 per V.
+    pub accel_per_volt: f32,
+    /// Loss of speed by back EMF and viscous friction, 1/s.
+    pub damping_per_s: f32,
+    /// Loss of speed by dry friction, counts/s^2.
+    pub dry_friction: f32,
+    /// Greatest voltage, V.
+    pub supply_v: f32,
+}
+
+impl ShaftModel {
+    /// The model of an axis: `K = Kt/(R J)`, `damping = (Ke Kt/R + b)/J`, `friction = Tc/J`, times counts a
+    /// radian.
+    #[must_use]
+    pub fn new(config: &AxisConfig) -> Self {
+        let motor = &config.motor;
+        let per_turn = match config.encoder.decoding {
+            Decoding::X1 => 1.0,
+            Decoding::X4 => 4.0,
+        };
+        let counts_per_rad = f64::from(config.encoder.lines_per_turn) * per_turn / TAU;
+        let inertia = motor.inertia_kg_m2 + config.load.inertia_kg_m2;
+        let torque_per_volt = motor.torque_n_m_per_a / motor.resistance_ohm;
+        let damping = (torque_per_volt * motor.back_emf_v_s + config.load.viscous_n_m_s) / inertia;
+        #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
+        Self {
+            accel_per_volt: (torque_per_volt / inertia * counts_per_rad) as f32,
+            damping_per_s: damping as f32,
+            dry_friction: (config.load.coulomb_n_m / inertia * counts_per_rad) as f32,
+            supply_v: motor.supply_v as f32,
+        }
+    }
+}
+
+impl ShaftEstimator {
+    /// A shaft at rest in the middle of count 0.
+    #[must_use]
+    pub fn new(config: &AxisConfig, observer_hz: f64) -> Self {
+        // What a load may be, as a share of what the supply can push: more would only wind up while a shaft
+        // is held fast.
+        const LOAD_SHARE: f32 = 0.15;
+        let model = ShaftModel::new(config);
+        #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
+        let observer_rad_s = (observer_hz * TAU) as f32;
+        let mut estimator = Self {
+            model,
+            decoding: config.encoder.decoding,
+            observer_rad_s,
+            load_limit: LOAD_SHARE * model.accel_per_volt * model.supply_v,
+            count: 0,
+            offset: 0.0,
+            speed: 0.0,
+            load: 0.0,
+            last_edge: None,
+            since_correction_s: 0.0,
+        };
+        estimator.offset = estimator.rest_offset();
+        estimator
+    }
+
+    /// The model it reckons with.
+    #[must_use]
+    pub const fn model(&self) -> &ShaftModel {
+        &self.model
+    }
+
+    /// The count of the interval that the shaft is in.
+    #[must_use]
+    pub const fn count(&self) -> i32 {
+        self.count
+    }
+
+    /// How far the shaft is from the resting place of `count`, in counts.
+    #[must_use]
+    pub fn distance_from(&self, count: i32) -> f32 {
+        #[expect(clippy::cast_precision_loss, reason = "a checked machine has at most 99999 counts")]
+        let whole = self.count.saturating_sub(count) as f32;
+        whole + (self.offset - self.rest_offset())
+    }
+
+    /// Speed, counts/s.
+    #[must_use]
+    pub const fn speed_counts_s(&self) -> f32 {
+        self.speed
+    }
+
+    /// Acceleration by loads that the model does not know, counts/s^2.
+    #[must_use]
+    pub const fn load_counts_s2(&self) -> f32 {
+        self.load
+    }
+
+    /// Moves the estimate on by `dt_s` under `voltage_v`.
+    pub fn predict(&mut self, dt_s: f32, voltage_v: f32) {
+        if dt_s <= 0.0 {
+            return;
+        }
+        self.since_correction_s += dt_s;
+        let ShaftModel { accel_per_volt, damping_per_s, dry_friction, .. } = self.model;
+        let push = accel_per_volt * voltage_v + self.load;
+        if self.speed == 0.0 && push.abs() <= dry_friction {
+            return;
+        }
+        let sense = if self.speed == 0.0 { push } else { self.speed };
+        let accel = push - libm::copysignf(dry_friction, sense);
+        // exact for a constant push: the speed tends to accel / damping with the time constant 1 / damping
+        let decay = libm::expf(-damping_per_s * dt_s);
+        let (last, fading) = if damping_per_s > 0.0 {
+            (accel / damping_per_s, (1.0 - decay) / damping_per_s)
+        } else {
+            (0.0, dt_s)
+        };
+        let next =
+            if damping_per_s > 0.0 { last + (self.speed - last) * decay } else { self.speed + accel * dt_s };
+        if next * sense < 0.0 && self.speed != 0.0 {
+            // friction stops the shaft on the way: it covers half of what it would at this speed until then
+            self.offset += self.speed * self.speed / (self.speed - next) * dt_s / 2.0;
+            self.speed = 0.0;
+        } else {
+            self.offset += last * dt_s + (self.speed - last) * fading;
+            self.speed = next;
+        }
+    }
+
+    /// Takes an edge, at the moment that was predicted last.
+    pub fn edge(&mut self, direction: Direction) {
+        let (count, place) = self.edge_place(direction);
+        let moved = count.saturating_sub(self.count);
+        self.count = count;
+        #[expect(clippy::cast_precision_loss, reason = "one or two counts")]
+        let offset = self.offset - moved as f32;
+        self.offset = offset;
+        self.last_edge = Some(direction);
+        self.correct(place - offset);
+    }
+
+    /// Takes note that no edge came up to the moment that was predicted last.
+    pub fn no_edge(&mut self) {
+        let (least, most) = match self.decoding {
+            Decoding::X1 => (-0.5, 1.0),
+            Decoding::X4 => (0.0, 1.0),
+        };
+        if self.offset > most {
+            self.correct(most - self.offset);
+            self.offset = self.offset.min(most);
+        } else if self.offset < least {
+            self.correct(least - self.offset);
+            self.offset = self.offset.max(least);
+        }
+    }
+
+    /// The count after an edge, and the edge's place relative to it.
+    fn edge_place(&self, direction: Direction) -> (i32, f32) {
+        let next = self.count.saturating_add(direction.sign());
+        match (self.decoding, direction) {
+            (Decoding::X4, Direction::Plus) => (next, 0.0),
+            (Decoding::X4, Direction::Minus) => (next, 1.0),
+            (Decoding::X1, _) => {
+                // A counted edge forwards lies at the start of A's high half, one backwards at its end. After a
+                // reversal it may be that of the next interval, or of the one the shaft is in.
+                let place = if direction == Direction::Plus { 0.0 } else { 0.5 };
+                let reversed = self.last_edge.is_some_and(|last| last != direction);
+                #[expect(clippy::cast_precision_loss, reason = "1 or -1")]
+                let sign = direction.sign() as f32;
+                let here = (place - self.offset).abs();
+                let there = (place + sign - self.offset).abs();
+                if reversed && here < there { (self.count, place) } else { (next, place) }
+            }
+        }
+    }
+
+    fn rest_offset(&self) -> f32 {
+        match self.decoding {
+            Decoding::X1 => 0.25,
+            Decoding::X4 => 0.5,
+        }
+    }
+
+    fn correct(&mut self, difference: f32) {
+        const SHORTEST_S: f32 = 2e-5; // below a few timer ticks a difference says nothing of the speed
+        let t = self.since_correction_s.max(SHORTEST_S);
+        let z = libm::expf(-self.observer_rad_s * t);
+        let fade = 1.0 - z;
+        self.offset += difference * (1.0 - z * z * z);
+        self.speed += difference * 1.5 * fade * fade * (1.0 + z) / t;
+        self.load += difference * fade * fade * fade / (t * t);
+        self.load = self.load.clamp(-self.load_limit, self.load_limit);
+        self.since_correction_s = 0.0;
+    }
+}

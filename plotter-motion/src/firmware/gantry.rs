@@ -1,0 +1,276 @@
+//! The semi-virtual gantry's controller: the published protocol on one side, two DC motors on the other.
+
+use crate::control::{Contouring, LineController, LineTracking};
+use crate::protocol::digits::{Dropped, Receiver, Reply};
+use crate::{
+    Axis, ControllerChoice, Demand, Direction, Drive, LimitSwitches, Machine, SafetyGate, StepPoint,
+};
+use core::fmt;
+use core::time::Duration;
+
+/// Something that a person at the machine should know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Notice {
+    /// Part of a target was dropped; the next byte begins a new one.
+    Dropped(Dropped),
+    /// A byte came while a target was being approached; it was dropped.
+    Stray {
+        /// The byte.
+        byte: u8,
+    },
+    /// A target outside the machine's area was refused.
+    OutOfArea {
+        /// The target, encoder counts.
+        target: StepPoint,
+        /// Greatest coordinates, encoder counts.
+        most: StepPoint,
+    },
+}
+
+impl fmt::Display for Notice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Dropped(dropped) => dropped.fmt(f),
+            Self::Stray { byte } => {
+                write!(f, "byte 0x{byte:02x} came before the target was reached: dropped it")
+            }
+            Self::OutOfArea { target, most } => write!(
+                f,
+                "target ({}, {}) counts lies outside (0, 0)..=({}, {}): refused it",
+                target.x, target.y, most.x, most.y
+            ),
+        }
+    }
+}
+
+/// Notices that were not fetched yet; the oldest are kept.
+const MOST_NOTICES: usize = 8;
+
+/// The whole controller of the semi-virtual gantry (spec 1.6 to 1.10), sans-IO.
+///
+/// Inputs: [`receive`](Self::receive), [`edge`](Self::edge), [`limit_switch`](Self::limit_switch),
+/// [`emergency_stop`](Self::emergency_stop), [`tick`](Self::tick) at [`next_tick`](Self::next_tick). After each
+/// of them, fetch the bytes for the line ([`transmit`](Self::transmit)) and the motors' [`drive`](Self::drive).
+/// Times never go back.
+///
+/// The host is told of every count, and of `+` when all counts of a reached target are told, so that its
+/// position is the controller's when it compares. Where the published program answered a target at which the
+/// motors stood already with nothing at all, and so stopped for ever, this one answers at once.
+///
+/// ```
+/// # use plotter_motion::{firmware::Gantry, Machine, MachineConfig, protocol::digits, StepPoint};
+/// # use core::time::Duration;
+/// let machine = Machine::new(MachineConfig::default())?;
+/// let mut gantry = Gantry::new(&machine);
+/// for byte in digits::encode(StepPoint::new(400, 0))? {
+///     gantry.receive(Duration::ZERO, byte);
+/// }
+/// // half a tenth of a second later the motor is on its way
+/// while let Some(now) = gantry.next_tick().filter(|&at| at < Duration::from_millis(50)) {
+///     gantry.tick(now);
+/// }
+/// assert!(gantry.drive().x().value() > 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gantry {
+    receiver: Receiver,
+    controller: Controller,
+    gate: SafetyGate,
+    demand: Demand,
+    drive: Drive,
+    most: StepPoint,
+    /// The target being approached.
+    approached: Option<StepPoint>,
+    /// Position as the host has been told.
+    told: StepPoint,
+    /// Whether the host is to be told that the target is reached.
+    tell_reached: bool,
+    next_tick: Option<Duration>,
+    notices: [Option<Notice>; MOST_NOTICES],
+}
+
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one controller in a machine, and no heap to put it on"
+)]
+#[derive(Clone, Debug, PartialEq)]
+enum Controller {
+    Published(LineTracking),
+    Contouring(Contouring),
+}
+
+impl Controller {
+    fn get(&self) -> &dyn LineController {
+        match self {
+            Self::Published(controller) => controller,
+            Self::Contouring(controller) => controller,
+        }
+    }
+
+    fn get_mut(&mut self) -> &mut dyn LineController {
+        match self {
+            Self::Published(controller) => controller,
+            Self::Contouring(controller) => controller,
+        }
+    }
+}
+
+impl Gantry {
+    /// The controller of `machine`, with its motors at rest at the origin.
+    #[must_use]
+    pub fn new(machine: &Machine) -> Self {
+        let config = machine.config();
+        let controller = match config.control.controller {
+            ControllerChoice::Published => Controller::Published(LineTracking::new(machine)),
+            ControllerChoice::Contouring => Controller::Contouring(Contouring::new(machine)),
+        };
+        Self {
+            next_tick: controller.get().period(),
+            controller,
+            receiver: Receiver::new(Duration::from_secs_f64(config.serial.resync_gap_ms / 1e3)),
+            gate: SafetyGate::default(),
+            demand: Demand::NONE,
+            drive: Drive::default(),
+            most: StepPoint::new(
+                crate::from_mm(config.area.width_mm, config.x.counts_per_mm),
+                crate::from_mm(config.area.height_mm, config.y.counts_per_mm),
+            ),
+            approached: None,
+            told: StepPoint::default(),
+            tell_reached: false,
+            notices: [None; MOST_NOTICES],
+        }
+    }
+
+    /// Takes a byte from the host.
+    pub fn receive(&mut self, now: Duration, byte: u8) {
+        if self.approached.is_some() {
+            // The host sends the next target when this one is reached, so this byte belongs to neither.
+            self.notice(Notice::Stray { byte });
+            return;
+        }
+        let received = self.receiver.push(now, byte);
+        if let Some(dropped) = received.dropped {
+            self.notice(Notice::Dropped(dropped));
+        }
+        let Some(target) = received.target else {
+            return;
+        };
+        if target.x > self.most.x || target.y > self.most.y {
+            self.notice(Notice::OutOfArea { target, most: self.most });
+            return;
+        }
+        self.approached = Some(target);
+        let demand = self.controller.get_mut().start(now, target);
+        self.apply(demand);
+    }
+
+    /// Takes an edge that an encoder's decoder counted.
+    pub fn edge(&mut self, now: Duration, axis: Axis, direction: Direction) {
+        let demand = self.controller.get_mut().edge(now, axis, direction);
+        self.apply(demand);
+    }
+
+    /// When [`tick`](Self::tick) is to be called next, if ever.
+    #[must_use]
+    pub const fn next_tick(&self) -> Option<Duration> {
+        self.next_tick
+    }
+
+    /// Runs the control loop, if it is time.
+    pub fn tick(&mut self, now: Duration) {
+        let (Some(due), Some(period)) = (self.next_tick, self.controller.get().period()) else {
+            return;
+        };
+        if now < due {
+            return;
+        }
+        // A loop that was held up goes on in step, without making up for what it missed.
+        let next = due + period;
+        self.next_tick = Some(if next > now { next } else { now + period });
+        let demand = self.controller.get_mut().tick(now);
+        self.apply(demand);
+    }
+
+    /// Takes the state of a limit switch.
+    pub fn limit_switch(&mut self, _now: Duration, axis: Axis, end: Direction, pressed: bool) {
+        let mut limits: LimitSwitches = self.gate.limits();
+        limits.set(axis, end, pressed);
+        self.gate.set_limits(limits);
+        self.apply(self.demand);
+    }
+
+    /// Takes the state of the emergency stop button; pressed, it stops both motors at once and latches.
+    pub fn emergency_stop(&mut self, _now: Duration, pressed: bool) {
+        self.gate.emergency_stop(pressed);
+        self.apply(self.demand);
+    }
+
+    /// Lets the motors go on after an emergency stop, unless the button is still pressed; says whether it did.
+    pub fn reset_emergency_stop(&mut self, _now: Duration) -> bool {
+        let free = self.gate.reset();
+        self.apply(self.demand);
+        free
+    }
+
+    fn apply(&mut self, demand: Demand) {
+        self.demand = demand;
+        self.drive = self.gate.pass(demand);
+        let controller = self.controller.get_mut();
+        controller.applied(self.drive);
+        if self.approached.is_some() && controller.has_arrived() {
+            self.approached = None;
+            self.tell_reached = true;
+            // Whatever came of a next target before this one was reached is not the start of one.
+            self.receiver.restart();
+        }
+    }
+
+    /// The next byte for the host, if there is one.
+    pub fn transmit(&mut self) -> Option<u8> {
+        let position = self.controller.get().position();
+        let ahead = |is: i32, told: i32| i64::from(is) - i64::from(told);
+        let (x, y) = (ahead(position.x, self.told.x), ahead(position.y, self.told.y));
+        let direction = |ahead: i64| if ahead > 0 { Direction::Plus } else { Direction::Minus };
+        let reply = if x == 0 && y == 0 {
+            if !core::mem::take(&mut self.tell_reached) {
+                return None;
+            }
+            Reply::Reached
+        } else if x.abs() >= y.abs() {
+            self.told.x += direction(x).sign();
+            Reply::Pulse(Axis::X, direction(x))
+        } else {
+            self.told.y += direction(y).sign();
+            Reply::Pulse(Axis::Y, direction(y))
+        };
+        Some(reply.byte())
+    }
+
+    /// What both motors get.
+    #[must_use]
+    pub const fn drive(&self) -> Drive {
+        self.drive
+    }
+
+    /// Where the motors stand, encoder counts.
+    #[must_use]
+    pub fn position(&self) -> StepPoint {
+        self.controller.get().position()
+    }
+
+    /// The oldest notice that was not fetched yet.
+    pub fn take_notice(&mut self) -> Option<Notice> {
+        let oldest = self.notices.first_mut()?.take();
+        self.notices.rotate_left(1);
+        oldest
+    }
+
+    fn notice(&mut self, notice: Notice) {
+        if let Some(place) = self.notices.iter_mut().find(|place| place.is_none()) {
+            *place = Some(notice);
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Whole controllers as sans-IO state machines: time, bytes, edges and switches in; bytes and drive out.
+//!
+//! The same struct runs on a microcontroller, against simulated motors, and against a recorded log.
+
+mod gantry;
+
+pub use gantry::{Gantry, Notice};

@@ -1,0 +1,237 @@
+//! One simulated axis: motor, friction, encoder, and a hand that can hold the shaft.
+
+use super::dc_motor::{DcMotor, DcMotorState};
+use crate::{AxisConfig, Decoding, Direction, Duty, Phases, QuadratureX1, QuadratureX4};
+use core::f64::consts::TAU;
+
+/// A motor with its load and its encoder, moved on in fixed time steps.
+///
+/// Friction is Coulomb's: constant against the motion, and at rest as much as is needed up to the static
+/// friction. The voltage is the mean of the pulse width modulation, `duty * supply` in whole steps of the
+/// timer, as in the thesis' transfer function (spec 1.8).
+///
+/// Positions are counted as the encoder counts them, with the shaft in the middle of the interval that
+/// belongs to count 0 at the start (see [`rest_offset_counts`]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisPlant {
+    motor: DcMotor,
+    state: DcMotorState,
+    config: AxisConfig,
+    quarters_per_rad: f64,
+    decoder: Decoder,
+    stalled: bool,
+    dt_s: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Decoder {
+    X1(QuadratureX1),
+    X4(QuadratureX4),
+}
+
+/// Where, within the interval of a count, a shaft should rest so that no trembling moves it across an edge:
+/// in the middle of the part between the edges that count forwards and backwards.
+///
+/// With ×1 decoding that part is A's high half, a quarter of a period after the rising edge; with ×4 half an
+/// interval.
+#[must_use]
+pub const fn rest_offset_counts(decoding: Decoding) -> f64 {
+    match decoding {
+        Decoding::X1 => 0.25,
+        Decoding::X4 => 0.5,
+    }
+}
+
+/// An edge that the encoder's decoder counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CountedEdge {
+    /// When, as a share of the step, 0 to 1.
+    pub share_of_step: f64,
+    /// Which way.
+    pub direction: Direction,
+}
+
+impl AxisPlant {
+    /// An axis at rest, over steps of `dt_s`.
+    #[must_use]
+    pub fn new(config: &AxisConfig, dt_s: f64) -> Self {
+        let quarters_per_rad = f64::from(config.encoder.lines_per_turn) * 4.0 / TAU;
+        let decoding = config.encoder.decoding;
+        let start_quarters = rest_offset_counts(decoding) * quarters_per_count(decoding);
+        let phases = Phases::of_quarter(floor(start_quarters));
+        Self {
+            motor: DcMotor::new(&config.motor, &config.load, dt_s),
+            state: DcMotorState { angle_rad: start_quarters / quarters_per_rad, ..DcMotorState::default() },
+            config: *config,
+            quarters_per_rad,
+            decoder: match decoding {
+                Decoding::X1 => Decoder::X1(QuadratureX1::new(phases)),
+                Decoding::X4 => Decoder::X4(QuadratureX4::new(phases)),
+            },
+            stalled: false,
+            dt_s,
+        }
+    }
+
+    /// Holds the shaft fast, or lets it go.
+    pub const fn stall(&mut self, stalled: bool) {
+        self.stalled = stalled;
+    }
+
+    /// Where the axis truly stands, in encoder counts from its start.
+    #[must_use]
+    pub fn position_counts(&self) -> f64 {
+        let decoding = self.config.encoder.decoding;
+        self.state.angle_rad * self.quarters_per_rad / quarters_per_count(decoding)
+            - rest_offset_counts(decoding)
+    }
+
+    /// Where the axis truly stands, mm from its start.
+    #[must_use]
+    pub fn position_mm(&self) -> f64 {
+        self.position_counts() / self.config.counts_per_mm
+    }
+
+    /// Current, speed and angle.
+    #[must_use]
+    pub const fn state(&self) -> DcMotorState {
+        self.state
+    }
+
+    /// Goes on by one time step under `duty`; `edge` is told of every counted edge, in order.
+    pub fn step(&mut self, duty: Duty, mut edge: impl FnMut(CountedEdge)) {
+        let before = self.state.angle_rad * self.quarters_per_rad;
+        self.state = self.moved(self.voltage_v(duty));
+        let after = self.state.angle_rad * self.quarters_per_rad;
+
+        let (first, last) = (floor(before), floor(after));
+        let forwards = last > first;
+        let mut quarter = first;
+        while quarter != last {
+            // the border crossed lies above the quarter that is left, or below it
+            let (border, next) = if forwards { (quarter + 1, quarter + 1) } else { (quarter, quarter - 1) };
+            quarter = next;
+            let phases = Phases::of_quarter(quarter);
+            let counted = match &mut self.decoder {
+                Decoder::X1(decoder) => decoder.update(phases),
+                Decoder::X4(decoder) => decoder.update(phases),
+            };
+            if let Some(direction) = counted {
+                #[expect(clippy::cast_precision_loss, reason = "a shaft's quarters stay far below 2^53")]
+                let share_of_step = ((border as f64 - before) / (after - before)).clamp(0.0, 1.0);
+                edge(CountedEdge { share_of_step, direction });
+            }
+        }
+    }
+
+    fn voltage_v(&self, duty: Duty) -> f64 {
+        let steps = u16::try_from(self.config.motor.pwm_steps).unwrap_or(u16::MAX);
+        f64::from(duty.steps(steps)) / f64::from(steps) * self.config.motor.supply_v
+    }
+
+    /// The state one step later.
+    fn moved(&self, voltage_v: f64) -> DcMotorState {
+        // A shaft cannot turn faster than this in one step; what is beyond it is not a motor any more.
+        const MOST_QUARTERS_PER_STEP: f64 = 10_000.0;
+        let state = self.state;
+        let load = &self.config.load;
+        if self.stalled {
+            return self.motor.step_held(state, voltage_v);
+        }
+        let pull = self.motor.armature_torque_n_m(state);
+        let sense = if state.speed_rad_s != 0.0 {
+            state.speed_rad_s
+        } else if pull.abs() <= load.static_n_m && load.static_n_m > 0.0 {
+            return self.motor.step_held(state, voltage_v);
+        } else {
+            pull
+        };
+        let friction = if sense == 0.0 { 0.0 } else { libm::copysign(load.coulomb_n_m, sense) };
+        let mut next = self.motor.step(state, voltage_v, friction);
+        if state.speed_rad_s * next.speed_rad_s < 0.0 && load.coulomb_n_m > 0.0 {
+            // friction stops a shaft, it never turns it round; whether it goes on is settled in the next step
+            next.speed_rad_s = 0.0;
+        }
+        let turned = (next.angle_rad - state.angle_rad) * self.quarters_per_rad;
+        if turned.abs() <= MOST_QUARTERS_PER_STEP { next } else { self.motor.step_held(state, voltage_v) }
+    }
+
+    /// Length of a time step, s.
+    #[must_use]
+    pub const fn dt_s(&self) -> f64 {
+        self.dt_s
+    }
+}
+
+const fn quarters_per_count(decoding: Decoding) -> f64 {
+    match decoding {
+        Decoding::X1 => 4.0,
+        Decoding::X4 => 1.0,
+    }
+}
+
+fn floor(value: f64) -> i64 {
+    #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
+    let whole = libm::floor(value) as i64;
+    whole
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::LoadConfig;
+
+    const DT_S: f64 = 1e-5;
+
+    fn run(axis: &mut AxisPlant, duty: f32, steps: usize) -> i32 {
+        let mut count = 0;
+        for _ in 0..steps {
+            axis.step(Duty::saturating(duty), |edge| count += edge.direction.sign());
+        }
+        count
+    }
+
+    #[test]
+    fn the_encoder_counts_what_the_shaft_turned() {
+        for decoding in [Decoding::X1, Decoding::X4] {
+            let mut config = AxisConfig::default();
+            config.encoder.decoding = decoding;
+            let mut axis = AxisPlant::new(&config, DT_S);
+            assert_eq!(axis.position_counts(), 0.0);
+            let count = run(&mut axis, 0.2, 50_000);
+            let difference = axis.position_counts() + rest_offset_counts(decoding) - f64::from(count);
+            assert!((0.0..1.0).contains(&difference), "{decoding:?}: {count} {difference}");
+        }
+    }
+
+    #[test]
+    fn static_friction_holds_against_a_weak_drive() {
+        // 1 step of 255: 12/255 V / 1.9 ohm * 13.4e-3 N m/A = 0.33e-3 N m
+        let mut config = AxisConfig::default();
+        config.load = LoadConfig { coulomb_n_m: 0.3e-3, static_n_m: 0.4e-3, ..config.load };
+        let mut axis = AxisPlant::new(&config, DT_S);
+        assert_eq!(run(&mut axis, 1.0 / 255.0, 10_000), 0);
+        assert!(run(&mut axis, 2.0 / 255.0, 50_000) > 0);
+    }
+
+    #[test]
+    fn a_stalled_axis_stands_and_goes_on_when_freed() {
+        let mut axis = AxisPlant::new(&AxisConfig::default(), DT_S);
+        run(&mut axis, 0.2, 10_000);
+        axis.stall(true);
+        let held = axis.position_counts();
+        assert_eq!(run(&mut axis, 0.2, 10_000), 0);
+        assert_eq!(axis.position_counts(), held);
+        axis.stall(false);
+        assert!(run(&mut axis, 0.2, 10_000) > 10);
+    }
+
+    #[test]
+    fn without_drive_friction_brings_it_to_rest_and_never_back() {
+        let mut axis = AxisPlant::new(&AxisConfig::default(), DT_S);
+        run(&mut axis, 0.5, 10_000);
+        let running_down = run(&mut axis, 0.0, 20_000);
+        assert!(running_down > 0);
+        assert_eq!(axis.state().speed_rad_s, 0.0);
+    }
+}

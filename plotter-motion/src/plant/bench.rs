@@ -1,0 +1,254 @@
+//! A whole machine on the bench: host, serial line, controller, motors and encoders.
+
+use super::AxisPlant;
+use crate::firmware::{Gantry, Notice};
+use crate::protocol::{Host, HostEvent, HostSettings, Wire};
+use crate::{Axis, Direction, Machine, PenMove, Point};
+use alloc::collections::VecDeque;
+use core::time::Duration;
+
+/// How a machine is simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BenchSettings {
+    /// Time step of the motors, whole microseconds; the drive changes between steps only.
+    pub time_step: Duration,
+    /// The host's patience.
+    pub host: HostSettings,
+}
+
+impl Default for BenchSettings {
+    fn default() -> Self {
+        Self { time_step: Duration::from_micros(10), host: HostSettings::default() }
+    }
+}
+
+/// What happens on the bench, as a recorder beside the machine sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BenchEvent {
+    /// A byte of the host is through.
+    HostByte(u8),
+    /// A byte of the controller is through.
+    ControllerByte(u8),
+    /// An encoder counted.
+    Edge(Axis, Direction),
+    /// The duty of a motor changed, in steps of its timer.
+    Drive(Axis, i32),
+    /// The host begins a move, has finished one, or noticed something.
+    Host(HostEvent),
+    /// The controller noticed something.
+    Controller(Notice),
+}
+
+/// A host, a serial line, a [`Gantry`] and its two simulated motors in one time.
+///
+/// Everything happens at whole microseconds; of what happens at the same one, the controller's tick comes
+/// first. A byte is through ten bit times after it was put on the line.
+#[derive(Debug)]
+pub struct Bench<I> {
+    now: Duration,
+    time_step: Duration,
+    host: Host<I>,
+    controller: Gantry,
+    x: AxisPlant,
+    y: AxisPlant,
+    to_controller: Line,
+    to_host: Line,
+    /// Edges of the present time step.
+    edges: VecDeque<(Duration, Axis, Direction)>,
+    pwm_steps: [u16; 2],
+    drive: [i32; 2],
+}
+
+/// One direction of the serial line, with the bytes that are on it.
+#[derive(Debug)]
+struct Line {
+    wire: Wire,
+    bytes: VecDeque<(Duration, u8)>,
+}
+
+impl Line {
+    fn new(baud: u32) -> Self {
+        Self { wire: Wire::new(baud), bytes: VecDeque::new() }
+    }
+
+    fn send(&mut self, now: Duration, byte: u8) {
+        let through = self.wire.send(now);
+        self.bytes.push_back((through, byte));
+    }
+
+    fn next(&self) -> Option<Duration> {
+        self.bytes.front().map(|&(at, _)| at)
+    }
+}
+
+/// What comes next.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Next {
+    Tick,
+    ToController,
+    Edge,
+    ToHost,
+    Host,
+}
+
+impl<I: Iterator<Item = PenMove>> Bench<I> {
+    /// A machine at rest at the origin, and a host with `moves` to send.
+    #[must_use]
+    pub fn new(machine: &Machine, settings: BenchSettings, moves: I) -> Self {
+        let config = machine.config();
+        let time_step = settings.time_step.max(Duration::from_micros(1));
+        let axis = |axis| AxisPlant::new(axis, time_step.as_secs_f64());
+        let pwm_steps = |axis: &crate::AxisConfig| u16::try_from(axis.motor.pwm_steps).unwrap_or(u16::MAX);
+        Self {
+            now: Duration::ZERO,
+            time_step,
+            host: Host::new(settings.host, moves),
+            controller: Gantry::new(machine),
+            x: axis(&config.x),
+            y: axis(&config.y),
+            to_controller: Line::new(config.serial.baud),
+            to_host: Line::new(config.serial.baud),
+            edges: VecDeque::new(),
+            pwm_steps: [pwm_steps(&config.x), pwm_steps(&config.y)],
+            drive: [0; 2],
+        }
+    }
+
+    /// Goes on by one time step; `record` is told of everything that happens in it, in order of time.
+    pub fn step(&mut self, mut record: impl FnMut(Duration, BenchEvent)) {
+        let end = self.now + self.time_step;
+        let drive = self.controller.drive();
+        for (plant, axis) in [(&mut self.x, Axis::X), (&mut self.y, Axis::Y)] {
+            let (now, time_step, edges) = (self.now, self.time_step, &mut self.edges);
+            plant.step(drive.axis(axis), |edge| {
+                let at = now + time_step.mul_f64(edge.share_of_step);
+                edges.push_back((
+                    Duration::from_micros(micros(at).max(micros(now) + 1)),
+                    axis,
+                    edge.direction,
+                ));
+            });
+        }
+        self.edges.make_contiguous().sort_by_key(|&(at, ..)| at);
+
+        while let Some((at, next)) = self.next_event().filter(|&(at, _)| at <= end) {
+            // what is overdue from before happens now
+            let at = at.max(self.now);
+            self.now = at;
+            self.handle(at, next, &mut record);
+        }
+        self.now = end;
+    }
+
+    fn next_event(&self) -> Option<(Duration, Next)> {
+        [
+            (self.controller.next_tick(), Next::Tick),
+            (self.to_controller.next(), Next::ToController),
+            (self.edges.front().map(|&(at, ..)| at), Next::Edge),
+            (self.to_host.next(), Next::ToHost),
+            (self.host.next_wake(), Next::Host),
+        ]
+        .into_iter()
+        .filter_map(|(at, next)| Some((at?.max(self.now), next)))
+        .min()
+    }
+
+    fn handle(&mut self, at: Duration, next: Next, record: &mut impl FnMut(Duration, BenchEvent)) {
+        match next {
+            Next::Tick => self.controller.tick(at),
+            Next::ToController => {
+                if let Some((_, byte)) = self.to_controller.bytes.pop_front() {
+                    record(at, BenchEvent::HostByte(byte));
+                    self.controller.receive(at, byte);
+                }
+            }
+            Next::Edge => {
+                if let Some((_, axis, direction)) = self.edges.pop_front() {
+                    record(at, BenchEvent::Edge(axis, direction));
+                    self.controller.edge(at, axis, direction);
+                }
+            }
+            Next::ToHost => {
+                if let Some((_, byte)) = self.to_host.bytes.pop_front() {
+                    record(at, BenchEvent::ControllerByte(byte));
+                    if let Some(event) = self.host.receive(at, byte) {
+                        record(at, BenchEvent::Host(event));
+                    }
+                }
+            }
+            Next::Host => {
+                if let Some(event) = self.host.poll(at) {
+                    record(at, BenchEvent::Host(event));
+                }
+                if let Some(byte) = self.host.next_byte(at) {
+                    self.to_controller.send(at, byte);
+                }
+            }
+        }
+        while let Some(byte) = self.controller.transmit() {
+            self.to_host.send(at, byte);
+        }
+        while let Some(notice) = self.controller.take_notice() {
+            record(at, BenchEvent::Controller(notice));
+        }
+        let drive = self.controller.drive();
+        for ((axis, before), steps) in Axis::BOTH.into_iter().zip(&mut self.drive).zip(self.pwm_steps) {
+            let duty = drive.axis(axis).steps(steps);
+            if duty != *before {
+                *before = duty;
+                record(at, BenchEvent::Drive(axis, duty));
+            }
+        }
+    }
+
+    /// Time since the start.
+    #[must_use]
+    pub const fn now(&self) -> Duration {
+        self.now
+    }
+
+    /// Where the pen truly is, mm.
+    #[must_use]
+    pub fn position_mm(&self) -> Point {
+        Point::new(self.x.position_mm(), self.y.position_mm())
+    }
+
+    /// The host.
+    #[must_use]
+    pub const fn host(&self) -> &Host<I> {
+        &self.host
+    }
+
+    /// The controller.
+    #[must_use]
+    pub const fn controller(&self) -> &Gantry {
+        &self.controller
+    }
+
+    /// The controller, to press its switches.
+    pub const fn controller_mut(&mut self) -> &mut Gantry {
+        &mut self.controller
+    }
+
+    /// The simulated motor of `axis`, to look at or to hold fast.
+    pub const fn axis_mut(&mut self, axis: Axis) -> &mut AxisPlant {
+        match axis {
+            Axis::X => &mut self.x,
+            Axis::Y => &mut self.y,
+        }
+    }
+
+    /// Puts a byte on the line to the controller that the host did not send: noise.
+    pub fn disturb(&mut self, byte: u8) {
+        self.to_controller.send(self.now, byte);
+    }
+
+    /// Takes the next byte off the line to the controller; says which it was.
+    pub fn lose_byte(&mut self) -> Option<u8> {
+        self.to_controller.bytes.pop_front().map(|(_, byte)| byte)
+    }
+}
+
+fn micros(time: Duration) -> u64 {
+    u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
+}

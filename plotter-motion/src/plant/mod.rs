@@ -1,0 +1,11 @@
+//! Simulated machines: motors, loads, encoders, and a whole machine on its serial line.
+
+mod axis_plant;
+#[cfg(feature = "alloc")]
+mod bench;
+mod dc_motor;
+
+pub use axis_plant::{AxisPlant, CountedEdge, rest_offset_counts};
+#[cfg(feature = "alloc")]
+pub use bench::{Bench, BenchEvent, BenchSettings};
+pub use dc_motor::{DcMotor, DcMotorState};

@@ -1,0 +1,191 @@
+//! Speed along a line, planned: from rest to rest within limits of speed, acceleration and jerk.
+//!
+//! ```text
+//!  speed      ______________          seven phases: jerk +, 0, -, cruise, jerk -, 0, +
+//!            /              \         each of the first three as long as its counterpart;
+//!         _ /                \ _      phases that a short line has no room for have length 0
+//!  ______/                      \_____
+//! ```
+//!
+//! Source: L. Biagiotti, C. Melchiorri, "Trajectory Planning for Automatic Machines and Robots" (2008),
+//! section 3.4 (double S velocity profile), for equal end speeds of zero.
+
+use core::fmt;
+
+/// Limits of a motion along a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionLimits {
+    /// Greatest speed, mm/s.
+    pub speed_mm_s: f64,
+    /// Greatest acceleration, mm/s^2.
+    pub accel_mm_s2: f64,
+    /// Greatest jerk, mm/s^3.
+    pub jerk_mm_s3: f64,
+}
+
+/// A limit that no motion can be planned with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfileError {
+    /// What was wrong: `length_mm`, `speed_mm_s`, `accel_mm_s2` or `jerk_mm_s3`.
+    pub quantity: &'static str,
+    /// Its value.
+    pub value: f64,
+}
+
+impl fmt::Display for ProfileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let allowed = if self.quantity == "length_mm" { "0 or more" } else { "above 0" };
+        write!(f, "{} is {}: it must be a finite number {allowed}", self.quantity, self.value)
+    }
+}
+
+impl core::error::Error for ProfileError {}
+
+/// Place, speed and acceleration along a line at one time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ProfilePoint {
+    /// Distance from the start, mm.
+    pub distance_mm: f64,
+    /// Speed, mm/s.
+    pub speed_mm_s: f64,
+    /// Acceleration, mm/s^2.
+    pub accel_mm_s2: f64,
+}
+
+/// A planned motion from rest to rest.
+///
+/// ```
+/// # use plotter_motion::{MotionLimits, SCurve};
+/// let limits = MotionLimits { speed_mm_s: 10.0, accel_mm_s2: 100.0, jerk_mm_s3: 1000.0 };
+/// // 0.1 s of each jerk phase reach 100 mm/s^2 and 10 mm/s; 0.2 s up and 0.2 s down cover 2 mm;
+/// // the other 8 mm take 0.8 s
+/// let motion = SCurve::plan(10.0, limits)?;
+/// assert!((motion.duration_s() - 1.2).abs() < 1e-12);
+/// assert!((motion.at(0.6).distance_mm - 5.0).abs() < 1e-12);
+/// # Ok::<(), plotter_motion::ProfileError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SCurve {
+    length_mm: f64,
+    jerk_mm_s3: f64,
+    /// Length of a phase of jerk, of constant acceleration, and of cruise, s.
+    jerk_s: f64,
+    steady_s: f64,
+    cruise_s: f64,
+}
+
+impl SCurve {
+    /// Plans the quickest motion over `length_mm` within `limits`.
+    ///
+    /// # Errors
+    ///
+    /// [`ProfileError`] names a limit that is not a positive finite number, or a negative length.
+    pub fn plan(length_mm: f64, limits: MotionLimits) -> Result<Self, ProfileError> {
+        let MotionLimits { speed_mm_s, accel_mm_s2, jerk_mm_s3 } = limits;
+        if !(length_mm >= 0.0 && length_mm.is_finite()) {
+            return Err(ProfileError { quantity: "length_mm", value: length_mm });
+        }
+        for (quantity, value) in
+            [("speed_mm_s", speed_mm_s), ("accel_mm_s2", accel_mm_s2), ("jerk_mm_s3", jerk_mm_s3)]
+        {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ProfileError { quantity, value });
+            }
+        }
+        // With full speed: is full acceleration reached on the way to it?
+        let reaches_accel = speed_mm_s * jerk_mm_s3 >= accel_mm_s2 * accel_mm_s2;
+        let (mut jerk_s, mut steady_s) = if reaches_accel {
+            (accel_mm_s2 / jerk_mm_s3, speed_mm_s / accel_mm_s2 - accel_mm_s2 / jerk_mm_s3)
+        } else {
+            (libm::sqrt(speed_mm_s / jerk_mm_s3), 0.0)
+        };
+        // Speeding up and slowing down take the same time, at half the speed on the mean.
+        let ramp_s = 2.0 * jerk_s + steady_s;
+        let mut cruise_s = length_mm / speed_mm_s - ramp_s;
+        if cruise_s < 0.0 {
+            cruise_s = 0.0;
+            // Full speed is not reached. With full acceleration: length = a (tj + ts)(2 tj + ts).
+            let full_jerk_s = accel_mm_s2 / jerk_mm_s3;
+            let root = libm::sqrt(full_jerk_s * full_jerk_s + 4.0 * length_mm / accel_mm_s2);
+            let steady = 0.5 * (root - 3.0 * full_jerk_s);
+            if steady >= 0.0 {
+                (jerk_s, steady_s) = (full_jerk_s, steady);
+            } else {
+                (jerk_s, steady_s) = (libm::cbrt(length_mm / (2.0 * jerk_mm_s3)), 0.0);
+            }
+        }
+        Ok(Self { length_mm, jerk_mm_s3, jerk_s, steady_s, cruise_s })
+    }
+
+    /// How long the motion takes, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.cruise_s + 2.0 * self.ramp_s()
+    }
+
+    /// How far it goes, mm.
+    #[must_use]
+    pub const fn length_mm(&self) -> f64 {
+        self.length_mm
+    }
+
+    /// Where the motion is `time_s` after its start; at rest at either end before and after it.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> ProfilePoint {
+        let duration_s = self.duration_s();
+        // The second half mirrors the first.
+        if time_s > 0.5 * duration_s {
+            let mirrored = self.first_half(duration_s - time_s);
+            ProfilePoint {
+                distance_mm: self.length_mm - mirrored.distance_mm,
+                speed_mm_s: mirrored.speed_mm_s,
+                accel_mm_s2: -mirrored.accel_mm_s2,
+            }
+        } else {
+            self.first_half(time_s)
+        }
+    }
+
+    fn ramp_s(&self) -> f64 {
+        2.0 * self.jerk_s + self.steady_s
+    }
+
+    fn first_half(&self, time_s: f64) -> ProfilePoint {
+        let mut point = ProfilePoint::default();
+        let mut rest_s = time_s.max(0.0);
+        let jerk = self.jerk_mm_s3;
+        for (phase_s, phase_jerk) in
+            [(self.jerk_s, jerk), (self.steady_s, 0.0), (self.jerk_s, -jerk), (self.cruise_s, 0.0)]
+        {
+            let t = rest_s.min(phase_s);
+            point.distance_mm +=
+                t * (point.speed_mm_s + t * (point.accel_mm_s2 / 2.0 + t * phase_jerk / 6.0));
+            point.speed_mm_s += t * (point.accel_mm_s2 + t * phase_jerk / 2.0);
+            point.accel_mm_s2 += t * phase_jerk;
+            rest_s -= t;
+        }
+        point
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: MotionLimits = MotionLimits { speed_mm_s: 60.0, accel_mm_s2: 600.0, jerk_mm_s3: 20_000.0 };
+
+    #[test]
+    fn impossible_limits_are_named() {
+        let error = SCurve::plan(1.0, MotionLimits { jerk_mm_s3: 0.0, ..LIMITS }).unwrap_err();
+        assert_eq!(std::format!("{error}"), "jerk_mm_s3 is 0: it must be a finite number above 0");
+        assert!(SCurve::plan(-1.0, LIMITS).is_err());
+        assert!(SCurve::plan(f64::NAN, LIMITS).is_err());
+    }
+
+    #[test]
+    fn a_line_without_length_takes_no_time() {
+        let motion = SCurve::plan(0.0, LIMITS).unwrap();
+        assert_eq!(motion.duration_s(), 0.0);
+        assert_eq!(motion.at(1.0), ProfilePoint { accel_mm_s2: 0.0, ..ProfilePoint::default() });
+    }
+}

@@ -1,0 +1,272 @@
+//! The host of the published protocol: sends a drawing target by target and keeps account of the answers.
+
+use super::digits::{OutOfRange, Reply, Sender};
+use crate::{Direction, PenMove, StepPoint};
+use core::fmt;
+use core::time::Duration;
+
+/// How patient a host is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HostSettings {
+    /// Pause after each byte sent (10 ms as published).
+    pub byte_gap: Duration,
+    /// Silence of the controller after which a target is sent again.
+    pub silence: Duration,
+    /// Time for one target after which the host gives up.
+    pub patience: Duration,
+    /// How often a target is sent again before the host gives up.
+    pub most_retries: u8,
+    /// How far from the target, on either axis, a `+` is believed, encoder counts.
+    pub tolerance_counts: u32,
+}
+
+impl Default for HostSettings {
+    fn default() -> Self {
+        Self {
+            byte_gap: Duration::from_millis(10),
+            silence: Duration::from_secs(5),
+            patience: Duration::from_secs(120),
+            most_retries: 2,
+            tolerance_counts: 0,
+        }
+    }
+}
+
+/// What a host noticed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum HostNotice {
+    /// The controller said `+` somewhere else; the target is sent again.
+    ReachedElsewhere {
+        /// The target sent.
+        target: StepPoint,
+        /// Where the controller's pulses say it is.
+        position: StepPoint,
+    },
+    /// The controller was silent; the target is sent again.
+    Silent {
+        /// The target sent.
+        target: StepPoint,
+    },
+    /// A byte that means nothing.
+    Unknown {
+        /// The byte.
+        byte: u8,
+    },
+    /// A target that the protocol has no digits for; it is left out.
+    Refused(OutOfRange),
+    /// The target was not reached in time: the host stops.
+    GaveUp {
+        /// The target sent.
+        target: StepPoint,
+        /// Where the controller's pulses say it is.
+        position: StepPoint,
+    },
+}
+
+impl fmt::Display for HostNotice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let at = |p: &StepPoint| (p.x, p.y);
+        match self {
+            Self::ReachedElsewhere { target, position } => {
+                write!(f, "controller says that it reached {:?} but counted {:?}", at(target), at(position))
+            }
+            Self::Silent { target } => write!(f, "controller is silent: sent {:?} again", at(target)),
+            Self::Unknown { byte } => write!(f, "byte 0x{byte:02x} from the controller means nothing"),
+            Self::Refused(error) => error.fmt(f),
+            Self::GaveUp { target, position } => {
+                write!(f, "gave up: {:?} was not reached, the motors stand at {:?}", at(target), at(position))
+            }
+        }
+    }
+}
+
+/// What a host is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// Nothing sent yet, or the last target is reached.
+    Ready,
+    /// A target is out, or on its way.
+    Waiting { since: Duration, heard: Duration, retries: u8 },
+    /// No more targets, or given up.
+    Done,
+}
+
+/// Sends the moves of a drawing, one on each `+`, and follows the controller's pulses; sans-IO.
+///
+/// At each `+` it compares the counted position with the target: in a protocol without checksum this is the
+/// only sign of a digit that came wrong. Such a target, and one that is met with silence, is sent again.
+#[derive(Clone, Debug)]
+pub struct Host<I> {
+    settings: HostSettings,
+    moves: I,
+    sender: Sender,
+    state: State,
+    current: PenMove,
+    position: StepPoint,
+    sent: u32,
+    reached: u32,
+}
+
+impl<I: Iterator<Item = PenMove>> Host<I> {
+    /// A host with a drawing to send.
+    #[must_use]
+    pub fn new(settings: HostSettings, moves: I) -> Self {
+        Self {
+            settings,
+            moves,
+            sender: Sender::new(settings.byte_gap),
+            state: State::Ready,
+            current: PenMove::default(),
+            position: StepPoint::default(),
+            sent: 0,
+            reached: 0,
+        }
+    }
+
+    /// Looks at the clock; call it again at [`next_wake`](Self::next_wake) at the latest. Says what is new:
+    /// a move begun, or a notice.
+    pub fn poll(&mut self, now: Duration) -> Option<HostEvent> {
+        match self.state {
+            State::Ready => {
+                let Some(next) = self.moves.next() else {
+                    self.state = State::Done;
+                    return None;
+                };
+                match self.sender.start(now, next.target) {
+                    Ok(()) => {
+                        self.current = next;
+                        self.sent = self.sent.saturating_add(1);
+                        self.state = State::Waiting { since: now, heard: now, retries: 0 };
+                        Some(HostEvent::Begun(next))
+                    }
+                    Err(error) => Some(HostEvent::Notice(HostNotice::Refused(error))),
+                }
+            }
+            State::Waiting { since, heard, retries } => {
+                let target = self.current.target;
+                let late = now.saturating_sub(since) > self.settings.patience;
+                let silent = self.sender.is_idle() && now.saturating_sub(heard) > self.settings.silence;
+                if late || (silent && retries >= self.settings.most_retries) {
+                    self.state = State::Done;
+                    return Some(HostEvent::Notice(HostNotice::GaveUp { target, position: self.position }));
+                }
+                silent.then(|| {
+                    self.again(now, since, retries);
+                    HostEvent::Notice(HostNotice::Silent { target })
+                })
+            }
+            State::Done => None,
+        }
+    }
+
+    fn again(&mut self, now: Duration, since: Duration, retries: u8) {
+        // A target that was sent once has digits, so it can be sent again.
+        if self.sender.start(now, self.current.target).is_ok() {
+            self.state = State::Waiting { since, heard: now, retries: retries.saturating_add(1) };
+        }
+    }
+
+    /// When [`poll`](Self::poll) or [`next_byte`](Self::next_byte) has something to do, unless a byte comes
+    /// before.
+    #[must_use]
+    pub fn next_wake(&self) -> Option<Duration> {
+        const TICK: Duration = Duration::from_micros(1); // limits are exceeded one tick after they are met
+        let patience = match self.state {
+            State::Ready => Some(Duration::ZERO),
+            State::Waiting { since, heard, .. } => {
+                let late = since + self.settings.patience + TICK;
+                let silent = heard + self.settings.silence + TICK;
+                Some(if self.sender.is_idle() { late.min(silent) } else { late })
+            }
+            State::Done => None,
+        };
+        match (patience, self.sender.next_byte_at()) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        }
+    }
+
+    /// The next byte for the line, if it is time for one.
+    pub fn next_byte(&mut self, now: Duration) -> Option<u8> {
+        let byte = self.sender.next_byte(now)?;
+        if let State::Waiting { heard, .. } = &mut self.state {
+            *heard = now; // the controller cannot answer before it has the whole target
+        }
+        Some(byte)
+    }
+
+    /// Takes a byte from the controller.
+    pub fn receive(&mut self, now: Duration, byte: u8) -> Option<HostEvent> {
+        if let State::Waiting { heard, .. } = &mut self.state {
+            *heard = now;
+        }
+        let Some(reply) = Reply::from_byte(byte) else {
+            return Some(HostEvent::Notice(HostNotice::Unknown { byte }));
+        };
+        match reply {
+            Reply::Pulse(axis, direction) => self.count(axis, direction),
+            Reply::Clear => self.position = StepPoint::default(),
+            Reply::Reached => {
+                let State::Waiting { since, retries, .. } = self.state else {
+                    return None;
+                };
+                if !self.sender.is_idle() {
+                    return None; // an answer to something else: this target is not even out
+                }
+                let target = self.current.target;
+                let off = |a: i32, b: i32| a.abs_diff(b) > self.settings.tolerance_counts;
+                if off(self.position.x, target.x) || off(self.position.y, target.y) {
+                    let notice = HostNotice::ReachedElsewhere { target, position: self.position };
+                    if retries < self.settings.most_retries {
+                        self.again(now, since, retries);
+                    } else {
+                        self.state = State::Done;
+                    }
+                    return Some(HostEvent::Notice(notice));
+                }
+                self.reached = self.reached.saturating_add(1);
+                self.state = State::Ready;
+                return Some(HostEvent::Reached(self.current));
+            }
+        }
+        None
+    }
+
+    fn count(&mut self, axis: crate::Axis, direction: Direction) {
+        let coordinate = match axis {
+            crate::Axis::X => &mut self.position.x,
+            crate::Axis::Y => &mut self.position.y,
+        };
+        *coordinate = coordinate.saturating_add(direction.sign());
+    }
+
+    /// Whether there is nothing more to send, or the host gave up.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        self.state == State::Done
+    }
+
+    /// Where the controller's pulses say the motors are.
+    #[must_use]
+    pub const fn position(&self) -> StepPoint {
+        self.position
+    }
+
+    /// Targets sent and targets reached.
+    #[must_use]
+    pub const fn progress(&self) -> (u32, u32) {
+        (self.sent, self.reached)
+    }
+}
+
+/// What happened at the host.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HostEvent {
+    /// A move is about to be sent.
+    Begun(PenMove),
+    /// A move's target is reached.
+    Reached(PenMove),
+    /// Something is wrong.
+    Notice(HostNotice),
+}

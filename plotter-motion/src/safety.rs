@@ -1,0 +1,269 @@
+//! From what a controller wants to what a motor gets: [`Demand`] -> [`SafetyGate::pass`] -> [`Drive`].
+//!
+//! ```text
+//!  controller ──Demand──▶ SafetyGate ──Drive──▶ H-bridge, laser, simulated motor
+//!                          ▲      ▲
+//!            limit switches       emergency stop (latched)
+//! ```
+//!
+//! Drivers take nothing but a [`Drive`], and only the gate makes one, so no controller can go round the
+//! limit switches: a program that tries does not compile.
+//!
+//! ```compile_fail
+//! # use plotter_motion::{Drive, Duty};
+//! let forged = Drive { x: Duty::FULL, y: Duty::ZERO };
+//! ```
+//!
+//! Source of the block between every controller and the motors: the marking board's collision prevention
+//! (spec 2.6).
+
+use crate::{Axis, Direction};
+use core::fmt;
+
+/// Share of the supply on a motor, with the sign of the direction: -1.0 to 1.0, checked once when made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+pub struct Duty(f32);
+
+/// A duty outside -1.0 to 1.0, or not a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DutyError {
+    /// The value refused.
+    pub value: f32,
+}
+
+impl fmt::Display for DutyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "duty {} lies outside -1.0..=1.0", self.value)
+    }
+}
+
+impl core::error::Error for DutyError {}
+
+impl Duty {
+    /// No voltage.
+    pub const ZERO: Self = Self(0.0);
+    /// The whole supply, forwards.
+    pub const FULL: Self = Self(1.0);
+
+    /// Checks a duty.
+    ///
+    /// # Errors
+    ///
+    /// [`DutyError`] for a value outside -1.0 to 1.0 and for NaN.
+    pub fn new(value: f32) -> Result<Self, DutyError> {
+        if (-1.0..=1.0).contains(&value) { Ok(Self(value)) } else { Err(DutyError { value }) }
+    }
+
+    /// The nearest duty there is; NaN gives none at all.
+    ///
+    /// ```
+    /// # use plotter_motion::Duty;
+    /// assert_eq!(Duty::saturating(3.0), Duty::FULL);
+    /// assert_eq!(Duty::saturating(f32::NAN), Duty::ZERO);
+    /// ```
+    #[must_use]
+    pub fn saturating(value: f32) -> Self {
+        if value.is_nan() { Self::ZERO } else { Self(value.clamp(-1.0, 1.0)) }
+    }
+
+    /// The number, -1.0 to 1.0.
+    #[must_use]
+    pub const fn value(self) -> f32 {
+        self.0
+    }
+
+    /// What a timer with `pwm_steps` steps (at most 65535) makes of it: rounded to nearest, with sign.
+    ///
+    /// ```
+    /// # use plotter_motion::Duty;
+    /// assert_eq!(Duty::saturating(20.0 / 255.0).steps(255), 20);
+    /// assert_eq!(Duty::saturating(-1.0).steps(255), -255);
+    /// ```
+    #[must_use]
+    pub fn steps(self, pwm_steps: u16) -> i32 {
+        #[expect(clippy::cast_possible_truncation, reason = "at most 65535 in size")]
+        let steps = libm::roundf(self.0 * f32::from(pwm_steps)) as i32;
+        steps
+    }
+
+    /// The direction, if there is any voltage at all.
+    #[must_use]
+    pub fn direction(self) -> Option<Direction> {
+        if self.0 > 0.0 {
+            Some(Direction::Plus)
+        } else if self.0 < 0.0 {
+            Some(Direction::Minus)
+        } else {
+            None
+        }
+    }
+}
+
+/// What a controller asks of both motors.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Demand {
+    /// First motor.
+    pub x: Duty,
+    /// Second motor.
+    pub y: Duty,
+}
+
+impl Demand {
+    /// Nothing.
+    pub const NONE: Self = Self { x: Duty::ZERO, y: Duty::ZERO };
+}
+
+/// What both motors get: made by [`SafetyGate::pass`] only.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drive {
+    x: Duty,
+    y: Duty,
+}
+
+impl Drive {
+    /// The duty of the first motor.
+    #[must_use]
+    pub const fn x(self) -> Duty {
+        self.x
+    }
+
+    /// The duty of the second motor.
+    #[must_use]
+    pub const fn y(self) -> Duty {
+        self.y
+    }
+
+    /// The duty of the motor of `axis`.
+    #[must_use]
+    pub const fn axis(self, axis: Axis) -> Duty {
+        match axis {
+            Axis::X => self.x,
+            Axis::Y => self.y,
+        }
+    }
+}
+
+/// Which limit switches are pressed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct LimitSwitches {
+    /// At the left end.
+    pub x_min: bool,
+    /// At the right end.
+    pub x_max: bool,
+    /// At the lower end.
+    pub y_min: bool,
+    /// At the upper end.
+    pub y_max: bool,
+}
+
+impl LimitSwitches {
+    /// Whether the switch at the end that `direction` leads to is pressed.
+    #[must_use]
+    pub const fn blocks(self, axis: Axis, direction: Direction) -> bool {
+        match (axis, direction) {
+            (Axis::X, Direction::Plus) => self.x_max,
+            (Axis::X, Direction::Minus) => self.x_min,
+            (Axis::Y, Direction::Plus) => self.y_max,
+            (Axis::Y, Direction::Minus) => self.y_min,
+        }
+    }
+
+    /// Notes one switch.
+    pub const fn set(&mut self, axis: Axis, end: Direction, pressed: bool) {
+        match (axis, end) {
+            (Axis::X, Direction::Plus) => self.x_max = pressed,
+            (Axis::X, Direction::Minus) => self.x_min = pressed,
+            (Axis::Y, Direction::Plus) => self.y_max = pressed,
+            (Axis::Y, Direction::Minus) => self.y_min = pressed,
+        }
+    }
+}
+
+/// The only way from a [`Demand`] to a [`Drive`].
+///
+/// A pressed limit switch takes the drive *towards* it and leaves every other. The emergency stop takes all
+/// drive at once and latches: letting the button go changes nothing until [`SafetyGate::reset`].
+///
+/// ```
+/// # use plotter_motion::{Demand, Duty, LimitSwitches, SafetyGate};
+/// let mut gate = SafetyGate::default();
+/// let right_and_up = Demand { x: Duty::FULL, y: Duty::FULL };
+///
+/// gate.set_limits(LimitSwitches { x_max: true, ..LimitSwitches::default() });
+/// assert_eq!(gate.pass(right_and_up).x(), Duty::ZERO); // not into the switch
+/// assert_eq!(gate.pass(right_and_up).y(), Duty::FULL); // but along it
+///
+/// gate.emergency_stop(true);
+/// gate.emergency_stop(false); // the button is let go: still stopped
+/// assert_eq!(gate.pass(right_and_up).y(), Duty::ZERO);
+/// assert!(gate.reset());
+/// assert_eq!(gate.pass(right_and_up).y(), Duty::FULL);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SafetyGate {
+    limits: LimitSwitches,
+    button_pressed: bool,
+    latched: bool,
+}
+
+impl SafetyGate {
+    /// Notes the state of all limit switches.
+    pub const fn set_limits(&mut self, limits: LimitSwitches) {
+        self.limits = limits;
+    }
+
+    /// The limit switches as last noted.
+    #[must_use]
+    pub const fn limits(&self) -> LimitSwitches {
+        self.limits
+    }
+
+    /// Notes the emergency stop button; pressed, it latches.
+    pub const fn emergency_stop(&mut self, pressed: bool) {
+        self.button_pressed = pressed;
+        self.latched |= pressed;
+    }
+
+    /// Whether the emergency stop is latched.
+    #[must_use]
+    pub const fn is_stopped(&self) -> bool {
+        self.latched
+    }
+
+    /// Unlatches the emergency stop, unless the button is still pressed; says whether drive may flow again.
+    pub const fn reset(&mut self) -> bool {
+        self.latched = self.button_pressed;
+        !self.latched
+    }
+
+    /// Lets through what is safe of a demand.
+    #[must_use]
+    pub fn pass(&self, demand: Demand) -> Drive {
+        Drive { x: self.pass_axis(Axis::X, demand.x), y: self.pass_axis(Axis::Y, demand.y) }
+    }
+
+    fn pass_axis(&self, axis: Axis, duty: Duty) -> Duty {
+        let into_switch = duty.direction().is_some_and(|direction| self.limits.blocks(axis, direction));
+        if self.latched || into_switch { Duty::ZERO } else { duty }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_duty_out_of_range_is_refused_by_value() {
+        assert_eq!(Duty::new(1.5), Err(DutyError { value: 1.5 }));
+        assert!(Duty::new(f32::NAN).is_err());
+        assert_eq!(Duty::new(-1.0).map(Duty::value), Ok(-1.0));
+    }
+
+    #[test]
+    fn reset_does_nothing_while_the_button_is_pressed() {
+        let mut gate = SafetyGate::default();
+        gate.emergency_stop(true);
+        assert!(!gate.reset());
+        assert!(gate.is_stopped());
+    }
+}
