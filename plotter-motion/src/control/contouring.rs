@@ -77,6 +77,7 @@ struct ContouredAxis {
     /// What rounding to the timer's steps left over last time, as a duty.
     rounding: f32,
     duty: Duty,
+    resting: bool,
 }
 
 impl Contouring {
@@ -91,6 +92,7 @@ impl Contouring {
             applied_v: 0.0,
             rounding: 0.0,
             duty: Duty::ZERO,
+            resting: false,
         };
         // The plan is made in counts of the finer axis, so that no axis exceeds its limits.
         let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);
@@ -172,33 +174,41 @@ impl Contouring {
         let a_along = accel + along.position * e_along + along.speed * (speed - v_along);
         let a_across = across.position * e_across - across.speed * v_across;
 
-        self.x.drive(a_along * ux - a_across * uy, speed * ux, ex);
-        self.y.drive(a_along * uy + a_across * ux, speed * uy, ey);
         self.plan_s = (self.plan_s + period.as_secs_f64() * f64::from(rate)).min(self.plan.duration_s());
-
-        let settled = self.plan_s >= self.plan.duration_s()
-            && ex.abs() <= self.settings.tolerance_counts
-            && ey.abs() <= self.settings.tolerance_counts
-            && self.position() == self.target;
-        self.settled_for = if settled { self.settled_for + period } else { Duration::ZERO };
+        let finished = self.plan_s >= self.plan.duration_s();
+        let tolerance = self.settings.tolerance_counts;
+        let (rest_x, rest_y) = (
+            (finished || ux == 0.0) && self.x.rests(self.target.x, ex, tolerance),
+            (finished || uy == 0.0) && self.y.rests(self.target.y, ey, tolerance),
+        );
+        self.x.drive((!rest_x).then_some(a_along * ux - a_across * uy), speed * ux, ex);
+        self.y.drive((!rest_y).then_some(a_along * uy + a_across * ux), speed * uy, ey);
+        self.settled_for =
+            if finished && rest_x && rest_y { self.settled_for + period } else { Duration::ZERO };
     }
 }
 
 impl ContouredAxis {
-    /// Chooses the duty that gives the acceleration `accel` at the planned `speed`.
-    fn drive(&mut self, accel: f32, speed: f32, error: f32) {
-        // At rest only an error worth the wear breaks the shaft loose.
-        const LOOSE_COUNTS: f32 = 0.1;
-        let model = self.estimator.model();
-        let sense = if speed != 0.0 {
-            speed
-        } else if error.abs() > LOOSE_COUNTS {
-            error
-        } else {
-            0.0
+    /// Whether the shaft may be left alone at `target`: it stands in the target's count, near its middle.
+    /// Once left alone it stays so until it is clearly elsewhere.
+    fn rests(&mut self, target: i32, error: f32, tolerance: f32) -> bool {
+        let allowed = if self.resting { 2.0 * tolerance } else { tolerance };
+        self.resting = self.estimator.count() == target && error.abs() <= allowed;
+        self.resting
+    }
+
+    /// Chooses the duty that gives the acceleration `accel` at the planned `speed`; none leaves the shaft
+    /// alone, with its motor short-circuited.
+    fn drive(&mut self, accel: Option<f32>, speed: f32, error: f32) {
+        let Some(accel) = accel else {
+            self.rounding = 0.0;
+            self.duty = Duty::ZERO;
+            return;
         };
-        let friction = if sense == 0.0 { 0.0 } else { libm::copysignf(model.dry_friction, sense) };
-        let push = accel + model.damping_per_s * speed + friction - self.estimator.load_counts_s2();
+        let model = self.estimator.model();
+        let sense = if speed != 0.0 { speed } else { error };
+        let friction = libm::copysignf(self.estimator.friction_counts_s2().max(0.0), sense);
+        let push = accel + model.damping_per_s * speed + friction;
         let wanted = push / (model.accel_per_volt * model.supply_v);
         // What rounding to whole timer steps took or gave is made up for in the next run.
         let steps = f32::from(u16::try_from(self.motor.pwm_steps).unwrap_or(u16::MAX));

@@ -3,33 +3,38 @@
 use crate::{AxisConfig, Decoding, Direction};
 use core::f64::consts::TAU;
 
-/// Estimates position, speed and load of a motor's shaft from the times of its encoder's edges and the
+/// Estimates position, speed and friction of a motor's shaft from the times of its encoder's edges and the
 /// voltage on it.
 ///
 /// An edge says exactly where the shaft is at that moment; between edges the motor's equation (spec 1.8, with
 /// the armature's quick current left out) says how it goes on. Each edge corrects the three states with the
 /// gains of a critically damped fading-memory filter of third order, `1 - z³`, `3/2 (1-z)²(1+z)/T`,
-/// `(1-z)³/T²` with `z = exp(-2 pi f T)` for the time `T` since the last correction.
+/// `(1-z)³/T²` with `z = exp(-2 pi f T)` for the time `T` since the last correction. The third state is a drag
+/// against the motion, beyond the dry friction of the machine's description: it changes its sign with the
+/// motion, so what one line taught is right for the next, and for the way back.
 ///
 /// Source of the gains: E. Brookner, "Tracking and Kalman Filtering Made Easy" (1998), section 1.2.9 and table
 /// 1.2-1 (critically damped g-h-k filter).
 ///
 /// It also knows what *no* edge says: the shaft is still between the two edges next to it. And it resolves the
-/// ambiguity of ×1 decoding (see [`QuadratureX1`](crate::QuadratureX1)): a reversal of the count may mean that the
-/// shaft turned a whole interval, or that it trembled; the place nearer to the estimate is taken.
+/// ambiguity of ×1 decoding (see [`QuadratureX1`](crate::QuadratureX1)): an edge may be that of the next interval,
+/// as the decoder thinks, or that of the interval the shaft is in, met a second time. It is the second if the
+/// estimate has been beyond that edge since the last one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShaftEstimator {
     model: ShaftModel,
     decoding: Decoding,
     observer_rad_s: f32,
-    load_limit: f32,
+    drag_limit: f32,
     /// Count of the interval the shaft is in.
     count: i32,
     /// Place relative to `count`, in counts.
     offset: f32,
     speed: f32,
-    load: f32,
-    last_edge: Option<Direction>,
+    drag: f32,
+    /// Least and greatest `offset` since the last edge.
+    least: f32,
+    most: f32,
     since_correction_s: f32,
 }
 
@@ -74,9 +79,9 @@ impl ShaftEstimator {
     /// A shaft at rest in the middle of count 0.
     #[must_use]
     pub fn new(config: &AxisConfig, observer_hz: f64) -> Self {
-        // What a load may be, as a share of what the supply can push: more would only wind up while a shaft
+        // What a drag may be, as a share of what the supply can push: more would only wind up while a shaft
         // is held fast.
-        const LOAD_SHARE: f32 = 0.15;
+        const DRAG_SHARE: f32 = 0.1;
         let model = ShaftModel::new(config);
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let observer_rad_s = (observer_hz * TAU) as f32;
@@ -84,15 +89,17 @@ impl ShaftEstimator {
             model,
             decoding: config.encoder.decoding,
             observer_rad_s,
-            load_limit: LOAD_SHARE * model.accel_per_volt * model.supply_v,
+            drag_limit: DRAG_SHARE * model.accel_per_volt * model.supply_v,
             count: 0,
             offset: 0.0,
             speed: 0.0,
-            load: 0.0,
-            last_edge: None,
+            drag: 0.0,
+            least: 0.0,
+            most: 0.0,
             since_correction_s: 0.0,
         };
         estimator.offset = estimator.rest_offset();
+        (estimator.least, estimator.most) = (estimator.offset, estimator.offset);
         estimator
     }
 
@@ -122,10 +129,11 @@ impl ShaftEstimator {
         self.speed
     }
 
-    /// Acceleration by loads that the model does not know, counts/s^2.
+    /// What holds the shaft back, counts/s^2: the dry friction of the machine's description and the drag found
+    /// beyond it (less than nothing if the machine runs more easily than described).
     #[must_use]
-    pub const fn load_counts_s2(&self) -> f32 {
-        self.load
+    pub fn friction_counts_s2(&self) -> f32 {
+        self.model.dry_friction + self.drag
     }
 
     /// Moves the estimate on by `dt_s` under `voltage_v`.
@@ -134,42 +142,39 @@ impl ShaftEstimator {
             return;
         }
         self.since_correction_s += dt_s;
-        let ShaftModel { accel_per_volt, damping_per_s, dry_friction, .. } = self.model;
-        let push = accel_per_volt * voltage_v + self.load;
-        if self.speed == 0.0 && push.abs() <= dry_friction {
+        let ShaftModel { accel_per_volt, damping_per_s, .. } = self.model;
+        let push = accel_per_volt * voltage_v;
+        let friction = self.friction_counts_s2();
+        if self.speed == 0.0 && push.abs() <= friction.max(0.0) {
             return;
         }
         let sense = if self.speed == 0.0 { push } else { self.speed };
-        let accel = push - libm::copysignf(dry_friction, sense);
+        let accel = push - libm::copysignf(1.0, sense) * friction;
         // exact for a constant push: the speed tends to accel / damping with the time constant 1 / damping
         let decay = libm::expf(-damping_per_s * dt_s);
-        let (last, fading) = if damping_per_s > 0.0 {
-            (accel / damping_per_s, (1.0 - decay) / damping_per_s)
-        } else {
-            (0.0, dt_s)
-        };
-        let next =
-            if damping_per_s > 0.0 { last + (self.speed - last) * decay } else { self.speed + accel * dt_s };
+        let last = accel / damping_per_s;
+        let next = last + (self.speed - last) * decay;
         if next * sense < 0.0 && self.speed != 0.0 {
             // friction stops the shaft on the way: it covers half of what it would at this speed until then
             self.offset += self.speed * self.speed / (self.speed - next) * dt_s / 2.0;
             self.speed = 0.0;
         } else {
-            self.offset += last * dt_s + (self.speed - last) * fading;
+            self.offset += last * dt_s + (self.speed - last) * ((1.0 - decay) / damping_per_s);
             self.speed = next;
         }
+        self.least = self.least.min(self.offset);
+        self.most = self.most.max(self.offset);
     }
 
     /// Takes an edge, at the moment that was predicted last.
     pub fn edge(&mut self, direction: Direction) {
         let (count, place) = self.edge_place(direction);
-        let moved = count.saturating_sub(self.count);
+        #[expect(clippy::cast_precision_loss, reason = "0, 1 or -1")]
+        let moved = count.saturating_sub(self.count) as f32;
         self.count = count;
-        #[expect(clippy::cast_precision_loss, reason = "one or two counts")]
-        let offset = self.offset - moved as f32;
-        self.offset = offset;
-        self.last_edge = Some(direction);
-        self.correct(place - offset);
+        self.offset -= moved;
+        self.correct(place - self.offset);
+        (self.least, self.most) = (place, place);
     }
 
     /// Takes note that no edge came up to the moment that was predicted last.
@@ -189,20 +194,20 @@ impl ShaftEstimator {
 
     /// The count after an edge, and the edge's place relative to it.
     fn edge_place(&self, direction: Direction) -> (i32, f32) {
+        // How far beyond an edge the estimate must have been for it to be met a second time.
+        const BEYOND_COUNTS: f32 = 0.1;
         let next = self.count.saturating_add(direction.sign());
         match (self.decoding, direction) {
             (Decoding::X4, Direction::Plus) => (next, 0.0),
             (Decoding::X4, Direction::Minus) => (next, 1.0),
-            (Decoding::X1, _) => {
-                // A counted edge forwards lies at the start of A's high half, one backwards at its end. After a
-                // reversal it may be that of the next interval, or of the one the shaft is in.
-                let place = if direction == Direction::Plus { 0.0 } else { 0.5 };
-                let reversed = self.last_edge.is_some_and(|last| last != direction);
-                #[expect(clippy::cast_precision_loss, reason = "1 or -1")]
-                let sign = direction.sign() as f32;
-                let here = (place - self.offset).abs();
-                let there = (place + sign - self.offset).abs();
-                if reversed && here < there { (self.count, place) } else { (next, place) }
+            // Forwards the counted edge is the start of A's high half, backwards its end.
+            (Decoding::X1, Direction::Plus) => {
+                let again = self.least < -BEYOND_COUNTS && self.offset < 0.5;
+                (if again { self.count } else { next }, 0.0)
+            }
+            (Decoding::X1, Direction::Minus) => {
+                let again = self.most > 0.5 + BEYOND_COUNTS && self.offset > 0.0;
+                (if again { self.count } else { next }, 0.5)
             }
         }
     }
@@ -221,8 +226,11 @@ impl ShaftEstimator {
         let fade = 1.0 - z;
         self.offset += difference * (1.0 - z * z * z);
         self.speed += difference * 1.5 * fade * fade * (1.0 + z) / t;
-        self.load += difference * fade * fade * fade / (t * t);
-        self.load = self.load.clamp(-self.load_limit, self.load_limit);
+        if self.speed != 0.0 {
+            let drag =
+                self.drag - libm::copysignf(1.0, self.speed) * difference * fade * fade * fade / (t * t);
+            self.drag = drag.clamp(-self.drag_limit, self.drag_limit);
+        }
         self.since_correction_s = 0.0;
     }
 }
