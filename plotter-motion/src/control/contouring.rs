@@ -78,6 +78,8 @@ struct ContouredAxis {
     rounding: f32,
     duty: Duty,
     resting: bool,
+    /// Push that has grown while a shaft stuck beside its target, counts/s^2.
+    leaning: f32,
 }
 
 impl Contouring {
@@ -93,6 +95,7 @@ impl Contouring {
             rounding: 0.0,
             duty: Duty::ZERO,
             resting: false,
+            leaning: 0.0,
         };
         // The plan is made in counts of the finer axis, so that no axis exceeds its limits.
         let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);
@@ -181,6 +184,9 @@ impl Contouring {
             (finished || ux == 0.0) && self.x.rests(self.target.x, ex, tolerance),
             (finished || uy == 0.0) && self.y.rests(self.target.y, ey, tolerance),
         );
+        for (axis, error) in [(&mut self.x, ex), (&mut self.y, ey)] {
+            axis.lean(finished, error, period.as_secs_f32());
+        }
         self.x.drive((!rest_x).then_some(a_along * ux - a_across * uy), speed * ux, ex);
         self.y.drive((!rest_y).then_some(a_along * uy + a_across * ux), speed * uy, ey);
         self.settled_for =
@@ -189,12 +195,27 @@ impl Contouring {
 }
 
 impl ContouredAxis {
+    fn edge(&mut self, direction: Direction) {
+        self.estimator.edge(direction);
+        self.leaning = 0.0;
+    }
+
     /// Whether the shaft may be left alone at `target`: it stands in the target's count, near its middle.
     /// Once left alone it stays so until it is clearly elsewhere.
     fn rests(&mut self, target: i32, error: f32, tolerance: f32) -> bool {
         let allowed = if self.resting { 2.0 * tolerance } else { tolerance };
         self.resting = self.estimator.count() == target && error.abs() <= allowed;
         self.resting
+    }
+
+    /// A shaft that sticks beside the target at the end of a line, in friction that is greater than known, is
+    /// pushed harder and harder until it moves.
+    fn lean(&mut self, finished: bool, error: f32, dt_s: f32) {
+        const SUPPLIES_PER_S: f32 = 1.0; // friction is a few hundredths of the supply: tens of milliseconds
+        let model = self.estimator.model();
+        let grown = self.leaning
+            + libm::copysignf(SUPPLIES_PER_S * dt_s, error) * model.accel_per_volt * model.supply_v;
+        self.leaning = if finished && !self.resting { grown } else { 0.0 };
     }
 
     /// Chooses the duty that gives the acceleration `accel` at the planned `speed`; none leaves the shaft
@@ -208,7 +229,7 @@ impl ContouredAxis {
         let model = self.estimator.model();
         let sense = if speed != 0.0 { speed } else { error };
         let friction = libm::copysignf(self.estimator.friction_counts_s2().max(0.0), sense);
-        let push = accel + model.damping_per_s * speed + friction;
+        let push = accel + model.damping_per_s * speed + friction + self.leaning;
         let wanted = push / (model.accel_per_volt * model.supply_v);
         // What rounding to whole timer steps took or gave is made up for in the next run.
         let steps = f32::from(u16::try_from(self.motor.pwm_steps).unwrap_or(u16::MAX));
@@ -245,8 +266,8 @@ impl LineController for Contouring {
     fn edge(&mut self, now: Duration, axis: Axis, direction: Direction) -> Demand {
         self.predict(now);
         match axis {
-            Axis::X => self.x.estimator.edge(direction),
-            Axis::Y => self.y.estimator.edge(direction),
+            Axis::X => self.x.edge(direction),
+            Axis::Y => self.y.edge(direction),
         }
         self.demand()
     }

@@ -173,7 +173,7 @@ impl ShaftEstimator {
         let moved = count.saturating_sub(self.count) as f32;
         self.count = count;
         self.offset -= moved;
-        self.correct(place - self.offset);
+        self.correct(place - self.offset, true);
         (self.least, self.most) = (place, place);
     }
 
@@ -183,12 +183,13 @@ impl ShaftEstimator {
             Decoding::X1 => (-0.5, 1.0),
             Decoding::X4 => (0.0, 1.0),
         };
-        if self.offset > most {
-            self.correct(most - self.offset);
-            self.offset = self.offset.min(most);
-        } else if self.offset < least {
-            self.correct(least - self.offset);
-            self.offset = self.offset.max(least);
+        let inside = self.offset.clamp(least, most);
+        if inside != self.offset {
+            self.correct(inside - self.offset, false);
+            self.offset = inside;
+            // Something holds the shaft that the model does not know, so where it was thought to be says
+            // nothing of the edges it has met.
+            (self.least, self.most) = (inside, inside);
         }
     }
 
@@ -219,14 +220,16 @@ impl ShaftEstimator {
         }
     }
 
-    fn correct(&mut self, difference: f32) {
+    /// Takes a measured difference into position and speed, and into the drag if it may be blamed: while a
+    /// shaft is held fast the drag would only wind up.
+    fn correct(&mut self, difference: f32, blame_drag: bool) {
         const SHORTEST_S: f32 = 2e-5; // below a few timer ticks a difference says nothing of the speed
         let t = self.since_correction_s.max(SHORTEST_S);
         let z = libm::expf(-self.observer_rad_s * t);
         let fade = 1.0 - z;
         self.offset += difference * (1.0 - z * z * z);
         self.speed += difference * 1.5 * fade * fade * (1.0 + z) / t;
-        if self.speed != 0.0 {
+        if blame_drag && self.speed != 0.0 {
             let drag =
                 self.drag - libm::copysignf(1.0, self.speed) * difference * fade * fade * fade / (t * t);
             self.drag = drag.clamp(-self.drag_limit, self.drag_limit);
