@@ -20,6 +20,7 @@ pub mod protocol;
 mod safety;
 mod steps;
 mod sync_stop;
+mod targets;
 mod toolpath;
 
 pub use axis::{Axis, Direction};
@@ -35,4 +36,5 @@ pub use profile::{MotionLimits, ProfileError, ProfilePoint, SCurve};
 pub use safety::{Demand, Drive, Duty, DutyError, LimitSwitches, SafetyGate};
 pub use steps::{StepPoint, from_mm};
 pub use sync_stop::SyncStop;
+pub use targets::{OutOfReach, targets};
 pub use toolpath::{Pen, PenMove, PlotOp};
