@@ -139,7 +139,7 @@ impl SCurve {
             ProfilePoint {
                 distance_mm: self.length_mm - mirrored.distance_mm,
                 speed_mm_s: mirrored.speed_mm_s,
-                accel_mm_s2: -mirrored.accel_mm_s2,
+                accel_mm_s2: 0.0 - mirrored.accel_mm_s2, // not a negative zero
             }
         } else {
             self.first_half(time_s)
