@@ -25,10 +25,12 @@ mod toolpath;
 
 pub use axis::{Axis, Direction};
 pub use config::{
-    AreaConfig, AxisConfig, ContouringConfig, ControlConfig, ControllerChoice, Decoding, EncoderConfig,
-    LoadConfig, Machine, MachineConfig, MachineName, MotorConfig, PublishedConfig, SerialConfig,
-    SyncStopConfig,
+    AreaConfig, AxisConfig, Bound, ConfigError, ContouringConfig, ControlConfig, ControllerChoice, Decoding,
+    EncoderConfig, LoadConfig, Machine, MachineConfig, MachineName, MotorConfig, PublishedConfig,
+    SerialConfig, SyncStopConfig,
 };
+#[cfg(feature = "toml")]
+pub use config::{TomlError, TomlPlace};
 pub use encoder::{Phases, QuadratureX1, QuadratureX4};
 pub use geom::{Point, Segment, Vec2};
 pub use pid::{Pid, PidState, SumPid, SumPidState};

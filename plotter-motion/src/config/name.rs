@@ -3,16 +3,19 @@
 /// Up to 31 bytes of text.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct MachineName {
-    bytes: [u8; 31],
+    bytes: [u8; MachineName::MAX_BYTES],
     length: u8,
 }
 impl MachineName {
+    /// The most text a name can hold, bytes.
+    pub const MAX_BYTES: usize = 31;
+
     /// The first documented machine.
     pub const SEMI_VIRTUAL_GANTRY: Self = Self::literal("semi-virtual-gantry");
 
     const fn literal(text: &str) -> Self {
         let source = text.as_bytes();
-        let mut bytes = [0; 31];
+        let mut bytes = [0; Self::MAX_BYTES];
         let mut i = 0;
         while i < source.len() && i < bytes.len() {
             bytes[i] = source[i];
@@ -25,7 +28,7 @@ impl MachineName {
     /// The text; `None` if it has more than 31 bytes.
     #[must_use]
     pub fn new(text: &str) -> Option<Self> {
-        (text.len() <= 31).then(|| Self::literal(text))
+        (text.len() <= Self::MAX_BYTES).then(|| Self::literal(text))
     }
 
     /// The text.

@@ -1,0 +1,374 @@
+//! What a machine's description says, with the documented gantry as default.
+
+use super::MachineName;
+
+/// What a machine's description says, not yet checked: [`Machine::new`](crate::Machine::new) does that.
+///
+/// The default is the semi-virtual gantry: two small DC motors on an L293D, 40 encoder counts to the
+/// millimetre, so that an encoder count is an HPGL plotter unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct MachineConfig {
+    /// Version of this format: 1.
+    pub schema: u32,
+    /// What the machine is called.
+    pub name: MachineName,
+    /// The reachable area.
+    pub area: AreaConfig,
+    /// The serial line.
+    pub serial: SerialConfig,
+    /// How the motors are led along a line.
+    pub control: ControlConfig,
+    /// When one motor waits for the other.
+    pub sync_stop: SyncStopConfig,
+    /// First axis: to the right.
+    pub x: AxisConfig,
+    /// Second axis: up.
+    pub y: AxisConfig,
+}
+
+/// The reachable area: a rectangle from the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct AreaConfig {
+    /// To the right, mm.
+    pub width_mm: f64,
+    /// Up, mm.
+    pub height_mm: f64,
+}
+
+/// The serial line between host and controller, 8N1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct SerialConfig {
+    /// Bits a second.
+    pub baud: u32,
+    /// The host's pause after each byte, ms.
+    pub byte_gap_ms: f64,
+    /// A silence inside a target after which the controller drops what it has of it, ms.
+    pub resync_gap_ms: f64,
+}
+
+/// Which controller leads the motors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum ControllerChoice {
+    /// PID line tracking as published: x leads, y follows the slope.
+    Published,
+    /// Contouring: a planned speed along the line, and its errors along and across it.
+    #[default]
+    Contouring,
+}
+
+/// How the motors are led along a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct ControlConfig {
+    /// Which controller.
+    pub controller: ControllerChoice,
+    /// The published controller's gains and limits.
+    pub published: PublishedConfig,
+    /// The contouring controller's speeds and bandwidths.
+    pub contouring: ContouringConfig,
+}
+
+/// Gains of the published sum-form PID, in duty steps (of 255) per encoder count, and its duty limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct PublishedConfig {
+    /// Proportional gain of both axes.
+    pub kp: f32,
+    /// Sum gain of both axes.
+    pub ki: f32,
+    /// Difference gain of x.
+    pub kd_x: f32,
+    /// Difference gain of y.
+    pub kd_y: f32,
+    /// Duty limit of x, of 255.
+    pub duty_limit_x: f32,
+    /// Duty limit of y, of 255.
+    pub duty_limit_y: f32,
+    /// Duty limit of y on vertical lines, of 255.
+    pub duty_limit_y_vertical: f32,
+}
+
+/// Speeds and bandwidths of the contouring controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct ContouringConfig {
+    /// Cruising speed along a line, mm/s.
+    pub feed_mm_s: f64,
+    /// Greatest acceleration along a line, mm/s^2.
+    pub accel_mm_s2: f64,
+    /// Greatest jerk along a line, mm/s^3.
+    pub jerk_mm_s3: f64,
+    /// How often the controller runs, 1/s.
+    pub loop_hz: f64,
+    /// Natural frequency of the position loop, Hz.
+    pub bandwidth_hz: f64,
+    /// Natural frequency of the estimator of position, speed and load, Hz.
+    pub observer_hz: f64,
+    /// How near both axes must stand to the target to have arrived, encoder counts.
+    pub arrival_tolerance_counts: f64,
+    /// How long they must stand there, ms.
+    pub settle_ms: f64,
+}
+
+/// The rule by which one motor waits for the other: the deviation from the line that is allowed before it
+/// does, `slope_counts * |m| + offset_counts` for a line of slope m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct SyncStopConfig {
+    /// Part that grows with the slope, encoder counts.
+    pub slope_counts: f64,
+    /// Constant part, encoder counts.
+    pub offset_counts: f64,
+}
+
+/// One axis: encoder, motor and load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct AxisConfig {
+    /// Encoder counts to the millimetre.
+    pub counts_per_mm: f64,
+    /// The encoder.
+    pub encoder: EncoderConfig,
+    /// The motor and its driver.
+    pub motor: MotorConfig,
+    /// What the motor moves.
+    pub load: LoadConfig,
+}
+
+/// How the two phases of an encoder are counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum Decoding {
+    /// Rising edges of phase A only, as published.
+    #[default]
+    X1,
+    /// Every edge of both phases.
+    X4,
+}
+
+/// A two-phase incremental encoder on the motor's shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct EncoderConfig {
+    /// Periods of a phase in one turn of the shaft.
+    pub lines_per_turn: u32,
+    /// How they are counted.
+    pub decoding: Decoding,
+}
+
+/// A DC motor and its H-bridge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct MotorConfig {
+    /// Supply of the H-bridge, V: what full duty puts on the motor.
+    pub supply_v: f64,
+    /// Steps of the duty from 0 to full (255 for an 8 bit timer).
+    pub pwm_steps: u32,
+    /// Armature resistance R, ohm.
+    pub resistance_ohm: f64,
+    /// Armature inductance L, H.
+    pub inductance_h: f64,
+    /// Back EMF constant Ke, V s.
+    pub back_emf_v_s: f64,
+    /// Torque constant Kt, N m/A.
+    pub torque_n_m_per_a: f64,
+    /// Moment of inertia of the rotor J, kg m^2.
+    pub inertia_kg_m2: f64,
+}
+
+/// What a motor moves, seen at its shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct LoadConfig {
+    /// Moment of inertia beyond the rotor's, kg m^2.
+    pub inertia_kg_m2: f64,
+    /// Coulomb (dry) friction, N m.
+    pub coulomb_n_m: f64,
+    /// Static friction, N m: what must be overcome to start; at least the Coulomb friction.
+    pub static_n_m: f64,
+    /// Viscous friction, N m s.
+    pub viscous_n_m_s: f64,
+}
+
+impl AxisConfig {
+    /// Encoder counts in one turn of the motor's shaft: one a line with x1 decoding, four with x4.
+    ///
+    /// ```
+    /// # use plotter_motion::{AxisConfig, Decoding, EncoderConfig};
+    /// let encoder = EncoderConfig { lines_per_turn: 100, decoding: Decoding::X4 };
+    /// assert_eq!(AxisConfig { encoder, ..AxisConfig::default() }.counts_per_turn(), 400.0);
+    /// ```
+    #[must_use]
+    pub fn counts_per_turn(&self) -> f64 {
+        let counts_per_line = match self.encoder.decoding {
+            Decoding::X1 => 1.0,
+            Decoding::X4 => 4.0,
+        };
+        f64::from(self.encoder.lines_per_turn) * counts_per_line
+    }
+}
+
+impl Default for MachineConfig {
+    fn default() -> Self {
+        Self {
+            schema: 1,
+            name: MachineName::SEMI_VIRTUAL_GANTRY,
+            area: AreaConfig::default(),
+            serial: SerialConfig::default(),
+            control: ControlConfig::default(),
+            sync_stop: SyncStopConfig::default(),
+            x: AxisConfig::default(),
+            y: AxisConfig::default(),
+        }
+    }
+}
+
+impl Default for AreaConfig {
+    /// A2 lying: 594 x 420 mm.
+    fn default() -> Self {
+        Self { width_mm: 594.0, height_mm: 420.0 }
+    }
+}
+
+impl Default for SerialConfig {
+    /// 256000 baud and 10 ms after each byte, as published.
+    fn default() -> Self {
+        Self { baud: 256_000, byte_gap_ms: 10.0, resync_gap_ms: 100.0 }
+    }
+}
+
+impl Default for ControlConfig {
+    fn default() -> Self {
+        Self {
+            controller: ControllerChoice::Contouring,
+            published: PublishedConfig::default(),
+            contouring: ContouringConfig::default(),
+        }
+    }
+}
+
+impl Default for PublishedConfig {
+    /// The published gains: Kp = 15, Ki = 0.00001, Kd = 0 for x and 10 for y; limits 20, 255 and 15.
+    fn default() -> Self {
+        Self {
+            kp: 15.0,
+            ki: 0.00001,
+            kd_x: 0.0,
+            kd_y: 10.0,
+            duty_limit_x: 20.0,
+            duty_limit_y: 255.0,
+            duty_limit_y_vertical: 15.0,
+        }
+    }
+}
+
+impl Default for ContouringConfig {
+    fn default() -> Self {
+        Self {
+            feed_mm_s: 60.0,
+            accel_mm_s2: 600.0,
+            jerk_mm_s3: 20_000.0,
+            loop_hz: 2_500.0,
+            bandwidth_hz: 30.0,
+            observer_hz: 90.0,
+            arrival_tolerance_counts: 0.25,
+            settle_ms: 10.0,
+        }
+    }
+}
+
+impl Default for SyncStopConfig {
+    /// 10 |m| + 10 encoder counts, as published.
+    fn default() -> Self {
+        Self { slope_counts: 10.0, offset_counts: 10.0 }
+    }
+}
+
+impl Default for AxisConfig {
+    fn default() -> Self {
+        Self {
+            counts_per_mm: 40.0,
+            encoder: EncoderConfig::default(),
+            motor: MotorConfig::default(),
+            load: LoadConfig::default(),
+        }
+    }
+}
+
+impl Default for EncoderConfig {
+    fn default() -> Self {
+        Self { lines_per_turn: 100, decoding: Decoding::X1 }
+    }
+}
+
+impl Default for MotorConfig {
+    /// The published motor: J = 5.7e-7 kg m^2, R = 1.9 ohm, Ke = 13.369e-3 V s, Kt = 13.4e-3 N m/A,
+    /// L = 6.5e-5 H at 12 V.
+    fn default() -> Self {
+        Self {
+            supply_v: 12.0,
+            pwm_steps: 255,
+            resistance_ohm: 1.9,
+            inductance_h: 6.5e-5,
+            back_emf_v_s: 13.369e-3,
+            torque_n_m_per_a: 13.4e-3,
+            inertia_kg_m2: 5.7e-7,
+        }
+    }
+}
+
+impl Default for LoadConfig {
+    fn default() -> Self {
+        Self { inertia_kg_m2: 0.0, coulomb_n_m: 1.0e-3, static_n_m: 1.2e-3, viscous_n_m_s: 1.0e-6 }
+    }
+}

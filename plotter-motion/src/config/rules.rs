@@ -1,0 +1,410 @@
+//! Every key of a machine's description with its unit, its range and what would be right.
+//!
+//! This is the only list of keys: the check of a [`MachineConfig`], the reader of TOML files and the test of the
+//! page `docs/machine-config.md` all read it.
+
+use super::{ConfigError, MachineConfig};
+
+/// One key and what may stand behind it.
+#[derive(Clone, Copy)]
+pub(super) struct Rule {
+    /// The key with dots, as in the TOML file.
+    pub(super) key: &'static str,
+    /// What may stand behind it.
+    pub(super) form: Form,
+}
+
+/// What may stand behind a key.
+#[derive(Clone, Copy)]
+pub(super) enum Form {
+    /// A number.
+    Number(NumberRule),
+    /// A number without fraction.
+    Whole(NumberRule),
+    /// Text of at most this many bytes.
+    #[cfg_attr(not(feature = "toml"), expect(dead_code, reason = "only the reader of TOML files asks"))]
+    Text(usize),
+    /// One of a few words.
+    #[cfg_attr(not(feature = "toml"), expect(dead_code, reason = "only the reader of TOML files asks"))]
+    Choice(&'static [&'static str]),
+}
+
+/// The range of a number.
+#[derive(Clone, Copy)]
+pub(super) struct NumberRule {
+    read: fn(&MachineConfig) -> f64,
+    /// Least allowed value.
+    pub(super) least: f64,
+    /// Greatest allowed value.
+    pub(super) most: f64,
+    /// The unit, empty for a plain number.
+    pub(super) unit: &'static str,
+    remedy: &'static str,
+}
+
+impl NumberRule {
+    /// Refuses `value` behind `key` when it is not finite or outside the range.
+    pub(super) fn check(&self, key: &'static str, value: f64) -> Result<(), ConfigError> {
+        // A NaN lies in no range.
+        if (self.least..=self.most).contains(&value) {
+            return Ok(());
+        }
+        let Self { least, most, unit, remedy, .. } = *self;
+        Err(ConfigError::OutOfRange { key, value, least, most, unit, remedy })
+    }
+}
+
+impl Rule {
+    /// Refuses a description whose value behind this key is out of range.
+    pub(super) fn check(&self, config: &MachineConfig) -> Result<(), ConfigError> {
+        match self.form {
+            Form::Number(rule) | Form::Whole(rule) => rule.check(self.key, (rule.read)(config)),
+            Form::Text(_) | Form::Choice(_) => Ok(()),
+        }
+    }
+}
+
+const fn number(
+    key: &'static str,
+    read: fn(&MachineConfig) -> f64,
+    (least, most): (f64, f64),
+    unit: &'static str,
+    remedy: &'static str,
+) -> Rule {
+    Rule { key, form: Form::Number(NumberRule { read, least, most, unit, remedy }) }
+}
+
+const fn whole(
+    key: &'static str,
+    read: fn(&MachineConfig) -> f64,
+    (least, most): (f64, f64),
+    unit: &'static str,
+    remedy: &'static str,
+) -> Rule {
+    Rule { key, form: Form::Whole(NumberRule { read, least, most, unit, remedy }) }
+}
+
+const SCHEMA: NumberRule = NumberRule {
+    read: |c| f64::from(c.schema),
+    least: 1.0,
+    most: 1.0,
+    unit: "",
+    remedy: "write `schema = 1`",
+};
+const NO_NEGATIVE_GAIN: &str = "a negative gain drives away from the target: swap the motor's wires instead";
+const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
+
+/// Keys that the machine has once.
+static MACHINE: [Rule; 25] = [
+    Rule { key: "schema", form: Form::Whole(SCHEMA) },
+    Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
+    number("area.width_mm", |c| c.area.width_mm, (1.0, 100_000.0), "mm", "an A2 sheet lying is 594 wide"),
+    number("area.height_mm", |c| c.area.height_mm, (1.0, 100_000.0), "mm", "an A2 sheet lying is 420 high"),
+    whole(
+        "serial.baud",
+        |c| f64::from(c.serial.baud),
+        (300.0, 4_000_000.0),
+        "baud",
+        "the documented gantry uses 256000",
+    ),
+    number(
+        "serial.byte_gap_ms",
+        |c| c.serial.byte_gap_ms,
+        (0.0, 1_000.0),
+        "ms",
+        "the documented gantry waits 10",
+    ),
+    number(
+        "serial.resync_gap_ms",
+        |c| c.serial.resync_gap_ms,
+        (0.1, 60_000.0),
+        "ms",
+        "ten times serial.byte_gap_ms is a good choice",
+    ),
+    Rule { key: "control.controller", form: Form::Choice(&["published", "contouring"]) },
+    number(
+        "control.published.kp",
+        |c| f64::from(c.control.published.kp),
+        (0.0, 10_000.0),
+        "steps/count",
+        NO_NEGATIVE_GAIN,
+    ),
+    number(
+        "control.published.ki",
+        |c| f64::from(c.control.published.ki),
+        (0.0, 10_000.0),
+        "steps/count",
+        NO_NEGATIVE_GAIN,
+    ),
+    number(
+        "control.published.kd_x",
+        |c| f64::from(c.control.published.kd_x),
+        (0.0, 10_000.0),
+        "steps/count",
+        NO_NEGATIVE_GAIN,
+    ),
+    number(
+        "control.published.kd_y",
+        |c| f64::from(c.control.published.kd_y),
+        (0.0, 10_000.0),
+        "steps/count",
+        NO_NEGATIVE_GAIN,
+    ),
+    number(
+        "control.published.duty_limit_x",
+        |c| f64::from(c.control.published.duty_limit_x),
+        (0.0, 255.0),
+        "steps",
+        DUTY_OF_255,
+    ),
+    number(
+        "control.published.duty_limit_y",
+        |c| f64::from(c.control.published.duty_limit_y),
+        (0.0, 255.0),
+        "steps",
+        DUTY_OF_255,
+    ),
+    number(
+        "control.published.duty_limit_y_vertical",
+        |c| f64::from(c.control.published.duty_limit_y_vertical),
+        (0.0, 255.0),
+        "steps",
+        DUTY_OF_255,
+    ),
+    number(
+        "control.contouring.feed_mm_s",
+        |c| c.control.contouring.feed_mm_s,
+        (0.01, 10_000.0),
+        "mm/s",
+        "a pen draws well at 20 to 200",
+    ),
+    number(
+        "control.contouring.accel_mm_s2",
+        |c| c.control.contouring.accel_mm_s2,
+        (0.1, 1.0e6),
+        "mm/s^2",
+        "ten times feed_mm_s reaches the feed within a tenth of a second",
+    ),
+    number(
+        "control.contouring.jerk_mm_s3",
+        |c| c.control.contouring.jerk_mm_s3,
+        (1.0, 1.0e9),
+        "mm/s^3",
+        "thirty times accel_mm_s2 reaches full acceleration within 33 ms",
+    ),
+    number(
+        "control.contouring.loop_hz",
+        |c| c.control.contouring.loop_hz,
+        (10.0, 100_000.0),
+        "Hz",
+        "a controller on a small chip runs 500 to 5000 times a second",
+    ),
+    number(
+        "control.contouring.bandwidth_hz",
+        |c| c.control.contouring.bandwidth_hz,
+        (0.1, 10_000.0),
+        "Hz",
+        "10 to 100 suit small DC motors",
+    ),
+    number(
+        "control.contouring.observer_hz",
+        |c| c.control.contouring.observer_hz,
+        (0.1, 10_000.0),
+        "Hz",
+        "three times bandwidth_hz is a good choice",
+    ),
+    number(
+        "control.contouring.arrival_tolerance_counts",
+        |c| c.control.contouring.arrival_tolerance_counts,
+        (0.01, 1_000.0),
+        "counts",
+        "an exact arrival may never come: allow a quarter of a count at the least",
+    ),
+    number(
+        "control.contouring.settle_ms",
+        |c| c.control.contouring.settle_ms,
+        (0.0, 10_000.0),
+        "ms",
+        "a few periods of the position loop are enough",
+    ),
+    number(
+        "sync_stop.slope_counts",
+        |c| c.sync_stop.slope_counts,
+        (0.0, 100_000.0),
+        "counts",
+        "the published rule has 10",
+    ),
+    number(
+        "sync_stop.offset_counts",
+        |c| c.sync_stop.offset_counts,
+        (1.0, 100_000.0),
+        "counts",
+        "below one count no motor could ever start; the published rule has 10",
+    ),
+];
+
+/// Keys that each axis has.
+macro_rules! axis_rules {
+    ($axis:ident) => {
+        [
+            number(
+                concat!(stringify!($axis), ".counts_per_mm"),
+                |c| c.$axis.counts_per_mm,
+                (0.001, 100_000.0),
+                "counts/mm",
+                "the documented gantry has 40",
+            ),
+            whole(
+                concat!(stringify!($axis), ".encoder.lines_per_turn"),
+                |c| f64::from(c.$axis.encoder.lines_per_turn),
+                (1.0, 1.0e6),
+                "",
+                "count the slots of the disc",
+            ),
+            Rule { key: concat!(stringify!($axis), ".encoder.decoding"), form: Form::Choice(&["x1", "x4"]) },
+            number(
+                concat!(stringify!($axis), ".motor.supply_v"),
+                |c| c.$axis.motor.supply_v,
+                (0.1, 1_000.0),
+                "V",
+                "an L293D takes 4.5 to 36",
+            ),
+            whole(
+                concat!(stringify!($axis), ".motor.pwm_steps"),
+                |c| f64::from(c.$axis.motor.pwm_steps),
+                (1.0, 65_535.0),
+                "",
+                "an 8 bit timer has 255",
+            ),
+            number(
+                concat!(stringify!($axis), ".motor.resistance_ohm"),
+                |c| c.$axis.motor.resistance_ohm,
+                (1.0e-3, 1.0e5),
+                "ohm",
+                "measure between the motor's terminals: a small motor has 1 to 20",
+            ),
+            number(
+                concat!(stringify!($axis), ".motor.inductance_h"),
+                |c| c.$axis.motor.inductance_h,
+                (1.0e-9, 10.0),
+                "H",
+                "a small motor has 1e-5 to 1e-3",
+            ),
+            number(
+                concat!(stringify!($axis), ".motor.back_emf_v_s"),
+                |c| c.$axis.motor.back_emf_v_s,
+                (1.0e-6, 100.0),
+                "V s",
+                "supply voltage divided by the no-load speed in rad/s",
+            ),
+            number(
+                concat!(stringify!($axis), ".motor.torque_n_m_per_a"),
+                |c| c.$axis.motor.torque_n_m_per_a,
+                (1.0e-6, 100.0),
+                "N m/A",
+                "about the same figure as back_emf_v_s",
+            ),
+            number(
+                concat!(stringify!($axis), ".motor.inertia_kg_m2"),
+                |c| c.$axis.motor.inertia_kg_m2,
+                (1.0e-12, 10.0),
+                "kg m^2",
+                "a small rotor has 1e-7 to 1e-5",
+            ),
+            number(
+                concat!(stringify!($axis), ".load.inertia_kg_m2"),
+                |c| c.$axis.load.inertia_kg_m2,
+                (0.0, 10.0),
+                "kg m^2",
+                "0 for a motor that turns nothing",
+            ),
+            number(
+                concat!(stringify!($axis), ".load.coulomb_n_m"),
+                |c| c.$axis.load.coulomb_n_m,
+                (0.0, 1_000.0),
+                "N m",
+                "friction is given as a size, without sign: 0 for none",
+            ),
+            number(
+                concat!(stringify!($axis), ".load.static_n_m"),
+                |c| c.$axis.load.static_n_m,
+                (0.0, 1_000.0),
+                "N m",
+                "friction is given as a size, without sign: 0 for none",
+            ),
+            number(
+                concat!(stringify!($axis), ".load.viscous_n_m_s"),
+                |c| c.$axis.load.viscous_n_m_s,
+                (0.0, 100.0),
+                "N m s",
+                "friction is given as a size, without sign: 0 for none",
+            ),
+        ]
+    };
+}
+
+static X: [Rule; 14] = axis_rules!(x);
+static Y: [Rule; 14] = axis_rules!(y);
+
+/// All keys, in the order of the documentation.
+pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
+    MACHINE.iter().chain(&X).chain(&Y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{format, fs, println, string::String, vec::Vec};
+
+    /// Relative distance between a number and the single-precision number nearest to it.
+    const SINGLE_PRECISION: f64 = 6.0e-8;
+
+    /// A file of the repository beside this crate; a crate unpacked alone does not have it.
+    fn beside_the_crate(path: &str) -> Option<String> {
+        let text = fs::read_to_string(format!("{}/../{path}", env!("CARGO_MANIFEST_DIR"))).ok();
+        if text.is_none() {
+            println!("{path} is not here: nothing to compare");
+        }
+        text
+    }
+
+    #[test]
+    fn no_key_is_listed_twice() {
+        let mut keys: Vec<_> = rules().map(|rule| rule.key).collect();
+        let listed = keys.len();
+        keys.sort_unstable();
+        keys.dedup();
+        assert_eq!(keys.len(), listed);
+    }
+
+    #[test]
+    fn the_documentation_page_gives_every_key_with_its_range() {
+        let Some(page) = beside_the_crate("docs/machine-config.md") else { return };
+        for rule in rules() {
+            let key = rule.key.replacen("y.", "x.", usize::from(rule.key.starts_with("y.")));
+            let row = page.lines().find(|line| line.contains(&format!("| `{key}` |")));
+            let row = row.unwrap_or_else(|| panic!("no row for `{key}`"));
+            if let Form::Number(range) | Form::Whole(range) = rule.form {
+                let cells: Vec<_> = row.split('|').map(str::trim).collect();
+                assert_eq!(cells[2], range.unit, "unit of `{key}`");
+                let (least, most) = cells[3].split_once("..").unwrap_or((cells[3], cells[3]));
+                let most = most.replace(',', "");
+                assert_eq!((least.parse(), most.parse()), (Ok(range.least), Ok(range.most)), "`{key}`");
+            }
+        }
+    }
+
+    #[test]
+    fn the_documentation_page_gives_every_default() {
+        let Some(page) = beside_the_crate("docs/machine-config.md") else { return };
+        let default = MachineConfig::default();
+        for rule in rules().filter(|rule| !rule.key.starts_with("y.")) {
+            let (Form::Number(range) | Form::Whole(range)) = rule.form else { continue };
+            let row = page.lines().find(|line| line.contains(&format!("| `{}` |", rule.key))).unwrap();
+            let written: f64 = row.split('|').map(str::trim).nth(4).unwrap().parse().unwrap();
+            // Gains are held in single precision: the page says 1e-5, the field the number nearest to it.
+            let value = (range.read)(&default);
+            assert!((written - value).abs() <= value.abs() * SINGLE_PRECISION, "default of `{}`", rule.key);
+        }
+    }
+}
