@@ -115,6 +115,9 @@ impl fmt::Display for ConfigError {
             Self::OutOfRange { key, value, least, most, unit, remedy } => {
                 let (value, least, most) = (Number(value), Number(least), Number(most));
                 let space = if unit.is_empty() { "" } else { " " };
+                if least.0 == most.0 {
+                    return write!(f, "{key}: {value}{space}{unit} is not {least}{space}{unit}; {remedy}");
+                }
                 write!(f, "{key}: {value}{space}{unit} lies outside {least}..={most}{space}{unit}; {remedy}")
             }
             Self::Conflict { key, value, bound, limit, unit, remedy } => {

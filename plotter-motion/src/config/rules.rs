@@ -91,7 +91,7 @@ const SCHEMA: NumberRule = NumberRule {
     unit: "",
     remedy: "write `schema = 1`",
 };
-const NO_NEGATIVE_GAIN: &str = "a negative gain drives away from the target: swap the motor's wires instead";
+const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the sign";
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
@@ -127,28 +127,28 @@ static MACHINE: [Rule; 25] = [
         |c| f64::from(c.control.published.kp),
         (0.0, 10_000.0),
         "steps/count",
-        NO_NEGATIVE_GAIN,
+        SIGN_OF_GAIN,
     ),
     number(
         "control.published.ki",
         |c| f64::from(c.control.published.ki),
         (0.0, 10_000.0),
         "steps/count",
-        NO_NEGATIVE_GAIN,
+        SIGN_OF_GAIN,
     ),
     number(
         "control.published.kd_x",
         |c| f64::from(c.control.published.kd_x),
         (0.0, 10_000.0),
         "steps/count",
-        NO_NEGATIVE_GAIN,
+        SIGN_OF_GAIN,
     ),
     number(
         "control.published.kd_y",
         |c| f64::from(c.control.published.kd_y),
         (0.0, 10_000.0),
         "steps/count",
-        NO_NEGATIVE_GAIN,
+        SIGN_OF_GAIN,
     ),
     number(
         "control.published.duty_limit_x",
@@ -354,7 +354,7 @@ pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::{format, fs, println, string::String, vec::Vec};
+    use std::{eprintln, format, fs, string::String, vec::Vec};
 
     /// Relative distance between a number and the single-precision number nearest to it.
     const SINGLE_PRECISION: f64 = 6.0e-8;
@@ -363,7 +363,7 @@ mod tests {
     fn beside_the_crate(path: &str) -> Option<String> {
         let text = fs::read_to_string(format!("{}/../{path}", env!("CARGO_MANIFEST_DIR"))).ok();
         if text.is_none() {
-            println!("{path} is not here: nothing to compare");
+            eprintln!("{path} is not here: nothing to compare");
         }
         text
     }

@@ -194,29 +194,36 @@ pub(super) fn nearest(word: &str, known: &[&'static str]) -> Option<&'static str
         .map(|(_, key)| key)
 }
 
-/// Levenshtein distance: how many letters must be added, dropped or changed to make one word of the other,
-/// regardless of case.
+/// How many letters must be added, dropped, changed or swapped with their neighbour to make one word of the
+/// other, regardless of case.
 ///
-/// Source: V. I. Levenshtein, "Binary codes capable of correcting deletions, insertions, and reversals" (1966);
-/// computed row by row.
+/// Source: F. J. Damerau, "A technique for computer detection and correction of spelling errors" (1964); computed
+/// row by row, each letter taking part in one swap at most.
 fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().map(|letter| letter.to_ascii_lowercase()).collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
+    // The rows for all of `a` but its last letter (`above`) and last two letters (`two_above`).
+    let mut two_above: Vec<usize> = Vec::new();
+    let mut above: Vec<usize> = (0..=b.len()).collect();
+    let mut letter_before = None;
     for (i, letter) in a.chars().map(|letter| letter.to_ascii_lowercase()).enumerate() {
-        // `diagonal` is the entry up and to the left, `left` the one just made.
-        let mut diagonal = i;
         let mut left = i + 1;
-        if let Some(first) = row.first_mut() {
-            *first = left;
+        let mut row = Vec::with_capacity(above.len());
+        row.push(left);
+        let mut other_before = None;
+        for ((j, other), pair) in b.iter().copied().enumerate().zip(above.windows(2)) {
+            let &[diagonal, up] = pair else { break };
+            left = (diagonal + usize::from(letter != other)).min(up + 1).min(left + 1);
+            if letter_before == Some(other) && other_before == Some(letter) {
+                let before_both = j.checked_sub(1).and_then(|j| two_above.get(j));
+                left = before_both.map_or(left, |distance| left.min(distance + 1));
+            }
+            row.push(left);
+            other_before = Some(other);
         }
-        for (entry, other) in row.iter_mut().skip(1).zip(&b) {
-            let change = diagonal + usize::from(letter != *other);
-            diagonal = *entry;
-            left = change.min(left + 1).min(*entry + 1);
-            *entry = left;
-        }
+        two_above = core::mem::replace(&mut above, row);
+        letter_before = Some(letter);
     }
-    row.last().copied().unwrap_or_default()
+    above.last().copied().unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -229,6 +236,8 @@ mod tests {
         assert_eq!(edit_distance("", "abc"), 3);
         assert_eq!(edit_distance("abc", ""), 3);
         assert_eq!(edit_distance("Baud", "baud"), 0);
+        assert_eq!(edit_distance("buad", "baud"), 1);
+        assert_eq!(edit_distance("ab", "ba"), 1);
     }
 
     #[test]
