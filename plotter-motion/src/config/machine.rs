@@ -214,14 +214,14 @@ mod tests {
 
     #[test]
     fn a_feed_beyond_the_no_load_speed_is_refused_for_the_controller_that_runs_at_it() {
-        // 12 V / 13.369e-3 V s = 897.6 rad/s = 142.86 turns/s, at 100 counts a turn and 40 counts/mm 357 mm/s.
+        // 12 V / 13.369e-3 V s = 897.6 rad/s = 142.86 turns/s, at 500 counts a turn and 40 counts/mm 1785.7 mm/s.
         let at = |feed_mm_s, controller| {
             let contouring = ContouringConfig { feed_mm_s, ..ContouringConfig::default() };
             let control = ControlConfig { controller, contouring, ..ControlConfig::default() };
             Machine::new(MachineConfig { control, ..MachineConfig::default() })
         };
-        assert!(at(357.0, ControllerChoice::Contouring).is_ok());
-        assert_eq!(at(358.0, ControllerChoice::Contouring).expect_err("refused").key(), "x.motor.supply_v");
-        assert!(at(358.0, ControllerChoice::Published).is_ok());
+        assert!(at(1_785.0, ControllerChoice::Contouring).is_ok());
+        assert_eq!(at(1_787.0, ControllerChoice::Contouring).expect_err("refused").key(), "x.motor.supply_v");
+        assert!(at(1_787.0, ControllerChoice::Published).is_ok());
     }
 }

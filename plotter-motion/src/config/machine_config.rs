@@ -315,12 +315,12 @@ impl Default for PublishedConfig {
 impl Default for ContouringConfig {
     fn default() -> Self {
         Self {
-            feed_mm_s: 60.0,
-            accel_mm_s2: 600.0,
-            jerk_mm_s3: 20_000.0,
+            feed_mm_s: 150.0,
+            accel_mm_s2: 3_000.0,
+            jerk_mm_s3: 150_000.0,
             loop_hz: 2_500.0,
-            bandwidth_hz: 30.0,
-            observer_hz: 90.0,
+            bandwidth_hz: 50.0,
+            observer_hz: 150.0,
             arrival_tolerance_counts: 0.25,
             settle_ms: 10.0,
         }
@@ -347,7 +347,7 @@ impl Default for AxisConfig {
 
 impl Default for EncoderConfig {
     fn default() -> Self {
-        Self { lines_per_turn: 100, decoding: Decoding::X1 }
+        Self { lines_per_turn: 500, decoding: Decoding::X1 }
     }
 }
 
