@@ -1,0 +1,222 @@
+//! A DC motor on an H-bridge of the L293D kind: an enable pin for the duty, two pins for the direction.
+//!
+//! ```text
+//!              ┌─────────────┐        enable  forward  reverse │ motor
+//!  PWM ────────┤ 1,2EN       │        ────────────────────────────────────────────────
+//!  forward ────┤ 1A       1Y ├──┐      low     any      any    │ coasts: both ends open
+//!              │             │ (M)     high    high     low    │ turns to larger coordinates
+//!  reverse ────┤ 2A       2Y ├──┘      high    low      high   │ turns to smaller coordinates
+//!              └─────────────┘         high    low      low    │ brakes: its ends short-circuited
+//! ```
+//!
+//! Source: Texas Instruments, *L293x Quadruple Half-H Drivers*, SLRS008D, "Bidirectional DC Motor Control" and
+//! its table. The thesis on the semi-virtual gantry wires it so, and runs the PWM at 2.5 kHz (sections 6.3, 6.7).
+
+use core::fmt;
+use embedded_hal::digital::{self, OutputPin};
+use embedded_hal::pwm::{self, SetDutyCycle};
+use plotter_motion::{Axis, Direction, Drive, Duty};
+
+/// One motor on an H-bridge. It turns by nothing but a [`Drive`], which only a safety gate makes.
+///
+/// The direction is never changed under duty: first the duty is taken away, then the pin that was high goes low,
+/// then the other one goes high, and only then the new duty is set. So the supply is never reversed on a motor
+/// that is being driven, and both inputs are never high together. (A timer that buffers its compare value takes
+/// the zero over at the end of its period; a PWM that must stop at once has to be set up without that buffer.)
+///
+/// Whatever pin fails, the motor does not run on: see [`Error`].
+///
+/// ```
+/// use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Set};
+/// use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as SetDuty};
+/// use plotter_hal::HBridge;
+/// use plotter_motion::{Axis, Demand, Duty, SafetyGate};
+///
+/// let pwm = Pwm::new(&[SetDuty::set_duty_cycle(0), SetDuty::max_duty_cycle(255), SetDuty::set_duty_cycle(20)]);
+/// let forward = Pin::new(&[Set::set(State::High)]);
+/// let reverse = Pin::new(&[Set::set(State::Low)]);
+/// let mut motor = HBridge::new(Axis::X, pwm, forward, reverse);
+///
+/// let demand = Demand { x: Duty::saturating(20.0 / 255.0), y: Duty::ZERO };
+/// motor.drive(SafetyGate::default().pass(demand))?;
+/// # let (mut pwm, mut forward, mut reverse) = motor.release();
+/// # pwm.done();
+/// # forward.done();
+/// # reverse.done();
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// A duty alone does not turn a motor:
+///
+/// ```compile_fail
+/// # use embedded_hal_mock::eh1::{digital::Mock as Pin, pwm::Mock as Pwm};
+/// # use plotter_hal::HBridge;
+/// # use plotter_motion::{Axis, Duty};
+/// # let mut motor = HBridge::new(Axis::X, Pwm::new(&[]), Pin::new(&[]), Pin::new(&[]));
+/// motor.drive(Duty::FULL);
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HBridge<Enable, Forward, Reverse> {
+    axis: Axis,
+    enable: Enable,
+    forward: Forward,
+    reverse: Reverse,
+    /// What the direction pins say; `None` when that is not known, or no direction.
+    direction: Option<Direction>,
+}
+
+impl<Enable, Forward, Reverse> HBridge<Enable, Forward, Reverse>
+where
+    Enable: SetDutyCycle,
+    Forward: OutputPin,
+    Reverse: OutputPin<Error = Forward::Error>,
+{
+    /// The motor of `axis`, with the PWM on the bridge's enable pin. Leaves the pins as they are: call
+    /// [`coast`](Self::coast) for a known start.
+    pub const fn new(axis: Axis, enable: Enable, forward: Forward, reverse: Reverse) -> Self {
+        Self { axis, enable, forward, reverse, direction: None }
+    }
+
+    /// The axis whose share of a [`Drive`] this motor takes.
+    pub const fn axis(&self) -> Axis {
+        self.axis
+    }
+
+    /// Gives the motor its share of `drive`. A duty of 0 lets it coast; every other is rounded to the nearest
+    /// step of the PWM.
+    ///
+    /// # Errors
+    ///
+    /// [`Error`] if a pin or the PWM fails; it says what became of the motor.
+    pub fn drive(&mut self, drive: Drive) -> Result<(), Error<Forward::Error, Enable::Error>> {
+        let duty = drive.axis(self.axis);
+        let Some(direction) = duty.direction() else { return self.coast() };
+        if self.direction != Some(direction) {
+            self.coast()?;
+            self.turn_to(direction).map_err(|cause| self.after_pin(cause))?;
+        }
+        let steps = steps(duty, self.enable.max_duty_cycle());
+        self.enable.set_duty_cycle(steps).map_err(|cause| self.after_pwm(cause))
+    }
+
+    /// Takes the duty away: both ends of the motor open, it runs out against its own friction.
+    ///
+    /// # Errors
+    ///
+    /// [`Error`] if the PWM fails; it says what became of the motor.
+    pub fn coast(&mut self) -> Result<(), Error<Forward::Error, Enable::Error>> {
+        self.enable.set_duty_cycle_fully_off().map_err(|cause| self.after_pwm(cause))
+    }
+
+    /// Short-circuits the motor, so that its own current stops it: both direction pins low, enable full.
+    ///
+    /// # Errors
+    ///
+    /// [`Error`] if a pin or the PWM fails; it says what became of the motor.
+    pub fn brake(&mut self) -> Result<(), Error<Forward::Error, Enable::Error>> {
+        self.coast()?;
+        self.both_low().map_err(|cause| self.after_pin(cause))?;
+        self.enable.set_duty_cycle_fully_on().map_err(|cause| self.after_pwm(cause))
+    }
+
+    /// Gives the PWM and both pins back, as they are: [`coast`](Self::coast) first.
+    pub fn release(self) -> (Enable, Forward, Reverse) {
+        (self.enable, self.forward, self.reverse)
+    }
+
+    /// Sets the direction pins; the duty has been taken away.
+    fn turn_to(&mut self, direction: Direction) -> Result<(), Forward::Error> {
+        // Between the two pins the direction is neither.
+        self.direction = None;
+        match direction {
+            Direction::Plus => {
+                self.reverse.set_low()?;
+                self.forward.set_high()?;
+            }
+            Direction::Minus => {
+                self.forward.set_low()?;
+                self.reverse.set_high()?;
+            }
+        }
+        self.direction = Some(direction);
+        Ok(())
+    }
+
+    /// Both pins low, and the second one also when the first one fails.
+    fn both_low(&mut self) -> Result<(), Forward::Error> {
+        self.direction = None;
+        let forward = self.forward.set_low();
+        let reverse = self.reverse.set_low();
+        forward.and(reverse)
+    }
+
+    /// A direction pin failed: makes sure of the duty.
+    fn after_pin(&mut self, cause: Forward::Error) -> Error<Forward::Error, Enable::Error> {
+        self.direction = None;
+        match self.enable.set_duty_cycle_fully_off() {
+            Ok(()) => Error::Pin(cause),
+            Err(cause) => Error::NotStopped(cause),
+        }
+    }
+
+    /// The PWM failed: tries it once more, and then takes the direction away, which stops a motor at any duty.
+    fn after_pwm(&mut self, cause: Enable::Error) -> Error<Forward::Error, Enable::Error> {
+        self.direction = None;
+        if self.enable.set_duty_cycle_fully_off().is_ok() || self.both_low().is_ok() {
+            Error::Pwm(cause)
+        } else {
+            Error::NotStopped(cause)
+        }
+    }
+}
+
+/// The nearest of the PWM's steps from 0 to `full`, without sign.
+fn steps(duty: Duty, full: u16) -> u16 {
+    u16::try_from(duty.steps(full).unsigned_abs()).map_or(full, |steps| steps.min(full))
+}
+
+/// A pin or the PWM of an H-bridge failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Error<Pin, Pwm> {
+    /// A direction pin failed; the duty was taken away and the motor coasts.
+    Pin(Pin),
+    /// The PWM failed; the duty was taken away at a second attempt, or both direction pins were set low, so that
+    /// the motor has no supply across it.
+    Pwm(Pwm),
+    /// The PWM failed and the motor could not be stopped: cut its supply.
+    NotStopped(Pwm),
+}
+
+impl<Pin: digital::Error, Pwm: pwm::Error> fmt::Display for Error<Pin, Pwm> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pin(cause) => {
+                write!(f, "direction pin of the h-bridge: {}; the motor coasts", cause.kind())
+            }
+            Self::Pwm(cause) => write!(f, "pwm of the h-bridge: {}; the motor is stopped", cause.kind()),
+            Self::NotStopped(cause) => {
+                write!(
+                    f,
+                    "pwm of the h-bridge: {}; the motor could not be stopped: cut its supply",
+                    cause.kind()
+                )
+            }
+        }
+    }
+}
+
+impl<Pin: digital::Error, Pwm: pwm::Error> core::error::Error for Error<Pin, Pwm> {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_duty_is_rounded_to_the_nearest_step_and_never_beyond_full() {
+        assert_eq!(steps(Duty::saturating(20.0 / 255.0), 255), 20);
+        assert_eq!(steps(Duty::saturating(-0.5), 255), 128); // 127.5, away from zero
+        assert_eq!(steps(Duty::FULL, u16::MAX), u16::MAX);
+        assert_eq!(steps(Duty::FULL, 0), 0);
+    }
+}
