@@ -133,6 +133,8 @@ fn the_file_before_its_mutation_is_a_machine() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     /// Bytes struck out, written over and put in, at any place: an error with its place, or a machine.
     #[test]
     fn no_mutation_of_a_file_panics(
