@@ -1,8 +1,8 @@
 //! Two-phase incremental encoders: which way and how far a shaft turned.
 //!
 //! ```text
-//!        ┌───┐   ┌───┐         forwards: A leads; at a rising A, B is high
-//!   A  ──┘   └───┘   └──       backwards: B leads; at a rising A, B is low
+//!        ┌───┐   ┌───┐         forwards: B leads; at a rising A, B is high
+//!   A  ──┘   └───┘   └──       backwards: A leads; at a rising A, B is low
 //!      ┌───┐   ┌───┐
 //!   B  ┘   └───┘   └────       ×1: rising edges of A only     ×4: every edge
 //! ```

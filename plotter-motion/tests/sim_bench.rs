@@ -1,5 +1,7 @@
 //! The whole gantry on the bench: host, serial line, controller and motors.
 
+#![cfg(feature = "alloc")]
+
 use core::time::Duration;
 use plotter_motion::plant::{Bench, BenchEvent, BenchSettings};
 use plotter_motion::protocol::{HostEvent, HostNotice};
@@ -11,6 +13,7 @@ fn square() -> Vec<PenMove> {
     down.map(|(x, y)| PenMove { pen: Pen::Down, target: StepPoint::new(x + 100, y + 100) }).to_vec()
 }
 
+#[expect(clippy::unwrap_used, reason = "a test may panic")]
 fn machine(choice: ControllerChoice) -> Machine {
     let mut config = MachineConfig::default();
     config.control.controller = choice;
