@@ -18,6 +18,7 @@ pub mod plant;
 mod profile;
 pub mod protocol;
 mod safety;
+pub mod hpgl;
 mod steps;
 mod sync_stop;
 mod targets;
