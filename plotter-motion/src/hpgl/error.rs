@@ -1,0 +1,248 @@
+//! [`Error`]: what is wrong with a text, where, and what would be right.
+
+use super::{Mnemonic, Position};
+use core::fmt;
+
+/// Something in an HPGL text that could not be carried out. Reading goes on after it.
+///
+/// `at` is the byte the complaint is about, `command` the command it belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// A command that this reader does not carry out. Only a notice: it is well understood where the command
+    /// ends, and it is skipped whole. See [`Error::is_notice`].
+    Unsupported {
+        /// Its first letter.
+        at: Position,
+        /// Which one.
+        command: Mnemonic,
+    },
+    /// A byte that no command may hold at this place. The rest of the command is skipped.
+    UnexpectedByte {
+        /// The byte.
+        at: Position,
+        /// The command that holds it; `None` between commands.
+        command: Option<Mnemonic>,
+        /// What stands there.
+        byte: u8,
+    },
+    /// A letter that no second letter follows.
+    BadMnemonic {
+        /// What follows the letter.
+        at: Position,
+        /// The letter.
+        letter: u8,
+        /// What follows; `None` at the end of the text.
+        byte: Option<u8>,
+    },
+    /// A sign or a point without a digit, or a second point. The rest of the command is skipped.
+    BadNumber {
+        /// Where the number starts.
+        at: Position,
+        /// The command that holds it.
+        command: Mnemonic,
+    },
+    /// Two commas with nothing between them. The rest of the command is skipped.
+    MissingNumber {
+        /// The second comma.
+        at: Position,
+        /// The command that lacks it.
+        command: Mnemonic,
+    },
+    /// A number beyond ±2³⁰. The rest of the command is skipped.
+    NumberOutOfRange {
+        /// Where the number starts.
+        at: Position,
+        /// The command that holds it.
+        command: Mnemonic,
+        /// The number; infinite when it is very long.
+        value: f64,
+    },
+    /// The text ends within a label, a string or encoded data.
+    Unterminated {
+        /// Where the text ends.
+        at: Position,
+        /// The command without end.
+        command: Mnemonic,
+    },
+    /// An escape sequence that is none.
+    BadEscape {
+        /// What follows the escape.
+        at: Position,
+        /// The byte there; `None` at the end of the text.
+        byte: Option<u8>,
+    },
+    /// An x without its y. The pairs before it have been carried out.
+    OddCoordinates {
+        /// The lonely x.
+        at: Position,
+        /// The command that holds it.
+        command: Mnemonic,
+        /// The lonely x.
+        x: f64,
+    },
+    /// A command that lacks a number it cannot do without. It is skipped.
+    MissingParameter {
+        /// Its first letter.
+        at: Position,
+        /// Which one.
+        command: Mnemonic,
+        /// What it needs.
+        expected: &'static str,
+    },
+    /// A number that the command does not take. The command is skipped.
+    BadParameter {
+        /// Where the number starts.
+        at: Position,
+        /// The command that holds it.
+        command: Mnemonic,
+        /// The number.
+        value: f64,
+        /// What it takes.
+        expected: &'static str,
+    },
+    /// More numbers than the command takes. It is carried out without them.
+    TooManyParameters {
+        /// Its first letter.
+        at: Position,
+        /// Which one.
+        command: Mnemonic,
+        /// How many it was given.
+        given: u32,
+        /// How many it takes at most.
+        takes: u32,
+    },
+}
+
+impl Error {
+    /// Where it is.
+    #[must_use]
+    pub fn position(&self) -> Position {
+        match *self {
+            Self::Unsupported { at, .. }
+            | Self::UnexpectedByte { at, .. }
+            | Self::BadMnemonic { at, .. }
+            | Self::BadNumber { at, .. }
+            | Self::MissingNumber { at, .. }
+            | Self::NumberOutOfRange { at, .. }
+            | Self::Unterminated { at, .. }
+            | Self::BadEscape { at, .. }
+            | Self::OddCoordinates { at, .. }
+            | Self::MissingParameter { at, .. }
+            | Self::BadParameter { at, .. }
+            | Self::TooManyParameters { at, .. } => at,
+        }
+    }
+
+    /// The command it is about; `None` outside of commands.
+    #[must_use]
+    pub fn command(&self) -> Option<Mnemonic> {
+        match *self {
+            Self::UnexpectedByte { command, .. } => command,
+            Self::BadMnemonic { .. } | Self::BadEscape { .. } => None,
+            Self::Unsupported { command, .. }
+            | Self::BadNumber { command, .. }
+            | Self::MissingNumber { command, .. }
+            | Self::NumberOutOfRange { command, .. }
+            | Self::Unterminated { command, .. }
+            | Self::OddCoordinates { command, .. }
+            | Self::MissingParameter { command, .. }
+            | Self::BadParameter { command, .. }
+            | Self::TooManyParameters { command, .. } => Some(command),
+        }
+    }
+
+    /// Whether the text is right as it is, and only asks for something that is not done here. Strict reading
+    /// passes over it.
+    #[must_use]
+    pub fn is_notice(&self) -> bool {
+        matches!(self, Self::Unsupported { command, .. } if command.meaning().is_some())
+    }
+}
+
+/// A byte as a person would write it.
+struct Shown(u8);
+
+impl fmt::Display for Shown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_ascii_graphic() {
+            write!(f, "`{}`", char::from(self.0))
+        } else {
+            write!(f, "byte 0x{:02X}", self.0)
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.position())?;
+        match *self {
+            Self::Unsupported { command, .. } => match command.meaning() {
+                Some(meaning) => write!(f, "{command} ({meaning}) is not supported and is left out"),
+                None => write!(f, "{command} is no known command and is left out: check its two letters"),
+            },
+            Self::UnexpectedByte { command: Some(command), byte, .. } => write!(
+                f,
+                "{} does not belong into {command}, whose rest is left out: separate numbers by commas and end \
+                 the command with `;`",
+                Shown(byte)
+            ),
+            Self::UnexpectedByte { command: None, byte, .. } => {
+                write!(f, "{} begins no command: a command is two letters", Shown(byte))
+            }
+            Self::BadMnemonic { letter, byte: Some(byte), .. } => write!(
+                f,
+                "{} after the letter {} makes no command: a command is two letters",
+                Shown(byte),
+                Shown(letter)
+            ),
+            Self::BadMnemonic { letter, byte: None, .. } => {
+                write!(f, "the text ends after the letter {}: a command is two letters", Shown(letter))
+            }
+            Self::BadNumber { command, .. } => write!(
+                f,
+                "{command} holds a malformed number, and its rest is left out: a number is like `-12` or `0.5`"
+            ),
+            Self::MissingNumber { command, .. } => write!(
+                f,
+                "{command} lacks a number between two commas, and its rest is left out: write the number, \
+                 0 included"
+            ),
+            Self::NumberOutOfRange { command, value, .. } => write!(
+                f,
+                "{command} holds the number {value}, and its rest is left out: numbers reach from -1073741824 to \
+                 1073741824"
+            ),
+            Self::Unterminated { command, .. } => write!(
+                f,
+                "the text ends within {command}: it must be ended by {}",
+                match command.syntax() {
+                    super::Syntax::Label => "the label terminator (byte 0x03 unless DT sets another)",
+                    super::Syntax::Quoted | super::Syntax::Comment => "`\"`",
+                    _ => "`;`",
+                }
+            ),
+            Self::BadEscape { byte: Some(byte), .. } => {
+                write!(f, "{} after an escape byte begins no sequence: remove the escape", Shown(byte))
+            }
+            Self::BadEscape { byte: None, .. } => f.write_str("the text ends within an escape sequence"),
+            Self::OddCoordinates { command, x, .. } => {
+                write!(
+                    f,
+                    "{command} has an x of {x} without a y, which is left out: give coordinates in pairs"
+                )
+            }
+            Self::MissingParameter { command, expected, .. } => {
+                write!(f, "{command} lacks {expected} and is left out")
+            }
+            Self::BadParameter { command, value, expected, .. } => {
+                write!(f, "{command} with {value} is left out: it takes {expected}")
+            }
+            Self::TooManyParameters { command, given, takes, .. } => {
+                write!(f, "{command} has {given} numbers and takes {takes}: the others are left out")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Error {}

@@ -1,0 +1,112 @@
+//! [`PlotOps`]: a whole text as an iterator of plot operations.
+
+use super::{Error, Interpreter, Reader};
+use crate::PlotOp;
+use core::iter::Copied;
+use core::slice::Iter;
+
+/// How much of the text has been read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    Text,
+    EndOfText,
+    EndOfDrawing,
+}
+
+/// The plot operations of an HPGL text, read from an iterator of bytes as they are asked for.
+///
+/// Memory is constant, whatever the length of the text. An [`Error`] stands in the place of what could not be
+/// carried out, and the operations after it follow, unless reading is [strict](PlotOps::strict).
+#[derive(Clone, Debug)]
+pub struct PlotOps<I> {
+    bytes: I,
+    reader: Reader,
+    interpreter: Interpreter,
+    stage: Stage,
+    strict: bool,
+}
+
+impl<I: Iterator<Item = u8>> PlotOps<I> {
+    /// The operations of the text `bytes`.
+    pub fn new(bytes: impl IntoIterator<Item = u8, IntoIter = I>) -> Self {
+        Self {
+            bytes: bytes.into_iter(),
+            reader: Reader::new(),
+            interpreter: Interpreter::new(),
+            stage: Stage::Text,
+            strict: false,
+        }
+    }
+
+    /// The same, ending with the first error. Notices ([`Error::is_notice`]) do not count as errors.
+    ///
+    /// ```
+    /// # use plotter_motion::hpgl;
+    /// let text = b"PU0,0;SR1,2;PD40,0,80;PD0,0;";
+    /// assert_eq!(hpgl::plot_ops(text).filter(Result::is_err).count(), 2); // SR, and an x without y
+    /// assert_eq!(hpgl::plot_ops(text).filter(Result::is_ok).count(), 3);
+    /// assert_eq!(hpgl::plot_ops(text).strict().filter(Result::is_ok).count(), 2); // the last line is lost
+    /// ```
+    #[must_use]
+    pub fn strict(self) -> Self {
+        Self { strict: true, ..self }
+    }
+}
+
+impl<I: Iterator<Item = u8>> Iterator for PlotOps<I> {
+    type Item = Result<PlotOp, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(outcome) = self.interpreter.next_op() {
+                if self.strict && outcome.is_err_and(|error| !error.is_notice()) {
+                    self.stage = Stage::EndOfDrawing;
+                    // What the failed command has left behind is not to follow.
+                    self.interpreter = Interpreter::new();
+                }
+                return Some(outcome);
+            }
+            let event = match self.stage {
+                Stage::Text => match self.bytes.next() {
+                    Some(byte) => self.reader.push(byte),
+                    None => {
+                        self.stage = Stage::EndOfText;
+                        self.reader.finish()
+                    }
+                },
+                Stage::EndOfText => {
+                    self.stage = Stage::EndOfDrawing;
+                    let ended = self.interpreter.finish();
+                    debug_assert!(ended.is_ok(), "next_op has just given none");
+                    None
+                }
+                Stage::EndOfDrawing => return None,
+            };
+            if let Some(event) = event {
+                let taken = self.interpreter.push(event);
+                debug_assert!(taken.is_ok(), "next_op has just given none");
+            }
+        }
+    }
+}
+
+impl<I: Iterator<Item = u8>> core::iter::FusedIterator for PlotOps<I> {}
+
+/// The plot operations of an HPGL text that is in memory. For one that is not, see [`PlotOps::new`].
+///
+/// ```
+/// # use plotter_motion::{PlotOp, Point, hpgl};
+/// let ops: Result<Vec<PlotOp>, hpgl::Error> = hpgl::plot_ops(b"IN;SP2;PU400,0;PD400,200;").collect();
+/// assert_eq!(
+///     ops?,
+///     [
+///         PlotOp::SelectPen { pen: 2 },
+///         PlotOp::Travel { to: Point::new(10.0, 0.0) },
+///         PlotOp::Draw { to: Point::new(10.0, 5.0), feed_mm_s: None },
+///     ]
+/// );
+/// # Ok::<(), hpgl::Error>(())
+/// ```
+pub fn plot_ops(text: &[u8]) -> PlotOps<Copied<Iter<'_, u8>>> {
+    PlotOps::new(text.iter().copied())
+}

@@ -1,0 +1,426 @@
+//! [`Reader`]: bytes in, commands and their numbers out.
+
+use super::decimal::Decimal;
+use super::escape::{Escape, Step};
+use super::{Error, Mnemonic, Position, Syntax};
+
+/// Greatest magnitude of a number: 2³⁰, the range of the widest HP-GL/2 plotters.
+const MAX_NUMBER: f64 = 1_073_741_824.0;
+/// Ends a label unless `DT` says otherwise: the control character ETX.
+const ETX: u8 = 3;
+
+/// One piece of an HPGL text.
+///
+/// A command comes as [`Event::Command`], then its numbers or bytes as they are read, then its end: the last
+/// number or byte says `last`, and where it cannot be known to be the last, [`Event::End`] follows. An
+/// [`Error`] in place of an event ends the command too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Event {
+    /// The two letters of a command.
+    Command {
+        /// Which one.
+        command: Mnemonic,
+        /// Its first letter.
+        at: Position,
+    },
+    /// A number of the command; within ±2³⁰.
+    Number {
+        /// The number.
+        value: f64,
+        /// Its first byte.
+        at: Position,
+        /// Whether the command ends with it.
+        last: bool,
+    },
+    /// A byte of a label, a string or encoded data.
+    Byte {
+        /// The byte.
+        byte: u8,
+        /// Whether the command ends with it.
+        last: bool,
+    },
+    /// The command ends.
+    End,
+    /// An escape sequence. `ESC .` speaks to the plotter's interface and may stand anywhere, also between the
+    /// numbers of a command, which it does not disturb. Any other one ends the command.
+    Escape {
+        /// The byte after the escape: `.` for device control, `%` for a change of language.
+        kind: u8,
+        /// The byte that says which one: the `Y` of `ESC .Y`, the `B` of `ESC %0B`.
+        name: u8,
+    },
+}
+
+/// Where in the text the reader stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum State {
+    /// Between two commands.
+    Idle,
+    /// One letter of a mnemonic has been read.
+    Letter { letter: u8, at: Position },
+    /// Before, between or within the numbers of a command.
+    Numbers { command: Mnemonic, number: Option<(Decimal, Position)>, comma: Comma },
+    /// Within a label.
+    Label { command: Mnemonic },
+    /// Right after `DT`.
+    Terminator { command: Mnemonic },
+    /// Right after `SM`.
+    Symbol,
+    /// Right after `CO`, before its first byte that is not blank.
+    Comment { command: Mnemonic },
+    /// Within double quotes.
+    Quoted { command: Mnemonic },
+    /// Within bytes that only `;` ends.
+    UntilSemicolon { command: Mnemonic },
+    /// After an error, before the next `;` or letter.
+    Skip,
+    /// In the other language of a printer, after `ESC %0A`.
+    OtherLanguage,
+    /// At the start of a line of printer job language, after `ESC %-12345X`, or within one.
+    JobLanguage { within: bool },
+}
+
+/// What the last separator was, so that a missing number is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Comma {
+    /// No number yet: a comma right after the mnemonic is tolerated.
+    Leading,
+    /// The last thing that was not blank is a number.
+    No,
+    /// The last thing that was not blank is a comma.
+    Yes,
+}
+
+/// Splits an HPGL text into commands and their numbers, byte by byte, in constant memory.
+///
+/// It owns no buffer: a `PD` with a hundred thousand coordinates is a hundred thousand events. It takes
+/// - either case, a missing `;`, and a lone `;` anywhere;
+/// - numbers with sign and point, separated by commas, blanks or line ends, or by nothing before a sign;
+/// - labels up to their terminator, which `DT` sets and `IN` and `DF` set back, so that a label is never read as
+///   commands; strings, comments, and encoded data likewise;
+/// - escape sequences: device control (`ESC .`) between any two bytes, and the change of a printer's language
+///   (`ESC %0A` … `ESC %0B`), between which nothing is read.
+///
+/// Control characters count as blanks. After an error the rest of the command is skipped, up to `;` or a
+/// letter.
+///
+/// ```
+/// # use plotter_motion::hpgl::{Event, Reader};
+/// let mut reader = Reader::new();
+/// let mut numbers = Vec::new();
+/// for byte in *b"pd10-2.5 , +7;" {
+///     if let Some(Event::Number { value, .. }) = reader.push(byte).transpose()? {
+///         numbers.push(value);
+///     }
+/// }
+/// assert_eq!(numbers, [10.0, -2.5, 7.0]);
+/// # Ok::<(), plotter_motion::hpgl::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reader {
+    state: State,
+    escape: Escape,
+    /// The byte to come.
+    at: Position,
+    terminator: u8,
+    /// Whether the terminator belongs to the label (`DT` with a second argument of 0).
+    terminator_shows: bool,
+}
+
+impl Default for Reader {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Reader {
+    /// A reader before the first byte.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            state: State::Idle,
+            escape: Escape::None,
+            at: Position::START,
+            terminator: ETX,
+            terminator_shows: false,
+        }
+    }
+
+    /// The place of the byte to come.
+    #[must_use]
+    pub fn position(&self) -> Position {
+        self.at
+    }
+
+    /// Takes the next byte; gives the piece that it completes, if it does.
+    ///
+    /// The error, if any, says what is wrong with the command in progress, which thereby ends. The next byte
+    /// can be pushed all the same.
+    pub fn push(&mut self, byte: u8) -> Option<Result<Event, Error>> {
+        let at = self.at;
+        self.at = at.after(byte);
+        match self.escape.push(byte) {
+            Step::NotMine => self.plain(byte, at).transpose(),
+            Step::Begun => self.interrupt().transpose(),
+            Step::Within => None,
+            Step::Named { kind, name } => Some(Ok(self.escaped(kind, name))),
+            Step::Broken => Some(Err(Error::BadEscape { at, byte: Some(byte) })),
+        }
+    }
+
+    /// Ends the text; gives the piece that the end completes, if it does. The reader is then between commands.
+    pub fn finish(&mut self) -> Option<Result<Event, Error>> {
+        let (state, at) = (self.state, self.at);
+        self.state = State::Idle;
+        if self.escape.finish() {
+            return Some(Err(Error::BadEscape { at, byte: None }));
+        }
+        match state {
+            State::Idle | State::Skip | State::OtherLanguage | State::JobLanguage { .. } => None,
+            State::Letter { letter, .. } => Some(Err(Error::BadMnemonic { at, letter, byte: None })),
+            State::Numbers { command, number: Some((number, start)), .. } => {
+                Some(self.number(command, number, start, true))
+            }
+            State::Numbers { .. } | State::Terminator { .. } | State::Symbol | State::Comment { .. } => {
+                Some(Ok(Event::End))
+            }
+            State::UntilSemicolon { command } if command.syntax() == Syntax::Comment => Some(Ok(Event::End)),
+            State::Label { command } | State::Quoted { command } | State::UntilSemicolon { command } => {
+                Some(Err(Error::Unterminated { at, command }))
+            }
+        }
+    }
+
+    /// A byte that is no part of an escape sequence.
+    fn plain(&mut self, byte: u8, at: Position) -> Result<Option<Event>, Error> {
+        match self.state {
+            State::Idle => self.idle(byte, at),
+            State::Letter { letter, at: start } => self.second_letter(letter, byte, start, at),
+            State::Numbers { command, number, comma } => self.numbers(command, number, comma, byte, at),
+            State::Label { .. } if byte == self.terminator => {
+                self.state = State::Idle;
+                Ok(Some(if self.terminator_shows { Event::Byte { byte, last: true } } else { Event::End }))
+            }
+            State::Label { .. } => Ok(Some(Event::Byte { byte, last: false })),
+            State::Terminator { command } => Ok(self.set_terminator(command, byte)),
+            State::Symbol if byte == b'\r' || byte == b'\n' => Ok(None),
+            State::Symbol => {
+                self.state = if byte == b';' { State::Idle } else { State::Skip };
+                Ok(Some(if byte == b';' { Event::End } else { Event::Byte { byte, last: true } }))
+            }
+            State::Comment { command } => {
+                if byte == b'"' {
+                    self.state = State::Quoted { command };
+                } else if byte == b';' {
+                    self.state = State::Idle;
+                    return Ok(Some(Event::End));
+                } else if !is_blank(byte) {
+                    self.state = State::UntilSemicolon { command };
+                    return Ok(Some(Event::Byte { byte, last: false }));
+                }
+                Ok(None)
+            }
+            State::Quoted { command } => {
+                if byte == b'"' {
+                    self.state = State::Numbers { command, number: None, comma: Comma::No };
+                    return Ok(None);
+                }
+                Ok(Some(Event::Byte { byte, last: false }))
+            }
+            State::UntilSemicolon { .. } => {
+                if byte == b';' {
+                    self.state = State::Idle;
+                    return Ok(Some(Event::End));
+                }
+                Ok(Some(Event::Byte { byte, last: false }))
+            }
+            State::Skip => {
+                if byte == b';' {
+                    self.state = State::Idle;
+                } else if byte.is_ascii_alphabetic() {
+                    self.state = State::Letter { letter: byte, at };
+                }
+                Ok(None)
+            }
+            State::OtherLanguage => Ok(None),
+            State::JobLanguage { within } => {
+                if within || byte == b'@' || is_blank(byte) {
+                    self.state = State::JobLanguage { within: byte == b'@' || (within && byte != b'\n') };
+                    return Ok(None);
+                }
+                self.idle(byte, at)
+            }
+        }
+    }
+
+    fn idle(&mut self, byte: u8, at: Position) -> Result<Option<Event>, Error> {
+        if byte.is_ascii_alphabetic() {
+            self.state = State::Letter { letter: byte, at };
+        } else if byte == b';' || is_blank(byte) {
+            self.state = State::Idle;
+        } else {
+            self.state = State::Skip;
+            return Err(Error::UnexpectedByte { at, command: None, byte });
+        }
+        Ok(None)
+    }
+
+    fn second_letter(
+        &mut self,
+        letter: u8,
+        byte: u8,
+        start: Position,
+        at: Position,
+    ) -> Result<Option<Event>, Error> {
+        if is_blank(byte) {
+            return Ok(None);
+        }
+        let Some(command) = Mnemonic::new(letter, byte) else {
+            self.state = if byte == b';' { State::Idle } else { State::Skip };
+            return Err(Error::BadMnemonic { at, letter, byte: Some(byte) });
+        };
+        self.state = match command.syntax() {
+            Syntax::Numbers | Syntax::Quoted => {
+                State::Numbers { command, number: None, comma: Comma::Leading }
+            }
+            Syntax::Label => State::Label { command },
+            Syntax::Terminator => State::Terminator { command },
+            Syntax::Symbol => State::Symbol,
+            Syntax::Comment => State::Comment { command },
+            Syntax::Encoded => State::UntilSemicolon { command },
+        };
+        if matches!(command.letters(), b"IN" | b"DF") {
+            self.terminator = ETX;
+            self.terminator_shows = false;
+        }
+        Ok(Some(Event::Command { command, at: start }))
+    }
+
+    fn numbers(
+        &mut self,
+        command: Mnemonic,
+        number: Option<(Decimal, Position)>,
+        comma: Comma,
+        byte: u8,
+        at: Position,
+    ) -> Result<Option<Event>, Error> {
+        if let Some((mut digits, start)) = number
+            && digits.push(byte)
+        {
+            self.state = State::Numbers { command, number: Some((digits, start)), comma };
+            return Ok(None);
+        }
+        // The byte is not part of a number in progress: it decides where the reader goes, and whether the
+        // number before it, if there is one, is the last.
+        let begun = Decimal::begin(byte).map(|digits| (digits, at));
+        let (next, last) = if let Some(begun) = begun {
+            (State::Numbers { command, number: Some(begun), comma: Comma::No }, false)
+        } else if byte == b';' {
+            (State::Idle, true)
+        } else if byte.is_ascii_alphabetic() {
+            (State::Letter { letter: byte, at }, true)
+        } else if is_blank(byte) {
+            (State::Numbers { command, number: None, comma: after_number(number, comma) }, false)
+        } else if byte == b',' && (number.is_some() || comma != Comma::Yes) {
+            let comma = if number.is_none() && comma == Comma::Leading { Comma::Leading } else { Comma::Yes };
+            (State::Numbers { command, number: None, comma }, false)
+        } else if byte == b'"' && number.is_none() && command.syntax() == Syntax::Quoted {
+            (State::Quoted { command }, false)
+        } else {
+            self.state = State::Skip;
+            return Err(match byte {
+                b',' => Error::MissingNumber { at, command },
+                _ => Error::UnexpectedByte { at, command: Some(command), byte },
+            });
+        };
+        // A point right after a complete number, as in 1.2.3, is no new number.
+        if let Some((_, start)) = number
+            && byte == b'.'
+        {
+            self.state = State::Skip;
+            return Err(Error::BadNumber { at: start, command });
+        }
+        self.state = next;
+        match number {
+            Some((number, start)) => self.number(command, number, start, last).map(Some),
+            None => Ok(last.then_some(Event::End)),
+        }
+    }
+
+    /// The event for a number that is complete.
+    fn number(
+        &mut self,
+        command: Mnemonic,
+        number: Decimal,
+        at: Position,
+        last: bool,
+    ) -> Result<Event, Error> {
+        let error = match number.value() {
+            Some(value) if value.abs() <= MAX_NUMBER => {
+                if command.letters() == b"DT" {
+                    self.terminator_shows = value == 0.0;
+                }
+                return Ok(Event::Number { value, at, last });
+            }
+            Some(value) => Error::NumberOutOfRange { at, command, value },
+            None => Error::BadNumber { at, command },
+        };
+        if !last {
+            self.state = State::Skip;
+        }
+        Err(error)
+    }
+
+    fn set_terminator(&mut self, command: Mnemonic, byte: u8) -> Option<Event> {
+        self.terminator_shows = false;
+        if matches!(byte, b';' | b'\n' | 0) {
+            self.terminator = ETX;
+            self.state = State::Idle;
+            return Some(Event::End);
+        }
+        self.terminator = byte;
+        self.state = State::Numbers { command, number: None, comma: Comma::Leading };
+        Some(Event::Byte { byte, last: false })
+    }
+
+    /// An escape byte: it ends a number in progress, and nothing else as yet.
+    fn interrupt(&mut self) -> Result<Option<Event>, Error> {
+        if let State::Numbers { command, number: Some((number, start)), .. } = self.state {
+            self.state = State::Numbers { command, number: None, comma: Comma::No };
+            return self.number(command, number, start, false).map(Some);
+        }
+        Ok(None)
+    }
+
+    /// A whole escape sequence.
+    fn escaped(&mut self, kind: u8, name: u8) -> Event {
+        let opaque = matches!(
+            self.state,
+            State::Label { .. }
+                | State::Quoted { .. }
+                | State::UntilSemicolon { .. }
+                | State::OtherLanguage
+                | State::Terminator { .. }
+                | State::Symbol
+        );
+        match (kind, name) {
+            (b'%', b'A') => self.state = State::OtherLanguage,
+            (b'%', b'X') => self.state = State::JobLanguage { within: false },
+            (b'%', _) => self.state = State::Idle,
+            (b'.', _) => {}
+            _ if !opaque => self.state = State::Idle,
+            _ => {}
+        }
+        Event::Escape { kind, name }
+    }
+}
+
+fn after_number(number: Option<(Decimal, Position)>, comma: Comma) -> Comma {
+    if number.is_some() { Comma::No } else { comma }
+}
+
+/// Space, line end, or a control character such as the padding and end marks of old files.
+fn is_blank(byte: u8) -> bool {
+    byte == b' ' || byte.is_ascii_control()
+}

@@ -1,0 +1,118 @@
+//! The interpreter of HPGL: command by command, in plotter units.
+
+use plotter_motion::PlotOp;
+use plotter_motion::hpgl::{Interpreter, Reader, UNITS_PER_MM, Undrained, plot_ops};
+
+/// Operations in short, in plotter units: `U` travel, `D` draw, `S` pen, `N` page; errors in `<>`.
+fn ops(text: &str) -> String {
+    let shown: Vec<String> = plot_ops(text.as_bytes())
+        .map(|op| match op {
+            Ok(PlotOp::Travel { to }) => format!("U{},{}", to.x * UNITS_PER_MM, to.y * UNITS_PER_MM),
+            Ok(PlotOp::Draw { to, feed_mm_s }) => {
+                let feed = feed_mm_s.map_or_else(String::new, |feed| format!("@{feed}"));
+                format!("D{},{}{feed}", to.x * UNITS_PER_MM, to.y * UNITS_PER_MM)
+            }
+            Ok(PlotOp::SelectPen { pen }) => format!("S{pen}"),
+            Ok(PlotOp::NewPage) => "N".to_string(),
+            Ok(other) => format!("{other:?}"),
+            Err(error) => format!("<{error}>"),
+        })
+        .collect();
+    shown.join(" ")
+}
+
+#[test]
+fn the_pen_and_the_kind_of_coordinates_last_across_commands() {
+    assert_eq!(ops("PA10,10;PD;PA20,10,30,10;PU;PA0,0;"), "U10,10 D20,10 D30,10 U0,0");
+    assert_eq!(ops("PU10,10;PR;PD5,0,0,5;PA;PD1,2;PR3,3;PU1,1"), "U10,10 D15,10 D15,15 D1,2 D4,5 U5,6");
+    assert_eq!(ops("PUPA10 10PDPA20 10"), "U10,10 D20,10");
+}
+
+#[test]
+fn a_pen_lowered_and_lifted_leaves_a_dot() {
+    assert_eq!(ops("PU5,5;PD;PU;"), "U5,5 D5,5");
+    assert_eq!(ops("PU5,5;PD;PD;PU9,9;"), "U5,5 D5,5 U9,9");
+    assert_eq!(ops("PD5,5,5,5;PU;PU;PD"), "D5,5 D5,5 D5,5");
+    assert_eq!(ops("PU5,5;PD;SP2;PU;"), "U5,5 D5,5 S2");
+}
+
+#[test]
+fn speed_holds_until_it_is_changed_or_the_plotter_initialized() {
+    assert_eq!(ops("PD;VS2;PA1,0;VS2.5;PA2,0;VS;PA3,0"), "D1,0@20 D2,0@25 D3,0");
+    assert_eq!(ops("VS2;DF;PD1,0;IN;PD2,0"), "D1,0@20 D2,0");
+    // A second number gives the speed to one pen only.
+    assert_eq!(ops("VS3,2;SP1;PD1,0;SP2;PD2,0;SP9;VS4;PD3,0"), "S1 D1,0 S2 D2,0@30 S9 D3,0@40");
+}
+
+#[test]
+fn initializing_lifts_the_pen_where_it_stands() {
+    assert_eq!(ops("PD7,7;PR;IN;PA8,8;PD9,9"), "D7,7 U8,8 D9,9");
+    assert_eq!(ops("PD7,7;PR;DF;PA8,8"), "D7,7 D8,8");
+}
+
+#[test]
+fn a_circle_starts_and_ends_right_of_its_centre() {
+    assert_eq!(ops("PU100,50;CI40,90;"), "U100,50 U140,50 D100,90 D60,50 D100,10 D140,50 U100,50");
+    assert_eq!(ops("PU100,50;CI-40,180;"), "U100,50 U60,50 D140,50 D60,50 U100,50");
+}
+
+#[test]
+fn a_circle_leaves_the_pen_as_it_was() {
+    assert_eq!(ops("PD10,0;CI5,180;PA20,0"), "D10,0 U15,0 D5,0 D15,0 U10,0 D20,0");
+    assert_eq!(ops("PD;CI5,180;PU"), "D0,0 U5,0 D-5,0 D5,0 U0,0");
+    assert_eq!(ops("CI5,180;PA20,0"), "U5,0 D-5,0 D5,0 U0,0 U20,0");
+}
+
+#[test]
+fn a_circle_has_72_chords_unless_it_says_otherwise_and_never_more_than_1000() {
+    let lines = |text: &[u8]| plot_ops(text).filter(|op| matches!(op, Ok(PlotOp::Draw { .. }))).count();
+    assert_eq!(lines(b"CI400"), 72);
+    assert_eq!(lines(b"CI400,7"), 52);
+    assert_eq!(lines(b"CI400,-10"), 36);
+    assert_eq!(lines(b"CI400,0"), 1000);
+    assert_eq!(lines(b"CI0"), 1);
+}
+
+#[test]
+fn what_is_not_carried_out_is_reported_and_the_rest_is_drawn() {
+    insta::assert_snapshot!(
+        ops("IN;SC0,100,0,75;LBPU;\u{3}PD1,1;ZZ1;PD2,2,3;SP300;SP1,2;VS-1;VS1,9;VS1,2,3;CI;CI5,200;PG;").replace("> ", ">\n"),
+        @r#"
+    <line 1, column 4 (byte 3): SC (scale) is not supported and is left out>
+    <line 1, column 17 (byte 16): LB (label) is not supported and is left out>
+    D1,1 <line 1, column 29 (byte 28): ZZ is no known command and is left out: check its two letters>
+    D2,2 <line 1, column 39 (byte 38): PD has an x of 3 without a y, which is left out: give coordinates in pairs>
+    <line 1, column 43 (byte 42): SP with 300 is left out: it takes a whole pen number from 0 to 255>
+    <line 1, column 47 (byte 46): SP has 2 numbers and takes 1: the others are left out>
+    S1 <line 1, column 55 (byte 54): VS with -1 is left out: it takes a speed above 0 cm/s>
+    <line 1, column 62 (byte 61): VS with 9 is left out: it takes a whole pen number from 1 to 8 as its second number>
+    <line 1, column 64 (byte 63): VS has 3 numbers and takes 2: the others are left out>
+    <line 1, column 72 (byte 71): CI lacks a radius in plotter units and is left out>
+    <line 1, column 79 (byte 78): CI with 200 is left out: it takes a chord angle of at most 180 degrees>
+    N
+    "#
+    );
+}
+
+#[test]
+fn a_reading_error_ends_the_command_but_not_the_drawing() {
+    assert_eq!(
+        ops("PU1,1;PD2,2,:3,3;PD4,4"),
+        "U1,1 D2,2 <line 1, column 13 (byte 12): `:` does not belong into PD, whose rest is left out: separate \
+         numbers by commas and end the command with `;`> D4,4"
+    );
+}
+
+#[test]
+fn an_event_is_refused_while_operations_wait() {
+    let (mut reader, mut interpreter) = (Reader::new(), Interpreter::new());
+    for byte in *b"CI5,180;PU" {
+        if let Some(event) = reader.push(byte) {
+            let waiting = byte == b'U';
+            assert_eq!(interpreter.push(event).is_err(), waiting);
+        }
+    }
+    assert_eq!(interpreter.finish(), Err(Undrained));
+    while interpreter.next_op().is_some() {}
+    assert_eq!(interpreter.finish(), Ok(()));
+}
