@@ -1,0 +1,41 @@
+//! The log of a plotter's serial line: one text line a record, each with its own checksum.
+//!
+//! ```text
+//! plotter-log 1 {"baud":256000,"protocol":"digits","machine":"semi-virtual-gantry"}
+//! 0 > 03 09 09 02 00 05 05 09 03 01 *3f
+//! 10312 < 31 33 31 *9c
+//! 10350 @ edge x+ *11
+//! 10351 @ drive x 20 *d7
+//! │     │ │          └── CRC-8/SMBUS of everything before the asterisk, the space included
+//! │     │ └── bytes in hex, or what no byte shows
+//! │     └── > host to controller, < controller to host, @ beside the line
+//! └── microseconds since the start, never decreasing
+//! ```
+//!
+//! A person reads the difference of two logs, `grep` works, and a kill costs one line. The format is described
+//! in full in `docs/log-format.md`.
+//!
+//! [`Writer`] appends whole lines; [`Reader`] goes on past any damage and says what was lost.
+
+mod damage;
+mod file;
+mod header;
+mod line_source;
+mod reader;
+mod record;
+mod text;
+mod writer;
+
+pub use damage::{Damage, DamageKind, Summary, SyntaxError};
+pub use file::{FileReader, FileWriter, LogFile, create, open};
+pub use header::{Header, HeaderError};
+pub use reader::{ReadError, Reader};
+pub use record::{Event, Pen, Record, SwitchName, SwitchNameError};
+pub use writer::{WriteError, Writer};
+
+/// First word of every log.
+pub const MAGIC: &str = "plotter-log";
+/// The version of the format that this crate writes and reads.
+pub const VERSION: u32 = 1;
+/// Longest line, in bytes with its end: a longer one is damage, and is never held in memory.
+pub const MAX_LINE_BYTES: usize = 65_536;

@@ -1,0 +1,133 @@
+//! What in a log does not fit the protocol or itself.
+
+use core::fmt;
+use core::time::Duration;
+use plotter_motion::StepPoint;
+
+/// Something in a log that does not fit, and when.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Anomaly {
+    /// When.
+    pub time: Duration,
+    /// What.
+    pub kind: AnomalyKind,
+}
+
+/// What does not fit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AnomalyKind {
+    /// A host byte that is no digit (0 to 9); skipped.
+    NotADigit {
+        /// The byte.
+        byte: u8,
+    },
+    /// A controller byte that says nothing in this protocol; skipped.
+    UnknownReply {
+        /// The byte.
+        byte: u8,
+    },
+    /// The log begins inside a target: its last digits were dropped.
+    BeganInsideTarget {
+        /// How many digits.
+        digits: usize,
+    },
+    /// The host fell silent inside a target: its first digits were dropped.
+    SilenceInsideTarget {
+        /// How long.
+        silence: Duration,
+        /// How many digits.
+        digits: usize,
+    },
+    /// The controller reached a target of which the log has some digits only: they were dropped.
+    ReachedInsideTarget {
+        /// How many digits.
+        digits: usize,
+    },
+    /// The log ends inside a target.
+    PartialTargetAtEnd {
+        /// Its digits so far, in the order sent.
+        digits: Vec<u8>,
+    },
+    /// The host sent further targets before the present one was reached.
+    ExtraTargets {
+        /// How many more than one.
+        count: u64,
+    },
+    /// The controller says that it reached a target, and none was sent.
+    ReachedNothing,
+    /// The pulses do not lead to the target that the controller says it reached: bytes were lost or misread.
+    ReachedElsewhere {
+        /// Where the pulses lead, counted from the last reached target, minus the target.
+        off: StepPoint,
+    },
+    /// The line was silent with a target under way.
+    Silence {
+        /// How long.
+        silence: Duration,
+    },
+    /// The controller took another target than the host sent.
+    TargetDiffers {
+        /// Sent.
+        sent: StepPoint,
+        /// Taken.
+        taken: StepPoint,
+    },
+    /// A target that is not in the given drawing; its way is drawn.
+    NotInDrawing {
+        /// The target.
+        target: StepPoint,
+    },
+    /// The path is longer than what is kept; from here on only positions are counted.
+    PathTooLong,
+}
+
+impl fmt::Display for Anomaly {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} us: {}", self.time.as_micros(), self.kind)
+    }
+}
+
+impl fmt::Display for AnomalyKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotADigit { byte } => write!(f, "host byte 0x{byte:02x} is no digit: skipped"),
+            Self::UnknownReply { byte } => write!(f, "controller byte 0x{byte:02x} says nothing: skipped"),
+            Self::BeganInsideTarget { digits } => {
+                write!(f, "the log begins inside a target: dropped its last {digits} digits")
+            }
+            Self::SilenceInsideTarget { silence, digits } => write!(
+                f,
+                "host silent for {} ms inside a target: dropped its first {digits} digits",
+                silence.as_millis()
+            ),
+            Self::ReachedInsideTarget { digits } => {
+                write!(f, "target reached of which the log has only {digits} of 10 digits: dropped them")
+            }
+            Self::PartialTargetAtEnd { digits } => {
+                write!(f, "the log ends inside a target, after {} of 10 digits", digits.len())
+            }
+            Self::ExtraTargets { count } => {
+                write!(f, "{count} further target(s) sent before the controller reached the one before")
+            }
+            Self::ReachedNothing => write!(f, "target reached, but none was sent"),
+            Self::ReachedElsewhere { off } => write!(
+                f,
+                "target reached, but the pulses lead ({}, {}) counts beside it: bytes were lost or a digit misread",
+                off.x, off.y
+            ),
+            Self::Silence { silence } => {
+                write!(f, "no byte for {} ms with a target under way", silence.as_millis())
+            }
+            Self::TargetDiffers { sent, taken } => write!(
+                f,
+                "the host sent target ({}, {}), the controller took ({}, {})",
+                sent.x, sent.y, taken.x, taken.y
+            ),
+            Self::NotInDrawing { target } => {
+                write!(f, "target ({}, {}) is not in the drawing: its way is drawn", target.x, target.y)
+            }
+            Self::PathTooLong => write!(f, "the path is too long to keep: from here only positions are counted"),
+        }
+    }
+}

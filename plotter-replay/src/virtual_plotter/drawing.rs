@@ -1,0 +1,60 @@
+//! Finds the targets of a log again in the drawing that was sent, to know the pen.
+
+use crate::log::Pen;
+use plotter_motion::StepPoint;
+
+/// How far ahead a target is looked for: a host may leave out moves of no length.
+const LOOK_AHEAD: usize = 64;
+
+/// The stops of a drawing in their order, with the pen on the way to each, and how far the log has come.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Drawing {
+    stops: Vec<(StepPoint, Pen)>,
+    next: usize,
+}
+
+impl Drawing {
+    pub(super) fn new(stops: Vec<(StepPoint, Pen)>) -> Self {
+        Self { stops, next: 0 }
+    }
+
+    /// The pen on the way to `target`; `None` if that is not among what comes next. A target sent again is the
+    /// one before.
+    pub(super) fn pen(&mut self, target: StepPoint) -> Option<Pen> {
+        // A rounding elsewhere may differ by one count.
+        let near = |stop: StepPoint| stop.x.abs_diff(target.x) <= 1 && stop.y.abs_diff(target.y) <= 1;
+        let ahead = self.stops.iter().enumerate().skip(self.next).take(LOOK_AHEAD);
+        if let Some((index, &(_, pen))) = ahead.clone().find(|(_, (stop, _))| near(*stop)) {
+            let again = self.next.checked_sub(1).and_then(|last| self.stops.get(last));
+            match again {
+                // Sent again: nearer than a stop further on that happens to lie at the same place.
+                Some(&(stop, pen)) if near(stop) && index > self.next => return Some(pen),
+                _ => {}
+            }
+            self.next = index.saturating_add(1);
+            return Some(pen);
+        }
+        let (stop, pen) = *self.stops.get(self.next.checked_sub(1)?)?;
+        near(stop).then_some(pen)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_target_sent_again_does_not_use_up_the_drawing() {
+        let stop = |x, pen| (StepPoint::new(x, 0), pen);
+        let mut drawing =
+            Drawing::new(vec![stop(0, Pen::Up), stop(100, Pen::Down), stop(200, Pen::Down), stop(100, Pen::Up)]);
+        let at = |x| StepPoint::new(x, 0);
+        assert_eq!(drawing.pen(at(0)), Some(Pen::Up));
+        assert_eq!(drawing.pen(at(100)), Some(Pen::Down));
+        assert_eq!(drawing.pen(at(100)), Some(Pen::Down)); // sent again, not the last stop
+        assert_eq!(drawing.pen(at(50)), None);
+        assert_eq!(drawing.pen(at(201)), Some(Pen::Down));
+        assert_eq!(drawing.pen(at(100)), Some(Pen::Up));
+        assert_eq!(drawing.pen(at(0)), None);
+    }
+}

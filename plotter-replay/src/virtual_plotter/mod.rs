@@ -1,0 +1,433 @@
+//! [`VirtualPlotter`]: draws what the motors really did, from the log alone.
+//!
+//! The pulses `1` to `4` are counted into a position, the digits of the host into targets, and each `+` says
+//! that the target is reached. There the two are compared, which is the only check that the protocol allows:
+//!
+//! ```text
+//! host        2 0 0 0 0 1 0 0 0 0                        5 0 0 0 0 ...
+//! controller                      1 1 3 1 1 3 ... 1 +
+//!             └─ target (2, 1) ─┘ └─ the way ────┘ └ position == target?
+//! ```
+//!
+//! Two tracks are kept: *as counted*, and *resynchronized*, which starts afresh at each reached target. A lost
+//! pulse shifts the first for ever and the second until the next `+`.
+
+mod anomaly;
+mod drawing;
+mod host_digits;
+mod leg;
+mod settings;
+
+pub use anomaly::{Anomaly, AnomalyKind};
+pub use leg::{Leg, TrackPoint};
+pub use settings::{PlotterSettings, SettingsError};
+
+use crate::log::{Event, Pen, Record};
+use core::time::Duration;
+use drawing::Drawing;
+use host_digits::{Decoded, HostDigits};
+use plotter_motion::protocol::digits::Reply;
+use plotter_motion::{Axis, PlotOp, Point, StepPoint};
+
+/// A target and where the pulses had led when the controller said that it was reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reached {
+    /// When.
+    pub time: Duration,
+    /// The target, encoder counts.
+    pub desired: StepPoint,
+    /// The position as counted.
+    pub actual: StepPoint,
+    /// As counted, minus the target.
+    pub error: StepPoint,
+    /// Counted from the last reached target, minus the target.
+    pub resync_error: StepPoint,
+}
+
+/// A plotter without paper: fed with the records of a log, it knows where the pen is and what it has drawn.
+///
+/// ```
+/// # use plotter_motion::Point;
+/// # use plotter_replay::{PlotterSettings, VirtualPlotter, log::{Event, Record}};
+/// let mut plotter = VirtualPlotter::new(PlotterSettings::default());
+/// plotter.push(&Record::at_us(0, Event::Host(vec![2, 0, 0, 0, 0, 1, 0, 0, 0, 0])));
+/// plotter.push(&Record::at_us(900, Event::Controller(b"131+".to_vec())));
+/// plotter.finish();
+/// assert_eq!(plotter.position(), Point::new(0.05, 0.025)); // 2 and 1 pulses of 1/40 mm
+/// assert!(plotter.anomalies().is_empty());
+/// ```
+#[derive(Clone, Debug)]
+pub struct VirtualPlotter {
+    settings: PlotterSettings,
+    host: HostDigits,
+    drawing: Option<Drawing>,
+    pen: Pen,
+    pen_recorded: bool,
+    counted: StepPoint,
+    correction: StepPoint,
+    // Where the present line begins.
+    from: StepPoint,
+    next: Option<StepPoint>,
+    under_way: u64,
+    last_byte: Option<Duration>,
+    now: Duration,
+    leg: Leg,
+    legs: Vec<Leg>,
+    points: usize,
+    full: bool,
+    targets: Vec<(Duration, StepPoint)>,
+    target_count: u64,
+    reached_count: u64,
+    anomalies: Vec<Anomaly>,
+    anomaly_count: u64,
+}
+
+impl VirtualPlotter {
+    /// A plotter at position (0, 0) that draws every way, unless the log records the pen.
+    #[must_use]
+    pub fn new(settings: PlotterSettings) -> Self {
+        let origin = StepPoint::default();
+        let pen = Pen::Down;
+        Self {
+            settings,
+            host: HostDigits::new(settings.resync_gap),
+            drawing: None,
+            pen,
+            pen_recorded: false,
+            counted: origin,
+            correction: origin,
+            from: origin,
+            next: None,
+            under_way: 0,
+            last_byte: None,
+            now: Duration::ZERO,
+            leg: new_leg(pen, origin, origin, origin, 0),
+            legs: Vec::new(),
+            points: 0,
+            full: false,
+            targets: Vec::new(),
+            target_count: 0,
+            reached_count: 0,
+            anomalies: Vec::new(),
+            anomaly_count: 0,
+        }
+    }
+
+    /// Takes the drawing that was sent, in mm on the sheet: it tells which ways are drawn. What the log itself
+    /// records of the pen counts more.
+    #[must_use]
+    pub fn with_drawing(mut self, ops: impl IntoIterator<Item = PlotOp>) -> Self {
+        let stops = ops.into_iter().filter_map(|op| {
+            let pen = if matches!(op, PlotOp::Draw { .. }) { Pen::Down } else { Pen::Up };
+            Some((self.settings.to_counts(op.target()?), pen))
+        });
+        self.drawing = Some(Drawing::new(stops.collect()));
+        self.pen = Pen::Up;
+        self.leg.pen = Pen::Up;
+        self
+    }
+
+    /// Takes the next record.
+    pub fn push(&mut self, record: &Record) {
+        self.now = record.time;
+        match &record.event {
+            Event::Host(bytes) => bytes.iter().for_each(|&byte| self.host_byte(byte)),
+            Event::Controller(bytes) => bytes.iter().for_each(|&byte| self.controller_byte(byte)),
+            Event::Pen(pen) => {
+                self.pen_recorded = true;
+                self.set_pen(*pen);
+            }
+            Event::Target { x, y } => self.target_taken(StepPoint::new(*x, *y)),
+            // Edges come again as pulse bytes; the others do not move the pen.
+            Event::Edge { .. } | Event::Drive { .. } | Event::Switch { .. } | Event::Estop(_) | Event::Note(_) => {}
+        }
+    }
+
+    /// The log is over: takes what is left of it.
+    pub fn finish(&mut self) {
+        let decoded = self.host.finish();
+        self.take(decoded);
+        let digits = self.host.partial();
+        if !digits.is_empty() {
+            self.host.drop_partial();
+            self.note(self.now, AnomalyKind::PartialTargetAtEnd { digits });
+        }
+        self.end_leg(None);
+    }
+
+    /// Forgets what was drawn; position, pen and targets stay.
+    pub fn clear(&mut self) {
+        self.legs.clear();
+        self.points = 0;
+        self.full = false;
+        self.leg = self.begin_leg();
+    }
+
+    /// Scale, origin and limits.
+    #[must_use]
+    pub fn settings(&self) -> &PlotterSettings {
+        &self.settings
+    }
+
+    /// Where the pen is on the sheet, mm: the resynchronized track.
+    #[must_use]
+    pub fn position(&self) -> Point {
+        self.settings.to_sheet(self.resynced_counts())
+    }
+
+    /// Position as counted.
+    #[must_use]
+    pub fn raw_counts(&self) -> StepPoint {
+        self.counted
+    }
+
+    /// Position counted from the last reached target.
+    #[must_use]
+    pub fn resynced_counts(&self) -> StepPoint {
+        plus(self.counted, self.correction)
+    }
+
+    /// The next coordinate, mm on the sheet: the target under way.
+    #[must_use]
+    pub fn next_target(&self) -> Option<Point> {
+        self.next.map(|target| self.settings.to_sheet(target))
+    }
+
+    /// Whether the pen is down.
+    #[must_use]
+    pub fn pen(&self) -> Pen {
+        self.pen
+    }
+
+    /// Pulses a millimetre, x and y: the finest step of the drawing.
+    #[must_use]
+    pub fn resolution_per_mm(&self) -> (f64, f64) {
+        (1.0 / self.settings.x_mm_per_pulse, 1.0 / self.settings.y_mm_per_pulse)
+    }
+
+    /// The ways so far, each to one target; the one under way comes last once [`VirtualPlotter::finish`] was called.
+    #[must_use]
+    pub fn legs(&self) -> &[Leg] {
+        &self.legs
+    }
+
+    /// Targets that the host sent, encoder counts, with the time of their last digit.
+    #[must_use]
+    pub fn targets(&self) -> &[(Duration, StepPoint)] {
+        &self.targets
+    }
+
+    /// Targets that were reached.
+    pub fn reached(&self) -> impl Iterator<Item = Reached> {
+        self.legs.iter().filter_map(|leg| leg.reached)
+    }
+
+    /// How many targets were sent; more than [`VirtualPlotter::targets`] keeps, if they are very many.
+    #[must_use]
+    pub fn target_count(&self) -> u64 {
+        self.target_count
+    }
+
+    /// How many targets were reached.
+    #[must_use]
+    pub fn reached_count(&self) -> u64 {
+        self.reached_count
+    }
+
+    /// What did not fit, in its order.
+    #[must_use]
+    pub fn anomalies(&self) -> &[Anomaly] {
+        &self.anomalies
+    }
+
+    /// How much did not fit; more than [`VirtualPlotter::anomalies`] keeps, if it is very much.
+    #[must_use]
+    pub fn anomaly_count(&self) -> u64 {
+        self.anomaly_count
+    }
+
+    fn host_byte(&mut self, byte: u8) {
+        self.listen();
+        let decoded = self.host.push(self.now, byte);
+        self.take(decoded);
+    }
+
+    fn controller_byte(&mut self, byte: u8) {
+        self.listen();
+        let decoded = self.host.align();
+        self.take(decoded);
+        match Reply::from_byte(byte) {
+            Some(Reply::Pulse(axis, direction)) => {
+                let coordinate = match axis {
+                    Axis::X => &mut self.counted.x,
+                    Axis::Y => &mut self.counted.y,
+                };
+                *coordinate = coordinate.saturating_add(direction.sign());
+                self.add_point();
+            }
+            Some(Reply::Reached) => self.target_reached(),
+            Some(Reply::Clear) => {
+                self.host.drop_partial();
+                self.end_leg(None);
+                self.counted = StepPoint::default();
+                self.correction = StepPoint::default();
+                self.from = StepPoint::default();
+                self.leg = self.begin_leg();
+            }
+            None => self.note(self.now, AnomalyKind::UnknownReply { byte }),
+        }
+    }
+
+    /// Notices a silence of the whole line.
+    fn listen(&mut self) {
+        let silence = self.last_byte.map_or(Duration::ZERO, |last| self.now.saturating_sub(last));
+        self.last_byte = Some(self.now);
+        if self.under_way > 0 && silence > self.settings.stall_after {
+            self.note(self.now, AnomalyKind::Silence { silence });
+        }
+    }
+
+    fn take(&mut self, decoded: Vec<Decoded>) {
+        for one in decoded {
+            match one {
+                Decoded::Odd(time, kind) => self.note(time, kind),
+                Decoded::Target(time, target) => self.new_target(time, target),
+            }
+        }
+    }
+
+    fn new_target(&mut self, time: Duration, target: StepPoint) {
+        self.target_count = self.target_count.saturating_add(1);
+        if self.targets.len() < self.settings.max_entries {
+            self.targets.push((time, target));
+        }
+        self.next = Some(target);
+        self.under_way = self.under_way.saturating_add(1);
+        if !self.pen_recorded {
+            let found = self.drawing.as_mut().map(|drawing| drawing.pen(target));
+            if found == Some(None) {
+                self.note(time, AnomalyKind::NotInDrawing { target });
+            }
+            self.set_pen(found.flatten().unwrap_or(Pen::Down));
+        }
+        self.leg.target = Some(target);
+    }
+
+    /// The controller's own word on its target.
+    fn target_taken(&mut self, taken: StepPoint) {
+        let decoded = self.host.align();
+        self.take(decoded);
+        match self.next {
+            Some(sent) if sent == taken => {}
+            Some(sent) => {
+                self.note(self.now, AnomalyKind::TargetDiffers { sent, taken });
+                self.next = Some(taken);
+                self.leg.target = Some(taken);
+            }
+            None => self.new_target(self.now, taken),
+        }
+    }
+
+    fn target_reached(&mut self) {
+        let Some(desired) = self.next.take() else {
+            match self.host.drop_partial() {
+                0 => self.note(self.now, AnomalyKind::ReachedNothing),
+                digits => self.note(self.now, AnomalyKind::ReachedInsideTarget { digits }),
+            }
+            // Where that was, nobody knows: the pulses are the best guess for where the next line begins.
+            self.from = self.resynced_counts();
+            self.end_leg(None);
+            return;
+        };
+        let extra = self.under_way.saturating_sub(1);
+        self.under_way = 0;
+        if extra > 0 {
+            self.note(self.now, AnomalyKind::ExtraTargets { count: extra });
+        }
+        let error = minus(self.counted, desired);
+        let resync_error = minus(self.resynced_counts(), desired);
+        let tolerance = self.settings.reached_tolerance_counts;
+        if resync_error.x.unsigned_abs() > tolerance || resync_error.y.unsigned_abs() > tolerance {
+            self.note(self.now, AnomalyKind::ReachedElsewhere { off: resync_error });
+        }
+        self.reached_count = self.reached_count.saturating_add(1);
+        self.from = desired;
+        let (time, actual) = (self.now, self.counted);
+        self.end_leg(Some(Reached { time, desired, actual, error, resync_error }));
+        self.correction = minus(desired, self.counted);
+        self.leg.correction = self.correction;
+    }
+
+    fn set_pen(&mut self, pen: Pen) {
+        if pen == self.pen {
+            return;
+        }
+        self.pen = pen;
+        if self.leg.points.len() > 1 {
+            // What the pen did before belongs to a way of its own.
+            let target = self.leg.target;
+            self.end_leg(None);
+            self.leg.target = target;
+        }
+        self.leg.pen = pen;
+    }
+
+    fn add_point(&mut self) {
+        if self.full {
+            return;
+        }
+        if self.points >= self.settings.max_points {
+            self.full = true;
+            self.note(self.now, AnomalyKind::PathTooLong);
+            return;
+        }
+        self.points = self.points.saturating_add(1);
+        let point = self.here();
+        self.leg.points.push(point);
+    }
+
+    fn here(&self) -> TrackPoint {
+        TrackPoint { time_us: u64::try_from(self.now.as_micros()).unwrap_or(u64::MAX), at: self.counted }
+    }
+
+    fn begin_leg(&self) -> Leg {
+        let mut leg = new_leg(self.pen, self.from, self.counted, self.correction, self.here().time_us);
+        leg.target = self.next;
+        leg
+    }
+
+    /// Puts the present way to the others and begins the next.
+    fn end_leg(&mut self, reached: Option<Reached>) {
+        let next = self.begin_leg();
+        let mut leg = core::mem::replace(&mut self.leg, next);
+        leg.reached = reached;
+        if leg.points.len() <= 1 && leg.reached.is_none() {
+            return;
+        }
+        if self.legs.len() < self.settings.max_entries {
+            self.legs.push(leg);
+        } else if !self.full {
+            self.full = true;
+            self.note(self.now, AnomalyKind::PathTooLong);
+        }
+    }
+
+    fn note(&mut self, time: Duration, kind: AnomalyKind) {
+        self.anomaly_count = self.anomaly_count.saturating_add(1);
+        if self.anomalies.len() < self.settings.max_entries {
+            self.anomalies.push(Anomaly { time, kind });
+        }
+    }
+}
+
+fn new_leg(pen: Pen, from: StepPoint, at: StepPoint, correction: StepPoint, time_us: u64) -> Leg {
+    Leg { pen, from, target: None, points: vec![TrackPoint { time_us, at }], correction, reached: None }
+}
+
+fn plus(a: StepPoint, b: StepPoint) -> StepPoint {
+    StepPoint::new(a.x.saturating_add(b.x), a.y.saturating_add(b.y))
+}
+
+fn minus(a: StepPoint, b: StepPoint) -> StepPoint {
+    StepPoint::new(a.x.saturating_sub(b.x), a.y.saturating_sub(b.y))
+}

@@ -1,0 +1,139 @@
+//! [`PlotterSettings`]: where the paper lies under the counts, and what counts as odd.
+
+use crate::log::Header;
+use core::fmt;
+use core::time::Duration;
+use plotter_motion::{Point, StepPoint, from_mm};
+
+/// Scale, origin and limits of a virtual plotter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlotterSettings {
+    /// Length of a pulse to the right, mm.
+    pub x_mm_per_pulse: f64,
+    /// Length of a pulse up, mm.
+    pub y_mm_per_pulse: f64,
+    /// Where position (0, 0) of the motors lies on the sheet, mm: the origin offset P1.
+    pub p1: Point,
+    /// A silence of the host inside a target after which the rest of it is not expected any more.
+    pub resync_gap: Duration,
+    /// A silence with a target under way that is reported.
+    pub stall_after: Duration,
+    /// How far from the target the pulses may lead when the controller says that it is reached, encoder counts.
+    pub reached_tolerance_counts: u32,
+    /// Points of the path that are kept, 16 bytes each.
+    pub max_points: usize,
+    /// Targets, legs and anomalies that are kept, of each.
+    pub max_entries: usize,
+}
+
+impl Default for PlotterSettings {
+    /// The semi-virtual gantry: 40 pulses a millimetre, origin at the lower left, 100 ms inside a target; up to
+    /// 8 million points (128 MB).
+    fn default() -> Self {
+        Self {
+            x_mm_per_pulse: 0.025,
+            y_mm_per_pulse: 0.025,
+            p1: Point::ORIGIN,
+            resync_gap: Duration::from_millis(100),
+            stall_after: Duration::from_secs(1),
+            reached_tolerance_counts: 0,
+            max_points: 8_000_000,
+            max_entries: 1_000_000,
+        }
+    }
+}
+
+/// A number in a log's header that makes no sense.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SettingsError {
+    /// The key.
+    pub key: &'static str,
+    /// What would be right.
+    pub expected: &'static str,
+}
+
+impl PlotterSettings {
+    /// The defaults with what a log's header says: `x_mm_per_pulse`, `y_mm_per_pulse`, `p1_x_mm`, `p1_y_mm` and
+    /// `resync_gap_ms`, each optional.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] for a value that is no number or outside its range.
+    pub fn from_header(header: &Header) -> Result<Self, SettingsError> {
+        let number = |key, expected, fits: fn(f64) -> bool, default| {
+            if header.has(key) {
+                header.number(key).filter(|&n| fits(n)).ok_or(SettingsError { key, expected })
+            } else {
+                Ok(default)
+            }
+        };
+        let length = |n| n > 0.0 && n <= 1_000.0;
+        let place = |n: f64| n.abs() <= 1e6;
+        let pause = |n| (0.0..=3.6e6).contains(&n);
+        let base = Self::default();
+        let scale = "a length above 0 and up to 1000 mm";
+        Ok(Self {
+            x_mm_per_pulse: number("x_mm_per_pulse", scale, length, base.x_mm_per_pulse)?,
+            y_mm_per_pulse: number("y_mm_per_pulse", scale, length, base.y_mm_per_pulse)?,
+            p1: Point::new(
+                number("p1_x_mm", "a number within 1e6 mm", place, base.p1.x)?,
+                number("p1_y_mm", "a number within 1e6 mm", place, base.p1.y)?,
+            ),
+            resync_gap: Duration::from_secs_f64(
+                number("resync_gap_ms", "0 to 3.6e6 ms", pause, base.resync_gap.as_secs_f64() * 1e3)? / 1e3,
+            ),
+            ..base
+        })
+    }
+
+    /// Where a position of the motors lies on the sheet, mm.
+    ///
+    /// ```
+    /// # use plotter_motion::{Point, StepPoint};
+    /// # use plotter_replay::PlotterSettings;
+    /// let settings = PlotterSettings { p1: Point::new(10.0, 20.0), ..Default::default() };
+    /// assert_eq!(settings.to_sheet(StepPoint::new(40, 80)), Point::new(11.0, 22.0));
+    /// ```
+    #[must_use]
+    pub fn to_sheet(&self, at: StepPoint) -> Point {
+        Point::new(
+            self.p1.x + f64::from(at.x) * self.x_mm_per_pulse,
+            self.p1.y + f64::from(at.y) * self.y_mm_per_pulse,
+        )
+    }
+
+    /// The position of the motors at a place on the sheet: to the nearest count.
+    #[must_use]
+    pub fn to_counts(&self, on_sheet: Point) -> StepPoint {
+        let from_p1 = on_sheet - self.p1;
+        StepPoint::new(
+            from_mm(from_p1.x, 1.0 / self.x_mm_per_pulse),
+            from_mm(from_p1.y, 1.0 / self.y_mm_per_pulse),
+        )
+    }
+}
+
+impl fmt::Display for SettingsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "header key {}: expected {}", self.key, self.expected)
+    }
+}
+
+impl core::error::Error for SettingsError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_header_overrides_and_is_checked() {
+        let header = Header::from_json(r#"{"x_mm_per_pulse":0.1,"p1_y_mm":-5,"resync_gap_ms":50}"#).unwrap();
+        let settings = PlotterSettings::from_header(&header).unwrap();
+        assert_eq!(settings.to_sheet(StepPoint::new(10, 40)), Point::new(1.0, -4.0));
+        assert_eq!(settings.resync_gap, Duration::from_millis(50));
+        for bad in [r#"{"x_mm_per_pulse":0}"#, r#"{"p1_x_mm":"left"}"#, r#"{"resync_gap_ms":-1}"#] {
+            let error = PlotterSettings::from_header(&Header::from_json(bad).unwrap()).unwrap_err();
+            assert!(bad.contains(error.key), "{error}");
+        }
+    }
+}
