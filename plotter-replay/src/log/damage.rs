@@ -119,12 +119,9 @@ impl fmt::Display for DamageKind {
                 write!(f, "checksum *{found:02x} does not fit the line, whose bytes give *{computed:02x}")
             }
             Self::Syntax(error) => write!(f, "{error}"),
-            Self::TimeWentBack { time, previous } => write!(
-                f,
-                "time goes back to {} us after {} us",
-                time.as_micros(),
-                previous.as_micros()
-            ),
+            Self::TimeWentBack { time, previous } => {
+                write!(f, "time goes back to {} us after {} us", time.as_micros(), previous.as_micros())
+            }
             Self::CutEnd => write!(f, "the log ends inside this line"),
             Self::NotUtf8 => write!(f, "not UTF-8 text"),
             Self::TooLong => write!(f, "longer than {MAX_LINE_BYTES} bytes"),

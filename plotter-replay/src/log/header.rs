@@ -130,7 +130,8 @@ mod tests {
 
     #[test]
     fn a_baud_rate_of_nothing_is_none() {
-        for text in ["{}", r#"{"baud":0}"#, r#"{"baud":-1}"#, r#"{"baud":"fast"}"#, r#"{"baud":5000000000}"#] {
+        for text in ["{}", r#"{"baud":0}"#, r#"{"baud":-1}"#, r#"{"baud":"fast"}"#, r#"{"baud":5000000000}"#]
+        {
             assert_eq!(Header::from_json(text).unwrap().baud(), None, "{text}");
         }
     }

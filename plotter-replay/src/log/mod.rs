@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! plotter-log 1 {"baud":256000,"protocol":"digits","machine":"semi-virtual-gantry"}
-//! 0 > 03 09 09 02 00 05 05 09 03 01 *3f
-//! 10312 < 31 33 31 *9c
-//! 10350 @ edge x+ *11
-//! 10351 @ drive x 20 *d7
+//! 0 > 03 09 09 02 00 05 05 09 03 01 *89
+//! 10312 < 31 33 31 *87
+//! 10350 @ edge x+ *5a
+//! 10351 @ drive x 20 *04
 //! │     │ │          └── CRC-8/SMBUS of everything before the asterisk, the space included
 //! │     │ └── bytes in hex, or what no byte shows
 //! │     └── > host to controller, < controller to host, @ beside the line
@@ -30,7 +30,7 @@ pub use damage::{Damage, DamageKind, Summary, SyntaxError};
 pub use file::{FileReader, FileWriter, LogFile, create, open};
 pub use header::{Header, HeaderError};
 pub use reader::{ReadError, Reader};
-pub use record::{Event, Pen, Record, SwitchName, SwitchNameError};
+pub use record::{Event, Record, SwitchName, SwitchNameError};
 pub use writer::{WriteError, Writer};
 
 /// First word of every log.

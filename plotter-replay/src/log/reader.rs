@@ -15,9 +15,9 @@ use std::io::BufRead;
 /// ```
 /// # use plotter_replay::log::Reader;
 /// let log = "plotter-log 1 {\"baud\":256000}\n\
-///            10312 < 31 33 31 *9c\n\
-///            10350 @ edge x- *11\n\
-///            10351 @ drive x 20 *d7\n";
+///            10312 < 31 33 31 *87\n\
+///            10350 @ edge x- *5a\n\
+///            10351 @ drive x 20 *04\n";
 /// let mut reader = Reader::new(log.as_bytes())?;
 /// assert_eq!(reader.header().baud(), Some(256_000));
 /// assert_eq!(reader.by_ref().filter(Result::is_ok).count(), 2); // the sum shows that x+ has become x-
@@ -67,7 +67,8 @@ impl<R: BufRead> Reader<R> {
             Ok(true) => {}
         }
         let line = String::from_utf8_lossy(source.line());
-        let rest = line.strip_prefix(MAGIC).and_then(|rest| rest.strip_prefix(' ')).ok_or(ReadError::NotALog)?;
+        let rest =
+            line.strip_prefix(MAGIC).and_then(|rest| rest.strip_prefix(' ')).ok_or(ReadError::NotALog)?;
         let (version, settings) = rest.split_once(' ').unwrap_or((rest, ""));
         if version.parse() != Ok(VERSION) {
             // Only so much of it that the message stays one line.
@@ -114,8 +115,8 @@ impl<R: BufRead> Reader<R> {
             return Err(DamageKind::TooLong);
         }
         // A last line without its end is whole if its checksum says so.
-        let record =
-            parse_line(self.source.line()).map_err(|kind| if place.ended { kind } else { DamageKind::CutEnd })?;
+        let record = parse_line(self.source.line())
+            .map_err(|kind| if place.ended { kind } else { DamageKind::CutEnd })?;
         let previous = self.summary.last.unwrap_or(Duration::ZERO);
         if record.time < previous {
             return Err(DamageKind::TimeWentBack { time: record.time, previous });

@@ -2,7 +2,7 @@
 
 use core::fmt;
 use core::time::Duration;
-use plotter_motion::{Axis, Direction};
+use plotter_motion::{Axis, Direction, Pen};
 
 /// Something that happened on or beside the serial line, and when.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -63,15 +63,6 @@ pub enum Event {
     },
     /// Words for people. Any text: line ends and control characters are escaped in the log.
     Note(String),
-}
-
-/// Whether the pen touches the paper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Pen {
-    /// Moves leave no mark.
-    Up,
-    /// Moves are drawn.
-    Down,
 }
 
 /// Name of a switch: 1 to 32 printable ASCII characters without a space, as in `x-min`.

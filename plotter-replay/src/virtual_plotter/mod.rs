@@ -22,12 +22,12 @@ pub use anomaly::{Anomaly, AnomalyKind};
 pub use leg::{Leg, TrackPoint};
 pub use settings::{PlotterSettings, SettingsError};
 
-use crate::log::{Event, Pen, Record};
+use crate::log::{Event, Record};
 use core::time::Duration;
 use drawing::Drawing;
 use host_digits::{Decoded, HostDigits};
 use plotter_motion::protocol::digits::Reply;
-use plotter_motion::{Axis, PlotOp, Point, StepPoint};
+use plotter_motion::{Axis, Pen, PlotOp, Point, StepPoint};
 
 /// A target and where the pulses had led when the controller said that it was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,7 +139,11 @@ impl VirtualPlotter {
             }
             Event::Target { x, y } => self.target_taken(StepPoint::new(*x, *y)),
             // Edges come again as pulse bytes; the others do not move the pen.
-            Event::Edge { .. } | Event::Drive { .. } | Event::Switch { .. } | Event::Estop(_) | Event::Note(_) => {}
+            Event::Edge { .. }
+            | Event::Drive { .. }
+            | Event::Switch { .. }
+            | Event::Estop(_)
+            | Event::Note(_) => {}
         }
     }
 

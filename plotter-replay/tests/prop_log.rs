@@ -1,0 +1,115 @@
+//! What is written is read again, and a cut costs one line.
+
+use plotter_motion::{Axis, Direction, Pen};
+use plotter_replay::log::{DamageKind, Event, Header, ReadError, Reader, Record, SwitchName, Writer};
+use proptest::prelude::*;
+
+fn axis() -> impl Strategy<Value = Axis> {
+    prop_oneof![Just(Axis::X), Just(Axis::Y)]
+}
+
+fn event() -> impl Strategy<Value = Event> {
+    let bytes = || prop::collection::vec(any::<u8>(), 1..80);
+    let sign = prop_oneof![Just(Direction::Plus), Just(Direction::Minus)];
+    prop_oneof![
+        bytes().prop_map(Event::Host),
+        bytes().prop_map(Event::Controller),
+        (axis(), sign).prop_map(|(axis, sign)| Event::Edge { axis, sign }),
+        (axis(), any::<i32>()).prop_map(|(axis, duty)| Event::Drive { axis, duty }),
+        ("[!-~]{1,32}", any::<bool>())
+            .prop_map(|(name, pressed)| { Event::Switch { name: SwitchName::new(&name).unwrap(), pressed } }),
+        any::<bool>().prop_map(Event::Estop),
+        prop_oneof![Just(Event::Pen(Pen::Up)), Just(Event::Pen(Pen::Down))],
+        (any::<i32>(), any::<i32>()).prop_map(|(x, y)| Event::Target { x, y }),
+        any::<String>().prop_map(Event::Note),
+        "[ *\\\\\r\n]{0,5}".prop_map(Event::Note),
+    ]
+}
+
+fn records() -> impl Strategy<Value = Vec<Record>> {
+    prop::collection::vec((any::<u32>(), event()), 0..20).prop_map(|steps| {
+        let mut time_us = 0;
+        steps
+            .into_iter()
+            .map(|(step, event)| {
+                time_us += u64::from(step);
+                Record::at_us(time_us, event)
+            })
+            .collect()
+    })
+}
+
+fn write(header: &Header, records: &[Record]) -> Vec<u8> {
+    let mut writer = Writer::new(Vec::new(), header).unwrap();
+    records.iter().for_each(|record| writer.write(record).unwrap());
+    writer.finish().unwrap()
+}
+
+fn good(log: &[u8]) -> Vec<Record> {
+    Reader::new(log).unwrap().filter_map(Result::ok).collect()
+}
+
+proptest! {
+    #[test]
+    fn what_was_written_is_read(records in records(), name in any::<String>(), number in any::<f64>()) {
+        let header = Header::new().with_text(&name, &name).with_decimal("number", number);
+        let log = write(&header, &records);
+        let mut reader = Reader::new(&log[..]).unwrap();
+        prop_assert_eq!(reader.header(), &header);
+        let read: Vec<_> = reader.by_ref().collect();
+        prop_assert_eq!(read, records.into_iter().map(Ok).collect::<Vec<_>>());
+        prop_assert!(reader.summary().is_clean());
+    }
+
+    #[test]
+    fn a_log_cut_anywhere_gives_all_complete_records(records in records()) {
+        let log = write(&Header::new().with_number("baud", 256_000), &records);
+        let header_end = log.iter().position(|&b| b == b'\n').unwrap();
+        for cut in 0..log.len() {
+            let part = &log[..cut];
+            match Reader::new(part) {
+                Err(error) => {
+                    prop_assert!(cut < header_end);
+                    let kinds = matches!(error, ReadError::Empty | ReadError::NotALog | ReadError::Version { .. });
+                    prop_assert!(kinds);
+                }
+                Ok(mut reader) => {
+                    // A record is complete when only its line end is missing.
+                    let ends = log.iter().enumerate().filter(|&(at, &b)| b == b'\n' && at <= cut).count();
+                    let complete = ends.saturating_sub(1);
+                    let mut read = Vec::new();
+                    let mut damage = Vec::new();
+                    for item in reader.by_ref() {
+                        match item {
+                            Ok(record) => read.push(record),
+                            Err(one) => damage.push(one),
+                        }
+                    }
+                    prop_assert_eq!(&read[..], &records[..complete]);
+                    prop_assert!(damage.len() <= 1);
+                    let kinds = |kind: &DamageKind| matches!(kind, DamageKind::CutEnd | DamageKind::Header { .. });
+                    prop_assert!(damage.iter().all(|one| kinds(&one.kind)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_changed_byte_costs_at_most_two_lines(records in records(), at in any::<prop::sample::Index>(), to in any::<u8>()) {
+        let mut log = write(&Header::new(), &records);
+        let header = log.iter().position(|&b| b == b'\n').unwrap() + 1;
+        prop_assume!(log.len() > header);
+        let at = header + at.index(log.len() - header);
+        log[at] = to;
+        // Two where a line end was hit.
+        prop_assert!(good(&log).len() + 2 >= records.len());
+    }
+
+    #[test]
+    fn no_garbage_stops_the_reader(garbage in prop::collection::vec(any::<u8>(), 0..400)) {
+        let mut log = b"plotter-log 1 {}\n".to_vec();
+        log.extend(&garbage);
+        log.extend(b"\n10312 < 31 33 31 *87\n");
+        prop_assert_eq!(good(&log).len(), 1);
+    }
+}
