@@ -1,9 +1,25 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+mod canvas;
+mod chart;
+mod compare;
+pub mod golden;
 pub mod log;
+mod number;
+mod player;
+mod thin;
 mod virtual_plotter;
 
+#[cfg(feature = "image")]
+pub use canvas::PngError;
+pub use canvas::{Canvas, CanvasStyle, Layer, Visibility};
+pub use chart::{Chart, Curve, Panel, Role, Run};
+pub use compare::{ContourError, ContourSample, Ways, contour_samples};
+pub use player::{
+    Answer, Compared, Controller, Difference, EdgeSource, MachineController, Outcome, Player, PlayerSettings,
+    Stuck,
+};
 pub use virtual_plotter::{
     Anomaly, AnomalyKind, Leg, PlotterSettings, Reached, SettingsError, TrackPoint, VirtualPlotter,
 };

@@ -1,5 +1,12 @@
 //! Decodes real recordings, where they lie beside the checkout, as the notes beside them say.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test that fails says so by a panic"
+)]
+
 use plotter_motion::StepPoint;
 use plotter_replay::log::{Event, Record};
 use plotter_replay::{AnomalyKind, PlotterSettings, Reached, VirtualPlotter};

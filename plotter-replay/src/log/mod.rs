@@ -31,6 +31,7 @@ pub use file::{FileReader, FileWriter, LogFile, create, open};
 pub use header::{Header, HeaderError};
 pub use reader::{ReadError, Reader};
 pub use record::{Event, Record, SwitchName, SwitchNameError};
+pub(crate) use text::write_line;
 pub use writer::{WriteError, Writer};
 
 /// First word of every log.

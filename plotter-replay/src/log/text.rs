@@ -9,7 +9,7 @@ use plotter_motion::{Axis, Direction, Pen};
 const CHECKSUM: crc::Crc<u8> = crc::Crc::<u8>::new(&crc::CRC_8_SMBUS);
 
 /// Appends `record` and a line end to `line`; `time_us` is the record's time.
-pub(super) fn write_line(line: &mut String, time_us: u64, event: &Event) {
+pub(crate) fn write_line(line: &mut String, time_us: u64, event: &Event) {
     let start = line.len();
     // Writing to a `String` cannot fail.
     let _ = write_covered(line, time_us, event);

@@ -1,0 +1,276 @@
+//! [`Canvas`]: what was drawn, beside what was meant, as a picture.
+
+mod layout;
+#[cfg(feature = "image")]
+mod lettering;
+#[cfg(feature = "image")]
+mod png;
+mod svg;
+
+#[cfg(feature = "image")]
+pub use png::PngError;
+
+use crate::VirtualPlotter;
+use crate::thin::thin;
+use plotter_motion::{Pen, PlotOp, Point, StepPoint};
+
+/// What a line on a canvas means. They are drawn in this order, the last on top.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Layer {
+    /// What was meant: broad and pale.
+    Desired,
+    /// Moves with the pen up: dashed.
+    Travel,
+    /// What the motors drew: ink.
+    Ink,
+    /// The same, counted afresh from each reached target; only where that differs.
+    Resynced,
+}
+
+impl Layer {
+    const ALL: [Self; 4] = [Self::Desired, Self::Travel, Self::Ink, Self::Resynced];
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Desired => "desired",
+            Self::Travel => "pen up",
+            Self::Ink => "drawn",
+            Self::Resynced => "resynchronized",
+        }
+    }
+
+    /// Red, green, blue.
+    fn colour(self) -> [u8; 3] {
+        match self {
+            Self::Desired => [0x9c, 0xc4, 0xec],
+            Self::Travel => [0x9a, 0xa8, 0x9a],
+            Self::Ink => [0x1a, 0x1a, 0x2e],
+            Self::Resynced => [0xd9, 0x5f, 0x02],
+        }
+    }
+}
+
+/// Whether something is in the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Visibility {
+    /// It is.
+    Shown,
+    /// It is not.
+    #[default]
+    Hidden,
+}
+
+/// How a canvas looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CanvasStyle {
+    /// Width of the drawn line, mm.
+    pub ink_width_mm: f64,
+    /// Width of the desired line under it, mm.
+    pub desired_width_mm: f64,
+    /// Blank paper round the drawing, mm.
+    pub margin_mm: f64,
+    /// How far a line in the picture may be from the recorded one, mm.
+    pub tolerance_mm: f64,
+    /// Whether moves with the pen up are shown.
+    pub travel: Visibility,
+    /// Longer side of a PNG, pixels; kept within 64 to 8192.
+    pub longest_px: u32,
+}
+
+impl Default for CanvasStyle {
+    /// A 0.3 mm pen on A4, 1600 pixels: see [`Canvas::fitted_style`] for other sizes.
+    fn default() -> Self {
+        Self {
+            ink_width_mm: 0.3,
+            desired_width_mm: 0.9,
+            margin_mm: 8.0,
+            tolerance_mm: 0.02,
+            travel: Visibility::Hidden,
+            longest_px: 1_600,
+        }
+    }
+}
+
+/// A sheet with lines on it, in mm, y up.
+///
+/// ```
+/// # use plotter_motion::Point;
+/// # use plotter_replay::{Canvas, CanvasStyle, Layer};
+/// let mut canvas = Canvas::new();
+/// canvas.add(Layer::Ink, [Point::new(0.0, 0.0), Point::new(40.0, 0.0), Point::new(40.0, 20.0)]);
+/// let svg = canvas.to_svg(&CanvasStyle::default());
+/// assert!(svg.contains("viewBox=\"0 0 56 ")); // 40 mm and twice the margin of 8 mm
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Canvas {
+    lines: Vec<(Layer, Vec<Point>)>,
+}
+
+impl Canvas {
+    /// A blank sheet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// What a virtual plotter has drawn, the targets it had, and, where they differ, the resynchronized track.
+    #[must_use]
+    pub fn from_plotter(plotter: &VirtualPlotter, tolerance_mm: f64) -> Self {
+        let settings = plotter.settings();
+        let mut desired = Joined::new(Layer::Desired);
+        let mut travel = Joined::new(Layer::Travel);
+        let mut ink = Joined::new(Layer::Ink);
+        let mut resynced = Joined::new(Layer::Resynced);
+        let mut canvas = Self::new();
+        for leg in plotter.legs() {
+            let way = || leg.points.iter().map(|point| settings.to_sheet(point.at));
+            match leg.pen {
+                Pen::Down => {
+                    ink.add(&mut canvas, thin(way(), tolerance_mm));
+                    if let Some(target) = leg.target {
+                        desired
+                            .add(&mut canvas, vec![settings.to_sheet(leg.from), settings.to_sheet(target)]);
+                    }
+                }
+                Pen::Up => travel.add(&mut canvas, thin(way(), tolerance_mm)),
+            }
+            if leg.correction != StepPoint::default() && leg.pen == Pen::Down {
+                let shift = settings.to_sheet(leg.correction) - settings.p1;
+                resynced.add(&mut canvas, thin(way().map(|at| at + shift), tolerance_mm));
+            }
+        }
+        for joined in [desired, travel, ink, resynced] {
+            canvas.lines.extend((!joined.line.is_empty()).then_some((joined.layer, joined.line)));
+        }
+        canvas
+    }
+
+    /// Adds a line; a single point is a dot. Points that are not finite are left out.
+    pub fn add(&mut self, layer: Layer, points: impl IntoIterator<Item = Point>) {
+        let points: Vec<_> = points.into_iter().filter(|point| point.is_finite()).collect();
+        if !points.is_empty() {
+            self.lines.push((layer, points));
+        }
+    }
+
+    /// Adds the drawn lines of a drawing.
+    pub fn add_drawing(&mut self, layer: Layer, ops: impl IntoIterator<Item = PlotOp>) {
+        let mut at = Point::ORIGIN;
+        let mut line = Vec::new();
+        for op in ops {
+            match op {
+                PlotOp::Draw { to, .. } => {
+                    if line.is_empty() {
+                        line.push(at);
+                    }
+                    line.push(to);
+                    at = to;
+                }
+                op => {
+                    self.add(layer, core::mem::take(&mut line));
+                    at = op.target().unwrap_or(at);
+                }
+            }
+        }
+        self.add(layer, line);
+    }
+
+    /// Takes away all lines of a layer.
+    pub fn remove(&mut self, layer: Layer) {
+        self.lines.retain(|&(of, _)| of != layer);
+    }
+
+    /// The lines of a layer.
+    pub fn lines(&self, layer: Layer) -> impl Iterator<Item = &[Point]> {
+        self.lines.iter().filter(move |&&(of, _)| of == layer).map(|(_, line)| line.as_slice())
+    }
+
+    /// Lower left and upper right of all lines that `style` shows, mm; `None` for a blank sheet.
+    #[must_use]
+    pub fn bounds(&self, style: &CanvasStyle) -> Option<(Point, Point)> {
+        let shown = self.lines.iter().filter(|&&(layer, _)| is_shown(layer, style));
+        shown.flat_map(|(_, line)| line.iter().copied()).fold(None, |bounds, p| {
+            let (low, high) = bounds.unwrap_or((p, p));
+            Some((Point::new(low.x.min(p.x), low.y.min(p.y)), Point::new(high.x.max(p.x), high.y.max(p.y))))
+        })
+    }
+
+    /// A style with line widths and margin that suit the size of what is drawn: for a drawing much smaller than
+    /// a sheet the 0.3 mm pen of the default would blot.
+    #[must_use]
+    pub fn fitted_style(&self) -> CanvasStyle {
+        let base = CanvasStyle::default();
+        let shown = CanvasStyle { travel: Visibility::Shown, ..base };
+        let longest_mm = self.bounds(&shown).map_or(0.0, |(low, high)| (high.x - low.x).max(high.y - low.y));
+        // The default is made for the long side of A4; never thinner than a hair.
+        let scale = (longest_mm / 297.0).clamp(0.01, 4.0);
+        CanvasStyle {
+            ink_width_mm: base.ink_width_mm * scale,
+            desired_width_mm: base.desired_width_mm * scale,
+            margin_mm: base.margin_mm * scale,
+            ..base
+        }
+    }
+}
+
+fn is_shown(layer: Layer, style: &CanvasStyle) -> bool {
+    layer != Layer::Travel || style.travel == Visibility::Shown
+}
+
+/// Joins ways that go on from each other.
+struct Joined {
+    layer: Layer,
+    line: Vec<Point>,
+}
+
+impl Joined {
+    fn new(layer: Layer) -> Self {
+        Self { layer, line: Vec::new() }
+    }
+
+    fn add(&mut self, canvas: &mut Canvas, way: Vec<Point>) {
+        if self.line.is_empty() || self.line.last() != way.first() {
+            canvas.add(self.layer, core::mem::replace(&mut self.line, way));
+        } else {
+            self.line.extend(way.into_iter().skip(1));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drawing_becomes_its_strokes() {
+        let p = Point::new;
+        let draw = |to| PlotOp::Draw { to, feed_mm_s: None };
+        let mut canvas = Canvas::new();
+        canvas.add_drawing(
+            Layer::Desired,
+            [
+                PlotOp::Travel { to: p(1.0, 1.0) },
+                draw(p(2.0, 1.0)),
+                draw(p(2.0, 2.0)),
+                PlotOp::NewPage,
+                draw(p(3.0, 3.0)),
+            ],
+        );
+        let lines: Vec<_> = canvas.lines(Layer::Desired).collect();
+        assert_eq!(lines, [&[p(1.0, 1.0), p(2.0, 1.0), p(2.0, 2.0)][..], &[p(2.0, 2.0), p(3.0, 3.0)]]);
+    }
+
+    #[test]
+    fn a_blank_sheet_and_a_dot_have_pictures() {
+        let style = CanvasStyle::default();
+        let mut canvas = Canvas::new();
+        assert_eq!(canvas.bounds(&style), None);
+        assert!(canvas.to_svg(&style).ends_with("</svg>\n"));
+        canvas.add(Layer::Ink, [Point::new(f64::NAN, 1.0)]);
+        assert_eq!(canvas.bounds(&style), None);
+        canvas.add(Layer::Ink, [Point::new(5.0, 5.0)]);
+        assert!(canvas.to_svg(&style).ends_with("</svg>\n"));
+        #[cfg(feature = "image")]
+        assert!(canvas.to_png(&style).unwrap().starts_with(b"\x89PNG"));
+    }
+}

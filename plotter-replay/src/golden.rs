@@ -1,0 +1,158 @@
+//! Recordings as regression tests: what the controller once did, it must do again.
+//!
+//! ```no_run
+//! # use plotter_motion::{Machine, MachineConfig};
+//! use plotter_replay::{MachineController, golden};
+//!
+//! // in a test
+//! let machine = Machine::new(MachineConfig::default()).unwrap();
+//! golden::assert_replays("tests/golden/square.plog", || MachineController::new(&machine));
+//! ```
+//!
+//! With `UPDATE_GOLDEN=1` in the environment the recording is renewed: the same inputs, and what the controller
+//! answers now.
+
+use crate::log::{self, Damage, ReadError, Record, WriteError};
+use crate::{Controller, Difference, EdgeSource, Outcome, Player, PlayerSettings, Stuck};
+use core::fmt;
+use std::path::{Path, PathBuf};
+
+/// Why a recording does not hold.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum GoldenError {
+    /// The file is no log.
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: ReadError,
+    },
+    /// The file is damaged; a regression test needs all of it.
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// The first damage.
+        damage: Damage,
+    },
+    /// The controller does something else now.
+    Differs {
+        /// The file.
+        path: PathBuf,
+        /// Where what it does now was written to.
+        actual: PathBuf,
+        /// Where it begins to differ.
+        difference: Box<Difference>,
+    },
+    /// The controller cannot be run to the end.
+    Stuck(Stuck),
+    /// A file cannot be written.
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: WriteError,
+    },
+}
+
+/// Whether a recording is compared or renewed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Mode {
+    /// Compared.
+    #[default]
+    Compare,
+    /// Renewed: the same inputs with what the controller answers now.
+    Renew,
+}
+
+impl Mode {
+    /// [`Mode::Renew`] if the environment says `UPDATE_GOLDEN=1`.
+    #[must_use]
+    pub fn from_env() -> Self {
+        if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
+            Self::Renew
+        } else {
+            Self::Compare
+        }
+    }
+}
+
+/// Re-runs the recording at `path` with a new controller. Edges come from the log, or, if it has none, from its
+/// pulses; times must be exact. If the controller does something else, that is written beside the recording
+/// as `.actual`.
+///
+/// # Errors
+///
+/// [`GoldenError`].
+pub fn check<C: Controller>(path: &Path, controller: impl Fn() -> C, mode: Mode) -> Result<(), GoldenError> {
+    let unreadable = |error| GoldenError::Unreadable { path: path.to_owned(), error };
+    let mut reader = log::open(path).map_err(unreadable)?;
+    let header = reader.header().clone();
+    let records: Vec<Record> = reader
+        .by_ref()
+        .collect::<Result<_, _>>()
+        .map_err(|damage| GoldenError::Damaged { path: path.to_owned(), damage })?;
+    let edges = EdgeSource::of(&records);
+    let player = Player::new(PlayerSettings { edges, ..PlayerSettings::from_header(&header) });
+    let write = |path: &Path| -> Result<(), GoldenError> {
+        let unwritable = |error| GoldenError::Unwritable { path: path.to_owned(), error };
+        let mut now = Vec::new();
+        player
+            .rerun(records.iter().cloned(), controller(), |record| now.push(record))
+            .map_err(GoldenError::Stuck)?;
+        let mut writer = log::create(path, &header).map_err(unwritable)?;
+        for record in &now {
+            writer.write(record).map_err(unwritable)?;
+        }
+        writer.finish().map_err(unwritable).map(drop)
+    };
+    if mode == Mode::Renew {
+        return write(path);
+    }
+    match player.check(records.iter().cloned(), controller()) {
+        Outcome::Equal(_) => Ok(()),
+        Outcome::FirstDifference(difference) => {
+            let actual = beside(path);
+            write(&actual)?;
+            Err(GoldenError::Differs { path: path.to_owned(), actual, difference })
+        }
+    }
+}
+
+/// For tests: [`check`]s a recording, renewing it if the environment says `UPDATE_GOLDEN=1`.
+///
+/// # Panics
+///
+/// If the recording does not hold; the message is the first difference.
+#[expect(clippy::panic, reason = "made for tests, which fail by a panic")]
+pub fn assert_replays<C: Controller>(path: impl AsRef<Path>, controller: impl Fn() -> C) {
+    if let Err(error) = check(path.as_ref(), controller, Mode::from_env()) {
+        panic!("{error}");
+    }
+}
+
+/// `session.plog` to `session.plog.actual`, and `session.plog.gz` to `session.plog.actual.gz`, so that it stays packed.
+fn beside(path: &Path) -> PathBuf {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let packed = name.strip_suffix(".gz").map_or("", |_| ".gz");
+    path.with_file_name(format!("{}.actual{packed}", name.trim_end_matches(".gz")))
+}
+
+impl fmt::Display for GoldenError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable { path, error } => write!(f, "{}: {error}", path.display()),
+            Self::Damaged { path, damage } => write!(f, "{}: {damage}", path.display()),
+            Self::Differs { path, actual, difference } => write!(
+                f,
+                "{}: {difference}\n  what happened now: {} (UPDATE_GOLDEN=1 takes it over)",
+                path.display(),
+                actual.display()
+            ),
+            Self::Stuck(stuck) => stuck.fmt(f),
+            Self::Unwritable { path, error } => write!(f, "{}: {error}", path.display()),
+        }
+    }
+}
+
+impl core::error::Error for GoldenError {}

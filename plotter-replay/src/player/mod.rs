@@ -1,0 +1,224 @@
+//! [`Player`]: runs a controller again on what a log recorded, and compares every answer and its time.
+//!
+//! Time is the log's, in whole microseconds. Before a record is handed over, every tick that is due by then is
+//! run at its own time; among equal times the order of the records decides. The controller's bytes go over a
+//! line of their own, ten bit times each ([`plotter_motion::protocol::Wire`]), and are stamped when the last
+//! bit is through, as a log stamps them.
+
+mod controller;
+mod machine;
+mod outcome;
+mod run;
+
+pub use controller::Controller;
+pub use machine::MachineController;
+pub use outcome::{Answer, Compared, Difference, Outcome, Stuck};
+pub use run::EdgeSource;
+
+use crate::log::{Event, Header, Record};
+use core::time::Duration;
+use run::Run;
+use std::collections::VecDeque;
+
+/// Records that a difference shows before and after the place.
+const CONTEXT: usize = 5;
+
+/// How a recording is re-run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlayerSettings {
+    /// Bits a second on the line.
+    pub baud: u32,
+    /// How far the time of an answer may be off: zero for what a simulation recorded; a millisecond or two for a
+    /// real line, whose recorder groups bytes.
+    pub tolerance: Duration,
+    /// Where the edges come from.
+    pub edges: EdgeSource,
+}
+
+impl Default for PlayerSettings {
+    /// 256000 baud, exact, with the recorded edges.
+    fn default() -> Self {
+        Self { baud: 256_000, tolerance: Duration::ZERO, edges: EdgeSource::Records }
+    }
+}
+
+impl PlayerSettings {
+    /// The defaults with the baud rate that a log's header says.
+    #[must_use]
+    pub fn from_header(header: &Header) -> Self {
+        let base = Self::default();
+        Self { baud: header.baud().unwrap_or(base.baud), ..base }
+    }
+}
+
+/// Runs controllers on recordings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Player {
+    settings: PlayerSettings,
+}
+
+impl Player {
+    /// A player with these settings.
+    #[must_use]
+    pub const fn new(settings: PlayerSettings) -> Self {
+        Self { settings }
+    }
+
+    /// Runs `controller` on the records and compares each answered byte with its time, and each recorded duty
+    /// cycle. What the controller would say after the last record is not compared: the recorder may have been
+    /// stopped.
+    pub fn check(&self, records: impl IntoIterator<Item = Record>, controller: impl Controller) -> Outcome {
+        let mut records = (0_u64..).zip(records);
+        let mut check = Check {
+            run: Run::new(controller, self.settings.baud, self.settings.edges),
+            tolerance: self.settings.tolerance,
+            recorded: VecDeque::new(),
+            context: VecDeque::new(),
+            compared: Compared::default(),
+        };
+        let mut result = Ok(());
+        for (index, record) in records.by_ref() {
+            result = check.push(index, record);
+            if result.is_err() {
+                break;
+            }
+        }
+        match result.and_then(|()| check.end()) {
+            Ok(()) => Outcome::Equal(check.compared),
+            Err(mut difference) => {
+                difference.context = check.context.into_iter().chain(records.take(CONTEXT)).collect();
+                Outcome::FirstDifference(difference)
+            }
+        }
+    }
+
+    /// Runs `controller` on the inputs among the records, and hands `sink` the recording that this gives: the
+    /// same inputs, with what the controller says and drives now.
+    ///
+    /// # Errors
+    ///
+    /// [`Stuck`] if the controller cannot be run to the end; `sink` has had what came before.
+    pub fn rerun(
+        &self,
+        records: impl IntoIterator<Item = Record>,
+        controller: impl Controller,
+        mut sink: impl FnMut(Record),
+    ) -> Result<(), Stuck> {
+        let mut run = Run::new(controller, self.settings.baud, self.settings.edges);
+        for record in records {
+            run.advance(record.time)?;
+            while let Some(&(time, byte)) = run.said.front().filter(|&&(time, _)| time <= record.time) {
+                run.said.pop_front();
+                sink(Record { time, event: Event::Controller(vec![byte]) });
+            }
+            run.feed(&record)?;
+            match record.event {
+                Event::Controller(bytes) => {
+                    let inputs: Vec<_> = bytes.into_iter().filter(|&byte| !run.is_answer(byte)).collect();
+                    if !inputs.is_empty() {
+                        sink(Record { time: record.time, event: Event::Controller(inputs) });
+                    }
+                }
+                Event::Drive { axis, .. } => {
+                    let duty = run.controller.duty(axis);
+                    sink(Record { time: record.time, event: Event::Drive { axis, duty } });
+                }
+                event => sink(Record { time: record.time, event }),
+            }
+        }
+        for (time, byte) in run.said {
+            sink(Record { time, event: Event::Controller(vec![byte]) });
+        }
+        Ok(())
+    }
+}
+
+/// A re-run that is being compared.
+struct Check<C> {
+    run: Run<C>,
+    tolerance: Duration,
+    /// Recorded answers that were not compared yet: index of the record, time, byte.
+    recorded: VecDeque<(u64, Duration, u8)>,
+    context: VecDeque<(u64, Record)>,
+    compared: Compared,
+}
+
+impl<C: Controller> Check<C> {
+    fn push(&mut self, index: u64, record: Record) -> Result<(), Box<Difference>> {
+        if self.context.len() > CONTEXT {
+            self.context.pop_front();
+        }
+        let time = record.time;
+        self.context.push_back((index, record.clone()));
+        self.run.advance(time).map_err(|stuck| self.stuck(index, time, stuck))?;
+        self.run.feed(&record).map_err(|stuck| self.stuck(index, time, stuck))?;
+        match record.event {
+            Event::Controller(bytes) => {
+                let answers = bytes.into_iter().filter(|&byte| self.run.is_answer(byte));
+                self.recorded.extend(answers.map(|byte| (index, time, byte)));
+            }
+            Event::Drive { axis, duty } => {
+                let now = self.run.controller.duty(axis);
+                if now != duty {
+                    let (expected, got) = (Answer::Duty { axis, duty }, Answer::Duty { axis, duty: now });
+                    return Err(self.difference(index, time, expected, got));
+                }
+                self.compared.duties = self.compared.duties.saturating_add(1);
+            }
+            _ => {}
+        }
+        self.compare(index, time)?;
+        self.compared.records = self.compared.records.saturating_add(1);
+        Ok(())
+    }
+
+    /// Compares what both sides have said; what only one has said is a difference once the other is too late.
+    fn compare(&mut self, index: u64, now: Duration) -> Result<(), Box<Difference>> {
+        loop {
+            match (self.recorded.front().copied(), self.run.said.front().copied()) {
+                (Some((at, time, byte)), Some((said, said_byte))) => {
+                    if byte != said_byte || time.abs_diff(said) > self.tolerance {
+                        let (expected, got) =
+                            (Answer::Byte { time, byte }, Answer::Byte { time: said, byte: said_byte });
+                        return Err(self.difference(at, time, expected, got));
+                    }
+                    self.recorded.pop_front();
+                    self.run.said.pop_front();
+                    self.compared.bytes = self.compared.bytes.saturating_add(1);
+                }
+                (Some((at, time, byte)), None) if time.saturating_add(self.tolerance) < now => {
+                    return Err(self.difference(at, time, Answer::Byte { time, byte }, Answer::Nothing));
+                }
+                (None, Some((time, byte))) if time.saturating_add(self.tolerance) < now => {
+                    return Err(self.difference(index, time, Answer::Nothing, Answer::Byte { time, byte }));
+                }
+                _ => return Ok(()),
+            }
+        }
+    }
+
+    fn end(&mut self) -> Result<(), Box<Difference>> {
+        let Some(&(index, ref last)) = self.context.back() else {
+            return Ok(());
+        };
+        let end = last.time;
+        self.run
+            .advance(end.saturating_add(self.tolerance))
+            .map_err(|stuck| self.stuck(index, end, stuck))?;
+        self.compare(index, end)?;
+        match self.recorded.front().copied() {
+            Some((at, time, byte)) => {
+                Err(self.difference(at, time, Answer::Byte { time, byte }, Answer::Nothing))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn stuck(&self, index: u64, time: Duration, stuck: Stuck) -> Box<Difference> {
+        self.difference(index, time, Answer::Nothing, Answer::Stuck(stuck))
+    }
+
+    fn difference(&self, index: u64, time: Duration, expected: Answer, got: Answer) -> Box<Difference> {
+        Box::new(Difference { time, index, expected, got, until_then: self.compared, context: Vec::new() })
+    }
+}
