@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+mod bench_recorder;
 mod canvas;
 mod chart;
 mod compare;
@@ -11,6 +12,7 @@ mod player;
 mod thin;
 mod virtual_plotter;
 
+pub use bench_recorder::BenchRecorder;
 #[cfg(feature = "image")]
 pub use canvas::PngError;
 pub use canvas::{Canvas, CanvasStyle, Layer, Visibility};

@@ -150,6 +150,11 @@ impl<C: Controller> Check<C> {
         }
         let time = record.time;
         self.context.push_back((index, record.clone()));
+        // Of two changes of a duty at one time, the first is over when the ticks of that time are run.
+        let before = match record.event {
+            Event::Drive { axis, .. } if self.run.now() == time => Some(self.run.controller.duty(axis)),
+            _ => None,
+        };
         self.run.advance(time).map_err(|stuck| self.stuck(index, time, stuck))?;
         self.run.feed(&record).map_err(|stuck| self.stuck(index, time, stuck))?;
         match record.event {
@@ -159,7 +164,7 @@ impl<C: Controller> Check<C> {
             }
             Event::Drive { axis, duty } => {
                 let now = self.run.controller.duty(axis);
-                if now != duty {
+                if now != duty && before != Some(duty) {
                     let (expected, got) = (Answer::Duty { axis, duty }, Answer::Duty { axis, duty: now });
                     return Err(self.difference(index, time, expected, got));
                 }

@@ -48,6 +48,10 @@ impl<C: Controller> Run<C> {
         Self { controller, edges, wire: Wire::new(baud), now: Duration::ZERO, said: VecDeque::new() }
     }
 
+    pub(super) fn now(&self) -> Duration {
+        self.now
+    }
+
     /// Runs every tick that is due up to `to`, each at its own time.
     pub(super) fn advance(&mut self, to: Duration) -> Result<(), Stuck> {
         if to.saturating_sub(self.now) > LONGEST_SILENCE {

@@ -1,0 +1,164 @@
+//! A simulated session of the whole machine, recorded, drawn and run again.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test that fails says so by a panic"
+)]
+
+use plotter_motion::plant::{Bench, BenchSettings};
+use plotter_motion::{ControllerChoice, Machine, MachineConfig, Pen, PenMove, StepPoint};
+use plotter_replay::log::{Event, Header, Reader, Record, Writer};
+use plotter_replay::{
+    Answer, BenchRecorder, Canvas, Chart, EdgeSource, Layer, MachineController, Outcome, Player,
+    PlayerSettings, PlotterSettings, VirtualPlotter, Ways, golden,
+};
+use std::time::Duration;
+
+/// A house, 10 mm wide, and a dot; in encoder counts of 1/40 mm.
+fn moves() -> impl Iterator<Item = PenMove> {
+    let (up, down) = (Pen::Up, Pen::Down);
+    [
+        (up, 100, 100),
+        (down, 500, 100),
+        (down, 500, 400),
+        (down, 300, 560),
+        (down, 100, 400),
+        (down, 100, 100),
+        (up, 300, 300),
+        (down, 300, 300),
+        (up, 0, 0),
+    ]
+    .into_iter()
+    .map(|(pen, x, y)| PenMove { pen, target: StepPoint::new(x, y) })
+}
+
+fn machine(controller: ControllerChoice) -> Machine {
+    let mut config = MachineConfig::default();
+    config.control.controller = controller;
+    // The published pause of 10 ms after each byte makes a test long, and changes nothing else.
+    config.serial.byte_gap_ms = 1.0;
+    Machine::new(config).unwrap()
+}
+
+fn session(machine: &Machine) -> Vec<u8> {
+    let mut settings = BenchSettings::default();
+    settings.host.byte_gap = Duration::from_millis(1);
+    let mut bench = Bench::new(machine, settings, moves());
+    let header = Header::new().with_number("baud", 256_000).with_text("protocol", "digits");
+    let mut recorder = BenchRecorder::new(Writer::new(Vec::new(), &header).unwrap());
+    while !bench.host().is_done() {
+        bench.step(|time, event| recorder.record(time, event));
+    }
+    assert_eq!(bench.host().progress(), (9, 9));
+    recorder.finish().unwrap()
+}
+
+fn records(log: &[u8]) -> Vec<Record> {
+    Reader::new(log).unwrap().map(|record| record.unwrap()).collect()
+}
+
+#[test]
+fn a_recording_replays_equal_with_either_kind_of_time_step() {
+    let machine = machine(ControllerChoice::Contouring);
+    let log = session(&machine);
+    match Player::default().check(records(&log), MachineController::new(&machine)) {
+        Outcome::Equal(compared) => {
+            println!("{compared}");
+            assert!(compared.bytes > 3_000 && compared.duties > 1_000, "{compared}");
+        }
+        Outcome::FirstDifference(difference) => panic!("{difference}"),
+    }
+}
+
+#[test]
+fn another_controller_differs_and_the_place_is_told() {
+    let recorded = machine(ControllerChoice::Contouring);
+    let mut config = *recorded.config();
+    config.control.contouring.feed_mm_s *= 0.5;
+    let slower = Machine::new(config).unwrap();
+    let outcome = Player::default().check(records(&session(&recorded)), MachineController::new(&slower));
+    let Outcome::FirstDifference(difference) = outcome else { panic!("equal, though the feed is another") };
+    assert!(matches!(difference.expected, Answer::Duty { .. } | Answer::Byte { .. }), "{difference}");
+    assert!(difference.context.iter().any(|&(index, _)| index == difference.index), "{difference}");
+}
+
+#[test]
+fn a_re_run_yields_the_recording() {
+    let machine = machine(ControllerChoice::Contouring);
+    let recorded = records(&session(&machine));
+    let mut again = Vec::new();
+    let controller = MachineController::new(&machine);
+    Player::default().rerun(recorded.iter().cloned(), controller, |record| again.push(record)).unwrap();
+    // Records of one time may stand in another order.
+    let sorted = |records: &[Record]| {
+        let mut sorted: Vec<_> = records.iter().map(|r| (r.time, format!("{:?}", r.event))).collect();
+        sorted.sort();
+        sorted
+    };
+    assert_eq!(sorted(&again), sorted(&recorded));
+}
+
+#[test]
+fn without_edges_the_answers_are_compared_from_the_pulses() {
+    let machine = machine(ControllerChoice::Contouring);
+    let without: Vec<_> = records(&session(&machine))
+        .into_iter()
+        .filter(|record| !matches!(record.event, Event::Edge { .. } | Event::Drive { .. }))
+        .collect();
+    let edges = EdgeSource::of(&without);
+    assert_eq!(edges, EdgeSource::Pulses);
+    let tolerance = Duration::from_millis(50);
+    let player = Player::new(PlayerSettings { edges, tolerance, ..PlayerSettings::default() });
+    match player.check(without, MachineController::new(&machine)) {
+        Outcome::Equal(compared) => assert_eq!(compared.bytes, 9), // one answer to each target
+        Outcome::FirstDifference(difference) => panic!("{difference}"),
+    }
+}
+
+#[test]
+fn the_virtual_plotter_draws_what_was_commanded() {
+    let machine = machine(ControllerChoice::Contouring);
+    let mut plotter = VirtualPlotter::new(PlotterSettings::default());
+    records(&session(&machine)).iter().for_each(|record| plotter.push(record));
+    plotter.finish();
+    assert_eq!((plotter.target_count(), plotter.reached_count()), (9, 9));
+    assert_eq!(plotter.anomalies(), []);
+    let error = plotter.contour_error(Ways::Drawn);
+    println!("contour error: rms {:.4} mm, max {:.4} mm", error.rms_mm, error.max_mm);
+    // Four counts.
+    assert!(error.max_mm < 0.1, "{error:?}");
+    let canvas = Canvas::from_plotter(&plotter, 0.02);
+    let wanted = moves().filter(|next| next.pen == Pen::Down).count();
+    assert_eq!(canvas.lines(Layer::Desired).map(|line| line.len() - 1).sum::<usize>(), wanted);
+    if let Some(directory) = std::env::var_os("PLOTTER_PICTURES") {
+        let directory = std::path::PathBuf::from(directory);
+        let style = canvas.fitted_style();
+        std::fs::write(directory.join("house.svg"), canvas.to_svg(&style)).unwrap();
+        #[cfg(feature = "image")]
+        std::fs::write(directory.join("house.png"), canvas.to_png(&style).unwrap()).unwrap();
+        std::fs::write(directory.join("house-response.svg"), Chart::response("house", &plotter).to_svg())
+            .unwrap();
+        std::fs::write(directory.join("house.plog"), session(&machine)).unwrap();
+    }
+}
+
+#[test]
+fn a_golden_recording_holds_fails_and_is_renewed() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("house.plog");
+    let machine = machine(ControllerChoice::Contouring);
+    std::fs::write(&path, session(&machine)).unwrap();
+    golden::check(&path, || MachineController::new(&machine), golden::Mode::Compare).unwrap();
+
+    let mut config = *machine.config();
+    config.control.contouring.bandwidth_hz *= 0.8;
+    let other = Machine::new(config).unwrap();
+    let error = golden::check(&path, || MachineController::new(&other), golden::Mode::Compare).unwrap_err();
+    assert!(error.to_string().contains("first difference at "), "{error}");
+    let actual = directory.path().join("house.plog.actual");
+    golden::check(&actual, || MachineController::new(&other), golden::Mode::Compare).unwrap();
+
+    golden::check(&path, || MachineController::new(&other), golden::Mode::Renew).unwrap();
+    golden::check(&path, || MachineController::new(&other), golden::Mode::Compare).unwrap();
+}
