@@ -26,7 +26,7 @@ fn moves() -> impl Iterator<Item = PenMove> {
         (down, 100, 400),
         (down, 100, 100),
         (up, 300, 300),
-        (down, 300, 300),
+        (down, 300, 300), // a dot
         (up, 0, 0),
     ]
     .into_iter()
@@ -59,13 +59,13 @@ fn records(log: &[u8]) -> Vec<Record> {
 }
 
 #[test]
-fn a_recording_replays_equal_with_either_kind_of_time_step() {
+fn a_recording_replays_equal() {
     let machine = machine(ControllerChoice::Contouring);
     let log = session(&machine);
     match Player::default().check(records(&log), MachineController::new(&machine)) {
         Outcome::Equal(compared) => {
             println!("{compared}");
-            assert!(compared.bytes > 3_000 && compared.duties > 1_000, "{compared}");
+            assert!(compared.bytes > 2_500 && compared.duties > 1_000, "{compared}");
         }
         Outcome::FirstDifference(difference) => panic!("{difference}"),
     }
@@ -126,8 +126,9 @@ fn the_virtual_plotter_draws_what_was_commanded() {
     assert_eq!(plotter.anomalies(), []);
     let error = plotter.contour_error(Ways::Drawn);
     println!("contour error: rms {:.4} mm, max {:.4} mm", error.rms_mm, error.max_mm);
-    // Four counts.
-    assert!(error.max_mm < 0.1, "{error:?}");
+    // Four encoder counts.
+    const MOST_MM: f64 = 0.1;
+    assert!(error.max_mm < MOST_MM, "{error:?}");
     let canvas = Canvas::from_plotter(&plotter, 0.02);
     let wanted = moves().filter(|next| next.pen == Pen::Down).count();
     assert_eq!(canvas.lines(Layer::Desired).map(|line| line.len() - 1).sum::<usize>(), wanted);

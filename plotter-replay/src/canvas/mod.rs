@@ -78,11 +78,11 @@ pub struct CanvasStyle {
 }
 
 impl Default for CanvasStyle {
-    /// A 0.3 mm pen on A4, 1600 pixels: see [`Canvas::fitted_style`] for other sizes.
+    /// A 0.35 mm pen on A4, 1600 pixels: see [`Canvas::fitted_style`] for other sizes.
     fn default() -> Self {
         Self {
-            ink_width_mm: 0.3,
-            desired_width_mm: 0.9,
+            ink_width_mm: 0.35,
+            desired_width_mm: 1.0,
             margin_mm: 8.0,
             tolerance_mm: 0.02,
             travel: Visibility::Hidden,
@@ -196,7 +196,7 @@ impl Canvas {
     }
 
     /// A style with line widths and margin that suit the size of what is drawn: for a drawing much smaller than
-    /// a sheet the 0.3 mm pen of the default would blot.
+    /// a sheet the 0.35 mm pen of the default would blot.
     #[must_use]
     pub fn fitted_style(&self) -> CanvasStyle {
         let base = CanvasStyle::default();

@@ -1,0 +1,139 @@
+//! The program as a user runs it: what it says, and its exit status.
+#![cfg(feature = "cli")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that fails says so by a panic")]
+
+use plotter_motion::plant::{Bench, BenchSettings};
+use plotter_motion::{Machine, MachineConfig, Pen, PenMove, StepPoint};
+use plotter_replay::BenchRecorder;
+use plotter_replay::log::{self, Header};
+use std::path::Path;
+use std::process::Command;
+
+struct Ran {
+    status: i32,
+    out: String,
+    err: String,
+}
+
+fn run(arguments: &[&str], directory: &Path) -> Ran {
+    let output = Command::new(env!("CARGO_BIN_EXE_plotter-replay"))
+        .args(arguments)
+        .current_dir(directory)
+        .output()
+        .unwrap();
+    Ran {
+        status: output.status.code().unwrap(),
+        out: String::from_utf8(output.stdout).unwrap(),
+        err: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// Records 2.5 mm to the right and 1.25 mm up, drawn.
+fn session(path: &Path) {
+    let machine = Machine::new(MachineConfig::default()).unwrap();
+    let target = StepPoint::new(100, 50);
+    let mut bench =
+        Bench::new(&machine, BenchSettings::default(), [PenMove { pen: Pen::Down, target }].into_iter());
+    let header = Header::new().with_number("baud", 256_000).with_text("controller", "contouring");
+    let mut recorder = BenchRecorder::new(log::create(path, &header).unwrap());
+    while !bench.host().is_done() {
+        bench.step(|time, event| recorder.record(time, event));
+    }
+    recorder.finish().unwrap();
+}
+
+#[test]
+fn a_clean_log_is_described_drawn_and_re_run() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    session(&here.join("line.plog.gz"));
+
+    let info = run(&["info", "line.plog.gz"], here);
+    assert_eq!(info.status, 0, "{}", info.err);
+    for line in
+        ["  baud: 256000", "targets: 1 sent, 1 reached", "ends at (2.500, 1.250) mm, counted (100, 50)"]
+    {
+        assert!(info.out.lines().any(|l| l == line), "{line}: {}", info.out);
+    }
+    assert!(info.out.contains("nothing lost"), "{}", info.out);
+
+    let check = run(&["check", "line.plog.gz"], here);
+    assert_eq!(check.status, 0, "{}{}", check.out, check.err);
+    assert!(check.out.contains("\nequal: "), "{}", check.out);
+
+    let render = run(&["render", "line.plog.gz", "-o", "pictures", "--chart", "own.svg"], here);
+    assert_eq!(render.status, 0, "{}", render.err);
+    for name in ["pictures/plotted.svg", "pictures/response.svg", "own.svg"] {
+        let svg = std::fs::read_to_string(here.join(name)).unwrap();
+        assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"), "{name}");
+    }
+    #[cfg(feature = "image")]
+    assert!(std::fs::read(here.join("pictures/plotted.png")).unwrap().starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn another_machine_is_a_difference() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    session(&here.join("line.plog"));
+    std::fs::write(here.join("same.toml"), "schema = 1\n").unwrap();
+    let same = run(&["check", "line.plog", "--machine", "same.toml"], here);
+    assert_eq!(same.status, 0, "{}{}", same.out, same.err);
+    std::fs::write(here.join("slow.toml"), "schema = 1\n[control.contouring]\nfeed_mm_s = 20.0\n").unwrap();
+    let slow = run(&["check", "line.plog", "--machine", "slow.toml"], here);
+    assert_eq!(slow.status, 1, "{}{}", slow.out, slow.err);
+    assert!(slow.out.contains("first difference at "), "{}", slow.out);
+    std::fs::write(here.join("wrong.toml"), "schema = 1\nspeed = 3\n").unwrap();
+    let wrong = run(&["check", "line.plog", "--machine", "wrong.toml"], here);
+    assert_eq!(wrong.status, 2);
+    assert!(wrong.err.contains("wrong.toml") && wrong.err.contains("speed"), "{}", wrong.err);
+}
+
+#[test]
+fn a_damaged_log_gives_status_1_and_the_place() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    session(&here.join("line.plog"));
+    let mut text = std::fs::read_to_string(here.join("line.plog")).unwrap();
+    text.truncate(text.len() - 6);
+    std::fs::write(here.join("cut.plog"), text).unwrap();
+    for command in ["info", "render", "check"] {
+        let ran = run(&[command, "cut.plog"], here);
+        assert_eq!(ran.status, 1, "{command}: {}", ran.err);
+        assert!(ran.out.contains("the log ends inside this line"), "{command}: {}", ran.out);
+        assert!(ran.out.contains("lost 1 line"), "{command}: {}", ran.out);
+    }
+}
+
+#[test]
+fn what_is_no_log_gives_status_2_and_one_line() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    std::fs::write(here.join("picture.plog"), b"\x89PNG\r\n\x1a\n").unwrap();
+    std::fs::write(here.join("empty.plog"), b"").unwrap();
+    std::fs::write(here.join("scale.plog"), b"plotter-log 1 {\"x_mm_per_pulse\":0}\n").unwrap();
+    for (file, word) in [
+        ("picture.plog", "not a log"),
+        ("empty.plog", "empty"),
+        ("nowhere.plog", "cannot be read"),
+        ("scale.plog", "x_mm_per_pulse"),
+    ] {
+        let ran = run(&["info", file], here);
+        assert_eq!(ran.status, 2, "{file}");
+        assert!(ran.err.contains(file) && ran.err.contains(word), "{}", ran.err);
+        assert_eq!(ran.err.lines().count(), 1, "{}", ran.err);
+    }
+    let unwritable = run(&["render", "picture.plog", "-o", "pictures"], here);
+    assert_eq!(unwritable.status, 2);
+    assert!(!here.join("pictures").exists());
+}
+
+#[test]
+fn every_help_has_an_example() {
+    let here = Path::new(".");
+    for arguments in [&["--help"][..], &["render", "--help"], &["check", "--help"], &["info", "--help"]] {
+        let help = run(arguments, here);
+        assert_eq!(help.status, 0);
+        assert!(help.out.contains("Example: plotter-replay "), "{}", help.out);
+    }
+}
