@@ -18,7 +18,8 @@ use core::time::Duration;
 ///
 /// The sign of u is the direction; in the call in which it flips, u is halved. While
 /// `|dy - m dx| > 10 |m| + 10`, with the values of the *previous* call, x gets nothing. It runs only when an
-/// edge or a target comes: when both motors stand, nothing can change any more, wherever they are.
+/// edge or a target comes: when both motors stand, nothing can change any more, wherever they are. The program keeps
+/// `Ki e` of x in a whole number, which is 0 for every error below 100,000 counts, so in effect only y has a sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineTracking {
     config: PublishedConfig,
@@ -39,12 +40,16 @@ pub struct LineTracking {
 struct TrackedAxis {
     pid: SumPid,
     state: SumPidState,
+    /// Sum gain of an axis whose sum is kept in whole numbers, and that sum.
+    whole_ki: f32,
+    whole_sum: f32,
     forwards: bool,
 }
 
 impl TrackedAxis {
     fn output(&mut self, error: f32) -> f32 {
-        self.pid.update(&mut self.state, error)
+        self.whole_sum += libm::truncf(error * self.whole_ki);
+        self.pid.update(&mut self.state, error) + self.whole_sum
     }
 
     /// Sets the direction from the sign of `u`, halves `u` if it flipped, and cuts it to whole duty steps.
@@ -66,9 +71,11 @@ impl LineTracking {
     #[must_use]
     pub fn new(machine: &Machine) -> Self {
         let config = machine.config().control.published;
-        let axis = |kd| TrackedAxis {
-            pid: SumPid { kp: config.kp, ki: config.ki, kd },
+        let axis = |ki, whole_ki, kd| TrackedAxis {
+            pid: SumPid { kp: config.kp, ki, kd },
             state: SumPidState::default(),
+            whole_ki,
+            whole_sum: 0.0,
             forwards: true,
         };
         Self {
@@ -77,8 +84,8 @@ impl LineTracking {
             position: StepPoint::default(),
             start: StepPoint::default(),
             target: StepPoint::default(),
-            x: axis(config.kd_x),
-            y: axis(config.kd_y),
+            x: axis(0.0, config.ki, config.kd_x),
+            y: axis(config.ki, 0.0, config.kd_y),
             slope: 0.0,
             deviation: 0.0,
             demand: Demand::NONE,
