@@ -229,6 +229,8 @@ impl Interpreter {
             b"PA" => self.relative = false,
             b"PR" => self.relative = true,
             b"IN" | b"DF" | b"SP" | b"VS" | b"CI" | b"PG" => {}
+            // The reader has seen to the label terminator, and a comment is nothing to do.
+            b"DT" | b"CO" => self.open = None,
             _ => {
                 self.open = None;
                 self.give(Err(Error::Unsupported { at, command }));

@@ -1,0 +1,291 @@
+//! Laws of HPGL: what is written is read back, whatever the layout; and no text, however broken, does harm.
+
+use plotter_motion::hpgl::{Error, Event, Interpreter, PlotOps, Reader, WriteError, plot_ops, write_ops};
+use plotter_motion::{PlotOp, Point};
+use proptest::prelude::*;
+
+/// Half a plotter unit, mm, and the rounding of a coordinate near 1000 mm.
+const HALF_UNIT_MM: f64 = 0.0125 + 1e-12;
+/// Half a step of the written speed, mm/s, and the rounding of a speed near 100 mm/s.
+const HALF_SPEED_STEP_MM_S: f64 = 0.005 + 1e-12;
+
+/// A drawing with coordinates from `coordinate`, mm, and speeds from `feed`, mm/s.
+fn drawing(
+    coordinate: impl Strategy<Value = f64> + Clone + 'static,
+    feed: impl Strategy<Value = f64> + Clone + 'static,
+) -> impl Strategy<Value = Vec<PlotOp>> {
+    let point = (coordinate.clone(), coordinate).prop_map(|(x, y)| Point::new(x, y)).boxed();
+    let draw = (point.clone(), proptest::option::of(feed))
+        .prop_map(|(to, feed_mm_s)| PlotOp::Draw { to, feed_mm_s });
+    let op = prop_oneof![
+        3 => point.prop_map(|to| PlotOp::Travel { to }),
+        6 => draw,
+        1 => any::<u8>().prop_map(|pen| PlotOp::SelectPen { pen }),
+        1 => Just(PlotOp::NewPage),
+    ];
+    // An operation is now and then repeated, which makes dots.
+    proptest::collection::vec((op, 1..3_usize), 0..40)
+        .prop_map(|ops| ops.into_iter().flat_map(|(op, times)| std::iter::repeat_n(op, times)).collect())
+}
+
+fn on_the_grid() -> impl Strategy<Value = Vec<PlotOp>> {
+    drawing(
+        (-60..60_i32).prop_map(|units| f64::from(units) / 40.0),
+        (1..5000_i32).prop_map(|hundredths| f64::from(hundredths) / 100.0),
+    )
+}
+
+/// The drawing as it is read back: the writer has added a pen, a start and an end.
+fn with_frame(ops: &[PlotOp]) -> Vec<PlotOp> {
+    let mut framed = Vec::new();
+    let (mut pen, mut moved) = (false, false);
+    for op in ops {
+        if op.target().is_some() && !pen {
+            framed.push(PlotOp::SelectPen { pen: 1 });
+        }
+        pen |= op.target().is_some() || matches!(op, PlotOp::SelectPen { .. });
+        if matches!(op, PlotOp::Draw { .. }) && !moved {
+            framed.push(PlotOp::Travel { to: Point::ORIGIN });
+        }
+        moved |= op.target().is_some();
+        framed.push(*op);
+    }
+    framed.push(PlotOp::SelectPen { pen: 0 });
+    framed
+}
+
+fn written(ops: &[PlotOp]) -> Result<String, WriteError> {
+    let mut text = String::new();
+    write_ops(ops.iter().copied(), &mut text)?;
+    Ok(text)
+}
+
+fn near(read: &PlotOp, meant: &PlotOp, tolerance_mm: f64, tolerance_mm_s: f64) -> bool {
+    let same_place = match (read.target(), meant.target()) {
+        (Some(a), Some(b)) => (a.x - b.x).abs() <= tolerance_mm && (a.y - b.y).abs() <= tolerance_mm,
+        _ => read == meant,
+    };
+    let same_kind = match (read, meant) {
+        (PlotOp::Draw { feed_mm_s: Some(a), .. }, PlotOp::Draw { feed_mm_s: Some(b), .. }) => {
+            (a - b).abs() <= tolerance_mm_s
+        }
+        (PlotOp::Draw { feed_mm_s: a, .. }, PlotOp::Draw { feed_mm_s: b, .. }) => a == b,
+        (a, b) => std::mem::discriminant(a) == std::mem::discriminant(b),
+    };
+    same_place && same_kind
+}
+
+/// Bytes that HPGL is made of, so that chance finds more than unknown letters.
+fn likely_text() -> impl Strategy<Value = Vec<u8>> {
+    let part = prop_oneof![
+        prop::sample::select(vec![
+            "PU",
+            "PD",
+            "PA",
+            "PR",
+            "IN",
+            "DF",
+            "SP",
+            "VS",
+            "CI",
+            "PG",
+            "LB",
+            "DT",
+            "SM",
+            "PE",
+            "BP",
+            "CO",
+            "SC",
+            "pd",
+            "\x1b",
+            "\x1b.",
+            "\x1b%0A",
+            "\x1b%0B",
+            "\x1b%-12345X",
+            "\x1bE",
+            "\x03",
+            "\"",
+            "-",
+            ".",
+            "@",
+            "\r\n",
+            ":",
+        ])
+        .prop_map(|part| part.as_bytes().to_vec()),
+        (-9999..9999_i32).prop_map(|number| number.to_string().into_bytes()),
+        prop::sample::select(vec![b';', b',', b' ', b'0', b'9']).prop_map(|byte| vec![byte]),
+        any::<u8>().prop_map(|byte| vec![byte]),
+    ];
+    proptest::collection::vec(part, 0..120).prop_map(|parts| parts.concat())
+}
+
+/// Events without their places.
+fn events(text: &[u8]) -> Vec<String> {
+    let mut reader = Reader::new();
+    let mut all: Vec<_> = text.iter().filter_map(|byte| reader.push(*byte)).collect();
+    all.extend(reader.finish());
+    // Where a number is known to be the last depends on the layout: its end is told apart here.
+    let mut shown = Vec::new();
+    for event in all {
+        match event {
+            Ok(Event::Command { command, .. }) => shown.push(command.to_string()),
+            Ok(Event::Number { value, last, .. }) => {
+                shown.push(value.to_string());
+                shown.extend(last.then(|| "end".to_string()));
+            }
+            Ok(Event::End) => shown.push("end".to_string()),
+            other => shown.push(format!("{other:?}")),
+        }
+    }
+    shown
+}
+
+proptest! {
+    #[test]
+    fn a_drawing_on_the_grid_is_read_back_exactly(ops in on_the_grid()) {
+        let read: Vec<PlotOp> = plot_ops(written(&ops)?.as_bytes()).collect::<Result<_, Error>>()?;
+        let meant = with_frame(&ops);
+        prop_assert_eq!(read.len(), meant.len());
+        for (read, meant) in read.iter().zip(&meant) {
+            // Places to the bit; a speed goes through a decimal number of cm/s.
+            prop_assert!(near(read, meant, 0.0, 1e-12), "{:?} for {:?}", read, meant);
+        }
+    }
+
+    #[test]
+    fn any_drawing_is_read_back_to_half_a_unit(ops in drawing(-1000.0..1000.0, 0.006..100.0)) {
+        let read: Vec<PlotOp> = plot_ops(written(&ops)?.as_bytes()).collect::<Result<_, Error>>()?;
+        let meant = with_frame(&ops);
+        prop_assert_eq!(read.len(), meant.len());
+        for (read, meant) in read.iter().zip(&meant) {
+            prop_assert!(near(read, meant, HALF_UNIT_MM, HALF_SPEED_STEP_MM_S), "{:?} for {:?}", read, meant);
+        }
+    }
+
+    #[test]
+    fn writing_what_was_read_gives_the_same_text(ops in on_the_grid()) {
+        let text = written(&ops)?;
+        let read: Vec<PlotOp> = plot_ops(text.as_bytes()).collect::<Result<_, Error>>()?;
+        // The pen put away at the end is the writer's own.
+        prop_assert_eq!(written(&read[..read.len() - 1])?, text);
+    }
+
+    #[test]
+    fn the_layout_of_a_command_does_not_matter(
+        commands in proptest::collection::vec(
+            (prop::sample::select(vec!["PU", "PD", "PA", "CI", "SC"]), proptest::collection::vec(-99_999..99_999_i32, 0..6)),
+            1..20,
+        ),
+        layout in proptest::collection::vec(0..4_usize, 200),
+    ) {
+        let (mut plain, mut odd) = (String::new(), String::new());
+        let mut choice = layout.iter().cycle().copied();
+        for (command, numbers) in commands {
+            plain += command;
+            odd += &if choice.next() == Some(0) { command.to_lowercase() } else { command.to_string() };
+            for (index, number) in numbers.iter().enumerate() {
+                plain += &format!("{}{number}", if index > 0 { "," } else { "" });
+                let gap = [",", " ", "\r\n", " , "][choice.next().unwrap_or(0)];
+                let sign = if choice.next() == Some(0) && *number >= 0 { "+" } else { "" };
+                let tail = [".0", ".", "", ".000"][choice.next().unwrap_or(0)];
+                let glued = *number < 0 && choice.next() == Some(0);
+                odd += &format!("{}{sign}{number}{tail}", if glued { "" } else { gap });
+            }
+            plain += ";";
+            odd += [";", "", "\n", ";;\t"][choice.next().unwrap_or(0)];
+        }
+        prop_assert_eq!(events(plain.as_bytes()), events(odd.as_bytes()));
+    }
+
+    #[test]
+    fn decimals_are_read_as_the_nearest_number(value in -1e9..1e9_f64, places in 0..6_usize) {
+        let text = format!("{value:.places$}");
+        let expected: f64 = text.parse()?;
+        prop_assert_eq!(events(format!("PA{text}").as_bytes())[1].parse::<f64>()?, expected);
+    }
+
+    #[test]
+    fn no_text_does_harm(text in likely_text()) {
+        let outcomes = PlotOps::new(text.iter().copied());
+        // A circle is what gives most: 1000 chords, and the ways to it and back, for three bytes and the end.
+        prop_assert!(outcomes.count() <= (text.len() + 1) * 1003);
+        for error in plot_ops(&text).filter_map(Result::err) {
+            prop_assert!(error.position().offset <= text.len() as u64);
+            prop_assert!(error.to_string().len() > 20);
+        }
+        for op in plot_ops(&text).flatten() {
+            prop_assert!(op.target().is_none_or(Point::is_finite));
+        }
+    }
+
+    #[test]
+    fn noise_does_no_harm(text in proptest::collection::vec(any::<u8>(), 0..400)) {
+        prop_assert!(plot_ops(&text).count() <= (text.len() + 1) * 1003);
+    }
+
+    #[test]
+    fn a_damaged_byte_costs_what_it_touches_only(ops in on_the_grid(), place in any::<prop::sample::Index>(), byte in any::<u8>()) {
+        let mut text = written(&ops)?.into_bytes();
+        let place = place.index(text.len());
+        // These have a meaning that reaches beyond a command: an escape or a label that swallows the rest.
+        prop_assume!(byte != 0x1b);
+        text[place] = byte;
+        // The stroke after the damage is drawn if it begins like a stroke of its own: two letters, absolute.
+        text.extend_from_slice(b";\x03;\";PA;PU4000,4000;PD4040,4000;PU;");
+        let last: Vec<PlotOp> = plot_ops(&text).flatten().collect();
+        let stroke = PlotOp::Travel { to: Point::new(100.0, 100.0) };
+        prop_assert_eq!(last[last.len() - 2], stroke, "{}", String::from_utf8_lossy(&text));
+        prop_assert_eq!(last[last.len() - 1].target(), Some(Point::new(101.0, 100.0)));
+    }
+
+    #[test]
+    fn garbage_between_commands_loses_nothing(ops in on_the_grid(), every in 1..5_usize) {
+        let text = written(&ops)?;
+        let mut dirty = String::new();
+        let mut inserted = 0;
+        for (index, line) in text.lines().enumerate() {
+            dirty += line;
+            if index % every == 0 {
+                dirty += "=1?;\n";
+                inserted += 1;
+            }
+        }
+        let clean: Vec<_> = plot_ops(text.as_bytes()).flatten().collect();
+        let (good, bad): (Vec<_>, Vec<_>) = plot_ops(dirty.as_bytes()).partition(Result::is_ok);
+        prop_assert_eq!(good.into_iter().flatten().collect::<Vec<_>>(), clean);
+        prop_assert_eq!(bad.len(), inserted);
+    }
+
+    #[test]
+    fn a_text_may_arrive_in_any_pieces(text in likely_text(), cut in any::<prop::sample::Index>()) {
+        let whole: Vec<_> = plot_ops(&text).collect();
+        let (head, tail) = text.split_at(cut.index(text.len() + 1));
+        let (mut reader, mut interpreter) = (Reader::new(), Interpreter::new());
+        let mut pieces = Vec::new();
+        for piece in [head, tail] {
+            for event in piece.iter().filter_map(|byte| reader.push(*byte)) {
+                interpreter.push(event)?;
+                pieces.extend(std::iter::from_fn(|| interpreter.next_op()));
+            }
+            // Whatever there is to know is in these two: a copy goes on as well as the original.
+            (reader, interpreter) = (reader, interpreter.clone());
+        }
+        if let Some(event) = reader.finish() {
+            interpreter.push(event)?;
+            pieces.extend(std::iter::from_fn(|| interpreter.next_op()));
+        }
+        interpreter.finish()?;
+        pieces.extend(std::iter::from_fn(|| interpreter.next_op()));
+        prop_assert_eq!(pieces, whole);
+    }
+}
+
+#[test]
+fn a_list_of_any_length_needs_no_more_memory() {
+    const BYTES: usize = 1024;
+    let list = (0..100_000_u32)
+        .flat_map(|i| format!("{},{}", i % 3000, i % 2000).into_bytes().into_iter().chain([b',']));
+    let ops = PlotOps::new(b"PD".iter().copied().chain(list).chain(*b"7,7;"));
+    assert!(std::mem::size_of::<(Reader, Interpreter)>() < BYTES);
+    assert_eq!(ops.count(), 100_001);
+}
