@@ -65,7 +65,7 @@ impl Escape {
             }
             Self::DeviceNumbers => match byte {
                 b':' => self.end(Step::Within),
-                b'0'..=b'9' | b';' | b',' | b'-' | b' ' => Step::Within,
+                b'0'..=b'9' | b';' => Step::Within,
                 // The colon is missing: the byte belongs to what follows.
                 _ => self.end(Step::NotMine),
             },

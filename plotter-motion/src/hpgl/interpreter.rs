@@ -9,8 +9,6 @@ use core::fmt;
 const CHORD_ANGLE_DEG: f64 = 5.0;
 /// The finest chord angle: a finer one is taken as this, so that a circle never has more than 1000 chords.
 const MIN_CHORD_ANGLE_DEG: f64 = 0.36;
-/// A chord more is not worth the rounding of 360° divided by the chord angle.
-const CHORD_COUNT_ROUNDING: f64 = 1e-9;
 /// mm/s in a cm/s, the unit of `VS`.
 const MM_S_PER_CM_S: f64 = 10.0;
 /// Pens that have a speed of their own.
@@ -367,7 +365,7 @@ impl Interpreter {
             let expected = "a chord angle of at most 180 degrees";
             return Err(Error::BadParameter { at, command, value: angle_deg, expected });
         }
-        let chords = libm::ceil(360.0 / angle_deg.abs().max(MIN_CHORD_ANGLE_DEG) - CHORD_COUNT_ROUNDING);
+        let chords = libm::ceil(360.0 / angle_deg.abs().max(MIN_CHORD_ANGLE_DEG));
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,

@@ -93,6 +93,7 @@ mod plot_ops;
 mod position;
 mod reader;
 pub mod thesis_text;
+mod write_error;
 mod writer;
 
 pub use command::{Mnemonic, Syntax};
@@ -101,7 +102,8 @@ pub use interpreter::{Interpreter, Undrained};
 pub use plot_ops::{PlotOps, plot_ops};
 pub use position::Position;
 pub use reader::{Event, Reader};
-pub use writer::{WriteError, WriteOptions, Writer, write_ops};
+pub use write_error::WriteError;
+pub use writer::{WriteOptions, Writer, write_ops};
 
 /// Plotter units in a millimetre: one unit is 0.025 mm.
 pub const UNITS_PER_MM: f64 = 40.0;
