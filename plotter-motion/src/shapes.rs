@@ -45,7 +45,7 @@ fn draw(to: Point) -> PlotOp {
 /// Five operations: the travel to `from`, and four lines of which the last ends exactly there. A negative
 /// width or height lies to the left or below. Lines carry no speed.
 ///
-/// Source: N. Khan and D. `McGinn`, "2D Controlled Marking Board" (2017), section 0.5.1, on the rectangle.
+/// Source: "2D Controlled Marking Board" (2017), section 0.5.1, on the rectangle.
 ///
 /// ```
 /// # use plotter_motion::{PlotOp, Point, rectangle};
@@ -65,7 +65,7 @@ pub fn rectangle(from: Point, width_mm: f64, height_mm: f64) -> impl Iterator<It
 /// the points of the circle; the last ends exactly on `start`. With 1 point it is a dot, with 0 only the
 /// travel; a negative radius gives the circle to the left. Lines carry no speed.
 ///
-/// Source: N. Khan and D. `McGinn`, "2D Controlled Marking Board" (2017), section 0.5.2, on the circle.
+/// Source: "2D Controlled Marking Board" (2017), section 0.5.2, on the circle.
 ///
 /// ```
 /// # use plotter_motion::{PlotOp, Point, circle};
