@@ -285,27 +285,23 @@ impl Check {
     }
 
     fn machine(&self, header: &Header) -> Result<Machine, String> {
-        let config = match &self.machine {
-            Some(path) => {
-                let refused = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-                let text = std::fs::read_to_string(path).map_err(|error| refused(&error))?;
-                toml::from_str(&text).map_err(|error| refused(&error))?
+        if let Some(path) = &self.machine {
+            let refused = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+            let text = std::fs::read_to_string(path).map_err(|error| refused(&error))?;
+            return Machine::from_toml(&text).map_err(|error| refused(&error));
+        }
+        let mut config = MachineConfig::default();
+        match header.text("controller") {
+            None => {}
+            Some("published") => config.control.controller = ControllerChoice::Published,
+            Some("contouring") => config.control.controller = ControllerChoice::Contouring,
+            Some(other) => {
+                return Err(format!(
+                    "{}: header key controller: expected published or contouring, found {other:?}; give --machine",
+                    self.log.display()
+                ));
             }
-            None => {
-                let mut config = MachineConfig::default();
-                match header.text("controller") {
-                    None => {}
-                    Some("published") => config.control.controller = ControllerChoice::Published,
-                    Some("contouring") => config.control.controller = ControllerChoice::Contouring,
-                    Some(other) => {
-                        return Err(format!(
-                            "header key controller: {other:?} is neither published nor contouring; give --machine"
-                        ));
-                    }
-                }
-                config
-            }
-        };
+        }
         Machine::new(config).map_err(|error| error.to_string())
     }
 }
