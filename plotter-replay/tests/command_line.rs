@@ -72,6 +72,45 @@ fn a_clean_log_is_described_drawn_and_re_run() {
 }
 
 #[test]
+fn the_drawing_that_was_sent_tells_the_pen() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    // Pulses and targets alone: nothing in the log says that the first way has the pen up.
+    let log = "plotter-log 1 {\"baud\":256000}\n\
+        0 > 02 00 00 00 00 00 00 00 00 00 *SUM\n\
+        100 < 31 31 2b *SUM\n\
+        200 > 02 00 00 00 00 02 00 00 00 00 *SUM\n\
+        300 < 33 33 2b *SUM\n";
+    let sums = crc::Crc::<u8>::new(&crc::CRC_8_SMBUS);
+    let log: String = log
+        .lines()
+        .map(|line| match line.strip_suffix("*SUM") {
+            Some(covered) => format!("{covered}*{:02x}\n", sums.checksum(covered.as_bytes())),
+            None => format!("{line}\n"),
+        })
+        .collect();
+    std::fs::write(here.join("line.plog"), log).unwrap();
+    std::fs::write(here.join("line.hpgl"), "IN;SP1;PU2,0;PD2,2;PU;").unwrap();
+    let ink = |arguments: &[&str]| {
+        let ran = run(&[&["render", "line.plog", "--svg", "line.svg"], arguments].concat(), here);
+        assert_eq!(ran.status, 0, "{}{}", ran.out, ran.err);
+        let svg = std::fs::read_to_string(here.join("line.svg")).unwrap();
+        let path = svg.lines().find(|line| line.contains("#1a1a2e")).unwrap().to_owned();
+        path.split_once(" d=\"").unwrap().1.to_owned()
+    };
+    // Two lines without the drawing, through three points; one with it. A point is two numbers.
+    let numbers = |path: String| path.split(['L', ' ']).count();
+    assert_eq!(numbers(ink(&[])), 6);
+    assert_eq!(numbers(ink(&["--drawing", "line.hpgl"])), 4);
+
+    std::fs::write(here.join("broken.hpgl"), "IN;PU2,0;PD2,,2;XX1;").unwrap();
+    let broken = run(&["render", "line.plog", "--svg", "line.svg", "--drawing", "broken.hpgl"], here);
+    assert_eq!(broken.status, 1, "{}{}", broken.out, broken.err);
+    let nowhere = run(&["render", "line.plog", "--svg", "line.svg", "--drawing", "nowhere.hpgl"], here);
+    assert_eq!((nowhere.status, nowhere.err.lines().count()), (2, 1));
+}
+
+#[test]
 fn another_machine_is_a_difference() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();

@@ -1,7 +1,7 @@
 //! The three commands.
 
 use clap::{Args, Subcommand};
-use plotter_motion::{ControllerChoice, Machine, MachineConfig};
+use plotter_motion::{ControllerChoice, Machine, MachineConfig, PlotOp, hpgl};
 use plotter_replay::log::{self, Damage, Event, FileReader, Header, Record, Summary};
 use plotter_replay::{
     Canvas, CanvasStyle, Chart, EdgeSource, Layer, MachineController, Outcome, Player, PlayerSettings,
@@ -66,6 +66,9 @@ pub(crate) struct Render {
     /// Write the response of both motors as SVG.
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
+    /// The drawing that was sent, HPGL: tells the pen, and what should have been drawn.
+    #[arg(long, value_name = "FILE.hpgl")]
+    drawing: Option<PathBuf>,
     /// Show the moves with the pen up, too.
     #[arg(long)]
     travel: bool,
@@ -212,6 +215,20 @@ fn info(path: &Path, out: &mut impl Write) -> Done {
 impl Render {
     fn run(self, out: &mut impl Write) -> Done {
         let mut plotter = plotter_for(&self.log)?;
+        let mut verdict = Verdict::Clean;
+        let drawing = match &self.drawing {
+            None => None,
+            Some(path) => {
+                let (ops, errors) = read_drawing(path)?;
+                if !errors.is_empty() {
+                    verdict = Verdict::Found;
+                    say(out, &format!("{}: {} errors, left out", path.display(), errors.len()));
+                    say_first(out, &errors, errors.len() as u64);
+                }
+                plotter = plotter.with_drawing(ops.iter().copied());
+                Some(ops)
+            }
+        };
         let contents = read(&self.log, |record| plotter.push(record))?;
         plotter.finish();
         let single = self.svg.is_some() || self.png.is_some() || self.chart.is_some();
@@ -224,7 +241,11 @@ impl Render {
             std::fs::create_dir_all(directory)
                 .map_err(|error| format!("{}: {error}", directory.display()))?;
         }
-        let canvas = Canvas::from_plotter(&plotter, CanvasStyle::default().tolerance_mm);
+        let mut canvas = Canvas::from_plotter(&plotter, CanvasStyle::default().tolerance_mm);
+        if let Some(ops) = drawing {
+            canvas.remove(Layer::Desired);
+            canvas.add_drawing(Layer::Desired, ops);
+        }
         let travel = if self.travel { Visibility::Shown } else { Visibility::Hidden };
         let style = CanvasStyle { travel, longest_px: self.size, ..canvas.fitted_style() };
         let mut write = |path: &Path, bytes: &[u8]| -> Result<(), String> {
@@ -252,8 +273,22 @@ impl Render {
             say(out, "nothing was drawn");
         }
         say_damage(out, &contents);
-        Ok(Verdict::of(contents.summary))
+        Ok(if verdict == Verdict::Found { verdict } else { Verdict::of(contents.summary) })
     }
+}
+
+/// The operations of a drawing and what of it could not be read.
+fn read_drawing(path: &Path) -> Result<(Vec<PlotOp>, Vec<hpgl::Error>), String> {
+    let text = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let (mut ops, mut errors) = (Vec::new(), Vec::new());
+    for outcome in hpgl::plot_ops(&text) {
+        match outcome {
+            Ok(op) => ops.push(op),
+            Err(error) if error.is_notice() => {}
+            Err(error) => errors.push(error),
+        }
+    }
+    Ok((ops, errors))
 }
 
 impl Check {
