@@ -60,6 +60,12 @@ impl<W: Write> BenchRecorder<W> {
             BenchEvent::Host(HostEvent::Notice(notice)) => Event::Note(format!("host: {notice}")),
             BenchEvent::Controller(notice) => Event::Note(format!("controller: {notice}")),
         };
+        self.write(time, event);
+    }
+
+    /// Takes what the bench does not tell of itself: a switch that was pressed, an emergency stop, a note. Call it
+    /// before the controller is told, so that the log has what comes of it afterwards.
+    pub fn write(&mut self, time: Duration, event: Event) {
         if self.error.is_none() {
             self.error = self.writer.write(&Record { time, event }).err();
         }

@@ -7,8 +7,8 @@
 )]
 
 use plotter_motion::plant::{Bench, BenchSettings};
-use plotter_motion::{ControllerChoice, Machine, MachineConfig, Pen, PenMove, StepPoint};
-use plotter_replay::log::{Event, Header, Reader, Record, Writer};
+use plotter_motion::{Axis, ControllerChoice, Machine, MachineConfig, Pen, PenMove, StepPoint};
+use plotter_replay::log::{Event, Header, Reader, Record, SwitchName, Writer};
 use plotter_replay::{
     Answer, BenchRecorder, Canvas, Chart, EdgeSource, Layer, MachineController, Outcome, Player,
     PlayerSettings, PlotterSettings, VirtualPlotter, Ways, golden,
@@ -42,15 +42,20 @@ fn machine(controller: ControllerChoice) -> Machine {
 }
 
 fn session(machine: &Machine) -> Vec<u8> {
+    recording(machine, moves())
+}
+
+fn recording(machine: &Machine, moves: impl Iterator<Item = PenMove>) -> Vec<u8> {
     let mut settings = BenchSettings::default();
     settings.host.byte_gap = Duration::from_millis(1);
-    let mut bench = Bench::new(machine, settings, moves());
+    let mut bench = Bench::new(machine, settings, moves);
     let header = Header::new().with_number("baud", 256_000).with_text("protocol", "digits");
     let mut recorder = BenchRecorder::new(Writer::new(Vec::new(), &header).unwrap());
     while !bench.host().is_done() {
         bench.step(|time, event| recorder.record(time, event));
     }
-    assert_eq!(bench.host().progress(), (9, 9));
+    let (sent, reached) = bench.host().progress();
+    assert_eq!(sent, reached);
     recorder.finish().unwrap()
 }
 
@@ -69,6 +74,57 @@ fn a_recording_replays_equal() {
         }
         Outcome::FirstDifference(difference) => panic!("{difference}"),
     }
+}
+
+#[test]
+fn a_stall_and_an_emergency_stop_replay_equal() {
+    for controller in [ControllerChoice::Contouring, ControllerChoice::Published] {
+        let machine = machine(controller);
+        let mut bench = Bench::new(&machine, BenchSettings::default(), moves());
+        let header = Header::new().with_number("baud", 256_000);
+        let mut recorder = BenchRecorder::new(Writer::new(Vec::new(), &header).unwrap());
+        let at_ms = |now: Duration, ms| now == Duration::from_millis(ms);
+        while bench.now() < Duration::from_secs(2) {
+            let now = bench.now();
+            if at_ms(now, 130) {
+                bench.axis_mut(Axis::X).stall(true);
+            }
+            if at_ms(now, 330) {
+                bench.axis_mut(Axis::X).stall(false);
+            }
+            for (ms, pressed) in [(500, true), (700, false)] {
+                if at_ms(now, ms) {
+                    recorder.write(now, Event::Estop(pressed));
+                    bench.controller_mut().emergency_stop(now, pressed);
+                }
+            }
+            if at_ms(now, 800) {
+                let name = SwitchName::new("reset").unwrap();
+                recorder.write(now, Event::Switch { name, pressed: true });
+                assert!(bench.controller_mut().reset_emergency_stop(now));
+            }
+            bench.step(|time, event| recorder.record(time, event));
+        }
+        let log = recorder.finish().unwrap();
+        match Player::default().check(records(&log), MachineController::new(&machine)) {
+            Outcome::Equal(compared) => assert!(compared.bytes > 500, "{controller:?}: {compared}"),
+            Outcome::FirstDifference(difference) => panic!("{controller:?}: {difference}"),
+        }
+    }
+}
+
+/// Recorded once; a controller that answers otherwise is told here.
+#[test]
+fn the_golden_line_still_replays() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/line.plog");
+    if golden::Mode::from_env() == golden::Mode::Renew {
+        // From the motors on: another controller moves them in another way.
+        let machine = machine(ControllerChoice::Contouring);
+        let target = StepPoint::new(80, 40);
+        let moves = [PenMove { pen: Pen::Down, target }];
+        std::fs::write(path, recording(&machine, moves.into_iter())).unwrap();
+    }
+    golden::assert_replays(path, || MachineController::new(&machine(ControllerChoice::Contouring)));
 }
 
 #[test]

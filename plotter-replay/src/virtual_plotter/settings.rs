@@ -8,9 +8,9 @@ use plotter_motion::{Point, StepPoint, from_mm};
 /// Scale, origin and limits of a virtual plotter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlotterSettings {
-    /// Length of a pulse to the right, mm.
+    /// Length of a pulse to the right, mm: finite and above 0.
     pub x_mm_per_pulse: f64,
-    /// Length of a pulse up, mm.
+    /// Length of a pulse up, mm: finite and above 0.
     pub y_mm_per_pulse: f64,
     /// Where position (0, 0) of the motors lies on the sheet, mm: the origin offset P1.
     pub p1: Point,
