@@ -156,3 +156,14 @@ impl fmt::Display for GoldenError {
 }
 
 impl core::error::Error for GoldenError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_happened_lies_beside_the_recording() {
+        assert_eq!(beside(Path::new("golden/square.plog")), Path::new("golden/square.plog.actual"));
+        assert_eq!(beside(Path::new("square.plog.gz")), Path::new("square.plog.actual.gz"));
+    }
+}

@@ -85,7 +85,8 @@ impl<W: Write> Writer<W> {
     ///
     /// # Errors
     ///
-    /// [`WriteError`]; nothing of the record is in the log then, and the next one may be written.
+    /// [`WriteError`]. Except for [`WriteError::Sink`], nothing of the record is in the log then, and the next one
+    /// may be written.
     pub fn write(&mut self, record: &Record) -> Result<(), WriteError> {
         let Ok(time_us) = u64::try_from(record.time.as_micros()) else {
             return Err(WriteError::TimeTooLarge { time: record.time });

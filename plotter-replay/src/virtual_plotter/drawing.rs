@@ -1,6 +1,6 @@
 //! Finds the targets of a log again in the drawing that was sent, to know the pen.
 
-use plotter_motion::{Pen, StepPoint};
+use plotter_motion::{Pen, PenMove, StepPoint};
 
 /// How far ahead a target is looked for: a host may leave out moves of no length.
 const LOOK_AHEAD: usize = 64;
@@ -8,12 +8,12 @@ const LOOK_AHEAD: usize = 64;
 /// The stops of a drawing in their order, with the pen on the way to each, and how far the log has come.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drawing {
-    stops: Vec<(StepPoint, Pen)>,
+    stops: Vec<PenMove>,
     next: usize,
 }
 
 impl Drawing {
-    pub(super) fn new(stops: Vec<(StepPoint, Pen)>) -> Self {
+    pub(super) fn new(stops: Vec<PenMove>) -> Self {
         Self { stops, next: 0 }
     }
 
@@ -22,19 +22,19 @@ impl Drawing {
     pub(super) fn pen(&mut self, target: StepPoint) -> Option<Pen> {
         // A rounding elsewhere may differ by one count.
         let near = |stop: StepPoint| stop.x.abs_diff(target.x) <= 1 && stop.y.abs_diff(target.y) <= 1;
-        let ahead = self.stops.iter().enumerate().skip(self.next).take(LOOK_AHEAD);
-        if let Some((index, &(_, pen))) = ahead.clone().find(|(_, (stop, _))| near(*stop)) {
+        let mut ahead = self.stops.iter().enumerate().skip(self.next).take(LOOK_AHEAD);
+        if let Some((index, &PenMove { pen, .. })) = ahead.find(|(_, stop)| near(stop.target)) {
             let again = self.next.checked_sub(1).and_then(|last| self.stops.get(last));
             match again {
                 // Sent again: nearer than a stop further on that happens to lie at the same place.
-                Some(&(stop, pen)) if near(stop) && index > self.next => return Some(pen),
+                Some(stop) if near(stop.target) && index > self.next => return Some(stop.pen),
                 _ => {}
             }
             self.next = index.saturating_add(1);
             return Some(pen);
         }
-        let (stop, pen) = *self.stops.get(self.next.checked_sub(1)?)?;
-        near(stop).then_some(pen)
+        let last = self.stops.get(self.next.checked_sub(1)?)?;
+        near(last.target).then_some(last.pen)
     }
 }
 
@@ -44,7 +44,7 @@ mod tests {
 
     #[test]
     fn a_target_sent_again_does_not_use_up_the_drawing() {
-        let stop = |x, pen| (StepPoint::new(x, 0), pen);
+        let stop = |x, pen| PenMove { pen, target: StepPoint::new(x, 0) };
         let mut drawing = Drawing::new(vec![
             stop(0, Pen::Up),
             stop(100, Pen::Down),

@@ -27,7 +27,7 @@ use core::time::Duration;
 use drawing::Drawing;
 use host_digits::{Decoded, HostDigits};
 use plotter_motion::protocol::digits::Reply;
-use plotter_motion::{Axis, Pen, PlotOp, Point, StepPoint};
+use plotter_motion::{Axis, Pen, PenMove, PlotOp, Point, StepPoint};
 
 /// A target and where the pulses had led when the controller said that it was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,12 +116,18 @@ impl VirtualPlotter {
     /// Takes the drawing that was sent, in mm on the sheet: it tells which ways are drawn. What the log itself
     /// records of the pen counts more.
     #[must_use]
-    pub fn with_drawing(mut self, ops: impl IntoIterator<Item = PlotOp>) -> Self {
-        let stops = ops.into_iter().filter_map(|op| {
+    pub fn with_drawing(self, ops: impl IntoIterator<Item = PlotOp>) -> Self {
+        let settings = self.settings;
+        self.with_moves(ops.into_iter().filter_map(|op| {
             let pen = if matches!(op, PlotOp::Draw { .. }) { Pen::Down } else { Pen::Up };
-            Some((self.settings.to_counts(op.target()?), pen))
-        });
-        self.drawing = Some(Drawing::new(stops.collect()));
+            Some(PenMove { pen, target: settings.to_counts(op.target()?) })
+        }))
+    }
+
+    /// The same with the moves that a drawing was sent as.
+    #[must_use]
+    pub fn with_moves(mut self, moves: impl IntoIterator<Item = PenMove>) -> Self {
+        self.drawing = Some(Drawing::new(moves.into_iter().collect()));
         self.pen = Pen::Up;
         self.leg.pen = Pen::Up;
         self
