@@ -69,7 +69,7 @@ pub struct CanvasStyle {
     pub desired_width_mm: f64,
     /// Blank paper round the drawing, mm.
     pub margin_mm: f64,
-    /// How far a line in the picture may be from the recorded one, mm.
+    /// How far a line in the picture may be from the recorded one, mm; a tenth of the pen by default.
     pub tolerance_mm: f64,
     /// Whether moves with the pen up are shown.
     pub travel: Visibility,
@@ -84,7 +84,7 @@ impl Default for CanvasStyle {
             ink_width_mm: 0.35,
             desired_width_mm: 1.0,
             margin_mm: 8.0,
-            tolerance_mm: 0.02,
+            tolerance_mm: 0.035,
             travel: Visibility::Hidden,
             longest_px: 1_600,
         }
