@@ -1,7 +1,7 @@
 //! [`PlotOp`]: what every front end (vectorizer, HPGL, G-code) emits and every back end (controller, writer,
 //! splitter, canvas) takes.
 
-use crate::{Point, StepPoint};
+use crate::{Point, StepPoint, from_mm};
 use core::time::Duration;
 
 /// Whether the pen touches the sheet.
@@ -24,6 +24,38 @@ pub struct PenMove {
     pub pen: Pen,
     /// Where to, encoder counts or steps.
     pub target: StepPoint,
+}
+
+impl PenMove {
+    /// The movement of a plot operation; `None` for one that does not move. Rounds as [`from_mm`] does.
+    ///
+    /// ```
+    /// # use plotter_motion::{PlotOp, Point, Pen, PenMove, StepPoint};
+    /// let op = PlotOp::Draw { to: Point::new(10.0, 20.0), feed_mm_s: None };
+    /// let expected = PenMove { pen: Pen::Down, target: StepPoint::new(400, 800) };
+    /// assert_eq!(PenMove::from_op(op, 40.0), Some(expected));
+    /// ```
+    #[must_use]
+    pub fn from_op(op: PlotOp, counts_per_mm: f64) -> Option<Self> {
+        let pen = match op {
+            PlotOp::Travel { .. } => Pen::Up,
+            PlotOp::Draw { .. } => Pen::Down,
+            PlotOp::SelectPen { .. } | PlotOp::Dwell { .. } | PlotOp::NewPage => return None,
+        };
+        let to = op.target()?;
+        Some(Self { pen, target: StepPoint::new(from_mm(to.x, counts_per_mm), from_mm(to.y, counts_per_mm)) })
+    }
+
+    /// The same movement in mm. `counts_per_mm` must be finite and not 0.
+    #[must_use]
+    pub fn to_op(self, counts_per_mm: f64) -> PlotOp {
+        let to =
+            Point::new(f64::from(self.target.x) / counts_per_mm, f64::from(self.target.y) / counts_per_mm);
+        match self.pen {
+            Pen::Up => PlotOp::Travel { to },
+            Pen::Down => PlotOp::Draw { to, feed_mm_s: None },
+        }
+    }
 }
 
 /// One thing for a plotter to do. All coordinates are absolute, in mm on the sheet.
@@ -66,5 +98,17 @@ impl PlotOp {
             Self::Travel { to } | Self::Draw { to, .. } => Some(to),
             Self::SelectPen { .. } | Self::Dwell { .. } | Self::NewPage => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn operations_that_do_not_move_are_no_pen_moves() {
+        assert_eq!(PenMove::from_op(PlotOp::NewPage, 40.0), None);
+        let up = PenMove { pen: Pen::Up, target: StepPoint::new(400, 40) };
+        assert_eq!(up.to_op(40.0), PlotOp::Travel { to: Point::new(10.0, 1.0) });
     }
 }

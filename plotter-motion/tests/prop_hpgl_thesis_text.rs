@@ -1,13 +1,13 @@
 //! Laws of the thesis' text: what is written is read back, and every line has exactly one outcome.
 
-use plotter_motion::StepPoint;
-use plotter_motion::hpgl::thesis_text::{Line, MAX_COUNTS, Pen, PenMove, WriteError, read, write_moves};
+use plotter_motion::hpgl::thesis_text::{Line, MAX_COUNTS, WriteError, read, write_moves};
+use plotter_motion::{Pen, PenMove, StepPoint};
 use proptest::prelude::*;
 
 fn movements(least: usize) -> impl Strategy<Value = Vec<PenMove>> {
     let movement = (any::<bool>(), 0..=MAX_COUNTS, 0..=MAX_COUNTS).prop_map(|(down, x, y)| PenMove {
         pen: if down { Pen::Down } else { Pen::Up },
-        to: StepPoint::new(x, y),
+        target: StepPoint::new(x, y),
     });
     proptest::collection::vec(movement, least..50)
 }
@@ -52,7 +52,7 @@ proptest! {
     fn points_beyond_five_digits_are_never_written(x in any::<i32>(), y in any::<i32>()) {
         let fits = (0..=MAX_COUNTS).contains(&x) && (0..=MAX_COUNTS).contains(&y);
         let mut text = String::new();
-        let outcome = write_moves([PenMove { pen: Pen::Up, to: StepPoint::new(x, y) }], &mut text);
+        let outcome = write_moves([PenMove { pen: Pen::Up, target: StepPoint::new(x, y) }], &mut text);
         prop_assert_eq!(outcome.is_ok(), fits);
         prop_assert_eq!(text.is_empty(), !fits);
     }

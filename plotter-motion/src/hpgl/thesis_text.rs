@@ -11,10 +11,10 @@
 //! Source: Öcal's thesis on the semi-virtual plotter, section 3.3.2 and figure 3-15.
 //!
 //! ```
-//! use plotter_motion::hpgl::thesis_text::{Line, Pen, PenMove, read, write_moves};
-//! use plotter_motion::StepPoint;
+//! use plotter_motion::hpgl::thesis_text::{Line, read, write_moves};
+//! use plotter_motion::{Pen, PenMove, StepPoint};
 //!
-//! let first = PenMove { pen: Pen::Up, to: StepPoint::new(2993, 13955) };
+//! let first = PenMove { pen: Pen::Up, target: StepPoint::new(2993, 13955) };
 //! let mut text = String::new();
 //! write_moves([first], &mut text)?;
 //! assert_eq!(text, "PU, 02993, 13955\n");
@@ -25,60 +25,11 @@
 //! ```
 
 use super::Position;
-use crate::{PlotOp, Point, StepPoint, from_mm};
+use crate::{Pen, PenMove, StepPoint};
 use core::fmt;
 
 /// Greatest coordinate that five digits hold, encoder counts.
-pub const MAX_COUNTS: i32 = 99_999;
-
-/// Whether the pen marks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Pen {
-    /// It does not: `PU`.
-    Up,
-    /// It does: `PD`.
-    Down,
-}
-
-/// One line of the text: where to go, and whether with the pen on the paper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct PenMove {
-    /// The pen on the way.
-    pub pen: Pen,
-    /// Where to, encoder counts.
-    pub to: StepPoint,
-}
-
-impl PenMove {
-    /// The movement of a plot operation; `None` for one that does not move. Rounds as [`from_mm`] does.
-    ///
-    /// ```
-    /// # use plotter_motion::{PlotOp, Point, StepPoint, hpgl::thesis_text::{Pen, PenMove}};
-    /// let op = PlotOp::Draw { to: Point::new(10.0, 20.0), feed_mm_s: None };
-    /// let expected = PenMove { pen: Pen::Down, to: StepPoint::new(400, 800) };
-    /// assert_eq!(PenMove::from_op(op, 40.0), Some(expected));
-    /// ```
-    #[must_use]
-    pub fn from_op(op: PlotOp, counts_per_mm: f64) -> Option<Self> {
-        let pen = match op {
-            PlotOp::Travel { .. } => Pen::Up,
-            PlotOp::Draw { .. } => Pen::Down,
-            PlotOp::SelectPen { .. } | PlotOp::Dwell { .. } | PlotOp::NewPage => return None,
-        };
-        let to = op.target()?;
-        Some(Self { pen, to: StepPoint::new(from_mm(to.x, counts_per_mm), from_mm(to.y, counts_per_mm)) })
-    }
-
-    /// The same movement in mm. `counts_per_mm` must be finite and not 0.
-    #[must_use]
-    pub fn to_op(self, counts_per_mm: f64) -> PlotOp {
-        let to = Point::new(f64::from(self.to.x) / counts_per_mm, f64::from(self.to.y) / counts_per_mm);
-        match self.pen {
-            Pen::Up => PlotOp::Travel { to },
-            Pen::Down => PlotOp::Draw { to, feed_mm_s: None },
-        }
-    }
-}
+pub const MAX_COUNTS: i32 = crate::protocol::digits::GREATEST;
 
 /// Why a movement could not be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,7 +68,7 @@ pub fn write_moves<W: fmt::Write>(
     moves: impl IntoIterator<Item = PenMove>,
     out: &mut W,
 ) -> Result<(), WriteError> {
-    for PenMove { pen, to } in moves {
+    for PenMove { pen, target: to } in moves {
         let fits = |counts: i32| (0..=MAX_COUNTS).contains(&counts);
         if !fits(to.x) || !fits(to.y) {
             return Err(WriteError::OutOfRange { to });
@@ -369,7 +320,7 @@ impl Reader {
                 return Err(Error::ExpectedNumber { at, byte: None });
             }
             State::Within { pen, x: Some(x), number } => {
-                PenMove { pen, to: StepPoint::new(x, number.counts(None, at)?) }
+                PenMove { pen, target: StepPoint::new(x, number.counts(None, at)?) }
             }
             State::Done(movement) => movement,
         };
@@ -386,7 +337,7 @@ fn after_number(pen: Pen, x: Option<i32>, number: Number, byte: u8, at: Position
             Ok(State::Before { pen, x: Some(counts), comma: byte == b',' })
         }
         None => Err(Error::ExpectedComma { at, byte }),
-        Some(x) if is_blank(byte) => Ok(State::Done(PenMove { pen, to: StepPoint::new(x, counts) })),
+        Some(x) if is_blank(byte) => Ok(State::Done(PenMove { pen, target: StepPoint::new(x, counts) })),
         Some(_) => Err(Error::Trailing { at, byte }),
     }
 }
@@ -412,7 +363,7 @@ mod tests {
     use std::vec::Vec;
 
     fn up(x: i32, y: i32) -> PenMove {
-        PenMove { pen: Pen::Up, to: StepPoint::new(x, y) }
+        PenMove { pen: Pen::Up, target: StepPoint::new(x, y) }
     }
 
     fn shown(text: &[u8]) -> String {
@@ -428,7 +379,7 @@ mod tests {
         let expected = [
             Ok(Line::Header { line: 1 }),
             Ok(Line::Move(up(2993, 13955))),
-            Ok(Line::Move(PenMove { pen: Pen::Down, to: StepPoint::new(2995, 15200) })),
+            Ok(Line::Move(PenMove { pen: Pen::Down, target: StepPoint::new(2995, 15200) })),
         ];
         assert_eq!(read(text).collect::<Vec<_>>(), expected);
     }
@@ -453,7 +404,7 @@ mod tests {
             b"PU, 1, 1\nPX, 1, 2\nP\nPU\nPU, 1\nPU, 1,\nPU, , 2\nPU; 1, 2\nPU, 1; 2\nPU, -, 2\nPU, 1, 2, 3\nPU, 1.5, 2\n\
               PU, -1, 2\nPU, 1, 100000\nPU, 1, 99999999999999\nPU, 1, 2\xff\nPU, 1, 2"
         ), @r#"
-        Move(PenMove { pen: Up, to: StepPoint { x: 1, y: 1 } })
+        Move(PenMove { pen: Up, target: StepPoint { x: 1, y: 1 } })
         line 2, column 2 (byte 10): a line begins with PU or PD: `PU, 02993, 13955`
         line 3, column 2 (byte 19): a line begins with PU or PD: `PU, 02993, 13955`
         line 4, column 3 (byte 22): the line ends where a number belongs: write five digits for x and for y
@@ -469,7 +420,7 @@ mod tests {
         line 14, column 8 (byte 111): coordinate 100000 lies outside 0..=99999 encoder counts: move the drawing
         line 15, column 8 (byte 125): coordinate 999999999 lies outside 0..=99999 encoder counts: move the drawing
         line 16, column 9 (byte 148): `\xff` follows the y coordinate: end the line there
-        Move(PenMove { pen: Up, to: StepPoint { x: 1, y: 2 } })
+        Move(PenMove { pen: Up, target: StepPoint { x: 1, y: 2 } })
         "#);
     }
 
@@ -483,11 +434,5 @@ mod tests {
             "point (100000, 5) lies outside 0..=99999 encoder counts: move the drawing or take fewer counts per mm"
         );
         assert!(write_moves([up(3, -1)], &mut text).is_err());
-    }
-
-    #[test]
-    fn operations_that_do_not_move_have_no_line() {
-        assert_eq!(PenMove::from_op(PlotOp::NewPage, 40.0), None);
-        assert_eq!(up(400, 40).to_op(40.0), PlotOp::Travel { to: Point::new(10.0, 1.0) });
     }
 }

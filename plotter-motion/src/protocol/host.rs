@@ -1,7 +1,7 @@
 //! The host of the published protocol: sends a drawing target by target and keeps account of the answers.
 
 use super::digits::{OutOfRange, Reply, Sender};
-use crate::{Direction, PenMove, StepPoint};
+use crate::{Axis, Direction, PenMove, StepPoint};
 use core::fmt;
 use core::time::Duration;
 
@@ -12,7 +12,7 @@ pub struct HostSettings {
     pub byte_gap: Duration,
     /// Silence of the controller after which a target is sent again.
     pub silence: Duration,
-    /// Time for one target after which the host gives up.
+    /// Time without getting nearer to the target after which the host gives up.
     pub patience: Duration,
     /// How often a target is sent again before the host gives up.
     pub most_retries: u8,
@@ -25,7 +25,7 @@ impl Default for HostSettings {
         Self {
             byte_gap: Duration::from_millis(10),
             silence: Duration::from_secs(5),
-            patience: Duration::from_secs(120),
+            patience: Duration::from_secs(30),
             most_retries: 2,
             tolerance_counts: 0,
         }
@@ -55,7 +55,7 @@ pub enum HostNotice {
     },
     /// A target that the protocol has no digits for; it is left out.
     Refused(OutOfRange),
-    /// The target was not reached in time: the host stops.
+    /// The motors came no nearer to the target for too long: the host stops.
     GaveUp {
         /// The target sent.
         target: StepPoint,
@@ -87,7 +87,13 @@ enum State {
     /// Nothing sent yet, or the last target is reached.
     Ready,
     /// A target is out, or on its way.
-    Waiting { since: Duration, heard: Duration, retries: u8 },
+    Waiting {
+        /// Least distance from the target so far, counts of the farther axis, and when it was found.
+        nearest: u32,
+        nearer_at: Duration,
+        heard: Duration,
+        retries: u8,
+    },
     /// No more targets, or given up.
     Done,
 }
@@ -137,22 +143,23 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
                     Ok(()) => {
                         self.current = next;
                         self.sent = self.sent.saturating_add(1);
-                        self.state = State::Waiting { since: now, heard: now, retries: 0 };
+                        let nearest = self.distance();
+                        self.state = State::Waiting { nearest, nearer_at: now, heard: now, retries: 0 };
                         Some(HostEvent::Begun(next))
                     }
                     Err(error) => Some(HostEvent::Notice(HostNotice::Refused(error))),
                 }
             }
-            State::Waiting { since, heard, retries } => {
+            State::Waiting { nearer_at, heard, retries, .. } => {
                 let target = self.current.target;
-                let late = now.saturating_sub(since) > self.settings.patience;
+                let late = now.saturating_sub(nearer_at) > self.settings.patience;
                 let silent = self.sender.is_idle() && now.saturating_sub(heard) > self.settings.silence;
                 if late || (silent && retries >= self.settings.most_retries) {
                     self.state = State::Done;
                     return Some(HostEvent::Notice(HostNotice::GaveUp { target, position: self.position }));
                 }
                 silent.then(|| {
-                    self.again(now, since, retries);
+                    self.again(now);
                     HostEvent::Notice(HostNotice::Silent { target })
                 })
             }
@@ -160,11 +167,21 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
         }
     }
 
-    fn again(&mut self, now: Duration, since: Duration, retries: u8) {
+    /// Sends the target once more.
+    fn again(&mut self, now: Duration) {
         // A target that was sent once has digits, so it can be sent again.
-        if self.sender.start(now, self.current.target).is_ok() {
-            self.state = State::Waiting { since, heard: now, retries: retries.saturating_add(1) };
+        let sent = self.sender.start(now, self.current.target).is_ok();
+        let distance = self.distance();
+        if let State::Waiting { nearest, nearer_at, heard, retries } = &mut self.state {
+            (*nearest, *nearer_at, *heard) = (distance, now, now);
+            *retries = retries.saturating_add(u8::from(sent));
         }
+    }
+
+    /// Distance from the target, counts of the farther axis.
+    fn distance(&self) -> u32 {
+        let StepPoint { x, y } = self.current.target;
+        x.abs_diff(self.position.x).max(y.abs_diff(self.position.y))
     }
 
     /// When [`poll`](Self::poll) or [`next_byte`](Self::next_byte) has something to do, unless a byte comes
@@ -174,8 +191,8 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
         const TICK: Duration = Duration::from_micros(1); // limits are exceeded one tick after they are met
         let patience = match self.state {
             State::Ready => Some(Duration::ZERO),
-            State::Waiting { since, heard, .. } => {
-                let late = since + self.settings.patience + TICK;
+            State::Waiting { nearer_at, heard, .. } => {
+                let late = nearer_at + self.settings.patience + TICK;
                 let silent = heard + self.settings.silence + TICK;
                 Some(if self.sender.is_idle() { late.min(silent) } else { late })
             }
@@ -205,10 +222,10 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
             return Some(HostEvent::Notice(HostNotice::Unknown { byte }));
         };
         match reply {
-            Reply::Pulse(axis, direction) => self.count(axis, direction),
+            Reply::Pulse(axis, direction) => self.count(now, axis, direction),
             Reply::Clear => self.position = StepPoint::default(),
             Reply::Reached => {
-                let State::Waiting { since, retries, .. } = self.state else {
+                let State::Waiting { retries, .. } = self.state else {
                     return None;
                 };
                 if !self.sender.is_idle() {
@@ -219,7 +236,7 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
                 if off(self.position.x, target.x) || off(self.position.y, target.y) {
                     let notice = HostNotice::ReachedElsewhere { target, position: self.position };
                     if retries < self.settings.most_retries {
-                        self.again(now, since, retries);
+                        self.again(now);
                     } else {
                         self.state = State::Done;
                     }
@@ -233,12 +250,19 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
         None
     }
 
-    fn count(&mut self, axis: crate::Axis, direction: Direction) {
+    fn count(&mut self, now: Duration, axis: Axis, direction: Direction) {
         let coordinate = match axis {
-            crate::Axis::X => &mut self.position.x,
-            crate::Axis::Y => &mut self.position.y,
+            Axis::X => &mut self.position.x,
+            Axis::Y => &mut self.position.y,
         };
         *coordinate = coordinate.saturating_add(direction.sign());
+        let distance = self.distance();
+        if let State::Waiting { nearest, nearer_at, .. } = &mut self.state
+            && distance < *nearest
+        {
+            *nearest = distance;
+            *nearer_at = now;
+        }
     }
 
     /// Whether there is nothing more to send, or the host gave up.
