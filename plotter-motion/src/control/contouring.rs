@@ -247,7 +247,12 @@ impl LineController for Contouring {
 
     fn start(&mut self, now: Duration, target: StepPoint) -> Demand {
         self.predict(now);
-        self.start = self.target;
+        if target == self.target && !self.has_arrived() {
+            return self.demand(); // the host said it twice
+        }
+        // A pen that was called away from a target it had not reached begins where it is.
+        let stands = self.has_arrived() || self.position() == self.target;
+        self.start = if stands { self.target } else { self.position() };
         self.target = target;
         let dx = f64::from(target.x) - f64::from(self.start.x);
         let dy = f64::from(target.y) - f64::from(self.start.y);

@@ -113,6 +113,10 @@ impl LineTracking {
         };
         let u_y = self.y.output(error);
         self.demand.y = self.y.duty(u_y, limit);
+        if self.has_arrived() {
+            // From here on the line has no length, so what follows runs as on a vertical line.
+            self.start = self.target;
+        }
         self.demand
     }
 }
@@ -130,7 +134,6 @@ impl LineController for LineTracking {
     }
 
     fn start(&mut self, _now: Duration, target: StepPoint) -> Demand {
-        self.start = self.target;
         self.target = target;
         self.run()
     }

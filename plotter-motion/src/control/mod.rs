@@ -22,7 +22,7 @@ pub trait LineController {
     /// How often [`tick`](Self::tick) wants to be called; `None` for a controller that only answers to edges.
     fn period(&self) -> Option<Duration>;
 
-    /// Takes the next target; the line to it begins where the last one ended.
+    /// Takes the next target; the line to it begins at the last one, if that was reached.
     fn start(&mut self, now: Duration, target: StepPoint) -> Demand;
 
     /// Takes an edge that an encoder's decoder counted.

@@ -14,11 +14,6 @@ use core::time::Duration;
 pub enum Notice {
     /// Part of a target was dropped; the next byte begins a new one.
     Dropped(Dropped),
-    /// A byte came while a target was being approached; it was dropped.
-    Stray {
-        /// The byte.
-        byte: u8,
-    },
     /// A target outside the machine's area was refused.
     OutOfArea {
         /// The target, encoder counts.
@@ -32,9 +27,6 @@ impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Dropped(dropped) => dropped.fmt(f),
-            Self::Stray { byte } => {
-                write!(f, "byte 0x{byte:02x} came before the target was reached: dropped it")
-            }
             Self::OutOfArea { target, most } => write!(
                 f,
                 "target ({}, {}) counts lies outside (0, 0)..=({}, {}): refused it",
@@ -144,13 +136,9 @@ impl Gantry {
         }
     }
 
-    /// Takes a byte from the host.
+    /// Takes a byte from the host. A target that comes before the one before is reached takes its place, as in the
+    /// published program: so a host can go on after a target that cannot be reached.
     pub fn receive(&mut self, now: Duration, byte: u8) {
-        if self.approached.is_some() {
-            // The host sends the next target when this one is reached, so this byte belongs to neither.
-            self.notice(Notice::Stray { byte });
-            return;
-        }
         let received = self.receiver.push(now, byte);
         if let Some(dropped) = received.dropped {
             self.notice(Notice::Dropped(dropped));

@@ -12,10 +12,12 @@ pub struct HostSettings {
     pub byte_gap: Duration,
     /// Silence of the controller after which a target is sent again.
     pub silence: Duration,
-    /// Time without getting nearer to the target after which the host gives up.
+    /// Time without getting nearer to the target after which the host gives it up.
     pub patience: Duration,
-    /// How often a target is sent again before the host gives up.
+    /// How often a target is sent again before the host gives it up.
     pub most_retries: u8,
+    /// How many targets in a row the host gives up before it stops.
+    pub most_given_up: u8,
     /// How far from the target, on either axis, a `+` is believed, encoder counts.
     pub tolerance_counts: u32,
 }
@@ -24,9 +26,10 @@ impl Default for HostSettings {
     fn default() -> Self {
         Self {
             byte_gap: Duration::from_millis(10),
-            silence: Duration::from_secs(5),
-            patience: Duration::from_secs(30),
+            silence: Duration::from_secs(2),
+            patience: Duration::from_secs(10),
             most_retries: 2,
+            most_given_up: 10,
             tolerance_counts: 0,
         }
     }
@@ -55,7 +58,7 @@ pub enum HostNotice {
     },
     /// A target that the protocol has no digits for; it is left out.
     Refused(OutOfRange),
-    /// The motors came no nearer to the target for too long: the host stops.
+    /// The motors came no nearer to the target for too long: the host goes on with the next.
     GaveUp {
         /// The target sent.
         target: StepPoint,
@@ -94,7 +97,7 @@ enum State {
         heard: Duration,
         retries: u8,
     },
-    /// No more targets, or given up.
+    /// No more targets, or too many given up.
     Done,
 }
 
@@ -112,6 +115,7 @@ pub struct Host<I> {
     position: StepPoint,
     sent: u32,
     reached: u32,
+    given_up_in_a_row: u8,
 }
 
 impl<I: Iterator<Item = PenMove>> Host<I> {
@@ -127,6 +131,7 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
             position: StepPoint::default(),
             sent: 0,
             reached: 0,
+            given_up_in_a_row: 0,
         }
     }
 
@@ -155,8 +160,7 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
                 let late = now.saturating_sub(nearer_at) > self.settings.patience;
                 let silent = self.sender.is_idle() && now.saturating_sub(heard) > self.settings.silence;
                 if late || (silent && retries >= self.settings.most_retries) {
-                    self.state = State::Done;
-                    return Some(HostEvent::Notice(HostNotice::GaveUp { target, position: self.position }));
+                    return Some(self.give_up());
                 }
                 silent.then(|| {
                     self.again(now);
@@ -165,6 +169,14 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
             }
             State::Done => None,
         }
+    }
+
+    /// Goes on without this target, or stops after too many.
+    fn give_up(&mut self) -> HostEvent {
+        self.given_up_in_a_row = self.given_up_in_a_row.saturating_add(1);
+        self.state =
+            if self.given_up_in_a_row < self.settings.most_given_up { State::Ready } else { State::Done };
+        HostEvent::Notice(HostNotice::GaveUp { target: self.current.target, position: self.position })
     }
 
     /// Sends the target once more.
@@ -235,14 +247,14 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
                 let off = |a: i32, b: i32| a.abs_diff(b) > self.settings.tolerance_counts;
                 if off(self.position.x, target.x) || off(self.position.y, target.y) {
                     let notice = HostNotice::ReachedElsewhere { target, position: self.position };
-                    if retries < self.settings.most_retries {
-                        self.again(now);
-                    } else {
-                        self.state = State::Done;
+                    if retries >= self.settings.most_retries {
+                        return Some(self.give_up());
                     }
+                    self.again(now);
                     return Some(HostEvent::Notice(notice));
                 }
                 self.reached = self.reached.saturating_add(1);
+                self.given_up_in_a_row = 0;
                 self.state = State::Ready;
                 return Some(HostEvent::Reached(self.current));
             }
@@ -265,7 +277,7 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
         }
     }
 
-    /// Whether there is nothing more to send, or the host gave up.
+    /// Whether there is nothing more to send, or the host stopped.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.state == State::Done
