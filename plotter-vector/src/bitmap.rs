@@ -1,0 +1,262 @@
+//! [`Bitmap`]: a picture of 1 bit a pixel, and [`Pixel`], a place in it.
+
+use core::fmt;
+
+/// Longest side of a picture, px. Coordinates up to here keep every sum of the simplifiers exact in `f64`.
+pub const MAX_SIDE_PX: u32 = 1 << 15;
+
+/// Most pixels of a picture: 2²⁸, that is 16 384 × 16 384, or 32 MiB as a [`Bitmap`].
+pub const MAX_PIXELS: u64 = 1 << 28;
+
+const BITS: u32 = u64::BITS;
+
+/// Column and row of a pixel: x to the right, y **down**, (0, 0) at the upper left.
+///
+/// The pixel covers the square from (x, y) to (x + 1, y + 1); its centre is at (x + 0.5, y + 0.5).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Pixel {
+    /// Column, from the left.
+    pub x: u32,
+    /// Row, from the top.
+    pub y: u32,
+}
+
+impl Pixel {
+    /// The pixel in column `x`, row `y`.
+    #[must_use]
+    pub const fn new(x: u32, y: u32) -> Self {
+        Self { x, y }
+    }
+
+    /// Whether `other` is one of the eight neighbours of this pixel, or the pixel itself.
+    ///
+    /// ```
+    /// # use plotter_vector::Pixel;
+    /// assert!(Pixel::new(3, 3).touches(Pixel::new(4, 2)));
+    /// assert!(!Pixel::new(3, 3).touches(Pixel::new(5, 3)));
+    /// ```
+    #[must_use]
+    pub fn touches(self, other: Self) -> bool {
+        self.x.abs_diff(other.x) <= 1 && self.y.abs_diff(other.y) <= 1
+    }
+
+    /// The displacement from `from` to here in whole px, as floats (exact).
+    pub(crate) fn minus(self, from: Self) -> (f64, f64) {
+        (f64::from(self.x) - f64::from(from.x), f64::from(self.y) - f64::from(from.y))
+    }
+}
+
+/// A picture that would be too large to hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SizeError {
+    /// Asked width, px.
+    pub width: u32,
+    /// Asked height, px.
+    pub height: u32,
+}
+
+impl SizeError {
+    /// The size itself when a picture may have it.
+    pub(crate) fn check(width: u32, height: u32) -> Result<(), Self> {
+        let too_long = width > MAX_SIDE_PX || height > MAX_SIDE_PX;
+        if too_long || u64::from(width) * u64::from(height) > MAX_PIXELS {
+            return Err(Self { width, height });
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for SizeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "a picture of {} x {} px is too large: at most {MAX_SIDE_PX} px a side and {MAX_PIXELS} px in all; \
+             scan with fewer dots per inch or cut it into sheets",
+            self.width, self.height
+        )
+    }
+}
+
+impl core::error::Error for SizeError {}
+
+/// A picture of 1 bit a pixel, 64 to a word; a set bit is ink. Each row starts a new word.
+///
+/// Reading outside the picture gives `false` and writing there does nothing, so neighbours can be asked for
+/// without a border check.
+///
+/// ```
+/// # use plotter_vector::{Bitmap, Pixel};
+/// let corner = Bitmap::from_picture("###\n#..\n")?;
+/// assert!(corner.get(Pixel::new(0, 1)));
+/// assert_eq!(corner.count(), 4);
+/// assert_eq!(corner.to_string(), "###\n#..\n");
+/// # Ok::<(), plotter_vector::SizeError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Bitmap {
+    width: u32,
+    height: u32,
+    words_per_row: usize,
+    words: Vec<u64>,
+}
+
+/// Word of the row, and the bit's mask in it.
+fn place(x: u32) -> (usize, u64) {
+    ((x / BITS) as usize, 1 << (x % BITS))
+}
+
+impl Bitmap {
+    /// An empty picture.
+    ///
+    /// # Errors
+    /// [`SizeError`] above [`MAX_SIDE_PX`] or [`MAX_PIXELS`]; a picture without pixels is allowed.
+    pub fn new(width: u32, height: u32) -> Result<Self, SizeError> {
+        SizeError::check(width, height)?;
+        let words_per_row = width.div_ceil(BITS) as usize;
+        Ok(Self { width, height, words_per_row, words: vec![0; words_per_row * height as usize] })
+    }
+
+    /// A picture without pixels.
+    #[must_use]
+    pub(crate) const fn empty() -> Self {
+        Self { width: 0, height: 0, words_per_row: 0, words: Vec::new() }
+    }
+
+    /// Reads a picture drawn in text: a line a row, `#` is ink, anything else is paper; short rows are filled
+    /// with paper on the right.
+    ///
+    /// # Errors
+    /// [`SizeError`] as for [`Bitmap::new`].
+    pub fn from_picture(text: &str) -> Result<Self, SizeError> {
+        let longest = text.lines().map(|line| line.chars().count()).max().unwrap_or(0);
+        let width = u32::try_from(longest).unwrap_or(u32::MAX);
+        let height = u32::try_from(text.lines().count()).unwrap_or(u32::MAX);
+        let mut bitmap = Self::new(width, height)?;
+        for (y, line) in (0..).zip(text.lines()) {
+            for (x, _) in (0..).zip(line.chars()).filter(|(_, mark)| *mark == '#') {
+                bitmap.set(Pixel::new(x, y), true);
+            }
+        }
+        Ok(bitmap)
+    }
+
+    /// Number of columns.
+    #[must_use]
+    pub const fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub const fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Whether the pixel is ink; `false` outside the picture.
+    #[must_use]
+    pub fn get(&self, at: Pixel) -> bool {
+        let (word, mask) = place(at.x);
+        self.inside(at) && self.row(at.y).get(word).is_some_and(|bits| bits & mask != 0)
+    }
+
+    /// Makes the pixel ink or paper; without effect outside the picture.
+    pub fn set(&mut self, at: Pixel, ink: bool) {
+        let (word, mask) = place(at.x);
+        if !self.inside(at) {
+            return;
+        }
+        if let Some(bits) = self.row_mut(at.y).get_mut(word) {
+            *bits = if ink { *bits | mask } else { *bits & !mask };
+        }
+    }
+
+    /// Number of ink pixels.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.words.iter().map(|bits| u64::from(bits.count_ones())).sum()
+    }
+
+    /// The ink pixels, row by row from the top, in each row from the left. Empty words cost one comparison.
+    pub fn ink(&self) -> impl Iterator<Item = Pixel> + '_ {
+        (0..self.height).flat_map(move |y| {
+            (0..).step_by(BITS as usize).zip(self.row(y)).flat_map(move |(x, bits)| {
+                let rest = core::iter::successors(Some(*bits), |bits| Some(bits & (bits.wrapping_sub(1))));
+                rest.take_while(|bits| *bits != 0).map(move |bits| Pixel::new(x + bits.trailing_zeros(), y))
+            })
+        })
+    }
+
+    /// The words of row `y`, the leftmost pixel in the lowest bit; empty outside the picture. Bits right of the
+    /// picture are never set.
+    #[must_use]
+    pub fn row(&self, y: u32) -> &[u64] {
+        let start = y as usize * self.words_per_row;
+        self.words.get(start..start + self.words_per_row).unwrap_or(&[])
+    }
+
+    /// As [`Bitmap::row`], to write; the caller keeps the bits right of the picture clear.
+    pub(crate) fn row_mut(&mut self, y: u32) -> &mut [u64] {
+        let start = y as usize * self.words_per_row;
+        self.words.get_mut(start..start + self.words_per_row).unwrap_or(&mut [])
+    }
+
+    fn inside(&self, at: Pixel) -> bool {
+        at.x < self.width && at.y < self.height
+    }
+}
+
+/// The picture in text, `#` for ink and `.` for paper: the inverse of [`Bitmap::from_picture`].
+impl fmt::Display for Bitmap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for y in 0..self.height {
+            for x in 0..self.width {
+                f.write_str(if self.get(Pixel::new(x, y)) { "#" } else { "." })?;
+            }
+            f.write_str("\n")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outside_is_paper_and_cannot_be_written() {
+        let mut dot = Bitmap::from_picture("#").unwrap();
+        for outside in [Pixel::new(1, 0), Pixel::new(0, 1), Pixel::new(63, 0), Pixel::new(u32::MAX, u32::MAX)]
+        {
+            assert!(!dot.get(outside));
+            dot.set(outside, true);
+        }
+        assert_eq!(dot.count(), 1);
+    }
+
+    #[test]
+    fn ink_is_found_across_words_in_reading_order() {
+        let mut wide = Bitmap::new(200, 2).unwrap();
+        let marks =
+            [Pixel::new(0, 0), Pixel::new(63, 0), Pixel::new(64, 0), Pixel::new(199, 0), Pixel::new(5, 1)];
+        for mark in marks {
+            wide.set(mark, true);
+        }
+        assert_eq!(wide.ink().collect::<Vec<_>>(), marks);
+        wide.set(Pixel::new(64, 0), false);
+        assert_eq!(wide.count(), 4);
+    }
+
+    #[test]
+    fn a_picture_too_large_is_refused_before_memory_is_taken() {
+        assert_eq!(Bitmap::new(1 << 16, 1), Err(SizeError { width: 1 << 16, height: 1 }));
+        let error = Bitmap::new(MAX_SIDE_PX, MAX_SIDE_PX).unwrap_err();
+        assert!(error.to_string().starts_with("a picture of 32768 x 32768 px is too large"));
+    }
+
+    #[test]
+    fn a_picture_without_pixels_is_a_picture() {
+        assert_eq!(Bitmap::new(0, 7).unwrap().ink().count(), 0);
+        assert_eq!(Bitmap::from_picture("").unwrap().to_string(), "");
+    }
+}

@@ -1,0 +1,179 @@
+//! [`decode`]: a picture file as grey levels.
+
+use crate::bitmap::{MAX_PIXELS, MAX_SIDE_PX};
+use crate::{Gray, GrayError, SizeError, gray_on_white};
+use core::fmt;
+use image::{DynamicImage, GenericImageView, ImageError, ImageReader, Limits};
+use std::io::Cursor;
+
+/// Most memory that decoding may take: 8 bytes (four channels of 16 bits) a pixel of the largest picture, bytes.
+const MAX_ALLOC_BYTES: u64 = 8 * MAX_PIXELS;
+
+/// Why a file is not a picture that can be traced.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DecodeError {
+    /// No bytes at all.
+    Empty,
+    /// Not PNG, JPEG, PBM, PGM or PPM.
+    UnknownFormat {
+        /// How the file begins.
+        first_bytes: Vec<u8>,
+    },
+    /// Larger than a picture may be.
+    TooLarge(SizeError),
+    /// Decoding it would take too much memory.
+    TooMuchMemory,
+    /// Damaged or cut off.
+    Damaged {
+        /// Length of the file, bytes.
+        length: usize,
+        /// What the decoder met.
+        what: String,
+    },
+}
+
+impl fmt::Display for DecodeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => f.write_str("the picture is empty (0 bytes): scan or save it again"),
+            Self::UnknownFormat { first_bytes } => {
+                f.write_str("the picture begins with")?;
+                for byte in first_bytes {
+                    write!(f, " {byte:02x}")?;
+                }
+                f.write_str(", which is not PNG, JPEG, PBM, PGM or PPM: save it as one of these")
+            }
+            Self::TooLarge(error) => error.fmt(f),
+            Self::TooMuchMemory => {
+                write!(
+                    f,
+                    "decoding the picture takes more than {} MiB: save it as 8-bit grey",
+                    MAX_ALLOC_BYTES >> 20
+                )
+            }
+            Self::Damaged { length, what } => {
+                write!(f, "the picture ({length} bytes) is damaged or cut off: {what}; scan or save it again")
+            }
+        }
+    }
+}
+
+impl core::error::Error for DecodeError {}
+
+/// Decodes a PNG, JPEG, PBM, PGM or PPM picture; the format is told from the bytes, not from a name.
+///
+/// Colours become luma, 16 bits become 8, and what is transparent shows white paper ([`gray_on_white`]). The size
+/// is checked before the pixels are decoded: [`MAX_SIDE_PX`] a side and [`MAX_PIXELS`] in all.
+///
+/// # Errors
+/// [`DecodeError`]; never a panic, and never more memory than 8 bytes a pixel of the largest picture.
+///
+/// ```
+/// # use plotter_vector::decode;
+/// let picture = decode(b"P1 3 2\n1 1 1\n1 0 0\n")?; // PBM in text: 1 is black
+/// assert_eq!(picture.pixels(), [0, 0, 0, 0, 255, 255]);
+/// assert!(decode(b"").is_err());
+/// # Ok::<(), plotter_vector::DecodeError>(())
+/// ```
+pub fn decode(bytes: &[u8]) -> Result<Gray, DecodeError> {
+    if bytes.is_empty() {
+        return Err(DecodeError::Empty);
+    }
+    let damaged =
+        |error: &dyn fmt::Display| DecodeError::Damaged { length: bytes.len(), what: one_line(error) };
+    let reader =
+        || ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| damaged(&error));
+    let unknown = || DecodeError::UnknownFormat { first_bytes: bytes.iter().take(8).copied().collect() };
+    if reader()?.format().is_none() {
+        return Err(unknown());
+    }
+    let refused = |error: ImageError| match error {
+        ImageError::Unsupported(_) => unknown(),
+        ImageError::Limits(_) => DecodeError::TooMuchMemory,
+        other => damaged(&other),
+    };
+    // The header first: a picture of a size that is refused must not be decoded at all.
+    let (width, height) = reader()?.into_dimensions().map_err(refused)?;
+    SizeError::check(width, height).map_err(DecodeError::TooLarge)?;
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE_PX);
+    limits.max_image_height = Some(MAX_SIDE_PX);
+    limits.max_alloc = Some(MAX_ALLOC_BYTES);
+    let mut decoder = reader()?;
+    decoder.limits(limits);
+    let picture = decoder.decode().map_err(refused)?;
+    to_gray(picture).map_err(|error| match error {
+        GrayError::TooLarge(size) => DecodeError::TooLarge(size),
+        other @ GrayError::WrongCount { .. } => damaged(&other),
+    })
+}
+
+/// A decoder's message on one line, whatever it holds.
+fn one_line(message: &dyn fmt::Display) -> String {
+    message.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn to_gray(picture: DynamicImage) -> Result<Gray, GrayError> {
+    let (width, height) = picture.dimensions();
+    let levels = match picture {
+        DynamicImage::ImageLuma8(gray) => gray.into_raw(),
+        DynamicImage::ImageRgb8(colour) => {
+            colour.pixels().map(|image::Rgb([r, g, b])| gray_on_white([*r, *g, *b, 255])).collect()
+        }
+        other => other.into_rgba8().pixels().map(|pixel| gray_on_white(pixel.0)).collect(),
+    };
+    Gray::new(width, height, levels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ImageBuffer, ImageFormat};
+
+    fn png(picture: impl Into<DynamicImage>) -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        picture.into().write_to(&mut bytes, ImageFormat::Png).unwrap();
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn grey_sixteen_bit_and_transparent_pictures_are_read() {
+        let gray = ImageBuffer::from_raw(2, 1, vec![0_u8, 200]).map(DynamicImage::ImageLuma8).unwrap();
+        let deep = ImageBuffer::from_raw(2, 1, vec![0_u16, 65535]).map(DynamicImage::ImageLuma16).unwrap();
+        let clear = ImageBuffer::from_raw(2, 1, vec![0, 0, 0, 255, 0, 0, 0, 0])
+            .map(DynamicImage::ImageRgba8)
+            .unwrap();
+        assert_eq!(decode(&png(gray)).unwrap().pixels(), [0, 200]);
+        assert_eq!(decode(&png(deep)).unwrap().pixels(), [0, 255]);
+        assert_eq!(decode(&png(clear)).unwrap().pixels(), [0, 255]);
+    }
+
+    #[test]
+    fn a_picture_cut_off_anywhere_is_an_error() {
+        let whole = png(ImageBuffer::from_fn(9, 9, |x, y| image::Luma([u8::from(x == y) * 255])));
+        // The last 12 bytes are the end mark, which holds no pixels.
+        for length in 0..whole.len() - 12 {
+            let error = decode(&whole[..length]).unwrap_err();
+            assert!(!error.to_string().contains('\n'), "one line: {error}");
+        }
+    }
+
+    #[test]
+    fn a_huge_size_is_refused_from_the_header() {
+        assert_eq!(
+            decode(b"P5 100000 100000 255\n"),
+            Err(DecodeError::TooLarge(SizeError { width: 100_000, height: 100_000 }))
+        );
+    }
+
+    #[test]
+    fn something_else_is_named_by_its_first_bytes() {
+        let error = decode(b"IN;SP1;PU0,0;").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "the picture begins with 49 4e 3b 53 50 31 3b 50, which is not PNG, JPEG, PBM, PGM or PPM: save it as \
+             one of these"
+        );
+    }
+}

@@ -1,0 +1,283 @@
+//! [`Drawing`]: pen strokes in pixel coordinates, and [`Scale`], the only road from there to the sheet.
+
+use core::fmt;
+use plotter_motion::{PlotOp, Point};
+
+/// A place on the picture, px: x to the right, y **down**, (0, 0) in the picture's upper left corner.
+///
+/// The centre of pixel (i, j) is at (i + 0.5, j + 0.5).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PxPoint {
+    /// To the right, px.
+    pub x: f64,
+    /// Down, px.
+    pub y: f64,
+}
+
+impl PxPoint {
+    /// The place `x` px right of and `y` px below the upper left corner.
+    #[must_use]
+    pub const fn new(x: f64, y: f64) -> Self {
+        Self { x, y }
+    }
+
+    /// Straight distance to `other`, px.
+    #[must_use]
+    pub fn distance(self, other: Self) -> f64 {
+        libm::hypot(self.x - other.x, self.y - other.y)
+    }
+}
+
+impl From<crate::Pixel> for PxPoint {
+    /// The pixel's centre.
+    fn from(pixel: crate::Pixel) -> Self {
+        Self { x: f64::from(pixel.x) + 0.5, y: f64::from(pixel.y) + 0.5 }
+    }
+}
+
+/// Pen strokes in the order in which they are drawn, in pixel coordinates. A stroke of one vertex is a dot.
+///
+/// ```
+/// # use plotter_vector::{Drawing, PxPoint};
+/// let mut drawing = Drawing::new(10, 10);
+/// drawing.push([PxPoint::new(0.5, 0.5), PxPoint::new(3.5, 4.5)]);
+/// drawing.push([PxPoint::new(3.5, 6.5), PxPoint::new(9.5, 6.5)]);
+/// assert_eq!(drawing.vertices(), 4);
+/// assert_eq!((drawing.pen_down_px(), drawing.pen_up_px()), (11.0, 2.0));
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Drawing {
+    width_px: u32,
+    height_px: u32,
+    vertices: Vec<PxPoint>,
+    /// One past the last vertex of each stroke.
+    ends: Vec<usize>,
+}
+
+impl Drawing {
+    /// An empty drawing on a picture of this size.
+    #[must_use]
+    pub const fn new(width_px: u32, height_px: u32) -> Self {
+        Self { width_px, height_px, vertices: Vec::new(), ends: Vec::new() }
+    }
+
+    /// Width of the picture.
+    #[must_use]
+    pub const fn width_px(&self) -> u32 {
+        self.width_px
+    }
+
+    /// Height of the picture.
+    #[must_use]
+    pub const fn height_px(&self) -> u32 {
+        self.height_px
+    }
+
+    /// Adds a stroke; one without vertices is left out.
+    pub fn push(&mut self, stroke: impl IntoIterator<Item = PxPoint>) {
+        let before = self.vertices.len();
+        self.vertices.extend(stroke);
+        if self.vertices.len() > before {
+            self.ends.push(self.vertices.len());
+        }
+    }
+
+    /// The vertices of one stroke; empty when there is no such stroke.
+    #[must_use]
+    pub fn stroke(&self, index: usize) -> &[PxPoint] {
+        let start = index.checked_sub(1).map_or(Some(0), |before| self.ends.get(before).copied());
+        let end = self.ends.get(index).copied();
+        start.zip(end).and_then(|(start, end)| self.vertices.get(start..end)).unwrap_or(&[])
+    }
+
+    /// The strokes in order.
+    pub fn strokes(&self) -> impl ExactSizeIterator<Item = &[PxPoint]> + DoubleEndedIterator {
+        (0..self.ends.len()).map(|index| self.stroke(index))
+    }
+
+    /// Number of vertices of all strokes, as they are written: a closed stroke's first one counts twice.
+    #[must_use]
+    pub fn vertices(&self) -> usize {
+        self.vertices.len()
+    }
+
+    /// Length drawn, px.
+    #[must_use]
+    pub fn pen_down_px(&self) -> f64 {
+        let length = |stroke: &[PxPoint]| -> f64 {
+            stroke.iter().zip(stroke.iter().skip(1)).map(|(from, to)| from.distance(*to)).sum()
+        };
+        self.strokes().map(length).sum()
+    }
+
+    /// Length travelled with the pen up from each stroke's end to the next one's start, px. The ways from and to
+    /// the machine's home are not in it: the drawing does not know where that is.
+    #[must_use]
+    pub fn pen_up_px(&self) -> f64 {
+        let travel = |(from, to): (&[PxPoint], &[PxPoint])| Some(from.last()?.distance(*to.first()?));
+        self.strokes().zip(self.strokes().skip(1)).filter_map(travel).sum()
+    }
+
+    /// The operations that draw it on the sheet: to each stroke's start with the pen up, along it with the pen
+    /// down. A dot is drawn from its place to its place.
+    pub fn plot_ops(&self, scale: Scale) -> impl Iterator<Item = PlotOp> + '_ {
+        self.strokes().flat_map(move |stroke| {
+            let (start, rest) =
+                stroke.split_first().map_or((None, stroke), |(start, rest)| (Some(*start), rest));
+            let dot = if rest.is_empty() { start } else { None };
+            let travel = start.map(|to| PlotOp::Travel { to: scale.to_sheet(to) });
+            let draw = move |to| PlotOp::Draw { to: scale.to_sheet(to), feed_mm_s: None };
+            travel.into_iter().chain(rest.iter().copied().chain(dot).map(draw))
+        })
+    }
+}
+
+/// From places on a picture (px, y down) to places on the sheet (mm, y up).
+///
+/// ```
+/// # use plotter_vector::{PxPoint, Scale};
+/// use plotter_motion::Point;
+/// // A picture of 400 x 300 px into 100 x 100 mm with a margin of 10 mm: 80 mm for 400 px.
+/// let scale = Scale::fit(400, 300, Point::ORIGIN, Point::new(100.0, 100.0), 10.0)?;
+/// assert_eq!(scale.mm_per_px(), 0.2);
+/// assert_eq!(scale.to_sheet(PxPoint::new(0.0, 300.0)), Point::new(10.0, 20.0)); // centred: (100 - 60) / 2
+/// # Ok::<(), plotter_vector::ScaleError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    mm_per_px: f64,
+    /// Where the picture's upper left corner lies.
+    upper_left: Point,
+}
+
+/// Why a picture cannot be brought onto a sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ScaleError {
+    /// The scale is not a positive number.
+    NotPositive {
+        /// Asked scale.
+        mm_per_px: f64,
+    },
+    /// A corner of the area is not a number.
+    NotFinite,
+    /// Nothing is left of the area inside the margin.
+    NoRoom {
+        /// Width inside the margin, mm.
+        width_mm: f64,
+        /// Height inside the margin, mm.
+        height_mm: f64,
+    },
+}
+
+impl fmt::Display for ScaleError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotPositive { mm_per_px } => {
+                write!(
+                    f,
+                    "scale: {mm_per_px} mm per px is not a positive number; 0.1 gives 254 dots per inch"
+                )
+            }
+            Self::NotFinite => f.write_str("area: a corner or the margin is not a number; give mm"),
+            Self::NoRoom { width_mm, height_mm } => write!(
+                f,
+                "area: {width_mm:.3} x {height_mm:.3} mm are left inside the margin; take a larger area or a \
+                 smaller margin"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ScaleError {}
+
+impl Scale {
+    /// A picture of `height_px` rows whose **lower left** corner lies at `origin`.
+    ///
+    /// # Errors
+    /// [`ScaleError::NotPositive`] and [`ScaleError::NotFinite`].
+    pub fn new(height_px: u32, mm_per_px: f64, origin: Point) -> Result<Self, ScaleError> {
+        if !(mm_per_px > 0.0 && mm_per_px.is_finite()) {
+            return Err(ScaleError::NotPositive { mm_per_px });
+        }
+        let upper_left = Point::new(origin.x, origin.y + f64::from(height_px) * mm_per_px);
+        if !upper_left.is_finite() {
+            return Err(ScaleError::NotFinite);
+        }
+        Ok(Self { mm_per_px, upper_left })
+    }
+
+    /// The largest scale at which the picture fits between two corners less a margin all round; centred. A picture
+    /// without pixels is taken as one of 1 px.
+    ///
+    /// # Errors
+    /// [`ScaleError::NotFinite`] and [`ScaleError::NoRoom`].
+    pub fn fit(
+        width_px: u32,
+        height_px: u32,
+        lower_left: Point,
+        upper_right: Point,
+        margin_mm: f64,
+    ) -> Result<Self, ScaleError> {
+        if !(lower_left.is_finite() && upper_right.is_finite() && margin_mm.is_finite()) {
+            return Err(ScaleError::NotFinite);
+        }
+        let width_mm = upper_right.x - lower_left.x - 2.0 * margin_mm;
+        let height_mm = upper_right.y - lower_left.y - 2.0 * margin_mm;
+        if !(width_mm > 0.0 && height_mm > 0.0) {
+            return Err(ScaleError::NoRoom { width_mm, height_mm });
+        }
+        let (width, height) = (f64::from(width_px.max(1)), f64::from(height_px.max(1)));
+        let mm_per_px = (width_mm / width).min(height_mm / height);
+        let left = (lower_left.x + upper_right.x - width * mm_per_px) / 2.0;
+        let bottom = (lower_left.y + upper_right.y - height * mm_per_px) / 2.0;
+        Self::new(height_px.max(1), mm_per_px, Point::new(left, bottom))
+    }
+
+    /// Size of a pixel on the sheet, mm.
+    #[must_use]
+    pub const fn mm_per_px(self) -> f64 {
+        self.mm_per_px
+    }
+
+    /// Where a place on the picture lies on the sheet, mm.
+    #[must_use]
+    pub fn to_sheet(self, at: PxPoint) -> Point {
+        Point::new(self.upper_left.x + at.x * self.mm_per_px, self.upper_left.y - at.y * self.mm_per_px)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dot_is_drawn_from_its_place_to_its_place() {
+        let mut drawing = Drawing::new(2, 2);
+        drawing.push([PxPoint::new(0.5, 0.5)]);
+        let ops: Vec<PlotOp> = drawing.plot_ops(Scale::new(2, 1.0, Point::ORIGIN).unwrap()).collect();
+        let at = Point::new(0.5, 1.5);
+        assert_eq!(ops, [PlotOp::Travel { to: at }, PlotOp::Draw { to: at, feed_mm_s: None }]);
+    }
+
+    #[test]
+    fn a_scale_that_is_no_scale_is_refused_with_its_value() {
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(Scale::new(1, bad, Point::ORIGIN).is_err());
+        }
+        let error = Scale::fit(1, 1, Point::ORIGIN, Point::new(10.0, 30.0), 5.0).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "area: 0.000 x 20.000 mm are left inside the margin; take a larger area or a smaller margin"
+        );
+    }
+
+    #[test]
+    fn a_fitted_picture_stays_inside_the_margin() {
+        let scale = Scale::fit(10, 40, Point::new(-5.0, 0.0), Point::new(95.0, 50.0), 5.0).unwrap();
+        assert_eq!(scale.to_sheet(PxPoint::new(0.0, 0.0)), Point::new(40.0, 45.0));
+        assert_eq!(scale.to_sheet(PxPoint::new(10.0, 40.0)), Point::new(50.0, 5.0));
+    }
+}

@@ -1,0 +1,105 @@
+//! [`Gray`]: a picture of 256 grey levels.
+
+use crate::SizeError;
+use core::fmt;
+
+/// A picture of 256 grey levels, 0 black to 255 white, row by row from the top.
+///
+/// Make one with [`Gray::new`], or with [`decode`](crate::decode()) from a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Gray {
+    width: u32,
+    height: u32,
+    pixels: Vec<u8>,
+}
+
+/// Why levels do not make a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum GrayError {
+    /// Larger than a picture may be.
+    TooLarge(SizeError),
+    /// Not one level a pixel.
+    WrongCount {
+        /// Width × height.
+        expected: usize,
+        /// Levels given.
+        found: usize,
+    },
+}
+
+impl fmt::Display for GrayError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooLarge(error) => error.fmt(f),
+            Self::WrongCount { expected, found } => {
+                write!(f, "{found} grey levels given where the size asks for {expected}: give one a pixel")
+            }
+        }
+    }
+}
+
+impl core::error::Error for GrayError {}
+
+impl Gray {
+    /// A picture from its levels.
+    ///
+    /// # Errors
+    /// [`GrayError::TooLarge`], or [`GrayError::WrongCount`] unless there is one level a pixel.
+    ///
+    /// ```
+    /// # use plotter_vector::Gray;
+    /// assert!(Gray::new(2, 2, vec![255, 0, 255, 255]).is_ok());
+    /// assert!(Gray::new(2, 2, vec![255, 0, 255]).is_err());
+    /// ```
+    pub fn new(width: u32, height: u32, pixels: Vec<u8>) -> Result<Self, GrayError> {
+        SizeError::check(width, height).map_err(GrayError::TooLarge)?;
+        let expected = width as usize * height as usize;
+        if pixels.len() != expected {
+            return Err(GrayError::WrongCount { expected, found: pixels.len() });
+        }
+        Ok(Self { width, height, pixels })
+    }
+
+    /// Number of columns.
+    #[must_use]
+    pub const fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub const fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The levels, row by row from the top.
+    #[must_use]
+    pub fn pixels(&self) -> &[u8] {
+        &self.pixels
+    }
+
+    /// The rows from the top.
+    pub fn rows(&self) -> impl Iterator<Item = &[u8]> {
+        // A picture without columns has no levels either; a chunk must not be empty.
+        self.pixels.chunks(self.width.max(1) as usize)
+    }
+}
+
+/// Level of a colour (red, green, blue, alpha: 0 clear to 255 solid) seen on white paper.
+///
+/// Luma by ITU-R BT.601, Y = 0.299 R + 0.587 G + 0.114 B, then Y·α + 255·(1 − α), to nearest.
+///
+/// ```
+/// # use plotter_vector::gray_on_white;
+/// assert_eq!(gray_on_white([0, 0, 0, 255]), 0); // ink
+/// assert_eq!(gray_on_white([0, 0, 0, 0]), 255); // clear: the paper is seen
+/// assert_eq!(gray_on_white([255, 0, 0, 255]), 76); // red: 0.299 · 255
+/// ```
+#[must_use]
+pub fn gray_on_white([red, green, blue, alpha]: [u8; 4]) -> u8 {
+    let luma = (299 * u32::from(red) + 587 * u32::from(green) + 114 * u32::from(blue) + 500) / 1000;
+    let alpha = u32::from(alpha);
+    let level = (luma * alpha + 255 * (255 - alpha) + 127) / 255;
+    u8::try_from(level).unwrap_or(u8::MAX)
+}

@@ -1,0 +1,73 @@
+//! [`DynamicThreshold`]: the published simplification.
+
+use super::Simplify;
+use crate::{Pixel, PreElimination};
+
+/// The published simplification: a vertex where the way turns by more than a threshold that falls with distance.
+///
+/// ```text
+///                  ___ C     base A, checking pixel B, following pixel C:
+///     A ________ B            B goes when tan(angle of AB and AC) < 0.025 · K / |AC|
+/// ```
+///
+/// [`PreElimination`] runs first, as published. `B` and `C` are consecutive pixels that it left; when B stays it
+/// is the next base. The rule says, in other words, that B goes while C is nearer than about 0.025 · K px to
+/// the line AB: it never looks back at what it dropped, so on a slow curve the error adds up **without bound**
+/// (2.04 px at worst in the publication). For a promise take [`Bounded`](super::Bounded).
+///
+/// K was found by experiment and is not given in the publication; see [`DynamicThreshold::default`].
+///
+/// Source: Öcal's thesis on a two-axis gantry, section 3.2, eq. 3.4.
+///
+/// ```
+/// # use plotter_vector::{DynamicThreshold, Pixel, Simplify};
+/// let level: Vec<Pixel> = (0..100).map(|x| Pixel::new(x, 7)).collect();
+/// assert_eq!(DynamicThreshold::default().keep(&level), [0, 99]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DynamicThreshold {
+    /// The pass before.
+    pub pre_elimination: PreElimination,
+    /// Tangent of the angle that is allowed at 1 px · K.
+    pub tan_gamma: f64,
+    /// The constant K (C in the publication), px.
+    pub k_px: f64,
+}
+
+impl Default for DynamicThreshold {
+    fn default() -> Self {
+        Self { pre_elimination: PreElimination::default(), tan_gamma: 0.025, k_px: 20.0 }
+    }
+}
+
+impl Simplify for DynamicThreshold {
+    fn keep(&self, pixels: &[Pixel]) -> Vec<usize> {
+        let passed = self.pre_elimination.keep(pixels);
+        let mut kept: Vec<usize> = passed.first().copied().into_iter().collect();
+        let mut base = pixels.first().copied().unwrap_or_default();
+        for pair in passed.get(1..).unwrap_or(&[]).windows(2) {
+            let [checking, following] = pair else { continue };
+            let Some((b, c)) = pixels.get(*checking).zip(pixels.get(*following)) else { continue };
+            if self.turns(base, *b, *c) {
+                kept.push(*checking);
+                base = *b;
+            }
+        }
+        if passed.len() > 1 {
+            kept.extend(passed.last());
+        }
+        kept
+    }
+}
+
+impl DynamicThreshold {
+    /// Whether the angle of AB and AC reaches the threshold of the distance |AC|.
+    fn turns(&self, a: Pixel, b: Pixel, c: Pixel) -> bool {
+        let (ab, ac) = (b.minus(a), c.minus(a));
+        let cross = libm::fabs(ab.0 * ac.1 - ab.1 * ac.0);
+        let dot = ab.0 * ac.0 + ab.1 * ac.1;
+        let distance_px = libm::sqrt(ac.0 * ac.0 + ac.1 * ac.1);
+        // A right angle or more has no tangent to compare: that is a turn at any distance.
+        dot <= 0.0 || cross * distance_px >= self.tan_gamma * self.k_px * dot
+    }
+}
