@@ -105,7 +105,7 @@ fn bars(report: &ErrorReport, width: f64, height: f64, bottom: f64, out: &mut im
             Short((to - from - 1.0).max(0.5)),
             Short(tall)
         )?;
-        if index % every == 0 {
+        if index.is_multiple_of(every) {
             mark(from, bin.from_px, bottom, out)?;
         }
         if bin.percent >= 0.05 && to - from > 34.0 {
@@ -118,7 +118,7 @@ fn bars(report: &ErrorReport, width: f64, height: f64, bottom: f64, out: &mut im
             )?;
         }
     }
-    if report.histogram.len() % every == 0 {
+    if report.histogram.len().is_multiple_of(every) {
         mark(x(span_px), span_px, bottom, out)?;
     }
     Ok(())

@@ -6,8 +6,9 @@ use crate::Pixel;
 ///
 /// With AB and BC the displacements, tan γ = |AB × BC| / (AB · BC); B goes when tan γ is below the tolerance
 /// and the way does not turn back. Products in place of the published slopes give the same angle and hold on
-/// vertical lines too. The first and the last pixel always stay; nearer than `reach` to an end, the end itself
-/// stands for A or C.
+/// vertical lines too. What is dropped is gone: A is the tenth of the pixels that are *still there* before B, so on
+/// a slow curve A falls back until the turn shows, where ten pixels of the raster alone would never show it. The first and the last pixel always stay, and so do those that have no tenth pixel before or
+/// after: there is nothing to judge them by.
 ///
 /// Source: Öcal's thesis on a two-axis gantry, section 3.2, eq. 3.1 to 3.3.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,21 +40,25 @@ impl PreElimination {
     #[must_use]
     pub fn keep(&self, pixels: &[Pixel]) -> Vec<usize> {
         let last = pixels.len().saturating_sub(1);
-        let stays = |index: usize, b: Pixel| {
-            let before = pixels.get(index.saturating_sub(self.reach));
-            let after = pixels.get(index.saturating_add(self.reach).min(last));
-            let Some((a, c)) = before.zip(after) else { return true };
-            let (ab, bc) = (b.minus(*a), c.minus(b));
-            let cross = ab.0 * bc.1 - ab.1 * bc.0;
-            let dot = ab.0 * bc.0 + ab.1 * bc.1;
-            dot <= 0.0 || libm::fabs(cross) >= self.tan_gamma * dot
-        };
-        pixels
-            .iter()
-            .enumerate()
-            .filter(|(index, pixel)| *index == 0 || *index == last || stays(*index, **pixel))
-            .map(|(index, _)| index)
-            .collect()
+        let mut kept: Vec<usize> = Vec::new();
+        for (index, b) in pixels.iter().enumerate() {
+            let before = kept.len().checked_sub(self.reach).and_then(|a| kept.get(a));
+            let a = before.and_then(|a| pixels.get(*a));
+            let c = index.checked_add(self.reach).and_then(|c| pixels.get(c));
+            let judged = a.zip(c).filter(|_| index != 0 && index != last);
+            if judged.is_none_or(|(a, c)| self.turns(*a, *b, *c)) {
+                kept.push(index);
+            }
+        }
+        kept
+    }
+
+    /// Whether the way from `a` over `b` to `c` turns at `b` by the smallest angle that counts.
+    fn turns(&self, a: Pixel, b: Pixel, c: Pixel) -> bool {
+        let (ab, bc) = (b.minus(a), c.minus(b));
+        let cross = ab.0 * bc.1 - ab.1 * bc.0;
+        let dot = ab.0 * bc.0 + ab.1 * bc.1;
+        dot <= 0.0 || libm::fabs(cross) >= self.tan_gamma * dot
     }
 }
 
