@@ -34,7 +34,9 @@ const MM_PER_PX: f64 = 0.1;
 
 /// Traces a scanned line drawing into pen strokes.
 #[derive(Debug, Parser)]
-#[command(after_help = "Example:\n  trace scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt --report scan.json")]
+#[command(
+    after_help = "Example:\n  trace scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt --report scan.json"
+)]
 struct Arguments {
     /// PNG, JPEG, PBM or PGM picture of lines [default: the flag that comes with the examples]
     image: Option<PathBuf>,
@@ -125,10 +127,14 @@ fn run(arguments: &Arguments) -> Result<(), String> {
 
 fn vectorizer(arguments: &Arguments) -> Result<Vectorizer, String> {
     match (arguments.algorithm, arguments.max_error_px) {
-        (Choice::Published, Some(_)) => Err("--max-error-px: the published algorithm has no error bound; take \
+        (Choice::Published, Some(_)) => {
+            Err("--max-error-px: the published algorithm has no error bound; take \
                                              --algorithm ours, or leave the option out"
-            .into()),
-        (Choice::Published, None) => Ok(Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() }),
+                .into())
+        }
+        (Choice::Published, None) => {
+            Ok(Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() })
+        }
         (Choice::Ours, None) => Ok(Vectorizer::default()),
         (Choice::Ours, Some(tolerance_px)) if tolerance_px > 0.0 && tolerance_px.is_finite() => {
             Ok(Vectorizer { ours: Bounded { tolerance_px }, ..Vectorizer::default() })
@@ -152,7 +158,12 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-fn write_files(arguments: &Arguments, traced: &Vectorized, report: &Report<'_>, name: &str) -> Result<(), String> {
+fn write_files(
+    arguments: &Arguments,
+    traced: &Vectorized,
+    report: &Report<'_>,
+    name: &str,
+) -> Result<(), String> {
     let drawing = &traced.drawing;
     let text = |error: std::fmt::Error| error.to_string();
     if let Some(path) = &arguments.svg {
@@ -161,7 +172,8 @@ fn write_files(arguments: &Arguments, traced: &Vectorized, report: &Report<'_>, 
         write(path, &out)?;
     }
     if let Some(path) = &arguments.hpgl {
-        let scale = Scale::new(drawing.height_px(), MM_PER_PX, Point::ORIGIN).map_err(|error| error.to_string())?;
+        let scale =
+            Scale::new(drawing.height_px(), MM_PER_PX, Point::ORIGIN).map_err(|error| error.to_string())?;
         let mut out = String::new();
         hpgl(drawing, scale, &mut out).map_err(text)?;
         write(path, &out)?;
@@ -171,7 +183,8 @@ fn write_files(arguments: &Arguments, traced: &Vectorized, report: &Report<'_>, 
     }
     if let Some(path) = &arguments.error_plot {
         let mut out = String::new();
-        error_chart(&traced.error, &format!("Error of the vectorization of {name}"), &[], &mut out).map_err(text)?;
+        error_chart(&traced.error, &format!("Error of the vectorization of {name}"), &[], &mut out)
+            .map_err(text)?;
         write(path, &out)?;
     }
     if let Some(path) = &arguments.report {
@@ -219,7 +232,9 @@ fn print(title: &str, report: &Report<'_>, empty: bool) -> Result<(), String> {
     .map_err(|error| error.to_string())?;
     // A reader who has seen enough (`| head -1`) is no failure.
     match std::io::stdout().write_all(out.as_bytes()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(format!("standard output: {error}")),
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(format!("standard output: {error}"))
+        }
         _ => Ok(()),
     }
 }

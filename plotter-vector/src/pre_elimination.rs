@@ -32,10 +32,10 @@ impl PreElimination {
     /// ```
     /// # use plotter_vector::{Pixel, PreElimination};
     /// let corner: Vec<Pixel> =
-    ///     (0..20).map(|x| Pixel::new(x, 0)).chain((1..20).map(|y| Pixel::new(19, y))).collect();
+    ///     (0..40).map(|x| Pixel::new(x, 0)).chain((1..40).map(|y| Pixel::new(39, y))).collect();
     /// let kept = PreElimination::default().keep(&corner);
-    /// assert!(kept.contains(&19)); // the corner
-    /// assert!(!kept.contains(&5) && !kept.contains(&33)); // the middle of either arm
+    /// assert!(kept.contains(&39)); // the corner
+    /// assert!(!kept.contains(&20) && !kept.contains(&65)); // the middle of either arm
     /// ```
     #[must_use]
     pub fn keep(&self, pixels: &[Pixel]) -> Vec<usize> {
@@ -71,8 +71,9 @@ mod tests {
     }
 
     #[test]
-    fn a_vertical_line_keeps_its_ends_only() {
-        assert_eq!(PreElimination::default().keep(&line(50, |i| (7, i))), [0, 49]);
+    fn a_vertical_line_keeps_what_cannot_be_judged_only() {
+        let ends: Vec<usize> = (0..10).chain(40..50).collect();
+        assert_eq!(PreElimination::default().keep(&line(50, |i| (7, i))), ends);
     }
 
     #[test]

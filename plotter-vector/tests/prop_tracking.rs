@@ -1,4 +1,5 @@
 //! Laws of tracking, linking, joining and ordering.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
 use plotter_vector::{
     Algorithm, Bitmap, Drawing, Figures, OrderedTracking, Pixel, PxPoint, Vectorizer, join, link, order,

@@ -12,7 +12,11 @@ pub(crate) fn paper(width: u32, height: u32) -> GrayImage {
 fn dot(sheet: &mut GrayImage, x: f64, y: f64) {
     let inside = |value: f64, size: u32| (0.0..f64::from(size)).contains(&value);
     if inside(x, sheet.width()) && inside(y, sheet.height()) {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and inside the sheet")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole and inside the sheet"
+        )]
         sheet.put_pixel(x as u32, y as u32, Luma([0]));
     }
 }

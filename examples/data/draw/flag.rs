@@ -42,12 +42,25 @@ pub(crate) fn draw() -> GrayImage {
     let radius = G / 8.0;
     let star = (inner.0 - inner_radius + G / 3.0 + radius, axis);
     let point = |cos: f64, sin: f64| (star.0 + radius * cos, star.1 + radius * sin);
-    let points = [point(-1.0, 0.0), point(-COS_72, SIN_72), point(COS_36, SIN_36), point(COS_36, -SIN_36), point(-COS_72, -SIN_72)];
+    let points = [
+        point(-1.0, 0.0),
+        point(-COS_72, SIN_72),
+        point(COS_36, SIN_36),
+        point(COS_36, -SIN_36),
+        point(-COS_72, -SIN_72),
+    ];
     // The outline: the inner corners lie on a circle smaller by cos 72 / cos 36.
     let small = radius * COS_72 / COS_36;
     let corner = |cos: f64, sin: f64| (star.0 + small * cos, star.1 + small * sin);
-    let corners = [corner(-COS_36, SIN_36), corner(COS_72, SIN_72), corner(1.0, 0.0), corner(COS_72, -SIN_72), corner(-COS_36, -SIN_36)];
-    let mut outline: Vec<At> = points.iter().zip(&corners).flat_map(|(point, corner)| [*point, *corner]).collect();
+    let corners = [
+        corner(-COS_36, SIN_36),
+        corner(COS_72, SIN_72),
+        corner(1.0, 0.0),
+        corner(COS_72, -SIN_72),
+        corner(-COS_36, -SIN_36),
+    ];
+    let mut outline: Vec<At> =
+        points.iter().zip(&corners).flat_map(|(point, corner)| [*point, *corner]).collect();
     outline.push(points[0]);
     lines(&mut sheet, &outline);
     sheet

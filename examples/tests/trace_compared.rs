@@ -1,0 +1,71 @@
+//! Published and ours on the two drawings, beside the published figures.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
+
+use plotter_vector::{Algorithm, Vectorized, Vectorizer, decode};
+
+/// Mean, greatest error and standard deviation, px.
+type Figures = [f64; 3];
+
+/// Öcal's thesis, table 7-1.
+const PAPER_FLAG: Figures = [0.0991, 2.0392, 0.2435];
+const PAPER_TECHNICAL: Figures = [0.0042, 0.5547, 0.0386];
+
+/// The same order as the paper's: what its algorithm may have on drawings of the same kind.
+const ORDER_FLAG: Figures = [0.12, 2.1, 0.25];
+const ORDER_TECHNICAL: Figures = [0.01, 0.6, 0.04];
+
+fn trace(picture: &[u8], algorithm: Algorithm) -> Vectorized {
+    let vectorizer = Vectorizer { algorithm, ..Vectorizer::default() };
+    vectorizer.vectorize(&decode(picture).unwrap()).unwrap()
+}
+
+fn figures(traced: &Vectorized) -> Figures {
+    [traced.error.mean_px, traced.error.max_px, traced.error.sd_px]
+}
+
+fn row(name: &str, figures: Figures, traced: Option<&Vectorized>) {
+    let [mean, max, sd] = figures;
+    let counts = traced.map_or(String::new(), |traced| {
+        let drawing = &traced.drawing;
+        let (vertices, strokes) = (drawing.vertices(), drawing.strokes().len());
+        format!("{vertices:>9} {strokes:>8} {:>10.0} {:>8.0}", drawing.pen_down_px(), drawing.pen_up_px())
+    });
+    println!("{name:<24} {mean:>8.4} {max:>8.4} {sd:>8.4} {counts}");
+}
+
+fn compare(name: &str, picture: &[u8], paper: Figures, order: Figures) {
+    let (published, ours) = (trace(picture, Algorithm::Published), trace(picture, Algorithm::Ours));
+    println!("{name:<24} mean px   max px    sd px  vertices  strokes  pen down   pen up");
+    row("  the paper's drawing", paper, None);
+    row("  published", figures(&published), Some(&published));
+    row("  ours", figures(&ours), Some(&ours));
+    for ((published, ours), limit) in figures(&published).into_iter().zip(figures(&ours)).zip(order) {
+        assert!(published <= limit, "published: {published} px where the paper's order is {limit} px");
+        assert!(ours < published, "ours: {ours} px, published: {published} px");
+    }
+    assert!(ours.drawing.vertices() <= published.drawing.vertices());
+    assert!(ours.drawing.pen_up_px() <= published.drawing.pen_up_px());
+    assert_eq!(ours.error.pixels, published.error.pixels);
+}
+
+#[test]
+fn on_the_flag_ours_is_better_in_all_figures_with_no_more_vertices() {
+    compare("flag", include_bytes!("../data/flag.png"), PAPER_FLAG, ORDER_FLAG);
+}
+
+#[test]
+fn on_the_technical_drawing_ours_is_better_in_all_figures_with_no_more_vertices() {
+    compare("technical drawing", include_bytes!("../data/technical.png"), PAPER_TECHNICAL, ORDER_TECHNICAL);
+}
+
+#[test]
+fn the_flags_outline_is_closed_and_the_seam_ends_on_it() {
+    let flag = trace(include_bytes!("../data/flag.png"), Algorithm::Ours).drawing;
+    let outline = flag.strokes().find(|stroke| stroke.len() == 5).unwrap();
+    assert_eq!(outline.first(), outline.last());
+    let (top, bottom) = (outline[0].y, outline[2].y);
+    let seam = flag.strokes().find(|stroke| stroke.len() == 2).unwrap();
+    let mut ends = [seam[0].y, seam[1].y];
+    ends.sort_by(f64::total_cmp);
+    assert_eq!(ends, [top, bottom]);
+}
