@@ -12,22 +12,19 @@
 //! ```
 
 use clap::{Parser, ValueEnum};
+use plotter_examples::{print, read_file, run, write_file};
 use plotter_motion::Point;
 use plotter_vector::{
     Algorithm, Bin, Bounded, Drawing, Scale, Vectorized, Vectorizer, decode, error_chart, hpgl, svg,
 };
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 /// The picture that is traced when none is given.
 const FLAG: &[u8] = include_bytes!("data/flag.png");
-
-/// Largest file that is read, bytes: an uncompressed picture of the greatest size has half of this.
-const MAX_FILE_BYTES: u64 = 1 << 30;
 
 /// Size of a pixel in the HPGL file, mm: 254 dots per inch, 4 plotter units a pixel.
 const MM_PER_PX: f64 = 0.1;
@@ -88,20 +85,13 @@ struct Report<'a> {
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => {
-            // One line, whatever a path or a decoder put into it.
-            eprintln!("trace: {}", message.split_whitespace().collect::<Vec<_>>().join(" "));
-            ExitCode::FAILURE
-        }
-    }
+    run("trace", || trace(&Arguments::parse()))
 }
 
-fn run(arguments: &Arguments) -> Result<(), String> {
+fn trace(arguments: &Arguments) -> Result<(), String> {
     let vectorizer = vectorizer(arguments)?;
     let name = arguments.image.as_deref().unwrap_or(Path::new("flag.png")).display().to_string();
-    let read = arguments.image.as_deref().map(read).transpose()?;
+    let read = arguments.image.as_deref().map(read_file).transpose()?;
     let gray = decode(read.as_deref().unwrap_or(FLAG)).map_err(|error| format!("{name}: {error}"))?;
 
     let start = Instant::now();
@@ -122,7 +112,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
         peak_rss_mb: peak_rss_mb(),
     };
     write_files(arguments, &traced, &report, &name)?;
-    print(&format!("{name}: {} x {} px", gray.width(), gray.height()), &report, traced.split.is_none())
+    print_table(&format!("{name}: {} x {} px", gray.width(), gray.height()), &report, traced.split.is_none())
 }
 
 fn vectorizer(arguments: &Arguments) -> Result<Vectorizer, String> {
@@ -145,19 +135,6 @@ fn vectorizer(arguments: &Arguments) -> Result<Vectorizer, String> {
     }
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, String> {
-    use std::io::Read as _;
-    let failed = |error: std::io::Error| format!("{}: cannot be read: {error}", path.display());
-    let file = std::fs::File::open(path).map_err(failed)?;
-    let mut bytes = Vec::new();
-    // One byte more than allowed tells a file that is too long, even one without an end.
-    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(format!("{}: more than {} MiB; save it as PNG", path.display(), MAX_FILE_BYTES >> 20));
-    }
-    Ok(bytes)
-}
-
 fn write_files(
     arguments: &Arguments,
     traced: &Vectorized,
@@ -169,27 +146,27 @@ fn write_files(
     if let Some(path) = &arguments.svg {
         let mut out = String::new();
         svg(drawing, 1.0, &mut out).map_err(text)?;
-        write(path, &out)?;
+        write_file(path, out)?;
     }
     if let Some(path) = &arguments.hpgl {
         let scale =
             Scale::new(drawing.height_px(), MM_PER_PX, Point::ORIGIN).map_err(|error| error.to_string())?;
         let mut out = String::new();
-        hpgl(drawing, scale, &mut out).map_err(text)?;
-        write(path, &out)?;
+        hpgl(drawing, scale, &mut out).map_err(|error| error.to_string())?;
+        write_file(path, out)?;
     }
     if let Some(path) = &arguments.points {
-        write(path, &points(drawing).map_err(text)?)?;
+        write_file(path, points(drawing).map_err(text)?)?;
     }
     if let Some(path) = &arguments.error_plot {
         let mut out = String::new();
         error_chart(&traced.error, &format!("Error of the vectorization of {name}"), &[], &mut out)
             .map_err(text)?;
-        write(path, &out)?;
+        write_file(path, out)?;
     }
     if let Some(path) = &arguments.report {
         let out = serde_json::to_string_pretty(report).map_err(|error| error.to_string())?;
-        write(path, &(out + "\n"))?;
+        write_file(path, out + "\n")?;
     }
     Ok(())
 }
@@ -207,11 +184,7 @@ fn points(drawing: &Drawing) -> Result<String, std::fmt::Error> {
     Ok(out)
 }
 
-fn write(path: &Path, text: &str) -> Result<(), String> {
-    std::fs::write(path, text).map_err(|error| format!("{}: cannot be written: {error}", path.display()))
-}
-
-fn print(title: &str, report: &Report<'_>, empty: bool) -> Result<(), String> {
+fn print_table(title: &str, report: &Report<'_>, empty: bool) -> Result<(), String> {
     let mut out = String::new();
     let note = if empty { " (an empty sheet)" } else { "" };
     let rss = report.peak_rss_mb.map_or("-".into(), |rss| format!("{rss:.1} MB"));
@@ -230,13 +203,7 @@ fn print(title: &str, report: &Report<'_>, empty: bool) -> Result<(), String> {
         report.time_ms
     )
     .map_err(|error| error.to_string())?;
-    // A reader who has seen enough (`| head -1`) is no failure.
-    match std::io::stdout().write_all(out.as_bytes()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(format!("standard output: {error}"))
-        }
-        _ => Ok(()),
-    }
+    print(&out)
 }
 
 /// Most memory the process has had, MB; known on Linux only.

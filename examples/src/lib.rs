@@ -1,1 +1,72 @@
-//! What the examples share.
+//! What the examples share: one clear line for every error, and a simulated plot with its recording.
+
+mod report;
+mod simulated_plot;
+
+pub use report::{Figure, html_page};
+pub use simulated_plot::{PlotOutcome, simulate};
+
+use std::fmt::Display;
+use std::io::{Read as _, Write as _};
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Largest file that is read, bytes: an uncompressed picture of the greatest size has half of this.
+const MAX_FILE_BYTES: u64 = 1 << 30;
+
+/// Runs the example `name`: an error is one line on the standard error, and a failed exit.
+pub fn run(name: &str, main: impl FnOnce() -> Result<(), String>) -> ExitCode {
+    match main() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            // One line, whatever a path or a decoder put into it.
+            eprintln!("{name}: {}", message.split_whitespace().collect::<Vec<_>>().join(" "));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Writes text to the standard output. A reader who has seen enough (`| head -1`) is no failure.
+///
+/// # Errors
+///
+/// Any other failure.
+pub fn print(text: &str) -> Result<(), String> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(format!("standard output: {error}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Reads a file; an error names it.
+///
+/// # Errors
+///
+/// The file and why it could not be read, or that it is longer than 1 GiB.
+pub fn read_file(path: &Path) -> Result<Vec<u8>, String> {
+    let failed = |error: std::io::Error| at(path, &format!("cannot be read: {error}"));
+    let file = std::fs::File::open(path).map_err(failed)?;
+    let mut bytes = Vec::new();
+    // One byte more than allowed tells a file that is too long, even one without an end.
+    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        return Err(at(path, &format!("more than {} MiB; save it as PNG", MAX_FILE_BYTES >> 20)));
+    }
+    Ok(bytes)
+}
+
+/// Writes a file; an error names it.
+///
+/// # Errors
+///
+/// The file and why it could not be written.
+pub fn write_file(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), String> {
+    std::fs::write(path, contents).map_err(|error| at(path, &format!("cannot be written: {error}")))
+}
+
+/// An error with the file that it belongs to.
+pub fn at(path: &Path, error: &impl Display) -> String {
+    format!("{}: {error}", path.display())
+}

@@ -74,7 +74,7 @@ fn a_value_out_of_range_is_named_with_its_line() {
 
 #[test]
 fn two_values_that_contradict_each_other_are_named_by_the_one_to_change() {
-    assert_snapshot!(message("[y.load]\nstatic_n_m = 1e-4"), @"line 3, column 14: y.load.static_n_m: 0.0001 N m must be at least 0.001 N m; friction at rest is never less than coulomb_n_m, the friction in motion");
+    assert_snapshot!(message("[y.load]\nstatic_n_m = 1e-4"), @"line 3, column 14: y.load.static_n_m: 0.0001 N m must be at least 0.0013 N m; friction at rest is never less than coulomb_n_m, the friction in motion");
     assert_snapshot!(message("x.counts_per_mm = 200"), @"area.width_mm: 594 mm must be at most 499.995 mm; the serial protocol carries coordinates up to 99999 counts: make the area smaller or x.counts_per_mm less (not in the file: the default holds)");
     assert_snapshot!(message("serial.byte_gap_ms = 100"), @"serial.resync_gap_ms: 100 ms must be more than 100.03906 ms; or every target would be dropped between two bytes: that is serial.byte_gap_ms and one byte's time (not in the file: the default holds)");
 }

@@ -1,18 +1,15 @@
 //! [`hpgl`]: a drawing as a plotter file.
 
 use crate::{Drawing, Scale};
-use core::fmt::{self, Write};
+use core::fmt::Write;
+use plotter_motion::hpgl::{UNITS_PER_MM, WriteError, write_ops};
+use plotter_motion::{PenMove, PlotOp};
 
-/// Plotter units per mm: one unit is 0.025 mm.
-///
-/// Source: HP 7475A "Interfacing and Programming Manual", plotter units.
-const UNITS_PER_MM: f64 = 40.0;
-
-/// Writes a drawing as HPGL, a line a stroke: `IN;SP1;`, then `PU x,y;PD x,y,…;` in plotter units, and `PU;SP0;` at
-/// the end. Vertices that fall on the same unit as the one before are written once.
+/// Writes a drawing as HPGL in plotter units of 0.025 mm. Vertices that fall on the same unit as the one before
+/// are written once.
 ///
 /// # Errors
-/// Those of the writer.
+/// [`WriteError`]: a point farther out than a plotter's numbers go, or an error of `out`.
 ///
 /// ```
 /// # use plotter_vector::{Drawing, PxPoint, Scale, hpgl};
@@ -21,39 +18,22 @@ const UNITS_PER_MM: f64 = 40.0;
 /// drawing.push([PxPoint::new(0.0, 10.0), PxPoint::new(20.0, 0.0)]);
 /// let mut text = String::new();
 /// hpgl(&drawing, Scale::new(10, 0.5, Point::ORIGIN)?, &mut text)?;
-/// assert_eq!(text, "IN;SP1;\nPU0,0;PD400,200;\nPU;SP0;\n"); // 20 px are 10 mm are 400 units
+/// assert!(text.contains("PU0,0;\nPD400,200;\n")); // 20 px are 10 mm are 400 units
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn hpgl(drawing: &Drawing, scale: Scale, out: &mut impl Write) -> fmt::Result {
-    out.write_str("IN;SP1;\n")?;
-    for stroke in drawing.strokes() {
-        let mut units = stroke.iter().map(|vertex| {
-            let at = scale.to_sheet(*vertex);
-            (units(at.x), units(at.y))
-        });
-        let Some((x, y)) = units.next() else { continue };
-        write!(out, "PU{x},{y};PD")?;
-        let mut pen = (x, y);
-        let mut separator = "";
-        for (x, y) in units {
-            if (x, y) != pen {
-                write!(out, "{separator}{x},{y}")?;
-                pen = (x, y);
-                separator = ",";
-            }
-        }
-        if separator.is_empty() {
-            write!(out, "{x},{y}")?; // A dot: down where the pen stands.
-        }
-        out.write_str(";\n")?;
-    }
-    out.write_str("PU;SP0;\n")
-}
-
-/// Plotter units of a coordinate, to nearest, halves away from zero; saturates.
-#[expect(clippy::cast_possible_truncation, reason = "a float cast saturates, and the value is whole")]
-fn units(mm: f64) -> i32 {
-    libm::round(mm * UNITS_PER_MM) as i32
+pub fn hpgl(drawing: &Drawing, scale: Scale, out: &mut impl Write) -> Result<(), WriteError> {
+    let mut before = None;
+    let mut dot = false;
+    let told = drawing.plot_ops(scale).filter(move |op| {
+        let place = PenMove::from_op(*op, UNITS_PER_MM).map(|to| to.target);
+        let travel = matches!(op, PlotOp::Travel { .. });
+        // The first vertex after a travel may be a dot, which stays.
+        let repeated = place == before && !travel && !dot;
+        before = place;
+        dot = travel;
+        !repeated
+    });
+    write_ops(told, out)
 }
 
 #[cfg(test)]
@@ -65,7 +45,8 @@ mod tests {
     #[test]
     fn dots_and_strokes_are_written_in_plotter_units() {
         let mut drawing = Drawing::new(8, 6);
-        drawing.push([PxPoint::new(0.5, 0.5), PxPoint::new(7.5, 0.5), PxPoint::new(7.5, 5.5)]);
+        let corner = PxPoint::new(7.5, 0.5);
+        drawing.push([PxPoint::new(0.5, 0.5), corner, PxPoint::new(7.51, 0.5), PxPoint::new(7.5, 5.5)]);
         drawing.push([PxPoint::new(2.5, 3.5)]);
         let mut text = String::new();
         hpgl(&drawing, Scale::new(6, 1.0, Point::ORIGIN).unwrap(), &mut text).unwrap();

@@ -369,6 +369,6 @@ impl Default for MotorConfig {
 
 impl Default for LoadConfig {
     fn default() -> Self {
-        Self { inertia_kg_m2: 0.0, coulomb_n_m: 1.0e-3, static_n_m: 1.2e-3, viscous_n_m_s: 1.0e-6 }
+        Self { inertia_kg_m2: 0.0, coulomb_n_m: 1.3e-3, static_n_m: 1.3e-3, viscous_n_m_s: 1.0e-6 }
     }
 }

@@ -1,0 +1,321 @@
+//! From a scan to ink: the whole semi-virtual plotter.
+//!
+//! A scanned line drawing becomes strokes, the strokes become HPGL, the HPGL goes target by target over the
+//! serial line to a controller that drives two simulated DC motors, and everything on that line is recorded. From the
+//! recording alone a virtual plotter draws what the motors did, beside what they should have done.
+//!
+//! Look at `report.html` first: the drawing, the plot, both coordinates over time, and where the errors are. Then run it
+//! again with `--controller published` and compare.
+
+use clap::{Parser, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use plotter_examples::{Figure, PlotOutcome, at, html_page, print, read_file, run, simulate, write_file};
+use plotter_motion::{
+    ControllerChoice, Machine, MachineConfig, OutOfReach, PenMove, PlotOp, Point, hpgl, targets,
+};
+use plotter_replay::log::{self, Header};
+use plotter_replay::{BenchRecorder, Canvas, Chart, ContourError, PlotterSettings, VirtualPlotter, Ways};
+use plotter_vector::{
+    Algorithm, Drawing, ErrorReport, Scale, Vectorized, Vectorizer, decode, error_chart, svg,
+};
+use serde_json::json;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Draws a picture on a simulated pen plotter and shows what its motors did.
+#[derive(Parser)]
+#[command(
+    name = "plot",
+    after_help = "Examples:\n  cargo run --release --example plot\n  \
+                  cargo run --release --example plot -- scan.png --controller published --out target/published"
+)]
+struct Args {
+    /// PNG, JPEG, PBM or PGM picture; without one, a flag as line art
+    image: Option<PathBuf>,
+    /// The machine's TOML file [default: the semi-virtual gantry]
+    #[arg(long, value_name = "FILE")]
+    machine: Option<PathBuf>,
+    /// The controller, whatever the machine's file says
+    #[arg(long)]
+    controller: Option<ControllerArg>,
+    /// The vectorization
+    #[arg(long, default_value = "published")]
+    algorithm: AlgorithmArg,
+    /// Width of the drawing on the sheet, mm; less where the machine is smaller
+    #[arg(long, value_name = "MM", default_value_t = 50.0)]
+    width_mm: f64,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "target/plot")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ControllerArg {
+    /// PID line tracking as in the thesis
+    Published,
+    /// A planned speed, errors along and across the line
+    Contouring,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum AlgorithmArg {
+    /// Ordered tracking, pre-elimination and dynamic threshold, as in the thesis
+    Published,
+    /// Fewest vertices within a promised error
+    Ours,
+}
+
+fn main() -> ExitCode {
+    run("plot", || plot(&Args::parse()))
+}
+
+fn plot(args: &Args) -> Result<(), String> {
+    let began = Instant::now();
+    let machine = machine(args)?;
+    let traced = trace(args)?;
+    std::fs::create_dir_all(&args.out).map_err(|error| at(&args.out, &error))?;
+    let file = |name: &str| args.out.join(name);
+
+    // The drawing goes through the plotter's own language, so what is plotted is what the file says.
+    let scale = fit(&traced.drawing, &machine, args.width_mm)?;
+    let mut text = String::new();
+    plotter_vector::hpgl(&traced.drawing, scale, &mut text).map_err(|error| error.to_string())?;
+    write_file(&file("drawing.hpgl"), &text)?;
+    let ops: Vec<PlotOp> =
+        hpgl::plot_ops(text.as_bytes()).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
+    let moves: Vec<PenMove> =
+        targets(&machine, ops).collect::<Result<_, OutOfReach>>().map_err(|error| error.to_string())?;
+
+    let log_file = file("session.plog");
+    let outcome = record(&machine, moves, &log_file)?;
+    // From here on, the recording is all there is.
+    let plotter = replay(&log_file)?;
+
+    let pictures = Pictures::new(&traced, &plotter)?;
+    pictures.write(&args.out)?;
+    let summary = Summary {
+        traced: &traced,
+        outcome: &outcome,
+        plotted: plotter.contour_error(Ways::Drawn),
+        anomalies: plotter.anomaly_count(),
+        wall_s: began.elapsed().as_secs_f64(),
+    };
+    write_file(&file("report.json"), summary.json())?;
+    let table = summary.table();
+    let figures = [
+        Figure::Svg(&pictures.drawing, "The strokes, in pixels of the picture"),
+        Figure::Svg(
+            &pictures.plotted,
+            "What the motors drew (dark) on what was meant (pale), from the recording",
+        ),
+        Figure::Svg(
+            &pictures.response,
+            "Both coordinates over time, desired beside actual, and the contour error",
+        ),
+        Figure::Svg(&pictures.errors, "Distance of the picture's pixels from the strokes"),
+        Figure::Png(&pictures.plotted_png, "The plot once more, as PNG"),
+    ];
+    let introduction = format!(
+        "A picture, vectorized with the {} algorithm and drawn by the simulated {} with the {} controller.",
+        name(&args.algorithm),
+        machine.config().name,
+        controller_name(&machine)
+    );
+    write_file(&file("report.html"), html_page("Plot report", &introduction, &table, &figures))?;
+
+    let mut text = String::new();
+    for (name, value) in &table {
+        let _ = writeln!(text, "{name:28} {value:>22}");
+    }
+    for notice in &outcome.notices {
+        let _ = writeln!(text, "noticed at {notice}");
+    }
+    print(&format!("{text}look at {}\n", file("report.html").display()))?;
+    if outcome.reached < outcome.targets {
+        let missed = outcome.targets - outcome.reached;
+        eprintln!("warning: {missed} of {} targets were not reached", outcome.targets);
+    }
+    Ok(())
+}
+
+fn controller_name(machine: &Machine) -> &'static str {
+    match machine.config().control.controller {
+        ControllerChoice::Published => "published",
+        _ => "contouring",
+    }
+}
+
+fn name(value: &impl ValueEnum) -> String {
+    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
+fn machine(args: &Args) -> Result<Machine, String> {
+    let mut config = match &args.machine {
+        Some(path) => {
+            let text = String::from_utf8(read_file(path)?).map_err(|error| at(path, &error))?;
+            *Machine::from_toml(&text).map_err(|error| at(path, &error))?.config()
+        }
+        None => MachineConfig::default(),
+    };
+    match args.controller {
+        Some(ControllerArg::Published) => config.control.controller = ControllerChoice::Published,
+        Some(ControllerArg::Contouring) => config.control.controller = ControllerChoice::Contouring,
+        None => {}
+    }
+    Machine::new(config).map_err(|error| error.to_string())
+}
+
+fn trace(args: &Args) -> Result<Vectorized, String> {
+    let (bytes, path) = match &args.image {
+        Some(path) => (read_file(path)?, path.as_path()),
+        None => (include_bytes!("data/flag.png").to_vec(), Path::new("flag.png")),
+    };
+    let picture = decode(&bytes).map_err(|error| at(path, &error))?;
+    let algorithm = match args.algorithm {
+        AlgorithmArg::Published => Algorithm::Published,
+        AlgorithmArg::Ours => Algorithm::Ours,
+    };
+    let vectorizer = Vectorizer { algorithm, ..Vectorizer::default() };
+    vectorizer.vectorize(&picture).map_err(|error| at(path, &error))
+}
+
+/// The drawing's place: its left lower corner a little off the origin, as large as asked and as the area allows.
+fn fit(drawing: &Drawing, machine: &Machine, width_mm: f64) -> Result<Scale, String> {
+    const MARGIN_MM: f64 = 5.0;
+    if !(width_mm > 0.0 && width_mm.is_finite()) {
+        return Err(format!("--width-mm {width_mm}: give a width above 0 mm"));
+    }
+    let area = machine.config().area;
+    let (width_px, height_px) = (drawing.width_px().max(1), drawing.height_px().max(1));
+    let height_mm = width_mm * f64::from(height_px) / f64::from(width_px);
+    let corner = Point::new(
+        area.width_mm.min(width_mm + 2.0 * MARGIN_MM),
+        area.height_mm.min(height_mm + 2.0 * MARGIN_MM),
+    );
+    Scale::fit(width_px, height_px, Point::ORIGIN, corner, MARGIN_MM).map_err(|error| error.to_string())
+}
+
+/// Plots on the simulated machine and records its serial line.
+fn record(machine: &Machine, moves: Vec<PenMove>, path: &Path) -> Result<PlotOutcome, String> {
+    let config = machine.config();
+    let header = Header::new()
+        .with_number("baud", config.serial.baud.into())
+        .with_text("protocol", "digits")
+        .with_text("machine", config.name.as_str())
+        .with_text("controller", controller_name(machine))
+        .with_text("clock", "simulated")
+        .with_decimal("x_mm_per_pulse", 1.0 / config.x.counts_per_mm)
+        .with_decimal("y_mm_per_pulse", 1.0 / config.y.counts_per_mm);
+    let writer = log::create(path, &header).map_err(|error| at(path, &error))?;
+    let bar = ProgressBar::new(moves.len() as u64);
+    if let Ok(style) = ProgressStyle::with_template("plotting {bar:40} {pos}/{len} targets, {elapsed}") {
+        bar.set_style(style);
+    }
+    let mut recorder = BenchRecorder::new(writer);
+    let outcome = simulate(machine, moves, &mut recorder, |reached| bar.set_position(reached.into()));
+    bar.finish_and_clear();
+    recorder.finish().map_err(|error| at(path, &error))?;
+    Ok(outcome)
+}
+
+/// Draws on the virtual plotter what a recording says.
+fn replay(path: &Path) -> Result<VirtualPlotter, String> {
+    let mut reader = log::open(path).map_err(|error| at(path, &error))?;
+    let settings = PlotterSettings::from_header(reader.header()).map_err(|error| at(path, &error))?;
+    let mut plotter = VirtualPlotter::new(settings);
+    for record in &mut reader {
+        plotter.push(&record.map_err(|damage| at(path, &damage))?);
+    }
+    plotter.finish();
+    Ok(plotter)
+}
+
+/// The files that show something.
+struct Pictures {
+    drawing: String,
+    errors: String,
+    plotted: String,
+    plotted_png: Vec<u8>,
+    response: String,
+}
+
+impl Pictures {
+    fn new(traced: &Vectorized, plotter: &VirtualPlotter) -> Result<Self, String> {
+        const STROKE_PX: f64 = 1.0;
+        let (mut drawing, mut errors) = (String::new(), String::new());
+        svg(&traced.drawing, STROKE_PX, &mut drawing).map_err(|error| error.to_string())?;
+        let published = [
+            "published: flag mean 0.0991, max 2.0392, sd 0.2435 px;",
+            "technical drawing mean 0.0042, max 0.5547, sd 0.0386 px",
+        ];
+        error_chart(&traced.error, "Vectorization error", &published, &mut errors)
+            .map_err(|error| error.to_string())?;
+        let canvas = Canvas::from_plotter(plotter, 0.002);
+        let style = canvas.fitted_style();
+        Ok(Self {
+            drawing,
+            errors,
+            plotted: canvas.to_svg(&style),
+            plotted_png: canvas.to_png(&style).map_err(|error| error.to_string())?,
+            response: Chart::response("Response", plotter).to_svg(),
+        })
+    }
+
+    fn write(&self, out: &Path) -> Result<(), String> {
+        write_file(&out.join("drawing.svg"), &self.drawing)?;
+        write_file(&out.join("errors.svg"), &self.errors)?;
+        write_file(&out.join("plotted.svg"), &self.plotted)?;
+        write_file(&out.join("plotted.png"), &self.plotted_png)?;
+        write_file(&out.join("response.svg"), &self.response)
+    }
+}
+
+/// All figures of a plot.
+struct Summary<'a> {
+    traced: &'a Vectorized,
+    outcome: &'a PlotOutcome,
+    plotted: ContourError,
+    anomalies: u64,
+    wall_s: f64,
+}
+
+impl Summary<'_> {
+    fn json(&self) -> String {
+        let ErrorReport { mean_px, max_px, sd_px, .. } = self.traced.error;
+        let report = json!({
+            "vertices": self.traced.drawing.vertices(),
+            "strokes": self.traced.drawing.strokes().len(),
+            "vector_error_px": { "mean": mean_px, "max": max_px, "sd": sd_px },
+            "contour_error_mm": { "rms": self.plotted.rms_mm, "max": self.plotted.max_mm },
+            "true_contour_error_mm": { "rms": self.outcome.true_rms_mm, "max": self.outcome.true_max_mm },
+            "targets": self.outcome.targets,
+            "reached": self.outcome.reached,
+            "anomalies": self.anomalies,
+            "simulated_s": self.outcome.duration.as_secs_f64(),
+            "wall_s": self.wall_s,
+        });
+        format!("{report:#}\n")
+    }
+
+    fn table(&self) -> Vec<(&'static str, String)> {
+        let error = &self.traced.error;
+        let outcome = self.outcome;
+        vec![
+            ("vertices", self.traced.drawing.vertices().to_string()),
+            ("strokes", self.traced.drawing.strokes().len().to_string()),
+            ("vector error, mean", format!("{:.4} px", error.mean_px)),
+            ("vector error, max", format!("{:.4} px", error.max_px)),
+            ("vector error, sd", format!("{:.4} px", error.sd_px)),
+            ("contour error counted, rms", format!("{:.4} mm", self.plotted.rms_mm)),
+            ("contour error counted, max", format!("{:.4} mm", self.plotted.max_mm)),
+            ("contour error true, rms", format!("{:.4} mm", outcome.true_rms_mm)),
+            ("contour error true, max", format!("{:.4} mm", outcome.true_max_mm)),
+            ("targets reached", format!("{} of {}", outcome.reached, outcome.targets)),
+            ("anomalies", self.anomalies.to_string()),
+            ("simulated time", format!("{:.2} s", outcome.duration.as_secs_f64())),
+            ("wall time", format!("{:.2} s", self.wall_s)),
+        ]
+    }
+}
