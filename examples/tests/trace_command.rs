@@ -51,7 +51,7 @@ fn all_files_are_written_and_the_report_has_all_keys() {
     let vertices = report["vertices"].as_u64().unwrap();
     assert_eq!(read(&points).lines().filter(|line| !line.is_empty()).count() as u64, vertices);
     assert!(read(&svg).contains("viewBox=\"0 0 1014 673\""));
-    assert!(read(&plt).starts_with("IN;SP1;\nPU"));
+    assert!(read(&plt).starts_with("IN;\nSP1;\nPU"));
     assert!(read(&plot).contains("distance of a pixel from its segment, px"));
 }
 

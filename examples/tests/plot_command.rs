@@ -1,0 +1,122 @@
+//! The `plot` example as a stranger uses it.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn plot(arguments: &[&str]) -> Output {
+    let test = std::env::current_exe().unwrap();
+    let built = test.parent().and_then(Path::parent).unwrap().join("examples").join("plot");
+    Command::new(built).args(arguments).output().unwrap()
+}
+
+/// The one line that a failed run says.
+fn complaint(arguments: &[&str]) -> String {
+    let output = plot(arguments);
+    assert!(!output.status.success(), "{arguments:?} was accepted");
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(text.lines().count(), 1, "one line: {text}");
+    text.trim_end().to_owned()
+}
+
+fn data(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name).to_str().unwrap().to_owned()
+}
+
+#[test]
+fn the_flag_is_plotted_and_its_recording_replays() {
+    /// An encoder count is 0.025 mm: half of one is what counting alone makes of a perfect line.
+    const GRAIN_MM: f64 = 0.0125;
+    /// A tenth of an encoder count.
+    const TRUE_MM: f64 = 0.0025;
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().to_str().unwrap();
+    let output = plot(&["--out", out]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let file = |name: &str| std::fs::read(directory.path().join(name)).unwrap();
+    for name in ["drawing.hpgl", "drawing.svg", "plotted.svg", "plotted.png", "response.svg", "errors.svg"] {
+        assert!(!file(name).is_empty(), "{name}");
+    }
+    let page = String::from_utf8(file("report.html")).unwrap();
+    assert_eq!(page.matches("<svg").count(), 4);
+    assert_eq!(page.matches("data:image/png;base64,").count(), 1);
+    assert!(!page.contains("src=\"http") && !page.contains("href="), "the page needs nothing else");
+
+    let report: serde_json::Value = serde_json::from_slice(&file("report.json")).unwrap();
+    let number = |path: &str| report.pointer(path).unwrap().as_f64().unwrap();
+    assert!(number("/vertices") > 0.0 && number("/strokes") > 0.0);
+    assert!(number("/vector_error_px/mean") <= 0.12 && number("/vector_error_px/sd") <= 0.25);
+    assert!(number("/vector_error_px/max") <= 2.1);
+    assert_eq!(number("/reached"), number("/targets"));
+    assert_eq!(number("/anomalies"), 0.0);
+    assert!(number("/contour_error_mm/rms") <= GRAIN_MM);
+    assert!(number("/contour_error_mm/max") <= 2.0 * GRAIN_MM);
+    assert!(number("/true_contour_error_mm/max") <= TRUE_MM);
+    assert!(number("/simulated_s") > 0.0 && number("/wall_s") > 0.0);
+
+    let machine = plotter_motion::Machine::new(plotter_motion::MachineConfig::default()).unwrap();
+    let outcome = plotter_replay::golden::check(
+        &directory.path().join("session.plog"),
+        || plotter_replay::MachineController::new(&machine),
+        plotter_replay::golden::Mode::Compare,
+    );
+    assert!(outcome.is_ok(), "{outcome:?}");
+}
+
+#[test]
+fn the_published_controller_plots_too_and_shows_its_error() {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().to_str().unwrap();
+    assert!(plot(&["--controller", "published", "--out", out]).status.success());
+    let json = std::fs::read(directory.path().join("report.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    assert!(report["true_contour_error_mm"]["max"].as_f64().unwrap() > 0.1);
+}
+
+#[test]
+fn what_is_wrong_is_said_in_one_line() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = |name: &str, contents: &str| {
+        let path = directory.path().join(name);
+        std::fs::write(&path, contents).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let machine = file("machine.toml", "schema = 1\n[area]\nwidth_cm = 4\n");
+    let small = file("small.toml", "schema = 1\n[area]\nwidth_mm = 8.0\nheight_mm = 8.0\n");
+    let text = file("text.png", "this is no picture");
+    let empty = file("empty.png", "");
+    let out = directory.path().join("out");
+    let out = out.to_str().unwrap();
+    assert!(complaint(&["no/such.png", "--out", out]).starts_with("plot: no/such.png: cannot be read"));
+    assert!(complaint(&[&text, "--out", out]).contains("is not PNG, JPEG"));
+    assert!(complaint(&[&empty, "--out", out]).contains("is empty"));
+    assert!(complaint(&["--machine", &machine, "--out", out]).contains("line 3, column 1"));
+    assert!(complaint(&["--machine", &small, "--out", out]).contains("margin"));
+    assert!(complaint(&["--width-mm", "0", "--out", out]).contains("give a width above 0 mm"));
+    assert!(complaint(&["--out", &text]).starts_with("plot: "));
+}
+
+#[test]
+fn a_blank_sheet_gives_an_empty_plot() {
+    let directory = tempfile::tempdir().unwrap();
+    let blank = directory.path().join("blank.pgm");
+    std::fs::write(&blank, "P2 3 2 255\n255 255 255 255 255 255\n").unwrap();
+    let out = directory.path().join("out");
+    let output = plot(&[blank.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap();
+    assert_eq!(report["targets"], 0);
+    assert_eq!(report["vertices"], 0);
+}
+
+#[test]
+fn the_technical_drawing_is_plotted_within_a_quarter_of_a_count() {
+    const QUARTER_MM: f64 = 0.025 / 4.0;
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().to_str().unwrap();
+    assert!(plot(&[&data("technical.png"), "--algorithm", "ours", "--out", out]).status.success());
+    let json = std::fs::read(directory.path().join("report.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    assert_eq!(report["reached"], report["targets"]);
+    assert!(report["true_contour_error_mm"]["max"].as_f64().unwrap() <= QUARTER_MM);
+}
