@@ -1,26 +1,8 @@
-//! The `plot` example as a stranger uses it.
+//! The command `plot`: what it writes, and what it says to bad input.
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod built_example;
 
-fn plot(arguments: &[&str]) -> Output {
-    let test = std::env::current_exe().unwrap();
-    let built = test.parent().and_then(Path::parent).unwrap().join("examples").join("plot");
-    Command::new(built).args(arguments).output().unwrap()
-}
-
-/// The one line that a failed run says.
-fn complaint(arguments: &[&str]) -> String {
-    let output = plot(arguments);
-    assert!(!output.status.success(), "{arguments:?} was accepted");
-    let text = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(text.lines().count(), 1, "one line: {text}");
-    text.trim_end().to_owned()
-}
-
-fn data(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name).to_str().unwrap().to_owned()
-}
+use built_example::{complaint, data, run_example};
 
 #[test]
 fn the_flag_is_plotted_and_its_recording_replays() {
@@ -30,7 +12,7 @@ fn the_flag_is_plotted_and_its_recording_replays() {
     const TRUE_MM: f64 = 0.0025;
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().to_str().unwrap();
-    let output = plot(&["--out", out]);
+    let output = run_example("plot", &["--out", out]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let file = |name: &str| std::fs::read(directory.path().join(name)).unwrap();
     for name in ["drawing.hpgl", "drawing.svg", "plotted.svg", "plotted.png", "response.svg", "errors.svg"] {
@@ -66,7 +48,7 @@ fn the_flag_is_plotted_and_its_recording_replays() {
 fn the_published_controller_plots_too_and_shows_its_error() {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().to_str().unwrap();
-    assert!(plot(&["--controller", "published", "--out", out]).status.success());
+    assert!(run_example("plot", &["--controller", "published", "--out", out]).status.success());
     let json = std::fs::read(directory.path().join("report.json")).unwrap();
     let report: serde_json::Value = serde_json::from_slice(&json).unwrap();
     assert!(report["true_contour_error_mm"]["max"].as_f64().unwrap() > 0.1);
@@ -86,13 +68,15 @@ fn what_is_wrong_is_said_in_one_line() {
     let empty = file("empty.png", "");
     let out = directory.path().join("out");
     let out = out.to_str().unwrap();
-    assert!(complaint(&["no/such.png", "--out", out]).starts_with("plot: no/such.png: cannot be read"));
-    assert!(complaint(&[&text, "--out", out]).contains("is not PNG, JPEG"));
-    assert!(complaint(&[&empty, "--out", out]).contains("is empty"));
-    assert!(complaint(&["--machine", &machine, "--out", out]).contains("line 3, column 1"));
-    assert!(complaint(&["--machine", &small, "--out", out]).contains("margin"));
-    assert!(complaint(&["--width-mm", "0", "--out", out]).contains("give a width above 0 mm"));
-    assert!(complaint(&["--out", &text]).starts_with("plot: "));
+    assert!(
+        complaint("plot", &["no/such.png", "--out", out]).starts_with("plot: no/such.png: cannot be read")
+    );
+    assert!(complaint("plot", &[&text, "--out", out]).contains("is not PNG, JPEG"));
+    assert!(complaint("plot", &[&empty, "--out", out]).contains("is empty"));
+    assert!(complaint("plot", &["--machine", &machine, "--out", out]).contains("line 3, column 1"));
+    assert!(complaint("plot", &["--machine", &small, "--out", out]).contains("margin"));
+    assert!(complaint("plot", &["--width-mm", "0", "--out", out]).contains("give a width above 0 mm"));
+    assert!(complaint("plot", &["--out", &text]).starts_with("plot: "));
 }
 
 #[test]
@@ -101,7 +85,7 @@ fn a_blank_sheet_gives_an_empty_plot() {
     let blank = directory.path().join("blank.pgm");
     std::fs::write(&blank, "P2 3 2 255\n255 255 255 255 255 255\n").unwrap();
     let out = directory.path().join("out");
-    let output = plot(&[blank.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    let output = run_example("plot", &[blank.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let report: serde_json::Value =
         serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap();
@@ -114,7 +98,9 @@ fn the_technical_drawing_is_plotted_within_a_quarter_of_a_count() {
     const QUARTER_MM: f64 = 0.025 / 4.0;
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().to_str().unwrap();
-    assert!(plot(&[&data("technical.png"), "--algorithm", "ours", "--out", out]).status.success());
+    assert!(
+        run_example("plot", &[&data("technical.png"), "--algorithm", "ours", "--out", out]).status.success()
+    );
     let json = std::fs::read(directory.path().join("report.json")).unwrap();
     let report: serde_json::Value = serde_json::from_slice(&json).unwrap();
     assert_eq!(report["reached"], report["targets"]);

@@ -1,28 +1,9 @@
 //! The command `trace`: what it writes, and what it says to bad input.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod built_example;
 
-/// The built example, beside this test's own directory.
-fn trace(arguments: &[&str]) -> Output {
-    let test = std::env::current_exe().unwrap();
-    let built = test.parent().and_then(Path::parent).unwrap().join("examples").join("trace");
-    Command::new(built).args(arguments).output().unwrap()
-}
-
-/// The one line that a failed run says.
-fn complaint(arguments: &[&str]) -> String {
-    let output = trace(arguments);
-    assert!(!output.status.success(), "{arguments:?} was accepted");
-    let text = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(text.lines().count(), 1, "one line: {text}");
-    text.trim_end().to_owned()
-}
-
-fn flag() -> String {
-    format!("{}/data/flag.png", env!("CARGO_MANIFEST_DIR"))
-}
+use built_example::{complaint, data, run_example};
 
 #[test]
 fn all_files_are_written_and_the_report_has_all_keys() {
@@ -32,7 +13,7 @@ fn all_files_are_written_and_the_report_has_all_keys() {
         (file("a.svg"), file("a.plt"), file("a.txt"), file("a.json"), file("b.svg"));
     let options =
         ["--svg", &svg, "--hpgl", &plt, "--points", &points, "--report", &json, "--error-plot", &plot];
-    assert!(trace(&options).status.success());
+    assert!(run_example("trace", &options).status.success());
     let read = |path: &str| std::fs::read_to_string(path).unwrap();
     let report: serde_json::Value = serde_json::from_str(&read(&json)).unwrap();
     let keys = [
@@ -57,22 +38,28 @@ fn all_files_are_written_and_the_report_has_all_keys() {
 
 #[test]
 fn the_published_algorithm_refuses_a_greatest_error() {
-    let said = complaint(&["--algorithm", "published", "--max-error-px", "1"]);
+    let said = complaint("trace", &["--algorithm", "published", "--max-error-px", "1"]);
     assert!(said.contains("has no error bound; take --algorithm ours"), "{said}");
 }
 
 #[test]
 fn a_greatest_error_that_is_no_distance_is_refused() {
     for bad in ["0", "-1", "NaN", "inf"] {
-        let said = complaint(&[&flag(), "--max-error-px", bad]);
+        let said = complaint("trace", &[&data("flag.png"), "--max-error-px", bad]);
         assert!(said.contains("is not a positive number; 0.5 is half a pixel"), "{said}");
     }
 }
 
 #[test]
 fn files_that_cannot_be_read_or_written_are_named() {
-    assert!(complaint(&["no/such/picture.png"]).starts_with("trace: no/such/picture.png: cannot be read"));
-    assert!(complaint(&[&flag(), "--svg", "/no/such/directory/a.svg"]).contains("a.svg: cannot be written"));
+    assert!(
+        complaint("trace", &["no/such/picture.png"])
+            .starts_with("trace: no/such/picture.png: cannot be read")
+    );
+    assert!(
+        complaint("trace", &[&data("flag.png"), "--svg", "/no/such/directory/a.svg"])
+            .contains("a.svg: cannot be written")
+    );
 }
 
 #[test]
@@ -83,13 +70,15 @@ fn bad_pictures_get_one_line_and_blank_ones_an_empty_drawing() {
         std::fs::write(&path, bytes).unwrap();
         path.to_str().unwrap().to_owned()
     };
-    let whole = std::fs::read(flag()).unwrap();
-    assert!(complaint(&[&file("empty.png", b"")]).contains("0 bytes"));
-    assert!(complaint(&[&file("cut.png", &whole[..whole.len() / 2])]).contains("damaged or cut off"));
-    assert!(complaint(&[&file("huge.pgm", b"P5 90000 90000 255\n")]).contains("too large"));
-    assert!(complaint(&[&file("text.png", b"hello")]).contains("is not PNG"));
+    let whole = std::fs::read(data("flag.png")).unwrap();
+    assert!(complaint("trace", &[&file("empty.png", b"")]).contains("0 bytes"));
+    assert!(
+        complaint("trace", &[&file("cut.png", &whole[..whole.len() / 2])]).contains("damaged or cut off")
+    );
+    assert!(complaint("trace", &[&file("huge.pgm", b"P5 90000 90000 255\n")]).contains("too large"));
+    assert!(complaint("trace", &[&file("text.png", b"hello")]).contains("is not PNG"));
     for (name, blank) in [("dot", "P1 1 1\n1"), ("white", "P1 3 2\n000000"), ("black", "P1 3 2\n111111")] {
-        let output = trace(&[&file(name, blank.as_bytes())]);
+        let output = run_example("trace", &[&file(name, blank.as_bytes())]);
         assert!(output.status.success(), "{name}");
         assert!(String::from_utf8(output.stdout).unwrap().contains("(an empty sheet)"), "{name}");
     }

@@ -25,7 +25,7 @@ decoding = "x4"
 [y.motor]
 resistance_ohm = +1.9
 [y.load]
-static_n_m = 1.2e-3
+static_n_m = 1.3e-3
 "#;
 
 /// Numeric keys that the machine has once.

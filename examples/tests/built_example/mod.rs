@@ -1,0 +1,28 @@
+//! Runs an example as a stranger does.
+
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![expect(unreachable_pub, reason = "shared by tests, not an interface")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// The outcome of the built example `name` with `arguments`.
+pub fn run_example(name: &str, arguments: &[&str]) -> Output {
+    let test = std::env::current_exe().unwrap();
+    let built = test.parent().and_then(Path::parent).unwrap().join("examples").join(name);
+    Command::new(built).args(arguments).output().unwrap()
+}
+
+/// The one line that a failed run says.
+pub fn complaint(name: &str, arguments: &[&str]) -> String {
+    let output = run_example(name, arguments);
+    assert!(!output.status.success(), "{arguments:?} was accepted");
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(text.lines().count(), 1, "one line: {text}");
+    text.trim_end().to_owned()
+}
+
+/// A file that comes with the examples.
+pub fn data(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name).to_str().unwrap().to_owned()
+}
