@@ -8,7 +8,9 @@ mod closed_loop;
 
 use closed_loop::{LineResult, Loop, draw_line, machine};
 use core::time::Duration;
-use plotter_motion::{ControllerChoice, LoadConfig, MachineConfig, StepPoint, from_mm};
+use plotter_motion::{
+    ControllerChoice, Decoding, EncoderConfig, LoadConfig, MachineConfig, StepPoint, from_mm,
+};
 
 const LENGTH_COUNTS: f64 = 2400.0; // 60 mm
 /// All quadrants, flat, steep and vertical.
@@ -103,6 +105,21 @@ fn the_published_rule_never_ends_on_steep_lines_with_unloaded_motors_and_ours_do
     println!("published: {stuck} of {} never end", theirs.len());
     assert!(stuck >= 1, "{theirs:?}");
     assert!(own.iter().all(|r| r.arrived_s.is_some() && r.short_mm < closed_loop::SETTLED_MM), "{own:?}");
+}
+
+#[test]
+fn a_x4_encoder_of_a_quarter_of_the_lines_does_as_well() {
+    /// A tenth of an encoder count.
+    const EVERY_LINE_MM: f64 = 0.0025;
+    let mut ours = machine(ControllerChoice::Contouring);
+    for axis in [&mut ours.x, &mut ours.y] {
+        axis.encoder = EncoderConfig { lines_per_turn: 125, decoding: Decoding::X4 };
+    }
+    let lines = run("contouring, x4", &ours, &ours, &HEADINGS_DEG);
+    for line in &lines {
+        assert!(line.arrived_s.is_some() && line.max_mm <= EVERY_LINE_MM, "{line:?}");
+        assert!(line.drift_mm <= EVERY_LINE_MM, "{line:?}");
+    }
 }
 
 /// The controller knows the machine from its description only; real motors differ.
