@@ -129,7 +129,7 @@ pub struct ContouringConfig {
     pub jerk_mm_s3: f64,
     /// How often the controller runs, 1/s.
     pub loop_hz: f64,
-    /// Natural frequency of the position loop, Hz.
+    /// Natural frequency of the position loop along the line, Hz; across it the loop is 1.6 times as stiff.
     pub bandwidth_hz: f64,
     /// Natural frequency of the estimator of position, speed and load, Hz.
     pub observer_hz: f64,
