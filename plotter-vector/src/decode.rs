@@ -67,7 +67,8 @@ impl core::error::Error for DecodeError {}
 /// is checked before the pixels are decoded: [`MAX_SIDE_PX`] a side and [`MAX_PIXELS`] in all.
 ///
 /// # Errors
-/// [`DecodeError`]; never a panic, and never more memory than 8 bytes a pixel of the largest picture.
+/// [`DecodeError`]; never a panic, and never more memory than 9 bytes a pixel of the largest picture: 8 decoded, 1 as
+/// grey.
 ///
 /// ```
 /// # use plotter_vector::decode;
@@ -118,10 +119,12 @@ fn to_gray(picture: DynamicImage) -> Result<Gray, GrayError> {
     let (width, height) = picture.dimensions();
     let levels = match picture {
         DynamicImage::ImageLuma8(gray) => gray.into_raw(),
-        DynamicImage::ImageRgb8(colour) => {
-            colour.pixels().map(|image::Rgb([r, g, b])| gray_on_white([*r, *g, *b, 255])).collect()
+        // Pixel by pixel: a copy of the whole picture as RGBA would take half as much memory again.
+        other => {
+            let mut levels = Vec::with_capacity(width as usize * height as usize);
+            levels.extend(other.pixels().map(|(_, _, pixel)| gray_on_white(pixel.0)));
+            levels
         }
-        other => other.into_rgba8().pixels().map(|pixel| gray_on_white(pixel.0)).collect(),
     };
     Gray::new(width, height, levels)
 }
@@ -137,16 +140,59 @@ mod tests {
         bytes.into_inner()
     }
 
+    /// The levels of a PNG of two pixels.
+    fn levels(picture: Option<impl Into<DynamicImage>>) -> [u8; 2] {
+        let gray = decode(&png(picture.unwrap())).unwrap();
+        assert_eq!((gray.width(), gray.height()), (2, 1));
+        gray.pixels().try_into().unwrap()
+    }
+
     #[test]
-    fn grey_sixteen_bit_and_transparent_pictures_are_read() {
-        let gray = ImageBuffer::from_raw(2, 1, vec![0_u8, 200]).map(DynamicImage::ImageLuma8).unwrap();
-        let deep = ImageBuffer::from_raw(2, 1, vec![0_u16, 65535]).map(DynamicImage::ImageLuma16).unwrap();
-        let clear = ImageBuffer::from_raw(2, 1, vec![0, 0, 0, 255, 0, 0, 0, 0])
-            .map(DynamicImage::ImageRgba8)
-            .unwrap();
-        assert_eq!(decode(&png(gray)).unwrap().pixels(), [0, 200]);
-        assert_eq!(decode(&png(deep)).unwrap().pixels(), [0, 255]);
-        assert_eq!(decode(&png(clear)).unwrap().pixels(), [0, 255]);
+    fn grey_pictures_of_8_and_16_bits_are_read() {
+        assert_eq!(levels(ImageBuffer::<image::Luma<u8>, _>::from_raw(2, 1, vec![0, 200])), [0, 200]);
+        // 65535 / 255 = 257, so 51400 is level 200.
+        assert_eq!(
+            levels(ImageBuffer::<image::Luma<u16>, _>::from_raw(2, 1, vec![65535, 51400])),
+            [255, 200]
+        );
+    }
+
+    #[test]
+    fn colours_of_8_and_16_bits_become_luma() {
+        // Red and blue: 0.299 · 255 = 76.2 and 0.114 · 255 = 29.1.
+        let small = vec![255, 0, 0, 0, 0, 255];
+        let deep: Vec<u16> = small.iter().map(|channel| channel * 257).collect();
+        let small = small.into_iter().map(|channel| u8::try_from(channel).unwrap()).collect();
+        assert_eq!(levels(ImageBuffer::<image::Rgb<u8>, _>::from_raw(2, 1, small)), [76, 29]);
+        assert_eq!(levels(ImageBuffer::<image::Rgb<u16>, _>::from_raw(2, 1, deep)), [76, 29]);
+    }
+
+    #[test]
+    fn what_is_transparent_shows_white_paper() {
+        let black_and_clear = vec![0, 0, 0, 255, 0, 0, 0, 0];
+        let deep: Vec<u16> = black_and_clear.iter().map(|channel| u16::from(*channel) * 257).collect();
+        assert_eq!(levels(ImageBuffer::<image::Rgba<u8>, _>::from_raw(2, 1, black_and_clear)), [0, 255]);
+        assert_eq!(levels(ImageBuffer::<image::Rgba<u16>, _>::from_raw(2, 1, deep)), [0, 255]);
+        assert_eq!(levels(ImageBuffer::<image::LumaA<u8>, _>::from_raw(2, 1, vec![9, 255, 9, 0])), [9, 255]);
+    }
+
+    #[test]
+    fn jpeg_and_every_pnm_are_read() {
+        let mut jpeg = Cursor::new(Vec::new());
+        let paper = image::GrayImage::from_pixel(16, 8, image::Luma([255]));
+        paper.write_to(&mut jpeg, ImageFormat::Jpeg).unwrap();
+        assert_eq!(decode(&jpeg.into_inner()).unwrap().pixels(), [255; 128]);
+        let pictures: [&[u8]; 6] = [
+            b"P1 2 1 1 0",
+            b"P2 2 1 255 0 255",
+            b"P3 2 1 255 0 0 0 255 255 255",
+            b"P4 2 1\n\x80",
+            b"P5 2 1 255\n\x00\xff",
+            b"P6 2 1 255\n\x00\x00\x00\xff\xff\xff",
+        ];
+        for bytes in pictures {
+            assert_eq!(decode(bytes).unwrap().pixels(), [0, 255], "{}", String::from_utf8_lossy(bytes));
+        }
     }
 
     #[test]

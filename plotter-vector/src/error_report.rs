@@ -53,7 +53,7 @@ pub struct ErrorReport {
 /// tally.add(&hat, &[0, 2], (false, false)); // drawn as one level line
 /// let report = tally.report();
 /// assert_eq!((report.pixels, report.max_px), (3, 1.0));
-/// assert!((report.mean_px - 1.0 / 3.0).abs() < 1e-15);
+/// assert_eq!(report.mean_px, 1.0 / 3.0);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorTally {

@@ -132,3 +132,38 @@ fn simplify(
     }
     Vectorized { drawing, error: tally.report(), split: None }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with(algorithm: Algorithm, tolerance_px: f64) -> Vectorizer {
+        Vectorizer { algorithm, ours: Bounded { tolerance_px }, ..Vectorizer::default() }
+    }
+
+    #[test]
+    fn a_tolerance_that_is_no_distance_is_refused_by_ours_only() {
+        let dot = Bitmap::from_picture("#").unwrap();
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let error = with(Algorithm::Ours, bad).trace(&dot).unwrap_err();
+            assert_eq!(
+                error.to_string(),
+                format!("tolerance: {bad} px is not a positive number; 0.5 is half a pixel")
+            );
+            assert!(with(Algorithm::Published, bad).trace(&dot).is_ok());
+        }
+    }
+
+    #[test]
+    fn a_sheet_without_ink_gives_an_empty_drawing_of_its_size() {
+        for (width, height) in [(0, 0), (0, 3), (1, 1), (3, 2)] {
+            for level in [0, 255] {
+                let levels = vec![level; (width * height) as usize];
+                let traced =
+                    Vectorizer::default().vectorize(&Gray::new(width, height, levels).unwrap()).unwrap();
+                assert_eq!((traced.drawing.width_px(), traced.drawing.height_px()), (width, height));
+                assert_eq!((traced.drawing.vertices(), traced.error.pixels, traced.split), (0, 0, None));
+            }
+        }
+    }
+}

@@ -7,6 +7,9 @@ use proptest::prelude::*;
 /// What the tolerance may be missed by, px: the library adds as much so that "exactly on it" passes.
 const ROUNDING_PX: f64 = 1e-8;
 
+/// What the library itself adds to the tolerance, px: the plain search must allow what it allows.
+const ADDED_PX: f64 = 1e-9;
+
 /// Rounding of a sum of squares, px².
 const ROUNDING_PX2: f64 = 1e-6;
 
@@ -46,7 +49,7 @@ fn line_square(pixel: Pixel, from: Pixel, to: Pixel) -> f64 {
 /// Squared distances to the line of one segment, or nothing when a pixel breaks the tolerance.
 fn segment_cost(walk: &[Pixel], from: usize, to: usize, tolerance_px: f64) -> Option<f64> {
     let between = &walk[from + 1..to];
-    let near = between.iter().all(|pixel| distance(*pixel, walk[from], walk[to]) <= tolerance_px + 1e-9);
+    let near = between.iter().all(|pixel| distance(*pixel, walk[from], walk[to]) <= tolerance_px + ADDED_PX);
     near.then(|| between.iter().map(|pixel| line_square(*pixel, walk[from], walk[to])).sum())
 }
 

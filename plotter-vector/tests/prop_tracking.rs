@@ -1,6 +1,7 @@
 //! Laws of tracking, linking, joining and ordering.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
+use plotter_motion::{Point, Segment};
 use plotter_vector::{
     Algorithm, Bitmap, Drawing, Figures, OrderedTracking, Pixel, PxPoint, Vectorizer, join, link, order,
 };
@@ -10,7 +11,11 @@ use proptest::prelude::*;
 const ROUNDING_PX: f64 = 1e-9;
 
 fn pictures() -> impl Strategy<Value = Bitmap> {
-    (1_u32..90, 1_u32..24, 0.02..0.98_f64).prop_flat_map(|(width, height, ink)| {
+    pictures_below(90, 24)
+}
+
+fn pictures_below(width: u32, height: u32) -> impl Strategy<Value = Bitmap> {
+    (1..width, 1..height, 0.02..0.98_f64).prop_flat_map(|(width, height, ink)| {
         let count = (width * height) as usize;
         proptest::collection::vec(proptest::bool::weighted(ink), count).prop_map(move |marks| {
             let mut bitmap = Bitmap::new(width, height).unwrap();
@@ -72,6 +77,28 @@ proptest! {
         let traced = vectorizer.trace(&ink).unwrap();
         prop_assert_eq!(traced.error.pixels, ink.count());
         prop_assert!(traced.error.max_px <= tolerance_px + ROUNDING_PX);
+    }
+
+    #[test]
+    fn every_ink_pixel_lies_near_a_stroke_as_drawn(
+        ink in pictures_below(24, 16),
+        tolerance_px in 0.05..3.0_f64,
+    ) {
+        let mut vectorizer = Vectorizer::default();
+        vectorizer.ours.tolerance_px = tolerance_px;
+        let drawing = vectorizer.trace(&ink).unwrap().drawing;
+        let place = |at: &PxPoint| Point::new(at.x, at.y);
+        let mut segments = Vec::new();
+        for stroke in drawing.strokes() {
+            // A dot is a segment from its place to its place.
+            segments.extend(stroke.first().map(|dot| Segment::new(place(dot), place(dot))));
+            segments.extend(stroke.windows(2).map(|pair| Segment::new(place(&pair[0]), place(&pair[1]))));
+        }
+        for pixel in ink.ink() {
+            let centre = place(&PxPoint::from(pixel));
+            let near = segments.iter().any(|line| line.distance(centre) <= tolerance_px + ROUNDING_PX);
+            prop_assert!(near, "{pixel:?} of\n{ink}");
+        }
     }
 
     #[test]
