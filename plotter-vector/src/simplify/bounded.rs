@@ -6,6 +6,9 @@ use crate::Pixel;
 /// Longest range of pixels that one segment replaces, px: the work is bounded by pixels × reach.
 pub const MAX_REACH_PX: usize = 8192;
 
+/// Most pixels that are done in one go: with about 70 bytes each, 70 MiB.
+const PIECE_PX: usize = 1 << 20;
+
 /// Added to the tolerance so that a pixel exactly on it passes in spite of rounding, px.
 const ROUNDING_PX: f64 = 1e-9;
 
@@ -17,7 +20,11 @@ const ROUNDING_PX: f64 = 1e-9;
 /// distances from the pixels to their segments' lines. So it never has more vertices than the published
 /// algorithm at the published algorithm's own greatest error.
 ///
-/// No segment replaces more than [`MAX_REACH_PX`] pixels; a longer line gets a vertex there.
+/// Three limits keep time and memory in bounds; a line of a drawing meets none of them, and the tolerance holds all
+/// the same. No segment replaces more than [`MAX_REACH_PX`] pixels: a longer line gets a vertex there. A figure of
+/// more than 2²⁰ pixels (a blot, not a line) is done piece by piece, with a vertex at each seam. And where a line
+/// turns back on itself so often that a pixel's candidates would have to be checked one by one over more than
+/// `MAX_REACH_PX` pixels, the rest of them is left out.
 ///
 /// Sources: H. Imai, M. Iri, "Polygonal approximations of a curve" (1988): shortest path over the allowed
 /// segments; W. S. Chan, F. Chin, "Approximation of polygonal curves with minimum number of line segments"
@@ -65,20 +72,34 @@ impl Best {
 impl Simplify for Bounded {
     fn keep(&self, pixels: &[Pixel]) -> Vec<usize> {
         let Some(last) = pixels.len().checked_sub(1) else { return Vec::new() };
-        let best = self.shortest_paths(pixels);
-        let mut kept = vec![last];
-        let mut vertex = last;
-        while vertex > 0 {
-            // Every path leads strictly back, so this ends at the first pixel.
-            vertex = best.get(vertex).map_or(0, |best| best.previous.min(vertex - 1));
-            kept.push(vertex);
+        let mut kept = vec![0];
+        let mut start = 0;
+        while start < last {
+            // The last pixel of a piece is the first one of the next.
+            let end = last.min(start + PIECE_PX);
+            let piece = pixels.get(start..=end).unwrap_or(&[]);
+            kept.extend(self.vertices_after_the_first(piece).into_iter().map(|vertex| start + vertex));
+            start = end;
         }
-        kept.reverse();
         kept
     }
 }
 
 impl Bounded {
+    /// The vertices of the best polyline, rising.
+    fn vertices_after_the_first(&self, pixels: &[Pixel]) -> Vec<usize> {
+        let best = self.shortest_paths(pixels);
+        let mut kept = Vec::new();
+        let mut vertex = pixels.len().saturating_sub(1);
+        while vertex > 0 {
+            kept.push(vertex);
+            // Every path leads strictly back, so this ends at the first pixel.
+            vertex = best.get(vertex).map_or(0, |best| best.previous.min(vertex - 1));
+        }
+        kept.reverse();
+        kept
+    }
+
     /// The best polyline to each pixel, from the first.
     fn shortest_paths(&self, pixels: &[Pixel]) -> Vec<Best> {
         let chain = Chain::new(pixels, self.tolerance_px.max(0.0) + ROUNDING_PX);
@@ -108,7 +129,7 @@ struct Chain<'a> {
     /// For each pixel the first one of the straight run that ends here: all steps equal.
     run_starts: Vec<u32>,
     /// Sums over the pixels before each index, relative to the first pixel: x, y, x², xy, y². Whole numbers, exact
-    /// below 2⁵³: always so within the size limits of a picture for figures of up to 2²³ pixels.
+    /// below 2⁵³: always so within the size limits of a picture, for a piece has 2²⁰ pixels.
     sums: Vec<[f64; 5]>,
 }
 
@@ -162,18 +183,19 @@ impl<'a> Chain<'a> {
                 break;
             }
             let next_corner = self.run_start(corner);
-            let mut entered = false;
-            for start in (next_corner.max(first)..corner).rev() {
+            // A line enters a convex cone and leaves it once: only the steps between are looked at.
+            let step = self.pixels.get(corner - 1).map_or((0.0, 0.0), |before| before.minus(*at));
+            let steps = corner - next_corner.max(first);
+            let Some((nearest, farthest)) = cone.steps_inside(away, step, steps) else {
+                corner = next_corner;
+                continue;
+            };
+            for start in (corner - farthest..=corner - nearest).rev() {
                 let (Some(from), Some(path)) = (self.pixels.get(start), best.get(start)) else { break };
                 let direction = from.minus(apex);
                 if !cone.contains(direction) {
-                    // A line enters a convex cone and leaves it once: the rest of this run is outside too.
-                    if entered {
-                        break;
-                    }
                     continue;
                 }
-                entered = true;
                 if path.segments + 1 > found.segments
                     || path.squares > found.squares && path.segments + 1 == found.segments
                 {
@@ -270,6 +292,30 @@ impl Cone {
         other.contains(new_right) && other.contains(new_left)
     }
 
+    /// The first and the last of `1..=steps` steps of a walk from `away` that may lie in the cone, up to one step
+    /// too many at either end; `None` when none does.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "whole numbers between 1 and the reach"
+    )]
+    fn steps_inside(&self, away: (f64, f64), step: (f64, f64), steps: usize) -> Option<(usize, usize)> {
+        let (mut first, mut last) = (1.0, steps as f64);
+        let Some((right, left)) = self.borders else { return Some((1, steps)) };
+        // Beside either border the signed distance is a + k·b, and not negative within.
+        for (a, b) in [(cross(right, away), cross(right, step)), (cross(away, left), cross(step, left))] {
+            if b > 0.0 {
+                first = f64::max(first, libm::floor(-a / b) - 1.0);
+            } else if b < 0.0 {
+                last = f64::min(last, libm::ceil(-a / b) + 1.0);
+            } else if a < 0.0 {
+                return None;
+            }
+        }
+        (first <= last).then_some((first as usize, last as usize))
+    }
+
     fn contains(&self, direction: (f64, f64)) -> bool {
         self.borders
             .is_none_or(|(right, left)| cross(right, direction) >= 0.0 && cross(direction, left) >= 0.0)
@@ -296,5 +342,44 @@ pub(crate) fn segment_distance_squared(pixel: Pixel, from: Pixel, to: Pixel) -> 
     } else {
         let area = cross(along, away);
         area * area / length_squared
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_longer_than_the_reach_gets_a_vertex_at_the_reach() {
+        let level: Vec<Pixel> = (0..10_000).map(|x| Pixel::new(x, 0)).collect();
+        let kept = Bounded::default().keep(&level);
+        assert_eq!(kept.len(), 3);
+        assert!(kept.windows(2).all(|pair| pair[1] - pair[0] <= MAX_REACH_PX), "{kept:?}");
+    }
+
+    #[test]
+    fn a_figure_longer_than_a_piece_has_its_seam_as_a_vertex() {
+        // A black block, row by row there and back: each row is a line, and each of its ends a vertex.
+        let columns = 4_000;
+        let across =
+            |y: u32| (0..columns).map(move |x| if y.is_multiple_of(2) { x } else { columns - 1 - x });
+        let block: Vec<Pixel> = (0..300).flat_map(|y| across(y).map(move |x| Pixel::new(x, y))).collect();
+        assert!(block.len() > PIECE_PX);
+        let kept = Bounded { tolerance_px: 0.1 }.keep(&block);
+        assert!(kept.contains(&PIECE_PX));
+        assert_eq!(kept.len(), 2 * 300 + 1);
+    }
+
+    #[test]
+    fn a_cone_is_entered_and_left_where_its_borders_are_crossed() {
+        // The rays from (0, 0) that pass within 5 px of (10, 0) rise by up to 5 / sqrt(75), 30 degrees; a walk
+        // upwards at x = 20 from y = -50 is inside from y = -11.5 to 11.5, its steps 39 to 61.
+        let mut cone = Cone::full();
+        assert_eq!(cone.steps_inside((20.0, -50.0), (0.0, 1.0), 100), Some((1, 100)));
+        assert!(cone.narrow((10.0, 0.0), 5.0));
+        let (first, last) = cone.steps_inside((20.0, -50.0), (0.0, 1.0), 100).unwrap();
+        assert!((37..=39).contains(&first) && (61..=63).contains(&last), "{first} to {last}");
+        assert_eq!(cone.steps_inside((20.0, -50.0), (0.0, 1.0), 30), None);
+        assert_eq!(cone.steps_inside((-20.0, 0.0), (-1.0, 0.0), 100), None);
     }
 }
