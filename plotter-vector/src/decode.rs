@@ -3,7 +3,7 @@
 use crate::bitmap::{MAX_PIXELS, MAX_SIDE_PX};
 use crate::{Gray, GrayError, SizeError, gray_on_white};
 use core::fmt;
-use image::{DynamicImage, GenericImageView, ImageError, ImageReader, Limits};
+use image::{DynamicImage, GenericImageView, ImageError, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
 
 /// Most memory that decoding may take: 8 bytes (four channels of 16 bits) a pixel of the largest picture, bytes.
@@ -94,6 +94,9 @@ pub fn decode(bytes: &[u8]) -> Result<Gray, DecodeError> {
         ImageError::Limits(_) => DecodeError::TooMuchMemory,
         other => damaged(&other),
     };
+    if reader()?.format() == Some(ImageFormat::Jpeg) && !jpeg_has_its_end(bytes) {
+        return Err(damaged(&"a JPEG without its end mark"));
+    }
     // The header first: a picture of a size that is refused must not be decoded at all.
     let (width, height) = reader()?.into_dimensions().map_err(refused)?;
     SizeError::check(width, height).map_err(DecodeError::TooLarge)?;
@@ -108,6 +111,16 @@ pub fn decode(bytes: &[u8]) -> Result<Gray, DecodeError> {
         GrayError::TooLarge(size) => DecodeError::TooLarge(size),
         other @ GrayError::WrongCount { .. } => damaged(&other),
     })
+}
+
+/// Whether a JPEG's last scan is followed by the end mark; the decoder itself would fill what is missing with grey.
+///
+/// Within a scan the byte FF is never followed by that of a mark, so what is found is one (ITU-T T.81, B.1.1.5).
+fn jpeg_has_its_end(bytes: &[u8]) -> bool {
+    const SCAN: [u8; 2] = [0xff, 0xda];
+    const END: [u8; 2] = [0xff, 0xd9];
+    let scan = bytes.windows(2).rposition(|pair| pair == SCAN).unwrap_or(0);
+    bytes.get(scan..).unwrap_or(&[]).windows(2).any(|pair| pair == END)
 }
 
 /// A decoder's message on one line, whatever it holds.
@@ -132,7 +145,7 @@ fn to_gray(picture: DynamicImage) -> Result<Gray, GrayError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::{ImageBuffer, ImageFormat};
+    use image::ImageBuffer;
 
     fn png(picture: impl Into<DynamicImage>) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
@@ -203,6 +216,20 @@ mod tests {
             let error = decode(&whole[..length]).unwrap_err();
             assert!(!error.to_string().contains('\n'), "one line: {error}");
         }
+    }
+
+    #[test]
+    fn a_jpeg_cut_off_anywhere_is_an_error() {
+        let mut whole = Cursor::new(Vec::new());
+        let noise =
+            image::GrayImage::from_fn(40, 24, |x, y| image::Luma([(x * 37 + y * 101).to_le_bytes()[0]]));
+        noise.write_to(&mut whole, ImageFormat::Jpeg).unwrap();
+        let mut whole = whole.into_inner();
+        for length in 0..whole.len() {
+            assert!(decode(&whole[..length]).is_err(), "{length} of {} bytes", whole.len());
+        }
+        whole.extend(b"what a camera writes behind the picture");
+        assert!(decode(&whole).is_ok());
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub use figures::Figures;
 pub use gray::{Gray, GrayError, gray_on_white};
 pub use hpgl::hpgl;
 pub use order::order;
-pub use pipeline::{Algorithm, VectorizeError, Vectorized, Vectorizer};
+pub use pipeline::{Algorithm, MAX_INK_PIXELS, VectorizeError, Vectorized, Vectorizer};
 pub use pre_elimination::PreElimination;
 pub use simplify::{Bounded, DynamicThreshold, MAX_REACH_PX, Simplify};
 pub use svg::svg;

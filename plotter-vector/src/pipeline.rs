@@ -54,6 +54,10 @@ pub struct Vectorized {
     pub split: Option<Split>,
 }
 
+/// Most ink of a picture that is vectorized: 2²⁵ px, five times the lines of a dense A0 sheet at 300 dots per inch,
+/// take 6 s and 0.9 GB.
+pub const MAX_INK_PIXELS: u64 = 1 << 25;
+
 /// Why a picture cannot be vectorized.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -62,6 +66,11 @@ pub enum VectorizeError {
     Tolerance {
         /// What was asked, px.
         tolerance_px: f64,
+    },
+    /// The picture has more ink than [`MAX_INK_PIXELS`]: it is no line drawing.
+    TooMuchInk {
+        /// Ink of the picture, px.
+        ink_pixels: u64,
     },
     /// The picture is noise.
     TooManyFigures(TooManyFigures),
@@ -73,6 +82,11 @@ impl fmt::Display for VectorizeError {
             Self::Tolerance { tolerance_px } => {
                 write!(f, "tolerance: {tolerance_px} px is not a positive number; 0.5 is half a pixel")
             }
+            Self::TooMuchInk { ink_pixels } => write!(
+                f,
+                "{ink_pixels} px of ink where a line drawing has at most {MAX_INK_PIXELS}: set the threshold level by \
+                 hand, scan with fewer dots per inch, or cut the picture into sheets"
+            ),
             Self::TooManyFigures(error) => error.fmt(f),
         }
     }
@@ -99,6 +113,10 @@ impl Vectorizer {
         if self.algorithm == Algorithm::Ours && !(tolerance_px > 0.0 && tolerance_px.is_finite()) {
             return Err(VectorizeError::Tolerance { tolerance_px });
         }
+        let ink_pixels = ink.count();
+        if ink_pixels > MAX_INK_PIXELS {
+            return Err(VectorizeError::TooMuchInk { ink_pixels });
+        }
         let figures = self.tracking.track(ink).map_err(VectorizeError::TooManyFigures)?;
         Ok(match self.algorithm {
             Algorithm::Published => {
@@ -106,7 +124,11 @@ impl Vectorizer {
                 simplify(ink, &figures, whole, &self.published)
             }
             Algorithm::Ours => {
-                let Joined { figures, borrowed } = join(&link(&figures), ink);
+                // Of a sheet full of ink each step's figures are large: none outlives its use.
+                let linked = link(&figures);
+                drop(figures);
+                let Joined { figures, borrowed } = join(&linked, ink);
+                drop(linked);
                 let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
                 let traced = simplify(ink, &figures, lent, &self.ours);
                 Vectorized { drawing: order(&traced.drawing), ..traced }
@@ -152,6 +174,17 @@ mod tests {
             );
             assert!(with(Algorithm::Published, bad).trace(&dot).is_ok());
         }
+    }
+
+    #[test]
+    fn a_large_black_area_is_refused_before_memory_is_taken() {
+        let (width, height) = (8192, 4097);
+        let mut black = Bitmap::new(width, height).unwrap();
+        (0..height).for_each(|y| black.row_mut(y).fill(u64::MAX));
+        assert_eq!(
+            Vectorizer::default().trace(&black).unwrap_err(),
+            VectorizeError::TooMuchInk { ink_pixels: 8192 * 4097 }
+        );
     }
 
     #[test]
