@@ -1,7 +1,10 @@
 //! Published and ours on the two drawings, beside the published figures.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
-use plotter_vector::{Algorithm, Vectorized, Vectorizer, decode};
+use plotter_vector::{
+    Algorithm, Bounded, ErrorTally, OrderedTracking, Pixel, Simplify, Threshold, Vectorized, Vectorizer,
+    decode,
+};
 
 /// Mean, greatest error and standard deviation, px.
 type Figures = [f64; 3];
@@ -68,4 +71,50 @@ fn the_flags_outline_is_closed_and_the_seam_ends_on_it() {
     let mut ends = [seam[0].y, seam[1].y];
     ends.sort_by(f64::total_cmp);
     assert_eq!(ends, [top, bottom]);
+}
+
+/// Greatest distance of a pixel from the segment that replaced it, px.
+fn greatest_error_px(figure: &[Pixel], kept: &[usize]) -> f64 {
+    let mut tally = ErrorTally::default();
+    tally.add(figure, kept, (false, false));
+    tally.report().max_px
+}
+
+/// Ours, given the greatest error of the published algorithm on the same: figure by figure, and all in one.
+fn compare_at_the_published_greatest_error(picture: &[u8]) {
+    /// What ours adds to a tolerance so that a pixel exactly on it passes, px.
+    const ROUNDING_PX: f64 = 1e-8;
+    let gray = decode(picture).unwrap();
+    let (ink, _) = Threshold::default().apply(&gray);
+    let figures = OrderedTracking::default().track(&ink).unwrap();
+    assert!(figures.len() > 1);
+    for figure in figures.iter() {
+        let published = Vectorizer::default().published.keep(figure);
+        let tolerance_px = greatest_error_px(figure, &published);
+        let ours = Bounded { tolerance_px }.keep(figure);
+        assert!(ours.len() <= published.len(), "at {:?}, {tolerance_px} px", figure[0]);
+        assert!(greatest_error_px(figure, &ours) <= tolerance_px + ROUNDING_PX, "at {:?}", figure[0]);
+    }
+
+    let published = trace(picture, Algorithm::Published);
+    let ours = Bounded { tolerance_px: published.error.max_px };
+    let ours = Vectorizer { ours, ..Vectorizer::default() }.vectorize(&gray).unwrap();
+    println!(
+        "at {:.4} px: published {} vertices, ours {}",
+        published.error.max_px,
+        published.drawing.vertices(),
+        ours.drawing.vertices()
+    );
+    assert!(ours.error.max_px <= published.error.max_px + ROUNDING_PX);
+    assert!(ours.drawing.vertices() <= published.drawing.vertices());
+}
+
+#[test]
+fn on_the_flag_ours_has_no_more_vertices_at_the_published_greatest_error() {
+    compare_at_the_published_greatest_error(include_bytes!("../data/flag.png"));
+}
+
+#[test]
+fn on_the_technical_drawing_ours_has_no_more_vertices_at_the_published_greatest_error() {
+    compare_at_the_published_greatest_error(include_bytes!("../data/technical.png"));
 }
