@@ -44,7 +44,7 @@ struct Args {
     #[arg(long, default_value = "published")]
     algorithm: AlgorithmArg,
     /// Width of the drawing on the sheet, mm; less where the machine is smaller
-    #[arg(long, value_name = "MM", default_value_t = 50.0)]
+    #[arg(long, value_name = "MM", default_value_t = 50.0, allow_negative_numbers = true)]
     width_mm: f64,
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "target/plot")]
@@ -75,7 +75,8 @@ fn plot(args: &Args) -> Result<(), String> {
     let began = Instant::now();
     let machine = machine(args)?;
     let traced = trace(args)?;
-    std::fs::create_dir_all(&args.out).map_err(|error| at(&args.out, &error))?;
+    std::fs::create_dir_all(&args.out)
+        .map_err(|error| at(&args.out, &format!("this folder cannot be made: {error}")))?;
     let file = |name: &str| args.out.join(name);
 
     // The drawing goes through the plotter's own language, so what is plotted is what the file says.
@@ -154,7 +155,8 @@ fn name(value: &impl ValueEnum) -> String {
 fn machine(args: &Args) -> Result<Machine, String> {
     let mut config = match &args.machine {
         Some(path) => {
-            let text = String::from_utf8(read_file(path)?).map_err(|error| at(path, &error))?;
+            let text = String::from_utf8(read_file(path)?)
+                .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
             *Machine::from_toml(&text).map_err(|error| at(path, &error))?.config()
         }
         None => MachineConfig::default(),

@@ -40,7 +40,7 @@ struct Arguments {
     /// Vectorization
     #[arg(long, value_enum, default_value = "ours")]
     algorithm: Choice,
-    /// Greatest distance of a pixel from the line that replaces it, px (ours only) [default: the library's]
+    /// Greatest distance of a pixel from the line that replaces it, px (ours only) [default: 0.5]
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     max_error_px: Option<f64>,
     /// Writes the strokes as SVG: the picture's size in px, y down, pixel centres at .5
@@ -160,7 +160,9 @@ fn write_files(
     }
     if let Some(path) = &arguments.error_plot {
         let mut out = String::new();
-        error_chart(&traced.error, &format!("Error of the vectorization of {name}"), &[], &mut out)
+        // The file alone: a long path would not fit above the chart.
+        let file = Path::new(name).file_name().map_or(name.into(), |file| file.to_string_lossy());
+        error_chart(&traced.error, &format!("Error of the vectorization of {file}"), &[], &mut out)
             .map_err(text)?;
         write_file(path, out)?;
     }

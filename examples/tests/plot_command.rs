@@ -75,8 +75,13 @@ fn what_is_wrong_is_said_in_one_line() {
     assert!(complaint("plot", &[&empty, "--out", out]).contains("is empty"));
     assert!(complaint("plot", &["--machine", &machine, "--out", out]).contains("line 3, column 1"));
     assert!(complaint("plot", &["--machine", &small, "--out", out]).contains("margin"));
-    assert!(complaint("plot", &["--width-mm", "0", "--out", out]).contains("give a width above 0 mm"));
-    assert!(complaint("plot", &["--out", &text]).starts_with("plot: "));
+    for bad in ["0", "-5", "NaN", "inf"] {
+        assert!(complaint("plot", &["--width-mm", bad, "--out", out]).contains("give a width above 0 mm"));
+    }
+    assert!(
+        complaint("plot", &["--machine", &data("flag.png"), "--out", out]).contains("is not a text file")
+    );
+    assert!(complaint("plot", &["--out", &text]).contains("text.png: this folder cannot be made"));
 }
 
 #[test]

@@ -37,6 +37,13 @@ fn all_files_are_written_and_the_report_has_all_keys() {
 }
 
 #[test]
+fn the_help_names_the_greatest_error_that_is_taken() {
+    let help = String::from_utf8(run_example("trace", &["--help"]).stdout).unwrap();
+    let default = plotter_vector::Bounded::default().tolerance_px;
+    assert!(help.contains(&format!("(ours only) [default: {default}]")), "{help}");
+}
+
+#[test]
 fn the_published_algorithm_refuses_a_greatest_error() {
     let said = complaint("trace", &["--algorithm", "published", "--max-error-px", "1"]);
     assert!(said.contains("has no error bound; take --algorithm ours"), "{said}");
@@ -76,6 +83,9 @@ fn bad_pictures_get_one_line_and_blank_ones_an_empty_drawing() {
         complaint("trace", &[&file("cut.png", &whole[..whole.len() / 2])]).contains("damaged or cut off")
     );
     assert!(complaint("trace", &[&file("huge.pgm", b"P5 90000 90000 255\n")]).contains("too large"));
+    let folder = directory.path().to_str().unwrap();
+    assert!(complaint("trace", &[folder]).contains("cannot be read"));
+    assert!(complaint("trace", &[&data("flag.png"), "--svg", folder]).contains("cannot be written"));
     assert!(complaint("trace", &[&file("text.png", b"hello")]).contains("is not PNG"));
     for (name, blank) in [("dot", "P1 1 1\n1"), ("white", "P1 3 2\n000000"), ("black", "P1 3 2\n111111")] {
         let output = run_example("trace", &[&file(name, blank.as_bytes())]);
