@@ -267,6 +267,19 @@ mod tests {
     }
 
     #[test]
+    fn of_three_ends_that_meet_the_straightest_two_are_linked() {
+        let mut figures = Figures::default();
+        figures.push((0..5).map(|x| Pixel::new(x, 5)));
+        let upright: Vec<Pixel> = (0..5).map(|y| Pixel::new(5, y)).collect();
+        figures.push(upright.iter().copied());
+        figures.push((5..10).map(|x| Pixel::new(x, 5)));
+        let linked = link(&figures);
+        assert_eq!(linked.len(), 2);
+        assert_eq!(linked.get(0), (0..10).map(|x| Pixel::new(x, 5)).collect::<Vec<_>>());
+        assert_eq!(linked.get(1), upright);
+    }
+
+    #[test]
     fn a_branch_ends_on_the_line_it_springs_from() {
         let (ink, figures) = tracked("#######\n...#...\n...#...\n...#...\n");
         let joined = join(&figures, &ink);

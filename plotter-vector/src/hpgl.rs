@@ -43,6 +43,17 @@ mod tests {
     use plotter_motion::Point;
 
     #[test]
+    fn a_stroke_that_begins_where_the_last_one_ended_stays_a_stroke() {
+        let mut drawing = Drawing::new(4, 4);
+        let corner = PxPoint::new(4.0, 4.0);
+        drawing.push([PxPoint::new(0.0, 4.0), corner]);
+        drawing.push([corner, PxPoint::new(4.0, 0.0)]);
+        let mut text = String::new();
+        hpgl(&drawing, Scale::new(4, 1.0, Point::ORIGIN).unwrap(), &mut text).unwrap();
+        assert!(text.contains("PU0,0;\nPD160,0;\nPU160,0;\nPD160,160;\n"), "{text}");
+    }
+
+    #[test]
     fn dots_and_strokes_are_written_in_plotter_units() {
         let mut drawing = Drawing::new(8, 6);
         let corner = PxPoint::new(7.5, 0.5);

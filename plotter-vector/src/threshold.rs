@@ -168,6 +168,12 @@ mod tests {
     }
 
     #[test]
+    fn dark_is_ink_when_both_cover_the_same() {
+        let (ink, _) = Threshold::default().apply(&gray(4, &[9, 9, 200, 200]));
+        assert_eq!(ink.to_string(), "##..\n");
+    }
+
+    #[test]
     fn otsu_splits_two_peaks_in_the_middle_of_the_gap() {
         let (_, split) = Threshold::default().apply(&gray(4, &[10, 10, 20, 201]));
         assert_eq!(split.unwrap().level, (20 + 200) / 2);

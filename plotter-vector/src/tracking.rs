@@ -197,6 +197,22 @@ mod tests {
     }
 
     #[test]
+    fn a_walk_of_just_enough_pixels_is_kept_as_met() {
+        assert_eq!(track("...####\n.##....\n#......\n"), ["30 40 50 60", "21 11 02"]);
+    }
+
+    #[test]
+    fn the_opposite_scan_steps_to_the_left_first() {
+        assert_eq!(track(".#.\n#.#\n"), ["10 01", "21"]);
+    }
+
+    #[test]
+    fn the_direction_of_travel_remembers_four_steps() {
+        // Three steps down alone would find both ways equal, and take the one to the right.
+        assert_eq!(track("..#\n.#.\n.#.\n.#.\n.#.\n#.#\n"), ["20 11 12 13 14 05", "25"]);
+    }
+
+    #[test]
     fn a_small_figure_is_recorded_whole_after_the_large_ones() {
         assert_eq!(track("##....\n......\n.#####\n"), ["12 22 32 42 52", "10 00"]);
     }
