@@ -39,7 +39,8 @@ pub struct Contouring {
     /// Time along the plan, s; it stands still while the reference waits.
     plan_s: f64,
     estimated_at: Duration,
-    settled_for: Duration,
+    /// How long both shafts have rested at the target; `None` while they do not.
+    settled_for: Option<Duration>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,7 +100,7 @@ impl Contouring {
             resting: false,
             leaning: 0.0,
         };
-        // The plan is made in counts of the finer axis, so that no axis exceeds its limits.
+        // The plan is made in counts, the limits in those of the coarser axis, so that no axis exceeds them.
         let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);
         let period_us = 1e6 / contouring.loop_hz;
         #[expect(
@@ -132,7 +133,7 @@ impl Contouring {
             plan: SCurve::default(),
             plan_s: 0.0,
             estimated_at: Duration::ZERO,
-            settled_for: Duration::ZERO,
+            settled_for: None,
         }
     }
 
@@ -191,8 +192,8 @@ impl Contouring {
         }
         self.x.drive((!rest_x).then_some(a_along * ux - a_across * uy), speed * ux, ex);
         self.y.drive((!rest_y).then_some(a_along * uy + a_across * ux), speed * uy, ey);
-        self.settled_for =
-            if finished && rest_x && rest_y { self.settled_for + period } else { Duration::ZERO };
+        let settled_for = self.settled_for.unwrap_or_default().saturating_add(period);
+        self.settled_for = (finished && rest_x && rest_y).then_some(settled_for);
     }
 }
 
@@ -215,9 +216,10 @@ impl ContouredAxis {
     fn lean(&mut self, finished: bool, error: f32, dt_s: f32) {
         const SUPPLIES_PER_S: f32 = 1.0; // friction is a few hundredths of the supply: tens of milliseconds
         let model = self.estimator.model();
-        let grown = self.leaning
-            + libm::copysignf(SUPPLIES_PER_S * dt_s, error) * model.accel_per_volt * model.supply_v;
-        self.leaning = if finished && !self.resting { grown } else { 0.0 };
+        let supply = model.accel_per_volt * model.supply_v;
+        let grown = self.leaning + libm::copysignf(SUPPLIES_PER_S * dt_s, error) * supply;
+        // There is no more than the whole supply to push with, however long something holds the shaft.
+        self.leaning = if finished && !self.resting { grown.clamp(-supply, supply) } else { 0.0 };
     }
 
     /// Chooses the duty that gives the acceleration `accel` at the planned `speed`; none leaves the shaft
@@ -266,7 +268,7 @@ impl LineController for Contouring {
         }
         self.plan = SCurve::plan(length, self.settings.limits).unwrap_or_default();
         self.plan_s = 0.0;
-        self.settled_for = Duration::ZERO;
+        self.settled_for = None;
         self.demand()
     }
 
@@ -298,6 +300,6 @@ impl LineController for Contouring {
     }
 
     fn has_arrived(&self) -> bool {
-        self.settled_for >= self.settings.settle
+        self.settled_for.is_some_and(|settled_for| settled_for >= self.settings.settle)
     }
 }

@@ -136,9 +136,10 @@ impl ShaftEstimator {
         self.model.dry_friction + self.drag
     }
 
-    /// Moves the estimate on by `dt_s` under `voltage_v`.
+    /// Moves the estimate on by `dt_s` under `voltage_v`; nothing happens unless the time is above 0 and both are
+    /// finite.
     pub fn predict(&mut self, dt_s: f32, voltage_v: f32) {
-        if dt_s <= 0.0 {
+        if dt_s <= 0.0 || !dt_s.is_finite() || !voltage_v.is_finite() {
             return;
         }
         self.since_correction_s += dt_s;
