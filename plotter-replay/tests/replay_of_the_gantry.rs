@@ -46,9 +46,7 @@ fn session(machine: &Machine) -> Vec<u8> {
 }
 
 fn recording(machine: &Machine, moves: impl Iterator<Item = PenMove>) -> Vec<u8> {
-    let mut settings = BenchSettings::default();
-    settings.host.byte_gap = Duration::from_millis(1);
-    let mut bench = Bench::new(machine, settings, moves);
+    let mut bench = Bench::new(machine, BenchSettings::default(), moves);
     let header = Header::new().with_number("baud", 256_000).with_text("protocol", "digits");
     let mut recorder = BenchRecorder::new(Writer::new(Vec::new(), &header).unwrap());
     while !bench.host().is_done() {

@@ -167,7 +167,7 @@ impl Gantry {
         self.next_tick
     }
 
-    /// Runs the control loop, if it is time.
+    /// Runs the control loop, if it is time. One that was held up runs once, and from then on in its period.
     pub fn tick(&mut self, now: Duration) {
         let (Some(due), Some(period)) = (self.next_tick, self.controller.get().period()) else {
             return;
@@ -175,9 +175,9 @@ impl Gantry {
         if now < due {
             return;
         }
-        // A loop that was held up goes on in step, without making up for what it missed.
-        let next = due + period;
-        self.next_tick = Some(if next > now { next } else { now + period });
+        // What a loop missed that was held up is not made up for. At the end of time there is no next one.
+        self.next_tick =
+            due.checked_add(period).filter(|&next| next > now).or_else(|| now.checked_add(period));
         let demand = self.controller.get_mut().tick(now);
         self.apply(demand);
     }
@@ -211,12 +211,14 @@ impl Gantry {
         if self.approached.is_some() && controller.has_arrived() {
             self.approached = None;
             self.tell_reached = true;
-            // Whatever came of a next target before this one was reached is not the start of one.
-            self.receiver.restart();
+            if let Some(dropped) = self.receiver.restart() {
+                self.notice(Notice::Dropped(dropped));
+            }
         }
     }
 
     /// The next byte for the host, if there is one.
+    #[must_use]
     pub fn transmit(&mut self) -> Option<u8> {
         let position = self.controller.get().position();
         let ahead = |is: i32, told: i32| i64::from(is) - i64::from(told);

@@ -10,7 +10,8 @@ use core::time::Duration;
 /// How a machine is simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BenchSettings {
-    /// Time step of the motors, whole microseconds; the drive changes between steps only.
+    /// Time step of the motors, 10 us by default; the drive changes between steps only. Taken as the nearest
+    /// of 1 us to 1 ms, without what is below a microsecond.
     pub time_step: Duration,
     /// The host's patience.
     pub host: HostSettings,
@@ -42,7 +43,7 @@ pub enum BenchEvent {
 /// A host, a serial line, a [`Gantry`] and its two simulated motors in one time.
 ///
 /// Everything happens at whole microseconds; of what happens at the same one, the controller's tick comes
-/// first. A byte is through ten bit times after it was put on the line.
+/// first. A byte is through ten bit times after it was put on the line. The crate's page shows one at work.
 #[derive(Debug)]
 pub struct Bench<I> {
     now: Duration,
@@ -92,17 +93,26 @@ enum Next {
 }
 
 impl<I: Iterator<Item = PenMove>> Bench<I> {
-    /// A machine at rest at the origin, and a host with `moves` to send.
+    /// A machine at rest at the origin, and a host with `moves` to send, at the pace of the machine's
+    /// `serial.byte_gap_ms`.
     #[must_use]
     pub fn new(machine: &Machine, settings: BenchSettings, moves: I) -> Self {
         let config = machine.config();
-        let time_step = settings.time_step.max(Duration::from_micros(1));
+        const SHORTEST: Duration = Duration::from_micros(1);
+        const LONGEST: Duration = Duration::from_millis(1); // a few of the position loop's runs
+        let time_step = Duration::from_micros(micros(settings.time_step.clamp(SHORTEST, LONGEST)));
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a checked machine has 0 to 1000 ms"
+        )]
+        let byte_gap = Duration::from_micros(libm::round(config.serial.byte_gap_ms * 1e3) as u64);
         let axis = |axis| AxisPlant::new(axis, time_step.as_secs_f64());
         let pwm_steps = |axis: &crate::AxisConfig| u16::try_from(axis.motor.pwm_steps).unwrap_or(u16::MAX);
         Self {
             now: Duration::ZERO,
             time_step,
-            host: Host::new(settings.host, moves),
+            host: Host::new(byte_gap, settings.host, moves),
             controller: Gantry::new(machine),
             x: axis(&config.x),
             y: axis(&config.y),

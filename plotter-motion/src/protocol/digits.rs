@@ -113,6 +113,7 @@ impl Reply {
 
 /// Why a [`Receiver`] dropped what it had of a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Dropped {
     /// A byte came that is not a digit.
     NotADigit {
@@ -125,6 +126,11 @@ pub enum Dropped {
     Silence {
         /// How long.
         silence: Duration,
+        /// Digits lost.
+        digits: u8,
+    },
+    /// The target before it was reached only now: until then no host that waits for its `+` sends another.
+    Early {
         /// Digits lost.
         digits: u8,
     },
@@ -144,6 +150,9 @@ impl fmt::Display for Dropped {
                 "silence of {} ms inside a target: dropped its first {digits} digits",
                 silence.as_millis()
             ),
+            Self::Early { digits } => {
+                write!(f, "{digits} digits came before the target was reached: dropped them")
+            }
         }
     }
 }
@@ -221,9 +230,20 @@ impl Receiver {
         received
     }
 
-    /// Forgets what came of the present target.
-    pub const fn restart(&mut self) {
-        self.count = 0;
+    /// Begins afresh when a target is reached: the host sends the next one from its first digit, so whatever
+    /// came of one before belongs to none. Says what was dropped.
+    ///
+    /// ```
+    /// # use plotter_motion::protocol::digits::{Dropped, Receiver};
+    /// # use core::time::Duration;
+    /// let mut receiver = Receiver::new(Duration::from_millis(100));
+    /// assert_eq!(receiver.restart(), None);
+    /// let _ = receiver.push(Duration::ZERO, 7); // noise
+    /// assert_eq!(receiver.restart(), Some(Dropped::Early { digits: 1 }));
+    /// ```
+    pub fn restart(&mut self) -> Option<Dropped> {
+        let digits = core::mem::take(&mut self.count);
+        (digits > 0).then_some(Dropped::Early { digits })
     }
 
     /// Digits of the present target so far, 0 to 9.
@@ -235,7 +255,18 @@ impl Receiver {
 
 /// The host's end of the line: sends targets digit by digit, and the next one on each `+`.
 ///
-/// `next_byte` says what to send and when; the caller owns port and clock.
+/// [`next_byte`](Self::next_byte) says what to send and when; the caller owns port and clock.
+///
+/// ```
+/// # use plotter_motion::{StepPoint, protocol::digits::{OutOfRange, Sender}};
+/// # use core::time::Duration;
+/// let mut sender = Sender::new(Duration::from_millis(10));
+/// sender.start(Duration::ZERO, StepPoint::new(2993, 13955))?;
+/// assert_eq!(sender.next_byte(Duration::ZERO), Some(3));
+/// assert_eq!(sender.next_byte_at(), Some(Duration::from_millis(10)));
+/// assert_eq!(sender.next_byte(Duration::from_millis(9)), None); // too early
+/// # Ok::<(), OutOfRange>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sender {
     byte_gap: Duration,
@@ -270,13 +301,14 @@ impl Sender {
     }
 
     /// The next byte, if there is one and `now` is not too early for it.
+    #[must_use]
     pub fn next_byte(&mut self, now: Duration) -> Option<u8> {
         let byte = *self.bytes.get(self.next)?;
         if now < self.not_before {
             return None;
         }
         self.next += 1;
-        self.not_before = now + self.byte_gap;
+        self.not_before = now.saturating_add(self.byte_gap);
         Some(byte)
     }
 

@@ -5,27 +5,24 @@ use crate::{Axis, Direction, PenMove, StepPoint};
 use core::fmt;
 use core::time::Duration;
 
-/// How patient a host is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// How patient a host is. Both times count from the last byte of a target at the earliest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct HostSettings {
-    /// Pause after each byte sent (10 ms as published).
-    pub byte_gap: Duration,
-    /// Silence of the controller after which a target is sent again.
+    /// Silence of the controller after which a target is sent again, 2 s by default.
     pub silence: Duration,
-    /// Time without getting nearer to the target after which the host gives it up.
+    /// Time without getting nearer to the target after which the host gives it up, 10 s by default.
     pub patience: Duration,
-    /// How often a target is sent again before the host gives it up.
+    /// How often a target is sent again before the host gives it up, twice by default.
     pub most_retries: u8,
-    /// How many targets in a row the host gives up before it stops.
+    /// How many targets in a row the host gives up before it stops, 10 by default.
     pub most_given_up: u8,
-    /// How far from the target, on either axis, a `+` is believed, encoder counts.
+    /// How far from the target, on either axis, a `+` is believed, encoder counts; 0 by default.
     pub tolerance_counts: u32,
 }
 
 impl Default for HostSettings {
     fn default() -> Self {
         Self {
-            byte_gap: Duration::from_millis(10),
             silence: Duration::from_secs(2),
             patience: Duration::from_secs(10),
             most_retries: 2,
@@ -105,6 +102,26 @@ enum State {
 ///
 /// At each `+` it compares the counted position with the target: in a protocol without checksum this is the
 /// only sign of a digit that came wrong. Such a target, and one that is met with silence, is sent again.
+///
+/// ```
+/// # use plotter_motion::{Pen, PenMove, StepPoint, protocol::{Host, HostEvent, HostSettings}};
+/// # use core::time::Duration;
+/// let dot = PenMove { pen: Pen::Down, target: StepPoint::new(2, 0) };
+/// let mut host = Host::new(Duration::from_millis(10), HostSettings::default(), [dot].into_iter());
+/// let mut now = Duration::ZERO;
+/// assert_eq!(host.poll(now), Some(HostEvent::Begun(dot)));
+/// let mut sent = Vec::new();
+/// while sent.len() < 10 {
+///     sent.extend(host.next_byte(now));
+///     now = host.next_wake().unwrap();
+/// }
+/// assert_eq!(sent, [2, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+/// for pulse in *b"11" {
+///     assert_eq!(host.receive(now, pulse), None);
+/// }
+/// assert_eq!(host.receive(now, b'+'), Some(HostEvent::Reached(dot)));
+/// assert_eq!((host.poll(now), host.is_done()), (None, true));
+/// ```
 #[derive(Clone, Debug)]
 pub struct Host<I> {
     settings: HostSettings,
@@ -119,13 +136,13 @@ pub struct Host<I> {
 }
 
 impl<I: Iterator<Item = PenMove>> Host<I> {
-    /// A host with a drawing to send.
+    /// A host with a drawing to send; it pauses for `byte_gap` after each byte (10 ms as published).
     #[must_use]
-    pub fn new(settings: HostSettings, moves: I) -> Self {
+    pub fn new(byte_gap: Duration, settings: HostSettings, moves: I) -> Self {
         Self {
             settings,
             moves,
-            sender: Sender::new(settings.byte_gap),
+            sender: Sender::new(byte_gap),
             state: State::Ready,
             current: PenMove::default(),
             position: StepPoint::default(),
@@ -157,8 +174,11 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
             }
             State::Waiting { nearer_at, heard, retries, .. } => {
                 let target = self.current.target;
+                if !self.sender.is_idle() {
+                    return None;
+                }
                 let late = now.saturating_sub(nearer_at) > self.settings.patience;
-                let silent = self.sender.is_idle() && now.saturating_sub(heard) > self.settings.silence;
+                let silent = now.saturating_sub(heard) > self.settings.silence;
                 if late || (silent && retries >= self.settings.most_retries) {
                     return Some(self.give_up());
                 }
@@ -203,12 +223,12 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
         const TICK: Duration = Duration::from_micros(1); // limits are exceeded one tick after they are met
         let patience = match self.state {
             State::Ready => Some(Duration::ZERO),
-            State::Waiting { nearer_at, heard, .. } => {
-                let late = nearer_at + self.settings.patience + TICK;
-                let silent = heard + self.settings.silence + TICK;
-                Some(if self.sender.is_idle() { late.min(silent) } else { late })
+            State::Waiting { nearer_at, heard, .. } if self.sender.is_idle() => {
+                let late = nearer_at.saturating_add(self.settings.patience);
+                let silent = heard.saturating_add(self.settings.silence);
+                Some(late.min(silent).saturating_add(TICK))
             }
-            State::Done => None,
+            State::Waiting { .. } | State::Done => None,
         };
         match (patience, self.sender.next_byte_at()) {
             (Some(a), Some(b)) => Some(a.min(b)),
@@ -217,10 +237,12 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
     }
 
     /// The next byte for the line, if it is time for one.
+    #[must_use]
     pub fn next_byte(&mut self, now: Duration) -> Option<u8> {
         let byte = self.sender.next_byte(now)?;
-        if let State::Waiting { heard, .. } = &mut self.state {
-            *heard = now; // the controller cannot answer before it has the whole target
+        if let State::Waiting { nearer_at, heard, .. } = &mut self.state {
+            // the controller can neither answer nor move before it has the whole target
+            (*nearer_at, *heard) = (now, now);
         }
         Some(byte)
     }

@@ -28,7 +28,8 @@ impl Wire {
         Self { byte_ns: 10_000_000_000 / baud, free_ns: 0 }
     }
 
-    /// Takes a byte offered at `now`; says when its last bit is through.
+    /// Takes a byte offered at `now`; says when its last bit is through. Neither goes beyond 584 years.
+    #[must_use]
     pub fn send(&mut self, now: Duration) -> Duration {
         let now_ns = u64::try_from(now.as_nanos()).unwrap_or(u64::MAX);
         self.free_ns = self.free_ns.max(now_ns).saturating_add(self.byte_ns);
