@@ -1,6 +1,6 @@
 //! Lines out of any source, with their place, and never more than one line in memory.
 
-use super::MAX_LINE_BYTES;
+use super::{MAGIC, MAX_LINE_BYTES};
 use std::io::{self, BufRead};
 
 /// Where a line stands and how it ends.
@@ -65,7 +65,11 @@ impl<R: BufRead> LineSource<R> {
             self.inner.consume(used);
             self.place.bytes = self.place.bytes.saturating_add(used as u64);
             self.place.ended = end.is_some();
-            if self.place.ended || used == 0 {
+            // What does not begin as a log need not have line ends: a device may go on for ever.
+            let magic = MAGIC.as_bytes();
+            let no_log =
+                self.place.number == 1 && self.line.len() >= magic.len() && !self.line.starts_with(magic);
+            if self.place.ended || used == 0 || no_log {
                 return Ok(self.place.bytes > 0);
             }
         }

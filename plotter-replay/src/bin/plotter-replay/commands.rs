@@ -7,12 +7,16 @@ use plotter_replay::{
     Canvas, CanvasStyle, Chart, EdgeSource, Layer, MachineController, Outcome, Player, PlayerSettings,
     PlotterSettings, VirtualPlotter, Visibility, Ways,
 };
-use std::io::Write;
+use std::io::{Read as _, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Longest list of damage or anomalies that is shown.
 const MOST_SHOWN: usize = 20;
+/// Longest drawing that is read, bytes: some ten million lines.
+const MOST_DRAWING_BYTES: u64 = 256 << 20;
+/// Longest machine file that is read, bytes; a good one has a few thousand.
+const MOST_MACHINE_BYTES: u64 = 1 << 20;
 /// Time by which an answer may be off when the edges are only known from the pulses.
 const PULSE_TOLERANCE: Duration = Duration::from_millis(50);
 
@@ -277,9 +281,21 @@ impl Render {
     }
 }
 
+/// All of a file, if it has at most `most_bytes`: a device may go on for ever.
+fn read_file(path: &Path, most_bytes: u64) -> Result<Vec<u8>, String> {
+    let refused = |error: std::io::Error| format!("{}: {error}", path.display());
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(refused)?;
+    file.take(most_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(refused)?;
+    if bytes.len() as u64 > most_bytes {
+        return Err(format!("{}: longer than {} MiB", path.display(), most_bytes >> 20));
+    }
+    Ok(bytes)
+}
+
 /// The operations of a drawing and what of it could not be read.
 fn read_drawing(path: &Path) -> Result<(Vec<PlotOp>, Vec<hpgl::Error>), String> {
-    let text = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let text = read_file(path, MOST_DRAWING_BYTES)?;
     let (mut ops, mut errors) = (Vec::new(), Vec::new());
     for outcome in hpgl::plot_ops(&text) {
         match outcome {
@@ -322,7 +338,8 @@ impl Check {
     fn machine(&self, header: &Header) -> Result<Machine, String> {
         if let Some(path) = &self.machine {
             let refused = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-            let text = std::fs::read_to_string(path).map_err(|error| refused(&error))?;
+            let text = String::from_utf8(read_file(path, MOST_MACHINE_BYTES)?)
+                .map_err(|error| refused(&error.utf8_error()))?;
             return Machine::from_toml(&text).map_err(|error| refused(&error));
         }
         let mut config = MachineConfig::default();
