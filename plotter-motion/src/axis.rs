@@ -12,6 +12,7 @@ pub enum Axis {
 
 /// Which way a motor turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum Direction {
     /// Towards larger coordinates.
     Plus,

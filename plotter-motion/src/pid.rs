@@ -98,7 +98,10 @@ impl Pid {
     /// ```
     #[must_use]
     pub fn update(&self, state: &mut PidState, setpoint: f32, measured: f32, dt_s: f32) -> f32 {
-        let limit = |value: f32| value.max(self.output_min).min(self.output_max);
+        let limit = |value: f32| {
+            let value = if value.is_nan() { 0.0 } else { value };
+            value.max(self.output_min).min(self.output_max)
+        };
         let error = setpoint - measured;
         if !error.is_finite() || !dt_s.is_finite() {
             return limit(0.0);
@@ -106,7 +109,9 @@ impl Pid {
         if dt_s > 0.0 {
             let slope = state.measured.map_or(0.0, |before| (measured - before) / dt_s);
             let share = dt_s / (dt_s + self.derivative_filter_s.max(0.0));
-            state.derivative += (slope - state.derivative) * share;
+            let derivative = state.derivative + (slope - state.derivative) * share;
+            // a slope too steep for a number, over next to no time, is none
+            state.derivative = if derivative.is_finite() { derivative } else { state.derivative };
             let grown = state.integral + self.ki * error * dt_s;
             let wanted = self.kp * error + grown - self.kd * state.derivative;
             let pushes_out = (wanted > self.output_max && grown > state.integral)

@@ -23,6 +23,11 @@ pub struct MotionLimits {
     pub jerk_mm_s3: f64,
 }
 
+/// Least limit, and greatest limit and length, that a motion is planned with: far beyond any machine, and no
+/// product of them overflows.
+const LEAST_LIMIT: f64 = 1e-18;
+const GREATEST: f64 = 1e18;
+
 /// A limit that no motion can be planned with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileError {
@@ -34,8 +39,8 @@ pub struct ProfileError {
 
 impl fmt::Display for ProfileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let allowed = if self.quantity == "length_mm" { "0 or more" } else { "above 0" };
-        write!(f, "{} is {}: it must be a finite number {allowed}", self.quantity, self.value)
+        let least = if self.quantity == "length_mm" { 0.0 } else { LEAST_LIMIT };
+        write!(f, "{} is {:e}: it must lie in {least:e}..={GREATEST:e}", self.quantity, self.value)
     }
 }
 
@@ -79,16 +84,16 @@ impl SCurve {
     ///
     /// # Errors
     ///
-    /// [`ProfileError`] names a limit that is not a positive finite number, or a negative length.
+    /// [`ProfileError`] names a limit outside 1e-18 to 1e18, or a length outside 0 to 1e18; NaN lies outside.
     pub fn plan(length_mm: f64, limits: MotionLimits) -> Result<Self, ProfileError> {
         let MotionLimits { speed_mm_s, accel_mm_s2, jerk_mm_s3 } = limits;
-        if !(length_mm >= 0.0 && length_mm.is_finite()) {
+        if !(0.0..=GREATEST).contains(&length_mm) {
             return Err(ProfileError { quantity: "length_mm", value: length_mm });
         }
         for (quantity, value) in
             [("speed_mm_s", speed_mm_s), ("accel_mm_s2", accel_mm_s2), ("jerk_mm_s3", jerk_mm_s3)]
         {
-            if !(value > 0.0 && value.is_finite()) {
+            if !(LEAST_LIMIT..=GREATEST).contains(&value) {
                 return Err(ProfileError { quantity, value });
             }
         }
@@ -177,7 +182,7 @@ mod tests {
     #[test]
     fn impossible_limits_are_named() {
         let error = SCurve::plan(1.0, MotionLimits { jerk_mm_s3: 0.0, ..LIMITS }).unwrap_err();
-        assert_eq!(std::format!("{error}"), "jerk_mm_s3 is 0: it must be a finite number above 0");
+        assert_eq!(std::format!("{error}"), "jerk_mm_s3 is 0e0: it must lie in 1e-18..=1e18");
         assert!(SCurve::plan(-1.0, LIMITS).is_err());
         assert!(SCurve::plan(f64::NAN, LIMITS).is_err());
     }

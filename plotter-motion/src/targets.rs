@@ -38,7 +38,9 @@ impl core::error::Error for OutOfReach {}
 ///
 /// # Errors
 ///
-/// [`OutOfReach`] for a point outside the machine's area, or one that is not finite; the moves after it follow.
+/// [`OutOfReach`] for a point outside the machine's area, or one that is not finite. The moves after it follow;
+/// the line that would have begun there is a move with the pen up to its end, so that nothing is drawn that the
+/// tool path does not hold.
 ///
 /// ```
 /// # use plotter_motion::{targets, Machine, MachineConfig, Pen, PenMove, PlotOp, Point, StepPoint};
@@ -59,6 +61,7 @@ pub fn targets<I: IntoIterator<Item = PlotOp>>(
 ) -> impl Iterator<Item = Result<PenMove, OutOfReach>> + use<I> {
     let config = *machine.config();
     let mut position = StepPoint::default();
+    let mut lost = false;
     ops.into_iter().enumerate().filter_map(move |(index, op)| {
         let (pen, point) = match op {
             PlotOp::Travel { to } => (Pen::Up, to),
@@ -75,12 +78,14 @@ pub fn targets<I: IntoIterator<Item = PlotOp>>(
         if let Some(error) = outside(Axis::X, point.x, config.area.width_mm, config.x.counts_per_mm)
             .or_else(|| outside(Axis::Y, point.y, config.area.height_mm, config.y.counts_per_mm))
         {
+            lost = true;
             return Some(Err(error));
         }
         let target = StepPoint::new(
             from_mm(point.x, config.x.counts_per_mm),
             from_mm(point.y, config.y.counts_per_mm),
         );
+        let pen = if core::mem::take(&mut lost) { Pen::Up } else { pen };
         let stays = pen == Pen::Up && target == position;
         position = target;
         (!stays).then_some(Ok(PenMove { pen, target }))

@@ -62,6 +62,7 @@ impl PenMove {
 ///
 /// Before the first operation the pen is up at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum PlotOp {
     /// Lifts the pen and moves, without a mark.
