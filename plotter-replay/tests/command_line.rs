@@ -176,3 +176,41 @@ fn every_help_has_an_example() {
         assert!(help.out.contains("Example: plotter-replay "), "{}", help.out);
     }
 }
+
+/// A device has no line ends and no end: each of these once read on for ever, or until the memory was full.
+#[test]
+#[cfg(target_os = "linux")]
+fn what_never_ends_is_refused_in_one_line() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    session(&here.join("line.plog"));
+    for arguments in [
+        &["info", "/dev/zero"][..],
+        &["check", "line.plog", "--machine", "/dev/zero"],
+        &["render", "line.plog", "--drawing", "/dev/zero"],
+    ] {
+        let ran = run(arguments, here);
+        assert_eq!((ran.status, ran.err.lines().count()), (2, 1), "{arguments:?}: {}", ran.err);
+        assert!(ran.err.starts_with("plotter-replay: /dev/zero: "), "{}", ran.err);
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn what_cannot_be_written_is_named() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    session(&here.join("line.plog"));
+    for place in ["/dev/full", "missing/line.svg", "."] {
+        let ran = run(&["render", "line.plog", "--svg", place], here);
+        assert_eq!(ran.status, 2, "{place}: {}", ran.err);
+        let expected = format!("plotter-replay: {place}: cannot be written: ");
+        assert!(ran.err.starts_with(&expected) && ran.err.lines().count() == 1, "{}", ran.err);
+    }
+    let full = std::fs::File::create("/dev/full").unwrap();
+    let program = env!("CARGO_BIN_EXE_plotter-replay");
+    let mut info = Command::new(program);
+    let ran = info.args(["info", "line.plog"]).current_dir(here).stdout(full).output().unwrap();
+    assert_eq!(ran.status.code(), Some(2));
+    assert!(String::from_utf8(ran.stderr).unwrap().starts_with("plotter-replay: standard output: cannot be"));
+}

@@ -111,7 +111,7 @@ impl Command {
     }
 }
 
-/// Prints a line; a closed pipe is no error, whoever closed it has seen enough.
+/// Prints a line; what could not be printed is told at the end, by `main`.
 fn say(out: &mut impl Write, line: &str) {
     let _ = writeln!(out, "{line}");
 }
@@ -242,8 +242,7 @@ impl Render {
             one.clone().into_iter().chain(in_directory).collect::<Vec<_>>()
         };
         if let Some(directory) = &directory {
-            std::fs::create_dir_all(directory)
-                .map_err(|error| format!("{}: {error}", directory.display()))?;
+            std::fs::create_dir_all(directory).map_err(|error| cannot("written", directory, &error))?;
         }
         let mut canvas = Canvas::from_plotter(&plotter, CanvasStyle::default().tolerance_mm);
         if let Some(ops) = drawing {
@@ -253,7 +252,7 @@ impl Render {
         let travel = if self.travel { Visibility::Shown } else { Visibility::Hidden };
         let style = CanvasStyle { travel, longest_px: self.size, ..canvas.fitted_style() };
         let mut write = |path: &Path, bytes: &[u8]| -> Result<(), String> {
-            std::fs::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()))?;
+            std::fs::write(path, bytes).map_err(|error| cannot("written", path, &error))?;
             say(out, &format!("wrote {}", path.display()));
             Ok(())
         };
@@ -281,9 +280,13 @@ impl Render {
     }
 }
 
+fn cannot(be: &str, path: &Path, error: &std::io::Error) -> String {
+    format!("{}: cannot be {be}: {error}", path.display())
+}
+
 /// All of a file, if it has at most `most_bytes`: a device may go on for ever.
 fn read_file(path: &Path, most_bytes: u64) -> Result<Vec<u8>, String> {
-    let refused = |error: std::io::Error| format!("{}: {error}", path.display());
+    let refused = |error: std::io::Error| cannot("read", path, &error);
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(refused)?;
     file.take(most_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(refused)?;
