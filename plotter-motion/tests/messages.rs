@@ -16,6 +16,7 @@ fn messages_name_place_value_and_remedy() {
         SCurve::plan(1.0, limits).unwrap_err().to_string(),
         Dropped::NotADigit { byte: b'x', digits: 4 }.to_string(),
         Dropped::Silence { silence: Duration::from_millis(5210), digits: 9 }.to_string(),
+        Dropped::Early { digits: 3 }.to_string(),
         Notice::OutOfArea { target: at, most: StepPoint::new(23_760, 16_800) }.to_string(),
         HostNotice::ReachedElsewhere { target: at, position: StepPoint::new(2993, 9) }.to_string(),
         HostNotice::Silent { target: at }.to_string(),

@@ -3,7 +3,9 @@
 #![cfg(feature = "alloc")]
 
 use core::time::Duration;
+use plotter_motion::firmware::Notice;
 use plotter_motion::plant::{Bench, BenchEvent, BenchSettings};
+use plotter_motion::protocol::digits::Dropped;
 use plotter_motion::protocol::{HostEvent, HostNotice};
 use plotter_motion::{Axis, ControllerChoice, Direction, Machine, MachineConfig, Pen, PenMove, StepPoint};
 
@@ -146,4 +148,36 @@ fn a_target_that_was_reached_already_is_answered_at_once() {
         assert_eq!(bench.host().progress(), (2, 2), "{choice:?}");
         assert!(bench.now() < Duration::from_millis(500), "{choice:?}: {:?}", bench.now());
     }
+}
+
+/// Noise while the motors are on their way is dropped when they arrive, and it is told.
+#[test]
+fn digits_that_come_before_the_target_is_reached_are_dropped_and_told() {
+    let mut bench = bench(ControllerChoice::Contouring);
+    let mut moving = 0;
+    let events = run(&mut bench, LIMIT, |bench| {
+        moving += u32::from(bench.position_mm().x > 1.0);
+        if moving == 1 {
+            bench.disturb(3);
+            moving += 1;
+        }
+    });
+    let told = |event: &BenchEvent| {
+        matches!(event, BenchEvent::Controller(Notice::Dropped(Dropped::Early { digits: 1 })))
+    };
+    assert_eq!(events.iter().filter(|(_, event)| told(event)).count(), 1);
+    assert_eq!(bench.host().progress(), (5, 5));
+}
+
+#[test]
+fn the_host_pauses_as_the_machines_file_says() {
+    let mut config = MachineConfig::default();
+    config.serial.byte_gap_ms = 25.0;
+    let machine = Machine::new(config).unwrap();
+    let mut bench = Bench::new(&machine, BenchSettings::default(), square().into_iter());
+    let events = run(&mut bench, LIMIT, |_| ());
+    let bytes = events.iter().filter(|(_, event)| matches!(event, BenchEvent::HostByte(_)));
+    let times: Vec<_> = bytes.map(|&(at, _)| at).take(10).collect();
+    assert_eq!(times[9] - times[0], Duration::from_millis(9 * 25));
+    assert_eq!(bench.host().progress(), (5, 5));
 }

@@ -26,6 +26,19 @@ use core::time::Duration;
 ///
 /// Source of the split into along and across: Y. Koren, "Cross-Coupled Biaxial Computer Control for
 /// Manufacturing Systems" (1980).
+///
+/// ```
+/// # use plotter_motion::{Machine, MachineConfig, StepPoint, control::{LineController, Contouring}};
+/// # use core::time::Duration;
+/// let machine = Machine::new(MachineConfig::default())?;
+/// let mut controller = Contouring::new(&machine);
+/// let mut demand = controller.start(Duration::ZERO, StepPoint::new(0, 400)); // straight up
+/// for run in 1..=10 {
+///     demand = controller.tick(controller.period().unwrap_or_default() * run);
+/// }
+/// assert!(demand.y.value() > 0.0 && demand.x.value() == 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contouring {
     settings: Settings,

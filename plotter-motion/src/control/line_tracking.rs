@@ -20,6 +20,18 @@ use core::time::Duration;
 /// `|dy - m dx| > 10 |m| + 10`, with the values of the *previous* call, x gets nothing. It runs only when an
 /// edge or a target comes: when both motors stand, nothing can change any more, wherever they are. The program keeps
 /// `Ki e` of x in a whole number, which is 0 for every error below 100,000 counts, so in effect only y has a sum.
+///
+/// ```
+/// # use plotter_motion::{Axis, Direction, Machine, MachineConfig, StepPoint, control::{LineController, LineTracking}};
+/// # use core::time::Duration;
+/// let machine = Machine::new(MachineConfig::default())?;
+/// let mut controller = LineTracking::new(&machine);
+/// let demand = controller.start(Duration::ZERO, StepPoint::new(400, 200));
+/// assert_eq!((demand.x.steps(255), demand.y.steps(255)), (20, 0)); // 15 * 400, limited; y is on the line
+/// let demand = controller.edge(Duration::ZERO, Axis::X, Direction::Plus);
+/// assert_eq!(demand.y.steps(255), 12); // m dx - dy = 1/2: 15/2 + 10/2, cut
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineTracking {
     config: PublishedConfig,

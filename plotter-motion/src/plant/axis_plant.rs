@@ -12,6 +12,17 @@ use core::f64::consts::TAU;
 ///
 /// Positions are counted as the encoder counts them, with the shaft in the middle of the interval that
 /// belongs to count 0 at the start (see [`rest_offset_counts`]).
+///
+/// ```
+/// # use plotter_motion::{AxisConfig, Duty, plant::AxisPlant};
+/// let mut axis = AxisPlant::new(&AxisConfig::default(), 1e-5);
+/// let mut count = 0;
+/// for _ in 0..20_000 {
+///     axis.step(Duty::saturating(0.2), |edge| count += edge.direction.sign());
+/// }
+/// let ahead = axis.position_counts() - f64::from(count);
+/// assert!(count > 1_000 && (-0.25..0.75).contains(&ahead)); // between two edges, from the middle of A's high half
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisPlant {
     motor: DcMotor,
@@ -52,7 +63,9 @@ pub struct CountedEdge {
 }
 
 impl AxisPlant {
-    /// An axis at rest, over steps of `dt_s`.
+    /// An axis at rest, over steps of `dt_s`: 1 us to 1 ms suit small motors. The axis must be one of a checked
+    /// [`Machine`](crate::Machine). In a step in which its shaft would turn by more than 10,000 quarters of a
+    /// period it stands still.
     #[must_use]
     pub fn new(config: &AxisConfig, dt_s: f64) -> Self {
         let quarters_per_rad = f64::from(config.encoder.lines_per_turn) * 4.0 / TAU;

@@ -24,6 +24,16 @@ pub struct DcMotorState {
 }
 
 /// A motor's equations over one fixed time step.
+///
+/// ```
+/// # use plotter_motion::{LoadConfig, MotorConfig, plant::{DcMotor, DcMotorState}};
+/// let alone = LoadConfig { inertia_kg_m2: 0.0, coulomb_n_m: 0.0, static_n_m: 0.0, viscous_n_m_s: 0.0 };
+/// let motor = DcMotor::new(&MotorConfig::default(), &alone, 1.0); // a step of one second
+/// let state = motor.step(DcMotorState::default(), 12.0, 0.0);
+/// assert!((state.speed_rad_s - 897.599).abs() < 1e-3); // 12 V / 13.369e-3 V s: full speed long ago
+/// let held = motor.step_held(DcMotorState::default(), 12.0);
+/// assert!((held.current_a - 6.316).abs() < 1e-3); // 12 V / 1.9 ohm
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DcMotor {
     /// Next (current, speed, angle) from the present ones (columns 0 to 2), voltage (3) and torque (4).
