@@ -35,6 +35,7 @@ fn pause() -> impl Strategy<Value = Duration> {
     ]
 }
 
+#[expect(clippy::unwrap_used, reason = "a test may panic")]
 fn machine(choice: ControllerChoice, decoding: Decoding, settle_ms: f64) -> Machine {
     let mut config = MachineConfig::default();
     config.control.controller = choice;
