@@ -141,6 +141,9 @@ fn events(text: &[u8]) -> Vec<String> {
     shown
 }
 
+/// Share of a speed that is lost on the way through a decimal number.
+const DECIMAL_ROUNDING: f64 = 1e-12;
+
 proptest! {
     #[test]
     fn a_drawing_on_the_grid_is_read_back_exactly(ops in on_the_grid()) {
@@ -149,7 +152,7 @@ proptest! {
         prop_assert_eq!(read.len(), meant.len());
         for (read, meant) in read.iter().zip(&meant) {
             // Places to the bit; a speed goes through a decimal number of cm/s.
-            prop_assert!(near(read, meant, 0.0, 1e-12), "{:?} for {:?}", read, meant);
+            prop_assert!(near(read, meant, 0.0, DECIMAL_ROUNDING), "{:?} for {:?}", read, meant);
         }
     }
 

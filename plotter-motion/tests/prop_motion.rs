@@ -184,8 +184,10 @@ proptest! {
 
     #[test]
     fn steps_and_back_lose_less_than_half_a_step(mm in -1e5..1e5_f64, per_mm in 1.0..1000.0_f64) {
+        /// Two roundings of numbers up to 1e8, in steps.
+        const ROUNDING_STEPS: f64 = 5e-8;
         let steps = from_mm(mm, per_mm);
-        prop_assert!((f64::from(steps) / per_mm - mm).abs() <= 0.5 / per_mm * (1.0 + 1e-6));
+        prop_assert!((f64::from(steps) / per_mm - mm).abs() <= (0.5 + ROUNDING_STEPS) / per_mm);
     }
 
     /// Whatever edges come, however impossible, the estimate stays a number within the interval of its count.

@@ -192,7 +192,7 @@ mod tests {
     fn a_held_shaft_draws_the_stall_current() {
         let motor = DcMotor::new(&MotorConfig::default(), &UNLOADED, 1e-3);
         let state = motor.step_held(DcMotorState::default(), 12.0);
-        assert!((state.current_a - 12.0 / 1.9).abs() < 1e-9, "{state:?}");
+        assert!((state.current_a / (12.0 / 1.9) - 1.0).abs() < RELATIVE_ERROR, "{state:?}");
         assert_eq!(state.speed_rad_s, 0.0);
     }
 }
