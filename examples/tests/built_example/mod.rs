@@ -1,6 +1,6 @@
 //! Runs an example as a stranger does.
 
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![expect(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![expect(unreachable_pub, reason = "shared by tests, not an interface")]
 
 use std::path::Path;
@@ -10,7 +10,8 @@ use std::process::{Command, Output};
 pub fn run_example(name: &str, arguments: &[&str]) -> Output {
     let test = std::env::current_exe().unwrap();
     let built = test.parent().and_then(Path::parent).unwrap().join("examples").join(name);
-    Command::new(built).args(arguments).output().unwrap()
+    let output = Command::new(&built).args(arguments).output();
+    output.unwrap_or_else(|error| panic!("{}: {error}: cargo build --example {name}", built.display()))
 }
 
 /// The one line that a failed run says.
