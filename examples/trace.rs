@@ -46,7 +46,7 @@ struct Arguments {
     /// Writes the strokes as SVG: the picture's size in px, y down, pixel centres at .5
     #[arg(long, value_name = "F")]
     svg: Option<PathBuf>,
-    /// Writes the strokes as HPGL, 0.1 mm a pixel, y up
+    /// Writes the strokes as HPGL, 0.1 mm a pixel, y up from the centre of the lower left pixel
     #[arg(long, value_name = "F")]
     hpgl: Option<PathBuf>,
     /// Writes the vertices as text: x and y a line, in px as in the SVG, an empty line between strokes
@@ -149,8 +149,9 @@ fn write_files(
         write_file(path, out)?;
     }
     if let Some(path) = &arguments.hpgl {
-        let scale =
-            Scale::new(drawing.height_px(), MM_PER_PX, Point::ORIGIN).map_err(|error| error.to_string())?;
+        // The picture's corner lies half a pixel off, so that the centre of its lower left pixel is the origin.
+        let corner = Point::new(-0.5 * MM_PER_PX, -0.5 * MM_PER_PX);
+        let scale = Scale::new(drawing.height_px(), MM_PER_PX, corner).map_err(|error| error.to_string())?;
         let mut out = String::new();
         hpgl(drawing, scale, &mut out).map_err(|error| error.to_string())?;
         write_file(path, out)?;

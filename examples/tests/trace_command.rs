@@ -93,3 +93,15 @@ fn bad_pictures_get_one_line_and_blank_ones_an_empty_drawing() {
         assert!(String::from_utf8(output.stdout).unwrap().contains("(an empty sheet)"), "{name}");
     }
 }
+
+#[test]
+fn the_centre_of_the_lower_left_pixel_is_the_origin_of_the_plotter_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
+    let (picture, plt) = (file("line.pbm"), file("line.plt"));
+    std::fs::write(&picture, "P1 5 3\n1 1 1 1 1\n0 0 0 0 0\n0 0 0 0 0\n").unwrap();
+    assert!(run_example("trace", &[&picture, "--hpgl", &plt]).status.success());
+    let text = std::fs::read_to_string(&plt).unwrap();
+    // four plotter units a pixel: four pixels to the right, two above the lowest row
+    assert!(text.contains("PU0,8;\nPD16,8;\n") || text.contains("PU16,8;\nPD0,8;\n"), "{text}");
+}
