@@ -1,6 +1,9 @@
 //! Laws of HPGL: what is written is read back, whatever the layout; and no text, however broken, does harm.
 
-use plotter_motion::hpgl::{Error, Event, Interpreter, PlotOps, Reader, WriteError, plot_ops, write_ops};
+use plotter_motion::hpgl::{
+    Coordinates, Error, Event, Interpreter, Opening, PlotOps, Reader, WriteError, WriteOptions, Writer,
+    plot_ops, write_ops,
+};
 use plotter_motion::{PlotOp, Point};
 use proptest::prelude::*;
 
@@ -154,6 +157,24 @@ proptest! {
             // Places to the bit; a speed goes through a decimal number of cm/s.
             prop_assert!(near(read, meant, 0.0, DECIMAL_ROUNDING), "{:?} for {:?}", read, meant);
         }
+    }
+
+    #[test]
+    fn every_layout_reads_back_as_the_same_drawing(ops in on_the_grid(), points_per_command in 0..6_u16) {
+        let options = WriteOptions {
+            points_per_command,
+            opening: Opening::Full,
+            coordinates: Coordinates::Relative,
+            ..WriteOptions::default()
+        };
+        let mut writer = Writer::with_options(String::new(), options);
+        for op in &ops {
+            writer.push(*op)?;
+        }
+        let text = writer.finish()?;
+        prop_assert!(text.starts_with("IN;\nDF;\nPA;\n"));
+        let read = |text: &str| plot_ops(text.as_bytes()).collect::<Result<Vec<_>, Error>>();
+        prop_assert_eq!(read(&text)?, read(&written(&ops)?)?);
     }
 
     #[test]

@@ -94,6 +94,7 @@ mod position;
 mod reader;
 pub mod thesis_text;
 mod write_error;
+mod write_options;
 mod writer;
 
 pub use command::{Mnemonic, Syntax};
@@ -103,7 +104,8 @@ pub use plot_ops::{PlotOps, plot_ops};
 pub use position::Position;
 pub use reader::{Event, Reader};
 pub use write_error::WriteError;
-pub use writer::{WriteOptions, Writer, write_ops};
+pub use write_options::{Coordinates, Opening, WriteOptions};
+pub use writer::{Writer, write_ops};
 
 /// Plotter units in a millimetre: one unit is 0.025 mm.
 pub const UNITS_PER_MM: f64 = 40.0;

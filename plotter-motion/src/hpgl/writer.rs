@@ -1,39 +1,11 @@
 //! [`Writer`]: plot operations in, plain HPGL text out.
 
-use super::{UNITS_PER_MM, WriteError};
+use super::{Coordinates, Opening, UNITS_PER_MM, WriteError, WriteOptions};
 use crate::{PlotOp, Point, StepPoint, from_mm};
 use core::fmt;
 
 /// Thousandths of a cm/s in one mm/s: the grid on which `VS` is written is 0.01 mm/s.
 const SPEED_STEPS_PER_MM_S: f64 = 100.0;
-
-/// How the text is laid out, and what the plotter behind it takes.
-///
-/// The default suits any HP-GL/2 device and, on sheets below 819 mm, a pen plotter of the HP 7475A's age.
-///
-/// ```
-/// # use plotter_motion::{PlotOp, Point, hpgl};
-/// let old = hpgl::WriteOptions { limit_units: 32_767, ..Default::default() }; // 819.175 mm
-/// let mut writer = hpgl::Writer::with_options(String::new(), old);
-/// assert!(writer.push(PlotOp::Travel { to: Point::new(900.0, 0.0) }).is_err());
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct WriteOptions {
-    /// Greatest number of points in one `PD`, at least 1 (a 0 counts as 1). Old plotters keep a whole
-    /// command in a buffer of a few hundred bytes: 20 points are never more than 483 bytes.
-    pub points_per_command: u16,
-    /// Greatest coordinate, plotter units, and with a minus the least. 8 388 607 (2²³ − 1, or 209 m) is the
-    /// range of an HP-GL/2 number; the plotters before it end at 32 767 (819 mm).
-    pub limit_units: i32,
-    /// The pen that is taken when the operations move before they select one.
-    pub pen: u8,
-}
-
-impl Default for WriteOptions {
-    fn default() -> Self {
-        Self { points_per_command: 20, limit_units: 8_388_607, pen: 1 }
-    }
-}
 
 /// What has been written of the stroke in progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,6 +118,33 @@ impl<W: fmt::Write> Writer<W> {
         Ok(())
     }
 
+    /// Writes a circle round `centre` as `CI`, which the plotter itself divides into chords: PU to the centre, the
+    /// circle, and the pen is up at the centre again.
+    ///
+    /// ```
+    /// # use plotter_motion::{Point, hpgl};
+    /// let mut writer = hpgl::Writer::new(String::new());
+    /// writer.circle(Point::new(10.0, 10.0), 2.5)?;
+    /// assert_eq!(writer.finish()?, "IN;\nSP1;\nPU400,400;\nCI100;\nPU;\nSP0;\n");
+    /// # Ok::<(), hpgl::WriteError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::Point`] if the centre or the circle's rightmost point lies out of range, or the radius is not
+    /// a number.
+    pub fn circle(&mut self, centre: Point, radius_mm: f64) -> Result<(), WriteError> {
+        let index = self.index;
+        self.index += 1;
+        let units = self.units(index, centre)?;
+        self.units(index, Point::new(centre.x + radius_mm.abs(), centre.y))?;
+        self.choose_pen()?;
+        self.lift()?;
+        writeln!(self.out, "PU{},{};\nCI{};", units.x, units.y, from_mm(radius_mm.abs(), UNITS_PER_MM))?;
+        self.at = Some(units);
+        Ok(())
+    }
+
     /// Ends the drawing: pen up, pen away. Gives the sink back.
     ///
     /// # Errors
@@ -172,7 +171,10 @@ impl<W: fmt::Write> Writer<W> {
 
     fn start(&mut self) -> fmt::Result {
         if !self.started {
-            self.out.write_str("IN;\n")?;
+            self.out.write_str(match self.options.opening {
+                Opening::Short => "IN;\n",
+                Opening::Full => "IN;\nDF;\nPA;\n",
+            })?;
             self.started = true;
         }
         Ok(())
@@ -195,7 +197,6 @@ impl<W: fmt::Write> Writer<W> {
                 StepPoint::default()
             }
         };
-        self.at = Some(to);
         if speed != self.speed {
             // The dot before this line was owed at the old speed.
             self.close_list()?;
@@ -207,32 +208,47 @@ impl<W: fmt::Write> Writer<W> {
         }
         match self.stroke {
             Stroke::None if at == to => self.stroke = Stroke::Dot,
-            Stroke::None | Stroke::Closed => self.open_list(to)?,
+            Stroke::None | Stroke::Closed => self.open_list(at, to)?,
             Stroke::Dot => {
-                self.open_list(at)?;
-                self.add_to_list(to)?;
+                self.open_list(at, at)?;
+                self.add_to_list(at, to)?;
             }
-            Stroke::Open(_) => self.add_to_list(to)?,
+            Stroke::Open(_) => self.add_to_list(at, to)?,
         }
+        self.at = Some(to);
         Ok(())
     }
 
-    fn open_list(&mut self, to: StepPoint) -> fmt::Result {
-        write!(self.out, "PD{},{}", to.x, to.y)?;
+    /// The numbers of a point that follows `at`.
+    fn numbers(&self, at: StepPoint, to: StepPoint) -> (i64, i64) {
+        let from = match self.options.coordinates {
+            Coordinates::Absolute => StepPoint::default(),
+            Coordinates::Relative => at,
+        };
+        (i64::from(to.x) - i64::from(from.x), i64::from(to.y) - i64::from(from.y))
+    }
+
+    fn open_list(&mut self, at: StepPoint, to: StepPoint) -> fmt::Result {
+        let (x, y) = self.numbers(at, to);
+        if self.options.coordinates == Coordinates::Relative {
+            self.out.write_str("PR;\n")?;
+        }
+        write!(self.out, "PD{x},{y}")?;
         self.stroke = Stroke::Open(1);
         Ok(())
     }
 
-    fn add_to_list(&mut self, to: StepPoint) -> fmt::Result {
+    fn add_to_list(&mut self, at: StepPoint, to: StepPoint) -> fmt::Result {
         match self.stroke {
             Stroke::Open(points) if points < self.options.points_per_command => {
-                write!(self.out, ",{},{}", to.x, to.y)?;
+                let (x, y) = self.numbers(at, to);
+                write!(self.out, ",{x},{y}")?;
                 self.stroke = Stroke::Open(points.saturating_add(1));
                 Ok(())
             }
             _ => {
                 self.close_list()?;
-                self.open_list(to)
+                self.open_list(at, to)
             }
         }
     }
@@ -241,7 +257,10 @@ impl<W: fmt::Write> Writer<W> {
     fn close_list(&mut self) -> fmt::Result {
         match self.stroke {
             Stroke::Open(_) => {
-                self.out.write_str(";\n")?;
+                self.out.write_str(match self.options.coordinates {
+                    Coordinates::Absolute => ";\n",
+                    Coordinates::Relative => ";\nPA;\n",
+                })?;
                 self.stroke = Stroke::Closed;
             }
             Stroke::Dot => {
@@ -437,5 +456,34 @@ mod tests {
             }
         }
         assert_eq!(write_ops([], &mut Full), Err(WriteError::Output));
+    }
+
+    #[test]
+    fn a_circle_is_read_back_round_its_centre_and_the_next_line_starts_there() {
+        let mut writer = Writer::new(String::new());
+        writer.circle(Point::new(10.0, 10.0), 2.5).unwrap();
+        writer.push(draw(11.0, 10.0)).unwrap();
+        assert!(writer.circle(Point::new(10.0, 10.0), f64::NAN).is_err());
+        let text = writer.finish().unwrap();
+        let ops: Vec<PlotOp> = super::super::plot_ops(text.as_bytes()).map(Result::unwrap).collect();
+        let radii = ops.iter().filter_map(|op| match op {
+            PlotOp::Draw { to, .. } => Some(to.distance(Point::new(10.0, 10.0))),
+            _ => None,
+        });
+        let radii: Vec<f64> = radii.collect();
+        assert_eq!(radii.len(), 73); // 72 chords of 5 degrees, and the line
+        let (line, chords) = radii.split_last().unwrap();
+        assert!(chords.iter().all(|r| (r - 2.5).abs() < 1e-12), "rounding of a sine");
+        assert_eq!(*line, 1.0);
+    }
+
+    #[test]
+    fn relative_lists_are_shorter_numbers() {
+        let options = WriteOptions { coordinates: Coordinates::Relative, ..Default::default() };
+        let mut writer = Writer::with_options(String::new(), options);
+        for op in [travel(100.0, 100.0), draw(100.25, 100.0), draw(100.25, 99.75)] {
+            writer.push(op).unwrap();
+        }
+        assert_eq!(writer.finish().unwrap(), "IN;\nSP1;\nPU4000,4000;\nPR;\nPD10,0,0,-10;\nPA;\nPU;\nSP0;\n");
     }
 }
