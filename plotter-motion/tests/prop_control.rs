@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 use plotter_motion::control::{Contouring, LineController, LineTracking};
-use plotter_motion::plant::{AxisPlant, rest_offset_counts};
+use plotter_motion::plant::AxisPlant;
 use plotter_motion::{
     Axis, AxisConfig, ControllerChoice, Decoding, Demand, Direction, Duty, Machine, MachineConfig, Pid,
     PidState, SafetyGate, StepPoint,
@@ -162,7 +162,7 @@ proptest! {
                 let speed = axis.state().speed_rad_s;
                 turns += i32::from(speed * before < 0.0 || (speed == 0.0 && before != 0.0));
                 before = speed;
-                let ahead = axis.position_counts() + rest_offset_counts(decoding) - f64::from(count);
+                let ahead = axis.position_counts() + f64::from(decoding.rest_offset_counts()) - f64::from(count);
                 match decoding {
                     Decoding::X4 => prop_assert!((0.0..=1.0).contains(&ahead), "{ahead} counts ahead"),
                     _ => {

@@ -138,6 +138,10 @@ fn a_motor_that_differs_from_its_description_stays_within_its_counts() {
             axis.motor.supply_v *= 1.0 - 0.3 * share;
         }
         let lines = run(&format!("contouring, motors {share} off"), &ours, &plant, &HEADINGS_DEG);
+        let published = machine(ControllerChoice::Published);
+        let theirs = run(&format!("published, motors {share} off"), &published, &plant, &HEADINGS_DEG);
+        println!("published / contouring: {:.1}", total_rms_mm(&theirs) / total_rms_mm(&lines));
+        assert!(total_rms_mm(&lines) < total_rms_mm(&theirs));
         for line in &lines {
             assert!(line.arrived_s.is_some() && line.max_mm <= allowed_max_mm, "{line:?}");
             assert!(line.drift_mm <= 0.025, "{line:?}"); // less than a count: none was miscounted

@@ -184,6 +184,30 @@ pub enum Decoding {
     X4,
 }
 
+impl Decoding {
+    /// Counts in one period of a phase.
+    #[must_use]
+    pub const fn counts_per_line(self) -> u8 {
+        match self {
+            Self::X1 => 1,
+            Self::X4 => 4,
+        }
+    }
+
+    /// Where, within the interval of a count, a shaft should rest so that no trembling moves it across an edge: in
+    /// the middle of the part between the edges that count forwards and backwards, in counts.
+    ///
+    /// With x1 decoding that part is A's high half, a quarter of a period after the rising edge; with x4 half an
+    /// interval.
+    #[must_use]
+    pub const fn rest_offset_counts(self) -> f32 {
+        match self {
+            Self::X1 => 0.25,
+            Self::X4 => 0.5,
+        }
+    }
+}
+
 /// A two-phase incremental encoder on the motor's shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
@@ -250,11 +274,7 @@ impl AxisConfig {
     /// ```
     #[must_use]
     pub fn counts_per_turn(&self) -> f64 {
-        let counts_per_line = match self.encoder.decoding {
-            Decoding::X1 => 1.0,
-            Decoding::X4 => 4.0,
-        };
-        f64::from(self.encoder.lines_per_turn) * counts_per_line
+        f64::from(self.encoder.lines_per_turn) * f64::from(self.encoder.decoding.counts_per_line())
     }
 }
 

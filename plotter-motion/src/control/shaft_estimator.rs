@@ -57,11 +57,7 @@ impl ShaftModel {
     #[must_use]
     pub fn new(config: &AxisConfig) -> Self {
         let motor = &config.motor;
-        let per_turn = match config.encoder.decoding {
-            Decoding::X1 => 1.0,
-            Decoding::X4 => 4.0,
-        };
-        let counts_per_rad = f64::from(config.encoder.lines_per_turn) * per_turn / TAU;
+        let counts_per_rad = config.counts_per_turn() / TAU;
         let inertia = motor.inertia_kg_m2 + config.load.inertia_kg_m2;
         let torque_per_volt = motor.torque_n_m_per_a / motor.resistance_ohm;
         let damping = (torque_per_volt * motor.back_emf_v_s + config.load.viscous_n_m_s) / inertia;
@@ -98,7 +94,7 @@ impl ShaftEstimator {
             most: 0.0,
             since_correction_s: 0.0,
         };
-        estimator.offset = estimator.rest_offset();
+        estimator.offset = estimator.decoding.rest_offset_counts();
         (estimator.least, estimator.most) = (estimator.offset, estimator.offset);
         estimator
     }
@@ -120,7 +116,7 @@ impl ShaftEstimator {
     pub fn distance_from(&self, count: i32) -> f32 {
         #[expect(clippy::cast_precision_loss, reason = "a checked machine has at most 99999 counts")]
         let whole = self.count.saturating_sub(count) as f32;
-        whole + (self.offset - self.rest_offset())
+        whole + (self.offset - self.decoding.rest_offset_counts())
     }
 
     /// Speed, counts/s.
@@ -211,13 +207,6 @@ impl ShaftEstimator {
                 let again = self.most > 0.5 + BEYOND_COUNTS && self.offset > 0.0;
                 (if again { self.count } else { next }, 0.5)
             }
-        }
-    }
-
-    fn rest_offset(&self) -> f32 {
-        match self.decoding {
-            Decoding::X1 => 0.25,
-            Decoding::X4 => 0.5,
         }
     }
 

@@ -11,7 +11,7 @@ use core::f64::consts::TAU;
 /// timer, as in the thesis' transfer function (spec 1.8).
 ///
 /// Positions are counted as the encoder counts them, with the shaft in the middle of the interval that
-/// belongs to count 0 at the start (see [`rest_offset_counts`]).
+/// belongs to count 0 at the start (see [`Decoding::rest_offset_counts`]).
 ///
 /// ```
 /// # use plotter_motion::{AxisConfig, Duty, plant::AxisPlant};
@@ -31,26 +31,12 @@ pub struct AxisPlant {
     quarters_per_rad: f64,
     decoder: Decoder,
     stalled: bool,
-    dt_s: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Decoder {
     X1(QuadratureX1),
     X4(QuadratureX4),
-}
-
-/// Where, within the interval of a count, a shaft should rest so that no trembling moves it across an edge:
-/// in the middle of the part between the edges that count forwards and backwards.
-///
-/// With ×1 decoding that part is A's high half, a quarter of a period after the rising edge; with ×4 half an
-/// interval.
-#[must_use]
-pub const fn rest_offset_counts(decoding: Decoding) -> f64 {
-    match decoding {
-        Decoding::X1 => 0.25,
-        Decoding::X4 => 0.5,
-    }
 }
 
 /// An edge that the encoder's decoder counted.
@@ -70,7 +56,7 @@ impl AxisPlant {
     pub fn new(config: &AxisConfig, dt_s: f64) -> Self {
         let quarters_per_rad = f64::from(config.encoder.lines_per_turn) * 4.0 / TAU;
         let decoding = config.encoder.decoding;
-        let start_quarters = rest_offset_counts(decoding) * quarters_per_count(decoding);
+        let start_quarters = f64::from(decoding.rest_offset_counts()) * quarters_per_count(decoding);
         let phases = Phases::of_quarter(floor(start_quarters));
         Self {
             motor: DcMotor::new(&config.motor, &config.load, dt_s),
@@ -82,7 +68,6 @@ impl AxisPlant {
                 Decoding::X4 => Decoder::X4(QuadratureX4::new(phases)),
             },
             stalled: false,
-            dt_s,
         }
     }
 
@@ -96,7 +81,7 @@ impl AxisPlant {
     pub fn position_counts(&self) -> f64 {
         let decoding = self.config.encoder.decoding;
         self.state.angle_rad * self.quarters_per_rad / quarters_per_count(decoding)
-            - rest_offset_counts(decoding)
+            - f64::from(decoding.rest_offset_counts())
     }
 
     /// Where the axis truly stands, mm from its start.
@@ -168,19 +153,10 @@ impl AxisPlant {
         let turned = (next.angle_rad - state.angle_rad) * self.quarters_per_rad;
         if turned.abs() <= MOST_QUARTERS_PER_STEP { next } else { self.motor.step_held(state, voltage_v) }
     }
-
-    /// Length of a time step, s.
-    #[must_use]
-    pub const fn dt_s(&self) -> f64 {
-        self.dt_s
-    }
 }
 
-const fn quarters_per_count(decoding: Decoding) -> f64 {
-    match decoding {
-        Decoding::X1 => 4.0,
-        Decoding::X4 => 1.0,
-    }
+fn quarters_per_count(decoding: Decoding) -> f64 {
+    4.0 / f64::from(decoding.counts_per_line())
 }
 
 fn floor(value: f64) -> i64 {
@@ -212,7 +188,8 @@ mod tests {
             let mut axis = AxisPlant::new(&config, DT_S);
             assert_eq!(axis.position_counts(), 0.0);
             let count = run(&mut axis, 0.2, 50_000);
-            let difference = axis.position_counts() + rest_offset_counts(decoding) - f64::from(count);
+            let difference =
+                axis.position_counts() + f64::from(decoding.rest_offset_counts()) - f64::from(count);
             assert!((0.0..1.0).contains(&difference), "{decoding:?}: {count} {difference}");
         }
     }

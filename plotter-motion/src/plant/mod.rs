@@ -5,7 +5,7 @@ mod axis_plant;
 mod bench;
 mod dc_motor;
 
-pub use axis_plant::{AxisPlant, CountedEdge, rest_offset_counts};
+pub use axis_plant::{AxisPlant, CountedEdge};
 #[cfg(feature = "alloc")]
 pub use bench::{Bench, BenchEvent, BenchSettings};
 pub use dc_motor::{DcMotor, DcMotorState};

@@ -245,12 +245,6 @@ impl Receiver {
         let digits = core::mem::take(&mut self.count);
         (digits > 0).then_some(Dropped::Early { digits })
     }
-
-    /// Digits of the present target so far, 0 to 9.
-    #[must_use]
-    pub const fn pending(&self) -> u8 {
-        self.count
-    }
 }
 
 /// The host's end of the line: sends targets digit by digit, and the next one on each `+`.
