@@ -9,15 +9,15 @@
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use plotter_examples::{Figure, PlotOutcome, at, html_page, print, read_file, run, simulate, write_file};
+use plotter_examples::{
+    Figure, PlotOutcome, at, html_page, print, read_file, run, simulate, vectorizer, write_file,
+};
 use plotter_motion::{
     ControllerChoice, Machine, MachineConfig, OutOfReach, PenMove, PlotOp, Point, hpgl, targets,
 };
 use plotter_replay::log::{self, Header};
 use plotter_replay::{BenchRecorder, Canvas, Chart, ContourError, PlotterSettings, VirtualPlotter, Ways};
-use plotter_vector::{
-    Algorithm, Drawing, ErrorReport, Scale, Vectorized, Vectorizer, decode, error_chart, svg,
-};
+use plotter_vector::{Algorithm, ErrorReport, Scale, Vectorized, Vectorizer, decode, error_chart, svg};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ use std::time::Instant;
 struct Args {
     /// PNG, JPEG, PBM or PGM picture; without one, a flag as line art
     image: Option<PathBuf>,
-    /// The machine's TOML file [default: the semi-virtual gantry]
+    /// The machine's TOML file, whose table [vectorize] ours takes too [default: the semi-virtual gantry]
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
     /// The controller, whatever the machine's file says
@@ -74,13 +74,14 @@ fn main() -> ExitCode {
 fn plot(args: &Args) -> Result<(), String> {
     let began = Instant::now();
     let machine = machine(args)?;
-    let traced = trace(args)?;
+    let traced = trace(args, &machine)?;
     std::fs::create_dir_all(&args.out)
         .map_err(|error| at(&args.out, &format!("this folder cannot be made: {error}")))?;
     let file = |name: &str| args.out.join(name);
 
     // The drawing goes through the plotter's own language, so what is plotted is what the file says.
-    let scale = fit(&traced.drawing, &machine, args.width_mm)?;
+    let size_px = (traced.drawing.width_px(), traced.drawing.height_px());
+    let scale = fit(size_px, &machine, args.width_mm)?;
     let mut text = String::new();
     plotter_vector::hpgl(&traced.drawing, scale, &mut text).map_err(|error| error.to_string())?;
     write_file(&file("drawing.hpgl"), &text)?;
@@ -169,28 +170,31 @@ fn machine(args: &Args) -> Result<Machine, String> {
     Machine::new(config).map_err(|error| error.to_string())
 }
 
-fn trace(args: &Args) -> Result<Vectorized, String> {
+fn trace(args: &Args, machine: &Machine) -> Result<Vectorized, String> {
     let (bytes, path) = match &args.image {
         Some(path) => (read_file(path)?, path.as_path()),
         None => (include_bytes!("data/flag.png").to_vec(), Path::new("flag.png")),
     };
     let picture = decode(&bytes).map_err(|error| at(path, &error))?;
-    let algorithm = match args.algorithm {
-        AlgorithmArg::Published => Algorithm::Published,
-        AlgorithmArg::Ours => Algorithm::Ours,
+    let vectorizer = match args.algorithm {
+        AlgorithmArg::Published => Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
+        // One pen, whatever the file says: this machine has no carousel.
+        AlgorithmArg::Ours => {
+            let scale = fit((picture.width(), picture.height()), machine, args.width_mm)?;
+            vectorizer(&machine.config().vectorize, scale.mm_per_px())?
+        }
     };
-    let vectorizer = Vectorizer { algorithm, ..Vectorizer::default() };
     vectorizer.vectorize(&picture).map_err(|error| at(path, &error))
 }
 
 /// The drawing's place: its left lower corner a little off the origin, as large as asked and as the area allows.
-fn fit(drawing: &Drawing, machine: &Machine, width_mm: f64) -> Result<Scale, String> {
+fn fit((width_px, height_px): (u32, u32), machine: &Machine, width_mm: f64) -> Result<Scale, String> {
     const MARGIN_MM: f64 = 5.0;
     if !(width_mm > 0.0 && width_mm.is_finite()) {
         return Err(format!("--width-mm {width_mm}: give a width above 0 mm"));
     }
     let area = machine.config().area;
-    let (width_px, height_px) = (drawing.width_px().max(1), drawing.height_px().max(1));
+    let (width_px, height_px) = (width_px.max(1), height_px.max(1));
     let height_mm = width_mm * f64::from(height_px) / f64::from(width_px);
     let corner = Point::new(
         area.width_mm.min(width_mm + 2.0 * MARGIN_MM),

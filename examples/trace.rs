@@ -9,13 +9,15 @@
 //! ```text
 //! cargo run --release --example trace
 //! cargo run --release --example trace -- scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt
+//! cargo run --release --example trace -- photo.jpg --pens 3 --svg pens.svg --overlay pens.png
 //! ```
 
 use clap::{Parser, ValueEnum};
-use plotter_examples::{print, read_file, run, write_file};
-use plotter_motion::Point;
+use plotter_examples::{Overlay, at, overlay_png, print, read_file, run, vectorizer, write_file};
+use plotter_motion::{Machine, Point, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};
 use plotter_vector::{
-    Algorithm, Bin, Bounded, Drawing, Scale, Vectorized, Vectorizer, decode, error_chart, hpgl, svg,
+    Algorithm, Bin, Bitmap, Colour, Drawing, Gray, MAX_PENS, Palette, Pens, Pixel, Scale, ThresholdMethod,
+    Vectorized, Vectorizer, decode, decode_colour, error_chart, hpgl, svg_in_colour, worst_pixel,
 };
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -26,13 +28,15 @@ use std::time::Instant;
 /// The picture that is traced when none is given.
 const FLAG: &[u8] = include_bytes!("data/flag.png");
 
-/// Size of a pixel in the HPGL file, mm: 254 dots per inch, 4 plotter units a pixel.
-const MM_PER_PX: f64 = 0.1;
+/// Most threads that are started.
+const MAX_THREADS: usize = 1024;
 
 /// Traces a scanned line drawing into pen strokes.
 #[derive(Debug, Parser)]
 #[command(
-    after_help = "Example:\n  trace scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt --report scan.json"
+    after_help = "Examples:\n  trace scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt --report scan.json\n  \
+                  trace photo.jpg --threshold adaptive --mode mixed --hatch 0.5 --overlay look.png\n  \
+                  trace drawing.png --pens 3 --svg pens.svg --hpgl pens.plt"
 )]
 struct Arguments {
     /// PNG, JPEG, PBM or PGM picture of lines [default: the flag that comes with the examples]
@@ -43,10 +47,37 @@ struct Arguments {
     /// Greatest distance of a pixel from the line that replaces it, px (ours only) [default: 0.5]
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     max_error_px: Option<f64>,
+    /// What is drawn of the ink (ours only) [default: centreline, with --hatch mixed]
+    #[arg(long, value_enum)]
+    mode: Option<ModeChoice>,
+    /// How ink is told from paper: otsu, adaptive (uneven light), or a level from 0 to 255 [default: otsu]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    threshold: Option<String>,
+    /// Pens told apart by colour: how many, auto, or a palette's TOML file (ours only) [default: 1, by grey level]
+    #[arg(long, value_name = "N|auto|F.toml", allow_negative_numbers = true)]
+    pens: Option<String>,
+    /// How hard an order with little travel is searched for (ours only) [default: best]
+    #[arg(long, value_enum)]
+    order: Option<OrderChoice>,
+    /// Hatches areas with lines this far apart, mm on the sheet (ours only)
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    hatch: Option<f64>,
+    /// What is wider is an area, px (ours only) [default: found from the picture]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    max_line_px: Option<i64>,
+    /// Size of a pixel on the sheet, mm: 0.1 is 254 dots per inch, 4 plotter units a pixel
+    #[arg(long, value_name = "MM", default_value_t = 0.1, allow_negative_numbers = true)]
+    mm_per_px: f64,
+    /// A machine's TOML file, whose table [vectorize] is taken where no option says otherwise
+    #[arg(long, value_name = "F.toml")]
+    config: Option<PathBuf>,
+    /// Threads to work with; the result is the same with any number [default: one a core]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    threads: Option<i64>,
     /// Writes the strokes as SVG: the picture's size in px, y down, pixel centres at .5
     #[arg(long, value_name = "F")]
     svg: Option<PathBuf>,
-    /// Writes the strokes as HPGL, 0.1 mm a pixel, y up from the centre of the lower left pixel
+    /// Writes the strokes as HPGL, y up from the centre of the lower left pixel
     #[arg(long, value_name = "F")]
     hpgl: Option<PathBuf>,
     /// Writes the vertices as text: x and y a line, in px as in the SVG, an empty line between strokes
@@ -58,6 +89,9 @@ struct Arguments {
     /// Writes the distribution of the errors as a bar chart
     #[arg(long, value_name = "F.svg")]
     error_plot: Option<PathBuf>,
+    /// Writes the strokes on the pale picture, with the pixel of the greatest error circled
+    #[arg(long, value_name = "F.png")]
+    overlay: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -68,9 +102,76 @@ enum Choice {
     Ours,
 }
 
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ModeChoice {
+    /// The middle of lines; what is far wider is outlined
+    Centreline,
+    /// The outlines of everything
+    Outline,
+    /// The middle of lines, and areas already at three times their width
+    Mixed,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum OrderChoice {
+    /// As they are found
+    None,
+    /// From each end to the nearest stroke
+    Fast,
+    /// With all improvements
+    Best,
+}
+
+/// What the options and the machine's file ask for.
+#[derive(Debug)]
+struct Settings {
+    vectorizer: Vectorizer,
+    /// By colour; without, one pen draws all ink.
+    pens: Option<Pens>,
+    threads: Option<rayon::ThreadPool>,
+}
+
+/// What is traced.
+#[derive(Debug)]
+enum Picture {
+    Gray(Gray),
+    Colour(Colour),
+}
+
+impl Picture {
+    fn size(&self) -> (u32, u32) {
+        match self {
+            Self::Gray(gray) => (gray.width(), gray.height()),
+            Self::Colour(colour) => (colour.width(), colour.height()),
+        }
+    }
+
+    /// The colour of a pixel; white outside.
+    fn level(&self, at: Pixel) -> [u8; 3] {
+        let index = at.y as usize * self.size().0 as usize + at.x as usize;
+        match self {
+            Self::Gray(gray) => gray.pixels().get(index).map(|level| [*level; 3]),
+            Self::Colour(colour) => colour.pixels().get(index).copied(),
+        }
+        .unwrap_or([u8::MAX; 3])
+    }
+}
+
+/// What was traced.
+#[derive(Debug)]
+struct Traced {
+    vectorized: Vectorized,
+    palette: Palette,
+    /// The ink of each pen of the palette, where pens were told apart.
+    inks: Vec<Bitmap>,
+}
+
 /// The figures of a tracing.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
+    /// What was drawn of the ink; the published algorithm has no choice.
+    mode: Option<plotter_vector::Mode>,
+    pens: Vec<PenReport<'a>>,
     vertices: usize,
     strokes: usize,
     mean_px: f64,
@@ -84,22 +185,45 @@ struct Report<'a> {
     peak_rss_mb: Option<f64>,
 }
 
+/// What one pen draws.
+#[derive(Debug, Serialize)]
+struct PenReport<'a> {
+    number: u8,
+    name: &'a str,
+    colour: String,
+    strokes: usize,
+    pen_down_px: f64,
+}
+
 fn main() -> ExitCode {
     run("trace", || trace(&Arguments::parse()))
 }
 
 fn trace(arguments: &Arguments) -> Result<(), String> {
-    let vectorizer = vectorizer(arguments)?;
+    let settings = settings(arguments)?;
     let name = arguments.image.as_deref().unwrap_or(Path::new("flag.png")).display().to_string();
     let read = arguments.image.as_deref().map(read_file).transpose()?;
-    let gray = decode(read.as_deref().unwrap_or(FLAG)).map_err(|error| format!("{name}: {error}"))?;
+    let bytes = read.as_deref().unwrap_or(FLAG);
+    let picture = match settings.pens {
+        None => decode(bytes).map(Picture::Gray),
+        Some(_) => decode_colour(bytes).map(Picture::Colour),
+    }
+    .map_err(|error| format!("{name}: {error}"))?;
+    drop(read);
 
     let start = Instant::now();
-    let traced = vectorizer.vectorize(&gray).map_err(|error| format!("{name}: {error}"))?;
+    let traced = match &settings.threads {
+        Some(pool) => pool.install(|| vectorize(&settings, &picture)),
+        None => vectorize(&settings, &picture),
+    }
+    .map_err(|error| format!("{name}: {error}"))?;
     let time_ms = start.elapsed().as_secs_f64() * 1e3;
 
-    let Vectorized { drawing, error, .. } = &traced;
+    let Vectorized { drawing, error, .. } = &traced.vectorized;
+    let ours = settings.vectorizer.algorithm == Algorithm::Ours;
     let report = Report {
+        mode: ours.then_some(settings.vectorizer.mode),
+        pens: traced.palette.pens().iter().map(|pen| pen_report(pen, drawing)).collect(),
         vertices: drawing.vertices(),
         strokes: drawing.strokes().len(),
         mean_px: error.mean_px,
@@ -112,46 +236,227 @@ fn trace(arguments: &Arguments) -> Result<(), String> {
         peak_rss_mb: peak_rss_mb(),
     };
     write_files(arguments, &traced, &report, &name)?;
-    print_table(&format!("{name}: {} x {} px", gray.width(), gray.height()), &report, traced.split.is_none())
+    let worst = match &arguments.overlay {
+        Some(path) => overlay(path, &settings.vectorizer, &traced, &picture)?,
+        None => None,
+    };
+    let (width, height) = picture.size();
+    let empty = if traced.vectorized.drawing.strokes().len() == 0 { " (an empty sheet)" } else { "" };
+    print_table(&format!("{name}: {width} x {height} px{empty}"), &report, worst)
 }
 
-fn vectorizer(arguments: &Arguments) -> Result<Vectorizer, String> {
-    match (arguments.algorithm, arguments.max_error_px) {
-        (Choice::Published, Some(_)) => {
-            Err("--max-error-px: the published algorithm has no error bound; take \
-                                             --algorithm ours, or leave the option out"
-                .into())
-        }
-        (Choice::Published, None) => {
-            Ok(Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() })
-        }
-        (Choice::Ours, None) => Ok(Vectorizer::default()),
-        (Choice::Ours, Some(tolerance_px)) if tolerance_px > 0.0 && tolerance_px.is_finite() => {
-            Ok(Vectorizer { ours: Bounded { tolerance_px }, ..Vectorizer::default() })
-        }
-        (Choice::Ours, Some(bad)) => {
-            Err(format!("--max-error-px: {bad} px is not a positive number; 0.5 is half a pixel"))
+fn vectorize(settings: &Settings, picture: &Picture) -> Result<Traced, String> {
+    let vectorizer = &settings.vectorizer;
+    match (picture, &settings.pens) {
+        (Picture::Colour(colour), Some(pens)) => vectorizer
+            .vectorize_colour(colour, pens)
+            .map(|found| Traced { vectorized: found.traced, palette: found.palette, inks: found.inks }),
+        (Picture::Gray(gray), _) => vectorizer.vectorize(gray).map(one_pen),
+        // Cannot be: a picture is read in colour for pens only.
+        (Picture::Colour(colour), None) => {
+            vectorizer.vectorize_colour(colour, &Pens::Count(1)).map(|found| one_pen(found.traced))
         }
     }
+    .map_err(|error| error.to_string())
+}
+
+fn one_pen(vectorized: Vectorized) -> Traced {
+    Traced { vectorized, palette: Palette::default(), inks: Vec::new() }
+}
+
+fn pen_report<'a>(pen: &'a plotter_vector::PalettePen, drawing: &Drawing) -> PenReport<'a> {
+    let own = drawing.of_pen(pen.number);
+    PenReport {
+        number: pen.number,
+        name: &pen.name,
+        colour: pen.colour.to_string(),
+        strokes: own.strokes().len(),
+        pen_down_px: own.pen_down_px(),
+    }
+}
+
+/// The machine's file, then the options: what they say wins.
+fn settings(arguments: &Arguments) -> Result<Settings, String> {
+    let mut config = match &arguments.config {
+        Some(path) => {
+            let text = String::from_utf8(read_file(path)?)
+                .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
+            Machine::from_toml(&text).map_err(|error| at(path, &error))?.config().vectorize
+        }
+        None => VectorizeConfig::default(),
+    };
+    let mm_per_px = arguments.mm_per_px;
+    if !(mm_per_px > 0.0 && mm_per_px.is_finite()) {
+        return Err(format!(
+            "--mm-per-px: {mm_per_px} mm is not a positive number; 0.1 gives 254 dots per inch"
+        ));
+    }
+    if let Some(text) = &arguments.threshold {
+        config.threshold = match text.parse::<ThresholdMethod>().map_err(|error| format!("--{error}"))? {
+            ThresholdMethod::Otsu => ThresholdChoice::Otsu,
+            ThresholdMethod::Adaptive => ThresholdChoice::Adaptive,
+            ThresholdMethod::Level(level) => ThresholdChoice::Level(level),
+        };
+    }
+    let threads = arguments.threads.map(threads).transpose()?;
+    if matches!(arguments.algorithm, Choice::Published) {
+        refuse_ours(arguments)?;
+        let threshold =
+            vectorizer(&VectorizeConfig { threshold: config.threshold, ..Default::default() }, 1.0)?;
+        let vectorizer = Vectorizer { algorithm: Algorithm::Published, ..threshold };
+        return Ok(Settings { vectorizer, pens: None, threads });
+    }
+    match arguments.max_error_px {
+        Some(bad) if !(bad > 0.0 && bad.is_finite()) => {
+            return Err(format!("--max-error-px: {bad} px is not a positive number; 0.5 is half a pixel"));
+        }
+        given => config.max_error_px = given.unwrap_or(config.max_error_px),
+    }
+    match arguments.hatch {
+        Some(bad) if !(bad >= 0.0 && bad.is_finite()) => {
+            return Err(format!(
+                "--hatch: {bad} mm is no distance; give a pen's width, as 0.5, or 0 for none"
+            ));
+        }
+        Some(hatch_mm) => {
+            config.hatch_mm = hatch_mm;
+            if hatch_mm > 0.0 {
+                config.mode = VectorizeMode::Mixed;
+            }
+        }
+        None => {}
+    }
+    match arguments.mode {
+        Some(ModeChoice::Centreline) => config.mode = VectorizeMode::Centreline,
+        Some(ModeChoice::Outline) => config.mode = VectorizeMode::Outline,
+        Some(ModeChoice::Mixed) => config.mode = VectorizeMode::Mixed,
+        None => {}
+    }
+    match arguments.order {
+        Some(OrderChoice::None) => config.order = StrokeOrder::None,
+        Some(OrderChoice::Fast) => config.order = StrokeOrder::Fast,
+        Some(OrderChoice::Best) => config.order = StrokeOrder::Best,
+        None => {}
+    }
+    if let Some(given) = arguments.max_line_px {
+        let fits = u32::try_from(given).ok().filter(|px| *px <= plotter_vector::MAX_LINE_PX);
+        config.max_line_px = fits.ok_or_else(|| {
+            format!(
+                "--max-line-px: {given} px lies outside 0..={} px; 0 finds it from the picture",
+                plotter_vector::MAX_LINE_PX
+            )
+        })?;
+    }
+    let pens = pens(arguments, config.pens)?;
+    Ok(Settings { vectorizer: vectorizer(&config, mm_per_px)?, pens, threads })
+}
+
+/// Refuses options that the published algorithm does not have.
+fn refuse_ours(arguments: &Arguments) -> Result<(), String> {
+    let given = [
+        ("--max-error-px", "has no error bound", arguments.max_error_px.is_some()),
+        ("--mode", "always follows the middle of lines", arguments.mode.is_some()),
+        ("--pens", "draws with one pen", arguments.pens.is_some()),
+        ("--order", "draws in the order of tracking", arguments.order.is_some()),
+        ("--hatch", "has no areas", arguments.hatch.is_some()),
+        ("--max-line-px", "has no areas", arguments.max_line_px.is_some()),
+    ];
+    match given.iter().find(|(.., given)| *given) {
+        Some((option, why, _)) => Err(format!(
+            "{option}: the published algorithm {why}; take --algorithm ours, or leave the option out"
+        )),
+        None => Ok(()),
+    }
+}
+
+/// The pens that the option names, else as many as the machine's file says; none: one pen, by grey level.
+fn pens(arguments: &Arguments, in_file: u32) -> Result<Option<Pens>, String> {
+    let pens = match arguments.pens.as_deref() {
+        None => count(in_file as usize),
+        Some("auto") => Some(Pens::Found),
+        Some(text) => match text.parse::<i64>() {
+            Ok(number) => match usize::try_from(number).ok().filter(|number| (1..=MAX_PENS).contains(number))
+            {
+                Some(number) => count(number),
+                None => {
+                    return Err(format!(
+                        "--pens: {number} pens cannot be found: ask for 1 to {MAX_PENS}, or auto"
+                    ));
+                }
+            },
+            Err(_) => Some(Pens::Given(palette(Path::new(text))?)),
+        },
+    };
+    // What the machine's file says of the threshold rests when pens are asked for; the option would go unheard.
+    if pens.is_some() && arguments.threshold.is_some() {
+        return Err(
+            "--threshold: pens are told apart by colour, without a level; leave it out, or take --pens 1"
+                .into(),
+        );
+    }
+    Ok(pens)
+}
+
+fn count(pens: usize) -> Option<Pens> {
+    (pens > 1).then_some(Pens::Count(pens))
+}
+
+fn palette(path: &Path) -> Result<Palette, String> {
+    let bytes = read_file(path)
+        .map_err(|error| format!("--pens: {error}; give 1 to {MAX_PENS}, auto, or a palette's TOML file"))?;
+    let text =
+        String::from_utf8(bytes).map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
+    Palette::from_toml(&text).map_err(|error| at(path, &error))
+}
+
+fn threads(given: i64) -> Result<rayon::ThreadPool, String> {
+    let number = usize::try_from(given).ok().filter(|number| (1..=MAX_THREADS).contains(number));
+    let number = number.ok_or_else(|| {
+        format!("--threads: {given} lies outside 1..={MAX_THREADS}; leave it out for one a core")
+    })?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(number).build();
+    pool.map_err(|error| format!("--threads: {number} cannot be started: {error}; take fewer"))
+}
+
+/// Writes the strokes on the picture; the pixel with the greatest error.
+fn overlay(
+    path: &Path,
+    vectorizer: &Vectorizer,
+    traced: &Traced,
+    picture: &Picture,
+) -> Result<Option<(Pixel, f64)>, String> {
+    let drawing = &traced.vectorized.drawing;
+    let (worst, palette) = match picture {
+        Picture::Gray(gray) => (worst_pixel(&vectorizer.ink(gray), drawing), None),
+        Picture::Colour(_) => {
+            let pens = traced.palette.pens().iter().zip(&traced.inks);
+            let each = pens.filter_map(|(pen, ink)| worst_pixel(ink, &drawing.of_pen(pen.number)));
+            (each.max_by(|one, other| one.1.total_cmp(&other.1)), Some(&traced.palette))
+        }
+    };
+    let overlay = Overlay { drawing, palette, worst: worst.map(|(pixel, _)| pixel) };
+    write_file(path, overlay_png(overlay, |pixel| picture.level(pixel))?)?;
+    Ok(worst)
 }
 
 fn write_files(
     arguments: &Arguments,
-    traced: &Vectorized,
+    traced: &Traced,
     report: &Report<'_>,
     name: &str,
 ) -> Result<(), String> {
-    let drawing = &traced.drawing;
+    let drawing = &traced.vectorized.drawing;
     let text = |error: std::fmt::Error| error.to_string();
     if let Some(path) = &arguments.svg {
         let mut out = String::new();
-        svg(drawing, 1.0, &mut out).map_err(text)?;
+        svg_in_colour(drawing, &traced.palette, 1.0, &mut out).map_err(text)?;
         write_file(path, out)?;
     }
     if let Some(path) = &arguments.hpgl {
+        let mm_per_px = arguments.mm_per_px;
         // The picture's corner lies half a pixel off, so that the centre of its lower left pixel is the origin.
-        let corner = Point::new(-0.5 * MM_PER_PX, -0.5 * MM_PER_PX);
-        let scale = Scale::new(drawing.height_px(), MM_PER_PX, corner).map_err(|error| error.to_string())?;
+        let corner = Point::new(-0.5 * mm_per_px, -0.5 * mm_per_px);
+        let scale = Scale::new(drawing.height_px(), mm_per_px, corner).map_err(|error| error.to_string())?;
         let mut out = String::new();
         hpgl(drawing, scale, &mut out).map_err(|error| error.to_string())?;
         write_file(path, out)?;
@@ -163,8 +468,13 @@ fn write_files(
         let mut out = String::new();
         // The file alone: a long path would not fit above the chart.
         let file = Path::new(name).file_name().map_or(name.into(), |file| file.to_string_lossy());
-        error_chart(&traced.error, &format!("Error of the vectorization of {file}"), &[], &mut out)
-            .map_err(text)?;
+        error_chart(
+            &traced.vectorized.error,
+            &format!("Error of the vectorization of {file}"),
+            &[],
+            &mut out,
+        )
+        .map_err(text)?;
         write_file(path, out)?;
     }
     if let Some(path) = &arguments.report {
@@ -187,25 +497,33 @@ fn points(drawing: &Drawing) -> Result<String, std::fmt::Error> {
     Ok(out)
 }
 
-fn print_table(title: &str, report: &Report<'_>, empty: bool) -> Result<(), String> {
-    let mut out = String::new();
-    let note = if empty { " (an empty sheet)" } else { "" };
+fn print_table(title: &str, report: &Report<'_>, worst: Option<(Pixel, f64)>) -> Result<(), String> {
     let rss = report.peak_rss_mb.map_or("-".into(), |rss| format!("{rss:.1} MB"));
-    write!(
-        out,
-        "{title}{note}\n  vertices   {:>10}\n  strokes    {:>10}\n  mean error {:>10.4} px\n  max error  {:>10.4} px\n  \
-         sd         {:>10.4} px\n  pen down   {:>10.1} px\n  pen up     {:>10.1} px\n  time       {:>10.2} ms\n  \
-         memory     {rss:>13}\n",
-        report.vertices,
-        report.strokes,
-        report.mean_px,
-        report.max_px,
-        report.sd_px,
-        report.pen_down_px,
-        report.pen_up_px,
-        report.time_ms
-    )
-    .map_err(|error| error.to_string())?;
+    let mut rows = vec![
+        ("vertices", report.vertices.to_string()),
+        ("strokes", report.strokes.to_string()),
+        ("mean error", format!("{:.4} px", report.mean_px)),
+        ("max error", format!("{:.4} px", report.max_px)),
+        ("sd", format!("{:.4} px", report.sd_px)),
+        ("pen down", format!("{:.1} px", report.pen_down_px)),
+        ("pen up", format!("{:.1} px", report.pen_up_px)),
+        ("time", format!("{:.2} ms", report.time_ms)),
+        ("memory", rss),
+    ];
+    if let Some((pixel, error_px)) = worst {
+        rows.push(("circled", format!("{error_px:.4} px at {}, {}", pixel.x, pixel.y)));
+    }
+    let mut out = format!("{title}\n");
+    for (name, value) in &rows {
+        let (number, unit) = value.split_once(' ').unwrap_or((value, ""));
+        out.push_str(format!("  {name:10} {number:>10} {unit}").trim_end());
+        out.push('\n');
+    }
+    if let [_, _, ..] = report.pens.as_slice() {
+        for pen in &report.pens {
+            let _ = writeln!(out, "  pen {:<6} {:>10} strokes, {}", pen.number, pen.strokes, pen.name);
+        }
+    }
     print(&out)
 }
 

@@ -1,10 +1,14 @@
 //! What the examples share: one clear line for every error, and a simulated plot with its recording.
 
+mod overlay;
 mod report;
 mod simulated_plot;
+mod vectorize_settings;
 
+pub use overlay::{Overlay, overlay_png};
 pub use report::{Figure, html_page};
 pub use simulated_plot::{PlotOutcome, simulate};
+pub use vectorize_settings::vectorizer;
 
 use std::fmt::Display;
 use std::io::{Read as _, Write as _};

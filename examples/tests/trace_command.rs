@@ -17,6 +17,8 @@ fn all_files_are_written_and_the_report_has_all_keys() {
     let read = |path: &str| std::fs::read_to_string(path).unwrap();
     let report: serde_json::Value = serde_json::from_str(&read(&json)).unwrap();
     let keys = [
+        "mode",
+        "pens",
         "vertices",
         "strokes",
         "mean_px",
@@ -104,4 +106,230 @@ fn the_centre_of_the_lower_left_pixel_is_the_origin_of_the_plotter_file() {
     let text = std::fs::read_to_string(&plt).unwrap();
     // four plotter units a pixel: four pixels to the right, two above the lowest row
     assert!(text.contains("PU0,8;\nPD16,8;\n") || text.contains("PU16,8;\nPD0,8;\n"), "{text}");
+}
+
+/// A folder with pictures, and what `trace` says of them.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.path().join(name).to_str().unwrap().to_owned()
+    }
+
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> String {
+        std::fs::write(self.path(name), bytes).unwrap();
+        self.path(name)
+    }
+
+    /// White paper, with rectangles (left, top, width, height) of these grey levels.
+    fn gray(&self, (width, height): (usize, usize), marks: &[([usize; 4], u8)]) -> String {
+        let mut levels = vec![255; width * height];
+        for ([left, top, wide, high], level) in marks {
+            (*top..top + high).for_each(|y| levels[y * width + left..y * width + left + wide].fill(*level));
+        }
+        self.write("gray.pgm", [format!("P5 {width} {height} 255\n").into_bytes(), levels].concat())
+    }
+
+    /// A black line across, a red one down over it.
+    fn colour(&self) -> String {
+        let pixel = |x: usize, y: usize| match (x, y) {
+            (29..32, 5..55) => [208, 24, 24],
+            (5..55, 29..32) => [0, 0, 0],
+            _ => [255_u8; 3],
+        };
+        let pixels: Vec<u8> = (0..60).flat_map(|y| (0..60).flat_map(move |x| pixel(x, y))).collect();
+        self.write("colour.ppm", [b"P6 60 60 255\n".to_vec(), pixels].concat())
+    }
+
+    fn report(&self, picture: &str, options: &[&str]) -> serde_json::Value {
+        let json = self.path("report.json");
+        let output = run_example("trace", &[&[picture, "--report", &json], options].concat());
+        assert!(output.status.success(), "{options:?}: {}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&std::fs::read(json).unwrap()).unwrap()
+    }
+}
+
+#[test]
+fn the_mode_decides_whether_a_line_is_followed_or_outlined() {
+    let folder = Folder::new();
+    let bar = folder.gray((60, 20), &[([10, 8, 40, 3], 0)]);
+    let vertices = |mode| {
+        let report = folder.report(&bar, &["--mode", mode]);
+        assert_eq!(report["mode"], mode);
+        report["vertices"].as_u64().unwrap()
+    };
+    assert_eq!((vertices("centreline"), vertices("mixed")), (2, 2));
+    assert!(vertices("outline") >= 5);
+}
+
+#[test]
+fn a_level_by_hand_decides_what_is_ink() {
+    let folder = Folder::new();
+    let picture = folder.gray((60, 30), &[([10, 5, 40, 3], 20), ([10, 20, 40, 3], 180)]);
+    let strokes = |threshold| folder.report(&picture, &["--threshold", threshold])["strokes"].clone();
+    assert_eq!((strokes("100"), strokes("200")), (1.into(), 2.into()));
+}
+
+#[test]
+fn a_shadow_needs_the_adaptive_threshold() {
+    let folder = Folder::new();
+    // Paper from 250 on the left to 111 on the right, and two lines with two thirds of its light.
+    let paper = |x: usize| u8::try_from(250 - x * 140 / 256).unwrap();
+    let column = |x| {
+        [([x, 0, 1, 128], paper(x)), ([x, 40, 1, 3], paper(x) / 3 * 2), ([x, 80, 1, 3], paper(x) / 3 * 2)]
+    };
+    let marks: Vec<_> = (0..256).flat_map(column).collect();
+    let picture = folder.gray((256, 128), &marks);
+    let strokes = |threshold| folder.report(&picture, &["--threshold", threshold])["strokes"].clone();
+    assert_eq!(strokes("adaptive"), 2);
+    assert_ne!(strokes("otsu"), 2);
+}
+
+#[test]
+fn pens_are_told_apart_by_colour() {
+    let folder = Folder::new();
+    let picture = folder.colour();
+    let palette = "schema = 1\n[[pen]]\nnumber = 4\nname = \"ink\"\ncolour = \"#000000\"\n[[pen]]\nnumber = 2\n\
+                   colour = \"#d01818\"\n";
+    let palette = folder.write("palette.toml", palette);
+    let (svg, plt) = (folder.path("a.svg"), folder.path("a.plt"));
+    for (pens, numbers) in [("2", [1, 2]), ("auto", [1, 2]), (palette.as_str(), [4, 2])] {
+        let report = folder.report(&picture, &["--pens", pens, "--svg", &svg, "--hpgl", &plt]);
+        let found = report["pens"].as_array().unwrap();
+        assert_eq!(found.iter().map(|pen| &pen["number"]).collect::<Vec<_>>(), numbers);
+        assert_eq!(found.iter().map(|pen| &pen["strokes"]).collect::<Vec<_>>(), [1, 1], "--pens {pens}");
+        assert_eq!(report["vertices"], 4);
+        let svg = std::fs::read_to_string(&svg).unwrap();
+        assert!(svg.contains("stroke=\"#d01818\"") && svg.contains("stroke=\"#000\""), "{svg}");
+        let plt = std::fs::read_to_string(&plt).unwrap();
+        assert!(numbers.iter().all(|number| plt.contains(&format!("SP{number};"))), "{plt}");
+    }
+    assert_eq!(folder.report(&picture, &["--pens", "1"])["pens"].as_array().unwrap().len(), 1);
+}
+
+#[test]
+fn the_best_order_travels_less_than_none() {
+    let folder = Folder::new();
+    let dashes: Vec<_> = (0..16).map(|i| ([10 + 80 * (i % 2), 6 + 10 * (i / 2), 12, 3], 0)).collect();
+    let picture = folder.gray((120, 90), &dashes);
+    let travel = |order| folder.report(&picture, &["--order", order])["pen_up_px"].as_f64().unwrap();
+    let (none, fast, best) = (travel("none"), travel("fast"), travel("best"));
+    assert!(none > 2.0 * best && none > fast && fast >= best, "{none} {fast} {best}");
+}
+
+#[test]
+fn hatching_fills_an_area_that_is_outlined_otherwise() {
+    let folder = Folder::new();
+    let blob = folder.gray((60, 60), &[([10, 10, 40, 40], 0)]);
+    let outlined = folder.report(&blob, &["--max-line-px", "8"]);
+    let pen_down = |report: &serde_json::Value| report["pen_down_px"].as_f64().unwrap();
+    let hatched = |options: &[&str]| {
+        folder.report(&blob, &[&["--max-line-px", "8", "--hatch", "0.5"], options].concat())
+    };
+    assert_eq!((&outlined["mode"], &hatched(&[])["mode"]), (&"centreline".into(), &"mixed".into()));
+    assert_eq!(hatched(&["--mode", "centreline"])["mode"], "centreline");
+    // 39 px square inside the pen's half width: lines 5 px apart are 304 px, 50 px apart one or none.
+    let more = pen_down(&hatched(&[])) - pen_down(&outlined);
+    assert!((200.0..500.0).contains(&more), "{more}");
+    assert!(pen_down(&hatched(&["--mm-per-px", "0.01"])) - pen_down(&outlined) < 100.0);
+}
+
+#[test]
+fn the_overlay_is_a_picture_four_times_as_large_in_the_pens_colours() {
+    let folder = Folder::new();
+    let png = folder.path("overlay.png");
+    let output = run_example("trace", &[&folder.colour(), "--pens", "2", "--overlay", &png]);
+    assert!(String::from_utf8(output.stdout).unwrap().contains("circled"));
+    let image = image::open(&png).unwrap().to_rgb8();
+    assert_eq!(image.dimensions(), (240, 240));
+    assert_eq!(image.get_pixel(4, 4).0, [255; 3]);
+    // On the middle of either line, away from its vertices and the crossing.
+    let (red, black) = (image.get_pixel(122, 60).0, image.get_pixel(60, 122).0);
+    assert!(red[0] > 150 && red[1] < 90, "{red:?}");
+    assert!(black.iter().all(|level| *level < 90), "{black:?}");
+    let output = run_example("trace", &[&folder.gray((60, 20), &[([10, 8, 40, 3], 0)]), "--overlay", &png]);
+    assert!(output.status.success());
+    assert_eq!(image::open(&png).unwrap().to_rgb8().dimensions(), (240, 80));
+}
+
+#[test]
+fn the_machines_file_is_asked_and_an_option_wins_over_it() {
+    let folder = Folder::new();
+    let bar = folder.gray((60, 30), &[([10, 5, 40, 3], 20), ([10, 20, 40, 3], 180)]);
+    let file = folder.write(
+        "machine.toml",
+        "schema = 1\n[vectorize]\nmode = \"outline\"\nthreshold = \"100\"\nmax_error_px = 0.6\n",
+    );
+    let report = folder.report(&bar, &["--config", &file]);
+    assert_eq!((&report["mode"], &report["strokes"]), (&"outline".into(), &1.into()));
+    let report = folder.report(&bar, &["--config", &file, "--mode", "centreline", "--threshold", "200"]);
+    assert_eq!((&report["mode"], &report["strokes"]), (&"centreline".into(), &2.into()));
+    let pens = folder.write("pens.toml", "schema = 1\nvectorize.pens = 2\n");
+    let colours = |options: &[&str]| {
+        let report = folder.report(&folder.colour(), &[&["--config", pens.as_str()], options].concat());
+        report["pens"].as_array().unwrap().len()
+    };
+    assert_eq!((colours(&[]), colours(&["--pens", "1"])), (2, 1));
+    let slip = folder.write("slip.toml", "schema = 1\n[vectorize]\nmode = \"outlines\"\n");
+    let said = complaint("trace", &[&bar, "--config", &slip]);
+    assert!(said.contains("slip.toml: line 3, column 8: vectorize.mode"), "{said}");
+    assert!(said.contains("did you mean \"outline\"?"), "{said}");
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let folder = Folder::new();
+    let strokes = |threads| {
+        let points = folder.path("points.txt");
+        assert!(run_example("trace", &["--threads", threads, "--points", &points]).status.success());
+        std::fs::read(points).unwrap()
+    };
+    assert_eq!(strokes("1"), strokes("3"));
+}
+
+#[test]
+fn bad_values_get_one_line_with_a_remedy() {
+    let flag = data("flag.png");
+    let said = [
+        (["--threshold", "300"], "--threshold: 300 is neither otsu, adaptive nor a level from 0 to 255"),
+        (["--pens", "0"], "--pens: 0 pens cannot be found: ask for 1 to 16, or auto"),
+        (["--pens", "-3"], "--pens: -3 pens cannot be found: ask for 1 to 16, or auto"),
+        (["--pens", "missing.toml"], "give 1 to 16, auto, or a palette's TOML file"),
+        (["--hatch", "-1"], "--hatch: -1 mm is no distance; give a pen's width, as 0.5, or 0 for none"),
+        (["--hatch", "0.01"], "hatching: 0.01 mm are 0.100 px of 0.1 mm; give 0.05 mm or more"),
+        (["--threads", "0"], "--threads: 0 lies outside 1..=1024; leave it out for one a core"),
+        (["--max-line-px", "-1"], "--max-line-px: -1 px lies outside 0..=512 px; 0 finds it"),
+        (["--mm-per-px", "0"], "--mm-per-px: 0 mm is not a positive number; 0.1 gives"),
+        (["--config", "missing.toml"], "missing.toml: cannot be read"),
+    ];
+    for (options, expected) in said {
+        let said = complaint("trace", &[&flag, options[0], options[1]]);
+        assert!(said.contains(expected), "{said}");
+    }
+    let said = complaint("trace", &[&flag, "--pens", "2", "--threshold", "otsu"]);
+    assert!(said.contains("leave it out, or take --pens 1"), "{said}");
+}
+
+#[test]
+fn the_published_algorithm_refuses_what_only_ours_has() {
+    let ours = [
+        ["--mode", "outline"],
+        ["--pens", "2"],
+        ["--order", "none"],
+        ["--hatch", "1"],
+        ["--max-line-px", "9"],
+    ];
+    for [option, value] in ours {
+        let said = complaint("trace", &["--algorithm", "published", option, value]);
+        assert!(said.contains(&format!("{option}: the published algorithm")), "{said}");
+        assert!(said.contains("take --algorithm ours, or leave the option out"), "{said}");
+    }
+    let folder = Folder::new();
+    let picture = folder.gray((60, 30), &[([10, 5, 40, 1], 20), ([10, 20, 40, 1], 180)]);
+    let report = folder.report(&picture, &["--algorithm", "published", "--threshold", "100"]);
+    assert_eq!((&report["mode"], &report["strokes"]), (&serde_json::Value::Null, &1.into()));
 }

@@ -29,7 +29,7 @@ pub use axis::{Axis, Direction};
 pub use config::{
     AreaConfig, AxisConfig, Bound, ConfigError, ContouringConfig, ControlConfig, ControllerChoice, Decoding,
     EncoderConfig, LoadConfig, Machine, MachineConfig, MachineName, MotorConfig, PublishedConfig,
-    SerialConfig, SyncStopConfig,
+    SerialConfig, StrokeOrder, SyncStopConfig, ThresholdChoice, VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};

@@ -19,6 +19,10 @@ accel_mm_s2 = 600.0
 loop_hz = 2_500
 [sync_stop]
 slope_counts = 1e1
+[vectorize]
+mode = "mixed"
+threshold = "128"
+pens = 3
 [x.encoder]
 lines_per_turn = 0x64
 decoding = "x4"
@@ -29,7 +33,7 @@ static_n_m = 1.3e-3
 "#;
 
 /// Numeric keys that the machine has once.
-const OF_THE_MACHINE: [&str; 23] = [
+const OF_THE_MACHINE: [&str; 27] = [
     "schema",
     "area.width_mm",
     "area.height_mm",
@@ -53,6 +57,10 @@ const OF_THE_MACHINE: [&str; 23] = [
     "control.contouring.settle_ms",
     "sync_stop.slope_counts",
     "sync_stop.offset_counts",
+    "vectorize.max_error_px",
+    "vectorize.pens",
+    "vectorize.hatch_mm",
+    "vectorize.max_line_px",
 ];
 
 /// Numeric keys that each axis has.
@@ -73,7 +81,14 @@ const OF_AN_AXIS: [&str; 13] = [
 ];
 
 /// Keys whose number must be whole.
-const WHOLE: [&str; 4] = ["schema", "serial.baud", "encoder.lines_per_turn", "motor.pwm_steps"];
+const WHOLE: [&str; 6] = [
+    "schema",
+    "serial.baud",
+    "vectorize.pens",
+    "vectorize.max_line_px",
+    "encoder.lines_per_turn",
+    "motor.pwm_steps",
+];
 
 /// Every numeric key, and whether its number must be whole.
 fn numbers() -> impl Iterator<Item = (String, bool)> {

@@ -2,8 +2,9 @@
 
 use core::fmt;
 
-/// Longest side of a picture, px. Coordinates up to here keep every sum of the simplifiers exact in `f64`.
-pub const MAX_SIDE_PX: u32 = 1 << 15;
+/// Longest side of a picture, px: 2¹⁷, or 2.7 m at 1200 dots per inch. Coordinates up to here keep every sum of the
+/// simplifiers exact in `f64`.
+pub const MAX_SIDE_PX: u32 = 1 << 17;
 
 /// Most pixels of a picture: 2²⁸, that is 16 384 × 16 384, or 32 MiB as a [`Bitmap`].
 pub const MAX_PIXELS: u64 = 1 << 28;
@@ -106,6 +107,17 @@ fn place(x: u32) -> (usize, u64) {
     ((x / BITS) as usize, 1 << (x % BITS))
 }
 
+/// Blocks of two by two pixels of ink in two rows, see [`Bitmap::blocks`].
+pub(crate) fn blocks_between(above: &[u64], below: &[u64]) -> u64 {
+    let (mut count, mut before) = (0, 0);
+    for (above, below) in above.iter().zip(below) {
+        let both = above & below;
+        count += u64::from((both & (both << 1 | before >> 63)).count_ones());
+        before = both;
+    }
+    count
+}
+
 impl Bitmap {
     /// An empty picture.
     ///
@@ -201,6 +213,85 @@ impl Bitmap {
         self.words.get_mut(start..start + self.words_per_row).unwrap_or(&mut [])
     }
 
+    /// All rows from the top, as [`Bitmap::row_mut`].
+    pub(crate) fn rows_mut(&mut self) -> impl Iterator<Item = &mut [u64]> {
+        self.words.chunks_mut(self.words_per_row.max(1))
+    }
+
+    /// A picture of these rows; the bits right of it are clear. Missing words are paper.
+    pub(crate) fn of_words(width: u32, height: u32, mut words: Vec<u64>) -> Self {
+        let words_per_row = width.div_ceil(BITS) as usize;
+        words.resize(words_per_row * height as usize, 0);
+        Self { width, height, words_per_row, words }
+    }
+
+    /// A copy of some rows.
+    pub(crate) fn band(&self, rows: core::ops::Range<u32>) -> Self {
+        let rows = rows.start.min(self.height)..rows.end.min(self.height);
+        let at = |y: u32| y as usize * self.words_per_row;
+        let words = self.words.get(at(rows.start)..at(rows.end)).unwrap_or(&[]).to_vec();
+        Self { height: rows.end.saturating_sub(rows.start), words, ..*self }
+    }
+
+    /// The ink of both of two pictures of one size; of pictures of other sizes that of the first.
+    pub(crate) fn united(mut self, other: &Self) -> Self {
+        if (self.width, self.height) == (other.width, other.height) {
+            for (bits, more) in self.words.iter_mut().zip(&other.words) {
+                *bits |= more;
+            }
+        }
+        self
+    }
+
+    /// Number of blocks of two by two pixels of ink, overlapping ones too: none on lines one pixel wide.
+    pub(crate) fn blocks(&self) -> u64 {
+        (1..self.height).map(|y| blocks_between(self.row(y - 1), self.row(y))).sum()
+    }
+
+    /// Makes a run of a row paper; its columns are inside the picture.
+    pub(crate) fn clear_run(&mut self, y: u32, columns: core::ops::Range<u32>) {
+        let (first, last) = (columns.start / BITS, columns.end.saturating_sub(1) / BITS);
+        let row = self.row_mut(y);
+        for (word, bits) in (first..=last).zip(row.iter_mut().skip(first as usize)) {
+            let low = if word == first { u64::MAX << (columns.start % BITS) } else { u64::MAX };
+            let high =
+                if word == last { u64::MAX >> (BITS - 1 - (columns.end - 1) % BITS) } else { u64::MAX };
+            *bits &= !(low & high);
+        }
+    }
+
+    /// The eight neighbours of a pixel, a bit each: right, lower right, below, lower left, left, upper left, above,
+    /// upper right, from the lowest bit on.
+    pub(crate) fn around(&self, at: Pixel) -> u8 {
+        // Three pixels of a row, the left one in the lowest bit.
+        let three = |y: u32| -> u8 {
+            let row = self.row(y);
+            let (word, _) = place(at.x);
+            let bit = at.x % BITS;
+            let here = row.get(word).copied().unwrap_or(0);
+            let window = if bit == 0 {
+                let left = word.checked_sub(1).and_then(|word| row.get(word)).map_or(0, |bits| bits >> 63);
+                here << 1 | left
+            } else if bit == 63 {
+                let right = row.get(word + 1).map_or(0, |bits| bits & 1);
+                here >> 62 | right << 2
+            } else {
+                here >> (bit - 1)
+            };
+            u8::try_from(window & 0b111).unwrap_or(0)
+        };
+        let above = at.y.checked_sub(1).map_or(0, three);
+        let (here, below) = (three(at.y), at.y.checked_add(1).map_or(0, three));
+        here >> 2
+            | below >> 2 << 1
+            | (below >> 1 & 1) << 2
+            | (below & 1) << 3
+            | (here & 1) << 4
+            | (above & 1) << 5
+            | (above >> 1 & 1) << 6
+            | above >> 2 << 7
+    }
+
     fn inside(&self, at: Pixel) -> bool {
         at.x < self.width && at.y < self.height
     }
@@ -249,9 +340,25 @@ mod tests {
 
     #[test]
     fn a_picture_too_large_is_refused_before_memory_is_taken() {
-        assert_eq!(Bitmap::new(1 << 16, 1), Err(SizeError { width: 1 << 16, height: 1 }));
+        assert_eq!(Bitmap::new(1 << 18, 1), Err(SizeError { width: 1 << 18, height: 1 }));
         let error = Bitmap::new(MAX_SIDE_PX, MAX_SIDE_PX).unwrap_err();
-        assert!(error.to_string().starts_with("a picture of 32768 x 32768 px is too large"));
+        assert!(error.to_string().starts_with("a picture of 131072 x 131072 px is too large"));
+    }
+
+    #[test]
+    fn blocks_are_counted_across_words() {
+        let mut bar = Bitmap::new(130, 3).unwrap();
+        (0..2).for_each(|y| (60..70).for_each(|x| bar.set(Pixel::new(x, y), true)));
+        assert_eq!(bar.blocks(), 9);
+        assert_eq!(Bitmap::from_picture("##.\n.##\n..#\n").unwrap().blocks(), 0);
+    }
+
+    #[test]
+    fn a_run_is_cleared_across_words() {
+        let mut row = Bitmap::new(130, 1).unwrap();
+        (0..130).for_each(|x| row.set(Pixel::new(x, 0), true));
+        row.clear_run(0, 3..129);
+        assert_eq!(row.ink().map(|at| at.x).collect::<Vec<_>>(), [0, 1, 2, 129]);
     }
 
     #[test]

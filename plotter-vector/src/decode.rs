@@ -1,7 +1,8 @@
-//! [`decode`]: a picture file as grey levels.
+//! [`decode`]: a picture file as grey levels, and [`decode_colour`], in colour.
 
 use crate::bitmap::{MAX_PIXELS, MAX_SIDE_PX};
-use crate::{Gray, GrayError, SizeError, gray_on_white};
+use crate::scan::{colour_by_rows, one_line};
+use crate::{Colour, DecodeError, Gray, Scan, SizeError, colour_on_white, gray_on_white};
 use core::fmt;
 use image::{DynamicImage, GenericImageView, ImageError, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
@@ -9,66 +10,15 @@ use std::io::Cursor;
 /// Most memory that decoding may take: 8 bytes (four channels of 16 bits) a pixel of the largest picture, bytes.
 const MAX_ALLOC_BYTES: u64 = 8 * MAX_PIXELS;
 
-/// Why a file is not a picture that can be traced.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum DecodeError {
-    /// No bytes at all.
-    Empty,
-    /// Not PNG, JPEG, PBM, PGM or PPM.
-    UnknownFormat {
-        /// How the file begins.
-        first_bytes: Vec<u8>,
-    },
-    /// Larger than a picture may be.
-    TooLarge(SizeError),
-    /// Decoding it would take too much memory.
-    TooMuchMemory,
-    /// Damaged or cut off.
-    Damaged {
-        /// Length of the file, bytes.
-        length: usize,
-        /// What the decoder met.
-        what: String,
-    },
-}
-
-impl fmt::Display for DecodeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => f.write_str("the picture is empty (0 bytes): scan or save it again"),
-            Self::UnknownFormat { first_bytes } => {
-                f.write_str("the picture begins with")?;
-                for byte in first_bytes {
-                    write!(f, " {byte:02x}")?;
-                }
-                f.write_str(", which is not PNG, JPEG, PBM, PGM or PPM: save it as one of these")
-            }
-            Self::TooLarge(error) => error.fmt(f),
-            Self::TooMuchMemory => {
-                write!(
-                    f,
-                    "decoding the picture takes more than {} MiB: save it as 8-bit grey",
-                    MAX_ALLOC_BYTES >> 20
-                )
-            }
-            Self::Damaged { length, what } => {
-                write!(f, "the picture ({length} bytes) is damaged or cut off: {what}; scan or save it again")
-            }
-        }
-    }
-}
-
-impl core::error::Error for DecodeError {}
-
-/// Decodes a PNG, JPEG, PBM, PGM or PPM picture; the format is told from the bytes, not from a name.
+/// Decodes a PNG, JPEG, TIFF, PBM, PGM or PPM picture; the format is told from the bytes, not from a name.
 ///
 /// Colours become luma, 16 bits become 8, and what is transparent shows white paper ([`gray_on_white`]). The size
-/// is checked before the pixels are decoded: [`MAX_SIDE_PX`] a side and [`MAX_PIXELS`] in all.
+/// is checked before the pixels are decoded: [`MAX_SIDE_PX`] a side and [`MAX_PIXELS`] in all; [`Scan`] reads larger
+/// ones by rows.
 ///
 /// # Errors
-/// [`DecodeError`]; never a panic, and never more memory than 9 bytes a pixel of the largest picture: 8 decoded, 1 as
-/// grey.
+/// [`DecodeError`]; never a panic. What is stored by rows takes a byte a pixel; JPEG and interlaced PNG never more
+/// than 9 bytes a pixel of the largest picture: 8 decoded, 1 as grey.
 ///
 /// ```
 /// # use plotter_vector::decode;
@@ -78,39 +28,63 @@ impl core::error::Error for DecodeError {}
 /// # Ok::<(), plotter_vector::DecodeError>(())
 /// ```
 pub fn decode(bytes: &[u8]) -> Result<Gray, DecodeError> {
-    if bytes.is_empty() {
-        return Err(DecodeError::Empty);
+    Scan::new(Cursor::new(bytes))?.into_gray()
+}
+
+/// As [`decode`], in colour: greys become three equal channels, palettes are looked up, 16 bits become 8, and what is
+/// transparent shows white paper ([`colour_on_white`]).
+///
+/// # Errors
+/// [`DecodeError`]; never a panic. What is stored by rows takes 3 bytes a pixel; JPEG and interlaced PNG never more
+/// than 11 bytes a pixel of the largest picture: 8 decoded, 3 in colour.
+///
+/// ```
+/// # use plotter_vector::decode_colour;
+/// let picture = decode_colour(b"P3 2 1 255\n200 0 0 255 255 255\n")?; // PPM in text
+/// assert_eq!(picture.pixels(), [[200, 0, 0], [255, 255, 255]]);
+/// # Ok::<(), plotter_vector::DecodeError>(())
+/// ```
+pub fn decode_colour(bytes: &[u8]) -> Result<Colour, DecodeError> {
+    if let Some(picture) = colour_by_rows(bytes)? {
+        return Ok(picture);
     }
-    let damaged =
-        |error: &dyn fmt::Display| DecodeError::Damaged { length: bytes.len(), what: one_line(error) };
+    let (width, height, channels) = to_colour(picture(bytes)?);
+    Colour::new(width, height, channels).map_err(|error| damaged(bytes, &error))
+}
+
+/// Decodes a picture that is not stored by rows: JPEG, interlaced PNG and PAM.
+pub(crate) fn decode_whole(bytes: &[u8]) -> Result<Gray, DecodeError> {
+    let (width, height, levels) = to_gray(picture(bytes)?);
+    Gray::new(width, height, levels).map_err(|error| damaged(bytes, &error))
+}
+
+fn damaged(bytes: &[u8], error: &dyn fmt::Display) -> DecodeError {
+    DecodeError::Damaged { length: bytes.len() as u64, what: one_line(error) }
+}
+
+/// The picture as the file has it, of a size that a picture may have.
+fn picture(bytes: &[u8]) -> Result<DynamicImage, DecodeError> {
+    let damaged = |error: &dyn fmt::Display| damaged(bytes, error);
     let reader =
         || ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| damaged(&error));
-    let unknown = || DecodeError::UnknownFormat { first_bytes: bytes.iter().take(8).copied().collect() };
-    if reader()?.format().is_none() {
-        return Err(unknown());
-    }
+    // The header first: a picture of a size that is refused must not be decoded at all.
+    let (width, height) = reader()?.into_dimensions().map_err(|error| damaged(&error))?;
+    SizeError::check(width, height).map_err(DecodeError::TooLarge)?;
     let refused = |error: ImageError| match error {
-        ImageError::Unsupported(_) => unknown(),
-        ImageError::Limits(_) => DecodeError::TooMuchMemory,
+        ImageError::Unsupported(error) => DecodeError::Unsupported { what: one_line(&error) },
+        ImageError::Limits(_) => DecodeError::TooMuchMemory { bytes: MAX_ALLOC_BYTES },
         other => damaged(&other),
     };
     if reader()?.format() == Some(ImageFormat::Jpeg) && !jpeg_has_its_end(bytes) {
         return Err(damaged(&"a JPEG without its end mark"));
     }
-    // The header first: a picture of a size that is refused must not be decoded at all.
-    let (width, height) = reader()?.into_dimensions().map_err(refused)?;
-    SizeError::check(width, height).map_err(DecodeError::TooLarge)?;
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE_PX);
     limits.max_image_height = Some(MAX_SIDE_PX);
     limits.max_alloc = Some(MAX_ALLOC_BYTES);
     let mut decoder = reader()?;
     decoder.limits(limits);
-    let picture = decoder.decode().map_err(refused)?;
-    to_gray(picture).map_err(|error| match error {
-        GrayError::TooLarge(size) => DecodeError::TooLarge(size),
-        other @ GrayError::WrongCount { .. } => damaged(&other),
-    })
+    decoder.decode().map_err(refused)
 }
 
 /// Whether a JPEG's last scan is followed by the end mark; the decoder itself would fill what is missing with grey.
@@ -123,15 +97,13 @@ fn jpeg_has_its_end(bytes: &[u8]) -> bool {
     bytes.get(scan..).unwrap_or(&[]).windows(2).any(|pair| pair == END)
 }
 
-/// A decoder's message on one line, whatever it holds.
-fn one_line(message: &dyn fmt::Display) -> String {
-    message.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-fn to_gray(picture: DynamicImage) -> Result<Gray, GrayError> {
+/// Width, height and levels.
+fn to_gray(picture: DynamicImage) -> (u32, u32, Vec<u8>) {
     let (width, height) = picture.dimensions();
     let levels = match picture {
         DynamicImage::ImageLuma8(gray) => gray.into_raw(),
+        // The iterator of `image` panics where there are rows without columns.
+        _ if width == 0 => Vec::new(),
         // Pixel by pixel: a copy of the whole picture as RGBA would take half as much memory again.
         other => {
             let mut levels = Vec::with_capacity(width as usize * height as usize);
@@ -139,7 +111,22 @@ fn to_gray(picture: DynamicImage) -> Result<Gray, GrayError> {
             levels
         }
     };
-    Gray::new(width, height, levels)
+    (width, height, levels)
+}
+
+/// Width, height and channels.
+fn to_colour(picture: DynamicImage) -> (u32, u32, Vec<u8>) {
+    let (width, height) = picture.dimensions();
+    let channels = match picture {
+        DynamicImage::ImageRgb8(colour) => colour.into_raw(),
+        _ if width == 0 => Vec::new(),
+        other => {
+            let mut channels = Vec::with_capacity(3 * width as usize * height as usize);
+            channels.extend(other.pixels().flat_map(|(_, _, pixel)| colour_on_white(pixel.0).0));
+            channels
+        }
+    };
+    (width, height, channels)
 }
 
 #[cfg(test)]
@@ -187,6 +174,70 @@ mod tests {
         assert_eq!(levels(ImageBuffer::<image::Rgba<u8>, _>::from_raw(2, 1, black_and_clear)), [0, 255]);
         assert_eq!(levels(ImageBuffer::<image::Rgba<u16>, _>::from_raw(2, 1, deep)), [0, 255]);
         assert_eq!(levels(ImageBuffer::<image::LumaA<u8>, _>::from_raw(2, 1, vec![9, 255, 9, 0])), [9, 255]);
+    }
+
+    /// The pixels of a PNG of two pixels.
+    fn colours(picture: Option<impl Into<DynamicImage>>) -> [[u8; 3]; 2] {
+        decode_colour(&png(picture.unwrap())).unwrap().pixels().try_into().unwrap()
+    }
+
+    #[test]
+    fn colours_of_8_and_16_bits_stay_colours() {
+        let small = vec![255, 0, 7, 0, 90, 255];
+        let deep: Vec<u16> = small.iter().map(|channel| u16::from(*channel) * 257).collect();
+        let expected = [[255, 0, 7], [0, 90, 255]];
+        assert_eq!(colours(ImageBuffer::<image::Rgb<u8>, _>::from_raw(2, 1, small)), expected);
+        assert_eq!(colours(ImageBuffer::<image::Rgb<u16>, _>::from_raw(2, 1, deep)), expected);
+    }
+
+    #[test]
+    fn transparent_colours_and_greys_are_colours_on_white_paper() {
+        let fifth_and_clear = vec![255, 0, 0, 51, 9, 9, 9, 0];
+        assert_eq!(
+            colours(ImageBuffer::<image::Rgba<u8>, _>::from_raw(2, 1, fifth_and_clear)),
+            [[255, 204, 204], [255; 3]]
+        );
+        assert_eq!(
+            colours(ImageBuffer::<image::Luma<u8>, _>::from_raw(2, 1, vec![0, 200])),
+            [[0; 3], [200; 3]]
+        );
+        assert_eq!(
+            colours(ImageBuffer::<image::LumaA<u16>, _>::from_raw(2, 1, vec![257, 65535, 0, 0])),
+            [[1; 3], [255; 3]]
+        );
+        assert_eq!(decode_colour(b"P4 2 1\n\x80").unwrap().pixels(), [[0; 3], [255; 3]]);
+    }
+
+    #[test]
+    fn a_palette_is_looked_up() {
+        // 2 x 1 px, 1 bit a pixel: blue, then red, of the palette (red, blue); no own encoder writes this.
+        let bytes = b"\x89PNG\x0d\x0a\x1a\x0a\x00\x00\x00\x0dIHDR\x00\x00\x00\x02\x00\x00\x00\x01\x01\x03\x00\x00\x00\xce\xec\xed\xc9\x00\x00\x00\x06PLTE\xff\x00\x00\x00\x00\xffl\xa1\xfd\x8e\x00\x00\x00\x0aIDATx\x9cch\x00\x00\x00\x82\x00\x81w\xcdr\xb6\x00\x00\x00\x00IEND\xaeB`\x82";
+        assert_eq!(decode_colour(bytes).unwrap().pixels(), [[0, 0, 255], [255, 0, 0]]);
+    }
+
+    #[test]
+    fn a_tiff_keeps_its_colours() {
+        let mut tiff = Cursor::new(Vec::new());
+        let mut encoder = tiff::encoder::TiffEncoder::new(&mut tiff).unwrap();
+        encoder.write_image::<tiff::encoder::colortype::RGB8>(2, 1, &[200, 30, 40, 1, 2, 3]).unwrap();
+        assert_eq!(decode_colour(&tiff.into_inner()).unwrap().pixels(), [[200, 30, 40], [1, 2, 3]]);
+    }
+
+    #[test]
+    fn a_jpeg_keeps_its_colours() {
+        let mut jpeg = Cursor::new(Vec::new());
+        let red = image::RgbImage::from_pixel(16, 8, image::Rgb([200, 30, 40]));
+        red.write_to(&mut jpeg, ImageFormat::Jpeg).unwrap();
+        let picture = decode_colour(&jpeg.into_inner()).unwrap();
+        assert_eq!((picture.width(), picture.height()), (16, 8));
+        assert!(picture.pixels().iter().all(|[red, green, blue]| *red > 190 && *green < 40 && *blue < 50));
+    }
+
+    #[test]
+    fn in_colour_the_same_is_refused() {
+        assert_eq!(decode_colour(b""), Err(DecodeError::Empty));
+        assert!(matches!(decode_colour(b"IN;"), Err(DecodeError::UnknownFormat { .. })));
+        assert!(matches!(decode_colour(b"P6 100000 100000 255\n"), Err(DecodeError::TooLarge(_))));
     }
 
     #[test]
@@ -238,6 +289,20 @@ mod tests {
             decode(b"P5 100000 100000 255\n"),
             Err(DecodeError::TooLarge(SizeError { width: 100_000, height: 100_000 }))
         );
+        assert_eq!(decode(b"P5 200000 1 255\n"), Err(DecodeError::TooLong { width: 200_000, height: 1 }));
+    }
+
+    #[test]
+    fn rows_without_columns_are_a_picture() {
+        let header = "WIDTH 0\nHEIGHT 3\nDEPTH 3\nMAXVAL 255\nTUPLTYPE RGB\nENDHDR\n";
+        for bytes in
+            [format!("P7\n{header}"), "P6 0 3 255\n".into(), "P3 0 3 255\n".into(), "P4 0 3\n".into()]
+        {
+            let gray = decode(bytes.as_bytes()).unwrap();
+            assert_eq!((gray.width(), gray.height()), (0, 3), "{bytes}");
+            let deep = bytes.replace("255", "65535");
+            assert_eq!(decode_colour(deep.as_bytes()).unwrap().pixels(), [] as [[u8; 3]; 0], "{bytes}");
+        }
     }
 
     #[test]
@@ -245,8 +310,8 @@ mod tests {
         let error = decode(b"IN;SP1;PU0,0;").unwrap_err();
         assert_eq!(
             error.to_string(),
-            "the picture begins with 49 4e 3b 53 50 31 3b 50, which is not PNG, JPEG, PBM, PGM or PPM: save it as \
-             one of these"
+            "the picture begins with 49 4e 3b 53 50 31 3b 50, which is not PNG, JPEG, TIFF, PBM, PGM or PPM: \
+             save it as one of these"
         );
     }
 }

@@ -27,6 +27,23 @@ impl PxPoint {
     pub fn distance(self, other: Self) -> f64 {
         libm::hypot(self.x - other.x, self.y - other.y)
     }
+
+    /// The way from `other` here, px.
+    #[inline]
+    pub(crate) fn minus(self, other: Self) -> (f64, f64) {
+        (self.x - other.x, self.y - other.y)
+    }
+
+    /// The place `length` times `direction` away.
+    #[inline]
+    pub(crate) fn along(self, direction: (f64, f64), length: f64) -> Self {
+        Self { x: self.x + length * direction.0, y: self.y + length * direction.1 }
+    }
+
+    /// Whether both coordinates are numbers.
+    pub(crate) fn is_finite(self) -> bool {
+        self.x.is_finite() && self.y.is_finite()
+    }
 }
 
 impl From<crate::Pixel> for PxPoint {
@@ -36,7 +53,8 @@ impl From<crate::Pixel> for PxPoint {
     }
 }
 
-/// Pen strokes in the order in which they are drawn, in pixel coordinates. A stroke of one vertex is a dot.
+/// Pen strokes in the order in which they are drawn, in pixel coordinates. A stroke of one vertex is a dot. Each stroke
+/// has a pen, a number in the carousel from 1.
 ///
 /// ```
 /// # use plotter_vector::{Drawing, PxPoint};
@@ -54,13 +72,19 @@ pub struct Drawing {
     vertices: Vec<PxPoint>,
     /// One past the last vertex of each stroke.
     ends: Vec<usize>,
+    /// The pen of each stroke.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pens: Vec<u8>,
 }
+
+/// The pen of a stroke of which nothing else is said.
+const FIRST_PEN: u8 = 1;
 
 impl Drawing {
     /// An empty drawing on a picture of this size.
     #[must_use]
     pub const fn new(width_px: u32, height_px: u32) -> Self {
-        Self { width_px, height_px, vertices: Vec::new(), ends: Vec::new() }
+        Self { width_px, height_px, vertices: Vec::new(), ends: Vec::new(), pens: Vec::new() }
     }
 
     /// Width of the picture.
@@ -75,13 +99,41 @@ impl Drawing {
         self.height_px
     }
 
-    /// Adds a stroke; one without vertices is left out.
+    /// Adds a stroke of pen 1; one without vertices is left out.
     pub fn push(&mut self, stroke: impl IntoIterator<Item = PxPoint>) {
+        self.push_with_pen(FIRST_PEN, stroke);
+    }
+
+    /// Adds a stroke of another pen; one without vertices is left out. Pen 0, which is no pen, is taken as 1.
+    ///
+    /// ```
+    /// # use plotter_vector::{Drawing, PxPoint};
+    /// let mut drawing = Drawing::new(4, 4);
+    /// drawing.push_with_pen(3, [PxPoint::new(0.5, 0.5), PxPoint::new(3.5, 0.5)]);
+    /// assert_eq!(drawing.pen(0), 3);
+    /// ```
+    pub fn push_with_pen(&mut self, pen: u8, stroke: impl IntoIterator<Item = PxPoint>) {
         let before = self.vertices.len();
         self.vertices.extend(stroke);
         if self.vertices.len() > before {
             self.ends.push(self.vertices.len());
+            self.pens.push(pen.max(FIRST_PEN));
         }
+    }
+
+    /// The pen of a stroke, from 1; 1 when there is no such stroke.
+    #[must_use]
+    pub fn pen(&self, index: usize) -> u8 {
+        self.pens.get(index).copied().unwrap_or(FIRST_PEN).max(FIRST_PEN)
+    }
+
+    /// The pens that draw something, each once, in ascending order.
+    #[must_use]
+    pub fn pens(&self) -> Vec<u8> {
+        let mut pens: Vec<u8> = (0..self.ends.len()).map(|index| self.pen(index)).collect();
+        pens.sort_unstable();
+        pens.dedup();
+        pens
     }
 
     /// The vertices of one stroke; empty when there is no such stroke.
@@ -95,6 +147,24 @@ impl Drawing {
     /// The strokes in order.
     pub fn strokes(&self) -> impl ExactSizeIterator<Item = &[PxPoint]> + DoubleEndedIterator {
         (0..self.ends.len()).map(|index| self.stroke(index))
+    }
+
+    /// What one pen draws, in the same order.
+    ///
+    /// ```
+    /// # use plotter_vector::{Drawing, PxPoint};
+    /// let mut drawing = Drawing::new(4, 4);
+    /// drawing.push([PxPoint::new(0.5, 0.5)]);
+    /// drawing.push_with_pen(3, [PxPoint::new(2.5, 0.5)]);
+    /// assert_eq!(drawing.of_pen(3).stroke(0), [PxPoint::new(2.5, 0.5)]);
+    /// ```
+    #[must_use]
+    pub fn of_pen(&self, pen: u8) -> Self {
+        let mut one = Self::new(self.width_px, self.height_px);
+        for (_, stroke) in self.strokes().enumerate().filter(|(index, _)| self.pen(*index) == pen) {
+            one.push_with_pen(pen, stroke.iter().copied());
+        }
+        one
     }
 
     /// Number of vertices of all strokes, as they are written: a closed stroke's first one counts twice.
@@ -121,15 +191,20 @@ impl Drawing {
     }
 
     /// The operations that draw it on the sheet: to each stroke's start with the pen up, along it with the pen
-    /// down. A dot is drawn from its place to its place.
+    /// down. A dot is drawn from its place to its place. The pen is selected where it changes, and before the first
+    /// stroke unless the whole drawing is of pen 1: that is the plotter's own.
     pub fn plot_ops(&self, scale: Scale) -> impl Iterator<Item = PlotOp> + '_ {
-        self.strokes().flat_map(move |stroke| {
+        let one_pen = (0..self.ends.len()).all(|index| self.pen(index) == FIRST_PEN);
+        self.strokes().enumerate().flat_map(move |(index, stroke)| {
+            let before = index.checked_sub(1).map(|before| self.pen(before));
+            let pen = self.pen(index);
+            let select = (!one_pen && before != Some(pen)).then_some(PlotOp::SelectPen { pen });
             let (start, rest) =
                 stroke.split_first().map_or((None, stroke), |(start, rest)| (Some(*start), rest));
             let dot = if rest.is_empty() { start } else { None };
             let travel = start.map(|to| PlotOp::Travel { to: scale.to_sheet(to) });
             let draw = move |to| PlotOp::Draw { to: scale.to_sheet(to), feed_mm_s: None };
-            travel.into_iter().chain(rest.iter().copied().chain(dot).map(draw))
+            select.into_iter().chain(travel).chain(rest.iter().copied().chain(dot).map(draw))
         })
     }
 }
@@ -260,6 +335,22 @@ mod tests {
         let ops: Vec<PlotOp> = drawing.plot_ops(Scale::new(2, 1.0, Point::ORIGIN).unwrap()).collect();
         let at = Point::new(0.5, 1.5);
         assert_eq!(ops, [PlotOp::Travel { to: at }, PlotOp::Draw { to: at, feed_mm_s: None }]);
+    }
+
+    #[test]
+    fn the_pen_is_selected_where_it_changes() {
+        let dot = [PxPoint::new(0.5, 0.5)];
+        let scale = Scale::new(2, 1.0, Point::ORIGIN).unwrap();
+        let selected = |pens: &[u8]| -> Vec<(usize, u8)> {
+            let mut drawing = Drawing::new(2, 2);
+            pens.iter().for_each(|pen| drawing.push_with_pen(*pen, dot));
+            let ops = drawing.plot_ops(scale).enumerate();
+            ops.filter_map(|(at, op)| if let PlotOp::SelectPen { pen } = op { Some((at, pen)) } else { None })
+                .collect()
+        };
+        assert_eq!(selected(&[1, 0, 1]), []);
+        assert_eq!(selected(&[1, 2, 2, 1]), [(0, 1), (3, 2), (8, 1)]);
+        assert_eq!(selected(&[3]), [(0, 3)]);
     }
 
     #[test]

@@ -89,7 +89,7 @@ impl ErrorTally {
         }
     }
 
-    fn add_error(&mut self, error_px: f64) {
+    pub(crate) fn add_error(&mut self, error_px: f64) {
         self.pixels += 1;
         self.sum += error_px;
         self.squares += error_px * error_px;

@@ -1,6 +1,6 @@
 //! [`Gray`]: a picture of 256 grey levels.
 
-use crate::SizeError;
+use crate::{Pixel, SizeError};
 use core::fmt;
 
 /// A picture of 256 grey levels, 0 black to 255 white, row by row from the top.
@@ -61,6 +61,12 @@ impl Gray {
         Ok(Self { width, height, pixels })
     }
 
+    /// A picture of a size that another picture has, from one level a pixel.
+    pub(crate) fn of_checked_size(width: u32, height: u32, pixels: Vec<u8>) -> Self {
+        debug_assert_eq!(pixels.len(), width as usize * height as usize, "one level a pixel");
+        Self { width, height, pixels }
+    }
+
     /// Number of columns.
     #[must_use]
     pub const fn width(&self) -> u32 {
@@ -77,6 +83,14 @@ impl Gray {
     #[must_use]
     pub fn pixels(&self) -> &[u8] {
         &self.pixels
+    }
+
+    /// The level of a pixel; none outside the picture.
+    #[must_use]
+    pub fn get(&self, at: Pixel) -> Option<u8> {
+        let inside = at.x < self.width && at.y < self.height;
+        let index = at.y as usize * self.width as usize + at.x as usize;
+        if inside { self.pixels.get(index).copied() } else { None }
     }
 
     /// The rows from the top.

@@ -6,7 +6,7 @@ use plotter_motion::hpgl::{UNITS_PER_MM, WriteError, write_ops};
 use plotter_motion::{PenMove, PlotOp};
 
 /// Writes a drawing as HPGL in plotter units of 0.025 mm. Vertices that fall on the same unit as the one before
-/// are written once.
+/// are written once. Each change of pen is an `SP`.
 ///
 /// # Errors
 /// [`WriteError`]: a point farther out than a plotter's numbers go, or an error of `out`.
@@ -25,6 +25,9 @@ pub fn hpgl(drawing: &Drawing, scale: Scale, out: &mut impl Write) -> Result<(),
     let mut before = None;
     let mut dot = false;
     let told = drawing.plot_ops(scale).filter(move |op| {
+        if matches!(op, PlotOp::SelectPen { .. }) {
+            return true;
+        }
         let place = PenMove::from_op(*op, UNITS_PER_MM).map(|to| to.target);
         let travel = matches!(op, PlotOp::Travel { .. });
         // The first vertex after a travel may be a dot, which stays.
@@ -51,6 +54,21 @@ mod tests {
         let mut text = String::new();
         hpgl(&drawing, Scale::new(4, 1.0, Point::ORIGIN).unwrap(), &mut text).unwrap();
         assert!(text.contains("PU0,0;\nPD160,0;\nPU160,0;\nPD160,160;\n"), "{text}");
+    }
+
+    #[test]
+    fn each_change_of_pen_is_written() {
+        let mut drawing = Drawing::new(4, 4);
+        let line = |y| [PxPoint::new(0.0, y), PxPoint::new(4.0, y)];
+        drawing.push(line(4.0));
+        drawing.push_with_pen(2, line(3.0));
+        drawing.push_with_pen(2, line(2.0));
+        let mut text = String::new();
+        hpgl(&drawing, Scale::new(4, 1.0, Point::ORIGIN).unwrap(), &mut text).unwrap();
+        assert_eq!(
+            text,
+            "IN;\nSP1;\nPU0,0;\nPD160,0;\nPU;\nSP2;\nPU0,40;\nPD160,40;\nPU0,80;\nPD160,80;\nPU;\nSP0;\n"
+        );
     }
 
     #[test]

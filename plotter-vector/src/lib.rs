@@ -1,38 +1,90 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+mod areas;
 mod bitmap;
+mod centrelines;
+mod colour;
 mod continuity;
+mod coverage;
 #[cfg(feature = "image")]
 mod decode;
+mod decode_error;
 mod drawing;
 mod error_chart;
 mod error_report;
 mod figures;
+mod graph;
 mod gray;
+mod histogram;
 mod hpgl;
+mod in_colour;
+mod layers;
+mod lettering;
+mod light;
+mod line_width;
+mod oklab;
 mod order;
+mod palette;
 mod pipeline;
 mod pre_elimination;
+mod progress;
+mod rolling;
+mod row_threshold;
+mod rows;
+mod runs;
+#[cfg(feature = "image")]
+mod scan;
+mod sheet;
 mod simplify;
+mod speckle;
 mod svg;
+#[cfg(feature = "svg-in")]
+mod svg_in;
+mod thinning;
 mod threshold;
 mod tracking;
 
+pub use areas::{
+    AreaError, AreaPath, AreaStyle, Areas, Hatch, MAX_LINE_PX, MIN_PITCH_PX, Outline, Outlines, WidthSplit,
+    inset_outlines, rows_of_width_context, split_by_width,
+};
 pub use bitmap::{Bitmap, MAX_PIXELS, MAX_SIDE_PX, Pixel, SizeError};
+pub use colour::{Colour, ColourError, colour_on_white};
 pub use continuity::{Joined, is_closed, join, link};
+pub use coverage::{coverage, worst_pixel};
 #[cfg(feature = "image")]
-pub use decode::{DecodeError, decode};
+pub use decode::{decode, decode_colour};
+pub use decode_error::DecodeError;
 pub use drawing::{Drawing, PxPoint, Scale, ScaleError};
 pub use error_chart::error_chart;
 pub use error_report::{Bin, ErrorReport, ErrorTally};
 pub use figures::Figures;
 pub use gray::{Gray, GrayError, gray_on_white};
+pub use histogram::Histogram;
 pub use hpgl::hpgl;
-pub use order::order;
-pub use pipeline::{Algorithm, MAX_INK_PIXELS, VectorizeError, Vectorized, Vectorizer};
+pub use in_colour::VectorizedColour;
+pub use layers::{Layers, Pens, PensError};
+pub use lettering::{Lettering, TextBlock, TextLine};
+pub use line_width::{LineWidth, pen_width_px};
+pub use oklab::{Oklab, Rgb, RgbError};
+pub use order::{Order, OrderEffort, order};
+pub use palette::{MAX_PENS, Palette, PaletteError, PalettePen};
+#[cfg(feature = "toml")]
+pub use palette::{PalettePlace, PaletteTomlError};
+pub use pipeline::{Algorithm, MAX_INK_PIXELS, Mode, VectorizeError, Vectorized, Vectorizer};
 pub use pre_elimination::PreElimination;
+pub use progress::{Cancelled, Progress};
+pub use row_threshold::{RowThreshold, Survey};
+pub use rows::{BitmapRows, Depth, GrayRows, Row, RowSource};
+#[cfg(feature = "image")]
+pub use scan::Scan;
+pub use sheet::{SheetError, TracedSheet};
 pub use simplify::{Bounded, DynamicThreshold, MAX_REACH_PX, Simplify};
-pub use svg::svg;
-pub use threshold::{Polarity, Split, Threshold};
+pub use speckle::{Despeckled, context_rows, despeckle, smallest_mark_px};
+pub use svg::{svg, svg_in_colour};
+#[cfg(feature = "svg-in")]
+pub use svg_in::{SvgDrawing, SvgError, SvgLeftOut, SvgOptions, SvgPens, read_svg};
+pub use thinning::{Thinned, Thinning, ThinningMethod, ThinningProgress};
+pub use threshold::{Polarity, Split, Threshold, ThresholdMethod, ThresholdMethodError};
 pub use tracking::{HISTORY, OrderedTracking, TooManyFigures};

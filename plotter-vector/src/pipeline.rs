@@ -1,9 +1,13 @@
 //! [`Vectorizer`]: the whole way from grey levels to pen strokes.
 
+use crate::areas::Islands;
+use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
+use crate::coverage::coverage;
 use crate::{
-    Bitmap, Bounded, Drawing, DynamicThreshold, ErrorReport, ErrorTally, Figures, Gray, OrderedTracking,
-    Pixel, PxPoint, Simplify, Split, Threshold, TooManyFigures, order,
+    AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Drawing, DynamicThreshold, ErrorReport,
+    ErrorTally, Figures, Gray, Lettering, Order, OrderedTracking, PensError, Pixel, PxPoint, Simplify, Split,
+    ThinningMethod, Threshold, TooManyFigures, despeckle, pen_width_px, smallest_mark_px, split_by_width,
 };
 use core::fmt;
 
@@ -13,9 +17,24 @@ use core::fmt;
 pub enum Algorithm {
     /// Ordered tracking, pre-elimination and [`DynamicThreshold`], drawn in tracking order: as published.
     Published,
-    /// Ordered tracking, lines made whole again, [`Bounded`], strokes ordered for little travel.
+    /// The middle of each line, its crossings and corners where they are, [`Bounded`], strokes ordered for little
+    /// travel. Drawings of lines one pixel wide are tracked pixel by pixel: there the raster is the line.
     #[default]
     Ours,
+}
+
+/// What ours draws of the ink.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+pub enum Mode {
+    /// A stroke down the middle of each line; what is far wider than the lines is outlined.
+    #[default]
+    Centreline,
+    /// The outlines of everything.
+    Outline,
+    /// As `Centreline`, and areas begin already at three times the width of the lines; they are drawn in
+    /// [`Vectorizer::areas`]' style.
+    Mixed,
 }
 
 /// Settings of the whole way from a picture to strokes.
@@ -29,18 +48,54 @@ pub enum Algorithm {
 /// assert_eq!(traced.error.max_px, 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vectorizer {
     /// Which vectorization.
     pub algorithm: Algorithm,
     /// How ink is told from paper.
     pub threshold: Threshold,
-    /// How ink becomes figures.
+    /// How ink becomes figures: published, and ours on lines one pixel wide.
     pub tracking: OrderedTracking,
     /// The published simplification.
     pub published: DynamicThreshold,
-    /// Ours: its tolerance is the promise that no pixel lies farther from the segment that replaced it.
+    /// Ours: its tolerance is the promise that nothing lies farther from the segment that replaced it: of lines one
+    /// pixel wide each pixel, of wider ones each point of the line down their middle.
     pub ours: Bounded,
+    /// What ours draws.
+    pub mode: Mode,
+    /// Ours: smaller marks of ink are dirt, and smaller holes in it too, px; `None` for what a pen of the lines' width
+    /// cannot have made.
+    pub smallest_mark_px: Option<u32>,
+    /// Ours: what is wider is no line but an area, px; `None` for 6 times the lines' width, in mixed mode 3 times.
+    pub max_line_px: Option<u32>,
+    /// Ours: how lines are thinned.
+    pub thinning: ThinningMethod,
+    /// Ours: how areas are drawn.
+    pub areas: Areas,
+    /// Ours: the order of the strokes.
+    pub order: Order,
+    /// Ours: rows that are worked on at a time. A measure of memory alone: it changes no result.
+    pub band_rows: u32,
+}
+
+impl Default for Vectorizer {
+    /// Ours to half a pixel, everything found from the picture, areas outlined by a pen of one pixel.
+    fn default() -> Self {
+        Self {
+            algorithm: Algorithm::default(),
+            threshold: Threshold::default(),
+            tracking: OrderedTracking::default(),
+            published: DynamicThreshold::default(),
+            ours: Bounded::default(),
+            mode: Mode::default(),
+            smallest_mark_px: None,
+            max_line_px: None,
+            thinning: ThinningMethod::default(),
+            areas: Areas { style: AreaStyle::Outline, pen_px: 1.0 },
+            order: Order { lettering: Some(Lettering::default()), ..Order::default() },
+            band_rows: 2048,
+        }
+    }
 }
 
 /// What the vectorization found.
@@ -74,6 +129,10 @@ pub enum VectorizeError {
     },
     /// The picture is noise.
     TooManyFigures(TooManyFigures),
+    /// The style of the areas cannot be drawn.
+    Areas(AreaError),
+    /// There are no such pens.
+    Pens(PensError),
 }
 
 impl fmt::Display for VectorizeError {
@@ -88,6 +147,8 @@ impl fmt::Display for VectorizeError {
                  hand, scan with fewer dots per inch, or cut the picture into sheets"
             ),
             Self::TooManyFigures(error) => error.fmt(f),
+            Self::Areas(error) => error.fmt(f),
+            Self::Pens(error) => error.fmt(f),
         }
     }
 }
@@ -101,7 +162,26 @@ impl Vectorizer {
     /// [`VectorizeError`].
     pub fn vectorize(&self, gray: &Gray) -> Result<Vectorized, VectorizeError> {
         let (ink, split) = self.threshold.apply(gray);
-        Ok(Vectorized { split, ..self.trace(&ink)? })
+        let grey = split.map(|split| (gray, split.ink_is_dark));
+        Ok(Vectorized { split, ..self.trace_ink(ink, grey)? })
+    }
+
+    /// The ink of a picture that is vectorized: told from the paper and, by ours, without dirt.
+    ///
+    /// ```
+    /// # use plotter_vector::{Gray, Vectorizer};
+    /// let line = [250, 250, 20, 20, 20, 20, 20, 20, 250, 250];
+    /// let scan = Gray::new(10, 2, [line, [250; 10]].concat())?;
+    /// assert_eq!(Vectorizer::default().ink(&scan).to_string(), "..######..\n..........\n");
+    /// # Ok::<(), plotter_vector::GrayError>(())
+    /// ```
+    #[must_use]
+    pub fn ink(&self, gray: &Gray) -> Bitmap {
+        let (mut ink, _) = self.threshold.apply(gray);
+        if self.algorithm == Algorithm::Ours {
+            self.clean(&mut ink);
+        }
+        ink
     }
 
     /// Vectorizes ink.
@@ -109,32 +189,149 @@ impl Vectorizer {
     /// # Errors
     /// [`VectorizeError`].
     pub fn trace(&self, ink: &Bitmap) -> Result<Vectorized, VectorizeError> {
+        self.trace_ink(ink.clone(), None)
+    }
+
+    fn trace_ink(&self, mut ink: Bitmap, grey: Option<(&Gray, bool)>) -> Result<Vectorized, VectorizeError> {
+        let (drawing, error) = self.unordered(&mut ink, grey)?;
+        let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
+        let error = error.unwrap_or_else(|| coverage(&ink, &drawing));
+        Ok(Vectorized { drawing, error, split: None })
+    }
+
+    /// The strokes as they are found, and the errors where they are known from the figures; takes the dirt out of `ink`.
+    pub(crate) fn unordered(
+        &self,
+        ink: &mut Bitmap,
+        grey: Option<(&Gray, bool)>,
+    ) -> Result<(Drawing, Option<ErrorReport>), VectorizeError> {
+        if self.algorithm == Algorithm::Published {
+            let traced = self.published(ink)?;
+            return Ok((traced.drawing, Some(traced.error)));
+        }
+        self.check()?;
+        let pen_px = self.clean(ink);
+        if pen_px <= 1 && self.mode != Mode::Outline {
+            let traced = self.tracked(ink)?;
+            return Ok((traced.drawing, Some(traced.error)));
+        }
+        let strokes = self.strokes(ink, grey, pen_px)?;
+        let mut drawing = Drawing::new(ink.width(), ink.height());
+        for stroke in strokes {
+            drawing.push(stroke);
+        }
+        Ok((drawing, None))
+    }
+
+    /// Takes the dirt out of ink; the width of its lines, px.
+    fn clean(&self, ink: &mut Bitmap) -> u32 {
+        let pen_px =
+            if is_raster_lines(ink.blocks(), ink.count()) { 1 } else { pen_width_px(ink).unwrap_or(1) };
+        despeckle(ink, self.smallest_mark_px.unwrap_or(smallest_mark_px(pen_px)));
+        pen_px
+    }
+
+    /// The strokes of lines and areas.
+    fn strokes(
+        &self,
+        ink: &Bitmap,
+        grey: Option<(&Gray, bool)>,
+        pen_px: u32,
+    ) -> Result<Vec<Vec<PxPoint>>, VectorizeError> {
+        let max_line_px = self.max_line_px(pen_px);
+        let split;
+        let (lines, areas) = if self.mode == Mode::Outline {
+            (None, ink)
+        } else {
+            split = split_by_width(ink, max_line_px);
+            (Some(&split.thin), &split.thick)
+        };
+        let mut strokes = Vec::new();
+        if let Some(lines) = lines {
+            strokes = self.centring(max_line_px).strokes(lines, grey);
+        }
+        let mut islands = Islands::new(areas.width());
+        for y in 0..areas.height() {
+            if let Some((first_row, areas)) = islands.push(areas.row(y)) {
+                strokes.extend(self.area_strokes(first_row, &areas)?);
+            }
+        }
+        if let Some((first_row, areas)) = islands.finish() {
+            strokes.extend(self.area_strokes(first_row, &areas)?);
+        }
+        Ok(strokes)
+    }
+
+    /// Whether ours can be done as asked.
+    pub(crate) fn check(&self) -> Result<(), VectorizeError> {
         let tolerance_px = self.ours.tolerance_px;
-        if self.algorithm == Algorithm::Ours && !(tolerance_px > 0.0 && tolerance_px.is_finite()) {
+        if !(tolerance_px > 0.0 && tolerance_px.is_finite()) {
             return Err(VectorizeError::Tolerance { tolerance_px });
         }
+        self.areas.paths(&Bitmap::empty()).map(drop).map_err(VectorizeError::Areas)
+    }
+
+    /// Widest line, px.
+    pub(crate) fn max_line_px(&self, pen_px: u32) -> u32 {
+        self.max_line_px.unwrap_or(match self.mode {
+            Mode::Mixed => (3 * pen_px).max(6),
+            Mode::Centreline | Mode::Outline => (6 * pen_px).max(12),
+        })
+    }
+
+    /// How lines become strokes.
+    pub(crate) fn centring(&self, max_line_px: u32) -> Centring {
+        // The promise holds for the middle of the ink; part of it goes for the jumps of its edges from pixel to pixel.
+        let bounded = Bounded { tolerance_px: 0.85 * self.ours.tolerance_px };
+        // What is left of an area's rim may be as wide again.
+        Centring::new(self.thinning, max_line_px, bounded, self.band_rows)
+    }
+
+    /// The strokes of the areas in some rows, of which the first is row `first_row` of the picture.
+    pub(crate) fn area_strokes(
+        &self,
+        first_row: u32,
+        areas: &Bitmap,
+    ) -> Result<Vec<Vec<PxPoint>>, VectorizeError> {
+        let paths = self.areas.paths(areas).map_err(VectorizeError::Areas)?;
+        let top = f64::from(first_row);
+        let stroke = |path: AreaPath| {
+            let mut stroke = self.ours.polyline(&path.sites, path.closed);
+            stroke.iter_mut().for_each(|at| at.y += top);
+            stroke
+        };
+        Ok(paths.map(stroke).collect())
+    }
+
+    /// Ours for lines one pixel wide.
+    fn tracked(&self, ink: &Bitmap) -> Result<Vectorized, VectorizeError> {
+        let figures = self.figures(ink)?;
+        // Of a sheet full of ink each step's figures are large: none outlives its use.
+        let linked = link(&figures);
+        drop(figures);
+        let Joined { figures, borrowed } = join(&linked, ink);
+        drop(linked);
+        let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
+        Ok(simplify(ink, &figures, lent, &self.ours))
+    }
+
+    fn published(&self, ink: &Bitmap) -> Result<Vectorized, VectorizeError> {
+        Ok(simplify(ink, &self.figures(ink)?, |_| (false, false), &self.published))
+    }
+
+    fn figures(&self, ink: &Bitmap) -> Result<Figures, VectorizeError> {
         let ink_pixels = ink.count();
         if ink_pixels > MAX_INK_PIXELS {
             return Err(VectorizeError::TooMuchInk { ink_pixels });
         }
-        let figures = self.tracking.track(ink).map_err(VectorizeError::TooManyFigures)?;
-        Ok(match self.algorithm {
-            Algorithm::Published => {
-                let whole = |_| (false, false);
-                simplify(ink, &figures, whole, &self.published)
-            }
-            Algorithm::Ours => {
-                // Of a sheet full of ink each step's figures are large: none outlives its use.
-                let linked = link(&figures);
-                drop(figures);
-                let Joined { figures, borrowed } = join(&linked, ink);
-                drop(linked);
-                let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
-                let traced = simplify(ink, &figures, lent, &self.ours);
-                Vectorized { drawing: order(&traced.drawing), ..traced }
-            }
-        })
+        self.tracking.track(ink).map_err(VectorizeError::TooManyFigures)
     }
+}
+
+/// Whether ink with so many blocks of two by two pixels is lines one pixel wide: a few places where lines touch make no
+/// wide line.
+pub(crate) fn is_raster_lines(blocks: u64, ink_pixels: u64) -> bool {
+    blocks * 20 <= ink_pixels
 }
 
 /// A stroke of each figure, and the errors.

@@ -1,10 +1,11 @@
-//! [`svg`]: a drawing as a picture for the screen.
+//! [`svg`]: a drawing as a picture for the screen; [`svg_in_colour`]: with the colours of its pens.
 
-use crate::Drawing;
+use crate::{Drawing, Palette, Rgb};
 use core::fmt::{self, Write};
 
 /// Writes a drawing as SVG: the view box is the picture's size in px, y down, the centre of pixel (i, j) at
-/// (i + 0.5, j + 0.5); one polyline a stroke, with round caps so that dots show.
+/// (i + 0.5, j + 0.5); one polyline a stroke, with round caps so that dots show. All pens are black, each in a group of
+/// its own, as with [`svg_in_colour`].
 ///
 /// # Errors
 /// Those of the writer.
@@ -19,17 +20,54 @@ use core::fmt::{self, Write};
 /// # Ok::<(), std::fmt::Error>(())
 /// ```
 pub fn svg(drawing: &Drawing, stroke_width_px: f64, out: &mut impl Write) -> fmt::Result {
+    svg_in_colour(drawing, &Palette::default(), stroke_width_px, out)
+}
+
+/// As [`svg`], with a group for each pen in the colour that the palette gives it: in ascending order of their numbers,
+/// within each in the order of drawing. A pen that the palette does not have is black.
+///
+/// # Errors
+/// Those of the writer.
+///
+/// ```
+/// # use plotter_vector::{Drawing, Palette, PalettePen, PxPoint, Rgb, svg_in_colour};
+/// let red = PalettePen { number: 2, name: "red".to_owned(), colour: Rgb([208, 24, 24]), width_mm: None };
+/// let mut drawing = Drawing::new(4, 3);
+/// drawing.push_with_pen(2, [PxPoint::new(0.5, 1.5), PxPoint::new(3.5, 1.5)]);
+/// let mut text = String::new();
+/// svg_in_colour(&drawing, &Palette::new(vec![red])?, 1.0, &mut text)?;
+/// assert!(text.contains("stroke=\"#d01818\""));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn svg_in_colour(
+    drawing: &Drawing,
+    palette: &Palette,
+    stroke_width_px: f64,
+    out: &mut impl Write,
+) -> fmt::Result {
     let (width, height) = (drawing.width_px(), drawing.height_px());
     writeln!(
         out,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">"
     )?;
+    // A drawing without strokes has its group too.
+    let pens = if drawing.strokes().len() == 0 { vec![1] } else { drawing.pens() };
+    for pen in pens {
+        let colour = palette.pen(pen).map_or(Rgb::BLACK, |pen| pen.colour);
+        group(drawing, pen, colour, stroke_width_px, out)?;
+    }
+    out.write_str("</svg>\n")
+}
+
+/// The strokes of one pen.
+fn group(drawing: &Drawing, pen: u8, colour: Rgb, stroke_width_px: f64, out: &mut impl Write) -> fmt::Result {
     let line = Short(stroke_width_px);
+    let colour = if colour == Rgb::BLACK { "#000".to_owned() } else { colour.to_string() };
     writeln!(
         out,
-        "<g fill=\"none\" stroke=\"#000\" stroke-width=\"{line}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">"
+        "<g fill=\"none\" stroke=\"{colour}\" stroke-width=\"{line}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">"
     )?;
-    for stroke in drawing.strokes() {
+    for (_, stroke) in drawing.strokes().enumerate().filter(|(index, _)| drawing.pen(*index) == pen) {
         out.write_str("<polyline points=\"")?;
         // A polyline of one vertex is not drawn; one that goes nowhere is, as a round dot.
         let dot = if stroke.len() == 1 { stroke } else { &[] };
@@ -39,7 +77,7 @@ pub fn svg(drawing: &Drawing, stroke_width_px: f64, out: &mut impl Write) -> fmt
         }
         out.write_str("\"/>\n")?;
     }
-    out.write_str("</g>\n</svg>\n")
+    out.write_str("</g>\n")
 }
 
 /// A number with at most three decimals and no trailing zeros.
@@ -65,6 +103,18 @@ mod tests {
             [text(12.5), text(100.0), text(0.125), text(-0.0001), text(1.0 / 3.0)],
             ["12.5", "100", "0.125", "0", "0.333"]
         );
+    }
+
+    #[test]
+    fn each_pen_has_one_group() {
+        let mut drawing = Drawing::new(8, 6);
+        for pen in [2, 1, 2] {
+            drawing.push_with_pen(pen, [PxPoint::new(f64::from(pen), 0.5)]);
+        }
+        let mut text = String::new();
+        svg(&drawing, 1.0, &mut text).unwrap();
+        assert_eq!(text.matches("<g ").count(), 2);
+        assert!(text.find("1,0.5") < text.find("2,0.5"), "{text}");
     }
 
     #[test]

@@ -1,16 +1,18 @@
 //! [`Threshold`]: which pixels are ink.
 //!
 //! A scan is dark lines on light paper, or light lines on a dark ground (a blueprint, a photograph's negative).
-//! Otsu's level splits the 256 grey levels in two; the *searched colour* is the one that covers less, for
-//! lines are always the minority.
+//! A level splits the 256 grey levels in two, one for the whole sheet or, in uneven light, another in each place;
+//! the *searched colour* is the one that covers less, for lines are always the minority.
 
-use crate::{Bitmap, Gray};
+use crate::{Bitmap, Gray, RowThreshold, Survey};
+use core::{fmt, str};
 
 /// Which side of the level is ink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Polarity {
-    /// The side that covers fewer pixels; dark when both cover the same.
+    /// The side that covers fewer pixels; dark when both cover the same. In uneven light the side of the local
+    /// median on which more pixels lie.
     #[default]
     Minority,
     /// Dark lines on light paper.
@@ -19,23 +21,137 @@ pub enum Polarity {
     LightInk,
 }
 
+/// Where the level comes from. In text, and with the feature `serde`, `otsu`, `adaptive`, or the number of a level.
+///
+/// ```
+/// # use plotter_vector::ThresholdMethod;
+/// assert_eq!("adaptive".parse(), Ok(ThresholdMethod::Adaptive));
+/// assert_eq!("128".parse(), Ok(ThresholdMethod::Level(128)));
+/// assert_eq!(
+///     "256".parse::<ThresholdMethod>().unwrap_err().to_string(),
+///     "threshold: 256 is neither otsu, adaptive nor a level from 0 to 255"
+/// );
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ThresholdMethod {
+    /// One level for the whole sheet, [`Histogram::otsu`](crate::Histogram::otsu).
+    #[default]
+    Otsu,
+    /// For uneven light, such as a photographed sheet: each level is divided by that of the paper in the same place,
+    /// and Otsu's level taken there. Where the paper's level comes from is measured in tiles of
+    /// [`Threshold::window_px`].
+    ///
+    /// Ink may fill an area up to two tiles wide; a larger one comes out hollow, for it is taken as paper in a
+    /// shadow. A shadow narrower than two tiles is taken as ink when it is as dark.
+    ///
+    /// Source: S. Lu, B. Su, C. L. Tan, "Document image binarization using background estimation and stroke edges"
+    /// (2010), section 3.1.
+    Adaptive,
+    /// Levels up to this one are dark.
+    Level(u8),
+}
+
+/// A text that names no [`ThresholdMethod`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ThresholdMethodError {
+    /// What was given.
+    pub text: String,
+}
+
+impl fmt::Display for ThresholdMethodError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "threshold: {} is neither otsu, adaptive nor a level from 0 to 255", self.text)
+    }
+}
+
+impl core::error::Error for ThresholdMethodError {}
+
+impl fmt::Display for ThresholdMethod {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Otsu => f.write_str("otsu"),
+            Self::Adaptive => f.write_str("adaptive"),
+            Self::Level(level) => level.fmt(f),
+        }
+    }
+}
+
+impl str::FromStr for ThresholdMethod {
+    type Err = ThresholdMethodError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "otsu" => Ok(Self::Otsu),
+            "adaptive" => Ok(Self::Adaptive),
+            _ => text.parse().map(Self::Level).map_err(|_| ThresholdMethodError { text: text.to_owned() }),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for ThresholdMethod {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Level(level) => serializer.serialize_u8(*level),
+            named => serializer.collect_str(named),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for ThresholdMethod {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Method;
+        impl serde::de::Visitor<'_> for Method {
+            type Value = ThresholdMethod;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("otsu, adaptive or a level from 0 to 255")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Self::Value, E> {
+                text.parse().map_err(E::custom)
+            }
+
+            fn visit_u64<E: serde::de::Error>(self, level: u64) -> Result<Self::Value, E> {
+                u8::try_from(level)
+                    .map(ThresholdMethod::Level)
+                    .map_err(|_| E::custom(ThresholdMethodError { text: level.to_string() }))
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, level: i64) -> Result<Self::Value, E> {
+                u8::try_from(level)
+                    .map(ThresholdMethod::Level)
+                    .map_err(|_| E::custom(ThresholdMethodError { text: level.to_string() }))
+            }
+        }
+        deserializer.deserialize_any(Method)
+    }
+}
+
 /// How ink is told from paper. The default finds everything from the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Threshold {
     /// Which side of the level is ink.
     pub polarity: Polarity,
-    /// Levels up to this one are dark; `None` takes Otsu's.
-    pub level: Option<u8>,
+    /// Where the level comes from.
+    pub method: ThresholdMethod,
+    /// Side of the tiles in which [`ThresholdMethod::Adaptive`] measures the paper, px, 8 to 1024. Larger than the
+    /// lines are wide, and smaller than the edge of a shadow is soft.
+    pub window_px: u32,
     /// Least distance between the mean dark and the mean light level, in levels: below it the picture is an
-    /// empty sheet with noise, and nothing is ink. Not asked when `level` is given.
+    /// empty sheet with noise, and nothing is ink. Not asked when the level is given. In uneven light ink is at
+    /// least half as far from the paper, too.
     pub min_contrast: u8,
 }
 
 impl Default for Threshold {
-    /// Otsu's level; 24 levels of contrast, a hard pencil's faintest line, where a scanner's noise has 2 to 8.
+    /// Otsu's level; 24 levels of contrast, a hard pencil's faintest line, where a scanner's noise has 2 to 8. Tiles
+    /// of 32 px: 1.4 mm at 600 dots per inch, wide enough for lines of 1 mm, for half of a tile may be ink, and
+    /// the tiles around serve where it is more.
     fn default() -> Self {
-        Self { polarity: Polarity::Minority, level: None, min_contrast: 24 }
+        Self { polarity: Polarity::Minority, method: ThresholdMethod::Otsu, window_px: 32, min_contrast: 24 }
     }
 }
 
@@ -43,7 +159,7 @@ impl Default for Threshold {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Split {
-    /// Levels up to this one are dark.
+    /// Levels up to this one are dark; in uneven light, as [`RowThreshold::level`] says.
     pub level: u8,
     /// Whether the dark side is ink.
     pub ink_is_dark: bool,
@@ -53,7 +169,8 @@ pub struct Split {
 
 impl Threshold {
     /// The ink of a picture, and how it was told; no split, and no ink, for a picture of one level or below the
-    /// least contrast.
+    /// least contrast. The same comes out row by row of a [`Survey`] and its [`RowThreshold`], and with any number
+    /// of threads.
     ///
     /// ```
     /// # use plotter_vector::{Gray, Threshold};
@@ -69,73 +186,29 @@ impl Threshold {
         let Ok(mut ink) = Bitmap::new(gray.width(), gray.height()) else {
             return (Bitmap::empty(), None);
         };
-        let histogram = histogram(gray.pixels());
-        let Some(level) = self.level.or_else(|| otsu(&histogram, self.min_contrast)) else {
+        let mut survey = Survey::checked(self, gray.width(), gray.height());
+        survey.push_all(gray.pixels());
+        let Some(rows) = survey.finish() else {
             return (ink, None);
         };
-        let (dark, light) = histogram.split_at(usize::from(level) + 1);
-        let (dark, light): (u64, u64) = (dark.iter().sum(), light.iter().sum());
-        let ink_is_dark = match self.polarity {
-            Polarity::Minority => dark <= light,
-            Polarity::DarkInk => true,
-            Polarity::LightInk => false,
-        };
-        for (y, row) in (0..).zip(gray.rows()) {
-            for (word, levels) in ink.row_mut(y).iter_mut().zip(row.chunks(64)) {
-                let bits = levels.iter().rev().fold(0, |bits, l| bits << 1 | u64::from(*l <= level));
-                let used = u64::MAX >> (64 - levels.len());
-                *word = if ink_is_dark { bits } else { !bits & used };
-            }
-        }
-        let ink_pixels = if ink_is_dark { dark } else { light };
-        (ink, Some(Split { level, ink_is_dark, ink_pixels }))
+        fill(&rows, gray, &mut ink);
+        let split = Split { level: rows.level(), ink_is_dark: rows.ink_is_dark(), ink_pixels: ink.count() };
+        (ink, Some(split))
     }
 }
 
-/// How many pixels have each level.
-fn histogram(levels: &[u8]) -> [u64; 256] {
-    let mut counts = [0; 256];
-    for level in levels {
-        if let Some(count) = counts.get_mut(usize::from(*level)) {
-            *count += 1;
-        }
+#[cfg(not(feature = "rayon"))]
+fn fill(threshold: &RowThreshold, gray: &Gray, ink: &mut Bitmap) {
+    for ((y, levels), words) in (0..).zip(gray.rows()).zip(ink.rows_mut()) {
+        threshold.row(y, levels, words);
     }
-    counts
 }
 
-/// The level L that splits a histogram into 0..=L and the rest with the greatest variance between the classes,
-/// w₀·w₁·(μ₀ − μ₁)². Of a plateau of equal levels (no pixel between two peaks) the middle is taken, so that
-/// neither class lies on the border. `None` when all pixels have one level, or |μ₀ − μ₁| is below `min_contrast`.
-///
-/// Source: N. Otsu, "A threshold selection method from gray-level histograms" (1979), eq. 18.
-fn otsu(histogram: &[u64; 256], min_contrast: u8) -> Option<u8> {
-    let count: u64 = histogram.iter().sum();
-    let sum: u64 = (0_u64..).zip(histogram).map(|(level, n)| level * n).sum();
-    let (mut dark, mut dark_sum) = (0_u64, 0_u64);
-    let mut best: Option<(u128, u8, u8, f64)> = None;
-    for (level, n) in (0_u8..=255).zip(histogram) {
-        dark += n;
-        dark_sum += u64::from(level) * n;
-        let light = count - dark;
-        if dark == 0 || light == 0 {
-            continue;
-        }
-        // w₀·w₁·(μ₀ − μ₁)² = (S₀·n₁ − S₁·n₀)² / (n₀·n₁) up to the constant n²; a wide integer keeps plateaus
-        // exactly level: the square has at most 2·(28 + 8 + 28) bits.
-        let cross = (u128::from(dark_sum) * u128::from(light))
-            .abs_diff(u128::from(sum - dark_sum) * u128::from(dark));
-        let classes = u128::from(dark) * u128::from(light);
-        let variance = cross.checked_mul(cross).map_or(u128::MAX, |square| square / classes);
-        #[expect(clippy::cast_precision_loss, reason = "only compared with a contrast of whole levels")]
-        let contrast = cross as f64 / classes as f64;
-        match &mut best {
-            Some((most, _, last, _)) if variance == *most => *last = level,
-            Some((most, ..)) if variance < *most => {}
-            _ => best = Some((variance, level, level, contrast)),
-        }
-    }
-    let (_, first, last, contrast) = best?;
-    (contrast >= f64::from(min_contrast)).then(|| first + (last - first) / 2)
+#[cfg(feature = "rayon")]
+fn fill(threshold: &RowThreshold, gray: &Gray, ink: &mut Bitmap) {
+    use rayon::prelude::*;
+    let rows: Vec<_> = (0..).zip(gray.rows()).zip(ink.rows_mut()).collect();
+    rows.into_par_iter().with_min_len(64).for_each(|((y, levels), words)| threshold.row(y, levels, words));
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What a machine's description says, with the documented gantry as default.
 
-use super::MachineName;
+use super::{MachineName, VectorizeConfig};
 
 /// What a machine's description says, not yet checked: [`Machine::new`](crate::Machine::new) does that.
 ///
@@ -25,6 +25,8 @@ pub struct MachineConfig {
     pub control: ControlConfig,
     /// When one motor waits for the other.
     pub sync_stop: SyncStopConfig,
+    /// How pictures become strokes for it.
+    pub vectorize: VectorizeConfig,
     /// First axis: to the right.
     pub x: AxisConfig,
     /// Second axis: up.
@@ -287,6 +289,7 @@ impl Default for MachineConfig {
             serial: SerialConfig::default(),
             control: ControlConfig::default(),
             sync_stop: SyncStopConfig::default(),
+            vectorize: VectorizeConfig::default(),
             x: AxisConfig::default(),
             y: AxisConfig::default(),
         }

@@ -17,6 +17,7 @@ mod spelling;
 mod toml_error;
 #[cfg(feature = "toml")]
 mod toml_file;
+mod vectorize;
 
 pub use error::{Bound, ConfigError};
 pub use machine::Machine;
@@ -27,3 +28,4 @@ pub use machine_config::{
 pub use name::MachineName;
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};
+pub use vectorize::{StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};

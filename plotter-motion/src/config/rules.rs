@@ -27,6 +27,9 @@ pub(super) enum Form {
     /// One of a few words.
     #[cfg_attr(not(feature = "toml"), expect(dead_code, reason = "only the reader of TOML files asks"))]
     Choice(&'static [&'static str]),
+    /// One of a few words, or a level from 0 to 255, as text or as a whole number.
+    #[cfg_attr(not(feature = "toml"), expect(dead_code, reason = "only the reader of TOML files asks"))]
+    ChoiceOrLevel(&'static [&'static str]),
 }
 
 /// The range of a number.
@@ -59,7 +62,7 @@ impl Rule {
     pub(super) fn check(&self, config: &MachineConfig) -> Result<(), ConfigError> {
         match self.form {
             Form::Number(rule) | Form::Whole(rule) => rule.check(self.key, (rule.read)(config)),
-            Form::Text(_) | Form::Choice(_) => Ok(()),
+            Form::Text(_) | Form::Choice(_) | Form::ChoiceOrLevel(_) => Ok(()),
         }
     }
 }
@@ -95,7 +98,7 @@ const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the s
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
-static MACHINE: [Rule; 25] = [
+static MACHINE: [Rule; 32] = [
     Rule { key: "schema", form: Form::Whole(SCHEMA) },
     Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
     number("area.width_mm", |c| c.area.width_mm, (1.0, 100_000.0), "mm", "an A2 sheet lying is 594 wide"),
@@ -240,6 +243,31 @@ static MACHINE: [Rule; 25] = [
         (1.0, 100_000.0),
         "counts",
         "below one count no motor could ever start; the published rule has 10",
+    ),
+    Rule { key: "vectorize.mode", form: Form::Choice(&["centreline", "outline", "mixed"]) },
+    number(
+        "vectorize.max_error_px",
+        |c| c.vectorize.max_error_px,
+        (0.01, 100.0),
+        "px",
+        "0.5 is half a pixel",
+    ),
+    Rule { key: "vectorize.threshold", form: Form::ChoiceOrLevel(&["otsu", "adaptive"]) },
+    whole("vectorize.pens", |c| f64::from(c.vectorize.pens), (1.0, 16.0), "", "1 draws all ink with one pen"),
+    Rule { key: "vectorize.order", form: Form::Choice(&["none", "fast", "best"]) },
+    number(
+        "vectorize.hatch_mm",
+        |c| c.vectorize.hatch_mm,
+        (0.0, 1_000.0),
+        "mm",
+        "the pen's width closes the hatching, 0 is none",
+    ),
+    whole(
+        "vectorize.max_line_px",
+        |c| f64::from(c.vectorize.max_line_px),
+        (0.0, 512.0),
+        "px",
+        "0 finds it from the picture",
     ),
 ];
 

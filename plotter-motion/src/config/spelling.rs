@@ -7,7 +7,7 @@ use alloc::{format, string::String, vec::Vec};
 const LONGEST_WORD: usize = 48;
 
 /// Endings that name a unit, each with the unit in words, longest first where one ends another.
-const UNITS: [(&str, &str); 40] = [
+const UNITS: [(&str, &str); 41] = [
     ("_mm_min2", "mm/min^2"),
     ("_mm_s3", "mm/s^3"),
     ("_mm_s2", "mm/s^2"),
@@ -40,6 +40,7 @@ const UNITS: [(&str, &str); 40] = [
     ("_khz", "kHz"),
     ("_hz", "Hz"),
     ("_mm", "mm"),
+    ("_px", "px"),
     ("_cm", "cm"),
     ("_in", "in"),
     ("_ms", "ms"),

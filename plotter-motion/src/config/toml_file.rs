@@ -212,6 +212,19 @@ fn check_value(text: &str, rule: &'static Rule, value: &Spanned<DeValue<'_>>) ->
                 refused(format!("write {}{guess}", quoted.join(" or ")))
             }
         },
+        Form::ChoiceOrLevel(words) => {
+            let is_level = match value.get_ref() {
+                DeValue::String(text) if words.contains(&text.as_ref()) => true,
+                DeValue::String(text) => text.parse::<u8>().is_ok(),
+                other => whole(other).is_some_and(|level| u8::try_from(level).is_ok()),
+            };
+            let quoted: Vec<_> = words.iter().map(|word| format!("\"{word}\"")).collect();
+            if is_level {
+                None
+            } else {
+                refused(format!("write {} or a level from 0 to 255", quoted.join(", ")))
+            }
+        }
     }
 }
 

@@ -2,12 +2,17 @@
 
 mod bounded;
 mod dynamic_threshold;
+mod links;
+mod polish;
+mod polyline;
+mod promise;
+mod ray_cone;
 
 pub(crate) use bounded::segment_distance_squared;
 pub use bounded::{Bounded, MAX_REACH_PX};
 pub use dynamic_threshold::DynamicThreshold;
 
-use crate::Pixel;
+use crate::{Pixel, PxPoint};
 
 /// Chooses the pixels of a figure that become vertices of its polyline.
 pub trait Simplify {

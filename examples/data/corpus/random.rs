@@ -1,0 +1,54 @@
+//! Reproducible noise.
+
+/// A stream of random numbers: `SplitMix64`.
+///
+/// Source: Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, fig. 17.
+#[derive(Debug)]
+pub(crate) struct Random {
+    state: u64,
+}
+
+impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self { state: seed }
+    }
+
+    pub(crate) fn bits(&mut self) -> u64 {
+        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// Evenly from 0, included, to 1, excluded.
+    pub(crate) fn unit(&mut self) -> f64 {
+        let high = u32::try_from(self.bits() >> 32).unwrap_or(0);
+        f64::from(high) / 4_294_967_296.0
+    }
+
+    /// Normally distributed with mean 0 and variance 1 (Box and Muller 1958).
+    pub(crate) fn normal(&mut self) -> f64 {
+        let radius = libm::sqrt(-2.0 * libm::log(1.0 - self.unit()));
+        radius * libm::cos(core::f64::consts::TAU * self.unit())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_number_is_the_published_one() {
+        // Reference output of `SplitMix64` for the seed 0.
+        assert_eq!(Random::new(0).bits(), 0xE220_A839_7B1D_CDAF);
+    }
+
+    #[test]
+    fn normal_numbers_have_the_variance_one() {
+        let mut random = Random::new(1);
+        let squares: f64 = (0..10_000).map(|_| libm::pow(random.normal(), 2.0)).sum();
+        // The standard deviation of the mean is sqrt(2 / 10 000) = 0.014.
+        assert!((squares / 10_000.0 - 1.0).abs() < 0.05);
+    }
+}

@@ -1,0 +1,143 @@
+//! [`VectorizeConfig`]: how pictures become strokes for a machine.
+//!
+//! Only what the machine's file says: this crate knows no pictures. Who vectorizes makes settings of it.
+
+/// How pictures become strokes: the table `[vectorize]` of a machine's file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
+pub struct VectorizeConfig {
+    /// What is drawn of the ink.
+    pub mode: VectorizeMode,
+    /// Greatest distance of the ink from the strokes, px of the picture.
+    pub max_error_px: f64,
+    /// How ink is told from paper.
+    pub threshold: ThresholdChoice,
+    /// How many pens are told apart by their colours; 1 draws all ink with one, by its grey level.
+    pub pens: u32,
+    /// How hard an order with little travel is searched for.
+    pub order: StrokeOrder,
+    /// From line to line of the hatching of areas, mm on the sheet; 0 for none.
+    pub hatch_mm: f64,
+    /// What is wider is an area, px of the picture; 0 finds it.
+    pub max_line_px: u32,
+}
+
+impl Default for VectorizeConfig {
+    fn default() -> Self {
+        Self {
+            mode: VectorizeMode::Centreline,
+            max_error_px: 0.5,
+            threshold: ThresholdChoice::Otsu,
+            pens: 1,
+            order: StrokeOrder::Best,
+            hatch_mm: 0.0,
+            max_line_px: 0,
+        }
+    }
+}
+
+/// What is drawn of the ink.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum VectorizeMode {
+    /// The middle of lines.
+    #[default]
+    Centreline,
+    /// The outlines of everything.
+    Outline,
+    /// The middle of lines, and areas in their own style.
+    Mixed,
+}
+
+/// How hard an order of the strokes is searched for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum StrokeOrder {
+    /// As they are found.
+    None,
+    /// From each end to the nearest stroke.
+    Fast,
+    /// With all improvements.
+    #[default]
+    Best,
+}
+
+/// How ink is told from paper. In a file `"otsu"`, `"adaptive"`, or a level: `"128"` or `128`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ThresholdChoice {
+    /// One level for the whole sheet, found from the picture.
+    #[default]
+    Otsu,
+    /// Another level in each place, for uneven light.
+    Adaptive,
+    /// Levels up to this one are dark.
+    Level(u8),
+}
+
+impl ThresholdChoice {
+    /// The choice that a text names; `None` if it names none.
+    ///
+    /// ```
+    /// # use plotter_motion::ThresholdChoice;
+    /// assert_eq!(ThresholdChoice::from_text("128"), Some(ThresholdChoice::Level(128)));
+    /// assert_eq!(ThresholdChoice::from_text("256"), None);
+    /// ```
+    #[must_use]
+    pub fn from_text(text: &str) -> Option<Self> {
+        match text {
+            "otsu" => Some(Self::Otsu),
+            "adaptive" => Some(Self::Adaptive),
+            level => level.parse().ok().map(Self::Level),
+        }
+    }
+}
+
+impl core::fmt::Display for ThresholdChoice {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Otsu => f.write_str("otsu"),
+            Self::Adaptive => f.write_str("adaptive"),
+            Self::Level(level) => level.fmt(f),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for ThresholdChoice {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for ThresholdChoice {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        use serde::de::{Error, Unexpected};
+        struct Visitor;
+        impl serde::de::Visitor<'_> for Visitor {
+            type Value = ThresholdChoice;
+            fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                f.write_str("otsu, adaptive or a level from 0 to 255")
+            }
+            fn visit_str<E: Error>(self, text: &str) -> Result<ThresholdChoice, E> {
+                ThresholdChoice::from_text(text).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
+            }
+            fn visit_u64<E: Error>(self, level: u64) -> Result<ThresholdChoice, E> {
+                let fits = u8::try_from(level).map(ThresholdChoice::Level);
+                fits.map_err(|_| E::invalid_value(Unexpected::Unsigned(level), &self))
+            }
+            fn visit_i64<E: Error>(self, level: i64) -> Result<ThresholdChoice, E> {
+                let fits = u8::try_from(level).map(ThresholdChoice::Level);
+                fits.map_err(|_| E::invalid_value(Unexpected::Signed(level), &self))
+            }
+        }
+        deserializer.deserialize_any(Visitor)
+    }
+}

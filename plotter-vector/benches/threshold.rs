@@ -1,0 +1,63 @@
+//! Megapixels a second of each stage from grey levels to clean ink, on a sheet A4 at 150, 300 and 600 dots per inch.
+//!
+//!     cargo bench -p plotter-vector --bench threshold
+#![allow(clippy::unwrap_used, reason = "a failure shows, and levels are made to fit")]
+
+use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use plotter_vector::{
+    Gray, Histogram, Survey, Threshold, ThresholdMethod, despeckle, pen_width_px, smallest_mark_px,
+};
+use std::hint::black_box;
+use std::time::Duration;
+
+/// Lines in all directions, 4 px wide, on paper with noise.
+fn sheet(width: u32, height: u32) -> Gray {
+    let level = |i: u32| {
+        let (x, y) = (i % width, i / width);
+        let mut noise = i.wrapping_mul(0x9e37_79b9);
+        noise = (noise ^ noise >> 15).wrapping_mul(0x2c1b_3c6d);
+        let paper = 225 + (noise >> 28) as u8;
+        let line = x % 331 < 4 || y % 313 < 4 || (x + y) % 397 < 4 || (3 * x + 1000 * y / 577) % 1201 < 6;
+        if line { paper - 160 } else { paper }
+    };
+    Gray::new(width, height, (0..width * height).map(level).collect()).unwrap()
+}
+
+fn stages(criterion: &mut Criterion) {
+    for (dpi, width, height) in [(150, 1240, 1754), (300, 2480, 3508), (600, 4961, 7016)] {
+        let gray = sheet(width, height);
+        let pixels = u64::from(width) * u64::from(height);
+        let mut group = criterion.benchmark_group("A4");
+        group.throughput(Throughput::Elements(pixels)).sample_size(10);
+        group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
+        let mut stage = |name: &str, run: &mut dyn FnMut()| {
+            group.bench_function(BenchmarkId::new(name, dpi), |bencher| bencher.iter(&mut *run));
+        };
+        stage("histogram", &mut || {
+            let mut histogram = Histogram::default();
+            histogram.push(black_box(gray.pixels()));
+            black_box(histogram.otsu(24));
+        });
+        for method in [ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
+            let threshold = Threshold { method, ..Threshold::default() };
+            stage(&format!("{method}, survey"), &mut || {
+                let mut survey = Survey::new(threshold, width, height).unwrap();
+                gray.rows().for_each(|levels| survey.push(levels));
+                black_box(survey.finish());
+            });
+            stage(&format!("{method}, whole"), &mut || drop(black_box(threshold.apply(&gray))));
+        }
+        let (ink, _) = Threshold::default().apply(&gray);
+        let pen_px = pen_width_px(&ink).unwrap_or(0);
+        stage("width of the pen", &mut || {
+            black_box(pen_width_px(&ink));
+        });
+        group.bench_function(BenchmarkId::new("despeckle", dpi), |bencher| {
+            let run = |mut ink| despeckle(&mut ink, smallest_mark_px(pen_px));
+            bencher.iter_batched(|| ink.clone(), run, BatchSize::LargeInput);
+        });
+    }
+}
+
+criterion_group!(benches, stages);
+criterion_main!(benches);

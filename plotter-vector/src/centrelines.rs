@@ -1,0 +1,108 @@
+//! Ink to strokes along the middle of its lines, band after band.
+//!
+//! A band is thinned and taken apart with as many rows above and below as decide about its own; what it cuts at its
+//! border fits what the next one cuts. So the strokes are the same whatever the height of the bands, and however many
+//! threads work on them.
+
+pub(crate) use crate::graph::CONTEXT_ROWS;
+use crate::graph::{Centreline, Fragment, Joiner, Rims, Scan, Whole, fragments};
+use crate::{Bitmap, Bounded, Gray, PxPoint, Thinning, ThinningMethod};
+use core::ops::Range;
+
+/// How ink becomes centrelines.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Centring {
+    /// The thinning.
+    pub(crate) thinning: Thinning,
+    /// What the strokes are simplified with.
+    pub(crate) bounded: Bounded,
+    /// Own rows of a band.
+    pub(crate) band_rows: u32,
+}
+
+impl Centring {
+    /// For lines up to `max_line_px` wide.
+    pub(crate) fn new(method: ThinningMethod, max_line_px: u32, bounded: Bounded, band_rows: u32) -> Self {
+        let thinning = Thinning { method, max_passes: max_line_px / 2 + 3 };
+        Self { thinning, bounded, band_rows: band_rows.max(1) }
+    }
+
+    /// Rows that a band needs above and below its own.
+    pub(crate) fn rows_of_context(&self) -> u32 {
+        self.thinning.rows_of_context() + CONTEXT_ROWS
+    }
+
+    /// The strokes of a picture in memory, in reading order of where they begin; `grey`, with whether dark is ink, makes
+    /// them more exact.
+    pub(crate) fn strokes(&self, ink: &Bitmap, grey: Option<(&Gray, bool)>) -> Vec<Vec<PxPoint>> {
+        let mut joiner = Joiner::default();
+        let mut strokes = Vec::new();
+        let bands: Vec<Range<u32>> = (0..ink.height())
+            .step_by(self.band_rows as usize)
+            .map(|y| y..(y + self.band_rows).min(ink.height()))
+            .collect();
+        // As many bands at a time as there are threads: each holds its rows twice.
+        for some in bands.chunks(threads()) {
+            let mut whole = Vec::new();
+            for fragments in each(some.to_vec(), |rows| self.band(ink, grey, &rows)) {
+                whole.extend(fragments.into_iter().filter_map(|fragment| joiner.push(fragment)));
+            }
+            // At once: simplified they take a hundredth of the memory.
+            strokes.extend(self.simplified(whole));
+        }
+        strokes.extend(self.simplified(joiner.finish().collect()));
+        sort(&mut strokes);
+        strokes
+    }
+
+    /// The fragments in some rows of a picture.
+    fn band(&self, ink: &Bitmap, grey: Option<(&Gray, bool)>, rows: &Range<u32>) -> Vec<Fragment> {
+        let context = self.rows_of_context();
+        let first_row = rows.start.saturating_sub(context);
+        let band = ink.band(first_row..rows.end.saturating_add(context).min(ink.height()));
+        let grey = grey.map(|(levels, ink_is_dark)| Rims { levels, ink_is_dark, first_row: 0 });
+        let mut skeleton = band.clone();
+        // Lines that are wider than expected stay so in places: their middle is found all the same.
+        let _ = self.thinning.thin_in_place(&mut skeleton);
+        fragments(Scan { ink: &band, first_row, grey }, &skeleton, rows)
+    }
+
+    /// Strokes simplified.
+    pub(crate) fn simplified(&self, mut whole: Vec<Whole>) -> Vec<Vec<PxPoint>> {
+        whole.retain(|whole| !whole.places.is_empty());
+        let mut strokes = each(whole, |whole| Centreline::of(whole).polyline(self.bounded));
+        strokes.retain(|stroke| !stroke.is_empty());
+        strokes.iter_mut().for_each(Vec::shrink_to_fit);
+        strokes
+    }
+}
+
+/// Brings strokes into an order that depends on nothing but themselves: that of their vertices in turn, from the top.
+pub(crate) fn sort(strokes: &mut [Vec<PxPoint>]) {
+    strokes.sort_unstable_by(|one, other| compare(one, other));
+}
+
+/// By the vertices in turn.
+fn compare(one: &[PxPoint], other: &[PxPoint]) -> core::cmp::Ordering {
+    let unequal = one.iter().zip(other).map(|(a, b)| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x)));
+    unequal.into_iter().find(|order| order.is_ne()).unwrap_or_else(|| one.len().cmp(&other.len()))
+}
+
+/// How many bands are worked on at a time.
+pub(crate) fn threads() -> usize {
+    #[cfg(feature = "rayon")]
+    return rayon::current_num_threads().max(1);
+    #[cfg(not(feature = "rayon"))]
+    1
+}
+
+/// The results for all items in their order; on all cores with the feature `rayon`.
+pub(crate) fn each<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::*;
+        items.into_par_iter().map(&work).collect()
+    }
+    #[cfg(not(feature = "rayon"))]
+    items.into_iter().map(work).collect()
+}

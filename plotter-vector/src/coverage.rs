@@ -1,0 +1,269 @@
+//! [`coverage`]: how far every pixel of the ink lies from the drawing.
+
+use crate::{Bitmap, Drawing, ErrorReport, ErrorTally, Pixel, PxPoint};
+
+/// Side of the squares in which segments are looked up, px.
+const CELL_PX: u32 = 32;
+
+/// Farthest that the ink's edges are looked for across a segment, px.
+const MAX_HALF_PX: f64 = 96.0;
+
+/// Errors of all pixels of the ink that a drawing stands for, whatever way it was made.
+///
+/// A line w px wide has its pixels' centres up to (w − 1) / 2 from its middle; the error of a pixel is what its distance
+/// from the nearest segment is more than that, and so 0 for all pixels of a line whose middle is drawn. On lines one pixel
+/// wide it is the distance itself. The width is measured on the ink, across the segment.
+///
+/// ```
+/// # use plotter_vector::{Bitmap, Drawing, PxPoint, coverage};
+/// let bar = Bitmap::from_picture("######\n######\n######\n")?;
+/// let mut drawing = Drawing::new(6, 3);
+/// drawing.push([PxPoint::new(0.5, 1.5), PxPoint::new(4.5, 1.5)]); // a pixel too short
+/// let errors = coverage(&bar, &drawing);
+/// assert_eq!((errors.pixels, errors.max_px), (18, 2.0_f64.sqrt() - 1.0));
+/// # Ok::<(), plotter_vector::SizeError>(())
+/// ```
+#[must_use]
+pub fn coverage(ink: &Bitmap, drawing: &Drawing) -> ErrorReport {
+    let mut tally = ErrorTally::default();
+    add_coverage(ink, drawing, &mut tally);
+    tally.report()
+}
+
+/// Adds the errors of [`coverage`] to others.
+pub(crate) fn add_coverage(ink: &Bitmap, drawing: &Drawing, tally: &mut ErrorTally) {
+    for_each_error(ink, drawing, |_, error_px| tally.add_error(error_px));
+}
+
+/// The pixel with the greatest error of [`coverage`], the first of several in reading order, and its error, px; none
+/// without ink.
+///
+/// ```
+/// # use plotter_vector::{Bitmap, Drawing, Pixel, PxPoint, worst_pixel};
+/// let dots = Bitmap::from_picture("#....#\n")?;
+/// let mut drawing = Drawing::new(6, 1);
+/// drawing.push([PxPoint::new(0.5, 0.5)]);
+/// assert_eq!(worst_pixel(&dots, &drawing), Some((Pixel::new(5, 0), 5.0)));
+/// # Ok::<(), plotter_vector::SizeError>(())
+/// ```
+#[must_use]
+pub fn worst_pixel(ink: &Bitmap, drawing: &Drawing) -> Option<(Pixel, f64)> {
+    let mut worst: Option<(Pixel, f64)> = None;
+    for_each_error(ink, drawing, |at, error_px| {
+        if worst.is_none_or(|(_, most_px)| error_px > most_px) {
+            worst = Some((at, error_px));
+        }
+    });
+    worst
+}
+
+fn for_each_error(ink: &Bitmap, drawing: &Drawing, mut add: impl FnMut(Pixel, f64)) {
+    let index = Index::new(ink, drawing);
+    for at in ink.ink() {
+        add(at, index.error_px(at.into()));
+    }
+}
+
+/// A segment and half the ink's width beyond a pixel's own, px.
+#[derive(Clone, Copy, Debug)]
+struct Segment {
+    from: PxPoint,
+    to: PxPoint,
+    slack_px: f64,
+}
+
+impl Segment {
+    fn distance(&self, at: PxPoint) -> f64 {
+        let (x, y) = (self.to.x - self.from.x, self.to.y - self.from.y);
+        let length_squared = x * x + y * y;
+        let along = (at.x - self.from.x) * x + (at.y - self.from.y) * y;
+        let t = if length_squared > 0.0 { (along / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+        at.distance(PxPoint::new(self.from.x + x * t, self.from.y + y * t))
+    }
+
+    fn error_px(&self, at: PxPoint) -> f64 {
+        (self.distance(at) - self.slack_px).max(0.0)
+    }
+}
+
+/// The segments of a drawing by squares of the picture.
+struct Index {
+    segments: Vec<Segment>,
+    columns: u32,
+    rows: u32,
+    /// One past the last entry of each square.
+    ends: Vec<usize>,
+    /// Indices of segments, square by square.
+    entries: Vec<u32>,
+}
+
+impl Index {
+    fn new(ink: &Bitmap, drawing: &Drawing) -> Self {
+        let mut segments = Vec::new();
+        for stroke in drawing.strokes() {
+            let dot = if stroke.len() == 1 { stroke.first() } else { None };
+            let ends = stroke.iter().zip(stroke.iter().skip(1).chain(dot));
+            segments.extend(ends.map(|(from, to)| Segment {
+                from: *from,
+                to: *to,
+                slack_px: slack_px(ink, *from, *to),
+            }));
+        }
+        let columns = ink.width().div_ceil(CELL_PX).max(1);
+        let rows = ink.height().div_ceil(CELL_PX).max(1);
+        // Counted first, then filled: two vectors, whatever the drawing.
+        let mut ends = vec![0_usize; columns as usize * rows as usize];
+        for segment in &segments {
+            for_each_square(segment, columns, rows, |square| {
+                if let Some(count) = ends.get_mut(square) {
+                    *count += 1;
+                }
+            });
+        }
+        let mut sum = 0;
+        for end in &mut ends {
+            let count = *end;
+            *end = sum;
+            sum += count;
+        }
+        let mut entries = vec![0_u32; sum];
+        for (index, segment) in (0..).zip(&segments) {
+            for_each_square(segment, columns, rows, |square| {
+                if let Some(end) = ends.get_mut(square) {
+                    if let Some(entry) = entries.get_mut(*end) {
+                        *entry = index;
+                    }
+                    *end += 1;
+                }
+            });
+        }
+        Self { segments, columns, rows, ends, entries }
+    }
+
+    fn square(&self, column: u32, row: u32) -> &[u32] {
+        let index = row as usize * self.columns as usize + column as usize;
+        let start = index.checked_sub(1).and_then(|before| self.ends.get(before)).copied().unwrap_or(0);
+        self.ends.get(index).and_then(|end| self.entries.get(start..*end)).unwrap_or(&[])
+    }
+
+    /// The least error of a place over all segments.
+    fn error_px(&self, at: PxPoint) -> f64 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+        let (column, row) = ((at.x / f64::from(CELL_PX)) as u32, (at.y / f64::from(CELL_PX)) as u32);
+        let mut least = f64::INFINITY;
+        let mut ring = 0;
+        // Squares of ring k are at least k - 1 squares away, less what a segment's slack forgives.
+        while ring <= self.columns.max(self.rows) {
+            if ring > 0 && least + MAX_HALF_PX <= f64::from((ring - 1) * CELL_PX) || least == 0.0 {
+                break;
+            }
+            for y in row.saturating_sub(ring)..=(row + ring).min(self.rows - 1) {
+                let on_rim = y.abs_diff(row) == ring;
+                let step = if on_rim || ring == 0 { 1 } else { 2 * ring };
+                let mut x = i64::from(column) - i64::from(ring);
+                while x <= i64::from(column) + i64::from(ring) {
+                    if let Some(x) = u32::try_from(x).ok().filter(|x| *x < self.columns) {
+                        let near =
+                            self.square(x, y).iter().filter_map(|index| self.segments.get(*index as usize));
+                        least = near.map(|segment| segment.error_px(at)).fold(least, f64::min);
+                    }
+                    x += i64::from(step);
+                }
+            }
+            ring += 1;
+        }
+        if least.is_finite() { least } else { at.distance(PxPoint::default()) }
+    }
+}
+
+/// The squares that a segment's bounding boxes touch, piece by piece so that a long slope takes few.
+fn for_each_square(segment: &Segment, columns: u32, rows: u32, mut visit: impl FnMut(usize)) {
+    let side = f64::from(CELL_PX);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+    let cell = |v: f64, most: u32| ((v / side).max(0.0) as u32).min(most - 1);
+    let (top, bottom) = (segment.from.y.min(segment.to.y), segment.from.y.max(segment.to.y));
+    let (x, y) = (segment.to.x - segment.from.x, segment.to.y - segment.from.y);
+    for row in cell(top, rows)..=cell(bottom, rows) {
+        // Where the segment enters and leaves this row of squares.
+        let (upper, lower) = (f64::from(row) * side, f64::from(row + 1) * side);
+        let at = |level: f64| {
+            let t = if y == 0.0 { 0.0 } else { ((level - segment.from.y) / y).clamp(0.0, 1.0) };
+            segment.from.x + x * t
+        };
+        let (a, b) = if y == 0.0 { (segment.from.x, segment.to.x) } else { (at(upper), at(lower)) };
+        for column in cell(a.min(b), columns)..=cell(a.max(b), columns) {
+            visit(row as usize * columns as usize + column as usize);
+        }
+    }
+}
+
+/// Half the width of the ink across a segment, less half a pixel: the median of five places along it.
+fn slack_px(ink: &Bitmap, from: PxPoint, to: PxPoint) -> f64 {
+    const STEP_PX: f64 = 0.25;
+    let length = from.distance(to);
+    let (dx, dy) =
+        if length > 0.0 { ((to.x - from.x) / length, (to.y - from.y) / length) } else { (1.0, 0.0) };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+    let is_ink = |x: f64, y: f64| x >= 0.0 && y >= 0.0 && ink.get(Pixel::new(x as u32, y as u32));
+    let mut widths = [0.1, 0.3, 0.5, 0.7, 0.9].map(|t| {
+        let (x, y) = (from.x + (to.x - from.x) * t, from.y + (to.y - from.y) * t);
+        let reach = |side: f64| {
+            let mut reach = 0.0;
+            // In the middle of the next step: the border between two pixels belongs to one side only.
+            let probe = |reach: f64| side * (reach + 0.5 * STEP_PX);
+            while reach < MAX_HALF_PX && is_ink(x - dy * probe(reach), y + dx * probe(reach)) {
+                reach += STEP_PX;
+            }
+            reach
+        };
+        reach(1.0) + reach(-1.0)
+    });
+    widths.sort_by(f64::total_cmp);
+    let [_, _, median, ..] = widths;
+    (0.5 * median - 0.5).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_of_a_wide_line_has_no_error() {
+        let mut ink = Bitmap::new(200, 9).unwrap();
+        (2..7).for_each(|y| (0..200).for_each(|x| ink.set(Pixel::new(x, y), true)));
+        let mut drawing = Drawing::new(200, 9);
+        drawing.push([PxPoint::new(0.5, 4.5), PxPoint::new(199.5, 4.5)]);
+        assert_eq!(coverage(&ink, &drawing).max_px, 0.0);
+        let mut high = Drawing::new(200, 9);
+        high.push([PxPoint::new(0.5, 3.5), PxPoint::new(199.5, 3.5)]);
+        assert_eq!(coverage(&ink, &high).max_px, 1.0);
+    }
+
+    #[test]
+    fn a_line_one_pixel_wide_is_measured_by_distance() {
+        let ink = Bitmap::from_picture("#..\n.#.\n..#\n").unwrap();
+        let mut drawing = Drawing::new(3, 3);
+        drawing.push([PxPoint::new(0.5, 1.5), PxPoint::new(2.5, 1.5)]);
+        let errors = coverage(&ink, &drawing);
+        assert_eq!((errors.pixels, errors.max_px), (3, 1.0));
+    }
+
+    #[test]
+    fn far_ink_is_measured_across_the_whole_picture() {
+        let mut ink = Bitmap::new(1000, 1000).unwrap();
+        ink.set(Pixel::new(999, 999), true);
+        let mut drawing = Drawing::new(1000, 1000);
+        drawing.push([PxPoint::new(0.5, 0.5), PxPoint::new(0.5, 30.5)]);
+        let (at, error_px) = worst_pixel(&ink, &drawing).unwrap();
+        assert_eq!(at, Pixel::new(999, 999));
+        assert!((error_px - libm::hypot(999.0, 969.0)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn no_ink_has_no_error_and_no_drawing_is_far() {
+        let drawing = Drawing::new(4, 4);
+        assert_eq!(coverage(&Bitmap::new(4, 4).unwrap(), &drawing), ErrorReport::default());
+        let dot = Bitmap::from_picture("....\n...#\n").unwrap();
+        assert!(coverage(&dot, &drawing).max_px > 3.0);
+    }
+}

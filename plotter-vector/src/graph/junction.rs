@@ -1,0 +1,413 @@
+//! Junctions: where lines meet, and which of them go on as one stroke.
+//!
+//! At a crossing the skeleton has several nodes with short edges between them; those whose discs of ink overlap are
+//! one junction. Two lines that cross at an acute angle `a` have two forks far apart, with an edge between them
+//! along which both lines run together: it is wider than a line, and the arms continue each other across it.
+
+use super::arm::Arm;
+use super::corner::TURN_COS;
+use super::meeting::{Heart, partners};
+use super::site::{Scan, Site};
+use super::{End, Graph};
+use crate::{Pixel, PxPoint};
+
+/// Lines up to this width keep their pixels: the raster itself is their centreline.
+pub(crate) const THIN_PX: f64 = 1.5;
+
+/// What takes the place of the disturbed ends of one or two edges.
+#[derive(Clone, Debug)]
+pub(crate) struct Connection {
+    /// The junction's first node in reading order.
+    pub(crate) owner: Pixel,
+    /// An edge's end.
+    pub(crate) from: End,
+    /// The edge end that continues the stroke; none where the line ends.
+    pub(crate) to: Option<End>,
+    /// Places between the last sites that stay, or from there to where the line ends.
+    pub(crate) points: Vec<PxPoint>,
+    /// Whether the stroke has a corner there.
+    pub(crate) corner: bool,
+}
+
+/// What was found out about all edges.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Junctions {
+    /// For each edge how many sites are replaced at its start and its end.
+    skips: Vec<[usize; 2]>,
+    /// What replaces them.
+    pub(crate) connections: Vec<Connection>,
+    /// Edges that are inside a junction, no line of their own.
+    pub(crate) inner: Vec<bool>,
+}
+
+impl Junctions {
+    /// Sites at an edge's end that are replaced.
+    pub(crate) fn skip(&self, end: End) -> usize {
+        self.skips.get(end.edge).and_then(|skips| skips.get(usize::from(end.at_last))).copied().unwrap_or(0)
+    }
+
+    fn set_skip(&mut self, end: End, skip: usize) {
+        if let Some(place) =
+            self.skips.get_mut(end.edge).and_then(|skips| skips.get_mut(usize::from(end.at_last)))
+        {
+            *place = skip;
+        }
+    }
+
+    /// A line ends.
+    pub(super) fn end(&mut self, owner: Pixel, one: &ArmOf, points: Vec<PxPoint>) {
+        self.set_skip(one.end, one.arm.skip);
+        self.connections.push(Connection { owner, from: one.end, to: None, points, corner: false });
+    }
+
+    /// An edge is no line of its own.
+    pub(super) fn drop_line(&mut self, end: End) {
+        if let Some(inner) = self.inner.get_mut(end.edge) {
+            *inner = true;
+        }
+    }
+
+    /// A line goes on.
+    pub(super) fn pair(&mut self, owner: Pixel, one: &ArmOf, other: &ArmOf, points: Vec<PxPoint>) {
+        self.set_skip(one.end, one.arm.skip);
+        self.set_skip(other.end, other.arm.skip);
+        let (a, b) = (one.arm.direction, other.arm.direction);
+        let corner = points.len() == 1 && -(a.0 * b.0 + a.1 * b.1) < TURN_COS;
+        self.connections.push(Connection { owner, from: one.end, to: Some(other.end), points, corner });
+    }
+
+    /// Takes all junctions and line ends of a graph apart; `gone` are its spurs, `sites` those of every edge.
+    pub(crate) fn of(graph: &Graph, sites: &[Vec<Site>], gone: &[bool], scan: Scan<'_>) -> Self {
+        let mut found = Self {
+            skips: vec![[0; 2]; graph.edges.len()],
+            connections: Vec::new(),
+            inner: vec![false; graph.edges.len()],
+        };
+        let lines = Lines { graph, sites, gone, scan };
+        let radii: Vec<f64> = lines.radii();
+        let mut groups = Groups::new(graph.nodes.len());
+        for edge in 0..graph.edges.len() {
+            if let Some((a, b)) = lines.overlapping(edge, &radii).or_else(|| lines.run_together(edge)) {
+                groups.join(a, b);
+                if let Some(inner) = found.inner.get_mut(edge) {
+                    *inner = true;
+                }
+            }
+        }
+        let mut members: Vec<Vec<usize>> = vec![Vec::new(); graph.nodes.len()];
+        for node in 0..graph.nodes.len() {
+            if let Some(group) = members.get_mut(groups.root(node)) {
+                group.push(node);
+            }
+        }
+        for group in members.into_iter().filter(|group| !group.is_empty()) {
+            lines.resolve(&group, &radii, &mut found);
+        }
+        found
+    }
+}
+
+/// What junctions are found in.
+#[derive(Clone, Copy)]
+struct Lines<'a> {
+    graph: &'a Graph,
+    sites: &'a [Vec<Site>],
+    gone: &'a [bool],
+    scan: Scan<'a>,
+}
+
+/// An arm of a junction and which edge end it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ArmOf {
+    pub(super) end: End,
+    pub(super) arm: Arm,
+    /// Where a short line ends that leads from here to nowhere else.
+    pub(super) tip: Option<PxPoint>,
+}
+
+impl Lines<'_> {
+    fn is_gone(&self, edge: usize) -> bool {
+        self.gone.get(edge).copied().unwrap_or(true)
+    }
+
+    /// The ends of the lines that are left at a node.
+    fn ends(&self, node: usize) -> impl Iterator<Item = End> + '_ {
+        let ends = self.graph.nodes.get(node).map_or(&[][..], |node| &node.ends);
+        ends.iter().copied().filter(|end| !self.is_gone(end.edge))
+    }
+
+    /// Radius of the ink around each node where lines meet; 0 elsewhere.
+    fn radii(&self) -> Vec<f64> {
+        (0..)
+            .zip(&self.graph.nodes)
+            .map(|(index, node)| {
+                if self.ends(index).count() > 1 { self.scan.radius_px(node.at.into(), f64::MAX) } else { 0.0 }
+            })
+            .collect()
+    }
+
+    /// The two nodes of an edge that is left between two junctions.
+    fn between(&self, edge: usize) -> Option<(usize, usize)> {
+        let (a, b) = self.graph.edges.get(edge)?.nodes?;
+        let joins = a != b && !self.is_gone(edge) && self.ends(a).count() > 1 && self.ends(b).count() > 1;
+        joins.then_some((a, b))
+    }
+
+    fn place(&self, node: usize) -> PxPoint {
+        self.graph.nodes.get(node).map_or(PxPoint::default(), |node| node.at.into())
+    }
+
+    /// The nodes of an edge whose discs of ink overlap.
+    fn overlapping(&self, edge: usize, radii: &[f64]) -> Option<(usize, usize)> {
+        let (a, b) = self.between(edge)?;
+        let reach = radii.get(a)? + radii.get(b)?;
+        let pixels = self.graph.edges.get(edge)?.pixels.len();
+        #[expect(clippy::cast_precision_loss, reason = "a count of pixels, far below 2^53")]
+        let short = pixels as f64 <= 1.5 * reach + 2.0;
+        (short && self.place(a).distance(self.place(b)) <= reach.max(1.5)).then_some((a, b))
+    }
+
+    /// The nodes of an edge along which two lines run together that cross at an acute angle.
+    fn run_together(&self, edge: usize) -> Option<(usize, usize)> {
+        /// Along a crossing at an angle of 9 degrees.
+        const LONGEST_IN_WIDTHS: f64 = 13.0;
+        let (a, b) = self.between(edge)?;
+        let others = |node: usize| -> Option<[Arm; 2]> {
+            let mut ends = self.ends(node).filter(|end| end.edge != edge);
+            let (first, second) = (ends.next()?, ends.next()?);
+            if ends.next().is_some() || first.edge == second.edge {
+                return None;
+            }
+            Some([self.arm(first)?, self.arm(second)?])
+        };
+        let sites = self.sites.get(edge)?;
+        #[expect(clippy::cast_precision_loss, reason = "a count of pixels, far below 2^53")]
+        let length = sites.len() as f64;
+        let (mine, theirs) = (others(a)?, others(b)?);
+        let arms = [mine[0], mine[1], theirs[0], theirs[1]];
+        let width_px = arms.iter().map(|arm| arm.width_px).sum::<f64>() / 4.0;
+        let sure = arms.iter().all(|arm| arm.support_px > 0.0);
+        if width_px <= THIN_PX || !sure || length > LONGEST_IN_WIDTHS * width_px {
+            return None;
+        }
+        let wide = sites.iter().filter(|site| site.width_px > 1.15 * width_px).count();
+        if wide * 10 < sites.len() * 6 {
+            return None;
+        }
+        let straight = bend(&mine[0], &theirs[0]).max(bend(&mine[1], &theirs[1]));
+        let crossed = bend(&mine[0], &theirs[1]).max(bend(&mine[1], &theirs[0]));
+        (straight.min(crossed) < 0.35).then_some((a, b))
+    }
+
+    /// The sites of an edge from one of its ends on.
+    fn sites_from(&self, end: End) -> Vec<Site> {
+        let sites = self.sites.get(end.edge).map_or(&[][..], Vec::as_slice);
+        /// More than any arm looks at.
+        const LOOK: usize = 256;
+        if end.at_last {
+            sites.iter().rev().take(LOOK).copied().collect()
+        } else {
+            sites.iter().take(LOOK).copied().collect()
+        }
+    }
+
+    fn arm(&self, end: End) -> Option<Arm> {
+        let sites = self.sites_from(end);
+        // Half of a line between two junctions is for each of them.
+        let edge = self.graph.edges.get(end.edge)?;
+        let (first, last) = edge.nodes?;
+        let far = if end.at_last { first } else { last };
+        let reserved = if self.ends(far).count() > 1 { 2 } else { 0 };
+        Arm::of(&sites, reserved)
+    }
+
+    /// The tails of all lines at the nodes of one junction, dot or line end.
+    fn resolve(&self, group: &[usize], radii: &[f64], found: &mut Junctions) {
+        let is_inner = |edge: usize| found.inner.get(edge).copied().unwrap_or(false);
+        let ends: Vec<End> =
+            group.iter().flat_map(|node| self.ends(*node)).filter(|end| !is_inner(end.edge)).collect();
+        let arms: Vec<ArmOf> = ends
+            .iter()
+            .filter_map(|end| Some(ArmOf { end: *end, arm: self.arm(*end)?, tip: self.tip(*end) }))
+            .collect();
+        if arms.is_empty() {
+            return;
+        }
+        let first = group.iter().filter_map(|node| self.graph.nodes.get(*node)).map(|node| node.at);
+        let Some(owner) = first.min_by_key(|at| (at.y, at.x)) else { return };
+        let thinnest_px = arms.iter().map(|one| one.arm.width_px).fold(f64::INFINITY, f64::min);
+        let widest_px = arms.iter().map(|one| one.arm.width_px).fold(0.0, f64::max);
+        if thinnest_px <= THIN_PX && widest_px <= 2.0 * THIN_PX {
+            self.resolve_thin(group, owner, &arms, found);
+        } else if let [one] = arms.as_slice() {
+            found.end(owner, one, vec![self.line_end(&one.arm)]);
+        } else {
+            let centre = centre(group.iter().map(|node| self.place(*node)));
+            let radius_px = group.iter().filter_map(|node| radii.get(*node)).fold(0.0_f64, |a, b| a.max(*b));
+            let heart = Heart { owner, centre, radius_px, scan: self.scan };
+            if !heart.resolve_point(&arms, found) {
+                heart.resolve(&arms, found);
+            }
+        }
+    }
+
+    /// Where the pen stopped that drew the short line which leaves a junction here and ends free.
+    fn tip(&self, end: End) -> Option<PxPoint> {
+        let (first, last) = self.graph.edges.get(end.edge)?.nodes?;
+        let (near, far) = if end.at_last { (last, first) } else { (first, last) };
+        if self.ends(far).count() != 1 {
+            return None;
+        }
+        let radius_px = self.scan.radius_px(self.place(near), f64::MAX);
+        let (from, to) = (self.place(near), self.place(far));
+        let length_px = from.distance(to);
+        if length_px > 6.0 * radius_px + 2.0 || length_px <= 0.0 {
+            return None;
+        }
+        let direction = ((to.x - from.x) / length_px, (to.y - from.y) / length_px);
+        let out_px = self.scan.reach_px(to, direction, 2.0 * radius_px + 2.0);
+        let half_px = self.scan.radius_px(to, f64::MAX);
+        let along = length_px + (out_px - half_px).max(0.0);
+        Some(PxPoint::new(from.x + direction.0 * along, from.y + direction.1 * along))
+    }
+
+    /// Where a line ends: a pen's width has a round end, so half of it before the ink does.
+    fn line_end(&self, arm: &Arm) -> PxPoint {
+        let (dx, dy) = arm.direction;
+        let start = arm.origin;
+        let reach_px = self.scan.reach_px(start, (-dx, -dy), 3.0 * arm.width_px + 4.0 + start_px(arm));
+        let t = -(reach_px - 0.5 * arm.width_px).max(0.0);
+        arm.at(t)
+    }
+
+    /// Thin lines keep their pixels; only the partners are found. What lies between the nodes of a junction becomes
+    /// part of the strokes that pass, and a stroke of its own where none does.
+    fn resolve_thin(&self, group: &[usize], owner: Pixel, arms: &[ArmOf], found: &mut Junctions) {
+        let (mut used, mut paired) = (Vec::new(), Vec::new());
+        let arms: Vec<ArmOf> =
+            arms.iter().map(|one| ArmOf { arm: Arm { skip: 0, ..one.arm }, ..*one }).collect();
+        for (first, second) in partners(&arms, |one, other| {
+            let (a, b) = (one.arm.direction, other.arm.direction);
+            -(a.0 * b.0 + a.1 * b.1)
+        }) {
+            let (Some(one), Some(other)) = (arms.get(first), arms.get(second)) else { continue };
+            let Some((way, edges)) = self.way_between(group, one.end, other.end, found) else { continue };
+            used.extend(edges);
+            paired.extend([first, second]);
+            found.pair(owner, one, other, way);
+        }
+        for (index, one) in arms.iter().enumerate() {
+            if !paired.contains(&index) {
+                found.end(owner, one, Vec::new());
+            }
+        }
+        for edge in group.iter().flat_map(|node| self.ends(*node)).map(|end| end.edge) {
+            if !used.contains(&edge)
+                && let Some(inner) = found.inner.get_mut(edge)
+            {
+                *inner = false;
+            }
+        }
+    }
+
+    /// The pixels between the nodes of two edge ends of one junction, over its inner edges.
+    fn way_between(
+        &self,
+        group: &[usize],
+        from: End,
+        to: End,
+        found: &Junctions,
+    ) -> Option<(Vec<PxPoint>, Vec<usize>)> {
+        let node_of = |end: End| {
+            let (first, last) = self.graph.edges.get(end.edge)?.nodes?;
+            Some(if end.at_last { last } else { first })
+        };
+        let (start, goal) = (node_of(from)?, node_of(to)?);
+        // Breadth first; the group is small, or a page of noise where the first few nodes will do.
+        let mut before: Vec<(usize, usize, usize)> = vec![(start, usize::MAX, usize::MAX)];
+        let mut next = 0;
+        while let Some((node, ..)) = before.get(next).copied() {
+            if node == goal {
+                break;
+            }
+            if next > 32 {
+                return None;
+            }
+            for end in self.ends(node).filter(|end| found.inner.get(end.edge).copied().unwrap_or(false)) {
+                let other = node_of(end.other()).filter(|other| group.contains(other));
+                if let Some(other) = other.filter(|other| before.iter().all(|(seen, ..)| seen != other)) {
+                    before.push((other, next, end.edge));
+                }
+            }
+            next += 1;
+        }
+        let mut at = before.iter().position(|(node, ..)| *node == goal)?;
+        let (mut way, mut edges) = (Vec::new(), Vec::new());
+        while let Some((node, previous, edge)) = before.get(at).copied() {
+            if previous == usize::MAX {
+                break;
+            }
+            let inner = self.graph.edges.get(edge)?;
+            let starts_here = inner.nodes.is_some_and(|(first, _)| first == node);
+            let centres = inner.pixels.iter().map(|pixel| PxPoint::from(*pixel));
+            if starts_here {
+                way.extend(centres)
+            } else {
+                way.extend(centres.rev())
+            }
+            edges.push(edge);
+            at = previous;
+        }
+        way.reverse();
+        Some((way, edges))
+    }
+}
+
+/// How far the fitted part of an arm begins from its tip, px.
+fn start_px(arm: &Arm) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a few sites")]
+    let skip = arm.skip as f64;
+    1.5 * skip
+}
+
+/// How much the way from one arm's origin to another's turns at its ends, rad: the greater of both angles.
+pub(super) fn bend(one: &Arm, other: &Arm) -> f64 {
+    let (x, y) = (other.origin.x - one.origin.x, other.origin.y - one.origin.y);
+    let angle = |(dx, dy): (f64, f64)| libm::atan2(dx * y - dy * x, dx * x + dy * y).abs();
+    let (dx, dy) = one.direction;
+    angle((-dx, -dy)).max(angle(other.direction))
+}
+
+fn centre(places: impl Iterator<Item = PxPoint>) -> PxPoint {
+    let (x, y, count) = places.fold((0.0, 0.0, 0.0), |(x, y, n), place| (x + place.x, y + place.y, n + 1.0));
+    if count > 0.0 { PxPoint::new(x / count, y / count) } else { PxPoint::default() }
+}
+
+/// Nodes that belong together: a disjoint-set forest.
+struct Groups {
+    parents: Vec<usize>,
+}
+
+impl Groups {
+    fn new(count: usize) -> Self {
+        Self { parents: (0..count).collect() }
+    }
+
+    fn root(&mut self, mut node: usize) -> usize {
+        while let Some(parent) = self.parents.get(node).copied().filter(|parent| *parent != node) {
+            let above = self.parents.get(parent).copied().unwrap_or(parent);
+            if let Some(place) = self.parents.get_mut(node) {
+                *place = above;
+            }
+            node = parent;
+        }
+        node
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        if let Some(parent) = self.parents.get_mut(a.max(b)) {
+            *parent = a.min(b);
+        }
+    }
+}

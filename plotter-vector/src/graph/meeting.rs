@@ -1,0 +1,210 @@
+//! Where wide lines meet: the place, and which of them go on as one stroke.
+//!
+//! The junction's place is where the arms, continued from their undisturbed parts, come closest together, each
+//! counted by how sure its continuation is there. Where they do not meet in one point (two branches that leave a
+//! line opposite each other, a little apart) the lines that go through are bridged and each branch ends on one.
+
+use super::arm::Arm;
+use super::junction::{ArmOf, Junctions, bend};
+use super::site::Scan;
+use crate::{Pixel, PxPoint};
+
+/// Greatest angle between two arms' courses that make one stroke: cos 50°.
+const GOES_ON_COS: f64 = 0.642_787_6;
+
+/// The middle of a junction.
+#[derive(Clone, Copy)]
+pub(super) struct Heart<'a> {
+    /// Its first node in reading order.
+    pub(super) owner: Pixel,
+    /// The middle of its nodes.
+    pub(super) centre: PxPoint,
+    /// Greatest radius of the ink around one of them, px.
+    pub(super) radius_px: f64,
+    /// What it is in.
+    pub(super) scan: Scan<'a>,
+}
+
+impl Heart<'_> {
+    /// The two sides of a sharp point: the ink between them is filled near it, so that they seem to be a fork with a
+    /// short stem. Whether that is what these arms are; then the stem goes and the sides meet in the point.
+    pub(super) fn resolve_point(&self, arms: &[ArmOf], found: &mut Junctions) -> bool {
+        /// Cosine of the widest angle between the sides of a point.
+        const WIDEST_COS: f64 = 0.2;
+        let [a, b, c] = arms else { return false };
+        let Some((stem, one, other)) =
+            [(a, b, c), (b, c, a), (c, a, b)].into_iter().find(|(stem, one, other)| {
+                let (u, v) = (one.arm.direction, other.arm.direction);
+                stem.tip.is_some()
+                    && one.tip.is_none()
+                    && other.tip.is_none()
+                    && u.0 * v.0 + u.1 * v.1 > WIDEST_COS
+            })
+        else {
+            return false;
+        };
+        let Some(tip) = stem.tip else { return false };
+        let sides = [*one, *other];
+        let meeting = meeting_point(&sides, self.centre);
+        let slack_px = (0.35 * one.arm.width_px).max(1.2);
+        let beyond = meeting.distance(self.centre) > tip.distance(self.centre) + slack_px;
+        if !beyond && meeting.distance(tip) > slack_px {
+            return false;
+        }
+        let meets = !beyond && self.pen_was_at(meeting, &sides);
+        found.pair(self.owner, one, other, vec![if meets { meeting } else { tip }]);
+        found.drop_line(stem.end);
+        true
+    }
+
+    /// The connections of lines that meet.
+    pub(super) fn resolve(&self, arms: &[ArmOf], found: &mut Junctions) {
+        let meeting = meeting_point(arms, self.centre);
+        let along = |one: &ArmOf| one.arm.along(meeting).min(0.0);
+        let tolerance_px =
+            |one: &ArmOf| (0.12 * one.arm.width_px).max(0.8) + 2.0 * one.arm.error_px(along(one));
+        let near = self.pen_was_at(meeting, arms);
+        let concurrent = near
+            && arms.iter().all(|one| {
+                let off_px = one.arm.at(one.arm.along(meeting)).distance(meeting);
+                one.arm.support_px <= 0.0 || off_px <= tolerance_px(one)
+            });
+        let pairs = partners(arms, |one, other| {
+            let (a, b) = (one.arm.direction_at(along(one)), other.arm.direction_at(along(other)));
+            -(a.0 * b.0 + a.1 * b.1)
+        });
+        let mut bridges: Vec<Vec<PxPoint>> = Vec::new();
+        let mut paired = vec![false; arms.len()];
+        for (first, second) in pairs {
+            let (Some(one), Some(other)) = (arms.get(first), arms.get(second)) else { continue };
+            let points = if concurrent {
+                vec![meeting]
+            } else if bend(&one.arm, &other.arm) < 1.0 {
+                bridge(&one.arm, &other.arm)
+            } else {
+                // A smooth curve makes sense only where both arms look at each other.
+                vec![self.centre]
+            };
+            bridges.push(points.clone());
+            found.pair(self.owner, one, other, points);
+            for index in [first, second] {
+                if let Some(paired) = paired.get_mut(index) {
+                    *paired = true;
+                }
+            }
+        }
+        for (one, _) in arms.iter().zip(&paired).filter(|(_, paired)| !**paired) {
+            let onto = || {
+                bridges
+                    .iter()
+                    .filter_map(|bridge| foot(&one.arm, bridge))
+                    .min_by(|a, b| a.distance(self.centre).total_cmp(&b.distance(self.centre)))
+            };
+            let place =
+                if concurrent { meeting } else { onto().unwrap_or(if near { meeting } else { self.centre }) };
+            found.end(self.owner, one, vec![place]);
+        }
+    }
+
+    /// Whether a meeting point far from the junction's middle has ink around it as a pen leaves it.
+    fn pen_was_at(&self, place: PxPoint, arms: &[ArmOf]) -> bool {
+        let half_px = 0.5 * arms.iter().map(|one| one.arm.width_px).fold(f64::INFINITY, f64::min);
+        let off_px = place.distance(self.centre);
+        off_px <= 0.5 * self.radius_px + 0.5
+            || off_px <= 6.0 * self.radius_px + 2.0
+                && self.scan.radius_px(place, half_px + 1.0) >= half_px - (0.2 * half_px).max(0.6)
+    }
+}
+
+/// Pairs of arms by a score from -1 to 1, the highest first, none below that of a 50° turn.
+pub(super) fn partners(arms: &[ArmOf], score: impl Fn(&ArmOf, &ArmOf) -> f64) -> Vec<(usize, usize)> {
+    /// More lines than meet in any drawing: beyond, on noise, the rest stays unpaired.
+    const MOST: usize = 24;
+    let mut scores = Vec::new();
+    for (i, one) in arms.iter().enumerate().take(MOST) {
+        for (j, other) in arms.iter().enumerate().take(MOST).skip(i + 1) {
+            let score = score(one, other);
+            if score > GOES_ON_COS {
+                scores.push((score, i, j));
+            }
+        }
+    }
+    scores.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut pairs: Vec<(usize, usize)> = Vec::new();
+    for (_, i, j) in scores {
+        if pairs.iter().all(|(a, b)| ![*a, *b].contains(&i) && ![*a, *b].contains(&j)) {
+            pairs.push((i, j));
+        }
+    }
+    pairs
+}
+
+/// The place with the least weighted squared distance from the arms' continuations, by Gauss and Newton; drawn a
+/// little towards `centre`, which decides where the arms say nothing (all of one direction).
+fn meeting_point(arms: &[ArmOf], centre: PxPoint) -> PxPoint {
+    const STEPS: usize = 5;
+    /// Weight of the centre, as that of an arm with an error of 8 px.
+    const PRIOR: f64 = 1.0 / 64.0;
+    let mut place = centre;
+    for _ in 0..STEPS {
+        let (mut xx, mut xy, mut yy) = (PRIOR, 0.0, PRIOR);
+        let (mut x, mut y) = (PRIOR * (centre.x - place.x), PRIOR * (centre.y - place.y));
+        for one in arms {
+            let t = one.arm.along(place);
+            let error_px = one.arm.error_px(t.min(0.0));
+            let weight = if error_px.is_finite() { 1.0 / (error_px * error_px) } else { 0.25 };
+            let (dx, dy) = one.arm.direction_at(t);
+            let nearest = one.arm.at(t);
+            let off = (nearest.x - place.x) * -dy + (nearest.y - place.y) * dx;
+            xx += weight * dy * dy;
+            xy -= weight * dx * dy;
+            yy += weight * dx * dx;
+            x -= weight * dy * off;
+            y += weight * dx * off;
+        }
+        let determinant = xx * yy - xy * xy;
+        if determinant <= 0.0 {
+            break;
+        }
+        let step = ((x * yy - y * xy) / determinant, (y * xx - x * xy) / determinant);
+        place = PxPoint::new(place.x + step.0, place.y + step.1);
+    }
+    place
+}
+
+/// Places about a pixel apart on the smooth curve from one arm's origin to the other's: Hermite's cubic.
+fn bridge(from: &Arm, to: &Arm) -> Vec<PxPoint> {
+    let length = from.origin.distance(to.origin);
+    let (out, back) = (from.direction, to.direction);
+    let steps = libm::ceil(length.clamp(1.0, 200.0));
+    let mut places = Vec::new();
+    let mut step = 1.0;
+    while step < steps {
+        let t = step / steps;
+        let (t2, t3) = (t * t, t * t * t);
+        let (h00, h10, h01, h11) =
+            (2.0 * t3 - 3.0 * t2 + 1.0, t3 - 2.0 * t2 + t, 3.0 * t2 - 2.0 * t3, t3 - t2);
+        places.push(PxPoint::new(
+            h00 * from.origin.x - h10 * length * out.0 + h01 * to.origin.x + h11 * length * back.0,
+            h00 * from.origin.y - h10 * length * out.1 + h01 * to.origin.y + h11 * length * back.1,
+        ));
+        step += 1.0;
+    }
+    places
+}
+
+/// Where an arm, continued into the junction, meets a bridge.
+fn foot(arm: &Arm, bridge: &[PxPoint]) -> Option<PxPoint> {
+    let side = |place: &PxPoint| {
+        let on = arm.at(arm.along(*place));
+        let (dx, dy) = arm.direction;
+        (place.x - on.x) * -dy + (place.y - on.y) * dx
+    };
+    bridge.iter().zip(bridge.iter().skip(1)).find_map(|(from, to)| {
+        let (a, b) = (side(from), side(to));
+        (a * b <= 0.0 && a != b).then(|| {
+            let t = a / (a - b);
+            PxPoint::new(from.x + (to.x - from.x) * t, from.y + (to.y - from.y) * t)
+        })
+    })
+}

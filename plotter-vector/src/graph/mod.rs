@@ -1,0 +1,68 @@
+//! From a skeleton to pen strokes: nodes and edges, junctions where they truly are, ends that reach the ink's end.
+//!
+//! Thinning keeps the topology of the ink and nothing else: near a crossing its lines bend towards each other
+//! (`>--<` instead of `X`), at a corner they take the short cut, at an end they stop early. What is left of a
+//! line's true course are its stretches away from all that, where its middle lies half way between its two edges.
+//! So:
+//!
+//! 1. [`Graph`] turns the skeleton into nodes and edges;
+//! 2. [`sites`](site) gives each of an edge's pixels the middle between both edges of the ink, and the width there;
+//! 3. [`spurs`](spur) that stick out no farther than the edge's roughness go;
+//! 4. [`junctions`](junction): the arms of a crossing are extrapolated from where they are undisturbed, and meet;
+//! 5. [`corners`](corner) of a single line are sharpened in the same way.
+
+mod arm;
+mod build;
+mod centreline;
+mod corner;
+mod fragment;
+mod join;
+mod junction;
+mod meeting;
+mod place;
+mod raster_line;
+mod site;
+mod smooth;
+mod spur;
+mod stub;
+
+use build::{Edge, End, Graph};
+pub(crate) use centreline::Centreline;
+pub(crate) use fragment::Fragment;
+pub(crate) use join::{Joiner, Whole};
+use place::Place;
+pub(crate) use site::{Rims, Scan};
+
+use crate::Bitmap;
+use core::ops::Range;
+
+/// Rows of context that a band needs beside what its thinning needs: how far a junction looks along its arms.
+pub(crate) const CONTEXT_ROWS: u32 = 288;
+
+/// The pieces of centrelines in the rows `core` of a picture, from a band of it with a few hundred rows more on either
+/// side.
+///
+/// All coordinates are those of the whole picture, so that sums and roots round alike whatever the band.
+pub(crate) fn fragments(scan: Scan<'_>, skeleton: &Bitmap, core: &Range<u32>) -> Vec<Fragment> {
+    let mut graph = Graph::of(skeleton);
+    raster_line::put_back(&mut graph, scan.ink, skeleton);
+    graph.move_down(scan.first_row);
+    let mut sites: Vec<_> =
+        graph.edges.iter().map(|edge| scan.sites(&edge.pixels, edge.nodes.is_none())).collect();
+    let gone = spur::spurs(&graph, &sites, scan);
+    let junctions = junction::Junctions::of(&graph, &sites, &gone, scan);
+    for (index, (edge, sites)) in graph.edges.iter().zip(&mut sites).enumerate() {
+        let skip = |at_last| junctions.skip(End { edge: index, at_last });
+        let closed = edge.nodes.is_none();
+        // The last site of a loop is the first one again.
+        let last = sites.len().saturating_sub(if closed { 1 } else { skip(true) });
+        if let Some(course) = sites.get_mut(skip(false)..last) {
+            corner::sharpen(course, closed, scan);
+        }
+    }
+    let lines = stub::Lines { graph: &graph, sites: &sites, junctions: &junctions, gone: &gone, scan };
+    let stubs = stub::stubs(&lines, core);
+    let mut found = fragment::fragments(&graph, &sites, &junctions, &gone, scan, core);
+    found.extend(stubs);
+    found
+}

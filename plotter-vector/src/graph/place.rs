@@ -1,0 +1,76 @@
+//! [`Place`]: a place on a centreline as it waits for the rest of its stroke.
+
+use crate::PxPoint;
+
+/// Steps in a pixel: coordinates up to 2^17 px fit, and what a band's own origin adds to the rounding of a coordinate is
+/// far below one of them. So a place is the same in every band that finds it.
+const STEPS: f64 = 8192.0;
+
+/// Steps in a pixel of width.
+const WIDTH_STEPS: f64 = 64.0;
+
+/// A place on a centreline, how wide the ink is there, and whether the line has a corner there. A whole sheet of strokes
+/// that have not ended yet may wait like this: 12 bytes each.
+///
+/// Places are ordered as one reads, from the top.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Place {
+    y: i32,
+    x: i32,
+    width: i16,
+    corner: bool,
+}
+
+impl Place {
+    /// A place, px of the whole picture; the width, px, is a negative number where no ink was measured (in a junction).
+    pub(crate) fn new(at: PxPoint, width_px: f64, corner: bool) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
+        let steps = |v: f64| libm::round(v * STEPS) as i32;
+        #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
+        let width = libm::round(width_px * WIDTH_STEPS) as i16;
+        Self { x: steps(at.x), y: steps(at.y), width, corner }
+    }
+
+    /// Where.
+    pub(crate) fn at(self) -> PxPoint {
+        PxPoint::new(f64::from(self.x) / STEPS, f64::from(self.y) / STEPS)
+    }
+
+    /// From edge to edge, px; none where no ink was measured.
+    pub(crate) fn width_px(self) -> Option<f64> {
+        (self.width > 0).then(|| f64::from(self.width) / WIDTH_STEPS)
+    }
+
+    /// Whether the line has a corner here.
+    pub(crate) fn is_corner(self) -> bool {
+        self.corner
+    }
+
+    /// The same width at another place, which is no corner.
+    pub(crate) fn moved(self, at: PxPoint) -> Self {
+        Self { width: self.width, ..Self::new(at, 0.0, false) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_sheet_has_its_places() {
+        for v in [0.5, 131_071.5, 131_072.0, 77.125] {
+            let place = Place::new(PxPoint::new(v, -v), 3.5, true);
+            assert_eq!((place.at(), place.width_px()), (PxPoint::new(v, -v), Some(3.5)));
+        }
+        assert_eq!(Place::new(PxPoint::default(), -1.0, false).width_px(), None);
+        assert_eq!(size_of::<Place>(), 12);
+    }
+
+    #[test]
+    fn the_origin_of_a_band_does_not_show() {
+        let (y, first_row) = (1.0 / 3.0, 70_001.0);
+        let inside = (y + 1_234.0) - 1_234.0;
+        let place = |y: f64| Place::new(PxPoint::new(0.0, y + first_row), 1.0, false);
+        assert_eq!(place(y), place(inside));
+    }
+}

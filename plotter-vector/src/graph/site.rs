@@ -1,0 +1,212 @@
+//! [`Site`]: the middle of a line at one of its skeleton's pixels, from both edges of the ink.
+//!
+//! A line that runs more sideways than up is cut by the pixel's column, else by its row. The run of ink in that
+//! cut reaches from one edge of the line to the other: its middle is a point of the centreline, whatever the
+//! slope, and its length times the cosine of the slope is the line's width. On a picture with grey rims the edges
+//! are known to a fraction of a pixel: a rim pixel is covered as far as its level lies between paper and ink.
+
+use crate::{Bitmap, Gray, Pixel, PxPoint};
+
+/// Longest run that is measured to either side of the skeleton, px. Beyond it the ink is no line.
+const MAX_RUN_PX: u32 = 96;
+
+/// Pixels of the chain to either side that give the direction of a cut.
+const DIRECTION_PX: usize = 4;
+
+/// Pixels of the chain to either side among which the line's own width is found.
+const CALM_PX: usize = 8;
+
+/// What a site is in its line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// A point of its course.
+    #[default]
+    Course,
+    /// A corner.
+    Corner,
+    /// Left out: a corner beside it takes its place.
+    Left,
+}
+
+/// A point of a centreline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Site {
+    /// Half way between both edges.
+    pub(crate) centre: PxPoint,
+    /// From edge to edge, across the line, px.
+    pub(crate) width_px: f64,
+    /// What it is.
+    pub(crate) role: Role,
+}
+
+/// What sites are measured on: a band of a picture. Places are those of the whole picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scan<'a> {
+    /// The ink.
+    pub(crate) ink: &'a Bitmap,
+    /// Row of the picture that the ink's first one is.
+    pub(crate) first_row: u32,
+    /// The grey levels it was told from.
+    pub(crate) grey: Option<Rims<'a>>,
+}
+
+/// The grey levels, which tell how far a rim pixel is covered.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rims<'a> {
+    /// The levels.
+    pub(crate) levels: &'a Gray,
+    /// Whether the dark side is ink.
+    pub(crate) ink_is_dark: bool,
+    /// Row of the picture that the first one of the levels is.
+    pub(crate) first_row: u32,
+}
+
+impl Scan<'_> {
+    /// The sites of a chain of skeleton pixels, one for each.
+    pub(crate) fn sites(&self, pixels: &[Pixel], closed: bool) -> Vec<Site> {
+        let count = pixels.len();
+        let neighbour = |index: usize, ahead: bool| {
+            let at = if closed && count > 1 {
+                // The last pixel of a loop is the first one again.
+                let around = count - 1;
+                if ahead {
+                    (index + DIRECTION_PX) % around
+                } else {
+                    (index + around - DIRECTION_PX % around) % around
+                }
+            } else if ahead {
+                (index + DIRECTION_PX).min(count - 1)
+            } else {
+                index.saturating_sub(DIRECTION_PX)
+            };
+            pixels.get(at).copied().unwrap_or_default()
+        };
+        let mut sites: Vec<Site> = (0..)
+            .zip(pixels)
+            .map(|(index, pixel)| self.site(*pixel, neighbour(index, true).minus(neighbour(index, false))))
+            .collect();
+        // Around a corner a cut may run along the line instead of across: there the skeleton itself is nearer.
+        let widths: Vec<f64> = sites.iter().map(|site| site.width_px).collect();
+        for (index, (site, pixel)) in sites.iter_mut().zip(pixels).enumerate() {
+            let near =
+                widths.get(index.saturating_sub(CALM_PX)..count.min(index + CALM_PX + 1)).unwrap_or(&[]);
+            let calm_px = near.iter().fold(f64::INFINITY, |a, b| a.min(*b));
+            if site.width_px > 1.6 * calm_px + 1.0 {
+                site.centre = (*pixel).into();
+            }
+        }
+        sites
+    }
+
+    /// The site at a pixel of a line that runs in a direction.
+    pub(crate) fn site(&self, at: Pixel, (dx, dy): (f64, f64)) -> Site {
+        let sideways = dx.abs() >= dy.abs();
+        let length = libm::hypot(dx, dy);
+        // Across a single pixel there is no direction: its own column will do.
+        let cosine = if length > 0.0 { dx.abs().max(dy.abs()) / length } else { 1.0 };
+        let (low, high) = self.run(at, sideways);
+        let middle = f64::midpoint(low, high);
+        let whole = PxPoint::from(at);
+        let centre = if sideways { PxPoint::new(whole.x, middle) } else { PxPoint::new(middle, whole.y) };
+        Site { centre, width_px: (high - low) * cosine, role: Role::Course }
+    }
+
+    /// Where the run of ink through a pixel begins and ends, px from the picture's corner: down its column, or
+    /// along its row.
+    fn run(&self, at: Pixel, down: bool) -> (f64, f64) {
+        let end_row = self.first_row.saturating_add(self.ink.height());
+        let (here, first, side) =
+            if down { (at.y, self.first_row, end_row) } else { (at.x, 0, self.ink.width()) };
+        let pixel = |along: u32| if down { Pixel::new(at.x, along) } else { Pixel::new(along, at.y) };
+        let mut low = here;
+        while low > first && here - low < MAX_RUN_PX && self.is_ink_at(pixel(low - 1)) {
+            low -= 1;
+        }
+        let mut high = here;
+        while high + 1 < side && high - here < MAX_RUN_PX && self.is_ink_at(pixel(high + 1)) {
+            high += 1;
+        }
+        let (start, end) = (f64::from(low), f64::from(high) + 1.0);
+        let Some(Rims { levels, ink_is_dark, first_row }) = self.grey else { return (start, end) };
+        let level = |along: Option<u32>| {
+            let at = along.map(pixel)?;
+            levels.get(Pixel::new(at.x, at.y.checked_sub(first_row)?))
+        };
+        // Ink is as dark as the darkest of the run, paper as light as what lies beyond the rim on either side.
+        let darkness = |level: u8| f64::from(if ink_is_dark { 255 - level } else { level });
+        let full = (low..=high).filter_map(|along| level(Some(along))).map(darkness).fold(0.0, f64::max);
+        let rim = |inner: u32, out: Option<u32>, beyond: [Option<u32>; 2]| {
+            let paper = beyond.into_iter().filter_map(&level).map(darkness).fold(full, f64::min);
+            let contrast = full - paper;
+            if contrast <= 0.0 {
+                return 0.0;
+            }
+            let cover = |at: Option<u32>| {
+                level(at).map_or(0.0, |level| ((darkness(level) - paper) / contrast).clamp(0.0, 1.0))
+            };
+            // How far the edge lies outside the run's last pixel: out by what covers the next, in by what is missing.
+            cover(out) - (1.0 - cover(Some(inner)))
+        };
+        let before = |count: u32| low.checked_sub(count).filter(|along| *along >= first);
+        let after = |count: u32| Some(high + count).filter(|along| *along < side);
+        let missing_low = rim(low, before(1), [before(2), before(3)]);
+        let missing_high = rim(high, after(1), [after(2), after(3)]);
+        let (outer, other) = (start - missing_low, end + missing_high);
+        if outer < other { (outer, other) } else { (start, end) }
+    }
+
+    /// Radius of the largest disc of ink around a place, px: 0 outside the ink, half the width in the middle of a
+    /// line, at most `limit_px`.
+    pub(crate) fn radius_px(&self, at: PxPoint, limit_px: f64) -> f64 {
+        let limit = limit_px.clamp(1.0, f64::from(MAX_RUN_PX));
+        let (left, top) = (libm::floor(at.x), libm::floor(at.y));
+        let mut nearest = limit + 0.5;
+        let mut ring = 0.0;
+        // Pixels of ring k have their centres at least k - 0.5 away.
+        while ring - 0.5 < nearest {
+            let mut step = -ring;
+            while step <= ring {
+                for (dx, dy) in [(step, -ring), (step, ring), (-ring, step), (ring, step)] {
+                    let (x, y) = (left + dx, top + dy);
+                    if !self.is_ink(x, y) {
+                        nearest = nearest.min(libm::hypot(x + 0.5 - at.x, y + 0.5 - at.y));
+                    }
+                }
+                step += 1.0;
+            }
+            ring += 1.0;
+        }
+        (nearest - 0.5).max(0.0)
+    }
+
+    /// How far a ray of ink goes on from a place, px, at most `limit_px`: in quarters of a pixel.
+    pub(crate) fn reach_px(&self, from: PxPoint, (dx, dy): (f64, f64), limit_px: f64) -> f64 {
+        const STEP_PX: f64 = 0.25;
+        let mut reach = 0.0;
+        while reach + STEP_PX <= limit_px {
+            let next = reach + STEP_PX;
+            if !self.is_ink(libm::floor(from.x + dx * next), libm::floor(from.y + dy * next)) {
+                break;
+            }
+            reach = next;
+        }
+        reach
+    }
+
+    /// Whether the pixel in column `x` and row `y`, whole numbers, is ink.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole numbers within the picture"
+    )]
+    fn is_ink(&self, x: f64, y: f64) -> bool {
+        let row = y - f64::from(self.first_row);
+        let inside =
+            x >= 0.0 && row >= 0.0 && x < f64::from(self.ink.width()) && row < f64::from(self.ink.height());
+        inside && self.ink.get(Pixel::new(x as u32, row as u32))
+    }
+
+    fn is_ink_at(&self, at: Pixel) -> bool {
+        at.y.checked_sub(self.first_row).is_some_and(|row| self.ink.get(Pixel::new(at.x, row)))
+    }
+}

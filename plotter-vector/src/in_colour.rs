@@ -1,0 +1,109 @@
+//! [`Vectorizer::vectorize_colour`]: the whole way from a picture in colour to the strokes of each pen.
+
+use crate::coverage::add_coverage;
+use crate::{
+    Algorithm, Bitmap, Colour, Drawing, ErrorTally, Palette, Pens, VectorizeError, Vectorized, Vectorizer,
+};
+
+/// What the vectorization found on a picture in colour.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct VectorizedColour {
+    /// The strokes of all pens and the errors of all their ink. No split: pens are told by colour, not by a level.
+    pub traced: Vectorized,
+    /// The pens, given or found; the numbers of the strokes' pens are theirs.
+    pub palette: Palette,
+    /// The ink of each pen as it was vectorized, in the order of the palette: whole where other pens have crossed it,
+    /// and without dirt.
+    pub inks: Vec<Bitmap>,
+}
+
+impl Vectorizer {
+    /// Vectorizes a picture in colour, pen by pen; then all strokes are ordered, each pen's together. The threshold is
+    /// not asked. Where one pen crosses another, its lines go on under it.
+    ///
+    /// ```
+    /// # use plotter_vector::{Colour, Pens, Vectorizer};
+    /// let [paper, black, red] = [[255, 255, 255], [0, 0, 0], [208, 24, 24]];
+    /// let mut pixels = vec![paper; 40 * 20];
+    /// pixels[40 * 4 + 3..40 * 4 + 33].fill(black);
+    /// pixels[40 * 9 + 3..40 * 9 + 33].fill(red);
+    /// let picture = Colour::new(40, 20, pixels.as_flattened().to_vec())?;
+    /// let found = Vectorizer::default().vectorize_colour(&picture, &Pens::Found)?;
+    /// assert_eq!(found.palette.pens().len(), 2);
+    /// assert_eq!((found.traced.drawing.pens(), found.traced.drawing.vertices()), (vec![1, 2], 4));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`VectorizeError`].
+    pub fn vectorize_colour(
+        &self,
+        picture: &Colour,
+        pens: &Pens,
+    ) -> Result<VectorizedColour, VectorizeError> {
+        let layers = pens.separate(picture).map_err(VectorizeError::Pens)?;
+        let mut drawing = Drawing::new(picture.width(), picture.height());
+        let mut inks = Vec::with_capacity(layers.palette().pens().len());
+        for (index, (pen, own)) in layers.iter().enumerate() {
+            let mut ink = layers.bridged(index).unwrap_or_else(|| own.clone());
+            let grey = layers.coverage(index, &ink, picture);
+            let (strokes, _) = self.unordered(&mut ink, grey.as_ref().map(|levels| (levels, true)))?;
+            for stroke in strokes.strokes() {
+                drawing.push_with_pen(pen.number, stroke.iter().copied());
+            }
+            inks.push(ink);
+        }
+        if self.algorithm == Algorithm::Ours {
+            drawing = self.order.apply(&drawing);
+        }
+        let mut tally = ErrorTally::default();
+        for (pen, ink) in layers.palette().pens().iter().zip(&inks) {
+            add_coverage(ink, &drawing.of_pen(pen.number), &mut tally);
+        }
+        let traced = Vectorized { drawing, error: tally.report(), split: None };
+        Ok(VectorizedColour { traced, palette: layers.palette().clone(), inks })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ErrorReport, PensError};
+
+    /// A black bar across, a red one down over it, both 3 px wide.
+    fn cross() -> Colour {
+        let pixel = |x: u32, y: u32| match (x, y) {
+            (29..32, 5..55) => [208, 24, 24],
+            (5..55, 29..32) => [0, 0, 0],
+            _ => [255, 255, 255],
+        };
+        let pixels: Vec<[u8; 3]> = (0..60).flat_map(|y| (0..60).map(move |x| pixel(x, y))).collect();
+        Colour::new(60, 60, pixels.as_flattened().to_vec()).unwrap()
+    }
+
+    #[test]
+    fn a_line_goes_on_under_the_pen_that_crosses_it() {
+        let found = Vectorizer::default().vectorize_colour(&cross(), &Pens::Count(2)).unwrap();
+        let drawing = &found.traced.drawing;
+        assert_eq!((drawing.strokes().len(), drawing.vertices(), drawing.pens()), (2, 4, vec![1, 2]));
+        let counts: Vec<u64> = found.inks.iter().map(Bitmap::count).collect();
+        assert_eq!(counts, [150, 150]); // the black one with the 9 px that are red
+        assert_eq!(found.traced.error.pixels, 300);
+        // A round pen leaves the corners of square ends bare.
+        assert!(found.traced.error.max_px < 0.75, "{}", found.traced.error.max_px);
+    }
+
+    #[test]
+    fn a_sheet_without_ink_has_one_pen_and_no_strokes() {
+        let white = Colour::new(3, 2, vec![255; 18]).unwrap();
+        let found = Vectorizer::default().vectorize_colour(&white, &Pens::Found).unwrap();
+        assert_eq!((found.palette.pens().len(), found.traced.drawing.vertices()), (1, 0));
+        assert_eq!(found.traced.error, ErrorReport::default());
+    }
+
+    #[test]
+    fn pens_that_cannot_be_are_refused() {
+        let error = Vectorizer::default().vectorize_colour(&cross(), &Pens::Count(0)).unwrap_err();
+        assert_eq!(error, VectorizeError::Pens(PensError::Count { count: 0 }));
+    }
+}

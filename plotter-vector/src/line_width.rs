@@ -1,0 +1,203 @@
+//! [`LineWidth`]: how wide the pen was, from the ink alone.
+
+use crate::Bitmap;
+use crate::runs::ink_runs;
+
+/// Widest pen that is told from a filled area, px.
+const WIDEST_PX: u32 = 64;
+
+/// Finds the width of the pen from the ink of a picture, row by row from the top.
+///
+/// A straight line of width w that makes the angle θ with the rows is crossed by its columns in runs of w / cos θ, and
+/// by its rows in runs of w / sin θ; n·cos θ columns and n·sin θ rows meet a line of n px. Short runs are thus the most,
+/// and long ones (along a line, in a filled area) few. A third of all runs, horizontal and vertical, are no longer than
+/// w for lines along the axes, 1.03 w for lines in all directions, 1.41 w at worst, when all lie at 45°; and of a
+/// sheet with several pens it is the thinner one that counts, as long as it has drawn a third of the whole. Shorter
+/// runs come from ragged edges, a tenth or less. Pixels without neighbours are left out, so that salt and pepper
+/// does not count; of a sheet of nothing but noise, 1 or 2 px come out.
+#[derive(Clone, Debug)]
+pub struct LineWidth {
+    /// The last row without its lonely pixels.
+    settled: Vec<u64>,
+    /// The last two rows as they came; of the lower one it is not yet known which pixels have neighbours.
+    above: Vec<u64>,
+    last: Vec<u64>,
+    /// Row in which the run of a column began.
+    since: Vec<u32>,
+    y: u32,
+    /// Number of runs by length; the last counts all that are longer.
+    runs: Vec<u64>,
+}
+
+impl LineWidth {
+    /// Before the first row of a picture of `width` px.
+    #[must_use]
+    pub fn new(width: u32) -> Self {
+        let words = width.div_ceil(64) as usize;
+        Self {
+            settled: vec![0; words],
+            above: vec![0; words],
+            last: vec![0; words],
+            since: vec![0; words * 64],
+            y: 0,
+            runs: vec![0; WIDEST_PX as usize + 2],
+        }
+    }
+
+    /// The next row, in words as of [`Bitmap::row`]; a longer row is cut, a shorter one ends with paper.
+    pub fn push(&mut self, row: &[u64]) {
+        let mut next: Vec<u64> = row.iter().copied().take(self.last.len()).collect();
+        next.resize(self.last.len(), 0);
+        let lonely_gone = with_neighbours(&self.above, &self.last, &next);
+        self.settle(lonely_gone);
+        self.above = core::mem::replace(&mut self.last, next);
+    }
+
+    /// Width of the pen, px; `None` without ink, or when most of it is wider than 64 px.
+    #[must_use]
+    pub fn finish(mut self) -> Option<u32> {
+        // One row of paper settles the last row, another ends its runs.
+        self.push(&[]);
+        self.push(&[]);
+        let total: u64 = self.runs.iter().sum();
+        let mut below = 0;
+        let third = self.runs.iter().position(|n| {
+            below += n;
+            below > 0 && 3 * below >= total
+        })?;
+        u32::try_from(third).ok().filter(|width| *width <= WIDEST_PX)
+    }
+
+    /// Counts the runs of a row that end in it, and those of columns that ended above it.
+    fn settle(&mut self, row: Vec<u64>) {
+        for run in ink_runs(&row) {
+            count(&mut self.runs, run.end - run.start);
+        }
+        let columns = self.since.chunks_mut(64);
+        for ((now, before), columns) in row.iter().zip(&self.settled).zip(columns) {
+            let mut changed = now ^ before;
+            while changed != 0 {
+                let bit = changed.trailing_zeros();
+                changed &= changed - 1;
+                if let Some(since) = columns.get_mut(bit as usize) {
+                    if before >> bit & 1 == 1 {
+                        count(&mut self.runs, self.y - *since);
+                    } else {
+                        *since = self.y;
+                    }
+                }
+            }
+        }
+        self.settled = row;
+        self.y += 1;
+    }
+}
+
+fn count(runs: &mut [u64], length: u32) {
+    if let Some(n) = runs.get_mut(length.min(WIDEST_PX + 1) as usize) {
+        *n += 1;
+    }
+}
+
+/// The pixels of the middle row that have one of eight neighbours.
+fn with_neighbours(above: &[u64], row: &[u64], below: &[u64]) -> Vec<u64> {
+    let mut kept = row.to_vec();
+    let all = |i: usize| {
+        let at = |row: &[u64]| row.get(i).copied().unwrap_or(0);
+        (at(above) | at(below), at(row))
+    };
+    for (i, kept) in kept.iter_mut().enumerate().filter(|(_, row)| **row != 0) {
+        let (others, here) = all(i);
+        let (left_others, left) = i.checked_sub(1).map_or((0, 0), all);
+        let (right_others, right) = all(i + 1);
+        let beside = others | here;
+        let from_left = beside << 1 | (left_others | left) >> 63;
+        let from_right = beside >> 1 | (right_others | right) << 63;
+        *kept &= others | from_left | from_right;
+    }
+    kept
+}
+
+/// Width of the pen that drew a picture, px: [`LineWidth`] of all its rows.
+///
+/// ```
+/// # use plotter_vector::{Bitmap, pen_width_px};
+/// let cross = Bitmap::from_picture("...##...\n...##...\n########\n########\n...##...\n#..##...\n")?;
+/// assert_eq!(pen_width_px(&cross), Some(2));
+/// # Ok::<(), plotter_vector::SizeError>(())
+/// ```
+#[must_use]
+pub fn pen_width_px(ink: &Bitmap) -> Option<u32> {
+    let mut width = LineWidth::new(ink.width());
+    (0..ink.height()).for_each(|y| width.push(ink.row(y)));
+    width.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Pixel;
+
+    /// A picture of 200 × 200 px, ink where the function says so.
+    fn picture(is_ink: impl Fn(i32, i32) -> bool) -> Bitmap {
+        let mut ink = Bitmap::new(200, 200).unwrap();
+        for (x, y) in (0..200).flat_map(|y| (0..200).map(move |x| (x, y))) {
+            ink.set(Pixel::new(x as u32, y as u32), is_ink(x, y));
+        }
+        ink
+    }
+
+    /// A hash of a place, 0 to 999.
+    fn noise(x: i32, y: i32) -> i32 {
+        let mut n = (x * 7919 + y * 104_729) as u32;
+        n = (n ^ n >> 15).wrapping_mul(0x2c1b_3c6d);
+        n = (n ^ n >> 12).wrapping_mul(0x297a_2d39);
+        i32::try_from((n ^ n >> 15) % 1000).unwrap()
+    }
+
+    #[test]
+    fn a_ring_is_as_wide_as_its_pen() {
+        for width in 1..=9 {
+            let ring = |x: i32, y: i32| {
+                let (x, y) = (f64::from(x) - 100.4, f64::from(y) - 100.3);
+                let radius = (x * x + y * y).sqrt();
+                (radius - 70.0).abs() <= f64::from(width) / 2.0
+            };
+            // 1.03 times the width, and on a raster a whole number.
+            let found = pen_width_px(&picture(ring)).unwrap();
+            assert!((width as u32..=width as u32 + width as u32 / 7).contains(&found), "{width}: {found}");
+        }
+    }
+
+    #[test]
+    fn salt_and_pepper_leaves_the_width_alone() {
+        // 40 % of the ink is salt.
+        let lines = |x: i32, y: i32| ((y % 90 < 3 && x % 90 < 60) || noise(x, y) < 10) && noise(y, x) >= 5;
+        assert_eq!(pen_width_px(&picture(lines)), Some(3));
+    }
+
+    #[test]
+    fn a_filled_area_is_not_the_pen() {
+        let area = |x: i32, y: i32| (x < 90 && y < 190) || (x % 30 < 4 && y < 150);
+        assert_eq!(pen_width_px(&picture(area)), Some(4));
+        assert_eq!(pen_width_px(&picture(|x, y| x < 90 && y < 190)), None);
+    }
+
+    #[test]
+    fn without_lines_there_is_no_width() {
+        assert_eq!(pen_width_px(&picture(|_, _| false)), None);
+        assert_eq!(pen_width_px(&picture(|x, y| x % 5 == 0 && y % 5 == 0)), None);
+        assert_eq!(pen_width_px(&Bitmap::new(0, 5).unwrap()), None);
+    }
+
+    #[test]
+    fn neighbours_are_seen_across_words() {
+        for (x, y) in [(63, 5), (64, 5)] {
+            let mut pair = Bitmap::new(130, 9).unwrap();
+            pair.set(Pixel::new(x, y), true);
+            assert_eq!(pen_width_px(&pair), None);
+            pair.set(Pixel::new(127 - x, y + 1), true);
+            assert_eq!(pen_width_px(&pair), Some(1));
+        }
+    }
+}

@@ -1,0 +1,367 @@
+//! [`shorten`]: a route is changed piece by piece until no small change makes it shorter, then shaken and mended
+//! again as long as the budget lasts.
+//!
+//! ```text
+//!   turn (2-opt)              move (Or-opt)                shake (double bridge)
+//!   a─b     a b               a─b   c─d    a───b c d       a B C d   becomes   a C B d
+//!        →  │ │  (or ×)         └x──┘   →     x┘ (1 to 3 strokes, either way round)
+//!   d─c     d c
+//! ```
+//!
+//! Sources: G. A. Croes, "A method for solving traveling-salesman problems" (1958): two ways are replaced, what lies
+//! between them is turned round. I. Or, "Traveling salesman-type combinatorial problems" (1976): up to three stops are
+//! moved elsewhere. J. L. Bentley, "Fast algorithms for geometric traveling salesman problems" (1992) and
+//! D. S. Johnson and L. A. McGeoch, "The traveling salesman problem: a case study in local optimization" (1997):
+//! neighbour lists, a queue of the stops near a change, the array that turns its shorter side, and the limit of what is
+//! turned. O. Martin, S. W. Otto and E. W. Felten, "Large-step Markov chains for the traveling salesman problem" (1991):
+//! shaking with the double bridge, kept local.
+
+use super::route::{Reading, Route};
+use super::sites::{NEIGHBOURS, Site, Sites, Visit};
+use crate::PxPoint;
+use std::collections::VecDeque;
+
+/// Gain below which nothing is changed, px: far below any pen, far above the rounding of a sum of four ways.
+const LEAST_GAIN_PX: f64 = 1e-7;
+
+/// Most things moved together.
+const MOVED_TOGETHER: usize = 3;
+
+/// Most things turned by one change, in the first descent and after a shake.
+const TURNED_AT_FIRST: usize = 50_000;
+const TURNED_LATER: usize = 1_000;
+
+/// Longest stretch that a shake moves.
+const SHAKEN: usize = 30;
+
+/// Most shakes for each thing, and at least so many; a small drawing has been through all that helps long before its budget ends.
+const SHAKES: u64 = 30;
+const FEWEST_SHAKES: u64 = 300;
+
+/// A shorter order of the visits. `budget` counts what is looked at and what is moved.
+pub(super) fn shorten(sites: &Sites, visits: &[Visit], from: Option<PxPoint>, budget: u64) -> Vec<Visit> {
+    if visits.len() != sites.len() || visits.len() < 2 {
+        return visits.to_vec();
+    }
+    let mut search = Search {
+        sites,
+        near: sites.neighbours(),
+        route: Route::new(sites, visits, from),
+        queue: VecDeque::new(),
+        queued: vec![false; visits.len() + 1],
+        looked: 0,
+        budget,
+        turned: TURNED_AT_FIRST,
+    };
+    visits.iter().for_each(|visit| search.enqueue(visit.site));
+    search.settle();
+    search.turned = TURNED_LATER;
+    search.shake();
+    search.route.visits()
+}
+
+/// A change of the route, as read in a direction.
+#[derive(Clone, Copy, Debug)]
+enum Change {
+    /// From the first thing to the last one everything is turned round.
+    Turn { first: u32, last: u32 },
+    /// From the first thing to the last one everything is put after another thing.
+    Move { first: u32, last: u32, after: u32, reversed: bool },
+    /// A ring is put after another thing (or stays) and entered at a place.
+    Ring { site: u32, after: u32, place: u32 },
+}
+
+struct Search<'a> {
+    sites: &'a Sites,
+    near: Vec<[u32; NEIGHBOURS]>,
+    route: Route,
+    /// Things near which something was changed, each once.
+    queue: VecDeque<u32>,
+    queued: Vec<bool>,
+    looked: u64,
+    budget: u64,
+    turned: usize,
+}
+
+/// The change that gains most so far, by what the way grows.
+type Best = Option<(f64, Reading, Change)>;
+
+impl Search<'_> {
+    fn spent(&self) -> bool {
+        self.looked + self.route.moved >= self.budget
+    }
+
+    fn enqueue(&mut self, site: u32) {
+        if !core::mem::replace(&mut self.queued[site as usize], true) {
+            self.queue.push_back(site);
+        }
+    }
+
+    /// Changes the route until nothing near the queue gains; returns by how much it grew (never above 0).
+    fn settle(&mut self) -> f64 {
+        let mut growth = 0.0;
+        while let Some(site) = self.queue.pop_front() {
+            self.queued[site as usize] = false;
+            while !self.spent() {
+                let Some(gain) = self.improve(site) else { break };
+                growth += gain;
+            }
+        }
+        growth
+    }
+
+    /// Makes the best change that begins with a new way to or from `site`; returns by how much the way grew.
+    fn improve(&mut self, site: u32) -> Option<f64> {
+        let mut turns = true;
+        loop {
+            let mut best = None;
+            self.look_beyond_the_exit(Reading::Up, site, turns, &mut best);
+            self.look_beyond_the_exit(Reading::Down, site, turns, &mut best);
+            self.look_round_the_ring(site, &mut best);
+            let (growth, reading, change) = best.filter(|(growth, ..)| *growth < -LEAST_GAIN_PX)?;
+            let made = self.make(growth, reading, change);
+            if made.is_some() || !turns {
+                return made;
+            }
+            // One-way things spoil the turn: what else is there?
+            turns = false;
+        }
+    }
+
+    /// Changes that replace the way after `site` by a shorter one from its exit.
+    fn look_beyond_the_exit(&mut self, reading: Reading, site: u32, turns: bool, best: &mut Best) {
+        let route = &self.route;
+        let exit = route.exit(reading, site);
+        let next = route.next(reading, site);
+        let way = route.distance(exit, route.entry(reading, next));
+        let Some(near) = self.near.get(exit as usize).filter(|_| way > LEAST_GAIN_PX) else { return };
+        for place in near.iter().copied() {
+            self.looked += 1;
+            let other = self.sites.owner(place);
+            let new = if other == u32::MAX { f64::INFINITY } else { route.distance(exit, place) };
+            if new >= way {
+                break;
+            }
+            let at_exit = place == route.exit(reading, other);
+            let at_entry = place == route.entry(reading, other);
+            if at_exit && turns {
+                let after = route.next(reading, other);
+                let across = route.distance(route.entry(reading, next), route.entry(reading, after));
+                let growth = new + across - way - route.way(reading, other);
+                let count = route.steps(reading, next, other) + 1;
+                if count.min(route.len() - count) <= self.turned {
+                    consider(best, growth, reading, Change::Turn { first: next, last: other });
+                }
+            }
+            if !at_exit && !at_entry {
+                self.looked += 1;
+                self.consider_ring(other, site, place, reading, best);
+                continue;
+            }
+            let back = reading.other();
+            let stretches = [
+                // Others come here: a stretch that begins, or ends, at the place.
+                at_entry.then_some((other, reading, site, false)),
+                at_exit.then_some((other, back, site, true)),
+                // Or a stretch that ends with this one goes there.
+                at_entry.then_some((site, back, route.before(reading, other), false)),
+                at_exit.then_some((site, back, other, true)),
+            ];
+            for (seed, outwards, after, reversed) in stretches.into_iter().flatten() {
+                let mut far = seed;
+                for _ in 0..MOVED_TOGETHER {
+                    if far == after || (reversed && !route.may_turn(far)) {
+                        break;
+                    }
+                    self.looked += 1;
+                    let (first, last) = if outwards == reading { (seed, far) } else { (far, seed) };
+                    if after != route.before(reading, first) {
+                        let growth = growth_of_move(route, reading, (first, last), after, reversed);
+                        consider(best, growth, reading, Change::Move { first, last, after, reversed });
+                    }
+                    far = route.next(outwards, far);
+                }
+            }
+        }
+    }
+
+    /// Another place of the ring itself, and places beside the neighbours of all its places.
+    fn look_round_the_ring(&mut self, site: u32, best: &mut Best) {
+        let reading = Reading::Up;
+        if site as usize >= self.sites.len() || self.sites.kind(site) != Site::Ring {
+            return;
+        }
+        let (before, after) = (self.route.before(reading, site), self.route.next(reading, site));
+        let (from, to) = (self.route.exit(reading, before), self.route.entry(reading, after));
+        let ways = self.route.way(reading, before) + self.route.way(reading, site);
+        let saved = ways - self.route.distance(from, to);
+        for place in self.sites.of(site) {
+            self.looked += 1;
+            let here = self.route.distance(from, place) + self.route.distance(place, to);
+            consider(best, here - ways, reading, Change::Ring { site, after: before, place });
+            let Some(near) = self.near.get(place as usize) else { continue };
+            for other_place in near.iter().copied() {
+                let other = self.sites.owner(other_place);
+                if other == u32::MAX || self.route.distance(place, other_place) >= saved {
+                    break;
+                }
+                self.looked += 1;
+                for reading in [Reading::Up, Reading::Down] {
+                    if other_place == self.route.exit(reading, other) {
+                        self.consider_ring(site, other, place, reading, best);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The ring, entered at a place, between `after` and the next one.
+    fn consider_ring(&self, site: u32, after: u32, place: u32, reading: Reading, best: &mut Best) {
+        let route = &self.route;
+        let (before, next, beyond) =
+            (route.before(reading, site), route.next(reading, site), route.next(reading, after));
+        if self.sites.kind(site) != Site::Ring || after == before || after == site {
+            return;
+        }
+        let left = route.distance(route.exit(reading, before), route.entry(reading, next))
+            - route.way(reading, before)
+            - route.way(reading, site);
+        let put = route.distance(route.exit(reading, after), place)
+            + route.distance(place, route.entry(reading, beyond))
+            - route.way(reading, after);
+        consider(best, left + put, reading, Change::Ring { site, after, place });
+    }
+
+    /// Makes a change and queues what it touches; `None`, and nothing is changed, when it gains nothing after all.
+    fn make(&mut self, growth: f64, mut reading: Reading, change: Change) -> Option<f64> {
+        let route = &mut self.route;
+        let touched = match change {
+            Change::Turn { first, last } => {
+                let (before, after) = (route.before(reading, first), route.next(reading, last));
+                let changes = route.changes();
+                let growth = growth + route.turn(&mut reading, first, last);
+                if growth >= -LEAST_GAIN_PX {
+                    route.undo_to(changes);
+                    return None;
+                }
+                [before, first, last, after].iter().for_each(|site| self.enqueue(*site));
+                return Some(growth);
+            }
+            Change::Move { first, last, after, reversed } => {
+                move_after(route, reading, (first, last), after, reversed)
+            }
+            Change::Ring { site, after, place } => {
+                let touched = if after == route.before(reading, site) {
+                    [after, site, site, site, site, route.next(reading, site)]
+                } else {
+                    move_after(route, reading, (site, site), after, false)
+                };
+                route.enter(site, place);
+                touched
+            }
+        };
+        touched.iter().for_each(|site| self.enqueue(*site));
+        Some(growth)
+    }
+
+    /// Shakes the route at one place after the other; what does not make it shorter is undone.
+    fn shake(&mut self) {
+        let all = self.route.len();
+        // Two stretches and two things beside them.
+        let Some(most) = all.checked_sub(3).filter(|most| *most > 0) else { return };
+        // The last thing may turn where all may.
+        let turnable = self.route.may_turn(self.route.home());
+        let mut random = 0;
+        for _ in 0..FEWEST_SHAKES.max(SHAKES.saturating_mul(all as u64)) {
+            if self.spent() {
+                break;
+            }
+            self.route.keep();
+            let after = self.route.at(draw(&mut random, all));
+            let moved = 1 + draw(&mut random, most.min(SHAKEN));
+            let passed = 1 + draw(&mut random, (all - 2 - moved).min(SHAKEN));
+            let step =
+                |from: u32, steps: usize| (0..steps).fold(from, |site, _| self.route.next(Reading::Up, site));
+            let first = step(after, 1);
+            let last = step(first, moved - 1);
+            let target = step(last, passed);
+            self.looked += (moved + passed) as u64 / 4;
+            let reversed = draw(&mut random, 2) == 0 && turnable;
+            let growth = growth_of_move(&self.route, Reading::Up, (first, last), target, reversed);
+            let touched = move_after(&mut self.route, Reading::Up, (first, last), target, reversed);
+            touched.iter().for_each(|site| self.enqueue(*site));
+            if growth + self.settle() >= 0.0 {
+                self.route.undo_to(0);
+            }
+            // Out of budget, the queue is not empty.
+            while let Some(site) = self.queue.pop_front() {
+                self.queued[site as usize] = false;
+            }
+        }
+        self.route.keep();
+    }
+}
+
+fn consider(best: &mut Best, growth: f64, reading: Reading, change: Change) {
+    if best.is_none_or(|(least, ..)| growth < least) {
+        *best = Some((growth, reading, change));
+    }
+}
+
+/// By how much the way grows when a stretch is put after a thing that is neither in it nor just before it.
+fn growth_of_move(
+    route: &Route,
+    reading: Reading,
+    (first, last): (u32, u32),
+    after: u32,
+    reversed: bool,
+) -> f64 {
+    let (before, next) = (route.before(reading, first), route.next(reading, last));
+    let beyond = route.next(reading, after);
+    let (mut head, mut tail) = (route.entry(reading, first), route.exit(reading, last));
+    let left = route.distance(route.exit(reading, before), route.entry(reading, next))
+        - route.distance(route.exit(reading, before), head)
+        - route.distance(tail, route.entry(reading, next));
+    if reversed {
+        (head, tail) = (tail, head);
+    }
+    let (from, to) = (route.exit(reading, after), route.entry(reading, beyond));
+    left + route.distance(from, head) + route.distance(tail, to) - route.distance(from, to)
+}
+
+/// Puts a stretch after a thing, by turning it together with what lies between, and that back again. Returns the
+/// things whose ways are new.
+fn move_after(
+    route: &mut Route,
+    mut reading: Reading,
+    (first, last): (u32, u32),
+    after: u32,
+    reversed: bool,
+) -> [u32; 6] {
+    let (before, next) = (route.before(reading, first), route.next(reading, last));
+    let beyond = route.next(reading, after);
+    let reading = &mut reading;
+    if route.steps(*reading, last, after) < route.steps(*reading, after, first) {
+        route.turn(reading, first, after);
+        route.turn(reading, after, next);
+    } else {
+        route.turn(reading, beyond, last);
+        route.turn(reading, before, beyond);
+    }
+    if !reversed {
+        route.turn(reading, last, first);
+    }
+    [before, first, last, next, after, beyond]
+}
+
+/// A number below `limit` from a sequence that is always the same (SplitMix64: G. L. Steele, D. Lea, C. H. Flood,
+/// "Fast splittable pseudorandom number generators", 2014).
+fn draw(state: &mut u64, limit: usize) -> usize {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut mixed = *state;
+    mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    mixed ^= mixed >> 31;
+    // The upper half of the product is evenly spread enough, and always below the limit.
+    usize::try_from((u128::from(mixed) * limit as u128) >> 64).unwrap_or(0)
+}

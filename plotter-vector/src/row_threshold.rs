@@ -1,0 +1,303 @@
+//! [`Survey`] and [`RowThreshold`]: a threshold for pictures that come row by row.
+
+use crate::light::{Light, TileRow, Tiles};
+use crate::{Histogram, MAX_SIDE_PX, Polarity, SizeError, Threshold, ThresholdMethod};
+
+/// The first pass over a picture, row by row from the top: what must be known of all of it before the first pixel
+/// can be told.
+///
+/// It holds one row of tiles at most, [`Threshold::window_px`] × 3 / 2 rows of the picture, and for
+/// [`ThresholdMethod::Otsu`] and a fixed level no row at all.
+///
+/// ```
+/// # use plotter_vector::{Survey, Threshold};
+/// let rows = [[250, 20, 240], [251, 30, 249]];
+/// let mut survey = Survey::new(Threshold::default(), 3, 2)?;
+/// rows.iter().for_each(|levels| survey.push(levels));
+/// let threshold = survey.finish().unwrap();
+/// let mut ink = [0];
+/// threshold.row(0, &rows[0], &mut ink);
+/// assert_eq!(ink, [0b010]);
+/// # Ok::<(), plotter_vector::SizeError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Survey {
+    threshold: Threshold,
+    width: usize,
+    rows_left: u32,
+    histogram: Histogram,
+    tiles: Tiles,
+    /// Rows of a row of tiles that is not yet complete.
+    levels: Vec<u8>,
+    measured: Vec<TileRow>,
+}
+
+/// The second pass: ink of one row after another, in any order.
+///
+/// Made by [`Survey::finish`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RowThreshold {
+    level: u8,
+    ink_is_dark: bool,
+    light: Option<Light>,
+}
+
+impl Survey {
+    /// Before the first row of a picture of `width` × `height` px, however many pixels that are.
+    ///
+    /// # Errors
+    /// [`SizeError`] above [`MAX_SIDE_PX`].
+    pub fn new(threshold: Threshold, width: u32, height: u32) -> Result<Self, SizeError> {
+        if width > MAX_SIDE_PX || height > MAX_SIDE_PX {
+            return Err(SizeError { width, height });
+        }
+        Ok(Self::checked(threshold, width, height))
+    }
+
+    /// As [`Survey::new`], for a size that has been checked.
+    pub(crate) fn checked(threshold: Threshold, width: u32, height: u32) -> Self {
+        let Threshold { polarity, window_px, min_contrast, .. } = threshold;
+        Self {
+            threshold,
+            width: width as usize,
+            rows_left: height,
+            histogram: Histogram::default(),
+            tiles: Tiles::new(width, height, window_px, polarity, min_contrast),
+            levels: Vec::new(),
+            measured: Vec::new(),
+        }
+    }
+
+    /// The levels of the next row. A longer row is cut, a shorter one filled with its last level (an empty one with
+    /// white); rows below the picture are ignored.
+    pub fn push(&mut self, levels: &[u8]) {
+        let Some(rows_left) = self.rows_left.checked_sub(1) else {
+            return;
+        };
+        self.rows_left = rows_left;
+        let levels = levels.get(..self.width).unwrap_or(levels);
+        let missing = self.width - levels.len();
+        let last = levels.last().copied().unwrap_or(u8::MAX);
+        match self.threshold.method {
+            ThresholdMethod::Otsu | ThresholdMethod::Level(_) => {
+                self.histogram.push(levels);
+                self.histogram.add(last, missing as u64);
+            }
+            ThresholdMethod::Adaptive => {
+                self.levels.extend_from_slice(levels);
+                self.levels.resize(self.levels.len() + missing, last);
+                if self.tiles.levels_of_row(self.measured.len()) == Some(self.levels.len()) {
+                    self.measured.push(self.tiles.measure(&self.levels));
+                    self.levels.clear();
+                }
+            }
+        }
+    }
+
+    /// All rows at once, instead of [`Survey::push`].
+    pub(crate) fn push_all(&mut self, levels: &[u8]) {
+        match self.threshold.method {
+            ThresholdMethod::Otsu | ThresholdMethod::Level(_) => self.histogram = whole_histogram(levels),
+            ThresholdMethod::Adaptive => {
+                let mut rest = levels;
+                let rows = (0..).map_while(|row| {
+                    let (these, below) = rest.split_at_checked(self.tiles.levels_of_row(row)?)?;
+                    rest = below;
+                    Some(these)
+                });
+                self.measured = measure_all(self.tiles, rows.collect());
+            }
+        }
+        self.rows_left = 0;
+    }
+
+    /// What is ink, now that all rows are known; `None` for an empty sheet (one level, or below the least
+    /// contrast). Rows that never came count as nothing.
+    #[must_use]
+    pub fn finish(mut self) -> Option<RowThreshold> {
+        let Threshold { polarity, method, min_contrast, .. } = self.threshold;
+        let level = match method {
+            ThresholdMethod::Otsu => self.histogram.otsu(min_contrast)?,
+            ThresholdMethod::Level(level) => level,
+            ThresholdMethod::Adaptive => {
+                if !self.levels.is_empty() {
+                    self.measured.push(self.tiles.measure(&self.levels));
+                }
+                let light = self.tiles.finish(self.measured)?;
+                let (level, ink_is_dark) = (light.level, light.ink_is_dark);
+                return Some(RowThreshold { level, ink_is_dark, light: Some(light) });
+            }
+        };
+        let counts = self.histogram.counts();
+        let (dark, light) = counts.split_at(usize::from(level) + 1);
+        let ink_is_dark = match polarity {
+            Polarity::Minority => dark.iter().sum::<u64>() <= light.iter().sum(),
+            Polarity::DarkInk => true,
+            Polarity::LightInk => false,
+        };
+        Some(RowThreshold { level, ink_is_dark, light: None })
+    }
+}
+
+impl RowThreshold {
+    /// Levels up to this one are dark. For [`ThresholdMethod::Adaptive`] as it were in a place where the light is
+    /// full: paper white, or the dark ground black.
+    #[must_use]
+    pub const fn level(&self) -> u8 {
+        self.level
+    }
+
+    /// Whether the dark side is ink.
+    #[must_use]
+    pub const fn ink_is_dark(&self) -> bool {
+        self.ink_is_dark
+    }
+
+    /// Writes the ink of row `y`, 64 px a word, the leftmost in the lowest bit, as [`Bitmap::row`](crate::Bitmap::row)
+    /// gives it. Levels beyond the words are ignored, words beyond the levels are paper.
+    pub fn row(&self, y: u32, levels: &[u8], ink: &mut [u64]) {
+        match (&self.light, self.ink_is_dark) {
+            (None, true) => pack(levels, ink, |level| level <= self.level),
+            (None, false) => pack(levels, ink, |level| level > self.level),
+            (Some(light), dark) => pack_by(levels, &light.ink_levels(y), if dark { 0 } else { u8::MAX }, ink),
+        }
+    }
+}
+
+#[cfg(not(feature = "rayon"))]
+fn whole_histogram(levels: &[u8]) -> Histogram {
+    let mut histogram = Histogram::default();
+    histogram.push(levels);
+    histogram
+}
+
+#[cfg(not(feature = "rayon"))]
+fn measure_all(tiles: Tiles, rows: Vec<&[u8]>) -> Vec<TileRow> {
+    rows.into_iter().map(|levels| tiles.measure(levels)).collect()
+}
+
+#[cfg(feature = "rayon")]
+fn whole_histogram(levels: &[u8]) -> Histogram {
+    use rayon::prelude::*;
+    let part = |levels: &[u8]| {
+        let mut histogram = Histogram::default();
+        histogram.push(levels);
+        histogram
+    };
+    levels.par_chunks(1 << 20).map(part).reduce(Histogram::default, |mut all, part| {
+        all.merge(&part);
+        all
+    })
+}
+
+#[cfg(feature = "rayon")]
+fn measure_all(tiles: Tiles, rows: Vec<&[u8]>) -> Vec<TileRow> {
+    use rayon::prelude::*;
+    rows.into_par_iter().map(|levels| tiles.measure(levels)).collect()
+}
+
+/// Eight bytes of 0 or 1 gathered into the eight lowest bits, the first in the lowest: bit 8·k is moved to bit
+/// 56 + k by the factor's bit 56 − 7·k, and no two products meet there.
+fn gather(marks: [u8; 8]) -> u64 {
+    u64::from_le_bytes(marks).wrapping_mul(0x0102_0408_1020_4080) >> 56
+}
+
+/// The word of 64 marks of 0 or 1.
+fn word(marks: &[u8; 64]) -> u64 {
+    let (eights, _) = marks.as_chunks::<8>();
+    eights.iter().rev().fold(0, |word, marks| word << 8 | gather(*marks))
+}
+
+fn pack(levels: &[u8], ink: &mut [u64], is_ink: impl Fn(u8) -> bool) {
+    let (full, rest) = levels.as_chunks::<64>();
+    let mut marks = [0; 64];
+    let mut words = ink.iter_mut();
+    for (levels, ink) in full.iter().zip(&mut words) {
+        for (mark, level) in marks.iter_mut().zip(levels) {
+            *mark = u8::from(is_ink(*level));
+        }
+        *ink = word(&marks);
+    }
+    if let Some(ink) = words.next() {
+        marks.fill(0);
+        for (mark, level) in marks.iter_mut().zip(rest) {
+            *mark = u8::from(is_ink(*level));
+        }
+        *ink = word(&marks);
+    }
+    words.for_each(|ink| *ink = 0);
+}
+
+/// As [`pack`], with a number of ink levels for each pixel; `flip` of all ones inverts the levels first.
+fn pack_by(levels: &[u8], ink_levels: &[u8], flip: u8, ink: &mut [u64]) {
+    let mut marks = [0; 64];
+    let parts = levels.chunks(64).zip(ink_levels.chunks(64)).map(Some);
+    for (ink, part) in ink.iter_mut().zip(parts.chain(core::iter::repeat(None))) {
+        *ink = part.map_or(0, |(levels, ink_levels)| {
+            if let (Ok(levels), Ok(ink_levels)) =
+                (<&[u8; 64]>::try_from(levels), <&[u8; 64]>::try_from(ink_levels))
+            {
+                for ((mark, level), n) in marks.iter_mut().zip(levels).zip(ink_levels) {
+                    *mark = u8::from(level ^ flip < *n);
+                }
+            } else {
+                marks.fill(0);
+                for ((mark, level), n) in marks.iter_mut().zip(levels).zip(ink_levels) {
+                    *mark = u8::from(level ^ flip < *n);
+                }
+            }
+            word(&marks)
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_mark_comes_to_its_bit() {
+        for bit in 0..64 {
+            let mut marks = [0; 64];
+            marks[bit] = 1;
+            assert_eq!(word(&marks), 1 << bit);
+            marks = [1; 64];
+            marks[bit] = 0;
+            assert_eq!(word(&marks), !(1 << bit));
+        }
+    }
+
+    #[test]
+    fn rows_of_another_length_stay_inside_their_words() {
+        for method in [ThresholdMethod::Level(100), ThresholdMethod::Adaptive] {
+            let mut survey = Survey::new(Threshold { method, ..Threshold::default() }, 70, 2).unwrap();
+            survey.push(&[[0; 9].as_slice(), &[200; 61]].concat());
+            survey.push(&[200; 100]);
+            survey.push(&[0; 70]);
+            let rows = survey.finish().unwrap();
+            let mut words = [u64::MAX; 3];
+            rows.row(0, &[0; 70], &mut words);
+            assert_eq!(words, [u64::MAX, 0b11_1111, 0]);
+            rows.row(7, &[], &mut words);
+            assert_eq!(words, [0; 3]);
+        }
+    }
+
+    #[test]
+    fn only_the_sides_of_a_stream_are_limited() {
+        let new = |width, height| Survey::new(Threshold::default(), width, height);
+        assert!(new(MAX_SIDE_PX, MAX_SIDE_PX).is_ok());
+        assert_eq!(new(5, MAX_SIDE_PX + 1).err(), Some(SizeError { width: 5, height: MAX_SIDE_PX + 1 }));
+    }
+
+    #[test]
+    fn missing_rows_count_as_nothing() {
+        for method in [ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
+            let mut survey = Survey::new(Threshold { method, ..Threshold::default() }, 4, 100).unwrap();
+            survey.push(&[0, 255, 255, 255]);
+            assert!(survey.finish().unwrap().ink_is_dark());
+            let nothing = Survey::new(Threshold { method, ..Threshold::default() }, 4, 100).unwrap();
+            assert_eq!(nothing.finish(), None);
+        }
+    }
+}

@@ -1,0 +1,431 @@
+//! [`Vectorizer::vectorize_rows`]: sheets of any length, in the memory of some bands of them.
+//!
+//! ```text
+//!   rows ──► ink ──► cleaned, lines apart from areas ──► skeleton ──► fragments ──► strokes ──► polylines
+//!                                       └──► areas, a stretch at a time ──► outlines, hatching
+//! ```
+//!
+//! Each step takes its rows with as much context as decides about them and hands on the rows themselves; it forgets what
+//! no later step needs. Several bands of a step are worked on at a time, one a thread. A stroke is simplified as soon as
+//! it is whole, so that what stays is the drawing.
+
+use crate::areas::Islands;
+use crate::bitmap::blocks_between;
+use crate::centrelines::{CONTEXT_ROWS, Centring, each, sort, threads};
+use crate::graph::{Joiner, Rims, Scan, fragments};
+use crate::pipeline::is_raster_lines;
+use crate::rolling::Rolling;
+use crate::row_threshold::RowThreshold;
+use crate::speckle::despeckle_here;
+use crate::{
+    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, Mode, Progress, PxPoint, Row,
+    RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer, context_rows, rows_of_width_context,
+    smallest_mark_px, split_by_width,
+};
+use core::fmt;
+use core::ops::Range;
+
+/// Own rows of a band that is cleaned or thinned, bytes at 1 bit a pixel: less, and the context costs more than the band;
+/// more, and the memory grows.
+const BAND_BYTES: usize = 1 << 21;
+
+/// The same of a band whose skeleton is followed, which takes far more memory; and the fewest rows.
+const FOLLOWED_BYTES: usize = 1 << 20;
+const FEWEST_FOLLOWED: u32 = 384;
+
+/// What [`Vectorizer::vectorize_rows`] found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TracedSheet {
+    /// The strokes.
+    pub drawing: Drawing,
+    /// How ink was told from paper; `None` for an empty sheet, and for one that came at 1 bit a pixel.
+    pub split: Option<Split>,
+    /// Ink of the sheet as it came, px.
+    pub ink_pixels: u64,
+    /// Width of the pen, px; `None` when there are no lines.
+    pub pen_px: Option<u32>,
+}
+
+/// Why a sheet cannot be vectorized.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SheetError {
+    /// A row cannot be read.
+    Source(DecodeError),
+    /// It was stopped.
+    Cancelled(Cancelled),
+    /// The sheet has lines one pixel wide, or the published algorithm is asked for: that needs the whole sheet at once, and
+    /// there are too many pixels.
+    Size(SizeError),
+    /// As for a picture in memory.
+    Vectorize(VectorizeError),
+}
+
+impl fmt::Display for SheetError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Source(error) => error.fmt(f),
+            Self::Cancelled(error) => error.fmt(f),
+            Self::Size(error) => write!(f, "lines one pixel wide are tracked on the whole sheet: {error}"),
+            Self::Vectorize(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for SheetError {}
+
+impl From<DecodeError> for SheetError {
+    fn from(error: DecodeError) -> Self {
+        Self::Source(error)
+    }
+}
+
+impl From<Cancelled> for SheetError {
+    fn from(error: Cancelled) -> Self {
+        Self::Cancelled(error)
+    }
+}
+
+impl From<VectorizeError> for SheetError {
+    fn from(error: VectorizeError) -> Self {
+        Self::Vectorize(error)
+    }
+}
+
+impl Vectorizer {
+    /// Vectorizes a sheet that comes row by row: of 1 bit, where black is ink, or of grey levels.
+    ///
+    /// The strokes and their order are those of [`Vectorizer::trace`] and [`Vectorizer::vectorize`] on the whole
+    /// picture, whatever the height of the bands and the number of threads. The sheet is read twice, one of grey levels
+    /// three times: for the threshold, for the width of the pen, for the strokes. How far the pixels lie from the strokes
+    /// is not measured.
+    ///
+    /// Memory is some bands of the sheet and the drawing, and
+    /// * of strokes that have begun but not ended, 24 bytes a pixel of their length;
+    /// * of areas, the rows from one without any to the next, at most [`MAX_PIXELS`](crate::MAX_PIXELS), at 1 bit;
+    /// * lines one pixel wide and the published algorithm need the whole sheet.
+    ///
+    /// ```
+    /// use plotter_vector::{Bitmap, BitmapRows, Progress, Vectorizer};
+    /// let bar = Bitmap::from_picture(&"..###..\n".repeat(40))?;
+    /// let sheet = Vectorizer::default().vectorize_rows(&mut BitmapRows::new(&bar), &mut Progress::silent())?;
+    /// assert_eq!((sheet.pen_px, sheet.ink_pixels, sheet.drawing.vertices()), (Some(3), 120, 2));
+    /// assert_eq!(sheet.drawing, Vectorizer::default().trace(&bar)?.drawing);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SheetError`].
+    pub fn vectorize_rows(
+        &self,
+        source: &mut impl RowSource,
+        progress: &mut Progress<'_>,
+    ) -> Result<TracedSheet, SheetError> {
+        if self.algorithm == Algorithm::Ours {
+            self.check()?;
+        }
+        let (width, height) = (source.width(), source.height());
+        let threshold = match source.depth() {
+            Depth::Bits1 => None,
+            Depth::Grey8 => Some(survey(self, source, &mut progress.part(0.1))?),
+        };
+        let empty = TracedSheet { drawing: Drawing::new(width, height), ..TracedSheet::default() };
+        let threshold = match threshold {
+            Some(None) => return Ok(empty),
+            Some(threshold) => threshold,
+            None => None,
+        };
+        let (pen_px, ink_pixels) = pen_width(source, threshold.as_ref(), &mut progress.part(0.2))?;
+        let split = threshold.as_ref().map(|threshold| Split {
+            level: threshold.level(),
+            ink_is_dark: threshold.ink_is_dark(),
+            ink_pixels,
+        });
+        let found = TracedSheet { split, ink_pixels, pen_px, ..empty };
+        let progress = &mut progress.part(1.0);
+        let tracked = pen_px.unwrap_or(1) <= 1 && self.mode != Mode::Outline;
+        if tracked || self.algorithm == Algorithm::Published {
+            let mut ink = Bitmap::new(width, height).map_err(SheetError::Size)?;
+            let mut rows = ink.rows_mut();
+            for_each_row(source, progress, |y, row| {
+                if let Some(ink) = rows.next() {
+                    ink_of(row, y, threshold.as_ref(), ink);
+                }
+                Ok(())
+            })?;
+            drop(rows);
+            return Ok(TracedSheet { drawing: self.trace(&ink)?.drawing, ..found });
+        }
+        let mut sheet = Work::new(self, width, height, pen_px.unwrap_or(1), threshold);
+        for_each_row(source, progress, |_, row| sheet.push(row))?;
+        let strokes = sheet.finish()?;
+        let mut drawing = found.drawing;
+        strokes.into_iter().for_each(|stroke| drawing.push(stroke));
+        Ok(TracedSheet { drawing: self.order.apply(&drawing), ..found })
+    }
+}
+
+/// All rows of a sheet in turn.
+fn for_each_row(
+    source: &mut impl RowSource,
+    progress: &mut Progress<'_>,
+    mut take: impl FnMut(u32, Row<'_>) -> Result<(), SheetError>,
+) -> Result<(), SheetError> {
+    let height = u64::from(source.height());
+    source.rewind()?;
+    let mut y = 0;
+    while let Some(row) = source.next_row()? {
+        take(y, row)?;
+        y += 1;
+        progress.at(y.into(), height)?;
+    }
+    Ok(())
+}
+
+/// The first pass over grey levels.
+fn survey(
+    settings: &Vectorizer,
+    source: &mut impl RowSource,
+    progress: &mut Progress<'_>,
+) -> Result<Option<RowThreshold>, SheetError> {
+    let new = Survey::new(settings.threshold, source.width(), source.height());
+    let mut survey = new.map_err(SheetError::Size)?;
+    for_each_row(source, progress, |_, row| {
+        if let Row::Grey(levels) = row {
+            survey.push(levels);
+        }
+        Ok(())
+    })?;
+    Ok(survey.finish())
+}
+
+/// The width of the pen and the number of ink pixels.
+fn pen_width(
+    source: &mut impl RowSource,
+    threshold: Option<&RowThreshold>,
+    progress: &mut Progress<'_>,
+) -> Result<(Option<u32>, u64), SheetError> {
+    let width = source.width();
+    let (mut pen, mut ink_pixels, mut blocks) = (LineWidth::new(width), 0, 0);
+    let mut ink = vec![0; width.div_ceil(u64::BITS) as usize];
+    let mut above = ink.clone();
+    for_each_row(source, progress, |y, row| {
+        ink_of(row, y, threshold, &mut ink);
+        ink_pixels += ink.iter().map(|bits| u64::from(bits.count_ones())).sum::<u64>();
+        blocks += blocks_between(&above, &ink);
+        pen.push(&ink);
+        core::mem::swap(&mut above, &mut ink);
+        Ok(())
+    })?;
+    let found = pen.finish().map(|pen_px| if is_raster_lines(blocks, ink_pixels) { 1 } else { pen_px });
+    Ok((found, ink_pixels))
+}
+
+fn ink_of(row: Row<'_>, y: u32, threshold: Option<&RowThreshold>, ink: &mut [u64]) {
+    match (row, threshold) {
+        (Row::Bits(words), _) => ink.iter_mut().zip(words).for_each(|(to, from)| *to = *from),
+        (Row::Grey(levels), Some(threshold)) => threshold.row(y, levels, ink),
+        (Row::Grey(_), None) => ink.fill(0),
+    }
+}
+
+/// A step of the work: which rows it takes next.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    next: u32,
+    /// Own rows of a band, and rows more that it needs above and below.
+    band_rows: u32,
+    context: u32,
+    height: u32,
+}
+
+impl Step {
+    /// The bands that can be worked on when the rows before `end` are there: as many as there are threads, or those that
+    /// are left at the end of the sheet.
+    fn ready(&mut self, end: u32) -> Option<Vec<Range<u32>>> {
+        let bands = u32::try_from(threads()).unwrap_or(1);
+        let own = self.next..self.next.saturating_add(bands.saturating_mul(self.band_rows)).min(self.height);
+        if own.is_empty() || end < own.end.saturating_add(self.context).min(self.height) {
+            return None;
+        }
+        self.next = own.end;
+        let band = |start: u32| start..start.saturating_add(self.band_rows).min(own.end);
+        Some(own.clone().step_by(self.band_rows as usize).map(band).collect())
+    }
+
+    /// The rows of a band with its context.
+    fn around(&self, own: &Range<u32>) -> Range<u32> {
+        own.start.saturating_sub(self.context)..own.end.saturating_add(self.context).min(self.height)
+    }
+
+    /// First row that this step still needs.
+    fn needs(&self) -> u32 {
+        self.next.saturating_sub(self.context)
+    }
+}
+
+/// The strokes of a sheet that is on its way.
+struct Work<'a> {
+    settings: &'a Vectorizer,
+    threshold: Option<RowThreshold>,
+    centring: Centring,
+    smallest_px: u32,
+    /// Widest line, px; none when all ink is outlined.
+    max_line_px: Option<u32>,
+    ink: Rolling<u64>,
+    levels: Option<Rolling<u8>>,
+    lines: Rolling<u64>,
+    skeleton: Rolling<u64>,
+    clean: Step,
+    thin: Step,
+    follow: Step,
+    islands: Islands,
+    joiner: Joiner,
+    strokes: Vec<Vec<PxPoint>>,
+    outlines: Vec<Vec<PxPoint>>,
+}
+
+impl<'a> Work<'a> {
+    fn new(
+        settings: &'a Vectorizer,
+        width: u32,
+        height: u32,
+        pen_px: u32,
+        threshold: Option<RowThreshold>,
+    ) -> Self {
+        let smallest_px = settings.smallest_mark_px.unwrap_or(smallest_mark_px(pen_px));
+        let max_line_px = settings.max_line_px(pen_px);
+        let centring = settings.centring(max_line_px);
+        let max_line_px = (settings.mode != Mode::Outline).then_some(max_line_px);
+        let row_bytes = (width.div_ceil(u64::BITS) as usize * 8).max(1);
+        let rows = |bytes: usize| u32::try_from(bytes / row_bytes).unwrap_or(u32::MAX);
+        let step = |rows: u32, context| Step {
+            next: 0,
+            band_rows: rows.max(FEWEST_FOLLOWED).min(settings.band_rows).max(1),
+            context,
+            height,
+        };
+        let grey = threshold.is_some() && max_line_px.is_some();
+        Self {
+            settings,
+            threshold,
+            smallest_px,
+            max_line_px,
+            ink: Rolling::of_ink(width),
+            levels: grey.then(|| Rolling::of_levels(width)),
+            lines: Rolling::of_ink(width),
+            skeleton: Rolling::of_ink(width),
+            clean: step(
+                rows(BAND_BYTES),
+                context_rows(smallest_px).saturating_add(max_line_px.map_or(0, rows_of_width_context)),
+            ),
+            thin: step(rows(BAND_BYTES), centring.thinning.rows_of_context()),
+            follow: step(rows(FOLLOWED_BYTES), CONTEXT_ROWS),
+            centring,
+            islands: Islands::new(width),
+            joiner: Joiner::default(),
+            strokes: Vec::new(),
+            outlines: Vec::new(),
+        }
+    }
+
+    /// The next row.
+    fn push(&mut self, row: Row<'_>) -> Result<(), SheetError> {
+        let y = self.ink.end();
+        ink_of(row, y, self.threshold.as_ref(), self.ink.next_row());
+        if let (Some(levels), Row::Grey(row)) = (&mut self.levels, row) {
+            levels.push(row);
+        }
+        while let Some(bands) = self.clean.ready(self.ink.end()) {
+            self.clean(bands)?;
+        }
+        if self.max_line_px.is_some() {
+            while let Some(bands) = self.thin.ready(self.lines.end()) {
+                self.thin(bands);
+            }
+            while let Some(bands) = self.follow.ready(self.skeleton.end().min(self.lines.end())) {
+                self.follow(bands);
+            }
+        }
+        Ok(())
+    }
+
+    /// All strokes, after the last row.
+    fn finish(mut self) -> Result<Vec<Vec<PxPoint>>, SheetError> {
+        if let Some((first, areas)) = self.islands.finish() {
+            self.outlines.extend(self.settings.area_strokes(first, &areas)?);
+        }
+        let open = core::mem::take(&mut self.joiner).finish().collect();
+        self.strokes.extend(self.centring.simplified(open));
+        sort(&mut self.strokes);
+        self.strokes.append(&mut self.outlines);
+        Ok(self.strokes)
+    }
+
+    /// Removes speckles, and tells lines from areas.
+    fn clean(&mut self, bands: Vec<Range<u32>>) -> Result<(), SheetError> {
+        let (step, ink, max_line_px) = (self.clean, &self.ink, self.max_line_px);
+        let smallest_px = self.smallest_px;
+        let cleaned = each(bands, |own| {
+            let rows = step.around(&own);
+            let mut band = ink.band(&rows);
+            despeckle_here(&mut band, smallest_px);
+            let own = own.start - rows.start..own.end - rows.start;
+            let Some(max_line_px) = max_line_px else { return (None, Some(band.band(own))) };
+            let split = split_by_width(&band, max_line_px);
+            let areas = split.thick.band(own.clone());
+            (Some(split.thin.band(own)), Some(areas))
+        });
+        for (lines, areas) in cleaned {
+            for y in 0..lines.as_ref().map_or(0, Bitmap::height) {
+                self.lines.push(lines.as_ref().map_or(&[], |lines| lines.row(y)));
+            }
+            for y in 0..areas.as_ref().map_or(0, Bitmap::height) {
+                let row = areas.as_ref().map_or(&[][..], |areas| areas.row(y));
+                if let Some((first, areas)) = self.islands.push(row) {
+                    self.outlines.extend(self.settings.area_strokes(first, &areas)?);
+                }
+            }
+        }
+        self.ink.forget_before(self.clean.needs());
+        Ok(())
+    }
+
+    /// Thins the lines.
+    fn thin(&mut self, bands: Vec<Range<u32>>) {
+        let (step, lines, thinning) = (self.thin, &self.lines, self.centring.thinning);
+        let thinned = each(bands, |own| {
+            let rows = step.around(&own);
+            let mut band = lines.band(&rows);
+            // Lines that are wider than expected stay so in places: their middle is found all the same.
+            let _ = thinning.thin_in_place(&mut band);
+            band.band(own.start - rows.start..own.end - rows.start)
+        });
+        for band in thinned {
+            (0..band.height()).for_each(|y| self.skeleton.push(band.row(y)));
+        }
+    }
+
+    /// Follows the skeleton, and simplifies the strokes that are whole now.
+    fn follow(&mut self, bands: Vec<Range<u32>>) {
+        let (step, lines, skeleton, levels) = (self.follow, &self.lines, &self.skeleton, &self.levels);
+        let ink_is_dark = self.threshold.as_ref().is_some_and(RowThreshold::ink_is_dark);
+        let found = each(bands, |own| {
+            let rows = step.around(&own);
+            let (lines, skeleton) = (lines.band(&rows), skeleton.band(&rows));
+            let levels = levels.as_ref().map(|levels| levels.band(&rows));
+            let first_row = rows.start;
+            let grey = levels.as_ref().map(|levels| Rims { levels, ink_is_dark, first_row });
+            fragments(Scan { ink: &lines, first_row, grey }, &skeleton, &own)
+        });
+        let joiner = &mut self.joiner;
+        let whole = found.into_iter().flatten().filter_map(|fragment| joiner.push(fragment)).collect();
+        self.strokes.extend(self.centring.simplified(whole));
+        let needs = self.follow.needs();
+        self.lines.forget_before(needs.min(self.thin.needs()));
+        self.skeleton.forget_before(needs);
+        if let Some(levels) = &mut self.levels {
+            levels.forget_before(needs);
+        }
+    }
+}

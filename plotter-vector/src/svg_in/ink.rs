@@ -1,0 +1,246 @@
+//! [`Ink`]: the parser's tree as strokes, each with its pen.
+
+use super::curve::Cubic;
+use super::dash::Dashes;
+use super::{MAX_PX, MM_PER_PX, SvgError, SvgLeftOut, SvgOptions, SvgPens};
+use crate::{Drawing, MAX_PENS, PalettePen, PxPoint, Rgb};
+use usvg::tiny_skia_path::{PathSegment, Point};
+
+/// A drawing in the making.
+pub(super) struct Ink<'a> {
+    pub(super) drawing: Drawing,
+    pub(super) pens: Vec<PalettePen>,
+    pub(super) left_out: SvgLeftOut,
+    options: SvgOptions,
+    /// Id and name of each group at the top of the file.
+    layers: &'a [(String, String)],
+    /// The layer's id that each pen stands for; beside `pens`.
+    pen_layers: Vec<String>,
+}
+
+/// What the pen follows on a shape.
+#[derive(Clone, Copy)]
+enum Way<'a> {
+    /// Its stroke.
+    Line(&'a usvg::Stroke),
+    /// The border of its fill.
+    Border,
+}
+
+impl<'a> Ink<'a> {
+    pub(super) fn new(drawing: Drawing, options: SvgOptions, layers: &'a [(String, String)]) -> Self {
+        let (pens, pen_layers, left_out) = (Vec::new(), Vec::new(), SvgLeftOut::default());
+        Self { drawing, pens, left_out, options, layers, pen_layers }
+    }
+
+    /// Draws a group and all that is in it. As deep as the file is nested, which has been checked.
+    pub(super) fn group(&mut self, group: &usvg::Group, layer: &str) -> Result<(), SvgError> {
+        if group.opacity().get() <= 0.0 {
+            return Ok(());
+        }
+        let left_out = &mut self.left_out;
+        left_out.clip_paths += usize::from(group.clip_path().is_some());
+        left_out.masks += usize::from(group.mask().is_some());
+        left_out.filters += usize::from(!group.filters().is_empty());
+        let top = layer.is_empty() && self.layers.iter().any(|(id, _)| id == group.id());
+        let layer = if top { group.id() } else { layer };
+        for child in group.children() {
+            match child {
+                usvg::Node::Group(inner) => self.group(inner, layer)?,
+                usvg::Node::Path(path) => self.path(path, layer)?,
+                // Neither is made: see `SvgLeftOut`, which counts them in the file.
+                usvg::Node::Image(_) | usvg::Node::Text(_) => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn path(&mut self, path: &usvg::Path, layer: &str) -> Result<(), SvgError> {
+        if !path.is_visible() {
+            return Ok(());
+        }
+        let line = path
+            .stroke()
+            .and_then(|stroke| Some((Way::Line(stroke), colour_of(stroke.paint(), stroke.opacity().get())?)));
+        let border =
+            path.fill().and_then(|fill| Some((Way::Border, colour_of(fill.paint(), fill.opacity().get())?)));
+        let seen = |(_, colour): &(Way<'_>, Rgb)| Some(*colour) != self.options.paper;
+        let inked = line.filter(seen).or_else(|| border.filter(seen));
+        match inked {
+            Some((way, colour)) => self.trace(path, way, colour, layer),
+            None => {
+                self.left_out.paper += usize::from(line.is_some() || border.is_some());
+                Ok(())
+            }
+        }
+    }
+
+    /// Draws the stroke of a shape, or the border of its fill.
+    fn trace(&mut self, path: &usvg::Path, way: Way<'_>, colour: Rgb, layer: &str) -> Result<(), SvgError> {
+        let matrix = path.abs_transform();
+        let [a, b, c, d] = [matrix.sx, matrix.ky, matrix.kx, matrix.sy].map(f64::from);
+        let [e, f] = [matrix.tx, matrix.ty].map(f64::from);
+        let place = |at: Point| -> Result<PxPoint, SvgError> {
+            let (x, y) = (f64::from(at.x), f64::from(at.y));
+            let at = PxPoint::new(a * x + c * y + e, b * x + d * y + f);
+            if at.x.abs() <= MAX_PX && at.y.abs() <= MAX_PX {
+                Ok(at)
+            } else {
+                Err(SvgError::TooFar { x_mm: at.x * MM_PER_PX, y_mm: at.y * MM_PER_PX })
+            }
+        };
+        let determinant = a * d - b * c;
+        let own_length =
+            |dx: f64, dy: f64| libm::hypot((d * dx - c * dy) / determinant, (a * dy - b * dx) / determinant);
+        let dashes = match way {
+            Way::Line(line) if determinant != 0.0 => {
+                line.dasharray().and_then(|lengths| Dashes::new(lengths, line.dashoffset()))
+            }
+            _ => None,
+        };
+        let tolerance_px = self.options.tolerance_mm / MM_PER_PX;
+        let mut stroke: Vec<PxPoint> = Vec::new();
+        let mut pen = None;
+        let mut draw = |ink: &mut Self, stroke: &mut Vec<PxPoint>, closed: bool| -> Result<(), SvgError> {
+            ready(stroke, way, closed);
+            if !stroke.is_empty() {
+                // Only what is drawn takes a pen.
+                let pen = *pen.get_or_insert_with(|| ink.pen(colour, layer));
+                match &dashes {
+                    Some(dashes) => dashes.draw(stroke, own_length, |dash| ink.push(pen, dash))?,
+                    None => ink.push(pen, stroke)?,
+                }
+            }
+            stroke.clear();
+            Ok(())
+        };
+        for segment in path.data().segments() {
+            let last = stroke.last().copied();
+            match (segment, last) {
+                (PathSegment::MoveTo(to), _) => {
+                    draw(self, &mut stroke, false)?;
+                    stroke.push(place(to)?);
+                }
+                (PathSegment::LineTo(to), _) => stroke.push(place(to)?),
+                (PathSegment::QuadTo(handle, to), Some(from)) => {
+                    let curve = Cubic::from_quadratic([from, place(handle)?, place(to)?]);
+                    self.curve(&mut stroke, curve, tolerance_px)?;
+                }
+                (PathSegment::CubicTo(first, second, to), Some(from)) => {
+                    let curve = Cubic([from, place(first)?, place(second)?, place(to)?]);
+                    self.curve(&mut stroke, curve, tolerance_px)?;
+                }
+                (PathSegment::Close, _) => draw(self, &mut stroke, true)?,
+                (PathSegment::QuadTo(_, to) | PathSegment::CubicTo(_, _, to), None) => {
+                    stroke.push(place(to)?)
+                }
+            }
+            self.check_vertices(stroke.len())?;
+        }
+        draw(self, &mut stroke, false)
+    }
+
+    fn curve(&self, stroke: &mut Vec<PxPoint>, curve: Cubic, tolerance_px: f64) -> Result<(), SvgError> {
+        for at in curve.chords(tolerance_px) {
+            stroke.push(at);
+            self.check_vertices(stroke.len())?;
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, pen: u8, stroke: &[PxPoint]) -> Result<(), SvgError> {
+        self.check_vertices(stroke.len())?;
+        self.drawing.push_with_pen(pen, stroke.iter().copied());
+        Ok(())
+    }
+
+    /// Whether so many vertices more are still within the limit.
+    fn check_vertices(&self, more: usize) -> Result<(), SvgError> {
+        let limit = self.options.max_vertices;
+        if self.drawing.vertices().saturating_add(more) > limit {
+            return Err(SvgError::TooManyVertices { limit });
+        }
+        Ok(())
+    }
+
+    /// The pen of a colour or a layer; the next free one when it has none.
+    fn pen(&mut self, colour: Rgb, layer: &str) -> u8 {
+        let known = match self.options.pens {
+            SvgPens::ByColour => self.pens.iter().find(|pen| pen.colour == colour),
+            SvgPens::ByLayer => {
+                let found = self.pen_layers.iter().position(|id| id == layer);
+                found.and_then(|index| self.pens.get(index))
+            }
+            SvgPens::One => self.pens.first(),
+        };
+        if let Some(pen) = known {
+            return pen.number;
+        }
+        if self.pens.len() >= MAX_PENS {
+            return self.nearest(colour);
+        }
+        let name = match self.options.pens {
+            SvgPens::ByColour => colour.to_string(),
+            SvgPens::ByLayer => {
+                let named = self.layers.iter().find(|(id, _)| id == layer);
+                named.map_or_else(String::new, |(_, name)| fitting(name))
+            }
+            SvgPens::One => String::new(),
+        };
+        let number = self.pens.last().map_or(1, |pen| pen.number.saturating_add(1));
+        self.pens.push(PalettePen { number, name, colour, width_mm: None });
+        self.pen_layers.push(layer.to_owned());
+        number
+    }
+
+    /// When no pen is free: that of the nearest colour.
+    fn nearest(&self, colour: Rgb) -> u8 {
+        let wanted = colour.oklab();
+        let distance = |pen: &PalettePen| pen.colour.oklab().distance(wanted);
+        let nearest = self.pens.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)));
+        nearest.map_or(1, |pen| pen.number)
+    }
+}
+
+/// Brings the places of a part of a shape into the form in which they are drawn; none when nothing is.
+fn ready(stroke: &mut Vec<PxPoint>, way: Way<'_>, closed: bool) {
+    let Some(first) = stroke.first().copied() else { return };
+    let dot = stroke.iter().all(|at| *at == first);
+    match way {
+        // A line that goes nowhere shows its caps, and flat ones are none.
+        Way::Line(line) if dot => {
+            stroke
+                .truncate(usize::from((stroke.len() > 1 || closed) && line.linecap() != usvg::LineCap::Butt));
+        }
+        // Fewer than three places have nothing between them.
+        Way::Border if stroke.len() < 3 => stroke.clear(),
+        _ if (closed || matches!(way, Way::Border)) && stroke.last() != Some(&first) => stroke.push(first),
+        _ => {}
+    }
+}
+
+/// The colour of a paint; that of the first stop that is seen of a gradient, black for a pattern.
+fn colour_of(paint: &usvg::Paint, opacity: f32) -> Option<Rgb> {
+    let stops =
+        |stops: &[usvg::Stop]| stops.iter().find(|stop| stop.opacity().get() > 0.0).map(|stop| stop.color());
+    let colour = match paint {
+        usvg::Paint::Color(colour) => *colour,
+        usvg::Paint::LinearGradient(gradient) => stops(gradient.stops())?,
+        usvg::Paint::RadialGradient(gradient) => stops(gradient.stops())?,
+        usvg::Paint::Pattern(_) => usvg::Color::black(),
+    };
+    (opacity > 0.0).then_some(Rgb([colour.red, colour.green, colour.blue]))
+}
+
+/// A name that a pen may have: at most 64 bytes.
+fn fitting(name: &str) -> String {
+    const MAX_NAME_BYTES: usize = 64;
+    let mut fitting = String::new();
+    for letter in name.chars().filter(|letter| !letter.is_control()) {
+        if fitting.len() + letter.len_utf8() > MAX_NAME_BYTES {
+            break;
+        }
+        fitting.push(letter);
+    }
+    fitting
+}

@@ -1,0 +1,274 @@
+//! [`Survey`]: what a file holds, and whether it is safe to follow its references.
+//!
+//! A few lines of `<use>` can stand for more elements than there is memory for, and a chain of patterns for more
+//! nesting than there is stack. Both are counted here before anything is built, each element once.
+
+use super::SvgError;
+use std::collections::BTreeMap;
+use usvg::roxmltree::{Document, Node, NodeId};
+
+/// Most elements, when each reference is followed.
+pub(super) const MAX_ELEMENTS: usize = 2_000_000;
+/// Deepest nesting, when each reference is followed: what the parser and its stack are made for.
+pub(super) const MAX_DEPTH: usize = 1000;
+/// Greatest number that an attribute may hold: single precision loses figures long before.
+const MAX_NUMBER: f64 = 1e12;
+
+/// Attributes that hold coordinates.
+const COORDINATES: [&str; 17] = [
+    "d",
+    "points",
+    "transform",
+    "viewBox",
+    "x",
+    "y",
+    "width",
+    "height",
+    "cx",
+    "cy",
+    "r",
+    "rx",
+    "ry",
+    "x1",
+    "y1",
+    "x2",
+    "y2",
+];
+/// Elements whose content is drawn only where something refers to them, if at all.
+const TEMPLATES: [&str; 6] = ["defs", "symbol", "clipPath", "mask", "pattern", "marker"];
+
+/// What a file holds that the parser does not tell.
+#[derive(Debug)]
+pub(super) struct Survey {
+    /// Texts that are not empty.
+    pub(super) texts: usize,
+    /// Pictures.
+    pub(super) images: usize,
+    /// Id and name of each group at the top.
+    pub(super) layers: Vec<(String, String)>,
+}
+
+impl Survey {
+    pub(super) fn new(document: &Document<'_>) -> Result<Self, SvgError> {
+        let root = document.root_element();
+        if root.tag_name().name() != "svg" {
+            return Err(SvgError::NotSvg { root: shortened(root.tag_name().name()) });
+        }
+        for node in document.descendants().filter(Node::is_element) {
+            check_numbers(document, node)?;
+        }
+        check_references(document)?;
+        let drawn = |name: &str| {
+            let templates =
+                |node: &Node<'_, '_>| node.ancestors().any(|up| TEMPLATES.contains(&up.tag_name().name()));
+            document
+                .descendants()
+                .filter(|node| node.has_tag_name(name_of(node, name)) && !templates(node))
+                .collect()
+        };
+        let texts: Vec<Node<'_, '_>> = drawn("text");
+        let images: Vec<Node<'_, '_>> = drawn("image");
+        let written = |node: &&Node<'_, '_>| {
+            node.descendants()
+                .any(|part| part.is_text() && part.text().is_some_and(|text| !text.trim().is_empty()))
+        };
+        let layer = |node: Node<'_, '_>| {
+            let id = node.attribute("id")?;
+            let label = node.attributes().find(|attribute| attribute.name() == "label");
+            Some((id.to_owned(), label.map_or(id, |label| label.value()).to_owned()))
+        };
+        Ok(Self {
+            texts: texts.iter().filter(written).count(),
+            images: images.len(),
+            layers: root.children().filter(|node| node.tag_name().name() == "g").filter_map(layer).collect(),
+        })
+    }
+}
+
+/// The name in the node's own namespace: files without one are read too.
+fn name_of<'a>(node: &Node<'a, '_>, name: &'a str) -> usvg::roxmltree::ExpandedName<'a, 'a> {
+    match node.tag_name().namespace() {
+        Some(namespace) => (namespace, name).into(),
+        None => name.into(),
+    }
+}
+
+/// A piece of the file that fits into a message.
+pub(super) fn shortened(text: &str) -> String {
+    let mut short: String = text.chars().take(24).collect();
+    if short.len() < text.len() {
+        short.push('…');
+    }
+    short
+}
+
+/// Refuses coordinates that the parser would leave out without a word.
+fn check_numbers(document: &Document<'_>, node: Node<'_, '_>) -> Result<(), SvgError> {
+    let own = |name: &str, namespace: Option<&str>| namespace.is_none() && COORDINATES.contains(&name);
+    for attribute in node.attributes().filter(|attribute| own(attribute.name(), attribute.namespace())) {
+        let refuse = |value: &str| SvgError::Number {
+            line: document.text_pos_at(node.range().start).row,
+            attribute: attribute.name().to_owned(),
+            value: shortened(value),
+        };
+        let text = attribute.value();
+        // A minus begins a number, or an exponent that makes it small.
+        let in_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '.' | '+' | 'e' | 'E');
+        let huge = |word: &&str| word.parse::<f64>().is_ok_and(|number| number.abs() > MAX_NUMBER);
+        let unnumbered =
+            |word: &&str| ["nan", "inf", "infinity"].contains(&word.to_ascii_lowercase().as_str());
+        let numbers = text.split(|letter| !in_number(letter)).find(huge);
+        let words = || text.split(|letter: char| !letter.is_ascii_alphabetic()).find(unnumbered);
+        if let Some(word) = numbers.or_else(words) {
+            return Err(refuse(word));
+        }
+    }
+    Ok(())
+}
+
+/// An element whose references are being followed.
+struct Open {
+    id: NodeId,
+    next: Vec<NodeId>,
+    elements: usize,
+    depth: usize,
+}
+
+/// What an element comes to.
+#[derive(Clone, Copy)]
+enum Cost {
+    Unknown,
+    Open,
+    Known { elements: usize, depth: usize },
+}
+
+/// Counts elements and nesting as if each reference were its target.
+fn check_references(document: &Document<'_>) -> Result<(), SvgError> {
+    let mut ids: BTreeMap<&str, NodeId> = BTreeMap::new();
+    let elements = || document.descendants().filter(Node::is_element);
+    for (id, node) in elements().filter_map(|node| node.attribute("id").zip(Some(node.id()))) {
+        ids.entry(id).or_insert(node);
+    }
+    let links = Links { ids, rules: rules(document) };
+    let mut costs = vec![Cost::Unknown; document.descendants().count()];
+    let root = document.root_element().id();
+    follow(document, root, &links, &mut costs)
+}
+
+/// Elements and nesting of one element with all that it refers to. A loop rather than a recursion: the stack is
+/// what is being checked.
+fn follow(
+    document: &Document<'_>,
+    root: NodeId,
+    links: &Links<'_>,
+    costs: &mut [Cost],
+) -> Result<(), SvgError> {
+    let mut open = vec![Open { id: root, next: next(document, root, links), elements: 1, depth: 1 }];
+    while let Some(top) = open.last_mut() {
+        let Some(id) = top.next.pop() else {
+            let done = (top.elements, top.depth);
+            if let Some(cost) = costs.get_mut(top.id.get_usize()) {
+                *cost = Cost::Known { elements: done.0, depth: done.1 };
+            }
+            open.pop();
+            if let Some(parent) = open.last_mut() {
+                parent.add(done)?;
+            }
+            continue;
+        };
+        match costs.get(id.get_usize()).copied().unwrap_or(Cost::Unknown) {
+            Cost::Known { elements, depth } => top.add((elements, depth))?,
+            Cost::Open => {
+                let name = document.get_node(id).and_then(|node| node.attribute("id")).unwrap_or_default();
+                return Err(SvgError::Circular { id: shortened(name) });
+            }
+            Cost::Unknown => {
+                if let Some(cost) = costs.get_mut(id.get_usize()) {
+                    *cost = Cost::Open;
+                }
+                if open.len() >= MAX_DEPTH {
+                    return Err(SvgError::TooDeep { limit: MAX_DEPTH });
+                }
+                open.push(Open { id, next: next(document, id, links), elements: 1, depth: 1 });
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Open {
+    fn add(&mut self, (elements, depth): (usize, usize)) -> Result<(), SvgError> {
+        self.elements = self.elements.saturating_add(elements);
+        self.depth = self.depth.max(depth.saturating_add(1));
+        if self.elements > MAX_ELEMENTS {
+            return Err(SvgError::TooManyElements { limit: MAX_ELEMENTS });
+        }
+        if self.depth > MAX_DEPTH { Err(SvgError::TooDeep { limit: MAX_DEPTH }) } else { Ok(()) }
+    }
+}
+
+/// The elements in an element, and those that it refers to.
+fn next(document: &Document<'_>, id: NodeId, links: &Links<'_>) -> Vec<NodeId> {
+    let Some(node) = document.get_node(id) else { return Vec::new() };
+    let mut next: Vec<NodeId> = node.children().filter(Node::is_element).map(|child| child.id()).collect();
+    for attribute in node.attributes() {
+        // A link to elsewhere in the file draws nothing there.
+        let link = attribute.name() == "href" && node.tag_name().name() != "a";
+        let whole = link.then(|| attribute.value().trim().strip_prefix('#')).flatten();
+        let known = |id: &str| links.ids.get(id).copied();
+        next.extend(targets(attribute.value()).chain(whole).filter_map(known));
+    }
+    for rule in links.rules.iter().filter(|rule| rule.may_select(node)) {
+        next.extend(targets(rule.body).filter_map(|id| links.ids.get(id).copied()));
+    }
+    next
+}
+
+/// Where references lead.
+struct Links<'a> {
+    ids: BTreeMap<&'a str, NodeId>,
+    rules: Vec<Rule<'a>>,
+}
+
+/// A rule of a style sheet that refers to something.
+struct Rule<'a> {
+    selector: &'a str,
+    body: &'a str,
+}
+
+/// The rules that refer to something, of all style sheets.
+fn rules<'a>(document: &'a Document<'_>) -> Vec<Rule<'a>> {
+    let styles = document.descendants().filter(|node| node.tag_name().name() == "style");
+    let texts =
+        styles.flat_map(|style| style.descendants()).filter(Node::is_text).filter_map(|part| part.text());
+    let blocks = texts.flat_map(|text| text.split('}')).filter(|block| block.contains("url("));
+    // What stands before the last brace holds the selector, whatever it is nested in.
+    blocks
+        .map(|body| Rule { selector: body.rsplit_once('{').map_or(body, |(before, _)| before), body })
+        .collect()
+}
+
+impl Rule<'_> {
+    /// Whether the rule may be for this element: when its name, id or a class of it is in the selector, or the selector
+    /// is beyond this reading. Too often is safe: the reference is counted where it is not.
+    fn may_select(&self, node: Node<'_, '_>) -> bool {
+        let beyond = |letter: char| matches!(letter, '*' | '[' | ':' | '\\') || !letter.is_ascii();
+        let mut words =
+            self.selector.split(|letter: char| !(letter.is_ascii_alphanumeric() || "-_".contains(letter)));
+        let classes = node.attribute("class").unwrap_or_default();
+        let named = |word: &str| {
+            word == node.tag_name().name()
+                || node.attribute("id") == Some(word)
+                || classes.split_ascii_whitespace().any(|class| class == word)
+        };
+        self.selector.contains(beyond) || words.any(|word| !word.is_empty() && named(word))
+    }
+}
+
+/// The ids in each `url(#id)` of a text.
+fn targets(text: &str) -> impl Iterator<Item = &str> {
+    text.split("url(").skip(1).filter_map(|rest| {
+        let rest = rest.trim_start_matches([' ', '\t', '\r', '\n', '"', '\'']).strip_prefix('#')?;
+        rest.split([')', '"', '\'', ' ']).next()
+    })
+}

@@ -1,0 +1,162 @@
+//! Strokes that a round pen draws, found again: junctions where they are, straight lines straight through.
+
+use plotter_vector::{Bitmap, Drawing, Pixel, PxPoint, Vectorizer, coverage};
+
+/// Distance of what is found from what was drawn that a raster of one bit explains: half a pixel, and half a pixel of
+/// tolerance.
+const NEAR_PX: f64 = 1.0;
+
+type Stroke = Vec<PxPoint>;
+
+fn segment_distance(at: PxPoint, from: PxPoint, to: PxPoint) -> f64 {
+    let (x, y) = (to.x - from.x, to.y - from.y);
+    let squared = x * x + y * y;
+    let t = if squared > 0.0 { ((at.x - from.x) * x + (at.y - from.y) * y) / squared } else { 0.0 };
+    let t = t.clamp(0.0, 1.0);
+    at.distance(PxPoint::new(from.x + x * t, from.y + y * t))
+}
+
+fn distance<'a>(at: PxPoint, strokes: impl IntoIterator<Item = &'a [PxPoint]>) -> f64 {
+    let each = |stroke: &'a [PxPoint]| {
+        let pairs = stroke.windows(2).map(move |pair| segment_distance(at, pair[0], pair[1]));
+        pairs.chain(stroke.iter().map(move |dot| dot.distance(at))).fold(f64::INFINITY, f64::min)
+    };
+    strokes.into_iter().map(each).fold(f64::INFINITY, f64::min)
+}
+
+/// The ink of a pen `pen_px` wide along strokes, on 200 x 200 px.
+fn ink(strokes: &[Stroke], pen_px: f64) -> Bitmap {
+    let mut ink = Bitmap::new(200, 200).unwrap();
+    for y in 0..200 {
+        for x in 0..200 {
+            let at = Pixel::new(x, y);
+            if distance(at.into(), strokes.iter().map(Vec::as_slice)) <= pen_px / 2.0 {
+                ink.set(at, true);
+            }
+        }
+    }
+    ink
+}
+
+fn places(strokes: &[&[PxPoint]]) -> Vec<PxPoint> {
+    let dense = |pair: &[PxPoint]| -> Vec<PxPoint> {
+        let (a, b) = (pair[0], pair[1]);
+        let count = 2 * (a.distance(b).ceil() as u32).max(1);
+        let at = |step: u32| f64::from(step) / f64::from(count);
+        (0..=count)
+            .map(|step| PxPoint::new(a.x + (b.x - a.x) * at(step), a.y + (b.y - a.y) * at(step)))
+            .collect()
+    };
+    strokes.iter().flat_map(|stroke| stroke.windows(2).flat_map(dense)).collect()
+}
+
+/// The Hausdorff distance between what was drawn and what was found, px.
+fn hausdorff(drawn: &[Stroke], found: &Drawing) -> f64 {
+    let drawn: Vec<&[PxPoint]> = drawn.iter().map(Vec::as_slice).collect();
+    let found: Vec<&[PxPoint]> = found.strokes().collect();
+    let one_way = |from: &[&[PxPoint]], to: &[&[PxPoint]]| {
+        places(from).into_iter().map(|at| distance(at, to.iter().copied())).fold(0.0, f64::max)
+    };
+    one_way(&drawn, &found).max(one_way(&found, &drawn))
+}
+
+/// A line of `length_px` either way from the picture's middle, at an angle in degrees.
+fn through(angle: f64, length_px: f64) -> Stroke {
+    vec![ray(angle + 180.0, length_px)[1], ray(angle, length_px)[1]]
+}
+
+fn ray(angle: f64, length_px: f64) -> Stroke {
+    let (sin, cos) = libm::sincos(angle.to_radians());
+    let middle = PxPoint::new(100.3, 99.7);
+    vec![middle, PxPoint::new(middle.x + length_px * cos, middle.y + length_px * sin)]
+}
+
+fn traced(strokes: &[Stroke], pen_px: f64) -> Drawing {
+    Vectorizer::default().trace(&ink(strokes, pen_px)).unwrap().drawing
+}
+
+#[test]
+fn two_lines_that_cross_go_straight_through() {
+    for pen_px in [3.0, 5.0, 8.0] {
+        for (first, between) in [(0.0, 90.0), (10.0, 90.0), (33.0, 60.0), (71.0, 45.0), (120.0, 75.0)] {
+            let cross = [through(first, 80.0), through(first + between, 80.0)];
+            let found = traced(&cross, pen_px);
+            let off_px = hausdorff(&cross, &found);
+            assert_eq!(found.strokes().len(), 2, "{pen_px} px, {first} and {between} degrees");
+            assert!(off_px <= NEAR_PX, "{pen_px} px, {first} and {between} degrees: {off_px} px");
+        }
+    }
+}
+
+#[test]
+fn lines_that_cross_at_an_acute_angle_are_two() {
+    for (first, between) in [(5.0, 12.0), (40.0, 20.0), (95.0, 25.0), (150.0, 16.0)] {
+        let cross = [through(first, 90.0), through(first + between, 90.0)];
+        let found = traced(&cross, 5.0);
+        let off_px = hausdorff(&cross, &found);
+        assert_eq!(found.strokes().len(), 2, "{first} and {between} degrees");
+        assert!(off_px <= 1.5 * NEAR_PX, "{first} and {between} degrees: {off_px} px");
+    }
+}
+
+#[test]
+fn a_branch_meets_the_line_where_it_leaves_it() {
+    for angle in [0.0, 25.0, 60.0, 90.0] {
+        let tee = [through(angle, 80.0), ray(angle + 90.0, 70.0)];
+        let off_px = hausdorff(&tee, &traced(&tee, 4.0));
+        assert!(off_px <= NEAR_PX, "T at {angle} degrees: {off_px} px");
+        let star = [ray(angle, 80.0), ray(angle + 120.0, 80.0), ray(angle + 240.0, 80.0)];
+        let off_px = hausdorff(&star, &traced(&star, 4.0));
+        assert!(off_px <= NEAR_PX, "Y at {angle} degrees: {off_px} px");
+    }
+}
+
+#[test]
+fn a_corner_is_sharp_and_one_vertex() {
+    for (angle, turn) in [(0.0, 90.0), (20.0, 90.0), (47.0, 60.0), (80.0, 120.0)] {
+        let corner: Stroke =
+            ray(angle, 70.0).into_iter().rev().chain(ray(angle + turn, 70.0).into_iter().skip(1)).collect();
+        let found = traced(std::slice::from_ref(&corner), 5.0);
+        let off_px = hausdorff(std::slice::from_ref(&corner), &found);
+        assert_eq!((found.strokes().len(), found.vertices()), (1, 3), "{angle} and {turn} degrees");
+        assert!(off_px <= NEAR_PX, "{angle} and {turn} degrees: {off_px} px");
+    }
+}
+
+#[test]
+fn a_circle_closes_and_keeps_its_radius() {
+    for radius_px in [8.3, 20.0, 60.4, 90.0] {
+        let at = |step: u32| {
+            let (sin, cos) = libm::sincos(f64::from(step) / 400.0 * core::f64::consts::TAU);
+            PxPoint::new(100.3 + radius_px * cos, 99.7 + radius_px * sin)
+        };
+        let circle: Vec<Stroke> = vec![(0..=400).map(at).collect()];
+        let found = traced(&circle, 3.0);
+        assert_eq!(found.strokes().len(), 1);
+        assert_eq!(found.stroke(0).first(), found.stroke(0).last());
+        let off_px = hausdorff(&circle, &found);
+        assert!(off_px <= 0.75, "radius {radius_px} px: {off_px} px");
+    }
+}
+
+#[test]
+fn a_pen_of_the_lines_width_covers_all_of_the_ink() {
+    let drawn = [through(12.0, 80.0), through(97.0, 80.0)];
+    let ink = ink(&drawn, 5.0);
+    assert!(coverage(&ink, &traced(&drawn, 5.0)).max_px <= NEAR_PX);
+}
+
+#[test]
+fn dots_stay_dots() {
+    let dots: Vec<Stroke> =
+        [(20.5, 20.5), (60.5, 20.5), (100.5, 60.5)].map(|(x, y)| vec![PxPoint::new(x, y)]).to_vec();
+    let line = vec![vec![PxPoint::new(10.5, 150.5), PxPoint::new(190.5, 150.5)]];
+    let all: Vec<Stroke> = dots.iter().cloned().chain(line).collect();
+    let found = traced(&all, 4.0);
+    for dot in dots {
+        assert!(
+            found.strokes().any(|stroke| stroke.len() == 1 && stroke[0].distance(dot[0]) < 0.75),
+            "{dot:?}"
+        );
+    }
+}

@@ -1,0 +1,85 @@
+//! Laws of sharing ink out among pens, on any picture.
+#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
+
+use plotter_vector::{Bitmap, Colour, Layers, Palette, PalettePen, Pens, Pixel, Rgb};
+use proptest::prelude::*;
+
+/// Few colours, as on a drawing, or any, as in noise.
+fn pictures() -> impl Strategy<Value = Colour> {
+    let few = prop::collection::vec(any::<[u8; 3]>(), 1..6);
+    let colour = prop_oneof![
+        few.prop_flat_map(|few| (Just(few), 1_u32..70, 1_u32..12)).prop_flat_map(|(few, width, height)| {
+            let pixels = prop::collection::vec(prop::sample::select(few), (width * height) as usize);
+            (Just(width), pixels)
+        }),
+        (1_u32..70, 1_u32..12).prop_flat_map(|(width, height)| {
+            (Just(width), prop::collection::vec(any::<[u8; 3]>(), (width * height) as usize))
+        }),
+    ];
+    colour.prop_map(|(width, pixels)| {
+        let height = u32::try_from(pixels.len()).unwrap() / width;
+        Colour::new(width, height, pixels.as_flattened().to_vec()).unwrap()
+    })
+}
+
+fn pens() -> impl Strategy<Value = Pens> {
+    let palette = prop::collection::hash_set(any::<[u8; 3]>(), 1..=16).prop_map(|colours| {
+        let mut colours: Vec<_> = colours.into_iter().collect();
+        colours.sort_unstable();
+        let pen = |(number, colour)| PalettePen {
+            number,
+            name: String::new(),
+            colour: Rgb(colour),
+            width_mm: None,
+        };
+        Pens::Given(Palette::new((1..).zip(colours).map(pen).collect()).unwrap())
+    });
+    prop_oneof![Just(Pens::Found), (1_usize..=16).prop_map(Pens::Count), palette]
+}
+
+fn inks(layers: &Layers) -> Vec<&Bitmap> {
+    layers.iter().map(|(_, ink)| ink).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn every_ink_pixel_is_in_exactly_one_pen(picture in pictures(), pens in pens()) {
+        let layers = pens.separate(&picture).unwrap();
+        prop_assert!(!inks(&layers).is_empty());
+        for y in 0..picture.height() {
+            for x in 0..picture.width() {
+                let at = Pixel::new(x, y);
+                prop_assert!(inks(&layers).iter().filter(|ink| ink.get(at)).count() <= 1, "{at:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn bridging_adds_ink_of_other_pens_only(picture in pictures(), pens in pens()) {
+        let layers = pens.separate(&picture).unwrap();
+        for (index, own) in inks(&layers).into_iter().enumerate() {
+            let bridged = layers.bridged(index).unwrap();
+            prop_assert!(own.ink().all(|at| bridged.get(at)));
+            let others = inks(&layers);
+            prop_assert!(bridged.ink().all(|at| others.iter().any(|ink| ink.get(at))));
+            let coverage = layers.coverage(index, &bridged, &picture).unwrap();
+            prop_assert_eq!(coverage.pixels().len(), picture.pixels().len());
+        }
+    }
+
+    #[test]
+    fn a_mirrored_picture_gives_the_mirrored_layers(picture in pictures(), pens in pens()) {
+        let mirrored: Vec<[u8; 3]> = picture.rows().flat_map(|row| row.iter().rev().copied()).collect();
+        let mirrored =
+            Colour::new(picture.width(), picture.height(), mirrored.as_flattened().to_vec()).unwrap();
+        let (one, other) = (pens.separate(&picture).unwrap(), pens.separate(&mirrored).unwrap());
+        prop_assert_eq!(one.palette(), other.palette());
+        for (ink, back) in inks(&one).into_iter().zip(inks(&other)) {
+            let at = |at: Pixel| Pixel::new(picture.width() - 1 - at.x, at.y);
+            prop_assert_eq!(ink.count(), back.count());
+            prop_assert!(ink.ink().all(|pixel| back.get(at(pixel))));
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Sheets by rows: the same strokes as of the whole picture, whatever the bands and the threads.
+#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "places on pictures of 900 px, and levels"
+)]
+
+use plotter_vector::{
+    AreaStyle, Areas, Bitmap, BitmapRows, Bounded, Depth, Drawing, Gray, GrayRows, Hatch, Mode, Pixel,
+    Progress, RowSource, Vectorizer,
+};
+use proptest::prelude::*;
+
+const BANDS: [u32; 4] = [16, 64, 200, u32::MAX];
+
+/// A stroke of a pen: from, to, px.
+type Line = ((i32, i32), (i32, i32));
+
+/// Lines and discs (lines of no length drawn by a wider pen) on a sheet of paper, as levels.
+fn drawn(width: u32, height: u32, pen_px: f64, lines: &[Line]) -> Gray {
+    let mut levels = vec![255_u8; (width * height) as usize];
+    for &((x0, y0), (x1, y1)) in lines {
+        let half = if (x0, y0) == (x1, y1) { 8.0 * pen_px } else { pen_px / 2.0 };
+        let (x0, y0, x1, y1) = (f64::from(x0), f64::from(y0), f64::from(x1), f64::from(y1));
+        let (dx, dy) = (x1 - x0, y1 - y0);
+        let reach = half + 2.0;
+        let rows = (y0.min(y1) - reach).max(0.0) as u32..((y0.max(y1) + reach).max(0.0) as u32).min(height);
+        for y in rows {
+            for x in (x0.min(x1) - reach).max(0.0) as u32..((x0.max(x1) + reach).max(0.0) as u32).min(width) {
+                let (px, py) = (f64::from(x) + 0.5 - x0, f64::from(y) + 0.5 - y0);
+                let t = ((px * dx + py * dy) / (dx * dx + dy * dy).max(1e-9)).clamp(0.0, 1.0);
+                let cover = (half + 0.5 - libm::hypot(px - t * dx, py - t * dy)).clamp(0.0, 1.0);
+                let level = &mut levels[(y * width + x) as usize];
+                *level = (*level).min(255 - (250.0 * cover) as u8);
+            }
+        }
+    }
+    Gray::new(width, height, levels).unwrap()
+}
+
+fn ink_of(gray: &Gray) -> Bitmap {
+    let mut ink = Bitmap::new(gray.width(), gray.height()).unwrap();
+    for (y, row) in (0..).zip(gray.rows()) {
+        (0..).zip(row).for_each(|(x, level)| ink.set(Pixel::new(x, y), *level < 128));
+    }
+    ink
+}
+
+fn by_rows(vectorizer: Vectorizer, source: &mut impl RowSource) -> Drawing {
+    vectorizer.vectorize_rows(source, &mut Progress::silent()).unwrap().drawing
+}
+
+fn lines(width: i32, height: i32, count: usize) -> impl Strategy<Value = Vec<Line>> {
+    let place = move || (-10..width + 10, -10..height + 10);
+    prop::collection::vec(
+        prop_oneof![9 => (place(), place()), 1 => place().prop_map(|place| (place, place))],
+        1..count,
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: std::env::var("CASES").map_or(5, |c| c.parse().unwrap()), max_shrink_iters: 60, ..ProptestConfig::default() })]
+
+    #[test]
+    fn bands_do_not_show(pen_px in 2.0..6.0_f64, lines in lines(200, 900, 10), mode in 0..3_usize, hatched: bool) {
+        let gray = drawn(200, 900, pen_px, &lines);
+        let ink = ink_of(&gray);
+        let mode = [Mode::Centreline, Mode::Outline, Mode::Mixed][mode];
+        let style = if hatched { AreaStyle::OutlineAndHatch(Hatch::default()) } else { AreaStyle::Outline };
+        let areas = Areas { style, pen_px: 2.0 };
+        let whole = Vectorizer { mode, areas, band_rows: u32::MAX, ..Vectorizer::default() };
+        let expected = whole.trace(&ink).unwrap().drawing;
+        let expected_grey = whole.vectorize(&gray).unwrap();
+        for band_rows in BANDS {
+            let vectorizer = Vectorizer { band_rows, ..whole };
+            prop_assert!(vectorizer.trace(&ink).unwrap().drawing == expected, "whole, {}", band_rows);
+            prop_assert!(by_rows(vectorizer, &mut BitmapRows::new(&ink)) == expected, "{}", band_rows);
+            let mut rows = GrayRows::new(gray.clone());
+            prop_assert_eq!(rows.depth(), Depth::Grey8);
+            let grey = vectorizer.vectorize_rows(&mut rows, &mut Progress::silent()).unwrap();
+            prop_assert!(grey.drawing == expected_grey.drawing, "{}", band_rows);
+            prop_assert_eq!(grey.split, expected_grey.split);
+        }
+    }
+
+    #[test]
+    fn noise_has_no_bands_either(seed: u64, density in 1..6_u32) {
+        let mut ink = Bitmap::new(100, 260).unwrap();
+        let mut random = seed | 1;
+        for (x, y) in (0..260).flat_map(|y| (0..100).map(move |x| (x, y))) {
+            random ^= random << 13;
+            random ^= random >> 7;
+            random ^= random << 17;
+            if random % 40 < u64::from(density) {
+                for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                    ink.set(Pixel::new(x + dx, y + dy), true);
+                }
+            }
+        }
+        let whole = Vectorizer { band_rows: u32::MAX, ours: Bounded { tolerance_px: 0.7 }, ..Vectorizer::default() };
+        let expected = whole.trace(&ink).unwrap().drawing;
+        for band_rows in BANDS {
+            let vectorizer = Vectorizer { band_rows, ..whole };
+            prop_assert!(by_rows(vectorizer, &mut BitmapRows::new(&ink)) == expected, "{}", band_rows);
+        }
+    }
+}

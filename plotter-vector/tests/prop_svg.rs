@@ -1,0 +1,114 @@
+//! Reading SVG: what is written is read back, and no text brings it down.
+#![cfg(feature = "svg-in")]
+
+use plotter_vector::{
+    Drawing, Palette, PalettePen, PxPoint, Rgb, SvgOptions, SvgPens, read_svg, svg, svg_in_colour,
+};
+use proptest::prelude::*;
+
+/// What reading what was written may be off, px: half of the last decimal, and single precision.
+const ROUND_TRIP_PX: f64 = 0.001;
+
+/// Strokes on a sheet of 4000 x 3000 px; no two neighbouring vertices fall together when they are written.
+fn any_strokes() -> impl Strategy<Value = Vec<(u8, Vec<PxPoint>)>> {
+    let place = (-100.0..4100.0f64, -100.0..3100.0f64).prop_map(|(x, y)| PxPoint::new(x, y));
+    let stroke = prop::collection::vec(place, 1..12).prop_map(|mut stroke| {
+        stroke.dedup_by(|one, other| one.distance(*other) < 0.01);
+        stroke
+    });
+    prop::collection::vec((1..=3u8, stroke), 1..20)
+}
+
+fn drawing(strokes: &[(u8, Vec<PxPoint>)]) -> Drawing {
+    let mut drawing = Drawing::new(4000, 3000);
+    for (pen, stroke) in strokes {
+        drawing.push_with_pen(*pen, stroke.iter().copied());
+    }
+    drawing
+}
+
+/// Whether the strokes are the same ones in the same order.
+fn same(one: &[(u8, Vec<PxPoint>)], other: &Drawing) -> bool {
+    one.len() == other.strokes().len()
+        && one.iter().zip(other.strokes()).all(|((_, one), other)| {
+            one.len() == other.len()
+                && one.iter().zip(other).all(|(one, other)| {
+                    (one.x - other.x).abs() <= ROUND_TRIP_PX && (one.y - other.y).abs() <= ROUND_TRIP_PX
+                })
+        })
+}
+
+/// Mostly small, sometimes anything.
+fn any_number() -> impl Strategy<Value = f32> {
+    prop_oneof![60 => 0.1..20.0f32, 10 => -20.0..20.0f32, 1 => prop::num::f32::ANY]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn what_svg_writes_is_read_back(strokes in any_strokes()) {
+        let mut sorted = strokes.clone();
+        sorted.sort_by_key(|(pen, _)| *pen);
+        let mut text = String::new();
+        svg(&drawing(&strokes), 1.0, &mut text).unwrap();
+        let read = read_svg(text.as_bytes(), &SvgOptions::default()).unwrap();
+        prop_assert_eq!((read.drawing.width_px(), read.drawing.height_px()), (4000, 3000));
+        prop_assert!(same(&sorted, &read.drawing), "{:?}\n{:?}", sorted, read.drawing);
+    }
+
+    #[test]
+    fn what_svg_in_colour_writes_is_read_back_with_its_pens(strokes in any_strokes()) {
+        let pen = |number, colour| PalettePen { number, name: String::new(), colour, width_mm: None };
+        let palette = Palette::new(vec![pen(1, Rgb::BLACK), pen(2, Rgb([208, 24, 24])), pen(3, Rgb([0, 0, 255]))]);
+        let palette = palette.unwrap();
+        let mut sorted = strokes.clone();
+        sorted.sort_by_key(|(pen, _)| *pen);
+        let mut text = String::new();
+        svg_in_colour(&drawing(&strokes), &palette, 1.0, &mut text).unwrap();
+        let read = read_svg(text.as_bytes(), &SvgOptions::default()).unwrap();
+        prop_assert!(same(&sorted, &read.drawing));
+        for (index, (pen, _)) in sorted.iter().enumerate() {
+            let colour = read.pens.iter().find(|found| found.number == read.drawing.pen(index)).map(|pen| pen.colour);
+            prop_assert_eq!(colour, palette.pen(*pen).map(|pen| pen.colour));
+        }
+    }
+
+    #[test]
+    fn bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        let _ = read_svg(&bytes, &SvgOptions::default());
+    }
+
+    #[test]
+    fn attributes_are_read_or_refused(
+        path in "([MLHVCSQTAZmlhvcsqtaz]? ?-?[0-9]{0,9}\\.?[0-9]{0,3}(e[0-9]{1,2})? ?){0,20}",
+        matrix in prop::array::uniform6(any_number()),
+        dashes in prop::collection::vec(any_number(), 0..4),
+        offset in any_number(),
+        sheet in prop::array::uniform4(any_number()),
+    ) {
+        let list = |numbers: &[f32]| numbers.iter().map(f32::to_string).collect::<Vec<_>>().join(" ");
+        let text = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{}\"><g transform=\"matrix({})\"><path d=\"M0 0 {path}\" \
+             stroke=\"#000\" stroke-dasharray=\"{}\" stroke-dashoffset=\"{offset}\"/></g></svg>",
+            list(&sheet), list(&matrix), list(&dashes)
+        );
+        let options = SvgOptions { max_vertices: 10_000, pens: SvgPens::ByLayer, ..SvgOptions::default() };
+        if let Ok(read) = read_svg(text.as_bytes(), &options) {
+            prop_assert!(read.drawing.vertices() <= 10_000);
+            let tall = read.drawing.height_px() > 0;
+            prop_assert!(tall && read.pens.len() <= 1);
+            for at in read.drawing.strokes().flatten() {
+                prop_assert!(at.x.is_finite() && at.y.is_finite());
+            }
+        }
+    }
+
+    #[test]
+    fn a_file_cut_off_anywhere_is_refused(at in 0..190usize) {
+        let mut text = String::new();
+        svg(&drawing(&[(1, vec![PxPoint::new(0.5, 0.5), PxPoint::new(9.5, 0.5)])]), 1.0, &mut text).unwrap();
+        let end = at.min(text.trim_end().len() - 1);
+        prop_assert!(read_svg(&text.as_bytes()[..end], &SvgOptions::default()).is_err());
+    }
+}

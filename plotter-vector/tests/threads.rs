@@ -1,0 +1,37 @@
+//! With the feature `rayon`: the same result with any number of threads.
+#![cfg(feature = "rayon")]
+#![allow(clippy::cast_possible_truncation, reason = "a failure shows, and levels are made to fit")]
+
+use plotter_vector::{Gray, Threshold, ThresholdMethod, despeckle};
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let (width, height) = (700, 1300);
+    // Lines, and noise of all sizes.
+    let level = |i: u32| match (i % width, i / width) {
+        (x, y) if x % 97 < 3 || y % 89 < 3 => 30,
+        (x, y) if (x * 31 + y * 17) % 101 < 2 || (x ^ y) % 61 == 7 => 50,
+        (x, y) => 200 + (x * 13 + y * 7) % 31 - y / 20,
+    };
+    let levels = (0..width * height).map(|i| level(i) as u8).collect();
+    let gray = Gray::new(width, height, levels).unwrap();
+    for method in [ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
+        let threshold = Threshold { method, ..Threshold::default() };
+        let mut results = [1, 2, 3].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let (mut ink, split) = threshold.apply(&gray);
+                let changed = despeckle(&mut ink, 9);
+                (ink, split, changed)
+            })
+        });
+        // And row by row, where there are no threads.
+        let mut survey = plotter_vector::Survey::new(threshold, width, height).unwrap();
+        gray.rows().for_each(|levels| survey.push(levels));
+        let rows = survey.finish().unwrap();
+        assert_eq!(results[0].1.map(|split| split.level), Some(rows.level()));
+        assert!(results[0].2.removed_px > 0);
+        results.rotate_left(1);
+        assert!(results.windows(2).all(|pair| pair[0] == pair[1]));
+    }
+}
