@@ -1,4 +1,5 @@
 //! Strokes that a round pen draws, found again: junctions where they are, straight lines straight through.
+#![allow(clippy::unwrap_used, reason = "a failure shows")]
 
 use plotter_vector::{Bitmap, Drawing, Pixel, PxPoint, Vectorizer, coverage};
 
@@ -41,11 +42,9 @@ fn ink(strokes: &[Stroke], pen_px: f64) -> Bitmap {
 fn places(strokes: &[&[PxPoint]]) -> Vec<PxPoint> {
     let dense = |pair: &[PxPoint]| -> Vec<PxPoint> {
         let (a, b) = (pair[0], pair[1]);
-        let count = 2 * (a.distance(b).ceil() as u32).max(1);
-        let at = |step: u32| f64::from(step) / f64::from(count);
-        (0..=count)
-            .map(|step| PxPoint::new(a.x + (b.x - a.x) * at(step), a.y + (b.y - a.y) * at(step)))
-            .collect()
+        let count = (2.0 * a.distance(b)).ceil().max(1.0);
+        let at = |step: f64| PxPoint::new(a.x + (b.x - a.x) * step / count, a.y + (b.y - a.y) * step / count);
+        (0..1000_u16).map(f64::from).take_while(|step| *step <= count).map(at).collect()
     };
     strokes.iter().flat_map(|stroke| stroke.windows(2).flat_map(dense)).collect()
 }

@@ -154,7 +154,9 @@ proptest! {
         let once = Thinning { method: first, max_passes: ENOUGH_PASSES }.thin(&ink);
         prop_assume!(once.converged);
         let twice = Thinning { method: second, max_passes: ENOUGH_PASSES }.thin(&once.skeleton);
-        prop_assert_eq!((twice.passes, twice.converged), (1, true));
+        // Once for each kind of pass.
+        let passes = if second == ThinningMethod::GuoHall { 2 } else { 1 };
+        prop_assert_eq!((twice.passes, twice.converged), (passes, true));
         prop_assert_eq!(twice.skeleton, once.skeleton);
     }
 
