@@ -28,8 +28,8 @@ pub(crate) struct Arm {
 
 impl Arm {
     /// The arm of an edge whose sites are given from the junction outwards; `reserved` of them at the far end
-    /// belong to the next junction.
-    pub(crate) fn of(sites: &[Site], reserved: usize) -> Option<Self> {
+    /// belong to the next junction. Of its course at most `longest` sites are looked at.
+    pub(crate) fn of(sites: &[Site], reserved: usize, longest: usize) -> Option<Self> {
         let width_px = typical_width_px(sites);
         let limit_px = width_px + (0.15 * width_px).max(0.75);
         // The width of a slanted line goes up and down by a pixel's part from site to site.
@@ -38,7 +38,7 @@ impl Arm {
         // Three calm sites in a row end the disturbance; a line one pixel wide has none.
         let calm_from = sites.windows(3).position(is_calm).unwrap_or(sites.len());
         let margin = if width_px > 1.5 { to_whole(0.25 * width_px) } else { 0 };
-        let wanted = to_whole(2.5 * width_px + 8.0).clamp(12, 48);
+        let wanted = to_whole(2.5 * width_px + 8.0).clamp(12, 48).min(longest);
         // A short line has no room for a margin.
         for skip in [calm_from + margin, calm_from] {
             if skip + MIN_SUPPORT > free {
@@ -102,6 +102,10 @@ impl Arm {
         curved * SITE_ERROR_PX * libm::sqrt((1.0 + 12.0 * beyond * beyond) / self.support_px.max(1.0)) + 0.05
     }
 }
+
+/// Sites that show the course of a line that is straight for long, and of one that soon bends.
+pub(crate) const LONG: usize = 48;
+pub(crate) const SHORT: usize = 6;
 
 /// Fewer sites are a short line.
 const SHORT_SITES: usize = 12;
@@ -210,7 +214,7 @@ mod tests {
     #[test]
     fn a_straight_arm_is_continued_straight_through_its_disturbance() {
         let line = sites(|t| PxPoint::new(3.0 + t, if t < 5.0 { 9.0 } else { 0.5 * t }), &[9.0; 5]);
-        let arm = Arm::of(&line, 0).unwrap();
+        let arm = Arm::of(&line, 0, LONG).unwrap();
         assert_eq!(arm.skip, 7);
         let back = arm.at(arm.along(PxPoint::new(3.0, 0.0)));
         assert!(back.distance(PxPoint::new(3.0, 0.0)) < 1e-9, "{back:?}");
@@ -223,7 +227,7 @@ mod tests {
             let angle = t / radius;
             PxPoint::new(radius * libm::cos(angle), radius * libm::sin(angle))
         };
-        let arm = Arm::of(&sites(circle, &[]), 0).unwrap();
+        let arm = Arm::of(&sites(circle, &[]), 0, LONG).unwrap();
         assert!(arm.bend_per_px > 0.0);
         let before = arm.at(-6.0);
         assert!((libm::hypot(before.x, before.y) - radius).abs() < 0.15, "{before:?}");
@@ -231,7 +235,7 @@ mod tests {
 
     #[test]
     fn an_arm_without_calm_sites_is_a_guess() {
-        let arm = Arm::of(&sites(|t| PxPoint::new(t, 0.0), &[])[..2], 0).unwrap();
+        let arm = Arm::of(&sites(|t| PxPoint::new(t, 0.0), &[])[..2], 0, LONG).unwrap();
         assert_eq!(arm.support_px, 0.0);
         assert_eq!(arm.error_px(0.0), f64::INFINITY);
     }

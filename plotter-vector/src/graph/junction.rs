@@ -4,10 +4,11 @@
 //! one junction. Two lines that cross at an acute angle `a` have two forks far apart, with an edge between them
 //! along which both lines run together: it is wider than a line, and the arms continue each other across it.
 
-use super::arm::Arm;
+use super::arm::{Arm, LONG, SHORT};
 use super::corner::TURN_COS;
 use super::meeting::{Heart, partners};
 use super::site::{Scan, Site};
+use super::trial::{GOOD, Trial, WORTH};
 use super::{End, Graph};
 use crate::{Pixel, PxPoint};
 
@@ -27,6 +28,15 @@ pub(crate) struct Connection {
     pub(crate) points: Vec<PxPoint>,
     /// Whether the stroke has a corner there.
     pub(crate) corner: bool,
+}
+
+/// How one line goes on in a junction: to another arm, or to where it ends.
+#[derive(Clone, Debug)]
+pub(super) struct Way {
+    pub(super) one: ArmOf,
+    pub(super) other: Option<ArmOf>,
+    /// Places between the undisturbed parts of both arms, or from there to the end.
+    pub(super) points: Vec<PxPoint>,
 }
 
 /// What was found out about all edges.
@@ -74,6 +84,16 @@ impl Junctions {
         let (a, b) = (one.arm.direction, other.arm.direction);
         let corner = points.len() == 1 && -(a.0 * b.0 + a.1 * b.1) < TURN_COS;
         self.connections.push(Connection { owner, from: one.end, to: Some(other.end), points, corner });
+    }
+
+    /// All lines of a junction go on.
+    fn take(&mut self, owner: Pixel, ways: Vec<Way>) {
+        for Way { one, other, points } in ways {
+            match other {
+                Some(other) => self.pair(owner, &one, &other, points),
+                None => self.end(owner, &one, points),
+            }
+        }
     }
 
     /// Takes all junctions and line ends of a graph apart; `gone` are its spurs, `sites` those of every edge.
@@ -178,7 +198,7 @@ impl Lines<'_> {
             if ends.next().is_some() || first.edge == second.edge {
                 return None;
             }
-            Some([self.arm(first)?, self.arm(second)?])
+            Some([self.arm(first, LONG)?, self.arm(second, LONG)?])
         };
         let sites = self.sites.get(edge)?;
         #[expect(clippy::cast_precision_loss, reason = "a count of pixels, far below 2^53")]
@@ -211,14 +231,14 @@ impl Lines<'_> {
         }
     }
 
-    fn arm(&self, end: End) -> Option<Arm> {
+    fn arm(&self, end: End, longest: usize) -> Option<Arm> {
         let sites = self.sites_from(end);
         // Half of a line between two junctions is for each of them.
         let edge = self.graph.edges.get(end.edge)?;
         let (first, last) = edge.nodes?;
         let far = if end.at_last { first } else { last };
         let reserved = if self.ends(far).count() > 1 { 2 } else { 0 };
-        Arm::of(&sites, reserved)
+        Arm::of(&sites, reserved, longest)
     }
 
     /// The tails of all lines at the nodes of one junction, dot or line end.
@@ -228,7 +248,7 @@ impl Lines<'_> {
             group.iter().flat_map(|node| self.ends(*node)).filter(|end| !is_inner(end.edge)).collect();
         let arms: Vec<ArmOf> = ends
             .iter()
-            .filter_map(|end| Some(ArmOf { end: *end, arm: self.arm(*end)?, tip: self.tip(*end) }))
+            .filter_map(|end| Some(ArmOf { end: *end, arm: self.arm(*end, LONG)?, tip: self.tip(*end) }))
             .collect();
         if arms.is_empty() {
             return;
@@ -246,9 +266,89 @@ impl Lines<'_> {
             let radius_px = group.iter().filter_map(|node| radii.get(*node)).fold(0.0_f64, |a, b| a.max(*b));
             let heart = Heart { owner, centre, radius_px, scan: self.scan };
             if !heart.resolve_point(&arms, found) {
-                heart.resolve(&arms, found);
+                let ways = self.best(group, &heart, &arms, found);
+                found.take(owner, ways);
             }
         }
+    }
+
+    /// Of several ways to connect the arms of a junction the one that, drawn by pens of their widths, gives the ink.
+    fn best(&self, group: &[usize], heart: &Heart<'_>, arms: &[ArmOf], found: &Junctions) -> Vec<Way> {
+        let straight = heart.plan(arms, true);
+        /// More arms meet in noise only.
+        const MOST_ARMS: usize = 8;
+        if arms.len() > MOST_ARMS {
+            return straight;
+        }
+        let sites: Vec<Vec<Site>> = arms.iter().map(|one| self.sites_from(one.end)).collect();
+        let Some(trial) = Trial::new(self.scan, heart.centre, arms, &sites) else { return straight };
+        let mut best = (trial.cost(&straight), straight);
+        if best.0 <= GOOD {
+            return best.1;
+        }
+        let near: Option<Vec<ArmOf>> =
+            arms.iter().map(|one| Some(ArmOf { arm: self.arm(one.end, SHORT)?, ..*one })).collect();
+        let others = [
+            Some(heart.plan(arms, false)),
+            near.as_ref().map(|near| heart.plan(near, true)),
+            near.as_ref().map(|near| heart.plan(near, false)),
+            self.along_skeleton(group, arms, heart, found),
+        ];
+        for ways in others.into_iter().flatten() {
+            let cost = trial.cost(&ways);
+            if cost < WORTH * best.0 {
+                best = (cost, ways);
+            }
+        }
+        for index in 0..best.1.len() {
+            let mut ways = best.1.clone();
+            let Some(Way { one, other: None, points }) = ways.get_mut(index) else { continue };
+            // What sticks out of the other side so little that thinning takes it for roughness.
+            let end = self.line_end(&one.arm);
+            if points.last().is_some_and(|last| last.distance(end) > 1.5 * heart.radius_px + 3.0) {
+                continue;
+            }
+            points.push(end);
+            let cost = trial.cost(&ways);
+            if cost < WORTH * best.0 {
+                best = (cost, ways);
+            }
+        }
+        best.1
+    }
+
+    /// The arms of a junction connected as the skeleton runs.
+    fn along_skeleton(
+        &self,
+        group: &[usize],
+        arms: &[ArmOf],
+        heart: &Heart<'_>,
+        found: &Junctions,
+    ) -> Option<Vec<Way>> {
+        // From the undisturbed part of an arm to its node.
+        let inwards = |one: &ArmOf| -> Vec<PxPoint> {
+            let pixels = self.graph.edges.get(one.end.edge).map_or(&[][..], |edge| &edge.pixels);
+            let at = |index: usize| {
+                let index = if one.end.at_last { pixels.len().checked_sub(index + 1)? } else { index };
+                pixels.get(index).map(|pixel| PxPoint::from(*pixel))
+            };
+            (0..one.arm.skip).rev().filter_map(at).collect()
+        };
+        let plan = heart.plan(arms, true);
+        let paired = plan.iter().find_map(|way| way.other.is_some().then_some(way.one.end));
+        let hub = paired.or(arms.first().map(|one| one.end))?;
+        let mut ways = Vec::new();
+        for Way { one, other, .. } in plan {
+            let mut points = inwards(&one);
+            let (between, _) = self.way_between(group, one.end, other.map_or(hub, |other| other.end), found)?;
+            points.extend(between);
+            if let Some(other) = other {
+                points.extend(inwards(&other).into_iter().rev());
+            }
+            points.dedup();
+            ways.push(Way { one, other, points });
+        }
+        Some(ways)
     }
 
     /// Where the pen stopped that drew the short line which leaves a junction here and ends free.

@@ -5,7 +5,7 @@
 //! line opposite each other, a little apart) the lines that go through are bridged and each branch ends on one.
 
 use super::arm::Arm;
-use super::junction::{ArmOf, Junctions, bend};
+use super::junction::{ArmOf, Junctions, Way, bend};
 use super::site::Scan;
 use crate::{Pixel, PxPoint};
 
@@ -57,14 +57,17 @@ impl Heart<'_> {
         true
     }
 
-    /// The connections of lines that meet.
-    pub(super) fn resolve(&self, arms: &[ArmOf], found: &mut Junctions) {
+    /// How lines that meet go on, from the course of each where it is undisturbed: through one point if they agree on
+    /// it and `in_a_point`, else each pair on a smooth curve.
+    pub(super) fn plan(&self, arms: &[ArmOf], in_a_point: bool) -> Vec<Way> {
+        let mut ways = Vec::new();
         let meeting = meeting_point(arms, self.centre);
         let along = |one: &ArmOf| one.arm.along(meeting).min(0.0);
         let tolerance_px =
             |one: &ArmOf| (0.12 * one.arm.width_px).max(0.8) + 2.0 * one.arm.error_px(along(one));
         let near = self.pen_was_at(meeting, arms);
-        let concurrent = near
+        let concurrent = in_a_point
+            && near
             && arms.iter().all(|one| {
                 let off_px = one.arm.at(one.arm.along(meeting)).distance(meeting);
                 one.arm.support_px <= 0.0 || off_px <= tolerance_px(one)
@@ -86,7 +89,7 @@ impl Heart<'_> {
                 vec![self.centre]
             };
             bridges.push(points.clone());
-            found.pair(self.owner, one, other, points);
+            ways.push(Way { one: *one, other: Some(*other), points });
             for index in [first, second] {
                 if let Some(paired) = paired.get_mut(index) {
                     *paired = true;
@@ -102,8 +105,9 @@ impl Heart<'_> {
             };
             let place =
                 if concurrent { meeting } else { onto().unwrap_or(if near { meeting } else { self.centre }) };
-            found.end(self.owner, one, vec![place]);
+            ways.push(Way { one: *one, other: None, points: vec![place] });
         }
+        ways
     }
 
     /// Whether a meeting point far from the junction's middle has ink around it as a pen leaves it.

@@ -25,6 +25,7 @@ mod site;
 mod smooth;
 mod spur;
 mod stub;
+mod trial;
 
 use build::{Edge, End, Graph};
 pub(crate) use centreline::Centreline;

@@ -206,7 +206,8 @@ impl Scan<'_> {
         inside && self.ink.get(Pixel::new(x as u32, row as u32))
     }
 
-    fn is_ink_at(&self, at: Pixel) -> bool {
+    /// Whether a pixel is ink.
+    pub(crate) fn is_ink_at(&self, at: Pixel) -> bool {
         at.y.checked_sub(self.first_row).is_some_and(|row| self.ink.get(Pixel::new(at.x, row)))
     }
 }
