@@ -314,7 +314,7 @@ impl Lines<'_> {
                 best = (cost, ways);
             }
         }
-        best.1
+        trial.settle(best.1, best.0)
     }
 
     /// The arms of a junction connected as the skeleton runs.
@@ -340,7 +340,8 @@ impl Lines<'_> {
         let mut ways = Vec::new();
         for Way { one, other, .. } in plan {
             let mut points = inwards(&one);
-            let (between, _) = self.way_between(group, one.end, other.map_or(hub, |other| other.end), found)?;
+            let (between, _) =
+                self.way_between(group, one.end, other.map_or(hub, |other| other.end), found)?;
             points.extend(between);
             if let Some(other) = other {
                 points.extend(inwards(&other).into_iter().rev());

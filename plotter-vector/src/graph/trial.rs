@@ -58,7 +58,16 @@ impl<'a> Trial<'a> {
         };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 98")]
         let side = libm::ceil(2.0 * radius_px + 1.0) as u32;
-        Some(Self { scan, arms, sites, centre, radius_px, left: corner(centre.x), top: corner(centre.y), side })
+        Some(Self {
+            scan,
+            arms,
+            sites,
+            centre,
+            radius_px,
+            left: corner(centre.x),
+            top: corner(centre.y),
+            side,
+        })
     }
 
     /// How much the ink around the junction differs from what pens draw that go these ways: the squared distances of
@@ -99,16 +108,60 @@ impl<'a> Trial<'a> {
         cost
     }
 
+    /// The ways with their few places moved to where they cost least: a pattern search, from `cost` down.
+    pub(super) fn settle(&self, mut ways: Vec<Way>, mut cost: f64) -> Vec<Way> {
+        /// Ways with more places are curves.
+        const MOST_PLACES: usize = 2;
+        const MOST_LOOKS: usize = 96;
+        const STEPS_PX: [f64; 3] = [0.8, 0.4, 0.2];
+        const AROUND: [(f64, f64); 4] = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
+        /// Of thinner lines the edges are too near each other to tell where within them the middle is.
+        const WIDE_PX: f64 = 4.0;
+        if self.arms.iter().any(|one| one.arm.width_px < WIDE_PX) {
+            return ways;
+        }
+        let mut looks = 0;
+        for step_px in STEPS_PX {
+            for (way, place) in places(&ways, MOST_PLACES) {
+                let mut direction = 0;
+                // Round by round until no direction is better.
+                while direction < AROUND.len() && cost > GOOD && looks < MOST_LOOKS {
+                    let Some(at) = ways.get(way).and_then(|way| way.points.get(place)).copied() else {
+                        break;
+                    };
+                    let step = AROUND.get(direction).copied().unwrap_or_default();
+                    let moved = at.along(step, step_px);
+                    let mut other = ways.clone();
+                    // Ways that share the place move with it.
+                    for point in other
+                        .iter_mut()
+                        .filter(|way| way.points.len() <= MOST_PLACES)
+                        .flat_map(|way| &mut way.points)
+                    {
+                        if *point == at {
+                            *point = moved;
+                        }
+                    }
+                    looks += 1;
+                    let less = self.cost(&other);
+                    if less < 0.8 * cost {
+                        (ways, cost, direction) = (other, less, 0);
+                    } else {
+                        direction += 1;
+                    }
+                }
+            }
+        }
+        ways
+    }
+
     /// The places of an arm's undisturbed part that lie around the junction, from the inside out.
     fn course(&self, one: &ArmOf) -> Vec<PxPoint> {
-        let sites = self.arms.iter().position(|arm| arm.end == one.end).and_then(|index| self.sites.get(index));
+        let sites =
+            self.arms.iter().position(|arm| arm.end == one.end).and_then(|index| self.sites.get(index));
         let sites = sites.and_then(|sites| sites.get(one.arm.skip..)).unwrap_or(&[]);
         let reach_px = self.radius_px + 0.5 * one.arm.width_px + 1.0;
-        sites
-            .iter()
-            .map(|site| site.centre)
-            .take_while(|at| at.distance(self.centre) <= reach_px)
-            .collect()
+        sites.iter().map(|site| site.centre).take_while(|at| at.distance(self.centre) <= reach_px).collect()
     }
 
     /// Notes how far each pixel lies outside of a pen's edge on its way.
@@ -148,4 +201,19 @@ impl<'a> Trial<'a> {
             }
         }
     }
+}
+
+/// The places of ways that have few of them, each once: indices of way and place.
+fn places(ways: &[Way], most: usize) -> Vec<(usize, usize)> {
+    let mut seen: Vec<PxPoint> = Vec::new();
+    let mut found = Vec::new();
+    for (index, way) in ways.iter().enumerate().filter(|(_, way)| way.points.len() <= most) {
+        for (place, at) in way.points.iter().enumerate() {
+            if !seen.contains(at) {
+                seen.push(*at);
+                found.push((index, place));
+            }
+        }
+    }
+    found
 }
