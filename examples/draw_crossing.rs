@@ -9,6 +9,7 @@
 //! cargo run --release --example draw_crossing -- FILE.png
 //! ```
 
+use clap::Parser;
 use plotter_examples::{print, run};
 use plotter_vector::{Bitmap, Gray, Pixel, PxPoint, Threshold, Vectorizer};
 use std::path::{Path, PathBuf};
@@ -28,13 +29,22 @@ const WHITE: [u8; 3] = [255, 255, 255];
 const OURS: [u8; 3] = [20, 90, 200];
 const THINNED: [u8; 3] = [205, 30, 30];
 
-fn main() -> ExitCode {
-    run("draw_crossing", draw)
+/// Draws a crossing of two pen lines as scanned, as thinning alone leaves it, and as ours draws it.
+#[derive(Debug, Parser)]
+#[command(after_help = "Example:\n  draw_crossing crossing.png")]
+struct Arguments {
+    /// PNG to write [default: docs/pictures/crossing.png of the project]
+    file: Option<PathBuf>,
 }
 
-fn draw() -> Result<(), String> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/pictures/crossing.png");
-    let file = std::env::args_os().nth(1).map_or(beside, PathBuf::from);
+fn main() -> ExitCode {
+    let Arguments { file } = Arguments::parse();
+    run("draw_crossing", || draw(file))
+}
+
+fn draw(file: Option<PathBuf>) -> Result<(), String> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/pictures/crossing.png");
+    let file = file.unwrap_or_else(beside);
     let scan = scan()?;
     let thinned = thinned(&scan)?;
     let ours = ours(&scan)?;
@@ -231,6 +241,13 @@ mod tests {
     fn thinning_alone_bends_the_lines_at_their_crossing() {
         // Half the pen is 3.5 px; the shared stretch lies off both lines.
         assert!(farthest(&thinned(&scan().unwrap()).unwrap()) > 1.0);
+    }
+
+    #[test]
+    fn ours_is_two_lines_that_stay_on_theirs() {
+        let ours = ours(&scan().unwrap()).unwrap();
+        assert_eq!(ours.len(), 2);
+        assert!(farthest(&ours) < 0.6, "{}", farthest(&ours));
     }
 
     #[test]

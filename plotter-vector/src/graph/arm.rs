@@ -6,6 +6,9 @@ use crate::PxPoint;
 /// Fewest sites that give a direction.
 const MIN_SUPPORT: usize = 3;
 
+/// Fewest sites that are looked at for a direction, calm or not.
+const MIN_CALM: usize = 8;
+
 /// Typical error of a single site, px: the edges of a line are known to half a pixel either way.
 const SITE_ERROR_PX: f64 = 0.25;
 
@@ -37,6 +40,11 @@ impl Arm {
         let free = sites.len().saturating_sub(reserved).max(sites.len().div_ceil(2));
         // Three calm sites in a row end the disturbance; a line one pixel wide has none.
         let calm_from = sites.windows(3).position(is_calm).unwrap_or(sites.len());
+        // Up to where the next junction begins; a line that leads to none may taper.
+        let mut further = sites.windows(3).skip(calm_from);
+        let calm =
+            further.position(|three| reserved > 0 && !is_calm(three)).map_or(sites.len(), |calm| calm + 1);
+        let free = free.min(calm_from + calm.max(MIN_CALM));
         let margin = if width_px > 1.5 { to_whole(0.25 * width_px) } else { 0 };
         let wanted = to_whole(2.5 * width_px + 8.0).clamp(12, 48).min(longest);
         // A short line has no room for a margin.
