@@ -225,6 +225,11 @@ impl Bitmap {
         Self { width, height, words_per_row, words }
     }
 
+    /// The words of all rows.
+    pub(crate) fn into_words(self) -> Vec<u64> {
+        self.words
+    }
+
     /// A copy of some rows.
     pub(crate) fn band(&self, rows: core::ops::Range<u32>) -> Self {
         let rows = rows.start.min(self.height)..rows.end.min(self.height);
@@ -246,6 +251,12 @@ impl Bitmap {
     /// Number of blocks of two by two pixels of ink, overlapping ones too: none on lines one pixel wide.
     pub(crate) fn blocks(&self) -> u64 {
         (1..self.height).map(|y| blocks_between(self.row(y - 1), self.row(y))).sum()
+    }
+
+    /// The leftmost ink pixel in a word of a row.
+    pub(crate) fn first_of_word(&self, y: u32, word: usize) -> Option<Pixel> {
+        let bits = *self.row(y).get(word).filter(|bits| **bits != 0)?;
+        Some(Pixel::new(u32::try_from(word).ok()? * BITS + bits.trailing_zeros(), y))
     }
 
     /// Makes a run of a row paper; its columns are inside the picture.

@@ -64,7 +64,7 @@ impl Centring {
         let mut skeleton = band.clone();
         // Lines that are wider than expected stay so in places: their middle is found all the same.
         let _ = self.thinning.thin_in_place(&mut skeleton);
-        fragments(Scan { ink: &band, first_row, grey }, &skeleton, rows)
+        fragments(Scan { ink: &band, first_row, grey }, &skeleton, first_row, rows)
     }
 
     /// Strokes simplified.

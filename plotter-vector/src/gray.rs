@@ -67,6 +67,11 @@ impl Gray {
         Self { width, height, pixels }
     }
 
+    /// The levels of all pixels.
+    pub(crate) fn into_pixels(self) -> Vec<u8> {
+        self.pixels
+    }
+
     /// Number of columns.
     #[must_use]
     pub const fn width(&self) -> u32 {

@@ -3,6 +3,9 @@
 use crate::{Bitmap, Gray};
 use core::ops::Range;
 
+/// Fewest rows that there is room for when the room is used up.
+const ROWS_MORE: usize = 32;
+
 /// Rows that come at the bottom and are forgotten at the top: words of 64 px, or grey levels.
 #[derive(Clone, Debug)]
 pub(crate) struct Rolling<T> {
@@ -30,6 +33,10 @@ impl<T: Copy + Default> Rolling<T> {
     /// A row more, to be filled; blank.
     pub(crate) fn next_row(&mut self) -> &mut [T] {
         let start = self.items.len();
+        if self.items.capacity() < start + self.per_row {
+            // By an eighth, not to twice as much: a sheet has hundreds of rows on their way.
+            self.items.reserve_exact((self.per_row * ROWS_MORE).max(start / 8));
+        }
         self.items.resize(start + self.per_row, T::default());
         self.end += 1;
         self.items.get_mut(start..).unwrap_or_default()
@@ -64,6 +71,15 @@ impl Rolling<u64> {
     pub(crate) fn band(&self, rows: &Range<u32>) -> Bitmap {
         Bitmap::of_words(self.width, rows.end - rows.start, self.rows(rows).to_vec())
     }
+
+    /// Lends all rows that are still here, and the number of the first one, without a copy.
+    pub(crate) fn lend<R>(&mut self, work: impl FnOnce(&Bitmap, u32) -> R) -> R {
+        let words = core::mem::take(&mut self.items);
+        let picture = Bitmap::of_words(self.width, self.end - self.first, words);
+        let result = work(&picture, self.first);
+        self.items = picture.into_words();
+        result
+    }
 }
 
 impl Rolling<u8> {
@@ -72,9 +88,13 @@ impl Rolling<u8> {
         Self::new(width, width as usize)
     }
 
-    /// A copy of some rows that are still here.
-    pub(crate) fn band(&self, rows: &Range<u32>) -> Gray {
-        Gray::of_checked_size(self.width, rows.end - rows.start, self.rows(rows).to_vec())
+    /// As [`Rolling::lend`] of ink.
+    pub(crate) fn lend<R>(&mut self, work: impl FnOnce(&Gray, u32) -> R) -> R {
+        let levels = core::mem::take(&mut self.items);
+        let picture = Gray::of_checked_size(self.width, self.end - self.first, levels);
+        let result = work(&picture, self.first);
+        self.items = picture.into_pixels();
+        result
     }
 }
 
@@ -94,6 +114,9 @@ mod tests {
         let band = rows.band(&(4..6));
         assert_eq!((band.width(), band.height()), (70, 2));
         assert_eq!((band.row(0), band.row(1)), ([16, 0].as_slice(), [32, 0].as_slice()));
+        let lent = rows.lend(|picture, first| (first, picture.height(), picture.row(0).to_vec()));
+        assert_eq!(lent, (3, 3, vec![8, 0]));
+        assert_eq!(rows.band(&(4..6)), band);
     }
 
     #[test]
@@ -102,6 +125,6 @@ mod tests {
         rows.push(&[]);
         rows.push(&[]);
         rows.forget_before(1);
-        assert_eq!((rows.end(), rows.band(&(1..2)).height()), (2, 1));
+        assert_eq!((rows.end(), rows.lend(|levels, first| (first, levels.height()))), (2, (1, 1)));
     }
 }

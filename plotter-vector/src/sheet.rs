@@ -10,6 +10,7 @@
 //! it is whole, so that what stays is the drawing.
 
 use crate::areas::Islands;
+use crate::areas::split::split;
 use crate::bitmap::blocks_between;
 use crate::centrelines::{CONTEXT_ROWS, Centring, each, sort, threads};
 use crate::graph::{Joiner, Rims, Scan, fragments};
@@ -18,20 +19,17 @@ use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
 use crate::speckle::despeckle_here;
 use crate::{
-    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, Mode, Progress, PxPoint, Row,
+    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, Gray, LineWidth, Mode, Progress, PxPoint, Row,
     RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer, context_rows, rows_of_width_context,
-    smallest_mark_px, split_by_width,
+    smallest_mark_px,
 };
 use core::fmt;
 use core::ops::Range;
 
-/// Own rows of a band that is cleaned or thinned, bytes at 1 bit a pixel: less, and the context costs more than the band;
-/// more, and the memory grows.
-const BAND_BYTES: usize = 1 << 21;
-
-/// The same of a band whose skeleton is followed, which takes far more memory; and the fewest rows.
-const FOLLOWED_BYTES: usize = 1 << 20;
-const FEWEST_FOLLOWED: u32 = 384;
+/// Own rows of a band, bytes at 1 bit a pixel, and the fewest rows: less, and the context costs more than the band; more,
+/// and the memory grows.
+const BAND_BYTES: usize = 1 << 20;
+const FEWEST_ROWS: u32 = 384;
 
 /// What [`Vectorizer::vectorize_rows`] found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -298,13 +296,9 @@ impl<'a> Work<'a> {
         let centring = settings.centring(max_line_px);
         let max_line_px = (settings.mode != Mode::Outline).then_some(max_line_px);
         let row_bytes = (width.div_ceil(u64::BITS) as usize * 8).max(1);
-        let rows = |bytes: usize| u32::try_from(bytes / row_bytes).unwrap_or(u32::MAX);
-        let step = |rows: u32, context| Step {
-            next: 0,
-            band_rows: rows.max(FEWEST_FOLLOWED).min(settings.band_rows).max(1),
-            context,
-            height,
-        };
+        let rows = u32::try_from(BAND_BYTES / row_bytes).unwrap_or(u32::MAX).max(FEWEST_ROWS);
+        let band_rows = rows.min(settings.band_rows).max(1);
+        let step = |context| Step { next: 0, band_rows, context, height };
         let grey = threshold.is_some() && max_line_px.is_some();
         Self {
             settings,
@@ -316,11 +310,10 @@ impl<'a> Work<'a> {
             lines: Rolling::of_ink(width),
             skeleton: Rolling::of_ink(width),
             clean: step(
-                rows(BAND_BYTES),
                 context_rows(smallest_px).saturating_add(max_line_px.map_or(0, rows_of_width_context)),
             ),
-            thin: step(rows(BAND_BYTES), centring.thinning.rows_of_context()),
-            follow: step(rows(FOLLOWED_BYTES), CONTEXT_ROWS),
+            thin: step(centring.thinning.rows_of_context()),
+            follow: step(CONTEXT_ROWS),
             centring,
             islands: Islands::new(width),
             joiner: Joiner::default(),
@@ -370,19 +363,22 @@ impl<'a> Work<'a> {
             let rows = step.around(&own);
             let mut band = ink.band(&rows);
             despeckle_here(&mut band, smallest_px);
-            let own = own.start - rows.start..own.end - rows.start;
-            let Some(max_line_px) = max_line_px else { return (None, Some(band.band(own))) };
-            let split = split_by_width(&band, max_line_px);
-            let areas = split.thick.band(own.clone());
-            (Some(split.thin.band(own)), Some(areas))
+            let (lines, areas) = match max_line_px {
+                Some(max_line_px) => {
+                    let (lines, areas) = split(band, max_line_px);
+                    (Some(lines), areas)
+                }
+                None => (None, Some(band)),
+            };
+            (own.start - rows.start..own.end - rows.start, lines, areas)
         });
-        for (lines, areas) in cleaned {
-            for y in 0..lines.as_ref().map_or(0, Bitmap::height) {
-                self.lines.push(lines.as_ref().map_or(&[], |lines| lines.row(y)));
-            }
-            for y in 0..areas.as_ref().map_or(0, Bitmap::height) {
-                let row = areas.as_ref().map_or(&[][..], |areas| areas.row(y));
-                if let Some((first, areas)) = self.islands.push(row) {
+        for (own, lines, areas) in cleaned {
+            for y in own {
+                if let Some(lines) = &lines {
+                    self.lines.push(lines.row(y));
+                }
+                let areas = areas.as_ref().map_or(&[][..], |areas| areas.row(y));
+                if let Some((first, areas)) = self.islands.push(areas) {
                     self.outlines.extend(self.settings.area_strokes(first, &areas)?);
                 }
             }
@@ -399,25 +395,32 @@ impl<'a> Work<'a> {
             let mut band = lines.band(&rows);
             // Lines that are wider than expected stay so in places: their middle is found all the same.
             let _ = thinning.thin_in_place(&mut band);
-            band.band(own.start - rows.start..own.end - rows.start)
+            (own.start - rows.start..own.end - rows.start, band)
         });
-        for band in thinned {
-            (0..band.height()).for_each(|y| self.skeleton.push(band.row(y)));
+        for (mut own, band) in thinned {
+            own.by_ref().for_each(|y| self.skeleton.push(band.row(y)));
         }
+        self.lines.forget_before(self.follow.needs().min(self.thin.needs()));
     }
 
     /// Follows the skeleton, and simplifies the strokes that are whole now.
     fn follow(&mut self, bands: Vec<Range<u32>>) {
-        let (step, lines, skeleton, levels) = (self.follow, &self.lines, &self.skeleton, &self.levels);
+        let (step, lines, skeleton) = (self.follow, &mut self.lines, &self.skeleton);
         let ink_is_dark = self.threshold.as_ref().is_some_and(RowThreshold::ink_is_dark);
-        let found = each(bands, |own| {
-            let rows = step.around(&own);
-            let (lines, skeleton) = (lines.band(&rows), skeleton.band(&rows));
-            let levels = levels.as_ref().map(|levels| levels.band(&rows));
-            let first_row = rows.start;
-            let grey = levels.as_ref().map(|levels| Rims { levels, ink_is_dark, first_row });
-            fragments(Scan { ink: &lines, first_row, grey }, &skeleton, &own)
-        });
+        let follow = |levels: Option<(&Gray, u32)>| {
+            lines.lend(|ink, first_row| {
+                let grey = levels.map(|(levels, first_row)| Rims { levels, ink_is_dark, first_row });
+                let scan = Scan { ink, first_row, grey };
+                each(bands, |own| {
+                    let rows = step.around(&own);
+                    fragments(scan, &skeleton.band(&rows), rows.start, &own)
+                })
+            })
+        };
+        let found = match &mut self.levels {
+            Some(levels) => levels.lend(|levels, first_row| follow(Some((levels, first_row)))),
+            None => follow(None),
+        };
         let joiner = &mut self.joiner;
         let whole = found.into_iter().flatten().filter_map(|fragment| joiner.push(fragment)).collect();
         self.strokes.extend(self.centring.simplified(whole));

@@ -32,11 +32,6 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// Whether the disc fits anywhere.
-    pub(super) fn any(&self) -> bool {
-        self.rows.contains(&true)
-    }
-
     fn row(&self, y: usize) -> &[u64] {
         if self.rows.get(y) == Some(&true) { self.corners.row(index(y)) } else { &[] }
     }
@@ -129,9 +124,8 @@ impl Disc {
         let height = ink.height() as usize;
         let mut places = Places { corners: empty_like(ink), rows: vec![false; height] };
         let words = ink.row(0).len();
-        let mut scratch = Vec::new();
+        let (mut out, mut scratch) = (vec![0; words], Vec::new());
         vertical_runs(ink, self.side, |y, run| {
-            let mut out = vec![0; words];
             let any = self.fit_row(ink, y, run, &mut out, &mut scratch);
             if any {
                 places.corners.row_mut(index(y)).copy_from_slice(&out);
@@ -141,6 +135,18 @@ impl Disc {
             }
         });
         places
+    }
+
+    /// Whether the disc fits anywhere into the ink: the same as for [`Disc::places`], without a picture of them.
+    pub(super) fn fits(&self, ink: &Bitmap) -> bool {
+        let (mut any, mut scratch) = (false, Vec::new());
+        let mut out = vec![0; ink.row(0).len()];
+        vertical_runs(ink, self.side, |y, run| {
+            if !any {
+                any = self.fit_row(ink, y, run, &mut out, &mut scratch);
+            }
+        });
+        any
     }
 
     /// The places in row `y`, given where ink goes on downwards for a whole side.
@@ -468,7 +474,7 @@ mod tests {
                 let places = disc.places(&ink);
                 let (corners, covered) = slow(&disc, &ink);
                 assert_eq!(places.corners, corners, "side {}", disc.side);
-                assert_eq!(places.any(), corners.count() > 0);
+                assert_eq!(disc.fits(&ink), corners.count() > 0);
                 assert_eq!(disc.cover(&ink, &places), covered, "side {}", disc.side);
             }
         }

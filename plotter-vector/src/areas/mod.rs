@@ -5,7 +5,7 @@ mod hatch;
 mod inset;
 mod islands;
 mod outline;
-mod split;
+pub(crate) mod split;
 
 pub use hatch::{Hatch, MIN_PITCH_PX};
 pub use inset::inset_outlines;

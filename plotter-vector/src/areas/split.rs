@@ -66,21 +66,27 @@ const fn absorbed_px(line_px: u32) -> u32 {
 /// ```
 #[must_use]
 pub fn split_by_width(ink: &Bitmap, max_line_px: u32) -> WidthSplit {
+    let (thin, thick) = split(ink.clone(), max_line_px);
+    WidthSplit { thick: thick.unwrap_or_else(|| empty_like(ink)), thin }
+}
+
+/// As [`split_by_width`], where the picture lies: the lines, and the areas if there are any.
+pub(crate) fn split(ink: Bitmap, max_line_px: u32) -> (Bitmap, Option<Bitmap>) {
     let line = max_line_px.min(MAX_LINE_PX);
     let disc = Disc::wider_than_lines(line);
-    let places = disc.places(ink);
-    if !places.any() {
-        return WidthSplit { thick: empty_like(ink), thin: ink.clone() };
+    if !disc.fits(&ink) {
+        return (ink, None);
     }
-    let thick = disc.cover(ink, &places);
+    let places = disc.places(&ink);
+    let thick = disc.cover(&ink, &places);
     drop(places);
-    let mut thin = ink.clone();
-    for y in 0..ink.height() {
+    let mut thin = ink;
+    for y in 0..thin.height() {
         thin.row_mut(y).iter_mut().zip(thick.row(y)).for_each(|(thin, thick)| *thin &= !thick);
     }
     let mut split = WidthSplit { thick, thin };
     split.give_leftovers_to_areas(absorbed_px(line));
-    split
+    (split.thin, Some(split.thick))
 }
 
 impl WidthSplit {

@@ -124,10 +124,9 @@ pub(crate) const TYPICAL_SITES: usize = 64;
 /// Least width that most of a line's sites have: a junction only ever widens it.
 pub(crate) fn typical_width_px(sites: &[Site]) -> f64 {
     let mut widths: Vec<f64> = sites.iter().take(TYPICAL_SITES).map(|site| site.width_px).collect();
-    widths.sort_by(f64::total_cmp);
     // Most of a short line may lie within a junction.
     let rank = if widths.len() < SHORT_SITES { widths.len() / 4 } else { widths.len() * 2 / 5 };
-    widths.get(rank).copied().unwrap_or(1.0)
+    if widths.is_empty() { 1.0 } else { *widths.select_nth_unstable_by(rank, f64::total_cmp).1 }
 }
 
 /// A small positive number, rounded up.

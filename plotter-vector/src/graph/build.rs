@@ -125,16 +125,18 @@ impl Graph {
             }
         }
         let mut loops = Vec::new();
-        for start in skeleton.ink() {
-            if !rest.get(start) {
-                continue;
-            }
-            if let Some(direction) = directions(links_of(skeleton, start)).next() {
-                let (mut pixels, _) = walk(skeleton, &mut rest, &at_pixel, start, step(start, direction));
-                rest.set(start, false);
-                pixels.push(start);
-                pixels.dedup();
-                loops.push(Edge { pixels, nodes: None });
+        for y in 0..rest.height() {
+            for word in 0..rest.row(y).len() {
+                while let Some(start) = rest.first_of_word(y, word) {
+                    rest.set(start, false);
+                    if let Some(direction) = directions(links_of(skeleton, start)).next() {
+                        let first = step(start, direction);
+                        let (mut pixels, _) = walk(skeleton, &mut rest, &at_pixel, start, first);
+                        pixels.push(start);
+                        pixels.dedup();
+                        loops.push(Edge { pixels, nodes: None });
+                    }
+                }
             }
         }
         graph.edges.append(&mut loops);

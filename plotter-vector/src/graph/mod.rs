@@ -40,14 +40,19 @@ use core::ops::Range;
 /// Rows of context that a band needs beside what its thinning needs: how far a junction looks along its arms.
 pub(crate) const CONTEXT_ROWS: u32 = 288;
 
-/// The pieces of centrelines in the rows `core` of a picture, from a band of it with a few hundred rows more on either
-/// side.
+/// The pieces of centrelines in the rows `core` of a picture, from the skeleton of a band of it with a few hundred rows
+/// more on either side, which begins with row `first_row`. The scan has these rows, and may have more.
 ///
 /// All coordinates are those of the whole picture, so that sums and roots round alike whatever the band.
-pub(crate) fn fragments(scan: Scan<'_>, skeleton: &Bitmap, core: &Range<u32>) -> Vec<Fragment> {
+pub(crate) fn fragments(
+    scan: Scan<'_>,
+    skeleton: &Bitmap,
+    first_row: u32,
+    core: &Range<u32>,
+) -> Vec<Fragment> {
     let mut graph = Graph::of(skeleton);
-    raster_line::put_back(&mut graph, scan.ink, skeleton);
-    graph.move_down(scan.first_row);
+    raster_line::put_back(&mut graph, scan.ink, first_row.saturating_sub(scan.first_row), skeleton);
+    graph.move_down(first_row);
     let mut sites: Vec<_> =
         graph.edges.iter().map(|edge| scan.sites(&edge.pixels, edge.nodes.is_none())).collect();
     let gone = spur::spurs(&graph, &sites, scan);

@@ -6,28 +6,64 @@
 
 use super::Graph;
 use crate::{Bitmap, Pixel};
+use std::collections::HashMap;
 
 /// Puts the ink of thin lines that thinning took away back into the edges that pass beside it.
 ///
-/// Which edge takes a pixel depends on its neighbours only, so it is the same in a band and in the whole picture.
-pub(crate) fn put_back(graph: &mut Graph, ink: &Bitmap, skeleton: &Bitmap) {
+/// The skeleton's first row is row `first_row` of the ink. Which edge takes a pixel depends on its neighbours only, so it
+/// is the same in a band and in the whole picture.
+pub(crate) fn put_back(graph: &mut Graph, ink: &Bitmap, first_row: u32, skeleton: &Bitmap) {
+    let mut lost: HashMap<(Pixel, Pixel), Vec<Pixel>> = HashMap::new();
+    each_lost(ink, first_row, skeleton, |beside| {
+        if let Some(link) = home(skeleton, beside) {
+            lost.entry(link).or_default().push(beside);
+        }
+    });
+    if lost.is_empty() {
+        return;
+    }
     for edge in &mut graph.edges {
-        let is_lost = |at: Pixel| ink.get(at) && !skeleton.get(at) && !in_block(ink, at);
-        if !edge.pixels.iter().any(|at| ink.around(*at) & !skeleton.around(*at) != 0) {
+        let link = |(at, next): (&Pixel, &Pixel)| lost.get(&(*at.min(next), *at.max(next)));
+        let mut links = edge.pixels.iter().zip(edge.pixels.iter().skip(1));
+        if !links.any(|pair| link(pair).is_some()) {
             continue;
         }
         let mut pixels = Vec::with_capacity(edge.pixels.len() + 8);
         for (index, at) in edge.pixels.iter().enumerate() {
             pixels.push(*at);
-            let Some(next) = edge.pixels.get(index + 1) else { break };
-            if ink.around(*at) & !skeleton.around(*at) == 0 {
-                continue;
-            }
-            let link = (*at.min(next), *at.max(next));
-            let between = around(*at).filter(|beside| beside.touches(*next) && is_lost(*beside));
-            pixels.extend(between.filter(|beside| home(skeleton, *beside) == Some(link)));
+            let between = edge.pixels.get(index + 1).and_then(|next| link((at, next)));
+            pixels.extend(between.into_iter().flatten());
         }
         edge.pixels = pixels;
+    }
+}
+
+/// Calls `found` with the ink in no block of two by two that is not in the skeleton, in reading order.
+fn each_lost(ink: &Bitmap, first_row: u32, skeleton: &Bitmap, mut found: impl FnMut(Pixel)) {
+    // Blocks by their upper left pixel, in the row above and in this one.
+    let mut above = vec![0; ink.row(0).len()];
+    let mut here = above.clone();
+    for y in 0..skeleton.height() {
+        let (row, below) = (ink.row(first_row + y), ink.row(first_row + y + 1));
+        let both = |word: usize| row.get(word).copied().unwrap_or(0) & below.get(word).copied().unwrap_or(0);
+        for (word, block) in here.iter_mut().enumerate() {
+            let both_here = both(word);
+            *block = if both_here == 0 { 0 } else { both_here & (both_here >> 1 | both(word + 1) << 63) };
+        }
+        let mut left = 0;
+        for (word, ((ink, kept), (above, here))) in
+            row.iter().zip(skeleton.row(y)).zip(above.iter().zip(&here)).enumerate()
+        {
+            let blocks = above | here;
+            let mut lost = ink & !kept & !(blocks | blocks << 1 | left >> 63);
+            left = blocks;
+            while lost != 0 {
+                let x = u32::try_from(word).unwrap_or(u32::MAX) * u64::BITS + lost.trailing_zeros();
+                lost &= lost - 1;
+                found(Pixel::new(x, y));
+            }
+        }
+        core::mem::swap(&mut above, &mut here);
     }
 }
 
@@ -45,16 +81,6 @@ fn linked(skeleton: &Bitmap, one: Pixel, other: Pixel) -> bool {
         || !(skeleton.get(Pixel::new(one.x, other.y)) || skeleton.get(Pixel::new(other.x, one.y)))
 }
 
-/// Whether a pixel lies in a block of two by two pixels of ink.
-fn in_block(ink: &Bitmap, at: Pixel) -> bool {
-    let around = ink.around(at);
-    // Right and below with the corner between them, and so on around.
-    (0..4).any(|turn| {
-        let three = 0b111_u8.rotate_left(2 * turn);
-        around & three == three
-    })
-}
-
 /// The eight neighbours.
 fn around(at: Pixel) -> impl Iterator<Item = Pixel> {
     (-1..=1).flat_map(move |dy| (-1..=1).map(move |dx| (dx, dy))).filter(|step| *step != (0, 0)).filter_map(
@@ -69,7 +95,7 @@ mod tests {
     fn put_back_in(ink: &str, skeleton: &str) -> Vec<(u32, u32)> {
         let (ink, skeleton) = (Bitmap::from_picture(ink).unwrap(), Bitmap::from_picture(skeleton).unwrap());
         let mut graph = Graph::of(&skeleton);
-        put_back(&mut graph, &ink, &skeleton);
+        put_back(&mut graph, &ink, 0, &skeleton);
         graph.edges[0].pixels.iter().map(|at| (at.x, at.y)).collect()
     }
 

@@ -33,37 +33,118 @@ pub(super) struct Lines<'a> {
     pub(super) scan: Scan<'a>,
 }
 
+/// Rows below a band's own in which a patch that begins in it mostly ends.
+const BELOW_ROWS: u32 = 64;
+
+/// Half the widest line, px, and a margin: places farther from some rows wipe nothing in them.
+const WIDEST_WIPE_PX: f64 = 100.0;
+
+/// How far up and down the line is looked for that a patch belongs to, px.
+const REACH_PX: f64 = 64.0;
+
 /// The stubs of a band, as strokes of their own from the middle of their line.
 pub(super) fn stubs(lines: &Lines<'_>, core: &Range<u32>) -> Vec<Fragment> {
-    let mut bare = lines.scan.ink.clone();
-    lines.each_place(|at, width_px| wipe(&mut bare, lines.scan.first_row, at, 0.5 * width_px + MARGIN_PX));
+    let (top, end) = (lines.scan.first_row, lines.scan.first_row.saturating_add(lines.scan.ink.height()));
+    // With a row above: what reaches it begins above, and is none of this band's.
+    let start = core.start.saturating_sub(1).max(top);
+    let few = lines.patches(start..core.end.saturating_add(BELOW_ROWS).min(end), core);
+    let patches = few.or_else(|| lines.patches(start..end, core)).unwrap_or_default();
     let mut found = Vec::new();
-    let all: Vec<Pixel> = bare.ink().collect();
-    let mut anchors = Vec::new();
-    for first in all {
-        if !bare.get(first) {
-            continue;
-        }
-        let mut patch = take(&mut bare, first);
-        patch.iter_mut().for_each(|at| at.y = at.y.saturating_add(lines.scan.first_row));
-        let first = Pixel::new(first.x, first.y.saturating_add(lines.scan.first_row));
-        if core.contains(&first.y) && patch.len() > 2 && patch.len() <= MOST_PIXELS {
-            if anchors.is_empty() {
-                lines.each_place(|at, width_px| anchors.push((at, width_px)));
-                anchors.sort_by(|a, b| a.0.y.total_cmp(&b.0.y).then(a.0.x.total_cmp(&b.0.x)));
-            }
-            if let Some(stub) = stub(&patch, &anchors) {
-                let places = stub.map(|at| Place::new(at, -1.0, false)).to_vec();
-                found.push(Fragment { places, joints: Some([Joint::Free; 2]) });
-            }
+    for (patch, root) in patches.iter().zip(lines.roots(&patches)) {
+        if let Some(stub) = root.and_then(|root| stub(&patch.pixels, patch.centre, root)) {
+            let places = stub.map(|at| Place::new(at, -1.0, false)).to_vec();
+            found.push(Fragment { places, joints: Some([Joint::Free; 2]) });
         }
     }
     found
 }
 
+/// A place that the drawn lines leave bare.
+struct Patch {
+    pixels: Vec<Pixel>,
+    centre: PxPoint,
+}
+
 impl Lines<'_> {
-    /// Every place of the lines, about a pixel apart, and the line's width there.
-    fn each_place(&self, mut visit: impl FnMut(PxPoint, f64)) {
+    /// The patches that begin in the rows `core`, of the ink in some rows; none when one of them may go on below.
+    fn patches(&self, rows: Range<u32>, core: &Range<u32>) -> Option<Vec<Patch>> {
+        let (top, height) = (self.scan.first_row, self.scan.ink.height());
+        let mut bare = self.scan.ink.band(rows.start.saturating_sub(top)..rows.end.saturating_sub(top));
+        let goes_on = rows.end < top.saturating_add(height);
+        let mut wiper = Wiper { bare: &mut bare, first_row: rows.start, drawn: None };
+        self.each_place(&rows, |at, width_px| wiper.add(at, 0.5 * width_px + MARGIN_PX));
+        wiper.wipe();
+        let mut patches = Vec::new();
+        for y in 0..bare.height() {
+            for word in 0..bare.row(y).len() {
+                while let Some(first) = bare.first_of_word(y, word) {
+                    let mut pixels = take(&mut bare, first);
+                    pixels.iter_mut().for_each(|at| at.y = at.y.saturating_add(rows.start));
+                    if !core.contains(&first.y.saturating_add(rows.start)) {
+                        continue;
+                    }
+                    if goes_on && pixels.iter().any(|at| at.y + 1 == rows.end) {
+                        return None;
+                    }
+                    if pixels.len() > 2 && pixels.len() <= MOST_PIXELS {
+                        let centre = centre(&pixels);
+                        patches.push(Patch { pixels, centre });
+                    }
+                }
+            }
+        }
+        Some(patches)
+    }
+
+    /// The nearest place of a line to each patch, and the line's width there: of equally near ones the first from the top.
+    fn roots(&self, patches: &[Patch]) -> Vec<Option<(PxPoint, f64)>> {
+        let mut roots = vec![None; patches.len()];
+        let mut by_row: Vec<(f64, usize)> =
+            patches.iter().enumerate().map(|(index, patch)| (patch.centre.y, index)).collect();
+        by_row.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (Some((first, _)), Some((last, _))) = (by_row.first(), by_row.last()) else { return roots };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows of a picture")]
+        let rows = *first as u32..(*last as u32).saturating_add(1);
+        self.each_place(&rows, |at, width_px| {
+            let from = by_row.partition_point(|(y, _)| at.y > y + REACH_PX);
+            for (y, index) in by_row.get(from..).unwrap_or(&[]) {
+                if at.y < y - REACH_PX {
+                    break;
+                }
+                let (Some(patch), Some(root)) = (patches.get(*index), roots.get_mut(*index)) else {
+                    continue;
+                };
+                if is_nearer(patch.centre, at, *root) {
+                    *root = Some((at, width_px));
+                }
+            }
+        });
+        roots
+    }
+}
+
+/// Whether a place is nearer than the root so far, or as near and comes before it.
+fn is_nearer(centre: PxPoint, at: PxPoint, root: Option<(PxPoint, f64)>) -> bool {
+    let Some((root, _)) = root else { return true };
+    let squared = |to: PxPoint| {
+        let (dx, dy) = to.minus(centre);
+        dx * dx + dy * dy
+    };
+    // Far more than the squares are rounded.
+    const ROUNDING: f64 = 1.0 + 1e-12;
+    squared(at) <= squared(root) * ROUNDING
+        && (at.distance(centre).total_cmp(&root.distance(centre)))
+            .then(at.y.total_cmp(&root.y))
+            .then(at.x.total_cmp(&root.x))
+            .is_lt()
+}
+
+impl Lines<'_> {
+    /// Every place of the lines that may matter to some rows, about a pixel apart, and the line's width there.
+    fn each_place(&self, rows: &Range<u32>, mut visit: impl FnMut(PxPoint, f64)) {
+        let low = f64::from(rows.start) - WIDEST_WIPE_PX;
+        let high = f64::from(rows.end) + WIDEST_WIPE_PX;
+        let near = |at: PxPoint| at.y >= low && at.y <= high;
         let is_line = |edge: usize| {
             !self.gone.get(edge).copied().unwrap_or(true)
                 && !self.junctions.inner.get(edge).copied().unwrap_or(true)
@@ -72,7 +153,9 @@ impl Lines<'_> {
             let skip = |at_last| self.junctions.skip(End { edge, at_last });
             let last = sites.len().saturating_sub(skip(true));
             for (index, site) in sites.iter().enumerate().take(last).skip(skip(false)) {
-                visit(site.centre, calm_px(sites, index));
+                if near(site.centre) {
+                    visit(site.centre, calm_px(sites, index));
+                }
             }
         }
         for connection in self.junctions.connections.iter().filter(|one| is_line(one.from.edge)) {
@@ -92,7 +175,9 @@ impl Lines<'_> {
                     let t = step / steps;
                     let at =
                         PxPoint::new(before.x + (next.x - before.x) * t, before.y + (next.y - before.y) * t);
-                    visit(at, width_px);
+                    if near(at) {
+                        visit(at, width_px);
+                    }
                     step += 1.0;
                 }
                 before = next;
@@ -100,7 +185,9 @@ impl Lines<'_> {
         }
         for node in self.graph.nodes.iter().filter(|node| node.ends.is_empty()) {
             let at = PxPoint::from(node.at);
-            visit(at, 2.0 * self.scan.radius_px(at, f64::MAX) + 1.0);
+            if near(at) {
+                visit(at, 2.0 * self.scan.radius_px(at, f64::MAX) + 1.0);
+            }
         }
     }
 }
@@ -111,22 +198,64 @@ fn calm_px(sites: &[Site], index: usize) -> f64 {
     near.unwrap_or(&[]).iter().map(|site| site.width_px).fold(f64::INFINITY, f64::min).min(192.0)
 }
 
-/// Takes a disc out of a band of a picture that begins with row `first_row`.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the picture")]
-fn wipe(bare: &mut Bitmap, first_row: u32, at: PxPoint, radius_px: f64) {
-    let (width, top) = (f64::from(bare.width()), f64::from(first_row));
-    let bottom = top + f64::from(bare.height());
-    let mut y = libm::ceil(at.y - radius_px - 0.5).max(top);
-    while y + 0.5 <= at.y + radius_px && y < bottom {
-        let dy = y + 0.5 - at.y;
-        let half = libm::sqrt((radius_px * radius_px - dy * dy).max(0.0));
-        let (from, to) =
-            (libm::ceil(at.x - half - 0.5).max(0.0), libm::floor(at.x + half - 0.5).min(width - 1.0));
-        if from <= to {
-            bare.clear_run((y - top) as u32, from as u32..to as u32 + 1);
+/// Draws discs in paper on a band of a picture that begins with row `first_row`.
+struct Wiper<'a> {
+    bare: &'a mut Bitmap,
+    first_row: u32,
+    /// Discs in a row or column of pixels that are not drawn yet: the first one, the last one, their radius.
+    drawn: Option<(PxPoint, PxPoint, f64)>,
+}
+
+impl Wiper<'_> {
+    /// A disc more.
+    fn add(&mut self, at: PxPoint, radius_px: f64) {
+        if let Some((first, last, radius)) = &mut self.drawn
+            && radius.to_bits() == radius_px.to_bits()
+            && (goes_on(first.x, last.x, at.x) && is_same(first.y, last.y, at.y)
+                || goes_on(first.y, last.y, at.y) && is_same(first.x, last.x, at.x))
+        {
+            *last = at;
+            return;
         }
-        y += 1.0;
+        self.wipe();
+        self.drawn = Some((at, at, radius_px));
     }
+
+    /// Draws what is not drawn yet: in each row of pixels the discs are one run.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the picture")]
+    fn wipe(&mut self) {
+        let Some((first, last, radius_px)) = self.drawn.take() else { return };
+        let (left, right) = (first.x.min(last.x), first.x.max(last.x));
+        let (upper, lower) = (first.y.min(last.y), first.y.max(last.y));
+        let (width, top) = (f64::from(self.bare.width()), f64::from(self.first_row));
+        let bottom = top + f64::from(self.bare.height());
+        let mut y = libm::ceil((upper - radius_px - 0.5).max(top));
+        while y + 0.5 <= lower + radius_px && y < bottom {
+            let centre = y + 0.5;
+            let dy = if centre < upper { centre - upper } else { (centre - lower).max(0.0) };
+            let half = libm::sqrt((radius_px * radius_px - dy * dy).max(0.0));
+            let (from, to) = ((left - half - 0.5).max(0.0), (right + half - 0.5).min(width - 1.0));
+            if to >= 0.0 {
+                // Rounded up, and down.
+                let (whole, to) = (from as u32, to as u32);
+                let from = whole + u32::from(f64::from(whole) < from);
+                if from <= to {
+                    self.bare.clear_run((y - top) as u32, from..to + 1);
+                }
+            }
+            y += 1.0;
+        }
+    }
+}
+
+/// Whether a coordinate goes on from pixel to pixel in one direction, at their centres.
+fn goes_on(first: f64, last: f64, next: f64) -> bool {
+    let step = next - last;
+    (step == 1.0 && last >= first || step == -1.0 && last <= first) && last - libm::floor(last) == 0.5
+}
+
+fn is_same(first: f64, last: f64, next: f64) -> bool {
+    first.to_bits() == last.to_bits() && last.to_bits() == next.to_bits()
 }
 
 /// Takes the 8-connected ink around a pixel out of a picture.
@@ -152,18 +281,17 @@ fn take(bare: &mut Bitmap, first: Pixel) -> Vec<Pixel> {
     patch
 }
 
-/// The stub that a bare patch is, from the middle of the nearest line to where its pen stopped.
-fn stub(patch: &[Pixel], anchors: &[(PxPoint, f64)]) -> Option<[PxPoint; 2]> {
+fn centre(patch: &[Pixel]) -> PxPoint {
     #[expect(clippy::cast_precision_loss, reason = "a few pixels")]
     let area = patch.len() as f64;
     let sum = patch.iter().map(|at| PxPoint::from(*at)).fold((0.0, 0.0), |(x, y), at| (x + at.x, y + at.y));
-    let centre = PxPoint::new(sum.0 / area, sum.1 / area);
-    // The rows of the places within reach, by their order.
-    const REACH_PX: f64 = 64.0;
-    let from = anchors.partition_point(|(at, _)| at.y < centre.y - REACH_PX);
-    let near = anchors.get(from..)?.iter().take_while(|(at, _)| at.y <= centre.y + REACH_PX);
-    let (root, line_px) =
-        near.min_by(|a, b| a.0.distance(centre).total_cmp(&b.0.distance(centre))).copied()?;
+    PxPoint::new(sum.0 / area, sum.1 / area)
+}
+
+/// The stub that a bare patch is, from the middle of the nearest line, `line_px` wide, to where its pen stopped.
+fn stub(patch: &[Pixel], centre: PxPoint, (root, line_px): (PxPoint, f64)) -> Option<[PxPoint; 2]> {
+    #[expect(clippy::cast_precision_loss, reason = "a few pixels")]
+    let area = patch.len() as f64;
     let length = root.distance(centre);
     if length <= 0.0 {
         return None;
