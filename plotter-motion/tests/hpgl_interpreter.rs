@@ -75,6 +75,31 @@ fn a_circle_has_72_chords_unless_it_says_otherwise_and_never_more_than_1000() {
 }
 
 #[test]
+fn an_arc_goes_from_where_the_pen_stands_and_leaves_it_at_its_end() {
+    let rounded = |text: &str| -> String {
+        let shown = plot_ops(text.as_bytes()).map(|op| match op {
+            Ok(op) => {
+                let to = op.target().unwrap_or_default();
+                let pen = if matches!(op, PlotOp::Draw { .. }) { "D" } else { "U" };
+                format!("{pen}{:.1},{:.1}", to.x * UNITS_PER_MM + 0.01, to.y * UNITS_PER_MM + 0.01)
+            }
+            Err(error) => format!("<{error}>"),
+        });
+        shown.collect::<Vec<_>>().join(" ")
+    };
+    assert_eq!(rounded("PU100,0;PD;AA0,0,90,45;PD5,5"), "U100.0,0.0 D70.7,70.7 D0.0,100.0 D5.0,5.0");
+    // Clockwise, about a centre given from the pen, and with the pen up straight to the end.
+    assert_eq!(rounded("PU100,0;PD;AR-100,0,-180,90"), "U100.0,0.0 D0.0,-100.0 D-100.0,0.0");
+    assert_eq!(rounded("PU100,0;AA0,0,90;PR;PD1,1"), "U100.0,0.0 U0.0,100.0 D1.0,101.0");
+    assert_eq!(
+        rounded("AA1,2;AA1,2,400;AA1,2,3,200"),
+        "<line 1, column 1 (byte 0): AA lacks the centre's x and y and an angle and is left out> \
+         <line 1, column 13 (byte 12): AA with 400 is left out: it takes an angle of at most 360 degrees> \
+         <line 1, column 25 (byte 24): AA with 200 is left out: it takes a chord angle of at most 180 degrees>"
+    );
+}
+
+#[test]
 fn what_is_not_carried_out_is_reported_and_the_rest_is_drawn() {
     insta::assert_snapshot!(
         ops("IN;SC0,100,0,75;LBPU;\u{3}PD1,1;ZZ1;PD2,2,3;SP300;SP1,2;VS-1;VS1,9;VS1,2,3;CI;CI5,200;PG;").replace("> ", ">\n"),

@@ -4,7 +4,7 @@ use plotter_motion::hpgl::{
     Coordinates, Error, Event, Interpreter, Opening, PlotOps, Reader, WriteError, WriteOptions, Writer,
     plot_ops, write_ops,
 };
-use plotter_motion::{PlotOp, Point};
+use plotter_motion::{PlotOp, Point, Vec2};
 use proptest::prelude::*;
 
 /// Half a plotter unit, mm, and the rounding of a coordinate near 1000 mm.
@@ -313,4 +313,71 @@ fn a_list_of_any_length_needs_no_more_memory() {
     let ops = PlotOps::new(b"PD".iter().copied().chain(list).chain(*b"7,7;"));
     assert!(std::mem::size_of::<(Reader, Interpreter)>() < BYTES);
     assert_eq!(ops.count(), 100_001);
+}
+
+/// What the writer promises for an arc, mm: one unit, and half a one for the plotter's chords; a rounded digit.
+const ARC_MM: f64 = 1.5 / 40.0 + 1e-4;
+
+/// Arcs one after the other: each begins where the one before ended, and is a centre's place from there, mm, and a sweep.
+fn arcs() -> impl Strategy<Value = Vec<(Vec2, f64)>> {
+    let reach = prop_oneof![3 => 0.05..2.0_f64, 3 => 2.0..40.0_f64, 1 => 40.0..3000.0_f64];
+    let centre =
+        (reach, 0.0..std::f64::consts::TAU).prop_map(|(far, angle)| Vec2::new(far, 0.0).rotated(angle));
+    let sweep = prop_oneof![-6.2..6.2_f64, -0.3..0.3_f64];
+    proptest::collection::vec((centre, sweep), 1..12)
+}
+
+/// Distance of a place from the arc about a centre, from the place `out` from it, by this angle, mm.
+fn from_arc(at: Point, centre: Point, out: Vec2, sweep: f64) -> f64 {
+    let here = at - centre;
+    let angle = out.cross(here).atan2(out.dot(here)) * sweep.signum();
+    let within = angle.rem_euclid(std::f64::consts::TAU) <= sweep.abs();
+    let ends = at.distance(centre + out).min(at.distance(centre + out.rotated(sweep)));
+    if within { (here.length() - out.length()).abs().min(ends) } else { ends }
+}
+
+proptest! {
+    #[test]
+    fn written_arcs_are_read_back_within_a_unit_and_errors_do_not_add_up(arcs in arcs(), relative: bool) {
+        let coordinates = if relative { Coordinates::Relative } else { Coordinates::Absolute };
+        let mut writer = Writer::with_options(String::new(), WriteOptions { coordinates, ..Default::default() });
+        let mut at = Point::new(50.0123, 47.0077);
+        writer.push(PlotOp::Travel { to: at }).unwrap();
+        let mut meant = Vec::new();
+        for (to_centre, sweep) in &arcs {
+            let (centre, out) = (at + *to_centre, -*to_centre);
+            at = centre + out.rotated(*sweep);
+            writer.arc(centre, *sweep, at).unwrap();
+            meant.push((centre, out, *sweep, at));
+        }
+        let text = writer.finish().unwrap();
+        let drawn: Vec<Point> = plot_ops(text.as_bytes())
+            .filter_map(|op| op.unwrap().target())
+            .collect();
+        // Every place drawn, and half way between two of them, is near an arc that is meant.
+        for pair in drawn.windows(2) {
+            for part in [0.5, 1.0] {
+                let place = pair[0] + (pair[1] - pair[0]) * part;
+                let off = meant.iter().map(|(centre, out, sweep, _)| from_arc(place, *centre, *out, *sweep));
+                let off = off.fold(f64::INFINITY, f64::min);
+                prop_assert!(off <= ARC_MM, "{off} mm off at {place:?}\n{text}");
+            }
+        }
+        // Every arc that is meant is near what is drawn, and its end is reached to the half unit.
+        for (centre, out, sweep, end) in meant {
+            for part in 0..=20 {
+                let place = centre + out.rotated(sweep * f64::from(part) / 20.0);
+                let off = drawn.windows(2).map(|pair| from_line(place, pair[0], pair[1])).fold(f64::INFINITY, f64::min);
+                prop_assert!(off <= ARC_MM, "{off} mm off at {place:?}\n{text}");
+            }
+            let near = |at: &&Point| (at.x - end.x).abs() <= HALF_UNIT_MM && (at.y - end.y).abs() <= HALF_UNIT_MM;
+            prop_assert!(drawn.iter().find(near).is_some(), "{end:?} is not reached\n{text}");
+        }
+    }
+}
+
+fn from_line(at: Point, from: Point, to: Point) -> f64 {
+    let way = to - from;
+    let part = if way.length() > 0.0 { ((at - from).dot(way) / way.dot(way)).clamp(0.0, 1.0) } else { 0.0 };
+    at.distance(from + way * part)
 }

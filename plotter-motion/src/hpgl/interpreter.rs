@@ -2,13 +2,15 @@
 
 use super::{Error, Event, Mnemonic, Position, UNITS_PER_MM};
 use crate::shapes::unit_circle;
-use crate::{PlotOp, Point};
+use crate::{PlotOp, Point, Vec2};
 use core::fmt;
 
 /// Angle of a circle that one chord spans, where the command says none.
 const CHORD_ANGLE_DEG: f64 = 5.0;
 /// The finest chord angle: a finer one is taken as this, so that a circle never has more than 1000 chords.
 const MIN_CHORD_ANGLE_DEG: f64 = 0.36;
+/// The greatest angle of an arc, degrees: the whole circle.
+const MOST_SWEEP_DEG: f64 = 360.0;
 /// mm/s in a cm/s, the unit of `VS`.
 const MM_S_PER_CM_S: f64 = 10.0;
 /// Pens that have a speed of their own.
@@ -16,7 +18,7 @@ const PENS: usize = 8;
 /// Most that one event gives, a circle apart: a complaint, a dot and one operation.
 const QUEUE: usize = 4;
 /// Numbers kept of a command that takes no pairs.
-const NUMBERS: usize = 2;
+const NUMBERS: usize = 4;
 
 type Outcome = Result<PlotOp, Error>;
 
@@ -43,14 +45,21 @@ struct Open {
     x: Option<(f64, Position)>,
 }
 
-/// A circle that is drawn chord by chord.
+/// A circle or an arc that is drawn chord by chord.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Circle {
+struct Round {
     centre: Point,
-    radius_mm: f64,
     chords: u32,
-    /// 0: to the rim. 1..=chords: along it. Then back to the centre.
     next: u32,
+    shape: Shape,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Shape {
+    /// Chord 0 is the way to the rim; then along it, then back to the centre.
+    Circle { radius_mm: f64 },
+    /// From where the pen stood, which is so far from the centre; by this angle. There is no chord 0.
+    Arc { out: Vec2, sweep_rad: f64 },
 }
 
 /// Carries commands out: knows the pen, where it stands, and what coordinates mean.
@@ -103,7 +112,7 @@ pub struct Interpreter {
     feed_mm_s: Option<f64>,
     open: Option<Open>,
     queue: [Option<Outcome>; QUEUE],
-    circle: Option<Circle>,
+    round: Option<Round>,
 }
 
 impl Default for Interpreter {
@@ -127,7 +136,7 @@ impl Interpreter {
             feed_mm_s: None,
             open: None,
             queue: [None; QUEUE],
-            circle: None,
+            round: None,
         }
     }
 
@@ -173,21 +182,33 @@ impl Interpreter {
         if let Some(slot) = self.queue.iter_mut().find(|slot| slot.is_some()) {
             return slot.take();
         }
-        let circle = self.circle.as_mut()?;
-        let step = circle.next;
-        circle.next += 1;
-        let Circle { centre, radius_mm, chords, .. } = *circle;
-        if step > chords {
-            self.circle = None;
-            return Some(Ok(PlotOp::Travel { to: centre }));
+        let round = self.round.as_mut()?;
+        let step = round.next;
+        round.next += 1;
+        let Round { centre, chords, shape, .. } = *round;
+        match shape {
+            Shape::Circle { .. } if step > chords => {
+                self.round = None;
+                Some(Ok(PlotOp::Travel { to: centre }))
+            }
+            Shape::Circle { radius_mm } => {
+                // The last chord ends on the very first point: step == chords is step 0 again.
+                let to = centre + unit_circle(step, chords) * radius_mm;
+                Some(Ok(if step == 0 { PlotOp::Travel { to } } else { self.draw(to) }))
+            }
+            Shape::Arc { out, sweep_rad } => {
+                let to = centre + out.rotated(sweep_rad * f64::from(step) / f64::from(chords));
+                if step == chords {
+                    self.round = None;
+                    (self.x_units, self.y_units) = (to.x * UNITS_PER_MM, to.y * UNITS_PER_MM);
+                }
+                Some(Ok(if self.pen_down { self.draw(to) } else { PlotOp::Travel { to } }))
+            }
         }
-        // The last chord ends on the very first point: step == chords is step 0 again.
-        let to = centre + unit_circle(step, chords) * radius_mm;
-        Some(Ok(if step == 0 { PlotOp::Travel { to } } else { self.draw(to) }))
     }
 
     fn drained(&self) -> Result<(), Undrained> {
-        if self.circle.is_some() || self.queue.iter().any(Option::is_some) { Err(Undrained) } else { Ok(()) }
+        if self.round.is_some() || self.queue.iter().any(Option::is_some) { Err(Undrained) } else { Ok(()) }
     }
 
     fn give(&mut self, outcome: Outcome) {
@@ -226,7 +247,7 @@ impl Interpreter {
             }
             b"PA" => self.relative = false,
             b"PR" => self.relative = true,
-            b"IN" | b"DF" | b"SP" | b"VS" | b"CI" | b"PG" => {}
+            b"IN" | b"DF" | b"SP" | b"VS" | b"CI" | b"AA" | b"AR" | b"PG" => {}
             // The reader has seen to the label terminator, and a comment is nothing to do.
             b"DT" | b"CO" => self.open = None,
             _ => {
@@ -266,10 +287,11 @@ impl Interpreter {
     fn end(&mut self) {
         let Some(open) = self.open.take() else { return };
         let Open { command, at, count, .. } = open;
-        let [(first, first_at), (second, second_at)] = open.numbers;
+        let [(first, first_at), (second, second_at), third, fourth] = open.numbers;
         let takes = match command.letters() {
             b"SP" => 1,
             b"VS" | b"CI" => 2,
+            b"AA" | b"AR" => 4,
             _ => u32::MAX,
         };
         if count > takes {
@@ -299,6 +321,13 @@ impl Interpreter {
                 Err(Error::MissingParameter { at, command, expected: "a radius in plotter units" })
             }
             b"CI" => self.start_circle(first, (count > 1).then_some((second, second_at)), command),
+            b"AA" | b"AR" if count < 3 => {
+                Err(Error::MissingParameter { at, command, expected: "the centre's x and y and an angle" })
+            }
+            b"AA" | b"AR" => {
+                let chord = (count > 3).then_some(fourth);
+                self.start_arc(Vec2::new(first, second), third, chord, command)
+            }
             _ => match open.x {
                 Some((x, at)) => Err(Error::OddCoordinates { at, command, x }),
                 None => Ok(()),
@@ -360,28 +389,58 @@ impl Interpreter {
         chord: Option<(f64, Position)>,
         command: Mnemonic,
     ) -> Result<(), Error> {
-        let (angle_deg, at) = chord.unwrap_or((CHORD_ANGLE_DEG, Position::START));
-        if angle_deg.abs() > 180.0 {
-            let expected = "a chord angle of at most 180 degrees";
-            return Err(Error::BadParameter { at, command, value: angle_deg, expected });
-        }
-        let chords = libm::ceil(360.0 / angle_deg.abs().max(MIN_CHORD_ANGLE_DEG));
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a whole number from 2 to 1000, by the bounds of the angle"
-        )]
-        let chords = chords as u32;
+        let chords = chords(360.0, chord, command)?;
         // Lowered before the circle, the pen has already left its dot at the centre.
         self.leave_dot();
         let centre = self.here();
         if radius == 0.0 {
             self.give(Ok(self.draw(centre)));
         } else {
-            self.circle = Some(Circle { centre, radius_mm: radius / UNITS_PER_MM, chords, next: 0 });
+            let shape = Shape::Circle { radius_mm: radius / UNITS_PER_MM };
+            self.round = Some(Round { centre, chords, next: 0, shape });
         }
         Ok(())
     }
+
+    fn start_arc(
+        &mut self,
+        centre_units: Vec2,
+        (sweep_deg, at): (f64, Position),
+        chord: Option<(f64, Position)>,
+        command: Mnemonic,
+    ) -> Result<(), Error> {
+        if sweep_deg.abs() > MOST_SWEEP_DEG {
+            let expected = "an angle of at most 360 degrees";
+            return Err(Error::BadParameter { at, command, value: sweep_deg, expected });
+        }
+        let chords = chords(sweep_deg, chord, command)?;
+        // Nothing is drawn with the pen up: it goes to the end.
+        let chords = if self.pen_down { chords } else { 1 };
+        let here = self.here();
+        let centre = Point::ORIGIN + centre_units * (1.0 / UNITS_PER_MM);
+        let centre = if command.letters() == b"AR" { here + (centre - Point::ORIGIN) } else { centre };
+        let shape = Shape::Arc { out: here - centre, sweep_rad: sweep_deg.to_radians() };
+        self.dot_owed &= !self.pen_down;
+        self.round = Some(Round { centre, chords, next: 1, shape });
+        Ok(())
+    }
+}
+
+/// Into how many chords an angle is divided.
+fn chords(sweep_deg: f64, chord: Option<(f64, Position)>, command: Mnemonic) -> Result<u32, Error> {
+    let (angle_deg, at) = chord.unwrap_or((CHORD_ANGLE_DEG, Position::START));
+    if angle_deg.abs() > 180.0 {
+        let expected = "a chord angle of at most 180 degrees";
+        return Err(Error::BadParameter { at, command, value: angle_deg, expected });
+    }
+    let chords = libm::ceil(sweep_deg.abs() / angle_deg.abs().max(MIN_CHORD_ANGLE_DEG));
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a whole number from 1 to 1000, by the bounds of both angles"
+    )]
+    let chords = chords.max(1.0) as u32;
+    Ok(chords)
 }
 
 /// `value` as a whole number from `least` to `greatest`.

@@ -70,6 +70,8 @@
 //! | `PA` | x, y, … | from here on coordinates count from the origin; moves with the pen as it is |
 //! | `PR` | x, y, … | from here on coordinates count from where the pen stands; moves likewise |
 //! | `CI` | radius, chord angle in degrees | circle about where the pen stands; 5° when missing, 0.36° at the least |
+//! | `AA` | x, y, angle, chord angle in degrees | arc about a centre, with the pen as it is; counter-clockwise for angles above 0 |
+//! | `AR` | x, y, angle, chord angle in degrees | as `AA`, the centre from where the pen stands |
 //! | `PG` | | a new sheet |
 //! | `DT` | a byte, mode | ends labels from here on; with mode 0 the byte belongs to the label |
 //! | `CO` | a string | a comment |
@@ -84,6 +86,7 @@
 //! been read of the command stands, the rest of it is skipped, and reading goes on with the next one;
 //! [`PlotOps::strict`] stops instead.
 
+mod arc;
 mod command;
 mod decimal;
 mod error;
