@@ -12,6 +12,7 @@ mod config;
 pub mod control;
 mod encoder;
 pub mod firmware;
+pub mod gcode;
 mod geom;
 pub mod hpgl;
 mod pid;
