@@ -21,6 +21,7 @@ loop_hz = 2_500
 slope_counts = 1e1
 [vectorize]
 mode = "mixed"
+arcs = true
 threshold = "128"
 pens = 3
 [x.encoder]

@@ -30,6 +30,8 @@ pub(super) enum Form {
     /// One of a few words, or a level from 0 to 255, as text or as a whole number.
     #[cfg_attr(not(feature = "toml"), expect(dead_code, reason = "only the reader of TOML files asks"))]
     ChoiceOrLevel(&'static [&'static str]),
+    /// `true` or `false`.
+    Switch,
 }
 
 /// The range of a number.
@@ -62,7 +64,7 @@ impl Rule {
     pub(super) fn check(&self, config: &MachineConfig) -> Result<(), ConfigError> {
         match self.form {
             Form::Number(rule) | Form::Whole(rule) => rule.check(self.key, (rule.read)(config)),
-            Form::Text(_) | Form::Choice(_) | Form::ChoiceOrLevel(_) => Ok(()),
+            Form::Text(_) | Form::Choice(_) | Form::ChoiceOrLevel(_) | Form::Switch => Ok(()),
         }
     }
 }
@@ -98,7 +100,7 @@ const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the s
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
-static MACHINE: [Rule; 32] = [
+static MACHINE: [Rule; 33] = [
     Rule { key: "schema", form: Form::Whole(SCHEMA) },
     Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
     number("area.width_mm", |c| c.area.width_mm, (1.0, 100_000.0), "mm", "an A2 sheet lying is 594 wide"),
@@ -252,6 +254,7 @@ static MACHINE: [Rule; 32] = [
         "px",
         "0.5 is half a pixel",
     ),
+    Rule { key: "vectorize.arcs", form: Form::Switch },
     Rule { key: "vectorize.threshold", form: Form::ChoiceOrLevel(&["otsu", "adaptive"]) },
     whole("vectorize.pens", |c| f64::from(c.vectorize.pens), (1.0, 16.0), "", "1 draws all ink with one pen"),
     Rule { key: "vectorize.order", form: Form::Choice(&["none", "fast", "best"]) },

@@ -212,6 +212,10 @@ fn check_value(text: &str, rule: &'static Rule, value: &Spanned<DeValue<'_>>) ->
                 refused(format!("write {}{guess}", quoted.join(" or ")))
             }
         },
+        Form::Switch => match value.get_ref() {
+            DeValue::Boolean(_) => None,
+            _ => refused("write true or false, without quotes".to_string()),
+        },
         Form::ChoiceOrLevel(words) => {
             let is_level = match value.get_ref() {
                 DeValue::String(text) if words.contains(&text.as_ref()) => true,

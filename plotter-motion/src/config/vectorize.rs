@@ -14,6 +14,8 @@ pub struct VectorizeConfig {
     pub mode: VectorizeMode,
     /// Greatest distance of the ink from the strokes, px of the picture.
     pub max_error_px: f64,
+    /// Whether curves become circular arcs and circles where that saves vertices.
+    pub arcs: bool,
     /// How ink is told from paper.
     pub threshold: ThresholdChoice,
     /// How many pens are told apart by their colours; 1 draws all ink with one, by its grey level.
@@ -31,6 +33,7 @@ impl Default for VectorizeConfig {
         Self {
             mode: VectorizeMode::Centreline,
             max_error_px: 0.5,
+            arcs: false,
             threshold: ThresholdChoice::Otsu,
             pens: 1,
             order: StrokeOrder::Best,
