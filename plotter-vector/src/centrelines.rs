@@ -6,7 +6,7 @@
 
 pub(crate) use crate::graph::CONTEXT_ROWS;
 use crate::graph::{Centreline, Fragment, Joiner, Rims, Scan, Whole, fragments};
-use crate::{Bitmap, Bounded, Gray, PxPoint, Thinning, ThinningMethod};
+use crate::{Bitmap, Bounded, Curve, Gray, Thinning, ThinningMethod};
 use core::ops::Range;
 
 /// How ink becomes centrelines.
@@ -16,6 +16,8 @@ pub(crate) struct Centring {
     pub(crate) thinning: Thinning,
     /// What the strokes are simplified with.
     pub(crate) bounded: Bounded,
+    /// Whether they may have arcs.
+    pub(crate) arcs: bool,
     /// Own rows of a band.
     pub(crate) band_rows: u32,
 }
@@ -24,7 +26,7 @@ impl Centring {
     /// For lines up to `max_line_px` wide.
     pub(crate) fn new(method: ThinningMethod, max_line_px: u32, bounded: Bounded, band_rows: u32) -> Self {
         let thinning = Thinning { method, max_passes: max_line_px / 2 + 3 };
-        Self { thinning, bounded, band_rows: band_rows.max(1) }
+        Self { thinning, bounded, arcs: false, band_rows: band_rows.max(1) }
     }
 
     /// Rows that a band needs above and below its own.
@@ -34,7 +36,7 @@ impl Centring {
 
     /// The strokes of a picture in memory, in reading order of where they begin; `grey`, with whether dark is ink, makes
     /// them more exact.
-    pub(crate) fn strokes(&self, ink: &Bitmap, grey: Option<(&Gray, bool)>) -> Vec<Vec<PxPoint>> {
+    pub(crate) fn strokes(&self, ink: &Bitmap, grey: Option<(&Gray, bool)>) -> Vec<Curve> {
         let mut joiner = Joiner::default();
         let mut strokes = Vec::new();
         let bands: Vec<Range<u32>> = (0..ink.height())
@@ -68,24 +70,29 @@ impl Centring {
     }
 
     /// Strokes simplified.
-    pub(crate) fn simplified(&self, mut whole: Vec<Whole>) -> Vec<Vec<PxPoint>> {
+    pub(crate) fn simplified(&self, mut whole: Vec<Whole>) -> Vec<Curve> {
         whole.retain(|whole| !whole.places.is_empty());
-        let mut strokes = each(whole, |whole| Centreline::of(whole).polyline(self.bounded));
-        strokes.retain(|stroke| !stroke.is_empty());
-        strokes.iter_mut().for_each(Vec::shrink_to_fit);
+        let mut strokes = each(whole, |whole| Centreline::of(whole).curve(self.bounded, self.arcs));
+        strokes.retain(|stroke| !stroke.vertices.is_empty());
+        strokes.iter_mut().for_each(|stroke| stroke.vertices.shrink_to_fit());
         strokes
     }
 }
 
 /// Brings strokes into an order that depends on nothing but themselves: that of their vertices in turn, from the top.
-pub(crate) fn sort(strokes: &mut [Vec<PxPoint>]) {
-    strokes.sort_unstable_by(|one, other| compare(one, other));
+pub(crate) fn sort(strokes: &mut [Curve]) {
+    strokes.sort_unstable_by(compare);
 }
 
-/// By the vertices in turn.
-fn compare(one: &[PxPoint], other: &[PxPoint]) -> core::cmp::Ordering {
-    let unequal = one.iter().zip(other).map(|(a, b)| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x)));
-    unequal.into_iter().find(|order| order.is_ne()).unwrap_or_else(|| one.len().cmp(&other.len()))
+/// By the vertices in turn, then by the bulges.
+fn compare(one: &Curve, other: &Curve) -> core::cmp::Ordering {
+    let places = one.vertices.iter().zip(&other.vertices);
+    let unequal =
+        places.map(|(a, b)| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x))).find(|order| order.is_ne());
+    let bulges =
+        || one.bulges.iter().zip(&other.bulges).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
+    let lengths = || (one.vertices.len(), one.bulges.len()).cmp(&(other.vertices.len(), other.bulges.len()));
+    unequal.unwrap_or_else(|| lengths().then_with(|| bulges().unwrap_or(core::cmp::Ordering::Equal)))
 }
 
 /// How many bands are worked on at a time.

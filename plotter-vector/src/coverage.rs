@@ -1,9 +1,13 @@
 //! [`coverage`]: how far every pixel of the ink lies from the drawing.
 
-use crate::{Bitmap, Drawing, ErrorReport, ErrorTally, Pixel, PxPoint};
+use crate::curve::pieces;
+use crate::{Arc, Bitmap, Drawing, ErrorReport, ErrorTally, Pixel, PxPoint};
 
 /// Side of the squares in which segments are looked up, px.
 const CELL_PX: u32 = 32;
+
+/// Farthest that the chords lie from an arc that is measured, px.
+const CHORD_ERROR_PX: f64 = 0.002;
 
 /// Farthest that the ink's edges are looked for across a segment, px.
 const MAX_HALF_PX: f64 = 96.0;
@@ -12,7 +16,8 @@ const MAX_HALF_PX: f64 = 96.0;
 ///
 /// A line w px wide has its pixels' centres up to (w − 1) / 2 from its middle; the error of a pixel is what its distance
 /// from the nearest segment is more than that, and so 0 for all pixels of a line whose middle is drawn. On lines one pixel
-/// wide it is the distance itself. The width is measured on the ink, across the segment.
+/// wide it is the distance itself. The width is measured on the ink, across the segment. Arcs are measured as chords no
+/// farther than 0.002 px from them.
 ///
 /// ```
 /// # use plotter_vector::{Bitmap, Drawing, PxPoint, coverage};
@@ -100,14 +105,15 @@ struct Index {
 impl Index {
     fn new(ink: &Bitmap, drawing: &Drawing) -> Self {
         let mut segments = Vec::new();
-        for stroke in drawing.strokes() {
-            let dot = if stroke.len() == 1 { stroke.first() } else { None };
-            let ends = stroke.iter().zip(stroke.iter().skip(1).chain(dot));
-            segments.extend(ends.map(|(from, to)| Segment {
-                from: *from,
-                to: *to,
-                slack_px: slack_px(ink, *from, *to),
-            }));
+        for index in 0..drawing.strokes().len() {
+            let stroke = drawing.stroke(index);
+            let dot = stroke.first().filter(|_| stroke.len() == 1).map(|at| (*at, *at, None));
+            for (from, to, arc) in pieces(stroke, drawing.bulges(index)).chain(dot) {
+                match arc {
+                    None => segments.push(Segment { from, to, slack_px: slack_px(ink, from, to) }),
+                    Some(arc) => add_chords(ink, arc, &mut segments),
+                }
+            }
         }
         let columns = ink.width().div_ceil(CELL_PX).max(1);
         let rows = ink.height().div_ceil(CELL_PX).max(1);
@@ -197,16 +203,38 @@ fn for_each_square(segment: &Segment, columns: u32, rows: u32, mut visit: impl F
     }
 }
 
-/// Half the width of the ink across a segment, less half a pixel: the median of five places along it.
+/// The chords of an arc, with the width of the ink across the arc.
+fn add_chords(ink: &Bitmap, arc: Arc, segments: &mut Vec<Segment>) {
+    let slack_px = median_slack_px(ink, |part| {
+        let at = arc.at(part);
+        let (x, y) = at.minus(arc.centre);
+        (at, (-y / arc.radius_px, x / arc.radius_px))
+    });
+    let count = arc.chords(CHORD_ERROR_PX);
+    let place = |chord: u32| match chord {
+        0 => arc.from,
+        _ if chord == count => arc.to,
+        _ => arc.at(f64::from(chord) / f64::from(count)),
+    };
+    segments.extend((0..count).map(|chord| Segment { from: place(chord), to: place(chord + 1), slack_px }));
+}
+
 fn slack_px(ink: &Bitmap, from: PxPoint, to: PxPoint) -> f64 {
-    const STEP_PX: f64 = 0.25;
     let length = from.distance(to);
-    let (dx, dy) =
+    let direction =
         if length > 0.0 { ((to.x - from.x) / length, (to.y - from.y) / length) } else { (1.0, 0.0) };
+    let at = |t: f64| PxPoint::new(from.x + (to.x - from.x) * t, from.y + (to.y - from.y) * t);
+    median_slack_px(ink, |t| (at(t), direction))
+}
+
+/// Half the width of the ink across a piece, less half a pixel: the median of five places along it, each with the direction
+/// there.
+fn median_slack_px(ink: &Bitmap, place: impl Fn(f64) -> (PxPoint, (f64, f64))) -> f64 {
+    const STEP_PX: f64 = 0.25;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
     let is_ink = |x: f64, y: f64| x >= 0.0 && y >= 0.0 && ink.get(Pixel::new(x as u32, y as u32));
     let mut widths = [0.1, 0.3, 0.5, 0.7, 0.9].map(|t| {
-        let (x, y) = (from.x + (to.x - from.x) * t, from.y + (to.y - from.y) * t);
+        let (PxPoint { x, y }, (dx, dy)) = place(t);
         let reach = |side: f64| {
             let mut reach = 0.0;
             // In the middle of the next step: the border between two pixels belongs to one side only.

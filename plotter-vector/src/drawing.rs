@@ -1,7 +1,10 @@
 //! [`Drawing`]: pen strokes in pixel coordinates, and [`Scale`], the only road from there to the sheet.
 
+use crate::Curve;
+use crate::curve::{CHORD_ERROR_PX, chords, is_bulge, length_px};
 use core::fmt;
 use plotter_motion::{PlotOp, Point};
+use std::borrow::Cow;
 
 /// A place on the picture, px: x to the right, y **down**, (0, 0) in the picture's upper left corner.
 ///
@@ -54,7 +57,7 @@ impl From<crate::Pixel> for PxPoint {
 }
 
 /// Pen strokes in the order in which they are drawn, in pixel coordinates. A stroke of one vertex is a dot. Each stroke
-/// has a pen, a number in the carousel from 1.
+/// has a pen, a number in the carousel from 1. Vertices are joined by straight lines, or by arcs: see [`Curve`].
 ///
 /// ```
 /// # use plotter_vector::{Drawing, PxPoint};
@@ -75,6 +78,9 @@ pub struct Drawing {
     /// The pen of each stroke.
     #[cfg_attr(feature = "serde", serde(default))]
     pens: Vec<u8>,
+    /// The bulge of the piece that begins at each vertex; empty as long as nothing is an arc.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    bulges: Vec<f64>,
 }
 
 /// The pen of a stroke of which nothing else is said.
@@ -84,7 +90,14 @@ impl Drawing {
     /// An empty drawing on a picture of this size.
     #[must_use]
     pub const fn new(width_px: u32, height_px: u32) -> Self {
-        Self { width_px, height_px, vertices: Vec::new(), ends: Vec::new(), pens: Vec::new() }
+        Self {
+            width_px,
+            height_px,
+            vertices: Vec::new(),
+            ends: Vec::new(),
+            pens: Vec::new(),
+            bulges: Vec::new(),
+        }
     }
 
     /// Width of the picture.
@@ -118,6 +131,32 @@ impl Drawing {
         if self.vertices.len() > before {
             self.ends.push(self.vertices.len());
             self.pens.push(pen.max(FIRST_PEN));
+            if !self.bulges.is_empty() {
+                self.bulges.resize(self.vertices.len(), 0.0);
+            }
+        }
+    }
+
+    /// Adds a stroke that may have arcs; one without vertices is left out. Pens as with [`Drawing::push_with_pen`].
+    ///
+    /// ```
+    /// # use plotter_vector::{Curve, Drawing, PxPoint};
+    /// let (left, right) = (PxPoint::new(1.0, 3.0), PxPoint::new(5.0, 3.0));
+    /// let mut drawing = Drawing::new(6, 6);
+    /// drawing.push_curve(1, Curve { vertices: vec![left, right, left], bulges: vec![1.0, 1.0] });
+    /// assert!((drawing.pen_down_px() - 4.0 * std::f64::consts::PI).abs() < 1e-12); // a circle 4 px wide
+    /// ```
+    pub fn push_curve(&mut self, pen: u8, curve: Curve) {
+        let before = self.vertices.len();
+        let bulges = curve.has_arcs().then_some(curve.bulges);
+        self.push_with_pen(pen, curve.vertices);
+        if let Some(bulges) = bulges {
+            self.bulges.resize(before, 0.0);
+            // The last vertex begins nothing.
+            let pieces = (self.vertices.len() - before).saturating_sub(1);
+            let bulges = bulges.into_iter().take(pieces);
+            self.bulges.extend(bulges.map(|bulge| if is_bulge(bulge) { bulge } else { 0.0 }));
+            self.bulges.resize(self.vertices.len(), 0.0);
         }
     }
 
@@ -136,15 +175,67 @@ impl Drawing {
         pens
     }
 
-    /// The vertices of one stroke; empty when there is no such stroke.
+    /// The vertices of one stroke; empty when there is no such stroke. What lies between them: [`Drawing::bulges`].
     #[must_use]
     pub fn stroke(&self, index: usize) -> &[PxPoint] {
-        let start = index.checked_sub(1).map_or(Some(0), |before| self.ends.get(before).copied());
-        let end = self.ends.get(index).copied();
-        start.zip(end).and_then(|(start, end)| self.vertices.get(start..end)).unwrap_or(&[])
+        self.range(index).and_then(|range| self.vertices.get(range)).unwrap_or(&[])
     }
 
-    /// The strokes in order.
+    fn range(&self, index: usize) -> Option<core::ops::Range<usize>> {
+        let start = index.checked_sub(1).map_or(Some(0), |before| self.ends.get(before).copied());
+        start.zip(self.ends.get(index).copied()).map(|(start, end)| start..end)
+    }
+
+    /// The bulges of one stroke, one for each vertex as in [`Curve::bulges`]; empty when all of it is straight.
+    #[must_use]
+    pub fn bulges(&self, index: usize) -> &[f64] {
+        let bulges = self.range(index).and_then(|range| self.bulges.get(range)).unwrap_or(&[]);
+        if bulges.iter().any(|bulge| is_bulge(*bulge)) { bulges } else { &[] }
+    }
+
+    /// One stroke with its arcs; empty when there is no such stroke.
+    #[must_use]
+    pub fn curve(&self, index: usize) -> Curve {
+        Curve { vertices: self.stroke(index).to_vec(), bulges: self.bulges(index).to_vec() }
+    }
+
+    /// Whether any stroke has an arc.
+    #[must_use]
+    pub fn has_arcs(&self) -> bool {
+        self.bulges.iter().any(|bulge| is_bulge(*bulge))
+    }
+
+    /// The same drawing of straight lines: arcs replaced by chords that lie no farther than `chord_error_px` from them.
+    ///
+    /// ```
+    /// # use plotter_vector::{Curve, Drawing, PxPoint};
+    /// let mut drawing = Drawing::new(10, 6);
+    /// let vertices = vec![PxPoint::new(1.0, 5.0), PxPoint::new(9.0, 5.0)];
+    /// drawing.push_curve(1, Curve { vertices, bulges: vec![1.0] });
+    /// assert_eq!((drawing.vertices(), drawing.chords(0.54).vertices()), (2, 4)); // of 60 degrees each
+    /// ```
+    #[must_use]
+    pub fn chords(&self, chord_error_px: f64) -> Cow<'_, Self> {
+        if !self.has_arcs() {
+            return Cow::Borrowed(self);
+        }
+        let mut straight = Self::new(self.width_px, self.height_px);
+        for index in 0..self.ends.len() {
+            straight
+                .push_with_pen(self.pen(index), self.stroke_chords(index, chord_error_px).iter().copied());
+        }
+        Cow::Owned(straight)
+    }
+
+    /// One stroke of straight lines.
+    pub(crate) fn stroke_chords(&self, index: usize, chord_error_px: f64) -> Cow<'_, [PxPoint]> {
+        match self.bulges(index) {
+            [] => Cow::Borrowed(self.stroke(index)),
+            bulges => Cow::Owned(chords(self.stroke(index), bulges, chord_error_px)),
+        }
+    }
+
+    /// The vertices of the strokes in order.
     pub fn strokes(&self) -> impl ExactSizeIterator<Item = &[PxPoint]> + DoubleEndedIterator {
         (0..self.ends.len()).map(|index| self.stroke(index))
     }
@@ -161,8 +252,8 @@ impl Drawing {
     #[must_use]
     pub fn of_pen(&self, pen: u8) -> Self {
         let mut one = Self::new(self.width_px, self.height_px);
-        for (_, stroke) in self.strokes().enumerate().filter(|(index, _)| self.pen(*index) == pen) {
-            one.push_with_pen(pen, stroke.iter().copied());
+        for index in (0..self.ends.len()).filter(|index| self.pen(*index) == pen) {
+            one.push_curve(pen, self.curve(index));
         }
         one
     }
@@ -176,10 +267,7 @@ impl Drawing {
     /// Length drawn, px.
     #[must_use]
     pub fn pen_down_px(&self) -> f64 {
-        let length = |stroke: &[PxPoint]| -> f64 {
-            stroke.iter().zip(stroke.iter().skip(1)).map(|(from, to)| from.distance(*to)).sum()
-        };
-        self.strokes().map(length).sum()
+        (0..self.ends.len()).map(|index| length_px(self.stroke(index), self.bulges(index))).sum()
     }
 
     /// Length travelled with the pen up from each stroke's end to the next one's start, px. The ways from and to
@@ -190,21 +278,31 @@ impl Drawing {
         self.strokes().zip(self.strokes().skip(1)).filter_map(travel).sum()
     }
 
+    /// What selects the pen of a stroke, where it is another one than before.
+    pub(crate) fn select_pen(&self, index: usize) -> Option<PlotOp> {
+        let pen = self.pen(index);
+        let changes = match index.checked_sub(1) {
+            Some(before) => self.pen(before) != pen,
+            // Before the first stroke, unless the whole drawing is of the plotter's own.
+            None => self.pens.iter().any(|pen| *pen > FIRST_PEN),
+        };
+        changes.then_some(PlotOp::SelectPen { pen })
+    }
+
     /// The operations that draw it on the sheet: to each stroke's start with the pen up, along it with the pen
     /// down. A dot is drawn from its place to its place. The pen is selected where it changes, and before the first
-    /// stroke unless the whole drawing is of pen 1: that is the plotter's own.
+    /// stroke unless the whole drawing is of pen 1: that is the plotter's own. Arcs come as chords no farther than
+    /// 0.02 px from them.
     pub fn plot_ops(&self, scale: Scale) -> impl Iterator<Item = PlotOp> + '_ {
-        let one_pen = (0..self.ends.len()).all(|index| self.pen(index) == FIRST_PEN);
-        self.strokes().enumerate().flat_map(move |(index, stroke)| {
-            let before = index.checked_sub(1).map(|before| self.pen(before));
-            let pen = self.pen(index);
-            let select = (!one_pen && before != Some(pen)).then_some(PlotOp::SelectPen { pen });
-            let (start, rest) =
-                stroke.split_first().map_or((None, stroke), |(start, rest)| (Some(*start), rest));
-            let dot = if rest.is_empty() { start } else { None };
+        (0..self.ends.len()).flat_map(move |index| {
+            let stroke = self.stroke_chords(index, CHORD_ERROR_PX);
+            let select = self.select_pen(index);
+            let start = stroke.first().copied();
+            let dot = if stroke.len() == 1 { start } else { None };
             let travel = start.map(|to| PlotOp::Travel { to: scale.to_sheet(to) });
             let draw = move |to| PlotOp::Draw { to: scale.to_sheet(to), feed_mm_s: None };
-            select.into_iter().chain(travel).chain(rest.iter().copied().chain(dot).map(draw))
+            let rest = (1..stroke.len()).filter_map(move |vertex| stroke.get(vertex).copied());
+            select.into_iter().chain(travel).chain(rest.chain(dot).map(draw))
         })
     }
 }
@@ -335,6 +433,48 @@ mod tests {
         let ops: Vec<PlotOp> = drawing.plot_ops(Scale::new(2, 1.0, Point::ORIGIN).unwrap()).collect();
         let at = Point::new(0.5, 1.5);
         assert_eq!(ops, [PlotOp::Travel { to: at }, PlotOp::Draw { to: at, feed_mm_s: None }]);
+    }
+
+    /// Half a circle of radius 4 about (5, 5), clockwise as seen, over the top.
+    fn half() -> Curve {
+        Curve { vertices: vec![PxPoint::new(1.0, 5.0), PxPoint::new(9.0, 5.0)], bulges: vec![1.0] }
+    }
+
+    #[test]
+    fn arcs_cost_nothing_where_there_are_none() {
+        let line = [PxPoint::new(0.5, 0.5), PxPoint::new(3.5, 0.5)];
+        let (mut one, mut other) = (Drawing::new(4, 4), Drawing::new(4, 4));
+        one.push(line);
+        other.push_curve(1, Curve { vertices: line.to_vec(), bulges: vec![0.0, f64::NAN] });
+        assert_eq!(one, other);
+        assert!(one.bulges.is_empty() && other.bulges.is_empty());
+    }
+
+    #[test]
+    fn each_stroke_keeps_its_own_bulges() {
+        let mut drawing = Drawing::new(10, 10);
+        let dot = [PxPoint::new(0.5, 0.5)];
+        drawing.push(dot);
+        drawing.push_curve(2, half());
+        drawing.push([dot[0], PxPoint::new(2.5, 0.5)]);
+        drawing.push_curve(3, half());
+        let bulges: Vec<usize> = (0..5).map(|index| drawing.bulges(index).len()).collect();
+        assert_eq!(bulges, [0, 2, 0, 2, 0]);
+        assert_eq!(drawing.of_pen(3).curve(0), drawing.curve(3));
+        assert!(!drawing.of_pen(1).has_arcs());
+    }
+
+    #[test]
+    fn arcs_are_drawn_as_chords_over_the_right_side() {
+        let mut drawing = Drawing::new(10, 10);
+        drawing.push_curve(1, half());
+        let scale = Scale::new(10, 1.0, Point::ORIGIN).unwrap();
+        let places: Vec<Point> = drawing.plot_ops(scale).filter_map(PlotOp::target).collect();
+        assert_eq!(places.first(), Some(&Point::new(1.0, 5.0)));
+        assert_eq!(places.last(), Some(&Point::new(9.0, 5.0)));
+        let centre = Point::new(5.0, 5.0);
+        assert!(places.iter().all(|at| (at.distance(centre) - 4.0).abs() < 1e-9 && at.y >= 5.0));
+        assert!(places.len() > 10);
     }
 
     #[test]

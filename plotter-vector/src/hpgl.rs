@@ -1,12 +1,15 @@
 //! [`hpgl`]: a drawing as a plotter file.
 
+use crate::curve::circle;
+use crate::stroke_op::{StrokeOp, stroke_ops};
 use crate::{Drawing, Scale};
+use core::f64::consts::PI;
 use core::fmt::Write;
-use plotter_motion::hpgl::{UNITS_PER_MM, WriteError, write_ops};
+use plotter_motion::hpgl::{UNITS_PER_MM, WriteError, Writer};
 use plotter_motion::{PenMove, PlotOp};
 
 /// Writes a drawing as HPGL in plotter units of 0.025 mm. Vertices that fall on the same unit as the one before
-/// are written once. Each change of pen is an `SP`.
+/// are written once. Each change of pen is an `SP`. Arcs are `AA`, a circle is a `CI` about its centre: see [`Writer`].
 ///
 /// # Errors
 /// [`WriteError`]: a point farther out than a plotter's numbers go, or an error of `out`.
@@ -22,27 +25,46 @@ use plotter_motion::{PenMove, PlotOp};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn hpgl(drawing: &Drawing, scale: Scale, out: &mut impl Write) -> Result<(), WriteError> {
-    let mut before = None;
-    let mut dot = false;
-    let told = drawing.plot_ops(scale).filter(move |op| {
-        if matches!(op, PlotOp::SelectPen { .. }) {
-            return true;
+    let mut writer = Writer::new(out);
+    for index in 0..drawing.strokes().len() {
+        if let Some(select) = drawing.select_pen(index) {
+            writer.push(select)?;
         }
-        let place = PenMove::from_op(*op, UNITS_PER_MM).map(|to| to.target);
-        let travel = matches!(op, PlotOp::Travel { .. });
-        // The first vertex after a travel may be a dot, which stays.
-        let repeated = place == before && !travel && !dot;
-        before = place;
-        dot = travel;
-        !repeated
-    });
-    write_ops(told, out)
+        if let Some((centre, radius_px)) = circle(drawing.stroke(index), drawing.bulges(index)) {
+            writer.circle(scale.to_sheet(centre), radius_px * scale.mm_per_px())?;
+            continue;
+        }
+        let mut before = None;
+        let mut dot = false;
+        for op in stroke_ops(drawing, index, scale) {
+            let (StrokeOp::Op(PlotOp::Draw { to, .. } | PlotOp::Travel { to }) | StrokeOp::Arc { to, .. }) =
+                op
+            else {
+                continue;
+            };
+            let place = PenMove::from_op(PlotOp::Travel { to }, UNITS_PER_MM).map(|to| to.target);
+            let travel = matches!(op, StrokeOp::Op(PlotOp::Travel { .. }));
+            // The first vertex after a travel may be a dot, which stays.
+            let repeated = place == before && !travel && !dot;
+            before = place;
+            dot = travel;
+            match op {
+                StrokeOp::Op(op) if !repeated => writer.push(op)?,
+                // Most of a turn may well end where it began.
+                StrokeOp::Arc { centre, sweep_rad, to } if !repeated || sweep_rad.abs() > PI => {
+                    writer.arc(centre, sweep_rad, to)?;
+                }
+                _ => {}
+            }
+        }
+    }
+    writer.finish().map(drop)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::PxPoint;
+    use crate::{Curve, PxPoint};
     use plotter_motion::Point;
 
     #[test]
@@ -68,6 +90,24 @@ mod tests {
         assert_eq!(
             text,
             "IN;\nSP1;\nPU0,0;\nPD160,0;\nPU;\nSP2;\nPU0,40;\nPD160,40;\nPU0,80;\nPD160,80;\nPU;\nSP0;\n"
+        );
+    }
+
+    #[test]
+    fn arcs_and_circles_are_left_to_the_plotter() {
+        let at = PxPoint::new;
+        let mut drawing = Drawing::new(20, 10);
+        // Right, half a circle down (clockwise as seen), back.
+        let vertices = vec![at(2.0, 2.0), at(12.0, 2.0), at(12.0, 8.0), at(2.0, 8.0)];
+        drawing.push_curve(1, Curve { vertices, bulges: vec![0.0, 1.0] });
+        let vertices = vec![at(14.0, 5.0), at(18.0, 5.0), at(14.0, 5.0)];
+        drawing.push_curve(1, Curve { vertices, bulges: vec![-1.0, -1.0] });
+        let mut text = String::new();
+        hpgl(&drawing, Scale::new(10, 1.0, Point::ORIGIN).unwrap(), &mut text).unwrap();
+        assert_eq!(
+            text,
+            "IN;\nSP1;\nPU80,320;\nPD480,320;\nAA480,200,-90;\nPD600,200;\nAA480,200,-90;\nPD480,80,80,80;\n\
+             PU640,200;\nCI80;\nPU;\nSP0;\n"
         );
     }
 

@@ -48,8 +48,8 @@ impl Vectorizer {
             let mut ink = layers.bridged(index).unwrap_or_else(|| own.clone());
             let grey = layers.coverage(index, &ink, picture);
             let (strokes, _) = self.unordered(&mut ink, grey.as_ref().map(|levels| (levels, true)))?;
-            for stroke in strokes.strokes() {
-                drawing.push_with_pen(pen.number, stroke.iter().copied());
+            for stroke in 0..strokes.strokes().len() {
+                drawing.push_curve(pen.number, strokes.curve(stroke));
             }
             inks.push(ink);
         }

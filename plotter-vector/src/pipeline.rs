@@ -5,7 +5,7 @@ use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
 use crate::coverage::coverage;
 use crate::{
-    AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Drawing, DynamicThreshold, ErrorReport,
+    AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Curve, Drawing, DynamicThreshold, ErrorReport,
     ErrorTally, Figures, Gray, Lettering, Order, OrderedTracking, PensError, Pixel, PxPoint, Simplify, Split,
     ThinningMethod, Threshold, TooManyFigures, despeckle, pen_width_px, smallest_mark_px, split_by_width,
 };
@@ -61,6 +61,8 @@ pub struct Vectorizer {
     /// Ours: its tolerance is the promise that nothing lies farther from the segment that replaced it: of lines one
     /// pixel wide each pixel, of wider ones each point of the line down their middle.
     pub ours: Bounded,
+    /// Ours: whether curves become circular arcs and circles where that saves vertices, with the same promise.
+    pub arcs: bool,
     /// What ours draws.
     pub mode: Mode,
     /// Ours: smaller marks of ink are dirt, and smaller holes in it too, px; `None` for what a pen of the lines' width
@@ -79,7 +81,7 @@ pub struct Vectorizer {
 }
 
 impl Default for Vectorizer {
-    /// Ours to half a pixel, everything found from the picture, areas outlined by a pen of one pixel.
+    /// Ours to half a pixel, everything found from the picture, straight lines only, areas outlined by a pen of one pixel.
     fn default() -> Self {
         Self {
             algorithm: Algorithm::default(),
@@ -87,6 +89,7 @@ impl Default for Vectorizer {
             tracking: OrderedTracking::default(),
             published: DynamicThreshold::default(),
             ours: Bounded::default(),
+            arcs: false,
             mode: Mode::default(),
             smallest_mark_px: None,
             max_line_px: None,
@@ -213,12 +216,14 @@ impl Vectorizer {
         let pen_px = self.clean(ink);
         if pen_px <= 1 && self.mode != Mode::Outline {
             let traced = self.tracked(ink)?;
-            return Ok((traced.drawing, Some(traced.error)));
+            // Where there are arcs the errors are not known from the figures.
+            let error = (!traced.drawing.has_arcs()).then_some(traced.error);
+            return Ok((traced.drawing, error));
         }
         let strokes = self.strokes(ink, grey, pen_px)?;
         let mut drawing = Drawing::new(ink.width(), ink.height());
         for stroke in strokes {
-            drawing.push(stroke);
+            drawing.push_curve(1, stroke);
         }
         Ok((drawing, None))
     }
@@ -237,7 +242,7 @@ impl Vectorizer {
         ink: &Bitmap,
         grey: Option<(&Gray, bool)>,
         pen_px: u32,
-    ) -> Result<Vec<Vec<PxPoint>>, VectorizeError> {
+    ) -> Result<Vec<Curve>, VectorizeError> {
         let max_line_px = self.max_line_px(pen_px);
         let split;
         let (lines, areas) = if self.mode == Mode::Outline {
@@ -284,23 +289,25 @@ impl Vectorizer {
         // The promise holds for the middle of the ink; part of it goes for the jumps of its edges from pixel to pixel.
         let bounded = Bounded { tolerance_px: 0.85 * self.ours.tolerance_px };
         // What is left of an area's rim may be as wide again.
-        Centring::new(self.thinning, max_line_px, bounded, self.band_rows)
+        let centring = Centring::new(self.thinning, max_line_px, bounded, self.band_rows);
+        Centring { arcs: self.arcs, ..centring }
     }
 
     /// The strokes of the areas in some rows, of which the first is row `first_row` of the picture.
-    pub(crate) fn area_strokes(
-        &self,
-        first_row: u32,
-        areas: &Bitmap,
-    ) -> Result<Vec<Vec<PxPoint>>, VectorizeError> {
+    pub(crate) fn area_strokes(&self, first_row: u32, areas: &Bitmap) -> Result<Vec<Curve>, VectorizeError> {
         let paths = self.areas.paths(areas).map_err(VectorizeError::Areas)?;
         let top = f64::from(first_row);
         let stroke = |path: AreaPath| {
-            let mut stroke = self.ours.polyline(&path.sites, path.closed);
-            stroke.iter_mut().for_each(|at| at.y += top);
+            let mut stroke = self.simplified(&path.sites, path.closed);
+            stroke.vertices.iter_mut().for_each(|at| at.y += top);
             stroke
         };
         Ok(paths.map(stroke).collect())
+    }
+
+    /// A stroke through sites, by ours.
+    fn simplified(&self, sites: &[PxPoint], closed: bool) -> Curve {
+        if self.arcs { self.ours.arcs(sites, closed) } else { self.ours.polyline(sites, closed).into() }
     }
 
     /// Ours for lines one pixel wide.
@@ -312,7 +319,25 @@ impl Vectorizer {
         let Joined { figures, borrowed } = join(&linked, ink);
         drop(linked);
         let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
-        Ok(simplify(ink, &figures, lent, &self.ours))
+        let mut traced = simplify(ink, &figures, lent, &self.ours);
+        if self.arcs {
+            traced.drawing = self.with_arcs(&figures, &traced.drawing);
+        }
+        Ok(traced)
+    }
+
+    /// The strokes of figures, with arcs where they save vertices.
+    fn with_arcs(&self, figures: &Figures, straight: &Drawing) -> Drawing {
+        let mut drawing = Drawing::new(straight.width_px(), straight.height_px());
+        // Each figure has pixels, so each has its stroke.
+        for (figure, stroke) in figures.iter().zip(straight.strokes()) {
+            let sites: Vec<PxPoint> = figure.iter().map(|pixel| PxPoint::from(*pixel)).collect();
+            let closed = sites.len() > 3 && sites.first() == sites.last();
+            let curve = self.ours.arcs(&sites, closed);
+            let pays = curve.has_arcs() && curve.vertices.len() < stroke.len();
+            drawing.push_curve(1, if pays { curve } else { stroke.to_vec().into() });
+        }
+        drawing
     }
 
     fn published(&self, ink: &Bitmap) -> Result<Vectorized, VectorizeError> {

@@ -19,7 +19,7 @@ use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
 use crate::speckle::despeckle_here;
 use crate::{
-    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, Gray, LineWidth, Mode, Progress, PxPoint, Row,
+    Algorithm, Bitmap, Cancelled, Curve, DecodeError, Depth, Drawing, Gray, LineWidth, Mode, Progress, Row,
     RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer, context_rows, rows_of_width_context,
     smallest_mark_px,
 };
@@ -158,7 +158,7 @@ impl Vectorizer {
         for_each_row(source, progress, |_, row| sheet.push(row))?;
         let strokes = sheet.finish()?;
         let mut drawing = found.drawing;
-        strokes.into_iter().for_each(|stroke| drawing.push(stroke));
+        strokes.into_iter().for_each(|stroke| drawing.push_curve(1, stroke));
         Ok(TracedSheet { drawing: self.order.apply(&drawing), ..found })
     }
 }
@@ -279,8 +279,8 @@ struct Work<'a> {
     follow: Step,
     islands: Islands,
     joiner: Joiner,
-    strokes: Vec<Vec<PxPoint>>,
-    outlines: Vec<Vec<PxPoint>>,
+    strokes: Vec<Curve>,
+    outlines: Vec<Curve>,
 }
 
 impl<'a> Work<'a> {
@@ -344,7 +344,7 @@ impl<'a> Work<'a> {
     }
 
     /// All strokes, after the last row.
-    fn finish(mut self) -> Result<Vec<Vec<PxPoint>>, SheetError> {
+    fn finish(mut self) -> Result<Vec<Curve>, SheetError> {
         if let Some((first, areas)) = self.islands.finish() {
             self.outlines.extend(self.settings.area_strokes(first, &areas)?);
         }

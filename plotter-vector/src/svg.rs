@@ -1,11 +1,16 @@
 //! [`svg`]: a drawing as a picture for the screen; [`svg_in_colour`]: with the colours of its pens.
 
-use crate::{Drawing, Palette, Rgb};
+use crate::curve::{circle, pieces};
+use crate::{Drawing, Palette, PxPoint, Rgb};
+use core::f64::consts::PI;
 use core::fmt::{self, Write};
 
+/// Most that one arc command spans, rad: nearer to half a circle the rounding of its radius would move its middle.
+const MOST_RAD: f64 = 2.0 * PI / 3.0;
+
 /// Writes a drawing as SVG: the view box is the picture's size in px, y down, the centre of pixel (i, j) at
-/// (i + 0.5, j + 0.5); one polyline a stroke, with round caps so that dots show. All pens are black, each in a group of
-/// its own, as with [`svg_in_colour`].
+/// (i + 0.5, j + 0.5); one polyline a stroke, with round caps so that dots show; a path for a stroke with arcs, a circle for
+/// a whole one. All pens are black, each in a group of its own, as with [`svg_in_colour`].
 ///
 /// # Errors
 /// Those of the writer.
@@ -67,7 +72,12 @@ fn group(drawing: &Drawing, pen: u8, colour: Rgb, stroke_width_px: f64, out: &mu
         out,
         "<g fill=\"none\" stroke=\"{colour}\" stroke-width=\"{line}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">"
     )?;
-    for (_, stroke) in drawing.strokes().enumerate().filter(|(index, _)| drawing.pen(*index) == pen) {
+    for (index, stroke) in drawing.strokes().enumerate().filter(|(index, _)| drawing.pen(*index) == pen) {
+        let bulges = drawing.bulges(index);
+        if !bulges.is_empty() {
+            write_curve(stroke, bulges, out)?;
+            continue;
+        }
         out.write_str("<polyline points=\"")?;
         // A polyline of one vertex is not drawn; one that goes nowhere is, as a round dot.
         let dot = if stroke.len() == 1 { stroke } else { &[] };
@@ -78,6 +88,31 @@ fn group(drawing: &Drawing, pen: u8, colour: Rgb, stroke_width_px: f64, out: &mu
         out.write_str("\"/>\n")?;
     }
     out.write_str("</g>\n")
+}
+
+/// A stroke with arcs.
+fn write_curve(stroke: &[PxPoint], bulges: &[f64], out: &mut impl Write) -> fmt::Result {
+    if let Some((centre, radius_px)) = circle(stroke, bulges) {
+        let (x, y, radius) = (Short(centre.x), Short(centre.y), Short(radius_px));
+        return writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>");
+    }
+    let Some(first) = stroke.first() else { return Ok(()) };
+    write!(out, "<path d=\"M{},{}", Short(first.x), Short(first.y))?;
+    for (_, to, arc) in pieces(stroke, bulges) {
+        let Some(arc) = arc else {
+            write!(out, " L{},{}", Short(to.x), Short(to.y))?;
+            continue;
+        };
+        let (radius, sweep) = (Short(arc.radius_px), u8::from(arc.sweep_rad > 0.0));
+        let parts = libm::ceil(arc.sweep_rad.abs() / MOST_RAD).max(1.0);
+        let mut part = 1.0;
+        while part <= parts {
+            let to = if part < parts { arc.at(part / parts) } else { to };
+            write!(out, " A{radius} {radius} 0 0 {sweep} {},{}", Short(to.x), Short(to.y))?;
+            part += 1.0;
+        }
+    }
+    out.write_str("\"/>\n")
 }
 
 /// A number with at most three decimals and no trailing zeros.
@@ -94,7 +129,7 @@ impl fmt::Display for Short {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::PxPoint;
+    use crate::Curve;
 
     #[test]
     fn numbers_are_short() {
@@ -115,6 +150,29 @@ mod tests {
         svg(&drawing, 1.0, &mut text).unwrap();
         assert_eq!(text.matches("<g ").count(), 2);
         assert!(text.find("1,0.5") < text.find("2,0.5"), "{text}");
+    }
+
+    #[test]
+    fn arcs_are_written_as_paths_and_circles() {
+        let at = PxPoint::new;
+        let mut drawing = Drawing::new(20, 20);
+        let quarter = 2.0_f64.sqrt() - 1.0;
+        drawing.push_curve(
+            1,
+            Curve {
+                vertices: vec![at(1.0, 9.0), at(1.0, 5.0), at(5.0, 1.0), at(9.0, 1.0)],
+                bulges: vec![0.0, quarter, 0.0],
+            },
+        );
+        // Three quarters of a circle, the other way round: two arcs of 135 degrees.
+        let bulges = vec![-(1.0 + quarter) / (1.0 - quarter)];
+        drawing.push_curve(1, Curve { vertices: vec![at(15.0, 10.0), at(10.0, 15.0)], bulges });
+        let (left, right) = (at(2.0, 12.0), at(5.0, 12.0));
+        drawing.push_curve(1, Curve { vertices: vec![left, right, left], bulges: vec![1.0, 1.0] });
+        drawing.push([left, right]);
+        let mut text = String::new();
+        svg(&drawing, 1.0, &mut text).unwrap();
+        insta::assert_snapshot!(text);
     }
 
     #[test]

@@ -1,13 +1,19 @@
 //! Reading SVG: what is written is read back, and no text brings it down.
 #![cfg(feature = "svg-in")]
 
+mod frechet;
+
+use frechet::{some_start_is_within, within};
 use plotter_vector::{
-    Drawing, Palette, PalettePen, PxPoint, Rgb, SvgOptions, SvgPens, read_svg, svg, svg_in_colour,
+    Curve, Drawing, Palette, PalettePen, PxPoint, Rgb, SvgOptions, SvgPens, read_svg, svg, svg_in_colour,
 };
 use proptest::prelude::*;
 
 /// What reading what was written may be off, px: half of the last decimal, and single precision.
 const ROUND_TRIP_PX: f64 = 0.001;
+
+/// The same for arcs, px: their ends and radii are rounded, and the reader takes them for cubic curves.
+const ARC_ROUND_TRIP_PX: f64 = 0.15;
 
 /// Strokes on a sheet of 4000 x 3000 px; no two neighbouring vertices fall together when they are written.
 fn any_strokes() -> impl Strategy<Value = Vec<(u8, Vec<PxPoint>)>> {
@@ -71,6 +77,43 @@ proptest! {
         for (index, (pen, _)) in sorted.iter().enumerate() {
             let colour = read.pens.iter().find(|found| found.number == read.drawing.pen(index)).map(|pen| pen.colour);
             prop_assert_eq!(colour, palette.pen(*pen).map(|pen| pen.colour));
+        }
+    }
+
+    #[test]
+    fn arcs_that_svg_writes_are_read_back(
+        strokes in prop::collection::vec(
+            prop::collection::vec((10.0..400.0f64, 10.0..400.0f64, prop_oneof![Just(0.0), -3.7..3.7f64]), 2..6),
+            1..6,
+        ),
+        circles in prop::collection::vec((10.0..400.0f64, 10.0..400.0f64, 1.0..200.0f64), 0..3),
+    ) {
+        let mut drawing = Drawing::new(800, 800);
+        for stroke in &strokes {
+            let vertices = stroke.iter().map(|(x, y, _)| PxPoint::new(*x, *y)).collect();
+            let bulges = stroke.iter().map(|(.., bulge)| *bulge).collect();
+            drawing.push_curve(1, Curve { vertices, bulges });
+        }
+        for (x, y, radius) in &circles {
+            let ends = [-radius, *radius, -radius].map(|off| PxPoint::new(x + off, *y));
+            drawing.push_curve(1, Curve { vertices: ends.to_vec(), bulges: vec![1.0, 1.0] });
+        }
+        let mut text = String::new();
+        svg(&drawing, 1.0, &mut text).unwrap();
+        prop_assert_eq!(text.matches("<circle").count(), circles.len());
+        // 0.0004 px; the reader makes cubic curves of arcs first.
+        let read = read_svg(text.as_bytes(), &SvgOptions { tolerance_mm: 0.001, ..SvgOptions::default() }).unwrap();
+        prop_assert_eq!(read.drawing.strokes().len(), drawing.strokes().len());
+        for (index, stroke) in read.drawing.strokes().enumerate() {
+            let meant = drawing.curve(index).chords(0.001);
+            let near = if index < strokes.len() {
+                within(stroke, &meant, ARC_ROUND_TRIP_PX)
+            } else {
+                let ring = &stroke[..stroke.len() - 1];
+                let back: Vec<PxPoint> = meant.iter().rev().copied().collect();
+                some_start_is_within(ring, &meant, ARC_ROUND_TRIP_PX) || some_start_is_within(ring, &back, ARC_ROUND_TRIP_PX)
+            };
+            prop_assert!(near, "{text}");
         }
     }
 

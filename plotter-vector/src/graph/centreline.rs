@@ -3,7 +3,7 @@
 use super::junction::THIN_PX;
 use super::smooth::smooth;
 use super::{Place, Whole};
-use crate::{Bounded, PxPoint};
+use crate::{Bounded, Curve, PxPoint};
 
 /// The middle of a line.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -118,17 +118,17 @@ fn turn_to_first(places: &mut [Place]) {
 }
 
 impl Centreline {
-    /// The line with few vertices, its first one again at the end of a closed one. Corners are vertices.
-    pub(crate) fn polyline(&self, bounded: Bounded) -> Vec<PxPoint> {
+    /// The line with few vertices, its first one again at the end of a closed one, with arcs if they are wanted. Corners
+    /// are vertices.
+    pub(crate) fn curve(&self, bounded: Bounded, arcs: bool) -> Curve {
+        let simplified = |part: &[PxPoint], closed: bool| -> Curve {
+            if arcs { bounded.arcs(part, closed) } else { bounded.polyline(part, closed).into() }
+        };
         let Some((first, rest)) = self.corners.split_first() else {
-            return bounded.polyline(&self.places, self.closed);
+            return simplified(&self.places, self.closed);
         };
-        let mut vertices: Vec<PxPoint> = Vec::new();
-        let mut add = |part: &[PxPoint]| {
-            let part = bounded.polyline(part, false);
-            let again = usize::from(!vertices.is_empty());
-            vertices.extend(part.into_iter().skip(again));
-        };
+        let mut curve = Curve::default();
+        let mut add = |part: &[PxPoint]| curve.append(simplified(part, false));
         let between = |from: usize, to: usize| self.places.get(from..=to).unwrap_or(&[]);
         if !self.closed && *first > 0 {
             add(between(0, *first));
@@ -146,6 +146,6 @@ impl Centreline {
         } else if last + 1 < self.places.len() {
             add(between(last, self.places.len() - 1));
         }
-        vertices
+        curve
     }
 }

@@ -13,6 +13,7 @@ mod mark;
 mod row;
 
 use crate::Drawing;
+use crate::curve::CHORD_ERROR_PX;
 use crate::order::forest::Forest;
 use crate::order::plan::{Stroke, strokes_of};
 use crate::order::point_tree::PointTree;
@@ -112,9 +113,10 @@ impl Lettering {
     /// The blocks of lettering, in the order of their first strokes. A stroke belongs to one block at most.
     #[must_use]
     pub fn find(&self, drawing: &Drawing) -> Vec<TextBlock> {
-        self.find_in(&strokes_of(drawing))
+        self.find_in(&strokes_of(&drawing.chords(CHORD_ERROR_PX)))
     }
 
+    /// The blocks of strokes that have no arcs.
     pub(crate) fn find_in(&self, strokes: &[Stroke<'_>]) -> Vec<TextBlock> {
         let marks: Vec<Mark<'_>> =
             strokes.iter().enumerate().filter_map(|(index, stroke)| Mark::new(index, stroke)).collect();

@@ -15,8 +15,9 @@ mod sites;
 mod trails;
 mod units;
 
-use crate::{Drawing, Lettering, PxPoint, TextBlock};
-use plan::{Piece, Stroke, Trail, rebuild, strokes_of};
+use crate::curve::{is_bulge, tangent};
+use crate::{Curve, Drawing, Lettering, PxPoint, TextBlock};
+use plan::{Piece, Stroke, Trail, rebuild, strokes_of, unit};
 use search::shorten;
 use sites::{Site, Sites};
 use units::{mark_letters, units};
@@ -122,7 +123,11 @@ impl Order {
         if !strokes.iter().flat_map(|stroke| stroke.vertices).all(within) {
             return rebuild(drawing, &strokes, &as_given(&strokes, &[]));
         }
-        let blocks = self.lettering.map_or(Vec::new(), |lettering| lettering.find_in(&strokes));
+        let blocks = match self.lettering {
+            Some(lettering) if drawing.has_arcs() => lettering.find(drawing),
+            Some(lettering) => lettering.find_in(&strokes),
+            None => Vec::new(),
+        };
         let given = rebuild(drawing, &strokes, &as_given(&strokes, &blocks));
         mark_letters(&mut strokes, &blocks);
         let gap_px = if self.merge_gap_px > 0.0 { self.merge_gap_px } else { 0.0 };
@@ -223,11 +228,11 @@ fn start_rings_well(strokes: &[Stroke<'_>], trails: &mut [Trail]) {
             let before = index.checked_sub(1).and_then(|before| ends.get(before)).map(|ends| ends.1);
             let after = ends.get(index + 1).map(|ends| ends.0);
             trail.start = 0;
-            let mut ring = trail.vertices(strokes);
-            ring.pop();
+            let mut ring = trail.curve(strokes);
+            ring.vertices.pop();
             let start = best_start(&ring, before, after);
             trail.start = start;
-            let at = ring.get(start).copied().unwrap_or_default();
+            let at = ring.vertices.get(start).copied().unwrap_or_default();
             if let Some(slot) = ends.get_mut(index).filter(|slot| slot.0 != at) {
                 *slot = (at, at);
                 settled = false;
@@ -239,17 +244,33 @@ fn start_rings_well(strokes: &[Stroke<'_>], trails: &mut [Trail]) {
     }
 }
 
-fn best_start(ring: &[PxPoint], before: Option<PxPoint>, after: Option<PxPoint>) -> usize {
+/// The vertex of a ring, whose first one is not repeated, from which it is drawn.
+fn best_start(ring: &Curve, before: Option<PxPoint>, after: Option<PxPoint>) -> usize {
     let travel =
         |at: PxPoint| before.map_or(0.0, |from| from.distance(at)) + after.map_or(0.0, |to| to.distance(at));
     let mut best = (f64::INFINITY, f64::INFINITY, 0);
-    for (index, at) in ring.iter().enumerate() {
+    for (index, at) in ring.vertices.iter().enumerate() {
         let far = travel(*at);
         if far > best.0 + SAME_PX {
             continue;
         }
-        let previous = ring.get(index.checked_sub(1).unwrap_or(ring.len() - 1)).unwrap_or(at);
-        let bend = bend_cos(*previous, *at, *ring.get((index + 1) % ring.len()).unwrap_or(at));
+        let count = ring.vertices.len();
+        let vertex = |index: usize| ring.vertices.get(index).copied().unwrap_or(*at);
+        let bulge = |index: usize| ring.bulges.get(index).copied().unwrap_or_default();
+        let before = index.checked_sub(1).unwrap_or(count - 1);
+        let (previous, next) = (vertex(before), vertex((index + 1) % count));
+        // Of arcs the directions at the vertex count.
+        let from = if is_bulge(bulge(before)) {
+            at.along(tangent(unit(previous, *at), bulge(before), 1.0), -1.0)
+        } else {
+            previous
+        };
+        let to = if is_bulge(bulge(index)) {
+            at.along(tangent(unit(*at, next), bulge(index), -1.0), 1.0)
+        } else {
+            next
+        };
+        let bend = bend_cos(from, *at, to);
         if far < best.0 - SAME_PX || bend < best.1 - SHARPER_COS {
             best = (far, bend, index);
         }
@@ -326,6 +347,7 @@ mod tests {
     #[test]
     fn of_equally_near_vertices_a_ring_begins_at_the_sharpest() {
         let ring = [(0.0, 0.0), (2.0, 0.0), (4.0, 0.0), (2.0, 9.0)].map(|(x, y)| PxPoint::new(x, y));
+        let ring = Curve::from(ring.to_vec());
         assert_eq!(best_start(&ring, None, None), 3);
         assert_eq!(best_start(&ring, Some(PxPoint::new(2.0, -1.0)), None), 1);
     }

@@ -1,7 +1,8 @@
 //! What the search knows of a drawing ([`Stroke`]), what it answers ([`Trail`]), and [`rebuild`], the only place
 //! that makes a drawing of the answer.
 
-use crate::{Drawing, PxPoint};
+use crate::curve::{CHORD_ERROR_PX, length_px};
+use crate::{Curve, Drawing, PxPoint};
 
 /// Way along a stroke over which the direction of its end is taken, px: enough for one stair of a gentle slope.
 const END_REACH_PX: f64 = 4.0;
@@ -18,6 +19,8 @@ pub(crate) struct Stroke<'a> {
     pub(crate) letter: usize,
     /// Places at which it may be entered if it is closed; else the first and the last one count.
     pub(crate) vertices: &'a [PxPoint],
+    /// Bulges of its arcs; empty where all is straight.
+    pub(crate) bulges: &'a [f64],
     /// Whether its last vertex is its first one again.
     pub(crate) closed: bool,
     /// Unit vectors in which it would go on beyond its first and its last vertex; (0, 0) for a dot.
@@ -25,6 +28,11 @@ pub(crate) struct Stroke<'a> {
 }
 
 impl Stroke<'_> {
+    /// Its length, px.
+    pub(crate) fn length_px(&self) -> f64 {
+        length_px(self.vertices, self.bulges)
+    }
+
     /// Where it begins (`false`) or ends (`true`).
     pub(crate) fn end(&self, last: bool) -> PxPoint {
         let vertex = if last { self.vertices.last() } else { self.vertices.first() };
@@ -37,12 +45,16 @@ pub(crate) fn strokes_of(drawing: &Drawing) -> Vec<Stroke<'_>> {
     drawing
         .strokes()
         .enumerate()
-        .map(|(index, vertices)| Stroke {
-            pen: drawing.pen(index),
-            letter: 0,
-            vertices,
-            closed: vertices.len() >= MIN_CLOSED && vertices.first() == vertices.last(),
-            outward: [outward(vertices.iter()), outward(vertices.iter().rev())],
+        .map(|(index, vertices)| {
+            let places = drawing.stroke_chords(index, CHORD_ERROR_PX);
+            Stroke {
+                pen: drawing.pen(index),
+                letter: 0,
+                vertices,
+                bulges: drawing.bulges(index),
+                closed: vertices.len() >= MIN_CLOSED && vertices.first() == vertices.last(),
+                outward: [outward(places.iter()), outward(places.iter().rev())],
+            }
         })
         .collect()
 }
@@ -96,22 +108,30 @@ impl Trail {
 
     /// Its vertices in drawing order; a closed trail's last vertex is its first one.
     pub(crate) fn vertices(&self, strokes: &[Stroke<'_>]) -> Vec<PxPoint> {
-        let mut joined: Vec<PxPoint> = Vec::new();
+        self.curve(strokes).vertices
+    }
+
+    /// Its vertices with its arcs.
+    pub(crate) fn curve(&self, strokes: &[Stroke<'_>]) -> Curve {
+        let mut joined = Curve::default();
         for piece in &self.pieces {
             let Some(stroke) = strokes.get(piece.stroke) else { continue };
-            let mut own = stroke.vertices.to_vec();
-            begin_at(&mut own, piece.start, stroke.closed);
+            let mut own = Curve { vertices: stroke.vertices.to_vec(), bulges: stroke.bulges.to_vec() };
+            if stroke.closed {
+                own.begin_at(piece.start);
+            }
             if piece.reversed {
                 own.reverse();
             }
-            // Ends in one place are one vertex; across a gap the pen stays down.
-            let shared = usize::from(joined.last().is_some() && joined.last() == own.first());
-            joined.extend(own.into_iter().skip(shared));
+            // Across a gap the pen stays down.
+            joined.append(own);
         }
-        if self.closed && joined.first() != joined.last() {
-            joined.extend(joined.first().copied());
+        if self.closed && joined.vertices.first() != joined.vertices.last() {
+            joined.append(joined.vertices.first().copied().into_iter().collect::<Vec<PxPoint>>().into());
         }
-        begin_at(&mut joined, self.start, self.closed);
+        if self.closed {
+            joined.begin_at(self.start);
+        }
         joined
     }
 
@@ -141,19 +161,11 @@ impl Trail {
     }
 }
 
-/// Turns a closed line so that its vertex `start` is its first and its last one.
-fn begin_at(vertices: &mut [PxPoint], start: usize, closed: bool) {
-    if let Some((last, ring)) = vertices.split_last_mut().filter(|(_, ring)| closed && start < ring.len()) {
-        ring.rotate_left(start);
-        *last = ring.first().copied().unwrap_or(*last);
-    }
-}
-
 /// The drawing that draws the strokes of `drawing` as the trails say.
 pub(crate) fn rebuild(drawing: &Drawing, strokes: &[Stroke<'_>], trails: &[Trail]) -> Drawing {
     let mut ordered = Drawing::new(drawing.width_px(), drawing.height_px());
     for trail in trails {
-        ordered.push_with_pen(trail.pen(strokes), trail.vertices(strokes));
+        ordered.push_curve(trail.pen(strokes), trail.curve(strokes));
     }
     ordered
 }

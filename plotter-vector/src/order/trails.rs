@@ -18,6 +18,7 @@ use super::forest::Forest;
 use super::plan::{Piece, Stroke, Trail, unit};
 use super::point_tree::PointTree;
 use crate::PxPoint;
+use crate::curve::tangent;
 
 /// Greatest cosine between the outward directions of two ends that go on in each other: they bend by 45° at most.
 const STRAIGHT_COS: f64 = -core::f64::consts::FRAC_1_SQRT_2;
@@ -207,13 +208,7 @@ impl<'a> Meeting<'a> {
         let (Some(of_a), Some(of_b)) = (self.strokes.get(a / 2), self.strokes.get(b / 2)) else {
             return false;
         };
-        let length = || {
-            of_a.vertices.windows(2).map(|pair| match pair {
-                [from, to] => from.distance(*to),
-                _ => 0.0,
-            })
-        };
-        let closes = || a != b && length().sum::<f64>() > CLOSED_GAPS * gap_px;
+        let closes = || a != b && of_a.length_px() > CLOSED_GAPS * gap_px;
         self.partner(b).is_none()
             && (of_a.pen, of_a.letter) == (of_b.pen, of_b.letter)
             && (a / 2 != b / 2 || closes())
@@ -349,8 +344,9 @@ fn tip(stroke: &Stroke<'_>, start: usize, last: bool) -> (PxPoint, (f64, f64)) {
     let [first_outward, last_outward] = stroke.outward;
     if let (Some(before), true) = (start.checked_sub(1), stroke.closed) {
         let vertex = |index: usize| stroke.vertices.get(index).copied().unwrap_or_default();
-        let inner = vertex(if last { before } else { start + 1 });
-        return (vertex(start), unit(inner, vertex(start)));
+        let bulge = |index: usize| stroke.bulges.get(index).copied().unwrap_or_default();
+        let (inner, bulge) = if last { (before, bulge(before)) } else { (start + 1, -bulge(start)) };
+        return (vertex(start), tangent(unit(vertex(inner), vertex(start)), bulge, 1.0));
     }
     (stroke.end(last), if last { last_outward } else { first_outward })
 }

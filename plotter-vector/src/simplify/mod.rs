@@ -1,5 +1,6 @@
 //! [`Simplify`]: fewer vertices for the same line; published ([`DynamicThreshold`]) and ours ([`Bounded`]).
 
+mod arcs;
 mod bounded;
 mod dynamic_threshold;
 mod links;
