@@ -9,24 +9,30 @@
 //! ```text
 //! cargo run --release --example trace
 //! cargo run --release --example trace -- scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt
+//! cargo run --release --example trace -- scan.png --arcs --svg scan.svg --gcode scan.gcode
 //! cargo run --release --example trace -- photo.jpg --pens 3 --svg pens.svg --overlay pens.png
 //! ```
 
 use clap::{Parser, ValueEnum};
 use plotter_examples::{Overlay, at, overlay_png, print, read_file, run, vectorizer, write_file};
+use plotter_motion::gcode::{PenControl, WriteOptions};
 use plotter_motion::{Machine, Point, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};
 use plotter_vector::{
     Algorithm, Bin, Bitmap, Colour, Drawing, Gray, MAX_PENS, Palette, Pens, Pixel, Scale, ThresholdMethod,
-    Vectorized, Vectorizer, decode, decode_colour, error_chart, hpgl, svg_in_colour, worst_pixel,
+    Vectorized, Vectorizer, decode, decode_colour, error_chart, gcode, hpgl, svg_in_colour, worst_pixel,
 };
 use serde::Serialize;
+use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The picture that is traced when none is given.
 const FLAG: &[u8] = include_bytes!("data/flag.png");
+
+/// Farthest that the chords for a machine without arcs are from them, mm.
+const MDRAW_CHORD_MM: f64 = 0.01;
 
 /// Most threads that are started.
 const MAX_THREADS: usize = 1024;
@@ -47,6 +53,9 @@ struct Arguments {
     /// Greatest distance of a pixel from the line that replaces it, px (ours only) [default: 0.5]
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     max_error_px: Option<f64>,
+    /// Circular arcs and circles where they save vertices, within the same error (ours only): CI and AA, G2 and G3, A
+    #[arg(long)]
+    arcs: bool,
     /// What is drawn of the ink (ours only) [default: centreline, with --hatch mixed]
     #[arg(long, value_enum)]
     mode: Option<ModeChoice>,
@@ -80,7 +89,14 @@ struct Arguments {
     /// Writes the strokes as HPGL, y up from the centre of the lower left pixel
     #[arg(long, value_name = "F")]
     hpgl: Option<PathBuf>,
-    /// Writes the vertices as text: x and y a line, in px as in the SVG, an empty line between strokes
+    /// Writes the strokes as G-code in mm, y up as in the HPGL
+    #[arg(long, value_name = "F")]
+    gcode: Option<PathBuf>,
+    /// How the G-code lifts the pen
+    #[arg(long, value_enum, default_value = "servo")]
+    gcode_pen: GcodePen,
+    /// Writes the vertices as text: x and y a line, in px as in the SVG, an empty line between strokes; where an arc begins
+    /// its bulge too, the tangent of a quarter of its angle, positive from x towards y
     #[arg(long, value_name = "F")]
     points: Option<PathBuf>,
     /// Writes all figures as JSON
@@ -110,6 +126,16 @@ enum ModeChoice {
     Outline,
     /// The middle of lines, and areas already at three times their width
     Mixed,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum GcodePen {
+    /// M3 S90 down, M5 up: GRBL with a servo as its spindle
+    Servo,
+    /// G1 Z0 down, G0 Z5 up
+    Z,
+    /// M1 90 down, M1 160 up: mDraw, which knows no arcs and gets chords
+    Mdraw,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -312,6 +338,7 @@ fn settings(arguments: &Arguments) -> Result<Settings, String> {
         }
         given => config.max_error_px = given.unwrap_or(config.max_error_px),
     }
+    config.arcs |= arguments.arcs;
     match arguments.hatch {
         Some(bad) if !(bad >= 0.0 && bad.is_finite()) => {
             return Err(format!(
@@ -355,6 +382,7 @@ fn settings(arguments: &Arguments) -> Result<Settings, String> {
 fn refuse_ours(arguments: &Arguments) -> Result<(), String> {
     let given = [
         ("--max-error-px", "has no error bound", arguments.max_error_px.is_some()),
+        ("--arcs", "draws straight lines", arguments.arcs),
         ("--mode", "always follows the middle of lines", arguments.mode.is_some()),
         ("--pens", "draws with one pen", arguments.pens.is_some()),
         ("--order", "draws in the order of tracking", arguments.order.is_some()),
@@ -453,13 +481,12 @@ fn write_files(
         write_file(path, out)?;
     }
     if let Some(path) = &arguments.hpgl {
-        let mm_per_px = arguments.mm_per_px;
-        // The picture's corner lies half a pixel off, so that the centre of its lower left pixel is the origin.
-        let corner = Point::new(-0.5 * mm_per_px, -0.5 * mm_per_px);
-        let scale = Scale::new(drawing.height_px(), mm_per_px, corner).map_err(|error| error.to_string())?;
         let mut out = String::new();
-        hpgl(drawing, scale, &mut out).map_err(|error| error.to_string())?;
+        hpgl(drawing, sheet(arguments, drawing)?, &mut out).map_err(|error| error.to_string())?;
         write_file(path, out)?;
+    }
+    if let Some(path) = &arguments.gcode {
+        write_file(path, gcode_text(drawing, sheet(arguments, drawing)?, arguments.gcode_pen)?)?;
     }
     if let Some(path) = &arguments.points {
         write_file(path, points(drawing).map_err(text)?)?;
@@ -484,14 +511,48 @@ fn write_files(
     Ok(())
 }
 
+/// From the picture to the plotter's sheet.
+fn sheet(arguments: &Arguments, drawing: &Drawing) -> Result<Scale, String> {
+    let mm_per_px = arguments.mm_per_px;
+    // The picture's corner lies half a pixel off, so that the centre of its lower left pixel is the origin.
+    let corner = Point::new(-0.5 * mm_per_px, -0.5 * mm_per_px);
+    Scale::new(drawing.height_px(), mm_per_px, corner).map_err(|error| error.to_string())
+}
+
+fn gcode_text(drawing: &Drawing, scale: Scale, pen: GcodePen) -> Result<String, String> {
+    let usual = WriteOptions::default();
+    let options = match pen {
+        GcodePen::Servo => usual,
+        GcodePen::Z => WriteOptions { pen: PenControl::Height { up_mm: 5.0, down_mm: 0.0 }, ..usual },
+        // What sends the text waits for the servo.
+        GcodePen::Mdraw => WriteOptions {
+            pen: PenControl::Commands { up: "M1 160", down: "M1 90" },
+            settle: Duration::ZERO,
+            ..usual
+        },
+    };
+    let chords = match pen {
+        GcodePen::Mdraw => drawing.chords(MDRAW_CHORD_MM / scale.mm_per_px()),
+        _ => Cow::Borrowed(drawing),
+    };
+    let mut out = String::new();
+    gcode(&chords, scale, options, &mut out).map_err(|error| error.to_string())?;
+    Ok(out)
+}
+
 fn points(drawing: &Drawing) -> Result<String, std::fmt::Error> {
     let mut out = String::new();
     for (index, stroke) in drawing.strokes().enumerate() {
         if index > 0 {
             out.push('\n');
         }
-        for vertex in stroke {
-            writeln!(out, "{} {}", vertex.x, vertex.y)?;
+        let bulges = drawing.bulges(index).iter().copied().chain(std::iter::repeat(0.0));
+        for (vertex, bulge) in stroke.iter().zip(bulges) {
+            write!(out, "{} {}", vertex.x, vertex.y)?;
+            if bulge != 0.0 {
+                write!(out, " {bulge}")?;
+            }
+            out.push('\n');
         }
     }
     Ok(out)

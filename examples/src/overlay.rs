@@ -13,6 +13,8 @@ const MOST_TIMES: u32 = 4;
 const LONGEST_PX: u32 = 8192;
 /// How much of the picture's contrast is left.
 const PALE: f32 = 0.35;
+/// Farthest that arcs are from the chords that are shown, px.
+const CHORD_ERROR_PX: f64 = 0.05;
 /// What is drawn where there are no colours.
 const RED: Rgb = Rgb([208, 24, 24]);
 const MAGENTA: Rgb = Rgb([224, 0, 200]);
@@ -65,13 +67,12 @@ pub fn overlay_png(overlay: Overlay<'_>, level: impl Fn(Pixel) -> [u8; 3]) -> Re
         let mut dots = PathBuilder::new();
         // A path of one place is not drawn; one that goes nowhere is, as a round dot.
         let dot = if stroke.len() == 1 { stroke } else { &[] };
-        for (index, vertex) in stroke.iter().chain(dot).enumerate() {
+        for (at, place) in drawing.curve(index).chords(CHORD_ERROR_PX).iter().chain(dot).enumerate() {
+            let (x, y) = (single(place.x) * scale, single(place.y) * scale);
+            if at == 0 { line.move_to(x, y) } else { line.line_to(x, y) }
+        }
+        for vertex in stroke {
             let (x, y) = (single(vertex.x) * scale, single(vertex.y) * scale);
-            if index == 0 {
-                line.move_to(x, y)
-            } else {
-                line.line_to(x, y)
-            }
             if times > 1 || stroke.len() == 1 {
                 dots.push_circle(x, y, 1.0 + 0.4 * scale);
             }

@@ -44,6 +44,7 @@ pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer
         mode,
         threshold: Threshold { method, ..usual.threshold },
         ours: Bounded { tolerance_px: config.max_error_px },
+        arcs: config.arcs,
         max_line_px: (config.max_line_px > 0).then_some(config.max_line_px),
         order: Order { effort, ..usual.order },
         areas,

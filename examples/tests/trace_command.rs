@@ -39,6 +39,41 @@ fn all_files_are_written_and_the_report_has_all_keys() {
 }
 
 #[test]
+fn arcs_reach_every_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
+    let (picture, config) = (file("ring.pgm"), file("arcs.toml"));
+    let level = |x: f64, y: f64| u8::from(((x - 60.0).hypot(y - 60.0) - 40.0).abs() > 1.5) * 255;
+    let ring = (0..14_400_u32).map(|at| level(f64::from(at % 120) + 0.5, f64::from(at / 120) + 0.5));
+    std::fs::write(&picture, [b"P5 120 120 255\n".to_vec(), ring.collect()].concat()).unwrap();
+    std::fs::write(&config, "schema = 1\n[vectorize]\narcs = true\n").unwrap();
+    for option in [&["--arcs"][..], &["--config", &config]] {
+        let (svg, plt, gcode, points, look) =
+            (file("a.svg"), file("a.plt"), file("a.gcode"), file("a.txt"), file("a.png"));
+        let files =
+            ["--svg", &svg, "--hpgl", &plt, "--gcode", &gcode, "--points", &points, "--overlay", &look];
+        assert!(run_example("trace", &[&[picture.as_str()][..], option, &files].concat()).status.success());
+        let read = |path: &str| std::fs::read_to_string(path).unwrap();
+        assert_eq!(read(&svg).matches("<circle ").count(), 1, "{}", read(&svg));
+        // 40 px are 4 mm are 160 units.
+        assert!(read(&plt).contains(";\nCI160;\n"), "{}", read(&plt));
+        assert_eq!(
+            read(&gcode).lines().filter(|line| line.starts_with("G2 ") || line.starts_with("G3 ")).count(),
+            2
+        );
+        assert_eq!(read(&points).lines().filter(|line| line.split(' ').count() == 3).count(), 2);
+    }
+    let mdraw = file("b.gcode");
+    let options = [picture.as_str(), "--arcs", "--gcode", &mdraw, "--gcode-pen", "mdraw"];
+    assert!(run_example("trace", &options).status.success());
+    let text = std::fs::read_to_string(&mdraw).unwrap();
+    assert!(
+        text.contains("M1 90\nG1 ") && !text.contains("G2 ") && !text.contains("G3 ") && !text.contains("G4")
+    );
+    assert!(complaint("trace", &["--algorithm", "published", "--arcs"]).contains("draws straight lines"));
+}
+
+#[test]
 fn the_help_names_the_greatest_error_that_is_taken() {
     let help = String::from_utf8(run_example("trace", &["--help"]).stdout).unwrap();
     let default = plotter_vector::Bounded::default().tolerance_px;
