@@ -6,8 +6,8 @@ use crate::{Arc, Bitmap, Drawing, ErrorReport, ErrorTally, Pixel, PxPoint};
 /// Side of the squares in which segments are looked up, px.
 const CELL_PX: u32 = 32;
 
-/// Farthest that the chords lie from an arc that is measured, px.
-const CHORD_ERROR_PX: f64 = 0.002;
+/// Farthest that the chords by which an arc is looked up lie from it, px: far less than a square.
+const CHORD_ERROR_PX: f64 = 1.0;
 
 /// Farthest that the ink's edges are looked for across a segment, px.
 const MAX_HALF_PX: f64 = 96.0;
@@ -16,8 +16,8 @@ const MAX_HALF_PX: f64 = 96.0;
 ///
 /// A line w px wide has its pixels' centres up to (w − 1) / 2 from its middle; the error of a pixel is what its distance
 /// from the nearest segment is more than that, and so 0 for all pixels of a line whose middle is drawn. On lines one pixel
-/// wide it is the distance itself. The width is measured on the ink, across the segment. Arcs are measured as chords no
-/// farther than 0.002 px from them.
+/// wide it is the distance itself. The width is measured on the ink, across the segment. Arcs are measured as
+/// arcs.
 ///
 /// ```
 /// # use plotter_vector::{Bitmap, Drawing, PxPoint, coverage};
@@ -69,16 +69,20 @@ fn for_each_error(ink: &Bitmap, drawing: &Drawing, mut add: impl FnMut(Pixel, f6
     }
 }
 
-/// A segment and half the ink's width beyond a pixel's own, px.
-#[derive(Clone, Copy, Debug)]
+/// A segment or an arc, and half the ink's width beyond a pixel's own, px.
+#[derive(Clone, Debug)]
 struct Segment {
     from: PxPoint,
     to: PxPoint,
     slack_px: f64,
+    arc: Option<Box<Arc>>,
 }
 
 impl Segment {
     fn distance(&self, at: PxPoint) -> f64 {
+        if let Some(arc) = &self.arc {
+            return arc.distance(at);
+        }
         let (x, y) = (self.to.x - self.from.x, self.to.y - self.from.y);
         let length_squared = x * x + y * y;
         let along = (at.x - self.from.x) * x + (at.y - self.from.y) * y;
@@ -109,10 +113,8 @@ impl Index {
             let stroke = drawing.stroke(index);
             let dot = stroke.first().filter(|_| stroke.len() == 1).map(|at| (*at, *at, None));
             for (from, to, arc) in pieces(stroke, drawing.bulges(index)).chain(dot) {
-                match arc {
-                    None => segments.push(Segment { from, to, slack_px: slack_px(ink, from, to) }),
-                    Some(arc) => add_chords(ink, arc, &mut segments),
-                }
+                let slack_px = arc.map_or_else(|| slack_px(ink, from, to), |arc| arc_slack_px(ink, &arc));
+                segments.push(Segment { from, to, slack_px, arc: arc.map(Box::new) });
             }
         }
         let columns = ink.width().div_ceil(CELL_PX).max(1);
@@ -182,41 +184,50 @@ impl Index {
     }
 }
 
-/// The squares that a segment's bounding boxes touch, piece by piece so that a long slope takes few.
+/// The squares in which a segment is looked up; those of an arc's chords, which lie less beside it than squares that hold
+/// nothing make the search go on.
 fn for_each_square(segment: &Segment, columns: u32, rows: u32, mut visit: impl FnMut(usize)) {
+    let Some(arc) = &segment.arc else {
+        for_each_touched((segment.from, segment.to), columns, rows, &mut visit);
+        return;
+    };
+    let count = arc.chords(CHORD_ERROR_PX);
+    let mut from = arc.from;
+    for chord in 1..=count {
+        let to = arc.at(f64::from(chord) / f64::from(count));
+        for_each_touched((from, to), columns, rows, &mut visit);
+        from = to;
+    }
+}
+
+/// The squares that a segment's bounding boxes touch, piece by piece so that a long slope takes few.
+fn for_each_touched((from, to): (PxPoint, PxPoint), columns: u32, rows: u32, visit: &mut impl FnMut(usize)) {
     let side = f64::from(CELL_PX);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
     let cell = |v: f64, most: u32| ((v / side).max(0.0) as u32).min(most - 1);
-    let (top, bottom) = (segment.from.y.min(segment.to.y), segment.from.y.max(segment.to.y));
-    let (x, y) = (segment.to.x - segment.from.x, segment.to.y - segment.from.y);
+    let (top, bottom) = (from.y.min(to.y), from.y.max(to.y));
+    let (x, y) = (to.x - from.x, to.y - from.y);
     for row in cell(top, rows)..=cell(bottom, rows) {
         // Where the segment enters and leaves this row of squares.
         let (upper, lower) = (f64::from(row) * side, f64::from(row + 1) * side);
         let at = |level: f64| {
-            let t = if y == 0.0 { 0.0 } else { ((level - segment.from.y) / y).clamp(0.0, 1.0) };
-            segment.from.x + x * t
+            let t = if y == 0.0 { 0.0 } else { ((level - from.y) / y).clamp(0.0, 1.0) };
+            from.x + x * t
         };
-        let (a, b) = if y == 0.0 { (segment.from.x, segment.to.x) } else { (at(upper), at(lower)) };
+        let (a, b) = if y == 0.0 { (from.x, to.x) } else { (at(upper), at(lower)) };
         for column in cell(a.min(b), columns)..=cell(a.max(b), columns) {
             visit(row as usize * columns as usize + column as usize);
         }
     }
 }
 
-/// The chords of an arc, with the width of the ink across the arc.
-fn add_chords(ink: &Bitmap, arc: Arc, segments: &mut Vec<Segment>) {
-    let slack_px = median_slack_px(ink, |part| {
+/// Half the width of the ink across an arc, less half a pixel.
+fn arc_slack_px(ink: &Bitmap, arc: &Arc) -> f64 {
+    median_slack_px(ink, |part| {
         let at = arc.at(part);
         let (x, y) = at.minus(arc.centre);
         (at, (-y / arc.radius_px, x / arc.radius_px))
-    });
-    let count = arc.chords(CHORD_ERROR_PX);
-    let place = |chord: u32| match chord {
-        0 => arc.from,
-        _ if chord == count => arc.to,
-        _ => arc.at(f64::from(chord) / f64::from(count)),
-    };
-    segments.extend((0..count).map(|chord| Segment { from: place(chord), to: place(chord + 1), slack_px }));
+    })
 }
 
 fn slack_px(ink: &Bitmap, from: PxPoint, to: PxPoint) -> f64 {
@@ -274,6 +285,28 @@ mod tests {
         drawing.push([PxPoint::new(0.5, 1.5), PxPoint::new(2.5, 1.5)]);
         let errors = coverage(&ink, &drawing);
         assert_eq!((errors.pixels, errors.max_px), (3, 1.0));
+    }
+
+    #[test]
+    fn an_arc_is_measured_as_one() {
+        // A ring of radius 60 and 5 px, drawn by its middle: chords of a degree would already show.
+        let mut ink = Bitmap::new(140, 140).unwrap();
+        for (x, y) in (0..140).flat_map(|y| (0..140).map(move |x| (x, y))) {
+            let away = libm::hypot(f64::from(x) - 69.5, f64::from(y) - 69.5);
+            ink.set(Pixel::new(x, y), (away - 60.0).abs() <= 2.5);
+        }
+        let (left, right) = (PxPoint::new(10.0, 70.0), PxPoint::new(130.0, 70.0));
+        let mut drawing = Drawing::new(140, 140);
+        drawing.push_curve(1, crate::Curve { vertices: vec![left, right, left], bulges: vec![1.0, 1.0] });
+        // Across the slope of a raster edge: half a pixel at most.
+        let errors = coverage(&ink, &drawing);
+        assert!(errors.max_px <= 0.5, "{}", errors.max_px);
+        let mut half = Drawing::new(140, 140);
+        half.push_curve(1, crate::Curve { vertices: vec![left, right], bulges: vec![1.0] });
+        let (at, error_px) = worst_pixel(&ink, &half).unwrap();
+        // The lowest pixel is as far from both ends, less half the width of the ring without a pixel.
+        assert_eq!(at.y, 131);
+        assert!((error_px - (libm::hypot(59.5, 61.5) - 2.0)).abs() < 0.3, "{error_px}");
     }
 
     #[test]

@@ -234,6 +234,30 @@ impl Arc {
         PxPoint::new(self.centre.x + x * cos - y * sin, self.centre.y + x * sin + y * cos)
     }
 
+    /// Distance of a place from it, px.
+    ///
+    /// ```
+    /// # use plotter_vector::{Arc, PxPoint};
+    /// let half = Arc::new(PxPoint::new(0.0, 0.0), PxPoint::new(6.0, 0.0), 1.0).unwrap(); // over the top
+    /// let distance = |x, y| half.distance(PxPoint::new(x, y));
+    /// assert_eq!([distance(3.0, -1.0), distance(3.0, 4.0), distance(6.0, 2.0)], [2.0, 5.0, 2.0]);
+    /// ```
+    #[must_use]
+    pub fn distance(&self, at: PxPoint) -> f64 {
+        let (from, to, out) =
+            (self.from.minus(self.centre), self.to.minus(self.centre), at.minus(self.centre));
+        let turn = if self.sweep_rad > 0.0 { 1.0 } else { -1.0 };
+        let after_from = turn * (from.0 * out.1 - from.1 * out.0) >= 0.0;
+        let before_to = turn * (out.0 * to.1 - out.1 * to.0) >= 0.0;
+        let beside =
+            if self.sweep_rad.abs() <= PI { after_from && before_to } else { after_from || before_to };
+        if beside {
+            (at.distance(self.centre) - self.radius_px).abs()
+        } else {
+            at.distance(self.from).min(at.distance(self.to))
+        }
+    }
+
     /// Into how many equal chords it has to be divided so that they lie no farther than this from it. A chord of the
     /// angle a is r (1 − cos(a / 2)) off.
     pub(crate) fn chords(&self, chord_error_px: f64) -> u32 {
@@ -325,6 +349,20 @@ mod tests {
                     |count: u32| arc.radius_px * (1.0 - libm::cos(arc.sweep_rad / f64::from(2 * count)));
                 assert!(sagitta(count) <= error + 1e-9);
                 assert!(count == 1 || sagitta(count - 1) > error, "one chord too many");
+            }
+        }
+    }
+
+    #[test]
+    fn the_distance_is_that_of_the_nearest_place_of_many() {
+        for bulge in [0.1, 0.6, 1.0, 2.0, -0.3, -3.5] {
+            let arc = Arc::new(at(3.0, 4.0), at(20.0, 9.0), bulge).unwrap();
+            for place in
+                (0..40).flat_map(|x| (0..40).map(move |y| at(f64::from(x) - 8.0, f64::from(y) - 12.0)))
+            {
+                let sampled = (0..=4000).map(|i| arc.at(f64::from(i) / 4000.0).distance(place));
+                let nearest = sampled.fold(f64::INFINITY, f64::min);
+                assert!((arc.distance(place) - nearest).abs() < 0.02, "{bulge} {place:?}");
             }
         }
     }
