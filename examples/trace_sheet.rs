@@ -36,6 +36,9 @@ struct Arguments {
     /// Writes the strokes as HPGL, 0.1 mm a pixel, y up from the centre of the lower left pixel
     #[arg(long, value_name = "F")]
     hpgl: Option<PathBuf>,
+    /// Circular arcs and circles where they save vertices, within the same error
+    #[arg(long)]
+    arcs: bool,
     /// Threads [default: as many as the machine has]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     threads: usize,
@@ -66,8 +69,9 @@ fn trace(arguments: &Arguments) -> Result<(), String> {
     };
     let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build();
     let threads = threads.map_err(|error| format!("threads: {error}"))?;
+    let vectorizer = Vectorizer { arcs: arguments.arcs, ..Vectorizer::default() };
     let sheet = threads
-        .install(|| Vectorizer::default().vectorize_rows(&mut scan, &mut Progress::new(&mut report)))
+        .install(|| vectorizer.vectorize_rows(&mut scan, &mut Progress::new(&mut report)))
         .map_err(|error| format!("{}: {error}", path.display()))?;
     bar.finish_and_clear();
     let drawing = &sheet.drawing;
