@@ -57,7 +57,7 @@ fn every_real_file_is_read_to_its_end() -> io::Result<()> {
         // All that these files hold is well formed but for one `PD:`.
         let expected_errors = usize::from(name == "hp2xx_bz.hp");
         assert_eq!(errors.len(), expected_errors, "{name}: {errors:#?}");
-        let known: usize = ["IN", "DF", "SP", "VS", "PU", "PD", "PA", "PR", "CI", "PG", "DT", "CO"]
+        let known: usize = ["IN", "DF", "SP", "VS", "PU", "PD", "PA", "PR", "CI", "AA", "PG", "DT", "CO"]
             .iter()
             .filter_map(|known| found.get(*known))
             .sum();
