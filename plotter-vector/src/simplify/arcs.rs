@@ -60,7 +60,7 @@ impl Bounded {
     ///
     /// Sources: R. L. S. Drysdale, G. Rote, A. Sturm, "Approximation of an open polygonal curve with a minimum number of
     /// circular arcs and biarcs" (2008): the arcs between two vertices are a family of one parameter, each site allows a
-    /// range of it; the greatest of the whole ring by C. L. Lawson's weights, "Contributions to the theory of linear least
+    /// range of it; the circle of a whole ring with the least greatest error by C. L. Lawson's weights, "Contributions to the theory of linear least
     /// maximum approximation" (1961), on the equation of I. Kåsa, "A circle fitting procedure and its error analysis"
     /// (1976).
     ///
