@@ -59,8 +59,14 @@ fn lines(width: i32, height: i32, count: usize) -> impl Strategy<Value = Vec<Lin
     )
 }
 
+/// Few cases, for each is a sheet in several bands; `PROPTEST_CASES` asks for more.
+fn few() -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok());
+    ProptestConfig { cases: asked.unwrap_or(5), max_shrink_iters: 60, ..ProptestConfig::default() }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: std::env::var("CASES").map_or(5, |c| c.parse().unwrap()), max_shrink_iters: 60, ..ProptestConfig::default() })]
+    #![proptest_config(few())]
 
     #[test]
     fn bands_do_not_show(pen_px in 2.0..6.0_f64, lines in lines(200, 900, 10), mode in 0..3_usize, hatched: bool, arcs: bool) {
