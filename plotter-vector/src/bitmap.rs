@@ -232,9 +232,18 @@ impl Bitmap {
 
     /// A copy of some rows.
     pub(crate) fn band(&self, rows: core::ops::Range<u32>) -> Self {
+        self.band_in(rows, &mut Vec::new())
+    }
+
+    /// A copy of some rows, made of the memory of `words`.
+    pub(crate) fn band_in(&self, rows: core::ops::Range<u32>, words: &mut Vec<u64>) -> Self {
         let rows = rows.start.min(self.height)..rows.end.min(self.height);
         let at = |y: u32| y as usize * self.words_per_row;
-        let words = self.words.get(at(rows.start)..at(rows.end)).unwrap_or(&[]).to_vec();
+        let own = self.words.get(at(rows.start)..at(rows.end)).unwrap_or(&[]);
+        let mut words = core::mem::take(words);
+        words.clear();
+        words.reserve_exact(own.len());
+        words.extend_from_slice(own);
         Self { height: rows.end.saturating_sub(rows.start), words, ..*self }
     }
 

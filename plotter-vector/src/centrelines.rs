@@ -5,7 +5,7 @@
 //! threads work on them.
 
 pub(crate) use crate::graph::CONTEXT_ROWS;
-use crate::graph::{Centreline, Fragment, Joiner, Rims, Scan, Whole, fragments};
+use crate::graph::{Cuts, Fragment, Joiner, Rims, Scan, Stretch, Stroke, fragments};
 use crate::{Bitmap, Bounded, Curve, Gray, Thinning, ThinningMethod};
 use core::ops::Range;
 
@@ -34,6 +34,11 @@ impl Centring {
         self.thinning.rows_of_context() + CONTEXT_ROWS
     }
 
+    /// Where long strokes are cut: with arcs nowhere, for an arc may go on over any cut.
+    pub(crate) fn cuts(&self) -> Cuts {
+        if self.arcs { Cuts { least: usize::MAX, ..Cuts::default() } } else { Cuts::default() }
+    }
+
     /// The strokes of a picture in memory, in reading order of where they begin; `grey`, with whether dark is ink, makes
     /// them more exact.
     pub(crate) fn strokes(&self, ink: &Bitmap, grey: Option<(&Gray, bool)>) -> Vec<Curve> {
@@ -51,6 +56,7 @@ impl Centring {
             }
             // At once: simplified they take a hundredth of the memory.
             strokes.extend(self.simplified(whole));
+            joiner.cut(self.cuts(), self.bounded);
         }
         strokes.extend(self.simplified(joiner.finish().collect()));
         sort(&mut strokes);
@@ -66,13 +72,14 @@ impl Centring {
         let mut skeleton = band.clone();
         // Lines that are wider than expected stay so in places: their middle is found all the same.
         let _ = self.thinning.thin_in_place(&mut skeleton);
-        fragments(Scan { ink: &band, first_row, grey }, &skeleton, first_row, rows)
+        let stretch = Stretch { picture: &skeleton, rows: 0..skeleton.height() };
+        fragments(Scan { ink: &band, first_row, grey }, &stretch, first_row, rows, &mut Vec::new())
     }
 
     /// Strokes simplified.
-    pub(crate) fn simplified(&self, mut whole: Vec<Whole>) -> Vec<Curve> {
-        whole.retain(|whole| !whole.places.is_empty());
-        let mut strokes = each(whole, |whole| Centreline::of(whole).curve(self.bounded, self.arcs));
+    pub(crate) fn simplified(&self, mut whole: Vec<Stroke>) -> Vec<Curve> {
+        whole.retain(|whole| !whole.is_empty());
+        let mut strokes = each(whole, |whole| whole.curve(self.cuts(), self.bounded, self.arcs));
         strokes.retain(|stroke| !stroke.vertices.is_empty());
         strokes.iter_mut().for_each(|stroke| stroke.vertices.shrink_to_fit());
         strokes

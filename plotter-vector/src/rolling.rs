@@ -67,9 +67,13 @@ impl Rolling<u64> {
         Self::new(width, width.div_ceil(u64::BITS) as usize)
     }
 
-    /// A copy of some rows that are still here.
-    pub(crate) fn band(&self, rows: &Range<u32>) -> Bitmap {
-        Bitmap::of_words(self.width, rows.end - rows.start, self.rows(rows).to_vec())
+    /// A copy of some rows that are still here, made of the memory of `words`.
+    pub(crate) fn band(&self, rows: &Range<u32>, mut words: Vec<u64>) -> Bitmap {
+        let own = self.rows(rows);
+        words.clear();
+        words.reserve_exact(own.len());
+        words.extend_from_slice(own);
+        Bitmap::of_words(self.width, rows.end - rows.start, words)
     }
 
     /// Lends all rows that are still here, and the number of the first one, without a copy.
@@ -111,12 +115,12 @@ mod tests {
         rows.forget_before(3);
         rows.push(&[1 << 5, 0]);
         assert_eq!(rows.end(), 6);
-        let band = rows.band(&(4..6));
+        let band = rows.band(&(4..6), vec![7]);
         assert_eq!((band.width(), band.height()), (70, 2));
         assert_eq!((band.row(0), band.row(1)), ([16, 0].as_slice(), [32, 0].as_slice()));
         let lent = rows.lend(|picture, first| (first, picture.height(), picture.row(0).to_vec()));
         assert_eq!(lent, (3, 3, vec![8, 0]));
-        assert_eq!(rows.band(&(4..6)), band);
+        assert_eq!(rows.band(&(4..6), vec![7]), band);
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::areas::Islands;
 use crate::areas::split::split;
 use crate::bitmap::blocks_between;
 use crate::centrelines::{CONTEXT_ROWS, Centring, each, sort, threads};
-use crate::graph::{Joiner, Rims, Scan, fragments};
+use crate::graph::{Joiner, Rims, Scan, Stretch, fragments};
 use crate::pipeline::is_raster_lines;
 use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
@@ -28,8 +28,11 @@ use core::ops::Range;
 
 /// Own rows of a band, bytes at 1 bit a pixel, and the fewest rows: less, and the context costs more than the band; more,
 /// and the memory grows.
-const BAND_BYTES: usize = 1 << 20;
+const BAND_BYTES: usize = 3 << 18;
 const FEWEST_ROWS: u32 = 384;
+
+/// Rows of all bands that are worked on at a time, bytes at 1 bit a pixel: of a large sheet they are fewer than the threads.
+const BANDS_BYTES: usize = 5 << 20;
 
 /// What [`Vectorizer::vectorize_rows`] found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -234,14 +237,16 @@ struct Step {
     /// Own rows of a band, and rows more that it needs above and below.
     band_rows: u32,
     context: u32,
+    /// Bands that are worked on at a time.
+    bands: u32,
     height: u32,
 }
 
 impl Step {
-    /// The bands that can be worked on when the rows before `end` are there: as many as there are threads, or those that
-    /// are left at the end of the sheet.
+    /// The bands that can be worked on when the rows before `end` are there: as many as are worked on at a time, or those
+    /// that are left at the end of the sheet.
     fn ready(&mut self, end: u32) -> Option<Vec<Range<u32>>> {
-        let bands = u32::try_from(threads()).unwrap_or(1);
+        let bands = self.bands;
         let own = self.next..self.next.saturating_add(bands.saturating_mul(self.band_rows)).min(self.height);
         if own.is_empty() || end < own.end.saturating_add(self.context).min(self.height) {
             return None;
@@ -274,6 +279,8 @@ struct Work<'a> {
     levels: Option<Rolling<u8>>,
     lines: Rolling<u64>,
     skeleton: Rolling<u64>,
+    /// Memory of the bands: always the same, so that it does not fall to pieces.
+    words: Vec<Vec<u64>>,
     clean: Step,
     thin: Step,
     follow: Step,
@@ -298,7 +305,11 @@ impl<'a> Work<'a> {
         let row_bytes = (width.div_ceil(u64::BITS) as usize * 8).max(1);
         let rows = u32::try_from(BAND_BYTES / row_bytes).unwrap_or(u32::MAX).max(FEWEST_ROWS);
         let band_rows = rows.min(settings.band_rows).max(1);
-        let step = |context| Step { next: 0, band_rows, context, height };
+        let step = |context: u32| {
+            let rows = context.saturating_mul(2).saturating_add(band_rows).min(height);
+            let bands = threads().min(BANDS_BYTES / (row_bytes * rows as usize).max(1)).max(1);
+            Step { next: 0, band_rows, context, bands: u32::try_from(bands).unwrap_or(1), height }
+        };
         let grey = threshold.is_some() && max_line_px.is_some();
         Self {
             settings,
@@ -309,6 +320,7 @@ impl<'a> Work<'a> {
             levels: grey.then(|| Rolling::of_levels(width)),
             lines: Rolling::of_ink(width),
             skeleton: Rolling::of_ink(width),
+            words: Vec::new(),
             clean: step(
                 context_rows(smallest_px).saturating_add(max_line_px.map_or(0, rows_of_width_context)),
             ),
@@ -355,13 +367,19 @@ impl<'a> Work<'a> {
         Ok(self.strokes)
     }
 
+    /// Bands with memory for each.
+    fn with_words(&mut self, bands: Vec<Range<u32>>) -> Vec<(Range<u32>, Vec<u64>)> {
+        bands.into_iter().map(|own| (own, self.words.pop().unwrap_or_default())).collect()
+    }
+
     /// Removes speckles, and tells lines from areas.
     fn clean(&mut self, bands: Vec<Range<u32>>) -> Result<(), SheetError> {
+        let bands = self.with_words(bands);
         let (step, ink, max_line_px) = (self.clean, &self.ink, self.max_line_px);
         let smallest_px = self.smallest_px;
-        let cleaned = each(bands, |own| {
+        let cleaned = each(bands, |(own, words)| {
             let rows = step.around(&own);
-            let mut band = ink.band(&rows);
+            let mut band = ink.band(&rows, words);
             despeckle_here(&mut band, smallest_px);
             let (lines, areas) = match max_line_px {
                 Some(max_line_px) => {
@@ -382,6 +400,7 @@ impl<'a> Work<'a> {
                     self.outlines.extend(self.settings.area_strokes(first, &areas)?);
                 }
             }
+            self.words.extend(lines.or(areas).map(Bitmap::into_words));
         }
         self.ink.forget_before(self.clean.needs());
         Ok(())
@@ -389,31 +408,38 @@ impl<'a> Work<'a> {
 
     /// Thins the lines.
     fn thin(&mut self, bands: Vec<Range<u32>>) {
+        let bands = self.with_words(bands);
         let (step, lines, thinning) = (self.thin, &self.lines, self.centring.thinning);
-        let thinned = each(bands, |own| {
+        let thinned = each(bands, |(own, words)| {
             let rows = step.around(&own);
-            let mut band = lines.band(&rows);
+            let mut band = lines.band(&rows, words);
             // Lines that are wider than expected stay so in places: their middle is found all the same.
             let _ = thinning.thin_in_place(&mut band);
             (own.start - rows.start..own.end - rows.start, band)
         });
-        for (mut own, band) in thinned {
-            own.by_ref().for_each(|y| self.skeleton.push(band.row(y)));
+        for (own, band) in thinned {
+            own.for_each(|y| self.skeleton.push(band.row(y)));
+            self.words.push(band.into_words());
         }
         self.lines.forget_before(self.follow.needs().min(self.thin.needs()));
     }
 
     /// Follows the skeleton, and simplifies the strokes that are whole now.
     fn follow(&mut self, bands: Vec<Range<u32>>) {
-        let (step, lines, skeleton) = (self.follow, &mut self.lines, &self.skeleton);
+        let bands = self.with_words(bands);
+        let (step, lines, skeleton) = (self.follow, &mut self.lines, &mut self.skeleton);
         let ink_is_dark = self.threshold.as_ref().is_some_and(RowThreshold::ink_is_dark);
         let follow = |levels: Option<(&Gray, u32)>| {
+            let grey = levels.map(|(levels, first_row)| Rims { levels, ink_is_dark, first_row });
             lines.lend(|ink, first_row| {
-                let grey = levels.map(|(levels, first_row)| Rims { levels, ink_is_dark, first_row });
                 let scan = Scan { ink, first_row, grey };
-                each(bands, |own| {
-                    let rows = step.around(&own);
-                    fragments(scan, &skeleton.band(&rows), rows.start, &own)
+                skeleton.lend(|picture, first_row| {
+                    each(bands, |(own, mut words)| {
+                        let rows = step.around(&own);
+                        let rows = rows.start - first_row..rows.end - first_row;
+                        let stretch = Stretch { picture, rows };
+                        (fragments(scan, &stretch, first_row, &own, &mut words), words)
+                    })
                 })
             })
         };
@@ -421,9 +447,13 @@ impl<'a> Work<'a> {
             Some(levels) => levels.lend(|levels, first_row| follow(Some((levels, first_row)))),
             None => follow(None),
         };
-        let joiner = &mut self.joiner;
-        let whole = found.into_iter().flatten().filter_map(|fragment| joiner.push(fragment)).collect();
+        let mut whole = Vec::new();
+        for (fragments, words) in found {
+            self.words.push(words);
+            whole.extend(fragments.into_iter().filter_map(|fragment| self.joiner.push(fragment)));
+        }
         self.strokes.extend(self.centring.simplified(whole));
+        self.joiner.cut(self.centring.cuts(), self.centring.bounded);
         let needs = self.follow.needs();
         self.lines.forget_before(needs.min(self.thin.needs()));
         self.skeleton.forget_before(needs);

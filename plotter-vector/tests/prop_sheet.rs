@@ -91,6 +91,25 @@ proptest! {
     }
 
     #[test]
+    fn long_strokes_are_cut_alike(
+        ends in prop::collection::vec((10..90_i32, 0..9500_i32, 10..90_i32, 0..9500_i32), 1..4),
+        ring in 0..4000_i32,
+    ) {
+        // Narrow and long; a frame, which is a ring, besides.
+        let mut lines: Vec<Line> = ends.into_iter().map(|(x0, y0, x1, y1)| ((x0, y0), (x1, y1))).collect();
+        let corners = [(12, ring), (88, ring), (88, ring + 5200), (12, ring + 5200), (12, ring)];
+        lines.extend(corners.iter().zip(&corners[1..]).map(|(from, to)| (*from, *to)));
+        let ink = ink_of(&drawn(100, 9500, 4.0, &lines));
+        let whole = Vectorizer { band_rows: u32::MAX, ..Vectorizer::default() };
+        let expected = whole.trace(&ink).unwrap().drawing;
+        for band_rows in [700, 2048, u32::MAX] {
+            let vectorizer = Vectorizer { band_rows, ..whole };
+            prop_assert!(vectorizer.trace(&ink).unwrap().drawing == expected, "whole, {}", band_rows);
+            prop_assert!(by_rows(vectorizer, &mut BitmapRows::new(&ink)) == expected, "{}", band_rows);
+        }
+    }
+
+    #[test]
     fn noise_has_no_bands_either(seed: u64, density in 1..6_u32) {
         let mut ink = Bitmap::new(100, 260).unwrap();
         let mut random = seed | 1;

@@ -1,6 +1,7 @@
 //! [`Graph`]: the nodes and edges of a skeleton.
 
 use crate::{Bitmap, Pixel};
+use core::ops::Range;
 use std::collections::HashMap;
 
 /// The eight neighbours in the order of the bits of a neighbourhood, clockwise from the right (y down).
@@ -30,9 +31,47 @@ const fn links() -> [u8; 256] {
     table
 }
 
-/// The links of a pixel, a bit for each of [`AROUND`].
-fn links_of(skeleton: &Bitmap, at: Pixel) -> u8 {
-    LINKS.get(usize::from(skeleton.around(at))).copied().unwrap_or(0)
+/// Some rows of a skeleton: what lies above and below is as if it were not there.
+#[derive(Clone, Debug)]
+pub(crate) struct Stretch<'a> {
+    /// The skeleton.
+    pub(crate) picture: &'a Bitmap,
+    /// The rows, as the picture counts them.
+    pub(crate) rows: Range<u32>,
+}
+
+impl Stretch<'_> {
+    /// The links of a pixel, a bit for each of [`AROUND`].
+    fn links_of(&self, at: Pixel) -> u8 {
+        const BELOW: u8 = 0b0000_1110;
+        const ABOVE: u8 = 0b1110_0000;
+        let mut around = self.picture.around(at);
+        if at.y == self.rows.start {
+            around &= !ABOVE;
+        }
+        if at.y + 1 == self.rows.end {
+            around &= !BELOW;
+        }
+        LINKS.get(usize::from(around)).copied().unwrap_or(0)
+    }
+}
+
+/// The pixels of a skeleton that are not yet in an edge, from its row `first_row` on.
+struct Rest {
+    picture: Bitmap,
+    first_row: u32,
+}
+
+impl Rest {
+    fn has(&self, at: Pixel) -> bool {
+        at.y.checked_sub(self.first_row).is_some_and(|y| self.picture.get(Pixel { y, ..at }))
+    }
+
+    fn take(&mut self, at: Pixel) {
+        if let Some(y) = at.y.checked_sub(self.first_row) {
+            self.picture.set(Pixel { y, ..at }, false);
+        }
+    }
 }
 
 /// The neighbour in a direction of [`AROUND`].
@@ -92,29 +131,35 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
-    /// Follows all lines of a skeleton. Every pixel is in exactly one edge, or is a node; linear in the skeleton.
-    pub(crate) fn of(skeleton: &Bitmap) -> Self {
+    /// Follows all lines of a skeleton. Every pixel is in exactly one edge, or is a node; linear in the skeleton. Works in
+    /// `words`, whatever they are.
+    pub(crate) fn of(skeleton: &Stretch<'_>, words: &mut Vec<u64>) -> Self {
         let mut graph = Self::default();
         let mut at_pixel = HashMap::new();
-        for at in skeleton.ink() {
-            if links_of(skeleton, at).count_ones() != 2 {
+        let mut rest = Rest {
+            picture: skeleton.picture.band_in(skeleton.rows.clone(), words),
+            first_row: skeleton.rows.start,
+        };
+        for at in rest.picture.ink() {
+            let at = Pixel { y: at.y + rest.first_row, ..at };
+            if skeleton.links_of(at).count_ones() != 2 {
                 at_pixel.insert(at, graph.nodes.len());
                 graph.nodes.push(Node { at, ends: Vec::new() });
             }
         }
-        // What is not yet in an edge; what is left in the end are closed loops.
-        let mut rest = skeleton.clone();
+        // What is left of the rest in the end are closed loops.
         for node in 0..graph.nodes.len() {
             let Some(start) = graph.nodes.get(node).map(|node| node.at) else { continue };
-            rest.set(start, false);
-            for direction in directions(links_of(skeleton, start)) {
+            rest.take(start);
+            for direction in directions(skeleton.links_of(start)) {
                 let first = step(start, direction);
                 // The other node of an edge of two pixels walks it only from the one that comes first.
                 let direct = at_pixel.get(&first).copied();
-                if direct.is_some_and(|other| other < node) || (direct.is_none() && !rest.get(first)) {
+                if direct.is_some_and(|other| other < node) || (direct.is_none() && !rest.has(first)) {
                     continue;
                 }
-                let (pixels, other) = walk(skeleton, &mut rest, &at_pixel, start, first);
+                let (mut pixels, other) = walk(skeleton, &mut rest, &at_pixel, start, first);
+                pixels.shrink_to_fit();
                 let edge = graph.edges.len();
                 graph.edges.push(Edge { pixels, nodes: Some((node, other)) });
                 for (node, at_last) in [(node, false), (other, true)] {
@@ -124,22 +169,23 @@ impl Graph {
                 }
             }
         }
-        let mut loops = Vec::new();
-        for y in 0..rest.height() {
-            for word in 0..rest.row(y).len() {
-                while let Some(start) = rest.first_of_word(y, word) {
-                    rest.set(start, false);
-                    if let Some(direction) = directions(links_of(skeleton, start)).next() {
+        for y in 0..rest.picture.height() {
+            for word in 0..rest.picture.row(y).len() {
+                while let Some(start) = rest.picture.first_of_word(y, word) {
+                    rest.picture.set(start, false);
+                    let start = Pixel { y: y + rest.first_row, ..start };
+                    if let Some(direction) = directions(skeleton.links_of(start)).next() {
                         let first = step(start, direction);
                         let (mut pixels, _) = walk(skeleton, &mut rest, &at_pixel, start, first);
                         pixels.push(start);
                         pixels.dedup();
-                        loops.push(Edge { pixels, nodes: None });
+                        pixels.shrink_to_fit();
+                        graph.edges.push(Edge { pixels, nodes: None });
                     }
                 }
             }
         }
-        graph.edges.append(&mut loops);
+        *words = rest.picture.into_words();
         graph
     }
 
@@ -154,8 +200,8 @@ impl Graph {
 /// The pixels from `start` over `first` on to the next node, which is the second result, or around a loop back to
 /// `start`.
 fn walk(
-    skeleton: &Bitmap,
-    rest: &mut Bitmap,
+    skeleton: &Stretch<'_>,
+    rest: &mut Rest,
     at_pixel: &HashMap<Pixel, usize>,
     start: Pixel,
     first: Pixel,
@@ -164,11 +210,11 @@ fn walk(
     let (mut before, mut at) = (start, first);
     loop {
         pixels.push(at);
-        let links = links_of(skeleton, at);
+        let links = skeleton.links_of(at);
         if links.count_ones() != 2 {
             return (pixels, at_pixel.get(&at).copied().unwrap_or(0));
         }
-        rest.set(at, false);
+        rest.take(at);
         let on = directions(links).map(|direction| step(at, direction)).find(|next| *next != before);
         match on {
             Some(next) if next != start || at_pixel.contains_key(&next) => (before, at) = (at, next),
@@ -182,7 +228,16 @@ mod tests {
     use super::*;
 
     fn graph(picture: &str) -> Graph {
-        Graph::of(&Bitmap::from_picture(picture).unwrap())
+        let skeleton = Bitmap::from_picture(picture).unwrap();
+        Graph::of(&Stretch { picture: &skeleton, rows: 0..skeleton.height() }, &mut Vec::new())
+    }
+
+    #[test]
+    fn rows_beside_the_stretch_are_not_there() {
+        let skeleton = Bitmap::from_picture("#...\n.#..\n..#.\n...#\n").unwrap();
+        let graph = Graph::of(&Stretch { picture: &skeleton, rows: 1..3 }, &mut vec![7; 99]);
+        assert_eq!(graph.edges.len(), 1);
+        assert_eq!(graph.edges[0].pixels, [Pixel::new(1, 1), Pixel::new(2, 2)]);
     }
 
     #[test]

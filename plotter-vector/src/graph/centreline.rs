@@ -1,9 +1,18 @@
 //! [`Centreline`]: a whole stroke, in places about a pixel apart, ready to be simplified.
 
+use super::Place;
 use super::junction::THIN_PX;
 use super::smooth::smooth;
-use super::{Place, Whole};
 use crate::{Bounded, Curve, PxPoint};
+
+/// A stroke whose ends are both known.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Whole {
+    /// Its places; the first one is not repeated at the end of a closed stroke.
+    pub(crate) places: Vec<Place>,
+    /// Whether the end joins the start.
+    pub(crate) closed: bool,
+}
 
 /// The middle of a line.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,10 +44,7 @@ impl Centreline {
         {
             places.pop();
         }
-        let mut widths: Vec<f64> = places.iter().filter_map(|place| place.width_px()).collect();
-        let middle = widths.len() / 2;
-        let width_px =
-            if widths.is_empty() { 2.0 } else { *widths.select_nth_unstable_by(middle, f64::total_cmp).1 };
+        let width_px = width_px(&places);
         if !whole.closed && is_dot(&places, width_px) {
             // Of two or more places the middle of the outermost; one place is a dot already.
             let middle = |a: Place, b: Place| {
@@ -65,6 +71,13 @@ impl Centreline {
     }
 }
 
+/// Typical width of a line, px.
+pub(super) fn width_px(places: &[Place]) -> f64 {
+    let mut widths: Vec<f64> = places.iter().filter_map(|place| place.width_px()).collect();
+    let middle = widths.len() / 2;
+    if widths.is_empty() { 2.0 } else { *widths.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
 /// Whether an open line is the dot of a pen: far shorter than wide, and so short that the raster alone can have made it
 /// so.
 fn is_dot(places: &[Place], width_px: f64) -> bool {
@@ -74,7 +87,7 @@ fn is_dot(places: &[Place], width_px: f64) -> bool {
 }
 
 /// Adds places where two are more than about a pixel apart.
-fn fill_gaps(places: &mut Vec<Place>, closed: bool) {
+pub(super) fn fill_gaps(places: &mut Vec<Place>, closed: bool) {
     const WIDEST_PX: f64 = 1.7;
     let next = || places.iter().skip(1).chain(places.first().filter(|_| closed));
     if places.iter().zip(next()).all(|(from, to)| from.at().distance(to.at()) <= WIDEST_PX) {

@@ -45,8 +45,13 @@ struct Line<'a> {
 pub(super) fn sharpen(sites: &mut [Site], closed: bool, scan: Scan<'_>) {
     let line = Line { sites, closed };
     let mut corners = line.corners(scan);
-    // The sharpest ones first; what overlaps with them is their flank.
-    corners.sort_by(|a, b| a.cos.total_cmp(&b.cos).then(a.index.cmp(&b.index)));
+    // The sharpest ones first; what overlaps with them is their flank. Of equals the upper one: whichever way the line runs.
+    let place =
+        |corner: &Corner| sites.get(corner.index).map_or((0.0, 0.0), |site| (site.centre.y, site.centre.x));
+    corners.sort_by(|a, b| {
+        let ((top, left), (y, x)) = (place(a), place(b));
+        a.cos.total_cmp(&b.cos).then(top.total_cmp(&y)).then(left.total_cmp(&x))
+    });
     let mut roles = vec![Role::Course; sites.len()];
     let mut moved = Vec::new();
     for corner in corners {

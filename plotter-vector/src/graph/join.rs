@@ -1,22 +1,14 @@
 //! [`Joiner`]: fragments of strokes, band after band, made whole.
 
-use super::Place;
 use super::fragment::{Fragment, Joint};
-use std::collections::{HashMap, VecDeque};
-
-/// A stroke whose ends are both known.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Whole {
-    /// Its places; the first one is not repeated at the end of a closed stroke.
-    pub(crate) places: Vec<Place>,
-    /// Whether the end joins the start.
-    pub(crate) closed: bool,
-}
+use super::{Cuts, Stroke};
+use crate::Bounded;
+use std::collections::HashMap;
 
 /// A stroke that still has an end in what has not come yet.
 #[derive(Debug)]
 struct Part {
-    places: VecDeque<Place>,
+    stroke: Stroke,
     joints: [Joint; 2],
 }
 
@@ -32,11 +24,11 @@ pub(crate) struct Joiner {
 
 impl Joiner {
     /// Takes a fragment; gives the stroke that it completes.
-    pub(crate) fn push(&mut self, fragment: Fragment) -> Option<Whole> {
+    pub(crate) fn push(&mut self, fragment: Fragment) -> Option<Stroke> {
         let Some(joints) = fragment.joints else {
-            return Some(Whole { places: fragment.places, closed: true });
+            return Some(Stroke::new(fragment.places, true));
         };
-        let mut part = Part { places: fragment.places.into(), joints };
+        let mut part = Part { stroke: Stroke::new(fragment.places, false), joints };
         while let Some((joint, slot)) =
             part.joints.iter().find_map(|joint| Some((*joint, self.open.remove(joint)?)))
         {
@@ -49,10 +41,11 @@ impl Joiner {
         }
         let [start, end] = part.joints;
         if start == end && start != Joint::Free {
-            return Some(Whole { places: part.places.into(), closed: true });
+            part.stroke.close();
+            return Some(part.stroke);
         }
         if part.joints == [Joint::Free; 2] {
-            return Some(Whole { places: part.places.into(), closed: false });
+            return Some(part.stroke);
         }
         let slot = self.free.pop().unwrap_or_else(|| {
             self.parts.push(None);
@@ -67,31 +60,36 @@ impl Joiner {
         None
     }
 
+    /// Simplifies what is long of the strokes that wait for their ends.
+    pub(crate) fn cut(&mut self, cuts: Cuts, bounded: Bounded) {
+        for part in self.parts.iter_mut().flatten() {
+            part.stroke.cut(cuts, bounded);
+        }
+    }
+
     /// What is left after the last band: strokes whose counterpart never came.
-    pub(crate) fn finish(self) -> impl Iterator<Item = Whole> {
-        self.parts.into_iter().flatten().map(|part| Whole { places: part.places.into(), closed: false })
+    pub(crate) fn finish(self) -> impl Iterator<Item = Stroke> {
+        self.parts.into_iter().flatten().map(|part| part.stroke)
     }
 }
 
-/// Two parts that share a joint as one; the shorter one's places move.
+/// Two parts that share a joint as one; the shorter one moves.
 fn joined(mut one: Part, mut other: Part, joint: Joint) -> Part {
-    if one.places.len() < other.places.len() {
+    if one.stroke.len() < other.stroke.len() {
         (one, other) = (other, one);
     }
-    let [start, end] = other.joints;
-    let from_start = start == joint;
-    let far = if from_start { end } else { start };
-    // Away from the joint.
-    let mut places = other.places.into_iter();
-    let mut next = || if from_start { places.next() } else { places.next_back() };
-    let [start, end] = one.joints;
-    if end == joint {
-        one.places.extend(core::iter::from_fn(next));
+    let ([start, end], [other_start, other_end]) = (one.joints, other.joints);
+    let from_start = other_start == joint;
+    let far = if from_start { other_end } else { other_start };
+    let at_end = end == joint;
+    if at_end != from_start {
+        other.stroke.reverse();
+    }
+    if at_end {
+        one.stroke.append(other.stroke);
         one.joints = [start, far];
     } else {
-        while let Some(place) = next() {
-            one.places.push_front(place);
-        }
+        one.stroke.prepend(other.stroke);
         one.joints = [far, end];
     }
     one
@@ -100,19 +98,19 @@ fn joined(mut one: Part, mut other: Part, joint: Joint) -> Part {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::graph::Place;
     use crate::{Pixel, PxPoint};
 
     fn joint(name: u32) -> Joint {
         Joint::Cut(Pixel::new(name, 0), Pixel::new(name, 1))
     }
 
-    fn fragment(places: &[u8], joints: [Joint; 2]) -> Fragment {
-        let place = |x: &u8| Place::new(PxPoint::new(f64::from(*x), 0.0), 1.0, false);
-        Fragment { places: places.iter().map(place).collect(), joints: Some(joints) }
+    fn places(names: &[u8]) -> Vec<Place> {
+        names.iter().map(|x| Place::new(PxPoint::new(f64::from(*x), 0.0), 1.0, false)).collect()
     }
 
-    fn names(whole: &Whole) -> Vec<f64> {
-        whole.places.iter().map(|place| place.at().x).collect()
+    fn fragment(names: &[u8], joints: [Joint; 2]) -> Fragment {
+        Fragment { places: places(names), joints: Some(joints) }
     }
 
     #[test]
@@ -120,13 +118,12 @@ mod tests {
         let mut joiner = Joiner::default();
         assert_eq!(joiner.push(fragment(&[4, 3], [joint(2), joint(1)])), None);
         assert_eq!(joiner.push(fragment(&[1, 2], [Joint::Free, joint(1)])), None);
-        let whole = joiner.push(fragment(&[7, 6, 5], [Joint::Free, joint(2)])).unwrap();
-        let mut places = names(&whole);
-        if places[0] > 1.0 {
-            places.reverse();
+        let mut whole = joiner.push(fragment(&[7, 6, 5], [Joint::Free, joint(2)])).unwrap();
+        let expected = Stroke::new(places(&[1, 2, 3, 4, 5, 6, 7]), false);
+        if whole != expected {
+            whole.reverse();
         }
-        assert_eq!(places, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
-        assert!(!whole.closed);
+        assert_eq!(whole, expected);
     }
 
     #[test]
@@ -134,8 +131,7 @@ mod tests {
         let mut joiner = Joiner::default();
         assert_eq!(joiner.push(fragment(&[1, 2], [joint(1), joint(2)])), None);
         let ring = joiner.push(fragment(&[3, 4], [joint(2), joint(1)])).unwrap();
-        assert!(ring.closed);
-        assert_eq!(ring.places.len(), 4);
+        assert_eq!(ring, Stroke::new(places(&[1, 2, 3, 4]), true));
     }
 
     #[test]

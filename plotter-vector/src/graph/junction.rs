@@ -127,6 +127,9 @@ impl Junctions {
     }
 }
 
+/// Sites from a line's end on that are looked at: more than any arm needs, and fewer than the rows of a band's context.
+const LOOK: usize = 256;
+
 /// What junctions are found in.
 #[derive(Clone, Copy)]
 struct Lines<'a> {
@@ -222,8 +225,6 @@ impl Lines<'_> {
     /// The sites of an edge from one of its ends on.
     fn sites_from(&self, end: End) -> Vec<Site> {
         let sites = self.sites.get(end.edge).map_or(&[][..], Vec::as_slice);
-        /// More than any arm looks at.
-        const LOOK: usize = 256;
         if end.at_last {
             sites.iter().rev().take(LOOK).copied().collect()
         } else {
@@ -237,15 +238,28 @@ impl Lines<'_> {
         let edge = self.graph.edges.get(end.edge)?;
         let (first, last) = edge.nodes?;
         let far = if end.at_last { first } else { last };
-        let reserved = if self.ends(far).count() > 1 { 2 } else { 0 };
+        // What ends beyond the look is not known in a band.
+        let reserved = if edge.pixels.len() <= LOOK && self.ends(far).count() > 1 { 2 } else { 0 };
         Arm::of(&sites, reserved, longest)
+    }
+
+    /// The pixel beside an edge's end and that at the end itself.
+    fn first_pixels(&self, end: End) -> [Option<Pixel>; 2] {
+        let pixels = self.graph.edges.get(end.edge).map_or(&[][..], |edge| &edge.pixels);
+        let at = |from_end: usize| {
+            let index = if end.at_last { pixels.len().checked_sub(from_end + 1)? } else { from_end };
+            pixels.get(index).copied()
+        };
+        [at(1), at(0)]
     }
 
     /// The tails of all lines at the nodes of one junction, dot or line end.
     fn resolve(&self, group: &[usize], radii: &[f64], found: &mut Junctions) {
         let is_inner = |edge: usize| found.inner.get(edge).copied().unwrap_or(false);
-        let ends: Vec<End> =
+        let mut ends: Vec<End> =
             group.iter().flat_map(|node| self.ends(*node)).filter(|end| !is_inner(end.edge)).collect();
+        // By where they begin, whichever way their edges were walked.
+        ends.sort_by_key(|end| self.first_pixels(*end));
         let arms: Vec<ArmOf> = ends
             .iter()
             .filter_map(|end| Some(ArmOf { end: *end, arm: self.arm(*end, LONG)?, tip: self.tip(*end) }))

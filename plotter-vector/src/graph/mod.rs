@@ -24,35 +24,38 @@ mod raster_line;
 mod site;
 mod smooth;
 mod spur;
+mod stroke;
 mod stub;
 mod trial;
 
+pub(crate) use build::Stretch;
 use build::{Edge, End, Graph};
-pub(crate) use centreline::Centreline;
 pub(crate) use fragment::Fragment;
-pub(crate) use join::{Joiner, Whole};
+pub(crate) use join::Joiner;
 use place::Place;
 pub(crate) use site::{Rims, Scan};
+pub(crate) use stroke::{Cuts, Stroke};
 
-use crate::Bitmap;
 use core::ops::Range;
 
 /// Rows of context that a band needs beside what its thinning needs: how far a junction looks along its arms.
 pub(crate) const CONTEXT_ROWS: u32 = 288;
 
-/// The pieces of centrelines in the rows `core` of a picture, from the skeleton of a band of it with a few hundred rows
-/// more on either side, which begins with row `first_row`. The scan has these rows, and may have more.
+/// The pieces of centrelines in the rows `core` of a picture, from a stretch of its skeleton with a few hundred rows more
+/// on either side; the skeleton's first row is row `first_row` of the picture. The scan has these rows, and may have
+/// more. Works in `words`, whatever they are.
 ///
 /// All coordinates are those of the whole picture, so that sums and roots round alike whatever the band.
 pub(crate) fn fragments(
     scan: Scan<'_>,
-    skeleton: &Bitmap,
+    skeleton: &Stretch<'_>,
     first_row: u32,
     core: &Range<u32>,
+    words: &mut Vec<u64>,
 ) -> Vec<Fragment> {
-    let mut graph = Graph::of(skeleton);
-    raster_line::put_back(&mut graph, scan.ink, first_row.saturating_sub(scan.first_row), skeleton);
+    let mut graph = Graph::of(skeleton, words);
     graph.move_down(first_row);
+    raster_line::put_back(&mut graph, scan, skeleton, first_row);
     let mut sites: Vec<_> =
         graph.edges.iter().map(|edge| scan.sites(&edge.pixels, edge.nodes.is_none())).collect();
     let gone = spur::spurs(&graph, &sites, scan);
@@ -67,7 +70,7 @@ pub(crate) fn fragments(
         }
     }
     let lines = stub::Lines { graph: &graph, sites: &sites, junctions: &junctions, gone: &gone, scan };
-    let stubs = stub::stubs(&lines, core);
+    let stubs = stub::stubs(&lines, core, words);
     let mut found = fragment::fragments(&graph, &sites, &junctions, &gone, scan, core);
     found.extend(stubs);
     found

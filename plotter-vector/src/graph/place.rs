@@ -36,6 +36,12 @@ impl Place {
         PxPoint::new(f64::from(self.x) / STEPS, f64::from(self.y) / STEPS)
     }
 
+    /// Row of pixels that it lies in.
+    pub(crate) fn row(self) -> i32 {
+        // STEPS is 2 to the power of 13.
+        self.y >> 13
+    }
+
     /// From edge to edge, px; none where no ink was measured.
     pub(crate) fn width_px(self) -> Option<f64> {
         (self.width > 0).then(|| f64::from(self.width) / WIDTH_STEPS)
@@ -62,6 +68,10 @@ mod tests {
             let place = Place::new(PxPoint::new(v, -v), 3.5, true);
             assert_eq!((place.at(), place.width_px()), (PxPoint::new(v, -v), Some(3.5)));
         }
+        assert_eq!(
+            [-0.5, 0.0, 7.999, 8.0].map(|y| Place::new(PxPoint::new(0.0, y), 1.0, false).row()),
+            [-1, 0, 7, 8]
+        );
         assert_eq!(Place::new(PxPoint::default(), -1.0, false).width_px(), None);
         assert_eq!(size_of::<Place>(), 12);
     }

@@ -4,19 +4,21 @@
 //! no pixel may be lost: each is put back between those of its neighbours that follow each other along the line. A
 //! pixel inside a block of two by two is no line's corner but part of its width, and stays out.
 
-use super::Graph;
+use super::build::Stretch;
+use super::{Graph, Scan};
 use crate::{Bitmap, Pixel};
 use std::collections::HashMap;
 
 /// Puts the ink of thin lines that thinning took away back into the edges that pass beside it.
 ///
-/// The skeleton's first row is row `first_row` of the ink. Which edge takes a pixel depends on its neighbours only, so it
-/// is the same in a band and in the whole picture.
-pub(crate) fn put_back(graph: &mut Graph, ink: &Bitmap, first_row: u32, skeleton: &Bitmap) {
+/// The skeleton's first row is row `first_row` of the whole picture. Which edge takes a pixel depends on its neighbours
+/// only, so it is the same in a band and in the whole picture.
+pub(crate) fn put_back(graph: &mut Graph, scan: Scan<'_>, skeleton: &Stretch<'_>, first_row: u32) {
     let mut lost: HashMap<(Pixel, Pixel), Vec<Pixel>> = HashMap::new();
-    each_lost(ink, first_row, skeleton, |beside| {
-        if let Some(link) = home(skeleton, beside) {
-            lost.entry(link).or_default().push(beside);
+    let down = |at: Pixel| Pixel { y: at.y.saturating_add(first_row), ..at };
+    each_lost(scan.ink, first_row.saturating_sub(scan.first_row), skeleton, |beside| {
+        if let Some((one, other)) = home(skeleton.picture, beside) {
+            lost.entry((down(one), down(other))).or_default().push(down(beside));
         }
     });
     if lost.is_empty() {
@@ -38,12 +40,13 @@ pub(crate) fn put_back(graph: &mut Graph, ink: &Bitmap, first_row: u32, skeleton
     }
 }
 
-/// Calls `found` with the ink in no block of two by two that is not in the skeleton, in reading order.
-fn each_lost(ink: &Bitmap, first_row: u32, skeleton: &Bitmap, mut found: impl FnMut(Pixel)) {
+/// Calls `found` with the ink in no block of two by two that is not in the skeleton, in reading order. The skeleton's
+/// first row is row `first_row` of the ink.
+fn each_lost(ink: &Bitmap, first_row: u32, skeleton: &Stretch<'_>, mut found: impl FnMut(Pixel)) {
     // Blocks by their upper left pixel, in the row above and in this one.
     let mut above = vec![0; ink.row(0).len()];
     let mut here = above.clone();
-    for y in 0..skeleton.height() {
+    for y in skeleton.rows.clone() {
         let (row, below) = (ink.row(first_row + y), ink.row(first_row + y + 1));
         let both = |word: usize| row.get(word).copied().unwrap_or(0) & below.get(word).copied().unwrap_or(0);
         for (word, block) in here.iter_mut().enumerate() {
@@ -52,7 +55,7 @@ fn each_lost(ink: &Bitmap, first_row: u32, skeleton: &Bitmap, mut found: impl Fn
         }
         let mut left = 0;
         for (word, ((ink, kept), (above, here))) in
-            row.iter().zip(skeleton.row(y)).zip(above.iter().zip(&here)).enumerate()
+            row.iter().zip(skeleton.picture.row(y)).zip(above.iter().zip(&here)).enumerate()
         {
             let blocks = above | here;
             let mut lost = ink & !kept & !(blocks | blocks << 1 | left >> 63);
@@ -94,8 +97,9 @@ mod tests {
 
     fn put_back_in(ink: &str, skeleton: &str) -> Vec<(u32, u32)> {
         let (ink, skeleton) = (Bitmap::from_picture(ink).unwrap(), Bitmap::from_picture(skeleton).unwrap());
-        let mut graph = Graph::of(&skeleton);
-        put_back(&mut graph, &ink, 0, &skeleton);
+        let skeleton = Stretch { picture: &skeleton, rows: 0..skeleton.height() };
+        let mut graph = Graph::of(&skeleton, &mut Vec::new());
+        put_back(&mut graph, Scan { ink: &ink, first_row: 0, grey: None }, &skeleton, 0);
         graph.edges[0].pixels.iter().map(|at| (at.x, at.y)).collect()
     }
 

@@ -88,9 +88,7 @@ impl Scan<'_> {
         // Around a corner a cut may run along the line instead of across: there the skeleton itself is nearer.
         let widths: Vec<f64> = sites.iter().map(|site| site.width_px).collect();
         for (index, (site, pixel)) in sites.iter_mut().zip(pixels).enumerate() {
-            let near =
-                widths.get(index.saturating_sub(CALM_PX)..count.min(index + CALM_PX + 1)).unwrap_or(&[]);
-            let calm_px = near.iter().fold(f64::INFINITY, |a, b| a.min(*b));
+            let calm_px = least_around(count, index, CALM_PX, closed, |at| widths.get(at).copied());
             if site.width_px > 1.6 * calm_px + 1.0 {
                 site.centre = (*pixel).into();
             }
@@ -210,4 +208,24 @@ impl Scan<'_> {
     pub(crate) fn is_ink_at(&self, at: Pixel) -> bool {
         at.y.checked_sub(self.first_row).is_some_and(|row| self.ink.get(Pixel::new(at.x, row)))
     }
+}
+/// The least of the values at most `reach` before and after the one at `index`, of `count`; of a closed line, whose last
+/// site is its first one again, around its end.
+pub(super) fn least_around(
+    count: usize,
+    index: usize,
+    reach: usize,
+    closed: bool,
+    value: impl Fn(usize) -> Option<f64>,
+) -> f64 {
+    let around = count.saturating_sub(1);
+    let at = |step: usize| {
+        let ahead = index + step;
+        if closed && around > 0 {
+            Some((ahead + around - reach % around) % around)
+        } else {
+            ahead.checked_sub(reach)
+        }
+    };
+    (0..=2 * reach).filter_map(at).filter_map(value).fold(f64::INFINITY, f64::min)
 }

@@ -6,7 +6,7 @@
 
 use super::fragment::{Fragment, Joint};
 use super::junction::Junctions;
-use super::site::{Scan, Site};
+use super::site::{Scan, Site, least_around};
 use super::{End, Graph, Place};
 use crate::{Bitmap, Pixel, PxPoint};
 use core::ops::Range;
@@ -42,13 +42,13 @@ const WIDEST_WIPE_PX: f64 = 100.0;
 /// How far up and down the line is looked for that a patch belongs to, px.
 const REACH_PX: f64 = 64.0;
 
-/// The stubs of a band, as strokes of their own from the middle of their line.
-pub(super) fn stubs(lines: &Lines<'_>, core: &Range<u32>) -> Vec<Fragment> {
+/// The stubs of a band, as strokes of their own from the middle of their line. Works in `words`, whatever they are.
+pub(super) fn stubs(lines: &Lines<'_>, core: &Range<u32>, words: &mut Vec<u64>) -> Vec<Fragment> {
     let (top, end) = (lines.scan.first_row, lines.scan.first_row.saturating_add(lines.scan.ink.height()));
     // With a row above: what reaches it begins above, and is none of this band's.
     let start = core.start.saturating_sub(1).max(top);
-    let few = lines.patches(start..core.end.saturating_add(BELOW_ROWS).min(end), core);
-    let patches = few.or_else(|| lines.patches(start..end, core)).unwrap_or_default();
+    let few = lines.patches(start..core.end.saturating_add(BELOW_ROWS).min(end), core, words);
+    let patches = few.or_else(|| lines.patches(start..end, core, words)).unwrap_or_default();
     let mut found = Vec::new();
     for (patch, root) in patches.iter().zip(lines.roots(&patches)) {
         if let Some(stub) = root.and_then(|root| stub(&patch.pixels, patch.centre, root)) {
@@ -67,9 +67,10 @@ struct Patch {
 
 impl Lines<'_> {
     /// The patches that begin in the rows `core`, of the ink in some rows; none when one of them may go on below.
-    fn patches(&self, rows: Range<u32>, core: &Range<u32>) -> Option<Vec<Patch>> {
+    fn patches(&self, rows: Range<u32>, core: &Range<u32>, words: &mut Vec<u64>) -> Option<Vec<Patch>> {
         let (top, height) = (self.scan.first_row, self.scan.ink.height());
-        let mut bare = self.scan.ink.band(rows.start.saturating_sub(top)..rows.end.saturating_sub(top));
+        let inside = rows.start.saturating_sub(top)..rows.end.saturating_sub(top);
+        let mut bare = self.scan.ink.band_in(inside, words);
         let goes_on = rows.end < top.saturating_add(height);
         let mut wiper = Wiper { bare: &mut bare, first_row: rows.start, drawn: None };
         self.each_place(&rows, |at, width_px| wiper.add(at, 0.5 * width_px + MARGIN_PX));
@@ -84,6 +85,7 @@ impl Lines<'_> {
                         continue;
                     }
                     if goes_on && pixels.iter().any(|at| at.y + 1 == rows.end) {
+                        *words = bare.into_words();
                         return None;
                     }
                     if pixels.len() > 2 && pixels.len() <= MOST_PIXELS {
@@ -93,6 +95,7 @@ impl Lines<'_> {
                 }
             }
         }
+        *words = bare.into_words();
         Some(patches)
     }
 
@@ -152,9 +155,10 @@ impl Lines<'_> {
         for (edge, sites) in self.sites.iter().enumerate().filter(|(edge, _)| is_line(*edge)) {
             let skip = |at_last| self.junctions.skip(End { edge, at_last });
             let last = sites.len().saturating_sub(skip(true));
+            let closed = self.graph.edges.get(edge).is_some_and(|edge| edge.nodes.is_none());
             for (index, site) in sites.iter().enumerate().take(last).skip(skip(false)) {
                 if near(site.centre) {
-                    visit(site.centre, calm_px(sites, index));
+                    visit(site.centre, calm_px(sites, index, closed));
                 }
             }
         }
@@ -163,10 +167,12 @@ impl Lines<'_> {
                 let sites = self.sites.get(end.edge)?;
                 let skip = self.junctions.skip(end);
                 let index = if end.at_last { sites.len().checked_sub(skip + 1)? } else { skip };
-                Some((sites.get(index)?.centre, calm_px(sites, index)))
+                Some((sites.get(index)?.centre, calm_px(sites, index, false)))
             };
             let Some((from, width_px)) = root(connection.from) else { continue };
-            let to = connection.to.and_then(root).map(|(to, _)| to);
+            let to = connection.to.and_then(root);
+            let width_px = to.map_or(width_px, |(_, theirs)| width_px.min(theirs));
+            let to = to.map(|(to, _)| to);
             let mut before = from;
             for next in connection.points.iter().copied().chain(to) {
                 let steps = libm::ceil(before.distance(next)).clamp(1.0, 400.0);
@@ -193,9 +199,9 @@ impl Lines<'_> {
 }
 
 /// The line's own width at a site: the least one near it.
-fn calm_px(sites: &[Site], index: usize) -> f64 {
-    let near = sites.get(index.saturating_sub(CALM_SITES)..sites.len().min(index + CALM_SITES + 1));
-    near.unwrap_or(&[]).iter().map(|site| site.width_px).fold(f64::INFINITY, f64::min).min(192.0)
+fn calm_px(sites: &[Site], index: usize, closed: bool) -> f64 {
+    let width_px = |at: usize| sites.get(at).map(|site| site.width_px);
+    least_around(sites.len(), index, CALM_SITES, closed, width_px).min(192.0)
 }
 
 /// Draws discs in paper on a band of a picture that begins with row `first_row`.
