@@ -101,8 +101,10 @@ impl Vectorizer {
     /// three times: for the threshold, for the width of the pen, for the strokes. How far the pixels lie from the strokes
     /// is not measured.
     ///
-    /// Memory is some bands of the sheet and the drawing, and
-    /// * of strokes that have begun but not ended, 24 bytes a pixel of their length;
+    /// Memory is some bands of the sheet (of a large one fewer than there are threads) and the drawing, and
+    /// * of strokes that have begun but not ended, 12 bytes a pixel of their length, and of long ones at most those of some
+    ///   8000 rows: where a stroke comes to every 4096th row of the sheet it is cut and simplified so far, if 2048 px or
+    ///   more lie between two cuts. A cut on a straight line leaves no vertex;
     /// * of areas, the rows from one without any to the next, at most [`MAX_PIXELS`](crate::MAX_PIXELS), at 1 bit;
     /// * lines one pixel wide and the published algorithm need the whole sheet.
     ///

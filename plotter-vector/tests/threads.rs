@@ -2,7 +2,7 @@
 #![cfg(feature = "rayon")]
 #![allow(clippy::cast_possible_truncation, reason = "a failure shows, and levels are made to fit")]
 
-use plotter_vector::{Gray, Threshold, ThresholdMethod, despeckle};
+use plotter_vector::{Bitmap, BitmapRows, Gray, Progress, Threshold, ThresholdMethod, Vectorizer, despeckle};
 
 #[test]
 fn the_number_of_threads_changes_nothing() {
@@ -34,4 +34,30 @@ fn the_number_of_threads_changes_nothing() {
         results.rotate_left(1);
         assert!(results.windows(2).all(|pair| pair[0] == pair[1]));
     }
+}
+
+#[test]
+fn a_sheet_by_rows_is_the_same_on_any_number_of_threads() {
+    // Long enough for cuts: upright and slanted lines, and a frame.
+    let line = |y: usize| {
+        let row: String = (0..160)
+            .map(|x| {
+                let slanted = (x + y / 60) % 53 < 4;
+                let frame = (8..152).contains(&x) && (100..8900).contains(&y);
+                let inside = (12..148).contains(&x) && (104..8896).contains(&y);
+                if slanted && inside || frame && !inside { '#' } else { '.' }
+            })
+            .collect();
+        row + "\n"
+    };
+    let ink = Bitmap::from_picture(&(0..9000).map(line).collect::<String>()).unwrap();
+    let vectorizer = Vectorizer { band_rows: 500, ..Vectorizer::default() };
+    let sheets = [1, 2, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            vectorizer.vectorize_rows(&mut BitmapRows::new(&ink), &mut Progress::silent()).unwrap().drawing
+        })
+    });
+    assert!(sheets[0].vertices() > 20);
+    assert!(sheets.iter().all(|sheet| *sheet == sheets[0]));
 }

@@ -1,0 +1,72 @@
+//! Long straight lines take as much memory on a long sheet as on a short one.
+#![cfg(target_os = "linux")]
+
+use plotter_vector::{DecodeError, Depth, Progress, Row, RowSource, Vectorizer};
+
+/// Width of the sheets, px, and from one line to the next; the pen is 4 px wide.
+const WIDTH_PX: u32 = 1024;
+const PITCH_PX: u32 = 32;
+
+/// Most memory that a sheet five times as long may add, KiB: 32 lines of 64 000 places more would take 24 MB.
+const MOST_KIB: u64 = 4 << 10;
+
+/// Upright lines from the first row to the last.
+struct Lines {
+    height: u32,
+    next: u32,
+    row: Vec<u64>,
+}
+
+impl Lines {
+    fn new(height: u32) -> Self {
+        Self { height, next: 0, row: vec![0; WIDTH_PX as usize / 64] }
+    }
+}
+
+impl RowSource for Lines {
+    fn width(&self) -> u32 {
+        WIDTH_PX
+    }
+
+    fn height(&self) -> u32 {
+        self.height
+    }
+
+    fn depth(&self) -> Depth {
+        Depth::Bits1
+    }
+
+    fn next_row(&mut self) -> Result<Option<Row<'_>>, DecodeError> {
+        if self.next >= self.height {
+            return Ok(None);
+        }
+        self.row.fill(0x0000_00f0_0000_00f0);
+        self.next += 1;
+        Ok(Some(Row::Bits(&self.row)))
+    }
+
+    fn rewind(&mut self) -> Result<(), DecodeError> {
+        self.next = 0;
+        Ok(())
+    }
+}
+
+/// Most memory that this process ever had, KiB.
+fn peak_kib() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or_default()
+}
+
+#[test]
+fn memory_does_not_grow_with_the_length_of_the_sheet() -> Result<(), Box<dyn std::error::Error>> {
+    let mut peaks = Vec::new();
+    for height in [16_000, 80_000] {
+        let sheet = Vectorizer::default().vectorize_rows(&mut Lines::new(height), &mut Progress::silent())?;
+        let lines = (WIDTH_PX / PITCH_PX) as usize;
+        assert_eq!((sheet.drawing.strokes().len(), sheet.drawing.vertices()), (lines, 2 * lines));
+        peaks.push(peak_kib());
+    }
+    assert!(peaks[1] - peaks[0] < MOST_KIB, "{peaks:?} KiB");
+    Ok(())
+}
