@@ -227,5 +227,11 @@ pub(super) fn least_around(
             ahead.checked_sub(reach)
         }
     };
-    (0..=2 * reach).filter_map(at).filter_map(value).fold(f64::INFINITY, f64::min)
+    let least = |least: f64, value: f64| if value < least { value } else { least };
+    match index.checked_sub(reach) {
+        Some(first) if !closed || index + reach < around => {
+            (first..count.min(index + reach + 1)).filter_map(value).fold(f64::INFINITY, least)
+        }
+        _ => (0..=2 * reach).filter_map(at).filter_map(value).fold(f64::INFINITY, least),
+    }
 }

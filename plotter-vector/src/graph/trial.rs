@@ -17,7 +17,7 @@ pub(super) const WORTH: f64 = 0.8;
 const RASTER_PX: f64 = 0.5;
 
 /// Nothing costs more than a pixel as far as this from where it should be, px.
-const FARTHEST_PX: f64 = 3.0;
+const FARTHEST_PX: f64 = 2.0;
 
 /// Largest junction that is drawn again, px from its middle.
 const MOST_PX: f64 = 48.0;
@@ -166,7 +166,9 @@ impl<'a> Trial<'a> {
 
     /// Notes how far each pixel lies outside of a pen's edge on its way.
     fn draw(&self, field: &mut [f64], from: PxPoint, to: PxPoint, half_px: f64) {
-        let steps = libm::ceil(2.0 * from.distance(to)).clamp(1.0, 4.0 * MOST_PX);
+        /// Discs as far apart cover a line 3 px wide but for 0.2 px at its edges, and wider ones better.
+        const APART_PX: f64 = 1.5;
+        let steps = libm::ceil(from.distance(to) / APART_PX).clamp(1.0, 2.0 * MOST_PX);
         let mut step = 1.0;
         while step <= steps {
             let t = step / steps;
