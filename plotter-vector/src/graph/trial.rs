@@ -93,10 +93,12 @@ impl<'a> Trial<'a> {
             }
         }
         let mut cost = 0.0;
+        let reach = self.radius_px * self.radius_px;
         for (row, values) in (self.top..).zip(field.chunks_exact(self.side as usize)) {
             for (column, value) in (self.left..).zip(values) {
                 let at = Pixel::new(column, row);
-                if PxPoint::from(at).distance(self.centre) > self.radius_px {
+                let (x, y) = PxPoint::from(at).minus(self.centre);
+                if x * x + y * y > reach {
                     continue;
                 }
                 let off_px = if self.scan.is_ink_at(at) { *value } else { -*value } - RASTER_PX;
