@@ -7,8 +7,9 @@ use plotter_vector::{DecodeError, Depth, Progress, Row, RowSource, Vectorizer};
 const WIDTH_PX: u32 = 1024;
 const PITCH_PX: u32 = 32;
 
-/// Most memory that a sheet five times as long may add, KiB: 32 lines of 64 000 places more would take 24 MB.
-const MOST_KIB: u64 = 4 << 10;
+/// Most memory that a sheet ten times as long may add, KiB: 32 lines of 144 000 places more would take 54 MB. How the
+/// allocator packs what it is given makes some MB of difference from run to run, and with the number of threads.
+const MOST_KIB: u64 = 16 << 10;
 
 /// Upright lines from the first row to the last.
 struct Lines {
@@ -61,12 +62,13 @@ fn peak_kib() -> u64 {
 #[test]
 fn memory_does_not_grow_with_the_length_of_the_sheet() -> Result<(), Box<dyn std::error::Error>> {
     let mut peaks = Vec::new();
-    for height in [16_000, 80_000] {
+    for height in [16_000, 160_000] {
         let sheet = Vectorizer::default().vectorize_rows(&mut Lines::new(height), &mut Progress::silent())?;
         let lines = (WIDTH_PX / PITCH_PX) as usize;
         assert_eq!((sheet.drawing.strokes().len(), sheet.drawing.vertices()), (lines, 2 * lines));
         peaks.push(peak_kib());
     }
+    assert!(peaks[0] > 0, "the system does not tell");
     assert!(peaks[1] - peaks[0] < MOST_KIB, "{peaks:?} KiB");
     Ok(())
 }
