@@ -9,9 +9,12 @@
 //!
 //! A tight bend is told from a corner by the ink: a pen that went to P has left ink around P, half its width far.
 
-use super::junction::THIN_PX;
+use super::junction::{Connection, Junctions, THIN_PX};
 use super::site::{Role, Scan, Site};
+use super::{End, Graph};
 use crate::PxPoint;
+use core::ops::Range;
+use std::collections::HashMap;
 
 /// Least turn of a corner: cos 25°. Less is within the tolerance of any drawing, or a curve.
 pub(super) const TURN_COS: f64 = 0.906_307_8;
@@ -21,6 +24,12 @@ const STRAIGHT_PX: f64 = 0.4;
 
 /// Sites that are looked at for the width of the line around one.
 const WIDTH_SITES: usize = 8;
+
+/// Turn from which on a corner is a sharp one: cos 96°.
+const SHARP_COS: f64 = -0.1;
+
+/// Fewest sites on either side of a corner that show where the line goes.
+const FEWEST_SITES: usize = 4;
 
 /// A corner of a line.
 struct Corner {
@@ -41,40 +50,112 @@ struct Line<'a> {
     closed: bool,
 }
 
-/// Sharpens the corners of a line's undisturbed sites: the site in the middle of one moves there, those beside it go.
-pub(super) fn sharpen(sites: &mut [Site], closed: bool, scan: Scan<'_>) {
-    let line = Line { sites, closed };
-    let mut corners = line.corners(scan);
-    // The sharpest ones first; what overlaps with them is their flank. Of equals the upper one: whichever way the line runs.
-    let place =
-        |corner: &Corner| sites.get(corner.index).map_or((0.0, 0.0), |site| (site.centre.y, site.centre.x));
-    corners.sort_by(|a, b| {
-        let ((top, left), (y, x)) = (place(a), place(b));
-        a.cos.total_cmp(&b.cos).then(top.total_cmp(&y)).then(left.total_cmp(&x))
-    });
-    let mut roles = vec![Role::Course; sites.len()];
-    let mut moved = Vec::new();
-    for corner in corners {
-        let span: Vec<usize> =
-            (0..=2 * corner.gap).filter_map(|step| line.index(corner.index, step, corner.gap)).collect();
-        let taken = |index: &usize| roles.get(*index).is_none_or(|role| *role != Role::Course);
-        if span.iter().any(taken) {
-            continue;
-        }
-        for index in span {
-            if let Some(role) = roles.get_mut(index) {
-                *role = if index == corner.index { Role::Corner } else { Role::Left };
+/// What corners are found in.
+pub(super) struct Corners<'a> {
+    graph: &'a Graph,
+    junctions: &'a Junctions,
+    scan: Scan<'a>,
+    /// Where a line goes on at an edge's end.
+    onward: HashMap<End, (&'a Connection, End)>,
+}
+
+impl<'a> Corners<'a> {
+    pub(super) fn new(graph: &'a Graph, junctions: &'a Junctions, scan: Scan<'a>) -> Self {
+        let mut onward = HashMap::new();
+        for connection in &junctions.connections {
+            if let Some(to) = connection.to {
+                onward.insert(connection.from, (connection, to));
+                onward.insert(to, (connection, connection.from));
             }
         }
-        moved.push((corner.index, corner.at));
+        Self { graph, junctions, scan, onward }
     }
-    for (site, role) in sites.iter_mut().zip(roles) {
-        site.role = role;
-    }
-    for (index, at) in moved {
-        if let Some(site) = sites.get_mut(index) {
-            site.centre = at;
+
+    /// Sharpens the corners of the undisturbed sites of all edges: the site in the middle of one moves there, those beside
+    /// it go.
+    pub(super) fn sharpen(&self, sites: &mut [Vec<Site>]) {
+        // All are found before the first one is sharpened: a line goes on in other edges.
+        let found: Vec<Vec<Corner>> = (0..sites.len()).map(|edge| self.of_edge(edge, sites)).collect();
+        for (edge, corners) in found.into_iter().enumerate().filter(|(_, corners)| !corners.is_empty()) {
+            let closed = self.is_closed(edge);
+            let Some(sites) = sites.get_mut(edge) else { continue };
+            // The last site of a loop is the first one again.
+            let end = if closed { sites.len().saturating_sub(1) } else { sites.len() };
+            for corner in corners {
+                let line = Line { sites: sites.get(..end).unwrap_or(&[]), closed };
+                let span: Vec<usize> = line.span(&corner).collect();
+                for index in span {
+                    if let Some(site) = sites.get_mut(index) {
+                        site.role = if index == corner.index { Role::Corner } else { Role::Left };
+                    }
+                }
+                if let Some(site) = sites.get_mut(corner.index) {
+                    site.centre = corner.at;
+                }
+            }
         }
+    }
+
+    fn is_closed(&self, edge: usize) -> bool {
+        self.graph.edges.get(edge).is_some_and(|edge| edge.nodes.is_none())
+    }
+
+    /// The corners of an edge that do not overlap.
+    fn of_edge(&self, edge: usize, sites: &[Vec<Site>]) -> Vec<Corner> {
+        let own = sites.get(edge).map_or(&[][..], Vec::as_slice);
+        if self.is_closed(edge) {
+            let own = own.get(..own.len().saturating_sub(1)).unwrap_or(&[]);
+            return Line { sites: own, closed: true }.sharpest(&(0..own.len()), self.scan);
+        }
+        let [start, end] = [false, true].map(|at_last| End { edge, at_last });
+        let skip = |end: End| self.junctions.skip(end);
+        let first = skip(start);
+        let Some(own) = own.get(first..own.len().saturating_sub(skip(end))) else { return Vec::new() };
+        let mut line = self.beyond(start, sites);
+        line.reverse();
+        let before = line.len();
+        line.extend_from_slice(own);
+        line.extend(self.beyond(end, sites));
+        let mut corners =
+            Line { sites: &line, closed: false }.sharpest(&(before..before + own.len()), self.scan);
+        for corner in &mut corners {
+            corner.index = corner.index + first - before;
+        }
+        corners
+    }
+
+    /// How a line goes on at an edge's end: through the junction, and as far beyond as a corner's sides are looked at.
+    fn beyond(&self, end: End, sites: &[Vec<Site>]) -> Vec<Site> {
+        /// Sites beyond a junction: more show nothing of a corner before it.
+        const LOOK: usize = 24;
+        let Some((connection, to)) = self.onward.get(&end) else { return Vec::new() };
+        let own = |end: End, index: usize| {
+            let sites = sites.get(end.edge)?;
+            let index = index + self.junctions.skip(end);
+            sites.get(if end.at_last { sites.len().checked_sub(index + 1)? } else { index })
+        };
+        let Some(last) = own(end, 0) else { return Vec::new() };
+        let inner = connection.points.iter();
+        let inner: Vec<PxPoint> =
+            if connection.from == end { inner.copied().collect() } else { inner.rev().copied().collect() };
+        let there = own(*to, 0).map(|site| site.centre);
+        let mut beyond = Vec::new();
+        let mut before = last.centre;
+        for next in inner.into_iter().chain(there) {
+            // About a pixel apart, as the sites are.
+            let steps = libm::round(before.distance(next)).clamp(1.0, 200.0);
+            let mut step = 1.0;
+            while step <= steps {
+                let t = step / steps;
+                let centre =
+                    PxPoint::new(before.x + (next.x - before.x) * t, before.y + (next.y - before.y) * t);
+                beyond.push(Site { centre, ..*last });
+                step += 1.0;
+            }
+            before = next;
+        }
+        beyond.extend((1..LOOK).map_while(|index| own(*to, index)));
+        beyond
     }
 }
 
@@ -99,8 +180,42 @@ impl Line<'_> {
         near.filter_map(|index| self.sites.get(index)).map(|site| site.width_px).fold(f64::INFINITY, f64::min)
     }
 
+    /// The sites that a corner replaces.
+    fn span<'a>(&'a self, corner: &'a Corner) -> impl Iterator<Item = usize> + 'a {
+        (0..=2 * corner.gap).filter_map(|step| self.index(corner.index, step, corner.gap))
+    }
+
+    /// The corners among a line's `own` sites, those before and after show only where it comes from and goes to; of those
+    /// that overlap the sharpest.
+    fn sharpest(&self, own: &Range<usize>, scan: Scan<'_>) -> Vec<Corner> {
+        let mut corners = self.corners(own, scan);
+        // Of equals the upper one: whichever way the line runs.
+        let place = |corner: &Corner| {
+            self.sites.get(corner.index).map_or((0.0, 0.0), |site| (site.centre.y, site.centre.x))
+        };
+        corners.sort_by(|a, b| {
+            let ((top, left), (y, x)) = (place(a), place(b));
+            a.cos.total_cmp(&b.cos).then(top.total_cmp(&y)).then(left.total_cmp(&x))
+        });
+        let mut taken = vec![false; self.sites.len()];
+        corners.retain(|corner| {
+            let span: Vec<usize> = self.span(corner).collect();
+            let free = span.len() > 2 * corner.gap
+                && span.iter().all(|index| own.contains(index) && taken.get(*index) == Some(&false));
+            if free {
+                for index in span {
+                    if let Some(taken) = taken.get_mut(index) {
+                        *taken = true;
+                    }
+                }
+            }
+            free
+        });
+        corners
+    }
+
     /// All corners, those that overlap too.
-    fn corners(&self, scan: Scan<'_>) -> Vec<Corner> {
+    fn corners(&self, own: &Range<usize>, scan: Scan<'_>) -> Vec<Corner> {
         /// Sites to either side whose chords give a first look at the turn.
         const LOOK: usize = 6;
         let count = self.sites.len();
@@ -115,6 +230,9 @@ impl Line<'_> {
         let turns: Vec<f64> = (0..count).map(|index| turn(index).unwrap_or(1.0)).collect();
         let mut found = Vec::new();
         for (index, turn) in turns.iter().enumerate().filter(|(_, turn)| **turn < TURN_COS) {
+            if !own.contains(&index) {
+                continue;
+            }
             let near = (0..=4).filter_map(|step| self.index(index, step, 2));
             let sharpest = near.filter_map(|index| turns.get(index)).fold(f64::INFINITY, |a, b| a.min(*b));
             if *turn <= sharpest {
@@ -131,38 +249,37 @@ impl Line<'_> {
             return None;
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a width below 200 px")]
-        let (gap, mut support) =
+        let (gap, support) =
             (libm::ceil(0.6 * width_px) as usize + 1, libm::ceil(1.2 * width_px) as usize + 5);
-        let (before, after) = loop {
+        let ((a, u), (b, v)) = (FEWEST_SITES..=support).rev().step_by(2).find_map(|support| {
             let side = |ahead: bool| {
                 straight((gap..gap + support).map_while(|step| {
                     if ahead { self.place(index, step, 0) } else { self.place(index, 0, step) }
                 }))
             };
-            if let (Some(before), Some(after)) = (side(false), side(true)) {
-                break (before, after);
-            }
-            support -= 2;
-            if support < 4 {
-                return None;
-            }
-        };
+            side(false).zip(side(true))
+        })?;
         // The line before runs away from the corner, so it is turned around.
-        let cos = -(before.1.0 * after.1.0 + before.1.1 * after.1.1);
-        if cos > TURN_COS {
-            return None;
-        }
-        let ((a, u), (b, v)) = (before, after);
+        let cos = -(u.0 * v.0 + u.1 * v.1);
         let cross = u.0 * v.1 - u.1 * v.0;
-        if cross.abs() < 0.1 {
+        if cos > TURN_COS || cross.abs() < 0.1 {
             return None;
         }
         let t = ((b.x - a.x) * v.1 - (b.y - a.y) * v.0) / cross;
         let at = PxPoint::new(a.x + u.0 * t, a.y + u.1 * t);
-        let near = self.place(index, 0, 0)?.distance(at) <= 1.2 * width_px + 1.0;
+        let inside = self.place(index, 0, 0)?;
+        if inside.distance(at) > 1.2 * width_px + 1.0 {
+            return None;
+        }
         let half_px = 0.5 * width_px;
-        let pen_was_there = scan.radius_px(at, half_px + 1.0) >= half_px - (0.1 * width_px).max(0.45);
-        (near && pen_was_there).then_some(Corner { index, gap, at, cos })
+        let pen_was_at =
+            |at: &PxPoint| scan.radius_px(*at, half_px + 1.0) >= half_px - (0.1 * width_px).max(0.45);
+        // Of a sharp corner the raster shows the tip a little too far out.
+        let most_px = if cos < SHARP_COS { 0.5 } else { 0.0 };
+        let inwards = direction(at, inside).unwrap_or((0.0, 0.0));
+        let moved = [0.0, 0.25, 0.5].into_iter().take_while(|off_px| *off_px <= most_px);
+        let at = moved.map(|off_px| at.along(inwards, off_px)).find(pen_was_at)?;
+        Some(Corner { index, gap, at, cos })
     }
 }
 
@@ -193,7 +310,7 @@ fn straight(places: impl Iterator<Item = PxPoint>) -> Option<(PxPoint, (f64, f64
     (across <= STRAIGHT_PX * STRAIGHT_PX).then_some((PxPoint::new(origin.x + x, origin.y + y), (dx, dy)))
 }
 
-fn direction(from: PxPoint, to: PxPoint) -> Option<(f64, f64)> {
+pub(super) fn direction(from: PxPoint, to: PxPoint) -> Option<(f64, f64)> {
     let length = from.distance(to);
     (length > 0.0).then(|| ((to.x - from.x) / length, (to.y - from.y) / length))
 }

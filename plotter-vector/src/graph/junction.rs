@@ -5,10 +5,10 @@
 //! along which both lines run together: it is wider than a line, and the arms continue each other across it.
 
 use super::arm::{Arm, LONG, SHORT};
-use super::corner::TURN_COS;
+use super::corner::{TURN_COS, direction};
 use super::meeting::{Heart, partners};
 use super::site::{Scan, Site};
-use super::trial::{GOOD, Trial, WORTH};
+use super::trial::{GOOD_PX2, Trial, is_better};
 use super::{End, Graph};
 use crate::{Pixel, PxPoint};
 
@@ -146,6 +146,17 @@ pub(super) struct ArmOf {
     pub(super) arm: Arm,
     /// Where a short line ends that leads from here to nowhere else.
     pub(super) tip: Option<PxPoint>,
+}
+
+impl ArmOf {
+    /// A line too short to show its own direction, from the junction's middle to where it ends.
+    fn aimed(&self, centre: PxPoint) -> Option<Self> {
+        let tip = self.tip.filter(|_| self.arm.support_px < 2.0 * self.arm.width_px)?;
+        let direction = direction(centre, tip)?;
+        let (x, y) = self.arm.origin.minus(centre);
+        let origin = centre.along(direction, x * direction.0 + y * direction.1);
+        Some(Self { arm: Arm { origin, direction, bend_per_px: 0.0, ..self.arm }, ..*self })
+    }
 }
 
 impl Lines<'_> {
@@ -297,7 +308,7 @@ impl Lines<'_> {
         let sites: Vec<Vec<Site>> = arms.iter().map(|one| self.sites_from(one.end)).collect();
         let Some(trial) = Trial::new(self.scan, heart.centre, arms, &sites) else { return straight };
         let mut best = (trial.cost(&straight), straight);
-        if best.0 <= GOOD {
+        if best.0 <= GOOD_PX2 {
             return best.1;
         }
         let near: Option<Vec<ArmOf>> =
@@ -308,24 +319,33 @@ impl Lines<'_> {
             near.as_ref().map(|near| heart.plan(near, false)),
             self.along_skeleton(group, arms, heart, found),
         ];
-        for ways in others.into_iter().flatten() {
+        let curves = pairings(arms.len()).iter().map(|pairs| heart.curves(arms, pairs));
+        for ways in others.into_iter().flatten().chain(curves) {
             let cost = trial.cost(&ways);
-            if cost < WORTH * best.0 {
+            if is_better(cost, best.0) {
                 best = (cost, ways);
             }
         }
+        // What sticks out of the other side so little that thinning takes it for roughness.
         for index in 0..best.1.len() {
-            let mut ways = best.1.clone();
-            let Some(Way { one, other: None, points }) = ways.get_mut(index) else { continue };
-            // What sticks out of the other side so little that thinning takes it for roughness.
-            let end = self.line_end(&one.arm);
-            if points.last().is_some_and(|last| last.distance(end) > 1.5 * heart.radius_px + 3.0) {
-                continue;
-            }
-            points.push(end);
-            let cost = trial.cost(&ways);
-            if cost < WORTH * best.0 {
-                best = (cost, ways);
+            let Some(Way { one, other: None, points }) = best.1.get(index).cloned() else { continue };
+            let aimed = one.aimed(heart.centre);
+            let straight_on = aimed.map(|aimed| (aimed, Vec::new()));
+            for (one, mut points) in [Some((one, points)), straight_on].into_iter().flatten() {
+                let end = self.line_end(&one.arm);
+                let last = points.last().copied().unwrap_or(heart.centre);
+                if last.distance(end) > 1.5 * heart.radius_px + 3.0 {
+                    continue;
+                }
+                points.push(end);
+                let mut ways = best.1.clone();
+                if let Some(way) = ways.get_mut(index) {
+                    *way = Way { one, other: None, points };
+                }
+                let cost = trial.cost(&ways);
+                if is_better(cost, best.0) {
+                    best = (cost, ways);
+                }
             }
         }
         trial.settle(best.1, best.0)
@@ -475,6 +495,16 @@ impl Lines<'_> {
         }
         way.reverse();
         Some((way, edges))
+    }
+}
+
+/// Which of two to four arms may be one line.
+fn pairings(arms: usize) -> &'static [&'static [(usize, usize)]] {
+    match arms {
+        2 => &[&[(0, 1)]],
+        3 => &[&[(0, 1)], &[(0, 2)], &[(1, 2)]],
+        4 => &[&[(0, 1), (2, 3)], &[(0, 2), (1, 3)], &[(0, 3), (1, 2)]],
+        _ => &[],
     }
 }
 

@@ -76,10 +76,8 @@ impl Heart<'_> {
             let (a, b) = (one.arm.direction_at(along(one)), other.arm.direction_at(along(other)));
             -(a.0 * b.0 + a.1 * b.1)
         });
-        let mut bridges: Vec<Vec<PxPoint>> = Vec::new();
-        let mut paired = vec![false; arms.len()];
-        for (first, second) in pairs {
-            let (Some(one), Some(other)) = (arms.get(first), arms.get(second)) else { continue };
+        for (first, second) in &pairs {
+            let (Some(one), Some(other)) = (arms.get(*first), arms.get(*second)) else { continue };
             let points = if concurrent {
                 vec![meeting]
             } else if bend(&one.arm, &other.arm) < 1.0 {
@@ -88,26 +86,48 @@ impl Heart<'_> {
                 // A smooth curve makes sense only where both arms look at each other.
                 vec![self.centre]
             };
-            bridges.push(points.clone());
             ways.push(Way { one: *one, other: Some(*other), points });
-            for index in [first, second] {
-                if let Some(paired) = paired.get_mut(index) {
-                    *paired = true;
-                }
-            }
         }
-        for (one, _) in arms.iter().zip(&paired).filter(|(_, paired)| !**paired) {
-            let onto = || {
-                bridges
-                    .iter()
-                    .filter_map(|bridge| foot(&one.arm, bridge))
-                    .min_by(|a, b| a.distance(self.centre).total_cmp(&b.distance(self.centre)))
-            };
-            let place =
-                if concurrent { meeting } else { onto().unwrap_or(if near { meeting } else { self.centre }) };
-            ways.push(Way { one: *one, other: None, points: vec![place] });
-        }
+        let place = if near { meeting } else { self.centre };
+        let ends = self.ends(arms, &pairs, &ways, place, concurrent);
+        ways.extend(ends);
         ways
+    }
+
+    /// How lines go on that bend so much within the junction that their arms do not look like one line: `pairs` of them on
+    /// smooth curves, the others up to these.
+    pub(super) fn curves(&self, arms: &[ArmOf], pairs: &[(usize, usize)]) -> Vec<Way> {
+        let pair = |(first, second): &(usize, usize)| {
+            let (one, other) = (arms.get(*first)?, arms.get(*second)?);
+            Some(Way { one: *one, other: Some(*other), points: bridge(&one.arm, &other.arm) })
+        };
+        let mut ways: Vec<Way> = pairs.iter().filter_map(pair).collect();
+        let ends = self.ends(arms, pairs, &ways, self.centre, false);
+        ways.extend(ends);
+        ways
+    }
+
+    /// Where the arms that are in none of the pairs end: at `place`, or, unless all lines meet there, where they come to
+    /// one of the ways of the pairs.
+    fn ends(
+        &self,
+        arms: &[ArmOf],
+        pairs: &[(usize, usize)],
+        ways: &[Way],
+        place: PxPoint,
+        all_meet: bool,
+    ) -> Vec<Way> {
+        let single = |index: usize| pairs.iter().all(|(a, b)| *a != index && *b != index);
+        let onto = |one: &ArmOf| {
+            ways.iter()
+                .filter_map(|way| foot(&one.arm, &way.points))
+                .min_by(|a, b| a.distance(self.centre).total_cmp(&b.distance(self.centre)))
+        };
+        let end = |(_, one): (usize, &ArmOf)| {
+            let onto = if all_meet { None } else { onto(one) };
+            Way { one: *one, other: None, points: vec![onto.unwrap_or(place)] }
+        };
+        arms.iter().enumerate().filter(|(index, _)| single(*index)).map(end).collect()
     }
 
     /// Whether a meeting point far from the junction's middle has ink around it as a pen leaves it.

@@ -60,15 +60,7 @@ pub(crate) fn fragments(
         graph.edges.iter().map(|edge| scan.sites(&edge.pixels, edge.nodes.is_none())).collect();
     let gone = spur::spurs(&graph, &sites, scan);
     let junctions = junction::Junctions::of(&graph, &sites, &gone, scan);
-    for (index, (edge, sites)) in graph.edges.iter().zip(&mut sites).enumerate() {
-        let skip = |at_last| junctions.skip(End { edge: index, at_last });
-        let closed = edge.nodes.is_none();
-        // The last site of a loop is the first one again.
-        let last = sites.len().saturating_sub(if closed { 1 } else { skip(true) });
-        if let Some(course) = sites.get_mut(skip(false)..last) {
-            corner::sharpen(course, closed, scan);
-        }
-    }
+    corner::Corners::new(&graph, &junctions, scan).sharpen(&mut sites);
     let lines = stub::Lines { graph: &graph, sites: &sites, junctions: &junctions, gone: &gone, scan };
     let stubs = stub::stubs(&lines, core, words);
     let mut found = fragment::fragments(&graph, &sites, &junctions, &gone, scan, core);

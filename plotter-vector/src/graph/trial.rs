@@ -7,14 +7,13 @@ use super::junction::{ArmOf, Way};
 use super::site::{Scan, Site};
 use crate::{Pixel, PxPoint};
 
-/// Cost that the raster alone explains.
-pub(super) const GOOD: f64 = 0.5;
+/// Cost that the raster alone explains, px².
+pub(super) const GOOD_PX2: f64 = 0.5;
 
-/// A way is better than another when it costs less than this part.
-pub(super) const WORTH: f64 = 0.8;
-
-/// The farthest that the edge of a line lies from the pixels that show it, px.
-const RASTER_PX: f64 = 0.5;
+/// Whether ways of one cost are better than those of another: by more than the raster alone explains.
+pub(super) fn is_better(cost: f64, than: f64) -> bool {
+    cost < 0.8 * than || cost + GOOD_PX2 < than
+}
 
 /// Nothing costs more than a pixel as far as this from where it should be, px.
 const FARTHEST_PX: f64 = 2.0;
@@ -71,7 +70,7 @@ impl<'a> Trial<'a> {
     }
 
     /// How much the ink around the junction differs from what pens draw that go these ways: the squared distances of
-    /// all pixels beyond what the raster explains, px².
+    /// all pixels whose centres are on the wrong side of the lines' edges, px².
     pub(super) fn cost(&self, ways: &[Way]) -> f64 {
         let mut field = vec![FARTHEST_PX; (self.side * self.side) as usize];
         for Way { one, other, points } in ways {
@@ -101,7 +100,7 @@ impl<'a> Trial<'a> {
                 if x * x + y * y > reach {
                     continue;
                 }
-                let off_px = if self.scan.is_ink_at(at) { *value } else { -*value } - RASTER_PX;
+                let off_px = if self.scan.is_ink_at(at) { *value } else { -*value };
                 if off_px > 0.0 {
                     cost += off_px * off_px;
                 }
@@ -118,7 +117,7 @@ impl<'a> Trial<'a> {
         const STEPS_PX: [f64; 3] = [0.8, 0.4, 0.2];
         const AROUND: [(f64, f64); 4] = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
         /// Of thinner lines the edges are too near each other to tell where within them the middle is.
-        const WIDE_PX: f64 = 4.0;
+        const WIDE_PX: f64 = 2.0;
         if self.arms.iter().any(|one| one.arm.width_px < WIDE_PX) {
             return ways;
         }
@@ -127,7 +126,7 @@ impl<'a> Trial<'a> {
             for (way, place) in places(&ways, MOST_PLACES) {
                 let mut direction = 0;
                 // Round by round until no direction is better.
-                while direction < AROUND.len() && cost > GOOD && looks < MOST_LOOKS {
+                while direction < AROUND.len() && cost > GOOD_PX2 && looks < MOST_LOOKS {
                     let Some(at) = ways.get(way).and_then(|way| way.points.get(place)).copied() else {
                         break;
                     };
