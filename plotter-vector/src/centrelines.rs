@@ -6,7 +6,7 @@
 
 pub(crate) use crate::graph::CONTEXT_ROWS;
 use crate::graph::{Cuts, Fragment, Joiner, Rims, Scan, Stretch, Stroke, fragments};
-use crate::{Bitmap, Bounded, Curve, Gray, Thinning, ThinningMethod};
+use crate::{Bitmap, Bounded, Curve, Gray, PxPoint, Thinning, ThinningMethod};
 use core::ops::Range;
 
 /// How ink becomes centrelines.
@@ -91,15 +91,22 @@ pub(crate) fn sort(strokes: &mut [Curve]) {
     strokes.sort_unstable_by(compare);
 }
 
-/// By the vertices in turn, then by the bulges.
+/// By the vertices in turn, then by the bulges and the handles.
 fn compare(one: &Curve, other: &Curve) -> core::cmp::Ordering {
     let places = one.vertices.iter().zip(&other.vertices);
     let unequal =
         places.map(|(a, b)| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x))).find(|order| order.is_ne());
     let bulges =
         || one.bulges.iter().zip(&other.bulges).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
-    let lengths = || (one.vertices.len(), one.bulges.len()).cmp(&(other.vertices.len(), other.bulges.len()));
-    unequal.unwrap_or_else(|| lengths().then_with(|| bulges().unwrap_or(core::cmp::Ordering::Equal)))
+    let handles = |curve: &Curve| -> Vec<[PxPoint; 2]> { curve.handles.iter().flatten().copied().collect() };
+    let bends = || {
+        let (one, other) = (handles(one), handles(other));
+        let places = one.iter().flatten().zip(other.iter().flatten());
+        places.map(|(a, b)| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x))).find(|order| order.is_ne())
+    };
+    let lengths = |curve: &Curve| (curve.vertices.len(), curve.bulges.len(), curve.handles.len());
+    let rest = || bulges().or_else(bends).unwrap_or(core::cmp::Ordering::Equal);
+    unequal.unwrap_or_else(|| lengths(one).cmp(&lengths(other)).then_with(rest))
 }
 
 /// How many bands are worked on at a time.

@@ -1,9 +1,9 @@
-//! [`Curve`]: vertices joined by straight lines and circular arcs; [`Arc`]: one such arc.
+//! [`Curve`]: vertices joined by straight lines, circular arcs and cubic curves; [`Arc`]: one such arc.
 
-use crate::PxPoint;
+use crate::{Cubic, PxPoint};
 use core::f64::consts::{PI, TAU};
 
-/// Farthest that chords lie from their arc wherever arcs are taken as chords without a distance being asked for, px: a
+/// Farthest that chords lie from their arc or cubic curve wherever these are taken as chords without a distance being asked for, px: a
 /// 25th of the usual tolerance.
 pub(crate) const CHORD_ERROR_PX: f64 = 0.02;
 
@@ -13,17 +13,18 @@ const MAX_CHORDS: f64 = 65_536.0;
 /// What the centres, the radii and the whole turn of a circle's arcs may be off, in parts of the radius.
 const SAME_CIRCLE: f64 = 1e-6;
 
-/// A pen stroke: vertices in order, each joined to the next by a straight line or a circular arc.
+/// A pen stroke: vertices in order, each joined to the next by a straight line, a circular arc or a cubic curve.
 ///
 /// An arc is given as in DXF by its *bulge*, the tangent of a quarter of the angle that it spans: 0 is a straight line, 1
-/// half a circle. Positive bulges turn from x towards y, which on a picture, with y down, is clockwise.
+/// half a circle. Positive bulges turn from x towards y, which on a picture, with y down, is clockwise. A cubic curve is
+/// given by its two *handles*, as in SVG: see [`Cubic`].
 ///
 /// ```
 /// # use plotter_vector::{Curve, PxPoint};
 /// // Up a quarter of a circle about (0, 0), then straight on.
 /// let quarter = 2.0_f64.sqrt() - 1.0; // tan(90° / 4)
 /// let vertices = vec![PxPoint::new(-2.0, 0.0), PxPoint::new(0.0, -2.0), PxPoint::new(3.0, -2.0)];
-/// let curve = Curve { vertices, bulges: vec![quarter, 0.0, 0.0] };
+/// let curve = Curve { vertices, bulges: vec![quarter, 0.0, 0.0], ..Curve::default() };
 /// assert!((curve.length_px() - (std::f64::consts::PI + 3.0)).abs() < 1e-12);
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,26 +36,46 @@ pub struct Curve {
     /// empty.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub bulges: Vec<f64>,
+    /// Handles of the piece that begins at each vertex, where it is a cubic curve: its bulge then says nothing. What is
+    /// missing, or is no place, is none: without cubic curves it is empty.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub handles: Vec<Option<[PxPoint; 2]>>,
 }
 
 impl From<Vec<PxPoint>> for Curve {
     /// Straight lines.
     fn from(vertices: Vec<PxPoint>) -> Self {
-        Self { vertices, bulges: Vec::new() }
+        Self { vertices, ..Self::default() }
+    }
+}
+
+impl From<Course<'_>> for Curve {
+    fn from(Course { vertices, bulges, handles }: Course<'_>) -> Self {
+        Self { vertices: vertices.to_vec(), bulges: bulges.to_vec(), handles: handles.to_vec() }
     }
 }
 
 impl Curve {
+    /// Whether all of it is straight lines.
+    #[must_use]
+    pub fn is_straight(&self) -> bool {
+        self.course().is_straight()
+    }
+
     /// Whether any piece is an arc.
     #[must_use]
     pub fn has_arcs(&self) -> bool {
-        self.bulges.iter().any(|bulge| is_bulge(*bulge))
+        self.course().pieces().any(|piece| matches!(piece, Piece::Arc(_)))
     }
 
     /// Length, px.
     #[must_use]
     pub fn length_px(&self) -> f64 {
-        length_px(&self.vertices, &self.bulges)
+        self.course().length_px()
+    }
+
+    pub(crate) fn course(&self) -> Course<'_> {
+        Course { vertices: &self.vertices, bulges: &self.bulges, handles: &self.handles }
     }
 
     /// The circle that it is: closed, all arcs of one circle, once round; its centre and radius, px.
@@ -62,38 +83,46 @@ impl Curve {
     /// ```
     /// # use plotter_vector::{Curve, PxPoint};
     /// let (left, right) = (PxPoint::new(0.0, 5.0), PxPoint::new(10.0, 5.0));
-    /// let round = Curve { vertices: vec![left, right, left], bulges: vec![1.0, 1.0, 0.0] };
+    /// let round = Curve { vertices: vec![left, right, left], bulges: vec![1.0, 1.0, 0.0], ..Curve::default() };
     /// assert_eq!(round.circle(), Some((PxPoint::new(5.0, 5.0), 5.0)));
     /// assert_eq!(Curve { bulges: vec![1.0, -1.0, 0.0], ..round }.circle(), None); // there and back
     /// ```
     #[must_use]
     pub fn circle(&self) -> Option<(PxPoint, f64)> {
-        circle(&self.vertices, &self.bulges)
+        self.course().circle()
     }
 
     /// The same way from its other end.
     pub fn reverse(&mut self) {
+        // One for each piece, then they fit again.
+        let pieces = self.vertices.len().saturating_sub(1);
         self.vertices.reverse();
-        if !self.bulges.is_empty() {
-            // One for each piece, then they fit again.
-            self.bulges.resize(self.vertices.len().saturating_sub(1), 0.0);
-            self.bulges.reverse();
-            self.bulges.iter_mut().for_each(|bulge| *bulge = -*bulge);
-            self.bulges.push(0.0);
-        }
+        turned(&mut self.bulges, pieces, |bulge| *bulge = -*bulge);
+        turned(&mut self.handles, pieces, |handles| {
+            if let Some([first, second]) = handles {
+                core::mem::swap(first, second);
+            }
+        });
     }
 
-    /// The vertices with arcs replaced by chords that lie no farther than `chord_error_px` from them.
+    /// The vertices with arcs and cubic curves replaced by chords that lie no farther than `chord_error_px` from them.
     ///
     /// ```
     /// # use plotter_vector::{Curve, PxPoint};
-    /// let half = Curve { vertices: vec![PxPoint::new(0.0, 0.0), PxPoint::new(8.0, 0.0)], bulges: vec![1.0, 0.0] };
+    /// let vertices = vec![PxPoint::new(0.0, 0.0), PxPoint::new(8.0, 0.0)];
+    /// let half = Curve { vertices, bulges: vec![1.0, 0.0], ..Curve::default() };
     /// // A chord of 60 degrees is 4 (1 - cos 30°) = 0.536 px off.
     /// assert_eq!(half.chords(0.54).len(), 4);
     /// ```
     #[must_use]
     pub fn chords(&self, chord_error_px: f64) -> Vec<PxPoint> {
-        chords(&self.vertices, &self.bulges, chord_error_px)
+        self.course().chords(chord_error_px)
+    }
+
+    /// Moves all of it down.
+    pub(crate) fn move_down(&mut self, by_px: f64) {
+        let handles = self.handles.iter_mut().flatten().flatten();
+        self.vertices.iter_mut().chain(handles).for_each(|at| at.y += by_px);
     }
 
     /// Goes on with another one, from where this one ends; straight over a gap.
@@ -101,14 +130,11 @@ impl Curve {
         let Some(first) = next.vertices.first() else { return };
         // Ends in one place are one vertex.
         let shared = usize::from(self.vertices.last() == Some(first));
-        if !next.bulges.is_empty() || !self.bulges.is_empty() {
-            self.bulges.resize(self.vertices.len() - shared, 0.0);
-            self.bulges.extend(next.bulges);
-        }
+        let start = self.vertices.len() - shared;
         self.vertices.extend(next.vertices.into_iter().skip(shared));
-        if !self.bulges.is_empty() {
-            self.bulges.resize(self.vertices.len(), 0.0);
-        }
+        let count = self.vertices.len();
+        appended(&mut self.bulges, start, next.bulges, count);
+        appended(&mut self.handles, start, next.handles, count);
     }
 
     /// Lets a closed one begin and end at another vertex.
@@ -119,11 +145,36 @@ impl Curve {
         ring.rotate_left(start);
         *last = ring.first().copied().unwrap_or(*last);
         let pieces = ring.len();
-        if !self.bulges.is_empty() {
-            self.bulges.resize(pieces, 0.0);
-            self.bulges.rotate_left(start);
-            self.bulges.push(0.0);
-        }
+        rotated(&mut self.bulges, pieces, start);
+        rotated(&mut self.handles, pieces, start);
+    }
+}
+
+/// What belongs to the pieces, from their other end; `turn` makes one of them the other way round.
+fn turned<T: Clone + Default>(of_pieces: &mut Vec<T>, pieces: usize, turn: impl Fn(&mut T)) {
+    if !of_pieces.is_empty() {
+        of_pieces.resize(pieces, T::default());
+        of_pieces.reverse();
+        of_pieces.iter_mut().for_each(turn);
+        of_pieces.push(T::default());
+    }
+}
+
+/// What belongs to the pieces of a stroke, with that of one which begins at its vertex `start`; for `count` vertices then.
+fn appended<T: Clone + Default>(of_pieces: &mut Vec<T>, start: usize, next: Vec<T>, count: usize) {
+    if !next.is_empty() || !of_pieces.is_empty() {
+        of_pieces.resize(start, T::default());
+        of_pieces.extend(next);
+        of_pieces.resize(count, T::default());
+    }
+}
+
+/// What belongs to the pieces of a ring, from another vertex on.
+fn rotated<T: Clone + Default>(of_pieces: &mut Vec<T>, pieces: usize, start: usize) {
+    if !of_pieces.is_empty() {
+        of_pieces.resize(pieces, T::default());
+        of_pieces.rotate_left(start);
+        of_pieces.push(T::default());
     }
 }
 
@@ -132,49 +183,129 @@ pub(crate) fn is_bulge(bulge: f64) -> bool {
     bulge != 0.0 && bulge.is_finite()
 }
 
-/// The pieces of a stroke: from, to, and the arc between where it is one.
-pub(crate) fn pieces<'a>(
-    vertices: &'a [PxPoint],
-    bulges: &'a [f64],
-) -> impl Iterator<Item = (PxPoint, PxPoint, Option<Arc>)> + 'a {
-    vertices.iter().zip(vertices.iter().skip(1)).enumerate().map(|(index, (from, to))| {
-        let arc = bulges.get(index).and_then(|bulge| Arc::new(*from, *to, *bulge));
-        (*from, *to, arc)
-    })
+/// Whether two places are handles.
+pub(crate) fn are_handles(handles: [PxPoint; 2]) -> bool {
+    handles.iter().all(|at| at.is_finite())
 }
 
-pub(crate) fn length_px(vertices: &[PxPoint], bulges: &[f64]) -> f64 {
-    pieces(vertices, bulges).map(|(from, to, arc)| arc.map_or(from.distance(to), |arc| arc.length_px())).sum()
+/// A stroke in someone else's keeping: see [`Curve`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Course<'a> {
+    pub(crate) vertices: &'a [PxPoint],
+    pub(crate) bulges: &'a [f64],
+    pub(crate) handles: &'a [Option<[PxPoint; 2]>],
 }
 
-pub(crate) fn chords(vertices: &[PxPoint], bulges: &[f64], chord_error_px: f64) -> Vec<PxPoint> {
-    let mut places: Vec<PxPoint> = vertices.first().copied().into_iter().collect();
-    for (_, to, arc) in pieces(vertices, bulges) {
-        if let Some(arc) = arc {
-            let count = arc.chords(chord_error_px);
-            places.extend((1..count).map(|chord| arc.at(f64::from(chord) / f64::from(count))));
-        }
-        places.push(to);
+/// What joins a vertex to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Piece {
+    Line(PxPoint, PxPoint),
+    Arc(Arc),
+    Cubic(Cubic),
+}
+
+impl Course<'_> {
+    pub(crate) fn is_straight(&self) -> bool {
+        !self.bulges.iter().any(|bulge| is_bulge(*bulge))
+            && !self.handles.iter().flatten().any(|handles| are_handles(*handles))
     }
-    places
-}
 
-pub(crate) fn circle(vertices: &[PxPoint], bulges: &[f64]) -> Option<(PxPoint, f64)> {
-    if vertices.len() < 3 || vertices.first() != vertices.last() {
-        return None;
+    /// The piece that begins at a vertex; that which begins at the last one of a ring ends at its first one.
+    pub(crate) fn piece(&self, index: usize) -> Option<Piece> {
+        let from = *self.vertices.get(index)?;
+        let to = *self.vertices.get(index + 1).or(self.vertices.first())?;
+        let cubic =
+            self.handles.get(index).copied().flatten().and_then(|handles| Cubic::new(from, handles, to));
+        let arc = || self.bulges.get(index).and_then(|bulge| Arc::new(from, to, *bulge));
+        Some(cubic.map(Piece::Cubic).or_else(|| arc().map(Piece::Arc)).unwrap_or(Piece::Line(from, to)))
     }
-    let first = Arc::new(*vertices.first()?, *vertices.get(1)?, *bulges.first()?)?;
-    let off = SAME_CIRCLE * first.radius_px;
-    let mut turn = 0.0;
-    for (_, _, arc) in pieces(vertices, bulges) {
-        let arc = arc?;
-        let same = arc.centre.distance(first.centre) <= off && (arc.radius_px - first.radius_px).abs() <= off;
-        if !same || (arc.sweep_rad > 0.0) != (first.sweep_rad > 0.0) {
+
+    pub(crate) fn pieces(self) -> impl Iterator<Item = Piece> {
+        (1..self.vertices.len()).filter_map(move |next| self.piece(next - 1))
+    }
+
+    pub(crate) fn length_px(self) -> f64 {
+        self.pieces().map(|piece| piece.length_px()).sum()
+    }
+
+    pub(crate) fn chords(self, chord_error_px: f64) -> Vec<PxPoint> {
+        let mut places: Vec<PxPoint> = self.vertices.first().copied().into_iter().collect();
+        self.pieces().for_each(|piece| places.extend(piece.chords(chord_error_px)));
+        places
+    }
+
+    pub(crate) fn circle(self) -> Option<(PxPoint, f64)> {
+        if self.vertices.len() < 3 || self.vertices.first() != self.vertices.last() {
             return None;
         }
-        turn += arc.sweep_rad.abs();
+        let Some(Piece::Arc(first)) = self.piece(0) else { return None };
+        let off = SAME_CIRCLE * first.radius_px;
+        let mut turn = 0.0;
+        for piece in self.pieces() {
+            let Piece::Arc(arc) = piece else { return None };
+            let same =
+                arc.centre.distance(first.centre) <= off && (arc.radius_px - first.radius_px).abs() <= off;
+            if !same || (arc.sweep_rad > 0.0) != (first.sweep_rad > 0.0) {
+                return None;
+            }
+            turn += arc.sweep_rad.abs();
+        }
+        ((turn - TAU).abs() <= SAME_CIRCLE).then_some((first.centre, first.radius_px))
     }
-    ((turn - TAU).abs() <= SAME_CIRCLE).then_some((first.centre, first.radius_px))
+}
+
+impl Piece {
+    pub(crate) fn to(&self) -> PxPoint {
+        match self {
+            Self::Line(_, to) => *to,
+            Self::Arc(arc) => arc.to,
+            Self::Cubic(cubic) => cubic.to,
+        }
+    }
+
+    fn length_px(&self) -> f64 {
+        match self {
+            Self::Line(from, to) => from.distance(*to),
+            Self::Arc(arc) => arc.length_px(),
+            Self::Cubic(cubic) => cubic.length_px(),
+        }
+    }
+
+    /// The ends of its chords, which lie no farther than this from it; the last is its own.
+    pub(crate) fn chords(self, chord_error_px: f64) -> impl Iterator<Item = PxPoint> {
+        let count = match self {
+            Self::Line(..) => 1,
+            Self::Arc(arc) => arc.chords(chord_error_px),
+            Self::Cubic(cubic) => cubic.chords(chord_error_px),
+        };
+        let inner = (1..count).map(move |chord| {
+            let part = f64::from(chord) / f64::from(count);
+            match self {
+                Self::Line(from, _) => from,
+                Self::Arc(arc) => arc.at(part),
+                Self::Cubic(cubic) => cubic.at(part),
+            }
+        });
+        inner.chain([self.to()])
+    }
+
+    /// The unit vector in which it begins (`false`) or ends (`true`); (0, 0) where it goes nowhere.
+    pub(crate) fn heading(&self, end: bool) -> (f64, f64) {
+        match self {
+            Self::Line(from, to) => unit(*from, *to),
+            Self::Arc(arc) => {
+                let (x, y) = unit(arc.centre, if end { arc.to } else { arc.from });
+                if arc.sweep_rad > 0.0 { (-y, x) } else { (y, -x) }
+            }
+            Self::Cubic(cubic) => cubic.heading(if end { 1.0 } else { 0.0 }),
+        }
+    }
+}
+
+/// The unit vector from one place to another; (0, 0) where they are one.
+pub(crate) fn unit(from: PxPoint, to: PxPoint) -> (f64, f64) {
+    let length = from.distance(to);
+    if length > 0.0 { ((to.x - from.x) / length, (to.y - from.y) / length) } else { (0.0, 0.0) }
 }
 
 /// A circular arc between two places.
@@ -274,18 +405,6 @@ impl Arc {
     }
 }
 
-/// A unit vector at the vertex turned by so many times half the angle that an arc spans: from the direction of the chord
-/// to that of the arc at its end (`1.0`) or its beginning (`-1.0`).
-pub(crate) fn tangent(chord: (f64, f64), bulge: f64, end: f64) -> (f64, f64) {
-    if !is_bulge(bulge) {
-        return chord;
-    }
-    // Of twice the angle whose tangent is the bulge.
-    let squared = bulge * bulge;
-    let (cos, sin) = ((1.0 - squared) / (1.0 + squared), 2.0 * bulge * end / (1.0 + squared));
-    (chord.0 * cos - chord.1 * sin, chord.0 * sin + chord.1 * cos)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -299,6 +418,16 @@ mod tests {
         Curve {
             vertices: vec![at(0.0, 0.0), at(4.0, 0.0), at(9.0, 1.0), at(9.0, 7.0)],
             bulges: vec![0.5, 0.0, -0.3, 0.0],
+            ..Curve::default()
+        }
+    }
+
+    /// A stroke with a cubic curve and an arc.
+    fn bent() -> Curve {
+        Curve {
+            vertices: vec![at(0.0, 0.0), at(4.0, 0.0), at(9.0, 1.0)],
+            bulges: vec![0.0, 0.5],
+            handles: vec![Some([at(1.0, 2.0), at(4.0, -3.0)])],
         }
     }
 
@@ -316,10 +445,39 @@ mod tests {
     }
 
     #[test]
+    fn cubic_curves_go_along_with_their_vertices() {
+        let mut back = bent();
+        back.reverse();
+        assert_eq!(back.handles, [None, Some([at(4.0, -3.0), at(1.0, 2.0)]), None]);
+        let (one, mut other) = (bent().chords(0.01), back.chords(0.01));
+        other.reverse();
+        assert!(one.len() == other.len() && one.iter().zip(&other).all(|(a, b)| a.distance(*b) < 1e-12));
+        let mut line = Curve::from(vec![at(-5.0, 0.0), at(0.0, 0.0)]);
+        line.append(bent());
+        assert_eq!(line.handles, [None, bent().handles[0], None, None]);
+        assert!((line.length_px() - 5.0 - bent().length_px()).abs() < 1e-9);
+        let mut ring = bent();
+        ring.vertices.push(at(0.0, 0.0));
+        ring.begin_at(2);
+        assert_eq!(ring.handles, [None, bent().handles[0], None, None]);
+        ring.move_down(2.0);
+        assert_eq!(ring.handles[1], Some([at(1.0, 4.0), at(4.0, -1.0)]));
+    }
+
+    #[test]
+    fn handles_that_are_no_places_make_no_curve() {
+        let bad = Curve { handles: vec![Some([at(f64::NAN, 0.0), at(1.0, 1.0)])], ..bent() };
+        assert!(!bad.is_straight() && bad.has_arcs());
+        assert_eq!(bad.course().piece(0), Some(Piece::Line(at(0.0, 0.0), at(4.0, 0.0))));
+        assert!(Curve { bulges: Vec::new(), ..bad }.is_straight());
+    }
+
+    #[test]
     fn a_closed_one_begins_anywhere_with_its_bulges() {
         let mut ring = Curve {
             vertices: [0.0, 1.0, 2.0, 0.0].map(|x| at(x, x * x)).to_vec(),
             bulges: vec![0.1, 0.2, 0.3],
+            ..Curve::default()
         };
         ring.begin_at(1);
         assert_eq!(ring.vertices, [1.0, 2.0, 0.0, 1.0].map(|x| at(x, x * x)));
@@ -374,12 +532,17 @@ mod tests {
             assert_eq!(Arc::new(a, b, bulge), None);
         }
         assert_eq!(Arc::new(a, a, 1.0), None);
-        assert_eq!(Curve { vertices: vec![a, b], bulges: vec![f64::NAN] }.chords(0.1), [a, b]);
+        assert_eq!(
+            Curve { vertices: vec![a, b], bulges: vec![f64::NAN], ..Curve::default() }.chords(0.1),
+            [a, b]
+        );
     }
 
     #[test]
-    fn the_tangents_of_half_a_circle_are_across_its_chord() {
-        assert_eq!(tangent((1.0, 0.0), 1.0, -1.0), (0.0, -1.0));
-        assert_eq!(tangent((1.0, 0.0), 1.0, 1.0), (0.0, 1.0));
+    fn half_a_circle_begins_and_ends_across_its_chord() {
+        let half = Piece::Arc(Arc::new(at(0.0, 0.0), at(2.0, 0.0), 1.0).unwrap());
+        assert_eq!([half.heading(false), half.heading(true)], [(0.0, -1.0), (0.0, 1.0)]);
+        let other = Piece::Arc(Arc::new(at(0.0, 0.0), at(2.0, 0.0), -1.0).unwrap());
+        assert_eq!([other.heading(false), other.heading(true)], [(0.0, 1.0), (0.0, -1.0)]);
     }
 }

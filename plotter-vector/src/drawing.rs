@@ -1,7 +1,7 @@
 //! [`Drawing`]: pen strokes in pixel coordinates, and [`Scale`], the only road from there to the sheet.
 
 use crate::Curve;
-use crate::curve::{CHORD_ERROR_PX, chords, is_bulge, length_px};
+use crate::curve::{CHORD_ERROR_PX, Course, are_handles, is_bulge};
 use core::fmt;
 use plotter_motion::{PlotOp, Point};
 use std::borrow::Cow;
@@ -57,7 +57,8 @@ impl From<crate::Pixel> for PxPoint {
 }
 
 /// Pen strokes in the order in which they are drawn, in pixel coordinates. A stroke of one vertex is a dot. Each stroke
-/// has a pen, a number in the carousel from 1. Vertices are joined by straight lines, or by arcs: see [`Curve`].
+/// has a pen, a number in the carousel from 1. Vertices are joined by straight lines, arcs or cubic curves: see
+/// [`Curve`].
 ///
 /// ```
 /// # use plotter_vector::{Drawing, PxPoint};
@@ -81,6 +82,9 @@ pub struct Drawing {
     /// The bulge of the piece that begins at each vertex; empty as long as nothing is an arc.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     bulges: Vec<f64>,
+    /// The handles of the piece that begins at each vertex; empty as long as nothing is a cubic curve.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    handles: Vec<Option<[PxPoint; 2]>>,
 }
 
 /// The pen of a stroke of which nothing else is said.
@@ -97,6 +101,7 @@ impl Drawing {
             ends: Vec::new(),
             pens: Vec::new(),
             bulges: Vec::new(),
+            handles: Vec::new(),
         }
     }
 
@@ -134,30 +139,32 @@ impl Drawing {
             if !self.bulges.is_empty() {
                 self.bulges.resize(self.vertices.len(), 0.0);
             }
+            if !self.handles.is_empty() {
+                self.handles.resize(self.vertices.len(), None);
+            }
         }
     }
 
-    /// Adds a stroke that may have arcs; one without vertices is left out. Pens as with [`Drawing::push_with_pen`].
+    /// Adds a stroke that may have arcs and cubic curves; one without vertices is left out. Pens as with [`Drawing::push_with_pen`].
     ///
     /// ```
     /// # use plotter_vector::{Curve, Drawing, PxPoint};
     /// let (left, right) = (PxPoint::new(1.0, 3.0), PxPoint::new(5.0, 3.0));
     /// let mut drawing = Drawing::new(6, 6);
-    /// drawing.push_curve(1, Curve { vertices: vec![left, right, left], bulges: vec![1.0, 1.0] });
+    /// let vertices = vec![left, right, left];
+    /// drawing.push_curve(1, Curve { vertices, bulges: vec![1.0, 1.0], ..Curve::default() });
     /// assert!((drawing.pen_down_px() - 4.0 * std::f64::consts::PI).abs() < 1e-12); // a circle 4 px wide
     /// ```
     pub fn push_curve(&mut self, pen: u8, curve: Curve) {
         let before = self.vertices.len();
-        let bulges = curve.has_arcs().then_some(curve.bulges);
-        self.push_with_pen(pen, curve.vertices);
-        if let Some(bulges) = bulges {
-            self.bulges.resize(before, 0.0);
-            // The last vertex begins nothing.
-            let pieces = (self.vertices.len() - before).saturating_sub(1);
-            let bulges = bulges.into_iter().take(pieces);
-            self.bulges.extend(bulges.map(|bulge| if is_bulge(bulge) { bulge } else { 0.0 }));
-            self.bulges.resize(self.vertices.len(), 0.0);
-        }
+        let Curve { vertices, bulges, handles } = curve;
+        self.push_with_pen(pen, vertices);
+        // The last vertex begins nothing.
+        let pieces = (self.vertices.len() - before).saturating_sub(1);
+        let bulges = bulges.into_iter().take(pieces).map(|bulge| if is_bulge(bulge) { bulge } else { 0.0 });
+        let handles = handles.into_iter().take(pieces).map(|handles| handles.filter(|at| are_handles(*at)));
+        add(&mut self.bulges, before, bulges.collect(), self.vertices.len());
+        add(&mut self.handles, before, handles.collect(), self.vertices.len());
     }
 
     /// The pen of a stroke, from 1; 1 when there is no such stroke.
@@ -193,10 +200,29 @@ impl Drawing {
         if bulges.iter().any(|bulge| is_bulge(*bulge)) { bulges } else { &[] }
     }
 
-    /// One stroke with its arcs; empty when there is no such stroke.
+    /// The handles of the cubic curves of one stroke, one entry for each vertex as in [`Curve::handles`]; empty when it has
+    /// none.
+    #[must_use]
+    pub fn handles(&self, index: usize) -> &[Option<[PxPoint; 2]>] {
+        let handles = self.range(index).and_then(|range| self.handles.get(range)).unwrap_or(&[]);
+        if handles.iter().any(Option::is_some) { handles } else { &[] }
+    }
+
+    /// One stroke with its arcs and cubic curves; empty when there is no such stroke.
     #[must_use]
     pub fn curve(&self, index: usize) -> Curve {
-        Curve { vertices: self.stroke(index).to_vec(), bulges: self.bulges(index).to_vec() }
+        self.course(index).into()
+    }
+
+    pub(crate) fn course(&self, index: usize) -> Course<'_> {
+        Course { vertices: self.stroke(index), bulges: self.bulges(index), handles: self.handles(index) }
+    }
+
+    /// Whether all strokes are straight lines.
+    #[must_use]
+    pub fn is_straight(&self) -> bool {
+        let all = Course { vertices: &self.vertices, bulges: &self.bulges, handles: &self.handles };
+        all.is_straight()
     }
 
     /// Whether any stroke has an arc.
@@ -205,18 +231,19 @@ impl Drawing {
         self.bulges.iter().any(|bulge| is_bulge(*bulge))
     }
 
-    /// The same drawing of straight lines: arcs replaced by chords that lie no farther than `chord_error_px` from them.
+    /// The same drawing of straight lines: arcs and cubic curves replaced by chords that lie no farther than
+    /// `chord_error_px` from them.
     ///
     /// ```
     /// # use plotter_vector::{Curve, Drawing, PxPoint};
     /// let mut drawing = Drawing::new(10, 6);
     /// let vertices = vec![PxPoint::new(1.0, 5.0), PxPoint::new(9.0, 5.0)];
-    /// drawing.push_curve(1, Curve { vertices, bulges: vec![1.0] });
+    /// drawing.push_curve(1, Curve { vertices, bulges: vec![1.0], ..Curve::default() });
     /// assert_eq!((drawing.vertices(), drawing.chords(0.54).vertices()), (2, 4)); // of 60 degrees each
     /// ```
     #[must_use]
     pub fn chords(&self, chord_error_px: f64) -> Cow<'_, Self> {
-        if !self.has_arcs() {
+        if self.is_straight() {
             return Cow::Borrowed(self);
         }
         let mut straight = Self::new(self.width_px, self.height_px);
@@ -229,9 +256,11 @@ impl Drawing {
 
     /// One stroke of straight lines.
     pub(crate) fn stroke_chords(&self, index: usize, chord_error_px: f64) -> Cow<'_, [PxPoint]> {
-        match self.bulges(index) {
-            [] => Cow::Borrowed(self.stroke(index)),
-            bulges => Cow::Owned(chords(self.stroke(index), bulges, chord_error_px)),
+        let course = self.course(index);
+        if course.is_straight() {
+            Cow::Borrowed(course.vertices)
+        } else {
+            Cow::Owned(course.chords(chord_error_px))
         }
     }
 
@@ -267,7 +296,7 @@ impl Drawing {
     /// Length drawn, px.
     #[must_use]
     pub fn pen_down_px(&self) -> f64 {
-        (0..self.ends.len()).map(|index| length_px(self.stroke(index), self.bulges(index))).sum()
+        (0..self.ends.len()).map(|index| self.course(index).length_px()).sum()
     }
 
     /// Length travelled with the pen up from each stroke's end to the next one's start, px. The ways from and to
@@ -291,8 +320,8 @@ impl Drawing {
 
     /// The operations that draw it on the sheet: to each stroke's start with the pen up, along it with the pen
     /// down. A dot is drawn from its place to its place. The pen is selected where it changes, and before the first
-    /// stroke unless the whole drawing is of pen 1: that is the plotter's own. Arcs come as chords no farther than
-    /// 0.02 px from them.
+    /// stroke unless the whole drawing is of pen 1: that is the plotter's own. Arcs and cubic curves come as
+    /// chords no farther than 0.02 px from them.
     pub fn plot_ops(&self, scale: Scale) -> impl Iterator<Item = PlotOp> + '_ {
         (0..self.ends.len()).flat_map(move |index| {
             let stroke = self.stroke_chords(index, CHORD_ERROR_PX);
@@ -304,6 +333,16 @@ impl Drawing {
             let rest = (1..stroke.len()).filter_map(move |vertex| stroke.get(vertex).copied());
             select.into_iter().chain(travel).chain(rest.chain(dot).map(draw))
         })
+    }
+}
+
+/// Adds what belongs to the pieces of a stroke that begins at the vertex `before`, the last of `count`; nothing where it
+/// says nothing.
+fn add<T: Clone + Default + PartialEq>(all: &mut Vec<T>, before: usize, own: Vec<T>, count: usize) {
+    if own.iter().any(|one| *one != T::default()) {
+        all.resize(before, T::default());
+        all.extend(own);
+        all.resize(count, T::default());
     }
 }
 
@@ -437,7 +476,8 @@ mod tests {
 
     /// Half a circle of radius 4 about (5, 5), clockwise as seen, over the top.
     fn half() -> Curve {
-        Curve { vertices: vec![PxPoint::new(1.0, 5.0), PxPoint::new(9.0, 5.0)], bulges: vec![1.0] }
+        let vertices = vec![PxPoint::new(1.0, 5.0), PxPoint::new(9.0, 5.0)];
+        Curve { vertices, bulges: vec![1.0], ..Curve::default() }
     }
 
     #[test]
@@ -445,9 +485,12 @@ mod tests {
         let line = [PxPoint::new(0.5, 0.5), PxPoint::new(3.5, 0.5)];
         let (mut one, mut other) = (Drawing::new(4, 4), Drawing::new(4, 4));
         one.push(line);
-        other.push_curve(1, Curve { vertices: line.to_vec(), bulges: vec![0.0, f64::NAN] });
+        other.push_curve(
+            1,
+            Curve { vertices: line.to_vec(), bulges: vec![0.0, f64::NAN], handles: vec![None] },
+        );
         assert_eq!(one, other);
-        assert!(one.bulges.is_empty() && other.bulges.is_empty());
+        assert!(one.is_straight() && other.bulges.is_empty() && other.handles.is_empty());
     }
 
     #[test]
@@ -462,6 +505,20 @@ mod tests {
         assert_eq!(bulges, [0, 2, 0, 2, 0]);
         assert_eq!(drawing.of_pen(3).curve(0), drawing.curve(3));
         assert!(!drawing.of_pen(1).has_arcs());
+    }
+
+    #[test]
+    fn each_stroke_keeps_its_own_handles() {
+        let mut drawing = Drawing::new(10, 10);
+        let wave = Some([PxPoint::new(2.0, 1.0), PxPoint::new(7.0, 9.0)]);
+        drawing.push([PxPoint::new(0.5, 0.5)]);
+        drawing.push_curve(2, Curve { handles: vec![wave, wave], ..half() });
+        drawing.push_curve(3, half());
+        assert_eq!(drawing.handles(1), [wave, None]); // the last vertex begins nothing
+        assert_eq!(drawing.curve(2), Curve { bulges: vec![1.0, 0.0], ..half() });
+        assert!(drawing.of_pen(2).curve(0) == drawing.curve(1) && !drawing.of_pen(2).is_straight());
+        // The handles win: three control places on each side of the chord, the middle is on it.
+        assert!(drawing.stroke_chords(1, 0.01).iter().any(|at| at.distance(PxPoint::new(4.625, 5.0)) < 0.3));
     }
 
     #[test]

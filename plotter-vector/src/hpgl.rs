@@ -1,6 +1,5 @@
 //! [`hpgl`]: a drawing as a plotter file.
 
-use crate::curve::circle;
 use crate::stroke_op::{StrokeOp, stroke_ops};
 use crate::{Drawing, Scale};
 use core::f64::consts::PI;
@@ -10,6 +9,7 @@ use plotter_motion::{PenMove, PlotOp};
 
 /// Writes a drawing as HPGL in plotter units of 0.025 mm. Vertices that fall on the same unit as the one before
 /// are written once. Each change of pen is an `SP`. Arcs are `AA`, a circle is a `CI` about its centre: see [`Writer`].
+/// The language of these plotters knows no cubic curves: they are chords no farther than 0.02 px from them.
 ///
 /// # Errors
 /// [`WriteError`]: a point farther out than a plotter's numbers go, or an error of `out`.
@@ -30,7 +30,7 @@ pub fn hpgl(drawing: &Drawing, scale: Scale, out: &mut impl Write) -> Result<(),
         if let Some(select) = drawing.select_pen(index) {
             writer.push(select)?;
         }
-        if let Some((centre, radius_px)) = circle(drawing.stroke(index), drawing.bulges(index)) {
+        if let Some((centre, radius_px)) = drawing.course(index).circle() {
             writer.circle(scale.to_sheet(centre), radius_px * scale.mm_per_px())?;
             continue;
         }
@@ -99,9 +99,9 @@ mod tests {
         let mut drawing = Drawing::new(20, 10);
         // Right, half a circle down (clockwise as seen), back.
         let vertices = vec![at(2.0, 2.0), at(12.0, 2.0), at(12.0, 8.0), at(2.0, 8.0)];
-        drawing.push_curve(1, Curve { vertices, bulges: vec![0.0, 1.0] });
+        drawing.push_curve(1, Curve { vertices, bulges: vec![0.0, 1.0], ..Curve::default() });
         let vertices = vec![at(14.0, 5.0), at(18.0, 5.0), at(14.0, 5.0)];
-        drawing.push_curve(1, Curve { vertices, bulges: vec![-1.0, -1.0] });
+        drawing.push_curve(1, Curve { vertices, bulges: vec![-1.0, -1.0], ..Curve::default() });
         let mut text = String::new();
         hpgl(&drawing, Scale::new(10, 1.0, Point::ORIGIN).unwrap(), &mut text).unwrap();
         assert_eq!(

@@ -7,6 +7,7 @@ mod centrelines;
 mod colour;
 mod continuity;
 mod coverage;
+mod cubic;
 mod curve;
 #[cfg(feature = "image")]
 mod decode;
@@ -56,6 +57,7 @@ pub use bitmap::{Bitmap, MAX_PIXELS, MAX_SIDE_PX, Pixel, SizeError};
 pub use colour::{Colour, ColourError, colour_on_white};
 pub use continuity::{Joined, is_closed, join, link};
 pub use coverage::{coverage, worst_pixel};
+pub use cubic::Cubic;
 pub use curve::{Arc, Curve};
 #[cfg(feature = "image")]
 pub use decode::{decode, decode_colour};

@@ -299,7 +299,7 @@ impl Vectorizer {
         let top = f64::from(first_row);
         let stroke = |path: AreaPath| {
             let mut stroke = self.simplified(&path.sites, path.closed);
-            stroke.vertices.iter_mut().for_each(|at| at.y += top);
+            stroke.move_down(top);
             stroke
         };
         Ok(paths.map(stroke).collect())

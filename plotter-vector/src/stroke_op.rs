@@ -1,6 +1,6 @@
 //! [`StrokeOp`]: a stroke on the sheet with its arcs, for the writers that can say them.
 
-use crate::curve::pieces;
+use crate::curve::{CHORD_ERROR_PX, Piece};
 use crate::{Drawing, Scale};
 use plotter_motion::{PlotOp, Point};
 
@@ -16,7 +16,7 @@ pub(crate) enum StrokeOp {
     },
 }
 
-/// The operations of one stroke: those of [`Drawing::plot_ops`], but for the arcs.
+/// The operations of one stroke: those of [`Drawing::plot_ops`], but for the arcs. Cubic curves come as chords, as there.
 pub(crate) fn stroke_ops(
     drawing: &Drawing,
     index: usize,
@@ -26,14 +26,16 @@ pub(crate) fn stroke_ops(
     let draw = move |to| StrokeOp::Op(PlotOp::Draw { to: scale.to_sheet(to), feed_mm_s: None });
     let travel = stroke.first().map(|to| StrokeOp::Op(PlotOp::Travel { to: scale.to_sheet(*to) }));
     let dot = if stroke.len() == 1 { stroke.first().map(|at| draw(*at)) } else { None };
-    let drawn = pieces(stroke, drawing.bulges(index)).map(move |(_, to, arc)| match arc {
-        Some(arc) => StrokeOp::Arc {
+    let drawn = drawing.course(index).pieces().flat_map(move |piece| {
+        let arc = if let Piece::Arc(arc) = piece { Some(arc) } else { None };
+        let arc_op = arc.map(|arc| StrokeOp::Arc {
             centre: scale.to_sheet(arc.centre),
             // The picture's y is down.
             sweep_rad: -arc.sweep_rad,
-            to: scale.to_sheet(to),
-        },
-        None => draw(to),
+            to: scale.to_sheet(arc.to),
+        });
+        let chords = arc.is_none().then(|| piece.chords(CHORD_ERROR_PX).map(draw));
+        arc_op.into_iter().chain(chords.into_iter().flatten())
     });
     travel.into_iter().chain(drawn).chain(dot)
 }

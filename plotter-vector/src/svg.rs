@@ -1,7 +1,7 @@
 //! [`svg`]: a drawing as a picture for the screen; [`svg_in_colour`]: with the colours of its pens.
 
-use crate::curve::{circle, pieces};
-use crate::{Drawing, Palette, PxPoint, Rgb};
+use crate::curve::{Course, Piece};
+use crate::{Drawing, Palette, Rgb};
 use core::f64::consts::PI;
 use core::fmt::{self, Write};
 
@@ -9,8 +9,8 @@ use core::fmt::{self, Write};
 const MOST_RAD: f64 = 2.0 * PI / 3.0;
 
 /// Writes a drawing as SVG: the view box is the picture's size in px, y down, the centre of pixel (i, j) at
-/// (i + 0.5, j + 0.5); one polyline a stroke, with round caps so that dots show; a path for a stroke with arcs, a circle for
-/// a whole one. All pens are black, each in a group of its own, as with [`svg_in_colour`].
+/// (i + 0.5, j + 0.5); one polyline a stroke, with round caps so that dots show; a path for a stroke with arcs or
+/// cubic curves, a circle for a whole one. All pens are black, each in a group of its own, as with [`svg_in_colour`].
 ///
 /// # Errors
 /// Those of the writer.
@@ -73,9 +73,9 @@ fn group(drawing: &Drawing, pen: u8, colour: Rgb, stroke_width_px: f64, out: &mu
         "<g fill=\"none\" stroke=\"{colour}\" stroke-width=\"{line}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">"
     )?;
     for (index, stroke) in drawing.strokes().enumerate().filter(|(index, _)| drawing.pen(*index) == pen) {
-        let bulges = drawing.bulges(index);
-        if !bulges.is_empty() {
-            write_curve(stroke, bulges, out)?;
+        let course = drawing.course(index);
+        if !course.is_straight() {
+            write_curve(course, out)?;
             continue;
         }
         out.write_str("<polyline points=\"")?;
@@ -90,18 +90,29 @@ fn group(drawing: &Drawing, pen: u8, colour: Rgb, stroke_width_px: f64, out: &mu
     out.write_str("</g>\n")
 }
 
-/// A stroke with arcs.
-fn write_curve(stroke: &[PxPoint], bulges: &[f64], out: &mut impl Write) -> fmt::Result {
-    if let Some((centre, radius_px)) = circle(stroke, bulges) {
+/// A stroke with arcs or cubic curves.
+fn write_curve(course: Course<'_>, out: &mut impl Write) -> fmt::Result {
+    if let Some((centre, radius_px)) = course.circle() {
         let (x, y, radius) = (Short(centre.x), Short(centre.y), Short(radius_px));
         return writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>");
     }
-    let Some(first) = stroke.first() else { return Ok(()) };
+    let Some(first) = course.vertices.first() else { return Ok(()) };
     write!(out, "<path d=\"M{},{}", Short(first.x), Short(first.y))?;
-    for (_, to, arc) in pieces(stroke, bulges) {
-        let Some(arc) = arc else {
-            write!(out, " L{},{}", Short(to.x), Short(to.y))?;
-            continue;
+    for piece in course.pieces() {
+        let to = piece.to();
+        let arc = match piece {
+            Piece::Line(..) => {
+                write!(out, " L{},{}", Short(to.x), Short(to.y))?;
+                continue;
+            }
+            Piece::Cubic(cubic) => {
+                let [first, second] = cubic.handles;
+                let (x, y) = (Short(to.x), Short(to.y));
+                write!(out, " C{},{} ", Short(first.x), Short(first.y))?;
+                write!(out, "{},{} {x},{y}", Short(second.x), Short(second.y))?;
+                continue;
+            }
+            Piece::Arc(arc) => arc,
         };
         let (radius, sweep) = (Short(arc.radius_px), u8::from(arc.sweep_rad > 0.0));
         let parts = libm::ceil(arc.sweep_rad.abs() / MOST_RAD).max(1.0);
@@ -129,7 +140,7 @@ impl fmt::Display for Short {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Curve;
+    use crate::{Curve, PxPoint};
 
     #[test]
     fn numbers_are_short() {
@@ -162,17 +173,32 @@ mod tests {
             Curve {
                 vertices: vec![at(1.0, 9.0), at(1.0, 5.0), at(5.0, 1.0), at(9.0, 1.0)],
                 bulges: vec![0.0, quarter, 0.0],
+                ..Curve::default()
             },
         );
         // Three quarters of a circle, the other way round: two arcs of 135 degrees.
         let bulges = vec![-(1.0 + quarter) / (1.0 - quarter)];
-        drawing.push_curve(1, Curve { vertices: vec![at(15.0, 10.0), at(10.0, 15.0)], bulges });
+        let vertices = vec![at(15.0, 10.0), at(10.0, 15.0)];
+        drawing.push_curve(1, Curve { vertices, bulges, ..Curve::default() });
         let (left, right) = (at(2.0, 12.0), at(5.0, 12.0));
-        drawing.push_curve(1, Curve { vertices: vec![left, right, left], bulges: vec![1.0, 1.0] });
+        let vertices = vec![left, right, left];
+        drawing.push_curve(1, Curve { vertices, bulges: vec![1.0, 1.0], ..Curve::default() });
         drawing.push([left, right]);
         let mut text = String::new();
         svg(&drawing, 1.0, &mut text).unwrap();
         insta::assert_snapshot!(text);
+    }
+
+    #[test]
+    fn cubic_curves_are_written_as_paths() {
+        let at = PxPoint::new;
+        let vertices = vec![at(1.0, 9.0), at(3.0, 9.0), at(9.0, 3.0)];
+        let handles = vec![None, Some([at(6.5, 9.0), at(9.0, 6.25)])];
+        let mut drawing = Drawing::new(10, 10);
+        drawing.push_curve(1, Curve { vertices, handles, ..Curve::default() });
+        let mut text = String::new();
+        svg(&drawing, 1.0, &mut text).unwrap();
+        assert!(text.contains("<path d=\"M1,9 L3,9 C6.5,9 9,6.25 9,3\"/>"), "{text}");
     }
 
     #[test]

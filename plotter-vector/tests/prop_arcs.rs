@@ -142,7 +142,7 @@ proptest! {
                 vertices.push(vertices[0]);
             }
             let bulges = places.iter().map(|(.., bulge)| *bulge).collect();
-            drawing.push_curve(*pen, Curve { vertices, bulges });
+            drawing.push_curve(*pen, Curve { vertices, bulges, ..Curve::default() });
         }
         let order = Order { effort, merge_gap_px: 0.0, ..Order::default() };
         let ordered = order.apply(&drawing);
@@ -159,7 +159,7 @@ fn pieces(drawing: &Drawing) -> Vec<String> {
         let curve = drawing.curve(index);
         for (at, ends) in curve.vertices.windows(2).enumerate() {
             let bulge = curve.bulges.get(at).copied().unwrap_or(0.0);
-            let one = Curve { vertices: ends.to_vec(), bulges: vec![bulge] };
+            let one = Curve { vertices: ends.to_vec(), bulges: vec![bulge], ..Curve::default() };
             let middle = plotter_vector::Arc::new(ends[0], ends[1], bulge)
                 .map_or(PxPoint::new((ends[0].x + ends[1].x) / 2.0, (ends[0].y + ends[1].y) / 2.0), |arc| {
                     arc.at(0.5)

@@ -92,11 +92,11 @@ proptest! {
         for stroke in &strokes {
             let vertices = stroke.iter().map(|(x, y, _)| PxPoint::new(*x, *y)).collect();
             let bulges = stroke.iter().map(|(.., bulge)| *bulge).collect();
-            drawing.push_curve(1, Curve { vertices, bulges });
+            drawing.push_curve(1, Curve { vertices, bulges, ..Curve::default() });
         }
         for (x, y, radius) in &circles {
             let ends = [-radius, *radius, -radius].map(|off| PxPoint::new(x + off, *y));
-            drawing.push_curve(1, Curve { vertices: ends.to_vec(), bulges: vec![1.0, 1.0] });
+            drawing.push_curve(1, Curve { vertices: ends.to_vec(), bulges: vec![1.0, 1.0], ..Curve::default() });
         }
         let mut text = String::new();
         svg(&drawing, 1.0, &mut text).unwrap();

@@ -15,9 +15,8 @@ mod sites;
 mod trails;
 mod units;
 
-use crate::curve::{is_bulge, tangent};
-use crate::{Curve, Drawing, Lettering, PxPoint, TextBlock};
-use plan::{Piece, Stroke, Trail, rebuild, strokes_of, unit};
+use crate::{Curve, Drawing, Lettering, PxPoint, TextBlock, curve};
+use plan::{Piece, Stroke, Trail, rebuild, strokes_of};
 use search::shorten;
 use sites::{Site, Sites};
 use units::{mark_letters, units};
@@ -255,20 +254,15 @@ fn best_start(ring: &Curve, before: Option<PxPoint>, after: Option<PxPoint>) -> 
             continue;
         }
         let count = ring.vertices.len();
-        let vertex = |index: usize| ring.vertices.get(index).copied().unwrap_or(*at);
-        let bulge = |index: usize| ring.bulges.get(index).copied().unwrap_or_default();
-        let before = index.checked_sub(1).unwrap_or(count - 1);
-        let (previous, next) = (vertex(before), vertex((index + 1) % count));
-        // Of arcs the directions at the vertex count.
-        let from = if is_bulge(bulge(before)) {
-            at.along(tangent(unit(previous, *at), bulge(before), 1.0), -1.0)
-        } else {
-            previous
+        let piece = |index: usize| ring.course().piece(index).unwrap_or(curve::Piece::Line(*at, *at));
+        // Of what is not straight the directions at the vertex count.
+        let from = match piece(index.checked_sub(1).unwrap_or(count - 1)) {
+            curve::Piece::Line(previous, _) => previous,
+            bent => at.along(bent.heading(true), -1.0),
         };
-        let to = if is_bulge(bulge(index)) {
-            at.along(tangent(unit(*at, next), bulge(index), -1.0), 1.0)
-        } else {
-            next
+        let to = match piece(index) {
+            curve::Piece::Line(_, next) => next,
+            bent => at.along(bent.heading(false), 1.0),
         };
         let bend = bend_cos(from, *at, to);
         if far < best.0 - SAME_PX || bend < best.1 - SHARPER_COS {

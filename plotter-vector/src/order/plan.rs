@@ -1,7 +1,7 @@
 //! What the search knows of a drawing ([`Stroke`]), what it answers ([`Trail`]), and [`rebuild`], the only place
 //! that makes a drawing of the answer.
 
-use crate::curve::{CHORD_ERROR_PX, length_px};
+use crate::curve::{CHORD_ERROR_PX, Course, unit};
 use crate::{Curve, Drawing, PxPoint};
 
 /// Way along a stroke over which the direction of its end is taken, px: enough for one stair of a gentle slope.
@@ -19,8 +19,8 @@ pub(crate) struct Stroke<'a> {
     pub(crate) letter: usize,
     /// Places at which it may be entered if it is closed; else the first and the last one count.
     pub(crate) vertices: &'a [PxPoint],
-    /// Bulges of its arcs; empty where all is straight.
-    pub(crate) bulges: &'a [f64],
+    /// What lies between them.
+    pub(crate) course: Course<'a>,
     /// Whether its last vertex is its first one again.
     pub(crate) closed: bool,
     /// Unit vectors in which it would go on beyond its first and its last vertex; (0, 0) for a dot.
@@ -30,7 +30,7 @@ pub(crate) struct Stroke<'a> {
 impl Stroke<'_> {
     /// Its length, px.
     pub(crate) fn length_px(&self) -> f64 {
-        length_px(self.vertices, self.bulges)
+        self.course.length_px()
     }
 
     /// Where it begins (`false`) or ends (`true`).
@@ -51,7 +51,7 @@ pub(crate) fn strokes_of(drawing: &Drawing) -> Vec<Stroke<'_>> {
                 pen: drawing.pen(index),
                 letter: 0,
                 vertices,
-                bulges: drawing.bulges(index),
+                course: drawing.course(index),
                 closed: vertices.len() >= MIN_CLOSED && vertices.first() == vertices.last(),
                 outward: [outward(places.iter()), outward(places.iter().rev())],
             }
@@ -70,12 +70,6 @@ fn outward<'a>(mut walk: impl Iterator<Item = &'a PxPoint>) -> (f64, f64) {
         }
     }
     unit(inner, *end)
-}
-
-/// The unit vector from one place to another; (0, 0) where they are one.
-pub(crate) fn unit(from: PxPoint, to: PxPoint) -> (f64, f64) {
-    let length = from.distance(to);
-    if length > 0.0 { ((to.x - from.x) / length, (to.y - from.y) / length) } else { (0.0, 0.0) }
 }
 
 /// A stroke of the given drawing as part of one to be drawn.
@@ -111,12 +105,12 @@ impl Trail {
         self.curve(strokes).vertices
     }
 
-    /// Its vertices with its arcs.
+    /// Its vertices with its arcs and cubic curves.
     pub(crate) fn curve(&self, strokes: &[Stroke<'_>]) -> Curve {
         let mut joined = Curve::default();
         for piece in &self.pieces {
             let Some(stroke) = strokes.get(piece.stroke) else { continue };
-            let mut own = Curve { vertices: stroke.vertices.to_vec(), bulges: stroke.bulges.to_vec() };
+            let mut own = Curve::from(stroke.course);
             if stroke.closed {
                 own.begin_at(piece.start);
             }

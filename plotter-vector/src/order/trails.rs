@@ -15,10 +15,9 @@
 //! ends in odd nodes then is max(1, k) trails, fewer is impossible.
 
 use super::forest::Forest;
-use super::plan::{Piece, Stroke, Trail, unit};
+use super::plan::{Piece, Stroke, Trail};
 use super::point_tree::PointTree;
 use crate::PxPoint;
-use crate::curve::tangent;
 
 /// Greatest cosine between the outward directions of two ends that go on in each other: they bend by 45° at most.
 const STRAIGHT_COS: f64 = -core::f64::consts::FRAC_1_SQRT_2;
@@ -343,10 +342,10 @@ impl<'a> Meeting<'a> {
 fn tip(stroke: &Stroke<'_>, start: usize, last: bool) -> (PxPoint, (f64, f64)) {
     let [first_outward, last_outward] = stroke.outward;
     if let (Some(before), true) = (start.checked_sub(1), stroke.closed) {
-        let vertex = |index: usize| stroke.vertices.get(index).copied().unwrap_or_default();
-        let bulge = |index: usize| stroke.bulges.get(index).copied().unwrap_or_default();
-        let (inner, bulge) = if last { (before, bulge(before)) } else { (start + 1, -bulge(start)) };
-        return (vertex(start), tangent(unit(vertex(inner), vertex(start)), bulge, 1.0));
+        let at = stroke.vertices.get(start).copied().unwrap_or_default();
+        let heading = |index| stroke.course.piece(index).map_or((0.0, 0.0), |piece| piece.heading(last));
+        let (x, y) = heading(if last { before } else { start });
+        return (at, if last { (x, y) } else { (-x, -y) });
     }
     (stroke.end(last), if last { last_outward } else { first_outward })
 }

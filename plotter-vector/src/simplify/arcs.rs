@@ -97,6 +97,7 @@ impl Bounded {
             Curve {
                 bulges: vertices.iter().map(|vertex| vertex.bulge).collect(),
                 vertices: vertices.into_iter().map(|vertex| vertex.at).collect(),
+                ..Curve::default()
             }
         } else {
             straight.into()

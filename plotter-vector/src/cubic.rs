@@ -1,0 +1,192 @@
+//! [`Cubic`]: a piece of a cubic curve.
+
+use crate::PxPoint;
+use crate::curve::{are_handles, unit};
+
+/// Most chords of one curve.
+const MAX_CHORDS: f64 = 65_536.0;
+
+/// Farthest that the chords lie from a curve whose lengths are summed up for its own, px.
+const LENGTH_ERROR_PX: f64 = 1e-3;
+
+/// A cubic Bézier curve between two places: it leaves the first towards its first handle and comes to the second from its
+/// second handle.
+///
+/// With a and d the places, b and c the handles, and t from 0 to 1:
+///
+/// ```text
+/// q(t) = (1 − t)³ a + 3 (1 − t)² t b + 3 (1 − t) t² c + t³ d
+/// ```
+///
+/// ```
+/// # use plotter_vector::{Cubic, PxPoint};
+/// let at = PxPoint::new;
+/// let arch = Cubic::new(at(0.0, 0.0), [at(0.0, 4.0), at(8.0, 4.0)], at(8.0, 0.0)).unwrap();
+/// assert_eq!(arch.at(0.5), at(4.0, 3.0)); // three quarters as high as its handles
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cubic {
+    /// Where it begins.
+    pub from: PxPoint,
+    /// Where it is drawn to and from on its way.
+    pub handles: [PxPoint; 2],
+    /// Where it ends.
+    pub to: PxPoint,
+}
+
+impl Cubic {
+    /// The curve between two places with these handles; `None` where one of the four is no place.
+    #[must_use]
+    pub fn new(from: PxPoint, handles: [PxPoint; 2], to: PxPoint) -> Option<Self> {
+        (are_handles(handles) && from.is_finite() && to.is_finite()).then_some(Self { from, handles, to })
+    }
+
+    /// The place at t, 0 to 1.
+    #[must_use]
+    pub fn at(&self, t: f64) -> PxPoint {
+        // From end to end by the same sums.
+        if t >= 1.0 {
+            return self.to;
+        }
+        let s = 1.0 - t;
+        let [b, c] = self.handles;
+        let weights = [s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t];
+        sum(weights, [self.from, b, c, self.to])
+    }
+
+    /// Its speed at t, px per unit of t.
+    pub(crate) fn speed(&self, t: f64) -> (f64, f64) {
+        let [b, c] = self.handles;
+        let s = 1.0 - t;
+        let (u, v, w) = (b.minus(self.from), c.minus(b), self.to.minus(c));
+        let (i, j, k) = (3.0 * s * s, 6.0 * s * t, 3.0 * t * t);
+        (i * u.0 + j * v.0 + k * w.0, i * u.1 + j * v.1 + k * w.1)
+    }
+
+    #[cfg(test)]
+    /// The change of its speed at t, px per unit of t squared.
+    pub(crate) fn bend(&self, t: f64) -> (f64, f64) {
+        let (first, second) = self.bends();
+        let s = 1.0 - t;
+        (6.0 * (s * first.0 + t * second.0), 6.0 * (s * first.1 + t * second.1))
+    }
+
+    /// A sixth of the bend at either end: between them it changes evenly.
+    fn bends(&self) -> ((f64, f64), (f64, f64)) {
+        let [b, c] = self.handles;
+        let second = |p: PxPoint, q: PxPoint, r: PxPoint| (p.x - 2.0 * q.x + r.x, p.y - 2.0 * q.y + r.y);
+        (second(self.from, b, c), second(b, c, self.to))
+    }
+
+    /// The unit vector in which it goes at t, 0 to 1; (0, 0) where it is a dot.
+    pub(crate) fn heading(&self, t: f64) -> (f64, f64) {
+        let [b, c] = self.handles;
+        let (x, y) = self.speed(t);
+        let way = libm::hypot(x, y);
+        if way > 0.0 && t > 0.0 && t < 1.0 {
+            return (x / way, y / way);
+        }
+        // Handles in the place of an end say nothing about it.
+        let ends = if t < 0.5 {
+            [(self.from, b), (self.from, c), (self.from, self.to)]
+        } else {
+            [(c, self.to), (b, self.to), (self.from, self.to)]
+        };
+        ends.into_iter().map(|(from, to)| unit(from, to)).find(|way| *way != (0.0, 0.0)).unwrap_or((0.0, 0.0))
+    }
+
+    /// Length, px: that of chords which lie no farther than 0.001 px from it.
+    ///
+    /// ```
+    /// # use plotter_vector::{Cubic, PxPoint};
+    /// // A quarter of a circle of radius 100, but for 0.03 %.
+    /// let (at, k) = (PxPoint::new, 100.0 * 0.5523);
+    /// let quarter = Cubic::new(at(100.0, 0.0), [at(100.0, k), at(k, 100.0)], at(0.0, 100.0)).unwrap();
+    /// assert!((quarter.length_px() - 157.08).abs() < 0.03); // 50 π
+    /// ```
+    #[must_use]
+    pub fn length_px(&self) -> f64 {
+        let count = self.chords(LENGTH_ERROR_PX);
+        let place = |chord: u32| self.at(f64::from(chord) / f64::from(count));
+        (0..count).map(|chord| place(chord).distance(place(chord + 1))).sum()
+    }
+
+    /// Into how many chords of equal steps of t it has to be divided so that they lie no farther than this from it, or
+    /// 65536: a chord over a step h is at most h² / 8 of the greatest bend off.
+    pub(crate) fn chords(&self, chord_error_px: f64) -> u32 {
+        let (first, second) = self.bends();
+        let most = libm::hypot(first.0, first.1).max(libm::hypot(second.0, second.1));
+        let count = libm::ceil(libm::sqrt(0.75 * most / chord_error_px.max(0.0)) - 1e-9);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number from 1 to 65536; NaN, of an error that is none, is 0"
+        )]
+        let count = count.clamp(1.0, MAX_CHORDS) as u32;
+        count.max(1)
+    }
+}
+
+fn sum(weights: [f64; 4], places: [PxPoint; 4]) -> PxPoint {
+    let add = |at: PxPoint, (weight, place): (f64, PxPoint)| at.along((place.x, place.y), weight);
+    weights.into_iter().zip(places).fold(PxPoint::default(), add)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, y: f64) -> PxPoint {
+        PxPoint::new(x, y)
+    }
+
+    fn wave() -> Cubic {
+        Cubic::new(at(10.0, 10.0), [at(40.0, -30.0), at(20.0, 70.0)], at(60.0, 20.0)).unwrap()
+    }
+
+    #[test]
+    fn its_chords_stay_as_near_as_asked_and_are_hardly_more_than_needed() {
+        for error_px in [1.0, 0.1, 0.005] {
+            let count = wave().chords(error_px);
+            let off = |count: u32| {
+                let middle = |chord: u32| {
+                    let t = |half: u32| f64::from(2 * chord + half) / f64::from(2 * count);
+                    let (a, b) = (wave().at(t(0)), wave().at(t(2)));
+                    wave().at(t(1)).distance(at(f64::midpoint(a.x, b.x), f64::midpoint(a.y, b.y)))
+                };
+                (0..count).map(middle).fold(0.0, f64::max)
+            };
+            assert!(off(count) <= error_px, "{error_px}");
+            assert!(off(count / 2) > error_px, "twice as many as needed for {error_px}");
+        }
+    }
+
+    #[test]
+    fn its_speed_and_its_bend_are_the_slopes_of_its_way() {
+        const STEP: f64 = 1e-4;
+        for t in [0.0, 0.3, 0.9] {
+            let (a, b, c) = (wave().at(t), wave().at(t + STEP), wave().at(t + 2.0 * STEP));
+            let speed = wave().speed(t + STEP);
+            assert!((speed.0 - (c.x - a.x) / (2.0 * STEP)).abs() < 1e-3);
+            let bend = wave().bend(t + STEP);
+            assert!((bend.1 - (a.y - 2.0 * b.y + c.y) / (STEP * STEP)).abs() < 1e-1);
+        }
+    }
+
+    #[test]
+    fn handles_in_the_place_of_an_end_leave_it_its_direction() {
+        let (a, b) = (at(0.0, 0.0), at(4.0, 3.0));
+        let straight = Cubic::new(a, [a, b], b).unwrap();
+        assert_eq!([straight.heading(0.0), straight.heading(1.0)], [(0.8, 0.6); 2]);
+        assert_eq!(Cubic::new(a, [a, a], a).unwrap().heading(0.5), (0.0, 0.0));
+        assert!((straight.length_px() - 5.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn numbers_that_are_none_or_too_large_make_no_endless_chords() {
+        let far = Cubic::new(at(-1e300, 0.0), [at(1e300, 1e300), at(0.0, -1e300)], at(1e300, 0.0)).unwrap();
+        assert_eq!(far.chords(1e-9), 65_536);
+        assert_eq!(wave().chords(f64::NAN), 65_536);
+        assert_eq!(Cubic::new(at(0.0, f64::NAN), wave().handles, wave().to), None);
+    }
+}
