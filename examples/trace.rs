@@ -56,6 +56,9 @@ struct Arguments {
     /// Circular arcs and circles where they save vertices, within the same error (ours only): CI and AA, G2 and G3, A
     #[arg(long)]
     arcs: bool,
+    /// Cubic curves where they save vertices, within the same error (ours only): C in SVG, chords in HPGL and G-code
+    #[arg(long, conflicts_with = "arcs")]
+    curves: bool,
     /// What is drawn of the ink (ours only) [default: centreline, with --hatch mixed]
     #[arg(long, value_enum)]
     mode: Option<ModeChoice>,
@@ -96,7 +99,8 @@ struct Arguments {
     #[arg(long, value_enum, default_value = "servo")]
     gcode_pen: GcodePen,
     /// Writes the vertices as text: x and y a line, in px as in the SVG, an empty line between strokes; where an arc begins
-    /// its bulge too, the tangent of a quarter of its angle, positive from x towards y
+    /// its bulge too, the tangent of a quarter of its angle, positive from x towards y; where a cubic curve begins the x and y
+    /// of its two handles too
     #[arg(long, value_name = "F")]
     points: Option<PathBuf>,
     /// Writes all figures as JSON
@@ -338,7 +342,10 @@ fn settings(arguments: &Arguments) -> Result<Settings, String> {
         }
         given => config.max_error_px = given.unwrap_or(config.max_error_px),
     }
-    config.arcs |= arguments.arcs;
+    // An option wins over the file, which may ask for the other.
+    if arguments.arcs || arguments.curves {
+        (config.arcs, config.curves) = (arguments.arcs, arguments.curves);
+    }
     match arguments.hatch {
         Some(bad) if !(bad >= 0.0 && bad.is_finite()) => {
             return Err(format!(
@@ -383,6 +390,7 @@ fn refuse_ours(arguments: &Arguments) -> Result<(), String> {
     let given = [
         ("--max-error-px", "has no error bound", arguments.max_error_px.is_some()),
         ("--arcs", "draws straight lines", arguments.arcs),
+        ("--curves", "draws straight lines", arguments.curves),
         ("--mode", "always follows the middle of lines", arguments.mode.is_some()),
         ("--pens", "draws with one pen", arguments.pens.is_some()),
         ("--order", "draws in the order of tracking", arguments.order.is_some()),
@@ -547,9 +555,12 @@ fn points(drawing: &Drawing) -> Result<String, std::fmt::Error> {
             out.push('\n');
         }
         let bulges = drawing.bulges(index).iter().copied().chain(std::iter::repeat(0.0));
-        for (vertex, bulge) in stroke.iter().zip(bulges) {
+        let handles = drawing.handles(index).iter().copied().chain(std::iter::repeat(None));
+        for ((vertex, bulge), handles) in stroke.iter().zip(bulges).zip(handles) {
             write!(out, "{} {}", vertex.x, vertex.y)?;
-            if bulge != 0.0 {
+            if let Some([first, second]) = handles {
+                write!(out, " {} {} {} {}", first.x, first.y, second.x, second.y)?;
+            } else if bulge != 0.0 {
                 write!(out, " {bulge}")?;
             }
             out.push('\n');

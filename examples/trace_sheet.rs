@@ -39,6 +39,9 @@ struct Arguments {
     /// Circular arcs and circles where they save vertices, within the same error
     #[arg(long)]
     arcs: bool,
+    /// Cubic curves where they save vertices, within the same error; chords in the HPGL
+    #[arg(long, conflicts_with = "arcs")]
+    curves: bool,
     /// Threads [default: as many as the machine has]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     threads: usize,
@@ -69,7 +72,7 @@ fn trace(arguments: &Arguments) -> Result<(), String> {
     };
     let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build();
     let threads = threads.map_err(|error| format!("threads: {error}"))?;
-    let vectorizer = Vectorizer { arcs: arguments.arcs, ..Vectorizer::default() };
+    let vectorizer = Vectorizer { arcs: arguments.arcs, curves: arguments.curves, ..Vectorizer::default() };
     let sheet = threads
         .install(|| vectorizer.vectorize_rows(&mut scan, &mut Progress::new(&mut report)))
         .map_err(|error| format!("{}: {error}", path.display()))?;

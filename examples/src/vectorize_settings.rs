@@ -10,7 +10,7 @@ use plotter_vector::{
 ///
 /// # Errors
 ///
-/// Hatching closer than the picture's pixels.
+/// Hatching closer than the picture's pixels; both arcs and curves.
 pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer, String> {
     let method = match config.threshold {
         ThresholdChoice::Adaptive => ThresholdMethod::Adaptive,
@@ -27,6 +27,9 @@ pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer
         StrokeOrder::Fast => OrderEffort::Fast,
         _ => OrderEffort::Best,
     };
+    if config.arcs && config.curves {
+        return Err("arcs and curves: strokes have one of them; leave one out".into());
+    }
     let usual = Vectorizer::default();
     let mut areas = usual.areas;
     if config.hatch_mm > 0.0 {
@@ -45,6 +48,7 @@ pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer
         threshold: Threshold { method, ..usual.threshold },
         ours: Bounded { tolerance_px: config.max_error_px },
         arcs: config.arcs,
+        curves: config.curves,
         max_line_px: (config.max_line_px > 0).then_some(config.max_line_px),
         order: Order { effort, ..usual.order },
         areas,

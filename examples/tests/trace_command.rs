@@ -74,6 +74,39 @@ fn arcs_reach_every_file() {
 }
 
 #[test]
+fn curves_reach_every_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
+    let (picture, config) = (file("wave.pgm"), file("curves.toml"));
+    // A wave 3 px wide and 40 px high.
+    let level = |x: f64, y: f64| {
+        let slope = 0.8 * (x / 25.0).cos();
+        u8::from((y - 60.0 - 20.0 * (x / 25.0).sin()).abs() > 1.5 * slope.hypot(1.0)) * 255
+    };
+    let wave = (0..24_000_u32).map(|at| level(f64::from(at % 200) + 0.5, f64::from(at / 200) + 0.5));
+    std::fs::write(&picture, [b"P5 200 120 255\n".to_vec(), wave.collect()].concat()).unwrap();
+    std::fs::write(&config, "schema = 1\n[vectorize]\ncurves = true\n").unwrap();
+    for option in [&["--curves"][..], &["--config", &config]] {
+        let (svg, plt, gcode, points, look) =
+            (file("a.svg"), file("a.plt"), file("a.gcode"), file("a.txt"), file("a.png"));
+        let files =
+            ["--svg", &svg, "--hpgl", &plt, "--gcode", &gcode, "--points", &points, "--overlay", &look];
+        assert!(run_example("trace", &[&[picture.as_str()][..], option, &files].concat()).status.success());
+        let read = |path: &str| std::fs::read_to_string(path).unwrap();
+        let curves = read(&svg).matches(" C").count();
+        assert!((2..9).contains(&curves), "{}", read(&svg));
+        assert_eq!(read(&points).lines().filter(|line| line.split(' ').count() == 6).count(), curves);
+        // Chords there, of straight lines only.
+        assert!(read(&plt).contains("PD") && !read(&plt).contains("AA"));
+        assert!(read(&gcode).matches("\nG1 ").count() > 10 * curves && !read(&gcode).contains("G2 "));
+    }
+    assert!(complaint("trace", &["--algorithm", "published", "--curves"]).contains("draws straight lines"));
+    assert!(complaint("trace", &["--arcs", "--curves"]).contains("'--arcs' cannot be used with '--curves'"));
+    std::fs::write(&config, "schema = 1\n[vectorize]\narcs = true\ncurves = true\n").unwrap();
+    assert!(complaint("trace", &[&picture, "--config", &config]).contains("one of them; leave one out"));
+}
+
+#[test]
 fn the_help_names_the_greatest_error_that_is_taken() {
     let help = String::from_utf8(run_example("trace", &["--help"]).stdout).unwrap();
     let default = plotter_vector::Bounded::default().tolerance_px;

@@ -58,5 +58,21 @@ fn polyline(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, polyline);
+/// Lines, arcs and cubic curves on the same line.
+fn bent(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("bent");
+    const SITES: u32 = 2_000;
+    for (name, line) in lines(SITES) {
+        group.throughput(Throughput::Elements(u64::from(SITES)));
+        group.bench_with_input(BenchmarkId::new("arcs", name), &line, |bench, line| {
+            bench.iter(|| Bounded::default().arcs(black_box(line), false));
+        });
+        group.bench_with_input(BenchmarkId::new("cubics", name), &line, |bench, line| {
+            bench.iter(|| Bounded::default().cubics(black_box(line), false));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, polyline, bent);
 criterion_main!(benches);

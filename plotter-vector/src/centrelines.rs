@@ -6,6 +6,7 @@
 
 pub(crate) use crate::graph::CONTEXT_ROWS;
 use crate::graph::{Cuts, Fragment, Joiner, Rims, Scan, Stretch, Stroke, fragments};
+use crate::simplify::Pieces;
 use crate::{Bitmap, Bounded, Curve, Gray, PxPoint, Thinning, ThinningMethod};
 use core::ops::Range;
 
@@ -16,8 +17,8 @@ pub(crate) struct Centring {
     pub(crate) thinning: Thinning,
     /// What the strokes are simplified with.
     pub(crate) bounded: Bounded,
-    /// Whether they may have arcs.
-    pub(crate) arcs: bool,
+    /// What they are made of.
+    pub(crate) pieces: Pieces,
     /// Own rows of a band.
     pub(crate) band_rows: u32,
 }
@@ -26,7 +27,7 @@ impl Centring {
     /// For lines up to `max_line_px` wide.
     pub(crate) fn new(method: ThinningMethod, max_line_px: u32, bounded: Bounded, band_rows: u32) -> Self {
         let thinning = Thinning { method, max_passes: max_line_px / 2 + 3 };
-        Self { thinning, bounded, arcs: false, band_rows: band_rows.max(1) }
+        Self { thinning, bounded, pieces: Pieces::Lines, band_rows: band_rows.max(1) }
     }
 
     /// Rows that a band needs above and below its own.
@@ -34,9 +35,12 @@ impl Centring {
         self.thinning.rows_of_context() + CONTEXT_ROWS
     }
 
-    /// Where long strokes are cut: with arcs nowhere, for an arc may go on over any cut.
+    /// Where long strokes are cut: with arcs and curves nowhere, for these may go on over any cut.
     pub(crate) fn cuts(&self) -> Cuts {
-        if self.arcs { Cuts { least: usize::MAX, ..Cuts::default() } } else { Cuts::default() }
+        match self.pieces {
+            Pieces::Lines => Cuts::default(),
+            Pieces::Arcs | Pieces::Curves => Cuts { least: usize::MAX, ..Cuts::default() },
+        }
     }
 
     /// The strokes of a picture in memory, in reading order of where they begin; `grey`, with whether dark is ink, makes
@@ -79,7 +83,7 @@ impl Centring {
     /// Strokes simplified.
     pub(crate) fn simplified(&self, mut whole: Vec<Stroke>) -> Vec<Curve> {
         whole.retain(|whole| !whole.is_empty());
-        let mut strokes = each(whole, |whole| whole.curve(self.cuts(), self.bounded, self.arcs));
+        let mut strokes = each(whole, |whole| whole.curve(self.cuts(), self.bounded, self.pieces));
         strokes.retain(|stroke| !stroke.vertices.is_empty());
         strokes.iter_mut().for_each(|stroke| stroke.vertices.shrink_to_fit());
         strokes

@@ -63,7 +63,6 @@ impl Cubic {
         (i * u.0 + j * v.0 + k * w.0, i * u.1 + j * v.1 + k * w.1)
     }
 
-    #[cfg(test)]
     /// The change of its speed at t, px per unit of t squared.
     pub(crate) fn bend(&self, t: f64) -> (f64, f64) {
         let (first, second) = self.bends();

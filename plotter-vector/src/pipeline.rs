@@ -4,6 +4,7 @@ use crate::areas::Islands;
 use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
 use crate::coverage::coverage;
+use crate::simplify::Pieces;
 use crate::{
     AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Curve, Drawing, DynamicThreshold, ErrorReport,
     ErrorTally, Figures, Gray, Lettering, Order, OrderedTracking, PensError, Pixel, PxPoint, Simplify, Split,
@@ -63,6 +64,8 @@ pub struct Vectorizer {
     pub ours: Bounded,
     /// Ours: whether curves become circular arcs and circles where that saves vertices, with the same promise.
     pub arcs: bool,
+    /// Ours: whether curves become cubic curves where that saves vertices, with the same promise; not with arcs.
+    pub curves: bool,
     /// What ours draws.
     pub mode: Mode,
     /// Ours: smaller marks of ink are dirt, and smaller holes in it too, px; `None` for what a pen of the lines' width
@@ -90,6 +93,7 @@ impl Default for Vectorizer {
             published: DynamicThreshold::default(),
             ours: Bounded::default(),
             arcs: false,
+            curves: false,
             mode: Mode::default(),
             smallest_mark_px: None,
             max_line_px: None,
@@ -132,6 +136,8 @@ pub enum VectorizeError {
     },
     /// The picture is noise.
     TooManyFigures(TooManyFigures),
+    /// Both arcs and cubic curves are asked for.
+    ArcsAndCurves,
     /// The style of the areas cannot be drawn.
     Areas(AreaError),
     /// There are no such pens.
@@ -150,6 +156,7 @@ impl fmt::Display for VectorizeError {
                  hand, scan with fewer dots per inch, or cut the picture into sheets"
             ),
             Self::TooManyFigures(error) => error.fmt(f),
+            Self::ArcsAndCurves => f.write_str("arcs and curves: a stroke has one of them; leave one out"),
             Self::Areas(error) => error.fmt(f),
             Self::Pens(error) => error.fmt(f),
         }
@@ -216,8 +223,8 @@ impl Vectorizer {
         let pen_px = self.clean(ink);
         if pen_px <= 1 && self.mode != Mode::Outline {
             let traced = self.tracked(ink)?;
-            // Where there are arcs the errors are not known from the figures.
-            let error = (!traced.drawing.has_arcs()).then_some(traced.error);
+            // Of what is not straight the errors are not known from the figures.
+            let error = traced.drawing.is_straight().then_some(traced.error);
             return Ok((traced.drawing, error));
         }
         let strokes = self.strokes(ink, grey, pen_px)?;
@@ -273,6 +280,9 @@ impl Vectorizer {
         if !(tolerance_px > 0.0 && tolerance_px.is_finite()) {
             return Err(VectorizeError::Tolerance { tolerance_px });
         }
+        if self.arcs && self.curves {
+            return Err(VectorizeError::ArcsAndCurves);
+        }
         self.areas.paths(&Bitmap::empty()).map(drop).map_err(VectorizeError::Areas)
     }
 
@@ -290,7 +300,18 @@ impl Vectorizer {
         let bounded = Bounded { tolerance_px: 0.85 * self.ours.tolerance_px };
         // What is left of an area's rim may be as wide again.
         let centring = Centring::new(self.thinning, max_line_px, bounded, self.band_rows);
-        Centring { arcs: self.arcs, ..centring }
+        Centring { pieces: self.pieces(), ..centring }
+    }
+
+    /// What strokes are made of.
+    fn pieces(&self) -> Pieces {
+        if self.arcs {
+            Pieces::Arcs
+        } else if self.curves {
+            Pieces::Curves
+        } else {
+            Pieces::Lines
+        }
     }
 
     /// The strokes of the areas in some rows, of which the first is row `first_row` of the picture.
@@ -307,7 +328,7 @@ impl Vectorizer {
 
     /// A stroke through sites, by ours.
     fn simplified(&self, sites: &[PxPoint], closed: bool) -> Curve {
-        if self.arcs { self.ours.arcs(sites, closed) } else { self.ours.polyline(sites, closed).into() }
+        self.ours.stroke(sites, closed, self.pieces())
     }
 
     /// Ours for lines one pixel wide.
@@ -320,21 +341,21 @@ impl Vectorizer {
         drop(linked);
         let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
         let mut traced = simplify(ink, &figures, lent, &self.ours);
-        if self.arcs {
-            traced.drawing = self.with_arcs(&figures, &traced.drawing);
+        if self.pieces() != Pieces::Lines {
+            traced.drawing = self.bent(&figures, &traced.drawing);
         }
         Ok(traced)
     }
 
-    /// The strokes of figures, with arcs where they save vertices.
-    fn with_arcs(&self, figures: &Figures, straight: &Drawing) -> Drawing {
+    /// The strokes of figures, with arcs or curves where they save vertices.
+    fn bent(&self, figures: &Figures, straight: &Drawing) -> Drawing {
         let mut drawing = Drawing::new(straight.width_px(), straight.height_px());
         // Each figure has pixels, so each has its stroke.
         for (figure, stroke) in figures.iter().zip(straight.strokes()) {
             let sites: Vec<PxPoint> = figure.iter().map(|pixel| PxPoint::from(*pixel)).collect();
             let closed = sites.len() > 3 && sites.first() == sites.last();
-            let curve = self.ours.arcs(&sites, closed);
-            let pays = curve.has_arcs() && curve.vertices.len() < stroke.len();
+            let curve = self.ours.stroke(&sites, closed, self.pieces());
+            let pays = !curve.is_straight() && curve.vertices.len() < stroke.len();
             drawing.push_curve(1, if pays { curve } else { stroke.to_vec().into() });
         }
         drawing
@@ -396,6 +417,15 @@ mod tests {
             );
             assert!(with(Algorithm::Published, bad).trace(&dot).is_ok());
         }
+    }
+
+    #[test]
+    fn arcs_and_curves_exclude_each_other() {
+        let both = Vectorizer { arcs: true, curves: true, ..Vectorizer::default() };
+        assert_eq!(
+            both.trace(&Bitmap::empty()).unwrap_err().to_string(),
+            "arcs and curves: a stroke has one of them; leave one out"
+        );
     }
 
     #[test]

@@ -7,9 +7,11 @@
 )]
 
 mod frechet;
+mod lines;
 
 use core::f64::consts::TAU;
 use frechet::{some_start_is_within, within};
+use lines::{arcs_and_lines, ellipse, random, sampled, sine, spiral, wild};
 use plotter_vector::{Bitmap, Bounded, Curve, Drawing, Order, OrderEffort, Pixel, PxPoint, Vectorizer};
 use proptest::prelude::*;
 
@@ -21,45 +23,6 @@ const CHORDS_PX: f64 = 1e-3;
 
 fn bounded(tolerance_px: f64) -> Bounded {
     Bounded { tolerance_px }
-}
-
-/// A line of straight runs and arcs, with noise: what arcs are for.
-fn arcs_and_lines() -> impl Strategy<Value = Vec<PxPoint>> {
-    let piece = (prop_oneof![Just(0.0), -0.2_f64..0.2], 3_usize..60);
-    let noise = (0.0_f64..0.35, any::<u64>());
-    (proptest::collection::vec(piece, 1..7), noise).prop_map(|(pieces, (amount, seed))| {
-        let (mut at, mut angle, mut state) = (PxPoint::new(200.0, 200.0), 0.3_f64, seed);
-        let mut sites = Vec::new();
-        for (turn, steps) in pieces {
-            for _ in 0..steps {
-                angle += turn;
-                at = PxPoint::new(at.x + angle.cos(), at.y + angle.sin());
-                sites.push(PxPoint::new(
-                    at.x + amount * random(&mut state),
-                    at.y + amount * random(&mut state),
-                ));
-            }
-        }
-        sites
-    })
-}
-
-/// Sites that go anywhere, also back and by leaps.
-fn wild() -> impl Strategy<Value = Vec<PxPoint>> {
-    proptest::collection::vec((-4_i32..5, -4_i32..5, 1_u8..9), 1..120).prop_map(|steps| {
-        let (mut x, mut y) = (0.0, 0.0);
-        let place = |(dx, dy, parts): (i32, i32, u8)| {
-            (x, y) = (x + f64::from(dx) / f64::from(parts), y + f64::from(dy) / f64::from(parts));
-            PxPoint::new(x, y)
-        };
-        steps.into_iter().map(place).collect()
-    })
-}
-
-/// Seeded, between −1 and 1.
-fn random(state: &mut u64) -> f64 {
-    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-    2.0 * ((*state >> 11) as f64 / (1_u64 << 53) as f64) - 1.0
 }
 
 /// The sites of a circle, about one a pixel, each off by up to so much in x and in y.
@@ -240,33 +203,13 @@ fn few_and_bad_sites_are_what_they_are() {
 
 #[test]
 fn arcs_take_few_pieces() {
-    let spiral =
-        |u: f64| (300.0 + (5.0 + 150.0 * u) * (40.0 * u).cos(), 300.0 + (5.0 + 150.0 * u) * (40.0 * u).sin());
-    let sine = |u: f64| (2000.0 * u, 300.0 + 100.0 * (10.0 * u).sin());
-    let ellipse = |u: f64| (300.0 + 100.0 * (TAU * u).cos(), 300.0 + 60.0 * (TAU * u).sin());
-    let sampled = |at: &dyn Fn(f64) -> (f64, f64), amount: f64| -> Vec<PxPoint> {
-        let (mut last, mut way, mut state, mut sites) = (at(0.0), 1.0, 11, Vec::new());
-        for i in 0..=100_000 {
-            let now = at(f64::from(i) / 100_000.0);
-            way += (now.0 - last.0).hypot(now.1 - last.1);
-            last = now;
-            if way >= 1.0 {
-                way -= 1.0;
-                sites.push(PxPoint::new(
-                    now.0 + amount * random(&mut state),
-                    now.1 + amount * random(&mut state),
-                ));
-            }
-        }
-        sites
-    };
     let mut found = Vec::new();
     println!("{:<8} {:>5} {:>5} {:>6}", "curve", "noise", "lines", "pieces");
     for amount in [0.0, 0.2] {
         let curves: [(&str, Vec<PxPoint>, bool); 3] = [
-            ("spiral", sampled(&spiral, amount), false),
-            ("sine", sampled(&sine, amount), false),
-            ("ellipse", sampled(&ellipse, amount), true),
+            ("spiral", sampled(spiral, amount), false),
+            ("sine", sampled(sine, amount), false),
+            ("ellipse", sampled(ellipse, amount), true),
         ];
         for (name, sites, closed) in curves {
             let lines = bounded(0.5).polyline(&sites, closed).len() - 1;

@@ -2,8 +2,10 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
 mod frechet;
+mod lines;
 
 use frechet::{some_start_is_within, within};
+use lines::{circle, handwriting, sampled, sine, spiral, turning, wild};
 use plotter_vector::{Bounded, Pixel, PxPoint, Simplify};
 use proptest::prelude::*;
 
@@ -65,32 +67,6 @@ fn bounded(tolerance_px: f64) -> Bounded {
     Bounded { tolerance_px }
 }
 
-/// A line that turns as it likes, with noise.
-fn curves() -> impl Strategy<Value = Vec<PxPoint>> {
-    (proptest::collection::vec((-0.3_f64..0.3, -1.0_f64..1.0, -1.0_f64..1.0), 2..250), 0.0_f64..0.4).prop_map(
-        |(steps, noise)| {
-            let (mut x, mut y, mut angle) = (100.0, 100.0, 0.0_f64);
-            let place = |(turn, u, v): (f64, f64, f64)| {
-                angle += turn;
-                (x, y) = (x + angle.cos(), y + angle.sin());
-                PxPoint::new(x + noise * u, y + noise * v)
-            };
-            steps.into_iter().map(place).collect()
-        },
-    )
-}
-
-fn wild() -> impl Strategy<Value = Vec<PxPoint>> {
-    proptest::collection::vec((-4_i32..5, -4_i32..5, 1_u8..9), 1..120).prop_map(|steps| {
-        let (mut x, mut y) = (0.0, 0.0);
-        let place = |(dx, dy, parts): (i32, i32, u8)| {
-            (x, y) = (x + f64::from(dx) / f64::from(parts), y + f64::from(dy) / f64::from(parts));
-            PxPoint::new(x, y)
-        };
-        steps.into_iter().map(place).collect()
-    })
-}
-
 /// Chains of pixels that turn by no more than 45 degrees a step: where one turns back, the tolerance of the polyline
 /// on pixels asks for less, as it knows no order.
 fn chains() -> impl Strategy<Value = Vec<Pixel>> {
@@ -119,7 +95,7 @@ proptest! {
 
     #[test]
     fn an_open_line_is_kept_both_ways_and_in_order(
-        sites in prop_oneof![curves(), wild()],
+        sites in prop_oneof![turning(), wild()],
         tolerance_px in prop_oneof![Just(0.0), 0.05_f64..2.0],
     ) {
         let line = bounded(tolerance_px).polyline(&sites, false);
@@ -130,7 +106,7 @@ proptest! {
 
     #[test]
     fn a_closed_line_is_kept_both_ways_and_in_order(
-        sites in prop_oneof![curves(), wild()],
+        sites in prop_oneof![turning(), wild()],
         tolerance_px in 0.1_f64..2.0,
     ) {
         let line = bounded(tolerance_px).polyline(&sites, true);
@@ -152,7 +128,7 @@ proptest! {
     }
 
     #[test]
-    fn backwards_the_vertices_are_as_many_or_nearly(sites in curves(), tolerance_px in 0.2_f64..1.0) {
+    fn backwards_the_vertices_are_as_many_or_nearly(sites in turning(), tolerance_px in 0.2_f64..1.0) {
         let line = bounded(tolerance_px).polyline(&sites, false);
         let backwards: Vec<PxPoint> = sites.iter().rev().copied().collect();
         let other = bounded(tolerance_px).polyline(&backwards, false);
@@ -161,45 +137,8 @@ proptest! {
     }
 }
 
-/// Seeded noise between −1 and 1.
-fn noise(state: &mut u64) -> f64 {
-    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-    2.0 * ((*state >> 11) as f64 / (1_u64 << 53) as f64) - 1.0
-}
-
-/// A curve at about 1 px a site, with noise.
-fn sampled(at: impl Fn(f64) -> (f64, f64), amount_px: f64) -> Vec<PxPoint> {
-    let mut state = 11;
-    let (mut last, mut way, mut sites) = (at(0.0), 1.0, Vec::new());
-    for i in 0..=100_000 {
-        let now = at(f64::from(i) / 100_000.0);
-        way += (now.0 - last.0).hypot(now.1 - last.1);
-        last = now;
-        if way >= 1.0 {
-            way -= 1.0;
-            sites.push(PxPoint::new(
-                now.0 + amount_px * noise(&mut state),
-                now.1 + amount_px * noise(&mut state),
-            ));
-        }
-    }
-    sites
-}
-
 #[test]
 fn curves_take_few_links_more_than_strips() {
-    use std::f64::consts::TAU;
-    let circle = |r: f64| move |u: f64| (300.0 + r * (TAU * u).cos(), 300.0 + r * (TAU * u).sin());
-    let spiral =
-        |u: f64| (300.0 + (5.0 + 150.0 * u) * (40.0 * u).cos(), 300.0 + (5.0 + 150.0 * u) * (40.0 * u).sin());
-    let sine = |u: f64| (2000.0 * u, 300.0 + 100.0 * (10.0 * u).sin());
-    let hand = |u: f64| {
-        let x = 60.0 * u;
-        (
-            5.0 * x + 25.0 * (0.9 * x).sin() + 6.0 * (2.3 * x).cos(),
-            20.0 * (0.9 * x).cos() + 12.0 * (0.37 * x).sin(),
-        )
-    };
     println!("{:<12} {:>5} {:>5} {:>6} {:>6} {:>6}", "curve", "noise", "sites", "links", "strips", "ratio");
     let (mut links, mut bound) = (0, 0);
     for amount_px in [0.0, 0.2] {
@@ -209,7 +148,7 @@ fn curves_take_few_links_more_than_strips() {
             ("circle 200", sampled(circle(200.7), amount_px), true),
             ("spiral", sampled(spiral, amount_px), false),
             ("sine", sampled(sine, amount_px), false),
-            ("handwriting", sampled(hand, amount_px), false),
+            ("handwriting", sampled(handwriting, amount_px), false),
         ];
         for (name, sites, closed) in curves {
             let line = bounded(0.5).polyline(&sites, closed);

@@ -15,6 +15,10 @@ const ROUND_TRIP_PX: f64 = 0.001;
 /// The same for arcs, px: their ends and radii are rounded, and the reader takes them for cubic curves.
 const ARC_ROUND_TRIP_PX: f64 = 0.15;
 
+/// Tolerance with which curves are read, mm, and the pixels of a millimetre: those of the format.
+const READ_MM: f64 = 0.001;
+const PX_PER_MM: f64 = 96.0 / 25.4;
+
 /// Strokes on a sheet of 4000 x 3000 px; no two neighbouring vertices fall together when they are written.
 fn any_strokes() -> impl Strategy<Value = Vec<(u8, Vec<PxPoint>)>> {
     let place = (-100.0..4100.0f64, -100.0..3100.0f64).prop_map(|(x, y)| PxPoint::new(x, y));
@@ -77,6 +81,34 @@ proptest! {
         for (index, (pen, _)) in sorted.iter().enumerate() {
             let colour = read.pens.iter().find(|found| found.number == read.drawing.pen(index)).map(|pen| pen.colour);
             prop_assert_eq!(colour, palette.pen(*pen).map(|pen| pen.colour));
+        }
+    }
+
+    #[test]
+    fn cubic_curves_that_svg_writes_are_read_back(
+        strokes in prop::collection::vec(
+            prop::collection::vec((0.0..400.0f64, 0.0..400.0f64, any::<bool>(), 0.0..400.0f64, 0.0..400.0f64), 2..6),
+            1..6,
+        ),
+    ) {
+        let mut drawing = Drawing::new(400, 400);
+        for stroke in &strokes {
+            let vertices: Vec<PxPoint> = stroke.iter().map(|(x, y, ..)| PxPoint::new(*x, *y)).collect();
+            let handles = stroke.iter().map(|(x, y, curved, u, v)| {
+                curved.then(|| [PxPoint::new(*u, *y), PxPoint::new(*x, *v)])
+            });
+            drawing.push_curve(1, Curve { handles: handles.collect(), vertices, ..Curve::default() });
+        }
+        let mut text = String::new();
+        svg(&drawing, 1.0, &mut text).unwrap();
+        let curved = (0..drawing.strokes().len()).flat_map(|index| drawing.handles(index)).flatten().count();
+        prop_assert_eq!(text.matches(" C").count(), curved);
+        let options = SvgOptions { tolerance_mm: READ_MM, ..SvgOptions::default() };
+        let read = read_svg(text.as_bytes(), &options).unwrap();
+        prop_assert_eq!(read.drawing.strokes().len(), drawing.strokes().len());
+        for (index, stroke) in read.drawing.strokes().enumerate() {
+            let line = drawing.curve(index).chords(1e-4);
+            prop_assert!(within(&line, stroke, ROUND_TRIP_PX + READ_MM * PX_PER_MM), "{:?}", drawing.curve(index));
         }
     }
 

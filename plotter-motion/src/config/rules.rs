@@ -100,7 +100,7 @@ const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the s
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
-static MACHINE: [Rule; 33] = [
+static MACHINE: [Rule; 34] = [
     Rule { key: "schema", form: Form::Whole(SCHEMA) },
     Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
     number("area.width_mm", |c| c.area.width_mm, (1.0, 100_000.0), "mm", "an A2 sheet lying is 594 wide"),
@@ -255,6 +255,7 @@ static MACHINE: [Rule; 33] = [
         "0.5 is half a pixel",
     ),
     Rule { key: "vectorize.arcs", form: Form::Switch },
+    Rule { key: "vectorize.curves", form: Form::Switch },
     Rule { key: "vectorize.threshold", form: Form::ChoiceOrLevel(&["otsu", "adaptive"]) },
     whole("vectorize.pens", |c| f64::from(c.vectorize.pens), (1.0, 16.0), "", "1 draws all ink with one pen"),
     Rule { key: "vectorize.order", form: Form::Choice(&["none", "fast", "best"]) },

@@ -16,6 +16,8 @@ pub struct VectorizeConfig {
     pub max_error_px: f64,
     /// Whether curves become circular arcs and circles where that saves vertices.
     pub arcs: bool,
+    /// Whether curves become cubic curves where that saves vertices; not with arcs.
+    pub curves: bool,
     /// How ink is told from paper.
     pub threshold: ThresholdChoice,
     /// How many pens are told apart by their colours; 1 draws all ink with one, by its grey level.
@@ -34,6 +36,7 @@ impl Default for VectorizeConfig {
             mode: VectorizeMode::Centreline,
             max_error_px: 0.5,
             arcs: false,
+            curves: false,
             threshold: ThresholdChoice::Otsu,
             pens: 1,
             order: StrokeOrder::Best,

@@ -3,6 +3,7 @@
 use super::Place;
 use super::junction::THIN_PX;
 use super::smooth::smooth;
+use crate::simplify::Pieces;
 use crate::{Bounded, Curve, PxPoint};
 
 /// A stroke whose ends are both known.
@@ -131,12 +132,10 @@ fn turn_to_first(places: &mut [Place]) {
 }
 
 impl Centreline {
-    /// The line with few vertices, its first one again at the end of a closed one, with arcs if they are wanted. Corners
-    /// are vertices.
-    pub(crate) fn curve(&self, bounded: Bounded, arcs: bool) -> Curve {
-        let simplified = |part: &[PxPoint], closed: bool| -> Curve {
-            if arcs { bounded.arcs(part, closed) } else { bounded.polyline(part, closed).into() }
-        };
+    /// The line with few vertices, its first one again at the end of a closed one, of the pieces that it may have.
+    /// Corners are vertices.
+    pub(crate) fn curve(&self, bounded: Bounded, pieces: Pieces) -> Curve {
+        let simplified = |part: &[PxPoint], closed: bool| bounded.stroke(part, closed, pieces);
         let Some((first, rest)) = self.corners.split_first() else {
             return simplified(&self.places, self.closed);
         };

@@ -13,6 +13,7 @@ use super::Place;
 use super::centreline::{Centreline, Whole, fill_gaps, width_px};
 use super::junction::THIN_PX;
 use super::smooth::smooth;
+use crate::simplify::Pieces;
 use crate::{Bounded, Curve, PxPoint};
 use std::collections::VecDeque;
 
@@ -181,13 +182,13 @@ impl Stroke {
         (run(before).map_or(&[], |run| run.inside(true)), run(after).map_or(&[], |run| run.inside(false)))
     }
 
-    /// The line with few vertices, its first one again at the end of a closed one, with arcs if they are wanted: then it
-    /// must not have been cut.
-    pub(crate) fn curve(mut self, cuts: Cuts, bounded: Bounded, arcs: bool) -> Curve {
+    /// The line with few vertices, its first one again at the end of a closed one, of the pieces that it may have: if
+    /// others than lines, it must not have been cut.
+    pub(crate) fn curve(mut self, cuts: Cuts, bounded: Bounded, pieces: Pieces) -> Curve {
         match self.runs.make_contiguous() {
-            [Run::Open(places)] if arcs => {
+            [Run::Open(places)] if pieces != Pieces::Lines => {
                 let places = core::mem::take(places).into();
-                Centreline::of(Whole { places, closed: self.closed }).curve(bounded, true)
+                Centreline::of(Whole { places, closed: self.closed }).curve(bounded, pieces)
             }
             _ => self.polyline(cuts, bounded).into(),
         }
@@ -197,7 +198,9 @@ impl Stroke {
         self.cut(cuts, bounded);
         if let [Run::Open(places)] = self.runs.make_contiguous() {
             let places = core::mem::take(places).into();
-            return Centreline::of(Whole { places, closed: self.closed }).curve(bounded, false).vertices;
+            return Centreline::of(Whole { places, closed: self.closed })
+                .curve(bounded, Pieces::Lines)
+                .vertices;
         }
         // Each vertex, and whether it is a cut.
         let mut vertices: Vec<(PxPoint, bool)> = Vec::new();
@@ -336,7 +339,7 @@ impl Stretch {
         let inner = line.corners.into_iter().filter(|corner| *corner > start && *corner < end);
         let corners = inner.map(|corner| corner - start).collect();
         let mut vertices = Centreline { places: course, closed: false, corners, width_px: line.width_px }
-            .curve(bounded, false)
+            .curve(bounded, Pieces::Lines)
             .vertices;
         if turned {
             vertices.reverse();

@@ -88,19 +88,20 @@ impl Bounded {
             return straight.into();
         }
         let promise = Promise::new(self.tolerance_px);
-        let vertices = if closed {
-            round(promise, &line).unwrap_or_else(|| ring(promise, line))
-        } else {
-            path(promise, &line)
-        };
-        if vertices.len() < straight.len() || closed && vertices.len() == 3 {
-            Curve {
-                bulges: vertices.iter().map(|vertex| vertex.bulge).collect(),
-                vertices: vertices.into_iter().map(|vertex| vertex.at).collect(),
-                ..Curve::default()
-            }
-        } else {
-            straight.into()
+        if let Some(circle) = closed.then(|| round(promise, &line)).flatten() {
+            return circle;
+        }
+        let vertices = if closed { ring(promise, line) } else { path(promise, &line) };
+        if vertices.len() < straight.len() { vertices.into() } else { straight.into() }
+    }
+}
+
+impl From<Vec<Vertex>> for Curve {
+    fn from(vertices: Vec<Vertex>) -> Self {
+        Self {
+            bulges: vertices.iter().map(|vertex| vertex.bulge).collect(),
+            vertices: vertices.into_iter().map(|vertex| vertex.at).collect(),
+            ..Self::default()
         }
     }
 }
@@ -186,7 +187,7 @@ fn ring(promise: Promise, mut sites: Vec<PxPoint>) -> Vec<Vertex> {
 }
 
 /// The circle that a closed line is within the tolerance, as two half circles.
-fn round(promise: Promise, sites: &[PxPoint]) -> Option<Vec<Vertex>> {
+pub(super) fn round(promise: Promise, sites: &[PxPoint]) -> Option<Curve> {
     let area: f64 = sites
         .iter()
         .zip(sites.iter().cycle().skip(1))
@@ -206,7 +207,7 @@ fn round(promise: Promise, sites: &[PxPoint]) -> Option<Vec<Vertex>> {
         if greatest <= promise.radius_px
             && let Some(circle) = halves(&way, centre, radius_px, turn)
         {
-            return Some(circle);
+            return Some(circle.into());
         }
         // The mean of the squares is the least of all circles, so no circle's greatest error is less than its root.
         if mean > SURELY * promise.radius_px || greatest.is_nan() || greatest == 0.0 {
@@ -281,7 +282,7 @@ fn weighted_circle(sites: &[PxPoint], weights: &[f64]) -> Option<(PxPoint, f64)>
 /// The sites, each the middle of the parabola through its neighbours: free of the raster's noise, and of its corners.
 ///
 /// A. Savitzky, M. J. E. Golay, "Smoothing and differentiation of data by simplified least squares procedures" (1964).
-fn smoothed(promise: Promise, sites: &[PxPoint], closed: bool) -> Vec<PxPoint> {
+pub(super) fn smoothed(promise: Promise, sites: &[PxPoint], closed: bool) -> Vec<PxPoint> {
     let count = sites.len();
     let smooth = |(index, site): (usize, &PxPoint)| {
         let most = if closed { (count - 1) / 2 } else { index.min(count - 1 - index) };

@@ -2,6 +2,9 @@
 
 mod arcs;
 mod bounded;
+mod corners;
+mod cubic_fit;
+mod cubics;
 mod dynamic_threshold;
 mod links;
 mod polish;
@@ -13,7 +16,30 @@ pub(crate) use bounded::segment_distance_squared;
 pub use bounded::{Bounded, MAX_REACH_PX};
 pub use dynamic_threshold::DynamicThreshold;
 
-use crate::{Pixel, PxPoint};
+use crate::{Curve, Pixel, PxPoint};
+
+/// What the pieces of a stroke may be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Pieces {
+    /// Straight lines.
+    #[default]
+    Lines,
+    /// And circular arcs.
+    Arcs,
+    /// And cubic curves.
+    Curves,
+}
+
+impl Bounded {
+    /// A stroke through sites.
+    pub(crate) fn stroke(&self, sites: &[PxPoint], closed: bool, pieces: Pieces) -> Curve {
+        match pieces {
+            Pieces::Lines => self.polyline(sites, closed).into(),
+            Pieces::Arcs => self.arcs(sites, closed),
+            Pieces::Curves => self.cubics(sites, closed),
+        }
+    }
+}
 
 /// Chooses the pixels of a figure that become vertices of its polyline.
 pub trait Simplify {
