@@ -4,7 +4,7 @@
 use libfuzzer_sys::fuzz_target;
 use plotter_vector::{Algorithm, Vectorizer, decode};
 
-/// What the ends of arcs may lie beyond the rim of the outermost pixels.
+/// What the ends of arcs and cubic curves may lie beyond the rim of the outermost pixels.
 const ROUNDING_PX: f64 = 1e-6;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -13,10 +13,10 @@ fuzz_target!(|bytes: &[u8]| {
     }
     let Ok(gray) = decode(bytes) else { return };
     let (width, height) = (f64::from(gray.width()), f64::from(gray.height()));
-    for (algorithm, arcs) in
-        [(Algorithm::Ours, false), (Algorithm::Ours, true), (Algorithm::Published, false)]
-    {
-        let vectorizer = Vectorizer { algorithm, arcs, ..Vectorizer::default() };
+    let published = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
+    let arcs = Vectorizer { arcs: true, ..Vectorizer::default() };
+    let curves = Vectorizer { curves: true, ..Vectorizer::default() };
+    for vectorizer in [Vectorizer::default(), arcs, curves, published] {
         let traced = vectorizer.vectorize(&gray).expect("a small picture has few figures");
         for at in traced.drawing.strokes().flatten() {
             assert!(
