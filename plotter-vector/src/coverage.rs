@@ -1,7 +1,7 @@
 //! [`coverage`]: how far every pixel of the ink lies from the drawing.
 
 use crate::curve::Piece;
-use crate::{Arc, Bitmap, Drawing, ErrorReport, ErrorTally, Pixel, PxPoint};
+use crate::{Arc, Bitmap, Cubic, Drawing, ErrorReport, ErrorTally, Pixel, PxPoint};
 
 /// Side of the squares in which segments are looked up, px.
 const CELL_PX: u32 = 32;
@@ -66,24 +66,164 @@ pub fn worst_pixel(ink: &Bitmap, drawing: &Drawing) -> Option<(Pixel, f64)> {
 }
 
 fn for_each_error(ink: &Bitmap, drawing: &Drawing, mut add: impl FnMut(Pixel, f64)) {
-    let index = Index::new(ink, drawing);
+    let mut segments = segments(drawing);
+    let widths = segments.iter().map(|segment| {
+        if segment.has_probes() {
+            PROBES.map(|part| segment.width_at(part, ink, 0))
+        } else {
+            [0; PROBES.len()]
+        }
+    });
+    let widths: Vec<_> = widths.collect();
+    set_widths(&mut segments, widths);
+    let index = Index::new(segments, ink.width(), ink.height());
+    let mut covering = 0;
     for at in ink.ink() {
-        add(at, index.error_px(at.into()));
+        add(at, index.error_px(at.into(), &mut covering));
     }
 }
 
-/// A segment or an arc, and half the ink's width beyond a pixel's own, px.
+/// Where along a segment the ink's width is measured.
+pub(crate) const PROBES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+
+/// How exactly the width is measured, px, and rows above and below a probe that it may ask for.
+const STEP_PX: f64 = 0.25;
+pub(crate) const PROBE_ROWS: u32 = 98;
+
+/// A straight line, an arc or a chord of a cubic curve, and half the ink's width beyond a pixel's own, px.
 #[derive(Clone, Debug)]
-struct Segment {
+pub(crate) struct Segment {
     from: PxPoint,
     to: PxPoint,
     slack_px: f64,
-    arc: Option<Box<Arc>>,
+    bend: Bend,
+}
+
+/// What a segment is.
+#[derive(Clone, Debug)]
+enum Bend {
+    Straight,
+    Arc(Box<Arc>),
+    /// The first chord of a cubic curve, whose width is measured along the whole of it.
+    Cubic(Box<Cubic>),
+    /// A further chord of the same curve.
+    Chord,
+}
+
+/// All pieces of a drawing, as if the ink were one pixel wide.
+pub(crate) fn segments(drawing: &Drawing) -> Vec<Segment> {
+    let mut segments = Vec::new();
+    for index in 0..drawing.strokes().len() {
+        let stroke = drawing.stroke(index);
+        let dot = stroke.first().filter(|_| stroke.len() == 1).map(|at| Piece::Line(*at, *at));
+        for piece in drawing.course(index).pieces().chain(dot) {
+            add_segments(piece, &mut segments);
+        }
+    }
+    segments
+}
+
+/// What a piece of a stroke is looked up by: itself, or its chords.
+fn add_segments(piece: Piece, segments: &mut Vec<Segment>) {
+    let mut add = |from, to, bend| segments.push(Segment { from, to, slack_px: 0.0, bend });
+    match piece {
+        Piece::Line(from, to) => add(from, to, Bend::Straight),
+        Piece::Arc(arc) => add(arc.from, arc.to, Bend::Arc(Box::new(arc))),
+        Piece::Cubic(cubic) => {
+            let mut from = cubic.from;
+            for (index, to) in piece.chords(CUBIC_ERROR_PX).enumerate() {
+                add(from, to, if index == 0 { Bend::Cubic(Box::new(cubic)) } else { Bend::Chord });
+                from = to;
+            }
+        }
+    }
+}
+
+/// Takes as half of the ink's width beyond a pixel's own that of the median of the widths at each segment's probes, in
+/// steps.
+pub(crate) fn set_widths(segments: &mut [Segment], widths: Vec<[u16; PROBES.len()]>) {
+    let mut slack_px = 0.0;
+    for (segment, mut steps) in segments.iter_mut().zip(widths) {
+        if segment.has_probes() {
+            steps.sort_unstable();
+            let [_, _, median, ..] = steps;
+            slack_px = (0.5 * STEP_PX * f64::from(median) - 0.5).max(0.0);
+        }
+        segment.slack_px = slack_px;
+    }
 }
 
 impl Segment {
+    /// Whether the ink's width is measured along it; else it is that of the segment before.
+    pub(crate) fn has_probes(&self) -> bool {
+        !matches!(self.bend, Bend::Chord)
+    }
+
+    /// The place of the probe at a part of its length, 0 to 1, and its direction there.
+    fn place(&self, part: f64) -> (PxPoint, (f64, f64)) {
+        match &self.bend {
+            Bend::Straight | Bend::Chord => {}
+            Bend::Arc(arc) => {
+                let at = arc.at(part);
+                let (x, y) = at.minus(arc.centre);
+                return (at, (-y / arc.radius_px, x / arc.radius_px));
+            }
+            Bend::Cubic(cubic) => return (cubic.at(part), cubic.heading(part)),
+        }
+        let (from, to) = (self.from, self.to);
+        let length = from.distance(to);
+        let direction =
+            if length > 0.0 { ((to.x - from.x) / length, (to.y - from.y) / length) } else { (1.0, 0.0) };
+        (PxPoint::new(from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part), direction)
+    }
+
+    /// The row of a picture `height` px high in which the probe at this part lies; the nearest for one outside.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+    pub(crate) fn probe_row(&self, part: f64, height: u32) -> u32 {
+        (self.place(part).0.y as u32).min(height.saturating_sub(1))
+    }
+
+    /// Whether its probes lie above or below these rows of a picture altogether; outside it the first and the last row reach on.
+    pub(crate) fn misses(&self, rows: &core::ops::Range<u32>, height: u32) -> bool {
+        let (from, to) = (self.from.y, self.to.y);
+        let (top, bottom) = match &self.bend {
+            Bend::Straight | Bend::Chord => (from.min(to), from.max(to)),
+            Bend::Arc(arc) => (arc.centre.y - arc.radius_px, arc.centre.y + arc.radius_px),
+            Bend::Cubic(cubic) => {
+                // A cubic curve lies within the polygon of its ends and handles.
+                let [a, b] = cubic.handles.map(|handle| handle.y);
+                let (from, to) = (cubic.from.y, cubic.to.y);
+                (from.min(to).min(a).min(b), from.max(to).max(a).max(b))
+            }
+        };
+        // A rounding of an arc's place is far less than the row more.
+        bottom + 1.0 < f64::from(rows.start) && rows.start > 0
+            || top - 1.0 > f64::from(rows.end) && rows.end < height
+    }
+
+    /// The ink's width across it at a part of its length, in steps; the ink's first row is row `first_row` of the picture.
+    pub(crate) fn width_at(&self, part: f64, ink: &Bitmap, first_row: u32) -> u16 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+        let is_ink = |x: f64, y: f64| {
+            let row = || (y as u32).checked_sub(first_row);
+            x >= 0.0 && y >= 0.0 && row().is_some_and(|row| ink.get(Pixel::new(x as u32, row)))
+        };
+        let (PxPoint { x, y }, (dx, dy)) = self.place(part);
+        let steps = |side: f64| {
+            let (mut steps, mut reach) = (0, 0.0);
+            // In the middle of the next step: the border between two pixels belongs to one side only.
+            let probe = |reach: f64| side * (reach + 0.5 * STEP_PX);
+            while reach < MAX_HALF_PX && is_ink(x - dy * probe(reach), y + dx * probe(reach)) {
+                reach += STEP_PX;
+                steps += 1;
+            }
+            steps
+        };
+        steps(1.0) + steps(-1.0)
+    }
+
     fn distance(&self, at: PxPoint) -> f64 {
-        if let Some(arc) = &self.arc {
+        if let Bend::Arc(arc) = &self.bend {
             return arc.distance(at);
         }
         let (x, y) = (self.to.x - self.from.x, self.to.y - self.from.y);
@@ -99,7 +239,8 @@ impl Segment {
 }
 
 /// The segments of a drawing by squares of the picture.
-struct Index {
+#[derive(Debug)]
+pub(crate) struct Index {
     segments: Vec<Segment>,
     columns: u32,
     rows: u32,
@@ -110,17 +251,10 @@ struct Index {
 }
 
 impl Index {
-    fn new(ink: &Bitmap, drawing: &Drawing) -> Self {
-        let mut segments = Vec::new();
-        for index in 0..drawing.strokes().len() {
-            let stroke = drawing.stroke(index);
-            let dot = stroke.first().filter(|_| stroke.len() == 1).map(|at| Piece::Line(*at, *at));
-            for piece in drawing.course(index).pieces().chain(dot) {
-                add_segments(ink, piece, &mut segments);
-            }
-        }
-        let columns = ink.width().div_ceil(CELL_PX).max(1);
-        let rows = ink.height().div_ceil(CELL_PX).max(1);
+    /// Of a picture of this size.
+    pub(crate) fn new(segments: Vec<Segment>, width: u32, height: u32) -> Self {
+        let columns = width.div_ceil(CELL_PX).max(1);
+        let rows = height.div_ceil(CELL_PX).max(1);
         // Counted first, then filled: two vectors, whatever the drawing.
         let mut ends = vec![0_usize; columns as usize * rows as usize];
         for segment in &segments {
@@ -156,15 +290,22 @@ impl Index {
         self.ends.get(index).and_then(|end| self.entries.get(start..*end)).unwrap_or(&[])
     }
 
-    /// The least error of a place over all segments.
-    fn error_px(&self, at: PxPoint) -> f64 {
+    /// The least error of a place over all segments. `covering` is one that covered another place, mostly this one too:
+    /// nothing lies nearer than that.
+    pub(crate) fn error_px(&self, at: PxPoint, covering: &mut usize) -> f64 {
+        if self.segments.is_empty() {
+            return at.distance(PxPoint::default());
+        }
+        if self.segments.get(*covering).is_some_and(|segment| segment.error_px(at) == 0.0) {
+            return 0.0;
+        }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
         let (column, row) = ((at.x / f64::from(CELL_PX)) as u32, (at.y / f64::from(CELL_PX)) as u32);
         let mut least = f64::INFINITY;
         let mut ring = 0;
         // Squares of ring k are at least k - 1 squares away, less what a segment's slack forgives.
         while ring <= self.columns.max(self.rows) {
-            if ring > 0 && least + MAX_HALF_PX <= f64::from((ring - 1) * CELL_PX) || least == 0.0 {
+            if ring > 0 && least + MAX_HALF_PX <= f64::from((ring - 1) * CELL_PX) {
                 break;
             }
             for y in row.saturating_sub(ring)..=(row + ring).min(self.rows - 1) {
@@ -173,9 +314,14 @@ impl Index {
                 let mut x = i64::from(column) - i64::from(ring);
                 while x <= i64::from(column) + i64::from(ring) {
                     if let Some(x) = u32::try_from(x).ok().filter(|x| *x < self.columns) {
-                        let near =
-                            self.square(x, y).iter().filter_map(|index| self.segments.get(*index as usize));
-                        least = near.map(|segment| segment.error_px(at)).fold(least, f64::min);
+                        for index in self.square(x, y) {
+                            let Some(segment) = self.segments.get(*index as usize) else { continue };
+                            least = least.min(segment.error_px(at));
+                            if least == 0.0 {
+                                *covering = *index as usize;
+                                return 0.0;
+                            }
+                        }
                     }
                     x += i64::from(step);
                 }
@@ -186,31 +332,10 @@ impl Index {
     }
 }
 
-/// What a piece of a stroke is looked up by: itself, or its chords.
-fn add_segments(ink: &Bitmap, piece: Piece, segments: &mut Vec<Segment>) {
-    match piece {
-        Piece::Line(from, to) => {
-            segments.push(Segment { from, to, slack_px: slack_px(ink, from, to), arc: None });
-        }
-        Piece::Arc(arc) => {
-            let slack_px = arc_slack_px(ink, &arc);
-            segments.push(Segment { from: arc.from, to: arc.to, slack_px, arc: Some(Box::new(arc)) });
-        }
-        Piece::Cubic(cubic) => {
-            let slack_px = median_slack_px(ink, |part| (cubic.at(part), cubic.heading(part)));
-            let mut from = cubic.from;
-            for to in piece.chords(CUBIC_ERROR_PX) {
-                segments.push(Segment { from, to, slack_px, arc: None });
-                from = to;
-            }
-        }
-    }
-}
-
 /// The squares in which a segment is looked up; those of an arc's chords, which lie less beside it than squares that hold
 /// nothing make the search go on.
 fn for_each_square(segment: &Segment, columns: u32, rows: u32, mut visit: impl FnMut(usize)) {
-    let Some(arc) = &segment.arc else {
+    let Bend::Arc(arc) = &segment.bend else {
         for_each_touched((segment.from, segment.to), columns, rows, &mut visit);
         return;
     };
@@ -242,47 +367,6 @@ fn for_each_touched((from, to): (PxPoint, PxPoint), columns: u32, rows: u32, vis
             visit(row as usize * columns as usize + column as usize);
         }
     }
-}
-
-/// Half the width of the ink across an arc, less half a pixel.
-fn arc_slack_px(ink: &Bitmap, arc: &Arc) -> f64 {
-    median_slack_px(ink, |part| {
-        let at = arc.at(part);
-        let (x, y) = at.minus(arc.centre);
-        (at, (-y / arc.radius_px, x / arc.radius_px))
-    })
-}
-
-fn slack_px(ink: &Bitmap, from: PxPoint, to: PxPoint) -> f64 {
-    let length = from.distance(to);
-    let direction =
-        if length > 0.0 { ((to.x - from.x) / length, (to.y - from.y) / length) } else { (1.0, 0.0) };
-    let at = |t: f64| PxPoint::new(from.x + (to.x - from.x) * t, from.y + (to.y - from.y) * t);
-    median_slack_px(ink, |t| (at(t), direction))
-}
-
-/// Half the width of the ink across a piece, less half a pixel: the median of five places along it, each with the direction
-/// there.
-fn median_slack_px(ink: &Bitmap, place: impl Fn(f64) -> (PxPoint, (f64, f64))) -> f64 {
-    const STEP_PX: f64 = 0.25;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
-    let is_ink = |x: f64, y: f64| x >= 0.0 && y >= 0.0 && ink.get(Pixel::new(x as u32, y as u32));
-    let mut widths = [0.1, 0.3, 0.5, 0.7, 0.9].map(|t| {
-        let (PxPoint { x, y }, (dx, dy)) = place(t);
-        let reach = |side: f64| {
-            let mut reach = 0.0;
-            // In the middle of the next step: the border between two pixels belongs to one side only.
-            let probe = |reach: f64| side * (reach + 0.5 * STEP_PX);
-            while reach < MAX_HALF_PX && is_ink(x - dy * probe(reach), y + dx * probe(reach)) {
-                reach += STEP_PX;
-            }
-            reach
-        };
-        reach(1.0) + reach(-1.0)
-    });
-    widths.sort_by(f64::total_cmp);
-    let [_, _, median, ..] = widths;
-    (0.5 * median - 0.5).max(0.0)
 }
 
 #[cfg(test)]

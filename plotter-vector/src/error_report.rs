@@ -108,6 +108,16 @@ impl ErrorTally {
         }
     }
 
+    /// Adds so many pixels without an error.
+    pub(crate) fn add_exact(&mut self, pixels: u64) {
+        let Some(others) = pixels.checked_sub(1) else { return };
+        self.add_error(0.0);
+        self.pixels += others;
+        if let Some(first) = self.bins.first_mut() {
+            *first += others;
+        }
+    }
+
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

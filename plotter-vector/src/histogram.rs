@@ -86,9 +86,9 @@ impl Histogram {
 /// As [`Histogram::otsu`], of bare counts.
 pub(crate) fn otsu(counts: &[u64; 256], min_contrast: u8) -> Option<u8> {
     let exact: u64 = counts.iter().sum();
-    // Of 2²⁸ px or more the squares below would not fit: a sample of each level serves.
+    // Of 2²⁸ px or more the squares below would not fit: a sample of each level serves, of the rarest one pixel.
     let shift = 36_u32.saturating_sub(exact.leading_zeros());
-    let counts = &counts.map(|n| n >> shift);
+    let counts = &counts.map(|n| (n >> shift).max(n.min(1)));
     let count: u64 = counts.iter().sum();
     let sum: u64 = (0_u64..).zip(counts).map(|(level, n)| level * n).sum();
     let (mut dark, mut dark_sum) = (0_u64, 0_u64);
@@ -153,6 +153,14 @@ mod tests {
             }
             assert_eq!(histogram.otsu(24), Some((20 + 200) / 2), "{megapixels}");
         }
+    }
+
+    #[test]
+    fn a_line_on_a_huge_sheet_is_not_overlooked() {
+        let mut histogram = Histogram::default();
+        histogram.add(255, 1 << 34);
+        histogram.add(0, 5);
+        assert_eq!(histogram.otsu(24), Some(127));
     }
 
     #[test]

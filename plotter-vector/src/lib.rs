@@ -86,7 +86,7 @@ pub use row_threshold::{RowThreshold, Survey};
 pub use rows::{BitmapRows, Depth, GrayRows, Row, RowSource};
 #[cfg(feature = "image")]
 pub use scan::Scan;
-pub use sheet::{SheetError, TracedSheet};
+pub use sheet::{SheetError, SheetErrors, TracedSheet};
 pub use simplify::{Bounded, DynamicThreshold, MAX_REACH_PX, Simplify};
 pub use speckle::{Despeckled, context_rows, despeckle, smallest_mark_px};
 pub use svg::{svg, svg_in_colour};

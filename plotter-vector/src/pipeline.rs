@@ -172,7 +172,8 @@ impl Vectorizer {
     /// [`VectorizeError`].
     pub fn vectorize(&self, gray: &Gray) -> Result<Vectorized, VectorizeError> {
         let (ink, split) = self.threshold.apply(gray);
-        let grey = split.map(|split| (gray, split.ink_is_dark));
+        // Of black and white alone the ink says all: its rims are no more exact, and dirt that was taken out is no rim.
+        let grey = split.filter(|split| split.has_greys).map(|split| (gray, split.ink_is_dark));
         Ok(Vectorized { split, ..self.trace_ink(ink, grey)? })
     }
 
@@ -239,8 +240,13 @@ impl Vectorizer {
     fn clean(&self, ink: &mut Bitmap) -> u32 {
         let pen_px =
             if is_raster_lines(ink.blocks(), ink.count()) { 1 } else { pen_width_px(ink).unwrap_or(1) };
-        despeckle(ink, self.smallest_mark_px.unwrap_or(smallest_mark_px(pen_px)));
+        despeckle(ink, self.smallest_mark_px(pen_px));
         pen_px
+    }
+
+    /// Pixels of the smallest mark of ours that is no dirt.
+    pub(crate) fn smallest_mark_px(&self, pen_px: u32) -> u32 {
+        self.smallest_mark_px.unwrap_or(smallest_mark_px(pen_px))
     }
 
     /// The strokes of lines and areas.

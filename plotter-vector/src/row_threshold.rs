@@ -1,7 +1,7 @@
 //! [`Survey`] and [`RowThreshold`]: a threshold for pictures that come row by row.
 
 use crate::light::{Light, TileRow, Tiles};
-use crate::{Histogram, MAX_SIDE_PX, Polarity, SizeError, Threshold, ThresholdMethod};
+use crate::{Histogram, MAX_SIDE_PX, Polarity, Row, SizeError, Split, Threshold, ThresholdMethod};
 
 /// The first pass over a picture, row by row from the top: what must be known of all of it before the first pixel
 /// can be told.
@@ -30,6 +30,8 @@ pub struct Survey {
     /// Rows of a row of tiles that is not yet complete.
     levels: Vec<u8>,
     measured: Vec<TileRow>,
+    /// Whether there is any level besides black and white.
+    has_greys: bool,
 }
 
 /// The second pass: ink of one row after another, in any order.
@@ -40,6 +42,7 @@ pub struct RowThreshold {
     level: u8,
     ink_is_dark: bool,
     light: Option<Light>,
+    has_greys: bool,
 }
 
 impl Survey {
@@ -65,6 +68,7 @@ impl Survey {
             tiles: Tiles::new(width, height, window_px, polarity, min_contrast),
             levels: Vec::new(),
             measured: Vec::new(),
+            has_greys: false,
         }
     }
 
@@ -78,6 +82,7 @@ impl Survey {
         let levels = levels.get(..self.width).unwrap_or(levels);
         let missing = self.width - levels.len();
         let last = levels.last().copied().unwrap_or(u8::MAX);
+        self.has_greys = self.has_greys || has_greys(levels);
         match self.threshold.method {
             ThresholdMethod::Otsu | ThresholdMethod::Level(_) => {
                 self.histogram.push(levels);
@@ -94,8 +99,26 @@ impl Survey {
         }
     }
 
+    /// The next row, of either kind: a black bit is level 0, a white one 255.
+    pub(crate) fn push_row(&mut self, row: Row<'_>) {
+        match (row, self.threshold.method) {
+            (Row::Grey(levels), _) => self.push(levels),
+            (Row::Bits(words), ThresholdMethod::Adaptive) => self.push(&levels_of(words, self.width)),
+            (Row::Bits(words), _) => {
+                let Some(rows_left) = self.rows_left.checked_sub(1) else {
+                    return;
+                };
+                self.rows_left = rows_left;
+                let black = words.iter().map(|bits| u64::from(bits.count_ones())).sum();
+                self.histogram.add(0, black);
+                self.histogram.add(u8::MAX, (self.width as u64).saturating_sub(black));
+            }
+        }
+    }
+
     /// All rows at once, instead of [`Survey::push`].
     pub(crate) fn push_all(&mut self, levels: &[u8]) {
+        self.has_greys = has_greys(levels);
         match self.threshold.method {
             ThresholdMethod::Otsu | ThresholdMethod::Level(_) => self.histogram = whole_histogram(levels),
             ThresholdMethod::Adaptive => {
@@ -125,7 +148,8 @@ impl Survey {
                 }
                 let light = self.tiles.finish(self.measured)?;
                 let (level, ink_is_dark) = (light.level, light.ink_is_dark);
-                return Some(RowThreshold { level, ink_is_dark, light: Some(light) });
+                let has_greys = self.has_greys;
+                return Some(RowThreshold { level, ink_is_dark, light: Some(light), has_greys });
             }
         };
         let counts = self.histogram.counts();
@@ -135,7 +159,7 @@ impl Survey {
             Polarity::DarkInk => true,
             Polarity::LightInk => false,
         };
-        Some(RowThreshold { level, ink_is_dark, light: None })
+        Some(RowThreshold { level, ink_is_dark, light: None, has_greys: self.has_greys })
     }
 }
 
@@ -153,6 +177,42 @@ impl RowThreshold {
         self.ink_is_dark
     }
 
+    /// What was decided, with the number of ink pixels that it makes.
+    pub(crate) const fn split(&self, ink_pixels: u64) -> Split {
+        let Self { level, ink_is_dark, has_greys, .. } = *self;
+        Split { level, ink_is_dark, has_greys, ink_pixels }
+    }
+
+    /// As [`Split::has_greys`].
+    pub(crate) const fn has_greys(&self) -> bool {
+        self.has_greys
+    }
+
+    /// Whether the ink of a picture of 1 bit a pixel is its black everywhere.
+    pub(crate) const fn black_is_ink(&self) -> bool {
+        self.light.is_none() && self.ink_is_dark && self.level < u8::MAX
+    }
+
+    /// As [`RowThreshold::row`], of a row of either kind of a picture of `width` px.
+    pub(crate) fn ink_of(&self, y: u32, row: Row<'_>, width: u32, ink: &mut [u64]) {
+        let words = match row {
+            Row::Grey(levels) => return self.row(y, levels, ink),
+            Row::Bits(words) if self.light.is_some() => {
+                return self.row(y, &levels_of(words, width as usize), ink);
+            }
+            Row::Bits(words) => words,
+        };
+        let is_ink = |level: u8| (level <= self.level) == self.ink_is_dark;
+        let of = |is_ink: bool| if is_ink { u64::MAX } else { 0 };
+        let (black, white) = (of(is_ink(0)), of(is_ink(u8::MAX)));
+        let mut left = width;
+        for (ink, bits) in ink.iter_mut().zip(words) {
+            let inside = if left < u64::BITS { !(u64::MAX << left) } else { u64::MAX };
+            *ink = (bits & black | !bits & white) & inside;
+            left = left.saturating_sub(u64::BITS);
+        }
+    }
+
     /// Writes the ink of row `y`, 64 px a word, the leftmost in the lowest bit, as [`Bitmap::row`](crate::Bitmap::row)
     /// gives it. Levels beyond the words are ignored, words beyond the levels are paper.
     pub fn row(&self, y: u32, levels: &[u8], ink: &mut [u64]) {
@@ -162,6 +222,19 @@ impl RowThreshold {
             (Some(light), dark) => pack_by(levels, &light.ink_levels(y), if dark { 0 } else { u8::MAX }, ink),
         }
     }
+}
+
+/// Whether there is any level besides black and white.
+fn has_greys(levels: &[u8]) -> bool {
+    let is_grey = |level: &u8| level.wrapping_add(1) > 1;
+    // Most scans say so at once; of the others parts of 64 are looked at together.
+    levels.chunks(64).any(|levels| levels.iter().fold(false, |any, level| any | is_grey(level)))
+}
+
+/// The levels of a row of bits: a set one is black.
+fn levels_of(words: &[u64], width: usize) -> Vec<u8> {
+    let bits = words.iter().flat_map(|word| (0..u64::BITS).map(move |bit| word >> bit & 1 == 1));
+    bits.take(width).map(|black| if black { 0 } else { u8::MAX }).collect()
 }
 
 #[cfg(not(feature = "rayon"))]

@@ -163,6 +163,9 @@ pub struct Split {
     pub level: u8,
     /// Whether the dark side is ink.
     pub ink_is_dark: bool,
+    /// Whether there are levels besides black (0) and white (255): then the rims of lines tell where these lie to a fraction
+    /// of a pixel.
+    pub has_greys: bool,
     /// Number of ink pixels.
     pub ink_pixels: u64,
 }
@@ -192,7 +195,7 @@ impl Threshold {
             return (ink, None);
         };
         fill(&rows, gray, &mut ink);
-        let split = Split { level: rows.level(), ink_is_dark: rows.ink_is_dark(), ink_pixels: ink.count() };
+        let split = rows.split(ink.count());
         (ink, Some(split))
     }
 }

@@ -7,8 +7,8 @@
 )]
 
 use plotter_vector::{
-    AreaStyle, Areas, Bitmap, BitmapRows, Bounded, Depth, Drawing, Gray, GrayRows, Hatch, Mode, Pixel,
-    Progress, RowSource, Vectorizer,
+    Algorithm, AreaStyle, Areas, Bitmap, BitmapRows, Bounded, Depth, Drawing, Gray, GrayRows, Hatch, Mode,
+    Pixel, Polarity, Progress, RowSource, SheetErrors, Threshold, ThresholdMethod, Vectorizer, worst_pixel,
 };
 use proptest::prelude::*;
 
@@ -45,6 +45,34 @@ fn ink_of(gray: &Gray) -> Bitmap {
         (0..).zip(row).for_each(|(x, level)| ink.set(Pixel::new(x, y), *level < 128));
     }
     ink
+}
+
+/// A picture of 1 bit as levels: what a decoder makes of it.
+fn levels_of(black: &Bitmap) -> Gray {
+    let places = (0..black.height()).flat_map(|y| (0..black.width()).map(move |x| Pixel::new(x, y)));
+    let levels = places.map(|at| if black.get(at) { 0 } else { 255 }).collect();
+    Gray::new(black.width(), black.height(), levels).unwrap()
+}
+
+/// White where it was black.
+fn inverted(picture: &Bitmap) -> Bitmap {
+    let mut other = picture.clone();
+    for at in (0..picture.height()).flat_map(|y| (0..picture.width()).map(move |x| Pixel::new(x, y))) {
+        other.set(at, !picture.get(at));
+    }
+    other
+}
+
+/// By rows and whole the same: strokes, split, errors and the worst pixel.
+fn assert_as_whole(vectorizer: Vectorizer, whole: &Gray, source: &mut impl RowSource) {
+    let expected = vectorizer.vectorize(whole).unwrap();
+    let worst = worst_pixel(&vectorizer.ink(whole), &expected.drawing);
+    let sheet = vectorizer.vectorize_rows_with_errors(source, &mut Progress::silent()).unwrap();
+    assert!(sheet.drawing == expected.drawing, "strokes, {vectorizer:?}");
+    assert_eq!(sheet.split, expected.split);
+    assert_eq!(sheet.errors, Some(SheetErrors { report: expected.error, worst }), "{vectorizer:?}");
+    let plain = vectorizer.vectorize_rows(source, &mut Progress::silent()).unwrap();
+    assert_eq!((plain.errors, plain.drawing), (None, sheet.drawing));
 }
 
 fn by_rows(vectorizer: Vectorizer, source: &mut impl RowSource) -> Drawing {
@@ -130,4 +158,75 @@ proptest! {
             prop_assert!(by_rows(vectorizer, &mut BitmapRows::new(&ink)) == expected, "{}", band_rows);
         }
     }
+
+    #[test]
+    fn errors_are_those_of_the_whole_picture(
+        pen_px in 1.0..6.0_f64,
+        lines in lines(200, 700, 8),
+        dirt in prop::collection::vec((0..200_u32, 0..700_u32), 0..40),
+        mode in 0..3_usize,
+        arcs: bool,
+    ) {
+        let mut gray = drawn(200, 700, pen_px, &lines);
+        let mut levels = gray.pixels().to_vec();
+        dirt.iter().for_each(|(x, y)| levels[(y * 200 + x) as usize] ^= 0xff);
+        gray = Gray::new(200, 700, levels).unwrap();
+        let mode = [Mode::Centreline, Mode::Outline, Mode::Mixed][mode];
+        for band_rows in BANDS {
+            let vectorizer = Vectorizer { mode, arcs, band_rows, ..Vectorizer::default() };
+            assert_as_whole(vectorizer, &gray, &mut GrayRows::new(gray.clone()));
+        }
+    }
+
+    #[test]
+    fn the_ink_of_1_bit_is_found_as_of_levels(
+        pen_px in 1.0..6.0_f64,
+        lines in lines(200, 500, 10),
+        holes in prop::collection::vec((0..200_u32, 0..500_u32), 0..40),
+        polarity in 0..3_usize,
+        method in 0..5_usize,
+        arcs: bool,
+    ) {
+        let mut black = ink_of(&drawn(200, 500, pen_px, &lines));
+        holes.iter().for_each(|(x, y)| black.set(Pixel::new(*x, *y), (x + y) % 2 == 0));
+        let polarity = [Polarity::Minority, Polarity::DarkInk, Polarity::LightInk][polarity];
+        let level = ThresholdMethod::Level;
+        let method = [ThresholdMethod::Otsu, ThresholdMethod::Adaptive, level(0), level(128), level(255)][method];
+        let threshold = Threshold { polarity, method, ..Threshold::default() };
+        let vectorizer = Vectorizer { threshold, arcs, band_rows: 64, ..Vectorizer::default() };
+        for black in [inverted(&black), black] {
+            assert_as_whole(vectorizer, &levels_of(&black), &mut BitmapRows::new(&black));
+        }
+    }
+}
+
+#[test]
+fn white_lines_on_black_are_the_ink() {
+    let lines = ink_of(&drawn(200, 300, 4.0, &[((20, 30), (180, 40)), ((100, 20), (90, 280))]));
+    let dark =
+        Vectorizer::default().vectorize_rows(&mut BitmapRows::new(&lines), &mut Progress::silent()).unwrap();
+    let black = inverted(&lines);
+    let light =
+        Vectorizer::default().vectorize_rows(&mut BitmapRows::new(&black), &mut Progress::silent()).unwrap();
+    assert_eq!((light.pen_px, light.ink_pixels), (Some(4), lines.count()));
+    assert_eq!((dark.split.unwrap().ink_is_dark, light.split.unwrap().ink_is_dark), (true, false));
+    assert_eq!(light.drawing, dark.drawing);
+    assert_eq!(light.drawing.strokes().len(), 2);
+}
+
+#[test]
+fn sheets_without_ink_are_empty_drawings_with_no_errors() {
+    for (width, height) in [(0, 0), (0, 3), (3, 0), (1, 1), (1, 5000), (5000, 1), (70, 9)] {
+        let white = Bitmap::new(width, height).unwrap();
+        for bits in [inverted(&white), white] {
+            assert_as_whole(Vectorizer::default(), &levels_of(&bits), &mut BitmapRows::new(&bits));
+        }
+    }
+}
+
+#[test]
+fn the_published_algorithm_reports_its_own_errors() {
+    let black = ink_of(&drawn(120, 200, 1.0, &[((10, 12), (110, 60)), ((20, 180), (60, 15))]));
+    let vectorizer = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
+    assert_as_whole(vectorizer, &levels_of(&black), &mut BitmapRows::new(&black));
 }

@@ -55,9 +55,11 @@ fn a_sheet_by_rows_is_the_same_on_any_number_of_threads() {
     let sheets = [1, 2, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            vectorizer.vectorize_rows(&mut BitmapRows::new(&ink), &mut Progress::silent()).unwrap().drawing
+            let mut rows = BitmapRows::new(&ink);
+            vectorizer.vectorize_rows_with_errors(&mut rows, &mut Progress::silent()).unwrap()
         })
     });
-    assert!(sheets[0].vertices() > 20);
+    assert!(sheets[0].drawing.vertices() > 20);
+    assert!(sheets[0].errors.as_ref().is_some_and(|errors| errors.report.mean_px > 0.0));
     assert!(sheets.iter().all(|sheet| *sheet == sheets[0]));
 }

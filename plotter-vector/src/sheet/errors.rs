@@ -1,0 +1,169 @@
+//! [`SheetErrors`]: how far the ink of a sheet lies from its strokes, band after band.
+//!
+//! Each pixel's error needs the ink's width all along the nearest segment, which may be as long as the sheet. So one pass
+//! measures the widths, the next the errors; both take the dirt out of the ink again, for a sheet without it would have to
+//! be kept whole.
+
+use super::step::Step;
+use super::{SheetError, for_each_row, row_bytes};
+use crate::centrelines::each;
+use crate::coverage::{Index, PROBE_ROWS, PROBES, Segment, segments, set_widths};
+use crate::rolling::Rolling;
+use crate::row_threshold::RowThreshold;
+use crate::speckle::despeckle_here;
+use crate::{Bitmap, Drawing, ErrorReport, ErrorTally, Pixel, Progress, RowSource, context_rows};
+use core::ops::Range;
+
+/// Pixels of a band: where widths are measured, and, fewer, where the error of each may have to be kept; and its fewest
+/// rows.
+const WIDTH_BAND_PIXELS: u32 = 1 << 23;
+const ERROR_BAND_PIXELS: u32 = 1 << 21;
+const FEWEST_ROWS: u32 = 16;
+
+/// How far the ink of a sheet lies from its strokes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SheetErrors {
+    /// The errors of all pixels.
+    pub report: ErrorReport,
+    /// The pixel with the greatest error, the first of several in reading order, and its error, px, as
+    /// [`worst_pixel`](crate::worst_pixel) finds it; none without ink.
+    pub worst: Option<(Pixel, f64)>,
+}
+
+/// What the errors of a sheet are measured on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measure<'a> {
+    pub(super) threshold: &'a RowThreshold,
+    /// Smaller marks are dirt, px.
+    pub(super) smallest_px: u32,
+    /// Most rows of a band.
+    pub(super) band_rows: u32,
+}
+
+/// The errors of some rows.
+#[derive(Debug, Default)]
+struct BandErrors {
+    /// Pixels without one.
+    exact: u64,
+    /// Those of the other pixels, in reading order, px.
+    errors: Vec<f64>,
+    worst: Option<(Pixel, f64)>,
+}
+
+impl Measure<'_> {
+    /// The errors of a sheet, to the last bit those of [`coverage`](crate::coverage()) on the whole picture.
+    pub(super) fn errors(
+        self,
+        source: &mut impl RowSource,
+        drawing: &Drawing,
+        progress: &mut Progress<'_>,
+    ) -> Result<SheetErrors, SheetError> {
+        let (width, height) = (source.width(), source.height());
+        let mut segments = segments(drawing);
+        let mut widths = vec![[0; PROBES.len()]; segments.len()];
+        self.for_each_band(
+            source,
+            (WIDTH_BAND_PIXELS, PROBE_ROWS),
+            &mut progress.part(0.5),
+            |ink, first_row, own| probes(&segments, height, ink, first_row, own),
+            |found| {
+                for (index, probe, steps) in found {
+                    if let Some(width) = widths.get_mut(index).and_then(|widths| widths.get_mut(probe)) {
+                        *width = steps;
+                    }
+                }
+            },
+        )?;
+        set_widths(&mut segments, widths);
+        let index = Index::new(segments, width, height);
+        let mut tally = ErrorTally::default();
+        let mut worst: Option<(Pixel, f64)> = None;
+        self.for_each_band(
+            source,
+            (ERROR_BAND_PIXELS, 0),
+            &mut progress.part(1.0),
+            |ink, first_row, own| band_errors(&index, ink, first_row, own),
+            |band| {
+                tally.add_exact(band.exact);
+                band.errors.iter().for_each(|error_px| tally.add_error(*error_px));
+                worst = worse(worst, band.worst);
+            },
+        )?;
+        Ok(SheetErrors { report: tally.report(), worst })
+    }
+
+    /// Bands of so many pixels of the sheet's ink without its dirt, with `more_context` rows above and below their own: what `work` makes of
+    /// them (the ink, which row of the sheet its first one is, the own rows) is taken in their order.
+    fn for_each_band<T: Send>(
+        self,
+        source: &mut impl RowSource,
+        (band_pixels, more_context): (u32, u32),
+        progress: &mut Progress<'_>,
+        work: impl Fn(&Bitmap, u32, &Range<u32>) -> T + Sync,
+        mut take: impl FnMut(T),
+    ) -> Result<(), SheetError> {
+        let (width, height) = (source.width(), source.height());
+        let rows = (band_pixels / width.max(1)).max(FEWEST_ROWS).min(self.band_rows).max(1);
+        let context = context_rows(self.smallest_px).saturating_add(more_context);
+        let mut step = Step::new(row_bytes(width), height, rows, context);
+        let mut ink = Rolling::of_ink(width);
+        for_each_row(source, progress, |y, row| {
+            self.threshold.ink_of(y, row, width, ink.next_row());
+            while let Some(bands) = step.ready(ink.end()) {
+                let done = each(bands, |own| {
+                    let rows = step.around(&own);
+                    let mut band = ink.band(&rows, Vec::new());
+                    despeckle_here(&mut band, self.smallest_px);
+                    work(&band, rows.start, &own)
+                });
+                done.into_iter().for_each(&mut take);
+                ink.forget_before(step.needs());
+            }
+            Ok(())
+        })
+    }
+}
+
+/// The widths of the ink at the probes in the own rows: which segment, which probe, how wide in steps.
+fn probes(
+    segments: &[Segment],
+    height: u32,
+    ink: &Bitmap,
+    first_row: u32,
+    own: &Range<u32>,
+) -> Vec<(usize, usize, u16)> {
+    let near = segments
+        .iter()
+        .enumerate()
+        .filter(|(_, segment)| segment.has_probes() && !segment.misses(own, height));
+    let of_segment = |(index, segment): (usize, &Segment)| {
+        let here = PROBES.iter().enumerate();
+        let here = here.filter(|(_, part)| own.contains(&segment.probe_row(**part, height)));
+        here.map(|(probe, part)| (index, probe, segment.width_at(*part, ink, first_row))).collect::<Vec<_>>()
+    };
+    near.flat_map(of_segment).collect()
+}
+
+fn band_errors(index: &Index, ink: &Bitmap, first_row: u32, own: &Range<u32>) -> BandErrors {
+    let mut band = BandErrors::default();
+    let mut covering = 0;
+    for at in ink.ink_in(own.start - first_row..own.end - first_row) {
+        let at = Pixel::new(at.x, at.y + first_row);
+        let error_px = index.error_px(at.into(), &mut covering);
+        if error_px > 0.0 {
+            band.errors.push(error_px);
+        } else {
+            band.exact += 1;
+        }
+        band.worst = worse(band.worst, Some((at, error_px)));
+    }
+    band
+}
+
+/// The one with the greater error, the first of two equal ones.
+fn worse(one: Option<(Pixel, f64)>, next: Option<(Pixel, f64)>) -> Option<(Pixel, f64)> {
+    match (one, next) {
+        (Some((_, most_px)), Some((_, error_px))) if error_px <= most_px => one,
+        (one, next) => next.or(one),
+    }
+}

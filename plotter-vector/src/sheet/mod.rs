@@ -1,0 +1,314 @@
+//! [`Vectorizer::vectorize_rows`]: sheets of any length, in the memory of some bands of them.
+//!
+//! ```text
+//!   rows ──► ink ──► cleaned, lines apart from areas ──► skeleton ──► fragments ──► strokes ──► polylines
+//!                                       └──► areas, a stretch at a time ──► outlines, hatching
+//! ```
+//!
+//! Each step takes its rows with as much context as decides about them and hands on the rows themselves; it forgets what
+//! no later step needs. Several bands of a step are worked on at a time, one a thread. A stroke is simplified as soon as
+//! it is whole, so that what stays is the drawing.
+
+mod errors;
+mod step;
+mod work;
+
+use crate::bitmap::blocks_between;
+use crate::pipeline::is_raster_lines;
+use crate::row_threshold::RowThreshold;
+use crate::{
+    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, Mode, Progress, Row, RowSource,
+    SizeError, Split, Survey, VectorizeError, Vectorizer, coverage, worst_pixel,
+};
+use core::fmt;
+use errors::Measure;
+pub use errors::SheetErrors;
+use work::Work;
+
+/// What [`Vectorizer::vectorize_rows`] found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TracedSheet {
+    /// The strokes.
+    pub drawing: Drawing,
+    /// How ink was told from paper; `None` for an empty sheet.
+    pub split: Option<Split>,
+    /// Ink of the sheet as it came, px.
+    pub ink_pixels: u64,
+    /// Width of the pen, px; `None` when there are no lines.
+    pub pen_px: Option<u32>,
+    /// How far the ink lies from the strokes; `None` unless it was asked for.
+    pub errors: Option<SheetErrors>,
+}
+
+/// Why a sheet cannot be vectorized.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SheetError {
+    /// A row cannot be read.
+    Source(DecodeError),
+    /// It was stopped.
+    Cancelled(Cancelled),
+    /// The sheet has lines one pixel wide or nothing but areas wider than 64 px, or the published algorithm is asked for: that
+    /// needs the whole sheet at once, and there are too many pixels.
+    Size(SizeError),
+    /// As for a picture in memory.
+    Vectorize(VectorizeError),
+}
+
+impl fmt::Display for SheetError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Source(error) => error.fmt(f),
+            Self::Cancelled(error) => error.fmt(f),
+            Self::Size(error) => write!(
+                f,
+                "lines one pixel wide, areas without any line, and the published algorithm are tracked on the whole \
+                 sheet: {error}"
+            ),
+            Self::Vectorize(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for SheetError {}
+
+impl From<DecodeError> for SheetError {
+    fn from(error: DecodeError) -> Self {
+        Self::Source(error)
+    }
+}
+
+impl From<Cancelled> for SheetError {
+    fn from(error: Cancelled) -> Self {
+        Self::Cancelled(error)
+    }
+}
+
+impl From<VectorizeError> for SheetError {
+    fn from(error: VectorizeError) -> Self {
+        Self::Vectorize(error)
+    }
+}
+
+impl Vectorizer {
+    /// Vectorizes a sheet that comes row by row: of 1 bit or of grey levels.
+    ///
+    /// The strokes and their order are those of [`Vectorizer::vectorize`] on the whole picture, whatever the height of the
+    /// bands and the number of threads; a black bit is level 0 there, a white one 255, so that on a black sheet the white
+    /// lines are ink. The sheet is read twice, for the width of the pen and for the strokes; one of grey levels, or of white
+    /// lines on black, three times. How far the ink lies from the strokes is not measured:
+    /// [`Vectorizer::vectorize_rows_with_errors`] does.
+    ///
+    /// Memory is some bands of the sheet (of a large one fewer than there are threads) and the drawing, and
+    /// * of strokes that have begun but not ended, 12 bytes a pixel of their length, and of long ones at most those of some
+    ///   8000 rows: where a stroke comes to every 4096th row of the sheet it is cut and simplified so far, if 2048 px or
+    ///   more lie between two cuts. A cut on a straight line leaves no vertex;
+    /// * of areas, the rows from one without any to the next, at most [`MAX_PIXELS`](crate::MAX_PIXELS), at 1 bit;
+    /// * lines one pixel wide and the published algorithm need the whole sheet.
+    ///
+    /// ```
+    /// use plotter_vector::{Bitmap, BitmapRows, Progress, Vectorizer};
+    /// let bar = Bitmap::from_picture(&"..###..\n".repeat(40))?;
+    /// let sheet = Vectorizer::default().vectorize_rows(&mut BitmapRows::new(&bar), &mut Progress::silent())?;
+    /// assert_eq!((sheet.pen_px, sheet.ink_pixels, sheet.drawing.vertices()), (Some(3), 120, 2));
+    /// assert_eq!(sheet.drawing, Vectorizer::default().trace(&bar)?.drawing);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SheetError`].
+    pub fn vectorize_rows(
+        &self,
+        source: &mut impl RowSource,
+        progress: &mut Progress<'_>,
+    ) -> Result<TracedSheet, SheetError> {
+        self.traced_rows(source, false, progress)
+    }
+
+    /// As [`Vectorizer::vectorize_rows`], and how far the ink lies from the strokes: what [`Vectorized::error`] and
+    /// [`worst_pixel`] say of the whole picture, to the last bit. The sheet is read twice more; the memory, when the bands
+    /// are done, is 80 bytes a vertex and 1 bit for each 16 pixels.
+    ///
+    /// [`Vectorized::error`]: crate::Vectorized::error
+    ///
+    /// ```
+    /// use plotter_vector::{Bitmap, BitmapRows, Progress, Vectorizer};
+    /// let bar = Bitmap::from_picture(&"..###..\n".repeat(40))?;
+    /// let mut rows = BitmapRows::new(&bar);
+    /// let sheet = Vectorizer::default().vectorize_rows_with_errors(&mut rows, &mut Progress::silent())?;
+    /// let errors = sheet.errors.unwrap_or_default();
+    /// assert_eq!(errors.report.pixels, 3 * 40);
+    /// assert_eq!(errors.worst.map(|(_, error_px)| error_px), Some(errors.report.max_px));
+    /// assert_eq!(errors.report, Vectorizer::default().trace(&bar)?.error);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SheetError`].
+    pub fn vectorize_rows_with_errors(
+        &self,
+        source: &mut impl RowSource,
+        progress: &mut Progress<'_>,
+    ) -> Result<TracedSheet, SheetError> {
+        self.traced_rows(source, true, progress)
+    }
+
+    fn traced_rows(
+        &self,
+        source: &mut impl RowSource,
+        with_errors: bool,
+        progress: &mut Progress<'_>,
+    ) -> Result<TracedSheet, SheetError> {
+        if self.algorithm == Algorithm::Ours {
+            self.check()?;
+        }
+        let (width, height) = (source.width(), source.height());
+        let errors = with_errors.then(SheetErrors::default);
+        let empty = TracedSheet { drawing: Drawing::new(width, height), errors, ..TracedSheet::default() };
+        let (survey, pen) = survey(self, source, &mut progress.part(0.1))?;
+        let Some(threshold) = survey.finish() else { return Ok(empty) };
+        // Of 1 bit a pixel black is nearly always the ink: then all is known already.
+        let (pen_px, ink_pixels) = match source.depth() {
+            Depth::Bits1 if threshold.black_is_ink() => pen.finish(),
+            _ => pen_of_ink(source, &threshold, &mut progress.part(0.2))?.finish(),
+        };
+        let found = TracedSheet { split: Some(threshold.split(ink_pixels)), ink_pixels, pen_px, ..empty };
+        if ink_pixels == 0 {
+            return Ok(found);
+        }
+        let mut strokes_part = progress.part(if with_errors { 0.7 } else { 1.0 });
+        let tracked = pen_px.unwrap_or(1) <= 1 && self.mode != Mode::Outline;
+        if tracked || self.algorithm == Algorithm::Published {
+            let mut ink = Bitmap::new(width, height).map_err(SheetError::Size)?;
+            let mut rows = ink.rows_mut();
+            for_each_row(source, &mut strokes_part, |y, row| {
+                if let Some(ink) = rows.next() {
+                    threshold.ink_of(y, row, width, ink);
+                }
+                Ok(())
+            })?;
+            drop(rows);
+            let (drawing, errors) = self.traced_whole(ink, with_errors)?;
+            progress.part(1.0).at(1, 1)?;
+            return Ok(TracedSheet { drawing, errors, ..found });
+        }
+        let pen_px = pen_px.unwrap_or(1);
+        let mut sheet = Work::new(self, (width, height), pen_px, &threshold);
+        for_each_row(source, &mut strokes_part, |_, row| sheet.push(row))?;
+        let strokes = sheet.finish()?;
+        let mut drawing = found.drawing;
+        strokes.into_iter().for_each(|stroke| drawing.push_curve(1, stroke));
+        let drawing = self.order.apply(&drawing);
+        let errors = if with_errors {
+            let smallest_px = self.smallest_mark_px(pen_px);
+            let measure = Measure { threshold: &threshold, smallest_px, band_rows: self.band_rows };
+            Some(measure.errors(source, &drawing, &mut progress.part(1.0))?)
+        } else {
+            None
+        };
+        Ok(TracedSheet { drawing, errors, ..found })
+    }
+
+    /// A sheet that has to be traced as a whole.
+    fn traced_whole(
+        &self,
+        mut ink: Bitmap,
+        with_errors: bool,
+    ) -> Result<(Drawing, Option<SheetErrors>), SheetError> {
+        let (drawing, report) = self.unordered(&mut ink, None)?;
+        let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
+        let errors = with_errors.then(|| SheetErrors {
+            report: report.unwrap_or_else(|| coverage(&ink, &drawing)),
+            worst: worst_pixel(&ink, &drawing),
+        });
+        Ok((drawing, errors))
+    }
+}
+
+/// All rows of a sheet in turn.
+fn for_each_row(
+    source: &mut impl RowSource,
+    progress: &mut Progress<'_>,
+    mut take: impl FnMut(u32, Row<'_>) -> Result<(), SheetError>,
+) -> Result<(), SheetError> {
+    let height = u64::from(source.height());
+    source.rewind()?;
+    let mut y = 0;
+    while let Some(row) = source.next_row()? {
+        take(y, row)?;
+        y += 1;
+        progress.at(y.into(), height)?;
+    }
+    Ok(())
+}
+
+/// The first pass: what is ink, and of 1 bit a pixel the pen, were the ink black.
+fn survey(
+    settings: &Vectorizer,
+    source: &mut impl RowSource,
+    progress: &mut Progress<'_>,
+) -> Result<(Survey, Pen), SheetError> {
+    let (width, height) = (source.width(), source.height());
+    let mut survey = match source.depth() {
+        // Rows of bits are a count alone, however many there are.
+        Depth::Bits1 => Survey::checked(settings.threshold, width, height),
+        Depth::Grey8 => Survey::new(settings.threshold, width, height).map_err(SheetError::Size)?,
+    };
+    let mut pen = Pen::new(width);
+    for_each_row(source, progress, |_, row| {
+        survey.push_row(row);
+        if let Row::Bits(words) = row {
+            pen.push(words);
+        }
+        Ok(())
+    })?;
+    Ok((survey, pen))
+}
+
+fn pen_of_ink(
+    source: &mut impl RowSource,
+    threshold: &RowThreshold,
+    progress: &mut Progress<'_>,
+) -> Result<Pen, SheetError> {
+    let width = source.width();
+    let mut pen = Pen::new(width);
+    let mut ink = vec![0; width.div_ceil(u64::BITS) as usize];
+    for_each_row(source, progress, |y, row| {
+        threshold.ink_of(y, row, width, &mut ink);
+        pen.push(&ink);
+        Ok(())
+    })?;
+    Ok(pen)
+}
+
+/// The width of the pen and the number of ink pixels, from rows of ink.
+struct Pen {
+    width: LineWidth,
+    ink_pixels: u64,
+    blocks: u64,
+    above: Vec<u64>,
+}
+
+impl Pen {
+    fn new(width: u32) -> Self {
+        let above = vec![0; width.div_ceil(u64::BITS) as usize];
+        Self { width: LineWidth::new(width), ink_pixels: 0, blocks: 0, above }
+    }
+
+    fn push(&mut self, ink: &[u64]) {
+        self.ink_pixels += ink.iter().map(|bits| u64::from(bits.count_ones())).sum::<u64>();
+        self.blocks += blocks_between(&self.above, ink);
+        self.width.push(ink);
+        self.above.iter_mut().zip(ink).for_each(|(to, from)| *to = *from);
+    }
+
+    fn finish(self) -> (Option<u32>, u64) {
+        let raster_lines = is_raster_lines(self.blocks, self.ink_pixels);
+        (self.width.finish().map(|pen_px| if raster_lines { 1 } else { pen_px }), self.ink_pixels)
+    }
+}
+
+/// Bytes of a row at 1 bit a pixel.
+fn row_bytes(width: u32) -> usize {
+    (width.div_ceil(u64::BITS) as usize * 8).max(1)
+}
