@@ -4,6 +4,9 @@
 //! vertices, the error and the travel with the pen up. Look at the SVG beside the picture: the published strokes
 //! wander off slow curves and leave a pixel open where lines meet; ours stay within the promised error and close.
 //!
+//! The picture is read by rows and never held whole, so a sheet may have any size: look at the last line of an A1 scan,
+//! whose memory is that of a small picture. Only `--pens` needs all of it at once.
+//!
 //! Without a picture it traces the flag that comes with the examples:
 //!
 //! ```text
@@ -11,19 +14,28 @@
 //! cargo run --release --example trace -- scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt
 //! cargo run --release --example trace -- scan.png --arcs --svg scan.svg --gcode scan.gcode
 //! cargo run --release --example trace -- photo.jpg --pens 3 --svg pens.svg --overlay pens.png
+//! cargo run --release --example draw_corpus -- --sheet a1 --dpi 600 a1.pbm
+//! cargo run --release --example trace -- a1.pbm --svg a1.svg
 //! ```
 
 use clap::{Parser, ValueEnum};
-use plotter_examples::{Overlay, at, overlay_png, print, read_file, run, vectorizer, write_file};
+use indicatif::{ProgressBar, ProgressStyle};
+use plotter_examples::{
+    Overlay, at, overlay_png, overlay_step, print, read_file, run, vectorizer, write_file,
+};
 use plotter_motion::gcode::{PenControl, WriteOptions};
 use plotter_motion::{Machine, Point, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};
 use plotter_vector::{
-    Algorithm, Bin, Bitmap, Colour, Drawing, Gray, MAX_PENS, Palette, Pens, Pixel, Scale, ThresholdMethod,
-    Vectorized, Vectorizer, decode, decode_colour, error_chart, gcode, hpgl, svg_in_colour, worst_pixel,
+    Algorithm, Bin, Colour, DecodeError, Drawing, ErrorReport, MAX_PENS, Palette, Pens, Pixel, Progress, Row,
+    RowSource as _, Scale, Scan, SheetErrors, ThresholdMethod, Vectorizer, decode_colour, error_chart, gcode,
+    hpgl, svg_in_colour, worst_pixel,
 };
 use serde::Serialize;
 use std::borrow::Cow;
 use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{Cursor, Read, Seek};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -34,6 +46,9 @@ const FLAG: &[u8] = include_bytes!("data/flag.png");
 /// Farthest that the chords for a machine without arcs are from them, mm.
 const MDRAW_CHORD_MM: f64 = 0.01;
 
+/// Steps of the progress bar.
+const STEPS: f64 = 1000.0;
+
 /// Most threads that are started.
 const MAX_THREADS: usize = 1024;
 
@@ -42,10 +57,11 @@ const MAX_THREADS: usize = 1024;
 #[command(
     after_help = "Examples:\n  trace scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt --report scan.json\n  \
                   trace photo.jpg --threshold adaptive --mode mixed --hatch 0.5 --overlay look.png\n  \
-                  trace drawing.png --pens 3 --svg pens.svg --hpgl pens.plt"
+                  trace drawing.png --pens 3 --svg pens.svg --hpgl pens.plt\n  \
+                  trace a0.tif --no-errors --svg a0.svg"
 )]
 struct Arguments {
-    /// PNG, JPEG, PBM or PGM picture of lines [default: the flag that comes with the examples]
+    /// PNG, JPEG, TIFF, PBM, PGM or PPM picture of lines, of any size but for --pens [default: the flag that comes with the examples]
     image: Option<PathBuf>,
     /// Vectorization
     #[arg(long, value_enum, default_value = "ours")]
@@ -109,6 +125,9 @@ struct Arguments {
     /// Writes the distribution of the errors as a bar chart
     #[arg(long, value_name = "F.svg")]
     error_plot: Option<PathBuf>,
+    /// Leaves out how far the ink lies from the strokes: the file is read twice less
+    #[arg(long, conflicts_with = "error_plot")]
+    no_errors: bool,
     /// Writes the strokes on the pale picture, with the pixel of the greatest error circled
     #[arg(long, value_name = "F.png")]
     overlay: Option<PathBuf>,
@@ -161,27 +180,29 @@ struct Settings {
     threads: Option<rayon::ThreadPool>,
 }
 
-/// What is traced.
+/// What the overlay shows below the strokes.
 #[derive(Debug)]
 enum Picture {
-    Gray(Gray),
+    /// Of every `step`th column and row the level; `columns` in a row.
+    Gray {
+        levels: Vec<u8>,
+        columns: usize,
+        step: usize,
+    },
     Colour(Colour),
 }
 
 impl Picture {
-    fn size(&self) -> (u32, u32) {
-        match self {
-            Self::Gray(gray) => (gray.width(), gray.height()),
-            Self::Colour(colour) => (colour.width(), colour.height()),
-        }
-    }
-
     /// The colour of a pixel; white outside.
     fn level(&self, at: Pixel) -> [u8; 3] {
-        let index = at.y as usize * self.size().0 as usize + at.x as usize;
         match self {
-            Self::Gray(gray) => gray.pixels().get(index).map(|level| [*level; 3]),
-            Self::Colour(colour) => colour.pixels().get(index).copied(),
+            Self::Gray { levels, columns, step } => {
+                let index = at.y as usize / step * columns + at.x as usize / step;
+                levels.get(index).map(|level| [*level; 3])
+            }
+            Self::Colour(colour) => {
+                colour.pixels().get(at.y as usize * colour.width() as usize + at.x as usize).copied()
+            }
         }
         .unwrap_or([u8::MAX; 3])
     }
@@ -190,10 +211,14 @@ impl Picture {
 /// What was traced.
 #[derive(Debug)]
 struct Traced {
-    vectorized: Vectorized,
+    drawing: Drawing,
+    errors: Option<SheetErrors>,
     palette: Palette,
-    /// The ink of each pen of the palette, where pens were told apart.
-    inks: Vec<Bitmap>,
+    /// Width of the lines, px; unknown where pens were told apart, and without lines.
+    pen_px: Option<u32>,
+    /// For the overlay, where one is asked for.
+    picture: Option<Picture>,
+    time: Duration,
 }
 
 /// The figures of a tracing.
@@ -204,13 +229,15 @@ struct Report<'a> {
     pens: Vec<PenReport<'a>>,
     vertices: usize,
     strokes: usize,
-    mean_px: f64,
-    max_px: f64,
-    sd_px: f64,
-    histogram: &'a [Bin],
+    /// Width of the lines; unknown where pens were told apart, and without lines.
+    pen_px: Option<u32>,
+    mean_px: Option<f64>,
+    max_px: Option<f64>,
+    sd_px: Option<f64>,
+    histogram: Option<&'a [Bin]>,
     pen_down_px: f64,
     pen_up_px: f64,
-    /// From grey levels to ordered strokes, without reading and decoding the file.
+    /// From the file to ordered strokes and their errors, without writing them; of pens without reading it.
     time_ms: f64,
     peak_rss_mb: Option<f64>,
 }
@@ -232,66 +259,147 @@ fn main() -> ExitCode {
 fn trace(arguments: &Arguments) -> Result<(), String> {
     let settings = settings(arguments)?;
     let name = arguments.image.as_deref().unwrap_or(Path::new("flag.png")).display().to_string();
-    let read = arguments.image.as_deref().map(read_file).transpose()?;
-    let bytes = read.as_deref().unwrap_or(FLAG);
-    let picture = match settings.pens {
-        None => decode(bytes).map(Picture::Gray),
-        Some(_) => decode_colour(bytes).map(Picture::Colour),
-    }
-    .map_err(|error| format!("{name}: {error}"))?;
-    drop(read);
-
-    let start = Instant::now();
+    let here = |error: &dyn std::fmt::Display| format!("{name}: {error}");
+    let work = || match (&settings.pens, &arguments.image) {
+        (Some(pens), path) => {
+            in_colour(&settings, pens, path.as_deref(), arguments).map_err(|error| here(&error))
+        }
+        (None, Some(path)) if path.is_file() => {
+            let file = File::open(path).map_err(|error| at(path, &format!("cannot be read: {error}")))?;
+            by_rows(&settings, file, arguments).map_err(|error| here(&error))
+        }
+        // What cannot be read twice, as a pipe, is kept.
+        (None, Some(path)) => {
+            by_rows(&settings, Cursor::new(read_file(path)?), arguments).map_err(|error| here(&error))
+        }
+        (None, None) => by_rows(&settings, Cursor::new(FLAG), arguments).map_err(|error| here(&error)),
+    };
     let traced = match &settings.threads {
-        Some(pool) => pool.install(|| vectorize(&settings, &picture)),
-        None => vectorize(&settings, &picture),
-    }
-    .map_err(|error| format!("{name}: {error}"))?;
-    let time_ms = start.elapsed().as_secs_f64() * 1e3;
-
-    let Vectorized { drawing, error, .. } = &traced.vectorized;
+        Some(pool) => pool.install(work),
+        None => work(),
+    }?;
+    let drawing = &traced.drawing;
+    let errors: Option<&ErrorReport> = traced.errors.as_ref().map(|errors| &errors.report);
     let ours = settings.vectorizer.algorithm == Algorithm::Ours;
     let report = Report {
         mode: ours.then_some(settings.vectorizer.mode),
         pens: traced.palette.pens().iter().map(|pen| pen_report(pen, drawing)).collect(),
         vertices: drawing.vertices(),
         strokes: drawing.strokes().len(),
-        mean_px: error.mean_px,
-        max_px: error.max_px,
-        sd_px: error.sd_px,
-        histogram: &error.histogram,
+        pen_px: traced.pen_px,
+        mean_px: errors.map(|errors| errors.mean_px),
+        max_px: errors.map(|errors| errors.max_px),
+        sd_px: errors.map(|errors| errors.sd_px),
+        histogram: errors.map(|errors| errors.histogram.as_slice()),
         pen_down_px: drawing.pen_down_px(),
         pen_up_px: drawing.pen_up_px(),
-        time_ms,
+        time_ms: traced.time.as_secs_f64() * 1e3,
         peak_rss_mb: peak_rss_mb(),
     };
     write_files(arguments, &traced, &report, &name)?;
-    let worst = match &arguments.overlay {
-        Some(path) => overlay(path, &settings.vectorizer, &traced, &picture)?,
-        None => None,
-    };
-    let (width, height) = picture.size();
-    let empty = if traced.vectorized.drawing.strokes().len() == 0 { " (an empty sheet)" } else { "" };
-    print_table(&format!("{name}: {width} x {height} px{empty}"), &report, worst)
-}
-
-fn vectorize(settings: &Settings, picture: &Picture) -> Result<Traced, String> {
-    let vectorizer = &settings.vectorizer;
-    match (picture, &settings.pens) {
-        (Picture::Colour(colour), Some(pens)) => vectorizer
-            .vectorize_colour(colour, pens)
-            .map(|found| Traced { vectorized: found.traced, palette: found.palette, inks: found.inks }),
-        (Picture::Gray(gray), _) => vectorizer.vectorize(gray).map(one_pen),
-        // Cannot be: a picture is read in colour for pens only.
-        (Picture::Colour(colour), None) => {
-            vectorizer.vectorize_colour(colour, &Pens::Count(1)).map(|found| one_pen(found.traced))
-        }
+    let mut worst = None;
+    if let (Some(path), Some(picture)) = (&arguments.overlay, &traced.picture) {
+        worst = traced.errors.as_ref().and_then(|errors| errors.worst);
+        let palette = settings.pens.as_ref().map(|_| &traced.palette);
+        let overlay = Overlay { drawing, palette, worst: worst.map(|(pixel, _)| pixel) };
+        write_file(path, overlay_png(overlay, |pixel| picture.level(pixel))?)?;
     }
-    .map_err(|error| error.to_string())
+    let (width, height) = (drawing.width_px(), drawing.height_px());
+    let empty = if drawing.strokes().len() == 0 { " (an empty sheet)" } else { "" };
+    let megapixels = f64::from(width) * f64::from(height) / 1e6;
+    print_table(&format!("{name}: {width} x {height} px{empty}"), &report, megapixels, worst)
 }
 
-fn one_pen(vectorized: Vectorized) -> Traced {
-    Traced { vectorized, palette: Palette::default(), inks: Vec::new() }
+/// One pen, told by grey level: the file is read by rows, as often as it takes.
+fn by_rows<R: Read + Seek>(settings: &Settings, file: R, arguments: &Arguments) -> Result<Traced, String> {
+    let start = Instant::now();
+    let mut scan = Scan::new(file).map_err(|error| error.to_string())?;
+    let bar = ProgressBar::new(steps(1.0));
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent:>3} % {eta:>4}") {
+        bar.set_style(style);
+    }
+    let mut report = |done: f64| {
+        bar.set_position(steps(done));
+        ControlFlow::Continue(())
+    };
+    let (vectorizer, mut progress) = (&settings.vectorizer, Progress::new(&mut report));
+    let sheet = if arguments.no_errors {
+        vectorizer.vectorize_rows(&mut scan, &mut progress)
+    } else {
+        vectorizer.vectorize_rows_with_errors(&mut scan, &mut progress)
+    };
+    bar.finish_and_clear();
+    let sheet = sheet.map_err(|error| error.to_string())?;
+    let time = start.elapsed();
+    let picture = arguments.overlay.as_ref().map(|_| thumbnail(&mut scan)).transpose()?;
+    Ok(Traced {
+        drawing: sheet.drawing,
+        errors: sheet.errors,
+        palette: Palette::default(),
+        pen_px: sheet.pen_px,
+        picture,
+        time,
+    })
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a thousand steps")]
+fn steps(share: f64) -> u64 {
+    (STEPS * share) as u64
+}
+
+/// What the overlay shows of a scan.
+fn thumbnail<R: Read + Seek>(scan: &mut Scan<R>) -> Result<Picture, String> {
+    let step = overlay_step(scan.width(), scan.height()) as usize;
+    let columns = (scan.width() as usize).div_ceil(step);
+    let mut levels = Vec::new();
+    let failed = |error: DecodeError| error.to_string();
+    scan.rewind().map_err(failed)?;
+    let mut y = 0;
+    while let Some(row) = scan.next_row().map_err(failed)? {
+        if y % step == 0 {
+            let level = |x: usize| match row {
+                Row::Grey(row) => row.get(x).copied(),
+                Row::Bits(words) => {
+                    words.get(x / 64).map(|word| if word >> (x % 64) & 1 == 1 { 0 } else { 255 })
+                }
+            };
+            levels.extend((0..columns).map(|column| level(column * step).unwrap_or(u8::MAX)));
+        }
+        y += 1;
+    }
+    Ok(Picture::Gray { levels, columns, step })
+}
+
+/// Pens told apart by colour, on the whole picture.
+fn in_colour(
+    settings: &Settings,
+    pens: &Pens,
+    path: Option<&Path>,
+    arguments: &Arguments,
+) -> Result<Traced, String> {
+    let read = path.map(read_file).transpose()?;
+    let colour = decode_colour(read.as_deref().unwrap_or(FLAG)).map_err(|error| match error {
+        DecodeError::TooLarge(_) | DecodeError::TooMuchMemory { .. } => format!(
+            "--pens: colours are told apart on the whole picture, but {error}; or take --pens 1, which is traced by \
+             rows at any size"
+        ),
+        other => other.to_string(),
+    })?;
+    drop(read);
+    let start = Instant::now();
+    let found = settings.vectorizer.vectorize_colour(&colour, pens).map_err(|error| error.to_string())?;
+    let time = start.elapsed();
+    let drawing = found.traced.drawing;
+    let own = found.palette.pens().iter().zip(&found.inks);
+    let worst = || {
+        let each = own.filter_map(|(pen, ink)| worst_pixel(ink, &drawing.of_pen(pen.number)));
+        each.max_by(|one, other| one.1.total_cmp(&other.1))
+    };
+    let worst = if arguments.overlay.is_some() { worst() } else { None };
+    let errors = SheetErrors { report: found.traced.error, worst };
+    let errors = (!arguments.no_errors).then_some(errors);
+    let picture = arguments.overlay.is_some().then_some(Picture::Colour(colour));
+    Ok(Traced { errors, palette: found.palette, pen_px: None, picture, time, drawing })
 }
 
 fn pen_report<'a>(pen: &'a plotter_vector::PalettePen, drawing: &Drawing) -> PenReport<'a> {
@@ -454,34 +562,13 @@ fn threads(given: i64) -> Result<rayon::ThreadPool, String> {
     pool.map_err(|error| format!("--threads: {number} cannot be started: {error}; take fewer"))
 }
 
-/// Writes the strokes on the picture; the pixel with the greatest error.
-fn overlay(
-    path: &Path,
-    vectorizer: &Vectorizer,
-    traced: &Traced,
-    picture: &Picture,
-) -> Result<Option<(Pixel, f64)>, String> {
-    let drawing = &traced.vectorized.drawing;
-    let (worst, palette) = match picture {
-        Picture::Gray(gray) => (worst_pixel(&vectorizer.ink(gray), drawing), None),
-        Picture::Colour(_) => {
-            let pens = traced.palette.pens().iter().zip(&traced.inks);
-            let each = pens.filter_map(|(pen, ink)| worst_pixel(ink, &drawing.of_pen(pen.number)));
-            (each.max_by(|one, other| one.1.total_cmp(&other.1)), Some(&traced.palette))
-        }
-    };
-    let overlay = Overlay { drawing, palette, worst: worst.map(|(pixel, _)| pixel) };
-    write_file(path, overlay_png(overlay, |pixel| picture.level(pixel))?)?;
-    Ok(worst)
-}
-
 fn write_files(
     arguments: &Arguments,
     traced: &Traced,
     report: &Report<'_>,
     name: &str,
 ) -> Result<(), String> {
-    let drawing = &traced.vectorized.drawing;
+    let drawing = &traced.drawing;
     let text = |error: std::fmt::Error| error.to_string();
     if let Some(path) = &arguments.svg {
         let mut out = String::new();
@@ -499,17 +586,12 @@ fn write_files(
     if let Some(path) = &arguments.points {
         write_file(path, points(drawing).map_err(text)?)?;
     }
-    if let Some(path) = &arguments.error_plot {
+    if let (Some(path), Some(errors)) = (&arguments.error_plot, &traced.errors) {
         let mut out = String::new();
         // The file alone: a long path would not fit above the chart.
         let file = Path::new(name).file_name().map_or(name.into(), |file| file.to_string_lossy());
-        error_chart(
-            &traced.vectorized.error,
-            &format!("Error of the vectorization of {file}"),
-            &[],
-            &mut out,
-        )
-        .map_err(text)?;
+        let title = format!("Error of the vectorization of {file}");
+        error_chart(&errors.report, &title, &[], &mut out).map_err(text)?;
         write_file(path, out)?;
     }
     if let Some(path) = &arguments.report {
@@ -569,24 +651,33 @@ fn points(drawing: &Drawing) -> Result<String, std::fmt::Error> {
     Ok(out)
 }
 
-fn print_table(title: &str, report: &Report<'_>, worst: Option<(Pixel, f64)>) -> Result<(), String> {
+fn print_table(
+    title: &str,
+    report: &Report<'_>,
+    megapixels: f64,
+    worst: Option<(Pixel, f64)>,
+) -> Result<(), String> {
     let rss = report.peak_rss_mb.map_or("-".into(), |rss| format!("{rss:.1} MB"));
+    let px = |error_px: Option<f64>| error_px.map(|error_px| format!("{error_px:.4} px"));
     let mut rows = vec![
-        ("vertices", report.vertices.to_string()),
-        ("strokes", report.strokes.to_string()),
-        ("mean error", format!("{:.4} px", report.mean_px)),
-        ("max error", format!("{:.4} px", report.max_px)),
-        ("sd", format!("{:.4} px", report.sd_px)),
-        ("pen down", format!("{:.1} px", report.pen_down_px)),
-        ("pen up", format!("{:.1} px", report.pen_up_px)),
-        ("time", format!("{:.2} ms", report.time_ms)),
-        ("memory", rss),
+        ("line width", report.pen_px.map(|pen_px| format!("{pen_px} px"))),
+        ("vertices", Some(report.vertices.to_string())),
+        ("strokes", Some(report.strokes.to_string())),
+        ("mean error", px(report.mean_px)),
+        ("max error", px(report.max_px)),
+        ("sd", px(report.sd_px)),
+        ("pen down", Some(format!("{:.1} px", report.pen_down_px))),
+        ("pen up", Some(format!("{:.1} px", report.pen_up_px))),
+        ("time", Some(format!("{:.2} ms", report.time_ms))),
+        // Of a small picture it would say nothing.
+        ("", (megapixels >= 1.0).then(|| format!("{:.2} ms a megapixel", report.time_ms / megapixels))),
+        ("memory", Some(rss)),
     ];
     if let Some((pixel, error_px)) = worst {
-        rows.push(("circled", format!("{error_px:.4} px at {}, {}", pixel.x, pixel.y)));
+        rows.push(("circled", Some(format!("{error_px:.4} px at {}, {}", pixel.x, pixel.y))));
     }
     let mut out = format!("{title}\n");
-    for (name, value) in &rows {
+    for (name, value) in rows.iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
         let (number, unit) = value.split_once(' ').unwrap_or((value, ""));
         out.push_str(format!("  {name:10} {number:>10} {unit}").trim_end());
         out.push('\n');

@@ -5,7 +5,7 @@ mod report;
 mod simulated_plot;
 mod vectorize_settings;
 
-pub use overlay::{Overlay, overlay_png};
+pub use overlay::{Overlay, overlay_png, overlay_step};
 pub use report::{Figure, html_page};
 pub use simulated_plot::{PlotOutcome, simulate};
 pub use vectorize_settings::vectorizer;

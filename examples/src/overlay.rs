@@ -30,6 +30,12 @@ pub struct Overlay<'a> {
     pub worst: Option<Pixel>,
 }
 
+/// Of a picture of this size only every so manyth column and row is asked for.
+#[must_use]
+pub fn overlay_step(width: u32, height: u32) -> u32 {
+    width.max(height).max(1).div_ceil(LONGEST_PX)
+}
+
 /// Draws strokes on a pale picture, as PNG: enlarged two to four times where it stays below 2000 px, and then with
 /// a dot on each vertex. `level` gives the picture's colours.
 ///
@@ -39,9 +45,8 @@ pub struct Overlay<'a> {
 pub fn overlay_png(overlay: Overlay<'_>, level: impl Fn(Pixel) -> [u8; 3]) -> Result<Vec<u8>, String> {
     let drawing = overlay.drawing;
     let (width, height) = (drawing.width_px(), drawing.height_px());
-    let longest = width.max(height).max(1);
-    let times = (SIDE_PX / longest).clamp(1, MOST_TIMES);
-    let smaller = longest.div_ceil(LONGEST_PX);
+    let times = (SIDE_PX / width.max(height).max(1)).clamp(1, MOST_TIMES);
+    let smaller = overlay_step(width, height);
     let size = |side: u32| side.saturating_mul(times).div_ceil(smaller);
     let mut pixmap = Pixmap::new(size(width), size(height))
         .ok_or_else(|| format!("{width} x {height} px cannot be shown: leave --overlay out"))?;

@@ -3,7 +3,7 @@
 
 mod built_example;
 
-use built_example::{complaint, data, run_example};
+use built_example::{complaint, data, run_example, run_with_input};
 
 #[test]
 fn all_files_are_written_and_the_report_has_all_keys() {
@@ -21,6 +21,7 @@ fn all_files_are_written_and_the_report_has_all_keys() {
         "pens",
         "vertices",
         "strokes",
+        "pen_px",
         "mean_px",
         "max_px",
         "sd_px",
@@ -152,7 +153,12 @@ fn bad_pictures_get_one_line_and_blank_ones_an_empty_drawing() {
     assert!(
         complaint("trace", &[&file("cut.png", &whole[..whole.len() / 2])]).contains("damaged or cut off")
     );
-    assert!(complaint("trace", &[&file("huge.pgm", b"P5 90000 90000 255\n")]).contains("too large"));
+    assert!(
+        complaint("trace", &[&file("cut.pgm", b"P5 90000 90000 255\n")])
+            .contains("cut off at row 1 of 90000: it ends here; the rows above are good")
+    );
+    let claims = "a picture of 1000000000 x 1000000000 px is too large: at most 131072 px a side; scan with";
+    assert!(complaint("trace", &[&file("huge.pbm", b"P4 1000000000 1000000000\n")]).contains(claims));
     let folder = directory.path().to_str().unwrap();
     assert!(complaint("trace", &[folder]).contains("cannot be read"));
     assert!(complaint("trace", &[&data("flag.png"), "--svg", folder]).contains("cannot be written"));
@@ -400,4 +406,125 @@ fn the_published_algorithm_refuses_what_only_ours_has() {
     let picture = folder.gray((60, 30), &[([10, 5, 40, 1], 20), ([10, 20, 40, 1], 180)]);
     let report = folder.report(&picture, &["--algorithm", "published", "--threshold", "100"]);
     assert_eq!((&report["mode"], &report["strokes"]), (&serde_json::Value::Null, &1.into()));
+}
+
+/// A PBM with this byte everywhere, eight pixels wide at a time.
+fn pbm(width: usize, height: usize, byte: impl Fn(usize, usize) -> u8) -> Vec<u8> {
+    let mut file = format!("P4 {width} {height}\n").into_bytes();
+    let byte = &byte;
+    file.extend((0..height).flat_map(|y| (0..width.div_ceil(8)).map(move |x| byte(x, y))));
+    file
+}
+
+#[test]
+fn a_sheet_that_cannot_be_held_is_traced_by_rows() {
+    let folder = Folder::new();
+    // More than the 2²⁸ px of a picture in memory: a frame 8 px wide, black on white and the other way round.
+    let (width, height) = (8192, 33_000);
+    let frame = |x, y| {
+        let inside = (101..923).contains(&x) && (1008..31_992).contains(&y);
+        let outside = !(100..924).contains(&x) || !(1000..32_000).contains(&y);
+        if inside || outside { 0 } else { 0xff_u8 }
+    };
+    let dark = folder.write("dark.pbm", pbm(width, height, frame));
+    let svg = folder.path("a.svg");
+    let plt = folder.path("a.plt");
+    let report = folder.report(&dark, &["--svg", &svg, "--hpgl", &plt]);
+    assert_eq!((&report["strokes"], &report["pen_px"]), (&1.into(), &8.into()));
+    let most_mb = report["peak_rss_mb"].as_f64().unwrap_or(0.0);
+    assert!(most_mb < 120.0, "{most_mb} MB where the levels of the whole are 270");
+    let strokes = std::fs::read(&svg).unwrap();
+    let light = folder.write("light.pbm", pbm(width, height, |x, y| !frame(x, y)));
+    let report = folder.report(&light, &["--svg", &svg, "--no-errors"]);
+    assert_eq!(std::fs::read(&svg).unwrap(), strokes);
+    assert!(report["max_px"].is_null() && report["histogram"].is_null(), "{report}");
+    let said = complaint("trace", &[&dark, "--pens", "2"]);
+    assert!(
+        said.contains("--pens: colours are told apart on the whole picture, but a picture of 8192 x"),
+        "{said}"
+    );
+    assert!(said.contains("or take --pens 1, which is traced by rows at any size"), "{said}");
+    let said = complaint("trace", &[&dark, "--algorithm", "published"]);
+    assert!(
+        said.contains("the published algorithm are tracked on the whole sheet: a picture of 8192 x"),
+        "{said}"
+    );
+}
+
+#[test]
+fn the_overlay_of_a_long_sheet_shows_its_worst_place() {
+    let folder = Folder::new();
+    // Longer than an overlay may be: every second row and column is shown.
+    let line = |x, y| if x == 30 && (500..8500).contains(&y) { 0xff } else { 0 };
+    let sheet = folder.write("long.pbm", pbm(400, 9000, line));
+    let png = folder.path("look.png");
+    let output = run_example("trace", &[&sheet, "--overlay", &png]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    // The corners of the line's lower end lie farthest: it is drawn a quarter of a pixel less far.
+    assert!(said.contains("circled") && said.contains("at 240, 8499"), "{said}");
+    let image = image::open(&png).unwrap().to_rgb8();
+    assert_eq!(image.dimensions(), (200, 4500));
+    // The line is red in its middle; the ring is magenta beside the corner, at (120, 4249).
+    let [red, green, _] = image.get_pixel(122, 2000).0;
+    assert!(red > 150 && green < 100, "{:?}", image.get_pixel(122, 2000));
+    let is_ring = |x| matches!(image.get_pixel(x, 4249).0, [200..=255, 0..=90, 150..=255]);
+    assert!((125..140).any(is_ring), "{:?}", image.get_pixel(131, 4249));
+}
+
+#[test]
+fn by_rows_and_whole_are_the_same_bytes() {
+    let folder = Folder::new();
+    let names = ["flag.png", "technical.png"].map(data);
+    let inverted = |name: &str| {
+        let mut picture = image::open(name).unwrap().to_luma8();
+        picture.iter_mut().for_each(|level| *level = !*level);
+        let path = folder.path("inverted.pgm");
+        picture.save(&path).unwrap();
+        path
+    };
+    for picture in [&names[0], &names[1], &inverted(&names[1])] {
+        let whole = plotter_vector::decode(&std::fs::read(picture).unwrap()).unwrap();
+        for arcs in [false, true] {
+            let vectorizer = plotter_vector::Vectorizer { arcs, ..Default::default() };
+            let whole = vectorizer.vectorize(&whole).unwrap();
+            let mut expected = String::new();
+            plotter_vector::svg(&whole.drawing, 1.0, &mut expected).unwrap();
+            let svg = folder.path("a.svg");
+            let report = folder.report(
+                picture,
+                &[&["--svg", svg.as_str()][..], if arcs { &["--arcs"] } else { &[] }].concat(),
+            );
+            assert_eq!(std::fs::read_to_string(&svg).unwrap(), expected, "{picture}");
+            assert_eq!(report["mean_px"].as_f64(), Some(whole.error.mean_px), "{picture}");
+        }
+    }
+}
+
+#[test]
+fn odd_pictures_are_drawn() {
+    let folder = Folder::new();
+    let strokes =
+        |name: &str, bytes: &[u8]| folder.report(&folder.write(name, bytes), &[])["strokes"].clone();
+    // The suffix does not count; a narrow picture is one line; what is black or white all over is empty.
+    assert_eq!(strokes("really.jpg", b"P1 5 3\n00000 11111 00000\n"), 1);
+    assert_eq!(strokes("tall.pbm", &pbm(1, 100_000, |_, y| if y < 40_000 { 0x80 } else { 0 })), 1);
+    assert_eq!(strokes("wide.pbm", &pbm(100_000, 1, |x, _| if x < 5000 { 0xff } else { 0 })), 1);
+    // More than 2²⁸ px.
+    assert_eq!(strokes("black.pbm", &pbm(32_768, 10_000, |_, _| 0xff)), 0);
+    assert_eq!(strokes("white.pbm", &pbm(32_768, 10_000, |_, _| 0)), 0);
+    let output = run_example("trace", &["--no-errors", "--error-plot", "a.svg"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("'--no-errors' cannot be used with '--error-plot"), "{said}");
+}
+
+#[test]
+#[cfg(unix)]
+fn a_pipe_is_read_as_a_file() {
+    let flag = std::fs::File::open(data("flag.png")).unwrap();
+    let mut cat =
+        std::process::Command::new("cat").stdin(flag).stdout(std::process::Stdio::piped()).spawn().unwrap();
+    let pipe = cat.stdout.take().unwrap();
+    let output = run_with_input("trace", &["/dev/stdin"], pipe);
+    assert!(cat.wait().unwrap().success());
+    assert!(String::from_utf8(output.stdout).unwrap().starts_with("/dev/stdin: 1014 x 673 px\n"));
 }

@@ -4,13 +4,18 @@
 #![expect(unreachable_pub, reason = "shared by tests, not an interface")]
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 /// The outcome of the built example `name` with `arguments`.
 pub fn run_example(name: &str, arguments: &[&str]) -> Output {
+    run_with_input(name, arguments, Stdio::null())
+}
+
+/// As [`run_example`], with something at the standard input.
+pub fn run_with_input(name: &str, arguments: &[&str], input: impl Into<Stdio>) -> Output {
     let test = std::env::current_exe().unwrap();
     let built = test.parent().and_then(Path::parent).unwrap().join("examples").join(name);
-    let output = Command::new(&built).args(arguments).output();
+    let output = Command::new(&built).args(arguments).stdin(input).output();
     output.unwrap_or_else(|error| panic!("{}: {error}: cargo build --example {name}", built.display()))
 }
 
