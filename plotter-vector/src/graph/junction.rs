@@ -8,7 +8,7 @@ use super::arm::{Arm, LONG, SHORT};
 use super::corner::{TURN_COS, direction};
 use super::meeting::{Heart, partners};
 use super::site::{Scan, Site};
-use super::trial::{GOOD_PX2, Trial, is_better};
+use super::trial::{GOOD_PX2, Trial, better_than};
 use super::{End, Graph};
 use crate::{Pixel, PxPoint};
 
@@ -307,7 +307,8 @@ impl Lines<'_> {
         }
         let sites: Vec<Vec<Site>> = arms.iter().map(|one| self.sites_from(one.end)).collect();
         let Some(trial) = Trial::new(self.scan, heart.centre, arms, &sites) else { return straight };
-        let mut best = (trial.cost(&straight), straight);
+        let cost = trial.cost(&straight, f64::INFINITY).unwrap_or(f64::INFINITY);
+        let mut best = (cost, straight);
         if best.0 <= GOOD_PX2 {
             return best.1;
         }
@@ -321,8 +322,7 @@ impl Lines<'_> {
         ];
         let curves = pairings(arms.len()).iter().map(|pairs| heart.curves(arms, pairs));
         for ways in others.into_iter().flatten().chain(curves) {
-            let cost = trial.cost(&ways);
-            if is_better(cost, best.0) {
+            if let Some(cost) = trial.cost(&ways, better_than(best.0)) {
                 best = (cost, ways);
             }
         }
@@ -342,8 +342,7 @@ impl Lines<'_> {
                 if let Some(way) = ways.get_mut(index) {
                     *way = Way { one, other: None, points };
                 }
-                let cost = trial.cost(&ways);
-                if is_better(cost, best.0) {
+                if let Some(cost) = trial.cost(&ways, better_than(best.0)) {
                     best = (cost, ways);
                 }
             }

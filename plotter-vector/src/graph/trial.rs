@@ -2,6 +2,10 @@
 //!
 //! The arms of a junction can be taken to go on in several ways. A pen of each line's width that goes these ways must
 //! leave the ink that is there.
+//!
+//! Only pixels on the wrong side of a pen's edge cost anything, and of a good plan there are few. So all pens are drawn
+//! first by squares alone. How far a pixel that contradicts them lies off is found for it alone, as long as the plan can
+//! still win.
 
 use super::junction::{ArmOf, Way};
 use super::site::{Scan, Site};
@@ -10,37 +14,159 @@ use crate::{Pixel, PxPoint};
 /// Cost that the raster alone explains, px².
 pub(super) const GOOD_PX2: f64 = 0.5;
 
-/// Whether ways of one cost are better than those of another: by more than the raster alone explains.
-pub(super) fn is_better(cost: f64, than: f64) -> bool {
-    cost < 0.8 * than || cost + GOOD_PX2 < than
+/// The cost below which ways are better than those of a cost: by more than the raster alone explains.
+pub(super) fn better_than(cost: f64) -> f64 {
+    (0.8 * cost).max(cost - GOOD_PX2)
 }
 
 /// Nothing costs more than a pixel as far as this from where it should be, px.
-const FARTHEST_PX: f64 = 2.0;
+const FARTHEST_PX: f32 = 2.0;
 
 /// Largest junction that is drawn again, px from its middle.
 const MOST_PX: f64 = 48.0;
 
-/// The ink around a junction.
+/// Pixels that are drawn at a time.
+const LANES: usize = 8;
+
+/// A pen has covered the pixel: the bits of both of the following.
+const COVERED: u32 = INK | PAPER;
+
+/// The pixel is ink, a pen should have covered it.
+const INK: u32 = 1;
+
+/// The pixel is paper, no pen should have covered it.
+const PAPER: u32 = 2;
+
+/// Columns of the largest junction, at the middles of their pixels.
+static COLUMNS: [f32; 104] = {
+    let mut columns = [0.5; 104];
+    let mut rest: &mut [f32] = &mut columns;
+    let mut x = 0.5;
+    while let [first, tail @ ..] = rest {
+        *first = x;
+        x += 1.0;
+        rest = tail;
+    }
+    columns
+};
+
+/// The ink around a junction. Places are px from the upper left corner of the square around it.
 pub(super) struct Trial<'a> {
-    scan: Scan<'a>,
     arms: &'a [ArmOf],
-    /// The sites of each arm, from the junction out.
-    sites: &'a [Vec<Site>],
-    centre: PxPoint,
-    radius_px: f64,
-    left: u32,
-    top: u32,
-    side: u32,
+    /// Where the undisturbed part of each arm begins.
+    roots: Vec<Option<PxPoint>>,
+    corner: PxPoint,
+    /// Pixels of a row, whole [`LANES`].
+    stride: usize,
+    /// What each pixel is: [`INK`], [`PAPER`] or, too far away to matter, 0.
+    asked: Vec<u32>,
+    /// What the undisturbed parts of the arms, which all plans share, make of each pixel.
+    drawn: Vec<u32>,
+    /// These parts.
+    courses: Vec<Capsule>,
+}
+
+/// What a pen covers that goes straight on: all within half its width.
+#[derive(Clone, Copy)]
+struct Capsule {
+    from: (f32, f32),
+    way: (f32, f32),
+    /// 1 / length²; 0 for a disc.
+    per_square: f32,
+    half_px: f32,
+}
+
+impl Capsule {
+    /// From one place to another.
+    #[expect(clippy::cast_possible_truncation, reason = "a place in a square of 98 px is as good to 1e-5 px")]
+    fn new(from: PxPoint, to: PxPoint, half_px: f64) -> Self {
+        let (x, y) = to.minus(from);
+        let square = x * x + y * y;
+        let per_square = if square > 0.0 { (1.0 / square) as f32 } else { 0.0 };
+        Self {
+            from: (from.x as f32, from.y as f32),
+            way: (x as f32, y as f32),
+            per_square,
+            half_px: half_px as f32,
+        }
+    }
+
+    /// Squared distance of a place from the pen's way, px².
+    #[inline]
+    fn squared(&self, x: f32, y: f32) -> f32 {
+        let (x, y) = (x - self.from.0, y - self.from.1);
+        let t = (x * self.way.0 + y * self.way.1) * self.per_square;
+        let t = if t > 0.0 { t } else { 0.0 };
+        let t = if t < 1.0 { t } else { 1.0 };
+        let (x, y) = (x - t * self.way.0, y - t * self.way.1);
+        x * x + y * y
+    }
+
+    /// Notes in `cells`, rows of `stride`, which pixels it covers.
+    fn draw(&self, cells: &mut [u32], stride: usize) {
+        let reach = self.half_px;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a float cast saturates: at 0, and what is beyond the square is not drawn"
+        )]
+        let range = |from: f32, way: f32| {
+            let (low, high) = if way < 0.0 { (from + way, from) } else { (from, from + way) };
+            (low - reach) as usize..(high + reach + 1.0) as usize
+        };
+        let (columns, rows) = (range(self.from.0, self.way.0), range(self.from.1, self.way.1));
+        let columns = columns.start / LANES * LANES..columns.end.next_multiple_of(LANES).min(stride);
+        let rows = rows.start * stride..(rows.end * stride).min(cells.len());
+        let (Some(xs), Some(ys)) = (COLUMNS.get(columns.clone()), COLUMNS.get(rows.start / stride..)) else {
+            return;
+        };
+        let (xs, _) = xs.as_chunks();
+        for (line, y) in cells.get_mut(rows).unwrap_or_default().chunks_exact_mut(stride).zip(ys) {
+            let (cells, _) = line.get_mut(columns.clone()).unwrap_or_default().as_chunks_mut();
+            for (cells, xs) in cells.iter_mut().zip(xs) {
+                self.draw_lanes(cells, xs, *y, reach * reach);
+            }
+        }
+    }
+
+    /// The pixels of a row in some columns.
+    #[inline(never)]
+    fn draw_lanes(&self, cells: &mut [u32; LANES], xs: &[f32; LANES], y: f32, covered: f32) {
+        for (cell, x) in cells.iter_mut().zip(xs) {
+            *cell |= if self.squared(*x, y) <= covered { COVERED } else { 0 };
+        }
+    }
+}
+
+/// A place as seen from a corner.
+fn from_corner(at: PxPoint, corner: PxPoint) -> PxPoint {
+    let (x, y) = at.minus(corner);
+    PxPoint::new(x, y)
+}
+
+/// The straight parts of a pen's way through some places.
+fn capsules(mut places: impl Iterator<Item = (PxPoint, f64)>, found: &mut Vec<Capsule>) {
+    let Some((mut from, mut half_px)) = places.next() else { return };
+    let (mut to, mut many) = (from, false);
+    for (next, next_half_px) in places {
+        let ((x, y), (u, v)) = (to.minus(from), next.minus(to));
+        let goes_on = half_px.to_bits() == next_half_px.to_bits() && x * v == y * u && x * u + y * v >= 0.0;
+        if !goes_on && many {
+            found.push(Capsule::new(from, to, half_px));
+            from = to;
+        }
+        (to, half_px, many) = (next, next_half_px, true);
+    }
+    found.push(Capsule::new(from, to, half_px));
 }
 
 impl<'a> Trial<'a> {
-    /// For a junction; none when it is too large to be drawn again.
+    /// For a junction, with the sites of each arm from the junction out; none when it is too large to be drawn again.
     pub(super) fn new(
-        scan: Scan<'a>,
+        scan: Scan<'_>,
         centre: PxPoint,
         arms: &'a [ArmOf],
-        sites: &'a [Vec<Site>],
+        sites: &[Vec<Site>],
     ) -> Option<Self> {
         let far = |(one, sites): (&ArmOf, &Vec<Site>)| {
             let first = sites.get(one.arm.skip).or(sites.last())?;
@@ -50,63 +176,95 @@ impl<'a> Trial<'a> {
         if radius_px > MOST_PX {
             return None;
         }
-        let corner = |v: f64| {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
-            let corner = libm::floor(v - radius_px).max(0.0) as u32;
-            corner
-        };
+        let corner = |v: f64| libm::floor(v - radius_px).max(0.0);
+        let corner = PxPoint::new(corner(centre.x), corner(centre.y));
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 98")]
-        let side = libm::ceil(2.0 * radius_px + 1.0) as u32;
-        Some(Self {
-            scan,
+        let side = libm::ceil(2.0 * radius_px + 1.0) as usize;
+        let stride = side.next_multiple_of(LANES);
+        let mut trial = Self {
             arms,
-            sites,
-            centre,
-            radius_px,
-            left: corner(centre.x),
-            top: corner(centre.y),
-            side,
-        })
+            roots: Vec::new(),
+            corner,
+            stride,
+            asked: asked(scan, centre, radius_px, (corner, side, stride)),
+            drawn: vec![0; side * stride],
+            courses: Vec::new(),
+        };
+        for (one, sites) in arms.iter().zip(sites) {
+            // The sites of the undisturbed part that lie around the junction, from the inside out.
+            let half_px = 0.5 * one.arm.width_px;
+            let reach_px = radius_px + half_px + 1.0;
+            let places = sites.get(one.arm.skip..).unwrap_or(&[]).iter().map(|site| site.centre);
+            let mut course = places.take_while(|at| at.distance(centre) <= reach_px).peekable();
+            trial.roots.push(course.peek().copied());
+            capsules(course.map(|at| (from_corner(at, corner), half_px)), &mut trial.courses);
+        }
+        trial.courses.iter().for_each(|capsule| capsule.draw(&mut trial.drawn, stride));
+        Some(trial)
     }
 
-    /// How much the ink around the junction differs from what pens draw that go these ways: the squared distances of
-    /// all pixels whose centres are on the wrong side of the lines' edges, px².
-    pub(super) fn cost(&self, ways: &[Way]) -> f64 {
-        let mut field = vec![FARTHEST_PX; (self.side * self.side) as usize];
+    /// How much the ink around the junction differs from what pens draw that go these ways, when that is less than
+    /// `limit`: the squared distances of all pixels whose centres are on the wrong side of the
+    /// lines' edges, px².
+    pub(super) fn cost(&self, ways: &[Way], limit: f64) -> Option<f64> {
+        let mut pens: Vec<Capsule> = Vec::new();
         for Way { one, other, points } in ways {
-            let mut before = None;
             let width_px = one.arm.width_px;
             let theirs = other.map_or(width_px, |other| other.arm.width_px);
             let count = points.len().max(1);
-            let along = self.course(one).into_iter().rev().map(|at| (at, width_px));
             let inner = points.iter().enumerate().map(|(index, at)| {
                 // From one line's width to the other's.
                 #[expect(clippy::cast_precision_loss, reason = "a few points")]
                 let t = (index as f64 + 0.5) / count as f64;
                 (*at, width_px + (theirs - width_px) * t)
             });
-            let beyond = other.iter().flat_map(|other| self.course(other)).map(|at| (at, theirs));
-            for (at, width_px) in along.chain(inner).chain(beyond) {
-                self.draw(&mut field, before.unwrap_or(at), at, 0.5 * width_px);
-                before = Some(at);
-            }
+            let from = self.root(one).map(|at| (at, width_px));
+            let to = other.and_then(|other| self.root(&other)).map(|at| (at, theirs));
+            let way = from.into_iter().chain(inner).chain(to);
+            capsules(way.map(|(at, width_px)| (from_corner(at, self.corner), 0.5 * width_px)), &mut pens);
         }
+        let mut cells = self.drawn.clone();
+        pens.iter().for_each(|pen| pen.draw(&mut cells, self.stride));
         let mut cost = 0.0;
-        let reach = self.radius_px * self.radius_px;
-        for (row, values) in (self.top..).zip(field.chunks_exact(self.side as usize)) {
-            for (column, value) in (self.left..).zip(values) {
-                let at = Pixel::new(column, row);
-                let (x, y) = PxPoint::from(at).minus(self.centre);
-                if x * x + y * y > reach {
-                    continue;
-                }
-                let off_px = if self.scan.is_ink_at(at) { *value } else { -*value };
-                if off_px > 0.0 {
-                    cost += off_px * off_px;
-                }
+        let rows = cells.chunks_exact(self.stride).zip(self.asked.chunks_exact(self.stride)).zip(&COLUMNS);
+        for ((cells, asked), y) in rows {
+            let wrong = |(cell, asked): (&u32, &u32)| (cell ^ INK) & asked;
+            if cells.iter().zip(asked).map(wrong).fold(0, |any, wrong| any | wrong) == 0 {
+                continue;
+            }
+            for (pixel, x) in cells.iter().zip(asked).zip(&COLUMNS) {
+                let off_px = match wrong(pixel) {
+                    0 => continue,
+                    INK => self.outside_px(&pens, *x, *y),
+                    _ => -self.outside_px(&pens, *x, *y),
+                };
+                let off_px = f64::from(off_px).max(0.0);
+                cost += off_px * off_px;
+            }
+            if cost >= limit {
+                return None;
             }
         }
-        cost
+        (cost < limit).then_some(cost)
+    }
+
+    /// How far a place lies outside of all pens' edges, px.
+    fn outside_px(&self, pens: &[Capsule], x: f32, y: f32) -> f32 {
+        let mut least = FARTHEST_PX;
+        for pen in pens.iter().chain(&self.courses) {
+            let squared = pen.squared(x, y);
+            let within = least + pen.half_px;
+            if within > 0.0 && squared < within * within {
+                least = libm::sqrtf(squared) - pen.half_px;
+            }
+        }
+        least
+    }
+
+    /// Where an arm's undisturbed part begins.
+    fn root(&self, one: &ArmOf) -> Option<PxPoint> {
+        let index = self.arms.iter().position(|arm| arm.end == one.end)?;
+        self.roots.get(index).copied().flatten()
     }
 
     /// The ways with their few places moved to where they cost least: a pattern search, from `cost` down.
@@ -144,8 +302,7 @@ impl<'a> Trial<'a> {
                         }
                     }
                     looks += 1;
-                    let less = self.cost(&other);
-                    if less < 0.8 * cost {
+                    if let Some(less) = self.cost(&other, 0.8 * cost) {
                         (ways, cost, direction) = (other, less, 0);
                     } else {
                         direction += 1;
@@ -155,55 +312,29 @@ impl<'a> Trial<'a> {
         }
         ways
     }
+}
 
-    /// The places of an arm's undisturbed part that lie around the junction, from the inside out.
-    fn course(&self, one: &ArmOf) -> Vec<PxPoint> {
-        let sites =
-            self.arms.iter().position(|arm| arm.end == one.end).and_then(|index| self.sites.get(index));
-        let sites = sites.and_then(|sites| sites.get(one.arm.skip..)).unwrap_or(&[]);
-        let reach_px = self.radius_px + 0.5 * one.arm.width_px + 1.0;
-        sites.iter().map(|site| site.centre).take_while(|at| at.distance(self.centre) <= reach_px).collect()
-    }
-
-    /// Notes how far each pixel lies outside of a pen's edge on its way.
-    fn draw(&self, field: &mut [f64], from: PxPoint, to: PxPoint, half_px: f64) {
-        /// Discs as far apart cover a line 3 px wide but for 0.2 px at its edges, and wider ones better.
-        const APART_PX: f64 = 1.5;
-        let steps = libm::ceil(from.distance(to) / APART_PX).clamp(1.0, 2.0 * MOST_PX);
-        let mut step = 1.0;
-        while step <= steps {
-            let t = step / steps;
-            self.dab(
-                field,
-                PxPoint::new(from.x + (to.x - from.x) * t, from.y + (to.y - from.y) * t),
-                half_px,
-            );
-            step += 1.0;
-        }
-    }
-
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the field")]
-    fn dab(&self, field: &mut [f64], at: PxPoint, half_px: f64) {
-        let reach_px = half_px + FARTHEST_PX;
-        let range = |v: f64, first: u32| {
-            let v = v - f64::from(first);
-            let from = libm::ceil(v - reach_px - 0.5).clamp(0.0, f64::from(self.side));
-            let to = libm::floor(v + reach_px + 0.5).clamp(0.0, f64::from(self.side));
-            from as u32..to as u32
-        };
-        for row in range(at.y, self.top) {
-            for column in range(at.x, self.left) {
-                let pixel = PxPoint::from(Pixel::new(self.left + column, self.top + row));
-                let (x, y) = pixel.minus(at);
-                let squared = x * x + y * y;
-                if let Some(value) = field.get_mut((row * self.side + column) as usize)
-                    && squared < (*value + half_px) * (*value + half_px)
-                {
-                    *value = libm::sqrt(squared) - half_px;
-                }
+/// What the pixels of a square are that lie around a junction: [`INK`] or [`PAPER`]; 0 for the others.
+fn asked(
+    scan: Scan<'_>,
+    centre: PxPoint,
+    radius_px: f64,
+    (corner, side, stride): (PxPoint, usize, usize),
+) -> Vec<u32> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
+    let (left, top) = (corner.x as u32, corner.y as u32);
+    let (x, y) = centre.minus(corner);
+    let mut asked = vec![0; side * stride];
+    for ((row, line), at_y) in (top..).zip(asked.chunks_exact_mut(stride)).zip(&COLUMNS) {
+        let dy = f64::from(*at_y) - y;
+        for ((column, ask), at_x) in (left..).zip(line).zip(&COLUMNS).take(side) {
+            let dx = f64::from(*at_x) - x;
+            if dx * dx + dy * dy <= radius_px * radius_px {
+                *ask = if scan.is_ink_at(Pixel::new(column, row)) { INK } else { PAPER };
             }
         }
     }
+    asked
 }
 
 /// The places of ways that have few of them, each once: indices of way and place.
@@ -219,4 +350,64 @@ fn places(ways: &[Way], most: usize) -> Vec<(usize, usize)> {
         }
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn capsule(from: (f64, f64), to: (f64, f64), half_px: f64) -> Capsule {
+        Capsule::new(PxPoint::new(from.0, from.1), PxPoint::new(to.0, to.1), half_px)
+    }
+
+    #[test]
+    fn the_distance_is_that_from_the_nearest_place_of_the_way() {
+        let bar = capsule((2.0, 2.0), (6.0, 2.0), 1.0);
+        // Beside it, behind its end (3² + 4²), before its start.
+        assert_eq!([bar.squared(4.0, 5.0), bar.squared(9.0, 6.0), bar.squared(0.0, 2.0)], [9.0, 25.0, 4.0]);
+        let disc = capsule((2.0, 2.0), (2.0, 2.0), 1.0);
+        assert_eq!(disc.squared(5.0, 6.0), 25.0);
+    }
+
+    #[test]
+    fn places_on_a_straight_line_are_one_capsule() {
+        let count = |places: &[(f64, f64, f64)]| {
+            let mut found = Vec::new();
+            capsules(places.iter().map(|(x, y, half_px)| (PxPoint::new(*x, *y), *half_px)), &mut found);
+            found.len()
+        };
+        assert_eq!(count(&[]), 0);
+        assert_eq!(count(&[(1.0, 1.0, 2.0)]), 1);
+        assert_eq!(count(&[(1.0, 1.0, 2.0), (2.0, 1.5, 2.0), (3.0, 2.0, 2.0)]), 1);
+        assert_eq!(count(&[(1.0, 1.0, 2.0), (2.0, 1.0, 2.0), (2.0, 3.0, 2.0)]), 2);
+        // There and back, and with another pen.
+        assert_eq!(count(&[(1.0, 1.0, 2.0), (5.0, 1.0, 2.0), (3.0, 1.0, 2.0)]), 2);
+        assert_eq!(count(&[(1.0, 1.0, 2.0), (3.0, 1.0, 2.0), (5.0, 1.0, 3.0)]), 2);
+    }
+
+    #[test]
+    fn each_pixel_is_noted_that_a_pen_covers() {
+        const STRIDE: usize = 32;
+        for (from, to, half_px) in [
+            ((10.3, 9.1), (17.9, 13.4), 3.2),
+            ((20.5, 4.0), (8.25, 18.75), 1.1),
+            ((15.0, 12.0), (15.0, 12.0), 4.0),
+            ((-6.0, -3.0), (5.0, 4.0), 2.5),
+            ((28.0, 20.0), (50.0, 40.0), 3.0),
+            ((70.0, 70.0), (90.0, 60.0), 3.0),
+            ((-30.0, 5.0), (-20.0, 5.0), 3.0),
+            ((4.0, 6.0), (9.0, 6.0), 0.3),
+        ] {
+            let pen = capsule(from, to, half_px);
+            let mut cells = vec![0; STRIDE * 24];
+            pen.draw(&mut cells, STRIDE);
+            for (y, line) in cells.chunks_exact(STRIDE).enumerate() {
+                for (x, cell) in line.iter().enumerate() {
+                    let distance = libm::sqrtf(pen.squared(x as f32 + 0.5, y as f32 + 0.5));
+                    let covered = if distance <= pen.half_px { COVERED } else { 0 };
+                    assert_eq!(*cell, covered, "{x} {y} of {from:?} {to:?}");
+                }
+            }
+        }
+    }
 }
