@@ -242,6 +242,8 @@ impl Segment {
 #[derive(Debug)]
 pub(crate) struct Index {
     segments: Vec<Segment>,
+    /// How much nearer than its squares a segment's error may be: its half width, and that an arc lies beside its chords.
+    reach_px: f64,
     columns: u32,
     rows: u32,
     /// One past the last entry of each square.
@@ -281,7 +283,8 @@ impl Index {
                 }
             });
         }
-        Self { segments, columns, rows, ends, entries }
+        let widest_px = segments.iter().map(|segment| segment.slack_px).fold(0.0, f64::max);
+        Self { segments, reach_px: widest_px + CHORD_ERROR_PX, columns, rows, ends, entries }
     }
 
     fn square(&self, column: u32, row: u32) -> &[u32] {
@@ -303,9 +306,14 @@ impl Index {
         let (column, row) = ((at.x / f64::from(CELL_PX)) as u32, (at.y / f64::from(CELL_PX)) as u32);
         let mut least = f64::INFINITY;
         let mut ring = 0;
-        // Squares of ring k are at least k - 1 squares away, less what a segment's slack forgives.
+        // How far a place is from a row or column of squares.
+        let away = |square: u32, v: f64| {
+            let low = f64::from(square) * f64::from(CELL_PX);
+            (low - v).max(v - low - f64::from(CELL_PX))
+        };
+        // Squares of ring k are at least k - 1 squares away.
         while ring <= self.columns.max(self.rows) {
-            if ring > 0 && least + MAX_HALF_PX <= f64::from((ring - 1) * CELL_PX) {
+            if ring > 0 && least + self.reach_px <= f64::from((ring - 1) * CELL_PX) {
                 break;
             }
             for y in row.saturating_sub(ring)..=(row + ring).min(self.rows - 1) {
@@ -314,7 +322,9 @@ impl Index {
                 let mut x = i64::from(column) - i64::from(ring);
                 while x <= i64::from(column) + i64::from(ring) {
                     if let Some(x) = u32::try_from(x).ok().filter(|x| *x < self.columns) {
-                        for index in self.square(x, y) {
+                        let nearest_px = away(x, at.x).max(away(y, at.y));
+                        let near = if nearest_px < least + self.reach_px { self.square(x, y) } else { &[] };
+                        for index in near {
                             let Some(segment) = self.segments.get(*index as usize) else { continue };
                             least = least.min(segment.error_px(at));
                             if least == 0.0 {
