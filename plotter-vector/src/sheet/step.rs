@@ -13,6 +13,9 @@ pub(super) struct Step {
     /// Own rows of a band, and rows more that it needs above and below.
     band_rows: u32,
     context: u32,
+    /// Rows more that the first bands take in all: so many that the rows which are there are then just those that the next
+    /// step waits for, and no more of them lie about.
+    lead: u32,
     /// Bands that are worked on at a time.
     bands: u32,
     height: u32,
@@ -23,20 +26,28 @@ impl Step {
     pub(super) fn new(row_bytes: usize, height: u32, band_rows: u32, context: u32) -> Self {
         let rows = context.saturating_mul(2).saturating_add(band_rows).min(height);
         let bands = threads().min(BANDS_BYTES / (row_bytes * rows as usize).max(1)).max(1);
-        Self { next: 0, band_rows, context, bands: u32::try_from(bands).unwrap_or(1), height }
+        Self { next: 0, band_rows, context, lead: 0, bands: u32::try_from(bands).unwrap_or(1), height }
+    }
+
+    /// The same with so many rows more in its first bands: the context of the steps after it.
+    pub(super) fn ahead_of(self, context: u32) -> Self {
+        Self { lead: context, ..self }
     }
 
     /// The bands that can be worked on when the rows before `end` are there: as many as are worked on at a time, or those
     /// that are left at the end of the sheet.
     pub(super) fn ready(&mut self, end: u32) -> Option<Vec<Range<u32>>> {
-        let bands = self.bands;
-        let own = self.next..self.next.saturating_add(bands.saturating_mul(self.band_rows)).min(self.height);
+        let rows = self.bands.saturating_mul(self.band_rows).saturating_add(self.lead);
+        let own = self.next..self.next.saturating_add(rows).min(self.height);
         if own.is_empty() || end < own.end.saturating_add(self.context).min(self.height) {
             return None;
         }
-        self.next = own.end;
-        let band = |start: u32| start..start.saturating_add(self.band_rows).min(own.end);
-        Some(own.clone().step_by(self.band_rows as usize).map(band).collect())
+        (self.next, self.lead) = (own.end, 0);
+        // Of about the same height, so that no thread waits long for another.
+        let count = (own.end - own.start).div_ceil(self.band_rows);
+        let rows = (own.end - own.start).div_ceil(count);
+        let band = |start: u32| start..start.saturating_add(rows).min(own.end);
+        Some(own.clone().step_by(rows as usize).map(band).collect())
     }
 
     /// The rows of a band with its context.

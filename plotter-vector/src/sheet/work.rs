@@ -14,7 +14,7 @@ use core::ops::Range;
 
 /// Own rows of a band, bytes at 1 bit a pixel, and the fewest rows: less, and the context costs more than the band; more,
 /// and the memory grows.
-const BAND_BYTES: usize = 3 << 18;
+const BAND_BYTES: usize = 7 << 17;
 const FEWEST_ROWS: u32 = 384;
 
 /// The strokes of a sheet that is on its way.
@@ -57,6 +57,8 @@ impl<'a> Work<'a> {
         let rows = u32::try_from(BAND_BYTES / row_bytes).unwrap_or(u32::MAX).max(FEWEST_ROWS);
         let band_rows = rows.min(settings.band_rows).max(1);
         let step = |context: u32| Step::new(row_bytes, height, band_rows, context);
+        let cleaning = context_rows(smallest_px).saturating_add(max_line_px.map_or(0, rows_of_width_context));
+        let thinning = centring.thinning.rows_of_context();
         let grey = threshold.has_greys() && max_line_px.is_some();
         Self {
             settings,
@@ -69,10 +71,8 @@ impl<'a> Work<'a> {
             lines: Rolling::of_ink(width),
             skeleton: Rolling::of_ink(width),
             words: Vec::new(),
-            clean: step(
-                context_rows(smallest_px).saturating_add(max_line_px.map_or(0, rows_of_width_context)),
-            ),
-            thin: step(centring.thinning.rows_of_context()),
+            clean: step(cleaning).ahead_of(thinning.saturating_add(CONTEXT_ROWS)),
+            thin: step(thinning).ahead_of(CONTEXT_ROWS),
             follow: step(CONTEXT_ROWS),
             centring,
             islands: Islands::new(width),
