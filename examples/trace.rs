@@ -72,8 +72,8 @@ struct Arguments {
     /// Circular arcs and circles where they save vertices, within the same error (ours only): CI and AA, G2 and G3, A
     #[arg(long)]
     arcs: bool,
-    /// Cubic curves where they save vertices, within the same error (ours only): C in SVG, chords in HPGL and G-code
-    #[arg(long, conflicts_with = "arcs")]
+    /// Cubic curves instead of arcs where they save vertices, within the same error (ours only): C in SVG, chords in HPGL and G-code
+    #[arg(long)]
     curves: bool,
     /// What is drawn of the ink (ours only) [default: centreline, with --hatch mixed]
     #[arg(long, value_enum)]

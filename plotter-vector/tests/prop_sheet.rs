@@ -97,13 +97,13 @@ proptest! {
     #![proptest_config(few())]
 
     #[test]
-    fn bands_do_not_show(pen_px in 2.0..6.0_f64, lines in lines(200, 900, 10), mode in 0..3_usize, hatched: bool, arcs: bool) {
+    fn bands_do_not_show(pen_px in 2.0..6.0_f64, lines in lines(200, 900, 10), mode in 0..3_usize, hatched: bool, pieces in 0..3_usize) {
         let gray = drawn(200, 900, pen_px, &lines);
         let ink = ink_of(&gray);
         let mode = [Mode::Centreline, Mode::Outline, Mode::Mixed][mode];
         let style = if hatched { AreaStyle::OutlineAndHatch(Hatch::default()) } else { AreaStyle::Outline };
         let areas = Areas { style, pen_px: 2.0 };
-        let whole = Vectorizer { mode, areas, arcs, band_rows: u32::MAX, ..Vectorizer::default() };
+        let whole = Vectorizer { mode, areas, arcs: pieces == 1, curves: pieces == 2, band_rows: u32::MAX, ..Vectorizer::default() };
         let expected = whole.trace(&ink).unwrap().drawing;
         let expected_grey = whole.vectorize(&gray).unwrap();
         for band_rows in BANDS {
@@ -151,7 +151,7 @@ proptest! {
                 }
             }
         }
-        let whole = Vectorizer { band_rows: u32::MAX, ours: Bounded { tolerance_px: 0.7 }, arcs: seed % 2 == 0, ..Vectorizer::default() };
+        let whole = Vectorizer { band_rows: u32::MAX, ours: Bounded { tolerance_px: 0.7 }, arcs: seed % 3 == 0, curves: seed % 3 == 1, ..Vectorizer::default() };
         let expected = whole.trace(&ink).unwrap().drawing;
         for band_rows in BANDS {
             let vectorizer = Vectorizer { band_rows, ..whole };
