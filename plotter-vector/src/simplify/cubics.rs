@@ -39,13 +39,14 @@ impl Bounded {
     /// The promise is that of [`Bounded::polyline`], for pieces that may be curved: a pen can run along them and along the
     /// sites, never back on either, so that both pens stay within `tolerance_px` of each other. Open lines begin at the
     /// first and end at the last site; a closed line within the tolerance of one circle *is* that circle, of two arcs.
-    /// Corners stay corners; elsewhere one curve goes over into the next in one direction. Curves must pay: where they do
+    /// Corners stay corners; elsewhere one curve goes over into the next in one direction, and into a straight line where the
+    /// promise allows it. Curves must pay: where they do
     /// not save vertices, the answer is the polyline's.
     ///
     /// The corners are those vertices of the polyline at which no curve could have made it turn. Between them each curve is
     /// the one with the least squared distances, for the sites' places by the way between them and then by Newton's
     /// steps. Where one does not do, Schneider divides it at its worst site; here the longest one that does is looked for
-    /// by doubling and halving, which takes fewer. Every piece that is taken has been checked site by site: each site's
+    /// by doubling and halving, as with arcs. Every piece that is taken has been checked site by site: each site's
     /// distance to its place on the curve, those places in order, and how far the curve can be from the chord between two
     /// of them by its greatest second derivative there, which together bound the Fréchet distance. Then the joints are
     /// moved and turned to where the squared distances are less. What no curve will do for is drawn with straight lines.
