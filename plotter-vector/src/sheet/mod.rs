@@ -17,8 +17,8 @@ use crate::bitmap::blocks_between;
 use crate::pipeline::is_raster_lines;
 use crate::row_threshold::RowThreshold;
 use crate::{
-    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, Mode, Progress, Row, RowSource,
-    SizeError, Split, Survey, VectorizeError, Vectorizer, coverage, worst_pixel,
+    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, MAX_PIXELS, Mode, Progress, Row,
+    RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer, coverage, worst_pixel,
 };
 use core::fmt;
 use errors::Measure;
@@ -48,8 +48,7 @@ pub enum SheetError {
     Source(DecodeError),
     /// It was stopped.
     Cancelled(Cancelled),
-    /// The sheet has lines one pixel wide or nothing but areas wider than 64 px, or the published algorithm is asked for: that
-    /// needs the whole sheet at once, and there are too many pixels.
+    /// The published algorithm is asked for: it needs the whole sheet at once, and there are too many pixels.
     Size(SizeError),
     /// As for a picture in memory.
     Vectorize(VectorizeError),
@@ -60,11 +59,7 @@ impl fmt::Display for SheetError {
         match self {
             Self::Source(error) => error.fmt(f),
             Self::Cancelled(error) => error.fmt(f),
-            Self::Size(error) => write!(
-                f,
-                "lines one pixel wide, areas without any line, and the published algorithm are tracked on the whole \
-                 sheet: {error}"
-            ),
+            Self::Size(error) => write!(f, "the published algorithm needs the whole sheet: {error}"),
             Self::Vectorize(error) => error.fmt(f),
         }
     }
@@ -104,7 +99,9 @@ impl Vectorizer {
     ///   8000 rows: where a stroke comes to every 4096th row of the sheet it is cut and simplified so far, if 2048 px or
     ///   more lie between two cuts. A cut on a straight line leaves no vertex;
     /// * of areas, the rows from one without any to the next, at most [`MAX_PIXELS`](crate::MAX_PIXELS), at 1 bit;
-    /// * lines one pixel wide and the published algorithm need the whole sheet.
+    /// * the published algorithm needs the whole sheet, and so do lines one pixel wide as long as it is no larger than
+    ///   [`MAX_PIXELS`](crate::MAX_PIXELS). On a larger one they are followed as wider lines are: through every pixel, but
+    ///   where pixels lie two by two.
     ///
     /// ```
     /// use plotter_vector::{Bitmap, BitmapRows, Progress, Vectorizer};
@@ -177,7 +174,8 @@ impl Vectorizer {
             return Ok(found);
         }
         let mut strokes_part = progress.part(if with_errors { 0.7 } else { 1.0 });
-        let tracked = pen_px.unwrap_or(1) <= 1 && self.mode != Mode::Outline;
+        let fits = u64::from(width) * u64::from(height) <= MAX_PIXELS;
+        let tracked = pen_px.unwrap_or(1) <= 1 && self.mode != Mode::Outline && fits;
         if tracked || self.algorithm == Algorithm::Published {
             let mut ink = Bitmap::new(width, height).map_err(SheetError::Size)?;
             let mut rows = ink.rows_mut();
