@@ -322,6 +322,9 @@ impl Lines<'_> {
         ];
         let curves = pairings(arms.len()).iter().map(|pairs| heart.curves(arms, pairs));
         for ways in others.into_iter().flatten().chain(curves) {
+            if best.0 <= GOOD_PX2 {
+                break;
+            }
             if let Some(cost) = trial.cost(&ways, better_than(best.0)) {
                 best = (cost, ways);
             }

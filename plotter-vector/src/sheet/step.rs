@@ -29,9 +29,10 @@ impl Step {
         Self { next: 0, band_rows, context, lead: 0, bands: u32::try_from(bands).unwrap_or(1), height }
     }
 
-    /// The same with so many rows more in its first bands: the context of the steps after it.
+    /// The same with so many rows more in its first bands: the context of the steps after it. Not on a sheet so large that
+    /// one band is all there is room for.
     pub(super) fn ahead_of(self, context: u32) -> Self {
-        Self { lead: context, ..self }
+        Self { lead: if self.bands > 1 { context } else { 0 }, ..self }
     }
 
     /// The bands that can be worked on when the rows before `end` are there: as many as are worked on at a time, or those

@@ -14,7 +14,7 @@ use core::ops::Range;
 
 /// Own rows of a band, bytes at 1 bit a pixel, and the fewest rows: less, and the context costs more than the band; more,
 /// and the memory grows.
-const BAND_BYTES: usize = 13 << 16;
+const BAND_BYTES: usize = 3 << 18;
 const FEWEST_ROWS: u32 = 384;
 
 /// The strokes of a sheet that is on its way.
