@@ -446,10 +446,7 @@ fn a_sheet_that_cannot_be_held_is_traced_by_rows() {
     );
     assert!(said.contains("or take --pens 1, which is traced by rows at any size"), "{said}");
     let said = complaint("trace", &[&dark, "--algorithm", "published"]);
-    assert!(
-        said.contains("the published algorithm are tracked on the whole sheet: a picture of 8192 x"),
-        "{said}"
-    );
+    assert!(said.contains("the published algorithm needs the whole sheet: a picture of 8192 x"), "{said}");
 }
 
 #[test]

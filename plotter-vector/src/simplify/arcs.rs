@@ -78,6 +78,19 @@ impl Bounded {
     /// ```
     #[must_use]
     pub fn arcs(&self, sites: &[PxPoint], closed: bool) -> Curve {
+        self.bent(sites, closed, |promise, line, _| {
+            if closed { ring(promise, line) } else { path(promise, &line) }.into()
+        })
+    }
+
+    /// What `bend` makes of a line's sites, beside the vertices of its polyline, where that saves vertices; a closed line
+    /// within the tolerance of one circle is that circle.
+    pub(super) fn bent(
+        &self,
+        sites: &[PxPoint],
+        closed: bool,
+        bend: impl FnOnce(Promise, Vec<PxPoint>, &[PxPoint]) -> Curve,
+    ) -> Curve {
         let straight = self.polyline(sites, closed);
         let mut line: Vec<PxPoint> = sites.iter().copied().filter(|site| site.is_finite()).collect();
         line.dedup();
@@ -91,8 +104,8 @@ impl Bounded {
         if let Some(circle) = closed.then(|| round(promise, &line)).flatten() {
             return circle;
         }
-        let vertices = if closed { ring(promise, line) } else { path(promise, &line) };
-        if vertices.len() < straight.len() { vertices.into() } else { straight.into() }
+        let bent = bend(promise, line, &straight);
+        if bent.vertices.len() < straight.len() { bent } else { straight.into() }
     }
 }
 
@@ -187,7 +200,7 @@ fn ring(promise: Promise, mut sites: Vec<PxPoint>) -> Vec<Vertex> {
 }
 
 /// The circle that a closed line is within the tolerance, as two half circles.
-pub(super) fn round(promise: Promise, sites: &[PxPoint]) -> Option<Curve> {
+fn round(promise: Promise, sites: &[PxPoint]) -> Option<Curve> {
     let area: f64 = sites
         .iter()
         .zip(sites.iter().cycle().skip(1))

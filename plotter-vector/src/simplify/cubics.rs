@@ -1,7 +1,7 @@
 //! [`Bounded::cubics`]: lines and cubic curves, few of them, for a promised error.
 
 use super::Bounded;
-use super::arcs::{round, smoothed};
+use super::arcs::smoothed;
 use super::corners::{Anchor, anchors};
 use super::cubic_fit::{Fit, Joint};
 use super::promise::Promise;
@@ -40,8 +40,7 @@ impl Bounded {
     /// sites, never back on either, so that both pens stay within `tolerance_px` of each other. Open lines begin at the
     /// first and end at the last site; a closed line within the tolerance of one circle *is* that circle, of two arcs.
     /// Corners stay corners; elsewhere one curve goes over into the next in one direction, and into a straight line where the
-    /// promise allows it. Curves must pay: where they do
-    /// not save vertices, the answer is the polyline's.
+    /// promise allows it. Curves must pay: where they do not save vertices, the answer is the polyline's.
     ///
     /// The corners are those vertices of the polyline at which no curve could have made it turn. Between them each curve is
     /// the one with the least squared distances, for the sites' places by the way between them and then by Newton's
@@ -68,21 +67,9 @@ impl Bounded {
     /// ```
     #[must_use]
     pub fn cubics(&self, sites: &[PxPoint], closed: bool) -> Curve {
-        let straight = self.polyline(sites, closed);
-        let mut line: Vec<PxPoint> = sites.iter().copied().filter(|site| site.is_finite()).collect();
-        line.dedup();
-        if closed && line.len() > 1 && line.first() == line.last() {
-            line.pop();
-        }
-        if straight.len() < 3 || line.len() < 3 {
-            return straight.into();
-        }
-        let promise = Promise::new(self.tolerance_px);
-        if let Some(circle) = closed.then(|| round(promise, &line)).flatten() {
-            return circle;
-        }
-        let curve = if closed { around(promise, line, &straight) } else { along(promise, &line, &straight) };
-        if curve.vertices.len() < straight.len() { curve } else { straight.into() }
+        self.bent(sites, closed, |promise, line, straight| {
+            if closed { around(promise, line, straight) } else { along(promise, &line, straight) }
+        })
     }
 }
 
