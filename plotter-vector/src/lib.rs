@@ -32,6 +32,7 @@ mod palette;
 mod pipeline;
 mod pre_elimination;
 mod progress;
+mod raster_corner;
 mod rolling;
 mod row_threshold;
 mod rows;

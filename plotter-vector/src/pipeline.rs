@@ -4,6 +4,7 @@ use crate::areas::Islands;
 use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
 use crate::coverage::coverage;
+use crate::raster_corner::take_in;
 use crate::simplify::Pieces;
 use crate::{
     AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Curve, Drawing, DynamicThreshold, ErrorReport,
@@ -339,7 +340,7 @@ impl Vectorizer {
 
     /// Ours for lines one pixel wide.
     fn tracked(&self, ink: &Bitmap) -> Result<Vectorized, VectorizeError> {
-        let figures = self.figures(ink)?;
+        let figures = take_in(self.figures(ink)?, ink.width(), ink.height());
         // Of a sheet full of ink each step's figures are large: none outlives its use.
         let linked = link(&figures);
         drop(figures);
