@@ -1,10 +1,7 @@
 //! [`Cubic`]: a piece of a cubic curve.
 
 use crate::PxPoint;
-use crate::curve::{are_handles, unit};
-
-/// Most chords of one curve.
-const MAX_CHORDS: f64 = 65_536.0;
+use crate::curve::{are_handles, unit, whole_chords};
 
 /// Farthest that the chords lie from a curve whose lengths are summed up for its own, px.
 const LENGTH_ERROR_PX: f64 = 1e-3;
@@ -116,13 +113,7 @@ impl Cubic {
         let (first, second) = self.bends();
         let most = libm::hypot(first.0, first.1).max(libm::hypot(second.0, second.1));
         let count = libm::ceil(libm::sqrt(0.75 * most / chord_error_px.max(0.0)) - 1e-9);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a whole number from 1 to 65536; NaN, of an error that is none, is 0"
-        )]
-        let count = count.clamp(1.0, MAX_CHORDS) as u32;
-        count.max(1)
+        whole_chords(count)
     }
 }
 

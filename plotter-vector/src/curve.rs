@@ -7,7 +7,7 @@ use core::f64::consts::{PI, TAU};
 /// 25th of the usual tolerance.
 pub(crate) const CHORD_ERROR_PX: f64 = 0.02;
 
-/// Most chords of one arc.
+/// Most chords of one arc or cubic curve.
 const MAX_CHORDS: f64 = 65_536.0;
 
 /// What the centres, the radii and the whole turn of a circle's arcs may be off, in parts of the radius.
@@ -395,14 +395,15 @@ impl Arc {
         // Never more than a quarter turn: an arc is no chord.
         let half = libm::acos(1.0 - (chord_error_px / self.radius_px).max(0.0)).min(PI / 4.0);
         let count = libm::ceil(self.sweep_rad.abs() / (2.0 * half) - 1e-9);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a whole number from 1 to 65536; NaN, of an error that is none, is 0"
-        )]
-        let count = count.clamp(1.0, MAX_CHORDS) as u32;
-        count.max(1)
+        whole_chords(count)
     }
+}
+
+/// A number of chords, 1 to [`MAX_CHORDS`]; of what is no number, for an error that is none, 1.
+pub(crate) fn whole_chords(count: f64) -> u32 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 65536; NaN is 0")]
+    let count = count.clamp(1.0, MAX_CHORDS) as u32;
+    count.max(1)
 }
 
 #[cfg(test)]

@@ -209,6 +209,7 @@ impl Scan<'_> {
         at.y.checked_sub(self.first_row).is_some_and(|row| self.ink.get(Pixel::new(at.x, row)))
     }
 }
+
 /// The least of the values at most `reach` before and after the one at `index`, of `count`; of a closed line, whose last
 /// site is its first one again, around its end.
 pub(super) fn least_around(

@@ -1,8 +1,9 @@
 //! [`Bounded::arcs`]: lines and circular arcs, few of them, for a promised error.
 
+use super::Bounded;
+use super::farthest::farthest;
 use super::promise::Promise;
 use super::ray_cone::{cross, dot};
-use super::{Bounded, MAX_REACH_PX};
 use crate::curve::Arc;
 use crate::{Curve, PxPoint};
 use core::f64::consts::{PI, TAU};
@@ -317,7 +318,7 @@ pub(super) fn smoothed(promise: Promise, sites: &[PxPoint], closed: bool) -> Vec
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a small count")]
-fn number(count: usize) -> f64 {
+pub(super) fn number(count: usize) -> f64 {
     count as f64
 }
 
@@ -363,35 +364,8 @@ impl Way {
     /// site is always reached by a straight line.
     fn farthest(&self, from: &Vertex, kind: Kind) -> (Vertex, f64) {
         let next = |site: usize| self.smooth.get(site).copied().unwrap_or(from.at);
-        let mut best = (Vertex { at: next(from.site + 1), site: from.site + 1, bulge: 0.0 }, 0.0);
-        let most = (self.last() - from.site).min(MAX_REACH_PX);
-        let (mut good, mut bad, mut reach) = (1, most + 1, 2);
-        let mut missed = false;
-        while reach < bad {
-            match self.reaches(from, from.site + reach, kind) {
-                Some(found) => (best, good) = (found, reach),
-                // Noise may spoil one length where a greater one will do.
-                None if missed => bad = reach,
-                None => {
-                    missed = true;
-                    bad = bad.min(reach.max(most) + 1);
-                }
-            }
-            if reach == most {
-                break;
-            }
-            reach = (2 * reach).min(most);
-        }
-        // Somewhere between the greatest that did and the least that did not.
-        bad = bad.min((2 * good).min(most) + 1);
-        while good + 1 < bad {
-            let middle = usize::midpoint(good, bad);
-            match self.reaches(from, from.site + middle, kind) {
-                Some(found) => (best, good) = (found, middle),
-                None => bad = middle,
-            }
-        }
-        best
+        let best = (Vertex { at: next(from.site + 1), site: from.site + 1, bulge: 0.0 }, 0.0);
+        farthest(best, self.last() - from.site, |reach| self.reaches(from, from.site + reach, kind))
     }
 
     /// A piece that ends at a site, or where the sites are without their noise.

@@ -1,13 +1,14 @@
 //! [`Bounded::cubics`]: lines and cubic curves, few of them, for a promised error.
 
 use super::Bounded;
-use super::arcs::smoothed;
+use super::arcs::{number, smoothed};
 use super::corners::{Anchor, anchors};
 use super::cubic_fit::{Fit, Joint};
+use super::farthest::farthest;
 use super::promise::Promise;
 use super::ray_cone::{cross, dot};
 use crate::curve::unit;
-use crate::{Curve, MAX_REACH_PX, PxPoint};
+use crate::{Curve, PxPoint};
 
 /// How many times as many sites as a line a cubic curve has to stand for to be taken.
 const PAYS: f64 = 1.5;
@@ -211,11 +212,6 @@ fn directions(sites: &[PxPoint], closed: bool) -> Vec<Option<(f64, f64)>> {
     (0..=last).map(|index| direction(index % count)).collect()
 }
 
-#[expect(clippy::cast_precision_loss, reason = "a small count")]
-fn number(count: usize) -> f64 {
-    count as f64
-}
-
 /// What a piece is to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -317,35 +313,8 @@ impl Way {
     /// site is always reached by a straight line.
     fn farthest(&self, from: &Joint, kind: Kind) -> (Joint, Option<[PxPoint; 2]>) {
         let next = self.joint(from.site + 1).unwrap_or(*from);
-        let mut best = (Joint { site: from.site + 1, ..next }, None);
-        let most = (self.last() - from.site).min(MAX_REACH_PX);
-        let (mut good, mut bad, mut reach) = (1, most + 1, 2);
-        let mut missed = false;
-        while reach < bad {
-            match self.reaches(from, from.site + reach, kind) {
-                Some(found) => (best, good) = (found, reach),
-                // Noise may spoil one length where a greater one will do.
-                None if missed => bad = reach,
-                None => {
-                    missed = true;
-                    bad = bad.min(reach.max(most) + 1);
-                }
-            }
-            if reach == most {
-                break;
-            }
-            reach = (2 * reach).min(most);
-        }
-        // Somewhere between the greatest that did and the least that did not.
-        bad = bad.min((2 * good).min(most) + 1);
-        while good + 1 < bad {
-            let middle = usize::midpoint(good, bad);
-            match self.reaches(from, from.site + middle, kind) {
-                Some(found) => (best, good) = (found, middle),
-                None => bad = middle,
-            }
-        }
-        best
+        let best = (Joint { site: from.site + 1, ..next }, None);
+        farthest(best, self.last() - from.site, |reach| self.reaches(from, from.site + reach, kind))
     }
 
     /// A piece that ends near a site.

@@ -6,6 +6,7 @@ mod corners;
 mod cubic_fit;
 mod cubics;
 mod dynamic_threshold;
+mod farthest;
 mod links;
 mod polish;
 mod polyline;
