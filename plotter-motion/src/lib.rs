@@ -8,6 +8,7 @@ extern crate alloc;
 extern crate std;
 
 mod axis;
+mod chords;
 mod config;
 pub mod control;
 mod encoder;
@@ -27,6 +28,7 @@ mod targets;
 mod toolpath;
 
 pub use axis::{Axis, Direction};
+pub use chords::chords;
 pub use config::{
     AreaConfig, AxisConfig, Bound, ConfigError, ContouringConfig, ControlConfig, ControllerChoice, Decoding,
     EncoderConfig, LoadConfig, Machine, MachineConfig, MachineName, MotorConfig, PublishedConfig,

@@ -1,6 +1,6 @@
 //! From a tool path to the targets of a machine that takes them one by one.
 
-use crate::{Axis, Machine, Pen, PenMove, PlotOp, Point, StepPoint, from_mm};
+use crate::{Axis, Machine, Pen, PenMove, PlotOp, Point, StepPoint, chords, from_mm};
 use core::fmt;
 
 /// A point that a machine cannot reach.
@@ -33,7 +33,8 @@ impl fmt::Display for OutOfReach {
 
 impl core::error::Error for OutOfReach {}
 
-/// The moves of a tool path in encoder counts, each rounded to nearest. Operations that do not move the pen are
+/// The moves of a tool path in encoder counts, each rounded to nearest. Arcs are chords that lie within half a count of them,
+/// each an operation of its own. Operations that do not move the pen are
 /// left out, and so is a travel to where the pen is.
 ///
 /// # Errors
@@ -62,7 +63,8 @@ pub fn targets<I: IntoIterator<Item = PlotOp>>(
     let config = *machine.config();
     let mut position = StepPoint::default();
     let mut lost = false;
-    ops.into_iter().enumerate().filter_map(move |(index, op)| {
+    let tolerance_mm = 0.5 / config.x.counts_per_mm.max(config.y.counts_per_mm);
+    chords(ops, tolerance_mm).enumerate().filter_map(move |(index, op)| {
         let (pen, point) = match op {
             PlotOp::Travel { to } => (Pen::Up, to),
             PlotOp::Draw { to, .. } => (Pen::Down, to),

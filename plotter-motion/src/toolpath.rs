@@ -27,7 +27,8 @@ pub struct PenMove {
 }
 
 impl PenMove {
-    /// The movement of a plot operation; `None` for one that does not move. Rounds as [`from_mm`] does.
+    /// The movement of a plot operation; `None` for one that is no straight move: an arc becomes straight moves with
+    /// [`chords`](crate::chords). Rounds as [`from_mm`] does.
     ///
     /// ```
     /// # use plotter_motion::{PlotOp, Point, Pen, PenMove, StepPoint};
@@ -40,7 +41,7 @@ impl PenMove {
         let pen = match op {
             PlotOp::Travel { .. } => Pen::Up,
             PlotOp::Draw { .. } => Pen::Down,
-            PlotOp::SelectPen { .. } | PlotOp::Dwell { .. } | PlotOp::NewPage => return None,
+            _ => return None,
         };
         let to = op.target()?;
         Some(Self { pen, target: StepPoint::new(from_mm(to.x, counts_per_mm), from_mm(to.y, counts_per_mm)) })
@@ -77,6 +78,25 @@ pub enum PlotOp {
         /// Speed along the line, mm/s; `None` leaves the choice to the machine.
         feed_mm_s: Option<f64>,
     },
+    /// Lowers the pen and draws an arc of a circle from where the pen stands.
+    ///
+    /// The pen ought to stand as far from the centre as `to` lies; where it does not, the radius changes evenly along
+    /// the way.
+    DrawArc {
+        /// Centre of the circle.
+        centre: Point,
+        /// How far round, rad: counter-clockwise above 0; at most a whole turn, ±2π.
+        sweep_rad: f64,
+        /// Where it ends: where the pen stands, turned about the centre by the sweep.
+        to: Point,
+        /// Speed along the arc, mm/s; `None` leaves the choice to the machine.
+        feed_mm_s: Option<f64>,
+    },
+    /// Power of a laser from here on, while it draws; a pen does not mind.
+    LaserPower {
+        /// Share of its full power, 0 to 1.
+        share: f64,
+    },
     /// Takes another pen; 0 puts the pen away.
     SelectPen {
         /// Number in the carousel, from 1.
@@ -96,8 +116,8 @@ impl PlotOp {
     #[must_use]
     pub fn target(self) -> Option<Point> {
         match self {
-            Self::Travel { to } | Self::Draw { to, .. } => Some(to),
-            Self::SelectPen { .. } | Self::Dwell { .. } | Self::NewPage => None,
+            Self::Travel { to } | Self::Draw { to, .. } | Self::DrawArc { to, .. } => Some(to),
+            Self::LaserPower { .. } | Self::SelectPen { .. } | Self::Dwell { .. } | Self::NewPage => None,
         }
     }
 }

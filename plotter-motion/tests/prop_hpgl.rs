@@ -347,7 +347,7 @@ proptest! {
         for (to_centre, sweep) in &arcs {
             let (centre, out) = (at + *to_centre, -*to_centre);
             at = centre + out.rotated(*sweep);
-            writer.arc(centre, *sweep, at).unwrap();
+            writer.arc(centre, *sweep, at, None).unwrap();
             meant.push((centre, out, *sweep, at));
         }
         let text = writer.finish().unwrap();

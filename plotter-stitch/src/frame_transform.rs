@@ -153,7 +153,7 @@ impl FrameTransform {
         Self { angle_rad: -self.angle_rad, cos: self.cos, sin: -self.sin, shift: origin }
     }
 
-    /// An operation of the sketch as the machine must do it: its target is transformed, all else stays.
+    /// An operation of the sketch as the machine must do it: its places are transformed, all else stays.
     ///
     /// ```
     /// # use plotter_motion::{PlotOp, Point, Vec2};
@@ -172,6 +172,12 @@ impl FrameTransform {
         match op {
             PlotOp::Travel { to } => PlotOp::Travel { to: self.to_machine(to) },
             PlotOp::Draw { to, feed_mm_s } => PlotOp::Draw { to: self.to_machine(to), feed_mm_s },
+            PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } => PlotOp::DrawArc {
+                centre: self.to_machine(centre),
+                sweep_rad,
+                to: self.to_machine(to),
+                feed_mm_s,
+            },
             other => other,
         }
     }

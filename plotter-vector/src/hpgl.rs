@@ -52,7 +52,7 @@ pub fn hpgl(drawing: &Drawing, scale: Scale, out: &mut impl Write) -> Result<(),
                 StrokeOp::Op(op) if !repeated => writer.push(op)?,
                 // Most of a turn may well end where it began.
                 StrokeOp::Arc { centre, sweep_rad, to } if !repeated || sweep_rad.abs() > PI => {
-                    writer.arc(centre, sweep_rad, to)?;
+                    writer.arc(centre, sweep_rad, to, None)?;
                 }
                 _ => {}
             }

@@ -89,6 +89,11 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
                 self.begin_line()?;
                 self.line(to, feed)?;
             }
+            PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } => {
+                self.index = index;
+                self.arc(centre, sweep_rad, to, feed_mm_s)?;
+            }
+            PlotOp::LaserPower { .. } => {}
             PlotOp::SelectPen { pen } => {
                 self.put(Pen::Up)?;
                 if pen > 0 && self.holder != Some(pen) {

@@ -108,6 +108,11 @@ impl<W: fmt::Write> Writer<W> {
                 self.choose_pen()?;
                 self.draw(units, speed)?;
             }
+            PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } => {
+                self.index = index;
+                self.arc(centre, sweep_rad, to, feed_mm_s)?;
+            }
+            PlotOp::LaserPower { .. } => {}
             PlotOp::SelectPen { pen } => {
                 self.start()?;
                 self.put_down_and_up()?;
@@ -167,7 +172,7 @@ impl<W: fmt::Write> Writer<W> {
     /// # use plotter_motion::{PlotOp, Point, hpgl};
     /// let mut writer = hpgl::Writer::new(String::new());
     /// writer.push(PlotOp::Travel { to: Point::new(15.0, 10.0) })?;
-    /// writer.arc(Point::new(10.0, 10.0), 90.0_f64.to_radians(), Point::new(10.0, 15.0))?;
+    /// writer.arc(Point::new(10.0, 10.0), 90.0_f64.to_radians(), Point::new(10.0, 15.0), None)?;
     /// let text = writer.finish()?;
     /// assert_eq!(text, "IN;\nSP1;\nPU600,400;\nPD;\nAA400,400,90;\nPD400,600;\nPU;\nSP0;\n");
     /// # Ok::<(), hpgl::WriteError>(())
@@ -177,10 +182,17 @@ impl<W: fmt::Write> Writer<W> {
     ///
     /// [`WriteError::Point`] if the end, the centre or the way round lies out of range, and for a centre where the sweep is
     /// no angle of at most a whole turn.
-    pub fn arc(&mut self, centre: Point, sweep_rad: f64, to: Point) -> Result<(), WriteError> {
+    pub fn arc(
+        &mut self,
+        centre: Point,
+        sweep_rad: f64,
+        to: Point,
+        feed_mm_s: Option<f64>,
+    ) -> Result<(), WriteError> {
         let index = self.index;
         self.index += 1;
         let units = self.units(index, to)?;
+        let speed = feed_mm_s.map(|feed| speed_steps(index, feed)).transpose()?;
         let refused = |to: Point| WriteError::Point { index, to, limit_units: self.options.limit_units };
         if !centre.is_finite() || !(-TAU..=TAU).contains(&sweep_rad) {
             return Err(refused(centre));
@@ -206,6 +218,7 @@ impl<W: fmt::Write> Writer<W> {
             part += 1.0;
         }
         self.choose_pen()?;
+        self.change_speed(speed)?;
         let mut part = 1.0;
         while part <= parts {
             let end = if part < parts { self.units(index, place(back(part)))? } else { units };
@@ -330,15 +343,7 @@ impl<W: fmt::Write> Writer<W> {
                 StepPoint::default()
             }
         };
-        if speed != self.speed {
-            // The dot before this line was owed at the old speed.
-            self.close_list()?;
-            match speed {
-                Some(steps) => self.write_speed(steps)?,
-                None => self.out.write_str("VS;\n")?,
-            }
-            self.speed = speed;
-        }
+        self.change_speed(speed)?;
         match self.stroke {
             Stroke::None if at == to => self.stroke = Stroke::Dot,
             Stroke::None | Stroke::Closed => self.open_list(at, to)?,
@@ -350,6 +355,19 @@ impl<W: fmt::Write> Writer<W> {
         }
         self.at = Some(to);
         Ok(())
+    }
+
+    fn change_speed(&mut self, speed: Option<i32>) -> fmt::Result {
+        if speed == self.speed {
+            return Ok(());
+        }
+        // A dot before this line was owed at the old speed.
+        self.close_list()?;
+        self.speed = speed;
+        match speed {
+            Some(steps) => self.write_speed(steps),
+            None => self.out.write_str("VS;\n"),
+        }
     }
 
     /// The numbers of a point that follows `at`.

@@ -12,7 +12,10 @@ pub use png::PngError;
 
 use crate::VirtualPlotter;
 use crate::thin::thin;
-use plotter_motion::{Pen, PlotOp, Point, StepPoint};
+use plotter_motion::{Pen, PlotOp, Point, StepPoint, chords};
+
+/// Farthest that an arc's chords may be from it, mm: a tenth of what an eye sees on paper.
+const CHORD_ERROR_MM: f64 = 0.01;
 
 /// What a line on a canvas means. They are drawn in this order, the last on top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -153,11 +156,11 @@ impl Canvas {
         }
     }
 
-    /// Adds the drawn lines of a drawing.
+    /// Adds the drawn lines of a drawing; arcs as chords within 0.01 mm of them.
     pub fn add_drawing(&mut self, layer: Layer, ops: impl IntoIterator<Item = PlotOp>) {
         let mut at = Point::ORIGIN;
         let mut line = Vec::new();
-        for op in ops {
+        for op in chords(ops, CHORD_ERROR_MM) {
             match op {
                 PlotOp::Draw { to, .. } => {
                     if line.is_empty() {

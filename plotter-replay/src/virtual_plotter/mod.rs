@@ -119,7 +119,8 @@ impl VirtualPlotter {
     pub fn with_drawing(self, ops: impl IntoIterator<Item = PlotOp>) -> Self {
         let settings = self.settings;
         self.with_moves(ops.into_iter().filter_map(|op| {
-            let pen = if matches!(op, PlotOp::Draw { .. }) { Pen::Down } else { Pen::Up };
+            let drawn = matches!(op, PlotOp::Draw { .. } | PlotOp::DrawArc { .. });
+            let pen = if drawn { Pen::Down } else { Pen::Up };
             Some(PenMove { pen, target: settings.to_counts(op.target()?) })
         }))
     }
