@@ -8,6 +8,7 @@ extern crate alloc;
 extern crate std;
 
 mod axis;
+mod bresenham;
 mod chords;
 mod config;
 pub mod control;
@@ -28,6 +29,7 @@ mod targets;
 mod toolpath;
 
 pub use axis::{Axis, Direction};
+pub use bresenham::{Bresenham, StepPair};
 pub use chords::chords;
 pub use config::{
     AreaConfig, AxisConfig, Bound, ConfigError, ContouringConfig, ControlConfig, ControllerChoice, Decoding,
