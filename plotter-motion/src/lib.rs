@@ -17,6 +17,7 @@ pub mod firmware;
 pub mod gcode;
 mod geom;
 pub mod hpgl;
+pub mod kinematics;
 mod pid;
 pub mod plant;
 mod profile;
