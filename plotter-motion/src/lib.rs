@@ -42,7 +42,7 @@ pub use config::{TomlError, TomlPlace};
 pub use encoder::{Phases, QuadratureX1, QuadratureX4};
 pub use geom::{Point, Segment, Vec2};
 pub use pid::{Pid, PidState, SumPid, SumPidState};
-pub use profile::{MotionLimits, ProfileError, ProfilePoint, SCurve};
+pub use profile::{MotionLimits, ProfileError, ProfilePoint, Ramp, SCurve, Trapezoid, TrapezoidMove};
 pub use safety::{Demand, Drive, Duty, DutyError, LimitSwitches, SafetyGate};
 pub use shapes::{circle, rectangle};
 pub use steps::{StepPoint, from_mm};

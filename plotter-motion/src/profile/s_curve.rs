@@ -1,4 +1,4 @@
-//! Speed along a line, planned: from rest to rest within limits of speed, acceleration and jerk.
+//! [`SCurve`]: from rest to rest within limits of speed, acceleration and jerk.
 //!
 //! ```text
 //!  speed      ______________          seven phases: jerk +, 0, -, cruise, jerk -, 0, +
@@ -8,9 +8,10 @@
 //! ```
 //!
 //! Source: L. Biagiotti, C. Melchiorri, "Trajectory Planning for Automatic Machines and Robots" (2008),
-//! section 3.4 (double S velocity profile), for equal end speeds of zero.
+//! section 3.4 (double S velocity profile), for equal end speeds of zero. There it has a closed form: which phases
+//! have a length follows from the limits alone, and no equation needs an iteration.
 
-use core::fmt;
+use super::{GREATEST, LEAST_LIMIT, ProfileError, ProfilePoint, within};
 
 /// Limits of a motion along a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,40 +22,6 @@ pub struct MotionLimits {
     pub accel_mm_s2: f64,
     /// Greatest jerk, mm/s^3.
     pub jerk_mm_s3: f64,
-}
-
-/// Least limit, and greatest limit and length, that a motion is planned with: far beyond any machine, and no
-/// product of them overflows.
-const LEAST_LIMIT: f64 = 1e-18;
-const GREATEST: f64 = 1e18;
-
-/// A limit that no motion can be planned with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ProfileError {
-    /// What was wrong: `length_mm`, `speed_mm_s`, `accel_mm_s2` or `jerk_mm_s3`.
-    pub quantity: &'static str,
-    /// Its value.
-    pub value: f64,
-}
-
-impl fmt::Display for ProfileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let least = if self.quantity == "length_mm" { 0.0 } else { LEAST_LIMIT };
-        write!(f, "{} is {:e}: it must lie in {least:e}..={GREATEST:e}", self.quantity, self.value)
-    }
-}
-
-impl core::error::Error for ProfileError {}
-
-/// Place, speed and acceleration along a line at one time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ProfilePoint {
-    /// Distance from the start, mm.
-    pub distance_mm: f64,
-    /// Speed, mm/s.
-    pub speed_mm_s: f64,
-    /// Acceleration, mm/s^2.
-    pub accel_mm_s2: f64,
 }
 
 /// A planned motion from rest to rest.
@@ -87,20 +54,18 @@ impl SCurve {
     /// [`ProfileError`] names a limit outside 1e-18 to 1e18, or a length outside 0 to 1e18; NaN lies outside.
     pub fn plan(length_mm: f64, limits: MotionLimits) -> Result<Self, ProfileError> {
         let MotionLimits { speed_mm_s, accel_mm_s2, jerk_mm_s3 } = limits;
-        if !(0.0..=GREATEST).contains(&length_mm) {
-            return Err(ProfileError { quantity: "length_mm", value: length_mm });
-        }
+        within("length_mm", length_mm, 0.0, GREATEST)?;
         for (quantity, value) in
             [("speed_mm_s", speed_mm_s), ("accel_mm_s2", accel_mm_s2), ("jerk_mm_s3", jerk_mm_s3)]
         {
-            if !(LEAST_LIMIT..=GREATEST).contains(&value) {
-                return Err(ProfileError { quantity, value });
-            }
+            within(quantity, value, LEAST_LIMIT, GREATEST)?;
         }
         // With full speed: is full acceleration reached on the way to it?
         let reaches_accel = speed_mm_s * jerk_mm_s3 >= accel_mm_s2 * accel_mm_s2;
         let (mut jerk_s, mut steady_s) = if reaches_accel {
-            (accel_mm_s2 / jerk_mm_s3, speed_mm_s / accel_mm_s2 - accel_mm_s2 / jerk_mm_s3)
+            // never negative, whatever the last bits of the two quotients
+            let jerk_s = accel_mm_s2 / jerk_mm_s3;
+            (jerk_s, (speed_mm_s / accel_mm_s2 - jerk_s).max(0.0))
         } else {
             (libm::sqrt(speed_mm_s / jerk_mm_s3), 0.0)
         };
@@ -116,7 +81,8 @@ impl SCurve {
             if steady >= 0.0 {
                 (jerk_s, steady_s) = (full_jerk_s, steady);
             } else {
-                (jerk_s, steady_s) = (libm::cbrt(length_mm / (2.0 * jerk_mm_s3)), 0.0);
+                // length = 2 j tj³; by two roots, since the quotient of the shortest length there is has few bits
+                (jerk_s, steady_s) = (libm::cbrt(length_mm) / libm::cbrt(2.0 * jerk_mm_s3), 0.0);
             }
         }
         Ok(Self { length_mm, jerk_mm_s3, jerk_s, steady_s, cruise_s })
@@ -132,6 +98,14 @@ impl SCurve {
     #[must_use]
     pub const fn length_mm(&self) -> f64 {
         self.length_mm
+    }
+
+    /// How long each of the seven phases takes, s: jerk forwards, none, backwards; cruise; jerk backwards, none,
+    /// forwards.
+    #[must_use]
+    pub const fn phases_s(&self) -> [f64; 7] {
+        let Self { jerk_s, steady_s, cruise_s, .. } = *self;
+        [jerk_s, steady_s, jerk_s, cruise_s, jerk_s, steady_s, jerk_s]
     }
 
     /// Where the motion is `time_s` after its start; at rest at either end before and after it.
