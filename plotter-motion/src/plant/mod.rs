@@ -4,8 +4,10 @@ mod axis_plant;
 #[cfg(feature = "alloc")]
 mod bench;
 mod dc_motor;
+mod stepper;
 
 pub use axis_plant::{AxisPlant, CountedEdge};
 #[cfg(feature = "alloc")]
 pub use bench::{Bench, BenchEvent, BenchSettings};
 pub use dc_motor::{DcMotor, DcMotorState};
+pub use stepper::{StepperAxis, StepperPlant, StepperSettings};
