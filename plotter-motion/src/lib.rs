@@ -19,11 +19,13 @@ mod geom;
 pub mod hpgl;
 pub mod kinematics;
 mod pid;
+mod planner;
 pub mod plant;
 mod profile;
 pub mod protocol;
 mod safety;
 mod shapes;
+mod stepgen;
 mod steps;
 mod sync_stop;
 mod targets;
@@ -42,9 +44,13 @@ pub use config::{TomlError, TomlPlace};
 pub use encoder::{Phases, QuadratureX1, QuadratureX4};
 pub use geom::{Point, Segment, Vec2};
 pub use pid::{Pid, PidState, SumPid, SumPidState};
+pub use planner::{
+    Action, Course, PathMode, Phase, PlanError, Planner, PlannerSettings, Shape, junction_speed,
+};
 pub use profile::{MotionLimits, ProfileError, ProfilePoint, Ramp, SCurve, Trapezoid, TrapezoidMove};
 pub use safety::{Demand, Drive, Duty, DutyError, LimitSwitches, SafetyGate};
 pub use shapes::{circle, rectangle};
+pub use stepgen::{Busy, MotorEvent, StepGen, StepGenSettings, TimedEvent};
 pub use steps::{StepPoint, from_mm};
 pub use sync_stop::SyncStop;
 pub use targets::{OutOfReach, targets};

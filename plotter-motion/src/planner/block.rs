@@ -1,0 +1,122 @@
+//! [`Block`]: a stretch of path in the look-ahead.
+
+use super::blend::GROWTH;
+use super::{Course, Shape};
+use crate::{Pen, Point};
+use core::time::Duration;
+
+/// What a block is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Kind {
+    #[default]
+    Line,
+    Arc,
+    /// Logarithmic spirals that narrow and widen.
+    Narrowing,
+    Widening,
+    /// A standstill of `length` seconds.
+    Dwell,
+    SelectPen,
+    NewPage,
+}
+
+/// A stretch of path with the square of its speeds, or something that is done at a standstill.
+///
+/// Squares, because v² changes evenly along a path of constant acceleration: no roots are needed to look ahead.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Block {
+    to: Point,
+    /// Of an arc; of a spiral its pole.
+    centre: Point,
+    /// mm; seconds of a dwell. In f32 a metre is right to 60 nm.
+    length: f32,
+    /// Speed that was asked for, mm/s.
+    feed_mm_s: f32,
+    /// Of an arc or a spiral; f32 says ±2π to 5e-7, and the end is said by `to`.
+    sweep_rad: f32,
+    /// Square of the speed at its start as it is planned, and the greatest that its corner allows.
+    pub(super) entry2: f32,
+    pub(super) max_entry2: f32,
+    /// Square of the greatest speed on it.
+    pub(super) cruise2: f32,
+    pub(super) kind: Kind,
+    pen: Pen,
+    number: u8,
+    /// Power of the laser, in 65535ths.
+    power: u16,
+}
+
+impl Block {
+    pub(super) fn path(shape: Shape, to: Point, length_mm: f64, pen: Pen, power: u16, feed2: f64) -> Self {
+        let (kind, centre, sweep_rad) = match shape {
+            Shape::Line => (Kind::Line, Point::ORIGIN, 0.0),
+            Shape::Arc { centre, sweep_rad } => (Kind::Arc, centre, sweep_rad),
+            Shape::Spiral { pole, sweep_rad, growth } if growth < 0.0 => (Kind::Narrowing, pole, sweep_rad),
+            Shape::Spiral { pole, sweep_rad, .. } => (Kind::Widening, pole, sweep_rad),
+        };
+        let (length, feed_mm_s, sweep_rad) =
+            (single(length_mm), single(libm::sqrt(feed2)), single(sweep_rad));
+        Self { to, centre, length, feed_mm_s, sweep_rad, kind, pen, power, ..Self::default() }
+    }
+
+    pub(super) fn dwell(duration: Duration) -> Self {
+        Self { kind: Kind::Dwell, length: single(duration.as_secs_f64()), ..Self::default() }
+    }
+
+    pub(super) fn select_pen(pen: u8) -> Self {
+        Self { kind: Kind::SelectPen, number: pen, ..Self::default() }
+    }
+
+    pub(super) fn new_page() -> Self {
+        Self { kind: Kind::NewPage, ..Self::default() }
+    }
+
+    /// mm; seconds of a dwell.
+    pub(super) fn length(&self) -> f64 {
+        f64::from(self.length)
+    }
+
+    /// Whether it moves.
+    pub(super) fn is_path(&self) -> bool {
+        matches!(self.kind, Kind::Line | Kind::Arc | Kind::Narrowing | Kind::Widening)
+    }
+
+    pub(super) fn number(&self) -> u8 {
+        self.number
+    }
+
+    pub(super) fn course(&self) -> Course {
+        let (centre, sweep_rad) = (self.centre, f64::from(self.sweep_rad));
+        let shape = match self.kind {
+            Kind::Arc => Shape::Arc { centre, sweep_rad },
+            Kind::Narrowing => Shape::Spiral { pole: centre, sweep_rad, growth: -GROWTH },
+            Kind::Widening => Shape::Spiral { pole: centre, sweep_rad, growth: GROWTH },
+            _ => Shape::Line,
+        };
+        Course {
+            shape,
+            to: self.to,
+            length_mm: self.length(),
+            feed_mm_s: f64::from(self.feed_mm_s),
+            pen: self.pen,
+            laser_power: self.power,
+        }
+    }
+}
+
+/// As a block keeps it.
+fn single(value: f64) -> f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "rounded, as the fields say")]
+    let rounded = value as f32;
+    rounded
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_is_at_most_64_bytes() {
+        assert!(size_of::<Block>() <= 64, "{}", size_of::<Block>());
+    }
+}

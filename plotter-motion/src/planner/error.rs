@@ -1,0 +1,69 @@
+//! [`PlanError`]: what a planner cannot take.
+
+use crate::Point;
+use core::fmt;
+
+/// What a planner cannot take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// No room is left for the operation: take what is planned first, then push it again.
+    Full,
+    /// A place that is not finite, or farther than 10⁷ mm out.
+    Place {
+        /// The place, mm.
+        place: Point,
+    },
+    /// A speed that is not above 0, or not finite.
+    Feed {
+        /// The speed, mm/s.
+        feed_mm_s: f64,
+    },
+    /// An arc of more than a whole turn, or an angle that is no number.
+    Sweep {
+        /// The angle, rad.
+        sweep_rad: f64,
+    },
+    /// A power outside 0 to 1.
+    Power {
+        /// The share.
+        share: f64,
+    },
+    /// An operation that this planner does not know.
+    Unknown,
+    /// A setting outside its range.
+    Setting {
+        /// Which one.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+        /// The least that is taken.
+        least: f64,
+        /// The most that is taken.
+        most: f64,
+    },
+}
+
+impl fmt::Display for PlanError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Full => f.write_str("no room for another operation: take what is planned first"),
+            Self::Place { place: Point { x, y } } => {
+                write!(f, "({x}, {y}) mm is no place: coordinates must be finite and within ±1e7 mm")
+            }
+            Self::Feed { feed_mm_s } => {
+                write!(f, "a speed of {feed_mm_s} mm/s: it must be above 0 and finite")
+            }
+            Self::Sweep { sweep_rad } => {
+                write!(f, "an arc of {sweep_rad} rad: it must lie within one turn, ±6.2832")
+            }
+            Self::Power { share } => write!(f, "a laser power of {share}: it must lie in 0..=1"),
+            Self::Unknown => f.write_str("an operation that is not known here"),
+            Self::Setting { quantity, value, least, most } => {
+                write!(f, "{quantity} is {value}: it must lie in {least}..={most}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for PlanError {}

@@ -1,0 +1,419 @@
+//! [`Front`]: plot operations in, blocks out. Finds the corners, and in tolerance mode rounds them.
+
+use super::blend::{Blend, GROWTH, Room, to_pole};
+use super::block::{Block, Kind};
+use super::junction::Corner;
+use super::merge::{Merged, Merger};
+use super::ring::{Ring, narrow};
+use super::{PathMode, PlanError, PlannerSettings, Shape};
+use crate::{Pen, PlotOp, Point, Vec2};
+use core::f64::consts::TAU;
+
+/// Farthest place, mm.
+const FARTHEST_MM: f64 = 1e7;
+/// Share of the path tolerance that vertices may be left out for; corners are rounded within the rest.
+const MERGED_SHARE: f64 = 0.5;
+/// Slack of the check that an arc is no more than a turn, rad.
+const TURN_SLACK_RAD: f64 = 1e-9;
+
+/// The end of the last block of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Exit {
+    direction: Vec2,
+    length_mm: f64,
+    cruise2: f64,
+}
+
+/// What the machine does without a stop as far as the front is concerned: lines and arcs with the same pen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Run {
+    pen: Pen,
+    /// The end of the blocks given so far.
+    at: Point,
+    exit: Option<Exit>,
+}
+
+/// What becomes a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stretch {
+    shape: Shape,
+    to: Point,
+    length_mm: f64,
+    /// Directions at its ends.
+    entry: Vec2,
+    exit: Vec2,
+    /// Squares of the speed that was asked for, of the greatest for its form, and of the greatest at its start.
+    feed2: f64,
+    most2: f64,
+    most_entry2: f64,
+}
+
+/// A corner that is rounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Turn {
+    vertex: Point,
+    /// Directions before and after it.
+    along: Vec2,
+    after: Vec2,
+    turn_rad: f64,
+    tangent_mm: f64,
+    length_mm: f64,
+}
+
+/// Makes blocks of plot operations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Front {
+    position: Point,
+    pen: Pen,
+    power: u16,
+    run: Option<Run>,
+    /// Square of the greatest speed of a segment too short for a block, which is still to come.
+    short_cruise2: Option<f64>,
+    merger: Merger,
+    /// A segment whose end may still be rounded.
+    held: Option<Merged>,
+}
+
+impl Front {
+    pub(super) fn new() -> Self {
+        Self {
+            position: Point::ORIGIN,
+            pen: Pen::Up,
+            power: u16::MAX,
+            run: None,
+            short_cruise2: None,
+            merger: Merger::default(),
+            held: None,
+        }
+    }
+
+    pub(super) const fn position(&self) -> Point {
+        self.position
+    }
+
+    /// Begins anew at another place.
+    pub(super) fn restart(&mut self, position: Point) {
+        *self = Self { position, pen: self.pen, power: self.power, ..Self::new() };
+    }
+
+    /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; else what ends a
+    /// run (a line and an arc, the line held back) and the new one.
+    pub(super) const fn most_blocks(settings: &PlannerSettings) -> usize {
+        match settings.path {
+            PathMode::Exact => 2,
+            PathMode::Tolerance { .. } => 5,
+        }
+    }
+
+    pub(super) fn push<const N: usize>(
+        &mut self,
+        op: PlotOp,
+        settings: &PlannerSettings,
+        ring: &mut Ring<N>,
+    ) -> Result<(), PlanError> {
+        let place = |place: Point| {
+            let near = place.x.abs() <= FARTHEST_MM && place.y.abs() <= FARTHEST_MM;
+            if near { Ok(place) } else { Err(PlanError::Place { place }) }
+        };
+        let feed2 = |feed_mm_s: Option<f64>| match feed_mm_s {
+            None => Ok(settings.speed_mm_s * settings.speed_mm_s),
+            Some(feed) if feed > 0.0 && feed.is_finite() => {
+                let feed = feed.min(settings.speed_mm_s);
+                Ok(feed * feed)
+            }
+            Some(feed_mm_s) => Err(PlanError::Feed { feed_mm_s }),
+        };
+        match op {
+            PlotOp::Travel { to } => {
+                let travel2 = settings.travel_speed_mm_s * settings.travel_speed_mm_s;
+                self.line(place(to)?, Pen::Up, travel2, settings, ring);
+            }
+            PlotOp::Draw { to, feed_mm_s } => {
+                self.line(place(to)?, Pen::Down, feed2(feed_mm_s)?, settings, ring);
+            }
+            PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } => {
+                let (centre, to, feed2) = (place(centre)?, place(to)?, feed2(feed_mm_s)?);
+                if sweep_rad.is_nan() || sweep_rad.abs() > TAU + TURN_SLACK_RAD {
+                    return Err(PlanError::Sweep { sweep_rad });
+                }
+                self.arc(centre, sweep_rad.clamp(-TAU, TAU), to, feed2, settings, ring);
+            }
+            PlotOp::LaserPower { share } => {
+                if !(0.0..=1.0).contains(&share) {
+                    return Err(PlanError::Power { share });
+                }
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 65535")]
+                let power = libm::round(share * f64::from(u16::MAX)) as u16;
+                // What was put off is still of the old power.
+                self.flush(settings, ring);
+                self.power = power;
+            }
+            PlotOp::Dwell { duration } => self.stand(Block::dwell(duration), settings, ring),
+            PlotOp::SelectPen { pen } => self.stand(Block::select_pen(pen), settings, ring),
+            PlotOp::NewPage => self.stand(Block::new_page(), settings, ring),
+        }
+        Ok(())
+    }
+
+    /// Ends the run: what has been put off comes, and the machine stops.
+    pub(super) fn end_run<const N: usize>(&mut self, settings: &PlannerSettings, ring: &mut Ring<N>) {
+        self.flush(settings, ring);
+        self.run = None;
+    }
+
+    fn stand<const N: usize>(&mut self, block: Block, settings: &PlannerSettings, ring: &mut Ring<N>) {
+        self.end_run(settings, ring);
+        if matches!(block.kind, Kind::SelectPen | Kind::NewPage) {
+            self.pen = Pen::Up;
+        }
+        ring.push(block);
+    }
+
+    /// The run with this pen: the one in progress, or a new one.
+    fn run<const N: usize>(&mut self, pen: Pen, settings: &PlannerSettings, ring: &mut Ring<N>) -> Run {
+        match self.run {
+            Some(run) if run.pen == pen => run,
+            _ => {
+                self.end_run(settings, ring);
+                let run = Run { pen, at: self.position, exit: None };
+                self.run = Some(run);
+                run
+            }
+        }
+    }
+
+    fn line<const N: usize>(
+        &mut self,
+        to: Point,
+        pen: Pen,
+        cruise2: f64,
+        settings: &PlannerSettings,
+        ring: &mut Ring<N>,
+    ) {
+        let from = self.position;
+        if to == from {
+            if pen == Pen::Down && self.pen == Pen::Up {
+                self.dot(settings, ring);
+            }
+            return;
+        }
+        let run = self.run(pen, settings, ring);
+        self.pen = pen;
+        self.position = to;
+        match settings.path {
+            PathMode::Exact => {
+                if length(to - run.at) < settings.resolution_mm {
+                    self.short_cruise2 = Some(cruise2);
+                } else {
+                    self.short_cruise2 = None;
+                    self.emit_line(to, cruise2, settings, ring);
+                }
+            }
+            PathMode::Tolerance { path_tolerance_mm } => {
+                let merged = self.merger.push(from, to, cruise2, MERGED_SHARE * path_tolerance_mm);
+                if let Some(merged) = merged {
+                    self.blend(merged, path_tolerance_mm, settings, ring);
+                }
+            }
+        }
+    }
+
+    /// The pen is lowered where it stands.
+    fn dot<const N: usize>(&mut self, settings: &PlannerSettings, ring: &mut Ring<N>) {
+        self.end_run(settings, ring);
+        self.pen = Pen::Down;
+        ring.push(Block::path(Shape::Line, self.position, 0.0, Pen::Down, self.power, 0.0));
+    }
+
+    fn arc<const N: usize>(
+        &mut self,
+        centre: Point,
+        sweep_rad: f64,
+        to: Point,
+        cruise2: f64,
+        settings: &PlannerSettings,
+        ring: &mut Ring<N>,
+    ) {
+        let (out, end) = (self.position - centre, to - centre);
+        let (near_mm, far_mm) = (length(out).min(length(end)), length(out).max(length(end)));
+        let length_mm = 0.5 * (near_mm + far_mm) * sweep_rad.abs();
+        if length_mm <= settings.resolution_mm || near_mm <= settings.resolution_mm {
+            return self.line(to, Pen::Down, cruise2, settings, ring);
+        }
+        self.run(Pen::Down, settings, ring);
+        self.flush(settings, ring);
+        self.pen = Pen::Down;
+        self.position = to;
+        // A quarter turn ahead of the radius, or behind it.
+        let ahead = |radius: Vec2| {
+            let along = if sweep_rad > 0.0 { radius.perpendicular() } else { -radius.perpendicular() };
+            along * (1.0 / length(radius))
+        };
+        let shape = Shape::Arc { centre, sweep_rad };
+        let most2 = settings.accel_mm_s2 * near_mm;
+        let (entry, exit) = (ahead(out), ahead(end));
+        let stretch =
+            Stretch { shape, to, length_mm, entry, exit, feed2: cruise2, most2, most_entry2: most2 };
+        self.emit(stretch, settings, ring);
+    }
+
+    /// Gives out what has been put off. The run goes on.
+    fn flush<const N: usize>(&mut self, settings: &PlannerSettings, ring: &mut Ring<N>) {
+        if let Some(cruise2) = self.short_cruise2.take() {
+            self.emit_line(self.position, cruise2, settings, ring);
+        }
+        if let PathMode::Tolerance { path_tolerance_mm } = settings.path {
+            if let Some(merged) = self.merger.end() {
+                self.blend(merged, path_tolerance_mm, settings, ring);
+            }
+            if let Some(held) = self.held.take() {
+                self.emit_line(held.to, held.cruise2, settings, ring);
+            }
+        }
+    }
+
+    /// Takes the next segment in tolerance mode: the corner before it is rounded, and it is held back for the sake of its end.
+    fn blend<const N: usize>(
+        &mut self,
+        next: Merged,
+        path_tolerance_mm: f64,
+        settings: &PlannerSettings,
+        ring: &mut Ring<N>,
+    ) {
+        let (Some(held), Some(run)) = (self.held.replace(next), self.run) else { return };
+        // The blocks given so far reach to where the corner before has been left.
+        let (way_in, way_out) = (held.to - run.at, next.to - next.from);
+        let (in_mm, out_mm) = (length(way_in), length(way_out));
+        if in_mm > 0.0 && out_mm > 0.0 {
+            let (along, after) = (way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
+            let corner = Corner::new(-along.dot(after));
+            let turn_rad = libm::atan2(along.cross(after), along.dot(after));
+            let room = Room {
+                deviation_mm: path_tolerance_mm - held.deviation_mm.max(next.deviation_mm),
+                // The next corner is left its half of the segment between.
+                tangent_mm: in_mm.min(0.5 * out_mm),
+                cruise2: held.cruise2.min(next.cruise2),
+                accel_mm_s2: settings.accel_mm_s2,
+            };
+            let blend = Blend::choose(corner, turn_rad.abs(), room);
+            let tangent_mm = blend.tangent_mm(corner, turn_rad.abs());
+            let blend_mm = blend.length_mm(turn_rad.abs());
+            if tangent_mm.is_finite() && blend_mm > settings.resolution_mm {
+                if in_mm - tangent_mm > settings.resolution_mm {
+                    self.emit_line(held.to - along * tangent_mm, held.cruise2, settings, ring);
+                }
+                let turn = Turn { vertex: held.to, along, after, turn_rad, tangent_mm, length_mm: blend_mm };
+                self.emit_blend(blend, turn, room.cruise2, settings, ring);
+                return;
+            }
+        }
+        self.emit_line(held.to, held.cruise2, settings, ring);
+    }
+
+    fn emit_blend<const N: usize>(
+        &mut self,
+        blend: Blend,
+        turn: Turn,
+        cruise2: f64,
+        settings: &PlannerSettings,
+        ring: &mut Ring<N>,
+    ) {
+        let Turn { vertex, along, after, turn_rad, tangent_mm, length_mm } = turn;
+        let inwards =
+            |along: Vec2| if turn_rad > 0.0 { along.perpendicular() } else { -along.perpendicular() };
+        let (begin, end) = (vertex - along * tangent_mm, vertex + after * tangent_mm);
+        match blend {
+            Blend::Arc { radius_mm } => {
+                let shape = Shape::Arc { centre: begin + inwards(along) * radius_mm, sweep_rad: turn_rad };
+                let most2 = settings.accel_mm_s2 * radius_mm;
+                let (entry, exit, feed2) = (along, after, cruise2);
+                let arc =
+                    Stretch { shape, to: end, length_mm, entry, exit, feed2, most2, most_entry2: most2 };
+                self.emit(arc, settings, ring);
+            }
+            Blend::Spirals { radius_mm, deviation_mm } => {
+                let grown_mm = radius_mm * libm::exp(GROWTH * 0.5 * turn_rad.abs());
+                let middle = along.rotated(0.5 * turn_rad);
+                let (sweep_rad, half_mm) = (0.5 * turn_rad, 0.5 * length_mm);
+                let apex = vertex + inwards(middle) * deviation_mm;
+                let pole = begin + to_pole(along, inwards(along), grown_mm, -GROWTH);
+                let narrowing = Shape::Spiral { pole, sweep_rad, growth: -GROWTH };
+                let narrowing = Stretch {
+                    shape: narrowing,
+                    to: apex,
+                    length_mm: half_mm,
+                    entry: along,
+                    exit: middle,
+                    feed2: cruise2,
+                    // What can brake in time for the apex is nowhere too fast for the radius: both grow alike.
+                    most2: f64::INFINITY,
+                    most_entry2: f64::INFINITY,
+                };
+                self.emit(narrowing, settings, ring);
+                let pole = apex + to_pole(middle, inwards(middle), radius_mm, GROWTH);
+                let widening = Shape::Spiral { pole, sweep_rad, growth: GROWTH };
+                let apex2 = settings.accel_mm_s2 * radius_mm;
+                let widening = Stretch {
+                    shape: widening,
+                    to: end,
+                    entry: middle,
+                    exit: after,
+                    most_entry2: apex2,
+                    ..narrowing
+                };
+                self.emit(widening, settings, ring);
+            }
+        }
+    }
+
+    fn emit_line<const N: usize>(
+        &mut self,
+        to: Point,
+        cruise2: f64,
+        settings: &PlannerSettings,
+        ring: &mut Ring<N>,
+    ) {
+        let Some(run) = self.run else { return };
+        let way = to - run.at;
+        let length_mm = length(way);
+        if length_mm > 0.0 {
+            let along = way * (1.0 / length_mm);
+            let most = f64::INFINITY;
+            let line = Stretch {
+                shape: Shape::Line,
+                to,
+                length_mm,
+                entry: along,
+                exit: along,
+                feed2: cruise2,
+                most2: most,
+                most_entry2: most,
+            };
+            self.emit(line, settings, ring);
+        }
+    }
+
+    /// Gives out a block with the speed that the corner at its start allows.
+    fn emit<const N: usize>(&mut self, stretch: Stretch, settings: &PlannerSettings, ring: &mut Ring<N>) {
+        let Some(run) = &mut self.run else { return };
+        let Stretch { shape, to, length_mm, entry, exit, feed2, most2, most_entry2 } = stretch;
+        let cruise2 = feed2.min(most2);
+        let mut block = Block::path(shape, to, length_mm, run.pen, self.power, feed2);
+        block.cruise2 = narrow(cruise2);
+        block.max_entry2 = run.exit.map_or(0.0, |before| {
+            let corner = Corner::new(-before.direction.dot(entry));
+            let shorter_mm = before.length_mm.min(length_mm);
+            let corner2 = corner.speed2(settings.accel_mm_s2, settings.junction_deviation_mm, shorter_mm);
+            narrow(corner2.min(before.cruise2).min(cruise2).min(most_entry2))
+        });
+        run.at = to;
+        run.exit = Some(Exit { direction: exit, length_mm, cruise2 });
+        ring.push(block);
+    }
+}
+
+/// Length of a way on the sheet, which is no longer than 10⁷ mm: without the scaling of `hypot`, which costs more than the rest
+/// of a plain block.
+fn length(way: Vec2) -> f64 {
+    libm::sqrt(way.length_squared())
+}

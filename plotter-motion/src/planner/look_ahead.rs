@@ -1,0 +1,174 @@
+//! [`Planner`]: the look-ahead as a whole.
+
+use super::block::Kind;
+use super::front::Front;
+use super::ramps::Ramps;
+use super::ring::Ring;
+use super::s_curve::SCurveState;
+use super::{Action, PlanError, PlannerSettings};
+use crate::{PlotOp, Point};
+use core::time::Duration;
+
+/// Plans the motion along a tool path while it comes in: look-ahead over `N` blocks.
+///
+/// Push operations until it is full, take actions when the motors want them, and so on; [`Planner::finish`] at the end. What is
+/// taken cannot be changed any more, so the more is known when it is taken, the faster the machine goes: keep it full. Whatever
+/// has been pushed, the machine can always stop within it, and does so where nothing more comes.
+///
+/// - Strokes and travels begin and end at rest. A travel of several lines is one.
+/// - Corners and arcs obey the limits of [`PlannerSettings`]; see there for the ways to follow a path.
+/// - A line to where the pen stands is a dot, if the pen was up.
+///
+/// Source of the look-ahead over squares of speeds, forwards and backwards: S. K. Jeon, documentation of the grbl project's
+/// planner (2011).
+///
+/// ```
+/// # use plotter_motion::{Action, Planner, PlannerSettings, PlotOp, Point};
+/// // 10 mm at 1000 mm/s²: 0.1 s up to 100 mm/s and 0.1 s down
+/// let mut planner = Planner::<16>::new(PlannerSettings::default())?;
+/// planner.push(PlotOp::Travel { to: Point::new(10.0, 0.0) })?;
+/// planner.finish()?;
+/// let mut time_s = 0.0;
+/// while let Some(action) = planner.next_action() {
+///     if let Action::Phase(phase) = action {
+///         time_s += phase.duration_s;
+///     }
+/// }
+/// assert!((time_s - 0.2).abs() < 1e-6);
+/// # Ok::<(), plotter_motion::PlanError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planner<const N: usize> {
+    settings: PlannerSettings,
+    front: Front,
+    ring: Ring<N>,
+    /// Whether blocks have come since the ring was planned.
+    stale: bool,
+    /// What is left of the course given last.
+    ramps: Ramps,
+    s_curve: SCurveState,
+}
+
+impl<const N: usize> Planner<N> {
+    /// Room for what one operation can become.
+    const ENOUGH: () = assert!(N >= 8, "a planner needs at least 8 blocks");
+
+    /// A planner of a machine that stands at the origin with its pen up.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError::Setting`] for a limit that no motion can be planned with.
+    pub fn new(settings: PlannerSettings) -> Result<Self, PlanError> {
+        () = Self::ENOUGH;
+        settings.check()?;
+        Ok(Self {
+            settings,
+            front: Front::new(),
+            ring: Ring::new(),
+            stale: false,
+            ramps: Ramps::default(),
+            s_curve: SCurveState::default(),
+        })
+    }
+
+    /// The limits.
+    #[must_use]
+    pub const fn settings(&self) -> &PlannerSettings {
+        &self.settings
+    }
+
+    /// Whether [`Planner::push`] takes another operation now.
+    #[must_use]
+    pub const fn has_room(&self) -> bool {
+        self.ring.room() >= Front::most_blocks(&self.settings)
+    }
+
+    /// Whether nothing is left to be taken. Operations that were put off come after [`Planner::finish`].
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.ring.len() == 0 && self.ramps.is_over()
+    }
+
+    /// Where the path that was pushed ends, mm.
+    #[must_use]
+    pub const fn position(&self) -> Point {
+        self.front.position()
+    }
+
+    /// Takes the next operation.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError::Full`] when there is no room. Any other error says what is wrong with the operation, which is left out.
+    pub fn push(&mut self, op: PlotOp) -> Result<(), PlanError> {
+        if !self.has_room() {
+            return Err(PlanError::Full);
+        }
+        self.stale = true;
+        self.front.push(op, &self.settings, &mut self.ring)
+    }
+
+    /// No operation comes for now: what has been put off to see what follows is planned, and the machine stops at its end. More
+    /// may be pushed afterwards.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError::Full`] when there is no room for it.
+    pub fn finish(&mut self) -> Result<(), PlanError> {
+        if !self.has_room() {
+            return Err(PlanError::Full);
+        }
+        self.stale = true;
+        self.front.end_run(&self.settings, &mut self.ring);
+        Ok(())
+    }
+
+    /// Forgets everything: the machine has been stopped and stands at `position`.
+    pub fn clear(&mut self, position: Point) {
+        self.front.restart(position);
+        self.ring.clear();
+        self.ramps = Ramps::default();
+        self.s_curve = SCurveState::default();
+    }
+
+    /// The next thing for the motors to do; `None` when nothing is known.
+    pub fn next_action(&mut self) -> Option<Action> {
+        if core::mem::take(&mut self.stale) && self.settings.jerk_mm_s3.is_none() {
+            self.ring.plan(self.settings.accel_mm_s2);
+        }
+        if let Some(phase) = self.ramps.next() {
+            return Some(Action::Phase(phase));
+        }
+        if let Some(jerk_mm_s3) = self.settings.jerk_mm_s3
+            && let Some(phase) =
+                self.s_curve.next_phase(&mut self.ring, self.settings.accel_mm_s2, jerk_mm_s3)
+        {
+            return Some(Action::Phase(phase));
+        }
+        let head = *self.ring.get(0)?;
+        let action = match head.kind {
+            Kind::Line | Kind::Arc | Kind::Narrowing | Kind::Widening => Action::Course(head.course()),
+            Kind::Dwell => Action::Dwell(Duration::try_from_secs_f64(head.length()).unwrap_or_default()),
+            Kind::SelectPen => Action::SelectPen(head.number()),
+            Kind::NewPage => Action::NewPage,
+        };
+        if self.settings.jerk_mm_s3.is_some() && head.is_path() {
+            self.s_curve.begin();
+        } else {
+            let exit2 = self.ring.next_entry2();
+            self.ramps = Ramps::new(&head, exit2, self.settings.accel_mm_s2);
+            self.ring.pop();
+        }
+        Some(action)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sixteen_blocks_take_less_than_1600_bytes() {
+        assert!(size_of::<Planner<16>>() < 1600, "{}", size_of::<Planner<16>>());
+    }
+}

@@ -1,0 +1,30 @@
+//! From a tool path to a motion in time: look-ahead planning.
+//!
+//! ```text
+//!  speed   ____        ______
+//!         /    \      /      \        each segment is a block; at its corners the speed is at most what the
+//!        /      \    /        \       corner allows, and never so much that the machine could not stop at
+//!       /        \__/          \      the end of what is known
+//!      | block 1 |2 |   3   | 4 |
+//! ```
+//!
+//! [`Planner`] takes [`PlotOp`](crate::PlotOp)s and gives [`Action`]s: stretches of path, and the time law along them.
+
+mod blend;
+mod block;
+mod error;
+mod front;
+mod junction;
+mod look_ahead;
+mod merge;
+mod phase;
+mod ramps;
+mod ring;
+mod s_curve;
+mod settings;
+
+pub use error::PlanError;
+pub use junction::junction_speed;
+pub use look_ahead::Planner;
+pub use phase::{Action, Course, Phase, Shape};
+pub use settings::{PathMode, PlannerSettings};

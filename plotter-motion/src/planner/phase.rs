@@ -1,0 +1,99 @@
+//! What a planner gives out: [`Action`], [`Course`], [`Phase`].
+
+use crate::{Pen, Point};
+use core::time::Duration;
+
+/// The form of a stretch of path.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Shape {
+    /// Straight.
+    #[default]
+    Line,
+    /// About a centre. Where the ends are not equally far from it, the radius changes evenly.
+    Arc {
+        /// The centre, mm.
+        centre: Point,
+        /// How far round, rad; counter-clockwise above 0.
+        sweep_rad: f64,
+    },
+    /// A logarithmic spiral about a pole: turned by an angle θ about it, the distance from it has changed by e^(growth |θ|).
+    Spiral {
+        /// The pole, mm.
+        pole: Point,
+        /// How far round, rad; counter-clockwise above 0.
+        sweep_rad: f64,
+        /// Above 0 it widens.
+        growth: f64,
+    },
+}
+
+/// A stretch of path, from where the one before ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Course {
+    /// Line or arc.
+    pub shape: Shape,
+    /// Where it ends, mm.
+    pub to: Point,
+    /// How long it is, mm; 0 for a dot.
+    pub length_mm: f64,
+    /// The pen on it.
+    pub pen: Pen,
+    /// Speed that was asked for, mm/s; corners and curves make it slower.
+    pub feed_mm_s: f64,
+    /// Power of the laser at that speed, in 65535ths.
+    pub laser_power: u16,
+}
+
+/// A time along the course in force, with constant jerk.
+///
+/// After t seconds of it the speed is v + a t + j t²/2, and the way v t + a t²/2 + j t³/6.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Phase {
+    /// How long it lasts, s.
+    pub duration_s: f64,
+    /// Where on the course it begins, mm from its start.
+    pub from_mm: f64,
+    /// Speed at its start, mm/s.
+    pub speed_mm_s: f64,
+    /// Acceleration at its start, mm/s².
+    pub accel_mm_s2: f64,
+    /// Jerk, mm/s³.
+    pub jerk_mm_s3: f64,
+}
+
+impl Phase {
+    /// Distance from the start of the course, speed and acceleration after `time_s` of it.
+    ///
+    /// ```
+    /// # use plotter_motion::{Phase, ProfilePoint};
+    /// let phase = Phase { duration_s: 2.0, from_mm: 1.0, speed_mm_s: 3.0, accel_mm_s2: 4.0, jerk_mm_s3: 0.0 };
+    /// // 1 + 3 * 0.5 + 4 * 0.25 / 2
+    /// assert_eq!(phase.at(0.5), ProfilePoint { distance_mm: 3.0, speed_mm_s: 5.0, accel_mm_s2: 4.0 });
+    /// ```
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> crate::ProfilePoint {
+        let Self { from_mm, speed_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j, .. } = *self;
+        let t = time_s;
+        crate::ProfilePoint {
+            distance_mm: from_mm + t * (v + t * (a / 2.0 + t * j / 6.0)),
+            speed_mm_s: v + t * (a + t * j / 2.0),
+            accel_mm_s2: a + t * j,
+        }
+    }
+}
+
+/// One thing for the motors to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Action {
+    /// A course begins. Where its pen differs from that of the course before, the machine stands.
+    Course(Course),
+    /// So the course goes on. The phases of a course reach its end.
+    Phase(Phase),
+    /// The machine stands for this long.
+    Dwell(Duration),
+    /// Another pen; the machine stands.
+    SelectPen(u8),
+    /// A new sheet; the machine stands.
+    NewPage,
+}

@@ -1,0 +1,345 @@
+//! [`SCurveState`]: jerk-limited motion through the blocks ahead.
+//!
+//! The speeds that corners and curves allow are points that the motion must not pass too fast. A state of motion (speed and
+//! acceleration) is *viable* if the hardest braking within acceleration and jerk would still be in time for each of them. From one
+//! short time to the next the motion takes the greatest jerk whose outcome is viable: so it speeds up as long as it may, and brakes as
+//! late as it must, whatever the lengths of the blocks.
+
+use super::Phase;
+use super::ring::Ring;
+use crate::{MotionLimits, SCurve};
+
+/// Parts of the time from no acceleration to the greatest, for each of which a jerk is chosen.
+const PARTS: f64 = 32.0;
+/// How much longer a part may be while nothing lies in the way: tried in this order.
+const LONGER: [f64; 3] = [16.0, 4.0, 1.0];
+/// Halvings of the range of jerks in the search for the greatest viable one.
+const HALVINGS: u32 = 24;
+/// How much too late a braking may be by rounding, mm.
+const SLACK_MM: f64 = 1e-9;
+/// A braking that is in time by less is begun as a whole, mm.
+const TIGHT_MM: f64 = 1e-6;
+/// What is left of a block when it counts as done, mm.
+const DONE_MM: f64 = 1e-7;
+/// Slower than this is a standstill, mm/s.
+const STANDSTILL_MM_S: f64 = 1e-7;
+
+/// The limits along the path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Limits {
+    accel: f64,
+    jerk: f64,
+}
+
+/// Speed and acceleration along the path, mm/s and mm/s².
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct State {
+    speed: f64,
+    accel: f64,
+}
+
+/// The times of the hardest braking: to the deepest deceleration, with it, and back to none; s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Braking {
+    in_s: f64,
+    steady_s: f64,
+    out_s: f64,
+}
+
+impl State {
+    /// After a time with constant jerk; and how far it has come, mm.
+    fn after(self, jerk: f64, time_s: f64) -> (Self, f64) {
+        let Self { speed, accel } = self;
+        let t = time_s;
+        let way_mm = t * (speed + t * (accel / 2.0 + t * jerk / 6.0));
+        (Self { speed: speed + t * (accel + t * jerk / 2.0), accel: accel + t * jerk }, way_mm)
+    }
+
+    /// The hardest braking to a speed with no acceleration left; none if that speed is not exceeded in any case.
+    fn braking(self, to: f64, limits: Limits) -> Braking {
+        let Self { speed, accel } = self;
+        let Limits { accel: most, jerk } = limits;
+        let excess = speed - to;
+        // What the speed changes while the acceleration goes back to none.
+        let coming = 0.5 * accel * accel / jerk;
+        if accel < 0.0 && excess < coming {
+            // It is braking harder than it has to.
+            let root = libm::sqrt((accel * accel - 2.0 * jerk * excess).max(0.0));
+            let out_s = if excess > 0.0 { (-accel - root) / jerk } else { 0.0 };
+            return Braking { out_s, ..Braking::default() };
+        }
+        let over = jerk * excess + 0.5 * accel * accel;
+        if over <= 0.0 || (accel <= 0.0 && excess <= 0.0) {
+            return Braking::default();
+        }
+        let deepest = libm::sqrt(over).min(most);
+        let steady_s = ((excess + (0.5 * accel * accel - deepest * deepest) / jerk) / deepest).max(0.0);
+        Braking { in_s: ((accel + deepest) / jerk).max(0.0), steady_s, out_s: deepest / jerk }
+    }
+
+    /// Whether a braking can be ended before the motion turns back.
+    fn can_let_go(self, limits: Limits) -> bool {
+        let coming = if self.accel < 0.0 { 0.5 * self.accel * self.accel / limits.jerk } else { 0.0 };
+        self.speed >= coming - STANDSTILL_MM_S
+    }
+
+    /// Length of the hardest braking to a speed, mm.
+    fn braking_mm(self, to: f64, limits: Limits) -> f64 {
+        let Braking { in_s, steady_s, out_s } = self.braking(to, limits);
+        let (state, first_mm) = self.after(-limits.jerk, in_s);
+        let (state, second_mm) = state.after(0.0, steady_s);
+        first_mm + second_mm + state.after(limits.jerk, out_s).1
+    }
+}
+
+/// The speeds that are allowed ahead: the first `count` places with their distance from the present one, mm and mm/s.
+#[derive(Clone, Copy, Debug)]
+struct Ahead<const N: usize> {
+    places: [(f64, f64); N],
+    count: usize,
+    /// Greatest speed up to the first of them.
+    cruise: f64,
+}
+
+impl<const N: usize> Ahead<N> {
+    fn new(ring: &Ring<N>, rest_mm: f64, limits: Limits) -> Self {
+        let cruise = ring.get(0).map_or(0.0, |head| libm::sqrt(f64::from(head.cruise2)));
+        // What lies farther away than any braking is long does not matter yet.
+        let farthest_mm = State { speed: cruise, accel: limits.accel }.braking_mm(0.0, limits);
+        let mut ahead = Self { places: [(0.0, 0.0); N], count: 0, cruise };
+        let mut way_mm = rest_mm;
+        for index in 1..=ring.len() {
+            let next = ring.get(index);
+            let most = next.map_or(0.0, |block| libm::sqrt(f64::from(block.max_entry2)));
+            if let Some(place) = ahead.places.get_mut(ahead.count) {
+                *place = (way_mm, most);
+                ahead.count += 1;
+            }
+            way_mm += next.map_or(0.0, |block| block.length());
+            if most <= 0.0 || way_mm > farthest_mm + rest_mm {
+                break;
+            }
+        }
+        ahead
+    }
+
+    fn places(&self) -> &[(f64, f64)] {
+        self.places.get(..self.count).unwrap_or(&[])
+    }
+
+    /// Whether a state that is `way_mm` ahead can still keep everything.
+    fn is_viable(&self, state: State, way_mm: f64, limits: Limits) -> bool {
+        let State { speed, accel } = state;
+        let peak = speed + if accel > 0.0 { 0.5 * accel * accel / limits.jerk } else { 0.0 };
+        let within = speed >= -STANDSTILL_MM_S && peak <= self.cruise * (1.0 + 1e-12) + STANDSTILL_MM_S;
+        within
+            && self.places().iter().all(|&(place_mm, most)| {
+                peak <= most || state.braking_mm(most, limits) <= place_mm - way_mm + SLACK_MM
+            })
+    }
+}
+
+/// Where the jerk-limited motion stands within the head of the ring.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct SCurveState {
+    /// Whether the head's course has been given out.
+    begun: bool,
+    done_mm: f64,
+    state: State,
+    /// The phases that have been chosen, and how many of them have been taken.
+    chosen: Chosen,
+    taken: usize,
+}
+
+/// Phases that go on as a whole.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Chosen {
+    #[default]
+    None,
+    One {
+        jerk: f64,
+        time_s: f64,
+    },
+    /// To the end of the block, and the speed there.
+    Braking(Braking, f64),
+    /// To the end of the block, from standstill to standstill.
+    RestToRest(SCurve),
+}
+
+impl Chosen {
+    /// The phase after so many: its jerk and its length; and the speed at the end of the block, if it goes there.
+    fn phase(&self, taken: usize, jerk: f64) -> Option<(f64, f64)> {
+        match *self {
+            Self::None => None,
+            Self::One { jerk, time_s } => [(jerk, time_s)].get(taken).copied(),
+            Self::Braking(Braking { in_s, steady_s, out_s }, _) => {
+                [(-jerk, in_s), (0.0, steady_s), (jerk, out_s)].get(taken).copied()
+            }
+            Self::RestToRest(motion) => {
+                let jerks = [jerk, 0.0, -jerk, 0.0, -jerk, 0.0, jerk];
+                jerks.get(taken).copied().zip(motion.phases_s().get(taken).copied())
+            }
+        }
+    }
+
+    /// The speed at the end of the block, where they lead to it.
+    fn exit(&self) -> Option<f64> {
+        match *self {
+            Self::None | Self::One { .. } => None,
+            Self::Braking(_, exit) => Some(exit),
+            Self::RestToRest(_) => Some(0.0),
+        }
+    }
+}
+
+impl SCurveState {
+    /// The head of the ring is under way.
+    pub(super) fn begin(&mut self) {
+        self.begun = true;
+        self.done_mm = 0.0;
+        self.chosen = Chosen::None;
+    }
+
+    /// The next phase of the head; `None` when it is done, and taken from the ring, or has not begun.
+    pub(super) fn next_phase<const N: usize>(
+        &mut self,
+        ring: &mut Ring<N>,
+        accel_mm_s2: f64,
+        jerk_mm_s3: f64,
+    ) -> Option<Phase> {
+        if !self.begun {
+            return None;
+        }
+        let limits = Limits { accel: accel_mm_s2, jerk: jerk_mm_s3 };
+        let length_mm = ring.get(0).map_or(0.0, |head| head.length());
+        loop {
+            if let Some((jerk, time_s)) = self.chosen.phase(self.taken, limits.jerk) {
+                self.taken += 1;
+                if time_s > 0.0 {
+                    return Some(self.take(jerk, time_s));
+                }
+                continue;
+            }
+            if let Some(exit) = self.chosen.exit() {
+                self.done_mm = length_mm;
+                self.state = State { speed: exit, accel: 0.0 };
+            }
+            self.chosen = Chosen::None;
+            let rest_mm = length_mm - self.done_mm;
+            if rest_mm <= DONE_MM {
+                break;
+            }
+            self.chosen = self.choose(ring, rest_mm, limits);
+            self.taken = 0;
+            if self.chosen == Chosen::None {
+                break;
+            }
+        }
+        self.begun = false;
+        ring.pop();
+        if ring.get(0).is_none_or(|next| next.max_entry2 <= 0.0) {
+            self.state = State::default();
+        }
+        None
+    }
+
+    fn take(&mut self, jerk: f64, time_s: f64) -> Phase {
+        let phase = Phase {
+            duration_s: time_s,
+            from_mm: self.done_mm,
+            speed_mm_s: self.state.speed,
+            accel_mm_s2: self.state.accel,
+            jerk_mm_s3: jerk,
+        };
+        let (state, way_mm) = self.state.after(jerk, time_s);
+        self.state = State { speed: state.speed.max(0.0), ..state };
+        self.done_mm += way_mm;
+        phase
+    }
+
+    /// Chooses the next phase or phases, at least one.
+    fn choose<const N: usize>(&mut self, ring: &Ring<N>, rest_mm: f64, limits: Limits) -> Chosen {
+        let ahead = Ahead::new(ring, rest_mm, limits);
+        let state = self.state;
+        let most = ahead.places().first().map_or(0.0, |place| place.1);
+        let stands = state.speed <= STANDSTILL_MM_S && state.accel.abs() <= STANDSTILL_MM_S;
+        if stands && most <= 0.0 {
+            return rest_to_rest(rest_mm, ahead.cruise, limits);
+        }
+        // A braking for the end of this block that can be put off no longer.
+        if state.speed > most && rest_mm - state.braking_mm(most, limits) <= TIGHT_MM {
+            let braking = state.braking(most, limits);
+            if braking.in_s + braking.steady_s > 0.0 {
+                return Chosen::Braking(braking, most);
+            }
+        }
+        let part_s = limits.accel / limits.jerk / PARTS;
+        // At full speed: as long as there is nothing to brake for.
+        if state.accel.abs() <= 1e-9 * limits.accel && state.speed >= ahead.cruise * (1.0 - 1e-9) {
+            let free_mm = ahead.places().iter().fold(rest_mm, |free_mm, &(place_mm, most)| {
+                free_mm.min(place_mm - state.braking_mm(most, limits))
+            });
+            let time_s = free_mm / state.speed;
+            if time_s > part_s || free_mm >= rest_mm {
+                self.state.accel = 0.0;
+                return Chosen::One { jerk: 0.0, time_s };
+            }
+        }
+        let to_full_s = (limits.accel - state.accel).max(0.0) / limits.jerk;
+        let (most_jerk, up_s) =
+            if to_full_s > 1e-6 * part_s { (limits.jerk, to_full_s) } else { (0.0, f64::INFINITY) };
+        for longer in LONGER {
+            let time_s = (longer * part_s).min(up_s);
+            let (after, way_mm) = state.after(most_jerk, time_s);
+            if way_mm <= rest_mm && ahead.is_viable(after, way_mm, limits) {
+                return Chosen::One { jerk: most_jerk, time_s };
+            }
+        }
+        // Within one part: no farther than the end of the block.
+        let mut time_s = part_s;
+        let coasted_mm = state.after(0.0, part_s).1;
+        if coasted_mm > rest_mm && state.speed > 0.0 {
+            time_s = part_s * rest_mm / coasted_mm;
+        }
+        let mut low = (-limits.jerk).max((-limits.accel - state.accel) / time_s);
+        let mut high = limits.jerk.min((limits.accel - state.accel) / time_s);
+        if !state.after(low, time_s).0.can_let_go(limits) {
+            let (mut back, mut forth) = (low, high);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (back + forth);
+                if state.after(middle, time_s).0.can_let_go(limits) { forth = middle } else { back = middle }
+            }
+            low = forth;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let (after, way_mm) = state.after(middle, time_s);
+            if ahead.is_viable(after, way_mm, limits) { low = middle } else { high = middle }
+        }
+        let (_, way_mm) = state.after(low, time_s);
+        if way_mm <= DONE_MM && stands {
+            // Too near to a corner that must be taken very slowly: there by itself, and then on.
+            return rest_to_rest(rest_mm, ahead.cruise, limits);
+        }
+        if way_mm > rest_mm {
+            time_s = self.time_to(rest_mm, low, time_s);
+        }
+        Chosen::One { jerk: low, time_s }
+    }
+
+    /// When a distance has been covered with this jerk, before `most_s`.
+    fn time_to(&self, way_mm: f64, jerk: f64, most_s: f64) -> f64 {
+        let (mut low, mut high) = (0.0, most_s);
+        for _ in 0..52 {
+            let middle = 0.5 * (low + high);
+            if self.state.after(jerk, middle).1 >= way_mm { high = middle } else { low = middle }
+        }
+        high
+    }
+}
+
+/// The quickest motion from standstill to standstill, in closed form.
+fn rest_to_rest(way_mm: f64, cruise: f64, limits: Limits) -> Chosen {
+    let limits = MotionLimits { speed_mm_s: cruise, accel_mm_s2: limits.accel, jerk_mm_s3: limits.jerk };
+    SCurve::plan(way_mm, limits).map_or(Chosen::None, Chosen::RestToRest)
+}

@@ -1,0 +1,90 @@
+//! [`PlannerSettings`]: the limits of a machine's motion, and how its path is followed.
+
+use super::PlanError;
+
+/// How nearly a path is followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum PathMode {
+    /// Through every vertex. Corners are taken at the speed of junction deviation.
+    #[default]
+    Exact,
+    /// Corners become arcs, and vertices that are not needed are left out, so that no place of the path is farther than this
+    /// from what was asked for, mm.
+    Tolerance {
+        /// Greatest distance either way, mm; above 0.
+        path_tolerance_mm: f64,
+    },
+}
+
+/// The limits that a [`Planner`](super::Planner) keeps.
+///
+/// The default suits a light pen plotter with belts: 100 mm/s, 1000 mm/s², 20,000 mm/s³.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PlannerSettings {
+    /// How nearly the path is followed.
+    pub path: PathMode,
+    /// Greatest speed with the pen down, mm/s. An operation may ask for less.
+    pub speed_mm_s: f64,
+    /// Speed with the pen up, mm/s.
+    pub travel_speed_mm_s: f64,
+    /// Greatest acceleration, mm/s²: along the path, and across it in curves.
+    pub accel_mm_s2: f64,
+    /// Greatest jerk along the path, mm/s³; `None` lets the acceleration change at once (trapezoidal profiles), a limit makes
+    /// them S-curves.
+    pub jerk_mm_s3: Option<f64>,
+    /// How far a machine that rounds a corner by itself may miss its vertex, mm: see [`junction_speed`](super::junction_speed).
+    pub junction_deviation_mm: f64,
+    /// Vertices nearer than this to the one before are left out unless they end a stroke, mm; 0 keeps all. Half a step is what a
+    /// motor cannot tell apart.
+    pub resolution_mm: f64,
+}
+
+impl Default for PlannerSettings {
+    fn default() -> Self {
+        Self {
+            path: PathMode::Exact,
+            speed_mm_s: 100.0,
+            travel_speed_mm_s: 100.0,
+            accel_mm_s2: 1000.0,
+            jerk_mm_s3: None,
+            junction_deviation_mm: 0.01,
+            resolution_mm: 0.005,
+        }
+    }
+}
+
+/// Least and greatest limit that a motion is planned with: a micrometre a second to ten kilometres a second.
+const LIMITS: (f64, f64) = (1e-3, 1e7);
+/// Greatest jerk, mm/s³.
+const MOST_JERK: f64 = 1e12;
+/// Greatest tolerance, mm.
+const MOST_TOLERANCE_MM: f64 = 1e3;
+
+impl PlannerSettings {
+    /// Checks every number by itself.
+    pub(super) fn check(&self) -> Result<(), PlanError> {
+        let (least, most) = LIMITS;
+        let checks = [
+            ("speed_mm_s", self.speed_mm_s, least, most),
+            ("travel_speed_mm_s", self.travel_speed_mm_s, least, most),
+            ("accel_mm_s2", self.accel_mm_s2, least, most),
+            ("jerk_mm_s3", self.jerk_mm_s3.unwrap_or(least), least, MOST_JERK),
+            ("junction_deviation_mm", self.junction_deviation_mm, 0.0, MOST_TOLERANCE_MM),
+            ("resolution_mm", self.resolution_mm, 0.0, MOST_TOLERANCE_MM),
+        ];
+        let tolerance = match self.path {
+            PathMode::Exact => None,
+            PathMode::Tolerance { path_tolerance_mm } => {
+                Some(("path_tolerance_mm", path_tolerance_mm, 1e-6, MOST_TOLERANCE_MM))
+            }
+        };
+        for (quantity, value, least, most) in checks.into_iter().chain(tolerance) {
+            if !(least..=most).contains(&value) {
+                return Err(PlanError::Setting { quantity, value, least, most });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,86 @@
+//! [`Chords`]: a course as chords on the grid of the motors.
+
+use super::slice::{FRACTION_BITS, fixed};
+use crate::kinematics::Kinematics;
+use crate::{Course, Point, Shape, StepPoint, Vec2};
+
+/// Most chords of a course.
+const MOST_CHORDS: f64 = 65_536.0;
+
+/// A straight way between two whole steps, and where along the course it ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Chord {
+    pub(super) to: StepPoint,
+    /// Distance of its end from the start of the course, mm with 32 bits of fraction.
+    pub(super) end: i64,
+}
+
+/// A course divided into chords that no motor can tell from it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Chords {
+    course: Course,
+    from: Point,
+    count: u32,
+    next: u32,
+}
+
+impl Chords {
+    /// `tolerance_mm`: how far a chord may be from the course.
+    pub(super) fn new(course: Course, from: Point, tolerance_mm: f64) -> Self {
+        let chords = |radius_mm: f64, sweep_rad: f64| {
+            let flattest = (tolerance_mm / radius_mm).clamp(0.0, 1.0);
+            let finest_rad = 2.0 * libm::acos(1.0 - flattest);
+            let count = libm::ceil(sweep_rad.abs() / finest_rad);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+            let count = if count.is_nan() { 1 } else { count.clamp(1.0, MOST_CHORDS) as u32 };
+            count
+        };
+        let count = match course.shape {
+            Shape::Line => 1,
+            Shape::Arc { centre, sweep_rad } => {
+                chords((from - centre).length().max((course.to - centre).length()), sweep_rad)
+            }
+            Shape::Spiral { pole, sweep_rad, growth } => {
+                // Its radius of curvature is greater than the distance from the pole.
+                let farther_mm = (from - pole).length().max((course.to - pole).length());
+                chords(farther_mm * libm::sqrt(1.0 + growth * growth), sweep_rad)
+            }
+        };
+        Self { course, from, count, next: 0 }
+    }
+
+    /// The next chord.
+    pub(super) fn next(&mut self, kinematics: &impl Kinematics) -> Option<Chord> {
+        if self.next >= self.count {
+            return None;
+        }
+        self.next += 1;
+        let (place, way_mm) = if self.next == self.count {
+            (self.course.to, self.course.length_mm)
+        } else {
+            self.place(f64::from(self.next) / f64::from(self.count))
+        };
+        Some(Chord { to: kinematics.steps_at(place), end: fixed(way_mm, FRACTION_BITS) })
+    }
+
+    /// The place at a share of the angle, and how far along it is.
+    fn place(&self, share: f64) -> (Point, f64) {
+        let Course { shape, to, length_mm, .. } = self.course;
+        match shape {
+            Shape::Line => (self.from.lerp(to, share), length_mm * share),
+            Shape::Arc { centre, sweep_rad } => {
+                let out = self.from - centre;
+                let (begin_mm, end_mm) = (out.length(), (to - centre).length());
+                let radius = 1.0 + (end_mm / begin_mm - 1.0) * share;
+                (centre + out.rotated(sweep_rad * share) * radius, length_mm * share)
+            }
+            Shape::Spiral { pole, sweep_rad, growth } => {
+                let out: Vec2 = self.from - pole;
+                let angle_rad = sweep_rad * share;
+                let grown = libm::exp(growth * angle_rad.abs());
+                let all = libm::exp(growth * sweep_rad.abs());
+                (pole + out.rotated(angle_rad) * grown, length_mm * (grown - 1.0) / (all - 1.0))
+            }
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! From planned motion to timed steps.
+//!
+//! ```text
+//!  Planner ──Action──▶ StepGen ──TimedEvent──▶ STEP and DIR pins, pen servo, laser
+//!           mm, s                  ticks
+//! ```
+//!
+//! A course is laid on the grid of the motors, an arc in chords that lie within a quarter of a step of it, and each chord is stepped
+//! as Bresenham's line: at each step of the motor that has the longer way, the other one steps or does not. Steps are due half
+//! way between the grid's lines, so that the motors are never farther than half a step from the path.
+//!
+//! When a phase or a chord begins, floats are turned into whole numbers. From step to step there are only whole numbers.
+
+mod chord;
+mod slice;
+mod step_gen;
+
+pub use step_gen::{Busy, MotorEvent, StepGen, StepGenSettings, TimedEvent};

@@ -1,0 +1,426 @@
+//! [`StepGen`]: actions in, timed events out.
+
+use super::chord::Chords;
+use super::slice::{Slice, speed_fixed};
+use crate::kinematics::Kinematics;
+use crate::{Action, Bresenham, Course, Pen, Phase, Point, StepPair, StepPoint};
+use core::fmt;
+use core::time::Duration;
+
+/// Farthest that a chord may be from its course, steps.
+const CHORD_STEPS: f64 = 0.25;
+/// A phase that ends nearer than this to the end of its course ends there, mm.
+const LATE_MM: f64 = 1e-4;
+/// What ends slower ends at rest, mm/s.
+const STANDSTILL_MM_S: f64 = 1e-3;
+
+/// How steps are timed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepGenSettings {
+    /// Ticks of the clock in a second: 1000 to 10⁹. The default is a microsecond.
+    pub clock_hz: f64,
+    /// How long the machine stands after the pen has been lowered or lifted.
+    pub pen_settle: Duration,
+    /// Whether a laser takes the place of the pen: it is on while it moves, and its power follows the speed.
+    pub laser: bool,
+}
+
+impl Default for StepGenSettings {
+    /// Microseconds, and the 200 ms that the documented machine's pen needs: with less, dots get tails.
+    fn default() -> Self {
+        Self { clock_hz: 1e6, pen_settle: Duration::from_millis(200), laser: false }
+    }
+}
+
+/// What the motors, the pen and the laser do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum MotorEvent {
+    /// A step of either motor or of both: -1, 0 or 1 each.
+    Step {
+        /// First motor.
+        x: i8,
+        /// Second motor.
+        y: i8,
+    },
+    /// The pen is lowered or lifted.
+    Pen(Pen),
+    /// The laser's power from here on, in 65535ths.
+    Laser(u16),
+    /// Another pen is taken.
+    SelectPen(u8),
+    /// A new sheet.
+    NewPage,
+}
+
+/// An event with its time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TimedEvent {
+    /// Ticks of the clock since the start.
+    pub tick: u64,
+    /// What happens.
+    pub event: MotorEvent,
+}
+
+/// The action before has not been finished: take its events first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Busy;
+
+impl fmt::Display for Busy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the events of the action before have not all been taken")
+    }
+}
+
+impl core::error::Error for Busy {}
+
+/// A phase that is being stepped.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Running {
+    phase: Phase,
+    /// The tick before its start, and how much later it starts, 0 to 1.
+    base: u64,
+    offset_ticks: f64,
+    /// How much of it the slices up to now span, ticks.
+    sliced_ticks: f64,
+    slice: Slice,
+    /// Ticks of the slice at which the last step was, and until the next one is guessed to be due, and by how much that changes.
+    at: i64,
+    interval: i64,
+    change: i64,
+}
+
+/// Turns the actions of a [`Planner`](crate::Planner) into timed steps of the motors.
+///
+/// Push an action, take events until there are none, push the next.
+///
+/// ```
+/// # use plotter_motion::kinematics::{Cartesian, MotorScale};
+/// # use plotter_motion::{MotorEvent, Planner, PlannerSettings, PlotOp, Point, StepGen, StepGenSettings};
+/// let mut planner = Planner::<16>::new(PlannerSettings::default())?;
+/// let motors = Cartesian::new(MotorScale::default(), MotorScale::default())?; // 80 steps to the millimetre
+/// let mut steps = StepGen::new(motors, StepGenSettings::default());
+/// planner.push(PlotOp::Travel { to: Point::new(10.0, 0.0) })?;
+/// planner.finish()?;
+/// let mut ticks = Vec::new();
+/// while let Some(action) = planner.next_action() {
+///     steps.push(action)?;
+///     while let Some(event) = steps.next_event() {
+///         ticks.push(event.tick);
+///     }
+/// }
+/// assert_eq!(ticks.len(), 800);
+/// // half a step is 1/160 mm: sqrt(2 s / a) = 3.536 ms after the start
+/// assert_eq!(ticks[0], 3536);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepGen<K> {
+    kinematics: K,
+    settings: StepGenSettings,
+    chord_tolerance_mm: f64,
+    /// The end of the action pushed last: whole ticks, and the fraction of one.
+    tick: u64,
+    fraction: f64,
+    /// Where the path and the motors are.
+    at: Point,
+    pen: Pen,
+    course: Course,
+    /// Its speed in mm a tick, 52 bits of fraction.
+    course_speed: i64,
+    chords: Chords,
+    /// The chord in progress: its steps to come, and the distance along the course at which the next one is due, that of the
+    /// chord's end, and how the due distances go on.
+    line: Bresenham,
+    due: Option<Due>,
+    chord_from: i64,
+    /// Whether the course is over, and its remaining steps are due at once.
+    late: bool,
+    running: Option<Running>,
+    /// Tick of the last step, and how long after the one before.
+    last_step: u64,
+    interval: i64,
+    /// The laser's power that was given out last, 0 at a standstill.
+    laser: u16,
+    waiting: [Option<TimedEvent>; 2],
+}
+
+/// The distances at which the steps of a chord are due: evenly spaced, the first half a space after its start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Due {
+    /// mm with 32 bits of fraction, and the rest of the division.
+    at: i64,
+    rest: i64,
+    space: i64,
+    space_rest: i64,
+    steps: i64,
+    left: u32,
+}
+
+impl Due {
+    fn new(from: i64, to: i64, steps: u32) -> Option<Self> {
+        let count = i64::from(steps);
+        if count == 0 {
+            return None;
+        }
+        let way = to.saturating_sub(from).max(0);
+        let (space, space_rest) = (way / count, way % count);
+        let (half, half_rest) = (way / (2 * count), way % (2 * count));
+        Some(Self { at: from + half, rest: half_rest / 2, space, space_rest, steps: count, left: steps })
+    }
+
+    fn advance(&mut self) -> bool {
+        self.left -= 1;
+        self.at += self.space;
+        self.rest += self.space_rest;
+        if self.rest >= self.steps {
+            self.rest -= self.steps;
+            self.at += 1;
+        }
+        self.left > 0
+    }
+}
+
+impl<K: Kinematics> StepGen<K> {
+    /// Motors that stand where the pen is at the origin.
+    pub fn new(kinematics: K, settings: StepGenSettings) -> Self {
+        let scale = |x, y| {
+            let motors = kinematics.motors_at(Point::new(x, y));
+            libm::fabs(motors.x).max(libm::fabs(motors.y))
+        };
+        let steps_per_mm = scale(1.0, 0.0).max(scale(0.0, 1.0));
+        let clock_hz = if settings.clock_hz.is_finite() { settings.clock_hz.clamp(1e3, 1e9) } else { 1e6 };
+        let steps = kinematics.steps_at(Point::ORIGIN);
+        Self {
+            kinematics,
+            settings: StepGenSettings { clock_hz, ..settings },
+            chord_tolerance_mm: CHORD_STEPS / steps_per_mm,
+            tick: 0,
+            fraction: 0.0,
+            at: Point::ORIGIN,
+            pen: Pen::Up,
+            course: Course::default(),
+            course_speed: 0,
+            chords: Chords::default(),
+            line: Bresenham::new(steps, steps),
+            due: None,
+            chord_from: 0,
+            late: false,
+            running: None,
+            last_step: 0,
+            interval: 0,
+            laser: 0,
+            waiting: [None; 2],
+        }
+    }
+
+    /// Where the motors have been stepped to.
+    #[must_use]
+    pub const fn steps(&self) -> StepPoint {
+        self.line.position()
+    }
+
+    /// The end of the last action, in ticks: when the next one begins.
+    #[must_use]
+    pub const fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// Takes the next action.
+    ///
+    /// # Errors
+    ///
+    /// [`Busy`] while events of the action before are left; the action is not taken.
+    pub fn push(&mut self, action: Action) -> Result<(), Busy> {
+        if self.running.is_some() || self.late || self.waiting.iter().any(Option::is_some) {
+            return Err(Busy);
+        }
+        match action {
+            Action::Course(course) => self.begin(course),
+            Action::Phase(phase) => self.run(phase),
+            Action::Dwell(duration) => self.wait(duration),
+            Action::SelectPen(pen) => {
+                self.put(Pen::Up);
+                self.give(MotorEvent::SelectPen(pen));
+            }
+            Action::NewPage => {
+                self.put(Pen::Up);
+                self.give(MotorEvent::NewPage);
+            }
+        }
+        Ok(())
+    }
+
+    /// The next event; `None` when another action is wanted.
+    pub fn next_event(&mut self) -> Option<TimedEvent> {
+        if let Some(waiting) = self.waiting.iter_mut().find(|slot| slot.is_some()) {
+            return waiting.take();
+        }
+        if self.late {
+            return self.late_step();
+        }
+        loop {
+            let running = self.running.as_mut()?;
+            let Some(due) = self.due else { return self.end_phase() };
+            if let Some(at) = running.slice.tick_of(due.at, running.at.max(0), running.guess()) {
+                running.step_at(at);
+                let tick = running.slice.base.saturating_add_signed(at);
+                let speed = if self.settings.laser { running.slice.speed(at) } else { 0 };
+                let power = self.power(speed);
+                let step = self.step(tick)?;
+                if power == self.laser {
+                    return Some(step);
+                }
+                self.laser = power;
+                self.waiting = [Some(step), None];
+                return Some(TimedEvent { tick, event: MotorEvent::Laser(power) });
+            }
+            if !running.next_slice(self.settings.clock_hz) {
+                return self.end_phase();
+            }
+        }
+    }
+
+    /// The step that is due, at a tick.
+    fn step(&mut self, tick: u64) -> Option<TimedEvent> {
+        let StepPair { x, y } = self.line.next()?;
+        let left = self.due.as_mut().is_some_and(Due::advance);
+        if !left {
+            self.next_chord();
+        }
+        Some(TimedEvent { tick, event: MotorEvent::Step { x, y } })
+    }
+
+    /// The chord after the one that has been stepped, if it is not shorter than a step.
+    fn next_chord(&mut self) {
+        self.due = None;
+        while let Some(chord) = self.chords.next(&self.kinematics) {
+            self.line = Bresenham::new(self.line.position(), chord.to);
+            self.due = Due::new(self.chord_from, chord.end, self.line.remaining());
+            self.chord_from = chord.end;
+            if self.due.is_some() {
+                return;
+            }
+        }
+    }
+
+    /// The laser's power at a speed in mm a tick, 52 bits of fraction: proportional to it, in 256 grades; none for a pen that is
+    /// up.
+    fn power(&self, speed: i64) -> u16 {
+        if !self.settings.laser || self.course.pen == Pen::Up || self.course_speed <= 0 {
+            return 0;
+        }
+        let power = i128::from(speed) * i128::from(self.course.laser_power) / i128::from(self.course_speed);
+        let power = u16::try_from(power.max(0)).unwrap_or(u16::MAX).min(self.course.laser_power);
+        // A laser that is on at all has some power.
+        (power & !0xFF) | 0x80
+    }
+
+    /// The phase is over.
+    fn end_phase(&mut self) -> Option<TimedEvent> {
+        let running = self.running.take()?;
+        let end = running.phase.at(running.phase.duration_s);
+        let ticks = running.offset_ticks + running.phase.duration_s * self.settings.clock_hz;
+        self.pass(running.base, ticks);
+        self.last_step = running.slice.base.saturating_add_signed(running.at);
+        self.interval = running.interval;
+        if self.laser != 0 && end.speed_mm_s < STANDSTILL_MM_S {
+            self.laser = 0;
+            self.give(MotorEvent::Laser(0));
+        }
+        // What rounding has left of the course comes at its end.
+        self.late = end.distance_mm >= self.course.length_mm - LATE_MM;
+        self.next_event()
+    }
+
+    fn late_step(&mut self) -> Option<TimedEvent> {
+        if self.due.is_none() {
+            self.late = false;
+            return None;
+        }
+        self.step(self.tick)
+    }
+
+    fn give(&mut self, event: MotorEvent) {
+        let event = TimedEvent { tick: self.tick, event };
+        if let Some(slot) = self.waiting.iter_mut().find(|slot| slot.is_none()) {
+            *slot = Some(event);
+        }
+    }
+
+    /// The time is so many ticks after a tick.
+    fn pass(&mut self, from: u64, ticks: f64) {
+        let whole = libm::floor(ticks);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates")]
+        let whole_ticks = whole as u64;
+        self.tick = from.saturating_add(whole_ticks);
+        self.fraction = ticks - whole;
+    }
+
+    fn wait(&mut self, duration: Duration) {
+        self.pass(self.tick, self.fraction + duration.as_secs_f64() * self.settings.clock_hz);
+    }
+
+    fn put(&mut self, pen: Pen) {
+        if self.pen != pen && !self.settings.laser {
+            self.give(MotorEvent::Pen(pen));
+            self.wait(self.settings.pen_settle);
+        }
+        self.pen = pen;
+    }
+
+    fn begin(&mut self, course: Course) {
+        self.put(course.pen);
+        self.chords = Chords::new(course, self.at, self.chord_tolerance_mm);
+        self.course_speed = speed_fixed(course.feed_mm_s / self.settings.clock_hz);
+        self.course = course;
+        self.at = course.to;
+        self.chord_from = 0;
+        self.next_chord();
+        // A course without length has no phase; its steps, if rounding has made one, are late.
+        self.late = course.length_mm <= LATE_MM;
+    }
+
+    fn run(&mut self, phase: Phase) {
+        let (slice, sliced_ticks) = Slice::new(&phase, self.settings.clock_hz, self.tick, self.fraction, 0.0);
+        let at = i64::try_from(self.tick.saturating_sub(self.last_step)).map_or(0, |since| -since);
+        self.running = Some(Running {
+            phase,
+            base: self.tick,
+            offset_ticks: self.fraction,
+            sliced_ticks,
+            slice,
+            at,
+            interval: self.interval,
+            change: 0,
+        });
+    }
+}
+
+impl Running {
+    /// When the next step may be due, if the intervals go on changing as they did.
+    fn guess(&self) -> i64 {
+        self.at.saturating_add(self.interval).saturating_add(self.change)
+    }
+
+    fn step_at(&mut self, at: i64) {
+        let interval = at - self.at;
+        self.change = interval - self.interval;
+        self.interval = interval;
+        self.at = at;
+    }
+
+    /// Goes on with the next slice of the phase; says whether there is one.
+    fn next_slice(&mut self, clock_hz: f64) -> bool {
+        if self.sliced_ticks >= self.phase.duration_s * clock_hz {
+            return false;
+        }
+        let before = self.slice.base;
+        let (slice, ticks) =
+            Slice::new(&self.phase, clock_hz, self.base, self.offset_ticks, self.sliced_ticks);
+        self.slice = slice;
+        self.sliced_ticks += ticks;
+        self.at -= i64::try_from(slice.base.saturating_sub(before)).unwrap_or(i64::MAX);
+        true
+    }
+}
