@@ -32,10 +32,33 @@
 //!
 //! Sources: NIST, *The NIST RS274NGC Interpreter, Version 3* (2000); the GRBL project's wiki on version 1.1.
 
+mod arc;
+mod block;
+mod code;
+mod detection;
+mod error;
+mod interpreter;
+mod line;
+mod machine;
+mod number;
+mod pen_convention;
+mod plot_ops;
+mod read_options;
+mod reader;
+mod remark;
 mod write_error;
 mod write_options;
 mod writer;
 
+pub use crate::hpgl::{Position, Undrained};
+pub use block::{Block, Remark, Word};
+pub use detection::{Detection, detect};
+pub use error::{Error, Problem};
+pub use interpreter::Interpreter;
+pub use pen_convention::{LaserCommand, PenConvention, ServoCommand};
+pub use plot_ops::{PlotOps, plot_ops};
+pub use read_options::{BlockDelete, ReadOptions};
+pub use reader::{Reader, Spacing};
 pub use write_error::WriteError;
 pub use write_options::{DwellUnit, PenChange, PenControl, WriteOptions};
 pub use writer::{Writer, write_ops};

@@ -1,0 +1,100 @@
+//! The circle of a `G2` or `G3`.
+
+use super::Problem;
+use crate::{Point, Vec2};
+use core::f64::consts::TAU;
+
+/// How much farther from the centre one end may be than the other, mm: always, and where it is a thousandth of the radius.
+const LEAST_MM: f64 = 0.005;
+const MOST_MM: f64 = 0.5;
+const MOST_SHARE: f64 = 0.001;
+
+/// A sweep below this is a whole turn, rad.
+const NO_SWEEP_RAD: f64 = 5e-7;
+
+/// What a chord may be longer than the diameter and still be taken for it, mm: both are rounded to thousandths.
+const ROUNDED_MM: f64 = 0.005;
+
+/// How far round an arc goes, rad, above 0 to the `left`. One that ends where it begins is a whole circle.
+///
+/// The limits are GRBL's (`gcode.c`, version 1.1).
+pub(super) fn sweep_rad(from: Point, to: Point, centre: Point, left: bool) -> Result<f64, Problem> {
+    let (out, end) = (from - centre, to - centre);
+    let (start_mm, end_mm) = (out.length(), end.length());
+    let off_mm = (end_mm - start_mm).abs();
+    if off_mm > MOST_MM || (off_mm > LEAST_MM && off_mm > MOST_SHARE * start_mm) || start_mm == 0.0 {
+        return Err(Problem::ArcRadii { start_mm, end_mm });
+    }
+    let angle = libm::atan2(out.cross(end), out.dot(end));
+    Ok(match left {
+        true if angle <= NO_SWEEP_RAD => (angle + TAU).min(TAU),
+        false if angle >= -NO_SWEEP_RAD => (angle - TAU).max(-TAU),
+        _ => angle,
+    })
+}
+
+/// The centre of an arc with this radius, mm: the one of less than half a turn, or with a negative radius of more.
+pub(super) fn centre(from: Point, to: Point, radius_mm: f64, left: bool) -> Result<Point, Problem> {
+    let chord = to - from;
+    let length_mm = chord.length();
+    if length_mm == 0.0 {
+        return Err(Problem::ArcWithoutEnd);
+    }
+    let half_mm = 0.5 * length_mm;
+    if radius_mm.abs() + ROUNDED_MM < half_mm || radius_mm == 0.0 {
+        return Err(Problem::ArcRadius { radius_mm, least_mm: half_mm });
+    }
+    // (r - h)(r + h) loses no digits where the arc is nearly a half circle.
+    let squared = (radius_mm.abs() - half_mm) * (radius_mm.abs() + half_mm);
+    let height_mm = libm::sqrt(squared.max(0.0));
+    let height_mm = if left == (radius_mm > 0.0) { height_mm } else { -height_mm };
+    let across = Vec2::new(-chord.y, chord.x) * (height_mm / length_mm);
+    Ok(from + chord * 0.5 + across)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::PI;
+
+    /// What the last digits of coordinates near 10 mm are worth, mm or rad.
+    const EXACT: f64 = 1e-12;
+
+    #[test]
+    fn a_quarter_a_half_and_three_quarters() {
+        let (from, to) = (Point::new(10.0, 0.0), Point::new(0.0, 10.0));
+        assert!((sweep_rad(from, to, Point::ORIGIN, true).unwrap() - 0.5 * PI).abs() < EXACT);
+        assert!((sweep_rad(from, to, Point::ORIGIN, false).unwrap() + 1.5 * PI).abs() < EXACT);
+        let across = Point::new(-10.0, 0.0);
+        assert!((sweep_rad(from, across, Point::ORIGIN, true).unwrap() - PI).abs() < EXACT);
+        assert!((sweep_rad(from, across, Point::ORIGIN, false).unwrap() + PI).abs() < EXACT);
+        assert_eq!(sweep_rad(from, from, Point::ORIGIN, true), Ok(TAU));
+        assert_eq!(sweep_rad(from, from, Point::ORIGIN, false), Ok(-TAU));
+    }
+
+    #[test]
+    fn the_radius_says_the_centre() {
+        let (from, to) = (Point::new(10.0, 0.0), Point::new(0.0, 10.0));
+        // Counter-clockwise by a quarter about the origin; by three quarters about (10, 10); clockwise the other way.
+        for (radius, left, x) in
+            [(10.0, true, 0.0), (-10.0, true, 10.0), (10.0, false, 10.0), (-10.0, false, 0.0)]
+        {
+            assert!(centre(from, to, radius, left).unwrap().distance(Point::new(x, x)) < EXACT);
+        }
+        // 14.142 mm apart.
+        assert_eq!(centre(from, to, 7.07, true), Ok(Point::new(5.0, 5.0)));
+        let refused = centre(from, to, -7.0, true).unwrap_err();
+        assert!(matches!(refused, Problem::ArcRadius { least_mm, .. } if (least_mm - 7.071).abs() < 1e-3));
+        assert_eq!(centre(from, from, 7.0, true), Err(Problem::ArcWithoutEnd));
+    }
+
+    #[test]
+    fn ends_may_be_unequally_far_by_what_grbl_allows() {
+        let ends = |radius: f64, off: f64| {
+            sweep_rad(Point::new(radius, 0.0), Point::new(0.0, radius + off), Point::ORIGIN, true).is_ok()
+        };
+        assert!(ends(1.0, 0.004) && !ends(1.0, 0.006));
+        assert!(ends(100.0, 0.099) && !ends(100.0, 0.101));
+        assert!(ends(1000.0, 0.499) && !ends(1000.0, 0.501));
+    }
+}

@@ -1,0 +1,307 @@
+//! [`Detection`]: by which words a text lifts its pen, found out from the text.
+
+use super::code::{Action, Motion, Spindle};
+use super::line::{Line, Told};
+use super::{Block, DwellUnit, LaserCommand, PenConvention, ReadOptions, Reader, ServoCommand};
+
+/// Greatest angle of a servo, degrees: what is more is a tone, or switches the servo off.
+const MOST_DEG: f64 = 180.0;
+
+/// A `G4 P` of this or more that is a whole number counts milliseconds: no pen waits for 20 s.
+const LEAST_MILLIS: f64 = 20.0;
+
+/// The places that a servo or an axis is told, and which of them it has when the pen must be up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Places {
+    first: Option<f64>,
+    now: Option<f64>,
+    least: f64,
+    most: f64,
+    changes: u32,
+    /// Where it was at the first `G0` across the sheet, and the least of all these places.
+    at_rapid: Option<f64>,
+    least_at_rapid: f64,
+    /// Where it was when the pen first moved at all; not set if it had not been told a place then.
+    at_move: Option<f64>,
+    moved: bool,
+}
+
+impl Places {
+    fn put(&mut self, place: f64) {
+        if self.first.is_none() {
+            (self.first, self.least, self.most) = (Some(place), place, place);
+        }
+        (self.least, self.most) = (self.least.min(place), self.most.max(place));
+        if self.now != Some(place) {
+            self.changes = self.changes.saturating_add(1);
+        }
+        self.now = Some(place);
+    }
+
+    fn go(&mut self, is_rapid: bool) {
+        if !core::mem::replace(&mut self.moved, true) {
+            self.at_move = self.now;
+        }
+        if let (true, Some(now)) = (is_rapid, self.now) {
+            let least = if self.at_rapid.is_some() { self.least_at_rapid } else { now };
+            self.least_at_rapid = least.min(now);
+            self.at_rapid = self.at_rapid.or(self.now);
+        }
+    }
+
+    /// The places up and down; `None` if it has always been in one place.
+    fn up_and_down(&self) -> Option<(f64, f64)> {
+        let farthest = |from: f64| if from - self.least > self.most - from { self.least } else { self.most };
+        if self.least == self.most {
+            return None;
+        }
+        match (self.at_rapid.or(self.at_move), self.first) {
+            (Some(up), _) => Some((up, farthest(up))),
+            (None, Some(down)) => Some((farthest(down), down)),
+            (None, None) => None,
+        }
+    }
+}
+
+/// Finds out by which words a text lifts its pen: takes the text's lines, one after the other, in constant memory.
+///
+/// The first of these rules that fits holds:
+///
+/// | the text has | it is |
+/// |---|---|
+/// | `M300 S…` up to 180 | [`ServoCommand::M300`] |
+/// | `M280 S…` up to 180 | [`ServoCommand::M280`] |
+/// | `M4 …` without a letter, above 0 | [`LaserCommand::M4`] |
+/// | `M1 …` without a letter | [`ServoCommand::M1`] |
+/// | two changes of Z or more, and as many as there are of the spindle | [`PenConvention::Height`], or [`ServoCommand::Z`] where the pen travels lower than it draws |
+/// | `M4`; or `M3`, and `S` in lines that move, `S0` among others, or three numbers after `S` | [`LaserCommand::Spindle`] |
+/// | `M3` with two numbers after `S`, and at most one `M5` | [`ServoCommand::M3`] |
+/// | `M3` | [`PenConvention::Spindle`] |
+/// | `M106` | [`LaserCommand::Fan`] |
+/// | none of them | [`PenConvention::Motion`] |
+///
+/// A servo or a Z axis is up where it is at the first `G0` across the sheet, or else at the first movement; if it had not been
+/// told a place by then, the first place it is told is down. The other place is the one farthest from that. Heights above and
+/// below 0 are told apart there; others half way between the lowest and the lowest `G0`.
+///
+/// The full power of a laser is 1000, as GRBL has it, or the greatest `S` if that is more; 255 for a fan and for mDraw.
+/// `G4 P` counts milliseconds if every P is a whole number from 20 up, or 0.
+///
+/// ```
+/// # use plotter_motion::gcode::{PenConvention, detect};
+/// let text = b"G0 Z5\nG0 X10 Y10\nG1 Z-0.5 F300\nG1 X20\nG0 Z5\n";
+/// assert_eq!(detect(text.iter().copied()), PenConvention::Height { threshold_mm: 0.0 });
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detection {
+    motion: Motion,
+    unit_mm: f64,
+    relative: bool,
+    beeps: Places,
+    servo: Places,
+    degrees: Places,
+    z: Places,
+    spindle: Places,
+    /// Greatest number after mDraw's `M4`.
+    laser: f64,
+    spindle_on: bool,
+    spindle_changes: u32,
+    offs: u32,
+    dynamic: bool,
+    constant: bool,
+    power_in_move: bool,
+    no_power: bool,
+    /// Two numbers after the spindle's `S` other than 0, and whether there were more.
+    powers: [f64; 2],
+    many_powers: bool,
+    most_power: f64,
+    fan: bool,
+    dwells: bool,
+    short_dwells: bool,
+}
+
+impl Default for Detection {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Detection {
+    /// Before the first line.
+    #[must_use]
+    pub fn new() -> Self {
+        let none = Places::default();
+        Self {
+            motion: Motion::Rapid,
+            unit_mm: 1.0,
+            relative: false,
+            beeps: none,
+            servo: none,
+            degrees: none,
+            z: none,
+            spindle: none,
+            laser: 0.0,
+            spindle_on: false,
+            spindle_changes: 0,
+            offs: 0,
+            dynamic: false,
+            constant: false,
+            power_in_move: false,
+            no_power: false,
+            powers: [0.0; 2],
+            many_powers: false,
+            most_power: 0.0,
+            fan: false,
+            dwells: false,
+            short_dwells: false,
+        }
+    }
+
+    /// What a whole text says.
+    pub fn of(bytes: impl IntoIterator<Item = u8>) -> Self {
+        let (mut reader, mut detection) = (Reader::new(), Self::new());
+        for byte in bytes {
+            if let Some(Ok(block)) = reader.push(byte) {
+                detection.push(&block);
+            }
+        }
+        if let Some(Ok(block)) = reader.finish() {
+            detection.push(&block);
+        }
+        detection
+    }
+
+    /// Takes the next line.
+    pub fn push(&mut self, block: &Block) {
+        let Ok(line) = Line::read(block) else { return };
+        if block.is_deleted() {
+            return;
+        }
+        self.motion = line.motion.unwrap_or(self.motion);
+        self.relative = line.relative.unwrap_or(self.relative);
+        if let Some(inches) = line.inches {
+            self.unit_mm = if inches { 25.4 } else { 1.0 };
+        }
+        let moves = line.may_move() && line.has(b"XY");
+        self.take_told(&line);
+        if let (true, Some(z)) = (line.may_move(), line.number(b'Z')) {
+            let z = z * self.unit_mm;
+            self.z.put(if self.relative { self.z.now.unwrap_or_default() + z } else { z });
+        }
+        self.take_spindle(&line, moves);
+        if line.action == Some(Action::Dwell)
+            && let Some(time) = line.number(b'P').filter(|time| *time > 0.0)
+        {
+            self.dwells = true;
+            self.short_dwells |= time < LEAST_MILLIS || libm::trunc(time) != time;
+        }
+        if moves {
+            let is_rapid = self.motion == Motion::Rapid;
+            for places in
+                [&mut self.beeps, &mut self.servo, &mut self.degrees, &mut self.z, &mut self.spindle]
+            {
+                places.go(is_rapid);
+            }
+        }
+    }
+
+    fn take_told(&mut self, line: &Line<'_>) {
+        let angle = line.number(b'S').filter(|angle| (0.0..=MOST_DEG).contains(angle));
+        match (line.told, angle) {
+            (Some(Told::Beep), Some(angle)) => self.beeps.put(angle),
+            (Some(Told::ServoAngle), Some(angle)) => self.servo.put(angle),
+            (Some(Told::Degrees(degrees)), _) => self.degrees.put(degrees),
+            (Some(Told::LaserPower(power)), _) => self.laser = self.laser.max(power),
+            (Some(Told::Fan(on)), _) => self.fan |= on,
+            _ => {}
+        }
+    }
+
+    fn take_spindle(&mut self, line: &Line<'_>, moves: bool) {
+        if let Some(spindle) = line.spindle {
+            self.spindle_changes =
+                self.spindle_changes.saturating_add(u32::from(self.spindle_on != (spindle != Spindle::Off)));
+            self.spindle_on = spindle != Spindle::Off;
+            self.dynamic |= spindle == Spindle::Dynamic;
+            self.constant |= spindle == Spindle::Constant;
+            self.offs = self.offs.saturating_add(u32::from(spindle == Spindle::Off));
+        }
+        let is_mine = line.told.is_none() && line.action != Some(Action::Dwell) && !line.owned;
+        let Some(power) = line.number(b'S').filter(|_| is_mine) else { return };
+        self.power_in_move |= moves;
+        self.most_power = self.most_power.max(power);
+        if power == 0.0 {
+            self.no_power = true;
+        } else {
+            let [one, other] = self.powers;
+            if one == 0.0 {
+                self.powers = [power, other];
+            } else if power != one && other == 0.0 {
+                self.powers = [one, power];
+            } else if power != one && power != other {
+                self.many_powers = true;
+            }
+        }
+        self.spindle.put(power);
+    }
+
+    /// The convention that the lines so far follow.
+    #[must_use]
+    pub fn pen(&self) -> PenConvention {
+        let servo = |command, places: &Places, usual: (f64, f64)| {
+            let (up, down) = places.up_and_down().unwrap_or(usual);
+            PenConvention::Servo { command, up, down }
+        };
+        let [one, other] = self.powers;
+        let spindle_laser = self.dynamic
+            || (self.constant && (self.power_in_move || self.many_powers || (self.no_power && one != 0.0)));
+        if self.beeps.first.is_some() {
+            servo(ServoCommand::M300, &self.beeps, (50.0, 30.0))
+        } else if self.servo.first.is_some() {
+            servo(ServoCommand::M280, &self.servo, (90.0, 0.0))
+        } else if self.laser > 0.0 {
+            PenConvention::Laser { command: LaserCommand::M4, full: 255.0 }
+        } else if self.degrees.first.is_some() {
+            servo(ServoCommand::M1, &self.degrees, (160.0, 90.0))
+        } else if self.z.changes >= 2 && self.z.changes >= self.spindle_changes {
+            self.height()
+        } else if spindle_laser {
+            PenConvention::Laser { command: LaserCommand::Spindle, full: self.most_power.max(1000.0) }
+        } else if self.constant && other != 0.0 && self.offs <= 1 {
+            servo(ServoCommand::M3, &self.spindle, (one, other))
+        } else if self.constant {
+            PenConvention::Spindle
+        } else if self.fan {
+            PenConvention::Laser { command: LaserCommand::Fan, full: 255.0 }
+        } else {
+            PenConvention::Motion
+        }
+    }
+
+    /// The convention of a text that moves along Z.
+    fn height(&self) -> PenConvention {
+        let (up, down) = self.z.up_and_down().unwrap_or((1.0, 0.0));
+        if up < down {
+            // It travels lower than it draws: these are no heights.
+            let (up, down) = (up / self.unit_mm, down / self.unit_mm);
+            return PenConvention::Servo { command: ServoCommand::Z, up, down };
+        }
+        let travel = if self.z.at_rapid.is_some() { self.z.least_at_rapid } else { up };
+        let travel = if travel > down { travel } else { up };
+        let threshold_mm = if travel > 0.0 && down <= 0.0 { 0.0 } else { 0.5 * (travel + down) };
+        PenConvention::Height { threshold_mm }
+    }
+
+    /// The options for reading the text again.
+    #[must_use]
+    pub fn options(&self) -> ReadOptions {
+        let is_millis = self.dwells && !self.short_dwells;
+        let dwell_unit = if is_millis { DwellUnit::Milliseconds } else { DwellUnit::Seconds };
+        ReadOptions { pen: self.pen(), dwell_unit, ..ReadOptions::default() }
+    }
+}
+
+/// By which words a text lifts its pen, by the rules of [`Detection`].
+pub fn detect(bytes: impl IntoIterator<Item = u8>) -> PenConvention {
+    Detection::of(bytes).pen()
+}

@@ -1,0 +1,218 @@
+//! [`Error`]: what is wrong with a text, where, and what would be right.
+
+use super::{Position, Word};
+use core::fmt;
+
+/// Something in a text that could not be carried out. Reading goes on with the next line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Error {
+    /// The byte the complaint is about.
+    pub at: Position,
+    /// What is wrong.
+    pub problem: Problem,
+}
+
+/// What is wrong. Unless it says otherwise, its line is left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Problem {
+    /// A byte that no line may hold at this place.
+    UnexpectedByte {
+        /// What stands there.
+        byte: u8,
+    },
+    /// A number without its letter.
+    NoLetter,
+    /// A letter without its number.
+    NoNumber {
+        /// The letter.
+        letter: u8,
+    },
+    /// A sign or a point without a digit, or a second point.
+    BadNumber {
+        /// The letter before it.
+        letter: u8,
+    },
+    /// A number that an `E` follows without a blank.
+    Exponent {
+        /// The letter before it.
+        letter: u8,
+    },
+    /// A number beyond ±10⁹.
+    NumberOutOfRange {
+        /// The letter before it.
+        letter: u8,
+        /// The number; infinite when it is very long.
+        value: f64,
+    },
+    /// More than 16 words.
+    TooManyWords,
+    /// A checksum that is another one than the line's.
+    BadChecksum {
+        /// The number after the `*`; `None` if there is none.
+        given: Option<u16>,
+        /// The line's.
+        expected: u8,
+    },
+    /// A line that begins with `$`: it speaks to GRBL itself. A notice.
+    System,
+    /// One letter twice.
+    Repeated {
+        /// The letter.
+        letter: u8,
+    },
+    /// Two commands that exclude each other.
+    TwoCommands {
+        /// The former.
+        first: Word,
+        /// The latter, which the place is of.
+        second: Word,
+    },
+    /// A command that is none.
+    Unknown {
+        /// The command.
+        command: Word,
+    },
+    /// A command that this reader does not carry out. Only a notice, the rest of the line is carried out.
+    Unsupported {
+        /// The command.
+        command: Word,
+        /// What it asks for.
+        meaning: &'static str,
+    },
+    /// A word that the commands of its line do not use. Only a notice, the rest of the line is carried out.
+    Unused {
+        /// The word.
+        word: Word,
+    },
+    /// A number that its letter does not take.
+    BadParameter {
+        /// The word.
+        word: Word,
+        /// What it takes.
+        expected: &'static str,
+    },
+    /// A command without a word that it needs.
+    Missing {
+        /// What lacks.
+        expected: &'static str,
+    },
+    /// Coordinates after `G80`.
+    NoMotion,
+    /// An arc while `G18` or `G19` holds.
+    Plane,
+    /// An arc with a centre and a radius, or with neither.
+    ArcForm,
+    /// An arc with a radius that ends where it begins: any circle would do.
+    ArcWithoutEnd,
+    /// An arc of which both ends are unequally far from its centre, by more than 0.5 mm, or by more than 0.005 mm and a
+    /// thousandth.
+    ArcRadii {
+        /// How far its start is, mm.
+        start_mm: f64,
+        /// How far its end is, mm.
+        end_mm: f64,
+    },
+    /// An arc whose radius does not reach from its start to its end.
+    ArcRadius {
+        /// The radius, mm.
+        radius_mm: f64,
+        /// The least that would do, mm.
+        least_mm: f64,
+    },
+}
+
+impl Problem {
+    /// The same, with its place.
+    pub(super) fn at(self, at: Position) -> Error {
+        Error { at, problem: self }
+    }
+}
+
+impl Error {
+    /// Whether the text is right as it is, and only asks for something that is not done here. Strict reading
+    /// passes over it.
+    #[must_use]
+    pub fn is_notice(&self) -> bool {
+        matches!(self.problem, Problem::Unsupported { .. } | Problem::Unused { .. } | Problem::System)
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.at, self.problem)
+    }
+}
+
+impl core::error::Error for Error {}
+
+/// A letter as a person would write it.
+struct Letter(u8);
+
+impl fmt::Display for Letter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0 == Word::BARE { f.write_str("M") } else { write!(f, "{}", char::from(self.0)) }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::UnexpectedByte { byte } if byte.is_ascii_graphic() => {
+                write!(f, "`{}` begins no word: a word is a letter and a number", char::from(byte))
+            }
+            Self::UnexpectedByte { byte } => {
+                write!(f, "byte 0x{byte:02X} begins no word: a word is a letter and a number")
+            }
+            Self::NoLetter => f.write_str("a number without its letter: a word is like `X10`"),
+            Self::NoNumber { letter } => {
+                write!(f, "{} lacks its number: a word is like `{0}10`", Letter(letter))
+            }
+            Self::BadNumber { letter } => {
+                write!(f, "{} has a malformed number: a number is like `-12` or `0.5`", Letter(letter))
+            }
+            Self::Exponent { letter } => {
+                write!(f, "{} has a number with an exponent: write `1500`, not `1.5e3`", Letter(letter))
+            }
+            Self::NumberOutOfRange { letter, value } => {
+                write!(f, "{} with {value}: numbers reach from -1000000000 to 1000000000", Letter(letter))
+            }
+            Self::TooManyWords => f.write_str("more than 16 words: divide the line"),
+            Self::BadChecksum { given: Some(given), expected } => {
+                write!(f, "checksum *{given} of a line whose bytes make *{expected}: send it again")
+            }
+            Self::BadChecksum { given: None, expected } => {
+                write!(f, "a checksum without its number: the bytes make *{expected}")
+            }
+            Self::System => f.write_str("$ speaks to the controller, not the plotter, and is left out"),
+            Self::Repeated { letter } => write!(f, "{} stands twice: divide the line", Letter(letter)),
+            Self::TwoCommands { first, second } => {
+                write!(f, "{second} excludes {first}, which stands before it: divide the line")
+            }
+            Self::Unknown { command } => write!(f, "{command} is no known command: check its number"),
+            Self::Unsupported { command, meaning } => {
+                write!(f, "{command} ({meaning}) is not supported and is left out")
+            }
+            Self::Unused { word } => {
+                write!(f, "{word} means nothing to the commands of its line and is left out")
+            }
+            Self::BadParameter { word, expected } => write!(f, "{word} is wrong: {expected}"),
+            Self::Missing { expected } => f.write_str(expected),
+            Self::NoMotion => f.write_str("coordinates that no command asks for: put G0 or G1 before them"),
+            Self::Plane => f.write_str("an arc out of the sheet: put G17 before it"),
+            Self::ArcForm => f.write_str("an arc needs its centre, I and J, or its radius, R, and not both"),
+            Self::ArcWithoutEnd => f.write_str(
+                "an arc that ends where it begins needs its centre, I and J: a radius does not tell it",
+            ),
+            Self::ArcRadii { start_mm, end_mm } => write!(
+                f,
+                "an arc begins {start_mm:.3} mm from its centre and ends {end_mm:.3} mm from it: check I and J, which \
+                 count from its beginning"
+            ),
+            Self::ArcRadius { radius_mm, least_mm } => write!(
+                f,
+                "an arc of a radius of {radius_mm:.3} mm does not reach its end: it needs {least_mm:.3} mm or more"
+            ),
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! [`Interpreter`]: lines in, plot operations out.
+
+use super::line::Line;
+use super::machine::Machine;
+use super::{Block, BlockDelete, Error, ReadOptions, Undrained};
+use crate::PlotOp;
+
+/// Most that one line gives.
+const MOST_OUTCOMES: usize = 10;
+
+type Outcome = Result<PlotOp, Error>;
+
+/// What a line has given, in its order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Outcomes {
+    slots: [Option<Outcome>; MOST_OUTCOMES],
+    count: u8,
+    taken: u8,
+}
+
+impl Outcomes {
+    const NONE: Self = Self { slots: [None; MOST_OUTCOMES], count: 0, taken: 0 };
+
+    pub(super) fn give(&mut self, outcome: Outcome) {
+        match self.slots.get_mut(usize::from(self.count)) {
+            Some(slot) => {
+                *slot = Some(outcome);
+                self.count += 1;
+            }
+            None => debug_assert!(false, "a line gives at most {MOST_OUTCOMES} outcomes"),
+        }
+    }
+
+    fn take(&mut self) -> Option<Outcome> {
+        if self.taken == self.count {
+            (self.count, self.taken) = (0, 0);
+            return None;
+        }
+        let slot = self.slots.get_mut(usize::from(self.taken));
+        self.taken += 1;
+        slot.and_then(Option::take)
+    }
+}
+
+/// Carries lines out: knows the pen, where it stands, and what coordinates mean.
+///
+/// Feed it what a [`Reader`](super::Reader) gives and take the operations after each line:
+///
+/// ```
+/// # use plotter_motion::{PlotOp, Point, gcode};
+/// let (mut reader, mut interpreter) = (gcode::Reader::new(), gcode::Interpreter::new());
+/// let mut ops = Vec::new();
+/// for byte in *b"G0 X1 Y2\nM3\nG91 G1 X10 F600\n" {
+///     if let Some(block) = reader.push(byte) {
+///         interpreter.push(block)?;
+///     }
+///     while let Some(op) = interpreter.next_op() {
+///         ops.push(op?);
+///     }
+/// }
+/// assert_eq!(
+///     ops,
+///     [
+///         PlotOp::Travel { to: Point::new(1.0, 2.0) },
+///         PlotOp::Draw { to: Point::new(11.0, 2.0), feed_mm_s: Some(10.0) },
+///     ]
+/// );
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// - A line is carried out whole or not at all. Within it speed, tool and pen come first, then `G4`, `G28` or `G92`, then the
+///   movement, then `M0` or `M2`: the order of the standard.
+/// - A pen that is lowered and lifted again without a movement leaves a dot, a line to where it stands.
+/// - A line drawn by `G0`, and one before the first `F`, leaves its speed to the machine.
+/// - The power of a laser is told before the first line that needs it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interpreter {
+    options: ReadOptions,
+    machine: Machine,
+    outcomes: Outcomes,
+}
+
+impl Default for Interpreter {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Interpreter {
+    /// A machine that has just been switched on, with the default options: pen up at the origin, `G0`, `G17`, `G21`, `G90`,
+    /// `G91.1`, `G94`.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::with_options(ReadOptions::default())
+    }
+
+    /// A machine that has just been switched on.
+    #[must_use]
+    pub fn with_options(options: ReadOptions) -> Self {
+        Self { options, machine: Machine::new(), outcomes: Outcomes::NONE }
+    }
+
+    /// Takes the next line, or the error that the reader gave instead.
+    ///
+    /// # Errors
+    ///
+    /// [`Undrained`] when [`Interpreter::next_op`] still has something to give; the line is not taken.
+    pub fn push(&mut self, block: Result<Block, Error>) -> Result<(), Undrained> {
+        self.drained()?;
+        if let Err(error) = block.and_then(|block| self.carry_out(&block)) {
+            self.outcomes = Outcomes::NONE;
+            self.outcomes.give(Err(error));
+        }
+        Ok(())
+    }
+
+    /// Ends the drawing: a pen that has been lowered and never moved leaves its dot.
+    ///
+    /// # Errors
+    ///
+    /// As [`Interpreter::push`].
+    pub fn finish(&mut self) -> Result<(), Undrained> {
+        self.drained()?;
+        self.machine.leave_dot(&self.options, &mut self.outcomes);
+        Ok(())
+    }
+
+    /// The next operation, or what could not be carried out; `None` when the next line is wanted.
+    pub fn next_op(&mut self) -> Option<Outcome> {
+        self.outcomes.take()
+    }
+
+    fn drained(&self) -> Result<(), Undrained> {
+        if self.outcomes.taken == self.outcomes.count { Ok(()) } else { Err(Undrained) }
+    }
+
+    fn carry_out(&mut self, block: &Block) -> Result<(), Error> {
+        if block.is_deleted() && self.options.block_delete == BlockDelete::LeaveOut {
+            return Ok(());
+        }
+        self.outcomes = Outcomes { count: 0, taken: 0, ..self.outcomes };
+        let line = Line::read(block)?;
+        // What an error leaves half done is forgotten.
+        let mut machine = self.machine;
+        machine.carry_out(&line, &self.options, &mut self.outcomes)?;
+        self.machine = machine;
+        Ok(())
+    }
+}

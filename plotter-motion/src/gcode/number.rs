@@ -1,0 +1,98 @@
+//! [`Number`]: a number read digit by digit.
+
+/// Digits kept. An `f64` holds 15 to 17, and 18 fit into a `u64`.
+const MAX_DIGITS: u8 = 18;
+
+/// Powers of ten that an `f64` holds exactly; places after the point beyond them are not looked at.
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
+    1e19, 1e20, 1e21, 1e22,
+];
+
+/// A decimal number in progress: sign, digits, point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Number {
+    negative: bool,
+    any_digit: bool,
+    point: bool,
+    mantissa: u64,
+    /// Digits of `mantissa` after its first that is not 0.
+    digits: u8,
+    places: u8,
+    /// More digits before the point than `mantissa` holds: beyond every range anyway.
+    huge: bool,
+}
+
+impl Number {
+    /// A number whose first byte is `byte`; `None` if no number begins so.
+    pub(super) fn begin(byte: u8) -> Option<Self> {
+        let mut number = Self { negative: byte == b'-', ..Self::default() };
+        (matches!(byte, b'+' | b'-') || number.push(byte)).then_some(number)
+    }
+
+    /// Takes one more byte; `false` if it does not belong to the number.
+    pub(super) fn push(&mut self, byte: u8) -> bool {
+        match byte {
+            b'.' if !self.point => self.point = true,
+            b'0'..=b'9' => self.digit(byte - b'0'),
+            _ => return false,
+        }
+        true
+    }
+
+    fn digit(&mut self, digit: u8) {
+        self.any_digit = true;
+        if self.digits < MAX_DIGITS && usize::from(self.places) + 1 < POWERS.len() {
+            self.mantissa = self.mantissa * 10 + u64::from(digit);
+            self.digits += u8::from(self.mantissa > 0);
+            self.places += u8::from(self.point);
+        } else if !self.point {
+            self.huge = true;
+        }
+    }
+
+    /// The value, to the nearest `f64` for up to 15 digits; `None` while there is no digit.
+    pub(super) fn value(self) -> Option<f64> {
+        if !self.any_digit {
+            return None;
+        }
+        let scale = POWERS.get(usize::from(self.places)).copied().unwrap_or(1.0);
+        #[expect(clippy::cast_precision_loss, reason = "digits beyond the 15th are rounded")]
+        let magnitude = if self.huge { f64::INFINITY } else { self.mantissa as f64 / scale };
+        Some(if self.negative { -magnitude } else { magnitude })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Option<f64> {
+        let (first, rest) = text.as_bytes().split_first()?;
+        let mut number = Number::begin(*first)?;
+        rest.iter().all(|byte| number.push(*byte)).then(|| number.value()).flatten()
+    }
+
+    #[test]
+    fn numbers_are_the_nearest_ones() {
+        for text in ["0", "-1385.640646", "+.5", "7.", "0.1", "007", "-0.0000000003", "123456789.01234"] {
+            assert_eq!(read(text), text.parse().ok(), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_none() {
+        for text in ["", "-", "+", ".", "-.", "1.2.3", "1e5", "--1", "a"] {
+            assert_eq!(read(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn very_long_numbers_stay_bounded() {
+        let long = |digit: char, count| core::iter::repeat_n(digit, count).collect::<std::string::String>();
+        assert_eq!(read(&long('9', 400)), Some(f64::INFINITY));
+        assert_eq!(read(&std::format!("-{}", long('9', 400))), Some(f64::NEG_INFINITY));
+        assert_eq!(read(&std::format!("{}12.5", long('0', 400))), Some(12.5));
+        assert_eq!(read(&std::format!("0.{}", long('3', 400))), Some(0.333_333_333_333_333_3));
+    }
+}

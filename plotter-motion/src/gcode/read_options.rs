@@ -1,0 +1,53 @@
+//! [`ReadOptions`]: what the text was written for.
+
+use super::{DwellUnit, PenConvention};
+use core::time::Duration;
+
+/// What the machine that a text was written for makes of it.
+///
+/// The default is the reader's side of [`WriteOptions`](super::WriteOptions)' default: GRBL with a pen servo as its
+/// spindle.
+///
+/// ```
+/// # use plotter_motion::gcode::{DwellUnit, PenConvention, PlotOps, ReadOptions};
+/// # use plotter_motion::{PlotOp, Point};
+/// let unicorn =
+///     ReadOptions { pen: PenConvention::UNICORN, dwell_unit: DwellUnit::Milliseconds, ..Default::default() };
+/// let text = b"M300 S30\nG4 P150\nG1 X5 Y2 F3000\nM300 S50";
+/// let ops: Vec<PlotOp> = PlotOps::with_options(text.iter().copied(), unicorn).collect::<Result<_, _>>()?;
+/// assert_eq!(ops, [PlotOp::Draw { to: Point::new(5.0, 2.0), feed_mm_s: Some(50.0) }]);
+/// # Ok::<(), plotter_motion::gcode::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReadOptions {
+    /// How the pen is lifted and lowered.
+    pub pen: PenConvention,
+    /// What the `P` of a `G4` counts.
+    pub dwell_unit: DwellUnit,
+    /// The first `G4` after the pen was lifted or lowered belongs to its way if it is no longer than this, and is no
+    /// [`PlotOp::Dwell`](crate::PlotOp::Dwell).
+    pub settle: Duration,
+    /// What becomes of lines that begin with `/`.
+    pub block_delete: BlockDelete,
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        Self {
+            pen: PenConvention::Spindle,
+            dwell_unit: DwellUnit::Seconds,
+            settle: Duration::from_millis(500),
+            block_delete: BlockDelete::LeaveOut,
+        }
+    }
+}
+
+/// What becomes of lines that begin with `/`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BlockDelete {
+    /// They are left out, without a word: a machine whose switch for it is on; and Makeblock's, to which they are comments.
+    #[default]
+    LeaveOut,
+    /// They are carried out: GRBL.
+    CarryOut,
+}
