@@ -26,6 +26,13 @@ pub enum WriteError {
         /// The speed asked for, mm/s.
         feed_mm_s: f64,
     },
+    /// A power of a laser that is no share of its full power.
+    Power {
+        /// Which operation.
+        index: u64,
+        /// The share asked for.
+        share: f64,
+    },
     /// A height of the pen is not a finite number or lies outside the machine's range.
     Height {
         /// The height in the options, mm.
@@ -48,6 +55,9 @@ impl fmt::Display for WriteError {
                 f,
                 "operation {index}: a speed of {feed_mm_s} mm/s cannot be written: give 0.01 mm/s or more"
             ),
+            Self::Power { index, share } => {
+                write!(f, "operation {index}: {share} is no power: give a share of full power, 0 to 1")
+            }
             Self::Height { height_mm } => {
                 write!(f, "pen: {height_mm} mm is no height: give mm along the Z axis, as 5 and 0")
             }

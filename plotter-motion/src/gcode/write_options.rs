@@ -65,6 +65,24 @@ pub enum PenControl<'a> {
         /// With the pen down, mm.
         down_mm: f64,
     },
+    /// A laser where GRBL has its spindle: `M4 S…` burns, so that corners get no more than lines, and `M5` ends. A dot, at
+    /// which `M4` would be dark, is burnt by `M3 S…` for the time to settle; a stroke has none.
+    ///
+    /// ```
+    /// # use plotter_motion::{PlotOp, Point, gcode};
+    /// let laser = gcode::WriteOptions { pen: gcode::PenControl::Laser { full: 1000 }, ..Default::default() };
+    /// let mut writer = gcode::Writer::with_options(String::new(), laser);
+    /// writer.push(PlotOp::LaserPower { share: 0.25 })?;
+    /// writer.push(PlotOp::Travel { to: Point::new(1.0, 2.0) })?;
+    /// writer.push(PlotOp::Draw { to: Point::new(3.0, 2.0), feed_mm_s: Some(10.0) })?;
+    /// assert_eq!(writer.finish()?, "G21\nG90\nM5\nG0 X1 Y2\nM4 S250\nG1 X3 Y2 F600\nM5\nM2\n");
+    /// # Ok::<(), gcode::WriteError>(())
+    /// ```
+    Laser {
+        /// The number after `S` that is full power (`$30`), with which it burns where no
+        /// [`PlotOp::LaserPower`](crate::PlotOp::LaserPower) says less.
+        full: u32,
+    },
     /// Lines that are written as they are.
     Commands {
         /// Lifts.

@@ -29,6 +29,7 @@ type Steps = (i64, i64);
 /// - A travel is `G0` with the pen up. A line is `G1` with the pen down, with `F` in mm/min where the speed changes. A line
 ///   to where the pen stands is a dot, or nothing within a stroke.
 /// - An arc is `G2` or `G3` with its centre from where it begins.
+/// - The power of a laser is written where the next line begins, for [`PenControl::Laser`] only.
 /// - Another pen is asked for with the pen up, as [`WriteOptions::pen_change`] says; pen 0 is none to ask for. A new sheet
 ///   is `M0 (new sheet)`. A dwell is `G4`.
 ///
@@ -56,6 +57,9 @@ pub struct Writer<'a, W> {
     at: Option<Steps>,
     /// The speed in force, hundredths of a mm/min.
     feed: Option<i64>,
+    /// Share of its power with which a laser is to burn, and the `S` in force while it does.
+    share: f64,
+    power: Option<i64>,
 }
 
 impl<'a, W: fmt::Write> Writer<'a, W> {
@@ -66,7 +70,17 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
 
     /// A writer into `out`.
     pub fn with_options(out: W, options: WriteOptions<'a>) -> Self {
-        Self { out, options, index: 0, pen: None, holder: None, at: None, feed: None }
+        Self {
+            out,
+            options,
+            index: 0,
+            pen: None,
+            holder: None,
+            at: None,
+            feed: None,
+            share: 1.0,
+            power: None,
+        }
     }
 
     /// Writes one operation.
@@ -86,14 +100,19 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
             }
             PlotOp::Draw { to, feed_mm_s } => {
                 let (to, feed) = (self.steps(index, to)?, self.feed(index, feed_mm_s)?);
-                self.begin_line()?;
+                self.begin_line(to, feed)?;
                 self.line(to, feed)?;
             }
             PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } => {
                 self.index = index;
                 self.arc(centre, sweep_rad, to, feed_mm_s)?;
             }
-            PlotOp::LaserPower { .. } => {}
+            PlotOp::LaserPower { share } => {
+                if !(0.0..=1.0).contains(&share) {
+                    return Err(WriteError::Power { index, share });
+                }
+                self.share = share;
+            }
             PlotOp::SelectPen { pen } => {
                 self.put(Pen::Up)?;
                 if pen > 0 && self.holder != Some(pen) {
@@ -144,7 +163,7 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         let half_step = 0.5 / self.scale();
         let rise = out.length() * (1.0 - libm::cos(0.5 * sweep_rad / parts));
         let half_way = self.steps(index, centre + out.rotated(-0.5 * sweep_rad))?;
-        self.begin_line()?;
+        self.begin_line(half_way, feed)?;
         let ends = [half_way, end];
         for to in ends.into_iter().skip(usize::from(parts < 2.0)) {
             let from = self.at.unwrap_or_default();
@@ -226,14 +245,38 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         if self.pen != Some(pen) {
             self.pen = Some(pen);
             self.write_pen(pen)?;
-            self.dwell(self.options.settle)?;
+            if !matches!(self.options.pen, PenControl::Laser { .. }) {
+                self.dwell(self.options.settle)?;
+            }
         }
+        Ok(())
+    }
+
+    /// The laser as it has to burn for a line to `to`, or for a dot.
+    fn burn(&mut self, full: u32, to: Steps, feed: i64) -> fmt::Result {
+        let power = whole(self.share * f64::from(full));
+        let is_dot = self.pen != Some(Pen::Down) && self.at == Some(to);
+        if is_dot {
+            // GRBL's laser is dark until the machine is told to draw.
+            self.out.write_str("G1")?;
+            self.end_line(feed)?;
+        }
+        if self.pen != Some(Pen::Down) {
+            self.pen = Some(Pen::Down);
+            writeln!(self.out, "{} S{power}", if is_dot { "M3" } else { "M4" })?;
+            if is_dot {
+                self.dwell(self.options.settle)?;
+            }
+        } else if self.power != Some(power) {
+            writeln!(self.out, "S{power}")?;
+        }
+        self.power = Some(power);
         Ok(())
     }
 
     fn write_pen(&mut self, pen: Pen) -> fmt::Result {
         match (self.options.pen, pen) {
-            (PenControl::Spindle { .. }, Pen::Up) => self.out.write_str("M5\n"),
+            (PenControl::Spindle { .. } | PenControl::Laser { .. }, Pen::Up) => self.out.write_str("M5\n"),
             (PenControl::Spindle { down }, Pen::Down) => writeln!(self.out, "M3 S{down}"),
             (PenControl::Height { up_mm, .. }, Pen::Up) => {
                 self.out.write_str("G0 Z")?;
@@ -250,6 +293,8 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
                     None => self.out.write_str("\n"),
                 }
             }
+            // What `burn` does.
+            (PenControl::Laser { .. }, Pen::Down) => Ok(()),
             (PenControl::Commands { up, .. }, Pen::Up) => writeln!(self.out, "{up}"),
             (PenControl::Commands { down, .. }, Pen::Down) => writeln!(self.out, "{down}"),
         }
@@ -265,13 +310,16 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         self.out.write_str("\n")
     }
 
-    /// The pen down where it stands: at the origin if nothing else was said.
-    fn begin_line(&mut self) -> Result<(), WriteError> {
+    /// The pen down where it stands, at the origin if nothing else was said, for a line to `to`.
+    fn begin_line(&mut self, to: Steps, feed: i64) -> Result<(), WriteError> {
         self.start()?;
         if self.at.is_none() {
             self.travel((0, 0))?;
         }
-        self.put(Pen::Down)
+        match self.options.pen {
+            PenControl::Laser { full } => Ok(self.burn(full, to, feed)?),
+            _ => self.put(Pen::Down),
+        }
     }
 
     fn travel(&mut self, to: Steps) -> fmt::Result {
@@ -410,6 +458,24 @@ mod tests {
     }
 
     #[test]
+    fn a_laser_is_told_its_power_where_a_line_begins() {
+        let power = |share| PlotOp::LaserPower { share };
+        let laser = WriteOptions { pen: PenControl::Laser { full: 1000 }, ..WriteOptions::default() };
+        let ops = [power(0.5), power(0.25), travel(1.0, 0.0), draw(2.0, 0.0), power(0.5), draw(3.0, 0.0)];
+        assert_eq!(
+            written(laser, &ops),
+            "G21\nG90\nM5\nG0 X1 Y0\nM4 S250\nG1 X2 Y0 F1800\nS500\nG1 X3 Y0\nM5\nM2\n"
+        );
+        let dot = [travel(1.0, 0.0), draw(1.0, 0.0), draw(2.0, 0.0)];
+        assert_eq!(
+            written(laser, &dot),
+            "G21\nG90\nM5\nG0 X1 Y0\nG1 F1800\nM3 S1000\nG4 P0.15\nG1 X2 Y0\nM5\nM2\n"
+        );
+        // A pen does not mind.
+        assert_eq!(written(quick(), &[power(0.5), draw(1.0, 0.0)]), written(quick(), &[draw(1.0, 0.0)]));
+    }
+
+    #[test]
     fn pens_sheets_and_dwells_have_their_words() {
         let dwell = PlotOp::Dwell { duration: Duration::from_millis(1250) };
         let pen = |pen| PlotOp::SelectPen { pen };
@@ -454,6 +520,7 @@ mod tests {
         let mut refusals: Vec<String> = [
             travel(f64::NAN, 0.0),
             travel(1.0, 200_000.0),
+            PlotOp::LaserPower { share: 1.5 },
             PlotOp::Draw { to: Point::ORIGIN, feed_mm_s: Some(0.0) },
             PlotOp::Draw { to: Point::ORIGIN, feed_mm_s: Some(f64::INFINITY) },
         ]
@@ -465,9 +532,10 @@ mod tests {
         insta::assert_snapshot!(refusals.join("\n"), @r"
         operation 0: point (NaN, 0.000) mm lies outside -100000..=100000 mm: scale or move the drawing, or raise limit_mm if the machine takes it
         operation 1: point (1.000, 200000.000) mm lies outside -100000..=100000 mm: scale or move the drawing, or raise limit_mm if the machine takes it
-        operation 2: a speed of 0 mm/s cannot be written: give 0.01 mm/s or more
-        operation 3: a speed of inf mm/s cannot be written: give 0.01 mm/s or more
-        operation 4: point (5.000, 0.000) mm lies outside -100000..=100000 mm: scale or move the drawing, or raise limit_mm if the machine takes it
+        operation 2: 1.5 is no power: give a share of full power, 0 to 1
+        operation 3: a speed of 0 mm/s cannot be written: give 0.01 mm/s or more
+        operation 4: a speed of inf mm/s cannot be written: give 0.01 mm/s or more
+        operation 5: point (5.000, 0.000) mm lies outside -100000..=100000 mm: scale or move the drawing, or raise limit_mm if the machine takes it
         ");
         assert_eq!(writer.finish().unwrap(), "G21\nG90\nM5\nM2\n");
         let bad = WriteOptions { pen: PenControl::Height { up_mm: f64::NAN, down_mm: 0.0 }, ..quick() };
