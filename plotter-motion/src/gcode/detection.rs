@@ -73,7 +73,7 @@ impl Places {
 /// | `M280 S…` up to 180 | [`ServoCommand::M280`] |
 /// | `M4 …` without a letter, above 0 | [`LaserCommand::M4`] |
 /// | `M1 …` without a letter | [`ServoCommand::M1`] |
-/// | two changes of Z or more, and as many as there are of the spindle | [`PenConvention::Height`], or [`ServoCommand::Z`] where the pen travels lower than it draws |
+/// | two changes of Z or more, and as many as there are of the spindle | [`PenConvention::Height`], or [`ServoCommand::Z`] where the pen is never lower than it travels |
 /// | `M4`; or `M3`, and `S` in lines that move, `S0` among others, or three numbers after `S` | [`LaserCommand::Spindle`] |
 /// | `M3` with two numbers after `S`, and at most one `M5` | [`ServoCommand::M3`] |
 /// | `M3` | [`PenConvention::Spindle`] |
@@ -81,8 +81,8 @@ impl Places {
 /// | none of them | [`PenConvention::Motion`] |
 ///
 /// A servo or a Z axis is up where it is at the first `G0` across the sheet, or else at the first movement; if it had not been
-/// told a place by then, the first place it is told is down. The other place is the one farthest from that. Heights above and
-/// below 0 are told apart there; others half way between the lowest and the lowest `G0`.
+/// told a place by then, the first place it is told is down. The other place is the one farthest from that; of heights, the
+/// lowest. Heights above and below 0 are told apart there, others half way between the lowest and the lowest `G0`.
 ///
 /// The full power of a laser is 1000, as GRBL has it, or the greatest `S` if that is more; 255 for a fan and for mDraw.
 /// `G4 P` counts milliseconds if every P is a whole number from 20 up, or 0.
@@ -280,10 +280,11 @@ impl Detection {
 
     /// The convention of a text that moves along Z.
     fn height(&self) -> PenConvention {
-        let (up, down) = self.z.up_and_down().unwrap_or((1.0, 0.0));
-        if up < down {
-            // It travels lower than it draws: these are no heights.
-            let (up, down) = (up / self.unit_mm, down / self.unit_mm);
+        let Places { least: down, most, .. } = self.z;
+        let up = self.z.up_and_down().map_or(most, |(up, _)| up);
+        if up <= down {
+            // It never draws lower than it travels: these are no heights.
+            let (up, down) = (up / self.unit_mm, most / self.unit_mm);
             return PenConvention::Servo { command: ServoCommand::Z, up, down };
         }
         let travel = if self.z.at_rapid.is_some() { self.z.least_at_rapid } else { up };

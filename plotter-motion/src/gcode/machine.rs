@@ -199,8 +199,9 @@ impl Machine {
 
     /// Share of its power with which the laser burns while it moves as it does now.
     fn share(&self, options: &ReadOptions) -> f64 {
-        let PenConvention::Laser { full, .. } = options.pen else { return 0.0 };
-        if self.spindle == Spindle::Off || matches!(self.motion, Motion::Rapid | Motion::None) {
+        let PenConvention::Laser { command, full } = options.pen else { return 0.0 };
+        let is_dark = command == LaserCommand::Spindle && matches!(self.motion, Motion::Rapid | Motion::None);
+        if self.spindle == Spindle::Off || is_dark {
             return 0.0;
         }
         let share = self.power / full;
@@ -216,7 +217,8 @@ impl Machine {
             } else {
                 self.leave_dot(options, out);
             }
-            self.settling = true;
+            // A laser needs no time to go out.
+            self.settling = share > 0.0;
         }
         self.beam = share;
     }

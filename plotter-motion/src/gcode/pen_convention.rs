@@ -23,7 +23,7 @@ pub enum PenConvention {
         /// With the pen down.
         down: f64,
     },
-    /// A laser draws by `G1`, `G2` and `G3` while its power is above 0, and never by `G0`.
+    /// A laser marks while its power is above 0. That of a spindle is dark in `G0`, as in GRBL's laser mode (`$32=1`).
     Laser {
         /// By which word it is switched.
         command: LaserCommand,
