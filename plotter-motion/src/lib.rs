@@ -16,6 +16,7 @@ mod encoder;
 pub mod firmware;
 pub mod gcode;
 mod geom;
+mod homing;
 pub mod hpgl;
 pub mod kinematics;
 mod pid;
@@ -43,6 +44,7 @@ pub use config::{
 pub use config::{TomlError, TomlPlace};
 pub use encoder::{Phases, QuadratureX1, QuadratureX4};
 pub use geom::{Point, Segment, Vec2};
+pub use homing::{Homed, Homing, HomingAxis, HomingError, HomingStatus, HomingStep};
 pub use pid::{Pid, PidState, SumPid, SumPidState};
 pub use planner::{
     Action, Course, PathMode, Phase, PlanError, Planner, PlannerSettings, Shape, junction_speed,

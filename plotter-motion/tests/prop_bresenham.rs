@@ -13,6 +13,8 @@ fn ends() -> impl Strategy<Value = (StepPoint, StepPoint)> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn a_line_makes_as_many_steps_as_its_longer_side_and_ends_on_target((from, to) in ends()) {
         let mut line = Bresenham::new(from, to);

@@ -43,6 +43,8 @@ impl AxisWithPlay {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn a_place_survives_the_way_to_the_motors_and_back(scales in (scale(), scale()), x in -1e6..1e6_f64, y in -1e6..1e6_f64) {
         let machine = Cartesian::new(scales.0, scales.1).unwrap();

@@ -17,12 +17,13 @@ use crate::{Direction, StepPoint};
 /// # use plotter_motion::kinematics::{Backlash, BacklashState};
 /// # use plotter_motion::StepPoint;
 /// let play = Backlash { x_steps: 5, y_steps: 0 };
-/// let mut state = BacklashState::default(); // both axes last driven forwards, as homing leaves them
-/// assert_eq!(play.next(&mut state, StepPoint::new(100, 0)).motor, StepPoint::new(100, 0));
-/// let back = play.next(&mut state, StepPoint::new(80, 0)); // turns round: five steps before it moves
-/// assert_eq!(back.extra, StepPoint::new(-5, 0));
-/// assert_eq!(back.motor, StepPoint::new(75, 0));
-/// assert_eq!(state.logical(StepPoint::new(75, 0)), StepPoint::new(80, 0));
+/// let mut state = BacklashState::default(); // both axes last driven backwards, as homing leaves them
+/// let there = play.next(&mut state, StepPoint::new(100, 0)); // turns round: five steps before it moves
+/// assert_eq!(there.extra, StepPoint::new(5, 0));
+/// assert_eq!(there.motor, StepPoint::new(105, 0));
+/// assert_eq!(state.logical(StepPoint::new(105, 0)), StepPoint::new(100, 0));
+/// let back = play.next(&mut state, StepPoint::new(80, 0)); // and back
+/// assert_eq!((back.extra, back.motor), (StepPoint::new(-5, 0), StepPoint::new(80, 0)));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Backlash {
@@ -58,9 +59,9 @@ pub struct Takeup {
 }
 
 impl Default for BacklashState {
-    /// At the origin, both axes driven forwards last: so homing leaves them, which backs off from the lower switches.
+    /// At the origin, both axes driven backwards last: so homing leaves them, which comes back from the upper switches.
     fn default() -> Self {
-        Self::at(StepPoint::default(), Direction::Plus, Direction::Plus)
+        Self::at(StepPoint::default(), Direction::Minus, Direction::Minus)
     }
 }
 
@@ -123,7 +124,7 @@ mod tests {
     #[test]
     fn an_axis_that_stands_keeps_its_flank() {
         let play = Backlash { x_steps: 3, y_steps: 7 };
-        let mut state = BacklashState::default();
+        let mut state = BacklashState::at(StepPoint::default(), Direction::Plus, Direction::Plus);
         let extra = |state: &mut _, x, y| play.next(state, StepPoint::new(x, y)).extra;
         assert_eq!(extra(&mut state, 10, 10), StepPoint::new(0, 0));
         assert_eq!(extra(&mut state, 5, 10), StepPoint::new(-3, 0));
