@@ -98,8 +98,8 @@ struct Running {
 /// # use plotter_motion::kinematics::{Cartesian, MotorScale};
 /// # use plotter_motion::{MotorEvent, Planner, PlannerSettings, PlotOp, Point, StepGen, StepGenSettings};
 /// let mut planner = Planner::<16>::new(PlannerSettings::default())?;
-/// let motors = Cartesian::new(MotorScale::default(), MotorScale::default())?; // 80 steps to the millimetre
-/// let mut steps = StepGen::new(motors, StepGenSettings::default());
+/// let motor = MotorScale { steps_per_mm: 100.0, inverted: false };
+/// let mut steps = StepGen::new(Cartesian::new(motor, motor)?, StepGenSettings::default());
 /// planner.push(PlotOp::Travel { to: Point::new(10.0, 0.0) })?;
 /// planner.finish()?;
 /// let mut ticks = Vec::new();
@@ -109,9 +109,9 @@ struct Running {
 ///         ticks.push(event.tick);
 ///     }
 /// }
-/// assert_eq!(ticks.len(), 800);
-/// // half a step is 1/160 mm: sqrt(2 s / a) = 3.536 ms after the start
-/// assert_eq!(ticks[0], 3536);
+/// assert_eq!(ticks.len(), 1000);
+/// // the first is due after half a step, 0.005 mm: sqrt(2 s / a) = 3.162 ms after the start
+/// assert_eq!(ticks[0], 3162);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
