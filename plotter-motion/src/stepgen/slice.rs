@@ -128,7 +128,8 @@ impl Slice {
                 before = middle;
             }
         }
-        Some(after)
+        let early = target - self.distance(before) < self.distance(after) - target;
+        Some(if early { before } else { after })
     }
 }
 
