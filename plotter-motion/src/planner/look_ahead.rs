@@ -46,6 +46,8 @@ pub struct Planner<const N: usize> {
     stale: bool,
     /// What is left of the course given last.
     ramps: Ramps,
+    /// Whether the machine is to stop on the path.
+    hold: bool,
     s_curve: SCurveState,
 }
 
@@ -66,7 +68,8 @@ impl<const N: usize> Planner<N> {
             front: Front::new(),
             ring: Ring::new(),
             stale: false,
-            ramps: Ramps::default(),
+            ramps: Ramps::OVER,
+            hold: false,
             s_curve: SCurveState::default(),
         })
     }
@@ -127,11 +130,59 @@ impl<const N: usize> Planner<N> {
     pub fn clear(&mut self, position: Point) {
         self.front.restart(position);
         self.ring.clear();
-        self.ramps = Ramps::default();
+        self.ramps = Ramps::OVER;
+        self.hold = false;
         self.s_curve = SCurveState::default();
     }
 
-    /// The next thing for the motors to do; `None` when nothing is known.
+    /// Feed hold: the machine brakes within its limits, along the path, and stands as soon as it can. Actions go on to come until
+    /// it stands; then there are none until [`Planner::resume`]. More may be pushed meanwhile.
+    ///
+    /// What has been taken is still carried out; a phase lasts 50 ms at the most.
+    pub fn hold(&mut self) {
+        self.hold = true;
+        self.brake();
+    }
+
+    /// Whether a feed hold is in force and the machine stands.
+    #[must_use]
+    pub fn is_held(&self) -> bool {
+        self.hold && self.stands()
+    }
+
+    /// Ends a feed hold: the machine goes on from where it is.
+    pub fn resume(&mut self) {
+        if !core::mem::take(&mut self.hold) || self.settings.jerk_mm_s3.is_some() {
+            return;
+        }
+        let (accel, rest_mm) = (self.settings.accel_mm_s2, self.ramps.rest_mm());
+        if rest_mm > 0.0 {
+            let most2 = self.ramps.speed2() + 2.0 * accel * rest_mm;
+            let exit2 = self.ring.enter_at_most(most2, accel);
+            self.ramps.plan(exit2, accel);
+        }
+    }
+
+    /// Whether the machine is at rest after what has been taken.
+    fn stands(&self) -> bool {
+        if self.settings.jerk_mm_s3.is_some() {
+            self.s_curve.stands()
+        } else if self.ramps.rest_mm() > 0.0 {
+            self.ramps.speed2() <= 0.0
+        } else {
+            self.ring.get(0).is_none_or(|next| next.entry2 <= 0.0)
+        }
+    }
+
+    /// Brakes on what is left of the course, and with what speed is left on the next.
+    fn brake(&mut self) {
+        if self.settings.jerk_mm_s3.is_none() && self.ramps.rest_mm() > 0.0 {
+            let exit2 = self.ramps.brake(self.settings.accel_mm_s2);
+            self.ring.enter_at_most(exit2, self.settings.accel_mm_s2);
+        }
+    }
+
+    /// The next thing for the motors to do; `None` when nothing is known, or the machine is held.
     pub fn next_action(&mut self) -> Option<Action> {
         if core::mem::take(&mut self.stale) && self.settings.jerk_mm_s3.is_none() {
             self.ring.plan(self.settings.accel_mm_s2);
@@ -141,9 +192,12 @@ impl<const N: usize> Planner<N> {
         }
         if let Some(jerk_mm_s3) = self.settings.jerk_mm_s3
             && let Some(phase) =
-                self.s_curve.next_phase(&mut self.ring, self.settings.accel_mm_s2, jerk_mm_s3)
+                self.s_curve.next_phase(&mut self.ring, self.settings.accel_mm_s2, jerk_mm_s3, self.hold)
         {
             return Some(Action::Phase(phase));
+        }
+        if self.is_held() {
+            return None;
         }
         let head = *self.ring.get(0)?;
         let action = match head.kind {
@@ -158,6 +212,9 @@ impl<const N: usize> Planner<N> {
             let exit2 = self.ring.next_entry2();
             self.ramps = Ramps::new(&head, exit2, self.settings.accel_mm_s2);
             self.ring.pop();
+            if self.hold {
+                self.brake();
+            }
         }
         Some(action)
     }

@@ -3,7 +3,7 @@
 use crate::{Point, Segment};
 
 /// Most vertices that one segment stands for.
-const MOST: usize = 12;
+const MOST: usize = 8;
 
 /// A straight segment that stands for one or more of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,64 +3,112 @@
 use super::Phase;
 use super::block::Block;
 
-/// Speeding up, cruising, braking: what is left of the phases of a block.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ramps {
-    entry: f64,
-    peak: f64,
-    exit: f64,
-    up_mm: f64,
-    down_mm: f64,
-    length_mm: f64,
-    /// How many phases have been taken.
-    taken: u8,
+/// Longest phase, s: a feed hold begins to act after that time at the latest.
+const LONGEST_S: f64 = 0.05;
+
+/// A way with a constant acceleration: to a place on the block, which is passed with a speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Ramp {
+    end_mm: f64,
+    speed: f64,
 }
 
-/// How many phases there are.
-const PHASES: u8 = 3;
-
-impl Default for Ramps {
-    /// Nothing left.
-    fn default() -> Self {
-        Self { entry: 0.0, peak: 0.0, exit: 0.0, up_mm: 0.0, down_mm: 0.0, length_mm: 0.0, taken: PHASES }
-    }
+/// Speeding up, cruising, braking: what is left of a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ramps {
+    length_mm: f64,
+    cruise2: f64,
+    /// Where the phases taken so far end, and the speed there.
+    done_mm: f64,
+    speed: f64,
+    /// What is to come, from `next` on.
+    ramps: [Ramp; 3],
+    next: usize,
 }
 
 impl Ramps {
+    /// Nothing left.
+    pub(super) const OVER: Self = Self {
+        length_mm: 0.0,
+        cruise2: 0.0,
+        done_mm: 0.0,
+        speed: 0.0,
+        ramps: [Ramp { end_mm: 0.0, speed: 0.0 }; 3],
+        next: usize::MAX,
+    };
+
     /// The quickest way along a block that leaves it with the given square of a speed.
     pub(super) fn new(block: &Block, exit2: f64, accel_mm_s2: f64) -> Self {
-        let (entry2, cruise2, length_mm) =
-            (f64::from(block.entry2), f64::from(block.cruise2), block.length());
+        let (length_mm, cruise2) = (block.length(), f64::from(block.cruise2));
         if !(block.is_path() && length_mm > 0.0 && cruise2 > 0.0) {
-            return Self::default();
+            return Self::OVER;
         }
-        // Where speeding up and braking meet.
-        let peak2 = (0.5 * (entry2 + exit2) + accel_mm_s2 * length_mm).min(cruise2).max(entry2).max(exit2);
-        let up_mm = ((peak2 - entry2) / (2.0 * accel_mm_s2)).min(length_mm);
-        let down_mm = ((peak2 - exit2) / (2.0 * accel_mm_s2)).min(length_mm - up_mm);
-        let (entry, peak, exit) = (libm::sqrt(entry2), libm::sqrt(peak2), libm::sqrt(exit2));
-        Self { entry, peak, exit, up_mm, down_mm, length_mm, taken: 0 }
+        let speed = libm::sqrt(f64::from(block.entry2));
+        let mut ramps = Self { length_mm, cruise2, speed, ..Self::OVER };
+        ramps.plan(exit2, accel_mm_s2);
+        ramps
     }
 
+    /// Plans what is left of the block.
+    pub(super) fn plan(&mut self, exit2: f64, accel_mm_s2: f64) {
+        let (rest_mm, entry2) = (self.rest_mm(), self.speed * self.speed);
+        // Where speeding up and braking meet.
+        let peak2 = (0.5 * (entry2 + exit2) + accel_mm_s2 * rest_mm).min(self.cruise2).max(entry2).max(exit2);
+        let up_mm = ((peak2 - entry2) / (2.0 * accel_mm_s2)).min(rest_mm);
+        let down_mm = ((peak2 - exit2) / (2.0 * accel_mm_s2)).min(rest_mm - up_mm);
+        let (peak, exit) = (libm::sqrt(peak2), libm::sqrt(exit2));
+        self.ramps = [
+            Ramp { end_mm: self.done_mm + up_mm, speed: peak },
+            Ramp { end_mm: self.length_mm - down_mm, speed: peak },
+            Ramp { end_mm: self.length_mm, speed: exit },
+        ];
+        self.next = 0;
+    }
+
+    /// Plans to stop as soon as can be. Gives the square of the speed at the end of the block: above 0 when it is too short.
+    pub(super) fn brake(&mut self, accel_mm_s2: f64) -> f64 {
+        let exit2 = self.speed * self.speed - 2.0 * accel_mm_s2 * self.rest_mm();
+        let end_mm = self.done_mm + self.speed * self.speed / (2.0 * accel_mm_s2);
+        let end = Ramp { end_mm: end_mm.min(self.length_mm), speed: libm::sqrt(exit2.max(0.0)) };
+        self.ramps = [end; 3];
+        self.next = 2;
+        exit2.max(0.0)
+    }
+
+    /// Square of the speed at the end of the phases taken.
+    pub(super) fn speed2(&self) -> f64 {
+        self.speed * self.speed
+    }
+
+    /// How much of the block is left.
+    pub(super) fn rest_mm(&self) -> f64 {
+        self.length_mm - self.done_mm
+    }
+
+    /// Whether no phase is left, be it that the machine was held in the middle.
     pub(super) const fn is_over(&self) -> bool {
-        self.taken >= PHASES
+        self.next >= self.ramps.len()
     }
 
     /// The next phase.
     pub(super) fn next(&mut self) -> Option<Phase> {
-        let Self { entry, peak, exit, up_mm, down_mm, length_mm, .. } = *self;
-        while !self.is_over() {
-            let (from_mm, way_mm, from, to) = match self.taken {
-                0 => (0.0, up_mm, entry, peak),
-                1 => (up_mm, length_mm - up_mm - down_mm, peak, peak),
-                _ => (length_mm - down_mm, down_mm, peak, exit),
-            };
-            self.taken += 1;
-            if way_mm > 0.0 && from + to > 0.0 {
-                let duration_s = 2.0 * way_mm / (from + to);
-                let accel_mm_s2 = (to - from) / duration_s;
+        while let Some(&Ramp { end_mm, speed }) = self.ramps.get(self.next) {
+            let (way_mm, from_mm, from) = (end_mm - self.done_mm, self.done_mm, self.speed);
+            if way_mm > 0.0 && from + speed > 0.0 {
+                let whole_s = 2.0 * way_mm / (from + speed);
+                let accel_mm_s2 = (speed - from) / whole_s;
+                let duration_s = whole_s.min(LONGEST_S);
+                if duration_s < whole_s {
+                    self.done_mm += duration_s * (from + 0.5 * accel_mm_s2 * duration_s);
+                    self.speed += accel_mm_s2 * duration_s;
+                } else {
+                    self.next += 1;
+                    (self.done_mm, self.speed) = (end_mm, speed);
+                }
                 return Some(Phase { duration_s, from_mm, speed_mm_s: from, accel_mm_s2, jerk_mm_s3: 0.0 });
             }
+            self.next += 1;
+            (self.done_mm, self.speed) = (end_mm, speed);
         }
         None
     }

@@ -99,6 +99,25 @@ impl<const N: usize> Ring<N> {
     }
 }
 
+impl<const N: usize> Ring<N> {
+    /// Plans anew with a head that is entered with no more than this square of a speed; gives the one with which it is.
+    pub(super) fn enter_at_most(&mut self, most2: f64, accel_mm_s2: f64) -> f64 {
+        // What can be braked from within the blocks known, backwards.
+        let mut entry2 = 0.0_f64;
+        for index in (0..self.len).rev() {
+            let Some(block) = self.get(index) else { continue };
+            entry2 = f64::from(block.max_entry2).min(entry2 + reach2(block, 2.0 * accel_mm_s2));
+        }
+        let entry2 = entry2.min(most2);
+        if let Some(head) = self.get_mut(0) {
+            head.entry2 = narrow(entry2);
+        }
+        self.planned = 0;
+        self.plan(accel_mm_s2);
+        self.get(0).map_or(0.0, |head| f64::from(head.entry2))
+    }
+}
+
 /// How much the square of the speed can change along a block.
 fn reach2(block: &Block, twice_accel: f64) -> f64 {
     if block.is_path() { twice_accel * block.length() } else { 0.0 }

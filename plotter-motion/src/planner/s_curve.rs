@@ -206,6 +206,7 @@ impl SCurveState {
         ring: &mut Ring<N>,
         accel_mm_s2: f64,
         jerk_mm_s3: f64,
+        hold: bool,
     ) -> Option<Phase> {
         if !self.begun {
             return None;
@@ -213,6 +214,11 @@ impl SCurveState {
         let limits = Limits { accel: accel_mm_s2, jerk: jerk_mm_s3 };
         let length_mm = ring.get(0).map_or(0.0, |head| head.length());
         loop {
+            if hold && self.taken > 0 {
+                // What has not been taken of what was chosen is not wanted any more.
+                self.chosen = Chosen::None;
+                self.taken = 0;
+            }
             if let Some((jerk, time_s)) = self.chosen.phase(self.taken, limits.jerk) {
                 self.taken += 1;
                 if time_s > 0.0 {
@@ -229,6 +235,15 @@ impl SCurveState {
             if rest_mm <= DONE_MM {
                 break;
             }
+            if hold {
+                self.chosen = self.brake(rest_mm, limits);
+                self.taken = 0;
+                if self.chosen == Chosen::None {
+                    self.state = State::default();
+                    return None;
+                }
+                continue;
+            }
             self.chosen = self.choose(ring, rest_mm, limits);
             self.taken = 0;
             if self.chosen == Chosen::None {
@@ -241,6 +256,25 @@ impl SCurveState {
             self.state = State::default();
         }
         None
+    }
+
+    /// Whether the motion has come to rest, wherever it is.
+    pub(super) fn stands(&self) -> bool {
+        self.state == State::default()
+    }
+
+    /// The next part of a braking to rest, no farther than the end of the block; none at rest.
+    fn brake(&self, rest_mm: f64, limits: Limits) -> Chosen {
+        let Braking { in_s, steady_s, out_s } = self.state.braking(0.0, limits);
+        for (jerk, time_s) in [(-limits.jerk, in_s), (0.0, steady_s), (limits.jerk, out_s)] {
+            if time_s <= 1e-9 {
+                continue;
+            }
+            let within = self.state.after(jerk, time_s).1 <= rest_mm;
+            let time_s = if within { time_s } else { self.time_to(rest_mm, jerk, time_s) };
+            return Chosen::One { jerk, time_s };
+        }
+        Chosen::None
     }
 
     fn take(&mut self, jerk: f64, time_s: f64) -> Phase {
