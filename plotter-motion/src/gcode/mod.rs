@@ -1,8 +1,9 @@
-//! G-code, the language of machine tools, as pen plotters understand it: writer.
+//! G-code, the language of machine tools, as pen plotters and lasers understand it: reader, interpreter and writer.
 //!
 //! # The language in short
 //!
-//! A text is a row of lines, each a few words of a letter and a number. Numbers are decimal, in mm and mm/min:
+//! A text is a row of lines, each a few words of a letter and a number. Numbers are decimal, in mm and mm/min; what is in
+//! parentheses or after `;` is a comment:
 //!
 //! ```text
 //! G21                        millimetres
@@ -16,19 +17,101 @@
 //! M2                         end
 //! ```
 //!
+//! # From text to drawing and back
+//!
+//! ```text
+//! bytes ──▶ Reader ──▶ Block ──▶ Interpreter ──▶ PlotOp ──▶ Writer ──▶ text
+//!           └──────────── plot_ops ────────────┘  mm
+//! ```
+//!
+//! [`plot_ops`] does it for a text in memory, [`PlotOps`] for any iterator of bytes. [`Reader`] and [`Interpreter`] are what
+//! both are made of: they take one byte and one line at a time, and own neither a port nor a buffer, so that a text of any
+//! length needs the same memory. A controller that is sent its lines one by one takes them from a [`Reader`] as [`Block`]s.
+//! [`Writer`] and [`write_ops`] go the other way.
+//!
+//! ```
+//! use plotter_motion::{PlotOp, gcode};
+//!
+//! let text = b"G21 G90\nM5\nG0 X10 Y10\nM3 S90\nG1 X20 F1800\nG3 Y20 J5\nG1 X1O\nM5\nM2\n";
+//! let options = gcode::WriteOptions { settle: core::time::Duration::ZERO, ..Default::default() };
+//! let mut again = gcode::Writer::with_options(String::new(), options);
+//! let mut reports = Vec::new();
+//! for op in gcode::plot_ops(text) {
+//!     match op {
+//!         Ok(op) => again.push(op)?,
+//!         Err(report) => reports.push(report.to_string()),
+//!     }
+//! }
+//! assert_eq!(
+//!     again.finish()?,
+//!     "G21\nG90\nM5\nG0 X10 Y10\nM3 S90\nG1 X20 Y10 F1800\nG3 X20 Y20 I0 J5\nM5\nM2\n"
+//! );
+//! assert_eq!(reports, ["line 7, column 6 (byte 57): O lacks its number: a word is like `O10`"]); // not 10 but 1O
+//! # Ok::<(), gcode::WriteError>(())
+//! ```
+//!
 //! # How pens are lifted
 //!
-//! The language knows no pens, so every machine has its own way: see [`PenControl`].
+//! The language knows no pens, so every machine has its own way. The writer is told it by [`PenControl`], the interpreter by
+//! [`PenConvention`]; [`Detection`] finds it out from a text.
 //!
-//! | machine | up, down | |
+//! | machine | up, down | written by | read by |
+//! |---|---|---|---|
+//! | GRBL with a servo as its spindle | `M5`, `M3 S…` | [`PenControl::Spindle`] | [`PenConvention::Spindle`] |
+//! | the same, told its angles | `M3 S…`, `M3 S…` | [`PenControl::Commands`] | [`ServoCommand::M3`] |
+//! | a mill or a printer that holds a pen | `G0 Z…`, `G1 Z…` | [`PenControl::Height`] | [`PenConvention::Height`] |
+//! | Unicorn | `M300 S50`, `M300 S30` | [`PenControl::Commands`] | [`ServoCommand::M300`] |
+//! | Marlin with a servo | `M280 P0 S…` | [`PenControl::Commands`] | [`ServoCommand::M280`] |
+//! | mDraw (Makeblock) | `M1 …`, degrees | [`PenControl::Commands`] | [`ServoCommand::M1`] |
+//! | older Makeblock | `Z…`, degrees | [`PenControl::Commands`] | [`ServoCommand::Z`] |
+//! | a laser on GRBL | `M5`, `M4 S…` or `M3 S…` | [`PenControl::Laser`] | [`LaserCommand::Spindle`] |
+//! | a laser for a printer's fan | `M107`, `M106 S…` | [`PenControl::Commands`] | [`LaserCommand::Fan`] |
+//! | a laser on mDraw | `M4 0`, `M4 …` | [`PenControl::Commands`] | [`LaserCommand::M4`] |
+//! | none of these: G0 travels, G1 draws | | | [`PenConvention::Motion`] |
+//!
+//! mDraw leaves G2, G3 and G4 undone without a word: give it chords, and no time to settle. Its firmware takes words apart at
+//! blanks only: [`Spacing::Required`].
+//!
+//! # What is carried out
+//!
+//! | word | with | meaning |
 //! |---|---|---|
-//! | GRBL with a servo as its spindle | `M5`, `M3 S…` | [`PenControl::Spindle`] |
-//! | a mill or a printer that holds a pen | `G0 Z…`, `G1 Z…` | [`PenControl::Height`] |
-//! | mDraw (Makeblock) | `M1 …`, degrees | [`PenControl::Commands`] |
-//! | Unicorn | `M300 S50`, `M300 S30` | [`PenControl::Commands`] |
-//! | Marlin with a servo | `M280 P0 S…` | [`PenControl::Commands`] |
+//! | `G0` | X Y Z | goes there, as fast as can be; with the pen down it draws |
+//! | `G1` | X Y Z F | goes there at the speed F |
+//! | `G2`, `G3` | X Y, and I J or R | an arc, clockwise or counter-clockwise; R below 0 for more than half a turn; a whole circle by I J where it ends as it begins |
+//! | `G4` | P or S | waits: P as [`ReadOptions::dwell_unit`] says, S seconds |
+//! | `G28`, `G30` | X Y Z | travels to the origin, or along the axes named only; numbers do not count |
+//! | `G53` | | coordinates of this line without the offset of `G92` |
+//! | `G90`, `G91` | | coordinates are places, or ways |
+//! | `G90.1`, `G91.1` | | I and J are a place, or count from where the arc begins |
+//! | `G20`, `G21` | | inches, millimetres |
+//! | `G92` | X Y Z | here is that place; without words, the origin |
+//! | `G92.1`, `G92.2` | | that no longer |
+//! | `G80` | | coordinates without a command are an error from here on |
+//! | `M3`, `M4`, `M5`, `S` | | pens, servos and lasers, as above; so `M1 …`, `M4 …`, `M106`, `M107`, `M280`, `M300` |
+//! | `M6` | T | takes the pen T, also one of an earlier line |
+//! | `M0 (pen 2)`, `M0 (new sheet)` | | what [`Writer`] writes for another pen and a new sheet; every other `M0` and `M1` is a pause, and reported |
+//! | `M2`, `M30` | | pen up; modes as GRBL sets them back then. What follows is read on |
+//! | `F`, `S`, `T` | | hold until another one comes |
+//! | coordinates alone | | the last of `G0` to `G3` again; `G0` at first |
+//! | `N`, `O`, `%` | | nothing |
 //!
-//! mDraw leaves G2, G3 and G4 undone without a word: give it chords, and no time to settle.
+//! Nothing is done for `G17 G40 G49 G54`…`G59.3 G61 G64 G94`, coolant, drives (`M17 M18 M84`), and questions and settings of
+//! printers and of mDraw; what else is known by name is reported as [`Problem::Unsupported`], a notice. All `G` and `M`
+//! words of a line are done, but two that exclude each other are an error.
+//!
+//! # Bad input
+//!
+//! An [`Error`] says where (line, column, byte), what is wrong and what would be right. Its line is left out as a whole, and
+//! reading goes on with the next one; [`PlotOps::strict`] stops instead. Arcs are refused as GRBL refuses them, whose ends lie
+//! more than 0.5 mm unequally far from the centre, or more than 0.005 mm and a thousandth.
+//!
+//! # Why not the crate `gcode`
+//!
+//! Version 0.7 of that crate takes words apart without allocation, with a line number and offset for each. It reads a `&str`
+//! that holds whole lines in UTF-8, so bytes from a serial line have to be gathered first. Numbers are `f32`, of 7 digits.
+//! It finds commands and their arguments, and no arcs, units or pens, which are the larger part here. Of the dialects above it
+//! reports `M1 90`, `/`, `$` and checksums as wrong; `X1e3` it takes for an X and an E.
 //!
 //! Sources: NIST, *The NIST RS274NGC Interpreter, Version 3* (2000); the GRBL project's wiki on version 1.1.
 
