@@ -155,6 +155,8 @@ fn a_laser_draws_by_g1_while_it_has_power() {
     assert_eq!(by(laser, "G1 F60\nM3 S100\nG4 P0.2\nM5\nM4 S100\nM5\nG0\nM3 S9\nM5\nS2000 M3\nG1 X1"), {
         "L0.1 D0,0@1 L1 D1,0@1"
     });
+    // What it burns while it stands has the power of that time.
+    assert_eq!(by(laser, "G1 F60\nM3 S1000\nG4 P0.2\nS10\nG1 X1\nM5"), "L1 D0,0@1 L0.01 D1,0@1");
     let fan = pen(PenConvention::Laser { command: LaserCommand::Fan, full: 255.0 });
     assert_eq!(
         by(fan, "G1 X1\nM106 S51\nG1 X2\nM107\nX3\nM106\nX4\nM106 S0\nX5"),

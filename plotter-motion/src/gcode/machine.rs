@@ -211,14 +211,13 @@ impl Machine {
     /// What becomes of a laser at the end of a line: switched on and off without a movement between it leaves a dot.
     fn switch_laser(&mut self, moved: bool, options: &ReadOptions, out: &mut Outcomes) {
         let share = self.share(options);
-        if !moved && (self.beam > 0.0) != (share > 0.0) {
-            if share > 0.0 {
-                self.dot_owed = self.spindle == Spindle::Constant;
-            } else {
-                self.leave_dot(options, out);
-            }
+        if !moved && self.beam != share {
+            // What it has burnt while it stood, it has burnt with the power that it had.
+            self.leave_dot(options, out);
+            let begins = self.beam == 0.0;
+            self.dot_owed = begins && self.spindle == Spindle::Constant;
             // A laser needs no time to go out.
-            self.settling = share > 0.0;
+            self.settling = begins;
         }
         self.beam = share;
     }

@@ -100,7 +100,7 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
             }
             PlotOp::Draw { to, feed_mm_s } => {
                 let (to, feed) = (self.steps(index, to)?, self.feed(index, feed_mm_s)?);
-                self.begin_line(to, feed)?;
+                self.begin_line(to != self.at.unwrap_or_default(), feed)?;
                 self.line(to, feed)?;
             }
             PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } => {
@@ -163,8 +163,10 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         let half_step = 0.5 / self.scale();
         let rise = out.length() * (1.0 - libm::cos(0.5 * sweep_rad / parts));
         let half_way = self.steps(index, centre + out.rotated(-0.5 * sweep_rad))?;
-        self.begin_line(half_way, feed)?;
         let ends = [half_way, end];
+        let here = self.at.unwrap_or_default();
+        let moves = if parts < 2.0 { end != here } else { ends.iter().any(|to| *to != here) };
+        self.begin_line(moves, feed)?;
         for to in ends.into_iter().skip(usize::from(parts < 2.0)) {
             let from = self.at.unwrap_or_default();
             if rise < half_step || from == to {
@@ -252,10 +254,10 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         Ok(())
     }
 
-    /// The laser as it has to burn for a line to `to`, or for a dot.
-    fn burn(&mut self, full: u32, to: Steps, feed: i64) -> fmt::Result {
+    /// The laser as it has to burn for a line, or for a dot, which does not move.
+    fn burn(&mut self, full: u32, moves: bool, feed: i64) -> fmt::Result {
         let power = whole(self.share * f64::from(full));
-        let is_dot = self.pen != Some(Pen::Down) && self.at == Some(to);
+        let is_dot = self.pen != Some(Pen::Down) && !moves;
         if is_dot {
             // GRBL's laser is dark until the machine is told to draw.
             self.out.write_str("G1")?;
@@ -267,7 +269,9 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
             if is_dot {
                 self.dwell(self.options.settle)?;
             }
-        } else if self.power != Some(power) {
+        } else if !moves || self.power == Some(power) {
+            return Ok(());
+        } else {
             writeln!(self.out, "S{power}")?;
         }
         self.power = Some(power);
@@ -310,14 +314,14 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         self.out.write_str("\n")
     }
 
-    /// The pen down where it stands, at the origin if nothing else was said, for a line to `to`.
-    fn begin_line(&mut self, to: Steps, feed: i64) -> Result<(), WriteError> {
+    /// The pen down where it stands, at the origin if nothing else was said, for a line or for a dot, which does not move.
+    fn begin_line(&mut self, moves: bool, feed: i64) -> Result<(), WriteError> {
         self.start()?;
         if self.at.is_none() {
             self.travel((0, 0))?;
         }
         match self.options.pen {
-            PenControl::Laser { full } => Ok(self.burn(full, to, feed)?),
+            PenControl::Laser { full } => Ok(self.burn(full, moves, feed)?),
             _ => self.put(Pen::Down),
         }
     }
@@ -471,6 +475,9 @@ mod tests {
             written(laser, &dot),
             "G21\nG90\nM5\nG0 X1 Y0\nG1 F1800\nM3 S1000\nG4 P0.15\nG1 X2 Y0\nM5\nM2\n"
         );
+        // A line to where it stands is nothing, and needs no power.
+        let still = [travel(1.0, 0.0), draw(1.0, 0.0), power(0.5), draw(1.0, 0.0)];
+        assert_eq!(written(laser, &still), written(laser, &still[..2]));
         // A pen does not mind.
         assert_eq!(written(quick(), &[power(0.5), draw(1.0, 0.0)]), written(quick(), &[draw(1.0, 0.0)]));
     }
