@@ -14,7 +14,7 @@
 //! is only ever met at a rate that may be started and stopped at once: the way is fast where the axis is known to be
 //! longer, and slow after that, as in the source (spec 5.3).
 
-use crate::{Axis, Direction, LimitSwitches};
+use crate::{Axis, Direction, LimitSwitches, Machine, StepperConfig};
 use core::fmt;
 
 /// How one axis is homed. Rates are pulses a second, lengths steps of the motor.
@@ -53,6 +53,38 @@ impl Default for HomingAxis {
             release_steps: 438, // 5 mm
             known_steps: 24_000,
             most_steps: 40_000,
+        }
+    }
+}
+
+impl HomingAxis {
+    /// An axis of a checked machine with stepper motors; rates and lengths in whole pulses, rounded down.
+    ///
+    /// ```
+    /// # use plotter_motion::{Axis, HomingAxis, Machine, MachineConfig};
+    /// let x = HomingAxis::of(&Machine::new(MachineConfig::stepper_plotter())?, Axis::X);
+    /// assert_eq!((x.start_hz, x.fast_hz, x.known_steps), (2_000, 8_000, 23_996)); // 274 mm of 87.58 steps
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn of(machine: &Machine, axis: Axis) -> Self {
+        let config = machine.config();
+        let StepperConfig { steps_per_mm, start_rate_hz, .. } = match axis {
+            Axis::X => config.x.stepper,
+            Axis::Y => config.y.stepper,
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+        let whole = |value: f64| value as u32;
+        let steps = |mm: f64| whole(mm * steps_per_mm);
+        Self {
+            start_hz: whole(start_rate_hz),
+            fast_hz: whole(config.homing.fast_rate_hz),
+            slow_hz: whole(config.homing.slow_rate_hz),
+            accel_hz_s: steps(config.planner.accel_mm_s2),
+            pull_off_steps: steps(config.homing.pull_off_mm).max(1),
+            release_steps: steps(config.homing.release_mm).max(1),
+            known_steps: steps(config.homing.known_travel_mm),
+            most_steps: steps(config.homing.max_travel_mm),
         }
     }
 }
@@ -258,6 +290,12 @@ pub struct Homing {
 }
 
 impl Homing {
+    /// Homing of both axes of a checked machine with stepper motors.
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        Self::new(HomingAxis::of(machine, Axis::X), HomingAxis::of(machine, Axis::Y))
+    }
+
     /// Homing of both axes, from wherever they stand.
     #[must_use]
     pub fn new(x: HomingAxis, y: HomingAxis) -> Self {

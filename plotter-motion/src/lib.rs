@@ -37,8 +37,9 @@ pub use bresenham::{Bresenham, StepPair};
 pub use chords::chords;
 pub use config::{
     AreaConfig, AxisConfig, Bound, ConfigError, ContouringConfig, ControlConfig, ControllerChoice, Decoding,
-    EncoderConfig, LoadConfig, Machine, MachineConfig, MachineName, MotorConfig, PublishedConfig,
-    SerialConfig, StrokeOrder, SyncStopConfig, ThresholdChoice, VectorizeConfig, VectorizeMode,
+    DriveChoice, EncoderConfig, HomingConfig, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName,
+    MotorConfig, PathMode, PenConfig, PlannerConfig, PublishedConfig, SerialConfig, StepperConfig,
+    StrokeOrder, SyncStopConfig, ThresholdChoice, VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};

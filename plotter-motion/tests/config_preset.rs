@@ -1,49 +1,78 @@
-//! The preset of the documented gantry against the defaults in code.
+//! The presets of the documented machines against the values in code.
 #![cfg(feature = "toml")]
 
 use plotter_motion::{Machine, MachineConfig};
 use std::{fs, path::Path};
 
-/// The preset, or `None` where this crate was unpacked alone.
-fn preset() -> Option<String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/machines/semi-virtual-gantry.toml");
-    let text = fs::read_to_string(&path).ok();
-    if text.is_none() {
-        eprintln!("{} is not here: nothing to compare", path.display());
+/// What a preset must be.
+struct Preset {
+    file: &'static str,
+    config: fn() -> MachineConfig,
+    /// Keys of the machine and keys an axis, as docs/machine-config.md lists them for its kind of motor.
+    keys: (usize, usize),
+    /// From this line on come keys that had their comment above, under the first axis.
+    repeats: &'static str,
+}
+
+const GANTRY: Preset = Preset {
+    file: "semi-virtual-gantry.toml",
+    config: MachineConfig::default,
+    keys: (35, 14),
+    repeats: "[y]",
+};
+const STEPPER_PLOTTER: Preset = Preset {
+    file: "stepper-plotter.toml",
+    config: MachineConfig::stepper_plotter,
+    keys: (44, 5),
+    repeats: "[y.stepper]",
+};
+
+/// Each preset with its text; without text where this crate was unpacked alone.
+fn presets() -> impl Iterator<Item = (Preset, String)> {
+    [GANTRY, STEPPER_PLOTTER].into_iter().filter_map(|preset| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/machines").join(preset.file);
+        let text = fs::read_to_string(&path).ok();
+        if text.is_none() {
+            eprintln!("{} is not here: nothing to compare", path.display());
+        }
+        text.map(|text| (preset, text))
+    })
+}
+
+#[test]
+fn a_preset_says_what_the_code_says() {
+    for (preset, text) in presets() {
+        assert_eq!(MachineConfig::from_toml(&text), Ok((preset.config)()), "{}", preset.file);
     }
-    text
 }
 
 #[test]
-fn the_preset_says_what_the_defaults_in_code_say() {
-    let Some(text) = preset() else { return };
-    assert_eq!(MachineConfig::from_toml(&text), Ok(MachineConfig::default()));
-}
-
-#[test]
-fn the_preset_is_a_machine() {
-    let Some(text) = preset() else { return };
-    let machine = Machine::from_toml(&text).expect("accepted");
-    assert_eq!(*machine.config(), MachineConfig::default());
+fn a_preset_is_a_machine() {
+    for (preset, text) in presets() {
+        let machine = Machine::from_toml(&text).expect("accepted");
+        assert_eq!(*machine.config(), (preset.config)());
+    }
 }
 
 /// A key left out would go unseen above, since it has its default then.
 #[test]
-fn the_preset_has_every_key() {
-    let Some(text) = preset() else { return };
-    let keys = text.lines().filter(|line| !line.starts_with('#') && line.contains(" = ")).count();
-    // 34 of the machine and 14 an axis, as docs/machine-config.md lists them.
-    assert_eq!(keys, 34 + 2 * 14);
+fn a_preset_has_every_key_of_its_kind_of_motor() {
+    for (preset, text) in presets() {
+        let keys = text.lines().filter(|line| !line.starts_with('#') && line.contains(" = ")).count();
+        let (of_the_machine, of_an_axis) = preset.keys;
+        assert_eq!(keys, of_the_machine + 2 * of_an_axis, "{}", preset.file);
+    }
 }
 
 #[test]
-fn every_key_of_the_preset_has_a_comment_above_it() {
-    let Some(text) = preset() else { return };
-    let mut above = "";
-    for line in text.lines().take_while(|line| *line != "[y]") {
-        if line.contains(" = ") && !line.starts_with('#') {
-            assert!(above.starts_with('#'), "no comment above `{line}`");
+fn every_key_of_a_preset_has_a_comment_above_it() {
+    for (preset, text) in presets() {
+        let mut above = "";
+        for line in text.lines().take_while(|line| *line != preset.repeats) {
+            if line.contains(" = ") && !line.starts_with('#') {
+                assert!(above.starts_with('#'), "{}: no comment above `{line}`", preset.file);
+            }
+            above = line;
         }
-        above = line;
     }
 }

@@ -8,6 +8,7 @@ use proptest::prelude::*;
 const FILE: &str = r#"
 schema = 1
 name = "mutant"
+drive = "dc"
 area = { width_mm = 594.0, height_mm = 420.0 }
 serial = { baud = 256000, byte_gap_ms = 10.0, resync_gap_ms = 100.0 }
 [control]
@@ -24,6 +25,10 @@ mode = "mixed"
 arcs = true
 threshold = "128"
 pens = 3
+[planner]
+s_curve = true
+[x.stepper]
+inverted = true
 [x.encoder]
 lines_per_turn = 0x64
 decoding = "x4"
@@ -34,7 +39,7 @@ static_n_m = 1.3e-3
 "#;
 
 /// Numeric keys that the machine has once.
-const OF_THE_MACHINE: [&str; 27] = [
+const OF_THE_MACHINE: [&str; 51] = [
     "schema",
     "area.width_mm",
     "area.height_mm",
@@ -58,6 +63,30 @@ const OF_THE_MACHINE: [&str; 27] = [
     "control.contouring.settle_ms",
     "sync_stop.slope_counts",
     "sync_stop.offset_counts",
+    "planner.path_tolerance_mm",
+    "planner.junction_deviation_mm",
+    "planner.speed_mm_s",
+    "planner.travel_speed_mm_s",
+    "planner.accel_mm_s2",
+    "planner.jerk_mm_s3",
+    "pen.up_deg",
+    "pen.down_deg",
+    "pen.settle_ms",
+    "laser.full_power",
+    "homing.fast_rate_hz",
+    "homing.slow_rate_hz",
+    "homing.pull_off_mm",
+    "homing.release_mm",
+    "homing.known_travel_mm",
+    "homing.max_travel_mm",
+    "stepper_motor.full_steps_per_turn",
+    "stepper_motor.microsteps",
+    "stepper_motor.holding_n_m",
+    "stepper_motor.corner_rate_hz",
+    "stepper_motor.max_rate_hz",
+    "stepper_motor.inertia_kg_m2",
+    "stepper_motor.coulomb_n_m",
+    "stepper_motor.viscous_n_m_s",
     "vectorize.max_error_px",
     "vectorize.pens",
     "vectorize.hatch_mm",
@@ -65,7 +94,7 @@ const OF_THE_MACHINE: [&str; 27] = [
 ];
 
 /// Numeric keys that each axis has.
-const OF_AN_AXIS: [&str; 13] = [
+const OF_AN_AXIS: [&str; 17] = [
     "counts_per_mm",
     "encoder.lines_per_turn",
     "motor.supply_v",
@@ -79,12 +108,19 @@ const OF_AN_AXIS: [&str; 13] = [
     "load.coulomb_n_m",
     "load.static_n_m",
     "load.viscous_n_m_s",
+    "stepper.steps_per_mm",
+    "stepper.backlash_mm",
+    "stepper.start_rate_hz",
+    "stepper.max_rate_hz",
 ];
 
 /// Keys whose number must be whole.
-const WHOLE: [&str; 6] = [
+const WHOLE: [&str; 9] = [
     "schema",
     "serial.baud",
+    "laser.full_power",
+    "stepper_motor.full_steps_per_turn",
+    "stepper_motor.microsteps",
     "vectorize.pens",
     "vectorize.max_line_px",
     "encoder.lines_per_turn",

@@ -2,7 +2,7 @@
 
 use super::error::Bound;
 use super::rules::rules;
-use super::{AxisConfig, ConfigError, ControllerChoice, MachineConfig};
+use super::{AxisConfig, ConfigError, ControllerChoice, DriveChoice, MachineConfig};
 
 /// A machine whose description has been checked: the only thing that the rest of the crate accepts.
 ///
@@ -22,7 +22,7 @@ impl Machine {
     /// Checks a description.
     ///
     /// First each value by itself: finite and in the range that `docs/machine-config.md` gives. Then those
-    /// that depend on one another:
+    /// that depend on one another. With DC motors:
     ///
     /// - a target travels as five decimal digits an axis, so the far corner of the area lies at no more
     ///   than 99999 encoder counts;
@@ -35,6 +35,15 @@ impl Machine {
     /// - under the contouring controller, the feed lies below the speed at which the motor's back EMF
     ///   reaches the supply: V / Ke rad/s at the shaft.
     ///
+    /// With stepper motors, for each axis:
+    ///
+    /// - it starts at no more than its greatest rate, and homing runs at no more than that either;
+    /// - neither speed of the planner asks for more than its greatest rate;
+    /// - the far corner of the area has a number of steps that 32 bits hold, and the area lies between the limit
+    ///   switches that homing expects;
+    ///
+    /// and the simulated motor has torque up to some rate, more than its friction.
+    ///
     /// # Errors
     ///
     /// [`ConfigError`] for the first value that is wrong, with its key and what would be right.
@@ -43,11 +52,20 @@ impl Machine {
             return Err(ConfigError::Schema { found: config.schema });
         }
         rules().try_for_each(|rule| rule.check(&config))?;
-        check_area(&config)?;
-        check_serial(&config)?;
-        check_control(&config)?;
-        check_axis(&config.x, &X, &config)?;
-        check_axis(&config.y, &Y, &config)?;
+        match config.drive {
+            DriveChoice::Dc => {
+                check_area(&config)?;
+                check_serial(&config)?;
+                check_control(&config)?;
+                check_axis(&config.x, &X, &config)?;
+                check_axis(&config.y, &Y, &config)?;
+            }
+            DriveChoice::Stepper => {
+                check_stepper_motor(&config)?;
+                check_stepper(&config.x, &X, config.area.width_mm, &config)?;
+                check_stepper(&config.y, &Y, config.area.height_mm, &config)?;
+            }
+        }
         Ok(Self { config })
     }
 
@@ -134,10 +152,22 @@ fn check_control(config: &MachineConfig) -> Result<(), ConfigError> {
 struct AxisKeys {
     static_friction: &'static str,
     supply: &'static str,
+    start_rate: &'static str,
+    area: &'static str,
 }
 
-const X: AxisKeys = AxisKeys { static_friction: "x.load.static_n_m", supply: "x.motor.supply_v" };
-const Y: AxisKeys = AxisKeys { static_friction: "y.load.static_n_m", supply: "y.motor.supply_v" };
+const X: AxisKeys = AxisKeys {
+    static_friction: "x.load.static_n_m",
+    supply: "x.motor.supply_v",
+    start_rate: "x.stepper.start_rate_hz",
+    area: "area.width_mm",
+};
+const Y: AxisKeys = AxisKeys {
+    static_friction: "y.load.static_n_m",
+    supply: "y.motor.supply_v",
+    start_rate: "y.stepper.start_rate_hz",
+    area: "area.height_mm",
+};
 
 fn check_axis(axis: &AxisConfig, keys: &AxisKeys, config: &MachineConfig) -> Result<(), ConfigError> {
     let AxisConfig { motor, load, .. } = axis;
@@ -167,6 +197,72 @@ fn check_axis(axis: &AxisConfig, keys: &AxisKeys, config: &MachineConfig) -> Res
         )?;
     }
     Ok(())
+}
+
+/// Steps of the far corner: a million short of what 32 bits hold, for play and the way beyond the switches.
+const MAX_STEPS: f64 = 2_146_000_000.0;
+
+fn check_stepper_motor(config: &MachineConfig) -> Result<(), ConfigError> {
+    let motor = &config.stepper_motor;
+    demand(
+        "stepper_motor.max_rate_hz",
+        motor.max_rate_hz,
+        (Bound::MoreThan, motor.corner_rate_hz),
+        "pulses/s",
+        "that is stepper_motor.corner_rate_hz, up to which the motor has all its torque",
+    )?;
+    demand(
+        "stepper_motor.coulomb_n_m",
+        motor.coulomb_n_m,
+        (Bound::LessThan, motor.holding_n_m),
+        "N m",
+        "the torque of the motor (holding_n_m), or it never starts",
+    )
+}
+
+fn check_stepper(
+    axis: &AxisConfig,
+    keys: &AxisKeys,
+    length_mm: f64,
+    config: &MachineConfig,
+) -> Result<(), ConfigError> {
+    let stepper = &axis.stepper;
+    demand(
+        keys.start_rate,
+        stepper.start_rate_hz,
+        (Bound::AtMost, stepper.max_rate_hz),
+        "pulses/s",
+        "that is the greatest rate of the axis, max_rate_hz",
+    )?;
+    for (key, rate_hz) in [
+        ("homing.fast_rate_hz", config.homing.fast_rate_hz),
+        ("homing.slow_rate_hz", config.homing.slow_rate_hz),
+    ] {
+        let remedy = "that is the greatest rate of an axis, stepper.max_rate_hz";
+        demand(key, rate_hz, (Bound::AtMost, stepper.max_rate_hz), "pulses/s", remedy)?;
+    }
+    for (key, speed_mm_s) in [
+        ("planner.speed_mm_s", config.planner.speed_mm_s),
+        ("planner.travel_speed_mm_s", config.planner.travel_speed_mm_s),
+    ] {
+        let most_mm_s = stepper.max_rate_hz / stepper.steps_per_mm;
+        let remedy = "the greatest speed of an axis (stepper.max_rate_hz / stepper.steps_per_mm)";
+        demand(key, speed_mm_s, (Bound::AtMost, most_mm_s), "mm/s", remedy)?;
+    }
+    demand(
+        keys.area,
+        length_mm,
+        (Bound::AtMost, MAX_STEPS / stepper.steps_per_mm),
+        "mm",
+        "positions are steps of 32 bits: make the area smaller or stepper.steps_per_mm less",
+    )?;
+    demand(
+        keys.area,
+        length_mm,
+        (Bound::AtMost, config.homing.max_travel_mm - 2.0 * config.homing.pull_off_mm),
+        "mm",
+        "the area lies between the limit switches: homing.max_travel_mm less homing.pull_off_mm at either end",
+    )
 }
 
 #[cfg(test)]
@@ -223,5 +319,57 @@ mod tests {
         assert!(at(1_785.0, ControllerChoice::Contouring).is_ok());
         assert_eq!(at(1_787.0, ControllerChoice::Contouring).expect_err("refused").key(), "x.motor.supply_v");
         assert!(at(1_787.0, ControllerChoice::Published).is_ok());
+    }
+
+    #[test]
+    fn what_contradicts_itself_in_a_stepper_plotter_is_named() {
+        let changed = |change: fn(&mut MachineConfig)| {
+            let mut config = MachineConfig::stepper_plotter();
+            change(&mut config);
+            refusal(config).to_string()
+        };
+        assert_eq!(
+            changed(|c| c.planner.travel_speed_mm_s = 100.0),
+            "planner.travel_speed_mm_s: 100 mm/s must be at most 91.34505594884678 mm/s; the greatest speed of an \
+             axis (stepper.max_rate_hz / stepper.steps_per_mm)"
+        );
+        assert_eq!(
+            changed(|c| c.y.stepper.start_rate_hz = 9_000.0),
+            "y.stepper.start_rate_hz: 9000 pulses/s must be at most 8000 pulses/s; that is the greatest rate of the \
+             axis, max_rate_hz"
+        );
+        assert_eq!(
+            changed(|c| c.area.width_mm = 449.0),
+            "area.width_mm: 449 mm must be at most 448 mm; the area lies between the limit switches: \
+             homing.max_travel_mm less homing.pull_off_mm at either end"
+        );
+        let key_of = |change: fn(&mut MachineConfig)| {
+            let mut config = MachineConfig::stepper_plotter();
+            change(&mut config);
+            refusal(config).key()
+        };
+        assert_eq!(key_of(|c| c.x.stepper.max_rate_hz = 7_999.0), "homing.fast_rate_hz");
+        assert_eq!(key_of(|c| c.stepper_motor.coulomb_n_m = 0.28), "stepper_motor.coulomb_n_m");
+        assert_eq!(key_of(|c| c.stepper_motor.max_rate_hz = 8_000.0), "stepper_motor.max_rate_hz");
+        // 1e5 steps/mm: 2146 million steps are 21.46 m, and 8e9 pulses/s would be no rate
+        assert_eq!(
+            key_of(|c| {
+                c.x.stepper = crate::StepperConfig { steps_per_mm: 1e5, max_rate_hz: 1e6, ..c.x.stepper };
+                (c.planner.speed_mm_s, c.planner.travel_speed_mm_s) = (10.0, 10.0);
+                (c.area.width_mm, c.homing.max_travel_mm) = (22_000.0, 50_000.0);
+            }),
+            "area.width_mm"
+        );
+    }
+
+    #[test]
+    fn a_machine_is_checked_by_its_kind_of_motor_only() {
+        let mut stepper = MachineConfig::stepper_plotter();
+        stepper.y.load.static_n_m = 0.0; // no DC motor would do
+        assert!(Machine::new(stepper).is_ok());
+        assert_eq!(refusal(MachineConfig { drive: DriveChoice::Dc, ..stepper }).key(), "y.load.static_n_m");
+        let mut gantry = MachineConfig::default();
+        gantry.planner.speed_mm_s = 10_000.0;
+        assert!(Machine::new(gantry).is_ok());
     }
 }

@@ -1,11 +1,16 @@
 //! What a machine's description says, with the documented gantry as default.
 
-use super::{MachineName, VectorizeConfig};
+use super::{
+    DriveChoice, HomingConfig, LaserConfig, MachineName, PenConfig, PlannerConfig, StepperConfig,
+    VectorizeConfig,
+};
+use crate::plant::StepperSettings;
 
 /// What a machine's description says, not yet checked: [`Machine::new`](crate::Machine::new) does that.
 ///
 /// The default is the semi-virtual gantry: two small DC motors on an L293D, 40 encoder counts to the
-/// millimetre, so that an encoder count is an HPGL plotter unit.
+/// millimetre, so that an encoder count is an HPGL plotter unit. What only a machine with stepper motors reads defaults to
+/// the documented stepper plotter; [`MachineConfig::stepper_plotter`] is that machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -17,6 +22,8 @@ pub struct MachineConfig {
     pub schema: u32,
     /// What the machine is called.
     pub name: MachineName,
+    /// How the motors are driven.
+    pub drive: DriveChoice,
     /// The reachable area.
     pub area: AreaConfig,
     /// The serial line.
@@ -25,6 +32,16 @@ pub struct MachineConfig {
     pub control: ControlConfig,
     /// When one motor waits for the other.
     pub sync_stop: SyncStopConfig,
+    /// How moves are planned for stepper motors.
+    pub planner: PlannerConfig,
+    /// The pen of a machine with stepper motors.
+    pub pen: PenConfig,
+    /// Its laser.
+    pub laser: LaserConfig,
+    /// How it finds the ends of its axes.
+    pub homing: HomingConfig,
+    /// Its motors, both alike, as they are simulated.
+    pub stepper_motor: StepperSettings,
     /// How pictures become strokes for it.
     pub vectorize: VectorizeConfig,
     /// First axis: to the right.
@@ -156,7 +173,7 @@ pub struct SyncStopConfig {
     pub offset_counts: f64,
 }
 
-/// One axis: encoder, motor and load.
+/// One axis: encoder, motor and load, or stepper motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -172,6 +189,8 @@ pub struct AxisConfig {
     pub motor: MotorConfig,
     /// What the motor moves.
     pub load: LoadConfig,
+    /// How it steps, if the machine has stepper motors.
+    pub stepper: StepperConfig,
 }
 
 /// How the two phases of an encoder are counted.
@@ -280,15 +299,43 @@ impl AxisConfig {
     }
 }
 
+impl MachineConfig {
+    /// The documented stepper plotter: a Makeblock XY plotter of 380 x 310 mm, driven by mDraw over 115200 baud.
+    ///
+    /// ```
+    /// # use plotter_motion::{DriveChoice, Machine, MachineConfig};
+    /// let machine = Machine::new(MachineConfig::stepper_plotter())?;
+    /// assert_eq!(machine.config().drive, DriveChoice::Stepper);
+    /// assert_eq!(machine.config().x.stepper.steps_per_mm, 87.58);
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn stepper_plotter() -> Self {
+        Self {
+            name: MachineName::STEPPER_PLOTTER,
+            drive: DriveChoice::Stepper,
+            area: AreaConfig { width_mm: 380.0, height_mm: 310.0 },
+            serial: SerialConfig { baud: 115_200, byte_gap_ms: 0.0, ..SerialConfig::default() },
+            ..Self::default()
+        }
+    }
+}
+
 impl Default for MachineConfig {
     fn default() -> Self {
         Self {
             schema: 1,
             name: MachineName::SEMI_VIRTUAL_GANTRY,
+            drive: DriveChoice::Dc,
             area: AreaConfig::default(),
             serial: SerialConfig::default(),
             control: ControlConfig::default(),
             sync_stop: SyncStopConfig::default(),
+            planner: PlannerConfig::default(),
+            pen: PenConfig::default(),
+            laser: LaserConfig::default(),
+            homing: HomingConfig::default(),
+            stepper_motor: StepperSettings::default(),
             vectorize: VectorizeConfig::default(),
             x: AxisConfig::default(),
             y: AxisConfig::default(),
@@ -364,6 +411,7 @@ impl Default for AxisConfig {
             encoder: EncoderConfig::default(),
             motor: MotorConfig::default(),
             load: LoadConfig::default(),
+            stepper: StepperConfig::default(),
         }
     }
 }

@@ -13,6 +13,7 @@ mod name;
 mod rules;
 #[cfg(feature = "toml")]
 mod spelling;
+mod stepper;
 #[cfg(feature = "toml")]
 mod toml_error;
 #[cfg(feature = "toml")]
@@ -26,6 +27,9 @@ pub use machine_config::{
     LoadConfig, MachineConfig, MotorConfig, PublishedConfig, SerialConfig, SyncStopConfig,
 };
 pub use name::MachineName;
+pub use stepper::{
+    DriveChoice, HomingConfig, LaserConfig, PathMode, PenConfig, PlannerConfig, StepperConfig,
+};
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};
 pub use vectorize::{StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};

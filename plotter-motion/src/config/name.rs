@@ -12,6 +12,8 @@ impl MachineName {
 
     /// The first documented machine.
     pub const SEMI_VIRTUAL_GANTRY: Self = Self::literal("semi-virtual-gantry");
+    /// The documented machine with stepper motors.
+    pub const STEPPER_PLOTTER: Self = Self::literal("stepper-plotter");
 
     const fn literal(text: &str) -> Self {
         let source = text.as_bytes();

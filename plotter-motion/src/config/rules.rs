@@ -100,9 +100,10 @@ const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the s
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
-static MACHINE: [Rule; 34] = [
+static MACHINE: [Rule; 62] = [
     Rule { key: "schema", form: Form::Whole(SCHEMA) },
     Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
+    Rule { key: "drive", form: Form::Choice(&["dc", "stepper"]) },
     number("area.width_mm", |c| c.area.width_mm, (1.0, 100_000.0), "mm", "an A2 sheet lying is 594 wide"),
     number("area.height_mm", |c| c.area.height_mm, (1.0, 100_000.0), "mm", "an A2 sheet lying is 420 high"),
     whole(
@@ -246,6 +247,165 @@ static MACHINE: [Rule; 34] = [
         "counts",
         "below one count no motor could ever start; the published rule has 10",
     ),
+    Rule { key: "planner.mode", form: Form::Choice(&["exact", "tolerance"]) },
+    Rule { key: "planner.s_curve", form: Form::Switch },
+    number(
+        "planner.path_tolerance_mm",
+        |c| c.planner.path_tolerance_mm,
+        (0.0001, 10.0),
+        "mm",
+        "0.05 cannot be seen beside a pen's line",
+    ),
+    number(
+        "planner.junction_deviation_mm",
+        |c| c.planner.junction_deviation_mm,
+        (0.0001, 10.0),
+        "mm",
+        "0.01 suits a belt drive; less is slower in corners",
+    ),
+    number(
+        "planner.speed_mm_s",
+        |c| c.planner.speed_mm_s,
+        (0.01, 10_000.0),
+        "mm/s",
+        "a pen draws well at 20 to 200",
+    ),
+    number(
+        "planner.travel_speed_mm_s",
+        |c| c.planner.travel_speed_mm_s,
+        (0.01, 10_000.0),
+        "mm/s",
+        "the documented stepper plotter reaches 91",
+    ),
+    number(
+        "planner.accel_mm_s2",
+        |c| c.planner.accel_mm_s2,
+        (0.1, 1.0e6),
+        "mm/s^2",
+        "the documented stepper plotter needs 250",
+    ),
+    number(
+        "planner.jerk_mm_s3",
+        |c| c.planner.jerk_mm_s3,
+        (1.0, 1.0e9),
+        "mm/s^3",
+        "thirty times accel_mm_s2 reaches full acceleration within 33 ms",
+    ),
+    number("pen.up_deg", |c| c.pen.up_deg, (0.0, 270.0), "deg", "a common servo turns from 0 to 180"),
+    number("pen.down_deg", |c| c.pen.down_deg, (0.0, 270.0), "deg", "a common servo turns from 0 to 180"),
+    number(
+        "pen.settle_ms",
+        |c| c.pen.settle_ms,
+        (0.0, 10_000.0),
+        "ms",
+        "200 were found to be enough for a small servo",
+    ),
+    Rule { key: "laser.enabled", form: Form::Switch },
+    whole(
+        "laser.full_power",
+        |c| f64::from(c.laser.full_power),
+        (1.0, 65_535.0),
+        "",
+        "255 for mDraw, 1000 for most other senders",
+    ),
+    number(
+        "homing.fast_rate_hz",
+        |c| c.homing.fast_rate_hz,
+        (1.0, 1.0e6),
+        "pulses/s",
+        "the documented stepper plotter has 8000",
+    ),
+    number(
+        "homing.slow_rate_hz",
+        |c| c.homing.slow_rate_hz,
+        (1.0, 1.0e6),
+        "pulses/s",
+        "half the rate that the motors may start with is a good choice",
+    ),
+    number(
+        "homing.pull_off_mm",
+        |c| c.homing.pull_off_mm,
+        (0.01, 100.0),
+        "mm",
+        "on the switch itself no origin is possible: 1 is a good choice",
+    ),
+    number(
+        "homing.release_mm",
+        |c| c.homing.release_mm,
+        (0.01, 1_000.0),
+        "mm",
+        "a switch opens within a few millimetres",
+    ),
+    number(
+        "homing.known_travel_mm",
+        |c| c.homing.known_travel_mm,
+        (0.0, 100_000.0),
+        "mm",
+        "a little less than the shorter axis; 0 if its length is not known",
+    ),
+    number(
+        "homing.max_travel_mm",
+        |c| c.homing.max_travel_mm,
+        (1.0, 100_000.0),
+        "mm",
+        "a little more than the longer axis",
+    ),
+    whole(
+        "stepper_motor.full_steps_per_turn",
+        |c| f64::from(c.stepper_motor.full_steps_per_turn),
+        (4.0, 10_000.0),
+        "",
+        "a motor of 1.8 degrees has 200",
+    ),
+    whole(
+        "stepper_motor.microsteps",
+        |c| f64::from(c.stepper_motor.microsteps),
+        (1.0, 256.0),
+        "",
+        "an A4988 makes up to 16",
+    ),
+    number(
+        "stepper_motor.holding_n_m",
+        |c| c.stepper_motor.holding_n_m,
+        (1.0e-6, 1_000.0),
+        "N m",
+        "a common motor of 42 mm has 0.2 to 0.5",
+    ),
+    number(
+        "stepper_motor.corner_rate_hz",
+        |c| c.stepper_motor.corner_rate_hz,
+        (1.0, 1.0e7),
+        "pulses/s",
+        "the rate from which the data sheet's torque curve falls, in microsteps",
+    ),
+    number(
+        "stepper_motor.max_rate_hz",
+        |c| c.stepper_motor.max_rate_hz,
+        (1.0, 1.0e7),
+        "pulses/s",
+        "the rate at which the data sheet's torque curve ends, in microsteps",
+    ),
+    number(
+        "stepper_motor.inertia_kg_m2",
+        |c| c.stepper_motor.inertia_kg_m2,
+        (1.0e-12, 10.0),
+        "kg m^2",
+        "the rotor's and the mass times the square of the pulley's radius",
+    ),
+    number(
+        "stepper_motor.coulomb_n_m",
+        |c| c.stepper_motor.coulomb_n_m,
+        (0.0, 1_000.0),
+        "N m",
+        "friction is given as a size, without sign: 0 for none",
+    ),
+    number(
+        "stepper_motor.viscous_n_m_s",
+        |c| c.stepper_motor.viscous_n_m_s,
+        (0.0, 100.0),
+        "N m s",
+        "friction is given as a size, without sign: 0 for none",
+    ),
     Rule { key: "vectorize.mode", form: Form::Choice(&["centreline", "outline", "mixed"]) },
     number(
         "vectorize.max_error_px",
@@ -371,12 +531,41 @@ macro_rules! axis_rules {
                 "N m s",
                 "friction is given as a size, without sign: 0 for none",
             ),
+            number(
+                concat!(stringify!($axis), ".stepper.steps_per_mm"),
+                |c| c.$axis.stepper.steps_per_mm,
+                (0.001, 100_000.0),
+                "steps/mm",
+                "the documented stepper plotter has 87.58",
+            ),
+            Rule { key: concat!(stringify!($axis), ".stepper.inverted"), form: Form::Switch },
+            number(
+                concat!(stringify!($axis), ".stepper.backlash_mm"),
+                |c| c.$axis.stepper.backlash_mm,
+                (0.0, 10.0),
+                "mm",
+                "play is given as a size, without sign: 0 for none",
+            ),
+            number(
+                concat!(stringify!($axis), ".stepper.start_rate_hz"),
+                |c| c.$axis.stepper.start_rate_hz,
+                (1.0, 1.0e6),
+                "pulses/s",
+                "the documented stepper plotter has 2000",
+            ),
+            number(
+                concat!(stringify!($axis), ".stepper.max_rate_hz"),
+                |c| c.$axis.stepper.max_rate_hz,
+                (1.0, 1.0e6),
+                "pulses/s",
+                "the documented stepper plotter has 8000",
+            ),
         ]
     };
 }
 
-static X: [Rule; 14] = axis_rules!(x);
-static Y: [Rule; 14] = axis_rules!(y);
+static X: [Rule; 19] = axis_rules!(x);
+static Y: [Rule; 19] = axis_rules!(y);
 
 /// All keys, in the order of the documentation.
 pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {

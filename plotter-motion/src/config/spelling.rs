@@ -7,7 +7,7 @@ use alloc::{format, string::String, vec::Vec};
 const LONGEST_WORD: usize = 48;
 
 /// Endings that name a unit, each with the unit in words, longest first where one ends another.
-const UNITS: [(&str, &str); 41] = [
+const UNITS: [(&str, &str); 42] = [
     ("_mm_min2", "mm/min^2"),
     ("_mm_s3", "mm/s^3"),
     ("_mm_s2", "mm/s^2"),
@@ -37,6 +37,7 @@ const UNITS: [(&str, &str); 41] = [
     ("_kohm", "kohm"),
     ("_mohm", "mohm"),
     ("_ohm", "ohm"),
+    ("_deg", "deg"),
     ("_khz", "kHz"),
     ("_hz", "Hz"),
     ("_mm", "mm"),

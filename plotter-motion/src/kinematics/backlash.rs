@@ -6,7 +6,7 @@
 //!              play
 //! ```
 
-use crate::{Direction, StepPoint};
+use crate::{Direction, Machine, StepPoint, StepperConfig, from_mm};
 
 /// The play of both axes, in steps of their motors; 0 for none.
 ///
@@ -80,6 +80,15 @@ impl BacklashState {
 }
 
 impl Backlash {
+    /// The play of a checked machine with stepper motors, in whole steps.
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        let steps = |stepper: &StepperConfig| {
+            u16::try_from(from_mm(stepper.backlash_mm, stepper.steps_per_mm)).unwrap_or(u16::MAX)
+        };
+        Self { x_steps: steps(&machine.config().x.stepper), y_steps: steps(&machine.config().y.stepper) }
+    }
+
     /// The next move, to the logical position `target`: how many extra steps each motor makes first, and where
     /// the motors then go. An axis that does not move keeps its side of the gap.
     pub fn next(self, state: &mut BacklashState, target: StepPoint) -> Takeup {

@@ -1,7 +1,7 @@
 //! [`Cartesian`]: each motor moves one axis.
 
 use super::{Kinematics, MotorPoint};
-use crate::{Axis, Point};
+use crate::{Axis, Machine, Point, StepperConfig};
 use core::fmt;
 
 /// How one motor moves its axis.
@@ -84,6 +84,23 @@ impl Cartesian {
             }
         };
         Ok(Self { x: signed(Axis::X, x)?, y: signed(Axis::Y, y)? })
+    }
+
+    /// The stepper motors of a checked machine.
+    ///
+    /// ```
+    /// # use plotter_motion::kinematics::{Cartesian, Kinematics};
+    /// # use plotter_motion::{Machine, MachineConfig, Point, StepPoint};
+    /// let machine = Machine::new(MachineConfig::stepper_plotter())?; // 87.58 steps/mm
+    /// assert_eq!(Cartesian::of(&machine).steps_at(Point::new(100.0, 0.5)), StepPoint::new(8758, 44));
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        let signed = |stepper: &StepperConfig| {
+            if stepper.inverted { -stepper.steps_per_mm } else { stepper.steps_per_mm }
+        };
+        Self { x: signed(&machine.config().x.stepper), y: signed(&machine.config().y.stepper) }
     }
 }
 

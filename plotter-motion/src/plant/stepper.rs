@@ -30,11 +30,16 @@ use core::time::Duration;
 /// start at once, up to 8000 were reached by acceleration, and 10,000 at once lose steps. Torque, mass and friction are not; they
 /// are those of common motors and rails, chosen so that the documented rates come out.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct StepperSettings {
     /// Full steps in a turn of the shaft: 200 for 1.8 degrees.
-    pub full_steps_per_turn: u16,
+    pub full_steps_per_turn: u32,
     /// Pulses to a full step.
-    pub microsteps: u16,
+    pub microsteps: u32,
     /// Holding torque at the driver's current, N m.
     pub holding_n_m: f64,
     /// Rate up to which the torque is the holding torque, pulses/s.
