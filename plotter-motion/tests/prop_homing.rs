@@ -312,6 +312,42 @@ fn the_stepper_plotter_is_homed_without_losing_a_step() {
     assert!(known_s < 0.8 * unknown_s);
 }
 
+/// Switches that a true rotor presses, met at 20,000 pulses/s where the axis was said to go on: a motor that is stopped from
+/// there at once loses steps, and the length is right all the same.
+#[test]
+fn a_length_known_wrongly_costs_steps_but_not_the_result() {
+    /// How far a rotor lags behind its field in its friction: at most 2 steps at either end.
+    const LAG_STEPS: u32 = 4;
+    let settings =
+        HomingAxis { known_steps: 24_000, fast_hz: 20_000, accel_hz_s: 200_000, ..HomingAxis::default() };
+    let mut plant = StepperPlant::new(StepperSettings::default(), StepperSettings::default());
+    let (start, length) = ([9_000.0, 20.0], [15_000.0, 10_000.0]);
+    let mut homing = Homing::new(settings, settings);
+    let mut now = Duration::ZERO;
+    let mut lost = 0;
+    let homed = loop {
+        let [x, y] = [start[0] + plant.x.position_steps(), start[1] + plant.y.position_steps()];
+        let limits =
+            LimitSwitches { x_min: x <= 0.0, x_max: x >= length[0], y_min: y <= 0.0, y_max: y >= length[1] };
+        match homing.update(limits) {
+            HomingStatus::Step(HomingStep { axis, direction, rate_hz }) => {
+                now += Duration::from_secs(1) / rate_hz;
+                plant.pulse(now, axis, direction);
+                plant.run_to(now);
+                homing.made();
+                lost = lost.max(plant.x.lost_steps().abs() + plant.y.lost_steps().abs());
+            }
+            HomingStatus::Done(homed) => break homed,
+            HomingStatus::Failed(error) => panic!("{error}"),
+        }
+    };
+    assert!(lost > 0);
+    assert!(
+        homed.x_steps.abs_diff(15_000) <= LAG_STEPS && homed.y_steps.abs_diff(10_000) <= LAG_STEPS,
+        "{homed:?}"
+    );
+}
+
 #[test]
 fn errors_say_what_to_check() {
     let (axis, end) = (Axis::X, Direction::Plus);
