@@ -10,9 +10,9 @@
 //! ```
 //!
 //! x first, then y. It owns no motor: it says which step it wants ([`Homing::update`]) and is told when it was made
-//! ([`Homing::made`]). No step is asked for into a pressed switch. A motor that stops at once from a high rate loses steps, so a switch
-//! is only ever met at a rate that may be started and stopped at once: the way is fast where the axis is known to be
-//! longer, and slow after that, as in the source (spec 5.3).
+//! ([`Homing::made`]). No step is asked for into a pressed switch. A motor that stops at once from a high rate loses
+//! steps, so a switch is only ever met at a rate that may be started and stopped at once: the way is fast where the
+//! axis is known to be longer, and slow after that, as in the source (spec 5.3).
 
 use crate::{Axis, Direction, LimitSwitches, Machine, StepperConfig};
 use core::fmt;

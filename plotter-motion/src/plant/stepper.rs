@@ -27,8 +27,8 @@ use core::time::Duration;
 ///
 /// The default is an axis of the documented stepper plotter: a 42BYG motor of 1.8 degrees on an A4988 in sixteenths of
 /// a step, and a belt that makes 87.58 of these to the millimetre. Documented there are the rates: 2000 pulses/s may
-/// start at once, up to 8000 were reached by acceleration, and 10,000 at once lose steps. Torque, mass and friction are not; they
-/// are those of common motors and rails, chosen so that the documented rates come out.
+/// start at once, up to 8000 were reached by acceleration, and 10,000 at once lose steps. Torque, mass and friction are
+/// not; they are those of common motors and rails, chosen so that the documented rates come out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -185,8 +185,8 @@ impl StepperAxis {
         self.angle_rad / self.rad_per_pulse
     }
 
-    /// How many steps (pulses) the rotor is behind for good, with sign: a multiple of four full steps. While it moves, it may
-    /// be up to two full steps behind without having lost any.
+    /// How many steps (pulses) the rotor is behind for good, with sign: a multiple of four full steps. While it moves,
+    /// it may be up to two full steps behind without having lost any.
     #[must_use]
     pub fn lost_steps(&self) -> i64 {
         let period = 4 * i64::from(self.settings.microsteps.max(1));
