@@ -1,7 +1,7 @@
 //! The interpreter of HPGL: command by command, in plotter units.
 
-use plotter_motion::PlotOp;
 use plotter_motion::hpgl::{Interpreter, Reader, UNITS_PER_MM, Undrained, plot_ops};
+use plotter_motion::{PlotOp, Point};
 
 /// Operations in short, in plotter units: `U` travel, `D` draw, `S` pen, `N` page; errors in `<>`.
 fn ops(text: &str) -> String {
@@ -65,13 +65,38 @@ fn a_circle_leaves_the_pen_as_it_was() {
 }
 
 #[test]
-fn a_circle_has_72_chords_unless_it_says_otherwise_and_never_more_than_1000() {
-    let lines = |text: &[u8]| plot_ops(text).filter(|op| matches!(op, Ok(PlotOp::Draw { .. }))).count();
-    assert_eq!(lines(b"CI400"), 72);
-    assert_eq!(lines(b"CI400,7"), 52);
-    assert_eq!(lines(b"CI400,-10"), 36);
-    assert_eq!(lines(b"CI400,0"), 1000);
-    assert_eq!(lines(b"CI0"), 1);
+fn a_circle_is_an_arc_unless_it_asks_for_chords_and_then_has_as_many() {
+    let count = |text: &[u8], arcs: bool| {
+        let is_arc = |op: &PlotOp| matches!(op, PlotOp::DrawArc { .. });
+        let is_line = |op: &PlotOp| matches!(op, PlotOp::Draw { .. });
+        plot_ops(text).flatten().filter(|op| if arcs { is_arc(op) } else { is_line(op) }).count()
+    };
+    // 5 degrees are what a plotter takes that knows no arcs: up to there, an arc is meant.
+    for round in ["CI400", "CI400,5", "CI400,0", "CI-400,-1", "PD;CI400,0.5"] {
+        assert_eq!(count(round.as_bytes(), true), 1, "{round}");
+    }
+    assert_eq!((count(b"CI400,7", false), count(b"CI400,7", true)), (52, 0));
+    assert_eq!(count(b"CI400,-10", false), 36);
+    assert_eq!(count(b"CI400,60", false), 6);
+    assert_eq!(count(b"CI0", false), 1);
+    // A distance of chords instead: 1 - cos(30 degrees) of the radius is a chord angle of 60 degrees.
+    assert_eq!(count(b"CT1;CI1000,133.97", false), 7);
+    assert_eq!(count(b"CT1;CI1000,133.98", false), 6);
+    assert_eq!(count(b"CT1;CI1000,0.9", true), 1);
+}
+
+#[test]
+fn a_whole_circle_is_one_arc_from_the_right() {
+    let ops: Vec<PlotOp> = plot_ops(b"PU100,50;CI-40").flatten().collect();
+    let (centre, rim) = (Point::new(2.5, 1.25), Point::new(1.5, 1.25));
+    assert_eq!(
+        ops[1..],
+        [
+            PlotOp::Travel { to: rim },
+            PlotOp::DrawArc { centre, sweep_rad: std::f64::consts::TAU, to: rim, feed_mm_s: None },
+            PlotOp::Travel { to: centre },
+        ]
+    );
 }
 
 #[test]
@@ -102,19 +127,19 @@ fn an_arc_goes_from_where_the_pen_stands_and_leaves_it_at_its_end() {
 #[test]
 fn what_is_not_carried_out_is_reported_and_the_rest_is_drawn() {
     insta::assert_snapshot!(
-        ops("IN;SC0,100,0,75;LBPU;\u{3}PD1,1;ZZ1;PD2,2,3;SP300;SP1,2;VS-1;VS1,9;VS1,2,3;CI;CI5,200;PG;").replace("> ", ">\n"),
+        ops("IN;RP2;NR;OE;NP8;PD1,1;ZZ1;PD2,2,3;SP300;SP1,2;VS-1;VS1,9;VS1,2,3;CI;CI5,200;PG;").replace("> ", ">\n"),
         @r#"
-    <line 1, column 4 (byte 3): SC (scale) is not supported and is left out>
-    <line 1, column 17 (byte 16): LB (label) is not supported and is left out>
-    D1,1 <line 1, column 29 (byte 28): ZZ is no known command and is left out: check its two letters>
-    D2,2 <line 1, column 39 (byte 38): PD has an x of 3 without a y, which is left out: give coordinates in pairs>
-    <line 1, column 43 (byte 42): SP with 300 is left out: it takes a whole pen number from 0 to 255>
-    <line 1, column 47 (byte 46): SP has 2 numbers and takes 1: the others are left out>
-    S1 <line 1, column 55 (byte 54): VS with -1 is left out: it takes a speed above 0 cm/s>
-    <line 1, column 62 (byte 61): VS with 9 is left out: it takes a whole pen number from 1 to 8 as its second number>
-    <line 1, column 64 (byte 63): VS has 3 numbers and takes 2: the others are left out>
-    <line 1, column 72 (byte 71): CI lacks a radius in plotter units and is left out>
-    <line 1, column 79 (byte 78): CI with 200 is left out: it takes a chord angle of at most 180 degrees>
+    <line 1, column 4 (byte 3): RP (replot) is not supported and is left out>
+    <line 1, column 8 (byte 7): NR (not ready) is not supported and is left out>
+    D1,1 <line 1, column 24 (byte 23): ZZ is no known command and is left out: check its two letters>
+    D2,2 <line 1, column 34 (byte 33): PD has an x of 3 without a y, which is left out: give coordinates in pairs>
+    <line 1, column 38 (byte 37): SP with 300 is left out: it takes a whole pen number from 0 to 255>
+    <line 1, column 42 (byte 41): SP has 2 numbers and takes 1: the others are left out>
+    S1 <line 1, column 50 (byte 49): VS with -1 is left out: it takes a speed above 0 cm/s>
+    <line 1, column 57 (byte 56): VS with 9 is left out: it takes a whole pen number from 1 to 8 as its second number>
+    <line 1, column 59 (byte 58): VS has 3 numbers and takes 2: the others are left out>
+    <line 1, column 67 (byte 66): CI lacks a radius in plotter units and is left out>
+    <line 1, column 74 (byte 73): CI with 200 is left out: it takes a chord angle of at most 180 degrees>
     N
     "#
     );

@@ -12,7 +12,7 @@ fn events(text: &[u8]) -> String {
         let (part, last) = match event {
             Ok(Event::Command { command, .. }) => (format!(" {command}"), false),
             Ok(Event::Number { value, last, .. }) => (format!(" {value}"), last),
-            Ok(Event::Byte { byte, last }) => (format!(" '{}'", byte.escape_ascii()), last),
+            Ok(Event::Byte { byte, last, .. }) => (format!(" '{}'", byte.escape_ascii()), last),
             Ok(Event::End) => (String::new(), true),
             Ok(Event::Escape { kind, name }) => {
                 (format!(" ESC{}{}", char::from(kind), char::from(name)), false)

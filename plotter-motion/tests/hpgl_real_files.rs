@@ -1,8 +1,7 @@
 //! Real HPGL files, where a collection of them lies beside the checkout: each is read to its end.
 
-use plotter_motion::PlotOp;
-use plotter_motion::hpgl::{Event, Reader, plot_ops};
-use std::collections::BTreeMap;
+use plotter_motion::hpgl::plot_ops;
+use plotter_motion::{PlotOp, Point};
 use std::path::PathBuf;
 use std::{fs, io};
 
@@ -15,20 +14,19 @@ fn collection() -> Option<PathBuf> {
     None
 }
 
-/// Number of commands in a text, by mnemonic.
-fn commands(text: &[u8]) -> BTreeMap<String, usize> {
-    let mut reader = Reader::new();
-    let mut counts = BTreeMap::new();
-    for event in text.iter().filter_map(|byte| reader.push(*byte)) {
-        if let Ok(Event::Command { command, .. }) = event {
-            *counts.entry(command.to_string()).or_default() += 1;
-        }
-    }
-    counts
-}
+/// What is said about a file, and why it has to be. About the others nothing is: whatever they ask for is done, or means
+/// nothing to a machine with one pen.
+const SAID: [(&str, &[&str]); 1] = [(
+    // `PD:` for `PD;`, which hp2xx lets pass. A colon is no separator in any manual.
+    "hp2xx_bz.hp",
+    &[
+        "line 5, column 3 (byte 37): `:` does not belong into PD, whose rest is left out: separate numbers by commas and \
+       end the command with `;`",
+    ],
+)];
 
 #[test]
-fn every_real_file_is_read_to_its_end() -> io::Result<()> {
+fn nothing_is_said_about_good_files() -> io::Result<()> {
     let Some(folder) = collection() else { return Ok(()) };
     let mut files: Vec<PathBuf> =
         fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
@@ -36,36 +34,13 @@ fn every_real_file_is_read_to_its_end() -> io::Result<()> {
     for file in files {
         let text = fs::read(&file)?;
         let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let (mut lines, mut unsupported, mut errors) = (0, BTreeMap::<String, usize>::new(), Vec::new());
-        for op in plot_ops(&text) {
-            match op {
-                Ok(PlotOp::Draw { .. }) => lines += 1,
-                Ok(_) => {}
-                Err(notice) if notice.is_notice() => {
-                    *unsupported
-                        .entry(notice.command().map(|name| name.to_string()).unwrap_or_default())
-                        .or_default() += 1;
-                }
-                Err(error) => errors.push(error.to_string()),
-            }
-        }
-        let found = commands(&text);
-        println!(
-            "{name}: {} commands, {lines} lines, unsupported {unsupported:?}, errors {errors:#?}",
-            found.values().sum::<usize>()
-        );
-        // All that these files hold is well formed but for one `PD:`.
-        let expected_errors = usize::from(name == "hp2xx_bz.hp");
-        assert_eq!(errors.len(), expected_errors, "{name}: {errors:#?}");
-        let known: usize = ["IN", "DF", "SP", "VS", "PU", "PD", "PA", "PR", "CI", "AA", "PG", "DT", "CO"]
-            .iter()
-            .filter_map(|known| found.get(*known))
-            .sum();
-        assert_eq!(
-            known + unsupported.values().sum::<usize>(),
-            found.values().sum::<usize>(),
-            "{name}: every command is done or reported"
-        );
+        let said: Vec<String> =
+            plot_ops(&text).filter_map(Result::err).map(|error| error.to_string()).collect();
+        let expected = SAID.iter().find(|(file, _)| *file == name).map_or(&[][..], |(_, said)| said);
+        assert_eq!(said, expected, "{name}");
+        let strict = plot_ops(&text).strict().flatten().count();
+        assert_eq!(strict == plot_ops(&text).flatten().count(), expected.is_empty(), "{name}, strictly");
+        assert!(plot_ops(&text).flatten().filter_map(PlotOp::target).all(Point::is_finite), "{name}");
     }
     Ok(())
 }
@@ -77,19 +52,36 @@ const LINES: [(&str, usize); 9] = [
     ("hp2xx_la.hp", 36),
     ("hpgl_buddy_demo-g.hpgl", 1481),
     ("prod_gnuplot.hpgl", 242),
-    ("prod_plotutils_hpgl2.hpgl", 1219),
+    // 1218 of them as they stand, the frame (EA), and two curves as dashes: counted by hp2xx alone
+    ("prod_plotutils_hpgl2.hpgl", 1309),
     ("prod_vpype_hp7475a.hpgl", 193),
     ("vk2bea_Cassini.hpgl", 3239),
     ("vk2bea_HP8595E-FM.hpgl", 431),
     ("vk2bea_tektronix.hpgl", 2248),
 ];
 
+/// The text without its labels: `LB` up to a byte 3, which all of these files end them with.
+fn without_labels(text: &[u8]) -> Vec<u8> {
+    let mut kept = Vec::new();
+    let mut rest = text;
+    while let Some(start) = rest.windows(2).position(|letters| letters == b"LB") {
+        let (before, label) = rest.split_at(start);
+        kept.extend_from_slice(before);
+        let end = label.iter().position(|byte| *byte == 3).unwrap_or(label.len() - 1);
+        rest = &label[end + 1..];
+    }
+    kept.extend_from_slice(rest);
+    kept
+}
+
 #[test]
 fn real_files_have_the_lines_that_other_readers_find() -> io::Result<()> {
     let Some(folder) = collection() else { return Ok(()) };
     for (name, expected) in LINES {
         let text = fs::read(folder.join(name))?;
-        let lines = plot_ops(&text).filter(|op| matches!(op, Ok(PlotOp::Draw { .. }))).count();
+        // Labels are left out: each reader draws its own letters.
+        let lines =
+            plot_ops(&without_labels(&text)).filter(|op| matches!(op, Ok(PlotOp::Draw { .. }))).count();
         assert_eq!(lines, expected, "{name}");
     }
     Ok(())

@@ -4,7 +4,7 @@ use plotter_motion::hpgl::{
     Coordinates, Error, Event, Interpreter, Opening, PlotOps, Reader, WriteError, WriteOptions, Writer,
     plot_ops, write_ops,
 };
-use plotter_motion::{PlotOp, Point, Vec2};
+use plotter_motion::{PlotOp, Point, Vec2, chords};
 use proptest::prelude::*;
 
 /// Half a plotter unit, mm, and the rounding of a coordinate near 1000 mm.
@@ -307,14 +307,19 @@ proptest! {
 
 #[test]
 fn a_list_of_any_length_needs_no_more_memory() {
-    const BYTES: usize = 1024;
+    // 17 bytes for each of 1024 places of a polygon, and the rest.
+    const BYTES: usize = 1024 * 17 + 4 * 1024;
+    const SMALL_BYTES: usize = 64 * 17 + 4 * 1024;
     let list = (0..100_000_u32)
         .flat_map(|i| format!("{},{}", i % 3000, i % 2000).into_bytes().into_iter().chain([b',']));
     let ops = PlotOps::new(b"PD".iter().copied().chain(list).chain(*b"7,7;"));
     assert!(std::mem::size_of::<(Reader, Interpreter)>() < BYTES);
+    assert!(std::mem::size_of::<(Reader, Interpreter<64>)>() < SMALL_BYTES);
     assert_eq!(ops.count(), 100_001);
 }
 
+/// How far the chords are from the arcs that are read back, mm: as those of a plotter.
+const CHORDS_MM: f64 = 0.5 / 40.0;
 /// What the writer promises for an arc, mm: one unit, and half a one for the plotter's chords; a rounded digit.
 const ARC_MM: f64 = 1.5 / 40.0 + 1e-4;
 
@@ -351,8 +356,8 @@ proptest! {
             meant.push((centre, out, *sweep, at));
         }
         let text = writer.finish().unwrap();
-        let drawn: Vec<Point> = plot_ops(text.as_bytes())
-            .filter_map(|op| op.unwrap().target())
+        let drawn: Vec<Point> = chords(plot_ops(text.as_bytes()).map(Result::unwrap), CHORDS_MM)
+            .filter_map(PlotOp::target)
             .collect();
         // Every place drawn, and half way between two of them, is near an arc that is meant.
         for pair in drawn.windows(2) {

@@ -101,6 +101,45 @@ pub enum Error {
         /// What it takes.
         expected: &'static str,
     },
+    /// A command that has no place between `PM0` and `PM2`. It is left out.
+    NotInPolygon {
+        /// Its first letter.
+        at: Position,
+        /// Which one.
+        command: Mnemonic,
+    },
+    /// The polygon buffer is full. The sides that do not fit are drawn as they come.
+    PolygonTooLong {
+        /// The first letter of the command whose side does not fit.
+        at: Position,
+        /// Which one.
+        command: Mnemonic,
+        /// How many places the buffer has.
+        places: u32,
+    },
+    /// A polygon that did not fit into the buffer is not filled.
+    NotFilled {
+        /// The command that should fill it.
+        at: Position,
+        /// Which one.
+        command: Mnemonic,
+    },
+    /// Lines so near to each other that a polygon would have more than 16,384 of them. It is not filled.
+    TooFine {
+        /// The command that should fill it.
+        at: Position,
+        /// Which one.
+        command: Mnemonic,
+        /// Distance of the lines, mm.
+        spacing_mm: f64,
+    },
+    /// A label whose place depends on its length has more than 150 characters: the others are left out.
+    LabelTooLong {
+        /// Its first letter.
+        at: Position,
+        /// Which one.
+        command: Mnemonic,
+    },
     /// More numbers than the command takes. It is carried out without them.
     TooManyParameters {
         /// Its first letter.
@@ -130,6 +169,11 @@ impl Error {
             | Self::OddCoordinates { at, .. }
             | Self::MissingParameter { at, .. }
             | Self::BadParameter { at, .. }
+            | Self::NotInPolygon { at, .. }
+            | Self::PolygonTooLong { at, .. }
+            | Self::NotFilled { at, .. }
+            | Self::TooFine { at, .. }
+            | Self::LabelTooLong { at, .. }
             | Self::TooManyParameters { at, .. } => at,
         }
     }
@@ -148,6 +192,11 @@ impl Error {
             | Self::OddCoordinates { command, .. }
             | Self::MissingParameter { command, .. }
             | Self::BadParameter { command, .. }
+            | Self::NotInPolygon { command, .. }
+            | Self::PolygonTooLong { command, .. }
+            | Self::NotFilled { command, .. }
+            | Self::TooFine { command, .. }
+            | Self::LabelTooLong { command, .. }
             | Self::TooManyParameters { command, .. } => Some(command),
         }
     }
@@ -238,6 +287,30 @@ impl fmt::Display for Error {
             Self::BadParameter { command, value, expected, .. } => {
                 write!(f, "{command} with {value} is left out: it takes {expected}")
             }
+            Self::NotInPolygon { command, .. } => {
+                write!(
+                    f,
+                    "{command} has no place in a polygon and is left out: end the polygon with PM2 first"
+                )
+            }
+            Self::PolygonTooLong { command, places, .. } => write!(
+                f,
+                "{command} adds to a polygon that is longer than the {places} places there are for it: what follows is \
+                 drawn at once, and the polygon cannot be filled"
+            ),
+            Self::NotFilled { command, .. } => {
+                write!(f, "{command} fills no polygon that did not fit: divide it into smaller ones")
+            }
+            Self::TooFine { command, spacing_mm, .. } => write!(
+                f,
+                "{command} would fill with more than 16384 lines, {spacing_mm:.6} mm apart, and is left out: set a wider \
+                 pen (PW) or distance (FT)"
+            ),
+            Self::LabelTooLong { command, .. } => write!(
+                f,
+                "{command} has more than 150 characters, and those are left out: only with label origin 1 (LO1) may a \
+                 label be longer"
+            ),
             Self::TooManyParameters { command, given, takes, .. } => {
                 write!(f, "{command} has {given} numbers and takes {takes}: the others are left out")
             }

@@ -41,7 +41,7 @@
 //! ```
 //! use plotter_motion::{PlotOp, hpgl};
 //!
-//! let text = b"IN;SP1;PU400,400;PD800,400,800,800;LBhello\x03CI200;PU;SP0;";
+//! let text = b"IN;SP1;PU400,400;PD800,400,800,800;RP2;CI200;PU;SP0;";
 //! let mut again = String::new();
 //! let mut drawing = hpgl::Writer::new(&mut again);
 //! let mut reports = Vec::new();
@@ -52,8 +52,8 @@
 //!     }
 //! }
 //! drawing.finish()?;
-//! assert!(again.starts_with("IN;\nSP1;\nPU400,400;\nPD800,400,800,800;\nPU1000,800;\nPD"));
-//! assert_eq!(reports, ["line 1, column 36 (byte 35): LB (label) is not supported and is left out"]);
+//! assert!(again.starts_with("IN;\nSP1;\nPU400,400;\nPD800,400,800,800;\nPU1000,800;\nPD;\nAA800,800,90;\n"));
+//! assert_eq!(reports, ["line 1, column 36 (byte 35): RP (replot) is not supported and is left out"]);
 //! # Ok::<(), hpgl::WriteError>(())
 //! ```
 //!
@@ -87,15 +87,28 @@
 //! [`PlotOps::strict`] stops instead.
 
 mod arc;
+mod bezier;
 mod command;
 mod decimal;
+mod encoded;
 mod error;
 mod escape;
+#[cfg(feature = "font")]
+mod font;
+mod hatch;
 mod interpreter;
+mod lettering;
+mod line_type;
+mod pen_path;
+mod piece;
 mod plot_ops;
+mod polygon;
 mod position;
+mod read_options;
 mod reader;
+mod scaling;
 pub mod thesis_text;
+mod window;
 mod write_error;
 mod write_options;
 mod writer;
@@ -105,6 +118,7 @@ pub use error::Error;
 pub use interpreter::{Interpreter, Undrained};
 pub use plot_ops::{PlotOps, plot_ops};
 pub use position::Position;
+pub use read_options::ReadOptions;
 pub use reader::{Event, Reader};
 pub use write_error::WriteError;
 pub use write_options::{Coordinates, Opening, WriteOptions};

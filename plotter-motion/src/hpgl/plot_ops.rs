@@ -1,6 +1,7 @@
 //! [`PlotOps`]: a whole text as an iterator of plot operations.
 
-use super::{Error, Interpreter, Reader};
+use super::interpreter::USUAL_VERTICES;
+use super::{Error, Interpreter, ReadOptions, Reader};
 use crate::PlotOp;
 use core::iter::Copied;
 use core::slice::Iter;
@@ -16,12 +17,13 @@ enum Stage {
 /// The plot operations of an HPGL text, read from an iterator of bytes as they are asked for.
 ///
 /// Memory is constant, whatever the length of the text. An [`Error`] stands in the place of what could not be
-/// carried out, and the operations after it follow, unless reading is [strict](PlotOps::strict).
+/// carried out, and the operations after it follow, unless reading is [strict](PlotOps::strict). `VERTICES` is the room for a
+/// polygon: see [`Interpreter`].
 #[derive(Clone, Debug)]
-pub struct PlotOps<I> {
+pub struct PlotOps<I, const VERTICES: usize = USUAL_VERTICES> {
     bytes: I,
     reader: Reader,
-    interpreter: Interpreter,
+    interpreter: Interpreter<VERTICES>,
     stage: Stage,
     strict: bool,
 }
@@ -29,10 +31,26 @@ pub struct PlotOps<I> {
 impl<I: Iterator<Item = u8>> PlotOps<I> {
     /// The operations of the text `bytes`.
     pub fn new(bytes: impl IntoIterator<Item = u8, IntoIter = I>) -> Self {
+        Self::with_options(bytes, ReadOptions::default())
+    }
+
+    /// The operations of the text `bytes`, meant for this plotter.
+    pub fn with_options(bytes: impl IntoIterator<Item = u8, IntoIter = I>, options: ReadOptions) -> Self {
+        Self::with_interpreter(bytes, Interpreter::with_options(options))
+    }
+}
+
+impl<I: Iterator<Item = u8>, const VERTICES: usize> PlotOps<I, VERTICES> {
+    /// The operations of the text `bytes` as an interpreter carries it out, which may have more or less room for polygons
+    /// than the usual one.
+    pub fn with_interpreter(
+        bytes: impl IntoIterator<Item = u8, IntoIter = I>,
+        interpreter: Interpreter<VERTICES>,
+    ) -> Self {
         Self {
             bytes: bytes.into_iter(),
             reader: Reader::new(),
-            interpreter: Interpreter::new(),
+            interpreter,
             stage: Stage::Text,
             strict: false,
         }
@@ -42,8 +60,8 @@ impl<I: Iterator<Item = u8>> PlotOps<I> {
     ///
     /// ```
     /// # use plotter_motion::hpgl;
-    /// let text = b"PU0,0;SR1,2;PD40,0,80;PD0,0;";
-    /// assert_eq!(hpgl::plot_ops(text).filter(Result::is_err).count(), 2); // SR, and an x without y
+    /// let text = b"PU0,0;RP2;PD40,0,80;PD0,0;";
+    /// assert_eq!(hpgl::plot_ops(text).filter(Result::is_err).count(), 2); // RP, and an x without y
     /// assert_eq!(hpgl::plot_ops(text).filter(Result::is_ok).count(), 3);
     /// assert_eq!(hpgl::plot_ops(text).strict().filter(Result::is_ok).count(), 2); // the last line is lost
     /// ```
@@ -53,7 +71,7 @@ impl<I: Iterator<Item = u8>> PlotOps<I> {
     }
 }
 
-impl<I: Iterator<Item = u8>> Iterator for PlotOps<I> {
+impl<I: Iterator<Item = u8>, const VERTICES: usize> Iterator for PlotOps<I, VERTICES> {
     type Item = Result<PlotOp, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -62,7 +80,7 @@ impl<I: Iterator<Item = u8>> Iterator for PlotOps<I> {
                 if self.strict && outcome.is_err_and(|error| !error.is_notice()) {
                     self.stage = Stage::EndOfDrawing;
                     // What the failed command has left behind is not to follow.
-                    self.interpreter = Interpreter::new();
+                    self.interpreter = Interpreter::with_options(ReadOptions::default());
                 }
                 return Some(outcome);
             }
@@ -90,7 +108,7 @@ impl<I: Iterator<Item = u8>> Iterator for PlotOps<I> {
     }
 }
 
-impl<I: Iterator<Item = u8>> core::iter::FusedIterator for PlotOps<I> {}
+impl<I: Iterator<Item = u8>, const VERTICES: usize> core::iter::FusedIterator for PlotOps<I, VERTICES> {}
 
 /// The plot operations of an HPGL text that is in memory. For one that is not, see [`PlotOps::new`].
 ///

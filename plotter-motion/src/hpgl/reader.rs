@@ -37,6 +37,8 @@ pub enum Event {
     Byte {
         /// The byte.
         byte: u8,
+        /// Its place.
+        at: Position,
         /// Whether the command ends with it.
         last: bool,
     },
@@ -200,14 +202,18 @@ impl Reader {
             State::Numbers { command, number, comma } => self.numbers(command, number, comma, byte, at),
             State::Label { .. } if byte == self.terminator => {
                 self.state = State::Idle;
-                Ok(Some(if self.terminator_shows { Event::Byte { byte, last: true } } else { Event::End }))
+                Ok(Some(if self.terminator_shows {
+                    Event::Byte { byte, at, last: true }
+                } else {
+                    Event::End
+                }))
             }
-            State::Label { .. } => Ok(Some(Event::Byte { byte, last: false })),
-            State::Terminator { command } => Ok(self.set_terminator(command, byte)),
+            State::Label { .. } => Ok(Some(Event::Byte { byte, at, last: false })),
+            State::Terminator { command } => Ok(self.set_terminator(command, byte, at)),
             State::Symbol if byte == b'\r' || byte == b'\n' => Ok(None),
             State::Symbol => {
                 self.state = if byte == b';' { State::Idle } else { State::Skip };
-                Ok(Some(if byte == b';' { Event::End } else { Event::Byte { byte, last: true } }))
+                Ok(Some(if byte == b';' { Event::End } else { Event::Byte { byte, at, last: true } }))
             }
             State::Comment { command } => {
                 if byte == b'"' {
@@ -217,7 +223,7 @@ impl Reader {
                     return Ok(Some(Event::End));
                 } else if !is_blank(byte) {
                     self.state = State::UntilSemicolon { command };
-                    return Ok(Some(Event::Byte { byte, last: false }));
+                    return Ok(Some(Event::Byte { byte, at, last: false }));
                 }
                 Ok(None)
             }
@@ -226,14 +232,14 @@ impl Reader {
                     self.state = State::Numbers { command, number: None, comma: Comma::No };
                     return Ok(None);
                 }
-                Ok(Some(Event::Byte { byte, last: false }))
+                Ok(Some(Event::Byte { byte, at, last: false }))
             }
             State::UntilSemicolon { .. } => {
                 if byte == b';' {
                     self.state = State::Idle;
                     return Ok(Some(Event::End));
                 }
-                Ok(Some(Event::Byte { byte, last: false }))
+                Ok(Some(Event::Byte { byte, at, last: false }))
             }
             State::Skip => {
                 if byte == b';' {
@@ -372,7 +378,7 @@ impl Reader {
         Err(error)
     }
 
-    fn set_terminator(&mut self, command: Mnemonic, byte: u8) -> Option<Event> {
+    fn set_terminator(&mut self, command: Mnemonic, byte: u8, at: Position) -> Option<Event> {
         self.terminator_shows = false;
         if matches!(byte, b';' | b'\n' | 0) {
             self.terminator = ETX;
@@ -381,7 +387,7 @@ impl Reader {
         }
         self.terminator = byte;
         self.state = State::Numbers { command, number: None, comma: Comma::Leading };
-        Some(Event::Byte { byte, last: false })
+        Some(Event::Byte { byte, at, last: false })
     }
 
     /// An escape byte: it ends a number in progress, and nothing else as yet.

@@ -617,15 +617,17 @@ mod tests {
         assert!(writer.circle(Point::new(10.0, 10.0), f64::NAN).is_err());
         let text = writer.finish().unwrap();
         let ops: Vec<PlotOp> = super::super::plot_ops(text.as_bytes()).map(Result::unwrap).collect();
-        let radii = ops.iter().filter_map(|op| match op {
-            PlotOp::Draw { to, .. } => Some(to.distance(Point::new(10.0, 10.0))),
-            _ => None,
-        });
-        let radii: Vec<f64> = radii.collect();
-        assert_eq!(radii.len(), 73); // 72 chords of 5 degrees, and the line
-        let (line, chords) = radii.split_last().unwrap();
-        assert!(chords.iter().all(|r| (r - 2.5).abs() < 1e-12), "rounding of a sine");
-        assert_eq!(*line, 1.0);
+        let rim = Point::new(12.5, 10.0);
+        let circle = PlotOp::DrawArc {
+            centre: Point::new(10.0, 10.0),
+            sweep_rad: core::f64::consts::TAU,
+            to: rim,
+            feed_mm_s: None,
+        };
+        assert_eq!(
+            ops[2..],
+            [travel(12.5, 10.0), circle, travel(10.0, 10.0), draw(11.0, 10.0), PlotOp::SelectPen { pen: 0 }]
+        );
     }
 
     #[test]
