@@ -30,8 +30,9 @@ pub(super) struct Polygon<const VERTICES: usize> {
     count: usize,
     /// Where the subpolygon in progress began.
     start: Option<Vec2>,
-    /// Where it has come to.
+    /// Where it has come to, and where the pen was last lowered on the way.
     end: Vec2,
+    lowered: Vec2,
     /// A part did not fit.
     overflown: bool,
 }
@@ -59,6 +60,7 @@ impl<const VERTICES: usize> Polygon<VERTICES> {
             count: 0,
             start: None,
             end: Vec2::default(),
+            lowered: Vec2::default(),
             overflown: false,
         }
     }
@@ -97,6 +99,9 @@ impl<const VERTICES: usize> Polygon<VERTICES> {
             return self.start_at(piece.to());
         }
         let kind = if drawn { Kind::Drawn } else { Kind::Hidden };
+        if !drawn {
+            self.lowered = piece.to();
+        }
         let arc = match piece {
             Piece::Arc(arc) => {
                 [Some((arc.centre, Kind::Centre)), Some((Vec2::new(arc.sweep_rad, 0.0), Kind::Sweep))]
@@ -114,10 +119,12 @@ impl<const VERTICES: usize> Polygon<VERTICES> {
     /// As [`Polygon::push`].
     pub(super) fn start_at(&mut self, at: Vec2) -> Result<(), Piece> {
         self.start = Some(at);
+        self.lowered = at;
         self.store([(at, Kind::Start)]).then_some(()).ok_or(Piece::Travel { to: at })
     }
 
-    /// Closes the subpolygon, with a side to its start where there is none yet.
+    /// Closes the subpolygon, with a side to its start where there is none yet. It is drawn with the pen down, but not where
+    /// what has been drawn since the pen was last lowered is closed in itself: a hole without a `PM1` before it.
     ///
     /// # Errors
     ///
@@ -125,6 +132,7 @@ impl<const VERTICES: usize> Polygon<VERTICES> {
     pub(super) fn close(&mut self, drawn: bool) -> Result<(), Piece> {
         match self.start {
             Some(start) if self.end != start => {
+                let drawn = drawn && self.end != self.lowered;
                 let side = self.push(Piece::Line { from: self.end, to: start }, drawn);
                 self.start = None;
                 side
@@ -201,7 +209,8 @@ mod tests {
         let circle = Piece::Arc(Arc::circle(at(0.0), at(1.0)));
         assert_eq!(polygon.push(circle, true), Err(circle));
         assert_eq!(polygon.push(line(1.0, 5.0), false), Err(Piece::Travel { to: at(5.0) }));
-        assert_eq!(polygon.close(true), Err(line(5.0, 0.0)));
+        assert_eq!(polygon.push(line(5.0, 7.0), true), Err(line(5.0, 7.0)));
+        assert_eq!(polygon.close(true), Err(line(7.0, 0.0)));
         assert_eq!(polygon.push(line(0.0, 8.0), true), Err(Piece::Travel { to: at(8.0) }));
         assert!(polygon.is_overflown());
         let mut cursor = Cursor::default();
