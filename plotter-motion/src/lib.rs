@@ -38,7 +38,7 @@ pub use chords::chords;
 pub use config::{
     AreaConfig, AxisConfig, Bound, ConfigError, ContouringConfig, ControlConfig, ControllerChoice, Decoding,
     DriveChoice, EncoderConfig, HomingConfig, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName,
-    MotorConfig, PathMode, PenConfig, PlannerConfig, PublishedConfig, SerialConfig, StepperConfig,
+    MotorConfig, PathChoice, PenConfig, PlannerConfig, PublishedConfig, SerialConfig, StepperConfig,
     StrokeOrder, SyncStopConfig, ThresholdChoice, VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]

@@ -28,7 +28,7 @@ pub use machine_config::{
 };
 pub use name::MachineName;
 pub use stepper::{
-    DriveChoice, HomingConfig, LaserConfig, PathMode, PenConfig, PlannerConfig, StepperConfig,
+    DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PlannerConfig, StepperConfig,
 };
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};

@@ -52,7 +52,7 @@ impl Default for StepperConfig {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
-pub enum PathMode {
+pub enum PathChoice {
     /// The pen passes through every corner.
     #[default]
     Exact,
@@ -69,10 +69,10 @@ pub enum PathMode {
 )]
 pub struct PlannerConfig {
     /// Whether corners are passed exactly or rounded.
-    pub mode: PathMode,
-    /// Whether the jerk is limited too, where a move begins and ends at rest.
+    pub mode: PathChoice,
+    /// Whether the jerk along the path is limited too.
     pub s_curve: bool,
-    /// How far the pen may be from the path with [`PathMode::Tolerance`], mm.
+    /// How far the pen may be from the path with [`PathChoice::Tolerance`], mm.
     pub path_tolerance_mm: f64,
     /// How far from a corner the circle passes whose speed the corner is taken with, mm; the pen itself does not leave the
     /// corner.
@@ -92,7 +92,7 @@ impl Default for PlannerConfig {
     /// reach the latter from 2000 pulses/s within half of 2750 steps.
     fn default() -> Self {
         Self {
-            mode: PathMode::Exact,
+            mode: PathChoice::Exact,
             s_curve: false,
             path_tolerance_mm: 0.05,
             junction_deviation_mm: 0.01,

@@ -17,7 +17,7 @@ const LONGER: [f64; 3] = [16.0, 4.0, 1.0];
 const HALVINGS: u32 = 24;
 /// How much too late a braking may be by rounding, mm.
 const SLACK_MM: f64 = 1e-9;
-/// A braking that is in time by less is begun as a whole, mm.
+/// A braking that ends no farther than this from where it should is begun as a whole, mm.
 const TIGHT_MM: f64 = 1e-6;
 /// What is left of a block when it counts as done, mm.
 const DONE_MM: f64 = 1e-7;
@@ -301,9 +301,11 @@ impl SCurveState {
             return rest_to_rest(rest_mm, ahead.cruise, limits);
         }
         // A braking for the end of this block that can be put off no longer.
-        if state.speed > most && rest_mm - state.braking_mm(most, limits) <= TIGHT_MM {
+        if state.speed > most && (rest_mm - state.braking_mm(most, limits)).abs() <= TIGHT_MM {
             let braking = state.braking(most, limits);
-            if braking.in_s + braking.steady_s > 0.0 {
+            // Unless a slower place behind it wants the braking to go on.
+            let end = State { speed: most, accel: 0.0 };
+            if braking.in_s + braking.steady_s > 0.0 && ahead.is_viable(end, rest_mm, limits) {
                 return Chosen::Braking(braking, most);
             }
         }
@@ -334,6 +336,11 @@ impl SCurveState {
         let coasted_mm = state.after(0.0, part_s).1;
         if coasted_mm > rest_mm && state.speed > 0.0 {
             time_s = part_s * rest_mm / coasted_mm;
+        }
+        // The deepest braking begins where its jerk ends.
+        let to_deepest_s = (limits.accel + state.accel) / limits.jerk;
+        if to_deepest_s > 1e-6 * part_s {
+            time_s = time_s.min(to_deepest_s);
         }
         let mut low = (-limits.jerk).max((-limits.accel - state.accel) / time_s);
         let mut high = limits.jerk.min((limits.accel - state.accel) / time_s);

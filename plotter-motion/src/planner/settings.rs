@@ -1,6 +1,7 @@
 //! [`PlannerSettings`]: the limits of a machine's motion, and how its path is followed.
 
 use super::PlanError;
+use crate::{Machine, PathChoice};
 
 /// How nearly a path is followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -63,6 +64,35 @@ const MOST_JERK: f64 = 1e12;
 const MOST_TOLERANCE_MM: f64 = 1e3;
 
 impl PlannerSettings {
+    /// The limits of a machine with stepper motors. Places nearer together than half a step count as one.
+    ///
+    /// ```
+    /// # use plotter_motion::{Machine, MachineConfig, PlannerSettings};
+    /// let machine = Machine::new(MachineConfig::stepper_plotter())?; // 87.58 steps to the millimetre
+    /// let settings = PlannerSettings::of(&machine);
+    /// assert_eq!((settings.speed_mm_s, settings.jerk_mm_s3), (45.0, None));
+    /// assert!((settings.resolution_mm - 0.00571).abs() < 1e-5);
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        let config = machine.config();
+        let planner = &config.planner;
+        let path = match planner.mode {
+            PathChoice::Exact => PathMode::Exact,
+            PathChoice::Tolerance => PathMode::Tolerance { path_tolerance_mm: planner.path_tolerance_mm },
+        };
+        Self {
+            path,
+            speed_mm_s: planner.speed_mm_s,
+            travel_speed_mm_s: planner.travel_speed_mm_s,
+            accel_mm_s2: planner.accel_mm_s2,
+            jerk_mm_s3: planner.s_curve.then_some(planner.jerk_mm_s3),
+            junction_deviation_mm: planner.junction_deviation_mm,
+            resolution_mm: 0.5 / config.x.stepper.steps_per_mm.max(config.y.stepper.steps_per_mm),
+        }
+    }
+
     /// Checks every number by itself.
     pub(super) fn check(&self) -> Result<(), PlanError> {
         let (least, most) = LIMITS;

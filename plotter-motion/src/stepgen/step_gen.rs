@@ -3,7 +3,7 @@
 use super::chord::Chords;
 use super::slice::{Slice, speed_fixed};
 use crate::kinematics::Kinematics;
-use crate::{Action, Bresenham, Course, Pen, Phase, Point, StepPair, StepPoint};
+use crate::{Action, Bresenham, Course, Machine, Pen, Phase, Point, StepPair, StepPoint};
 use core::fmt;
 use core::time::Duration;
 
@@ -29,6 +29,19 @@ impl Default for StepGenSettings {
     /// Microseconds, and the 200 ms that the documented machine's pen needs: with less, dots get tails.
     fn default() -> Self {
         Self { clock_hz: 1e6, pen_settle: Duration::from_millis(200), laser: false }
+    }
+}
+
+impl StepGenSettings {
+    /// Those of a machine with stepper motors, in microseconds.
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        let config = machine.config();
+        Self {
+            pen_settle: Duration::from_secs_f64(config.pen.settle_ms / 1e3),
+            laser: config.laser.enabled,
+            ..Self::default()
+        }
     }
 }
 
