@@ -13,6 +13,8 @@ use core::f64::consts::TAU;
 const FARTHEST_MM: f64 = 1e7;
 /// Share of the path tolerance that vertices may be left out for; corners are rounded within the rest.
 const MERGED_SHARE: f64 = 0.5;
+/// A line that is shorter is left out between two curves, mm.
+const SHORTEST_MM: f64 = 1e-9;
 /// Slack of the check that an arc is no more than a turn, rad.
 const TURN_SLACK_RAD: f64 = 1e-9;
 
@@ -299,7 +301,8 @@ impl Front {
             let tangent_mm = blend.tangent_mm(corner, turn_rad.abs());
             let blend_mm = blend.length_mm(turn_rad.abs());
             if tangent_mm.is_finite() && blend_mm > settings.resolution_mm {
-                if in_mm - tangent_mm > settings.resolution_mm {
+                // However short: a curve that begins elsewhere is another curve.
+                if in_mm - tangent_mm > SHORTEST_MM {
                     self.emit_line(held.to - along * tangent_mm, held.cruise2, settings, ring);
                 }
                 let turn = Turn { vertex: held.to, along, after, turn_rad, tangent_mm, length_mm: blend_mm };

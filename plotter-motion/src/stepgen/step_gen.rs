@@ -10,7 +10,7 @@ use core::time::Duration;
 /// Farthest that a chord may be from its course, steps.
 const CHORD_STEPS: f64 = 0.25;
 /// A phase that ends nearer than this to the end of its course ends there, mm.
-const LATE_MM: f64 = 1e-4;
+const LATE_MM: f64 = 2e-6;
 /// What ends slower ends at rest, mm/s.
 const STANDSTILL_MM_S: f64 = 1e-3;
 
@@ -149,6 +149,8 @@ pub struct StepGen<K> {
     chord_from: i64,
     /// Whether the course is over, and its remaining steps are due at once.
     late: bool,
+    /// An action that waits for them.
+    put_off: Option<Action>,
     running: Option<Running>,
     /// Tick of the last step, and how long after the one before.
     last_step: u64,
@@ -219,6 +221,7 @@ impl<K: Kinematics> StepGen<K> {
             due: None,
             chord_from: 0,
             late: false,
+            put_off: None,
             running: None,
             last_step: 0,
             interval: 0,
@@ -248,6 +251,17 @@ impl<K: Kinematics> StepGen<K> {
         if self.running.is_some() || self.late || self.waiting.iter().any(Option::is_some) {
             return Err(Busy);
         }
+        if self.due.is_some() && !matches!(action, Action::Phase(_)) {
+            // What rounding has left of the course before comes first.
+            self.late = true;
+            self.put_off = Some(action);
+            return Ok(());
+        }
+        self.start(action);
+        Ok(())
+    }
+
+    fn start(&mut self, action: Action) {
         match action {
             Action::Course(course) => self.begin(course),
             Action::Phase(phase) => self.run(phase),
@@ -261,7 +275,6 @@ impl<K: Kinematics> StepGen<K> {
                 self.give(MotorEvent::NewPage);
             }
         }
-        Ok(())
     }
 
     /// The next event; `None` when another action is wanted.
@@ -349,7 +362,9 @@ impl<K: Kinematics> StepGen<K> {
     fn late_step(&mut self) -> Option<TimedEvent> {
         if self.due.is_none() {
             self.late = false;
-            return None;
+            let action = self.put_off.take()?;
+            self.start(action);
+            return self.next_event();
         }
         self.step(self.tick)
     }
