@@ -9,6 +9,9 @@ pub(super) const PATTERNS: usize = 8;
 /// Most dashes, dots and gaps of one piece: where there would be more, it is drawn whole.
 const MOST_PARTS: f64 = 20_000.0;
 
+/// A dash shorter than this share of its pattern at the end of a line comes of rounding.
+const LEAST_SHARE: f64 = 1e-5;
+
 /// Lengths of dash, gap, dash, …: shares of the pattern's length that add up to 1. A dash of 0 is a dot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pattern {
@@ -148,7 +151,9 @@ impl Dashes {
             if left > room {
                 self.phase.drawn += room / of_pattern;
                 self.done = true;
-                return (dash && room > 0.0).then(|| self.piece.part(first / self.length, 1.0));
+                // What is left by rounding is no dash.
+                let seen = room > LEAST_SHARE * of_pattern;
+                return (dash && seen).then(|| self.piece.part(first / self.length, 1.0));
             }
             self.along += libm::fmax(left, 0.0);
             self.phase.drawn = 0.0;

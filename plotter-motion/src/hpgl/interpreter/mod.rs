@@ -20,7 +20,7 @@ use super::scaling::Scaling;
 use super::{Error, Event, Mnemonic, Position, ReadOptions, UNITS_PER_MM};
 use crate::{PlotOp, Point, Vec2};
 use core::fmt;
-use job::{Job, Shape};
+use job::{Job, Round, Shape};
 use open::Open;
 use polygons::Fill;
 
@@ -368,7 +368,11 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     fn lay(&mut self, piece: Piece, patterned: bool) {
         if !self.recording {
             self.path.push(piece, patterned);
-        } else if let Err(piece) = self.polygon.push(piece, self.pen_down) {
+            return;
+        }
+        // A circle lowers the pen itself.
+        let circle = matches!(self.job, Job::Round(Round { shape: Shape::Circle { .. }, .. }));
+        if let Err(piece) = self.polygon.push(piece, self.pen_down || circle) {
             self.say_overflow();
             self.path.push(piece, patterned);
         }
