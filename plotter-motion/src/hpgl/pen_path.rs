@@ -5,6 +5,9 @@ use super::piece::Piece;
 use super::window::{Visible, Window};
 use crate::Vec2;
 
+/// Dashes and dots that one event may give: where there would be more, lines are drawn whole.
+const MOST_PARTS: u32 = 1 << 20;
+
 /// Takes pieces one at a time, divides them by the line type, cuts them at the window, and adds the travels that this makes
 /// necessary.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,6 +15,8 @@ pub(super) struct PenPath {
     pub(super) line_type: LineType,
     pub(super) window: Option<Window>,
     phase: Phase,
+    /// Dashes and dots that may follow.
+    parts_left: u32,
     /// Where the piece before ended: a pattern goes on from there only.
     end: Vec2,
     /// Where what has been given out has taken the pen.
@@ -30,6 +35,7 @@ impl PenPath {
             line_type: LineType::Solid,
             window: None,
             phase: Phase::default(),
+            parts_left: MOST_PARTS,
             end: Vec2::default(),
             given: Vec2::default(),
             dashes: None,
@@ -50,6 +56,11 @@ impl PenPath {
         self.dashes.is_none() && self.visible.is_none() && self.next.is_none()
     }
 
+    /// Another event: as many dashes and dots as ever.
+    pub(super) fn refill(&mut self) {
+        self.parts_left = MOST_PARTS;
+    }
+
     /// Takes a piece; the line type applies to it if `patterned`.
     pub(super) fn push(&mut self, piece: Piece, patterned: bool) {
         if let Piece::Travel { to } = piece {
@@ -61,7 +72,7 @@ impl PenPath {
             if piece.from() != self.end {
                 self.phase = Phase::default();
             }
-            let line_type = if patterned { self.line_type } else { LineType::Solid };
+            let line_type = if patterned && self.parts_left > 0 { self.line_type } else { LineType::Solid };
             self.patterned = patterned;
             self.dashes = Some(Dashes::new(piece, line_type, self.phase));
         }
@@ -87,7 +98,10 @@ impl PenPath {
             }
             let dashes = self.dashes.as_mut()?;
             match dashes.next() {
-                Some(piece) => self.visible = Some(Visible::new(piece, self.window)),
+                Some(piece) => {
+                    self.parts_left = self.parts_left.saturating_sub(1);
+                    self.visible = Some(Visible::new(piece, self.window));
+                }
                 None => {
                     if self.patterned {
                         self.phase = dashes.phase();

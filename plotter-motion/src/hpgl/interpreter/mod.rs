@@ -246,6 +246,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     /// [`Undrained`] when [`Interpreter::next_op`] still has something to give; the event is not taken.
     pub fn push(&mut self, event: Result<Event, Error>) -> Result<(), Undrained> {
         self.drained()?;
+        self.path.refill();
         match event {
             Ok(Event::Command { command, at }) => self.begin(command, at),
             Ok(Event::Number { value, at, last }) => {
