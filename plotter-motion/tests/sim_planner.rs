@@ -13,7 +13,7 @@ const FINE: Lens =
     Lens { steps_per_mm: 10_000.0, clock_hz: 1e8, bin_s: 0.000_05, window: 50, wide_window: 560 };
 /// For long drawings.
 const MIDDLE: Lens =
-    Lens { steps_per_mm: 2_000.0, clock_hz: 1e8, bin_s: 0.000_05, window: 90, wide_window: 560 };
+    Lens { steps_per_mm: 4_000.0, clock_hz: 1e8, bin_s: 0.000_05, window: 80, wide_window: 560 };
 /// By how much what is measured may exceed a limit.
 const MEASURED: f64 = 1.05;
 /// By how much the times of planner and steps may differ.

@@ -425,6 +425,11 @@ impl Path {
 fn narrow_windows(means: &[Point], corners: &[usize], lens: Lens, seen: &mut Audit) {
     let (window, path) = (lens.window, Path::new(means, lens.window, lens.bin_s));
     let span = 2 * window + window / 2 + 1;
+    // Along the way, of short chords: on a curve those of a window are too short by what looks like a jerk.
+    let way_accel = |at: usize| {
+        let dt = window as f64 * lens.bin_s;
+        (path.way[at + 2 * window] - 2.0 * path.way[at + window] + path.way[at]) / (dt * dt)
+    };
     let mut along: Vec<Option<f64>> = Vec::new();
     for at in 0..path.smooth.len().saturating_sub(2 * window) {
         let next = corners.partition_point(|&corner| corner + 1 < at);
@@ -436,7 +441,7 @@ fn narrow_windows(means: &[Point], corners: &[usize], lens: Lens, seen: &mut Aud
         }
         seen.along_mm_s2 = seen.along_mm_s2.max(accel_along.abs());
         seen.across_mm_s2 = seen.across_mm_s2.max(across.abs());
-        along.push((speed > SLOW_MM_S && turn_rad <= 0.25 * NARROW_SHARP_RAD).then_some(accel_along));
+        along.push((speed > SLOW_MM_S && turn_rad <= 0.5 * NARROW_SHARP_RAD).then(|| way_accel(at)));
     }
     let dt = window as f64 * lens.bin_s;
     for pair in along.windows(window + 1) {
