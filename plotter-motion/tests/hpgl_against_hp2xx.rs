@@ -12,7 +12,7 @@
 //! - what is filled is left out (`FP`, `RA`, `RR`, `WG`): hp2xx begins its hatching at the polygon's lowest place, not at the
 //!   anchor, and takes the width of a pen in mm for one in plotter units. Filling is pinned in `hpgl_polygons.rs`.
 
-use plotter_motion::hpgl::{Event, Reader, UNITS_PER_MM, plot_ops};
+use plotter_motion::hpgl::{Coordinates, Event, Reader, UNITS_PER_MM, WriteOptions, Writer, plot_ops};
 use plotter_motion::{PlotOp, Point, Segment, chords};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -229,44 +229,79 @@ fn farthest(of: &[Segment], from: &[Segment]) -> (f64, Point) {
     all.fold((0.0, Point::ORIGIN), |worst, next| if next.0 > worst.0 { next } else { worst })
 }
 
-#[test]
-fn every_line_of_the_real_files_is_where_hp2xx_draws_it() -> io::Result<()> {
+/// The real files by name; none where they or hp2xx are not at hand.
+fn files() -> io::Result<Vec<(String, PathBuf)>> {
     let collection = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/real/hpgl"));
     if !collection.is_dir() {
         eprintln!("skipped: there is no collection of real files beside the checkout");
-        return Ok(());
+        return Ok(Vec::new());
     }
     if Command::new("hp2xx").arg("-v").stdin(Stdio::null()).output().is_err() {
         eprintln!("skipped: hp2xx is not installed");
-        return Ok(());
+        return Ok(Vec::new());
     }
     let mut files: Vec<PathBuf> =
         fs::read_dir(collection)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
     files.sort();
-    let folder = std::env::temp_dir().join(format!("hpgl_against_hp2xx_{}", std::process::id()));
+    let named = |file: PathBuf| (file.file_name().unwrap_or_default().to_string_lossy().into_owned(), file);
+    Ok(files.into_iter().map(named).collect())
+}
+
+/// A folder for hp2xx to write to.
+fn folder(test: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("hpgl_against_hp2xx_{test}_{}", std::process::id()))
+}
+
+/// Both ways between the two readings of a text.
+fn compared(name: &str, text: &[u8], folder: &Path, tolerance_units: f64) -> io::Result<Result<(), String>> {
+    let (ours, theirs) = (ours(text), theirs(text, folder)?);
+    let (there, at) = farthest(&ours, &theirs);
+    let (back, back_at) = farthest(&theirs, &ours);
+    let line = format!(
+        "{name}: {} and {} lines; {there:.3} at ({:.0}, {:.0}), {back:.3} at ({:.0}, {:.0})",
+        ours.len(),
+        theirs.len(),
+        at.x,
+        at.y,
+        back_at.x,
+        back_at.y
+    );
+    eprintln!("{line}");
+    // An empty drawing is near to everything.
+    let wrong = there.max(back) > tolerance_units + ROUNDING_UNITS || ours.is_empty() != theirs.is_empty();
+    Ok(if wrong { Err(line) } else { Ok(()) })
+}
+
+#[test]
+fn every_line_of_the_real_files_is_where_hp2xx_draws_it() -> io::Result<()> {
     let mut wrong = Vec::new();
     println!("file: lines of ours and of hp2xx; farthest of ours from theirs, of theirs from ours, units");
-    for file in files {
-        let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    for (name, file) in files()? {
         let exception = EXCEPTIONS.iter().find(|exception| exception.file == name);
         let text = prepared(&fs::read(&file)?, exception.map_or(&[], |exception| exception.left_out));
-        let (ours, theirs) = (ours(&text), theirs(&text, &folder)?);
-        let (there, at) = farthest(&ours, &theirs);
-        let (back, back_at) = farthest(&theirs, &ours);
-        let line = format!(
-            "{name}: {} and {} lines; {there:.3} at ({:.0}, {:.0}), {back:.3} at ({:.0}, {:.0})",
-            ours.len(),
-            theirs.len(),
-            at.x,
-            at.y,
-            back_at.x,
-            back_at.y
-        );
-        println!("{line}");
         let tolerance = exception.map_or(TOLERANCE_UNITS, |exception| exception.tolerance_units);
-        // Not even the empty drawing passes by being empty.
-        if there.max(back) > tolerance + ROUNDING_UNITS || ours.is_empty() != theirs.is_empty() {
-            wrong.push(line);
+        wrong.extend(compared(&name, &text, &folder("real"), tolerance)?.err());
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    Ok(())
+}
+
+#[test]
+fn what_is_written_is_drawn_by_hp2xx_in_every_layout() -> io::Result<()> {
+    let mut wrong = Vec::new();
+    for (name, file) in files()? {
+        let text = fs::read(&file)?;
+        for coordinates in [Coordinates::Absolute, Coordinates::Relative, Coordinates::Encoded] {
+            let options = WriteOptions { coordinates, ..WriteOptions::default() };
+            let mut writer = Writer::with_options(String::new(), options);
+            // One page, in pen 1: hp2xx draws nothing with others that it does not know.
+            let drawn = plot_ops(&text).flatten().take_while(|op| *op != PlotOp::NewPage);
+            for op in drawn.filter(|op| op.target().is_some()) {
+                writer.push(op).expect("a real drawing is in range");
+            }
+            let text = writer.finish().expect("a string takes all");
+            let name = format!("{name}, {coordinates:?}");
+            wrong.extend(compared(&name, text.as_bytes(), &folder("written"), TOLERANCE_UNITS)?.err());
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

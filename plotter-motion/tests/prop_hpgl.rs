@@ -254,11 +254,15 @@ proptest! {
     }
 
     #[test]
-    fn every_layout_reads_back_as_the_same_drawing(ops in on_the_grid(), points_per_command in 0..6_u16) {
+    fn every_layout_reads_back_as_the_same_drawing(
+        ops in on_the_grid(),
+        points_per_command in 0..6_u16,
+        coordinates in prop::sample::select(vec![Coordinates::Relative, Coordinates::Encoded]),
+    ) {
         let options = WriteOptions {
             points_per_command,
             opening: Opening::Full,
-            coordinates: Coordinates::Relative,
+            coordinates,
             ..WriteOptions::default()
         };
         let mut writer = Writer::with_options(String::new(), options);
@@ -456,8 +460,10 @@ fn from_arc(at: Point, centre: Point, out: Vec2, sweep: f64) -> f64 {
 
 proptest! {
     #[test]
-    fn written_arcs_are_read_back_within_a_unit_and_errors_do_not_add_up(arcs in arcs(), relative: bool) {
-        let coordinates = if relative { Coordinates::Relative } else { Coordinates::Absolute };
+    fn written_arcs_are_read_back_within_a_unit_and_errors_do_not_add_up(
+        arcs in arcs(),
+        coordinates in prop::sample::select(vec![Coordinates::Absolute, Coordinates::Relative, Coordinates::Encoded]),
+    ) {
         let mut writer = Writer::with_options(String::new(), WriteOptions { coordinates, ..Default::default() });
         let mut at = Point::new(50.0123, 47.0077);
         writer.push(PlotOp::Travel { to: at }).unwrap();

@@ -1,6 +1,7 @@
-//! [`Decoder`]: the numbers of `PE`, a polyline in a few bytes a point.
+//! [`Decoder`]: the numbers of `PE`, a polyline in a few bytes a point; and how they are written.
 
 use crate::Vec2;
+use core::fmt;
 
 /// Digits of one number: ten of six bits are the range of any plotter and its fractions.
 const MOST_DIGITS: u32 = 10;
@@ -193,6 +194,20 @@ impl Decoder {
                 let (up, absolute) = (core::mem::take(&mut self.up), core::mem::take(&mut self.absolute));
                 Ok(Some(Step::Go { to: Vec2::new(x, number), up, absolute }))
             }
+        }
+    }
+}
+
+/// Writes a number in the base 32, as the flag `7` announces: all of its bytes are printable.
+pub(super) fn write_number(out: &mut impl fmt::Write, number: i64) -> fmt::Result {
+    let mut left = 2 * number.unsigned_abs() + u64::from(number < 0);
+    loop {
+        let digit = u8::try_from(left % 32).unwrap_or(0);
+        left /= 32;
+        let last = left == 0;
+        out.write_char(char::from(digit + if last { 95 } else { 63 }))?;
+        if last {
+            return Ok(());
         }
     }
 }

@@ -1,6 +1,7 @@
 //! [`Writer`]: plot operations in, plain HPGL text out.
 
 use super::arc::{ArcUnits, FLAT_UNITS, GREATEST_UNITS, chord_angle_deg, chords};
+use super::encoded::write_number;
 use super::{Coordinates, Opening, UNITS_PER_MM, WriteError, WriteOptions};
 use crate::{PlotOp, Point, StepPoint, from_mm};
 use core::f64::consts::{FRAC_PI_2, TAU};
@@ -61,6 +62,8 @@ pub struct Writer<W> {
     /// Where the text has put the pen, in plotter units; `None` before the first movement.
     at: Option<StepPoint>,
     stroke: Stroke,
+    /// Points in the `PE` in progress; 0 where there is none.
+    encoded_points: u16,
     /// The speed in force, in steps of 0.01 mm/s.
     speed: Option<i32>,
 }
@@ -81,6 +84,7 @@ impl<W: fmt::Write> Writer<W> {
             pen_chosen: false,
             at: None,
             stroke: Stroke::None,
+            encoded_points: 0,
             speed: None,
         }
     }
@@ -98,9 +102,7 @@ impl<W: fmt::Write> Writer<W> {
             PlotOp::Travel { to } => {
                 let units = self.units(index, to)?;
                 self.choose_pen()?;
-                self.lift()?;
-                writeln!(self.out, "PU{},{};", units.x, units.y)?;
-                self.at = Some(units);
+                self.travel(units)?;
             }
             PlotOp::Draw { to, feed_mm_s } => {
                 let units = self.units(index, to)?;
@@ -233,6 +235,48 @@ impl<W: fmt::Write> Writer<W> {
         Ok(())
     }
 
+    fn travel(&mut self, to: StepPoint) -> fmt::Result {
+        if self.options.coordinates == Coordinates::Encoded {
+            if self.stroke == Stroke::Dot {
+                self.lift()?;
+            }
+            self.encode(to, true)?;
+        } else {
+            self.lift()?;
+            writeln!(self.out, "PU{},{};", to.x, to.y)?;
+        }
+        self.at = Some(to);
+        Ok(())
+    }
+
+    /// One point of `PE`. The first of each is a place, the others are steps.
+    fn encode(&mut self, to: StepPoint, up: bool) -> fmt::Result {
+        let at = self.at.filter(|_| self.encoded_points > 0);
+        if at.is_none() {
+            self.out.write_str("PE7")?;
+        }
+        if up {
+            self.out.write_char('<')?;
+        }
+        if at.is_none() {
+            self.out.write_char('=')?;
+        }
+        let from = at.unwrap_or_default();
+        for (from, to) in [(from.x, to.x), (from.y, to.y)] {
+            write_number(&mut self.out, i64::from(to) - i64::from(from))?;
+        }
+        self.encoded_points = self.encoded_points.saturating_add(1);
+        self.stroke = if up { Stroke::None } else { Stroke::Closed };
+        if self.encoded_points >= self.options.points_per_command {
+            self.end_encoded()?;
+        }
+        Ok(())
+    }
+
+    fn end_encoded(&mut self) -> fmt::Result {
+        if core::mem::take(&mut self.encoded_points) > 0 { self.out.write_str(";\n") } else { Ok(()) }
+    }
+
     /// One `AA`, and the line to where it should have ended.
     fn quarter(
         &mut self,
@@ -242,18 +286,15 @@ impl<W: fmt::Write> Writer<W> {
         to: StepPoint,
         radius_units: f64,
     ) -> fmt::Result {
-        if self.at.is_none() {
-            self.out.write_str("PU0,0;\n")?;
-        }
-        let from = self.at.unwrap_or_default();
+        let from = self.from()?;
         let arc = ArcUnits::nearest(from, to, centre, middle, sweep_rad > 0.0);
         let Some(arc) = arc.filter(|arc| arc.error_units <= GREATEST_UNITS) else {
             // Of a few units only: by its middle.
             let middle = StepPoint::new(from_mm(middle.x, UNITS_PER_MM), from_mm(middle.y, UNITS_PER_MM));
-            self.at = Some(from);
             self.draw(middle, self.speed)?;
             return self.draw(to, self.speed);
         };
+        self.end_encoded()?;
         match self.stroke {
             Stroke::None | Stroke::Dot => self.out.write_str("PD;\n")?,
             Stroke::Open(_) | Stroke::Closed => self.close_list()?,
@@ -265,6 +306,7 @@ impl<W: fmt::Write> Writer<W> {
         self.at = Some(to);
         match self.options.coordinates {
             Coordinates::Absolute => self.open_list(from, to),
+            Coordinates::Encoded => self.encode(to, false),
             // From where the arc has really ended, relative numbers would lead astray.
             Coordinates::Relative => writeln!(self.out, "PD{},{};", to.x, to.y),
         }
@@ -335,17 +377,26 @@ impl<W: fmt::Write> Writer<W> {
         Ok(())
     }
 
+    /// Where the text has put the pen: at the origin, before the first movement.
+    fn from(&mut self) -> Result<StepPoint, fmt::Error> {
+        if self.at.is_none() {
+            self.travel(StepPoint::default())?;
+        }
+        Ok(self.at.unwrap_or_default())
+    }
+
     fn draw(&mut self, to: StepPoint, speed: Option<i32>) -> fmt::Result {
-        let at = match self.at {
-            Some(at) => at,
-            None => {
-                self.out.write_str("PU0,0;\n")?;
-                StepPoint::default()
-            }
-        };
+        let at = self.from()?;
         self.change_speed(speed)?;
         match self.stroke {
+            // Also where points are encoded: not every reader of `PE` knows that a step of no length is a dot.
             Stroke::None if at == to => self.stroke = Stroke::Dot,
+            stroke if self.options.coordinates == Coordinates::Encoded => {
+                if stroke == Stroke::Dot {
+                    self.encode(at, false)?;
+                }
+                self.encode(to, false)?;
+            }
             Stroke::None | Stroke::Closed => self.open_list(at, to)?,
             Stroke::Dot => {
                 self.open_list(at, at)?;
@@ -373,7 +424,7 @@ impl<W: fmt::Write> Writer<W> {
     /// The numbers of a point that follows `at`.
     fn numbers(&self, at: StepPoint, to: StepPoint) -> (i64, i64) {
         let from = match self.options.coordinates {
-            Coordinates::Absolute => StepPoint::default(),
+            Coordinates::Absolute | Coordinates::Encoded => StepPoint::default(),
             Coordinates::Relative => at,
         };
         (i64::from(to.x) - i64::from(from.x), i64::from(to.y) - i64::from(from.y))
@@ -406,10 +457,11 @@ impl<W: fmt::Write> Writer<W> {
 
     /// Ends the command in progress. The pen stays down if it was down.
     fn close_list(&mut self) -> fmt::Result {
+        self.end_encoded()?;
         match self.stroke {
             Stroke::Open(_) => {
                 self.out.write_str(match self.options.coordinates {
-                    Coordinates::Absolute => ";\n",
+                    Coordinates::Absolute | Coordinates::Encoded => ";\n",
                     Coordinates::Relative => ";\nPA;\n",
                 })?;
                 self.stroke = Stroke::Closed;
