@@ -1,4 +1,4 @@
-//! Writes small pictures of every kind into `corpus/`, for each target.
+//! Writes small pictures of every kind, and texts with every command, into `corpus/`, for each target.
 
 #[path = "../../plotter-vector/tests/scan/pictures.rs"]
 mod pictures;
@@ -12,5 +12,26 @@ fn main() -> std::io::Result<()> {
             std::fs::write(folder.join(format!("seed-{number:03}")), bytes)?;
         }
     }
+    let folder = corpus.join("hpgl");
+    std::fs::create_dir_all(&folder)?;
+    for (number, text) in HPGL.iter().enumerate() {
+        std::fs::write(folder.join(format!("seed-{number:03}")), text)?;
+    }
     Ok(())
 }
+
+/// Between them, every command of HPGL and HP-GL/2 that is carried out.
+const HPGL: [&[u8]; 12] = [
+    b"IN;DF;SP1;VS2.5;PU400,400;PD800,400,800,800;PR;PD-10,20;PA;CI200;CI100,60;PU;SP0;PG;",
+    b"\x1b.(;\x1b.I81;;17:IN;IP0,0,4000,3000;SC0,100,0,75,1;PU10,10;PD20,20;IR25,25;RO90;PS4000,3000;PD1,1;",
+    b"IW0,0,1000,1000;PU-500,500;PD2000,500;CI700;IW;LT2,5;PD0,0,900,0;LT-4;AA0,0,90;LT0;PD5,5;UL1,3,1,0,2;LT1;PD99,0;",
+    b"PU10,10;PM0;PD20,10,20,20;PM1;PU0,0;CI5;PM2;FT3,2,30;FP;FT4;FP1;EP;PW0.3;FT1;RA90,80;EA9,9;ER5,5;RR3,3;",
+    b"EW100,0,90;WG50,30,60,10;AC5,5;UF1,2,3;FT6;RA20,20;FT10,25;RR9,9;PT0.3;WU1;PW0.1;PD;AR10,0,-90,20;CT1;CI100,5;",
+    b"SI0.2,0.3;LBHello \xC3\xA9\r\n\x08\x03;SR1,2;DI1,1;DR0,1;SL0.3;DV1,1;LO15;ES0.1,0.2;LBcentred\x03CP2,-1;CP;",
+    b"DT#,0;LBshown#DT;SM*;PA1,1,2,2;SM;UC4,7,99,0,1,-4,0,-99,2,2;XT;TL1,2;YT;SD1,277,4,12;SS;",
+    b"PD;BZ0,400,400,400,400,0,400,-400,800,-400,800,0;BR1,1,2,2,10,0;AT0,100,-100,0;RT1,1,2,0,9;",
+    b"PE7<=OkGest;PE<=o\xD5c\xC9S\xC2\xBF<yR\xC3\xBFT\xC2\xBF;PE>\xC5:\xC3\xBF\xBF;",
+    b"PE<=o\xC3\x95c\xC3\x89S\xC3\x82\xC2\xBF;",
+    b"\x1bE\x1b&l1X\x1b%0BBPIN;NP8;PC1,0,0,0;PUPDPA5 5-3\x1b%0Anot read\x1b%1BPD;CO\"a;b\";MG;OE;\x1bE",
+    b"@PJL\x1b%-12345X@PJL ENTER LANGUAGE=HPGL2\r\nIN;PD1,2,,3;ZZ;PD--1;PU:;SP300;LBopen",
+];

@@ -167,3 +167,38 @@ fn an_event_is_refused_while_operations_wait() {
     while interpreter.next_op().is_some() {}
     assert_eq!(interpreter.finish(), Ok(()));
 }
+
+#[test]
+fn a_printers_reset_and_a_new_plot_start_afresh() {
+    assert_eq!(ops("\u{1b}%0BSC0,1,0,1,2;PR;\u{1b}E\u{1b}%0BPU1,2"), "U1,2");
+    // A new plot is a new sheet where something has been drawn.
+    assert_eq!(ops("BP;IN;PD1,0;BP;PU2,0;BP;"), "D1,0 N U2,0");
+}
+
+#[test]
+fn what_another_language_says_is_not_drawn() {
+    assert_eq!(ops("\u{1b}E\u{1b}&l1O\u{1b}%0BPD1,0;\u{1b}%0APD2,0;LBx\u{1b}%0BPD3,0"), "D1,0 D3,0");
+}
+
+#[test]
+fn defaults_leave_p1_the_turn_and_the_pen() {
+    assert_eq!(ops("IP0,0,100,100;RO90;SC0,1,0,1;PD;DF;PA1,0;SC0,1,0,1;PA1,0"), "D0,1 D0,100");
+}
+
+#[test]
+fn encoded_data_that_became_letters_are_read_as_they_were() {
+    // 728, 338 and 106 to the right, in digits of six bits: gnuplot's, as a text editor's Latin-1 or UTF-8 has them
+    let whole = b"PE<=o\xD5c\xC9S\xC2\xBF;";
+    let letters: String = whole.iter().map(|byte| char::from(*byte)).collect();
+    let drawn = |text: &[u8]| plot_ops(text).collect::<Result<Vec<_>, _>>().unwrap();
+    assert_eq!(drawn(whole).len(), 2);
+    assert_eq!(drawn(letters.as_bytes()), drawn(whole));
+}
+
+#[test]
+fn strictly_the_first_error_is_the_last_outcome() {
+    let text = b"PU1,1;RP2;CI;PD2,2;XX";
+    let outcomes: Vec<bool> = plot_ops(text).strict().map(|outcome| outcome.is_ok()).collect();
+    assert_eq!(outcomes, [true, false, false]); // a travel, a notice, and the circle without a radius
+    assert_eq!(plot_ops(text).filter(Result::is_err).count(), 3);
+}

@@ -59,26 +59,35 @@
 //!
 //! # What is carried out
 //!
-//! | command | numbers | meaning |
-//! |---|---|---|
-//! | `IN` | | pen up where it stands; absolute coordinates; label terminator and speed of the start |
-//! | `DF` | | absolute coordinates; label terminator of the start |
-//! | `SP` | pen, 0 when missing | takes a pen; 0 puts it away |
-//! | `VS` | speed in cm/s, pen | speed of all pens, or of one from 1 to 8; without numbers the plotter's own |
-//! | `PU` | x, y, … | lifts the pen, then moves |
-//! | `PD` | x, y, … | lowers the pen, then draws |
-//! | `PA` | x, y, … | from here on coordinates count from the origin; moves with the pen as it is |
-//! | `PR` | x, y, … | from here on coordinates count from where the pen stands; moves likewise |
-//! | `CI` | radius, chord angle in degrees | circle about where the pen stands; 5° when missing, 0.36° at the least |
-//! | `AA` | x, y, angle, chord angle in degrees | arc about a centre, with the pen as it is; counter-clockwise for angles above 0 |
-//! | `AR` | x, y, angle, chord angle in degrees | as `AA`, the centre from where the pen stands |
-//! | `PG` | | a new sheet |
-//! | `DT` | a byte, mode | ends labels from here on; with mode 0 the byte belongs to the label |
-//! | `CO` | a string | a comment |
+//! | commands | meaning |
+//! |---|---|
+//! | `IN` `DF` `BP` `PG` | start afresh (see [`Interpreter`]); a new plot, with all that `IN` does; a new sheet (`AF` `AH` `FR` likewise) |
+//! | `PU` `PD` `PA` `PR` | lifts or lowers the pen; from here on coordinates are places or steps; each with any number of pairs |
+//! | `SP` `VS` | takes a pen, 0 to put it away; speed in cm/s, of all pens or of one from 1 to 8 |
+//! | `PW` `PT` `WU` | width of the pen in mm or percent, which solid filling goes by |
+//! | `CI` `AA` `AR` `AT` `RT` `CT` | circles, arcs about a centre and through places: as arcs, or as chords where more than 5° are asked for |
+//! | `BZ` `BR` | cubic curves, as lines within [`ReadOptions::tolerance_mm`] |
+//! | `PE` | encoded polylines, of 5 or 6 bits; a text whose bytes were taken for Latin-1 and written as UTF-8 is read all the same |
+//! | `IP` `IR` `SC` `RO` `PS` | what coordinates mean: see [`ReadOptions`] for what holds before |
+//! | `IW` | nothing is drawn outside of this window; arcs are cut exactly |
+//! | `LT` `UL` | line types 1 to 8, fitted ones from −1, dots at the ends with 0; patterns of the text's own |
+//! | `PM` `EP` `FP` | polygons: kept, edged, filled (even-odd or winding) |
+//! | `EA` `ER` `RA` `RR` `EW` `WG` | rectangles and wedges, edged and filled; they stay in the polygon buffer |
+//! | `FT` `AC` `UF` | solid, lines, crossed lines, shading, and lines at the mean of distances of the text's own; where the lines lie |
+//! | `LB` `DT` | labels in Latin-1 or UTF-8, with carriage return, line feed, backspace and tabulator |
+//! | `SI` `SR` `DI` `DR` `SL` `DV` `LO` `ES` `CP` `SD` | size, direction, slant, path and origin of labels, room between characters; of a printer's font its height |
+//! | `SM` `UC` | a symbol at each place; a character of the text's own |
+//! | `XT` `YT` `TL` | ticks |
+//! | `ESC .` `ESC %` `ESC E` | device control is passed over; so is what another language says; `ESC E` starts afresh |
 //!
-//! Every other command of HPGL and HP-GL/2 is known by name and by how its end is found (see [`Syntax`]), and
-//! is reported as [`Error::Unsupported`]: labels are never read as commands, nor are polygons encoded with
-//! `PE`. A drawing scaled with `SC` and `IP` comes out in plotter units, with that report.
+//! Labels and symbols need the feature `font` (part of `std`), 5 KiB of strokes; without it they are reported as
+//! unsupported.
+//!
+//! What means nothing to a machine with one pen that draws what it is told is passed over without a word: colours and their
+//! order (`PC` `NP` `CR` `TR` `MC` …), ends and joins of thick lines (`LA`), the choice among fonts and character sets (`CS`
+//! `CA` `SS` `SA` …), forces and accelerations, questions to the plotter (`OE` `OP` `OS` …), its display and cutter, comments.
+//! What would be seen and is not done is said, as [`Error::Unsupported`]: `RP` (replot), `NR` (wait), `BL` `PB` (buffered
+//! labels), `DL` (characters to download), `RF` `SV` (raster and screens), `PP`, `TD`, `LM`, `CV`, digitizing.
 //!
 //! # Bad input
 //!
