@@ -51,7 +51,7 @@ pub use planner::{
     Action, Course, PathMode, Phase, PlanError, Planner, PlannerSettings, Shape, junction_speed,
 };
 pub use profile::{MotionLimits, ProfileError, ProfilePoint, Ramp, SCurve, Trapezoid, TrapezoidMove};
-pub use safety::{Demand, Drive, Duty, DutyError, LimitSwitches, SafetyGate};
+pub use safety::{Beam, Blocked, Demand, Drive, Duty, DutyError, LimitSwitches, Pulse, SafetyGate};
 pub use shapes::{circle, rectangle};
 pub use stepgen::{Busy, MotorEvent, StepGen, StepGenSettings, TimedEvent};
 pub use steps::{StepPoint, from_mm};

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!  controller ──Demand──▶ SafetyGate ──Drive──▶ H-bridge, laser, simulated motor
+//!            ──StepPair──▶          ──Pulse──▶ step and direction pins
 //!                          ▲      ▲
 //!            limit switches       emergency stop (latched)
 //! ```
@@ -17,7 +18,7 @@
 //! Source of the block between every controller and the motors: the marking board's collision prevention
 //! (spec 2.6).
 
-use crate::{Axis, Direction};
+use crate::{Axis, Direction, StepPair};
 use core::fmt;
 
 /// Share of the supply on a motor, with the sign of the direction: -1.0 to 1.0, checked once when made.
@@ -143,6 +144,56 @@ impl Drive {
     }
 }
 
+/// A step of either motor or of both that may be made: by [`SafetyGate::pass_step`] only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Pulse {
+    x: i8,
+    y: i8,
+}
+
+impl Pulse {
+    /// The step of the first motor: -1, 0 or 1.
+    #[must_use]
+    pub const fn x(self) -> i8 {
+        self.x
+    }
+
+    /// The step of the second motor: -1, 0 or 1.
+    #[must_use]
+    pub const fn y(self) -> i8 {
+        self.y
+    }
+}
+
+/// Power of a laser, in 65535ths, that may be switched on: by [`SafetyGate::pass_laser`] only; the default is off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Beam(u16);
+
+impl Beam {
+    /// No power.
+    pub const OFF: Self = Self(0);
+
+    /// The power, in 65535ths.
+    #[must_use]
+    pub const fn power(self) -> u16 {
+        self.0
+    }
+}
+
+/// Why a step may not be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Blocked {
+    /// The emergency stop is latched.
+    Stopped,
+    /// It leads into a pressed limit switch.
+    Limit {
+        /// Of which axis.
+        axis: Axis,
+        /// At which of its ends.
+        end: Direction,
+    },
+}
+
 /// Which limit switches are pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct LimitSwitches {
@@ -240,6 +291,46 @@ impl SafetyGate {
     #[must_use]
     pub fn pass(&self, demand: Demand) -> Drive {
         Drive { x: self.pass_axis(Axis::X, demand.x), y: self.pass_axis(Axis::Y, demand.y) }
+    }
+
+    /// Lets a step of stepper motors through. One that leads into a switch with either motor is not made with the other: the pen
+    /// would leave its line.
+    ///
+    /// ```
+    /// # use plotter_motion::{Axis, Blocked, Direction, LimitSwitches, SafetyGate, StepPair};
+    /// let mut gate = SafetyGate::default();
+    /// gate.set_limits(LimitSwitches { x_max: true, ..LimitSwitches::default() });
+    /// let end = Direction::Plus;
+    /// assert_eq!(gate.pass_step(StepPair { x: 1, y: 1 }), Err(Blocked::Limit { axis: Axis::X, end }));
+    /// assert_eq!(gate.pass_step(StepPair { x: -1, y: 1 }).map(|pulse| pulse.x()), Ok(-1));
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Blocked`] says what is in the way.
+    pub const fn pass_step(&self, step: StepPair) -> Result<Pulse, Blocked> {
+        if self.latched {
+            return Err(Blocked::Stopped);
+        }
+        if step.x > 0 && self.limits.x_max {
+            return Err(Blocked::Limit { axis: Axis::X, end: Direction::Plus });
+        }
+        if step.x < 0 && self.limits.x_min {
+            return Err(Blocked::Limit { axis: Axis::X, end: Direction::Minus });
+        }
+        if step.y > 0 && self.limits.y_max {
+            return Err(Blocked::Limit { axis: Axis::Y, end: Direction::Plus });
+        }
+        if step.y < 0 && self.limits.y_min {
+            return Err(Blocked::Limit { axis: Axis::Y, end: Direction::Minus });
+        }
+        Ok(Pulse { x: step.x, y: step.y })
+    }
+
+    /// Lets the power of a laser through, unless the emergency stop is latched.
+    #[must_use]
+    pub const fn pass_laser(&self, power: u16) -> Beam {
+        if self.latched { Beam::OFF } else { Beam(power) }
     }
 
     fn pass_axis(&self, axis: Axis, duty: Duty) -> Duty {

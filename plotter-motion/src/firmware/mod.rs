@@ -3,5 +3,7 @@
 //! The same struct runs on a microcontroller, against simulated motors, and against a recorded log.
 
 mod gantry;
+pub mod stepper_plotter;
 
 pub use gantry::{Gantry, Notice};
+pub use stepper_plotter::StepperPlotter;

@@ -236,6 +236,19 @@ impl<K: Kinematics> StepGen<K> {
         self.line.position()
     }
 
+    /// Forgets everything: the motors have been stopped and stand at `steps`, the pen is up and the laser off. The clock goes on
+    /// from where it is.
+    pub fn clear(&mut self, steps: StepPoint) {
+        let at = self.kinematics.point_at(steps.into());
+        self.at = at;
+        self.pen = Pen::Up;
+        (self.course, self.course_speed) = (Course { to: at, ..Course::default() }, 0);
+        self.chords = Chords::default();
+        self.line = Bresenham::new(steps, steps);
+        (self.due, self.late, self.running, self.laser) = (None, false, None, 0);
+        self.waiting = [None; 2];
+    }
+
     /// The end of the last action, in ticks: when the next one begins.
     #[must_use]
     pub const fn tick(&self) -> u64 {
@@ -333,7 +346,8 @@ impl<K: Kinematics> StepGen<K> {
     /// The laser's power at a speed in mm a tick, 52 bits of fraction: proportional to it, in 256 grades; none for a pen that is
     /// up.
     fn power(&self, speed: i64) -> u16 {
-        if !self.settings.laser || self.course.pen == Pen::Up || self.course_speed <= 0 {
+        let dark = self.course.pen == Pen::Up || self.course.laser_power == 0;
+        if !self.settings.laser || dark || self.course_speed <= 0 {
             return 0;
         }
         let power = i128::from(speed) * i128::from(self.course.laser_power) / i128::from(self.course_speed);

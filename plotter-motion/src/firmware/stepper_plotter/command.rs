@@ -1,0 +1,96 @@
+//! What the two tasks tell each other: [`Command`], [`Signal`] and [`Report`].
+
+use crate::{Axis, Direction, Homed, HomingError, PlotOp, Point};
+use core::fmt;
+
+/// What the receive side asks of the motion side, one after the other: through the queue.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Plans and does this. What follows closely is planned together with it.
+    Plot(PlotOp),
+    /// Waits until all before is done, then turns the pen's servo there, degrees. What follows waits until the pen has settled.
+    Servo(u8),
+    /// From here on these are the servo's degrees with the pen up and down.
+    PenAngles {
+        /// Up.
+        up_deg: u8,
+        /// Down.
+        down_deg: u8,
+    },
+    /// Waits until all before is done, lifts the pen and homes; [`Report::Homed`] follows.
+    Home,
+    /// Waits until all before is done, then until [`Signal::Resume`].
+    Pause,
+    /// [`Report::Done`] follows when all before is done and the machine stands.
+    Finish,
+    /// The receive side has learned of a stop: what comes from here on was meant for the machine as it stands now. After a stop all
+    /// before this is left out.
+    GoOn,
+}
+
+/// What the receive side asks at once, past the queue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Signal {
+    /// Feed hold: brakes along the path and stands.
+    Hold,
+    /// Goes on after a hold or a pause.
+    Resume,
+    /// Stops at once and forgets all commands; [`Report::Stopped`] follows.
+    Reset,
+    /// The laser stays off in what has been commanded up to now.
+    LaserOff,
+}
+
+/// Why the machine has been stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stop {
+    /// The emergency stop button.
+    Emergency,
+    /// A limit switch came on the way to it.
+    Limit {
+        /// Of which axis.
+        axis: Axis,
+        /// At which of its ends.
+        end: Direction,
+    },
+    /// [`Signal::Reset`].
+    Reset {
+        /// Whether it stopped a motion.
+        moved: bool,
+    },
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Emergency => f.write_str("emergency stop: release the button, then reset"),
+            Self::Limit { axis, end } => {
+                let axis = if *axis == Axis::X { "x" } else { "y" };
+                let end = if *end == Direction::Minus { "lower" } else { "upper" };
+                write!(f, "axis {axis}: stopped by its {end} limit switch; home the machine")
+            }
+            Self::Reset { .. } => f.write_str("stopped by a reset"),
+        }
+    }
+}
+
+/// What the motion side tells the receive side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Report {
+    /// All before [`Command::Finish`] is done.
+    Done,
+    /// What came of [`Command::Home`].
+    Homed {
+        /// Where the pen is now, mm.
+        at: Point,
+        /// How long the axes are, or why it gave up.
+        result: Result<Homed, HomingError>,
+    },
+    /// The machine has been stopped, and has left out what was commanded.
+    Stopped {
+        /// Where the pen is now, mm.
+        at: Point,
+        /// Why.
+        why: Stop,
+    },
+}

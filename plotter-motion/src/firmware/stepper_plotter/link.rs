@@ -1,0 +1,17 @@
+//! [`Link`]: both queues between the two sides.
+
+use super::{Command, Queue, Report};
+
+/// Commands on their way to the motion side. One line of G-code gives ten at the most.
+pub const COMMANDS: usize = 16;
+/// Reports on their way back; the receive side waits for at most one, and a machine is not stopped twice before that is told.
+pub const REPORTS: usize = 4;
+
+/// Both queues between the receive side and the motion side. In two tasks they are the queues of the operating system.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Link {
+    /// To the motion side.
+    pub commands: Queue<Command, COMMANDS>,
+    /// To the receive side.
+    pub reports: Queue<Report, REPORTS>,
+}

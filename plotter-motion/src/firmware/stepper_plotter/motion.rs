@@ -1,0 +1,475 @@
+//! [`Motion`]: the task that moves: commands in, steps out, each at its time.
+
+use super::homing_run::HomingRun;
+use super::{
+    Activity, Command, Dialect, Link, Report, SettingsError, Signal, Status, StepperPlotterSettings, Stop,
+    StoredSettings,
+};
+use crate::kinematics::{Cartesian, Kinematics};
+use crate::{
+    Action, Axis, Beam, Blocked, Direction, LimitSwitches, MotorEvent, Pen, Phase, Planner, PlotOp, Point,
+    Pulse, SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, TimedEvent,
+};
+use core::time::Duration;
+
+/// Blocks of the look-ahead.
+const BLOCKS: usize = 16;
+
+/// A step of the motors that passed the safety gate, at the time at which it was due.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Step {
+    /// When it was due.
+    pub at: Duration,
+    /// Which motors, and which way: 1 towards larger coordinates.
+    pub pulse: Pulse,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum State {
+    Ready,
+    Homing(HomingRun),
+    /// Commands are left out until [`Command::GoOn`].
+    Stopped,
+}
+
+/// The motion side: takes commands from the queue, plans, and gives every step at its time.
+///
+/// After each input, call [`poll`](Self::poll) until it gives no step; then arm a timer for [`due`](Self::due) and call it
+/// again at that time. After each call, the servo gets [`pen_deg`](Self::pen_deg) and the laser [`beam`](Self::beam).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    settings: StepperPlotterSettings,
+    cartesian: Cartesian,
+    planner: Planner<BLOCKS>,
+    steps: StepGen<Cartesian>,
+    gate: SafetyGate,
+    state: State,
+    /// Steps really made.
+    position: StepPoint,
+    /// The event that is to come.
+    next: Option<TimedEvent>,
+    /// Tick 0 of the step generator.
+    base: Duration,
+    /// Nothing has been taken from the planner that still moves.
+    at_rest: bool,
+    /// When a machine at rest starts, whatever it knows by then.
+    start_at: Option<Duration>,
+    /// Operations have been planned that may have been put off.
+    unfinished: bool,
+    held: bool,
+    dark: bool,
+    /// The phase in progress and when it began.
+    phase: Option<(Duration, Phase)>,
+    pen_deg: u8,
+    beam: Beam,
+    due: Option<Duration>,
+}
+
+impl Motion {
+    /// A machine at rest at the origin, pen up.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] for limits that no motion can be planned with.
+    pub fn new(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
+        let cartesian = settings.cartesian().map_err(SettingsError::Scale)?;
+        let mut planner = Planner::new(settings.limits()).map_err(SettingsError::Planner)?;
+        darken(&mut planner);
+        // mDraw moves the servo itself, and the motion waits for that.
+        let pen_settle = match settings.dialect {
+            Dialect::MDraw => Duration::ZERO,
+            Dialect::Grbl => settings.pen_settle,
+        };
+        let steps =
+            StepGen::new(cartesian, StepGenSettings { clock_hz: 1e6, pen_settle, laser: settings.laser });
+        Ok(Self {
+            settings,
+            cartesian,
+            planner,
+            steps,
+            gate: SafetyGate::default(),
+            state: State::Ready,
+            position: StepPoint::default(),
+            next: None,
+            base: Duration::ZERO,
+            at_rest: true,
+            start_at: None,
+            unfinished: false,
+            held: false,
+            dark: false,
+            phase: None,
+            pen_deg: settings.stored.pen_up_deg,
+            beam: Beam::OFF,
+            due: None,
+        })
+    }
+
+    /// The next step that is due by `now`, if there is one.
+    pub fn poll(&mut self, now: Duration, link: &mut Link) -> Option<Step> {
+        self.due = None;
+        // Ends: every turn takes something from a queue, from the planner or from the step generator.
+        loop {
+            match self.state {
+                State::Stopped => match link.commands.pop() {
+                    None => return None,
+                    Some(Command::GoOn) => self.state = State::Ready,
+                    Some(command) => self.leave_out(command),
+                },
+                State::Homing(run) => {
+                    let step = self.home(run, now, link);
+                    if step.is_some() || matches!(self.state, State::Homing(_)) {
+                        return step;
+                    }
+                }
+                State::Ready => match self.next.map(|event| (event, self.time_of(event.tick))) {
+                    Some((_, at)) if at > now => {
+                        self.due = Some(at);
+                        return None;
+                    }
+                    Some((event, at)) => {
+                        self.next = None;
+                        if let Some(pulse) = self.give(event.event, link) {
+                            return Some(Step { at, pulse });
+                        }
+                    }
+                    None if self.go_on(now, link) => {}
+                    None => return None,
+                },
+            }
+        }
+    }
+
+    /// When [`poll`](Self::poll) is to be called next, if nothing comes before; known after it has given no step.
+    #[must_use]
+    pub const fn due(&self) -> Option<Duration> {
+        self.due
+    }
+
+    /// Takes a signal from the receive side.
+    pub fn signal(&mut self, now: Duration, signal: Signal, link: &mut Link) {
+        match signal {
+            // Homing is not held, as in Grbl; what has been stopped neither.
+            Signal::Hold if self.state == State::Ready => self.hold(),
+            Signal::Hold => {}
+            Signal::Resume => {
+                self.held = false;
+                self.planner.resume();
+            }
+            Signal::Reset => {
+                let moved = matches!(self.state, State::Homing(_)) || self.moves(now);
+                self.stop(Stop::Reset { moved }, link);
+            }
+            Signal::LaserOff => {
+                self.dark = true;
+                self.beam = Beam::OFF;
+            }
+        }
+    }
+
+    /// Takes the state of a limit switch.
+    pub const fn limit_switch(&mut self, axis: Axis, end: Direction, pressed: bool) {
+        let mut limits: LimitSwitches = self.gate.limits();
+        limits.set(axis, end, pressed);
+        self.gate.set_limits(limits);
+    }
+
+    /// Takes the state of the emergency stop button; pressed, it stops everything at once and latches.
+    pub fn emergency_stop(&mut self, pressed: bool, link: &mut Link) {
+        let was_stopped = self.gate.is_stopped();
+        self.gate.emergency_stop(pressed);
+        if pressed && !was_stopped {
+            self.stop(Stop::Emergency, link);
+        }
+    }
+
+    /// Unlatches the emergency stop, unless the button is still pressed; says whether it did.
+    pub const fn reset_emergency_stop(&mut self) -> bool {
+        self.gate.reset()
+    }
+
+    /// Begins anew with what the host has stored: stops, if it moves, and stands where it is.
+    pub fn restart(&mut self, stored: StoredSettings, link: &mut Link) {
+        let settings = StepperPlotterSettings { stored, ..self.settings };
+        // The limits were good, and only become less: a planner that cannot be had leaves the old one.
+        if let Ok(planner) = Planner::new(settings.limits()) {
+            self.settings = settings;
+            self.planner = planner;
+        }
+        self.halt(link);
+        self.state = State::Ready;
+    }
+
+    /// Servo of the pen, degrees.
+    #[must_use]
+    pub const fn pen_deg(&self) -> u8 {
+        self.pen_deg
+    }
+
+    /// Power of the laser.
+    #[must_use]
+    pub const fn beam(&self) -> Beam {
+        self.beam
+    }
+
+    /// Where the motors stand: steps really made.
+    #[must_use]
+    pub const fn position(&self) -> StepPoint {
+        self.position
+    }
+
+    /// Where the pen is by the steps really made, mm.
+    #[must_use]
+    pub fn position_mm(&self) -> Point {
+        self.cartesian.point_at(self.position.into())
+    }
+
+    /// What the receive side may know.
+    #[must_use]
+    pub fn status(&self, now: Duration) -> Status {
+        let activity = match self.state {
+            State::Stopped => Activity::Stopped,
+            State::Homing(_) => Activity::Home,
+            State::Ready if self.held => Activity::Hold { stands: !self.moves(now) },
+            State::Ready if self.moves(now) || !self.planner.is_empty() || self.unfinished => Activity::Run,
+            State::Ready => Activity::Idle,
+        };
+        let speed_mm_s = self.phase.map_or(0.0, |(began, phase)| {
+            let time_s = now.saturating_sub(began).as_secs_f64();
+            if time_s > phase.duration_s { 0.0 } else { phase.at(time_s).speed_mm_s.max(0.0) }
+        });
+        Status {
+            activity,
+            at: self.position_mm(),
+            speed_mm_s,
+            laser: self.beam.power(),
+            limits: self.gate.limits(),
+            emergency_stop: self.gate.is_stopped(),
+        }
+    }
+
+    /// Whether something is on its way: steps, or a pause that is not over.
+    fn moves(&self, now: Duration) -> bool {
+        self.next.is_some() || !self.at_rest || self.time_of(self.steps.tick()) > now
+    }
+
+    fn time_of(&self, tick: u64) -> Duration {
+        self.base.saturating_add(Duration::from_micros(tick))
+    }
+
+    /// A machine that has stood begins now.
+    fn begin(&mut self, now: Duration) {
+        let late = now.saturating_sub(self.time_of(self.steps.tick()));
+        self.base = self.base.saturating_add(late);
+    }
+
+    fn hold(&mut self) {
+        self.held = true;
+        self.planner.hold();
+    }
+
+    /// Carries out what is due.
+    fn give(&mut self, event: MotorEvent, link: &mut Link) -> Option<Pulse> {
+        match event {
+            MotorEvent::Step { x, y } => return self.pass(StepPair { x, y }, link),
+            MotorEvent::Pen(pen) => {
+                if self.settings.dialect == Dialect::Grbl {
+                    self.put_pen(pen);
+                }
+            }
+            MotorEvent::Laser(power) => {
+                self.beam = self.gate.pass_laser(if self.dark { 0 } else { power });
+            }
+            // A person does that, and says when it is done.
+            MotorEvent::SelectPen(_) | MotorEvent::NewPage => self.hold(),
+        }
+        None
+    }
+
+    /// The one way of a step to the motors.
+    fn pass(&mut self, step: StepPair, link: &mut Link) -> Option<Pulse> {
+        match self.gate.pass_step(step) {
+            Ok(pulse) => {
+                self.position.x = self.position.x.saturating_add(pulse.x().into());
+                self.position.y = self.position.y.saturating_add(pulse.y().into());
+                Some(pulse)
+            }
+            Err(Blocked::Stopped) => {
+                self.stop(Stop::Emergency, link);
+                None
+            }
+            Err(Blocked::Limit { axis, end }) => {
+                self.stop(Stop::Limit { axis, end }, link);
+                None
+            }
+        }
+    }
+
+    fn put_pen(&mut self, pen: Pen) {
+        let StoredSettings { pen_up_deg, pen_down_deg, .. } = self.settings.stored;
+        self.pen_deg = if pen == Pen::Up { pen_up_deg } else { pen_down_deg };
+    }
+
+    /// Everything ceases, and the machine stands where it has been stepped to.
+    fn halt(&mut self, link: &mut Link) {
+        let at = self.position_mm();
+        self.planner.clear(at);
+        darken(&mut self.planner);
+        self.steps.clear(self.position);
+        while let Some(command) = link.commands.pop() {
+            self.leave_out(command);
+        }
+        (self.next, self.phase, self.start_at) = (None, None, None);
+        (self.at_rest, self.unfinished, self.held, self.dark) = (true, false, false, false);
+        self.beam = Beam::OFF;
+        self.put_pen(Pen::Up);
+    }
+
+    /// What does not move is done even so.
+    fn leave_out(&mut self, command: Command) {
+        if let Command::PenAngles { up_deg, down_deg } = command {
+            self.settings.stored.pen_up_deg = up_deg;
+            self.settings.stored.pen_down_deg = down_deg;
+        }
+    }
+
+    fn stop(&mut self, why: Stop, link: &mut Link) {
+        self.halt(link);
+        self.state = State::Stopped;
+        // A full queue has a stop in it already.
+        let _ = link.reports.push(Report::Stopped { at: self.position_mm(), why });
+    }
+
+    /// Gets the next event, or does what is to be done at rest; says whether there may be more.
+    fn go_on(&mut self, now: Duration, link: &mut Link) -> bool {
+        if let Some(event) = self.steps.next_event() {
+            self.next = Some(event);
+            return true;
+        }
+        self.fill(now, link);
+        if self.at_rest
+            && let Some(start_at) = self.start_at.filter(|&at| at > now)
+            && self.planner.has_room()
+            && link.commands.is_empty()
+        {
+            self.due = Some(start_at);
+            return false;
+        }
+        if let Some(action) = self.planner.next_action() {
+            self.start_at = None;
+            if core::mem::take(&mut self.at_rest) {
+                self.begin(now);
+            }
+            if let Action::Phase(phase) = action {
+                self.phase = Some((self.time_of(self.steps.tick()), phase));
+            }
+            let pushed = self.steps.push(action);
+            debug_assert!(pushed.is_ok(), "all events have been taken");
+            return true;
+        }
+        if self.held {
+            self.at_rest = true;
+            return false;
+        }
+        if self.unfinished && self.planner.finish().is_ok() {
+            self.unfinished = false;
+            return true;
+        }
+        (self.at_rest, self.start_at) = (true, None);
+        // The last phase may last beyond its last step, and a pause has no step.
+        let end = self.time_of(self.steps.tick());
+        if end > now {
+            self.due = Some(end);
+            return false;
+        }
+        self.phase = None;
+        match link.commands.pop() {
+            Some(command) => self.stand(command, now, link),
+            None => return false,
+        }
+        true
+    }
+
+    /// Plans what the queue has and the planner takes.
+    fn fill(&mut self, now: Duration, link: &mut Link) {
+        while self.planner.has_room()
+            && let Some(Command::Plot(op)) = link.commands.first()
+        {
+            link.commands.pop();
+            if op == (PlotOp::LaserPower { share: 0.0 }) {
+                self.dark = false;
+            }
+            let planned = self.planner.push(op);
+            debug_assert!(planned.is_ok(), "the receive side has looked at {op:?}: {planned:?}");
+            self.unfinished = true;
+            if self.at_rest && self.start_at.is_none() {
+                self.start_at = now.checked_add(self.settings.gather);
+            }
+        }
+    }
+
+    /// Carries out what waits for a standstill, at a standstill.
+    fn stand(&mut self, command: Command, now: Duration, link: &mut Link) {
+        match command {
+            Command::Plot(_) => debug_assert!(false, "an empty planner has room"),
+            Command::Servo(deg) => {
+                if deg != self.pen_deg {
+                    self.pen_deg = deg;
+                    self.wait(now, self.settings.pen_settle);
+                }
+            }
+            Command::PenAngles { .. } => self.leave_out(command),
+            Command::Home => {
+                let up_deg = self.settings.stored.pen_up_deg;
+                let settle = if core::mem::replace(&mut self.pen_deg, up_deg) == up_deg {
+                    Duration::ZERO
+                } else {
+                    self.settings.pen_settle
+                };
+                let run = HomingRun::new(&self.settings, now.saturating_add(settle));
+                self.state = State::Homing(run);
+            }
+            Command::Pause => self.hold(),
+            Command::Finish => {
+                let _ = link.reports.push(Report::Done);
+            }
+            Command::GoOn => {}
+        }
+    }
+
+    fn wait(&mut self, now: Duration, duration: Duration) {
+        self.begin(now);
+        let pushed = self.steps.push(Action::Dwell(duration));
+        debug_assert!(pushed.is_ok(), "all events have been taken");
+    }
+
+    /// One turn of homing.
+    fn home(&mut self, mut run: HomingRun, now: Duration, link: &mut Link) -> Option<Step> {
+        let result = match run.next(self.gate.limits()) {
+            Ok((at, _)) if at > now => {
+                self.due = Some(at);
+                self.state = State::Homing(run);
+                return None;
+            }
+            Ok((at, step)) => {
+                let pulse = self.pass(step, link)?;
+                run.made(at);
+                self.state = State::Homing(run);
+                return Some(Step { at, pulse });
+            }
+            Err(result) => result,
+        };
+        if result.is_ok() {
+            self.position = StepPoint::default();
+        }
+        self.halt(link);
+        self.state = State::Ready;
+        let _ = link.reports.push(Report::Homed { at: self.position_mm(), result });
+        None
+    }
+}
+
+/// The laser has no power until it is told one.
+fn darken(planner: &mut Planner<BLOCKS>) {
+    let pushed = planner.push(PlotOp::LaserPower { share: 0.0 });
+    debug_assert!(pushed.is_ok(), "it is empty");
+}

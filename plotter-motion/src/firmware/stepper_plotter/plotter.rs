@@ -1,0 +1,140 @@
+//! [`StepperPlotter`]: both sides in one.
+
+use super::{Link, Motion, Receive, SettingsError, Status, Step, StepperPlotterSettings, StoredSettings};
+use crate::{Axis, Beam, Direction, Point, StepPoint};
+use core::time::Duration;
+
+/// The whole controller of a stepper plotter, sans-IO: the receive side and the motion side joined by their queues.
+///
+/// Inputs: [`receive`](Self::receive), [`limit_switch`](Self::limit_switch), [`emergency_stop`](Self::emergency_stop). After
+/// each of them and at [`due`](Self::due), call [`poll`](Self::poll) until it gives no more steps, fetch the answers
+/// ([`transmit`](Self::transmit)) and set the servo ([`pen_deg`](Self::pen_deg)) and the laser ([`beam`](Self::beam)). Times
+/// never go back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepperPlotter {
+    receive: Receive,
+    motion: Motion,
+    link: Link,
+}
+
+impl StepperPlotter {
+    /// A machine that has just been switched on: at rest, its pen up, where it stands is (0, 0).
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] for limits that no motion can be planned with.
+    pub fn new(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
+        Ok(Self { receive: Receive::new(settings), motion: Motion::new(settings)?, link: Link::default() })
+    }
+
+    /// Takes a byte from the host.
+    pub fn receive(&mut self, now: Duration, byte: u8) {
+        if let Some(signal) = self.receive.receive(byte) {
+            self.motion.signal(now, signal, &mut self.link);
+        }
+        self.work(now);
+    }
+
+    /// The next step that is due by `now`, if there is one.
+    pub fn poll(&mut self, now: Duration) -> Option<Step> {
+        loop {
+            let step = self.motion.poll(now, &mut self.link);
+            if step.is_some() {
+                return step;
+            }
+            // What has been done is answered, and the next line may be waiting.
+            let before = self.link.commands.room();
+            self.work(now);
+            if self.link.commands.room() >= before {
+                return None;
+            }
+        }
+    }
+
+    /// When [`poll`](Self::poll) is to be called next, if nothing comes before; known after it has given no step.
+    #[must_use]
+    pub const fn due(&self) -> Option<Duration> {
+        self.motion.due()
+    }
+
+    /// Takes the state of a limit switch.
+    pub fn limit_switch(&mut self, now: Duration, axis: Axis, end: Direction, pressed: bool) {
+        self.motion.limit_switch(axis, end, pressed);
+        self.work(now);
+    }
+
+    /// Takes the state of the emergency stop button; pressed, it stops everything at once and latches.
+    pub fn emergency_stop(&mut self, now: Duration, pressed: bool) {
+        self.motion.emergency_stop(pressed, &mut self.link);
+        self.work(now);
+    }
+
+    /// Lets the machine go on after an emergency stop, unless the button is still pressed; says whether it did.
+    pub fn reset_emergency_stop(&mut self, now: Duration) -> bool {
+        let free = self.motion.reset_emergency_stop();
+        self.work(now);
+        free
+    }
+
+    /// Begins anew with what the host has stored, as after switching on, but where the pen is stays known. An emergency stop ends if
+    /// the button has been released. Call it when the host opens the port: mDraw does so after it has changed settings.
+    pub fn restart(&mut self, now: Duration) {
+        self.motion.reset_emergency_stop();
+        self.motion.restart(self.receive.stored(), &mut self.link);
+        self.link = Link::default();
+        self.receive.restart(self.motion.position_mm());
+        self.work(now);
+    }
+
+    /// The next byte for the host, if there is one.
+    pub fn transmit(&mut self, now: Duration) -> Option<u8> {
+        let byte = self.receive.transmit();
+        if byte.is_none() {
+            // There is room for more.
+            self.work(now);
+            return self.receive.transmit();
+        }
+        byte
+    }
+
+    /// What the host has stored, to be kept by the firmware.
+    #[must_use]
+    pub const fn stored(&self) -> StoredSettings {
+        self.receive.stored()
+    }
+
+    /// What the machine does.
+    #[must_use]
+    pub fn status(&self, now: Duration) -> Status {
+        self.motion.status(now)
+    }
+
+    /// Servo of the pen, degrees.
+    #[must_use]
+    pub const fn pen_deg(&self) -> u8 {
+        self.motion.pen_deg()
+    }
+
+    /// Power of the laser.
+    #[must_use]
+    pub const fn beam(&self) -> Beam {
+        self.motion.beam()
+    }
+
+    /// Where the motors stand: steps really made.
+    #[must_use]
+    pub const fn position(&self) -> StepPoint {
+        self.motion.position()
+    }
+
+    /// Where the pen is by the steps really made, mm.
+    #[must_use]
+    pub fn position_mm(&self) -> Point {
+        self.motion.position_mm()
+    }
+
+    fn work(&mut self, now: Duration) {
+        let status = self.motion.status(now);
+        self.receive.work(&status, &mut self.link);
+    }
+}

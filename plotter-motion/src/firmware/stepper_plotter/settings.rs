@@ -1,0 +1,154 @@
+//! [`StepperPlotterSettings`]: what the controller has to know of its machine.
+
+use crate::kinematics::{Cartesian, MotorScale, ScaleError};
+use crate::{HomingAxis, PlanError, PlannerSettings};
+use core::fmt;
+use core::time::Duration;
+
+/// Which language the host speaks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Dialect {
+    /// That of Makeblock's mDraw: one line at a time, each answered by `OK` when it is done.
+    #[default]
+    MDraw,
+    /// That of Grbl 1.1: lines are answered by `ok` when they are planned; real-time bytes.
+    Grbl,
+}
+
+/// What the host may set and the machine must not forget: a firmware keeps it in its EEPROM or flash.
+///
+/// The default is what mDraw's firmware begins with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct StoredSettings {
+    /// Width of the area, mm.
+    pub width_mm: u16,
+    /// Height of the area, mm.
+    pub height_mm: u16,
+    /// Direction of both motors, 0 or 1: what the DIR pin is for the way to larger coordinates.
+    pub x_direction: u8,
+    /// As `x_direction`.
+    pub y_direction: u8,
+    /// Speed, 0 to 99 %: the motors make a step each (100 - speed) * 10 us, so 80 % is 5000 pulses/s.
+    pub speed_percent: u8,
+    /// Servo with the pen up, 0 to 180 degrees.
+    pub pen_up_deg: u8,
+    /// Servo with the pen down, 0 to 180 degrees.
+    pub pen_down_deg: u8,
+}
+
+impl Default for StoredSettings {
+    fn default() -> Self {
+        Self {
+            width_mm: 380,
+            height_mm: 310,
+            x_direction: 0,
+            y_direction: 0,
+            speed_percent: 80,
+            pen_up_deg: 160,
+            pen_down_deg: 90,
+        }
+    }
+}
+
+impl StoredSettings {
+    /// The speed, in pulses/s.
+    ///
+    /// ```
+    /// # use plotter_motion::firmware::stepper_plotter::StoredSettings;
+    /// assert_eq!(StoredSettings::default().speed_hz(), 5000.0); // 80 %: 200 us a step
+    /// ```
+    #[must_use]
+    pub fn speed_hz(&self) -> f64 {
+        1e5 / f64::from(100 - self.speed_percent.min(99))
+    }
+}
+
+/// A stepper plotter and how it is driven.
+///
+/// The default is the documented machine: 87.58 steps/mm, up to 8000 pulses/s (91.3 mm/s), reached within 1375 steps
+/// (21,818 pulses/s², 249 mm/s²), 200 ms for the pen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepperPlotterSettings {
+    /// The host's language.
+    pub dialect: Dialect,
+    /// What the host may set.
+    pub stored: StoredSettings,
+    /// Steps of the x motor to the millimetre.
+    pub x_steps_per_mm: f64,
+    /// Steps of the y motor to the millimetre.
+    pub y_steps_per_mm: f64,
+    /// Limits of the motion. Of its speeds and that of [`StoredSettings`] the lesser holds.
+    pub planner: PlannerSettings,
+    /// How long the machine stands after the pen has moved.
+    pub pen_settle: Duration,
+    /// Whether a laser takes the place of the pen.
+    pub laser: bool,
+    /// How long a machine at rest waits for more lines before it starts, so that it knows more than the first: it would stop at its
+    /// end otherwise.
+    pub gather: Duration,
+    /// How x is homed.
+    pub home_x: HomingAxis,
+    /// How y is homed.
+    pub home_y: HomingAxis,
+}
+
+impl Default for StepperPlotterSettings {
+    fn default() -> Self {
+        let home_y = HomingAxis { known_steps: 20_000, ..HomingAxis::default() };
+        Self {
+            dialect: Dialect::MDraw,
+            stored: StoredSettings::default(),
+            x_steps_per_mm: 87.58,
+            y_steps_per_mm: 87.58,
+            planner: PlannerSettings {
+                speed_mm_s: 8_000.0 / 87.58,
+                travel_speed_mm_s: 8_000.0 / 87.58,
+                accel_mm_s2: 21_818.0 / 87.58,
+                ..PlannerSettings::default()
+            },
+            pen_settle: Duration::from_millis(200),
+            laser: false,
+            gather: Duration::from_millis(50),
+            home_x: HomingAxis::default(),
+            home_y,
+        }
+    }
+}
+
+impl StepperPlotterSettings {
+    pub(super) fn cartesian(&self) -> Result<Cartesian, ScaleError> {
+        let scale = |steps_per_mm| MotorScale { steps_per_mm, inverted: false };
+        Cartesian::new(scale(self.x_steps_per_mm), scale(self.y_steps_per_mm))
+    }
+
+    /// The limits of the motion at the speed that the host has set.
+    pub(super) fn limits(&self) -> PlannerSettings {
+        let most_mm_s = self.stored.speed_hz() / self.x_steps_per_mm.max(self.y_steps_per_mm);
+        PlannerSettings {
+            speed_mm_s: self.planner.speed_mm_s.min(most_mm_s),
+            travel_speed_mm_s: self.planner.travel_speed_mm_s.min(most_mm_s),
+            ..self.planner
+        }
+    }
+}
+
+/// Settings that no machine can be driven with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SettingsError {
+    /// The steps to the millimetre.
+    Scale(ScaleError),
+    /// The limits of the motion.
+    Planner(PlanError),
+}
+
+impl fmt::Display for SettingsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scale(error) => error.fmt(f),
+            Self::Planner(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for SettingsError {}

@@ -1,0 +1,39 @@
+//! [`Status`]: what the receive side may know of the motion side at any time.
+
+use crate::{LimitSwitches, Point};
+
+/// What the machine does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Activity {
+    /// It stands, and nothing is to be done.
+    #[default]
+    Idle,
+    /// It draws or travels, or is about to.
+    Run,
+    /// It is being held: brakes, or stands.
+    Hold {
+        /// Whether it stands.
+        stands: bool,
+    },
+    /// It homes.
+    Home,
+    /// It has been stopped, and leaves commands out until [`Command::GoOn`](super::Command::GoOn).
+    Stopped,
+}
+
+/// A view of the motion side. Two tasks share it under a lock.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Status {
+    /// What it does.
+    pub activity: Activity,
+    /// Where the pen is by the steps really made, mm.
+    pub at: Point,
+    /// How fast it moves, mm/s.
+    pub speed_mm_s: f64,
+    /// Power of the laser, in 65535ths.
+    pub laser: u16,
+    /// Which limit switches are pressed.
+    pub limits: LimitSwitches,
+    /// Whether the emergency stop is latched.
+    pub emergency_stop: bool,
+}
