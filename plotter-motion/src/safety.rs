@@ -281,6 +281,12 @@ impl SafetyGate {
         self.latched
     }
 
+    /// Whether the emergency stop button is pressed.
+    #[must_use]
+    pub const fn is_button_pressed(&self) -> bool {
+        self.button_pressed
+    }
+
     /// Unlatches the emergency stop, unless the button is still pressed; says whether drive may flow again.
     pub const fn reset(&mut self) -> bool {
         self.latched = self.button_pressed;

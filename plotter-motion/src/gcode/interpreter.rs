@@ -2,8 +2,8 @@
 
 use super::line::Line;
 use super::machine::Machine;
-use super::{Block, BlockDelete, Error, ReadOptions, Undrained};
-use crate::PlotOp;
+use super::{Block, BlockDelete, Error, Modes, ReadOptions, Undrained};
+use crate::{PlotOp, Point};
 
 /// Most that one line gives.
 const MOST_OUTCOMES: usize = 10;
@@ -128,6 +128,18 @@ impl Interpreter {
     /// The next operation, or what could not be carried out; `None` when the next line is wanted.
     pub fn next_op(&mut self) -> Option<Outcome> {
         self.outcomes.take()
+    }
+
+    /// What holds from one line to the next.
+    #[must_use]
+    pub fn modes(&self) -> Modes {
+        self.machine.modes()
+    }
+
+    /// The machine has been moved by something else, or stopped on its way: the pen stands at `point`, in mm on the sheet. What has
+    /// been set by `G92` stays.
+    pub fn stand_at(&mut self, point: Point) {
+        self.machine.stand_at(point);
     }
 
     fn drained(&self) -> Result<(), Undrained> {

@@ -5,7 +5,7 @@ use super::code::{Action, Motion, Spindle, Stop};
 use super::interpreter::Outcomes;
 use super::line::{Line, Told};
 use super::pen_convention::{LaserCommand, PenConvention, ServoCommand};
-use super::{DwellUnit, Error, Problem, ReadOptions, Remark, Word};
+use super::{DwellUnit, Error, Modes, Problem, ReadOptions, Remark, Word};
 use crate::{PlotOp, Point, Vec2};
 use core::time::Duration;
 
@@ -63,6 +63,36 @@ impl Machine {
             beam: 0.0,
             told_share: None,
         }
+    }
+
+    pub(super) fn modes(&self) -> Modes {
+        Modes {
+            position: self.at,
+            offset: self.offset,
+            inches: self.unit_mm != 1.0,
+            relative: self.relative,
+            motion: match self.motion {
+                Motion::Rapid => 0,
+                Motion::Line => 1,
+                Motion::Arc { left: false } => 2,
+                Motion::Arc { left: true } => 3,
+                Motion::None => 80,
+            },
+            feed_mm_s: self.feed_mm_s,
+            spindle: match self.spindle {
+                Spindle::Off => 5,
+                Spindle::Constant => 3,
+                Spindle::Dynamic => 4,
+            },
+            power: self.power,
+            tool: self.tool.unwrap_or(0),
+            pen_down: self.pen_down,
+        }
+    }
+
+    pub(super) fn stand_at(&mut self, point: Point) {
+        self.at = point;
+        (self.dot_owed, self.settling) = (false, false);
     }
 
     pub(super) fn carry_out(

@@ -194,8 +194,8 @@ impl Front {
     ) {
         let from = self.position;
         if to == from {
-            if pen == Pen::Down && self.pen == Pen::Up {
-                self.dot(settings, ring);
+            if pen != self.pen {
+                self.put_pen(pen, settings, ring);
             }
             return;
         }
@@ -220,11 +220,11 @@ impl Front {
         }
     }
 
-    /// The pen is lowered where it stands.
-    fn dot<const N: usize>(&mut self, settings: &PlannerSettings, ring: &mut Ring<N>) {
+    /// The pen is lowered where it stands, which leaves a dot, or lifted.
+    fn put_pen<const N: usize>(&mut self, pen: Pen, settings: &PlannerSettings, ring: &mut Ring<N>) {
         self.end_run(settings, ring);
-        self.pen = Pen::Down;
-        ring.push(Block::path(Shape::Line, self.position, 0.0, Pen::Down, self.power, 0.0));
+        self.pen = pen;
+        ring.push(Block::path(Shape::Line, self.position, 0.0, pen, self.power, 0.0));
     }
 
     fn arc<const N: usize>(

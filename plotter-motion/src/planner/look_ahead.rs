@@ -17,7 +17,7 @@ use core::time::Duration;
 ///
 /// - Strokes and travels begin and end at rest. A travel of several lines is one.
 /// - Corners and arcs obey the limits of [`PlannerSettings`]; see there for the ways to follow a path.
-/// - A line to where the pen stands is a dot, if the pen was up.
+/// - A line to where the pen stands is a dot, if the pen was up; a travel to there lifts it.
 ///
 /// Source of the look-ahead over squares of speeds, forwards and backwards: S. K. Jeon, documentation of the grbl project's
 /// planner (2011).

@@ -1,5 +1,6 @@
 //! What the two tasks tell each other: [`Command`], [`Signal`] and [`Report`].
 
+use super::Activity;
 use crate::{Axis, Direction, Homed, HomingError, PlotOp, Point};
 use core::fmt;
 
@@ -26,6 +27,8 @@ pub enum Command {
     /// The receive side has learned of a stop: what comes from here on was meant for the machine as it stands now. After a stop all
     /// before this is left out.
     GoOn,
+    /// As [`Command::GoOn`], and ends an emergency stop if the button has been released.
+    Unlock,
 }
 
 /// What the receive side asks at once, past the queue.
@@ -55,8 +58,8 @@ pub enum Stop {
     },
     /// [`Signal::Reset`].
     Reset {
-        /// Whether it stopped a motion.
-        moved: bool,
+        /// What the machine did then.
+        during: Activity,
     },
 }
 

@@ -2,8 +2,8 @@
 
 use super::{Command, Queue, Report};
 
-/// Commands on their way to the motion side. One line of G-code gives ten at the most.
-pub const COMMANDS: usize = 16;
+/// Commands on their way to the motion side: fifteen, and those of one more line of G-code.
+pub const COMMANDS: usize = 27;
 /// Reports on their way back; the receive side waits for at most one, and a machine is not stopped twice before that is told.
 pub const REPORTS: usize = 4;
 

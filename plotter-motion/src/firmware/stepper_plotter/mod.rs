@@ -1,6 +1,8 @@
 //! The stepper plotter's controller.
 
+mod area;
 mod command;
+mod grbl;
 mod homing_run;
 mod link;
 mod mdraw;

@@ -113,6 +113,10 @@ impl Motion {
                 State::Stopped => match link.commands.pop() {
                     None => return None,
                     Some(Command::GoOn) => self.state = State::Ready,
+                    Some(Command::Unlock) => {
+                        self.gate.reset();
+                        self.state = State::Ready;
+                    }
                     Some(command) => self.leave_out(command),
                 },
                 State::Homing(run) => {
@@ -156,8 +160,8 @@ impl Motion {
                 self.planner.resume();
             }
             Signal::Reset => {
-                let moved = matches!(self.state, State::Homing(_)) || self.moves(now);
-                self.stop(Stop::Reset { moved }, link);
+                let during = self.status(now).activity;
+                self.stop(Stop::Reset { during }, link);
             }
             Signal::LaserOff => {
                 self.dark = true;
@@ -244,6 +248,7 @@ impl Motion {
             laser: self.beam.power(),
             limits: self.gate.limits(),
             emergency_stop: self.gate.is_stopped(),
+            emergency_button: self.gate.is_button_pressed(),
         }
     }
 
@@ -383,6 +388,10 @@ impl Motion {
         }
         self.phase = None;
         match link.commands.pop() {
+            // What was sent before the stop was heard of.
+            Some(Command::Servo(_) | Command::Home) if self.gate.is_stopped() => {
+                self.stop(Stop::Emergency, link);
+            }
             Some(command) => self.stand(command, now, link),
             None => return false,
         }
@@ -433,6 +442,9 @@ impl Motion {
                 let _ = link.reports.push(Report::Done);
             }
             Command::GoOn => {}
+            Command::Unlock => {
+                self.gate.reset();
+            }
         }
     }
 

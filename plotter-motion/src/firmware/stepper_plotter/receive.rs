@@ -1,5 +1,6 @@
 //! [`Receive`]: the task that talks to the host.
 
+use super::grbl::Grbl;
 use super::mdraw::MDraw;
 use super::{Dialect, Link, Signal, Status, StepperPlotterSettings, StoredSettings};
 use crate::Point;
@@ -12,9 +13,11 @@ pub struct Receive {
     host: Host,
 }
 
+#[expect(clippy::large_enum_variant, reason = "there is one host to a machine, and no heap to put it on")]
 #[derive(Clone, Debug, PartialEq)]
 enum Host {
     MDraw(MDraw),
+    Grbl(Grbl),
 }
 
 impl Receive {
@@ -22,7 +25,8 @@ impl Receive {
     #[must_use]
     pub fn new(settings: StepperPlotterSettings) -> Self {
         let host = match settings.dialect {
-            Dialect::MDraw | Dialect::Grbl => Host::MDraw(MDraw::new(settings)),
+            Dialect::MDraw => Host::MDraw(MDraw::new(settings)),
+            Dialect::Grbl => Host::Grbl(Grbl::new(settings)),
         };
         Self { host }
     }
@@ -31,6 +35,7 @@ impl Receive {
     pub fn receive(&mut self, byte: u8) -> Option<Signal> {
         match &mut self.host {
             Host::MDraw(mdraw) => mdraw.receive(byte),
+            Host::Grbl(grbl) => grbl.receive(byte),
         }
     }
 
@@ -38,6 +43,7 @@ impl Receive {
     pub fn work(&mut self, status: &Status, link: &mut Link) {
         match &mut self.host {
             Host::MDraw(mdraw) => mdraw.work(status, link),
+            Host::Grbl(grbl) => grbl.work(status, link),
         }
     }
 
@@ -45,6 +51,7 @@ impl Receive {
     pub fn transmit(&mut self) -> Option<u8> {
         match &mut self.host {
             Host::MDraw(mdraw) => mdraw.transmit(),
+            Host::Grbl(grbl) => grbl.transmit(),
         }
     }
 
@@ -53,6 +60,7 @@ impl Receive {
     pub const fn stored(&self) -> StoredSettings {
         match &self.host {
             Host::MDraw(mdraw) => mdraw.stored(),
+            Host::Grbl(grbl) => grbl.stored(),
         }
     }
 
@@ -60,6 +68,7 @@ impl Receive {
     pub fn restart(&mut self, at: Point) {
         match &mut self.host {
             Host::MDraw(mdraw) => mdraw.restart(at),
+            Host::Grbl(grbl) => grbl.restart(at),
         }
     }
 }

@@ -1,9 +1,13 @@
 //! [`StepperPlotterSettings`]: what the controller has to know of its machine.
 
+use crate::gcode::PenConvention;
 use crate::kinematics::{Cartesian, MotorScale, ScaleError};
-use crate::{HomingAxis, PlanError, PlannerSettings};
+use crate::{Axis, HomingAxis, Machine, PlanError, PlannerSettings, StepGenSettings};
 use core::fmt;
 use core::time::Duration;
+
+/// The number of a laser's full power, the same as [`PenConvention::GRBL_LASER`] has it.
+pub(super) const FULL_POWER: f64 = 1000.0;
 
 /// Which language the host speaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -24,9 +28,9 @@ pub struct StoredSettings {
     pub width_mm: u16,
     /// Height of the area, mm.
     pub height_mm: u16,
-    /// Direction of both motors, 0 or 1: what the DIR pin is for the way to larger coordinates.
+    /// Direction of the x motor: 0 if its DIR pin is high on the way to larger coordinates, 1 if low.
     pub x_direction: u8,
-    /// As `x_direction`.
+    /// That of the y motor.
     pub y_direction: u8,
     /// Speed, 0 to 99 %: the motors make a step each (100 - speed) * 10 us, so 80 % is 5000 pulses/s.
     pub speed_percent: u8,
@@ -83,6 +87,8 @@ pub struct StepperPlotterSettings {
     pub pen_settle: Duration,
     /// Whether a laser takes the place of the pen.
     pub laser: bool,
+    /// How a pen is lifted in Grbl's dialect. With `laser` it is [`PenConvention::GRBL_LASER`] instead.
+    pub pen: PenConvention,
     /// How long a machine at rest waits for more lines before it starts, so that it knows more than the first: it would stop at its
     /// end otherwise.
     pub gather: Duration,
@@ -94,7 +100,6 @@ pub struct StepperPlotterSettings {
 
 impl Default for StepperPlotterSettings {
     fn default() -> Self {
-        let home_y = HomingAxis { known_steps: 20_000, ..HomingAxis::default() };
         Self {
             dialect: Dialect::MDraw,
             stored: StoredSettings::default(),
@@ -108,9 +113,10 @@ impl Default for StepperPlotterSettings {
             },
             pen_settle: Duration::from_millis(200),
             laser: false,
+            pen: PenConvention::Spindle,
             gather: Duration::from_millis(50),
             home_x: HomingAxis::default(),
-            home_y,
+            home_y: HomingAxis::default(),
         }
     }
 }
@@ -121,14 +127,70 @@ impl StepperPlotterSettings {
         Cartesian::new(scale(self.x_steps_per_mm), scale(self.y_steps_per_mm))
     }
 
-    /// The limits of the motion at the speed that the host has set.
-    pub(super) fn limits(&self) -> PlannerSettings {
-        let most_mm_s = self.stored.speed_hz() / self.x_steps_per_mm.max(self.y_steps_per_mm);
-        PlannerSettings {
-            speed_mm_s: self.planner.speed_mm_s.min(most_mm_s),
-            travel_speed_mm_s: self.planner.travel_speed_mm_s.min(most_mm_s),
-            ..self.planner
+    /// What a checked machine with stepper motors says of itself. Sides and angles are rounded to whole ones.
+    ///
+    /// ```
+    /// # use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
+    /// # use plotter_motion::{Machine, MachineConfig};
+    /// let machine = Machine::new(MachineConfig::stepper_plotter())?;
+    /// let settings = StepperPlotterSettings::of(&machine, Dialect::Grbl);
+    /// assert_eq!((settings.stored.width_mm, settings.planner.speed_mm_s), (380, 45.0));
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn of(machine: &Machine, dialect: Dialect) -> Self {
+        let config = machine.config();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+        let whole = |value: f64| libm::round(value) as u16;
+        let degrees = |deg: f64| u8::try_from(whole(deg)).unwrap_or(180).min(180);
+        let steps = StepGenSettings::of(machine);
+        Self {
+            dialect,
+            stored: StoredSettings {
+                width_mm: whole(config.area.width_mm),
+                height_mm: whole(config.area.height_mm),
+                x_direction: config.x.stepper.inverted.into(),
+                y_direction: config.y.stepper.inverted.into(),
+                pen_up_deg: degrees(config.pen.up_deg),
+                pen_down_deg: degrees(config.pen.down_deg),
+                ..StoredSettings::default()
+            },
+            x_steps_per_mm: config.x.stepper.steps_per_mm,
+            y_steps_per_mm: config.y.stepper.steps_per_mm,
+            planner: PlannerSettings::of(machine),
+            pen_settle: steps.pen_settle,
+            laser: steps.laser,
+            home_x: HomingAxis::of(machine, Axis::X),
+            home_y: HomingAxis::of(machine, Axis::Y),
+            ..Self::default()
         }
+    }
+
+    /// Speeds with the pen down and up, mm/s. mDraw's user chooses a greatest rate.
+    pub(super) fn speeds_mm_s(&self) -> (f64, f64) {
+        let most_mm_s = match self.dialect {
+            Dialect::MDraw => self.stored.speed_hz() / self.x_steps_per_mm.max(self.y_steps_per_mm),
+            Dialect::Grbl => f64::INFINITY,
+        };
+        (self.planner.speed_mm_s.min(most_mm_s), self.planner.travel_speed_mm_s.min(most_mm_s))
+    }
+
+    /// The limits that are planned with.
+    pub(super) fn limits(&self) -> PlannerSettings {
+        let (draw_mm_s, travel_mm_s) = self.speeds_mm_s();
+        match self.dialect {
+            // There each move is told its speed: only the receive side knows what the servo means.
+            Dialect::MDraw => {
+                let speed_mm_s = draw_mm_s.max(travel_mm_s);
+                PlannerSettings { speed_mm_s, travel_speed_mm_s: speed_mm_s, ..self.planner }
+            }
+            Dialect::Grbl => self.planner,
+        }
+    }
+
+    /// By which words a G-code text lifts the pen.
+    pub(super) fn convention(&self) -> PenConvention {
+        if self.laser { PenConvention::GRBL_LASER } else { self.pen }
     }
 }
 

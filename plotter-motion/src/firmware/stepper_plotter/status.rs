@@ -36,4 +36,6 @@ pub struct Status {
     pub limits: LimitSwitches,
     /// Whether the emergency stop is latched.
     pub emergency_stop: bool,
+    /// Whether its button is pressed.
+    pub emergency_button: bool,
 }

@@ -41,6 +41,9 @@ pub(super) struct MDraw {
     /// Where the pen has been sent, mm, in the precision of the original.
     at: (f32, f32),
     delay_us: i32,
+    /// Whether the servo was last told an angle nearer to that of the pen down.
+    pen_down: bool,
+    laser_on: bool,
     /// The motion side waits to hear that its stop has been heard of.
     stopped: bool,
     out: Output,
@@ -58,6 +61,8 @@ impl MDraw {
             early: 0,
             at: (0.0, 0.0),
             delay_us: 0,
+            pen_down: false,
+            laser_on: false,
             stopped: false,
             out: Output::new(),
         }
@@ -123,6 +128,9 @@ impl MDraw {
     }
 
     fn take(&mut self, report: Report) {
+        if report != Report::Done {
+            (self.pen_down, self.laser_on) = (false, false);
+        }
         let refusal = match report {
             Report::Done => None,
             Report::Homed { at, result } => {
@@ -195,12 +203,15 @@ impl MDraw {
             Request::Servo(deg) => {
                 let deg = deg.ok_or(Refusal::NoNumber { command: "M1" })?;
                 let deg = byte("M1", Some(deg), 0, 180)?;
+                let StoredSettings { pen_up_deg, pen_down_deg, .. } = self.stored;
+                self.pen_down = deg.abs_diff(pen_down_deg) < deg.abs_diff(pen_up_deg);
                 self.command(link, Command::Servo(deg));
                 Ok(())
             }
             Request::Laser(power) => {
                 let power = power.ok_or(Refusal::NoNumber { command: "M4" })?;
                 let power = in_range("M4", power, 0, 255)?;
+                self.laser_on = power > 0;
                 self.command(link, Command::Plot(PlotOp::LaserPower { share: f64::from(power) / 255.0 }));
                 Ok(())
             }
@@ -254,7 +265,9 @@ impl MDraw {
         let x_steps = f64::from(dx.abs()) * self.settings.x_steps_per_mm;
         let y_steps = f64::from(dy.abs()) * self.settings.y_steps_per_mm;
         let steps_per_mm = x_steps.max(y_steps) / f64::from(distance_mm);
-        let full_mm_s = self.settings.limits().speed_mm_s;
+        let (draw_mm_s, travel_mm_s) = self.settings.speeds_mm_s();
+        let marks = if self.settings.laser { self.laser_on } else { self.pen_down };
+        let full_mm_s = if marks { draw_mm_s } else { travel_mm_s };
         1.0 / (1.0 / full_mm_s + f64::from(self.delay_us) * 1e-6 * steps_per_mm)
     }
 

@@ -40,6 +40,7 @@ impl fmt::Display for Refusal {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::firmware::stepper_plotter::Activity;
     use crate::{Axis, Direction};
     use std::string::ToString;
 
@@ -54,7 +55,7 @@ mod tests {
             Refusal::Area { x: f32::MAX, y: f32::MIN, width_mm: u16::MAX, height_mm: u16::MAX },
             Refusal::Stopped(Stop::Emergency),
             Refusal::Stopped(Stop::Limit { axis, end }),
-            Refusal::Stopped(Stop::Reset { moved: true }),
+            Refusal::Stopped(Stop::Reset { during: Activity::Run }),
             Refusal::Homing(HomingError::Missing { axis, end, steps }),
             Refusal::Homing(HomingError::Stuck { axis, end, steps }),
             Refusal::Homing(HomingError::Wrong { axis, end }),

@@ -1,0 +1,53 @@
+//! Whether a movement stays within the area.
+
+use crate::{PlotOp, Point};
+use core::f64::consts::FRAC_PI_2;
+
+/// What rounding may put outside, mm.
+const SLACK_MM: f64 = 1e-6;
+
+/// Whether the way of `op` from `from` stays between (0, 0) and `most`, mm. An arc may go farther than its ends.
+pub(super) fn contains(most: Point, from: Point, op: PlotOp) -> bool {
+    let inside = |place: Point| {
+        let within = |value: f64, most: f64| value >= -SLACK_MM && value <= most + SLACK_MM;
+        within(place.x, most.x) && within(place.y, most.y)
+    };
+    // A pen that stands outside may come back.
+    let Some(to) = op.target() else { return true };
+    if !inside(to) {
+        return false;
+    }
+    let PlotOp::DrawArc { centre, sweep_rad, .. } = op else { return true };
+    let out = from - centre;
+    let radius_mm = out.length().max((to - centre).length());
+    let begin = libm::atan2(out.y, out.x);
+    let (low, high) = if sweep_rad < 0.0 { (begin + sweep_rad, begin) } else { (begin, begin + sweep_rad) };
+    // A begin of -π to π and a sweep of a turn at most: from -3π to 3π, in quarters.
+    (-6_i8..=6).map(|quarter| (quarter, f64::from(quarter) * FRAC_PI_2)).all(|(quarter, angle)| {
+        if angle < low || angle > high {
+            return true;
+        }
+        let (x, y) = match quarter.rem_euclid(4) {
+            0 => (radius_mm, 0.0),
+            1 => (0.0, radius_mm),
+            2 => (-radius_mm, 0.0),
+            _ => (0.0, -radius_mm),
+        };
+        inside(Point::new(centre.x + x, centre.y + y))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arc_is_looked_at_as_a_whole() {
+        let most = Point::new(100.0, 100.0);
+        // Half a circle about (50, 95) over the top, or below.
+        let (from, to, centre) = (Point::new(60.0, 95.0), Point::new(40.0, 95.0), Point::new(50.0, 95.0));
+        let half = |sweep_rad| PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s: None };
+        assert!(!contains(most, from, half(core::f64::consts::PI)));
+        assert!(contains(most, from, half(-core::f64::consts::PI)));
+    }
+}

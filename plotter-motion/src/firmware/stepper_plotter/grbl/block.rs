@@ -1,0 +1,127 @@
+//! A line of G-code becomes commands.
+
+use super::super::{Command, Link, StoredSettings, area};
+use super::codes::{Alarm, Code};
+use super::{Grbl, Wait, send};
+use crate::gcode::{Block, Problem, Reader, Word};
+use crate::{PlotOp, Point};
+
+impl Grbl {
+    /// Carries a line out as a whole, or not at all.
+    pub(super) fn block(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
+        let Some(block) = read(text)? else { return Ok(()) };
+        let before = self.interpreter;
+        let done = self.carry_out(&block, link);
+        if done.is_err() {
+            self.interpreter = before;
+        }
+        done
+    }
+
+    /// A movement by hand: with the pen up, at the speed of travels. Of its line only the place is kept.
+    pub(super) fn jog(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
+        let block = read(text)?.ok_or(Code::BAD_JOG)?;
+        let is_allowed = |word: &Word| match word.letter {
+            b'G' => matches!(word.tenths(), Some(200 | 210 | 530 | 900 | 910)),
+            b'X' | b'Y' | b'Z' | b'F' | b'N' => true,
+            _ => false,
+        };
+        if !block.words().iter().all(is_allowed) {
+            return Err(Code::BAD_JOG);
+        }
+        if block.number(b'F').is_none() {
+            return Err(Code::NO_FEED);
+        }
+        let mut interpreter = self.interpreter;
+        let travel = read(b"G0M5")?.into_iter().chain([block]);
+        let mut to = None;
+        for block in travel {
+            let taken = interpreter.push(Ok(block));
+            debug_assert!(taken.is_ok(), "what the line before gave has been taken");
+            while let Some(op) = interpreter.next_op() {
+                to = op.map_err(Code::of)?.target().or(to);
+            }
+        }
+        let Some(to) = to else { return Ok(()) };
+        let travel = PlotOp::Travel { to };
+        if !area::contains(self.most(), to, travel) {
+            return Err(Code::JOG_TARGET);
+        }
+        self.interpreter.stand_at(to);
+        self.command(link, Command::Plot(travel));
+        Ok(())
+    }
+
+    /// The far corner of the area.
+    fn most(&self) -> Point {
+        let StoredSettings { width_mm, height_mm, .. } = self.settings.stored;
+        Point::new(f64::from(width_mm), f64::from(height_mm))
+    }
+
+    fn carry_out(&mut self, block: &Block, link: &mut Link) -> Result<(), Code> {
+        let before = self.interpreter.modes();
+        let taken = self.interpreter.push(Ok(*block));
+        debug_assert!(taken.is_ok(), "what the line before gave has been taken");
+        let mut ops = [None; super::MOST_COMMANDS];
+        let mut slots = ops.iter_mut();
+        let mut pauses = false;
+        while let Some(op) = self.interpreter.next_op() {
+            match op {
+                Ok(op) => {
+                    if let Some(slot) = slots.next() {
+                        *slot = Some(op);
+                    }
+                }
+                Err(error) if is_pause(error.problem) => pauses = true,
+                Err(error) => return Err(Code::of(error)),
+            }
+        }
+        let modes = self.interpreter.modes();
+        let moves = ops.iter().flatten().any(|op| op.target().is_some());
+        let has_axis = block.words().iter().any(|word| matches!(word.letter, b'X' | b'Y'));
+        if moves && has_axis && (1..=3).contains(&modes.motion) && modes.feed_mm_s.is_none() {
+            return Err(Code::NO_FEED);
+        }
+        let most =
+            Point::new(f64::from(self.settings.stored.width_mm), f64::from(self.settings.stored.height_mm));
+        let mut at = before.position;
+        for op in ops.iter().flatten() {
+            if !area::contains(most, at, *op) {
+                // What has been answered by ok is still drawn, then the pen goes up.
+                self.command(link, Command::Plot(PlotOp::Travel { to: before.position }));
+                self.alarm(Alarm::SOFT_LIMIT);
+                return Err(Code::TARGET);
+            }
+            at = op.target().unwrap_or(at);
+        }
+        for op in ops.into_iter().flatten() {
+            self.command(link, Command::Plot(op));
+        }
+        if before.pen_down && !modes.pen_down {
+            self.command(link, Command::Plot(PlotOp::Travel { to: at }));
+        }
+        if pauses {
+            self.command(link, Command::Pause);
+            send(link, Command::Finish);
+            self.wait = Some(Wait::Finish);
+        }
+        Ok(())
+    }
+}
+
+/// The words of a line; none if it has no words.
+fn read(text: &[u8]) -> Result<Option<Block>, Code> {
+    let mut reader = Reader::new();
+    for &byte in text {
+        // Only an error comes before the end of the line.
+        if let Some(Err(error)) = reader.push(byte) {
+            return Err(Code::of(error));
+        }
+    }
+    reader.finish().transpose().map_err(Code::of)
+}
+
+/// `M0`: Grbl waits too, and passes `M1` by.
+fn is_pause(problem: Problem) -> bool {
+    matches!(problem, Problem::Unsupported { command, .. } if command.letter == b'M' && command.tenths() == Some(0))
+}

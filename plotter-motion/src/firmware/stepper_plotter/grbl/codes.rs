@@ -1,0 +1,131 @@
+//! Grbl's numbers of errors and alarms.
+//!
+//! Source: the Grbl project's wiki, "Grbl v1.1 Interface", and its tables of errors and alarms (`doc/csv`).
+
+use crate::gcode::{Error, Problem, Word};
+use crate::{HomingError, Point};
+
+/// What stands after `error:`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Code(pub(super) u8);
+
+impl Code {
+    /// G-code words consist of a letter and a value; the letter was not found.
+    pub(super) const NO_LETTER: Self = Self(1);
+    /// The value of a word is missing, or no number.
+    pub(super) const BAD_NUMBER: Self = Self(2);
+    /// A `$` command that is not known.
+    pub(super) const BAD_STATEMENT: Self = Self(3);
+    /// A negative value where one above 0 is expected.
+    pub(super) const NEGATIVE: Self = Self(4);
+    /// A `$` command that is only carried out at rest.
+    pub(super) const NOT_IDLE: Self = Self(8);
+    /// G-code is locked out in an alarm.
+    pub(super) const LOCKED: Self = Self(9);
+    /// Too many characters in a line; it was not carried out.
+    pub(super) const OVERFLOW: Self = Self(11);
+    /// The target of a jog lies outside the area; it was not carried out.
+    pub(super) const JOG_TARGET: Self = Self(15);
+    /// A jog with a command that has no place in it.
+    pub(super) const BAD_JOG: Self = Self(16);
+    /// A command that is not supported.
+    pub(super) const UNSUPPORTED: Self = Self(20);
+    /// Two commands of the same modal group in a line.
+    pub(super) const MODAL_GROUP: Self = Self(21);
+    /// The feed rate has not been set.
+    pub(super) const NO_FEED: Self = Self(22);
+    /// A command that takes a whole number.
+    pub(super) const NOT_WHOLE: Self = Self(23);
+    /// Two commands that use the axis words.
+    pub(super) const AXIS_CONFLICT: Self = Self(24);
+    /// A word twice.
+    pub(super) const REPEATED: Self = Self(25);
+    /// A command lacks a word.
+    pub(super) const MISSING: Self = Self(28);
+    /// Axis words that no command uses.
+    pub(super) const AXIS_UNUSED: Self = Self(31);
+    /// The target of a motion is invalid.
+    pub(super) const TARGET: Self = Self(33);
+    /// The radius of an arc is invalid.
+    pub(super) const RADIUS: Self = Self(34);
+    /// An arc lacks its centre.
+    pub(super) const CENTRE: Self = Self(35);
+    /// Words that nothing uses.
+    pub(super) const UNUSED: Self = Self(36);
+
+    /// The number that fits best to what the reader complains of.
+    pub(super) fn of(error: Error) -> Self {
+        match error.problem {
+            Problem::UnexpectedByte { .. } | Problem::NoLetter | Problem::BadChecksum { .. } => {
+                Self::NO_LETTER
+            }
+            Problem::NoNumber { .. }
+            | Problem::BadNumber { .. }
+            | Problem::Exponent { .. }
+            | Problem::NumberOutOfRange { .. } => Self::BAD_NUMBER,
+            Problem::System => Self::BAD_STATEMENT,
+            Problem::TooManyWords => Self::OVERFLOW,
+            Problem::Repeated { .. } => Self::REPEATED,
+            Problem::TwoCommands { first, second } if moves(first) != moves(second) => Self::AXIS_CONFLICT,
+            Problem::TwoCommands { .. } => Self::MODAL_GROUP,
+            Problem::Unknown { command } if command.letter == b'M' && is_fraction(command) => Self::NOT_WHOLE,
+            Problem::Unused { .. } => Self::UNUSED,
+            Problem::BadParameter { word, .. } => match word.number {
+                Some(number) if number < 0.0 => Self::NEGATIVE,
+                Some(_) if word.letter == b'F' => Self::NO_FEED,
+                _ if is_fraction(word) => Self::NOT_WHOLE,
+                _ => Self::BAD_NUMBER,
+            },
+            Problem::Missing { .. } => Self::MISSING,
+            Problem::NoMotion => Self::AXIS_UNUSED,
+            Problem::ArcForm => Self::CENTRE,
+            Problem::ArcWithoutEnd | Problem::ArcRadii { .. } => Self::TARGET,
+            Problem::ArcRadius { .. } => Self::RADIUS,
+            _ => Self::UNSUPPORTED,
+        }
+    }
+}
+
+/// Whether a command is a way of moving: G0 to G3 and G80.
+fn moves(command: Word) -> bool {
+    command.letter == b'G' && matches!(command.tenths(), Some(0 | 10 | 20 | 30 | 800))
+}
+
+fn is_fraction(word: Word) -> bool {
+    word.number.is_some_and(|number| libm::floor(number) != number)
+}
+
+/// What stands after `ALARM:`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Alarm(pub(super) u8);
+
+impl Alarm {
+    /// A limit switch stopped the machine.
+    pub(super) const HARD_LIMIT: Self = Self(1);
+    /// The target of a motion lies outside the area.
+    pub(super) const SOFT_LIMIT: Self = Self(2);
+    /// A reset while it moved.
+    pub(super) const ABORT: Self = Self(3);
+    /// A reset while it homed.
+    pub(super) const HOMING_RESET: Self = Self(6);
+    /// The emergency stop button. Grbl 1.1 has no number for it; this is that of its successor grblHAL.
+    pub(super) const EMERGENCY: Self = Self(10);
+
+    /// 8: a switch did not open; 9: a switch was not found where it should be.
+    pub(super) const fn of(error: HomingError) -> Self {
+        match error {
+            HomingError::Stuck { .. } | HomingError::Both { .. } => Self(8),
+            _ => Self(9),
+        }
+    }
+}
+
+/// As [`Point`], rounded to micrometres: no `-0.000` is told.
+pub(super) fn coordinate(mm: f64) -> f64 {
+    libm::round(mm * 1e3) / 1e3 + 0.0
+}
+
+/// Both coordinates of a place.
+pub(super) fn coordinates(at: Point) -> (f64, f64) {
+    (coordinate(at.x), coordinate(at.y))
+}

@@ -1,0 +1,60 @@
+//! [`LineBuffer`]: from bytes to lines, as Grbl does it.
+
+use super::rx_buffer::LOST;
+
+/// Most characters of a line, without blanks and comments.
+pub(super) const MOST: usize = 80;
+
+/// The line that is coming in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LineBuffer {
+    text: [u8; MOST],
+    len: usize,
+    comment: Comment,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Comment {
+    None,
+    /// Within parentheses.
+    Parentheses,
+    /// After a semicolon.
+    Rest,
+}
+
+impl LineBuffer {
+    pub(super) const fn new() -> Self {
+        Self { text: [0; MOST], len: 0, comment: Comment::None }
+    }
+
+    /// Takes a byte; says whether it ends the line.
+    pub(super) fn push(&mut self, byte: u8) -> bool {
+        match (self.comment, byte) {
+            (_, b'\n' | b'\r') => return true,
+            (_, LOST) => self.len = MOST + 1,
+            (Comment::Rest, _) => {}
+            (Comment::Parentheses, b')') => self.comment = Comment::None,
+            (Comment::Parentheses, _) => {}
+            (Comment::None, b'(') => self.comment = Comment::Parentheses,
+            (Comment::None, b';') => self.comment = Comment::Rest,
+            (Comment::None, _) if byte <= b' ' => {}
+            (Comment::None, _) => {
+                if let Some(slot) = self.text.get_mut(self.len) {
+                    *slot = byte.to_ascii_uppercase();
+                }
+                // Too long stays too long.
+                self.len = (self.len + 1).min(MOST + 1);
+            }
+        }
+        false
+    }
+
+    /// The line, without blanks and comments, in capitals; none if it was too long.
+    pub(super) fn text(&self) -> Option<&[u8]> {
+        self.text.get(..self.len)
+    }
+
+    pub(super) const fn clear(&mut self) {
+        (self.len, self.comment) = (0, Comment::None);
+    }
+}

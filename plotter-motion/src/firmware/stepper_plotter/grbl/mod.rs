@@ -1,0 +1,292 @@
+//! [`Grbl`]: the conversation with a program that streams G-code to Grbl 1.1.
+
+mod block;
+mod codes;
+mod line_buffer;
+mod listing;
+mod rx_buffer;
+mod status_report;
+
+use super::output::Output;
+use super::{Activity, Command, Link, Report, Signal, Status, StepperPlotterSettings, Stop, StoredSettings};
+use crate::Point;
+use crate::gcode::{BlockDelete, Interpreter, ReadOptions};
+use codes::{Alarm, Code, coordinate};
+use line_buffer::LineBuffer;
+use listing::Listing;
+use rx_buffer::RxBuffer;
+
+/// Most commands that one line becomes: what the interpreter gives, and what goes before and after it.
+const MOST_COMMANDS: usize = 12;
+/// Most bytes that are written at one time.
+const MOST_ANSWER: usize = 320;
+/// The longest way of telling the offset only now and then: so many reports without it.
+const REPORTS_WITHOUT_OFFSET: u8 = 10;
+
+/// What the line in hand waits for before it is answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wait {
+    /// `$H`.
+    Home,
+    /// `M0`: until it goes on.
+    Finish,
+}
+
+/// The receive side for programs that stream to Grbl. Each line is answered by one `ok` or `error`, in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Grbl {
+    settings: StepperPlotterSettings,
+    rx: RxBuffer,
+    line: LineBuffer,
+    interpreter: Interpreter,
+    wait: Option<Wait>,
+    listing: Option<(Listing, u8)>,
+    alarm: Option<Alarm>,
+    /// The motion side waits to hear that its stop has been heard of.
+    stopped: bool,
+    status_wanted: bool,
+    reports_to_offset: u8,
+    greeting: bool,
+    out: Output,
+}
+
+impl Grbl {
+    pub(super) fn new(settings: StepperPlotterSettings) -> Self {
+        Self {
+            settings,
+            rx: RxBuffer::new(),
+            line: LineBuffer::new(),
+            interpreter: interpreter(&settings),
+            wait: None,
+            listing: None,
+            alarm: None,
+            stopped: false,
+            status_wanted: false,
+            reports_to_offset: 0,
+            greeting: true,
+            out: Output::new(),
+        }
+    }
+
+    pub(super) const fn stored(&self) -> StoredSettings {
+        self.settings.stored
+    }
+
+    pub(super) fn transmit(&mut self) -> Option<u8> {
+        self.out.pop()
+    }
+
+    /// The port has been opened anew, at `at`.
+    pub(super) fn restart(&mut self, at: Point) {
+        *self = Self::new(self.settings);
+        self.interpreter.stand_at(at);
+    }
+
+    pub(super) fn receive(&mut self, byte: u8) -> Option<Signal> {
+        match byte {
+            b'?' => self.status_wanted = true,
+            b'!' => return Some(Signal::Hold),
+            b'~' => return Some(Signal::Resume),
+            0x18 => {
+                self.rx.clear();
+                self.line.clear();
+                (self.wait, self.listing) = (None, None);
+                return Some(Signal::Reset);
+            }
+            // Real-time commands for what this machine has not: overrides, a door, a jog to be cancelled.
+            0x80.. => {}
+            _ => self.rx.push(byte),
+        }
+        None
+    }
+
+    pub(super) fn work(&mut self, status: &Status, link: &mut Link) {
+        while self.out.room() >= MOST_ANSWER {
+            let worked = self.tell(status, link) || self.read(status, link);
+            if !worked {
+                return;
+            }
+        }
+    }
+
+    /// Tells what comes by itself; says whether there was something.
+    fn tell(&mut self, status: &Status, link: &mut Link) -> bool {
+        if core::mem::take(&mut self.greeting) {
+            self.greet();
+        } else if let Some(report) = link.reports.pop() {
+            self.take(report);
+        } else if core::mem::take(&mut self.status_wanted) {
+            self.tell_status(status, link);
+        } else if let Some((listing, index)) = self.listing {
+            if listing.line(index, &self.settings, &self.interpreter.modes(), &mut self.out) {
+                self.listing = Some((listing, index.saturating_add(1)));
+            } else {
+                self.listing = None;
+                self.out.line(format_args!("ok"));
+            }
+        } else {
+            return false;
+        }
+        true
+    }
+
+    /// Goes on with the line that is coming in; says whether there was a byte of it.
+    fn read(&mut self, status: &Status, link: &mut Link) -> bool {
+        if self.wait.is_some() || link.commands.room() < MOST_COMMANDS {
+            return false;
+        }
+        let Some(byte) = self.rx.pop() else { return false };
+        if !self.line.push(byte) {
+            return true;
+        }
+        let line = self.line;
+        self.line.clear();
+        let done = match line.text() {
+            None => Err(Code::OVERFLOW),
+            Some(b"") => Ok(()),
+            Some([b'$', command @ ..]) => self.system(command, status, link),
+            Some(_) if self.alarm.is_some() => Err(Code::LOCKED),
+            Some(text) => self.block(text, link),
+        };
+        match done {
+            Ok(()) if self.wait.is_some() || self.listing.is_some() => {}
+            Ok(()) => self.out.line(format_args!("ok")),
+            Err(code) => self.error(code),
+        }
+        true
+    }
+
+    fn error(&mut self, Code(number): Code) {
+        self.out.line(format_args!("error:{number}"));
+    }
+
+    fn greet(&mut self) {
+        self.out.line(format_args!("\r\nGrbl 1.1h ['$' for help]"));
+        if self.alarm.is_some() {
+            self.out.line(format_args!("[MSG:'$H'|'$X' to unlock]"));
+        }
+    }
+
+    fn alarm(&mut self, alarm: Alarm) {
+        self.alarm = Some(alarm);
+        self.out.line(format_args!("ALARM:{}", alarm.0));
+    }
+
+    fn take(&mut self, report: Report) {
+        match report {
+            Report::Done => {
+                if self.wait.take() == Some(Wait::Finish) {
+                    self.out.line(format_args!("ok"));
+                }
+            }
+            Report::Homed { at, result } => {
+                self.interpreter.stand_at(at);
+                match result {
+                    Ok(_) => self.alarm = None,
+                    Err(error) => {
+                        self.alarm(Alarm::of(error));
+                        self.out.line(format_args!("[MSG:{error}]"));
+                    }
+                }
+                match (self.wait.take(), result) {
+                    (None, _) => {}
+                    (Some(_), Ok(_)) => self.out.line(format_args!("ok")),
+                    (Some(_), Err(_)) => self.error(Code::LOCKED),
+                }
+            }
+            Report::Stopped { at, why } => {
+                self.interpreter = interpreter(&self.settings);
+                self.interpreter.stand_at(at);
+                self.stopped = true;
+                match why {
+                    Stop::Emergency => self.alarm(Alarm::EMERGENCY),
+                    Stop::Limit { .. } => self.alarm(Alarm::HARD_LIMIT),
+                    Stop::Reset { during: Activity::Home } => self.alarm(Alarm::HOMING_RESET),
+                    Stop::Reset { during: Activity::Run | Activity::Hold { stands: false } } => {
+                        self.alarm(Alarm::ABORT);
+                    }
+                    Stop::Reset { .. } => {}
+                }
+                if let Stop::Reset { .. } = why {
+                    self.greet();
+                } else {
+                    self.out.line(format_args!("[MSG:{why}]"));
+                }
+                if self.wait.take().is_some() {
+                    self.error(Code::LOCKED);
+                }
+            }
+        }
+    }
+
+    /// A line that begins with `$`.
+    fn system(&mut self, command: &[u8], status: &Status, link: &mut Link) -> Result<(), Code> {
+        let is_idle = self.alarm.is_some() || status.activity == Activity::Idle && link.commands.is_empty();
+        match command {
+            b"" => self.out.line(format_args!("[HLP:$$ $# $G $I $N $J=line $X $H ~ ! ? ctrl-x]")),
+            b"G" => self.tell_modes(),
+            b"$" | b"#" | b"I" | b"N" | b"H" | b"X" if !is_idle => return Err(Code::NOT_IDLE),
+            b"$" => self.listing = Some((Listing::Settings, 0)),
+            b"#" => self.listing = Some((Listing::Offsets, 0)),
+            b"I" => self.listing = Some((Listing::Build, 0)),
+            b"N" => self.listing = Some((Listing::Startup, 0)),
+            [b'J', b'=', jog @ ..] if self.alarm.is_none() => return self.jog(jog, link),
+            [b'J', b'=', ..] => return Err(Code::LOCKED),
+            b"H" | b"X" if status.emergency_button => {
+                self.out.line(format_args!("[MSG:{}]", Stop::Emergency));
+                return Err(Code::LOCKED);
+            }
+            b"H" => {
+                send(link, Command::Unlock);
+                self.stopped = false;
+                send(link, Command::Home);
+                self.wait = Some(Wait::Home);
+            }
+            b"X" => {
+                if self.alarm.take().is_some() {
+                    self.out.line(format_args!("[MSG:Caution: Unlocked]"));
+                }
+                send(link, Command::Unlock);
+                self.stopped = false;
+            }
+            _ => return Err(Code::BAD_STATEMENT),
+        }
+        Ok(())
+    }
+
+    /// Sends a command that may come after a stop.
+    fn command(&mut self, link: &mut Link, command: Command) {
+        if core::mem::take(&mut self.stopped) {
+            send(link, Command::GoOn);
+        }
+        send(link, command);
+    }
+
+    fn tell_modes(&mut self) {
+        let modes = self.interpreter.modes();
+        let feed = modes.feed_mm_s.unwrap_or(0.0) * 60.0 / if modes.inches { 25.4 } else { 1.0 };
+        self.out.line(format_args!(
+            "[GC:G{} G54 G17 G{} G{} G94 M{} M9 T{} F{} S{}]",
+            modes.motion,
+            if modes.inches { 20 } else { 21 },
+            if modes.relative { 91 } else { 90 },
+            modes.spindle,
+            modes.tool,
+            coordinate(feed),
+            coordinate(modes.power),
+        ));
+    }
+}
+
+fn interpreter(settings: &StepperPlotterSettings) -> Interpreter {
+    Interpreter::with_options(ReadOptions {
+        pen: settings.convention(),
+        block_delete: BlockDelete::CarryOut,
+        ..ReadOptions::default()
+    })
+}
+
+fn send(link: &mut Link, command: Command) {
+    let sent = link.commands.push(command);
+    debug_assert!(sent.is_ok(), "room was looked at before");
+}

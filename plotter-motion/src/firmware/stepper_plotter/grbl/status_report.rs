@@ -1,0 +1,71 @@
+//! The answer to `?`.
+
+use super::super::{Activity, Link, Status, settings::FULL_POWER};
+use super::codes::{coordinate, coordinates};
+use super::listing::BLOCKS;
+use super::{Grbl, MOST_COMMANDS, REPORTS_WITHOUT_OFFSET};
+use core::fmt;
+
+impl Grbl {
+    pub(super) fn tell_status(&mut self, status: &Status, link: &Link) {
+        let state = match status.activity {
+            _ if self.alarm.is_some() => "Alarm",
+            Activity::Idle if !link.commands.is_empty() => "Run",
+            Activity::Idle | Activity::Stopped => "Idle",
+            Activity::Run => "Run",
+            Activity::Hold { stands: true } => "Hold:0",
+            Activity::Hold { stands: false } => "Hold:1",
+            Activity::Home => "Home",
+        };
+        let (x, y) = coordinates(status.at);
+        let blocks = link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS);
+        let bytes = self.rx.room();
+        let feed_mm_min = status.speed_mm_s * 60.0;
+        let power = f64::from(status.laser) / f64::from(u16::MAX) * FULL_POWER;
+        let pins = Pins {
+            x: status.limits.x_min || status.limits.x_max,
+            y: status.limits.y_min || status.limits.y_max,
+        };
+        let offset = self.offset();
+        self.out.line(format_args!(
+            "<{state}|MPos:{x:.3},{y:.3},0.000|Bf:{blocks},{bytes}|FS:{feed_mm_min:.0},{power:.0}{pins}{offset}>"
+        ));
+    }
+
+    /// Offsets change seldom, and are told now and then.
+    fn offset(&mut self) -> Offset {
+        if self.reports_to_offset > 0 {
+            self.reports_to_offset -= 1;
+            return Offset(None);
+        }
+        self.reports_to_offset = REPORTS_WITHOUT_OFFSET;
+        let offset = self.interpreter.modes().offset;
+        Offset(Some((coordinate(offset.x), coordinate(offset.y))))
+    }
+}
+
+/// `|Pn:` and the axes with a pressed limit switch.
+struct Pins {
+    x: bool,
+    y: bool,
+}
+
+impl fmt::Display for Pins {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.x, self.y) {
+            (false, false) => Ok(()),
+            (true, false) => f.write_str("|Pn:X"),
+            (false, true) => f.write_str("|Pn:Y"),
+            (true, true) => f.write_str("|Pn:XY"),
+        }
+    }
+}
+
+/// `|WCO:`.
+struct Offset(Option<(f64, f64)>);
+
+impl fmt::Display for Offset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.map_or(Ok(()), |(x, y)| write!(f, "|WCO:{x:.3},{y:.3},0.000"))
+    }
+}

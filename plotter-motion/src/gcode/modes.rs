@@ -1,0 +1,41 @@
+//! [`Modes`]: what holds from one line to the next.
+
+use crate::{Point, Vec2};
+
+/// What holds from one line to the next: what a controller answers who is asked for its state.
+///
+/// ```
+/// # use plotter_motion::gcode::{Interpreter, Reader};
+/// let (mut reader, mut interpreter) = (Reader::new(), Interpreter::new());
+/// for byte in *b"G91 G1 X10 F600\n" {
+///     if let Some(block) = reader.push(byte) {
+///         interpreter.push(block)?;
+///     }
+/// }
+/// let modes = interpreter.modes();
+/// assert_eq!((modes.motion, modes.relative, modes.feed_mm_s), (1, true, Some(10.0)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Modes {
+    /// Where the pen is, mm on the sheet.
+    pub position: Point,
+    /// What is added to a coordinate, mm: `G92`.
+    pub offset: Vec2,
+    /// `G20`, not `G21`.
+    pub inches: bool,
+    /// `G91`, not `G90`.
+    pub relative: bool,
+    /// 0, 1, 2, 3 or 80, the number of its `G`.
+    pub motion: u8,
+    /// `F`, mm/s; none before the first.
+    pub feed_mm_s: Option<f64>,
+    /// 3, 4 or 5, the number of its `M`.
+    pub spindle: u8,
+    /// `S`, of a laser.
+    pub power: f64,
+    /// `T`, 0 before the first.
+    pub tool: u8,
+    /// Whether the pen has been lowered, by a spindle's words, a servo's or a height.
+    pub pen_down: bool,
+}
