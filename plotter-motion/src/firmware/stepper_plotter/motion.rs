@@ -199,8 +199,12 @@ impl Motion {
             self.settings = settings;
             self.planner = planner;
         }
-        self.halt(link);
-        self.state = State::Ready;
+        if self.gate.is_stopped() {
+            self.stop(Stop::Emergency, link);
+        } else {
+            self.halt(link);
+            self.state = State::Ready;
+        }
     }
 
     /// Servo of the pen, degrees.

@@ -80,8 +80,8 @@ impl StepperPlotter {
     /// the button has been released. Call it when the host opens the port: mDraw does so after it has changed settings.
     pub fn restart(&mut self, now: Duration) {
         self.motion.reset_emergency_stop();
-        self.motion.restart(self.receive.stored(), &mut self.link);
         self.link = Link::default();
+        self.motion.restart(self.receive.stored(), &mut self.link);
         self.receive.restart(self.motion.position_mm());
         self.work(now);
     }

@@ -221,7 +221,8 @@ impl Grbl {
 
     /// A line that begins with `$`.
     fn system(&mut self, command: &[u8], status: &Status, link: &mut Link) -> Result<(), Code> {
-        let is_idle = self.alarm.is_some() || status.activity == Activity::Idle && link.commands.is_empty();
+        let stands = matches!(status.activity, Activity::Idle | Activity::Stopped);
+        let is_idle = self.alarm.is_some() || (stands && link.commands.is_empty());
         match command {
             b"" => self.out.line(format_args!("[HLP:$$ $# $G $I $N $J=line $X $H ~ ! ? ctrl-x]")),
             b"G" => self.tell_modes(),

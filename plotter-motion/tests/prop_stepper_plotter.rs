@@ -1,0 +1,327 @@
+//! Laws of the stepper plotter's controller, whatever is sent and pressed.
+
+mod stepper_bench;
+
+use core::time::Duration;
+use plotter_motion::firmware::StepperPlotter;
+use plotter_motion::firmware::stepper_plotter::{Activity, Dialect, StepperPlotterSettings};
+use plotter_motion::{Axis, Direction, LimitSwitches, StepPoint};
+use proptest::prelude::*;
+use std::collections::VecDeque;
+use stepper_bench::Bench;
+
+/// Grbl's receive buffer, as its interface states it.
+const RX_BYTES: usize = 128;
+
+fn settings(dialect: Dialect) -> StepperPlotterSettings {
+    StepperPlotterSettings { dialect, ..StepperPlotterSettings::default() }
+}
+
+/// A line of G-code whose answer does not depend on when it comes.
+fn grbl_line() -> impl Strategy<Value = String> {
+    prop_oneof![
+        8 => (0..40_u8, 0..40_u8).prop_map(|(x, y)| format!("G1 X{x} Y{y} F6000")),
+        2 => (0..40_u8).prop_map(|x| format!("x{x}")),
+        1 => Just("G4 P0.01".to_owned()),
+        1 => Just("M3 S90".to_owned()),
+        1 => Just("M5".to_owned()),
+        1 => Just("$G".to_owned()),
+        1 => Just(String::new()),
+        1 => Just("(remark) ; and more".to_owned()),
+        1 => Just("G1 X".to_owned()),
+        1 => Just("M77".to_owned()),
+        1 => Just("$nothing".to_owned()),
+        1 => (60..120_usize).prop_map(|len| "G1X1".to_owned() + &"0".repeat(len - 4)),
+    ]
+}
+
+fn is_answer(line: &str) -> bool {
+    line == "ok" || line.starts_with("error:")
+}
+
+/// A program that streams: it sends a line when its rule lets it, in pieces, with time between them.
+struct Sender {
+    counts_characters: bool,
+    lines: VecDeque<Vec<u8>>,
+    /// Lengths of lines that were sent and not answered.
+    owed: VecDeque<usize>,
+    /// What has been begun to be sent.
+    wire: VecDeque<u8>,
+    answers: Vec<String>,
+}
+
+impl Sender {
+    fn new(lines: &[String], end: &str, counts_characters: bool) -> Self {
+        let lines = lines.iter().map(|line| format!("{line}{end}").into_bytes()).collect();
+        Self { counts_characters, lines, owed: VecDeque::new(), wire: VecDeque::new(), answers: Vec::new() }
+    }
+
+    fn go_on(&mut self) {
+        while let Some(line) = self.lines.front() {
+            let may = if self.counts_characters {
+                self.owed.iter().sum::<usize>() + line.len() <= RX_BYTES
+            } else {
+                self.owed.is_empty()
+            };
+            if !may {
+                return;
+            }
+            self.owed.push_back(line.len());
+            self.wire.extend(line);
+            self.lines.pop_front();
+        }
+    }
+
+    fn hear(&mut self, text: &str) {
+        for line in text.lines().filter(|line| is_answer(line)) {
+            assert!(self.owed.pop_front().is_some(), "an answer to nothing: {line}");
+            self.answers.push(line.to_owned());
+        }
+    }
+}
+
+/// Streams all lines in pieces; gives the answers in their order.
+fn stream(lines: &[String], end: &str, counts_characters: bool, pieces: &[(u8, u8, bool)]) -> Vec<String> {
+    let mut bench = Bench::new(settings(Dialect::Grbl));
+    let mut sender = Sender::new(lines, end, counts_characters);
+    for &(bytes, ms, asks) in pieces.iter().cycle().take(200_000) {
+        sender.go_on();
+        if sender.owed.is_empty() {
+            break;
+        }
+        for _ in 0..=bytes {
+            if let Some(byte) = sender.wire.pop_front() {
+                bench.send(std::str::from_utf8(&[byte]).unwrap_or_default());
+            }
+        }
+        if asks {
+            bench.send("?");
+        }
+        bench.run_for(Duration::from_millis(ms.into()));
+        sender.hear(&bench.take_answers());
+    }
+    bench.run_out();
+    assert!(sender.owed.is_empty() && sender.lines.is_empty(), "not all lines were answered");
+    sender.answers
+}
+
+#[derive(Clone, Debug)]
+enum Input {
+    Text(String),
+    Wait(u16),
+    Switch(Axis, Direction, bool),
+    Button(bool),
+    Reset,
+    Restart,
+}
+
+fn input(dialect: Dialect) -> impl Strategy<Value = Input> {
+    let axis = prop_oneof![Just(Axis::X), Just(Axis::Y)];
+    let end = prop_oneof![Just(Direction::Plus), Just(Direction::Minus)];
+    let text = match dialect {
+        Dialect::MDraw => prop_oneof![
+            4 => (0..60_u8, 0..60_u8).prop_map(|(x, y)| format!("G1 X{x} Y{y}\n")),
+            1 => Just("G28\n".to_owned()),
+            1 => Just("M1 90\n".to_owned()),
+            1 => Just("M4 255\n".to_owned()),
+        ]
+        .boxed(),
+        Dialect::Grbl => prop_oneof![
+            4 => (0..60_u8, 0..60_u8).prop_map(|(x, y)| format!("G1 X{x} Y{y} F6000\n")),
+            1 => Just("M3 S1000\n".to_owned()),
+            1 => Just("$H\n".to_owned()),
+            1 => Just("$X\n".to_owned()),
+            1 => Just("!".to_owned()),
+            1 => Just("~".to_owned()),
+            1 => Just("\u{18}".to_owned()),
+        ]
+        .boxed(),
+    };
+    prop_oneof![
+        4 => text.prop_map(Input::Text),
+        4 => (0..2_000_u16).prop_map(Input::Wait),
+        2 => (axis, end, any::<bool>()).prop_map(|(axis, end, pressed)| Input::Switch(axis, end, pressed)),
+        1 => any::<bool>().prop_map(Input::Button),
+        1 => Just(Input::Reset),
+        1 => Just(Input::Restart),
+    ]
+}
+
+/// What the emitted steps must obey.
+struct Watch {
+    plotter: StepperPlotter,
+    now: Duration,
+    limits: LimitSwitches,
+    button: bool,
+    latched: bool,
+    last_step: Duration,
+}
+
+impl Watch {
+    fn settle(&mut self) -> Result<(), TestCaseError> {
+        loop {
+            let (before, activity) = (self.plotter.position(), self.plotter.status(self.now).activity);
+            let Some(step) = self.plotter.poll(self.now) else { break };
+            let moves = [(Axis::X, step.pulse.x()), (Axis::Y, step.pulse.y())];
+            prop_assert!(moves.iter().any(|(_, sign)| *sign != 0));
+            for (axis, sign) in moves.into_iter().filter(|(_, sign)| *sign != 0) {
+                let direction = if sign > 0 { Direction::Plus } else { Direction::Minus };
+                prop_assert!(!self.limits.blocks(axis, direction), "into a switch: {step:?}");
+            }
+            // Grbl's $X ends an emergency stop, once the button has been released.
+            self.latched &= self.button || self.plotter.status(self.now).emergency_stop;
+            prop_assert!(!self.latched, "a step while stopped");
+            prop_assert!(step.at <= self.now && step.at >= self.last_step, "{step:?} at {:?}", self.now);
+            self.last_step = step.at;
+            if activity != Activity::Home {
+                let [x, y] = moves.map(|(_, sign)| i32::from(sign));
+                prop_assert_eq!(self.plotter.position(), StepPoint::new(before.x + x, before.y + y));
+            }
+        }
+        while self.plotter.transmit(self.now).is_some() {}
+        self.latched &= self.button || self.plotter.status(self.now).emergency_stop;
+        prop_assert_eq!(self.latched, self.plotter.status(self.now).emergency_stop);
+        if self.latched {
+            prop_assert_eq!(self.plotter.beam().power(), 0);
+            prop_assert_eq!(self.plotter.pen_deg(), 160, "the pen is up");
+            prop_assert_eq!(self.plotter.due(), None, "nothing is due");
+        }
+        Ok(())
+    }
+
+    fn run_to(&mut self, end: Duration) -> Result<(), TestCaseError> {
+        while let Some(due) = self.plotter.due().filter(|due| *due <= end) {
+            self.now = self.now.max(due);
+            self.settle()?;
+        }
+        self.now = end;
+        self.settle()
+    }
+
+    fn take(&mut self, input: &Input) -> Result<(), TestCaseError> {
+        match input {
+            Input::Text(text) => {
+                for byte in text.bytes() {
+                    self.plotter.receive(self.now, byte);
+                }
+            }
+            Input::Wait(ms) => self.run_to(self.now + Duration::from_millis((*ms).into()))?,
+            Input::Switch(axis, end, pressed) => {
+                self.limits.set(*axis, *end, *pressed);
+                self.plotter.limit_switch(self.now, *axis, *end, *pressed);
+            }
+            Input::Button(pressed) => {
+                self.button = *pressed;
+                self.latched |= pressed;
+                self.plotter.emergency_stop(self.now, *pressed);
+            }
+            Input::Reset => {
+                prop_assert_eq!(self.plotter.reset_emergency_stop(self.now), !self.button);
+                self.latched = self.button;
+            }
+            Input::Restart => {
+                self.plotter.restart(self.now);
+                self.latched = self.button;
+            }
+        }
+        self.settle()
+    }
+}
+
+fn watch(dialect: Dialect, laser: bool, inputs: &[Input]) -> Result<(), TestCaseError> {
+    let settings = StepperPlotterSettings { laser, ..settings(dialect) };
+    let mut watch = Watch {
+        plotter: StepperPlotter::new(settings).map_err(|error| TestCaseError::fail(error.to_string()))?,
+        now: Duration::ZERO,
+        limits: LimitSwitches::default(),
+        button: false,
+        latched: false,
+        last_step: Duration::ZERO,
+    };
+    for input in inputs {
+        watch.take(input)?;
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn each_line_of_a_stream_has_one_answer_in_its_order(
+        lines in prop::collection::vec(grbl_line(), 1..40),
+        end in prop_oneof![Just("\n"), Just("\r"), Just("\r\n")],
+        pieces in prop::collection::vec((0..60_u8, 0..40_u8, any::<bool>()), 1..20),
+    ) {
+        // One line at a time, each carried out before the next.
+        let mut bench = Bench::new(settings(Dialect::Grbl));
+        bench.ask("");
+        let mut expected = Vec::new();
+        for line in &lines {
+            let text = bench.ask(&format!("{line}\n"));
+            let answers: Vec<_> = text.lines().filter(|line| is_answer(line)).collect();
+            prop_assert_eq!(answers.len(), 1, "{}: {:?}", line, text);
+            expected.push(answers[0].to_owned());
+        }
+        for counts_characters in [true, false] {
+            prop_assert_eq!(&stream(&lines, end, counts_characters, &pieces), &expected);
+        }
+    }
+
+    #[test]
+    fn each_line_of_mdraw_has_one_ok(
+        bytes in prop::collection::vec(
+            prop_oneof![
+                1 => any::<u8>(),
+                3 => prop::sample::select(b"GMPXYAUDHWSB 0123456789.-\n".to_vec()),
+                1 => Just(b'\n'),
+            ],
+            0..400,
+        ),
+        waits in prop::collection::vec(0..3_000_u64, 1..20),
+    ) {
+        let mut bench = Bench::new(settings(Dialect::MDraw));
+        bench.switches = false;
+        let mut waits = waits.iter().cycle();
+        for byte in &bytes {
+            bench.plotter.receive(bench.now, *byte);
+            if byte % 7 == 0 {
+                bench.run_for(Duration::from_millis(*waits.next().unwrap_or(&0)));
+            }
+        }
+        bench.run_out();
+        let answers = bench.take_answers();
+        let lines = bytes.iter().filter(|byte| **byte == b'\n').count();
+        prop_assert_eq!(answers.matches("OK").count(), lines, "{}", answers);
+        prop_assert_eq!(answers.lines().filter(|line| *line == "OK").count(), lines);
+    }
+
+    #[test]
+    fn no_step_leads_into_a_switch_or_comes_while_stopped_with_mdraw(
+        inputs in prop::collection::vec(input(Dialect::MDraw), 1..60), laser in any::<bool>(),
+    ) {
+        watch(Dialect::MDraw, laser, &inputs)?;
+    }
+
+    #[test]
+    fn no_step_leads_into_a_switch_or_comes_while_stopped_with_grbl(
+        inputs in prop::collection::vec(input(Dialect::Grbl), 1..60), laser in any::<bool>(),
+    ) {
+        watch(Dialect::Grbl, laser, &inputs)?;
+    }
+
+    #[test]
+    fn no_bytes_do_harm_to_grbl(bytes in prop::collection::vec(any::<u8>(), 0..600)) {
+        let mut bench = Bench::new(settings(Dialect::Grbl));
+        for byte in &bytes {
+            bench.plotter.receive(bench.now, *byte);
+        }
+        bench.run_for(Duration::from_secs(60));
+        // Held or in an alarm: it can be woken.
+        bench.send("~\u{18}");
+        bench.run_for(Duration::from_secs(60));
+        bench.take_answers();
+        let answers = bench.ask("\n$X\n");
+        prop_assert!(answers.ends_with("ok\r\n"), "{}", answers);
+    }
+}
