@@ -12,6 +12,9 @@
 //! - what is filled is left out (`FP`, `RA`, `RR`, `WG`): hp2xx begins its hatching at the polygon's lowest place, not at the
 //!   anchor, and takes the width of a pen in mm for one in plotter units. Filling is pinned in `hpgl_polygons.rs`.
 
+// Without the font, labels are left out, and do not move the pen.
+#![cfg(feature = "font")]
+
 use plotter_motion::hpgl::{Coordinates, Event, Reader, UNITS_PER_MM, WriteOptions, Writer, plot_ops};
 use plotter_motion::{PlotOp, Point, Segment, chords};
 use std::collections::HashMap;

@@ -202,3 +202,13 @@ fn strictly_the_first_error_is_the_last_outcome() {
     assert_eq!(outcomes, [true, false, false]); // a travel, a notice, and the circle without a radius
     assert_eq!(plot_ops(text).filter(Result::is_err).count(), 3);
 }
+
+#[cfg(not(feature = "font"))]
+#[test]
+fn without_the_font_labels_are_reported_and_never_read_as_commands() {
+    assert_eq!(
+        ops("LBPD9,9;\u{3}SM*;PU1,1;"),
+        "<line 1, column 1 (byte 0): LB (label) is not supported and is left out> \
+         <line 1, column 10 (byte 9): SM (symbol mode) is not supported and is left out> U1,1"
+    );
+}

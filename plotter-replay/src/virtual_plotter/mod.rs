@@ -27,7 +27,7 @@ use core::time::Duration;
 use drawing::Drawing;
 use host_digits::{Decoded, HostDigits};
 use plotter_motion::protocol::digits::Reply;
-use plotter_motion::{Axis, Pen, PenMove, PlotOp, Point, StepPoint};
+use plotter_motion::{Axis, Pen, PenMove, PlotOp, Point, StepPoint, chords};
 
 /// A target and where the pulses had led when the controller said that it was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,13 +113,14 @@ impl VirtualPlotter {
         }
     }
 
-    /// Takes the drawing that was sent, in mm on the sheet: it tells which ways are drawn. What the log itself
-    /// records of the pen counts more.
+    /// Takes the drawing that was sent, in mm on the sheet: it tells which ways are drawn. Arcs are the chords that
+    /// [`plotter_motion::targets`] makes of them. What the log itself records of the pen counts more.
     #[must_use]
     pub fn with_drawing(self, ops: impl IntoIterator<Item = PlotOp>) -> Self {
         let settings = self.settings;
-        self.with_moves(ops.into_iter().filter_map(|op| {
-            let drawn = matches!(op, PlotOp::Draw { .. } | PlotOp::DrawArc { .. });
+        let tolerance_mm = 0.5 * settings.x_mm_per_pulse.min(settings.y_mm_per_pulse);
+        self.with_moves(chords(ops, tolerance_mm).filter_map(|op| {
+            let drawn = matches!(op, PlotOp::Draw { .. });
             let pen = if drawn { Pen::Down } else { Pen::Up };
             Some(PenMove { pen, target: settings.to_counts(op.target()?) })
         }))
