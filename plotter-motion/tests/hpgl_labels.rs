@@ -109,6 +109,7 @@ fn labels_that_do_not_begin_at_the_pen_give_it_back() {
     // HP-GL/2: only labels that begin at the pen go on with the next one.
     assert_eq!(label("PU1000,1000;LO8;LB  \u{3}PD0,0"), "U1000,1000 D0,0");
     assert_eq!(label("PU1000,1000;LO2;LB  \u{3}PD0,0"), "U1000,1000 U1240,1000 D0,0");
+    assert_eq!(label("PU1000,1000;LO5;LB  \r\n  \r\n\u{3}PD0,0"), "U1000,1000 D0,0");
     // Each line of a label is placed by itself: the second is one letter long.
     assert_eq!(
         label("PU1000,1000;LO7;LBLL\r\nL\u{3}"),

@@ -33,6 +33,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             b"PE" => self.decoder = Some(Decoder::new(self.bytes)),
             b"UC" => self.begin_character(),
             b"LB" | b"SM" if !FONT => self.leave_out(command, at),
+            b"LB" => self.label_from = self.at,
             b"SM" => self.symbol = None,
             letters if takes(letters).is_some() => {}
             letters if is_quiet(letters) => self.open = None,

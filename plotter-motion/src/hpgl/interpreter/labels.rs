@@ -123,6 +123,9 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         let lead = self.lead.take();
         self.lone_lead(lead, open);
         self.draw_kept();
+        if !self.lettering.goes_on() {
+            self.at = self.label_from;
+        }
     }
 
     /// A symbol about where the pen is.

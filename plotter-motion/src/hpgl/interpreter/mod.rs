@@ -140,6 +140,8 @@ pub struct Interpreter<const VERTICES: usize = USUAL_VERTICES> {
     lettering: Lettering,
     kept: [u8; MOST_KEPT],
     kept_count: usize,
+    /// Where the pen was before the label.
+    label_from: Vec2,
     /// The first byte of a character that may have two.
     lead: Option<u8>,
     // polygons
@@ -219,6 +221,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             lettering: Lettering::new(),
             kept: [0; MOST_KEPT],
             kept_count: 0,
+            label_from: Vec2::default(),
             lead: None,
             polygon: Polygon::new(),
             recording: false,
