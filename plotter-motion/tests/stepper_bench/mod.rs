@@ -120,10 +120,14 @@ impl Bench {
             self.now = self.now.max(due);
             self.settle();
         }
-        if let Some(plant) = &mut self.plant {
-            plant.x.settle();
-            plant.y.settle();
-        }
+    }
+
+    /// The simulated motors, come to rest.
+    pub(crate) fn rested(&self) -> Option<StepperPlant> {
+        let mut plant = self.plant?;
+        plant.x.settle();
+        plant.y.settle();
+        Some(plant)
     }
 
     pub(crate) fn is_idle(&self) -> bool {
@@ -137,6 +141,7 @@ impl Bench {
 
     /// Sends text and waits until nothing more happens; gives the answers.
     pub(crate) fn ask(&mut self, text: &str) -> String {
+        self.switch();
         self.send(text);
         self.run_out();
         self.take_answers()
@@ -144,7 +149,7 @@ impl Bench {
 
     /// Steps that the simulated motors have lost.
     pub(crate) fn lost(&self) -> [i64; 2] {
-        self.plant.map_or([0; 2], |plant| [plant.x.lost_steps(), plant.y.lost_steps()])
+        self.rested().map_or([0; 2], |plant| [plant.x.lost_steps(), plant.y.lost_steps()])
     }
 }
 

@@ -1,4 +1,113 @@
-//! The stepper plotter's controller.
+//! The controller of a plotter with two stepper motors, a pen on a servo or a laser, and limit switches, which speaks to mDraw
+//! or to any program that streams G-code to Grbl.
+//!
+//! # Two tasks and a queue
+//!
+//! ```text
+//!            Receive                  Link                   Motion
+//!  bytes ──▶ lines, words ──▶ [ commands, 27 ] ──▶ planner ▶ steps ▶ safety gate ──▶ Step, each at its time
+//!  bytes ◀── answers      ◀── [ reports, 4   ] ◀── done, homed, stopped             pen_deg, beam
+//!                 └────── Signal: hold, resume, reset, laser off ──▶  (at once)       ▲
+//!                 ◀────── Status: what it does, where it is ─────────┘     limit switches, emergency stop
+//! ```
+//!
+//! The source runs these as two tasks of an RTOS. So can a firmware with [`Receive`] and [`Motion`]: each is fed by its own calls,
+//! and they share nothing but the two queues, the signals (a notification) and a [`Status`] (under a lock).
+//! [`StepperPlotter`] is both in one, for a firmware with a single loop, and for the desk:
+//!
+//! ```
+//! # use core::time::Duration;
+//! # use plotter_motion::StepPoint;
+//! # use plotter_motion::firmware::stepper_plotter::{StepperPlotter, StepperPlotterSettings};
+//! let mut plotter = StepperPlotter::new(StepperPlotterSettings::default())?; // mDraw's machine, 87.58 steps/mm
+//! let (mut now, mut answers, mut pulses) = (Duration::ZERO, Vec::new(), 0);
+//! for line in ["M1 90\n", "G1 X3 Y4\n", "P\n", "G1 X381\n"] {
+//!     for byte in line.bytes() {
+//!         plotter.receive(now, byte);
+//!     }
+//!     loop {
+//!         while let Some(step) = plotter.poll(now) {
+//!             pulses += 1; // the STEP and DIR pins, at step.at
+//!         }
+//!         while let Some(byte) = plotter.transmit(now) {
+//!             answers.push(byte);
+//!         }
+//!         // A firmware arms a timer and sets servo and laser here.
+//!         let Some(due) = plotter.due() else { break };
+//!         now = due;
+//!     }
+//! }
+//! assert_eq!(
+//!     String::from_utf8(answers)?,
+//!     "OK\r\n\
+//!      distance=5.00\r\nOK\r\n\
+//!      POS X3.00 Y4.00\r\nOK\r\n\
+//!      error: (381.00, 4.00) mm lies outside (0, 0)..=(380, 310) mm: left out\r\nOK\r\n"
+//! );
+//! assert_eq!((pulses, plotter.position()), (350, StepPoint::new(263, 350))); // 4 mm of 87.58 steps
+//! assert_eq!(plotter.pen_deg(), 90);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # mDraw
+//!
+//! Makeblock's drawing program sends a line, waits for `OK`, and sends the next. So there is nothing to look ahead to: each line of a
+//! curve begins and ends at rest. Every line is answered by exactly one `OK`, and a move when it is complete; the answers are those
+//! of the plotter's own firmware (xybot), byte for byte.
+//!
+//! | line | what it does | answer before `OK` |
+//! |---|---|---|
+//! | `G1 X… Y… A…`, `G0` | to there, mm; `A` delays each step, us, and holds | `distance=…`, also where nothing moves |
+//! | `G28` | delay 0, pen up, laser off, homes | |
+//! | `M1 …` | servo, degrees; answered at once, motors wait until it has settled | |
+//! | `M2 U… D…` | keeps the angles of the pen | |
+//! | `M3 …` | delay of each step, us | |
+//! | `M4 …` | laser, 0 to 255 | |
+//! | `M5 A… B… H… W… S…` | keeps directions, sides, speed; they hold after [`StepperPlotter::restart`] | |
+//! | `M10` | | `M10 XY 380 310 0.00 0.00 A0 B0 H0 S80 U160 D90` |
+//! | `M11` | | `M11 1 1 1 1`: y upper, y lower, x upper, x lower; 1 is open |
+//! | `P` | | `POS X0.00 Y0.00` |
+//! | anything else | nothing | |
+//!
+//! Where that firmware goes wrong, this one does not follow. What it refuses it says in a line `error: …` before the `OK`, since mDraw
+//! knows no other answer and passes over lines without `OK`; nothing moves then, and the position stays right:
+//!
+//! | | there | here |
+//! |---|---|---|
+//! | a line of 64 bytes or more | continues at the start of the buffer | `error: more than 63 bytes …` |
+//! | beyond 374.1 mm | steps of 16 bits wrap, it runs the other way | drawn, up to the width; beyond the area an error |
+//! | a line during a move | carried out within it; the move is lost, the position wrong | an error, in its turn; but `M4 0` darkens the laser at once |
+//! | switches of an axis | either end counts as the lower one | each end by itself; x is homed first, then y |
+//! | a letter without its number, an angle or power out of range | 0, or whatever the servo makes of it | an error |
+//! | a laser at a standstill | burns on | is dark: its power follows the speed |
+//! | a new start | forgets the position | keeps it |
+//!
+//! # Grbl
+//!
+//! Programs that stream (UGS, bCNC, cncjs, `LaserGRBL`) send many lines ahead, which are planned together: curves are drawn
+//! without stops. A line is answered by `ok` or `error:n` when it has left the receive buffer of 128 bytes and lies in the queue, so
+//! a program may count characters or wait for each answer. Blanks and comments take no room in a line of 80 characters. A machine at rest
+//! gathers lines for [`StepperPlotterSettings::gather`] before it starts.
+//!
+//! - `?` is answered by `<Run|MPos:…|Bf:…|FS:…>` (`Pn` for pressed switches, `WCO` now and then), `!` brakes along the path, `~` goes
+//!   on, ctrl-X stops at once; the place stays known, as it is counted by steps really made.
+//! - `$$ $# $I $G $N $X $H $J=` are answered; settings are not changed by `$n=`.
+//! - Errors and alarms have Grbl's numbers. A target outside the area is `ALARM:2` and `error:33`: what was accepted is drawn to its
+//!   end, and then the pen goes up. A limit switch is `ALARM:1`, the emergency stop `ALARM:10` (grblHAL's, Grbl has none). In an alarm
+//!   lines get `error:9` until `$X` or `$H`.
+//! - `M0` waits for `~`. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`] says.
+//! - Overrides, probes, other coordinate systems, the safety door and cancelling a jog are not there; a line that needs one is
+//!   `error:20`.
+//!
+//! # Stops
+//!
+//! Every step passes [`SafetyGate::pass_step`](crate::SafetyGate::pass_step). The emergency stop takes the steps away in the same
+//! call, switches the laser off, lifts the pen, and latches: it ends by [`StepperPlotter::reset_emergency_stop`],
+//! [`StepperPlotter::restart`] or Grbl's `$X`, and only once the button has been released. A step towards a pressed limit switch is not
+//! made, and stops the machine; away from the switch it is free. A motor that is stopped at full speed may turn a little farther
+//! than its last step: home the machine if it was fast.
+//!
+//! Sources: spec 5 (Dounaev and Phan); the firmware xybot and the program mDraw; the Grbl project's wiki on version 1.1.
 
 mod area;
 mod command;

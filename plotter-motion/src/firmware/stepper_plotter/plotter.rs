@@ -138,3 +138,16 @@ impl StepperPlotter {
         self.receive.work(&status, &mut self.link);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_fits_into_a_small_microcontroller() {
+        let sizes =
+            [size_of::<Receive>(), size_of::<Link>(), size_of::<Motion>(), size_of::<StepperPlotter>()];
+        std::println!("{sizes:?}");
+        assert!(size_of::<StepperPlotter>() < 8 * 1024, "{sizes:?}");
+    }
+}
