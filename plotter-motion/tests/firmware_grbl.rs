@@ -241,6 +241,16 @@ fn an_offset_by_g92_is_told_and_a_stream_of_short_lines_runs_through() {
 }
 
 #[test]
+fn a_feed_next_to_nothing_still_moves() {
+    let mut bench = bench();
+    bench.send("M3\nG1 X1 F0.0000001\n");
+    bench.run_for(Duration::from_secs(700));
+    assert_eq!(bench.take_answers(), "ok\r\nok\r\n");
+    let steps = bench.plotter.position().x;
+    assert!((60..=62).contains(&steps), "0.7 mm of 87.58 steps: {steps}");
+}
+
+#[test]
 fn a_jog_moves_the_raised_pen_and_changes_nothing_else() {
     let mut bench = bench();
     insta::assert_snapshot!(conversation(

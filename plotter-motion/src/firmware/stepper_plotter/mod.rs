@@ -95,7 +95,8 @@
 //! - Errors and alarms have Grbl's numbers. A target outside the area is `ALARM:2` and `error:33`: what was accepted is drawn to its
 //!   end, and then the pen goes up. A limit switch is `ALARM:1`, the emergency stop `ALARM:10` (grblHAL's, Grbl has none). In an alarm
 //!   lines get `error:9` until `$X` or `$H`.
-//! - `M0` waits for `~`. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`] says.
+//! - `M0` waits for `~`. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`] says. With the
+//!   pen up the machine travels at its own speed, whatever `F` says.
 //! - Overrides, probes, other coordinate systems, the safety door and cancelling a jog are not there; a line that needs one is
 //!   `error:20`.
 //!

@@ -418,6 +418,10 @@ impl Motion {
                 self.start_at = now.checked_add(self.settings.gather);
             }
         }
+        // What comes next waits for a standstill: nothing more is planned together with this.
+        if self.unfinished && link.commands.first().is_some_and(|next| !matches!(next, Command::Plot(_))) {
+            self.unfinished = self.planner.finish().is_err();
+        }
     }
 
     /// Carries out what waits for a standstill, at a standstill.

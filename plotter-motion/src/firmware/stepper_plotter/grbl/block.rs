@@ -6,6 +6,9 @@ use super::{Grbl, Wait, send};
 use crate::gcode::{Block, Problem, Reader, Word};
 use crate::{PlotOp, Point};
 
+/// Slower is not slower, mm/s: a step of 0.01 mm takes ten seconds.
+const LEAST_FEED_MM_S: f64 = 1e-3;
+
 impl Grbl {
     /// Carries a line out as a whole, or not at all.
     pub(super) fn block(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
@@ -67,7 +70,12 @@ impl Grbl {
         let mut pauses = false;
         while let Some(op) = self.interpreter.next_op() {
             match op {
-                Ok(op) => {
+                Ok(mut op) => {
+                    if let PlotOp::Draw { feed_mm_s: Some(feed), .. }
+                    | PlotOp::DrawArc { feed_mm_s: Some(feed), .. } = &mut op
+                    {
+                        *feed = feed.max(LEAST_FEED_MM_S);
+                    }
                     if let Some(slot) = slots.next() {
                         *slot = Some(op);
                     }
