@@ -1,13 +1,29 @@
 //! What the examples share: one clear line for every error, and a simulated plot with its recording.
 
+mod drawing_file;
+mod language;
 mod overlay;
+mod path_deviation;
 mod report;
 mod simulated_plot;
+mod speed_audit;
+mod speed_chart;
+mod stepped_plot;
+mod stepped_preview;
+mod svg_strokes;
 mod vectorize_settings;
 
+pub use drawing_file::{Diagnostic, DrawingFile, Ops, Reading, Severity};
+pub use language::Language;
 pub use overlay::{Overlay, overlay_png, overlay_step};
+pub use path_deviation::PathDeviation;
 pub use report::{Figure, html_page};
 pub use simulated_plot::{PlotOutcome, simulate};
+pub use speed_audit::{Moment, SpeedAudit};
+pub use speed_chart::SpeedChart;
+pub use stepped_plot::{Happening, SteppedFigures, SteppedPlot};
+pub use stepped_preview::{SteppedPreview, pen_colour};
+pub use svg_strokes::{SvgStrokes, svg_strokes};
 pub use vectorize_settings::vectorizer;
 
 use std::fmt::Display;

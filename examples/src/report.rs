@@ -61,7 +61,7 @@ fn inline_svg(svg: &str) -> &str {
     svg.find("<svg").map_or("", |start| svg.get(start..).unwrap_or_default())
 }
 
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 

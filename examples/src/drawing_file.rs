@@ -1,0 +1,420 @@
+//! [`DrawingFile`]: a drawing in any of the languages, read as plot operations and diagnostics.
+
+use crate::{Language, at, svg_strokes};
+use plotter_motion::hpgl::thesis_text;
+use plotter_motion::{PlotOp, gcode, hpgl};
+use serde::Serialize;
+use std::cell::{Cell, RefCell};
+use std::fmt;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// Beginning of a file that tells its language.
+const HEAD_BYTES: usize = 64 << 10;
+
+/// Most that is held in memory: an SVG picture, or what comes through a pipe.
+const MOST_HELD_BYTES: u64 = 1 << 30;
+
+/// How bad something is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// The file is wrong there, and that part of it is left out.
+    Error,
+    /// It can be drawn, but perhaps not so.
+    Warning,
+    /// The file is right; something of it is not done here.
+    Notice,
+}
+
+/// What there is to say about a drawing, and where.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Diagnostic {
+    /// Line of the file, from 1, if it belongs to one.
+    pub line: Option<u32>,
+    /// Byte within the line, from 1.
+    pub column: Option<u32>,
+    /// How bad it is.
+    pub severity: Severity,
+    /// What it is.
+    pub text: String,
+}
+
+impl Diagnostic {
+    /// One without a place.
+    #[must_use]
+    pub fn new(severity: Severity, text: String) -> Self {
+        Self { line: None, column: None, severity, text }
+    }
+
+    fn placed(place: hpgl::Position, is_notice: bool, text: String) -> Self {
+        let severity = if is_notice { Severity::Notice } else { Severity::Error };
+        // The place stands in fields of its own.
+        let text = text.strip_prefix(&format!("{place}: ")).map_or(text.clone(), str::to_owned);
+        Self { line: Some(place.line), column: Some(place.column), severity, text }
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.line, self.column) {
+            (Some(line), Some(column)) => write!(f, "line {line}, column {column}: ")?,
+            (Some(line), None) => write!(f, "line {line}: ")?,
+            _ => {}
+        }
+        f.write_str(&self.text)
+    }
+}
+
+/// How drawings are read.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading {
+    /// Farthest that lines may be from the curves that they stand for, mm.
+    pub tolerance_mm: f64,
+    /// Counts to the millimetre in the thesis' text.
+    pub counts_per_mm: f64,
+    /// How G-code lifts the pen; `None` finds it out.
+    pub pen: Option<gcode::PenConvention>,
+}
+
+impl Default for Reading {
+    fn default() -> Self {
+        Self { tolerance_mm: 0.01, counts_per_mm: hpgl::UNITS_PER_MM, pen: None }
+    }
+}
+
+/// A drawing's file, of a known language.
+#[derive(Debug)]
+pub struct DrawingFile {
+    name: String,
+    source: Source,
+    language: Language,
+}
+
+#[derive(Debug)]
+enum Source {
+    /// A file that can be read as often as needed.
+    File(PathBuf),
+    /// What has come through a pipe, or is built in.
+    Held(Vec<u8>),
+}
+
+impl DrawingFile {
+    /// Opens a file, or the standard input for `-`, and finds out its language unless that is given.
+    ///
+    /// # Errors
+    ///
+    /// The file, and why it cannot be read or is no drawing.
+    pub fn open(path: &Path, language: Option<Language>) -> Result<Self, String> {
+        if path == Path::new("-") {
+            let bytes = held(io::stdin().lock()).map_err(|error| format!("standard input: {error}"))?;
+            return Self::held("standard input", bytes, language);
+        }
+        let failed = |error: io::Error| at(path, &format!("cannot be read: {error}"));
+        let file = File::open(path).map_err(failed)?;
+        let kind = file.metadata().map_err(failed)?;
+        if kind.is_dir() {
+            return Err(at(path, &"this is a folder: name a file in it"));
+        }
+        if !kind.is_file() {
+            let bytes = held(file).map_err(|error| at(path, &error))?;
+            return Self::held(&path.display().to_string(), bytes, language);
+        }
+        let mut head = Vec::new();
+        file.take(HEAD_BYTES as u64).read_to_end(&mut head).map_err(failed)?;
+        let name = path.display().to_string();
+        let language = told(&name, &head, language)?;
+        Ok(Self { name, source: Source::File(path.to_owned()), language })
+    }
+
+    /// A drawing in memory.
+    ///
+    /// # Errors
+    ///
+    /// That it is empty, or of no known language.
+    pub fn held(name: &str, bytes: Vec<u8>, language: Option<Language>) -> Result<Self, String> {
+        let language = told(name, bytes.get(..HEAD_BYTES).unwrap_or(&bytes), language)?;
+        Ok(Self { name: name.to_owned(), source: Source::Held(bytes), language })
+    }
+
+    /// What it is called in messages.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it is written in.
+    #[must_use]
+    pub fn language(&self) -> Language {
+        self.language
+    }
+
+    /// Its operations, from the start.
+    ///
+    /// # Errors
+    ///
+    /// The file, and why it cannot be read.
+    pub fn ops(&self, how: Reading) -> Result<Ops<'_>, String> {
+        let place = Rc::new(Place::default());
+        let bytes = self.bytes(&place)?;
+        let mut colours = Vec::new();
+        let inner: Box<dyn Iterator<Item = Result<PlotOp, Diagnostic>>> = match self.language {
+            Language::Hpgl => {
+                let options =
+                    hpgl::ReadOptions { tolerance_mm: how.tolerance_mm, ..hpgl::ReadOptions::default() };
+                let ops = hpgl::PlotOps::with_options(bytes, options);
+                Box::new(ops.map(|op| {
+                    op.map_err(|error| {
+                        Diagnostic::placed(error.position(), error.is_notice(), error.to_string())
+                    })
+                }))
+            }
+            Language::Gcode => {
+                let mut options = gcode::Detection::of(bytes).options();
+                options.pen = how.pen.unwrap_or(options.pen);
+                place.restart()?;
+                let ops = gcode::PlotOps::with_options(self.bytes(&place)?, options);
+                Box::new(ops.map(|op| {
+                    op.map_err(|error| {
+                        Diagnostic::placed(error.at, error.is_notice(), error.problem.to_string())
+                    })
+                }))
+            }
+            Language::Thesis => Box::new(thesis_ops(bytes, how.counts_per_mm)),
+            Language::Svg => {
+                let bytes = match &self.source {
+                    Source::Held(bytes) => bytes.clone(),
+                    Source::File(path) => crate::read_file(path)?,
+                };
+                let strokes = svg_strokes(&bytes, how.tolerance_mm)
+                    .map_err(|error| format!("{}: {error}", self.name))?;
+                colours = strokes.colours;
+                Box::new(strokes.diagnostics.into_iter().map(Err).chain(strokes.ops.into_iter().map(Ok)))
+            }
+        };
+        Ok(Ops { inner, place, colours, failed: false })
+    }
+
+    fn bytes(&self, place: &Rc<Place>) -> Result<Bytes<'_>, String> {
+        let reader: Box<dyn Read + '_> = match &self.source {
+            Source::Held(bytes) => Box::new(bytes.as_slice()),
+            Source::File(path) => {
+                Box::new(File::open(path).map_err(|error| at(path, &format!("cannot be read: {error}")))?)
+            }
+        };
+        Ok(Bytes { reader, buffer: vec![0; HEAD_BYTES], filled: 0, next: 0, place: Rc::clone(place) })
+    }
+}
+
+fn told(name: &str, head: &[u8], language: Option<Language>) -> Result<Language, String> {
+    if head.is_empty() {
+        return Err(format!("{name}: the file is empty"));
+    }
+    if head.starts_with(&[0x1f, 0x8b]) {
+        return Err(format!("{name}: the file is compressed: unpack it first (gunzip)"));
+    }
+    language.or_else(|| Language::of_contents(head)).ok_or_else(|| {
+        format!(
+            "{name}: this looks like none of HPGL, G-code, SVG and the thesis' text; if it is one, say which"
+        )
+    })
+}
+
+fn held(reader: impl Read) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    reader
+        .take(MOST_HELD_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| format!("cannot be read: {error}"))?;
+    if bytes.len() as u64 > MOST_HELD_BYTES {
+        return Err(format!("more than {} MiB: save it as a file first", MOST_HELD_BYTES >> 20));
+    }
+    Ok(bytes)
+}
+
+/// The operations of a drawing; in their place, what there is to say.
+pub struct Ops<'a> {
+    inner: Box<dyn Iterator<Item = Result<PlotOp, Diagnostic>> + 'a>,
+    place: Rc<Place>,
+    /// Colours of the pens from 1 on, as red, green and blue, if the drawing says them.
+    pub colours: Vec<[u8; 3]>,
+    failed: bool,
+}
+
+impl fmt::Debug for Ops<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Ops").field("line", &self.line()).finish_non_exhaustive()
+    }
+}
+
+impl Ops<'_> {
+    /// The line that has been read up to, from 1: that of the operation given last, or near it; `None` where the whole file
+    /// was read before the first operation.
+    #[must_use]
+    pub fn line(&self) -> Option<u32> {
+        Some(self.place.line.get()).filter(|line| *line > 0)
+    }
+}
+
+impl Iterator for Ops<'_> {
+    type Item = Result<PlotOp, Diagnostic>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if let Some(item) = self.inner.next() {
+            return Some(item);
+        }
+        let failure = self.place.failure.borrow_mut().take()?;
+        self.failed = true;
+        Some(Err(Diagnostic {
+            line: self.line(),
+            column: None,
+            severity: Severity::Error,
+            text: format!("cannot be read further: {failure}"),
+        }))
+    }
+}
+
+/// How far the bytes have been read.
+#[derive(Debug, Default)]
+struct Place {
+    /// Line of the byte given last; 0 before the first.
+    line: Cell<u32>,
+    line_ended: Cell<bool>,
+    failure: RefCell<Option<String>>,
+}
+
+impl Place {
+    fn pass(&self, byte: u8) {
+        if self.line.get() == 0 || self.line_ended.get() {
+            self.line.set(self.line.get().saturating_add(1));
+        }
+        self.line_ended.set(byte == b'\n');
+    }
+
+    fn restart(&self) -> Result<(), String> {
+        self.line.set(0);
+        self.line_ended.set(false);
+        self.failure.borrow_mut().take().map_or(Ok(()), Err)
+    }
+}
+
+/// The bytes of a file, with a note of a failure.
+struct Bytes<'a> {
+    reader: Box<dyn Read + 'a>,
+    buffer: Vec<u8>,
+    filled: usize,
+    next: usize,
+    place: Rc<Place>,
+}
+
+impl Iterator for Bytes<'_> {
+    type Item = u8;
+
+    fn next(&mut self) -> Option<u8> {
+        while self.next == self.filled {
+            match self.reader.read(&mut self.buffer) {
+                Ok(0) => return None,
+                Ok(filled) => (self.filled, self.next) = (filled, 0),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => {
+                    *self.place.failure.borrow_mut() = Some(error.to_string());
+                    self.reader = Box::new(io::empty());
+                    return None;
+                }
+            }
+        }
+        let byte = self.buffer.get(self.next).copied()?;
+        self.next += 1;
+        self.place.pass(byte);
+        Some(byte)
+    }
+}
+
+fn thesis_ops(
+    mut bytes: impl Iterator<Item = u8>,
+    counts_per_mm: f64,
+) -> impl Iterator<Item = Result<PlotOp, Diagnostic>> {
+    let mut reader = Some(thesis_text::Reader::new());
+    std::iter::from_fn(move || {
+        loop {
+            let line = match bytes.next() {
+                Some(byte) => reader.as_mut()?.push(byte),
+                None => Some(reader.take()?.finish()?),
+            };
+            match line {
+                Some(Ok(thesis_text::Line::Move(pen_move))) => {
+                    return Some(Ok(pen_move.to_op(counts_per_mm)));
+                }
+                Some(Err(error)) => {
+                    return Some(Err(Diagnostic::placed(error.position(), false, error.to_string())));
+                }
+                _ => {}
+            }
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plotter_motion::Point;
+
+    fn read(text: &str) -> (Vec<PlotOp>, Vec<String>) {
+        let file = DrawingFile::held("test", text.into(), None).unwrap();
+        let (ops, said): (Vec<_>, Vec<_>) = file.ops(Reading::default()).unwrap().partition(Result::is_ok);
+        let said = said.into_iter().filter_map(|item| item.err().map(|said| said.to_string())).collect();
+        (ops.into_iter().flatten().collect(), said)
+    }
+
+    #[test]
+    fn the_same_line_in_four_languages() {
+        let texts = [
+            "IN;PU400,0;PD800,400;",
+            "PU, 00400, 00000\nPD, 00800, 00400",
+            "G0 X10 Y0\nG1 X20 Y10\n",
+            "<svg xmlns='http://www.w3.org/2000/svg' width='30mm' height='20mm' viewBox='0 0 30 20'>\
+             <path d='M10 20L20 10' stroke='black'/></svg>",
+        ];
+        for text in texts {
+            let (ops, said) = read(text);
+            let places: Vec<Point> = ops.iter().filter_map(|op| op.target()).collect();
+            assert_eq!(said, Vec::<String>::new(), "{text}");
+            assert_eq!(places.len(), 2, "{text}");
+            assert!(places[0].distance(Point::new(10.0, 0.0)) < 1e-5, "{text}");
+            assert!(places[1].distance(Point::new(20.0, 10.0)) < 1e-5, "{text}");
+        }
+    }
+
+    #[test]
+    fn errors_have_their_place_and_the_rest_is_read() {
+        let (ops, said) = read("IN;PU0,0;\nPD40,0,80;\nPD80,0;");
+        assert_eq!(ops.len(), 3);
+        assert_eq!(said.len(), 1);
+        assert!(said[0].starts_with("line 2, column 8: PD has an x of 80 without a y"), "{said:?}");
+        let (ops, said) = read("PU, 1, 2\nPD, 3, x\nPD, 5, 6\n");
+        assert_eq!(ops.len(), 2);
+        assert!(said[0].starts_with("line 2, column 8: `x` stands where a number belongs"), "{said:?}");
+    }
+
+    #[test]
+    fn the_line_of_an_operation_is_known() {
+        let file = DrawingFile::held("test", b"IN;\nPU0,0;\nPD40,0;\n".to_vec(), None).unwrap();
+        let mut ops = file.ops(Reading::default()).unwrap();
+        let mut lines = Vec::new();
+        while let Some(op) = ops.next() {
+            assert!(op.is_ok());
+            lines.push(ops.line());
+        }
+        assert_eq!(lines, [Some(2), Some(3)]);
+    }
+
+    #[test]
+    fn what_is_no_drawing_is_named() {
+        let open = |bytes: &[u8]| DrawingFile::held("a.plt", bytes.to_vec(), None).unwrap_err();
+        assert_eq!(open(b""), "a.plt: the file is empty");
+        assert!(open(b"\x1f\x8b\x08").contains("compressed"));
+        assert!(open(b"hello, world").contains("none of HPGL, G-code, SVG"));
+    }
+}
