@@ -11,8 +11,10 @@ use crate::{MotionLimits, SCurve};
 
 /// Parts of the time from no acceleration to the greatest, for each of which a jerk is chosen.
 const PARTS: f64 = 32.0;
+/// Shortest part, s: with great jerks the motion is nearly a trapezoid, and finer parts would only be more.
+const SHORTEST_S: f64 = 0.000_2;
 /// How much longer a part may be while nothing lies in the way: tried in this order.
-const LONGER: [f64; 3] = [16.0, 4.0, 1.0];
+const LONGER: [f64; 4] = [64.0, 16.0, 4.0, 1.0];
 /// Halvings of the range of jerks in the search for the greatest viable one.
 const HALVINGS: u32 = 24;
 /// How much too late a braking may be by rounding, mm.
@@ -53,6 +55,16 @@ impl State {
         let t = time_s;
         let way_mm = t * (speed + t * (accel / 2.0 + t * jerk / 6.0));
         (Self { speed: speed + t * (accel + t * jerk / 2.0), accel: accel + t * jerk }, way_mm)
+    }
+
+    /// The greatest speed within a time of constant jerk.
+    fn peak_within(self, jerk: f64, time_s: f64) -> f64 {
+        let turn_s = -self.accel / jerk;
+        if self.accel > 0.0 && jerk < 0.0 && turn_s < time_s {
+            self.speed + 0.5 * self.accel * turn_s
+        } else {
+            self.speed.max(self.after(jerk, time_s).0.speed)
+        }
     }
 
     /// The hardest braking to a speed with no acceleration left; none if that speed is not exceeded in any case.
@@ -309,7 +321,9 @@ impl SCurveState {
                 return Chosen::Braking(braking, most);
             }
         }
-        let part_s = limits.accel / limits.jerk / PARTS;
+        // A machine that is at full speed before it is at full acceleration has that time instead.
+        let part_s = (limits.accel / limits.jerk).min(libm::sqrt(ahead.cruise / limits.jerk)) / PARTS;
+        let part_s = part_s.max(SHORTEST_S);
         // At full speed: as long as there is nothing to brake for.
         if state.accel.abs() <= 1e-9 * limits.accel && state.speed >= ahead.cruise * (1.0 - 1e-9) {
             let free_mm = ahead.places().iter().fold(rest_mm, |free_mm, &(place_mm, most)| {
@@ -330,6 +344,10 @@ impl SCurveState {
             if way_mm <= rest_mm && ahead.is_viable(after, way_mm, limits) {
                 return Chosen::One { jerk: most_jerk, time_s };
             }
+        }
+        // A braking for a place farther on that can be put off no longer is followed phase by phase.
+        if let Some(phase) = self.follow(&ahead, rest_mm, part_s, limits) {
+            return phase;
         }
         // Within one part: no farther than the end of the block.
         let mut time_s = part_s;
@@ -355,7 +373,8 @@ impl SCurveState {
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             let (after, way_mm) = state.after(middle, time_s);
-            if ahead.is_viable(after, way_mm, limits) { low = middle } else { high = middle }
+            let fits = state.peak_within(middle, time_s) <= ahead.cruise + STANDSTILL_MM_S;
+            if fits && ahead.is_viable(after, way_mm, limits) { low = middle } else { high = middle }
         }
         let (_, way_mm) = state.after(low, time_s);
         if way_mm <= DONE_MM && stands {
@@ -366,6 +385,30 @@ impl SCurveState {
             time_s = self.time_to(rest_mm, low, time_s);
         }
         Chosen::One { jerk: low, time_s }
+    }
+
+    /// The next phase of the braking for the place that leaves no time, if there is one.
+    fn follow<const N: usize>(
+        &self,
+        ahead: &Ahead<N>,
+        rest_mm: f64,
+        part_s: f64,
+        limits: Limits,
+    ) -> Option<Chosen> {
+        let state = self.state;
+        let slack = |&&(place_mm, most): &&(f64, f64)| {
+            state.speed > most && (place_mm - state.braking_mm(most, limits)).abs() <= TIGHT_MM
+        };
+        let &(_, most) = ahead.places().iter().find(slack)?;
+        let Braking { in_s, steady_s, out_s } = state.braking(most, limits);
+        let phases = [(-limits.jerk, in_s), (0.0, steady_s), (limits.jerk, out_s.min(part_s))];
+        let &(jerk, time_s) = phases.iter().find(|phase| phase.1 > 1e-9)?;
+        let (after, way_mm) = state.after(jerk, time_s);
+        if jerk > 0.0 && !ahead.is_viable(after, way_mm, limits) {
+            return None; // a slower place behind it wants more
+        }
+        let time_s = if way_mm > rest_mm { self.time_to(rest_mm, jerk, time_s) } else { time_s };
+        Some(Chosen::One { jerk, time_s })
     }
 
     /// When a distance has been covered with this jerk, before `most_s`.

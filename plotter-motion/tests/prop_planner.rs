@@ -1,0 +1,216 @@
+//! Laws of planner and step generator over any tool path.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "laws that fail say so by a panic")]
+
+use core::time::Duration;
+use plotter_motion::kinematics::{Cartesian, MotorScale};
+use plotter_motion::{
+    Action, MotorEvent, PathMode, Phase, PlanError, Planner, PlannerSettings, PlotOp, Point, Shape, StepGen,
+    StepGenSettings, StepPoint, from_mm,
+};
+use proptest::prelude::*;
+
+const STEPS_PER_MM: f64 = 80.0;
+/// What rounding may add to a limit.
+const ROUNDING: f64 = 1e-6;
+/// What rounding may leave between the end of one phase and the begin of the next, mm, mm/s; and mm/s² where jerk is limited.
+const GAP_MM: f64 = 2e-6;
+const GAP_MM_S: f64 = 1e-3;
+const GAP_MM_S2: f64 = 0.5;
+const GAP_S: f64 = 1e-4;
+
+fn coordinate() -> impl Strategy<Value = f64> {
+    prop_oneof![0.0..100.0, 0.0..1.0, (0..20_i32).prop_map(f64::from)]
+}
+
+/// Operations as ways from the place before, long and short.
+fn operation() -> impl Strategy<Value = (u8, f64, f64, Option<f64>)> {
+    let feed = prop_oneof![3 => Just(None), 1 => (1.0..200.0).prop_map(Some)];
+    (0..12_u8, coordinate(), coordinate(), feed)
+}
+
+fn path(parts: &[(u8, f64, f64, Option<f64>)]) -> Vec<PlotOp> {
+    let mut at = Point::ORIGIN;
+    let mut ops = Vec::new();
+    for &(kind, a, b, feed_mm_s) in parts {
+        let near = Point::new(at.x + (a - 50.0) / 40.0, at.y + (b - 50.0) / 40.0);
+        let op = match kind {
+            0 => PlotOp::Travel { to: Point::new(a, b) },
+            1 => PlotOp::Draw { to: Point::new(a, b), feed_mm_s },
+            2 => PlotOp::Draw { to: at, feed_mm_s },
+            3 => {
+                let (centre, sweep_rad) = (near, (b - 50.0) / 8.0);
+                let to = centre + (at - centre).rotated(sweep_rad);
+                PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s }
+            }
+            4 => PlotOp::Dwell { duration: Duration::from_millis(3) },
+            5 => PlotOp::LaserPower { share: a / 100.0 },
+            6 => PlotOp::SelectPen { pen: 2 },
+            _ => PlotOp::Draw { to: near, feed_mm_s },
+        };
+        at = op.target().unwrap_or(at);
+        ops.push(op);
+    }
+    ops
+}
+
+fn settings() -> impl Strategy<Value = PlannerSettings> {
+    let tolerance = prop_oneof![Just(None), (1e-3..1.0).prop_map(Some)];
+    let jerk = prop_oneof![Just(None), (1e2..1e6).prop_map(Some)];
+    (tolerance, jerk, 1.0..500.0, 10.0..5000.0, 0.0..0.1, prop_oneof![Just(0.0), Just(0.005)]).prop_map(
+        |(tolerance, jerk_mm_s3, speed_mm_s, accel_mm_s2, junction_deviation_mm, resolution_mm)| {
+            PlannerSettings {
+                path: tolerance
+                    .map_or(PathMode::Exact, |path_tolerance_mm| PathMode::Tolerance { path_tolerance_mm }),
+                speed_mm_s,
+                travel_speed_mm_s: 1.5 * speed_mm_s,
+                accel_mm_s2,
+                jerk_mm_s3,
+                junction_deviation_mm,
+                resolution_mm,
+            }
+        },
+    )
+}
+
+/// All actions of a path; `hold` says after which actions a feed hold begins, which ends when the machine stands.
+fn actions(settings: PlannerSettings, ops: &[PlotOp], hold: &[usize]) -> Vec<Action> {
+    let mut turns = 0;
+    let mut hold = hold.to_vec();
+    let mut planner = Planner::<16>::new(settings).unwrap();
+    let (mut actions, mut waiting, mut finished) = (Vec::new(), ops.iter().copied().peekable(), false);
+    loop {
+        while let Some(&op) = waiting.peek() {
+            match planner.push(op) {
+                Ok(()) => waiting.next(),
+                Err(PlanError::Full) => break,
+                Err(error) => panic!("{error} for {op:?}"),
+            };
+        }
+        if !finished && waiting.peek().is_none() {
+            finished = planner.finish().is_ok();
+        }
+        if hold.contains(&actions.len()) {
+            hold.retain(|&at| at != actions.len());
+            planner.hold();
+        }
+        match planner.next_action() {
+            Some(action) => actions.push(action),
+            None if planner.is_held() => planner.resume(),
+            None => {
+                assert!(finished && planner.is_empty());
+                return actions;
+            }
+        }
+        turns += 1;
+        assert!(turns < 1_000_000, "it comes to an end: {settings:?}, {} actions", actions.len());
+    }
+}
+
+fn check(settings: PlannerSettings, ops: &[PlotOp], hold: &[usize]) -> Result<(), TestCaseError> {
+    let motor = MotorScale { steps_per_mm: STEPS_PER_MM, inverted: false };
+    let step_settings =
+        StepGenSettings { pen_settle: Duration::from_millis(1), ..StepGenSettings::default() };
+    let mut steps = StepGen::new(Cartesian::new(motor, motor).unwrap(), step_settings);
+    let mut at = Point::ORIGIN;
+    let (mut motors, mut tick) = (StepPoint::default(), 0);
+    let mut last: Option<Phase> = None;
+    let mut done_mm = 0.0;
+    let mut length_mm = 0.0;
+    let mut cruise = 0.0;
+    for action in actions(settings, ops, hold) {
+        match action {
+            Action::Course(course) => {
+                prop_assert!(length_mm - done_mm < 10.0 * GAP_MM, "{done_mm} of {length_mm} mm");
+                let straight = at.distance(course.to);
+                prop_assert!(straight <= course.length_mm * (1.0 + 1e-5) + GAP_MM, "{course:?} from {at:?}");
+                if course.shape == Shape::Line {
+                    prop_assert!((straight - course.length_mm).abs() <= 1e-5 * straight + GAP_MM);
+                }
+                at = course.to;
+                (done_mm, length_mm, cruise) = (0.0, course.length_mm, course.feed_mm_s);
+            }
+            Action::Phase(phase) => {
+                prop_assert!(phase.duration_s > 0.0 && phase.duration_s.is_finite(), "{phase:?}");
+                prop_assert!((phase.from_mm - done_mm).abs() < 10.0 * GAP_MM, "{phase:?} after {done_mm}");
+                let end = phase.at(phase.duration_s);
+                done_mm = end.distance_mm;
+                for place in [phase.at(0.0), phase.at(0.5 * phase.duration_s), end] {
+                    let speed = place.speed_mm_s;
+                    prop_assert!(
+                        (-GAP_MM_S..=cruise * (1.0 + ROUNDING) + GAP_MM_S).contains(&speed),
+                        "{phase:?}"
+                    );
+                    prop_assert!(place.accel_mm_s2.abs() <= settings.accel_mm_s2 * (1.0 + 1e-3), "{phase:?}");
+                }
+                prop_assert!(phase.jerk_mm_s3.abs() <= settings.jerk_mm_s3.unwrap_or(0.0) * (1.0 + ROUNDING));
+                let before = last.map_or((0.0, 0.0), |last| {
+                    let end = last.at(last.duration_s);
+                    (end.speed_mm_s, end.accel_mm_s2)
+                });
+                prop_assert!((before.0 - phase.speed_mm_s).abs() < GAP_MM_S, "{before:?} then {phase:?}");
+                if let Some(jerk_mm_s3) = settings.jerk_mm_s3 {
+                    let gap = (before.1 - phase.accel_mm_s2).abs();
+                    let most = GAP_MM_S2 + 1e-3 * settings.accel_mm_s2 + GAP_S * jerk_mm_s3;
+                    prop_assert!(gap < most, "{before:?} then {phase:?}");
+                }
+                last = Some(phase);
+            }
+            _ => {
+                let rest = last.map_or(0.0, |last| last.at(last.duration_s).speed_mm_s);
+                prop_assert!(rest < GAP_MM_S, "stands at {rest} mm/s for {action:?}");
+            }
+        }
+        steps.push(action).unwrap();
+        while let Some(event) = steps.next_event() {
+            prop_assert!(event.tick >= tick, "time goes on");
+            tick = event.tick;
+            if let MotorEvent::Step { x, y } = event.event {
+                motors = StepPoint::new(motors.x + i32::from(x), motors.y + i32::from(y));
+            }
+        }
+        prop_assert_eq!(motors, steps.steps());
+    }
+    let rest = last.map_or(0.0, |last| last.at(last.duration_s).speed_mm_s);
+    prop_assert!(rest < GAP_MM_S, "ends at {} mm/s", rest);
+    let end = ops.iter().rev().find_map(|op| op.target()).unwrap_or_default();
+    prop_assert_eq!(motors, StepPoint::new(from_mm(end.x, STEPS_PER_MM), from_mm(end.y, STEPS_PER_MM)));
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn any_path_is_walked_to_its_end_within_the_limits(
+        parts in prop::collection::vec(operation(), 1..60),
+        settings in settings(),
+    ) {
+        check(settings, &path(&parts), &[])?;
+    }
+
+    #[test]
+    fn a_held_path_goes_on_where_it_stopped(
+        parts in prop::collection::vec(operation(), 1..40),
+        settings in settings(),
+        hold in prop::collection::vec(0..200_usize, 1..6),
+    ) {
+        check(settings, &path(&parts), &hold)?;
+    }
+
+    #[test]
+    fn a_longer_look_ahead_is_never_slower(
+        parts in prop::collection::vec(operation(), 1..80),
+        settings in settings(),
+    ) {
+        let settings = PlannerSettings { jerk_mm_s3: None, ..settings };
+        let time_s = |actions: Vec<Action>| -> f64 {
+            actions.iter().map(|action| if let Action::Phase(phase) = action { phase.duration_s } else { 0.0 }).sum()
+        };
+        let mut planner = Planner::<512>::new(settings).unwrap();
+        for op in path(&parts) {
+            planner.push(op).unwrap();
+        }
+        planner.finish().unwrap();
+        let long = time_s(core::iter::from_fn(|| planner.next_action()).collect());
+        let short = time_s(actions(settings, &path(&parts), &[]));
+        prop_assert!(long <= short * (1.0 + ROUNDING), "{long} s against {short} s");
+    }
+}
