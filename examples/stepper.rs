@@ -15,8 +15,8 @@
 
 use clap::{Parser, ValueEnum};
 use plotter_examples::{
-    Diagnostic, DrawingFile, Happening, Language, Reading, Severity, SpeedChart, SteppedFigures, SteppedPlot,
-    SteppedPreview, at, print, read_file, run, write_file,
+    Diagnostic, Diagnostics, DrawingFile, Happening, Language, Reading, Severity, SpeedChart, SteppedFigures,
+    SteppedPlot, SteppedPreview, at, print, read_file, run, write_file,
 };
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{
@@ -29,10 +29,6 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-
-/// Diagnostics that are kept for the report, and that are printed of each kind.
-const MOST_KEPT: usize = 1000;
-const MOST_PRINTED: usize = 10;
 
 /// A point may lie this far outside of the area, mm: what rounding makes of its border.
 const BORDER_MM: f64 = 0.02;
@@ -170,8 +166,7 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
     let mut read = Read::new(config.area);
     let (figures, colours) = walk(arguments, &drawing, plot, &mut read, &mut said, &mut writers)?;
     if read.drawn == 0 {
-        let first = said.kept.iter().find(|said| said.severity == Severity::Error);
-        let why = first.map_or_else(String::new, |first| format!("; {first}"));
+        let why = said.first_error().map_or_else(String::new, |first| format!("; {first}"));
         return Err(format!(
             "{}: nothing is drawn by it, read as {}{why}",
             drawing.name(),
@@ -193,13 +188,13 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
     if let Some(steps) = writers.steps {
         steps.finish()?;
     }
-    let report = Report::new(&drawing, &machine, &settings, motors, &figures, &read, said);
+    let report = Report::new(&drawing, &machine, &settings, motors, &figures, &read, &said);
     if let Some(path) = &arguments.report {
         let text = serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?;
         write_file(path, text + "\n")?;
     }
     print(&report.table())?;
-    report.complain();
+    said.complain(drawing.name());
     Ok(())
 }
 
@@ -493,29 +488,6 @@ impl StepFile {
     }
 }
 
-/// What there is to say: the first of it, and how much.
-#[derive(Default)]
-struct Diagnostics {
-    kept: Vec<Diagnostic>,
-    errors: u64,
-    warnings: u64,
-    notices: u64,
-}
-
-impl Diagnostics {
-    fn push(&mut self, diagnostic: Diagnostic) {
-        match diagnostic.severity {
-            Severity::Error => self.errors += 1,
-            Severity::Warning => self.warnings += 1,
-            Severity::Notice => self.notices += 1,
-        }
-        // A warning sums up the whole drawing.
-        if self.kept.len() < MOST_KEPT || diagnostic.severity == Severity::Warning {
-            self.kept.push(diagnostic);
-        }
-    }
-}
-
 #[derive(Serialize)]
 struct Report {
     file: String,
@@ -545,9 +517,9 @@ struct Report {
     max_drawing_from_steps_mm: f64,
     bounds_mm: Option<[f64; 4]>,
     outside: u64,
-    errors: u64,
-    warnings: u64,
-    notices: u64,
+    errors: usize,
+    warnings: usize,
+    notices: usize,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -568,13 +540,13 @@ impl Report {
         motors: [MotorScale; 2],
         figures: &SteppedFigures,
         read: &Read,
-        said: Diagnostics,
+        said: &Diagnostics,
     ) -> Self {
         let tolerance_mm = match settings.path {
             PathMode::Tolerance { path_tolerance_mm } => Some(path_tolerance_mm),
             PathMode::Exact => None,
         };
-        let Diagnostics { kept, errors, warnings, notices } = said;
+        let Diagnostics { kept, errors, warnings, notices } = said.clone();
         Self {
             file: drawing.name().to_owned(),
             language: drawing.language(),
@@ -641,28 +613,6 @@ impl Report {
             out.push('\n');
         }
         out
-    }
-
-    /// The first diagnostics of each kind, on the standard error.
-    fn complain(&self) {
-        let kinds = [
-            (Severity::Error, "error", self.errors),
-            (Severity::Warning, "warning", self.warnings),
-            (Severity::Notice, "notice", self.notices),
-        ];
-        for (severity, name, count) in kinds {
-            let mut printed = 0;
-            for diagnostic in self.diagnostics.iter().filter(|said| said.severity == severity) {
-                if printed == MOST_PRINTED {
-                    break;
-                }
-                eprintln!("{name}: {}: {diagnostic}", self.file);
-                printed += 1;
-            }
-            if count > printed as u64 {
-                eprintln!("{name}: {}: and {} more", self.file, count - printed as u64);
-            }
-        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What the examples share: one clear line for every error, and a simulated plot with its recording.
 
+mod diagnostics;
 mod drawing_file;
 mod language;
 mod overlay;
@@ -11,8 +12,10 @@ mod speed_chart;
 mod stepped_plot;
 mod stepped_preview;
 mod svg_strokes;
+mod svg_text;
 mod vectorize_settings;
 
+pub use diagnostics::Diagnostics;
 pub use drawing_file::{Diagnostic, DrawingFile, Ops, Reading, Severity};
 pub use language::Language;
 pub use overlay::{Overlay, overlay_png, overlay_step};
@@ -24,6 +27,7 @@ pub use speed_chart::SpeedChart;
 pub use stepped_plot::{Happening, SteppedFigures, SteppedPlot};
 pub use stepped_preview::{SteppedPreview, pen_colour};
 pub use svg_strokes::{SvgStrokes, svg_strokes};
+pub use svg_text::SvgText;
 pub use vectorize_settings::vectorizer;
 
 use std::fmt::Display;

@@ -1,0 +1,229 @@
+//! The command `convert`: round trips between all languages, and what it says of what they lack.
+#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
+
+mod built_example;
+
+use built_example::{complaint, data, run_example, run_with_input};
+use plotter_examples::{DrawingFile, Reading};
+use plotter_motion::{PlotOp, Point, chords};
+use std::path::{Path, PathBuf};
+
+/// A plotter unit, mm.
+const UNIT_MM: f64 = 0.025;
+
+/// A folder for the results of a test.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn file(&self, name: &str) -> String {
+        self.0.path().join(name).to_str().unwrap().to_owned()
+    }
+
+    fn write(&self, name: &str, contents: &str) -> String {
+        let path = self.file(name);
+        std::fs::write(&path, contents).unwrap();
+        path
+    }
+
+    /// Converts a file into one of another name; gives its path, its text and what was said.
+    fn convert(&self, from: &str, to: &str, options: &[&str]) -> (String, String, String) {
+        let path = self.file(to);
+        let output = run_example("convert", &[&[from, &path][..], options].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{from} to {to}: {said}");
+        let text = std::fs::read_to_string(&path).unwrap();
+        (path, text, said)
+    }
+}
+
+/// A stroke: its pen, and its places with arcs as chords within a thousandth of a millimetre.
+type Stroke = (u8, Vec<Point>);
+
+fn strokes(path: &str) -> Vec<Stroke> {
+    let file = DrawingFile::open(Path::new(path), None).unwrap();
+    let (mut strokes, mut pen, mut at, mut is_down) = (Vec::<Stroke>::new(), 1, Point::ORIGIN, false);
+    for op in chords(file.ops(Reading::default()).unwrap().flatten(), 1e-3) {
+        match op {
+            PlotOp::Travel { .. } => is_down = false,
+            PlotOp::Draw { to, .. } => {
+                if !std::mem::replace(&mut is_down, true) {
+                    strokes.push((pen, vec![at]));
+                }
+                strokes.last_mut().unwrap().1.push(to);
+            }
+            PlotOp::SelectPen { pen: next } => (pen, is_down) = (next, false),
+            _ => {}
+        }
+        at = op.target().unwrap_or(at);
+    }
+    strokes
+}
+
+/// Farthest that a place of one drawing is from the same stroke of the other, mm, either way.
+fn farthest_mm(one: &[Stroke], other: &[Stroke]) -> f64 {
+    assert_eq!(one.len(), other.len());
+    let way = |from: &[Stroke], to: &[Stroke]| {
+        let mut most = 0.0_f64;
+        for ((pen, places), (other_pen, others)) in from.iter().zip(to) {
+            assert_eq!(pen, other_pen);
+            for place in places {
+                let segments = others.windows(2).map(|ends| plotter_motion::Segment::new(ends[0], ends[1]));
+                most = most.max(segments.map(|line| line.distance(*place)).fold(f64::INFINITY, f64::min));
+            }
+        }
+        most
+    };
+    way(one, other).max(way(other, one))
+}
+
+const DRAWING: &str = "IN;SP1;PU400,400;PD800,400,811,1203;PU1000,1000;CI300;SP2;PU100,2000;PD;AA500,2000,-135;PD0,0;\
+                       PU3000,100;PD3000,100;PU;SP0;";
+
+#[test]
+fn hpgl_and_gcode_keep_points_to_a_plotter_unit() {
+    let folder = Folder::new();
+    let original = folder.write("a.plt", DRAWING);
+    let (gcode, text, said) = folder.convert(&original, "b.gcode", &[]);
+    assert_eq!(said, "");
+    assert!(text.contains("\nG3 ") && text.contains("\nG2 ") && text.contains("(pen 2)"), "{text}");
+    assert!(farthest_mm(&strokes(&original), &strokes(&gcode)) < 0.002);
+    let (back, text, said) = folder.convert(&gcode, "c.plt", &[]);
+    assert_eq!(said, "");
+    assert!(text.contains("CI300;") || text.contains("AA"), "{text}");
+    assert!(farthest_mm(&strokes(&original), &strokes(&back)) < UNIT_MM);
+}
+
+#[test]
+fn svg_and_hpgl_keep_strokes_and_pens() {
+    let folder = Folder::new();
+    let original = folder.write("a.plt", DRAWING);
+    let (svg, text, said) = folder.convert(&original, "b.svg", &[]);
+    assert_eq!(said, "");
+    assert!(
+        text.contains("<g id=\"pen-1\"") && text.contains("<g id=\"pen-2\"") && text.contains('A'),
+        "{text}"
+    );
+    assert!(farthest_mm(&strokes(&original), &strokes(&svg)) < 0.01);
+    let (back, text, _) = folder.convert(&svg, "c.plt", &[]);
+    assert!(text.contains("AA"), "arcs stay arcs: {text}");
+    assert!(farthest_mm(&strokes(&original), &strokes(&back)) < 1.5 * UNIT_MM);
+    let (again, ..) = folder.convert(&back, "d.svg", &[]);
+    assert!(farthest_mm(&strokes(&svg), &strokes(&again)) < 1.5 * UNIT_MM);
+}
+
+#[test]
+fn thesis_text_is_counts_and_chords() {
+    let folder = Folder::new();
+    let original = folder.write("a.plt", "IN;SP2;PU400,400;PD800,400;PD;AA800,800,90;PU;");
+    let (thesis, text, said) = folder.convert(&original, "b.txt", &["--tolerance-mm", "0.1"]);
+    assert!(text.starts_with("PU, 00400, 00400\nPD, 00800, 00400\nPD, "), "{text}");
+    assert!(text.ends_with("PD, 01200, 00800\n") && text.lines().count() < 12, "{text}");
+    assert!(said.contains("notice: ") && said.contains("one pen") && said.lines().count() == 1, "{said}");
+    let (_, back, _) = folder.convert(&thesis, "c.plt", &[]);
+    assert!(back.starts_with("IN;\nSP1;\nPU400,400;\nPD800,400,"), "{back}");
+    let negative = folder.write("n.plt", "IN;PU0,0;\nPD400,0;\nPD400,-40;\nPD400,80;\nPD0,80;");
+    let (_, text, said) = folder.convert(&negative, "n.txt", &[]);
+    // Neither the line that leaves the counts nor the one that comes back.
+    assert_eq!(text, "PD, 00400, 00000\nPU, 00400, 00080\nPD, 00000, 00080\n");
+    assert!(said.contains("line 3: point (400, -40) lies outside 0..=99999"), "{said}");
+    assert!(complaint("convert", &[&negative, &folder.file("m.txt"), "--strict"]).contains("line 3: point"));
+}
+
+#[test]
+fn pens_of_gcode_are_lifted_as_asked() {
+    let folder = Folder::new();
+    let original = folder.write("a.plt", "IN;PU400,400;PD800,400;CI200;PU;");
+    for (options, up, down) in [
+        (&[][..], "M5", "M3 S90"),
+        (&["--gcode-pen", "z"], "G0 Z5", "G1 Z0"),
+        (&["--gcode-pen", "unicorn"], "M300 S50", "M300 S30"),
+        (&["--gcode-pen", "mdraw"], "M1 160", "M1 90"),
+        (&["--pen-up", "M280 P0 S60", "--pen-down", "M280 P0 S30"], "M280 P0 S60", "M280 P0 S30"),
+    ] {
+        let (gcode, text, _) = folder.convert(&original, "b.nc", options);
+        assert!(text.contains(up) && text.contains(down), "{text}");
+        assert_eq!(text.contains("G3 "), !options.contains(&"mdraw"), "{text}");
+        assert!(farthest_mm(&strokes(&original), &strokes(&gcode)) < 0.02, "{options:?}");
+    }
+    let (_, text, _) = folder.convert(&original, "c.nc", &["--gcode-pen", "z"]);
+    let plain = folder.write("d.nc", &text.replace("Z5", "Z2").replace("Z0", "Z-1"));
+    let (_, text, _) = folder.convert(&plain, "e.plt", &["--convention", "z"]);
+    assert!(text.contains("PU400,400;\n") && text.contains("PD800,400;\n"), "{text}");
+}
+
+#[test]
+fn what_svg_has_and_plotters_lack_is_said() {
+    let folder = Folder::new();
+    let svg = folder.write(
+        "a.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg' width='4in' height='96' viewBox='0 0 384 96'>\n\
+         <text x='3' y='9'>words</text>\n<rect width='9' height='9'/>\n\
+         <path d='M0 96 L96 0' stroke='red'/><path d='M96 96 C150 96 96 0 192 0' stroke='blue' fill='none'/></svg>",
+    );
+    let (_, text, said) = folder.convert(&svg, "a.hpgl", &[]);
+    assert!(text.starts_with("IN;\nSP1;\nPU0,0;\nPD1016,1016;\n"), "{text}");
+    assert!(text.contains("SP2;\nPU1016,0;\n"), "{text}");
+    assert!(said.contains("a.svg: line 2, column 1: text is left out"), "{said}");
+    assert!(said.contains("1 shape is filled without a stroke"), "{said}");
+}
+
+#[test]
+fn pipes_are_read_and_written() {
+    let folder = Folder::new();
+    let original = folder.write("a.plt", DRAWING);
+    let (_, expected, _) = folder.convert(&original, "a.gcode", &[]);
+    let file = std::fs::File::open(&original).unwrap();
+    let output = run_with_input("convert", &["-", "-", "--from", "hpgl", "--to", "gcode"], file);
+    assert!(output.status.success());
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), expected);
+}
+
+#[test]
+fn what_cannot_be_converted_is_said_and_no_file_is_touched() {
+    let folder = Folder::new();
+    let out = folder.write("out.plt", "keep me");
+    assert!(complaint("convert", &["no/such.plt", &out]).starts_with("convert: no/such.plt: cannot be read"));
+    assert!(complaint("convert", &[&data("flag.png"), &out]).contains("none of HPGL"));
+    let empty = folder.write("empty.nc", "G21\nG90\nM5\nG0 X10\n");
+    assert!(complaint("convert", &[&empty, &out]).contains("nothing is drawn by it, read as gcode"));
+    assert_eq!(std::fs::read_to_string(&out).unwrap(), "keep me");
+    let some = folder.write("some.nc", "M3\nG1 X10 F600\n");
+    assert!(complaint("convert", &[&some, "/no/such/a.plt"]).contains("cannot be written"));
+    for bad in [
+        &[&some, "a.unknown"][..],
+        &[&some, &some],
+        &[&some, &out, "--tolerance-mm", "0"],
+        &[&some, &out, "--pen-up", "M5"],
+    ] {
+        assert_eq!(run_example("convert", bad).status.code(), Some(2), "{bad:?}");
+    }
+}
+
+#[test]
+fn every_real_file_becomes_the_same_strokes_in_the_other_languages() {
+    let folder = Folder::new();
+    for kind in ["hpgl", "gcode"] {
+        let root = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/real")).join(kind);
+        let Ok(entries) = std::fs::read_dir(&root) else {
+            eprintln!("skipped: there is no collection of real files beside the checkout");
+            return;
+        };
+        for file in entries.map(|entry| entry.unwrap().path()) {
+            let (path, name) = (file.to_str().unwrap(), file.file_name().unwrap().to_string_lossy());
+            let original = strokes(path);
+            let (gcode, ..) = folder.convert(path, "a.gcode", &[]);
+            let (hpgl, ..) = folder.convert(&gcode, "b.plt", &[]);
+            let (svg, ..) = folder.convert(path, "c.svg", &[]);
+            let most = farthest_mm(&original, &strokes(&gcode));
+            assert!(most < 0.002, "{name} as G-code: {most}");
+            let most = farthest_mm(&original, &strokes(&hpgl));
+            assert!(most < 1.5 * UNIT_MM, "{name} as HPGL: {most}");
+            // Its pens are groups, in which all strokes of a pen stand together.
+            assert_eq!(strokes(&svg).len(), original.len(), "{name} as SVG");
+        }
+    }
+}
