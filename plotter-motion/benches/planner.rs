@@ -1,0 +1,91 @@
+//! How fast tool paths are planned and stepped: segments and step events a second, on one core.
+//!
+//! ```text
+//! cargo bench -p plotter-motion --bench planner
+//! ```
+
+#[path = "../tests/drawings/mod.rs"]
+mod drawings;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use drawings::Drawing;
+use plotter_motion::kinematics::{Cartesian, MotorScale};
+use plotter_motion::{Action, PathMode, Planner, PlannerSettings, PlotOp, StepGen, StepGenSettings};
+use std::hint::black_box;
+
+fn modes() -> [(&'static str, PlannerSettings); 3] {
+    let exact = PlannerSettings::default();
+    let tolerance = PlannerSettings { path: PathMode::Tolerance { path_tolerance_mm: 0.05 }, ..exact };
+    let curved = PlannerSettings { jerk_mm_s3: Some(20_000.0), ..exact };
+    [("exact", exact), ("tolerance", tolerance), ("exact s-curve", curved)]
+}
+
+/// Every action of a drawing, with 16 blocks of look-ahead.
+fn plan(settings: PlannerSettings, ops: &[PlotOp], mut each: impl FnMut(Action)) {
+    let Ok(mut planner) = Planner::<16>::new(settings) else { return };
+    let mut finished = false;
+    let mut ops = ops.iter().copied();
+    loop {
+        while !finished && planner.has_room() {
+            finished = match ops.next() {
+                Some(op) => planner.push(op).is_err(),
+                None => planner.finish().is_ok(),
+            };
+        }
+        match planner.next_action() {
+            Some(action) => each(action),
+            None => return,
+        }
+    }
+}
+
+fn planned_segments(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("planned segments");
+    for Drawing { name, ops } in [drawings::spiral(20), drawings::zigzag(1000)] {
+        group.throughput(Throughput::Elements(ops.len() as u64));
+        for (mode, settings) in modes() {
+            group.bench_with_input(BenchmarkId::new(mode, name), &ops, |bench, ops| {
+                bench.iter(|| {
+                    plan(settings, ops, |action| {
+                        black_box(action);
+                    })
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+fn step_events(criterion: &mut Criterion) {
+    let motor = MotorScale { steps_per_mm: 100.0, inverted: false };
+    let Ok(kinematics) = Cartesian::new(motor, motor) else { return };
+    let mut group = criterion.benchmark_group("step events");
+    for Drawing { name, ops } in [drawings::spiral(20), drawings::hatch(60)] {
+        for (mode, settings) in modes() {
+            let mut actions = Vec::new();
+            plan(settings, &ops, |action| actions.push(action));
+            let all = |actions: &[Action]| {
+                let mut steps = StepGen::new(kinematics, StepGenSettings::default());
+                let mut count = 0_u64;
+                for &action in actions {
+                    if steps.push(action).is_err() {
+                        break;
+                    }
+                    while let Some(event) = steps.next_event() {
+                        black_box(event);
+                        count += 1;
+                    }
+                }
+                count
+            };
+            group.throughput(Throughput::Elements(all(&actions)));
+            group.bench_with_input(BenchmarkId::new(mode, name), &actions, |bench, actions| {
+                bench.iter(|| all(actions));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, planned_segments, step_events);
+criterion_main!(benches);
