@@ -29,6 +29,9 @@ use std::process::ExitCode;
 use std::rc::Rc;
 use std::time::Duration;
 
+/// Greatest coordinate in an SVG: beyond it the single precision of viewers is coarser than a plotter, mm.
+const SVG_MOST_MM: f64 = 100_000.0;
+
 /// Converts a drawing between HPGL, G-code, SVG and the thesis' text.
 ///
 /// Lines and arcs, pens, speeds and pauses are converted as far as the target knows them. Arcs stay arcs in HPGL (AA), G-code (G2,
@@ -350,11 +353,12 @@ impl<'a> Writer<'a> {
             PlotOp::SelectPen { pen } if is_thesis && pen > 1 => {
                 Some((&mut self.said_pens, "the thesis' text knows one pen: all is drawn with it"))
             }
-            PlotOp::NewPage if is_thesis || is_svg => {
-                Some((&mut self.said_pages, "there are no sheets: what follows is drawn on the first one"))
-            }
+            PlotOp::NewPage if is_thesis || is_svg => Some((
+                &mut self.said_pages,
+                "the target has no sheets: what follows is drawn on the first one",
+            )),
             PlotOp::Dwell { .. } if !is_gcode => {
-                Some((&mut self.said_dwells, "there are no pauses: left out"))
+                Some((&mut self.said_dwells, "pauses are left out: the target has none"))
             }
             PlotOp::LaserPower { .. } if !self.has_laser => {
                 Some((&mut self.said_power, "the power of a laser is left out (--gcode-pen laser writes it)"))
@@ -367,10 +371,15 @@ impl<'a> Writer<'a> {
         match &mut self.target {
             Target::Hpgl(writer) => writer.push(op).map_err(|error| reason(&error.to_string())),
             Target::Gcode(writer) => writer.push(op).map_err(|error| reason(&error.to_string())),
-            Target::Svg(text, _) => {
-                text.push(op);
-                Ok(())
-            }
+            Target::Svg(text, _) => match op.target() {
+                Some(Point { x, y }) if !(x.abs() <= SVG_MOST_MM && y.abs() <= SVG_MOST_MM) => {
+                    Err(format!("point ({x}, {y}) mm: pictures reach to ±{SVG_MOST_MM} mm here"))
+                }
+                _ => {
+                    text.push(op);
+                    Ok(())
+                }
+            },
             Target::Thesis(sink, before) => {
                 let Some(pen_move) = PenMove::from_op(op, self.counts_per_mm) else { return Ok(()) };
                 let stays = pen_move.pen == plotter_motion::Pen::Up && pen_move.target == *before;

@@ -14,6 +14,7 @@
 //! ```
 
 use clap::{Parser, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
     Diagnostic, Diagnostics, DrawingFile, Happening, Language, Reading, Severity, SpeedChart, SteppedFigures,
     SteppedPlot, SteppedPreview, at, print, read_file, run, write_file,
@@ -29,6 +30,9 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// Greatest side of a machine's area, mm: beyond it nothing is planned.
+const FARTHEST_MM: f64 = 100_000.0;
 
 /// A point may lie this far outside of the area, mm: what rounding makes of its border.
 const BORDER_MM: f64 = 0.02;
@@ -73,7 +77,7 @@ struct Arguments {
     #[arg(long, value_name = "A", value_parser = positive, allow_negative_numbers = true)]
     accel: Option<f64>,
     /// How far from a corner the circle passes whose speed the corner is taken with, mm [default: the machine's, 0.01]
-    #[arg(long, value_name = "D", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "D", value_parser = not_negative, allow_negative_numbers = true)]
     junction_deviation: Option<f64>,
     /// Greatest jerk, mm/s³; counts with --s-curve [default: the machine's, 10000]
     #[arg(long, value_name = "J", value_parser = positive, allow_negative_numbers = true)]
@@ -122,7 +126,12 @@ enum Outside {
 
 fn positive(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| String::from("give a number"))?;
-    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("give a number above 0".into()) }
+    if (1e-3..=1e12).contains(&number) { Ok(number) } else { Err("give 0.001 or more".into()) }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| String::from("give a number"))?;
+    if number >= 0.0 && number.is_finite() { Ok(number) } else { Err("give 0 or more".into()) }
 }
 
 fn steps_per_mm(text: &str) -> Result<f64, String> {
@@ -260,10 +269,15 @@ fn walk(
 ) -> Result<(SteppedFigures, Vec<[u8; 3]>), String> {
     let mut ops = drawing.ops(Reading { counts_per_mm: 40.0, ..Reading::default() })?;
     let colours = std::mem::take(&mut ops.colours);
+    let bar = ProgressBar::new(drawing.length_bytes());
+    if let Ok(style) = ProgressStyle::with_template("plotting {bar:40} {bytes}/{total_bytes}, {elapsed}") {
+        bar.set_style(style);
+    }
     // Whether the pen is not where the next line begins, because an operation was left out.
     let mut is_lost = false;
     let name = drawing.name();
     while let Some(item) = ops.next() {
+        bar.set_position(ops.bytes());
         let op = match item {
             Ok(op) => op,
             Err(found) => {
@@ -276,6 +290,16 @@ fn walk(
         };
         let op = read.take(op, ops.line(), arguments.ignore_feed);
         let outside = read.outside(op);
+        if let Some(place) = op.target().filter(|place| !is_near(*place)) {
+            let text = format!("({}, {}) mm is farther than any machine reaches: left out", place.x, place.y);
+            let found = Diagnostic { line: ops.line(), ..Diagnostic::new(Severity::Error, text) };
+            if arguments.strict {
+                return Err(format!("{name}: {found}"));
+            }
+            said.push(found);
+            is_lost = true;
+            continue;
+        }
         if outside && arguments.strict {
             return Err(format!("{name}: {}", read.complaint()));
         }
@@ -296,8 +320,13 @@ fn walk(
             is_lost = true;
         }
     }
+    bar.finish_and_clear();
     let figures = plot.finish(&mut |happening| writers.take(happening)).map_err(|error| error.to_string())?;
     Ok((figures, colours))
+}
+
+fn is_near(place: Point) -> bool {
+    place.x.abs() <= FARTHEST_MM && place.y.abs() <= FARTHEST_MM
 }
 
 /// Says whether the operation could be planned.
@@ -616,18 +645,18 @@ impl Report {
     }
 }
 
-/// A spiral with pen 1, a hatched square with pen 2 and letters with pen 3, in HPGL.
+/// A spiral with pen 1, a hatched square and a circle with pen 2, and letters with pen 3, in HPGL.
 fn built_in() -> String {
     let mut text = String::from("IN;SP1;");
-    for point in 0..=360_u32 {
-        // Five turns out to 30 mm, in 72 lines each; the centre lies at (40, 40) mm.
-        let turn_rad = f64::from(point) * std::f64::consts::TAU / 72.0;
-        let radius_units = f64::from(point) * 1200.0 / 360.0;
+    for point in 0..=720_u32 {
+        // Five turns out to 72.5 mm, in 144 lines each; the centre lies at (95, 95) mm.
+        let turn_rad = f64::from(point) * std::f64::consts::TAU / 144.0;
+        let radius_units = f64::from(point) * 2900.0 / 720.0;
         let (x, y) =
-            (1600.0 + radius_units * libm::cos(turn_rad), 1600.0 + radius_units * libm::sin(turn_rad));
+            (3800.0 + radius_units * libm::cos(turn_rad), 3800.0 + radius_units * libm::sin(turn_rad));
         let _ = write!(text, "{}{:.0},{:.0};", if point == 0 { "PU" } else { "PD" }, x, y);
     }
-    text.push_str("PU;SP2;PU3200,400;FT3,60,45;RA5200,2400;EA5200,2400;PU4200,2800;CI300;");
-    text.push_str("SP3;PU400,3400;SI0.6,0.9;LBSTEP BY STEP\x03;PU;SP0;");
+    text.push_str("PU;SP2;PU7600,960;FT3,200,45;RA12600,5960;EA12600,5960;PU10100,7200;CI800;");
+    text.push_str("SP3;PU960,9200;SI1.6,2.4;LBSTEP BY STEP\x03;PU;SP0;");
     text
 }

@@ -151,6 +151,15 @@ impl DrawingFile {
         self.language
     }
 
+    /// How long it is, bytes.
+    #[must_use]
+    pub fn length_bytes(&self) -> u64 {
+        match &self.source {
+            Source::Held(bytes) => bytes.len() as u64,
+            Source::File(path) => std::fs::metadata(path).map_or(0, |kind| kind.len()),
+        }
+    }
+
     /// Its operations, from the start.
     ///
     /// # Errors
@@ -256,6 +265,12 @@ impl Ops<'_> {
     pub fn line(&self) -> Option<u32> {
         Some(self.place.line.get()).filter(|line| *line > 0)
     }
+
+    /// Bytes that have been read of the file.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.place.bytes.get()
+    }
 }
 
 impl Iterator for Ops<'_> {
@@ -282,6 +297,7 @@ struct Place {
     /// Line of the byte given last; 0 before the first.
     line: Cell<u32>,
     line_ended: Cell<bool>,
+    bytes: Cell<u64>,
     failure: RefCell<Option<String>>,
 }
 
@@ -291,11 +307,13 @@ impl Place {
             self.line.set(self.line.get().saturating_add(1));
         }
         self.line_ended.set(byte == b'\n');
+        self.bytes.set(self.bytes.get().saturating_add(1));
     }
 
     fn restart(&self) -> Result<(), String> {
         self.line.set(0);
         self.line_ended.set(false);
+        self.bytes.set(0);
         self.failure.borrow_mut().take().map_or(Ok(()), Err)
     }
 }

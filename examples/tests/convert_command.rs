@@ -172,6 +172,19 @@ fn what_svg_has_and_plotters_lack_is_said() {
 }
 
 #[test]
+fn places_out_of_reach_are_left_out_of_every_language() {
+    let folder = Folder::new();
+    let far = folder.write(
+        "far.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0H40V1e30H9V8' stroke='red'/></svg>",
+    );
+    for to in ["a.plt", "a.nc", "a.txt", "b.svg"] {
+        let (_, text, said) = folder.convert(&far, to, &[]);
+        assert!(said.contains("error: ") && !text.contains("inf"), "{to}: {said}");
+    }
+}
+
+#[test]
 fn pipes_are_read_and_written() {
     let folder = Folder::new();
     let original = folder.write("a.plt", DRAWING);

@@ -134,6 +134,16 @@ fn what_lies_outside_is_told_with_its_line() {
 }
 
 #[test]
+fn places_beyond_any_machine_are_left_out() {
+    let folder = Folder::new();
+    let text = folder.write("far.gcode", "M3\nG1 X10 F600\nG1 X900000000\nG1 X20\nG1 Y5\n");
+    let report = folder.report(&[&text]);
+    assert_eq!((&report["errors"], &report["diagnostics"][0]["line"]), (&1.into(), &3.into()));
+    // Neither the line out there nor the one back.
+    assert!((number(&report, "draw_mm") - 15.0).abs() < 1e-9, "{}", report["draw_mm"]);
+}
+
+#[test]
 fn errors_have_a_place_and_the_rest_is_plotted() {
     let folder = Folder::new();
     let text = folder.write("a.nc", "M3 S90\nG1 X10 F600\nG1 X1O\nM104 S200\nG1 Y5\nM5\n");
