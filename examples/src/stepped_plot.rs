@@ -123,8 +123,7 @@ impl SteppedPlot {
         self.planner.push(op)?;
         let from = self.drawn_to;
         match op {
-            PlotOp::Travel { to } if to != from => self.deviation.lift(),
-            PlotOp::SelectPen { .. } | PlotOp::NewPage => self.deviation.lift(),
+            PlotOp::Travel { .. } | PlotOp::SelectPen { .. } | PlotOp::NewPage => self.deviation.lift(),
             PlotOp::Draw { to, .. } => self.deviation.draw(from, to),
             PlotOp::DrawArc { .. } => {
                 let mut at = from;
@@ -282,6 +281,16 @@ mod tests {
         assert!((found.max_speed_mm_s - 100.0).abs() < 1.0, "{found:?}");
         assert!((found.max_accel_mm_s2 - 1000.0).abs() < 50.0, "{found:?}");
         assert!(found.from_drawing_mm <= 0.0051 && found.from_steps_mm <= 0.0051, "{found:?}");
+    }
+
+    #[test]
+    fn a_lift_where_the_pen_stands_ends_a_stroke() {
+        let draw = |x, y| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
+        let lift = PlotOp::Travel { to: Point::new(50.0, 0.0) };
+        let found = figures(PlannerSettings::default(), &[draw(50.0, 0.0), lift, lift, draw(50.0, 50.0)]);
+        assert_eq!((found.strokes, found.pen_lifts), (2, 1));
+        // Each stroke is compared with its own steps.
+        assert!(found.from_drawing_mm < 0.01 && found.from_steps_mm < 0.01, "{found:?}");
     }
 
     #[test]

@@ -274,7 +274,8 @@ fn published_times_are_found_again() {
         // With the way home, which takes 0.3 s.
         ("gcode", "unicorn_owl.gcode", 26.2, 21.1),
         ("gcode", "svg2gcode_smooth_curves.gcode", 31.0, 29.2),
-        ("hpgl", "vk2bea_Cassini.hpgl", 625.7, 609.7),
+        // 0.3 s of it are 15 lifts where the pen stands: it stops there.
+        ("hpgl", "vk2bea_Cassini.hpgl", 625.9, 610.0),
     ];
     for (kind, name, exact_s, tolerance_s) in published {
         for file in collection(kind).iter().filter(|file| file.ends_with(name)) {
