@@ -53,7 +53,7 @@ pub use planner::{
 pub use profile::{MotionLimits, ProfileError, ProfilePoint, Ramp, SCurve, Trapezoid, TrapezoidMove};
 pub use safety::{Beam, Blocked, Demand, Drive, Duty, DutyError, LimitSwitches, Pulse, SafetyGate};
 pub use shapes::{circle, rectangle};
-pub use stepgen::{Busy, MotorEvent, StepGen, StepGenSettings, TimedEvent};
+pub use stepgen::{BacklashSteps, Busy, MotorEvent, StepGen, StepGenSettings, TimedEvent};
 pub use steps::{StepPoint, from_mm};
 pub use sync_stop::SyncStop;
 pub use targets::{OutOfReach, targets};

@@ -11,8 +11,10 @@
 //!
 //! When a phase or a chord begins, floats are turned into whole numbers. From step to step there are only whole numbers.
 
+mod backlash_steps;
 mod chord;
 mod slice;
 mod step_gen;
 
+pub use backlash_steps::BacklashSteps;
 pub use step_gen::{Busy, MotorEvent, StepGen, StepGenSettings, TimedEvent};
