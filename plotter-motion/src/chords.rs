@@ -81,7 +81,7 @@ pub fn chords<I: IntoIterator<Item = PlotOp>>(
 
 /// Into how many chords an arc is divided so that none is farther than `tolerance_mm` from it: 1 to 65,536; 1 for what is no
 /// arc.
-fn chord_count(radius_mm: f64, sweep_rad: f64, tolerance_mm: f64) -> u32 {
+pub(crate) fn chord_count(radius_mm: f64, sweep_rad: f64, tolerance_mm: f64) -> u32 {
     let flattest = (tolerance_mm / radius_mm).clamp(0.0, 1.0);
     let finest_rad = 2.0 * libm::acos(1.0 - flattest);
     let count = libm::ceil(libm::fabs(sweep_rad) / finest_rad);

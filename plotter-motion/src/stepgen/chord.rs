@@ -1,11 +1,9 @@
 //! [`Chords`]: a course as chords on the grid of the motors.
 
 use super::slice::{FRACTION_BITS, fixed};
+use crate::chords::chord_count;
 use crate::kinematics::Kinematics;
 use crate::{Course, Point, Shape, StepPoint, Vec2};
-
-/// Most chords of a course.
-const MOST_CHORDS: f64 = 65_536.0;
 
 /// A straight way between two whole steps, and where along the course it ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,23 +25,16 @@ pub(super) struct Chords {
 impl Chords {
     /// `tolerance_mm`: how far a chord may be from the course.
     pub(super) fn new(course: Course, from: Point, tolerance_mm: f64) -> Self {
-        let chords = |radius_mm: f64, sweep_rad: f64| {
-            let flattest = (tolerance_mm / radius_mm).clamp(0.0, 1.0);
-            let finest_rad = 2.0 * libm::acos(1.0 - flattest);
-            let count = libm::ceil(sweep_rad.abs() / finest_rad);
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-            let count = if count.is_nan() { 1 } else { count.clamp(1.0, MOST_CHORDS) as u32 };
-            count
-        };
         let count = match course.shape {
             Shape::Line => 1,
             Shape::Arc { centre, sweep_rad } => {
-                chords((from - centre).length().max((course.to - centre).length()), sweep_rad)
+                let radius_mm = (from - centre).length().max((course.to - centre).length());
+                chord_count(radius_mm, sweep_rad, tolerance_mm)
             }
             Shape::Spiral { pole, sweep_rad, growth } => {
                 // Its radius of curvature is greater than the distance from the pole.
                 let farther_mm = (from - pole).length().max((course.to - pole).length());
-                chords(farther_mm * libm::sqrt(1.0 + growth * growth), sweep_rad)
+                chord_count(farther_mm * libm::sqrt(1.0 + growth * growth), sweep_rad, tolerance_mm)
             }
         };
         Self { course, from, count, next: 0 }
