@@ -12,6 +12,7 @@ mod bresenham;
 mod chords;
 mod config;
 pub mod control;
+mod decimal;
 mod encoder;
 pub mod firmware;
 pub mod gcode;

@@ -124,7 +124,6 @@ mod interpreter;
 mod line;
 mod machine;
 mod modes;
-mod number;
 mod pen_convention;
 mod plot_ops;
 mod read_options;

@@ -1,8 +1,8 @@
 //! [`Reader`]: bytes in, lines of words out.
 
-use super::number::Number;
 use super::remark::RemarkReader;
 use super::{Block, Error, Position, Problem, Word};
+use crate::decimal::Decimal;
 
 /// Greatest magnitude of a number: what [`Writer`](super::Writer) writes at most.
 const MOST: f64 = 1e9;
@@ -32,7 +32,7 @@ enum State {
     /// After a letter.
     Letter { letter: u8, at: Position },
     /// Within a number.
-    Number { letter: u8, at: Position, number: Number },
+    Number { letter: u8, at: Position, number: Decimal },
     /// Within parentheses, or after a semicolon.
     Comment { parentheses: bool, remark: RemarkReader },
     /// After the `*`.
@@ -180,7 +180,7 @@ impl Reader {
             }
             State::Letter { letter, at: start } => {
                 let (letter, start) = (*letter, *start);
-                if let Some(number) = Number::begin(byte) {
+                if let Some(number) = Decimal::begin(byte) {
                     self.state = State::Number { letter, at: start, number };
                 } else if !is_blank(byte) {
                     self.word(letter, start, None)?;
@@ -215,7 +215,7 @@ impl Reader {
             _ if is_blank(byte) => {}
             _ if usize::try_from(at.offset)
                 .is_ok_and(|offset| BYTE_ORDER_MARK.get(offset) == Some(&byte)) => {}
-            _ => match Number::begin(byte) {
+            _ => match Decimal::begin(byte) {
                 Some(number) if after_m => self.state = State::Number { letter: Word::BARE, at, number },
                 Some(_) => return Err(Problem::NoLetter.at(at)),
                 None => return Err(Problem::UnexpectedByte { byte }.at(at)),
@@ -237,7 +237,7 @@ impl Reader {
             }
             State::Letter { letter, at: start } => {
                 let (letter, at) = (*letter, *start);
-                if let Some(number) = Number::begin(byte) {
+                if let Some(number) = Decimal::begin(byte) {
                     self.state = State::Number { letter, at, number };
                 } else {
                     self.word(letter, at, None)?;
@@ -248,7 +248,7 @@ impl Reader {
                 self.state = State::Letter { letter: byte.to_ascii_uppercase(), at };
             }
             State::Between { .. } if !is_blank(byte) => {
-                self.state = match Number::begin(byte) {
+                self.state = match Decimal::begin(byte) {
                     Some(number) => State::Number { letter: Word::BARE, at, number },
                     None => State::Lost,
                 };
@@ -263,7 +263,7 @@ impl Reader {
         self.state = State::Comment { parentheses, remark: RemarkReader::default() };
     }
 
-    fn word(&mut self, letter: u8, at: Position, number: Option<Number>) -> Result<(), Error> {
+    fn word(&mut self, letter: u8, at: Position, number: Option<Decimal>) -> Result<(), Error> {
         let number = match number.map(|number| number.value().ok_or(number)) {
             None => None,
             Some(Ok(value)) if value.abs() <= MOST => Some(value),

@@ -98,7 +98,6 @@
 mod arc;
 mod bezier;
 mod command;
-mod decimal;
 mod encoded;
 mod error;
 mod escape;

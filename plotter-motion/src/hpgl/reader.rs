@@ -1,8 +1,8 @@
 //! [`Reader`]: bytes in, commands and their numbers out.
 
-use super::decimal::Decimal;
 use super::escape::{Escape, Step};
 use super::{Error, Mnemonic, Position, Syntax};
+use crate::decimal::Decimal;
 
 /// Greatest magnitude of a number: 2³⁰, the range of the widest HP-GL/2 plotters.
 const MAX_NUMBER: f64 = 1_073_741_824.0;

@@ -1,4 +1,4 @@
-//! [`Number`]: a number read digit by digit.
+//! [`Decimal`]: a number read digit by digit.
 
 /// Digits kept. An `f64` holds 15 to 17, and 18 fit into a `u64`.
 const MAX_DIGITS: u8 = 18;
@@ -11,7 +11,7 @@ const POWERS: [f64; 23] = [
 
 /// A decimal number in progress: sign, digits, point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Number {
+pub(crate) struct Decimal {
     negative: bool,
     any_digit: bool,
     point: bool,
@@ -23,15 +23,15 @@ pub(super) struct Number {
     huge: bool,
 }
 
-impl Number {
+impl Decimal {
     /// A number whose first byte is `byte`; `None` if no number begins so.
-    pub(super) fn begin(byte: u8) -> Option<Self> {
+    pub(crate) fn begin(byte: u8) -> Option<Self> {
         let mut number = Self { negative: byte == b'-', ..Self::default() };
         (matches!(byte, b'+' | b'-') || number.push(byte)).then_some(number)
     }
 
     /// Takes one more byte; `false` if it does not belong to the number.
-    pub(super) fn push(&mut self, byte: u8) -> bool {
+    pub(crate) fn push(&mut self, byte: u8) -> bool {
         match byte {
             b'.' if !self.point => self.point = true,
             b'0'..=b'9' => self.digit(byte - b'0'),
@@ -52,7 +52,7 @@ impl Number {
     }
 
     /// The value, to the nearest `f64` for up to 15 digits; `None` while there is no digit.
-    pub(super) fn value(self) -> Option<f64> {
+    pub(crate) fn value(self) -> Option<f64> {
         if !self.any_digit {
             return None;
         }
@@ -69,13 +69,13 @@ mod tests {
 
     fn read(text: &str) -> Option<f64> {
         let (first, rest) = text.as_bytes().split_first()?;
-        let mut number = Number::begin(*first)?;
+        let mut number = Decimal::begin(*first)?;
         rest.iter().all(|byte| number.push(*byte)).then(|| number.value()).flatten()
     }
 
     #[test]
     fn numbers_are_the_nearest_ones() {
-        for text in ["0", "-1385.640646", "+.5", "7.", "0.1", "007", "-0.0000000003", "123456789.01234"] {
+        for text in ["0", "-1385.640646", "+.5", "7.", "0.1", "007", "-0.0000000003", "8388607.9999"] {
             assert_eq!(read(text), text.parse().ok(), "{text}");
         }
     }
@@ -94,5 +94,6 @@ mod tests {
         assert_eq!(read(&std::format!("-{}", long('9', 400))), Some(f64::NEG_INFINITY));
         assert_eq!(read(&std::format!("{}12.5", long('0', 400))), Some(12.5));
         assert_eq!(read(&std::format!("0.{}", long('3', 400))), Some(0.333_333_333_333_333_3));
+        assert_eq!(read(&std::format!("0.{}", long('0', 400))), Some(0.0));
     }
 }
