@@ -13,7 +13,7 @@ use plotter_examples::{
     Figure, PlotOutcome, at, html_page, print, read_file, run, simulate, vectorizer, write_file,
 };
 use plotter_motion::{
-    ControllerChoice, Machine, MachineConfig, OutOfReach, PenMove, PlotOp, Point, hpgl, targets,
+    ControllerChoice, DriveChoice, Machine, MachineConfig, OutOfReach, PenMove, PlotOp, Point, hpgl, targets,
 };
 use plotter_replay::log::{self, Header};
 use plotter_replay::{BenchRecorder, Canvas, Chart, ContourError, PlotterSettings, VirtualPlotter, Ways};
@@ -158,7 +158,15 @@ fn machine(args: &Args) -> Result<Machine, String> {
         Some(path) => {
             let text = String::from_utf8(read_file(path)?)
                 .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
-            *Machine::from_toml(&text).map_err(|error| at(path, &error))?.config()
+            let config = *Machine::from_toml(&text).map_err(|error| at(path, &error))?.config();
+            if config.drive == DriveChoice::Stepper {
+                return Err(at(
+                    path,
+                    &"this machine has stepper motors (drive = \"stepper\"), and plot leads DC motors along their lines; \
+                      plan for it with the example `stepper`, or give a machine with drive = \"dc\"",
+                ));
+            }
+            config
         }
         None => MachineConfig::default(),
     };

@@ -64,6 +64,7 @@ fn what_is_wrong_is_said_in_one_line() {
     };
     let machine = file("machine.toml", "schema = 1\n[area]\nwidth_cm = 4\n");
     let small = file("small.toml", "schema = 1\n[area]\nwidth_mm = 8.0\nheight_mm = 8.0\n");
+    let stepper = file("stepper.toml", include_str!("../machines/stepper-plotter.toml"));
     let text = file("text.png", "this is no picture");
     let empty = file("empty.png", "");
     let out = directory.path().join("out");
@@ -74,6 +75,7 @@ fn what_is_wrong_is_said_in_one_line() {
     assert!(complaint("plot", &[&text, "--out", out]).contains("is not PNG, JPEG"));
     assert!(complaint("plot", &[&empty, "--out", out]).contains("is empty"));
     assert!(complaint("plot", &["--machine", &machine, "--out", out]).contains("line 3, column 1"));
+    assert!(complaint("plot", &["--machine", &stepper, "--out", out]).contains("the example `stepper`"));
     assert!(complaint("plot", &["--machine", &small, "--out", out]).contains("margin"));
     for bad in ["0", "-5", "NaN", "inf"] {
         assert!(complaint("plot", &["--width-mm", bad, "--out", out]).contains("give a width above 0 mm"));
