@@ -4,7 +4,10 @@ use super::Phase;
 use super::block::Block;
 
 /// Longest phase, s: a feed hold begins to act after that time at the latest.
-const LONGEST_S: f64 = 0.05;
+pub(super) const LONGEST_S: f64 = 0.05;
+
+/// A shorter part of a block is what rounding leaves between two ramps: its acceleration would be noise.
+const ROUNDING: f64 = 1e-12;
 
 /// A way with a constant acceleration: to a place on the block, which is passed with a speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -81,7 +84,7 @@ impl Ramps {
     }
 
     /// How much of the block is left.
-    pub(super) fn rest_mm(&self) -> f64 {
+    pub(super) const fn rest_mm(&self) -> f64 {
         self.length_mm - self.done_mm
     }
 
@@ -94,7 +97,7 @@ impl Ramps {
     pub(super) fn next(&mut self) -> Option<Phase> {
         while let Some(&Ramp { end_mm, speed }) = self.ramps.get(self.next) {
             let (way_mm, from_mm, from) = (end_mm - self.done_mm, self.done_mm, self.speed);
-            if way_mm > 0.0 && from + speed > 0.0 {
+            if way_mm > ROUNDING * self.length_mm && from + speed > 0.0 {
                 let whole_s = 2.0 * way_mm / (from + speed);
                 let accel_mm_s2 = (speed - from) / whole_s;
                 let duration_s = whole_s.min(LONGEST_S);

@@ -97,9 +97,7 @@ impl<const N: usize> Ring<N> {
             before = self.get(index).map_or(before, |block| (f64::from(block.entry2), reach2(block, twice)));
         }
     }
-}
 
-impl<const N: usize> Ring<N> {
     /// Plans anew with a head that is entered with no more than this square of a speed; gives the one with which it is.
     pub(super) fn enter_at_most(&mut self, most2: f64, accel_mm_s2: f64) -> f64 {
         // What can be braked from within the blocks known, backwards.
