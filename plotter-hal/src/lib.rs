@@ -2,9 +2,13 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod debounce;
 pub mod h_bridge;
+pub mod limit_switch;
 pub mod quadrature;
 
+pub use debounce::SwitchSettings;
 pub use embedded_hal;
 pub use h_bridge::HBridge;
+pub use limit_switch::{LimitSwitch, LimitSwitchGroup};
 pub use quadrature::Quadrature;
