@@ -4,11 +4,13 @@
 
 mod debounce;
 pub mod h_bridge;
+pub mod laser;
 pub mod limit_switch;
 pub mod quadrature;
 
 pub use debounce::SwitchSettings;
 pub use embedded_hal;
 pub use h_bridge::HBridge;
+pub use laser::{Laser, power_at_speed};
 pub use limit_switch::{LimitSwitch, LimitSwitchGroup};
 pub use quadrature::Quadrature;
