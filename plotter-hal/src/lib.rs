@@ -6,6 +6,7 @@ mod debounce;
 pub mod h_bridge;
 pub mod laser;
 pub mod limit_switch;
+pub mod pen_servo;
 pub mod quadrature;
 
 pub use debounce::SwitchSettings;
@@ -13,4 +14,5 @@ pub use embedded_hal;
 pub use h_bridge::HBridge;
 pub use laser::{Laser, power_at_speed};
 pub use limit_switch::{LimitSwitch, LimitSwitchGroup};
+pub use pen_servo::{PenServo, PenServoSettings, ServoPoint};
 pub use quadrature::Quadrature;
