@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod debounce;
+pub mod estop_input;
 pub mod h_bridge;
 pub mod laser;
 pub mod limit_switch;
@@ -11,6 +12,7 @@ pub mod quadrature;
 
 pub use debounce::SwitchSettings;
 pub use embedded_hal;
+pub use estop_input::{EstopChange, EstopInput};
 pub use h_bridge::HBridge;
 pub use laser::{Laser, power_at_speed};
 pub use limit_switch::{LimitSwitch, LimitSwitchGroup};
