@@ -9,12 +9,15 @@ pub mod laser;
 pub mod limit_switch;
 pub mod pen_servo;
 pub mod quadrature;
+pub mod serial_line;
 
 pub use debounce::SwitchSettings;
 pub use embedded_hal;
+pub use embedded_io;
 pub use estop_input::{EstopChange, EstopInput};
 pub use h_bridge::HBridge;
 pub use laser::{Laser, power_at_speed};
 pub use limit_switch::{LimitSwitch, LimitSwitchGroup};
 pub use pen_servo::{PenServo, PenServoSettings, ServoPoint};
 pub use quadrature::Quadrature;
+pub use serial_line::SerialLine;
