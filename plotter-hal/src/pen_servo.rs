@@ -425,7 +425,8 @@ impl fmt::Display for SettingsError {
             ),
             Self::Calibration { apart_deg, apart_us } => write!(
                 f,
-                "pen servo: the calibrated points lie {apart_deg} deg and {apart_us} us apart; 10 to 360 deg and                  pulses that differ make a line, such as 0 deg at 1000 us and 180 deg at 2000 us"
+                "pen servo: the calibrated points lie {apart_deg} deg and {apart_us} us apart; 10 to 360 deg and \
+                 pulses that differ make a line, such as 0 deg at 1000 us and 180 deg at 2000 us"
             ),
             Self::Frame { frame_us } => write!(
                 f,
@@ -433,7 +434,8 @@ impl fmt::Display for SettingsError {
             ),
             Self::Angle { deg, least_deg, most_deg } => write!(
                 f,
-                "pen servo: {deg} deg lies outside the calibrated {least_deg}..={most_deg} deg: choose an angle                  within, or calibrate farther out"
+                "pen servo: {deg} deg lies outside the calibrated {least_deg}..={most_deg} deg: choose an angle \
+                 within, or calibrate farther out"
             ),
             Self::Lowering { deg_s } => write!(
                 f,
@@ -441,7 +443,8 @@ impl fmt::Display for SettingsError {
             ),
             Self::Coarse { pwm_steps, pen_steps } => write!(
                 f,
-                "pen servo: with {pwm_steps} steps of the pwm in a frame, pen up and pen down are {pen_steps} steps                  apart; at least 4 are needed: give the timer more steps, or choose angles farther apart"
+                "pen servo: with {pwm_steps} steps of the pwm in a frame, pen up and pen down are {pen_steps} steps \
+                 apart; at least 4 are needed: give the timer more steps, or choose angles farther apart"
             ),
         }
     }
