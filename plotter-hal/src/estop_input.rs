@@ -61,7 +61,8 @@ pub struct EstopInput<Pin> {
 #[non_exhaustive]
 pub enum EstopChange {
     /// It is known to be free, and has not been seen pressed since the machine was switched on. Comes once at most. A
-    /// firmware without a reset button may reset the safety gate now.
+    /// firmware without a reset button may reset the safety gate now, or start its controller
+    /// ([`StepperPlotter::restart`](plotter_motion::firmware::StepperPlotter::restart)).
     FreeSinceStart,
     /// It is pressed, or its wire is cut.
     Pressed,

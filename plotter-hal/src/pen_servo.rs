@@ -220,6 +220,21 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
         ((b.deg - a.deg) / (b.pulse_us - a.pulse_us)).abs() * step_us
     }
 
+    /// From [`lower`](Self::lower) of a pen that is up until it has settled, if [`tick`](Self::tick) comes in time: what a
+    /// controller has to wait before it moves
+    /// ([`pen_settle`](plotter_motion::firmware::stepper_plotter::StepperPlotterSettings::pen_settle)).
+    pub fn lowering_time(&self) -> Duration {
+        let PenServoSettings { up_deg, down_deg, lowering_deg_s, settle, .. } = self.settings;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "360 deg at 1 deg/s at most"
+        )]
+        let frames =
+            libm::ceilf((down_deg - up_deg).abs() / (lowering_deg_s * self.frame().as_secs_f32())) as u32;
+        self.frame() * frames + settle
+    }
+
     /// Raises the pen, at once.
     ///
     /// # Errors

@@ -84,6 +84,7 @@ fn it_is_raised_at_once_lowered_slowly_and_settles_after_the_last_pulse() {
      900 ms  160.0 deg  1889
     ");
     assert_eq!(now, ms(1100));
+    assert_eq!(pen.lowering_time(), ms(640 - 300));
 }
 
 #[test]
