@@ -20,6 +20,7 @@ use core::fmt;
 use core::time::Duration;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::pwm::{self, SetDutyCycle};
+use plotter_motion::Machine;
 
 /// What a pulse does to a servo, as measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +91,28 @@ const SLOWEST_DEG_S: f32 = 1.0;
 const LEAST_STEPS: u16 = 4;
 
 impl PenServoSettings {
+    /// What a checked machine says of its pen, `[pen]` in its file; the rest as by default.
+    ///
+    /// ```
+    /// # use plotter_hal::PenServoSettings;
+    /// # use plotter_motion::{Machine, MachineConfig};
+    /// let machine = Machine::new(MachineConfig::stepper_plotter())?;
+    /// assert_eq!(PenServoSettings::of(&machine), PenServoSettings::default());
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        let pen = &machine.config().pen;
+        #[expect(clippy::cast_possible_truncation, reason = "0 to 270 degrees")]
+        let deg = |deg: f64| deg as f32;
+        Self {
+            up_deg: deg(pen.up_deg),
+            down_deg: deg(pen.down_deg),
+            settle: Duration::from_secs_f64(pen.settle_ms / 1e3),
+            ..Self::default()
+        }
+    }
+
     /// Pulse at an angle, us.
     fn pulse_us(&self, deg: f32) -> f32 {
         let [a, b] = self.calibration;
