@@ -95,7 +95,7 @@ impl<Pin: InputPin> EstopInput<Pin> {
         self.unpressed &= !shows_press;
         Ok(match (was_pressed, self.debounce.update(now, shows_press)) {
             (false, true) => Some(EstopChange::Pressed),
-            (true, false) if core::mem::take(&mut self.unpressed) => Some(EstopChange::FreeSinceStart),
+            (true, false) if self.unpressed => Some(EstopChange::FreeSinceStart),
             (true, false) => Some(EstopChange::Released),
             (true, true) | (false, false) => None,
         })

@@ -204,14 +204,14 @@ pub struct PenServo<Pwm> {
     settings: PenServoSettings,
     /// Where it is to go, degrees.
     target_deg: f32,
-    /// Where the pulse has it, or had it when the PWM failed, degrees.
+    /// Where the last pulse that was set has it, degrees.
     at_deg: f32,
     state: State,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// The PWM has not been set, or failed.
+    /// The PWM has not been set yet.
     Unset,
     /// On the way down, since the last pulse set.
     Moving(Duration),
@@ -395,10 +395,8 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
     /// Sets the pulse of an angle.
     fn set(&mut self, now: Duration, deg: f32) -> Result<(), Error<Pwm::Error>> {
         let steps = self.settings.steps(deg, self.pwm.max_duty_cycle());
-        if let Err(cause) = self.pwm.set_duty_cycle(steps) {
-            self.state = State::Unset;
-            return Err(Error::Pwm(cause));
-        }
+        // As it was before: what was due is still due.
+        self.pwm.set_duty_cycle(steps).map_err(Error::Pwm)?;
         self.at_deg = deg;
         self.state = if deg == self.target_deg {
             State::Settling(now.saturating_add(self.settings.settle))

@@ -176,6 +176,21 @@ fn one_that_cannot_be_darkened_says_so_again_and_again() {
 }
 
 #[test]
+fn after_a_fault_it_stays_dark_until_it_is_asked_for_again() {
+    let output = Output::failing_at([1]);
+    let mut laser = Laser::new(output.pwm(FULL), TIMEOUT);
+    laser.moved(ms(0)).unwrap();
+    assert_eq!(laser.shine(ms(0), beam(65_535)), Err(Error::Pwm(Broken)));
+    for at in 1..10 {
+        laser.moved(ms(at)).unwrap();
+        laser.tick(ms(at)).unwrap();
+    }
+    assert_eq!(output.duties(), [0, 0]);
+    laser.shine(ms(10), beam(65_535)).unwrap();
+    assert_eq!(output.duty(), FULL);
+}
+
+#[test]
 fn an_emergency_stop_in_the_middle_of_a_line_darkens_it_in_the_same_call() {
     let settings =
         StepperPlotterSettings { dialect: Dialect::Grbl, laser: true, ..StepperPlotterSettings::default() };

@@ -124,6 +124,19 @@ fn a_lost_phase_is_named_and_can_stop_the_machine() {
 }
 
 #[test]
+fn a_shaft_that_trembles_is_no_lost_phase_once_the_other_phase_has_changed() {
+    // About the edge before a quarter, six levels; it is an edge of A for even quarters.
+    let trembles = |quarter: i64| [quarter, quarter - 1].repeat(3);
+    let seen = |quarters: &[Vec<i64>]| {
+        let encoder = shown(Decoding::X4, quarters.concat().into_iter().map(Phases::of_quarter));
+        (encoder.lost_phase(7), encoder.illegal())
+    };
+    assert_eq!(seen(&[trembles(0), vec![0, -1, 0]]), (Some(Phase::B), 0));
+    assert_eq!(seen(&[trembles(0), vec![0, 1], trembles(2)]), (None, 0));
+    assert_eq!(seen(&[trembles(0), vec![1], trembles(2)]), (None, 1)); // B's edge was missed
+}
+
+#[test]
 fn a_lost_phase_does_not_run_away_with_x2_and_x4() {
     let without_b = (0..100).map(|quarter| Phases { b: true, ..Phases::of_quarter(quarter) });
     let [x1, x2, x4] = ALL.map(|decoding| shown(decoding, without_b.clone()).position());
