@@ -2,9 +2,24 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod debounce;
+pub mod estop_input;
 pub mod h_bridge;
+pub mod laser;
+pub mod limit_switch;
+pub mod pen_servo;
+pub mod pulse_counter;
 pub mod quadrature;
+pub mod serial_line;
 
+pub use debounce::SwitchSettings;
 pub use embedded_hal;
+pub use embedded_io;
+pub use estop_input::{EstopChange, EstopInput};
 pub use h_bridge::HBridge;
+pub use laser::{Laser, power_at_speed};
+pub use limit_switch::{LimitSwitch, LimitSwitchGroup};
+pub use pen_servo::{PenServo, PenServoSettings, ServoPoint};
+pub use pulse_counter::{CounterDelta, PulseInput};
 pub use quadrature::Quadrature;
+pub use serial_line::SerialLine;
