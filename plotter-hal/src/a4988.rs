@@ -129,34 +129,24 @@ impl<Step: OutputPin, Dir> A4988<Step, Dir, NoPin<Step::Error>, NoPin<Step::Erro
 impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
     /// With a pin on ENABLE: low switches the outputs on.
     pub fn with_enable<Pin>(self, enable: Pin) -> A4988<Step, Dir, Pin, Sleep> {
+        A4988 { has_enable: true, ..self.with_pins(|_, sleep| (enable, sleep)) }
+    }
+
+    /// With a pin on SLEEP: low puts the chip to sleep. On RESET it does as well, for low holds the chip in reset.
+    pub fn with_sleep<Pin>(self, sleep: Pin) -> A4988<Step, Dir, Enable, Pin> {
+        A4988 { has_sleep: true, ..self.with_pins(|enable, _| (enable, sleep)) }
+    }
+
+    fn with_pins<E, S>(self, pins: impl FnOnce(Enable, Sleep) -> (E, S)) -> A4988<Step, Dir, E, S> {
+        let (enable, sleep) = pins(self.enable, self.sleep);
         A4988 {
             axis: self.axis,
             step: self.step,
             dir: self.dir,
             enable,
-            sleep: self.sleep,
-            has_enable: true,
-            has_sleep: self.has_sleep,
-            timing: self.timing,
-            inverted: self.inverted,
-            on: self.on,
-            level: self.level,
-            earliest: self.earliest,
-            direction: self.direction,
-            waiting: self.waiting,
-        }
-    }
-
-    /// With a pin on SLEEP: low puts the chip to sleep. On RESET it does as well, for low holds the chip in reset.
-    pub fn with_sleep<Pin>(self, sleep: Pin) -> A4988<Step, Dir, Enable, Pin> {
-        A4988 {
-            axis: self.axis,
-            step: self.step,
-            dir: self.dir,
-            enable: self.enable,
             sleep,
             has_enable: self.has_enable,
-            has_sleep: true,
+            has_sleep: self.has_sleep,
             timing: self.timing,
             inverted: self.inverted,
             on: self.on,
@@ -199,6 +189,30 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
         (self.step, self.dir, self.enable, self.sleep)
     }
 
+    pub(crate) const fn is_high(&self) -> bool {
+        matches!(self.level, Level::High)
+    }
+
+    pub(crate) const fn is_waiting(&self) -> bool {
+        self.waiting.is_some()
+    }
+
+    /// Whether a step waits for nothing but to be made.
+    pub(crate) fn is_ready(&self, now: Duration) -> bool {
+        self.level == Level::Low && self.waiting.is_some() && now >= self.earliest
+    }
+
+    /// How long a blocking form has to wait. Each begins at time 0, so that `earliest` is how long; what the other form
+    /// has left behind is over after the longest time of all.
+    pub(crate) fn settling(&self) -> Duration {
+        self.earliest.min(self.timing.longest())
+    }
+
+    /// It has waited.
+    pub(crate) const fn settled(&mut self) {
+        self.earliest = Duration::ZERO;
+    }
+
     /// This motor's share of a pulse.
     const fn share(&self, pulse: Pulse) -> Option<Direction> {
         let step = match self.axis {
@@ -227,9 +241,7 @@ where
     ///
     /// [`Error::Busy`] within a pulse; otherwise [`Error::Pin`] or [`Error::StillOn`].
     pub fn start(&mut self, now: Duration) -> Result<(), Error<Step::Error>> {
-        if self.level != Level::Low && now < self.earliest {
-            return Err(Error::Busy { until: self.earliest });
-        }
+        self.can_start(now)?;
         self.halt();
         self.switch_on().map_err(|cause| self.after_pin(cause))?;
         let Timing { low, setup, wake, .. } = self.timing;
@@ -287,7 +299,7 @@ where
     ) -> Result<(), Error<Step::Error>> {
         self.take(pulse)?;
         self.settle(delay);
-        // Each turn waits for all that is put off: DIR, then STEP high, then STEP low.
+        // Ends: each turn waits for the next of DIR set, STEP high, STEP low.
         while self.due().is_some() {
             self.tick(Duration::ZERO)?;
             self.settle(delay);
@@ -352,14 +364,23 @@ where
         self.sleep.set_low().map_err(|cause| self.after_pin(cause))
     }
 
+    /// Whether no pulse is cut short by a start.
+    pub(crate) fn can_start(&self, now: Duration) -> Result<(), Error<Step::Error>> {
+        if self.level != Level::Low && now < self.earliest {
+            return Err(Error::Busy { until: self.earliest });
+        }
+        Ok(())
+    }
+
     /// Notes the step, if it can be taken.
-    fn take(&mut self, pulse: Pulse) -> Result<(), Error<Step::Error>> {
+    pub(crate) fn take(&mut self, pulse: Pulse) -> Result<(), Error<Step::Error>> {
         self.can_take(pulse)?;
         self.waiting = self.share(pulse).or(self.waiting);
         Ok(())
     }
 
-    fn can_take(&self, pulse: Pulse) -> Result<(), Error<Step::Error>> {
+    /// Whether the motor's share of a pulse can be taken.
+    pub(crate) fn can_take(&self, pulse: Pulse) -> Result<(), Error<Step::Error>> {
         match self.share(pulse) {
             Some(_) if !self.on => Err(Error::Off),
             Some(_) if self.waiting.is_some() => Err(Error::Busy { until: self.earliest }),
@@ -368,7 +389,7 @@ where
     }
 
     /// All that comes before STEP rises: it falls, and DIR changes.
-    fn prepare(&mut self, now: Duration) -> Result<(), Error<Step::Error>> {
+    pub(crate) fn prepare(&mut self, now: Duration) -> Result<(), Error<Step::Error>> {
         if self.level == Level::High && now >= self.earliest {
             self.step.set_low().map_err(|cause| self.after_pin(cause))?;
             self.level = Level::Low;
@@ -381,12 +402,7 @@ where
         Ok(())
     }
 
-    /// Whether a step waits for nothing but to be made.
-    fn is_ready(&self, now: Duration) -> bool {
-        self.level == Level::Low && self.waiting.is_some() && now >= self.earliest
-    }
-
-    fn rise(&mut self, now: Duration) -> Result<(), Error<Step::Error>> {
+    pub(crate) fn rise(&mut self, now: Duration) -> Result<(), Error<Step::Error>> {
         // DIR waits for STEP to fall, so the pulse lasts as long as DIR must hold.
         self.earliest = now.saturating_add(self.timing.pulse());
         self.step.set_high().map_err(|cause| self.after_pin(cause))?;
@@ -410,14 +426,9 @@ where
         self.enable.set_low()
     }
 
-    /// Waits until nothing is in the way. The blocking forms begin at time 0 each, so that `earliest` is how long to wait;
-    /// what another form has left behind is over after the longest time of all.
     fn settle(&mut self, delay: &mut impl DelayNs) {
-        let wait = self.earliest.min(self.timing.longest());
-        self.earliest = Duration::ZERO;
-        if !wait.is_zero() {
-            delay.delay_ns(u32::try_from(wait.as_nanos()).unwrap_or(u32::MAX));
-        }
+        wait(self.settling(), delay);
+        self.settled();
     }
 
     /// No steps, and nothing known of the pins.
@@ -438,6 +449,13 @@ where
     fn switch_off(&mut self) -> bool {
         let disabled = self.has_enable && (self.enable.set_high().is_ok() || self.enable.set_high().is_ok());
         disabled || self.has_sleep && (self.sleep.set_low().is_ok() || self.sleep.set_low().is_ok())
+    }
+}
+
+/// Nothing at all is not asked of a delay.
+pub(crate) fn wait(time: Duration, delay: &mut impl DelayNs) {
+    if !time.is_zero() {
+        delay.delay_ns(u32::try_from(time.as_nanos()).unwrap_or(u32::MAX));
     }
 }
 

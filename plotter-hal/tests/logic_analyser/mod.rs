@@ -6,6 +6,7 @@
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::pwm::{self, SetDutyCycle};
+use plotter_hal::a4988::Timing;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -130,6 +131,37 @@ impl Analyser {
             }
         }
         edges
+    }
+
+    /// What a chip with these minima would have to say about its inputs, over the whole log.
+    pub(crate) fn too_short(&self, step: &str, dir: &str, timing: Timing) -> Vec<String> {
+        let mut complaints = Vec::new();
+        let mut expect = |what: &str, from: Duration, to: Duration, minimum: Duration| {
+            if to - from < minimum {
+                complaints.push(format!("{what} {from:?} to {to:?}, minimum {minimum:?}"));
+            }
+        };
+        let (steps, turns) = (self.edges(step), self.edges(dir));
+        for pair in steps.windows(2) {
+            let minimum = if pair[0].1 == 1 { timing.high } else { timing.low };
+            expect("STEP", pair[0].0, pair[1].0, minimum);
+        }
+        for &(rise, _) in steps.iter().filter(|(_, level)| *level == 1) {
+            for &(turn, _) in &turns {
+                // At one and the same time they are in the order of the log: a turn comes before its rise.
+                if turn <= rise {
+                    expect("setup", turn, rise, timing.setup);
+                } else {
+                    expect("hold", rise, turn, timing.hold);
+                }
+            }
+        }
+        complaints
+    }
+
+    /// Rising edges of a wire.
+    pub(crate) fn rises(&self, wire: &str) -> usize {
+        self.edges(wire).iter().filter(|(_, level)| *level == 1).count()
     }
 
     /// The log as a table: time in ns, wire, value.
