@@ -4,13 +4,17 @@
 
 pub mod a4988;
 pub mod axis;
+mod debounce;
 pub mod h_bridge;
+pub mod limit_switch;
 mod no_pin;
 pub mod quadrature;
 
 pub use a4988::A4988;
 pub use axis::{DcAxes, StepperAxes};
+pub use debounce::SwitchSettings;
 pub use embedded_hal;
 pub use h_bridge::HBridge;
+pub use limit_switch::{LimitSwitch, LimitSwitchGroup};
 pub use no_pin::NoPin;
 pub use quadrature::Quadrature;
