@@ -461,6 +461,7 @@ pub(crate) fn wait(time: Duration, delay: &mut impl DelayNs) {
 
 /// A step could not be taken, or a pin of a stepper motor failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pin> {
     /// The motor is off: start it first.

@@ -7,6 +7,7 @@ use core::time::Duration;
 /// Every field may be made longer, for a slow optocoupler or a long wire. A pulse lasts for the longer of `high` and
 /// `hold`, because DIR changes only while STEP is low.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Timing {
     /// STEP high.
     pub high: Duration,

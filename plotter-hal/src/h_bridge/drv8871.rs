@@ -20,6 +20,7 @@ use plotter_motion::{Axis, Direction, Drive, Duty};
 
 /// What the motor's current does while the PWM is off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Decay {
     /// The motor coasts in between and at rest; the current is gone soon.
     Fast,
