@@ -130,6 +130,22 @@ fn a_start_brings_every_pin_into_a_known_state_without_drive() {
 }
 
 #[test]
+fn after_a_watchdog_bite_under_drive_a_start_takes_the_drive_away() {
+    for kind in KINDS {
+        for duty in [0.5, -1.0] {
+            // The driver before the bite is gone, and its pins are as they were.
+            let analyser = Analyser::default();
+            kind.run(&analyser, Drives(&[Some(duty)])).unwrap();
+            assert_ne!(kind.now(&analyser), 0);
+            kind.run(&analyser, Drives(&[])).unwrap();
+            assert_eq!(kind.now(&analyser), 0, "{kind:?}");
+            kind.run(&analyser, Drives(&[Some(-duty)])).unwrap();
+            assert_eq!(kind.now(&analyser).is_positive(), duty < 0.0, "{kind:?}");
+        }
+    }
+}
+
+#[test]
 fn no_access_on_the_way_drives_the_motor_elsewhere_than_asked() {
     for kind in KINDS {
         for (number, duty) in EVERYTHING.iter().enumerate() {

@@ -118,7 +118,8 @@ where
         self.axis
     }
 
-    /// As [`stop`](Self::stop); before the first drive, the motor coasts.
+    /// As [`stop`](Self::stop); before the first drive, the motor coasts. Inputs that are both high when a new driver takes
+    /// them over go low one after the other, which drives the motor in between; after a reset of the chip they are low.
     fn start(&mut self) -> Result<(), Self::Error> {
         self.stop()
     }
