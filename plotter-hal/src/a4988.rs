@@ -174,6 +174,11 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
         self.on
     }
 
+    /// Whether a step is put off, so that another one would be refused.
+    pub const fn is_waiting(&self) -> bool {
+        self.waiting.is_some()
+    }
+
     /// When [`tick`](Self::tick) is to be called; later does no harm. `None` while there is nothing to do.
     pub fn due(&self) -> Option<Duration> {
         self.falls_at().or(self.rises_at()).map(Duration::from_nanos)
@@ -198,10 +203,6 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
     /// When the step that waits may be made, ns; within a pulse, that one comes first.
     pub(crate) fn rises_at(&self) -> Option<u64> {
         self.is_waiting().then_some(self.earliest)
-    }
-
-    pub(crate) const fn is_waiting(&self) -> bool {
-        self.waiting.is_some()
     }
 
     /// Whether a step waits for nothing but to be made.

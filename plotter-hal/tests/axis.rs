@@ -170,11 +170,12 @@ fn no_step_of_a_line_is_lost_however_late_the_ticks_come() {
     for (number, step) in line.enumerate() {
         // Steps come every 2 us, faster than the chip takes them now and then; ticks up to 5 us late.
         analyser.now.set(analyser.now.get() + Duration::from_micros(2));
-        while motors.step(pulse(step.x, step.y), analyser.now.get()).is_err() {
+        while motors.is_waiting() {
             let late = Duration::from_nanos(u64::try_from(number).unwrap() * 997 % 5_000);
             analyser.now.set(analyser.now.get().max(motors.due().unwrap()) + late);
             motors.tick(analyser.now.get()).unwrap();
         }
+        motors.step(pulse(step.x, step.y), analyser.now.get()).unwrap();
     }
     run(&analyser, &mut motors).unwrap();
     assert_eq!(too_short(&analyser), [""; 0]);

@@ -67,6 +67,11 @@ where
         Self { x, y }
     }
 
+    /// Whether a pulse is put off: take the next one from its source when this is over, for it may be refused.
+    pub const fn is_waiting(&self) -> bool {
+        self.x.is_waiting() || self.y.is_waiting()
+    }
+
     /// When [`tick`](Self::tick) is to be called; later does no harm. `None` while there is nothing to do.
     pub fn due(&self) -> Option<Duration> {
         let falls = sooner(self.x.falls_at(), self.y.falls_at());
