@@ -20,18 +20,19 @@
 //! Overcurrent Protection*, A4988-DS; Texas Instruments, *DRV8825 Stepper Motor Controller IC*, SLVSA73F; Trinamic,
 //! *TMC2209 Datasheet*, Rev. 1.09.
 
+mod error;
 mod microsteps;
 mod timing;
 
+pub use error::Error;
 pub use microsteps::{Chip, MicrostepPins};
 pub use timing::Timing;
 use timing::TimingNs;
 
 use crate::NoPin;
-use core::fmt;
 use core::time::Duration;
 use embedded_hal::delay::DelayNs;
-use embedded_hal::digital::{self, OutputPin, PinState};
+use embedded_hal::digital::{OutputPin, PinState};
 use plotter_motion::{Axis, Direction, Pulse};
 
 /// One stepper motor. It steps by nothing but a [`Pulse`], which only a safety gate makes.
@@ -273,8 +274,9 @@ where
     /// Takes the motor's share of a pulse; none is no step. Makes at once what can be made at once; the rest is
     /// [`tick`](Self::tick)'s.
     ///
-    /// `now` is the time before the call. From one call to the next the pins change no sooner than the two times say;
-    /// for a clock that counts in whole ticks see [`Timing::on_clock`].
+    /// `now` is the time just before the call. An edge that comes later after its reading than the next one after its own
+    /// shortens what lies between by the difference: where that counts, add it to the [`Timing`], as
+    /// [`Timing::on_clock`] adds a tick of the clock.
     ///
     /// # Errors
     ///
@@ -476,48 +478,3 @@ pub(crate) fn wait(time_ns: u32, delay: &mut impl DelayNs) {
 pub(crate) fn nanos(now: Duration) -> u64 {
     now.as_secs().wrapping_mul(1_000_000_000).wrapping_add(now.subsec_nanos().into())
 }
-
-/// A step could not be taken, or a pin of a stepper motor failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum Error<Pin> {
-    /// The motor is off: start it first.
-    Off,
-    /// The chip is not ready; the step has not been taken.
-    Busy {
-        /// When to call [`A4988::tick`], and to offer the step again.
-        until: Duration,
-    },
-    /// The chip does not have this many microsteps to a full step.
-    Microsteps(u16),
-    /// A pin failed; the outputs are off, the motor has no current. Its place is lost.
-    Pin(Pin),
-    /// A pin failed and the outputs could not be switched off, or have no pin for that: the motor gets no more steps and
-    /// may hold.
-    StillOn(Pin),
-}
-
-impl<Pin: digital::Error> fmt::Display for Error<Pin> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Off => write!(f, "stepper motor: is off; start it first"),
-            Self::Busy { until } => {
-                write!(f, "stepper motor: not ready before {} ns", until.as_nanos())
-            }
-            Self::Microsteps(asked) => write!(f, "stepper motor: the chip has no {asked} microsteps"),
-            Self::Pin(cause) => {
-                write!(f, "pin of the stepper motor: {}; it has no current", cause.kind())
-            }
-            Self::StillOn(cause) => {
-                write!(
-                    f,
-                    "pin of the stepper motor: {}; it gets no steps, but may have current",
-                    cause.kind()
-                )
-            }
-        }
-    }
-}
-
-impl<Pin: digital::Error> core::error::Error for Error<Pin> {}
