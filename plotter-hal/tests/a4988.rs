@@ -185,6 +185,15 @@ fn a_step_within_a_pulse_waits_for_its_end_and_for_the_low_time() {
 }
 
 #[test]
+fn a_pulse_lasts_as_long_as_dir_must_hold() {
+    let timing = Timing { hold: Duration::from_micros(5), ..Timing::A4988 };
+    let analyser = Analyser::default();
+    there_and_back(&analyser, &mut motor(&analyser, timing)).unwrap();
+    assert_eq!(analyser.rises("STEP"), 3);
+    assert_eq!(analyser.too_short("STEP", "DIR", timing), [""; 0]);
+}
+
+#[test]
 fn late_ticks_make_times_longer_only() {
     let analyser = Analyser::default();
     let timing = Timing::A4988;
