@@ -1,0 +1,224 @@
+//! Instructions that the controllers take on a Cortex-M4F, counted by QEMU. Prints a line each: what, mean, worst, how many.
+//!
+//! Counts of instructions are not cycles: a real Cortex-M4 takes two cycles for most loads, up to 14 for a division, and waits for
+//! its flash.
+#![no_std]
+#![no_main]
+
+mod counter;
+mod drawings;
+
+use core::hint::black_box;
+use core::time::Duration;
+use cortex_m_rt::entry;
+use cortex_m_semihosting::{debug, hprintln};
+use counter::{Counter, Tally};
+use plotter_motion::control::{
+    Contouring, ContouringSettings, LineController, LineTracking, LineTrackingSettings,
+};
+use plotter_motion::firmware::{Gantry, GantrySettings};
+use plotter_motion::kinematics::{Cartesian, MotorScale};
+use plotter_motion::plant::AxisPlant;
+use plotter_motion::protocol::digits;
+use plotter_motion::{
+    Action, Axis, Direction, Machine, MachineConfig, MotorEvent, PathMode, Planner, PlannerSettings, PlotOp,
+    SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint,
+};
+
+fn print(what: &str, tally: Tally) {
+    hprintln!("{}: mean {} worst {} of {}", what, tally.mean(), tally.worst(), tally.count());
+}
+
+/// Slope of every kind, in encoder counts.
+const TARGETS: [(i32, i32); 8] =
+    [(400, 400), (1200, 500), (1200, 1300), (1000, 2000), (300, 1900), (300, 200), (1000, 200), (0, 0)];
+
+/// The gantry with its simulated motors, until every target is reached or a quarter of a minute is over.
+fn gantry(counter: &Counter, machine: &Machine, name: &str, controller: impl LineController) {
+    const STEP: Duration = Duration::from_micros(100);
+    let config = machine.config();
+    let mut gantry = Gantry::with_settings(GantrySettings::of(machine), controller);
+    let mut plants =
+        [&config.x, &config.y].map(|axis| AxisPlant::new(axis, STEP.as_secs_f64()));
+    let (mut edges, mut ticks) = (Tally::default(), Tally::default());
+    let mut targets = TARGETS.into_iter();
+    let mut now = Duration::ZERO;
+    let mut reached = true;
+    while now < Duration::from_secs(15) {
+        if reached {
+            let Some((x, y)) = targets.next() else { break };
+            for byte in digits::encode(StepPoint::new(x, y)).unwrap_or_default() {
+                gantry.receive(now, byte);
+            }
+            reached = false;
+        }
+        let drive = gantry.drive();
+        let mut seen: [Option<Direction>; 2] = [None; 2];
+        for ((plant, axis), seen) in plants.iter_mut().zip([Axis::X, Axis::Y]).zip(&mut seen) {
+            plant.step(drive.axis(axis), |edge| *seen = Some(edge.direction));
+        }
+        now += STEP;
+        for (axis, seen) in [Axis::X, Axis::Y].into_iter().zip(seen) {
+            if let Some(direction) = seen {
+                let (duty, instructions) = counter.count(|| edge(black_box(&mut gantry), now, axis, direction));
+                black_box(duty);
+                edges.add(instructions);
+            }
+        }
+        if gantry.next_tick().is_some_and(|due| due <= now) {
+            let (duty, instructions) = counter.count(|| tick(black_box(&mut gantry), now));
+            black_box(duty);
+            ticks.add(instructions);
+        }
+        while let Some(reply) = gantry.transmit() {
+            reached |= reply == digits::Reply::Reached.byte();
+        }
+    }
+    hprintln!("{}: {} targets left, {} ms", name, targets.len(), now.as_millis());
+    hprintln!("{}: {} bytes", name, size_of_val(&gantry));
+    for (what, tally) in [("edge to duty", edges), ("tick to duty", ticks)] {
+        if tally.count() > 0 {
+            hprintln!(
+                "{} {}: mean {} worst {} of {}",
+                name,
+                what,
+                tally.mean(),
+                tally.worst(),
+                tally.count()
+            );
+        }
+    }
+}
+
+/// What the interrupt of an encoder does: from the edge to both timers' compare values.
+#[inline(never)]
+fn edge<C: LineController>(gantry: &mut Gantry<C>, now: Duration, axis: Axis, direction: Direction) -> [i32; 2] {
+    gantry.edge(now, axis, direction);
+    let drive = gantry.drive();
+    [drive.x().steps(255), drive.y().steps(255)]
+}
+
+/// What the interrupt of the control loop does.
+#[inline(never)]
+fn tick<C: LineController>(gantry: &mut Gantry<C>, now: Duration) -> [i32; 2] {
+    gantry.tick(now);
+    let drive = gantry.drive();
+    [drive.x().steps(255), drive.y().steps(255)]
+}
+
+#[inline(never)]
+fn push(planner: &mut Planner<16>, op: PlotOp) -> bool {
+    planner.push(op).is_ok()
+}
+
+#[inline(never)]
+fn next_action(planner: &mut Planner<16>) -> Option<Action> {
+    planner.next_action()
+}
+
+/// Plans a drawing with a ring that is kept full; `each` gets the actions. Counts what a block takes, from pushing it to its last
+/// phase.
+fn plan(
+    counter: &Counter,
+    settings: PlannerSettings,
+    mut ops: impl Iterator<Item = PlotOp>,
+    mut each: impl FnMut(Action),
+) -> Tally {
+    let mut blocks = Tally::default();
+    let Ok(mut planner) = Planner::<16>::new(settings) else { return blocks };
+    let (mut finished, mut block, mut filled) = (false, 0, false);
+    loop {
+        while !finished && planner.has_room() {
+            match ops.next() {
+                Some(op) => {
+                    let (_, instructions) = counter.count(|| push(black_box(&mut planner), op));
+                    // The first sixteen are not one block's.
+                    block += if filled { instructions } else { 0 };
+                }
+                None => finished = planner.finish().is_ok(),
+            }
+        }
+        filled = true;
+        let (action, instructions) = counter.count(|| next_action(black_box(&mut planner)));
+        block += instructions;
+        let Some(action) = action else { return blocks };
+        if matches!(action, Action::Course(_)) {
+            blocks.add(core::mem::take(&mut block));
+        }
+        each(action);
+    }
+}
+
+#[inline(never)]
+fn next_event(steps: &mut StepGen<Cartesian>, gate: &SafetyGate, pins: &mut [u32; 2]) -> Option<u64> {
+    let event = steps.next_event()?;
+    if let MotorEvent::Step { x, y } = event.event
+        && let Ok(pulse) = gate.pass_step(StepPair { x, y })
+    {
+        let set = u32::from(pulse.x() < 0) << 1 | u32::from(pulse.y() < 0) << 3;
+        // SAFETY: these are plain memory.
+        unsafe {
+            core::ptr::write_volatile(&mut pins[0], set);
+            core::ptr::write_volatile(&mut pins[1], u32::from(pulse.x() != 0) | u32::from(pulse.y() != 0) << 2);
+        }
+    }
+    Some(event.tick)
+}
+
+#[entry]
+fn main() -> ! {
+    let Some(peripherals) = cortex_m::Peripherals::take() else { loop {} };
+    let counter = Counter::new(peripherals.SYST);
+    let Ok(machine) = Machine::new(MachineConfig::default()) else { loop {} };
+
+    gantry(&counter, &machine, "published", LineTracking::with_settings(LineTrackingSettings::of(&machine)));
+    gantry(&counter, &machine, "contouring", Contouring::with_settings(ContouringSettings::of(&machine)));
+
+    let exact = PlannerSettings::default();
+    let tolerance = PlannerSettings { path: PathMode::Tolerance { path_tolerance_mm: 0.05 }, ..exact };
+    let curved = PlannerSettings { jerk_mm_s3: Some(20_000.0), ..exact };
+    for (mode, settings) in [("exact", exact), ("tolerance", tolerance), ("s-curve", curved)] {
+        for (drawing, tally) in [
+            ("hatch", plan(&counter, settings, drawings::hatch(), |_| ())),
+            ("spiral", plan(&counter, settings, drawings::spiral(), |_| ())),
+            ("zigzag", plan(&counter, settings, drawings::zigzag(), |_| ())),
+            ("strokes", plan(&counter, settings, drawings::strokes(), |_| ())),
+        ] {
+            hprintln!(
+                "plan {} {}: mean {} worst {} of {}",
+                mode,
+                drawing,
+                tally.mean(),
+                tally.worst(),
+                tally.count()
+            );
+        }
+    }
+
+    let motor = MotorScale { steps_per_mm: 100.0, inverted: false };
+    if let Ok(kinematics) = Cartesian::new(motor, motor) {
+        let mut generator = StepGen::new(kinematics, StepGenSettings::default());
+        let (gate, mut pins, mut steps) = (SafetyGate::default(), [0; 2], Tally::default());
+        plan(&counter, exact, drawings::strokes(), |action| {
+            let _ = generator.push(action);
+            loop {
+                let (event, instructions) =
+                    counter.count(|| next_event(black_box(&mut generator), black_box(&gate), &mut pins));
+                if event.is_none() {
+                    break;
+                }
+                steps.add(instructions);
+            }
+        });
+        print("step", steps);
+    }
+    debug::exit(debug::EXIT_SUCCESS);
+    loop {}
+}
+
+#[panic_handler]
+fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
+    hprintln!("{}", info);
+    debug::exit(debug::EXIT_FAILURE);
+    loop {}
+}
