@@ -1,0 +1,60 @@
+//! Reads the machines' TOML files on the host, with the checks of `plotter-motion`, and writes what the firmwares need
+//! of them as constants. So neither a parser nor a check is in their program memory.
+
+use plotter_motion::{AxisConfig, Machine};
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let out = PathBuf::from(env::var("OUT_DIR")?);
+    let board = if env::var_os("CARGO_FEATURE_BOARD_STM32F411").is_some() { "stm32f411" } else { "qemu" };
+    fs::copy(format!("memory/{board}.x"), out.join("memory.x"))?;
+    println!("cargo:rustc-link-search={}", out.display());
+    println!("cargo:rerun-if-changed=memory/{board}.x");
+    println!("cargo:rerun-if-changed=build.rs");
+
+    // Another machine: GANTRY=../../my-machine.toml
+    let gantry = machine("GANTRY", "../machines/semi-virtual-gantry.toml")?;
+    let mut text = String::new();
+    gantry_constants(&gantry, &mut text)?;
+    fs::write(out.join("machine.rs"), text)?;
+    Ok(())
+}
+
+fn machine(variable: &str, default: &str) -> Result<Machine, Box<dyn Error>> {
+    println!("cargo:rerun-if-env-changed={variable}");
+    let path = env::var(variable).unwrap_or_else(|_| default.to_owned());
+    println!("cargo:rerun-if-changed={path}");
+    let text = fs::read_to_string(Path::new(&path)).map_err(|error| format!("{path}: {error}"))?;
+    Ok(Machine::from_toml(&text).map_err(|error| format!("{path}: {error}"))?)
+}
+
+/// Floats are written as Rust's shortest text that reads as the same bits.
+fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn Error>> {
+    let config = machine.config();
+    writeln!(text, "use plotter_motion::{{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotorConfig, StepperConfig}};")?;
+    writeln!(text, "/// Bits a second of the gantry's line.\npub const BAUD: u32 = {};", config.serial.baud)?;
+    writeln!(
+        text,
+        "/// Steps of the PWM, x and y.\npub const PWM_STEPS: [u16; 2] = [{}, {}];",
+        u16::try_from(config.x.motor.pwm_steps)?,
+        u16::try_from(config.y.motor.pwm_steps)?
+    )?;
+    for (name, axis) in [("X", &config.x), ("Y", &config.y)] {
+        writeln!(text, "/// An axis.\npub const {name}: AxisConfig = {};", axis_literal(axis))?;
+    }
+    writeln!(text, "/// The machine.\npub fn machine() -> plotter_motion::Machine {{ match plotter_motion::Machine::new(Default::default()) {{ Ok(m) => m, Err(_) => loop {{}} }} }}")?;
+    Ok(())
+}
+
+fn axis_literal(axis: &AxisConfig) -> String {
+    let AxisConfig { counts_per_mm, encoder, motor, load, stepper } = axis;
+    // A plain struct's text is its own Rust; of enums the name is missing.
+    format!(
+        "AxisConfig {{ counts_per_mm: {counts_per_mm:?}, encoder: EncoderConfig {{ lines_per_turn: {}, decoding: Decoding::{:?} }}, \
+         motor: {motor:?}, load: {load:?}, stepper: {stepper:?} }}",
+        encoder.lines_per_turn, encoder.decoding
+    )
+}
