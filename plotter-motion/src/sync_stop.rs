@@ -14,8 +14,10 @@ use crate::SyncStopConfig;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SyncStop {
-    slope_counts: f32,
-    offset_counts: f32,
+    /// Part of the allowed deviation that grows with the slope, encoder counts.
+    pub slope_counts: f32,
+    /// Its constant part, encoder counts.
+    pub offset_counts: f32,
 }
 
 impl SyncStop {

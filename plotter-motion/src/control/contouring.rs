@@ -1,7 +1,9 @@
 //! Contouring control: a planned speed along the line, and the errors along and across it led to zero.
 
-use super::{LineController, ShaftEstimator};
-use crate::{Axis, Demand, Direction, Drive, Duty, Machine, MotionLimits, MotorConfig, SCurve, StepPoint};
+use super::{LineController, ShaftEstimator, ShaftModel};
+use crate::{
+    Axis, AxisConfig, Decoding, Demand, Direction, Drive, Duty, Machine, MotionLimits, SCurve, StepPoint,
+};
 use core::f64::consts::TAU;
 use core::time::Duration;
 
@@ -41,7 +43,7 @@ use core::time::Duration;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contouring {
-    settings: Settings,
+    settings: ContouringSettings,
     x: ContouredAxis,
     y: ContouredAxis,
     start: StepPoint,
@@ -56,26 +58,55 @@ pub struct Contouring {
     settled_for: Option<Duration>,
 }
 
+/// What [`Contouring`] must know of a machine: numbers that a firmware keeps in its program memory. A plan is made
+/// in `f64`, so its limits are; what the loop reckons with is `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Settings {
-    limits: MotionLimits,
-    period: Duration,
-    along: Gains,
-    across: Gains,
-    tolerance_counts: f32,
-    settle: Duration,
-    wait_from_counts: f32,
-    wait_counts: f32,
+pub struct ContouringSettings {
+    /// Limits of the plan, in encoder counts of the coarser axis where the names say mm, so that no axis exceeds them.
+    pub limits: MotionLimits,
+    /// How often the controller runs, us.
+    pub period_us: u32,
+    /// Gains along the line, and the stiffer ones across it.
+    pub along: PositionGains,
+    /// Across the line.
+    pub across: PositionGains,
+    /// How near a shaft must stand to its target to rest, encoder counts.
+    pub tolerance_counts: f32,
+    /// How long both must stand there, us.
+    pub settle_us: u32,
+    /// Lag from which on the reference slows down, encoder counts.
+    pub wait_from_counts: f32,
+    /// Lag at which it waits, encoder counts; above `wait_from_counts`.
+    pub wait_counts: f32,
+    /// The shaft of the x axis.
+    pub x: ShaftSettings,
+    /// The shaft of the y axis.
+    pub y: ShaftSettings,
 }
 
-/// Gains of a critically damped position loop: 1/s^2 and 1/s.
+/// What [`Contouring`] must know of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Gains {
-    position: f32,
-    speed: f32,
+pub struct ShaftSettings {
+    /// Motor and load.
+    pub model: ShaftModel,
+    /// How the encoder is counted.
+    pub decoding: Decoding,
+    /// Natural frequency of the estimator, rad/s.
+    pub observer_rad_s: f32,
+    /// Steps of the duty from 0 to full.
+    pub pwm_steps: u16,
 }
 
-impl Gains {
+/// Gains of a critically damped position loop: `w^2` and `2 w` for its natural frequency `w`, rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PositionGains {
+    /// Acceleration by a position error, 1/s^2.
+    pub position: f32,
+    /// Acceleration by a speed error, 1/s.
+    pub speed: f32,
+}
+
+impl PositionGains {
     fn new(natural_hz: f64) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let w = (natural_hz * TAU) as f32;
@@ -83,10 +114,72 @@ impl Gains {
     }
 }
 
+impl ContouringSettings {
+    /// Those of a machine.
+    ///
+    /// ```
+    /// # use plotter_motion::{Machine, MachineConfig, control::ContouringSettings};
+    /// let machine = Machine::new(MachineConfig::default())?;
+    /// let settings = ContouringSettings::of(&machine);
+    /// assert_eq!(settings.period_us, 400); // 2500 Hz
+    /// assert_eq!(settings.limits.speed_mm_s, 6000.0); // 150 mm/s at 40 counts/mm
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        // An error across the line is seen on the paper, one along it is not: the loop across is the stiffer one.
+        const ACROSS_SHARE: f64 = 1.6;
+        let config = machine.config();
+        let contouring = &config.control.contouring;
+        // The plan is made in counts, the limits in those of the coarser axis, so that no axis exceeds them.
+        let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);
+        let period_us = 1e6 / contouring.loop_hz;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "f32 loop; checked ranges"
+        )]
+        Self {
+            limits: MotionLimits {
+                speed_mm_s: contouring.feed_mm_s * counts_per_mm,
+                accel_mm_s2: contouring.accel_mm_s2 * counts_per_mm,
+                jerk_mm_s3: contouring.jerk_mm_s3 * counts_per_mm,
+            },
+            period_us: libm::round(period_us).max(1.0) as u32,
+            along: PositionGains::new(contouring.bandwidth_hz),
+            across: PositionGains::new(ACROSS_SHARE * contouring.bandwidth_hz),
+            tolerance_counts: contouring.arrival_tolerance_counts as f32,
+            settle_us: (contouring.settle_ms * 1e3) as u32,
+            // The reference slows down from a tenth of the allowed deviation on, and waits at half of it.
+            wait_from_counts: 0.1 * config.sync_stop.offset_counts as f32,
+            wait_counts: 0.5 * config.sync_stop.offset_counts as f32,
+            x: ShaftSettings::new(&config.x, contouring.observer_hz),
+            y: ShaftSettings::new(&config.y, contouring.observer_hz),
+        }
+    }
+
+    const fn period(&self) -> Duration {
+        Duration::from_micros(self.period_us as u64)
+    }
+}
+
+impl ShaftSettings {
+    fn new(axis: &AxisConfig, observer_hz: f64) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
+        let observer_rad_s = (observer_hz * TAU) as f32;
+        Self {
+            model: ShaftModel::new(axis),
+            decoding: axis.encoder.decoding,
+            observer_rad_s,
+            pwm_steps: u16::try_from(axis.motor.pwm_steps).unwrap_or(u16::MAX),
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct ContouredAxis {
     estimator: ShaftEstimator,
-    motor: MotorConfig,
+    pwm_steps: u16,
     applied_v: f32,
     /// What rounding to the timer's steps left over last time, as a duty.
     rounding: f32,
@@ -100,46 +193,25 @@ impl Contouring {
     /// A controller at rest at the origin.
     #[must_use]
     pub fn new(machine: &Machine) -> Self {
-        // An error across the line is seen on the paper, one along it is not: the loop across is the stiffer one.
-        const ACROSS_SHARE: f64 = 1.6;
-        let config = machine.config();
-        let contouring = &config.control.contouring;
-        let axis = |axis: &crate::AxisConfig| ContouredAxis {
-            estimator: ShaftEstimator::new(axis, contouring.observer_hz),
-            motor: axis.motor,
+        Self::with_settings(ContouringSettings::of(machine))
+    }
+
+    /// The same from settings.
+    #[must_use]
+    pub fn with_settings(settings: ContouringSettings) -> Self {
+        let axis = |ShaftSettings { model, decoding, observer_rad_s, pwm_steps }| ContouredAxis {
+            estimator: ShaftEstimator::with_model(model, decoding, observer_rad_s),
+            pwm_steps,
             applied_v: 0.0,
             rounding: 0.0,
             duty: Duty::ZERO,
             resting: false,
             leaning: 0.0,
         };
-        // The plan is made in counts, the limits in those of the coarser axis, so that no axis exceeds them.
-        let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);
-        let period_us = 1e6 / contouring.loop_hz;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "f32 loop; checked ranges"
-        )]
-        let settings = Settings {
-            limits: MotionLimits {
-                speed_mm_s: contouring.feed_mm_s * counts_per_mm,
-                accel_mm_s2: contouring.accel_mm_s2 * counts_per_mm,
-                jerk_mm_s3: contouring.jerk_mm_s3 * counts_per_mm,
-            },
-            period: Duration::from_micros(libm::round(period_us).max(1.0) as u64),
-            along: Gains::new(contouring.bandwidth_hz),
-            across: Gains::new(ACROSS_SHARE * contouring.bandwidth_hz),
-            tolerance_counts: contouring.arrival_tolerance_counts as f32,
-            settle: Duration::from_micros((contouring.settle_ms * 1e3) as u64),
-            // The reference slows down from a tenth of the allowed deviation on, and waits at half of it.
-            wait_from_counts: 0.1 * config.sync_stop.offset_counts as f32,
-            wait_counts: 0.5 * config.sync_stop.offset_counts as f32,
-        };
         Self {
             settings,
-            x: axis(&config.x),
-            y: axis(&config.y),
+            x: axis(settings.x),
+            y: axis(settings.y),
             start: StepPoint::default(),
             target: StepPoint::default(),
             direction: [1.0, 0.0],
@@ -165,7 +237,8 @@ impl Contouring {
 
     /// One run of the control law.
     fn control(&mut self) {
-        let Settings { along, across, period, .. } = self.settings;
+        let ContouringSettings { along, across, wait_from_counts, wait_counts, .. } = self.settings;
+        let period = self.settings.period();
         let [ux, uy] = self.direction;
         let point = self.plan.at(self.plan_s);
 
@@ -184,7 +257,6 @@ impl Contouring {
 
         // How fast the reference goes on: 1 as planned, 0 waiting for a pen that does not follow.
         let lag = libm::hypotf(ex, ey);
-        let Settings { wait_from_counts, wait_counts, .. } = self.settings;
         let rate =
             (1.0 - (lag - wait_from_counts).max(0.0) / (wait_counts - wait_from_counts)).clamp(0.0, 1.0);
 
@@ -249,7 +321,7 @@ impl ContouredAxis {
         let push = accel + model.damping_per_s * speed + friction + self.leaning;
         let wanted = push / (model.accel_per_volt * model.supply_v);
         // What rounding to whole timer steps took or gave is made up for in the next run.
-        let steps = f32::from(u16::try_from(self.motor.pwm_steps).unwrap_or(u16::MAX));
+        let steps = f32::from(self.pwm_steps);
         let duty =
             Duty::saturating(libm::roundf(Duty::saturating(wanted + self.rounding).value() * steps) / steps);
         self.rounding = (wanted + self.rounding - duty.value()).clamp(-1.0 / steps, 1.0 / steps);
@@ -259,7 +331,7 @@ impl ContouredAxis {
 
 impl LineController for Contouring {
     fn period(&self) -> Option<Duration> {
-        Some(self.settings.period)
+        Some(self.settings.period())
     }
 
     fn start(&mut self, now: Duration, target: StepPoint) -> Demand {
@@ -313,6 +385,8 @@ impl LineController for Contouring {
     }
 
     fn has_arrived(&self) -> bool {
-        self.settled_for.is_some_and(|settled_for| settled_for >= self.settings.settle)
+        self.settled_for.is_some_and(|settled_for| {
+            settled_for >= Duration::from_micros(u64::from(self.settings.settle_us))
+        })
     }
 }

@@ -34,8 +34,7 @@ use core::time::Duration;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineTracking {
-    config: PublishedConfig,
-    sync_stop: SyncStop,
+    settings: LineTrackingSettings,
     position: StepPoint,
     start: StepPoint,
     target: StepPoint,
@@ -45,6 +44,31 @@ pub struct LineTracking {
     slope: f32,
     deviation: f32,
     demand: Demand,
+}
+
+/// What [`LineTracking`] must know of a machine: a few numbers that a firmware keeps in its program memory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineTrackingSettings {
+    /// Gains and limits.
+    pub published: PublishedConfig,
+    /// When x waits for y.
+    pub sync_stop: SyncStop,
+}
+
+impl LineTrackingSettings {
+    /// Those of a machine.
+    ///
+    /// ```
+    /// # use plotter_motion::{Machine, MachineConfig, control::LineTrackingSettings};
+    /// let machine = Machine::new(MachineConfig::default())?;
+    /// assert_eq!(LineTrackingSettings::of(&machine).published.kp, 15.0);
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        let config = machine.config();
+        Self { published: config.control.published, sync_stop: SyncStop::new(config.sync_stop) }
+    }
 }
 
 /// What the controller remembers of an axis.
@@ -82,22 +106,27 @@ impl LineTracking {
     /// A controller at rest at the origin, with the machine's gains and limits.
     #[must_use]
     pub fn new(machine: &Machine) -> Self {
-        let config = machine.config().control.published;
+        Self::with_settings(LineTrackingSettings::of(machine))
+    }
+
+    /// The same from settings.
+    #[must_use]
+    pub fn with_settings(settings: LineTrackingSettings) -> Self {
+        let published = settings.published;
         let axis = |ki, whole_ki, kd| TrackedAxis {
-            pid: SumPid { kp: config.kp, ki, kd },
+            pid: SumPid { kp: published.kp, ki, kd },
             state: SumPidState::default(),
             whole_ki,
             whole_sum: 0.0,
             forwards: true,
         };
         Self {
-            config,
-            sync_stop: SyncStop::new(machine.config().sync_stop),
+            settings,
             position: StepPoint::default(),
             start: StepPoint::default(),
             target: StepPoint::default(),
-            x: axis(0.0, config.ki, config.kd_x),
-            y: axis(config.ki, 0.0, config.kd_y),
+            x: axis(0.0, published.ki, published.kd_x),
+            y: axis(published.ki, 0.0, published.kd_y),
             slope: 0.0,
             deviation: 0.0,
             demand: Demand::NONE,
@@ -105,23 +134,24 @@ impl LineTracking {
     }
 
     fn run(&mut self) -> Demand {
+        let LineTrackingSettings { published, sync_stop } = self.settings;
         let to_target = difference(self.target, self.position);
         let line = difference(self.target, self.start);
         let done = difference(self.position, self.start);
 
         let u_x = self.x.output(to_target.0);
-        self.demand.x = if self.sync_stop.must_wait(self.slope, self.deviation) {
+        self.demand.x = if sync_stop.must_wait(self.slope, self.deviation) {
             Duty::ZERO
         } else {
-            self.x.duty(u_x, self.config.duty_limit_x)
+            self.x.duty(u_x, published.duty_limit_x)
         };
 
         let (error, limit) = if line.0 == 0.0 {
-            (to_target.1, self.config.duty_limit_y_vertical)
+            (to_target.1, published.duty_limit_y_vertical)
         } else {
             self.slope = line.1 / line.0;
             self.deviation = done.1 - self.slope * done.0;
-            (-self.deviation, self.config.duty_limit_y)
+            (-self.deviation, published.duty_limit_y)
         };
         let u_y = self.y.output(error);
         self.demand.y = self.y.duty(u_y, limit);

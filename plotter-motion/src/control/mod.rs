@@ -1,15 +1,17 @@
 //! Controllers that lead two motors along a straight line.
 //!
-//! [`LineTracking`] is the published one, [`Contouring`] ours; both are a [`LineController`], and a
-//! machine's description chooses between them.
+//! [`LineTracking`] is the published one, [`Contouring`] ours; both are a [`LineController`]. A machine's
+//! description chooses between them ([`ChosenController`]); a firmware that has but one names it.
 
+mod chosen;
 mod contouring;
 mod line_tracking;
 mod shaft_estimator;
 
-pub use contouring::Contouring;
-pub use line_tracking::LineTracking;
-pub use shaft_estimator::ShaftEstimator;
+pub use chosen::ChosenController;
+pub use contouring::{Contouring, ContouringSettings, PositionGains, ShaftSettings};
+pub use line_tracking::{LineTracking, LineTrackingSettings};
+pub use shaft_estimator::{ShaftEstimator, ShaftModel};
 
 use crate::{Axis, Demand, Direction, Drive, StepPoint};
 use core::time::Duration;

@@ -75,15 +75,20 @@ impl ShaftEstimator {
     /// A shaft at rest in the middle of count 0.
     #[must_use]
     pub fn new(config: &AxisConfig, observer_hz: f64) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
+        let observer_rad_s = (observer_hz * TAU) as f32;
+        Self::with_model(ShaftModel::new(config), config.encoder.decoding, observer_rad_s)
+    }
+
+    /// The same from a model of the shaft, the encoder's decoding and the filter's 2 pi f, rad/s.
+    #[must_use]
+    pub fn with_model(model: ShaftModel, decoding: Decoding, observer_rad_s: f32) -> Self {
         // What a drag may be, as a share of what the supply can push: more would only wind up while a shaft
         // is held fast.
         const DRAG_SHARE: f32 = 0.1;
-        let model = ShaftModel::new(config);
-        #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
-        let observer_rad_s = (observer_hz * TAU) as f32;
         let mut estimator = Self {
             model,
-            decoding: config.encoder.decoding,
+            decoding,
             observer_rad_s,
             drag_limit: DRAG_SHARE * model.accel_per_volt * model.supply_v,
             count: 0,

@@ -1,10 +1,8 @@
 //! The semi-virtual gantry's controller: the published protocol on one side, two DC motors on the other.
 
-use crate::control::{Contouring, LineController, LineTracking};
+use crate::control::{ChosenController, LineController};
 use crate::protocol::digits::{Dropped, Receiver, Reply};
-use crate::{
-    Axis, ControllerChoice, Demand, Direction, Drive, LimitSwitches, Machine, SafetyGate, StepPoint,
-};
+use crate::{Axis, Demand, Direction, Drive, LimitSwitches, Machine, SafetyGate, StepPoint};
 use core::fmt;
 use core::time::Duration;
 
@@ -66,9 +64,9 @@ const MOST_NOTICES: usize = 8;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Gantry {
+pub struct Gantry<C = ChosenController> {
     receiver: Receiver,
-    controller: Controller,
+    controller: C,
     gate: SafetyGate,
     demand: Demand,
     drive: Drive,
@@ -83,28 +81,40 @@ pub struct Gantry {
     notices: [Option<Notice>; MOST_NOTICES],
 }
 
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is one controller in a machine, and no heap to put it on"
-)]
-#[derive(Clone, Debug, PartialEq)]
-enum Controller {
-    Published(LineTracking),
-    Contouring(Contouring),
+/// What the controller of the gantry must know of a machine besides what its [`LineController`] does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GantrySettings {
+    /// A silence inside a target after which what came of it is dropped, us.
+    pub resync_gap_us: u32,
+    /// Greatest coordinates, encoder counts.
+    pub most: StepPoint,
 }
 
-impl Controller {
-    fn get(&self) -> &dyn LineController {
-        match self {
-            Self::Published(controller) => controller,
-            Self::Contouring(controller) => controller,
-        }
-    }
-
-    fn get_mut(&mut self) -> &mut dyn LineController {
-        match self {
-            Self::Published(controller) => controller,
-            Self::Contouring(controller) => controller,
+impl GantrySettings {
+    /// Those of a machine.
+    ///
+    /// ```
+    /// # use plotter_motion::{firmware::GantrySettings, Machine, MachineConfig, StepPoint};
+    /// let settings = GantrySettings::of(&Machine::new(MachineConfig::default())?);
+    /// assert_eq!(settings.resync_gap_us, 100_000);
+    /// assert_eq!(settings.most, StepPoint::new(594 * 40, 420 * 40));
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        let config = machine.config();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a checked machine has at most 60,000 ms"
+        )]
+        let resync_gap_us = libm::round(config.serial.resync_gap_ms * 1e3) as u32;
+        Self {
+            resync_gap_us,
+            most: StepPoint::new(
+                crate::from_mm(config.area.width_mm, config.x.counts_per_mm),
+                crate::from_mm(config.area.height_mm, config.y.counts_per_mm),
+            ),
         }
     }
 }
@@ -113,22 +123,44 @@ impl Gantry {
     /// The controller of `machine`, with its motors at rest at the origin.
     #[must_use]
     pub fn new(machine: &Machine) -> Self {
-        let config = machine.config();
-        let controller = match config.control.controller {
-            ControllerChoice::Published => Controller::Published(LineTracking::new(machine)),
-            ControllerChoice::Contouring => Controller::Contouring(Contouring::new(machine)),
-        };
+        Self::with_settings(GantrySettings::of(machine), ChosenController::of(machine))
+    }
+}
+
+impl<C: LineController> Gantry<C> {
+    /// The controller from settings, round a controller of its motors that is at rest at the origin: what a
+    /// firmware calls, which has no file to read a machine's description from.
+    ///
+    /// ```
+    /// # use plotter_motion::control::{LineTracking, LineTrackingSettings};
+    /// # use plotter_motion::firmware::{Gantry, GantrySettings};
+    /// # use plotter_motion::{PublishedConfig, StepPoint, SyncStop};
+    /// const GANTRY: GantrySettings = GantrySettings { resync_gap_us: 100_000, most: StepPoint::new(23_760, 16_800) };
+    /// const TRACKING: LineTrackingSettings = LineTrackingSettings {
+    ///     published: PublishedConfig {
+    ///         kp: 15.0,
+    ///         ki: 0.00001,
+    ///         kd_x: 0.0,
+    ///         kd_y: 10.0,
+    ///         duty_limit_x: 20.0,
+    ///         duty_limit_y: 255.0,
+    ///         duty_limit_y_vertical: 15.0,
+    ///     },
+    ///     sync_stop: SyncStop { slope_counts: 10.0, offset_counts: 10.0 },
+    /// };
+    /// let gantry = Gantry::with_settings(GANTRY, LineTracking::with_settings(TRACKING));
+    /// assert_eq!(gantry.next_tick(), None); // it answers to edges only
+    /// ```
+    #[must_use]
+    pub fn with_settings(settings: GantrySettings, controller: C) -> Self {
         Self {
-            next_tick: controller.get().period(),
+            next_tick: controller.period(),
             controller,
-            receiver: Receiver::new(Duration::from_secs_f64(config.serial.resync_gap_ms / 1e3)),
+            receiver: Receiver::new(Duration::from_micros(u64::from(settings.resync_gap_us))),
             gate: SafetyGate::default(),
             demand: Demand::NONE,
             drive: Drive::default(),
-            most: StepPoint::new(
-                crate::from_mm(config.area.width_mm, config.x.counts_per_mm),
-                crate::from_mm(config.area.height_mm, config.y.counts_per_mm),
-            ),
+            most: settings.most,
             approached: None,
             told: StepPoint::default(),
             tell_reached: false,
@@ -151,13 +183,13 @@ impl Gantry {
             return;
         }
         self.approached = Some(target);
-        let demand = self.controller.get_mut().start(now, target);
+        let demand = self.controller.start(now, target);
         self.apply(demand);
     }
 
     /// Takes an edge that an encoder's decoder counted.
     pub fn edge(&mut self, now: Duration, axis: Axis, direction: Direction) {
-        let demand = self.controller.get_mut().edge(now, axis, direction);
+        let demand = self.controller.edge(now, axis, direction);
         self.apply(demand);
     }
 
@@ -169,7 +201,7 @@ impl Gantry {
 
     /// Runs the control loop, if it is time. One that was held up runs once, and from then on in its period.
     pub fn tick(&mut self, now: Duration) {
-        let (Some(due), Some(period)) = (self.next_tick, self.controller.get().period()) else {
+        let (Some(due), Some(period)) = (self.next_tick, self.controller.period()) else {
             return;
         };
         if now < due {
@@ -178,7 +210,7 @@ impl Gantry {
         // What a loop missed that was held up is not made up for. At the end of time there is no next one.
         self.next_tick =
             due.checked_add(period).filter(|&next| next > now).or_else(|| now.checked_add(period));
-        let demand = self.controller.get_mut().tick(now);
+        let demand = self.controller.tick(now);
         self.apply(demand);
     }
 
@@ -206,9 +238,8 @@ impl Gantry {
     fn apply(&mut self, demand: Demand) {
         self.demand = demand;
         self.drive = self.gate.pass(demand);
-        let controller = self.controller.get_mut();
-        controller.applied(self.drive);
-        if self.approached.is_some() && controller.has_arrived() {
+        self.controller.applied(self.drive);
+        if self.approached.is_some() && self.controller.has_arrived() {
             self.approached = None;
             self.tell_reached = true;
             if let Some(dropped) = self.receiver.restart() {
@@ -220,7 +251,7 @@ impl Gantry {
     /// The next byte for the host, if there is one.
     #[must_use]
     pub fn transmit(&mut self) -> Option<u8> {
-        let position = self.controller.get().position();
+        let position = self.controller.position();
         let ahead = |is: i32, told: i32| i64::from(is) - i64::from(told);
         let (x, y) = (ahead(position.x, self.told.x), ahead(position.y, self.told.y));
         let direction = |ahead: i64| if ahead > 0 { Direction::Plus } else { Direction::Minus };
@@ -248,7 +279,7 @@ impl Gantry {
     /// Where the motors stand, encoder counts.
     #[must_use]
     pub fn position(&self) -> StepPoint {
-        self.controller.get().position()
+        self.controller.position()
     }
 
     /// The oldest notice that was not fetched yet.

@@ -5,5 +5,5 @@
 mod gantry;
 pub mod stepper_plotter;
 
-pub use gantry::{Gantry, Notice};
+pub use gantry::{Gantry, GantrySettings, Notice};
 pub use stepper_plotter::StepperPlotter;

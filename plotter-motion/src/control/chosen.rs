@@ -1,0 +1,83 @@
+//! [`ChosenController`]: the one that a machine's description asks for.
+
+use super::{Contouring, LineController, LineTracking};
+use crate::{Axis, ControllerChoice, Demand, Direction, Drive, Machine, StepPoint};
+use core::time::Duration;
+
+/// Either controller, for programs that learn only from a file which one it is.
+///
+/// It is as large as the larger one. A firmware that has but one takes that itself.
+///
+/// ```
+/// # use plotter_motion::{Machine, MachineConfig, control::ChosenController};
+/// let machine = Machine::new(MachineConfig::default())?;
+/// assert!(matches!(ChosenController::of(&machine), ChosenController::Contouring(_)));
+/// # Ok::<(), plotter_motion::ConfigError>(())
+/// ```
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one controller in a machine, and no heap to put it on"
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ChosenController {
+    /// As published.
+    LineTracking(LineTracking),
+    /// Ours.
+    Contouring(Contouring),
+}
+
+impl ChosenController {
+    /// The one that a machine's description names, at rest at the origin.
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        match machine.config().control.controller {
+            ControllerChoice::Published => Self::LineTracking(LineTracking::new(machine)),
+            ControllerChoice::Contouring => Self::Contouring(Contouring::new(machine)),
+        }
+    }
+
+    fn get(&self) -> &dyn LineController {
+        match self {
+            Self::LineTracking(controller) => controller,
+            Self::Contouring(controller) => controller,
+        }
+    }
+
+    fn get_mut(&mut self) -> &mut dyn LineController {
+        match self {
+            Self::LineTracking(controller) => controller,
+            Self::Contouring(controller) => controller,
+        }
+    }
+}
+
+impl LineController for ChosenController {
+    fn period(&self) -> Option<Duration> {
+        self.get().period()
+    }
+
+    fn start(&mut self, now: Duration, target: StepPoint) -> Demand {
+        self.get_mut().start(now, target)
+    }
+
+    fn edge(&mut self, now: Duration, axis: Axis, direction: Direction) -> Demand {
+        self.get_mut().edge(now, axis, direction)
+    }
+
+    fn tick(&mut self, now: Duration) -> Demand {
+        self.get_mut().tick(now)
+    }
+
+    fn applied(&mut self, drive: Drive) {
+        self.get_mut().applied(drive);
+    }
+
+    fn position(&self) -> StepPoint {
+        self.get().position()
+    }
+
+    fn has_arrived(&self) -> bool {
+        self.get().has_arrived()
+    }
+}
