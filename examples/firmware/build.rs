@@ -1,7 +1,9 @@
 //! Reads the machines' TOML files on the host, with the checks of `plotter-motion`, and writes what the firmwares need
 //! of them as constants. So neither a parser nor a check is in their program memory.
 
-use plotter_motion::{AxisConfig, Machine};
+use plotter_motion::control::{ContouringSettings, LineTrackingSettings};
+use plotter_motion::firmware::GantrySettings;
+use plotter_motion::{AxisConfig, ControllerChoice, Machine};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -31,10 +33,14 @@ fn machine(variable: &str, default: &str) -> Result<Machine, Box<dyn Error>> {
     Ok(Machine::from_toml(&text).map_err(|error| format!("{path}: {error}"))?)
 }
 
-/// Floats are written as Rust's shortest text that reads as the same bits.
+/// Floats are written as Rust's shortest text that reads as the same bits; a plain struct's `Debug` text is its own Rust.
 fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn Error>> {
     let config = machine.config();
-    writeln!(text, "use plotter_motion::{{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotorConfig, StepperConfig}};")?;
+    writeln!(text, "use plotter_motion::control::{{Contouring, ContouringSettings, LineTracking, LineTrackingSettings}};")?;
+    writeln!(text, "use plotter_motion::control::{{PositionGains, ShaftModel, ShaftSettings}};")?;
+    writeln!(text, "use plotter_motion::firmware::GantrySettings;")?;
+    writeln!(text, "use plotter_motion::{{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotionLimits, MotorConfig}};")?;
+    writeln!(text, "use plotter_motion::{{PublishedConfig, StepPoint, StepperConfig, SyncStop}};")?;
     writeln!(text, "/// Bits a second of the gantry's line.\npub const BAUD: u32 = {};", config.serial.baud)?;
     writeln!(
         text,
@@ -42,19 +48,32 @@ fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn 
         u16::try_from(config.x.motor.pwm_steps)?,
         u16::try_from(config.y.motor.pwm_steps)?
     )?;
+    writeln!(
+        text,
+        "/// How the encoders are counted, x and y.\npub const DECODING: [Decoding; 2] = [Decoding::{:?}, Decoding::{:?}];",
+        config.x.encoder.decoding, config.y.encoder.decoding
+    )?;
     for (name, axis) in [("X", &config.x), ("Y", &config.y)] {
-        writeln!(text, "/// An axis.\npub const {name}: AxisConfig = {};", axis_literal(axis))?;
+        writeln!(text, "/// The axis, for those who simulate it.\npub const {name}: AxisConfig = {};", axis_literal(axis))?;
     }
-    writeln!(text, "/// The machine.\npub fn machine() -> plotter_motion::Machine {{ match plotter_motion::Machine::new(Default::default()) {{ Ok(m) => m, Err(_) => loop {{}} }} }}")?;
+    writeln!(text, "const GANTRY: GantrySettings = {:?};", GantrySettings::of(machine))?;
+    let name = match config.control.controller {
+        ControllerChoice::Published => {
+            writeln!(text, "const LINE: LineTrackingSettings = {:?};", LineTrackingSettings::of(machine))?;
+            "LineTracking"
+        }
+        _ => {
+            let settings = format!("{:?}", ContouringSettings::of(machine)).replace("decoding: ", "decoding: Decoding::");
+            writeln!(text, "const LINE: ContouringSettings = {settings};")?;
+            "Contouring"
+        }
+    };
+    writeln!(text, "/// The gantry's controller.\npub type Gantry = plotter_motion::firmware::Gantry<{name}>;")?;
+    writeln!(text, "/// The gantry's controller, at rest at the origin.")?;
+    writeln!(text, "#[must_use]\npub fn gantry() -> Gantry {{\n    Gantry::with_settings(GANTRY, {name}::with_settings(LINE))\n}}")?;
     Ok(())
 }
 
 fn axis_literal(axis: &AxisConfig) -> String {
-    let AxisConfig { counts_per_mm, encoder, motor, load, stepper } = axis;
-    // A plain struct's text is its own Rust; of enums the name is missing.
-    format!(
-        "AxisConfig {{ counts_per_mm: {counts_per_mm:?}, encoder: EncoderConfig {{ lines_per_turn: {}, decoding: Decoding::{:?} }}, \
-         motor: {motor:?}, load: {load:?}, stepper: {stepper:?} }}",
-        encoder.lines_per_turn, encoder.decoding
-    )
+    format!("{axis:?}").replace("decoding: ", "decoding: Decoding::")
 }

@@ -5,6 +5,11 @@ mod qemu;
 #[cfg(feature = "board-qemu")]
 pub use qemu::*;
 
+#[cfg(feature = "board-stm32f411")]
+mod stm32f411;
+#[cfg(feature = "board-stm32f411")]
+pub use stm32f411::*;
+
 use core::fmt;
 use plotter_motion::firmware;
 use plotter_motion::{Axis, Direction};
@@ -20,6 +25,8 @@ pub enum Event {
     LineFault,
     /// An encoder counted.
     Edge(Axis, Direction),
+    /// An encoder's pin could not be read.
+    EncoderFault,
 }
 
 /// The pins of a motor's H-bridge.
@@ -42,6 +49,8 @@ pub enum Notice {
     LineFault,
     /// The watchdog reset the processor: where the motors stand is not known any more, and they are stopped.
     Bitten,
+    /// The emergency stop button was pressed.
+    Stopped,
     /// A pin failed; the motors are stopped.
     PinFailed,
 }
@@ -52,7 +61,15 @@ impl fmt::Display for Notice {
             Self::Controller(notice) => write!(f, "controller: {notice}"),
             Self::LineFault => f.write_str("firmware: a byte of the host was lost"),
             Self::Bitten => f.write_str("firmware: reset by its watchdog; the motors are stopped"),
+            Self::Stopped => f.write_str("firmware: emergency stop; switch off and on when the machine is free"),
             Self::PinFailed => f.write_str("firmware: a pin failed; the motors are stopped"),
         }
+    }
+}
+
+/// Stands still for good, with the pins as they are: only after the motors have been stopped.
+pub fn halt() -> ! {
+    loop {
+        cortex_m::asm::wfi();
     }
 }

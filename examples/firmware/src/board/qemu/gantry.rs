@@ -38,8 +38,6 @@ pub struct Parts {
     pub y_phases: (Input, Input),
     /// The emergency stop button: normally closed to ground, so high is pressed.
     pub stop: Input,
-    /// The button that ends an emergency stop: to ground, so low is pressed.
-    pub reset: Input,
     /// The rest.
     pub rest: Rest,
 }
@@ -162,7 +160,6 @@ pub fn take() -> Option<Parts> {
     let x: &'static AxisCells = singleton!(X_CELLS: AxisCells = AxisCells::new())?;
     let y: &'static AxisCells = singleton!(Y_CELLS: AxisCells = AxisCells::new())?;
     let stop: &'static Wire = singleton!(STOP: Wire = Cell::new(false))?;
-    let reset: &'static Wire = singleton!(RESET: Wire = Cell::new(true))?;
     let bench = Bench::new();
     let axes = [SimulatedAxis::new(Axis::X, x), SimulatedAxis::new(Axis::Y, y)];
     Some(Parts {
@@ -171,7 +168,6 @@ pub fn take() -> Option<Parts> {
         x_phases: x.phases(),
         y_phases: y.phases(),
         stop: Input(stop),
-        reset: Input(reset),
         rest: Rest { bench, axes, stop },
     })
 }
