@@ -10,8 +10,8 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    BenchSwitches, Figure, PlotOutcome, Recorded, at, built_firmware, html_page, plot_in_emulator, plot_on_port, print,
-    read_file, run, simulate, vectorizer, write_file,
+    BenchSwitches, Figure, PlotOutcome, Recorded, at, built_firmware, html_page, plot_in_emulator,
+    plot_on_port, print, read_file, run, simulate, vectorizer, write_file,
 };
 use plotter_motion::{
     ControllerChoice, DriveChoice, Machine, MachineConfig, OutOfReach, PenMove, PlotOp, Point, hpgl, targets,

@@ -3,6 +3,7 @@
 
 use plotter_motion::control::{ContouringSettings, LineTrackingSettings};
 use plotter_motion::firmware::GantrySettings;
+use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use plotter_motion::{AxisConfig, ControllerChoice, Machine};
 use std::error::Error;
 use std::fmt::Write as _;
@@ -17,10 +18,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=memory/{board}.x");
     println!("cargo:rerun-if-changed=build.rs");
 
-    // Another machine: GANTRY=../../my-machine.toml
+    // Another machine: GANTRY=../my-gantry.toml, STEPPER_PLOTTER=../my-plotter.toml
     let gantry = machine("GANTRY", "../machines/semi-virtual-gantry.toml")?;
+    let plotter = machine("STEPPER_PLOTTER", "../machines/stepper-plotter.toml")?;
     let mut text = String::new();
     gantry_constants(&gantry, &mut text)?;
+    plotter_constants(&plotter, &mut text)?;
     fs::write(out.join("machine.rs"), text)?;
     Ok(())
 }
@@ -76,4 +79,25 @@ fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn 
 
 fn axis_literal(axis: &AxisConfig) -> String {
     format!("{axis:?}").replace("decoding: ", "decoding: Decoding::")
+}
+
+/// The same for the stepper plotter, which speaks Grbl's language.
+fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn Error>> {
+    let settings = StepperPlotterSettings::of(machine, Dialect::Grbl);
+    writeln!(text, "use core::time::Duration;")?;
+    writeln!(text, "use plotter_motion::firmware::stepper_plotter::{{Dialect, StepperPlotterSettings, StoredSettings}};")?;
+    writeln!(text, "use plotter_motion::gcode::{{LaserCommand, PenConvention, ServoCommand}};")?;
+    writeln!(text, "use plotter_motion::{{HomingAxis, PathMode, PlannerSettings}};")?;
+    let baud = machine.config().serial.baud;
+    writeln!(text, "/// Bits a second of the stepper plotter's line.\npub const PLOTTER_BAUD: u32 = {baud};")?;
+    let mut literal = format!("{settings:?}");
+    for (name, duration) in [("pen_settle", settings.pen_settle), ("gather", settings.gather)] {
+        let nanos = duration.as_nanos();
+        literal = literal.replace(&format!("{name}: {duration:?}"), &format!("{name}: Duration::from_nanos({nanos})"));
+    }
+    for (field, name) in [("dialect", "Dialect"), ("path", "PathMode"), ("pen", "PenConvention"), ("command", "LaserCommand")] {
+        literal = literal.replace(&format!(" {field}: "), &format!(" {field}: {name}::"));
+    }
+    writeln!(text, "/// The stepper plotter's settings.\npub const PLOTTER: StepperPlotterSettings = {literal};")?;
+    Ok(())
 }

@@ -80,7 +80,10 @@ pub fn plot_in_emulator<W: Write>(
                     return Err(format!("the machine sent {byte:#04x}, and it did not come over the line"));
                 }
                 if came != [byte] {
-                    return Err(format!("the machine sent {byte:#04x}, and {:#04x} came over the line", came[0]));
+                    return Err(format!(
+                        "the machine sent {byte:#04x}, and {:#04x} came over the line",
+                        came[0]
+                    ));
                 }
                 recorder.record(now, BenchEvent::ControllerByte(byte));
                 if let Some(event) = host.receive(now, byte) {
@@ -99,7 +102,7 @@ pub fn plot_in_emulator<W: Write>(
                 outcome.notices.push(format!("{:.3} s: {text}", now.as_secs_f64()));
                 recorder.write(now, Event::Note(text));
             }
-            Told::Start { .. } | Told::Steps { .. } => {}
+            Told::Start { .. } | Told::Steps { .. } | Told::Position(..) => {}
         }
     }
     outcome.duration = end.unwrap_or_default();

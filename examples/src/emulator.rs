@@ -50,6 +50,8 @@ pub enum Told {
         /// CRC-64/XZ.
         crc: u64,
     },
+    /// Where the pulses have led a motor, steps.
+    Position(Axis, i32),
     /// The processor starts.
     Start {
         /// Because its watchdog reset it.
@@ -104,7 +106,8 @@ impl Emulator {
         let mut command = Command::new(&qemu);
         command.args(["-machine", "mps2-an386", "-display", "none", "-monitor", "none"]);
         command.args(["-serial", "pty", "-serial", "stdio"]);
-        for (index, word) in [1, u32::from(stop_pressed), bite_at_us, overrun_at_byte].into_iter().enumerate() {
+        for (index, word) in [1, u32::from(stop_pressed), bite_at_us, overrun_at_byte].into_iter().enumerate()
+        {
             let address = SWITCHES + 4 * index;
             command.args(["-device", &format!("loader,addr={address:#x},data={word},data-len=4")]);
         }
@@ -167,7 +170,7 @@ impl Emulator {
             since_us += self.number()?;
         }
         self.now_us += since_us;
-        let duty = |zigzag: u64| {
+        let signed = |zigzag: u64| {
             let size = i32::try_from(zigzag / 2).unwrap_or(i32::MAX);
             if zigzag % 2 == 0 { size } else { -size - 1 }
         };
@@ -179,8 +182,8 @@ impl Emulator {
             4 => Told::Edge(Axis::X, Direction::Minus),
             5 => Told::Edge(Axis::Y, Direction::Plus),
             6 => Told::Edge(Axis::Y, Direction::Minus),
-            7 => Told::Duty(Axis::X, duty(self.number()?)),
-            8 => Told::Duty(Axis::Y, duty(self.number()?)),
+            7 => Told::Duty(Axis::X, signed(self.number()?)),
+            8 => Told::Duty(Axis::Y, signed(self.number()?)),
             9 => Told::Stop(self.byte()? != 0),
             10 => Told::Note(self.text()?),
             11 => {
@@ -199,6 +202,8 @@ impl Emulator {
                 Told::Start { bitten }
             }
             13 => return Err(format!("the firmware has stopped: {}", self.text()?)),
+            14 => Told::Position(Axis::X, signed(self.number()?)),
+            15 => Told::Position(Axis::Y, signed(self.number()?)),
             kind => return Err(format!("the emulator's bench says {kind}, which means nothing")),
         };
         Ok((Duration::from_micros(self.now_us), told))

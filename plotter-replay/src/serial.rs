@@ -135,7 +135,9 @@ impl Port {
     /// [`PortError`] if the port is gone.
     pub fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
         let until = Instant::now() + wait;
-        self.inner.set_timeout(wait.max(Duration::from_millis(1))).map_err(|error| self.other(&error.into()))?;
+        self.inner
+            .set_timeout(wait.max(Duration::from_millis(1)))
+            .map_err(|error| self.other(&error.into()))?;
         let result = loop {
             match self.inner.read(bytes) {
                 Ok(0) if !bytes.is_empty() => break Err(self.error(PortErrorKind::Gone)),
@@ -178,6 +180,9 @@ mod tests {
     fn a_port_that_is_not_there_is_said_to_be_so() {
         let error = Port::open("/dev/no-such-plotter", 9_600).unwrap_err();
         assert!(matches!(error.kind, PortErrorKind::NotThere { .. }), "{error:?}");
-        assert!(error.to_string().starts_with("/dev/no-such-plotter: there is no such serial port"), "{error}");
+        assert!(
+            error.to_string().starts_with("/dev/no-such-plotter: there is no such serial port"),
+            "{error}"
+        );
     }
 }

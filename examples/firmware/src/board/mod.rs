@@ -40,6 +40,15 @@ pub struct MotorPins<Enable, Forward, Reverse> {
     pub reverse: Reverse,
 }
 
+/// The pins of a stepper motor's driver.
+#[derive(Debug)]
+pub struct StepperPins<Step, Dir> {
+    /// A rising edge is a step.
+    pub step: Step,
+    /// High to turn to larger coordinates.
+    pub dir: Dir,
+}
+
 /// What a person at the machine should know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Notice {

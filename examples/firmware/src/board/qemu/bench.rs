@@ -16,7 +16,8 @@
 //! | 7, 8 | the duty on the pins of the x, the y motor | steps, LEB128 of 2n, or of -2n-1 below 0 |
 //! | 9 | the emergency stop button | 1 pressed, 0 free |
 //! | 10 | a note | length, text |
-//! | 11 | steps so far | their number, LEB128, and their CRC-64, 8 bytes |
+//! | 11 | steps so far | their number, LEB128, and their CRC-64/XZ, 8 bytes |
+//! | 14, 15 | where the pulses on STEP have led the x, the y motor | steps, as the duty |
 //! | 12 | the processor starts | 1 after a reset by its watchdog, 0 otherwise |
 //! | 13 | the firmware has stopped for good | length, text |
 //!
@@ -59,6 +60,8 @@ pub enum Told<'a> {
     Note(fmt::Arguments<'a>),
     /// Kind 11.
     Steps(u64, u64),
+    /// Kinds 14 and 15: 0 for x.
+    Position(u8, i32),
     /// Kind 12.
     Start {
         /// By its watchdog.
@@ -195,7 +198,11 @@ impl Bench {
             Told::Edge(which) => self.record(now_us, 3 + which.min(3)),
             Told::Duty(axis, steps) => {
                 self.record(now_us, 7 + axis.min(1));
-                self.put(u64::from(((steps << 1) ^ (steps >> 31)).unsigned_abs()));
+                self.put_signed(steps);
+            }
+            Told::Position(axis, steps) => {
+                self.record(now_us, 14 + axis.min(1));
+                self.put_signed(steps);
             }
             Told::Stop(pressed) => self.record_with(now_us, 9, pressed.into()),
             Told::Note(text) => self.text(now_us, 10, text),
@@ -235,6 +242,10 @@ impl Bench {
         for byte in line.bytes() {
             self.uart.send(byte);
         }
+    }
+
+    fn put_signed(&mut self, number: i32) {
+        self.put(u64::from(((number << 1) ^ (number >> 31)).cast_unsigned()));
     }
 
     /// LEB128: seven bits a byte, the least first, the eighth says that more follow.

@@ -8,6 +8,7 @@ pub mod bench;
 pub mod gantry;
 mod line;
 mod pins;
+pub mod plotter;
 mod registers;
 
 /// Nothing is driven while the processor stands still: the pins are in its memory.

@@ -12,6 +12,36 @@ pub type Wire = Cell<bool>;
 #[derive(Clone, Copy, Debug)]
 pub struct Output(pub &'static Wire);
 
+/// An output pin on a motor driver's STEP: the motor goes on at its rising edges, to where DIR says then.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// The level.
+    pub level: &'static Wire,
+    /// DIR.
+    pub dir: &'static Wire,
+    /// Where the motor stands.
+    pub position: &'static Cell<i32>,
+}
+
+impl ErrorType for Step {
+    type Error = Infallible;
+}
+
+impl OutputPin for Step {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.level.set(false);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        if !self.level.replace(true) {
+            let by = if self.dir.get() { 1 } else { -1 };
+            self.position.set(self.position.get().wrapping_add(by));
+        }
+        Ok(())
+    }
+}
+
 /// An input pin.
 #[derive(Clone, Copy, Debug)]
 pub struct Input(pub &'static Wire);
