@@ -197,6 +197,22 @@ fn whichever_access_fails_the_motor_has_no_voltage_or_the_error_says_so() {
     }
 }
 
+#[test]
+fn two_faults_in_a_row_do_not_leave_a_motor_driven_either() {
+    for kind in KINDS {
+        let whole = Analyser::default();
+        kind.run(&whole, Drives(&EVERYTHING)).unwrap();
+        for at in 0..whole.accesses() {
+            for later in 1..=3 {
+                let fault = Fault::Two { at, later };
+                let analyser = Analyser::failing(fault);
+                let failed = kind.run(&analyser, Drives(&EVERYTHING)).unwrap_err();
+                assert_eq!((failed, kind.now(&analyser)), (Failed::Stopped, 0), "{kind:?} {fault:?}");
+            }
+        }
+    }
+}
+
 /// A fault in the middle, then all is well again.
 struct Recovery<'a>(&'a Analyser, Fault);
 
