@@ -3,6 +3,8 @@
 //! As C reads it: words are separated by spaces and nothing else, the command is a capital letter and the whole number after it,
 //! a number ends where it ceases to be one. What is unknown asks for nothing.
 
+use crate::decimal::Decimal;
+
 /// What a line asks for. A number that lacks is `None` within.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Request {
@@ -76,41 +78,28 @@ fn lettered<'a>(words: impl Iterator<Item = &'a [u8]>, letter: u8) -> Option<i32
     words.filter_map(|word| word.strip_prefix(&[letter])).filter_map(whole).last()
 }
 
-/// The length of the sign and the digits at the beginning, and whether there are digits.
-fn digits(text: &[u8]) -> (usize, bool) {
-    let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
-    let count = text.iter().skip(sign).take_while(|byte| byte.is_ascii_digit()).count();
-    (sign + count, count > 0)
-}
-
-fn parse<N: core::str::FromStr>(text: &[u8], len: usize) -> Option<N> {
-    core::str::from_utf8(text.get(..len)?).ok()?.parse().ok()
-}
-
-/// The whole number that a text begins with.
+/// The whole number that a text begins with; one beyond every range counts as the greatest there is.
 fn whole(text: &[u8]) -> Option<i32> {
     let text = text.trim_ascii_start();
-    let (len, any) = digits(text);
-    if !any {
-        return None;
-    }
-    // Longer than any that means something.
-    Some(parse(text, len).unwrap_or(i32::MAX))
+    let end = text.iter().position(|byte| *byte == b'.').unwrap_or(text.len());
+    #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
+    let whole = text.get(..end).and_then(number).map(|value| value as i32);
+    whole
 }
 
 /// The decimal number that a text begins with.
 fn decimal(text: &[u8]) -> Option<f32> {
-    let text = text.trim_ascii_start();
-    let (before, any_before) = digits(text);
-    let after = match text.get(before..).and_then(|rest| rest.strip_prefix(b".")) {
-        Some(rest) => rest.iter().take_while(|byte| byte.is_ascii_digit()).count(),
-        None => 0,
-    };
-    if !any_before && after == 0 {
-        return None;
-    }
-    let len = if after > 0 { before + 1 + after } else { before };
-    parse(text, len)
+    #[expect(clippy::cast_possible_truncation, reason = "what the machine's own program reads, a C float")]
+    let value = number(text.trim_ascii_start()).map(|value| value as f32);
+    value
+}
+
+/// Sign, digits and point, as far as they go. (The standard library's reader takes 14 KB of a microcontroller's flash.)
+fn number(text: &[u8]) -> Option<f64> {
+    let (first, rest) = text.split_first()?;
+    let mut number = Decimal::begin(*first)?;
+    let _ = rest.iter().take_while(|byte| number.push(**byte)).count();
+    number.value()
 }
 
 #[cfg(test)]
