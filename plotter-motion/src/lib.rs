@@ -56,7 +56,9 @@ pub use profile::{MotionLimits, ProfileError, ProfilePoint, Ramp, SCurve, Trapez
 pub use pulse_counter::PulseCounter;
 pub use safety::{Beam, Blocked, Demand, Drive, Duty, DutyError, LimitSwitches, Pulse, SafetyGate};
 pub use shapes::{circle, rectangle};
-pub use stepgen::{BacklashSteps, Busy, MotorEvent, StepGen, StepGenSettings, TimedEvent};
+pub use stepgen::{
+    BacklashSteps, Busy, MotorEvent, QueuedEvent, StepGen, StepGenSettings, StepQueue, TimedEvent,
+};
 pub use steps::{StepPoint, from_mm};
 pub use sync_stop::SyncStop;
 pub use targets::{OutOfReach, targets};

@@ -219,6 +219,12 @@ impl LimitSwitches {
         }
     }
 
+    /// Whether any switch is pressed.
+    #[must_use]
+    pub const fn any(&self) -> bool {
+        self.x_min | self.x_max | self.y_min | self.y_max
+    }
+
     /// Notes one switch.
     pub const fn set(&mut self, axis: Axis, end: Direction, pressed: bool) {
         match (axis, end) {
@@ -255,12 +261,19 @@ pub struct SafetyGate {
     limits: LimitSwitches,
     button_pressed: bool,
     latched: bool,
+    /// Whether any of them is in the way of anything: what a step is asked first.
+    in_the_way: bool,
 }
 
 impl SafetyGate {
     /// Notes the state of all limit switches.
     pub const fn set_limits(&mut self, limits: LimitSwitches) {
         self.limits = limits;
+        self.note();
+    }
+
+    const fn note(&mut self) {
+        self.in_the_way = self.latched | self.limits.any();
     }
 
     /// The limit switches as last noted.
@@ -273,6 +286,7 @@ impl SafetyGate {
     pub const fn emergency_stop(&mut self, pressed: bool) {
         self.button_pressed = pressed;
         self.latched |= pressed;
+        self.note();
     }
 
     /// Whether the emergency stop is latched.
@@ -290,6 +304,7 @@ impl SafetyGate {
     /// Unlatches the emergency stop, unless the button is still pressed; says whether drive may flow again.
     pub const fn reset(&mut self) -> bool {
         self.latched = self.button_pressed;
+        self.note();
         !self.latched
     }
 
@@ -315,6 +330,9 @@ impl SafetyGate {
     ///
     /// [`Blocked`] says what is in the way.
     pub const fn pass_step(&self, step: StepPair) -> Result<Pulse, Blocked> {
+        if !self.in_the_way {
+            return Ok(Pulse { x: step.x, y: step.y });
+        }
         if self.latched {
             return Err(Blocked::Stopped);
         }

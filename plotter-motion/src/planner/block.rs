@@ -47,16 +47,15 @@ pub(super) struct Block {
 }
 
 impl Block {
-    pub(super) fn path(shape: Shape, to: Point, length_mm: f64, pen: Pen, power: u16, feed2: f64) -> Self {
+    pub(super) fn path(shape: Shape, to: Point, length_mm: f32, pen: Pen, power: u16, feed2: f32) -> Self {
         let (kind, centre, sweep_rad) = match shape {
             Shape::Line => (Kind::Line, Point::ORIGIN, 0.0),
             Shape::Arc { centre, sweep_rad } => (Kind::Arc, centre, sweep_rad),
             Shape::Spiral { pole, sweep_rad, growth } if growth < 0.0 => (Kind::Narrowing, pole, sweep_rad),
             Shape::Spiral { pole, sweep_rad, .. } => (Kind::Widening, pole, sweep_rad),
         };
-        let (length, feed_mm_s, sweep_rad) =
-            (single(length_mm), single(libm::sqrt(feed2)), single(sweep_rad));
-        Self { to, centre, length, feed_mm_s, sweep_rad, kind, pen, power, ..Self::default() }
+        let (feed_mm_s, sweep_rad) = (libm::sqrtf(feed2), single(sweep_rad));
+        Self { to, centre, length: length_mm, feed_mm_s, sweep_rad, kind, pen, power, ..Self::default() }
     }
 
     pub(super) fn dwell(duration: Duration) -> Self {
@@ -74,6 +73,11 @@ impl Block {
     /// mm; seconds of a dwell.
     pub(super) fn length(&self) -> f64 {
         f64::from(self.length)
+    }
+
+    /// The same as it is kept.
+    pub(super) const fn length_single(&self) -> f32 {
+        self.length
     }
 
     /// Whether it moves.
@@ -105,7 +109,7 @@ impl Block {
 }
 
 /// As a block keeps it.
-fn single(value: f64) -> f32 {
+pub(super) fn single(value: f64) -> f32 {
     #[expect(clippy::cast_possible_truncation, reason = "rounded, as the fields say")]
     let rounded = value as f32;
     rounded

@@ -1,10 +1,11 @@
 //! [`Front`]: plot operations in, blocks out. Finds the corners, and in tolerance mode rounds them.
 
 use super::blend::{Blend, GROWTH, Room, to_pole};
-use super::block::{Block, Kind};
-use super::junction::Corner;
+use super::block::{Block, Kind, single};
+use super::junction::{Corner, corner_speed2};
+use super::limits::Limits;
 use super::merge::{Merged, Merger};
-use super::ring::{Ring, narrow};
+use super::ring::{Ring, least, narrow};
 use super::{PathMode, PlanError, PlannerSettings, Shape};
 use crate::{Pen, PlotOp, Point, Vec2};
 use core::f64::consts::TAU;
@@ -21,9 +22,9 @@ const TURN_SLACK_RAD: f64 = 1e-9;
 /// The end of the last block of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Exit {
-    direction: Vec2,
-    length_mm: f64,
-    cruise2: f64,
+    direction: [f32; 2],
+    length_mm: f32,
+    cruise2: f32,
 }
 
 /// What the machine does without a stop as far as the front is concerned: lines and arcs with the same pen.
@@ -40,14 +41,14 @@ struct Run {
 struct Stretch {
     shape: Shape,
     to: Point,
-    length_mm: f64,
+    length_mm: f32,
     /// Directions at its ends.
-    entry: Vec2,
-    exit: Vec2,
+    entry: [f32; 2],
+    exit: [f32; 2],
     /// Squares of the speed that was asked for, of the greatest for its form, and of the greatest at its start.
-    feed2: f64,
-    most2: f64,
-    most_entry2: f64,
+    feed2: f32,
+    most2: f32,
+    most_entry2: f32,
 }
 
 /// A corner that is rounded.
@@ -65,21 +66,27 @@ struct Turn {
 /// Makes blocks of plot operations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Front {
+    pub(super) limits: Limits,
     position: Point,
     pen: Pen,
     power: u16,
     run: Option<Run>,
     /// Square of the greatest speed of a segment too short for a block, which is still to come.
-    short_cruise2: Option<f64>,
+    short_cruise2: Option<f32>,
     merger: Merger,
     /// A segment whose end may still be rounded.
     held: Option<Merged>,
 }
 
 impl Front {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(settings: &PlannerSettings) -> Self {
+        Self::at(Limits::of(settings), Point::ORIGIN)
+    }
+
+    fn at(limits: Limits, position: Point) -> Self {
         Self {
-            position: Point::ORIGIN,
+            limits,
+            position,
             pen: Pen::Up,
             power: u16::MAX,
             run: None,
@@ -95,7 +102,7 @@ impl Front {
 
     /// Begins anew at another place, with the pen up.
     pub(super) fn restart(&mut self, position: Point) {
-        *self = Self { position, power: self.power, ..Self::new() };
+        *self = Self { power: self.power, ..Self::at(self.limits, position) };
     }
 
     /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; else what ends a
@@ -118,17 +125,16 @@ impl Front {
             if near { Ok(place) } else { Err(PlanError::Place { place }) }
         };
         let feed2 = |feed_mm_s: Option<f64>| match feed_mm_s {
-            None => Ok(settings.speed_mm_s * settings.speed_mm_s),
+            None => Ok(self.limits.speed2),
             Some(feed) if feed > 0.0 && feed.is_finite() => {
                 let feed = feed.min(settings.speed_mm_s);
-                Ok(feed * feed)
+                Ok(narrow(feed * feed))
             }
             Some(feed_mm_s) => Err(PlanError::Feed { feed_mm_s }),
         };
         match op {
             PlotOp::Travel { to } => {
-                let travel2 = settings.travel_speed_mm_s * settings.travel_speed_mm_s;
-                self.line(place(to)?, Pen::Up, travel2, settings, ring);
+                self.line(place(to)?, Pen::Up, self.limits.travel2, settings, ring);
             }
             PlotOp::Draw { to, feed_mm_s } => {
                 self.line(place(to)?, Pen::Down, feed2(feed_mm_s)?, settings, ring);
@@ -188,7 +194,7 @@ impl Front {
         &mut self,
         to: Point,
         pen: Pen,
-        cruise2: f64,
+        cruise2: f32,
         settings: &PlannerSettings,
         ring: &mut Ring<N>,
     ) {
@@ -204,11 +210,12 @@ impl Front {
         self.position = to;
         match settings.path {
             PathMode::Exact => {
-                if length(to - run.at) < settings.resolution_mm {
+                let way = Way::new(to - run.at);
+                if way.length_mm < self.limits.resolution_mm {
                     self.short_cruise2 = Some(cruise2);
                 } else {
                     self.short_cruise2 = None;
-                    self.emit_line(to, cruise2, settings, ring);
+                    self.emit_way(to, way, cruise2, ring);
                 }
             }
             PathMode::Tolerance { path_tolerance_mm } => {
@@ -232,7 +239,7 @@ impl Front {
         centre: Point,
         sweep_rad: f64,
         to: Point,
-        cruise2: f64,
+        cruise2: f32,
         settings: &PlannerSettings,
         ring: &mut Ring<N>,
     ) {
@@ -252,24 +259,25 @@ impl Front {
             along * (1.0 / length(radius))
         };
         let shape = Shape::Arc { centre, sweep_rad };
-        let most2 = settings.accel_mm_s2 * near_mm;
-        let (entry, exit) = (ahead(out), ahead(end));
+        let most2 = narrow(settings.accel_mm_s2 * near_mm);
+        let (entry, exit) = (direction(ahead(out)), direction(ahead(end)));
+        let length_mm = single(length_mm);
         let stretch =
             Stretch { shape, to, length_mm, entry, exit, feed2: cruise2, most2, most_entry2: most2 };
-        self.emit(stretch, settings, ring);
+        self.emit(stretch, ring);
     }
 
     /// Gives out what has been put off. The run goes on.
     fn flush<const N: usize>(&mut self, settings: &PlannerSettings, ring: &mut Ring<N>) {
         if let Some(cruise2) = self.short_cruise2.take() {
-            self.emit_line(self.position, cruise2, settings, ring);
+            self.emit_line(self.position, cruise2, ring);
         }
         if let PathMode::Tolerance { path_tolerance_mm } = settings.path {
             if let Some(merged) = self.merger.end() {
                 self.blend(merged, path_tolerance_mm, settings, ring);
             }
             if let Some(held) = self.held.take() {
-                self.emit_line(held.to, held.cruise2, settings, ring);
+                self.emit_line(held.to, held.cruise2, ring);
             }
         }
     }
@@ -294,7 +302,7 @@ impl Front {
                 deviation_mm: path_tolerance_mm - held.deviation_mm.max(next.deviation_mm),
                 // The next corner is left its half of the segment between.
                 tangent_mm: in_mm.min(0.5 * out_mm),
-                cruise2: held.cruise2.min(next.cruise2),
+                cruise2: f64::from(least(held.cruise2, next.cruise2)),
                 accel_mm_s2: settings.accel_mm_s2,
             };
             let blend = Blend::choose(corner, turn_rad.abs(), room);
@@ -303,21 +311,21 @@ impl Front {
             if tangent_mm.is_finite() && blend_mm > settings.resolution_mm {
                 // However short: a curve that begins elsewhere is another curve.
                 if in_mm - tangent_mm > SHORTEST_MM {
-                    self.emit_line(held.to - along * tangent_mm, held.cruise2, settings, ring);
+                    self.emit_line(held.to - along * tangent_mm, held.cruise2, ring);
                 }
                 let turn = Turn { vertex: held.to, along, after, turn_rad, tangent_mm, length_mm: blend_mm };
-                self.emit_blend(blend, turn, room.cruise2, settings, ring);
+                self.emit_blend(blend, turn, least(held.cruise2, next.cruise2), settings, ring);
                 return;
             }
         }
-        self.emit_line(held.to, held.cruise2, settings, ring);
+        self.emit_line(held.to, held.cruise2, ring);
     }
 
     fn emit_blend<const N: usize>(
         &mut self,
         blend: Blend,
         turn: Turn,
-        cruise2: f64,
+        cruise2: f32,
         settings: &PlannerSettings,
         ring: &mut Ring<N>,
     ) {
@@ -328,11 +336,12 @@ impl Front {
         match blend {
             Blend::Arc { radius_mm } => {
                 let shape = Shape::Arc { centre: begin + inwards(along) * radius_mm, sweep_rad: turn_rad };
-                let most2 = settings.accel_mm_s2 * radius_mm;
-                let (entry, exit, feed2) = (along, after, cruise2);
+                let most2 = narrow(settings.accel_mm_s2 * radius_mm);
+                let (entry, exit, feed2) = (direction(along), direction(after), cruise2);
+                let length_mm = single(length_mm);
                 let arc =
                     Stretch { shape, to: end, length_mm, entry, exit, feed2, most2, most_entry2: most2 };
-                self.emit(arc, settings, ring);
+                self.emit(arc, ring);
             }
             Blend::Spirals { radius_mm, deviation_mm } => {
                 let grown_mm = radius_mm * libm::exp(GROWTH * 0.5 * turn_rad.abs());
@@ -344,75 +353,101 @@ impl Front {
                 let narrowing = Stretch {
                     shape: narrowing,
                     to: apex,
-                    length_mm: half_mm,
-                    entry: along,
-                    exit: middle,
+                    length_mm: single(half_mm),
+                    entry: direction(along),
+                    exit: direction(middle),
                     feed2: cruise2,
                     // What can brake in time for the apex is nowhere too fast for the radius: both grow alike.
-                    most2: f64::INFINITY,
-                    most_entry2: f64::INFINITY,
+                    most2: f32::INFINITY,
+                    most_entry2: f32::INFINITY,
                 };
-                self.emit(narrowing, settings, ring);
+                self.emit(narrowing, ring);
                 let pole = apex + to_pole(middle, inwards(middle), radius_mm, GROWTH);
                 let widening = Shape::Spiral { pole, sweep_rad, growth: GROWTH };
-                let apex2 = settings.accel_mm_s2 * radius_mm;
+                let apex2 = narrow(settings.accel_mm_s2 * radius_mm);
                 let widening = Stretch {
                     shape: widening,
                     to: end,
-                    entry: middle,
-                    exit: after,
+                    entry: direction(middle),
+                    exit: direction(after),
                     most_entry2: apex2,
                     ..narrowing
                 };
-                self.emit(widening, settings, ring);
+                self.emit(widening, ring);
             }
         }
     }
 
-    fn emit_line<const N: usize>(
-        &mut self,
-        to: Point,
-        cruise2: f64,
-        settings: &PlannerSettings,
-        ring: &mut Ring<N>,
-    ) {
-        let Some(run) = self.run else { return };
-        let way = to - run.at;
-        let length_mm = length(way);
+    fn emit_line<const N: usize>(&mut self, to: Point, cruise2: f32, ring: &mut Ring<N>) {
+        if let Some(run) = self.run {
+            self.emit_way(to, Way::new(to - run.at), cruise2, ring);
+        }
+    }
+
+    /// Gives out a line, if it has a length.
+    fn emit_way<const N: usize>(&mut self, to: Point, way: Way, cruise2: f32, ring: &mut Ring<N>) {
+        let Way { length_mm, direction } = way;
         if length_mm > 0.0 {
-            let along = way * (1.0 / length_mm);
-            let most = f64::INFINITY;
+            let most = f32::INFINITY;
             let line = Stretch {
                 shape: Shape::Line,
                 to,
                 length_mm,
-                entry: along,
-                exit: along,
+                entry: direction,
+                exit: direction,
                 feed2: cruise2,
                 most2: most,
                 most_entry2: most,
             };
-            self.emit(line, settings, ring);
+            self.emit(line, ring);
         }
     }
 
     /// Gives out a block with the speed that the corner at its start allows.
-    fn emit<const N: usize>(&mut self, stretch: Stretch, settings: &PlannerSettings, ring: &mut Ring<N>) {
+    fn emit<const N: usize>(&mut self, stretch: Stretch, ring: &mut Ring<N>) {
         let Some(run) = &mut self.run else { return };
         let Stretch { shape, to, length_mm, entry, exit, feed2, most2, most_entry2 } = stretch;
-        let cruise2 = feed2.min(most2);
+        let cruise2 = least(feed2, most2);
         let mut block = Block::path(shape, to, length_mm, run.pen, self.power, feed2);
-        block.cruise2 = narrow(cruise2);
-        block.max_entry2 = run.exit.map_or(0.0, |before| {
-            let corner = Corner::new(-before.direction.dot(entry));
-            let shorter_mm = before.length_mm.min(length_mm);
-            let corner2 = corner.speed2(settings.accel_mm_s2, settings.junction_deviation_mm, shorter_mm);
-            narrow(corner2.min(before.cruise2).min(cruise2).min(most_entry2))
-        });
+        block.cruise2 = cruise2;
+        if let Some(before) = run.exit {
+            let shorter_mm = least(before.length_mm, length_mm);
+            let corner2 = corner_speed2(before.direction, entry, shorter_mm, &self.limits);
+            block.max_entry2 = least(least(corner2, before.cruise2), least(cruise2, most_entry2));
+        }
         run.at = to;
         run.exit = Some(Exit { direction: exit, length_mm, cruise2 });
         ring.push(block);
     }
+}
+
+/// A straight way as the look-ahead reckons with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Way {
+    length_mm: f32,
+    direction: [f32; 2],
+}
+
+impl Way {
+    fn new(way: Vec2) -> Self {
+        /// Shorter ways have squares with few bits, mm².
+        const LEAST_SQUARE: f32 = 1e-24;
+        let (x, y) = (single(way.x), single(way.y));
+        let square = x * x + y * y;
+        if square >= LEAST_SQUARE {
+            let length_mm = libm::sqrtf(square);
+            let share = 1.0 / length_mm;
+            return Self { length_mm, direction: [x * share, y * share] };
+        }
+        let length_mm = length(way);
+        let direction = if length_mm > 0.0 { direction(way * (1.0 / length_mm)) } else { [0.0; 2] };
+        Self { length_mm: single(length_mm), direction }
+    }
+}
+
+/// As the look-ahead reckons with it.
+fn direction(way: Vec2) -> [f32; 2] {
+    [single(way.x), single(way.y)]
 }
 
 /// Length of a way on the sheet, which is no longer than 10⁷ mm: without the scaling of `hypot`, which costs more than the rest

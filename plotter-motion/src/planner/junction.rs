@@ -8,6 +8,9 @@
 //!              ╱  angle θ  ╲
 //! ```
 
+use super::limits::Limits;
+use super::ring::least;
+
 /// Greatest speed, mm/s, at which a corner may be taken.
 ///
 /// A machine that does not stop at a vertex rounds it. The rounding is taken for an arc that touches both segments and passes
@@ -65,22 +68,39 @@ impl Corner {
     pub(super) fn tangent_mm(self, radius_mm: f64) -> f64 {
         if self.sin_half > 0.0 { radius_mm * self.cos_half / self.sin_half } else { f64::INFINITY }
     }
+}
 
-    /// The greatest square of the speed with which the corner may be taken, mm²/s²: that of [`junction_speed`], and no faster
-    /// than on an arc that touches the segments no farther than half their length from the vertex, so that a curve of many
-    /// short segments is taken no faster than the curve that it stands for.
-    ///
-    /// The second rule is that of Klipper (K. O'Connor, its documentation of kinematics, "look-ahead").
-    pub(super) fn speed2(self, accel_mm_s2: f64, deviation_mm: f64, shorter_mm: f64) -> f64 {
-        let radius_mm = self.radius_mm(deviation_mm).min(self.radius_of_tangent_mm(0.5 * shorter_mm));
-        // Straight on both are infinite.
-        accel_mm_s2 * radius_mm
+/// A turn that is smaller cannot be told from none in `f32`, rad.
+const LEAST_TURN: f32 = 4e-7;
+
+/// The greatest square of the speed with which a corner between two directions (of length 1) may be taken, mm²/s²: that of
+/// [`junction_speed`], and no faster than on an arc that touches the segments no farther than half their length from the vertex, so
+/// that a curve of many short segments is taken no faster than the curve that it stands for.
+///
+/// In `f32`, which small processors reckon with in hardware, and rounded to the safe side. From the sine of the turn, so that a small
+/// one is not lost in the difference of its cosine from 1.
+///
+/// The second rule is that of Klipper (K. O'Connor, its documentation of kinematics, "look-ahead").
+pub(super) fn corner_speed2(before: [f32; 2], after: [f32; 2], shorter_mm: f32, limits: &Limits) -> f32 {
+    let ([x, y], [u, v]) = (before, after);
+    let (cos_turn, sin_turn) = (x * u + y * v, (x * v - y * u).abs());
+    if cos_turn > 0.0 && sin_turn <= LEAST_TURN {
+        return f32::INFINITY;
     }
+    // The angle θ between the segments and the turn make half a turn together.
+    let major = libm::sqrtf(0.5 * (1.0 + cos_turn.abs()));
+    let minor = 0.5 * sin_turn / major;
+    let (sin_half, cos_half) = if cos_turn > 0.0 { (major, minor) } else { (minor, major) };
+    let (sin_half, cos_half) = (sin_half * (1.0 - LEAST_TURN), cos_half + LEAST_TURN);
+    let of_deviation = limits.junction_deviation_mm * (1.0 + sin_half) / cos_half;
+    limits.accel_single * sin_half / cos_half * least(of_deviation, 0.5 * shorter_mm)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::PlannerSettings;
+    use crate::planner::block::single;
 
     #[test]
     fn straight_on_is_unlimited_and_straight_back_is_a_stop() {
@@ -91,8 +111,22 @@ mod tests {
 
     #[test]
     fn a_right_angle_between_short_segments_is_limited_by_their_length() {
-        // tan 45 deg = 1: the arc touches half way along 0.02 mm, radius 0.01 mm
-        let speed2 = Corner::new(0.0).speed2(1000.0, 1.0, 0.02);
-        assert!((speed2 - 10.0).abs() < 1e-9, "{speed2}");
+        let settings = PlannerSettings { junction_deviation_mm: 1.0, ..PlannerSettings::default() };
+        // tan 45 deg = 1: the arc touches half way along 0.02 mm, radius 0.01 mm, at 1000 mm/s²
+        let speed2 = corner_speed2([1.0, 0.0], [0.0, 1.0], 0.02, &Limits::of(&settings));
+        assert!((10.0 - 2e-5..=10.0).contains(&speed2), "{speed2}");
+    }
+
+    #[test]
+    fn single_precision_is_never_faster_and_hardly_slower() {
+        let limits = Limits::of(&PlannerSettings::default());
+        for turn_rad in [1e-5, 1e-3, 0.1, 1.0, 1.6, 3.0, 3.1] {
+            let after = [libm::cos(turn_rad), libm::sin(turn_rad)];
+            let exact = junction_speed(-after[0], 1000.0, 0.01);
+            let found = corner_speed2([1.0, 0.0], after.map(single), 1e9, &limits);
+            let share = libm::sqrt(f64::from(found)) / exact;
+            // what is put on the safe side is 4e-7 of a radian
+            assert!((1.0 - 4e-6 - 1e-6 / turn_rad..=1.0).contains(&share), "{turn_rad}: {share}");
+        }
     }
 }

@@ -65,7 +65,7 @@ impl<const N: usize> Planner<N> {
         settings.check()?;
         Ok(Self {
             settings,
-            front: Front::new(),
+            front: Front::new(&settings),
             ring: Ring::new(),
             stale: false,
             ramps: Ramps::OVER,
@@ -155,11 +155,11 @@ impl<const N: usize> Planner<N> {
         if !core::mem::take(&mut self.hold) || self.settings.jerk_mm_s3.is_some() {
             return;
         }
-        let (accel, rest_mm) = (self.settings.accel_mm_s2, self.ramps.rest_mm());
+        let (limits, rest_mm) = (self.front.limits, self.ramps.rest_mm());
         if rest_mm > 0.0 {
-            let most2 = self.ramps.speed2() + 2.0 * accel * rest_mm;
-            let exit2 = self.ring.enter_at_most(most2, accel);
-            self.ramps.plan(exit2, accel);
+            let most2 = self.ramps.speed2() + 2.0 * limits.accel * rest_mm;
+            let exit2 = self.ring.enter_at_most(most2, limits.twice_accel);
+            self.ramps.plan(exit2, &limits);
         }
     }
 
@@ -177,15 +177,15 @@ impl<const N: usize> Planner<N> {
     /// Brakes on what is left of the course, and with what speed is left on the next.
     fn brake(&mut self) {
         if self.settings.jerk_mm_s3.is_none() && self.ramps.rest_mm() > 0.0 {
-            let exit2 = self.ramps.brake(self.settings.accel_mm_s2);
-            self.ring.enter_at_most(exit2, self.settings.accel_mm_s2);
+            let exit2 = self.ramps.brake(&self.front.limits);
+            self.ring.enter_at_most(exit2, self.front.limits.twice_accel);
         }
     }
 
     /// The next thing for the motors to do; `None` when nothing is known, or the machine is held.
     pub fn next_action(&mut self) -> Option<Action> {
         if core::mem::take(&mut self.stale) && self.settings.jerk_mm_s3.is_none() {
-            self.ring.plan(self.settings.accel_mm_s2);
+            self.ring.plan(self.front.limits.twice_accel);
         }
         if let Some(phase) = self.ramps.next() {
             return Some(Action::Phase(phase));
@@ -199,7 +199,7 @@ impl<const N: usize> Planner<N> {
         if self.is_held() {
             return None;
         }
-        let head = *self.ring.get(0)?;
+        let head = self.ring.get(0)?;
         let action = match head.kind {
             Kind::Line | Kind::Arc | Kind::Narrowing | Kind::Widening => Action::Course(head.course()),
             Kind::Dwell => Action::Dwell(Duration::try_from_secs_f64(head.length()).unwrap_or_default()),
@@ -209,8 +209,7 @@ impl<const N: usize> Planner<N> {
         if self.settings.jerk_mm_s3.is_some() && head.is_path() {
             self.s_curve.begin();
         } else {
-            let exit2 = self.ring.next_entry2();
-            self.ramps = Ramps::new(&head, exit2, self.settings.accel_mm_s2);
+            self.ramps.begin(head, self.ring.next_entry2(), &self.front.limits);
             self.ring.pop();
             if self.hold {
                 self.brake();
@@ -260,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn sixteen_blocks_take_less_than_1600_bytes() {
-        assert!(size_of::<Planner<16>>() < 1600, "{}", size_of::<Planner<16>>());
+    fn sixteen_blocks_take_less_than_1700_bytes() {
+        assert!(size_of::<Planner<16>>() < 1700, "{}", size_of::<Planner<16>>());
     }
 }

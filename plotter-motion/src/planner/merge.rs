@@ -13,7 +13,7 @@ pub(super) struct Merged {
     /// Farthest that a vertex left out is from it, mm.
     pub(super) deviation_mm: f64,
     /// Square of the greatest speed, mm²/s².
-    pub(super) cruise2: f64,
+    pub(super) cruise2: f32,
 }
 
 /// Joins segments as long as one straight line is near enough to all their vertices: the greedy form of polyline
@@ -27,12 +27,12 @@ pub(super) struct Merger {
     points: [(f32, f32); MOST],
     count: usize,
     deviation_mm: f64,
-    cruise2: f64,
+    cruise2: f32,
 }
 
 impl Merger {
     /// Takes the line from where the path is, `from`, to `to`. Gives the segment that ends at `from`, if it does.
-    pub(super) fn push(&mut self, from: Point, to: Point, cruise2: f64, tolerance_mm: f64) -> Option<Merged> {
+    pub(super) fn push(&mut self, from: Point, to: Point, cruise2: f32, tolerance_mm: f64) -> Option<Merged> {
         if self.count > 0
             && self.count < MOST
             && self.cruise2.total_cmp(&cruise2).is_eq()

@@ -15,6 +15,7 @@ mod block;
 mod error;
 mod front;
 mod junction;
+mod limits;
 mod look_ahead;
 mod merge;
 mod phase;

@@ -44,8 +44,8 @@ impl<const N: usize> Ring<N> {
     }
 
     /// Square of the speed at which the block after the head is entered: 0 after the last.
-    pub(super) fn next_entry2(&self) -> f64 {
-        self.get(1).map_or(0.0, |block| f64::from(block.entry2))
+    pub(super) fn next_entry2(&self) -> f32 {
+        self.get(1).map_or(0.0, |block| block.entry2)
     }
 
     /// Takes a block; there must be room.
@@ -70,55 +70,69 @@ impl<const N: usize> Ring<N> {
         (self.len, self.planned) = (0, 0);
     }
 
-    /// Plans anew after a change at the end. `accel_mm_s2` is the limit along the path; the head's entry speed stands.
-    pub(super) fn plan(&mut self, accel_mm_s2: f64) {
-        let twice = 2.0 * accel_mm_s2;
+    /// Plans anew after a change at the end. `twice_accel` is twice the limit along the path; the head's entry speed stands.
+    pub(super) fn plan(&mut self, twice_accel: f32) {
         let first = self.planned.max(1);
-        let mut exit2 = 0.0_f64;
+        let mut exit2 = 0.0_f32;
         let mut index = self.len;
         while index > first {
             index -= 1;
             let Some(block) = self.get_mut(index) else { break };
-            let entry2 = f64::from(block.max_entry2).min(exit2 + reach2(block, twice));
-            block.entry2 = narrow(entry2);
-            exit2 = f64::from(block.entry2);
+            exit2 = least(block.max_entry2, sum_down(exit2, reach2(block, twice_accel)));
+            block.entry2 = exit2;
         }
-        let mut before =
-            self.get(first - 1).map_or((0.0, 0.0), |block| (f64::from(block.entry2), reach2(block, twice)));
+        let mut most2 =
+            self.get(first - 1).map_or(0.0, |block| sum_down(block.entry2, reach2(block, twice_accel)));
         for index in first..self.len {
             let Some(block) = self.get_mut(index) else { break };
-            let most2 = before.0 + before.1;
-            if most2 < f64::from(block.entry2) {
-                block.entry2 = narrow(most2);
-                self.planned = index;
-            } else if block.entry2 >= block.max_entry2 {
+            let slower = most2 < block.entry2;
+            if slower {
+                block.entry2 = most2;
+            }
+            let settled = slower || block.entry2 >= block.max_entry2;
+            most2 = sum_down(block.entry2, reach2(block, twice_accel));
+            if settled {
                 self.planned = index;
             }
-            before = self.get(index).map_or(before, |block| (f64::from(block.entry2), reach2(block, twice)));
         }
     }
 
     /// Plans anew with a head that is entered with no more than this square of a speed; gives the one with which it is.
-    pub(super) fn enter_at_most(&mut self, most2: f64, accel_mm_s2: f64) -> f64 {
+    pub(super) fn enter_at_most(&mut self, most2: f64, twice_accel: f32) -> f64 {
         // What can be braked from within the blocks known, backwards.
-        let mut entry2 = 0.0_f64;
+        let mut entry2 = 0.0_f32;
         for index in (0..self.len).rev() {
             let Some(block) = self.get(index) else { continue };
-            entry2 = f64::from(block.max_entry2).min(entry2 + reach2(block, 2.0 * accel_mm_s2));
+            entry2 = least(block.max_entry2, sum_down(entry2, reach2(block, twice_accel)));
         }
-        let entry2 = entry2.min(most2);
+        let entry2 = least(entry2, narrow(most2));
         if let Some(head) = self.get_mut(0) {
-            head.entry2 = narrow(entry2);
+            head.entry2 = entry2;
         }
         self.planned = 0;
-        self.plan(accel_mm_s2);
+        self.plan(twice_accel);
         self.get(0).map_or(0.0, |head| f64::from(head.entry2))
     }
 }
 
 /// How much the square of the speed can change along a block.
-fn reach2(block: &Block, twice_accel: f64) -> f64 {
-    if block.is_path() { twice_accel * block.length() } else { 0.0 }
+fn reach2(block: &Block, twice_accel: f32) -> f32 {
+    if block.is_path() { twice_accel * block.length_single() } else { 0.0 }
+}
+
+/// The smaller of two numbers that are none of them NaN: in hardware, where `f32::min` is a call.
+pub(super) fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The sum of two squares of speeds, rounded down: what the rounding added is found without error.
+///
+/// Source: D. E. Knuth, "The Art of Computer Programming", volume 2, section 4.2.2, theorem B.
+fn sum_down(a: f32, b: f32) -> f32 {
+    let sum = a + b;
+    let of_b = sum - a;
+    let error = (a - (sum - of_b)) + (b - of_b);
+    if error < 0.0 { sum.next_down() } else { sum }
 }
 
 /// A square of a speed as a block keeps it: rounded down, so that no limit is exceeded by the rounding.

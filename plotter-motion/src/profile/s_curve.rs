@@ -136,6 +136,9 @@ impl SCurve {
         for (phase_s, phase_jerk) in
             [(self.jerk_s, jerk), (self.steady_s, 0.0), (self.jerk_s, -jerk), (self.cruise_s, 0.0)]
         {
+            if rest_s <= 0.0 {
+                break; // the phases to come would add nothing
+            }
             let t = rest_s.min(phase_s);
             point.distance_mm +=
                 t * (point.speed_mm_s + t * (point.accel_mm_s2 / 2.0 + t * phase_jerk / 6.0));

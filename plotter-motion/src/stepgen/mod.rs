@@ -15,6 +15,8 @@ mod backlash_steps;
 mod chord;
 mod slice;
 mod step_gen;
+mod step_queue;
 
 pub use backlash_steps::BacklashSteps;
 pub use step_gen::{Busy, MotorEvent, StepGen, StepGenSettings, TimedEvent};
+pub use step_queue::{QueuedEvent, StepQueue};

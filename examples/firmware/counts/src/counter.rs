@@ -56,6 +56,13 @@ impl Tally {
         self.worst = self.worst.max(instructions);
     }
 
+    /// Takes those of another tally.
+    pub fn join(&mut self, other: Self) {
+        self.sum += other.sum;
+        self.count += other.count;
+        self.worst = self.worst.max(other.worst);
+    }
+
     /// How many there were.
     pub fn count(&self) -> u32 {
         self.count

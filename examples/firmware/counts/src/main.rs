@@ -8,6 +8,7 @@
 mod counter;
 mod drawings;
 
+use core::fmt::Display;
 use core::hint::black_box;
 use core::time::Duration;
 use cortex_m_rt::entry;
@@ -22,10 +23,11 @@ use plotter_motion::plant::AxisPlant;
 use plotter_motion::protocol::digits;
 use plotter_motion::{
     Action, Axis, Direction, Machine, MachineConfig, MotorEvent, PathMode, Planner, PlannerSettings, PlotOp,
-    SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint,
+    SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, StepQueue,
 };
+use vcell::VolatileCell;
 
-fn print(what: &str, tally: Tally) {
+fn print(what: impl Display, tally: Tally) {
     hprintln!("{}: mean {} worst {} of {}", what, tally.mean(), tally.worst(), tally.count());
 }
 
@@ -38,8 +40,7 @@ fn gantry(counter: &Counter, machine: &Machine, name: &str, controller: impl Lin
     const STEP: Duration = Duration::from_micros(100);
     let config = machine.config();
     let mut gantry = Gantry::with_settings(GantrySettings::of(machine), controller);
-    let mut plants =
-        [&config.x, &config.y].map(|axis| AxisPlant::new(axis, STEP.as_secs_f64()));
+    let mut plants = [&config.x, &config.y].map(|axis| AxisPlant::new(axis, STEP.as_secs_f64()));
     let (mut edges, mut ticks) = (Tally::default(), Tally::default());
     let mut targets = TARGETS.into_iter();
     let mut now = Duration::ZERO;
@@ -60,7 +61,8 @@ fn gantry(counter: &Counter, machine: &Machine, name: &str, controller: impl Lin
         now += STEP;
         for (axis, seen) in [Axis::X, Axis::Y].into_iter().zip(seen) {
             if let Some(direction) = seen {
-                let (duty, instructions) = counter.count(|| edge(black_box(&mut gantry), now, axis, direction));
+                let (duty, instructions) =
+                    counter.count(|| edge(black_box(&mut gantry), now, axis, direction));
                 black_box(duty);
                 edges.add(instructions);
             }
@@ -78,21 +80,19 @@ fn gantry(counter: &Counter, machine: &Machine, name: &str, controller: impl Lin
     hprintln!("{}: {} bytes", name, size_of_val(&gantry));
     for (what, tally) in [("edge to duty", edges), ("tick to duty", ticks)] {
         if tally.count() > 0 {
-            hprintln!(
-                "{} {}: mean {} worst {} of {}",
-                name,
-                what,
-                tally.mean(),
-                tally.worst(),
-                tally.count()
-            );
+            print(format_args!("{name} {what}"), tally);
         }
     }
 }
 
 /// What the interrupt of an encoder does: from the edge to both timers' compare values.
 #[inline(never)]
-fn edge<C: LineController>(gantry: &mut Gantry<C>, now: Duration, axis: Axis, direction: Direction) -> [i32; 2] {
+fn edge<C: LineController>(
+    gantry: &mut Gantry<C>,
+    now: Duration,
+    axis: Axis,
+    direction: Direction,
+) -> [i32; 2] {
     gantry.edge(now, axis, direction);
     let drive = gantry.drive();
     [drive.x().steps(255), drive.y().steps(255)]
@@ -149,20 +149,40 @@ fn plan(
     }
 }
 
+/// What the main loop does for a step: reckon it, and put it into the queue.
 #[inline(never)]
-fn next_event(steps: &mut StepGen<Cartesian>, gate: &SafetyGate, pins: &mut [u32; 2]) -> Option<u64> {
-    let event = steps.next_event()?;
-    if let MotorEvent::Step { x, y } = event.event
-        && let Ok(pulse) = gate.pass_step(StepPair { x, y })
-    {
-        let set = u32::from(pulse.x() < 0) << 1 | u32::from(pulse.y() < 0) << 3;
-        // SAFETY: these are plain memory.
-        unsafe {
-            core::ptr::write_volatile(&mut pins[0], set);
-            core::ptr::write_volatile(&mut pins[1], u32::from(pulse.x() != 0) | u32::from(pulse.y() != 0) << 2);
-        }
+fn fill(steps: &mut StepGen<Cartesian>, queue: &mut StepQueue<64>) -> bool {
+    steps.next_event().is_some_and(|event| queue.push(event).is_ok())
+}
+
+/// Registers of a board, as plain memory: direction pins, step pins, and the timer's compare value.
+struct Registers {
+    direction: VolatileCell<u32>,
+    step: VolatileCell<u32>,
+    compare: VolatileCell<u32>,
+}
+
+impl Registers {
+    fn new() -> Self {
+        let register = || VolatileCell::new(0);
+        Self { direction: register(), step: register(), compare: register() }
     }
-    Some(event.tick)
+}
+
+/// What the timer's interrupt does: the event that is due, through the safety gate to the pins, and the timer set to the next. Gives
+/// the events that are no steps to the main loop.
+#[inline(never)]
+fn interrupt(queue: &mut StepQueue<64>, gate: &SafetyGate, registers: &Registers) -> Option<MotorEvent> {
+    let due = queue.pop()?;
+    if let Some(after_ticks) = queue.next_after_ticks() {
+        registers.compare.set(registers.compare.get().wrapping_add(after_ticks));
+    }
+    let MotorEvent::Step { x, y } = due.event else { return Some(due.event) };
+    if let Ok(pulse) = gate.pass_step(StepPair { x, y }) {
+        registers.direction.set(u32::from(pulse.x() < 0) | u32::from(pulse.y() < 0) << 1);
+        registers.step.set(u32::from(pulse.x() != 0) | u32::from(pulse.y() != 0) << 1);
+    }
+    None
 }
 
 #[entry]
@@ -178,39 +198,42 @@ fn main() -> ! {
     let tolerance = PlannerSettings { path: PathMode::Tolerance { path_tolerance_mm: 0.05 }, ..exact };
     let curved = PlannerSettings { jerk_mm_s3: Some(20_000.0), ..exact };
     for (mode, settings) in [("exact", exact), ("tolerance", tolerance), ("s-curve", curved)] {
+        let mut all = Tally::default();
         for (drawing, tally) in [
             ("hatch", plan(&counter, settings, drawings::hatch(), |_| ())),
             ("spiral", plan(&counter, settings, drawings::spiral(), |_| ())),
             ("zigzag", plan(&counter, settings, drawings::zigzag(), |_| ())),
             ("strokes", plan(&counter, settings, drawings::strokes(), |_| ())),
         ] {
-            hprintln!(
-                "plan {} {}: mean {} worst {} of {}",
-                mode,
-                drawing,
-                tally.mean(),
-                tally.worst(),
-                tally.count()
-            );
+            print(format_args!("plan {mode} {drawing}"), tally);
+            all.join(tally);
         }
+        print(format_args!("plan {mode} all"), all);
     }
 
     let motor = MotorScale { steps_per_mm: 100.0, inverted: false };
     if let Ok(kinematics) = Cartesian::new(motor, motor) {
         let mut generator = StepGen::new(kinematics, StepGenSettings::default());
-        let (gate, mut pins, mut steps) = (SafetyGate::default(), [0; 2], Tally::default());
+        let (gate, registers, mut queue) = (SafetyGate::default(), Registers::new(), StepQueue::new());
+        let (mut filled, mut made, mut others) = (Tally::default(), Tally::default(), 0);
         plan(&counter, exact, drawings::strokes(), |action| {
             let _ = generator.push(action);
             loop {
-                let (event, instructions) =
-                    counter.count(|| next_event(black_box(&mut generator), black_box(&gate), &mut pins));
-                if event.is_none() {
+                let (more, instructions) =
+                    counter.count(|| fill(black_box(&mut generator), black_box(&mut queue)));
+                if !more {
                     break;
                 }
-                steps.add(instructions);
+                filled.add(instructions);
+                let (other, instructions) = counter
+                    .count(|| interrupt(black_box(&mut queue), black_box(&gate), black_box(&registers)));
+                others += u32::from(other.is_some());
+                made.add(instructions);
             }
         });
-        print("step", steps);
+        hprintln!("step: {} other events, {} bytes of queue", others, size_of_val(&queue));
+        print("step reckoned", filled);
+        print("step interrupt", made);
     }
     debug::exit(debug::EXIT_SUCCESS);
     loop {}

@@ -1,0 +1,40 @@
+//! [`Limits`]: a planner's settings as it reckons with them for every block.
+
+use super::PlannerSettings;
+use super::ring::narrow;
+
+/// What is the same for every block, computed once. Small numbers are `f32`, which small processors reckon with in hardware; they
+/// are rounded down, so that no limit is exceeded by the rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Limits {
+    pub(super) accel: f64,
+    /// 1/a and 1/2a.
+    pub(super) per_accel: f64,
+    pub(super) per_twice_accel: f64,
+    /// a and 2a.
+    pub(super) accel_single: f32,
+    pub(super) twice_accel: f32,
+    /// Squares of the speeds with the pen down and up.
+    pub(super) speed2: f32,
+    pub(super) travel2: f32,
+    pub(super) junction_deviation_mm: f32,
+    pub(super) resolution_mm: f32,
+}
+
+impl Limits {
+    pub(super) fn of(settings: &PlannerSettings) -> Self {
+        let PlannerSettings { speed_mm_s, travel_speed_mm_s, accel_mm_s2: accel, .. } = *settings;
+        Self {
+            accel,
+            per_accel: 1.0 / accel,
+            per_twice_accel: 0.5 / accel,
+            accel_single: narrow(accel),
+            // so much less that no product with a length is rounded above the true one
+            twice_accel: narrow(2.0 * accel * (1.0 - f64::from(f32::EPSILON))),
+            speed2: narrow(speed_mm_s * speed_mm_s),
+            travel2: narrow(travel_speed_mm_s * travel_speed_mm_s),
+            junction_deviation_mm: narrow(settings.junction_deviation_mm),
+            resolution_mm: narrow(settings.resolution_mm),
+        }
+    }
+}
