@@ -7,7 +7,8 @@
 use clap::Parser;
 use core::time::Duration;
 use plotter_examples::{
-    BenchSwitches, Recorded, StreamedSteps, built_firmware, plot_in_emulator, print, run, streamed_in_emulator,
+    BenchSwitches, Recorded, StreamedSteps, built_firmware, plot_in_emulator, print, run,
+    streamed_in_emulator,
 };
 use plotter_motion::{Machine, MachineConfig, Pen, PenMove, StepPoint};
 use plotter_replay::BenchRecorder;
@@ -73,34 +74,52 @@ fn bad_day() -> Result<(), String> {
     let line = Line::draw(BenchSwitches::default())?;
     good &= expect("an undisturbed line is drawn", line.reached == 1 && line.notices.is_empty());
 
-    // The target is complete after 91 ms, and the line takes some 350 ms.
-    let bite = Duration::from_millis(250);
-    let line = Line::draw(BenchSwitches { bite_at_us: 250_000, ..BenchSwitches::default() })?;
+    // The target is complete after 91 ms, and the line takes some 350 ms. Between two of the controller's ticks, so that what
+    // is recorded from then on comes after the bite.
+    const BITE_US: u32 = 250_150;
+    let bite = Duration::from_micros(BITE_US.into());
+    let line = Line::draw(BenchSwitches { bite_at_us: BITE_US, ..BenchSwitches::default() })?;
     let before = line.records.iter().filter(|record| record.time < bite);
     let moving = before.filter(|record| matches!(record.event, Event::Drive { .. })).count();
     good &= expect("watchdog, in the middle of a line: the motors were driven until then", moving > 2);
     good &= expect("watchdog: from then on both motors are off", line.most_duty_from(bite) == 0);
     good &= expect("watchdog: it is told", line.noticed("reset by its watchdog"));
-    good &= expect("watchdog: the host learns that the target is not reached", line.reached == 0 && line.noticed("host"));
+    good &= expect(
+        "watchdog: the host learns that the target is not reached",
+        line.reached == 0 && line.noticed("host"),
+    );
 
     let line = Line::draw(BenchSwitches { stop_pressed: true, ..BenchSwitches::default() })?;
-    good &= expect("stop pressed at power-up: no motor is ever driven", line.most_duty_from(Duration::ZERO) == 0);
+    good &=
+        expect("stop pressed at power-up: no motor is ever driven", line.most_duty_from(Duration::ZERO) == 0);
     good &= expect("stop pressed at power-up: nothing is reached", line.reached == 0);
 
     let line = Line::draw(BenchSwitches { overrun_at_byte: 4, ..BenchSwitches::default() })?;
     good &= expect("overrun of the receiver: it is told", line.noticed("a byte of the host was lost"));
-    good &= expect("overrun: the target is sent again and reached", line.reached == 1 && line.noticed("silent"));
+    good &=
+        expect("overrun: the target is sent again and reached", line.reached == 1 && line.noticed("silent"));
 
     let machine = Machine::new(MachineConfig::stepper_plotter()).map_err(|error| error.to_string())?;
     let elf = built_firmware("stepper_plotter");
     let square = "G21 G90\nM3S90\nG1X10F1800\nY10\nX0\nY0\nM5\n";
-    let stream = |switches| -> Result<StreamedSteps, String> { streamed_in_emulator(&machine, &elf, switches, square) };
+    let stream = |switches| -> Result<StreamedSteps, String> {
+        streamed_in_emulator(&machine, &elf, switches, square)
+    };
     let made = stream(BenchSwitches::default())?;
-    good &= expect("stepper plotter: an undisturbed square is drawn", made.steps == 4 * 876 && made.refused.is_empty());
+    good &= expect(
+        "stepper plotter: an undisturbed square is drawn",
+        made.steps == 4 * 876 && made.refused.is_empty(),
+    );
     let made = stream(BenchSwitches { stop_pressed: true, ..BenchSwitches::default() })?;
-    good &= expect("stepper plotter, stop pressed at power-up: no step, and an alarm", made.steps == 0 && !made.refused.is_empty());
+    good &= expect(
+        "stepper plotter, stop pressed at power-up: no step, and an alarm",
+        made.steps == 0 && !made.refused.is_empty(),
+    );
     let made = stream(BenchSwitches { overrun_at_byte: 20, ..BenchSwitches::default() })?;
-    good &= expect("stepper plotter, overrun: its line is refused and told", made.refused.len() == 1 && !made.notes.is_empty());
+    good &= expect(
+        "stepper plotter, overrun: its line is refused and told",
+        made.refused.len() == 1 && !made.notes.is_empty(),
+    );
 
     print(&text)?;
     if good { Ok(()) } else { Err(String::from("a firmware did not do what it should")) }

@@ -1,7 +1,7 @@
 //! The serial line: bytes come by interrupt, and go from a buffer.
 
-use critical_section::Mutex;
 use core::cell::RefCell;
+use critical_section::Mutex;
 use heapless::spsc::Queue;
 use stm32f4xx_hal::pac::{USART2, interrupt};
 use stm32f4xx_hal::prelude::*;
