@@ -20,17 +20,19 @@
 //! Overcurrent Protection*, A4988-DS; Texas Instruments, *DRV8825 Stepper Motor Controller IC*, SLVSA73F; Trinamic,
 //! *TMC2209 Datasheet*, Rev. 1.09.
 
+mod error;
 mod microsteps;
 mod timing;
 
+pub use error::Error;
 pub use microsteps::{Chip, MicrostepPins};
 pub use timing::Timing;
+use timing::TimingNs;
 
 use crate::NoPin;
-use core::fmt;
 use core::time::Duration;
 use embedded_hal::delay::DelayNs;
-use embedded_hal::digital::{self, OutputPin, PinState};
+use embedded_hal::digital::{OutputPin, PinState};
 use plotter_motion::{Axis, Direction, Pulse};
 
 /// One stepper motor. It steps by nothing but a [`Pulse`], which only a safety gate makes.
@@ -83,12 +85,12 @@ pub struct A4988<Step, Dir, Enable, Sleep> {
     sleep: Sleep,
     has_enable: bool,
     has_sleep: bool,
-    timing: Timing,
+    timing: TimingNs,
     inverted: bool,
     on: bool,
     level: Level,
-    /// When STEP may change next.
-    earliest: Duration,
+    /// When STEP may change next, ns.
+    earliest: u64,
     /// What DIR says, if that is known.
     direction: Option<Direction>,
     /// The step that has been taken and has not risen.
@@ -115,11 +117,11 @@ impl<Step: OutputPin, Dir> A4988<Step, Dir, NoPin<Step::Error>, NoPin<Step::Erro
             sleep: NoPin::new(),
             has_enable: false,
             has_sleep: false,
-            timing,
+            timing: timing.in_ns(),
             inverted: false,
             on: false,
             level: Level::Unknown,
-            earliest: Duration::ZERO,
+            earliest: 0,
             direction: None,
             waiting: None,
         }
@@ -173,9 +175,14 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
         self.on
     }
 
+    /// Whether a step is put off, so that another one would be refused.
+    pub const fn is_waiting(&self) -> bool {
+        self.waiting.is_some()
+    }
+
     /// When [`tick`](Self::tick) is to be called; later does no harm. `None` while there is nothing to do.
-    pub const fn due(&self) -> Option<Duration> {
-        if matches!(self.level, Level::High) || self.waiting.is_some() { Some(self.earliest) } else { None }
+    pub fn due(&self) -> Option<Duration> {
+        self.falls_at().or(self.rises_at()).map(Duration::from_nanos)
     }
 
     /// Takes back a step that has been taken and has not been made, and says which. The motor keeps its current, so that
@@ -189,28 +196,30 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
         (self.step, self.dir, self.enable, self.sleep)
     }
 
-    pub(crate) const fn is_high(&self) -> bool {
-        matches!(self.level, Level::High)
+    /// When the pulse may end, ns.
+    pub(crate) fn falls_at(&self) -> Option<u64> {
+        (self.level == Level::High).then_some(self.earliest)
     }
 
-    pub(crate) const fn is_waiting(&self) -> bool {
-        self.waiting.is_some()
+    /// When the step that waits may be made, ns; within a pulse, that one comes first.
+    pub(crate) fn rises_at(&self) -> Option<u64> {
+        self.is_waiting().then_some(self.earliest)
     }
 
     /// Whether a step waits for nothing but to be made.
-    pub(crate) fn is_ready(&self, now: Duration) -> bool {
-        self.level == Level::Low && self.waiting.is_some() && now >= self.earliest
+    pub(crate) fn is_ready(&self, now_ns: u64) -> bool {
+        self.level == Level::Low && self.waiting.is_some() && now_ns >= self.earliest
     }
 
-    /// How long a blocking form has to wait. Each begins at time 0, so that `earliest` is how long; what the other form
+    /// How long a blocking form has to wait, ns. Each begins at time 0, so that `earliest` is how long; what the other form
     /// has left behind is over after the longest time of all.
-    pub(crate) fn settling(&self) -> Duration {
-        self.earliest.min(self.timing.longest())
+    pub(crate) fn settling(&self) -> u32 {
+        u32::try_from(self.earliest).unwrap_or(u32::MAX).min(self.timing.longest())
     }
 
     /// It has waited.
     pub(crate) const fn settled(&mut self) {
-        self.earliest = Duration::ZERO;
+        self.earliest = 0;
     }
 
     /// This motor's share of a pulse.
@@ -244,8 +253,8 @@ where
         self.can_start(now)?;
         self.halt();
         self.switch_on().map_err(|cause| self.after_pin(cause))?;
-        let Timing { low, setup, wake, .. } = self.timing;
-        self.earliest = now.saturating_add(wake.max(low).max(setup));
+        let TimingNs { low, setup, wake, .. } = self.timing;
+        self.earliest = nanos(now).saturating_add(wake.max(low).max(setup).into());
         self.on = true;
         Ok(())
     }
@@ -265,15 +274,17 @@ where
     /// Takes the motor's share of a pulse; none is no step. Makes at once what can be made at once; the rest is
     /// [`tick`](Self::tick)'s.
     ///
-    /// `now` is the time before the call. From one call to the next the pins change no sooner than the two times say;
-    /// for a clock that counts in whole ticks see [`Timing::on_clock`].
+    /// `now` is the time just before the call. An edge that comes later after its reading than the next one after its own
+    /// shortens what lies between by the difference: where that counts, add it to the [`Timing`], as
+    /// [`Timing::on_clock`] adds a tick of the clock.
     ///
     /// # Errors
     ///
     /// [`Error::Off`] before the start and after a stop or a fault; [`Error::Busy`] while another step is put off. The
     /// step has then not been taken. [`Error::Pin`] and [`Error::StillOn`] when a pin fails: steps may be lost.
     pub fn step(&mut self, pulse: Pulse, now: Duration) -> Result<(), Error<Step::Error>> {
-        self.take(pulse)?;
+        self.can_take(pulse)?;
+        self.take(pulse);
         self.tick(now)
     }
 
@@ -283,8 +294,9 @@ where
     ///
     /// [`Error::Pin`] and [`Error::StillOn`] when a pin fails.
     pub fn tick(&mut self, now: Duration) -> Result<(), Error<Step::Error>> {
-        self.prepare(now)?;
-        if self.is_ready(now) { self.rise(now) } else { Ok(()) }
+        let now_ns = nanos(now);
+        self.prepare(now_ns)?;
+        if self.is_ready(now_ns) { self.rise(now_ns) } else { Ok(()) }
     }
 
     /// Makes the motor's share of a pulse, and comes back when the chip is ready for the next.
@@ -297,7 +309,8 @@ where
         pulse: Pulse,
         delay: &mut impl DelayNs,
     ) -> Result<(), Error<Step::Error>> {
-        self.take(pulse)?;
+        self.can_take(pulse)?;
+        self.take(pulse);
         self.settle(delay);
         // Ends: each turn waits for the next of DIR set, STEP high, STEP low.
         while self.due().is_some() {
@@ -330,7 +343,7 @@ where
         }
         let levels = pins.chip().levels(microsteps).ok_or(Error::Microsteps(microsteps))?;
         pins.set(levels).map_err(|cause| self.after_pin(cause))?;
-        self.earliest = self.earliest.max(now.saturating_add(self.timing.setup));
+        self.earliest = self.earliest.max(nanos(now).saturating_add(self.timing.setup.into()));
         Ok(())
     }
 
@@ -366,49 +379,50 @@ where
 
     /// Whether no pulse is cut short by a start.
     pub(crate) fn can_start(&self, now: Duration) -> Result<(), Error<Step::Error>> {
-        if self.level != Level::Low && now < self.earliest {
-            return Err(Error::Busy { until: self.earliest });
-        }
-        Ok(())
-    }
-
-    /// Notes the step, if it can be taken.
-    pub(crate) fn take(&mut self, pulse: Pulse) -> Result<(), Error<Step::Error>> {
-        self.can_take(pulse)?;
-        self.waiting = self.share(pulse).or(self.waiting);
-        Ok(())
+        if self.level != Level::Low && nanos(now) < self.earliest { Err(self.busy()) } else { Ok(()) }
     }
 
     /// Whether the motor's share of a pulse can be taken.
     pub(crate) fn can_take(&self, pulse: Pulse) -> Result<(), Error<Step::Error>> {
         match self.share(pulse) {
             Some(_) if !self.on => Err(Error::Off),
-            Some(_) if self.waiting.is_some() => Err(Error::Busy { until: self.earliest }),
+            Some(_) if self.waiting.is_some() => Err(self.busy()),
             _ => Ok(()),
         }
     }
 
+    /// Notes the step, which can be taken.
+    pub(crate) const fn take(&mut self, pulse: Pulse) {
+        if let Some(direction) = self.share(pulse) {
+            self.waiting = Some(direction);
+        }
+    }
+
     /// All that comes before STEP rises: it falls, and DIR changes.
-    pub(crate) fn prepare(&mut self, now: Duration) -> Result<(), Error<Step::Error>> {
-        if self.level == Level::High && now >= self.earliest {
+    pub(crate) fn prepare(&mut self, now_ns: u64) -> Result<(), Error<Step::Error>> {
+        if self.level == Level::High && now_ns >= self.earliest {
             self.step.set_low().map_err(|cause| self.after_pin(cause))?;
             self.level = Level::Low;
-            self.earliest = now.saturating_add(self.timing.low);
+            self.earliest = now_ns.saturating_add(self.timing.low.into());
         }
         if self.level == Level::Low && self.waiting.is_some() && self.waiting != self.direction {
             self.turn().map_err(|cause| self.after_pin(cause))?;
-            self.earliest = self.earliest.max(now.saturating_add(self.timing.setup));
+            self.earliest = self.earliest.max(now_ns.saturating_add(self.timing.setup.into()));
         }
         Ok(())
     }
 
-    pub(crate) fn rise(&mut self, now: Duration) -> Result<(), Error<Step::Error>> {
+    pub(crate) fn rise(&mut self, now_ns: u64) -> Result<(), Error<Step::Error>> {
         // DIR waits for STEP to fall, so the pulse lasts as long as DIR must hold.
-        self.earliest = now.saturating_add(self.timing.pulse());
+        self.earliest = now_ns.saturating_add(self.timing.pulse.into());
         self.step.set_high().map_err(|cause| self.after_pin(cause))?;
         self.waiting = None;
         self.level = Level::High;
         Ok(())
+    }
+
+    const fn busy(&self) -> Error<Step::Error> {
+        Error::Busy { until: Duration::from_nanos(self.earliest) }
     }
 
     fn turn(&mut self) -> Result<(), Step::Error> {
@@ -453,52 +467,14 @@ where
 }
 
 /// Nothing at all is not asked of a delay.
-pub(crate) fn wait(time: Duration, delay: &mut impl DelayNs) {
-    if !time.is_zero() {
-        delay.delay_ns(u32::try_from(time.as_nanos()).unwrap_or(u32::MAX));
+pub(crate) fn wait(time_ns: u32, delay: &mut impl DelayNs) {
+    if time_ns > 0 {
+        delay.delay_ns(time_ns);
     }
 }
 
-/// A step could not be taken, or a pin of a stepper motor failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Error<Pin> {
-    /// The motor is off: start it first.
-    Off,
-    /// The chip is not ready; the step has not been taken.
-    Busy {
-        /// When to call [`A4988::tick`], and to offer the step again.
-        until: Duration,
-    },
-    /// The chip does not have this many microsteps to a full step.
-    Microsteps(u16),
-    /// A pin failed; the outputs are off, the motor has no current. Its place is lost.
-    Pin(Pin),
-    /// A pin failed and the outputs could not be switched off, or have no pin for that: the motor gets no more steps and
-    /// may hold.
-    StillOn(Pin),
+/// The time as whole nanoseconds: a comparison and a sum of these are few instructions in the interrupt. Exact for 584
+/// years, and then begins anew.
+pub(crate) fn nanos(now: Duration) -> u64 {
+    now.as_secs().wrapping_mul(1_000_000_000).wrapping_add(now.subsec_nanos().into())
 }
-
-impl<Pin: digital::Error> fmt::Display for Error<Pin> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Off => write!(f, "stepper motor: is off; start it first"),
-            Self::Busy { until } => {
-                write!(f, "stepper motor: not ready before {} ns", until.as_nanos())
-            }
-            Self::Microsteps(asked) => write!(f, "stepper motor: the chip has no {asked} microsteps"),
-            Self::Pin(cause) => {
-                write!(f, "pin of the stepper motor: {}; it has no current", cause.kind())
-            }
-            Self::StillOn(cause) => {
-                write!(
-                    f,
-                    "pin of the stepper motor: {}; it gets no steps, but may have current",
-                    cause.kind()
-                )
-            }
-        }
-    }
-}
-
-impl<Pin: digital::Error> core::error::Error for Error<Pin> {}

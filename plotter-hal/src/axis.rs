@@ -21,6 +21,7 @@ use core::fmt;
 
 /// What failed at either motor, at one of them at least. Both have been stopped as far as this says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Error<E> {
     /// At the first motor.
     pub x: Option<E>,

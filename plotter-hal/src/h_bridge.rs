@@ -254,6 +254,7 @@ fn steps(duty: Duty, full: u16) -> u16 {
 
 /// A pin or the PWM of an H-bridge failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pin, Pwm> {
     /// A direction pin failed; the duty was taken away, the motor has no supply across it.

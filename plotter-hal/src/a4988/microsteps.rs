@@ -4,6 +4,7 @@ use embedded_hal::digital::{OutputPin, PinState};
 
 /// Which chip, and so which table of resolutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Chip {
     /// Allegro A4988: MS1, MS2, MS3; 1 to 16 microsteps.

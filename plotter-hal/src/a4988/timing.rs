@@ -7,6 +7,7 @@ use core::time::Duration;
 /// Every field may be made longer, for a slow optocoupler or a long wire. A pulse lasts for the longer of `high` and
 /// `hold`, because DIR changes only while STEP is low.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Timing {
     /// STEP high.
     pub high: Duration,
@@ -79,13 +80,37 @@ impl Timing {
         }
     }
 
-    /// How long a pulse lasts.
-    pub(crate) fn pulse(&self) -> Duration {
-        self.high.max(self.hold)
+    /// The same in nanoseconds, for the interrupt; 4.29 s at most.
+    pub(super) const fn in_ns(&self) -> TimingNs {
+        let (high, hold) = (ns(self.high), ns(self.hold));
+        TimingNs {
+            pulse: if high > hold { high } else { hold },
+            low: ns(self.low),
+            setup: ns(self.setup),
+            wake: ns(self.wake),
+        }
     }
+}
 
+/// Whole nanoseconds: of 32 bits, so that the interrupt has little to add up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct TimingNs {
+    /// STEP high: long enough for DIR to hold within it.
+    pub(super) pulse: u32,
+    pub(super) low: u32,
+    pub(super) setup: u32,
+    pub(super) wake: u32,
+}
+
+impl TimingNs {
     /// After waiting so long, nothing is in the way of anything.
-    pub(crate) fn longest(&self) -> Duration {
-        self.pulse().max(self.low).max(self.setup).max(self.wake)
+    pub(super) fn longest(&self) -> u32 {
+        self.pulse.max(self.low).max(self.setup).max(self.wake)
     }
+}
+
+const fn ns(time: Duration) -> u32 {
+    let ns = time.as_nanos();
+    #[expect(clippy::cast_possible_truncation, reason = "checked")]
+    if ns < u32::MAX as u128 { ns as u32 } else { u32::MAX }
 }

@@ -20,6 +20,7 @@ use plotter_motion::{Axis, Direction, Drive, Duty};
 
 /// What the motor's current does while the PWM is off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Decay {
     /// The motor coasts in between and at rest; the current is gone soon.
     Fast,
@@ -117,7 +118,8 @@ where
         self.axis
     }
 
-    /// As [`stop`](Self::stop); before the first drive, the motor coasts.
+    /// As [`stop`](Self::stop); before the first drive, the motor coasts. Inputs that are both high when a new driver takes
+    /// them over go low one after the other, which drives the motor in between; after a reset of the chip they are low.
     fn start(&mut self) -> Result<(), Self::Error> {
         self.stop()
     }

@@ -130,7 +130,6 @@ where
         self.direction = None;
         match self.pwm.set_duty_cycle_fully_off() {
             Ok(()) => Error::Pin(cause),
-            Err(_) if self.stand_by() => Error::Pin(cause),
             Err(cause) => self.after_pwm(cause),
         }
     }

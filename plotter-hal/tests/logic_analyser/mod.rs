@@ -33,6 +33,8 @@ pub(crate) enum Fault {
     None,
     /// The access of this number, from 0, fails; the next one works.
     Once { at: usize, takes_effect: bool },
+    /// The access of this number fails without effect, and the one so many later.
+    Two { at: usize, later: usize },
     /// The access of this number and all later ones to the same wire fail without effect.
     Wire { at: usize },
     /// All accesses from this number on fail without effect.
@@ -178,6 +180,7 @@ impl Analyser {
         let number = self.accesses();
         let (failed, takes_effect) = match self.fault.get() {
             Fault::Once { at, takes_effect } if at == number => (true, takes_effect),
+            Fault::Two { at, later } if at == number || at + later == number => (true, false),
             Fault::Wire { at } => {
                 if at == number {
                     self.broken.set(Some(wire));
