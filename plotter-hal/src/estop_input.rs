@@ -61,7 +61,8 @@ pub struct EstopInput<Pin> {
 #[non_exhaustive]
 pub enum EstopChange {
     /// It is known to be free, and has not been seen pressed since the machine was switched on. Comes once at most. A
-    /// firmware without a reset button may reset the safety gate now.
+    /// firmware without a reset button may reset the safety gate now, or start its controller
+    /// ([`StepperPlotter::restart`](plotter_motion::firmware::StepperPlotter::restart)).
     FreeSinceStart,
     /// It is pressed, or its wire is cut.
     Pressed,
@@ -94,7 +95,7 @@ impl<Pin: InputPin> EstopInput<Pin> {
         self.unpressed &= !shows_press;
         Ok(match (was_pressed, self.debounce.update(now, shows_press)) {
             (false, true) => Some(EstopChange::Pressed),
-            (true, false) if core::mem::take(&mut self.unpressed) => Some(EstopChange::FreeSinceStart),
+            (true, false) if self.unpressed => Some(EstopChange::FreeSinceStart),
             (true, false) => Some(EstopChange::Released),
             (true, true) | (false, false) => None,
         })

@@ -20,6 +20,7 @@ use core::fmt;
 use core::time::Duration;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::pwm::{self, SetDutyCycle};
+use plotter_motion::Machine;
 
 /// What a pulse does to a servo, as measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +91,28 @@ const SLOWEST_DEG_S: f32 = 1.0;
 const LEAST_STEPS: u16 = 4;
 
 impl PenServoSettings {
+    /// What a checked machine says of its pen, `[pen]` in its file; the rest as by default.
+    ///
+    /// ```
+    /// # use plotter_hal::PenServoSettings;
+    /// # use plotter_motion::{Machine, MachineConfig};
+    /// let machine = Machine::new(MachineConfig::stepper_plotter())?;
+    /// assert_eq!(PenServoSettings::of(&machine), PenServoSettings::default());
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        let pen = &machine.config().pen;
+        #[expect(clippy::cast_possible_truncation, reason = "0 to 270 degrees")]
+        let deg = |deg: f64| deg as f32;
+        Self {
+            up_deg: deg(pen.up_deg),
+            down_deg: deg(pen.down_deg),
+            settle: Duration::from_secs_f64(pen.settle_ms / 1e3),
+            ..Self::default()
+        }
+    }
+
     /// Pulse at an angle, us.
     fn pulse_us(&self, deg: f32) -> f32 {
         let [a, b] = self.calibration;
@@ -181,14 +204,14 @@ pub struct PenServo<Pwm> {
     settings: PenServoSettings,
     /// Where it is to go, degrees.
     target_deg: f32,
-    /// Where the pulse has it, or had it when the PWM failed, degrees.
+    /// Where the last pulse that was set has it, degrees.
     at_deg: f32,
     state: State,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// The PWM has not been set, or failed.
+    /// The PWM has not been set yet.
     Unset,
     /// On the way down, since the last pulse set.
     Moving(Duration),
@@ -218,6 +241,21 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
         #[expect(clippy::cast_precision_loss, reason = "at most 40000")]
         let step_us = self.settings.frame_us as f32 / f32::from(self.pwm.max_duty_cycle());
         ((b.deg - a.deg) / (b.pulse_us - a.pulse_us)).abs() * step_us
+    }
+
+    /// From [`lower`](Self::lower) of a pen that is up until it has settled, if [`tick`](Self::tick) comes in time: what a
+    /// controller has to wait before it moves
+    /// ([`pen_settle`](plotter_motion::firmware::stepper_plotter::StepperPlotterSettings::pen_settle)).
+    pub fn lowering_time(&self) -> Duration {
+        let PenServoSettings { up_deg, down_deg, lowering_deg_s, settle, .. } = self.settings;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "360 deg at 1 deg/s at most"
+        )]
+        let frames =
+            libm::ceilf((down_deg - up_deg).abs() / (lowering_deg_s * self.frame().as_secs_f32())) as u32;
+        self.frame() * frames + settle
     }
 
     /// Raises the pen, at once.
@@ -357,10 +395,8 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
     /// Sets the pulse of an angle.
     fn set(&mut self, now: Duration, deg: f32) -> Result<(), Error<Pwm::Error>> {
         let steps = self.settings.steps(deg, self.pwm.max_duty_cycle());
-        if let Err(cause) = self.pwm.set_duty_cycle(steps) {
-            self.state = State::Unset;
-            return Err(Error::Pwm(cause));
-        }
+        // As it was before: what was due is still due.
+        self.pwm.set_duty_cycle(steps).map_err(Error::Pwm)?;
         self.at_deg = deg;
         self.state = if deg == self.target_deg {
             State::Settling(now.saturating_add(self.settings.settle))
@@ -425,7 +461,8 @@ impl fmt::Display for SettingsError {
             ),
             Self::Calibration { apart_deg, apart_us } => write!(
                 f,
-                "pen servo: the calibrated points lie {apart_deg} deg and {apart_us} us apart; 10 to 360 deg and                  pulses that differ make a line, such as 0 deg at 1000 us and 180 deg at 2000 us"
+                "pen servo: the calibrated points lie {apart_deg} deg and {apart_us} us apart; 10 to 360 deg and \
+                 pulses that differ make a line, such as 0 deg at 1000 us and 180 deg at 2000 us"
             ),
             Self::Frame { frame_us } => write!(
                 f,
@@ -433,7 +470,8 @@ impl fmt::Display for SettingsError {
             ),
             Self::Angle { deg, least_deg, most_deg } => write!(
                 f,
-                "pen servo: {deg} deg lies outside the calibrated {least_deg}..={most_deg} deg: choose an angle                  within, or calibrate farther out"
+                "pen servo: {deg} deg lies outside the calibrated {least_deg}..={most_deg} deg: choose an angle \
+                 within, or calibrate farther out"
             ),
             Self::Lowering { deg_s } => write!(
                 f,
@@ -441,7 +479,8 @@ impl fmt::Display for SettingsError {
             ),
             Self::Coarse { pwm_steps, pen_steps } => write!(
                 f,
-                "pen servo: with {pwm_steps} steps of the pwm in a frame, pen up and pen down are {pen_steps} steps                  apart; at least 4 are needed: give the timer more steps, or choose angles farther apart"
+                "pen servo: with {pwm_steps} steps of the pwm in a frame, pen up and pen down are {pen_steps} steps \
+                 apart; at least 4 are needed: give the timer more steps, or choose angles farther apart"
             ),
         }
     }

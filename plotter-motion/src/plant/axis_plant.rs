@@ -1,7 +1,7 @@
 //! One simulated axis: motor, friction, encoder, and a hand that can hold the shaft.
 
 use super::dc_motor::{DcMotor, DcMotorState};
-use crate::{AxisConfig, Decoding, Direction, Duty, Phases, QuadratureX1, QuadratureX4};
+use crate::{AxisConfig, Decoding, Direction, Duty, Phases, QuadratureX1, QuadratureX2, QuadratureX4};
 use core::f64::consts::TAU;
 
 /// A motor with its load and its encoder, moved on in fixed time steps.
@@ -36,6 +36,7 @@ pub struct AxisPlant {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Decoder {
     X1(QuadratureX1),
+    X2(QuadratureX2),
     X4(QuadratureX4),
 }
 
@@ -74,6 +75,7 @@ impl AxisPlant {
             quarters_per_rad,
             decoder: match decoding {
                 Decoding::X1 => Decoder::X1(QuadratureX1::new(phases)),
+                Decoding::X2 => Decoder::X2(QuadratureX2::new(phases)),
                 Decoding::X4 => Decoder::X4(QuadratureX4::new(phases)),
             },
             stalled: false,
@@ -117,6 +119,7 @@ impl AxisPlant {
         self.turn(duty, |PhaseChange { share_of_step, phases }| {
             let counted = match &mut decoder {
                 Decoder::X1(decoder) => decoder.update(phases),
+                Decoder::X2(decoder) => decoder.update(phases),
                 Decoder::X4(decoder) => decoder.update(phases),
             };
             if let Some(direction) = counted {
@@ -206,7 +209,7 @@ mod tests {
 
     #[test]
     fn the_encoder_counts_what_the_shaft_turned() {
-        for decoding in [Decoding::X1, Decoding::X4] {
+        for decoding in [Decoding::X1, Decoding::X2, Decoding::X4] {
             let mut config = AxisConfig::default();
             config.encoder.decoding = decoding;
             let mut axis = AxisPlant::new(&config, DT_S);
