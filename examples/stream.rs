@@ -10,7 +10,8 @@ use clap::Parser;
 use core::f64::consts::TAU;
 use core::time::Duration;
 use plotter_examples::{
-    BenchSwitches, StreamedSteps, at, built_firmware, print, read_file, run, streamed_in_emulator, streamed_on_the_desk,
+    BenchSwitches, StreamedSteps, at, built_firmware, print, read_file, run, streamed_in_emulator,
+    streamed_on_the_desk,
 };
 use plotter_motion::{Machine, MachineConfig, StepPoint};
 use std::fmt::Write as _;
@@ -74,7 +75,11 @@ fn stream(args: &Args) -> Result<(), String> {
         let _ = writeln!(table, "{name:20} {:>8}  {:016x}  {:016x}", desk.steps, desk.crc, firmware.crc);
         if key(&desk) != key(&firmware) {
             let StepPoint { x, y } = firmware.position;
-            let _ = writeln!(table, "  the firmware made {} steps, to ({x}, {y}); {:?}", firmware.steps, firmware.refused);
+            let _ = writeln!(
+                table,
+                "  the firmware made {} steps, to ({x}, {y}); {:?}",
+                firmware.steps, firmware.refused
+            );
         }
     }
     print(&table)?;

@@ -39,10 +39,16 @@ fn machine(variable: &str, default: &str) -> Result<Machine, Box<dyn Error>> {
 /// Floats are written as Rust's shortest text that reads as the same bits; a plain struct's `Debug` text is its own Rust.
 fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn Error>> {
     let config = machine.config();
-    writeln!(text, "use plotter_motion::control::{{Contouring, ContouringSettings, LineTracking, LineTrackingSettings}};")?;
+    writeln!(
+        text,
+        "use plotter_motion::control::{{Contouring, ContouringSettings, LineTracking, LineTrackingSettings}};"
+    )?;
     writeln!(text, "use plotter_motion::control::{{PositionGains, ShaftModel, ShaftSettings}};")?;
     writeln!(text, "use plotter_motion::firmware::GantrySettings;")?;
-    writeln!(text, "use plotter_motion::{{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotionLimits, MotorConfig}};")?;
+    writeln!(
+        text,
+        "use plotter_motion::{{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotionLimits, MotorConfig}};"
+    )?;
     writeln!(text, "use plotter_motion::{{PublishedConfig, StepPoint, StepperConfig, SyncStop}};")?;
     writeln!(text, "/// Bits a second of the gantry's line.\npub const BAUD: u32 = {};", config.serial.baud)?;
     writeln!(
@@ -57,7 +63,11 @@ fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn 
         config.x.encoder.decoding, config.y.encoder.decoding
     )?;
     for (name, axis) in [("X", &config.x), ("Y", &config.y)] {
-        writeln!(text, "/// The axis, for those who simulate it.\npub const {name}: AxisConfig = {};", axis_literal(axis))?;
+        writeln!(
+            text,
+            "/// The axis, for those who simulate it.\npub const {name}: AxisConfig = {};",
+            axis_literal(axis)
+        )?;
     }
     writeln!(text, "const GANTRY: GantrySettings = {:?};", GantrySettings::of(machine))?;
     let name = match config.control.controller {
@@ -66,14 +76,21 @@ fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn 
             "LineTracking"
         }
         _ => {
-            let settings = format!("{:?}", ContouringSettings::of(machine)).replace("decoding: ", "decoding: Decoding::");
+            let settings = format!("{:?}", ContouringSettings::of(machine))
+                .replace("decoding: ", "decoding: Decoding::");
             writeln!(text, "const LINE: ContouringSettings = {settings};")?;
             "Contouring"
         }
     };
-    writeln!(text, "/// The gantry's controller.\npub type Gantry = plotter_motion::firmware::Gantry<{name}>;")?;
+    writeln!(
+        text,
+        "/// The gantry's controller.\npub type Gantry = plotter_motion::firmware::Gantry<{name}>;"
+    )?;
     writeln!(text, "/// The gantry's controller, at rest at the origin.")?;
-    writeln!(text, "#[must_use]\npub fn gantry() -> Gantry {{\n    Gantry::with_settings(GANTRY, {name}::with_settings(LINE))\n}}")?;
+    writeln!(
+        text,
+        "#[must_use]\npub fn gantry() -> Gantry {{\n    Gantry::with_settings(GANTRY, {name}::with_settings(LINE))\n}}"
+    )?;
     Ok(())
 }
 
@@ -85,19 +102,31 @@ fn axis_literal(axis: &AxisConfig) -> String {
 fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn Error>> {
     let settings = StepperPlotterSettings::of(machine, Dialect::Grbl);
     writeln!(text, "use core::time::Duration;")?;
-    writeln!(text, "use plotter_motion::firmware::stepper_plotter::{{Dialect, StepperPlotterSettings, StoredSettings}};")?;
+    writeln!(
+        text,
+        "use plotter_motion::firmware::stepper_plotter::{{Dialect, StepperPlotterSettings, StoredSettings}};"
+    )?;
     writeln!(text, "use plotter_motion::gcode::{{LaserCommand, PenConvention, ServoCommand}};")?;
     writeln!(text, "use plotter_motion::{{HomingAxis, PathMode, PlannerSettings}};")?;
     let baud = machine.config().serial.baud;
-    writeln!(text, "/// Bits a second of the stepper plotter's line.\npub const PLOTTER_BAUD: u32 = {baud};")?;
+    writeln!(
+        text,
+        "/// Bits a second of the stepper plotter's line.\npub const PLOTTER_BAUD: u32 = {baud};"
+    )?;
     let mut literal = format!("{settings:?}");
     for (name, duration) in [("pen_settle", settings.pen_settle), ("gather", settings.gather)] {
         let nanos = duration.as_nanos();
-        literal = literal.replace(&format!("{name}: {duration:?}"), &format!("{name}: Duration::from_nanos({nanos})"));
+        literal = literal
+            .replace(&format!("{name}: {duration:?}"), &format!("{name}: Duration::from_nanos({nanos})"));
     }
-    for (field, name) in [("dialect", "Dialect"), ("path", "PathMode"), ("pen", "PenConvention"), ("command", "LaserCommand")] {
+    for (field, name) in
+        [("dialect", "Dialect"), ("path", "PathMode"), ("pen", "PenConvention"), ("command", "LaserCommand")]
+    {
         literal = literal.replace(&format!(" {field}: "), &format!(" {field}: {name}::"));
     }
-    writeln!(text, "/// The stepper plotter's settings.\npub const PLOTTER: StepperPlotterSettings = {literal};")?;
+    writeln!(
+        text,
+        "/// The stepper plotter's settings.\npub const PLOTTER: StepperPlotterSettings = {literal};"
+    )?;
     Ok(())
 }

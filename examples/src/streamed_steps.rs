@@ -151,11 +151,8 @@ pub fn streamed_on_the_desk(
             }
             due = plotter.due();
         }
-        let next = [
-            (due, Next::Due),
-            (to_controller.next(), Next::ToController),
-            (to_host.next(), Next::ToHost),
-        ];
+        let next =
+            [(due, Next::Due), (to_controller.next(), Next::ToController), (to_host.next(), Next::ToHost)];
         let Some((at, next)) = next.into_iter().filter_map(|(at, next)| Some((at?.max(now), next))).min()
         else {
             break;

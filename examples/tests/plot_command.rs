@@ -113,3 +113,14 @@ fn the_technical_drawing_is_plotted_within_a_quarter_of_a_count() {
     assert_eq!(report["reached"], report["targets"]);
     assert!(report["true_contour_error_mm"]["max"].as_f64().unwrap() <= QUARTER_MM);
 }
+
+#[test]
+fn a_firmware_that_is_not_there_is_said_to_be_so() {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().to_str().unwrap();
+    let elf = directory.path().join("gantry");
+    let said = complaint("plot", &["--firmware", "qemu", "--elf", elf.to_str().unwrap(), "--out", out]);
+    assert!(said.contains("the firmware is not built") && said.contains("cargo build --release"), "{said}");
+    let said = complaint("plot", &["--firmware", "/dev/no-such-plotter", "--out", out]);
+    assert!(said.starts_with("plot: /dev/no-such-plotter: there is no such serial port"), "{said}");
+}

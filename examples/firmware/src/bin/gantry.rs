@@ -33,7 +33,8 @@ fn main() -> ! {
     let was_bitten = parts.rest.was_bitten();
     let [(xa, xb), (ya, yb)] = [parts.x_phases, parts.y_phases];
     let [x_decoding, y_decoding] = machine::DECODING;
-    let mut board = parts.rest.start(Quadrature::new(xa, xb, x_decoding), Quadrature::new(ya, yb, y_decoding));
+    let mut board =
+        parts.rest.start(Quadrature::new(xa, xb, x_decoding), Quadrature::new(ya, yb, y_decoding));
     // Pressed until it has shown that it is not.
     gantry.emergency_stop(board.now(), button.is_pressed());
     if was_bitten {

@@ -11,10 +11,11 @@ use plotter_firmware::board::{self, Event, Notice};
 use plotter_firmware::machine::PLOTTER;
 use plotter_hal::a4988::Timing;
 use plotter_hal::{
-    A4988, EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo, PenServoSettings, StepperAxes,
-    SwitchSettings,
+    A4988, EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo, PenServoSettings,
+    StepperAxes, SwitchSettings,
 };
 use plotter_motion::firmware::StepperPlotter;
+use plotter_motion::firmware::stepper_plotter::SettingsError;
 use plotter_motion::protocol::SUBSTITUTE;
 use plotter_motion::{Axis, Direction};
 
@@ -32,6 +33,9 @@ const ENDS: [(Axis, Direction); 4] = [
     (Axis::Y, Direction::Minus),
     (Axis::Y, Direction::Plus),
 ];
+
+/// What is put together where it stays: there is no room for a second one on the stack.
+type Controller = Result<StepperPlotter, SettingsError>;
 
 #[entry]
 fn main() -> ! {
@@ -67,8 +71,9 @@ fn main() -> ! {
         }
         (now, _) = board.wait(Some(now + LOOK));
     }
-    let Ok(controller) = StepperPlotter::new(PLOTTER) else { board::halt() };
-    let Some(plotter) = singleton!(PLOTTER_CELL: StepperPlotter = controller) else { board::halt() };
+    let Some(Ok(plotter)) = singleton!(CELL: Controller = StepperPlotter::new(PLOTTER)) else {
+        board::halt()
+    };
     if was_bitten {
         // Where the motors stand is not known: a person looks first, and says so by `$X` or by homing.
         board.notify(Notice::Bitten);
@@ -107,7 +112,8 @@ fn main() -> ! {
             board.notify(Notice::PinFailed);
             board::halt();
         }
-        let due = [plotter.due(), motors.due(), servo.due(), laser.due(), Some(look)].into_iter().flatten().min();
+        let due =
+            [plotter.due(), motors.due(), servo.due(), laser.due(), Some(look)].into_iter().flatten().min();
         let event;
         (now, event) = board.wait(due);
         asked = true;

@@ -70,7 +70,9 @@ impl fmt::Display for Notice {
             Self::Controller(notice) => write!(f, "controller: {notice}"),
             Self::LineFault => f.write_str("firmware: a byte of the host was lost"),
             Self::Bitten => f.write_str("firmware: reset by its watchdog; the motors are stopped"),
-            Self::Stopped => f.write_str("firmware: emergency stop; switch off and on when the machine is free"),
+            Self::Stopped => {
+                f.write_str("firmware: emergency stop; switch off and on when the machine is free")
+            }
             Self::PinFailed => f.write_str("firmware: a pin failed; the motors are stopped"),
         }
     }

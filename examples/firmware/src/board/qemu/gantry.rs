@@ -262,7 +262,8 @@ impl Board {
                 }
                 Next::Phase => {
                     if let Some((axis, direction)) = self.phase() {
-                        self.bench.tell(at, Told::Edge(2 * (axis as u8) + u8::from(direction == Direction::Minus)));
+                        self.bench
+                            .tell(at, Told::Edge(2 * (axis as u8) + u8::from(direction == Direction::Minus)));
                         return (now, Event::Edge(axis, direction));
                     }
                 }

@@ -130,7 +130,8 @@ struct Encoders {
 static ENCODERS: Mutex<RefCell<Option<Encoders>>> = Mutex::new(RefCell::new(None));
 
 /// What they counted, and when. By itself, so that its memory is cleared at the start and not copied from flash.
-static EDGES: Mutex<RefCell<Queue<(u64, Axis, Direction), MOST_EDGES>>> = Mutex::new(RefCell::new(Queue::new()));
+static EDGES: Mutex<RefCell<Queue<(u64, Axis, Direction), MOST_EDGES>>> =
+    Mutex::new(RefCell::new(Queue::new()));
 
 #[interrupt]
 fn EXTI9_5() {
@@ -138,7 +139,14 @@ fn EXTI9_5() {
         if let Some(shared) = ENCODERS.borrow_ref_mut(cs).as_mut() {
             // First, so that an edge from here on comes again.
             shared.exti.pr().write(|w| {
-                w.pr6().clear_bit_by_one().pr7().clear_bit_by_one().pr8().clear_bit_by_one().pr9().clear_bit_by_one()
+                w.pr6()
+                    .clear_bit_by_one()
+                    .pr7()
+                    .clear_bit_by_one()
+                    .pr8()
+                    .clear_bit_by_one()
+                    .pr9()
+                    .clear_bit_by_one()
             });
             let now_us = shared.clock.now_us();
             let mut edges = EDGES.borrow_ref_mut(cs);
@@ -193,8 +201,9 @@ pub(super) fn unmask(interrupt: Interrupt) {
 impl Board {
     /// The time.
     pub fn now(&mut self) -> Duration {
-        let now_us =
-            critical_section::with(|cs| ENCODERS.borrow_ref_mut(cs).as_mut().map(|shared| shared.clock.now_us()));
+        let now_us = critical_section::with(|cs| {
+            ENCODERS.borrow_ref_mut(cs).as_mut().map(|shared| shared.clock.now_us())
+        });
         self.last = now_us.map_or(self.last, Duration::from_micros).max(self.last);
         self.last
     }

@@ -1,14 +1,14 @@
 //! The serial line: bytes come by interrupt, and go from a buffer.
 
-use critical_section::Mutex;
 use core::cell::RefCell;
+use critical_section::Mutex;
 use heapless::spsc::Queue;
 use stm32f4xx_hal::pac::{USART2, interrupt};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::serial::{Rx, Tx};
 
-/// Bytes that came and were not fetched: the loop takes less time than the line for these.
-const COME: usize = 32;
+/// Bytes that came and were not fetched: the loop takes less time than the line for these, a planned block included.
+const COME: usize = 64;
 /// Bytes that wait to be sent.
 const TO_SEND: usize = 128;
 

@@ -18,6 +18,7 @@
 mod clock;
 pub mod gantry;
 mod line;
+pub mod plotter;
 
 use stm32f4xx_hal::pac;
 
