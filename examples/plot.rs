@@ -10,7 +10,8 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    Figure, PlotOutcome, at, html_page, print, read_file, run, simulate, vectorizer, write_file,
+    BenchSwitches, Figure, PlotOutcome, Recorded, at, built_firmware, html_page, plot_in_emulator,
+    plot_on_port, print, read_file, run, simulate, vectorizer, write_file,
 };
 use plotter_motion::{
     ControllerChoice, DriveChoice, Machine, MachineConfig, OutOfReach, PenMove, PlotOp, Point, hpgl, targets,
@@ -29,7 +30,9 @@ use std::time::Instant;
 #[command(
     name = "plot",
     after_help = "Examples:\n  cargo run --release --example plot\n  \
-                  cargo run --release --example plot -- scan.png --controller published --out target/published"
+                  cargo run --release --example plot -- scan.png --controller published --out target/published\n  \
+                  cargo run --release --example plot -- --firmware qemu\n  \
+                  cargo run --release --example plot -- scan.png --firmware /dev/ttyUSB0"
 )]
 struct Args {
     /// PNG, JPEG, PBM or PGM picture; without one, a flag as line art
@@ -46,6 +49,16 @@ struct Args {
     /// Width of the drawing on the sheet, mm; less where the machine is smaller
     #[arg(long, value_name = "MM", default_value_t = 50.0, allow_negative_numbers = true)]
     width_mm: f64,
+    /// Plots with a firmware instead of the simulated machine: `qemu` for the one in examples/firmware, in the emulator, or the
+    /// serial port of a machine that speaks the published protocol
+    #[arg(long, value_name = "qemu|PORT")]
+    firmware: Option<String>,
+    /// The firmware for --firmware qemu [default: the gantry's, as built in examples/firmware]
+    #[arg(long, value_name = "ELF", requires = "firmware")]
+    elf: Option<PathBuf>,
+    /// Records the duty of the motors too: twice as much
+    #[arg(long)]
+    record_drive: bool,
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "target/plot")]
     out: PathBuf,
@@ -66,6 +79,9 @@ enum AlgorithmArg {
     /// Fewest vertices within a promised error
     Ours,
 }
+
+/// The one name that `--firmware` does not take as a port's.
+const EMULATED: &str = "qemu";
 
 fn main() -> ExitCode {
     run("plot", || plot(&Args::parse()))
@@ -91,7 +107,7 @@ fn plot(args: &Args) -> Result<(), String> {
         targets(&machine, ops).collect::<Result<_, OutOfReach>>().map_err(|error| error.to_string())?;
 
     let log_file = file("session.plog");
-    let outcome = record(&machine, moves, &log_file)?;
+    let outcome = record(args, &machine, moves, &log_file)?;
     // From here on, the recording is all there is.
     let plotter = replay(&log_file)?;
 
@@ -120,8 +136,13 @@ fn plot(args: &Args) -> Result<(), String> {
         Figure::Png(&pictures.plotted_png, "The plot once more, as PNG"),
     ];
     let introduction = format!(
-        "A picture, vectorized with the {} algorithm and drawn by the simulated {} with the {} controller.",
+        "A picture, vectorized with the {} algorithm and drawn by the {} {} with the {} controller.",
         name(&args.algorithm),
+        match args.firmware.as_deref() {
+            None => "simulated",
+            Some(EMULATED) => "emulated",
+            Some(_) => "real",
+        },
         machine.config().name,
         controller_name(&machine)
     );
@@ -211,15 +232,16 @@ fn fit((width_px, height_px): (u32, u32), machine: &Machine, width_mm: f64) -> R
     Scale::fit(width_px, height_px, Point::ORIGIN, corner, MARGIN_MM).map_err(|error| error.to_string())
 }
 
-/// Plots on the simulated machine and records its serial line.
-fn record(machine: &Machine, moves: Vec<PenMove>, path: &Path) -> Result<PlotOutcome, String> {
+/// Plots on the simulated machine, or with a firmware, and records the serial line.
+fn record(args: &Args, machine: &Machine, moves: Vec<PenMove>, path: &Path) -> Result<PlotOutcome, String> {
     let config = machine.config();
+    let is_real = args.firmware.as_ref().is_some_and(|firmware| firmware != EMULATED);
     let header = Header::new()
         .with_number("baud", config.serial.baud.into())
         .with_text("protocol", "digits")
         .with_text("machine", config.name.as_str())
         .with_text("controller", controller_name(machine))
-        .with_text("clock", "simulated")
+        .with_text("clock", if is_real { "host" } else { "simulated" })
         .with_decimal("x_mm_per_pulse", 1.0 / config.x.counts_per_mm)
         .with_decimal("y_mm_per_pulse", 1.0 / config.y.counts_per_mm);
     let writer = log::create(path, &header).map_err(|error| at(path, &error))?;
@@ -228,8 +250,19 @@ fn record(machine: &Machine, moves: Vec<PenMove>, path: &Path) -> Result<PlotOut
         bar.set_style(style);
     }
     let mut recorder = BenchRecorder::new(writer);
-    let outcome = simulate(machine, moves, &mut recorder, |reached| bar.set_position(reached.into()));
+    let recorded = Recorded { drive: args.record_drive };
+    let progress = |reached: u32| bar.set_position(reached.into());
+    let outcome = match args.firmware.as_deref() {
+        None => Ok(simulate(machine, moves, recorded, &mut recorder, progress)),
+        Some(EMULATED) => {
+            let elf = args.elf.clone().unwrap_or_else(|| built_firmware("gantry"));
+            let switches = BenchSwitches::default();
+            plot_in_emulator(machine, &elf, switches, moves, recorded, &mut recorder, progress)
+        }
+        Some(port) => plot_on_port(machine, port, moves, &mut recorder, progress),
+    };
     bar.finish_and_clear();
+    let outcome = outcome?;
     recorder.finish().map_err(|error| at(path, &error))?;
     Ok(outcome)
 }
@@ -324,12 +357,16 @@ impl Summary<'_> {
             ("vector error, sd", format!("{:.4} px", error.sd_px)),
             ("contour error counted, rms", format!("{:.4} mm", self.plotted.rms_mm)),
             ("contour error counted, max", format!("{:.4} mm", self.plotted.max_mm)),
-            ("contour error true, rms", format!("{:.4} mm", outcome.true_rms_mm)),
-            ("contour error true, max", format!("{:.4} mm", outcome.true_max_mm)),
+            ("contour error true, rms", known_mm(outcome.true_rms_mm)),
+            ("contour error true, max", known_mm(outcome.true_max_mm)),
             ("targets reached", format!("{} of {}", outcome.reached, outcome.targets)),
             ("anomalies", self.anomalies.to_string()),
-            ("simulated time", format!("{:.2} s", outcome.duration.as_secs_f64())),
+            ("time of the machine", format!("{:.2} s", outcome.duration.as_secs_f64())),
             ("wall time", format!("{:.2} s", self.wall_s)),
         ]
     }
+}
+
+fn known_mm(value: Option<f64>) -> String {
+    value.map_or_else(|| String::from("only the machine knows"), |value| format!("{value:.4} mm"))
 }

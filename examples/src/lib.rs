@@ -1,31 +1,40 @@
-//! What the examples share: one clear line for every error, and a simulated plot with its recording.
+//! What the examples share: one clear line for every error, and plots with their recordings: simulated, in the emulator, or on
+//! a real machine.
 
 mod diagnostics;
 mod drawing_file;
+mod emulated_plot;
+mod emulator;
 mod language;
 mod overlay;
 mod path_deviation;
+mod port_plot;
 mod report;
 mod simulated_plot;
 mod speed_audit;
 mod speed_chart;
 mod stepped_plot;
 mod stepped_preview;
+mod streamed_steps;
 mod svg_strokes;
 mod svg_text;
 mod vectorize_settings;
 
 pub use diagnostics::Diagnostics;
 pub use drawing_file::{Diagnostic, DrawingFile, Ops, Reading, Severity};
+pub use emulated_plot::{Recorded, plot_in_emulator};
+pub use emulator::{BenchSwitches, Emulator, Told, built_firmware};
 pub use language::Language;
 pub use overlay::{Overlay, overlay_png, overlay_step};
 pub use path_deviation::PathDeviation;
+pub use port_plot::plot_on_port;
 pub use report::{Figure, html_page};
 pub use simulated_plot::{PlotOutcome, simulate};
 pub use speed_audit::{Moment, SpeedAudit};
 pub use speed_chart::SpeedChart;
 pub use stepped_plot::{Happening, SteppedFigures, SteppedPlot};
 pub use stepped_preview::{SteppedPreview, pen_colour};
+pub use streamed_steps::{StreamedSteps, streamed_in_emulator, streamed_on_the_desk};
 pub use svg_strokes::{SvgStrokes, svg_strokes};
 pub use svg_text::SvgText;
 pub use vectorize_settings::vectorizer;

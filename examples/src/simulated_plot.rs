@@ -1,5 +1,6 @@
 //! A drawing, sent to a simulated gantry, with everything that happens on its serial line recorded.
 
+use crate::Recorded;
 use core::time::Duration;
 use plotter_motion::plant::{Bench, BenchEvent, BenchSettings};
 use plotter_motion::protocol::HostEvent;
@@ -18,9 +19,10 @@ pub struct PlotOutcome {
     /// Simulated time.
     pub duration: Duration,
     /// Root of the mean square of the true pen's distance from the lines that it drew, mm, over time.
-    pub true_rms_mm: f64,
+    /// `None` where only the machine could know.
+    pub true_rms_mm: Option<f64>,
     /// Greatest such distance, mm.
-    pub true_max_mm: f64,
+    pub true_max_mm: Option<f64>,
     /// What host and controller noticed, in their words, with the time.
     pub notices: Vec<String>,
 }
@@ -30,6 +32,7 @@ pub struct PlotOutcome {
 pub fn simulate<W: Write>(
     machine: &Machine,
     moves: Vec<PenMove>,
+    recorded: Recorded,
     recorder: &mut BenchRecorder<W>,
     mut progress: impl FnMut(u32),
 ) -> PlotOutcome {
@@ -41,11 +44,11 @@ pub fn simulate<W: Write>(
         PlotOutcome { targets: u32::try_from(moves.len()).unwrap_or(u32::MAX), ..PlotOutcome::default() };
     let mut bench = Bench::new(machine, BenchSettings::default(), moves.into_iter());
     let (mut from, mut drawn) = (StepPoint::default(), None::<Segment>);
-    let (mut square_mm2, mut samples) = (0.0, 0_u32);
+    let (mut square_mm2, mut max_mm, mut samples) = (0.0, 0.0_f64, 0_u32);
     while !bench.host().is_done() {
         bench.step(|time, event| {
             match event {
-                BenchEvent::Drive(..) => return, // follows from the rest, and would be half of the log
+                BenchEvent::Drive(..) if !recorded.drive => return,
                 BenchEvent::Host(HostEvent::Begun(PenMove { pen, target })) => {
                     let line = Segment::new(on_sheet(from), on_sheet(target));
                     drawn = (pen == Pen::Down).then_some(line);
@@ -66,16 +69,17 @@ pub fn simulate<W: Write>(
             let error_mm = line.distance(bench.position_mm());
             square_mm2 += error_mm * error_mm;
             samples += 1;
-            outcome.true_max_mm = outcome.true_max_mm.max(error_mm);
+            max_mm = max_mm.max(error_mm);
         }
     }
-    outcome.true_rms_mm = (square_mm2 / f64::from(samples.max(1))).sqrt();
+    outcome.true_rms_mm = Some((square_mm2 / f64::from(samples.max(1))).sqrt());
+    outcome.true_max_mm = Some(max_mm);
     outcome.duration = bench.now();
     outcome
 }
 
 impl PlotOutcome {
-    fn note(&mut self, time: Duration, who: &str, notice: &impl Display) {
+    pub(crate) fn note(&mut self, time: Duration, who: &str, notice: &impl Display) {
         self.notices.push(format!("{:.3} s: {who}: {notice}", time.as_secs_f64()));
     }
 }

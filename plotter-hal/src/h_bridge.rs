@@ -11,11 +11,52 @@
 //!
 //! Source: Texas Instruments, *L293x Quadruple Half-H Drivers*, SLRS008D, "Bidirectional DC Motor Control" and
 //! its table. The thesis on the semi-virtual gantry wires it so, and runs the PWM at 2.5 kHz (sections 6.3, 6.7).
+//!
+//! Bridges of other kinds: [`Drv8871`] with a PWM on either input, [`Tb6612`] with a PWM, two inputs and a standby.
+//! What all have in common is a [`Bridge`]; [`DeadTime`] makes any of them wait before it reverses.
+
+mod dead_time;
+mod drv8871;
+mod tb6612;
+
+pub use dead_time::DeadTime;
+pub use drv8871::{Decay, Drv8871};
+pub use tb6612::Tb6612;
 
 use core::fmt;
 use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::pwm::{self, SetDutyCycle};
 use plotter_motion::{Axis, Direction, Drive, Duty};
+
+/// A DC motor on a bridge of any kind.
+pub trait Bridge {
+    /// What can fail.
+    type Error;
+
+    /// The axis whose share of a [`Drive`] this motor takes.
+    fn axis(&self) -> Axis;
+
+    /// Brings all pins into a known state in which the motor has no drive, whatever was before.
+    ///
+    /// # Errors
+    ///
+    /// Those of the bridge, which say what became of the motor.
+    fn start(&mut self) -> Result<(), Self::Error>;
+
+    /// Gives the motor its share of a drive.
+    ///
+    /// # Errors
+    ///
+    /// Those of the bridge, which say what became of the motor.
+    fn drive(&mut self, drive: Drive) -> Result<(), Self::Error>;
+
+    /// Takes the drive away.
+    ///
+    /// # Errors
+    ///
+    /// Those of the bridge, which say what became of the motor.
+    fn stop(&mut self) -> Result<(), Self::Error>;
+}
 
 /// One motor on an H-bridge. It turns by nothing but a [`Drive`], which only a safety gate makes.
 ///
@@ -24,7 +65,8 @@ use plotter_motion::{Axis, Direction, Drive, Duty};
 /// that is being driven, and both inputs are never high together. (A timer that buffers its compare value takes
 /// the zero over at the end of its period; a PWM that must stop at once has to be set up without that buffer.)
 ///
-/// Whatever pin fails, the motor does not run on: see [`Error`].
+/// Whatever pin fails, the motor does not run on: see [`Error`]. Dropping the driver leaves the pins as they are;
+/// [`coast`](Self::coast) first.
 ///
 /// ```
 /// use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Set};
@@ -72,7 +114,7 @@ where
     Reverse: OutputPin<Error = Forward::Error>,
 {
     /// The motor of `axis`, with the PWM on the bridge's enable pin. Leaves the pins as they are: call
-    /// [`coast`](Self::coast) for a known start.
+    /// [`start`](Self::start) for a known state.
     pub const fn new(axis: Axis, enable: Enable, forward: Forward, reverse: Reverse) -> Self {
         Self { axis, enable, forward, reverse, direction: None }
     }
@@ -80,6 +122,16 @@ where
     /// The axis whose share of a [`Drive`] this motor takes.
     pub const fn axis(&self) -> Axis {
         self.axis
+    }
+
+    /// Brings all pins into a known state, whatever was before: no duty, both direction pins low.
+    ///
+    /// # Errors
+    ///
+    /// [`Error`] if a pin or the PWM fails; it says what became of the motor.
+    pub fn start(&mut self) -> Result<(), Error<Forward::Error, Enable::Error>> {
+        self.coast()?;
+        self.both_low().map_err(|cause| self.after_pin(cause))
     }
 
     /// Gives the motor its share of `drive`. A duty of 0 lets it coast; every other is rounded to the nearest
@@ -155,7 +207,7 @@ where
         self.direction = None;
         match self.enable.set_duty_cycle_fully_off() {
             Ok(()) => Error::Pin(cause),
-            Err(cause) => Error::NotStopped(cause),
+            Err(cause) => self.after_pwm(cause),
         }
     }
 
@@ -170,6 +222,31 @@ where
     }
 }
 
+impl<Enable, Forward, Reverse> Bridge for HBridge<Enable, Forward, Reverse>
+where
+    Enable: SetDutyCycle,
+    Forward: OutputPin,
+    Reverse: OutputPin<Error = Forward::Error>,
+{
+    type Error = Error<Forward::Error, Enable::Error>;
+
+    fn axis(&self) -> Axis {
+        self.axis
+    }
+
+    fn start(&mut self) -> Result<(), Self::Error> {
+        self.start()
+    }
+
+    fn drive(&mut self, drive: Drive) -> Result<(), Self::Error> {
+        self.drive(drive)
+    }
+
+    fn stop(&mut self) -> Result<(), Self::Error> {
+        self.coast()
+    }
+}
+
 /// The nearest of the PWM's steps from 0 to `full`, without sign.
 fn steps(duty: Duty, full: u16) -> u16 {
     u16::try_from(duty.steps(full).unsigned_abs()).map_or(full, |steps| steps.min(full))
@@ -177,14 +254,14 @@ fn steps(duty: Duty, full: u16) -> u16 {
 
 /// A pin or the PWM of an H-bridge failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<Pin, Pwm> {
-    /// A direction pin failed; the duty was taken away and the motor coasts.
+    /// A direction pin failed; the duty was taken away, the motor has no supply across it.
     Pin(Pin),
-    /// The PWM failed; the duty was taken away at a second attempt, or both direction pins were set low, so that
-    /// the motor has no supply across it.
+    /// The PWM failed; the duty was taken away at a second attempt, or the supply by other pins.
     Pwm(Pwm),
-    /// The PWM failed and the motor could not be stopped: cut its supply.
+    /// The PWM failed and the motor may not have been stopped: cut its supply.
     NotStopped(Pwm),
 }
 
@@ -192,7 +269,7 @@ impl<Pin: digital::Error, Pwm: pwm::Error> fmt::Display for Error<Pin, Pwm> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Pin(cause) => {
-                write!(f, "direction pin of the h-bridge: {}; the motor coasts", cause.kind())
+                write!(f, "direction pin of the h-bridge: {}; the duty is taken away", cause.kind())
             }
             Self::Pwm(cause) => write!(f, "pwm of the h-bridge: {}; the motor is stopped", cause.kind()),
             Self::NotStopped(cause) => {

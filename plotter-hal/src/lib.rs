@@ -2,9 +2,30 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod a4988;
+pub mod axis;
+mod debounce;
+pub mod estop_input;
 pub mod h_bridge;
+pub mod laser;
+pub mod limit_switch;
+mod no_pin;
+pub mod pen_servo;
+pub mod pulse_counter;
 pub mod quadrature;
+pub mod serial_line;
 
+pub use a4988::A4988;
+pub use axis::{DcAxes, StepperAxes};
+pub use debounce::SwitchSettings;
 pub use embedded_hal;
+pub use embedded_io;
+pub use estop_input::{EstopChange, EstopInput};
 pub use h_bridge::HBridge;
+pub use laser::{Laser, power_at_speed};
+pub use limit_switch::{LimitSwitch, LimitSwitchGroup};
+pub use no_pin::NoPin;
+pub use pen_servo::{PenServo, PenServoSettings, ServoPoint};
+pub use pulse_counter::{CounterDelta, PulseInput};
 pub use quadrature::Quadrature;
+pub use serial_line::SerialLine;

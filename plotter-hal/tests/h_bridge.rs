@@ -221,7 +221,7 @@ fn a_failing_direction_pin_leaves_the_motor_without_duty() {
     let mut bridge = HBridge::new(Axis::X, pwm, forward, reverse);
     let error = bridge.drive(drive(0.5, 0.0)).unwrap_err();
     assert_eq!(error, Error::Pin(fault));
-    assert!(error.to_string().ends_with("the motor coasts"), "{error}");
+    assert!(error.to_string().ends_with("the duty is taken away"), "{error}");
 
     let (mut pwm, mut forward, mut reverse) = bridge.release();
     pwm.done();

@@ -4,15 +4,15 @@
 //!        ┌───┐   ┌───┐         forwards: B leads; at a rising A, B is high
 //!   A  ──┘   └───┘   └──       backwards: A leads; at a rising A, B is low
 //!      ┌───┐   ┌───┐
-//!   B  ┘   └───┘   └────       ×1: rising edges of A only     ×4: every edge
+//!   B  ┘   └───┘   └────       ×1: rising edges of A   ×2: every edge of A   ×4: every edge
 //! ```
 //!
 //! [`QuadratureX1`] is the published decoder (spec 1.10): at each rising edge of A, B high counts up and B low
 //! counts down. It has a weakness that its author did not meet or did not mention: the rising edge lies at the
 //! *start* of A's high half when the shaft turns forwards and at its *end* when it turns backwards. A shaft that
 //! trembles about the start of the high half rises again and again and is counted up each time, though
-//! it goes nowhere. [`QuadratureX4`] has an edge of its own for every quarter of a period, in both directions,
-//! and cannot drift.
+//! it goes nowhere. [`QuadratureX2`] counts at the same edges in both directions and does not drift, with an interrupt on
+//! one pin still; [`QuadratureX4`] has an edge of its own for every quarter of a period, and sees when it missed one.
 
 use crate::Direction;
 
@@ -73,6 +73,40 @@ impl QuadratureX1 {
         let rising = phases.a && !self.a_was_high;
         self.a_was_high = phases.a;
         match (rising, phases.b) {
+            (false, _) => None,
+            (true, true) => Some(Direction::Plus),
+            (true, false) => Some(Direction::Minus),
+        }
+    }
+}
+
+/// ×2 decoding: both edges of phase A. Right after one, B is at A's level if the shaft turns forwards, and at the other one
+/// if it turns backwards.
+///
+/// ```
+/// # use plotter_motion::{Direction, Phases, QuadratureX2};
+/// let mut decoder = QuadratureX2::new(Phases::of_quarter(0));
+/// assert_eq!(decoder.update(Phases::of_quarter(1)), None); // B's edge
+/// assert_eq!(decoder.update(Phases::of_quarter(2)), Some(Direction::Plus)); // A falls while B is low
+/// assert_eq!(decoder.update(Phases::of_quarter(1)), Some(Direction::Minus)); // and rises again
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct QuadratureX2 {
+    a_was_high: bool,
+}
+
+impl QuadratureX2 {
+    /// A decoder that starts with the shaft where it shows `phases`.
+    #[must_use]
+    pub const fn new(phases: Phases) -> Self {
+        Self { a_was_high: phases.a }
+    }
+
+    /// Takes the present levels; says whether the shaft went on by half a period.
+    pub const fn update(&mut self, phases: Phases) -> Option<Direction> {
+        let edge = phases.a != self.a_was_high;
+        self.a_was_high = phases.a;
+        match (edge, phases.a == phases.b) {
             (false, _) => None,
             (true, true) => Some(Direction::Plus),
             (true, false) => Some(Direction::Minus),
@@ -142,8 +176,17 @@ mod tests {
     }
 
     #[test]
-    fn x1_drifts_when_the_shaft_trembles_about_one_edge_and_x4_does_not() {
+    fn x2_counts_half_a_period_in_both_directions() {
+        let mut decoder = QuadratureX2::new(Phases::of_quarter(0));
+        assert_eq!(counts(|p| decoder.update(p), &[1, 2, 3, 4, 5, 6, 7, 8]), 4);
+        assert_eq!(counts(|p| decoder.update(p), &[7, 6, 5, 4, 3, 2, 1, 0]), -4);
+    }
+
+    #[test]
+    fn x1_drifts_when_the_shaft_trembles_about_one_edge_and_the_others_do_not() {
         let tremble = [-1, 0, -1, 0, -1, 0];
+        let mut x2 = QuadratureX2::new(Phases::of_quarter(0));
+        assert_eq!(counts(|p| x2.update(p), &tremble), 0);
         let mut x1 = QuadratureX1::new(Phases::of_quarter(0));
         assert_eq!(counts(|p| x1.update(p), &tremble), 3);
         let mut x4 = QuadratureX4::new(Phases::of_quarter(0));

@@ -25,6 +25,7 @@ mod planner;
 pub mod plant;
 mod profile;
 pub mod protocol;
+mod pulse_counter;
 mod safety;
 mod shapes;
 mod stepgen;
@@ -44,7 +45,7 @@ pub use config::{
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};
-pub use encoder::{Phases, QuadratureX1, QuadratureX4};
+pub use encoder::{Phases, QuadratureX1, QuadratureX2, QuadratureX4};
 pub use geom::{Point, Segment, Vec2};
 pub use homing::{Homed, Homing, HomingAxis, HomingError, HomingStatus, HomingStep};
 pub use pid::{Pid, PidState, SumPid, SumPidState};
@@ -52,6 +53,7 @@ pub use planner::{
     Action, Course, PathMode, Phase, PlanError, Planner, PlannerSettings, Shape, junction_speed,
 };
 pub use profile::{MotionLimits, ProfileError, ProfilePoint, Ramp, SCurve, Trapezoid, TrapezoidMove};
+pub use pulse_counter::PulseCounter;
 pub use safety::{Beam, Blocked, Demand, Drive, Duty, DutyError, LimitSwitches, Pulse, SafetyGate};
 pub use shapes::{circle, rectangle};
 pub use stepgen::{

@@ -60,7 +60,7 @@ fn a_value_of_the_wrong_kind_is_refused_with_the_right_one() {
     assert_snapshot!(width("2024-01-01"), @"line 3, column 12: area.width_mm: a date; write a number in mm");
     assert_snapshot!(message("serial.baud = 9600.0"), @"line 2, column 15: serial.baud: a number with fraction; write a whole number in baud, without fraction and quotes");
     assert_snapshot!(message("x = 40"), @"line 2, column 5: x: a whole number; it is a table: write [x], and its keys on the lines below");
-    assert_snapshot!(message("[x.encoder]\ndecoding = \"x2\""), @r#"line 3, column 12: x.encoder.decoding: the text "x2"; write "x1" or "x4": did you mean "x1"?"#);
+    assert_snapshot!(message("[x.encoder]\ndecoding = \"x3\""), @r#"line 3, column 12: x.encoder.decoding: the text "x3"; write "x1" or "x2" or "x4": did you mean "x1"?"#);
     assert_snapshot!(message("name = \"a name that does not fit on its plate\""), @r#"line 2, column 8: name: the text "a name that does not fit on its plate"; 37 bytes are too long, at most 31 fit"#);
 }
 

@@ -286,3 +286,16 @@ fn a_laser_burns_while_it_moves_and_not_in_g0() {
     bench.stop_button(true);
     assert_eq!(bench.plotter.beam().power(), 0);
 }
+
+#[test]
+fn a_line_with_a_broken_byte_is_refused_and_the_next_one_is_drawn() {
+    let lines = ["G1 X1\u{1a}2 F600\n", "(\u{1a}) G1 X3 F600\n", "G1 X4 F600\n"];
+    insta::assert_snapshot!(conversation(&mut bench(), &lines), @r"
+    > G1 X1\u{1a}2 F600\n
+    < error:11
+    > (\u{1a}) G1 X3 F600\n
+    < error:11
+    > G1 X4 F600\n
+    < ok
+    ");
+}

@@ -312,3 +312,18 @@ fn a_laser_burns_in_moves_only_and_as_strongly_as_it_is_fast() {
     bench.run_out();
     assert!(bench.made.len() > count + 1_000 && bench.made[count..].iter().all(|made| made.laser == 0));
 }
+
+#[test]
+fn a_line_with_a_broken_byte_is_refused_and_the_next_one_is_drawn() {
+    // X1 and X12 are both good lines: what was between them must not be guessed.
+    insta::assert_snapshot!(conversation(&mut bench(), &["G1 X1\u{1a}2 Y5\n", "G1 X12 Y5\n"]), @r"
+    > G1 X1\u{1a}2 Y5\n
+    < error: a byte of this line came broken: left out\r\n
+    < OK\r\n
+    - 0 0 steps, servo 160
+    > G1 X12 Y5\n
+    < distance=13.00\r\n
+    < OK\r\n
+    - 1051 438 steps, servo 160
+    ");
+}

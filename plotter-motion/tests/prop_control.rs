@@ -18,7 +18,7 @@ fn axis() -> impl Strategy<Value = Axis> {
 }
 
 fn decoding() -> impl Strategy<Value = Decoding> {
-    prop_oneof![Just(Decoding::X1), Just(Decoding::X4)]
+    prop_oneof![Just(Decoding::X1), Just(Decoding::X2), Just(Decoding::X4)]
 }
 
 /// Coordinates that the protocol can say, and those that only a program error can.
@@ -164,7 +164,7 @@ proptest! {
                 before = speed;
                 let ahead = axis.position_counts() + f64::from(decoding.rest_offset_counts()) - f64::from(count);
                 match decoding {
-                    Decoding::X4 => prop_assert!((0.0..=1.0).contains(&ahead), "{ahead} counts ahead"),
+                    Decoding::X2 | Decoding::X4 => prop_assert!((0.0..=1.0).contains(&ahead), "{ahead} counts ahead"),
                     _ => {
                         let trembled = f64::from(turns);
                         prop_assert!((-0.5 - trembled..=1.0 + trembled).contains(&ahead), "{ahead}, {turns} turns");

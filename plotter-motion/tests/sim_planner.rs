@@ -1,12 +1,18 @@
 //! Drawings through planner and step generator, audited by their steps.
-#![allow(clippy::print_stdout, reason = "what was measured, for whoever looks")]
+#![allow(
+    clippy::print_stdout,
+    clippy::cast_precision_loss,
+    reason = "what was measured, for whoever looks; ticks below 2^53"
+)]
 
 mod auditor;
 mod drawings;
 
 use auditor::{Audit, Lens, audit, planned};
+use core::time::Duration;
 use drawings::Drawing;
-use plotter_motion::{PathMode, PlannerSettings};
+use plotter_motion::plant::{StepperPlant, StepperSettings};
+use plotter_motion::{Axis, Direction, MotorEvent, PathMode, PlannerSettings, StepGenSettings};
 
 /// A hundred times as fine as a motor, so that differences of places are accelerations and not roundings.
 const FINE: Lens =
@@ -75,7 +81,7 @@ fn arcs_are_run_as_arcs_within_every_limit() {
 }
 
 #[test]
-#[ignore = "a minute in a release build"]
+#[ignore = "two minutes in a release build: .ci/run runs it"]
 fn whole_drawings_keep_every_limit() {
     for drawing in drawings::built() {
         check(&drawing, FINE);
@@ -85,9 +91,48 @@ fn whole_drawings_keep_every_limit() {
     }
 }
 
+/// The documented machine: 87.58 steps/mm, so up to 8758 pulses/s, and simulated motors that lose steps.
+#[test]
+#[ignore = "half a minute in a release build: .ci/run runs it"]
+fn whole_drawings_lose_no_step() {
+    let drawings = drawings::built().into_iter().chain(drawings::real());
+    for drawing in drawings {
+        for (mode, settings) in modes() {
+            let mut plant = StepperPlant::new(StepperSettings::default(), StepperSettings::default());
+            let clock = StepGenSettings::default();
+            let mut fastest_hz = 0.0_f64;
+            let mut last = [0; 2];
+            auditor::run::<16>(
+                settings,
+                clock,
+                87.58,
+                &drawing.ops,
+                |_, _| {},
+                |tick, event| {
+                    let MotorEvent::Step { x, y } = event else { return };
+                    let at_s = tick as f64 / clock.clock_hz;
+                    for (axis, step) in [(Axis::X, x), (Axis::Y, y)] {
+                        if step != 0 {
+                            let direction = if step > 0 { Direction::Plus } else { Direction::Minus };
+                            plant.pulse(Duration::from_secs_f64(at_s), axis, direction);
+                            let last = &mut last[axis as usize];
+                            fastest_hz = fastest_hz.max(clock.clock_hz / (tick - *last).max(1) as f64);
+                            *last = tick;
+                        }
+                    }
+                },
+            );
+            plant.x.settle();
+            plant.y.settle();
+            println!("{} {mode}: up to {fastest_hz:.0} pulses/s", drawing.name);
+            assert_eq!((plant.x.lost_steps(), plant.y.lost_steps()), (0, 0), "{} {mode}", drawing.name);
+        }
+    }
+}
+
 /// Prints the table of docs/results.md: `cargo test --release -p plotter-motion --test sim_planner -- --ignored --nocapture table`
 #[test]
-#[ignore = "a table for people"]
+#[ignore = "tests nothing: prints the table of docs/results.md, with the command that stands there"]
 fn table_of_times() {
     let modes = modes();
     println!(

@@ -9,6 +9,8 @@ pub mod golden;
 pub mod log;
 mod number;
 mod player;
+#[cfg(feature = "serial")]
+pub mod serial;
 mod thin;
 mod virtual_plotter;
 

@@ -201,6 +201,8 @@ pub enum Decoding {
     /// Rising edges of phase A only, as published.
     #[default]
     X1,
+    /// Both edges of phase A.
+    X2,
     /// Every edge of both phases.
     X4,
 }
@@ -211,6 +213,7 @@ impl Decoding {
     pub const fn counts_per_line(self) -> u8 {
         match self {
             Self::X1 => 1,
+            Self::X2 => 2,
             Self::X4 => 4,
         }
     }
@@ -218,13 +221,13 @@ impl Decoding {
     /// Where, within the interval of a count, a shaft should rest so that no trembling moves it across an edge: in
     /// the middle of the part between the edges that count forwards and backwards, in counts.
     ///
-    /// With x1 decoding that part is A's high half, a quarter of a period after the rising edge; with x4 half an
-    /// interval.
+    /// With x1 decoding that part is A's high half, a quarter of a period after the rising edge; with x2 and x4 half
+    /// an interval.
     #[must_use]
     pub const fn rest_offset_counts(self) -> f32 {
         match self {
             Self::X1 => 0.25,
-            Self::X4 => 0.5,
+            Self::X2 | Self::X4 => 0.5,
         }
     }
 }
@@ -286,7 +289,8 @@ pub struct LoadConfig {
 }
 
 impl AxisConfig {
-    /// Encoder counts in one turn of the motor's shaft: one a line with x1 decoding, four with x4.
+    /// Encoder counts in one turn of the motor's shaft: one a line with x1 decoding, two with x2, four with
+    /// x4.
     ///
     /// ```
     /// # use plotter_motion::{AxisConfig, Decoding, EncoderConfig};

@@ -453,7 +453,10 @@ macro_rules! axis_rules {
                 "",
                 "count the slots of the disc",
             ),
-            Rule { key: concat!(stringify!($axis), ".encoder.decoding"), form: Form::Choice(&["x1", "x4"]) },
+            Rule {
+                key: concat!(stringify!($axis), ".encoder.decoding"),
+                form: Form::Choice(&["x1", "x2", "x4"]),
+            },
             number(
                 concat!(stringify!($axis), ".motor.supply_v"),
                 |c| c.$axis.motor.supply_v,

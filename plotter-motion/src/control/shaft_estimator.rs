@@ -183,7 +183,7 @@ impl ShaftEstimator {
     pub fn no_edge(&mut self) {
         let (least, most) = match self.decoding {
             Decoding::X1 => (-0.5, 1.0),
-            Decoding::X4 => (0.0, 1.0),
+            Decoding::X2 | Decoding::X4 => (0.0, 1.0),
         };
         let inside = self.offset.clamp(least, most);
         if inside != self.offset {
@@ -201,8 +201,8 @@ impl ShaftEstimator {
         const BEYOND_COUNTS: f32 = 0.1;
         let next = self.count.saturating_add(direction.sign());
         match (self.decoding, direction) {
-            (Decoding::X4, Direction::Plus) => (next, 0.0),
-            (Decoding::X4, Direction::Minus) => (next, 1.0),
+            (Decoding::X2 | Decoding::X4, Direction::Plus) => (next, 0.0),
+            (Decoding::X2 | Decoding::X4, Direction::Minus) => (next, 1.0),
             // Forwards the counted edge is the start of A's high half, backwards its end.
             (Decoding::X1, Direction::Plus) => {
                 let again = self.least < -BEYOND_COUNTS && self.offset < 0.5;

@@ -284,9 +284,12 @@ impl<C: LineController> Gantry<C> {
 
     /// The oldest notice that was not fetched yet.
     pub fn take_notice(&mut self) -> Option<Notice> {
-        let oldest = self.notices.first_mut()?.take();
-        self.notices.rotate_left(1);
-        oldest
+        // All move up by one place. (Turning the row round would take 2 KB of a firmware.)
+        let mut moved = None;
+        for place in self.notices.iter_mut().rev() {
+            core::mem::swap(place, &mut moved);
+        }
+        moved
     }
 
     fn notice(&mut self, notice: Notice) {

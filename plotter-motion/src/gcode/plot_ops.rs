@@ -11,6 +11,8 @@ enum Stage {
     Text,
     EndOfText,
     EndOfDrawing,
+    /// Strict reading met an error: what the interpreter still holds is not to follow.
+    Failed,
 }
 
 /// The plot operations of a G-code text, read from an iterator of bytes as they are asked for.
@@ -63,9 +65,12 @@ impl<I: Iterator<Item = u8>> Iterator for PlotOps<I> {
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
+            if self.stage == Stage::Failed {
+                return None;
+            }
             if let Some(outcome) = self.interpreter.next_op() {
                 if self.strict && outcome.is_err_and(|error| !error.is_notice()) {
-                    self.stage = Stage::EndOfDrawing;
+                    self.stage = Stage::Failed;
                 }
                 return Some(outcome);
             }
@@ -83,7 +88,7 @@ impl<I: Iterator<Item = u8>> Iterator for PlotOps<I> {
                     debug_assert!(ended.is_ok(), "next_op has just given none");
                     None
                 }
-                Stage::EndOfDrawing => return None,
+                Stage::EndOfDrawing | Stage::Failed => return None,
             };
             if let Some(block) = block {
                 let taken = self.interpreter.push(block);

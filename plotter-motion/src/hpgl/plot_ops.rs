@@ -12,6 +12,8 @@ enum Stage {
     Text,
     EndOfText,
     EndOfDrawing,
+    /// Strict reading met an error: what the interpreter still holds is not to follow.
+    Failed,
 }
 
 /// The plot operations of an HPGL text, read from an iterator of bytes as they are asked for.
@@ -76,11 +78,12 @@ impl<I: Iterator<Item = u8>, const VERTICES: usize> Iterator for PlotOps<I, VERT
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
+            if self.stage == Stage::Failed {
+                return None;
+            }
             if let Some(outcome) = self.interpreter.next_op() {
                 if self.strict && outcome.is_err_and(|error| !error.is_notice()) {
-                    self.stage = Stage::EndOfDrawing;
-                    // What the failed command has left behind is not to follow.
-                    self.interpreter = Interpreter::with_options(ReadOptions::default());
+                    self.stage = Stage::Failed;
                 }
                 return Some(outcome);
             }
@@ -98,7 +101,7 @@ impl<I: Iterator<Item = u8>, const VERTICES: usize> Iterator for PlotOps<I, VERT
                     debug_assert!(ended.is_ok(), "next_op has just given none");
                     None
                 }
-                Stage::EndOfDrawing => return None,
+                Stage::EndOfDrawing | Stage::Failed => return None,
             };
             if let Some(event) = event {
                 let taken = self.interpreter.push(event);

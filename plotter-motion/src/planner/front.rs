@@ -100,13 +100,13 @@ impl Front {
         self.position
     }
 
-    /// Begins anew at another place.
+    /// Begins anew at another place, with the pen up.
     pub(super) fn restart(&mut self, position: Point) {
-        *self = Self { pen: self.pen, power: self.power, ..Self::at(self.limits, position) };
+        *self = Self { power: self.power, ..Self::at(self.limits, position) };
     }
 
     /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; else what ends a
-    /// run (a line and an arc, the line held back) and the new one.
+    /// run (a line and two spirals, the line held back) and the new one.
     pub(super) const fn most_blocks(settings: &PlannerSettings) -> usize {
         match settings.path {
             PathMode::Exact => 2,

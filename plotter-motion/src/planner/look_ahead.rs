@@ -86,10 +86,10 @@ impl<const N: usize> Planner<N> {
         self.ring.room() >= Front::most_blocks(&self.settings)
     }
 
-    /// Whether nothing is left to be taken. Operations that were put off come after [`Planner::finish`].
+    /// Whether nothing is left to be taken, also after a feed hold. Operations that were put off come after [`Planner::finish`].
     #[must_use]
-    pub const fn is_empty(&self) -> bool {
-        self.ring.len() == 0 && self.ramps.is_over()
+    pub fn is_empty(&self) -> bool {
+        self.ring.len() == 0 && self.ramps.is_over() && self.ramps.rest_mm() <= 0.0
     }
 
     /// Where the path that was pushed ends, mm.
@@ -126,7 +126,7 @@ impl<const N: usize> Planner<N> {
         Ok(())
     }
 
-    /// Forgets everything: the machine has been stopped and stands at `position`.
+    /// Forgets everything: the machine has been stopped and stands at `position`, its pen up. The laser's power stays chosen.
     pub fn clear(&mut self, position: Point) {
         self.front.restart(position);
         self.ring.clear();
@@ -222,6 +222,41 @@ impl<const N: usize> Planner<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn planner(jerk_mm_s3: Option<f64>) -> Planner<16> {
+        Planner::new(PlannerSettings { jerk_mm_s3, ..PlannerSettings::default() }).unwrap()
+    }
+
+    #[test]
+    fn a_path_that_is_held_is_not_empty() {
+        for jerk_mm_s3 in [None, Some(20_000.0)] {
+            let mut planner = planner(jerk_mm_s3);
+            planner.push(PlotOp::Draw { to: Point::new(100.0, 0.0), feed_mm_s: None }).unwrap();
+            planner.finish().unwrap();
+            assert!(matches!(planner.next_action(), Some(Action::Course(_))));
+            assert!(matches!(planner.next_action(), Some(Action::Phase(_))));
+            planner.hold();
+            while planner.next_action().is_some() {}
+            assert!(planner.is_held() && !planner.is_empty(), "{jerk_mm_s3:?}");
+            planner.resume();
+            while planner.next_action().is_some() {}
+            assert!(planner.is_empty(), "{jerk_mm_s3:?}");
+        }
+    }
+
+    #[test]
+    fn after_a_stop_the_pen_is_up_and_a_dot_lowers_it() {
+        let mut planner = planner(None);
+        let at = Point::new(5.0, 0.0);
+        planner.push(PlotOp::Draw { to: Point::new(10.0, 0.0), feed_mm_s: None }).unwrap();
+        planner.clear(at);
+        planner.push(PlotOp::Draw { to: at, feed_mm_s: None }).unwrap();
+        let course = planner.next_action();
+        assert!(
+            matches!(course, Some(Action::Course(course)) if course.pen == crate::Pen::Down),
+            "{course:?}"
+        );
+    }
 
     #[test]
     fn sixteen_blocks_take_less_than_1700_bytes() {

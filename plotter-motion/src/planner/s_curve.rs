@@ -6,6 +6,7 @@
 //! late as it must, whatever the lengths of the blocks.
 
 use super::Phase;
+use super::ramps::LONGEST_S;
 use super::ring::Ring;
 use crate::{MotionLimits, SCurve};
 
@@ -22,7 +23,9 @@ const SLACK_MM: f64 = 1e-9;
 /// A braking that ends no farther than this from where it should is begun as a whole, mm.
 const TIGHT_MM: f64 = 1e-6;
 /// What is left of a block when it counts as done, mm.
-const DONE_MM: f64 = 1e-7;
+const DONE_MM: f64 = 1e-9;
+/// A phase that is no longer than this is rounding, s.
+const SHORTEST_PHASE_S: f64 = 1e-9;
 /// Slower than this is a standstill, mm/s.
 const STANDSTILL_MM_S: f64 = 1e-7;
 
@@ -65,6 +68,36 @@ impl State {
         } else {
             self.speed.max(self.after(jerk, time_s).0.speed)
         }
+    }
+
+    /// Jerk and time, s, of the next phase of the quickest way to the cruising speed; none if it would go beyond it.
+    fn next_to_cruise(self, cruise: f64, limits: Limits) -> Option<(f64, f64)> {
+        if self.cruises(cruise, limits) {
+            return None;
+        }
+        let Self { speed, accel } = self;
+        let missing = 2.0 * limits.jerk * (cruise - speed);
+        // Up to this acceleration and back to none.
+        let peak = libm::sqrt((0.5 * (missing + accel * accel)).max(0.0)).min(limits.accel);
+        let up_s = (peak - accel) / limits.jerk;
+        if up_s > SHORTEST_PHASE_S {
+            return Some((limits.jerk, up_s));
+        }
+        let excess = missing - accel * accel;
+        if accel <= 0.0 || excess < -STANDSTILL_MM_S * limits.jerk {
+            return None;
+        }
+        let steady_s = excess / (2.0 * limits.jerk * accel);
+        if steady_s > SHORTEST_PHASE_S {
+            Some((0.0, steady_s))
+        } else {
+            Some((-limits.jerk, accel / limits.jerk))
+        }
+    }
+
+    /// Whether the motion goes on at cruising speed, but for rounding.
+    fn cruises(self, cruise: f64, limits: Limits) -> bool {
+        self.accel.abs() <= 1e-9 * limits.accel && self.speed >= cruise * (1.0 - 1e-9)
     }
 
     /// The hardest braking to a speed with no acceleration left; none if that speed is not exceeded in any case.
@@ -161,6 +194,8 @@ pub(super) struct SCurveState {
     /// The phases that have been chosen, and how many of them have been taken.
     chosen: Chosen,
     taken: usize,
+    /// How much of the next of them has been taken, s: a long one is given out in pieces.
+    taken_s: f64,
 }
 
 /// Phases that go on as a whole.
@@ -209,7 +244,11 @@ impl SCurveState {
     pub(super) fn begin(&mut self) {
         self.begun = true;
         self.done_mm = 0.0;
-        self.chosen = Chosen::None;
+        self.choose_next(Chosen::None);
+    }
+
+    fn choose_next(&mut self, chosen: Chosen) {
+        (self.chosen, self.taken, self.taken_s) = (chosen, 0, 0.0);
     }
 
     /// The next phase of the head; `None` when it is done, and taken from the ring, or has not begun.
@@ -226,15 +265,19 @@ impl SCurveState {
         let limits = Limits { accel: accel_mm_s2, jerk: jerk_mm_s3 };
         let length_mm = ring.get(0).map_or(0.0, |head| head.length());
         loop {
-            if hold && self.taken > 0 {
+            if hold && (self.taken > 0 || self.taken_s > 0.0) {
                 // What has not been taken of what was chosen is not wanted any more.
-                self.chosen = Chosen::None;
-                self.taken = 0;
+                self.choose_next(Chosen::None);
             }
             if let Some((jerk, time_s)) = self.chosen.phase(self.taken, limits.jerk) {
-                self.taken += 1;
-                if time_s > 0.0 {
-                    return Some(self.take(jerk, time_s));
+                let rest_s = time_s - self.taken_s;
+                if rest_s > LONGEST_S {
+                    self.taken_s += LONGEST_S;
+                    return Some(self.take(jerk, LONGEST_S));
+                }
+                (self.taken, self.taken_s) = (self.taken + 1, 0.0);
+                if rest_s > 0.0 {
+                    return Some(self.take(jerk, rest_s));
                 }
                 continue;
             }
@@ -242,22 +285,22 @@ impl SCurveState {
                 self.done_mm = length_mm;
                 self.state = State { speed: exit, accel: 0.0 };
             }
-            self.chosen = Chosen::None;
+            self.choose_next(Chosen::None);
             let rest_mm = length_mm - self.done_mm;
             if rest_mm <= DONE_MM {
                 break;
             }
             if hold {
-                self.chosen = self.brake(rest_mm, limits);
-                self.taken = 0;
+                let braking = self.brake(rest_mm, limits);
+                self.choose_next(braking);
                 if self.chosen == Chosen::None {
                     self.state = State::default();
                     return None;
                 }
                 continue;
             }
-            self.chosen = self.choose(ring, rest_mm, limits);
-            self.taken = 0;
+            let chosen = self.choose(ring, rest_mm, limits);
+            self.choose_next(chosen);
             if self.chosen == Chosen::None {
                 break;
             }
@@ -279,7 +322,7 @@ impl SCurveState {
     fn brake(&self, rest_mm: f64, limits: Limits) -> Chosen {
         let Braking { in_s, steady_s, out_s } = self.state.braking(0.0, limits);
         for (jerk, time_s) in [(-limits.jerk, in_s), (0.0, steady_s), (limits.jerk, out_s)] {
-            if time_s <= 1e-9 {
+            if time_s <= SHORTEST_PHASE_S {
                 continue;
             }
             let within = self.state.after(jerk, time_s).1 <= rest_mm;
@@ -325,7 +368,7 @@ impl SCurveState {
         let part_s = (limits.accel / limits.jerk).min(libm::sqrt(ahead.cruise / limits.jerk)) / PARTS;
         let part_s = part_s.max(SHORTEST_S);
         // At full speed: as long as there is nothing to brake for.
-        if state.accel.abs() <= 1e-9 * limits.accel && state.speed >= ahead.cruise * (1.0 - 1e-9) {
+        if state.cruises(ahead.cruise, limits) {
             let free_mm = ahead.places().iter().fold(rest_mm, |free_mm, &(place_mm, most)| {
                 free_mm.min(place_mm - state.braking_mm(most, limits))
             });
@@ -333,6 +376,13 @@ impl SCurveState {
             if time_s > part_s || free_mm >= rest_mm {
                 self.state.accel = 0.0;
                 return Chosen::One { jerk: 0.0, time_s };
+            }
+        }
+        // The quickest way to full speed, as long as nothing has to be braked for at the end of its next phase.
+        if let Some((jerk, time_s)) = state.next_to_cruise(ahead.cruise, limits) {
+            let (after, way_mm) = state.after(jerk, time_s);
+            if way_mm <= rest_mm && ahead.is_viable(after, way_mm, limits) {
+                return Chosen::One { jerk, time_s };
             }
         }
         let to_full_s = (limits.accel - state.accel).max(0.0) / limits.jerk;
@@ -402,7 +452,7 @@ impl SCurveState {
         let &(_, most) = ahead.places().iter().find(slack)?;
         let Braking { in_s, steady_s, out_s } = state.braking(most, limits);
         let phases = [(-limits.jerk, in_s), (0.0, steady_s), (limits.jerk, out_s.min(part_s))];
-        let &(jerk, time_s) = phases.iter().find(|phase| phase.1 > 1e-9)?;
+        let &(jerk, time_s) = phases.iter().find(|phase| phase.1 > SHORTEST_PHASE_S)?;
         let (after, way_mm) = state.after(jerk, time_s);
         if jerk > 0.0 && !ahead.is_viable(after, way_mm, limits) {
             return None; // a slower place behind it wants more

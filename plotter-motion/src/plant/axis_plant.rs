@@ -1,7 +1,7 @@
 //! One simulated axis: motor, friction, encoder, and a hand that can hold the shaft.
 
 use super::dc_motor::{DcMotor, DcMotorState};
-use crate::{AxisConfig, Decoding, Direction, Duty, Phases, QuadratureX1, QuadratureX4};
+use crate::{AxisConfig, Decoding, Direction, Duty, Phases, QuadratureX1, QuadratureX2, QuadratureX4};
 use core::f64::consts::TAU;
 
 /// A motor with its load and its encoder, moved on in fixed time steps.
@@ -36,6 +36,7 @@ pub struct AxisPlant {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Decoder {
     X1(QuadratureX1),
+    X2(QuadratureX2),
     X4(QuadratureX4),
 }
 
@@ -46,6 +47,15 @@ pub struct CountedEdge {
     pub share_of_step: f64,
     /// Which way.
     pub direction: Direction,
+}
+
+/// A change of the levels on an encoder's pins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhaseChange {
+    /// When, as a share of the step, 0 to 1.
+    pub share_of_step: f64,
+    /// The levels from then on.
+    pub phases: Phases,
 }
 
 impl AxisPlant {
@@ -65,6 +75,7 @@ impl AxisPlant {
             quarters_per_rad,
             decoder: match decoding {
                 Decoding::X1 => Decoder::X1(QuadratureX1::new(phases)),
+                Decoding::X2 => Decoder::X2(QuadratureX2::new(phases)),
                 Decoding::X4 => Decoder::X4(QuadratureX4::new(phases)),
             },
             stalled: false,
@@ -96,8 +107,31 @@ impl AxisPlant {
         self.state
     }
 
+    /// The levels on the encoder's pins.
+    #[must_use]
+    pub fn phases(&self) -> Phases {
+        Phases::of_quarter(floor(self.state.angle_rad * self.quarters_per_rad))
+    }
+
     /// Goes on by one time step under `duty`; `edge` is told of every counted edge, in order.
     pub fn step(&mut self, duty: Duty, mut edge: impl FnMut(CountedEdge)) {
+        let mut decoder = self.decoder;
+        self.turn(duty, |PhaseChange { share_of_step, phases }| {
+            let counted = match &mut decoder {
+                Decoder::X1(decoder) => decoder.update(phases),
+                Decoder::X2(decoder) => decoder.update(phases),
+                Decoder::X4(decoder) => decoder.update(phases),
+            };
+            if let Some(direction) = counted {
+                edge(CountedEdge { share_of_step, direction });
+            }
+        });
+        self.decoder = decoder;
+    }
+
+    /// As [`step`](Self::step), for a decoder elsewhere: `change` is told of every change on the encoder's pins, in
+    /// order, and nothing is counted here.
+    pub fn turn(&mut self, duty: Duty, mut change: impl FnMut(PhaseChange)) {
         let before = self.state.angle_rad * self.quarters_per_rad;
         self.state = self.moved(self.voltage_v(duty));
         let after = self.state.angle_rad * self.quarters_per_rad;
@@ -109,16 +143,9 @@ impl AxisPlant {
             // the border crossed lies above the quarter that is left, or below it
             let (border, next) = if forwards { (quarter + 1, quarter + 1) } else { (quarter, quarter - 1) };
             quarter = next;
-            let phases = Phases::of_quarter(quarter);
-            let counted = match &mut self.decoder {
-                Decoder::X1(decoder) => decoder.update(phases),
-                Decoder::X4(decoder) => decoder.update(phases),
-            };
-            if let Some(direction) = counted {
-                #[expect(clippy::cast_precision_loss, reason = "a shaft's quarters stay far below 2^53")]
-                let share_of_step = ((border as f64 - before) / (after - before)).clamp(0.0, 1.0);
-                edge(CountedEdge { share_of_step, direction });
-            }
+            #[expect(clippy::cast_precision_loss, reason = "a shaft's quarters stay far below 2^53")]
+            let share_of_step = ((border as f64 - before) / (after - before)).clamp(0.0, 1.0);
+            change(PhaseChange { share_of_step, phases: Phases::of_quarter(quarter) });
         }
     }
 
@@ -182,7 +209,7 @@ mod tests {
 
     #[test]
     fn the_encoder_counts_what_the_shaft_turned() {
-        for decoding in [Decoding::X1, Decoding::X4] {
+        for decoding in [Decoding::X1, Decoding::X2, Decoding::X4] {
             let mut config = AxisConfig::default();
             config.encoder.decoding = decoding;
             let mut axis = AxisPlant::new(&config, DT_S);

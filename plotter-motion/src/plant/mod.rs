@@ -6,7 +6,7 @@ mod bench;
 mod dc_motor;
 mod stepper;
 
-pub use axis_plant::{AxisPlant, CountedEdge};
+pub use axis_plant::{AxisPlant, CountedEdge, PhaseChange};
 #[cfg(feature = "alloc")]
 pub use bench::{Bench, BenchEvent, BenchSettings};
 pub use dc_motor::{DcMotor, DcMotorState};

@@ -354,6 +354,25 @@ mod tests {
     }
 
     #[test]
+    fn a_broken_byte_costs_its_target_and_no_other_is_made_of_its_rest() {
+        let target = encode(StepPoint::new(12345, 67890)).unwrap();
+        let mut line: std::vec::Vec<(u64, u8)> = (0..).zip(target).collect();
+        line[4].1 = crate::protocol::SUBSTITUTE;
+        line.extend((500..).zip(target)); // the host has had no answer, and sends it again
+        let silence = Duration::from_millis(491);
+        let got = targets(&line);
+        assert_eq!(
+            got.iter().map(|received| received.dropped).collect::<std::vec::Vec<_>>(),
+            [
+                Some(Dropped::NotADigit { byte: 0x1A, digits: 4 }),
+                Some(Dropped::Silence { silence, digits: 5 }),
+                None
+            ]
+        );
+        assert_eq!(got.last().unwrap().target, Some(StepPoint::new(12345, 67890)));
+    }
+
+    #[test]
     fn the_sender_pauses_after_each_byte() {
         let mut sender = Sender::new(Duration::from_millis(10));
         assert!(sender.is_idle());

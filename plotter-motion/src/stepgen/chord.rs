@@ -62,7 +62,8 @@ impl Chords {
             Shape::Arc { centre, sweep_rad } => {
                 let out = self.from - centre;
                 let (begin_mm, end_mm) = (out.length(), (to - centre).length());
-                let radius = 1.0 + (end_mm / begin_mm - 1.0) * share;
+                let growth = if begin_mm > 0.0 { end_mm / begin_mm - 1.0 } else { 0.0 };
+                let radius = 1.0 + growth * share;
                 (centre + out.rotated(sweep_rad * share) * radius, length_mm * share)
             }
             Shape::Spiral { pole, sweep_rad, growth } => {

@@ -246,7 +246,7 @@ impl<K: Kinematics> StepGen<K> {
         self.chords = Chords::default();
         self.line = Bresenham::new(steps, steps);
         (self.due, self.late, self.running, self.laser) = (None, false, None, 0);
-        self.waiting = [None; 2];
+        (self.put_off, self.waiting) = (None, [None; 2]);
     }
 
     /// The end of the last action, in ticks: when the next one begins.

@@ -94,13 +94,14 @@ pub(crate) fn built() -> [Drawing; 4] {
     [spiral(20), hatch(60), zigzag(1000), circle()]
 }
 
-/// The three that are files of others, if they are there: an owl, curves in short chords, a space craft. Without the way home at
+/// Those that are files of others, if they are there: an owl, curves in short chords, the same in arcs, a space craft. Without the way home at
 /// their ends, and at the machine's own speed.
 pub(crate) fn real() -> Vec<Drawing> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/real");
     let files = [
         ("owl", "gcode/unicorn_owl.gcode"),
         ("curves", "gcode/svg2gcode_smooth_curves.gcode"),
+        ("curves in arcs", "gcode/svg2gcode_smooth_curves_arcs.gcode"),
         ("Cassini", "hpgl/vk2bea_Cassini.hpgl"),
     ];
     files

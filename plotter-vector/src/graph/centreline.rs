@@ -26,6 +26,8 @@ pub(crate) struct Centreline {
     pub(crate) corners: Vec<usize>,
     /// Typical width of the ink, px.
     pub(crate) width_px: f64,
+    /// Whether its start and its end join nothing.
+    pub(crate) tips: [bool; 2],
 }
 
 impl Centreline {
@@ -64,11 +66,12 @@ impl Centreline {
         }
         let corner = |(index, place): (usize, &Place)| place.is_corner().then_some(index);
         let corners: Vec<usize> = places.iter().enumerate().filter_map(corner).collect();
+        let tips = [places.first(), places.last()].map(|place| place.is_some_and(|place| place.is_tip()));
         let mut places: Vec<PxPoint> = places.into_iter().map(Place::at).collect();
         if width_px > THIN_PX {
             places = smooth(&places, whole.closed, &corners);
         }
-        Self { places, closed: whole.closed, corners, width_px }
+        Self { places, closed: whole.closed, corners, width_px, tips }
     }
 }
 
@@ -137,6 +140,9 @@ impl Centreline {
     pub(crate) fn curve(&self, bounded: Bounded, pieces: Pieces) -> Curve {
         let simplified = |part: &[PxPoint], closed: bool| bounded.stroke(part, closed, pieces);
         let Some((first, rest)) = self.corners.split_first() else {
+            if self.tips.contains(&true) && !self.closed && pieces == Pieces::Lines {
+                return bounded.loose(&self.places, self.tips).into();
+            }
             return simplified(&self.places, self.closed);
         };
         let mut curve = Curve::default();

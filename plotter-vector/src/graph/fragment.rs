@@ -66,7 +66,10 @@ pub(crate) fn fragments(
             Some(to) => joint(to),
             None => Some(Joint::Free),
         };
-        let places = connection.points.iter().map(|at| Place::new(*at, -1.0, connection.corner)).collect();
+        let place = |at: &PxPoint| {
+            if connection.tip { Place::tip(*at) } else { Place::new(*at, -1.0, connection.corner) }
+        };
+        let places = connection.points.iter().map(place).collect();
         found.extend(end.map(|end| Fragment { places, joints: Some([start, end]) }));
     }
     for node in graph.nodes.iter().filter(|node| node.ends.is_empty() && core.contains(&node.at.y)) {

@@ -28,6 +28,8 @@ pub(crate) struct Connection {
     pub(crate) points: Vec<PxPoint>,
     /// Whether the stroke has a corner there.
     pub(crate) corner: bool,
+    /// Whether the line ends where no other does.
+    pub(crate) tip: bool,
 }
 
 /// How one line goes on in a junction: to another arm, or to where it ends.
@@ -64,10 +66,10 @@ impl Junctions {
         }
     }
 
-    /// A line ends.
-    pub(super) fn end(&mut self, owner: Pixel, one: &ArmOf, points: Vec<PxPoint>) {
+    /// A line ends, at others or, at its `tip`, nowhere.
+    pub(super) fn end(&mut self, owner: Pixel, one: &ArmOf, points: Vec<PxPoint>, tip: bool) {
         self.set_skip(one.end, one.arm.skip);
-        self.connections.push(Connection { owner, from: one.end, to: None, points, corner: false });
+        self.connections.push(Connection { owner, from: one.end, to: None, points, corner: false, tip });
     }
 
     /// An edge is no line of its own.
@@ -83,7 +85,14 @@ impl Junctions {
         self.set_skip(other.end, other.arm.skip);
         let (a, b) = (one.arm.direction, other.arm.direction);
         let corner = points.len() == 1 && -(a.0 * b.0 + a.1 * b.1) < TURN_COS;
-        self.connections.push(Connection { owner, from: one.end, to: Some(other.end), points, corner });
+        self.connections.push(Connection {
+            owner,
+            from: one.end,
+            to: Some(other.end),
+            points,
+            corner,
+            tip: false,
+        });
     }
 
     /// All lines of a junction go on.
@@ -91,7 +100,7 @@ impl Junctions {
         for Way { one, other, points } in ways {
             match other {
                 Some(other) => self.pair(owner, &one, &other, points),
-                None => self.end(owner, &one, points),
+                None => self.end(owner, &one, points, false),
             }
         }
     }
@@ -285,7 +294,7 @@ impl Lines<'_> {
         if thinnest_px <= THIN_PX && widest_px <= 2.0 * THIN_PX {
             self.resolve_thin(group, owner, &arms, found);
         } else if let [one] = arms.as_slice() {
-            found.end(owner, one, vec![self.line_end(&one.arm)]);
+            found.end(owner, one, vec![self.line_end(&one.arm)], true);
         } else {
             let centre = centre(group.iter().map(|node| self.place(*node)));
             let radius_px = group.iter().filter_map(|node| radii.get(*node)).fold(0.0_f64, |a, b| a.max(*b));
@@ -435,7 +444,7 @@ impl Lines<'_> {
         }
         for (index, one) in arms.iter().enumerate() {
             if !paired.contains(&index) {
-                found.end(owner, one, Vec::new());
+                found.end(owner, one, Vec::new(), false);
             }
         }
         for edge in group.iter().flat_map(|node| self.ends(*node)).map(|end| end.edge) {

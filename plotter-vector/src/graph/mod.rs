@@ -15,6 +15,7 @@ mod arm;
 mod build;
 mod centreline;
 mod corner;
+mod dot;
 mod fragment;
 mod join;
 mod junction;
@@ -58,7 +59,12 @@ pub(crate) fn fragments(
     raster_line::put_back(&mut graph, scan, skeleton, first_row);
     let mut sites: Vec<_> =
         graph.edges.iter().map(|edge| scan.sites(&edge.pixels, edge.nodes.is_none())).collect();
-    let gone = spur::spurs(&graph, &sites, scan);
+    let mut gone = spur::spurs(&graph, &sites, scan);
+    for edge in dot::dots(&mut graph, scan) {
+        if let Some(gone) = gone.get_mut(edge) {
+            *gone = true;
+        }
+    }
     let junctions = junction::Junctions::of(&graph, &sites, &gone, scan);
     corner::Corners::new(&graph, &junctions, scan).sharpen(&mut sites);
     let lines = stub::Lines { graph: &graph, sites: &sites, junctions: &junctions, gone: &gone, scan };

@@ -9,8 +9,8 @@ const STEPS: f64 = 8192.0;
 /// Steps in a pixel of width.
 const WIDTH_STEPS: f64 = 64.0;
 
-/// A place on a centreline, how wide the ink is there, and whether the line has a corner there. A whole sheet of strokes
-/// that have not ended yet may wait like this: 12 bytes each.
+/// A place on a centreline, how wide the ink is there, and whether the line has a corner or ends there. A whole sheet of
+/// strokes that have not ended yet may wait like this: 12 bytes each.
 ///
 /// Places are ordered as one reads, from the top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -19,6 +19,7 @@ pub(crate) struct Place {
     x: i32,
     width: i16,
     corner: bool,
+    tip: bool,
 }
 
 impl Place {
@@ -28,7 +29,12 @@ impl Place {
         let steps = |v: f64| libm::round(v * STEPS) as i32;
         #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
         let width = libm::round(width_px * WIDTH_STEPS) as i16;
-        Self { x: steps(at.x), y: steps(at.y), width, corner }
+        Self { x: steps(at.x), y: steps(at.y), width, corner, tip: false }
+    }
+
+    /// The place where a line ends that joins nothing there.
+    pub(crate) fn tip(at: PxPoint) -> Self {
+        Self { tip: true, ..Self::new(at, -1.0, false) }
     }
 
     /// Where.
@@ -50,6 +56,11 @@ impl Place {
     /// Whether the line has a corner here.
     pub(crate) fn is_corner(self) -> bool {
         self.corner
+    }
+
+    /// Whether the line ends here and joins nothing.
+    pub(crate) fn is_tip(self) -> bool {
+        self.tip
     }
 
     /// The same width at another place, which is no corner.

@@ -338,9 +338,10 @@ impl Stretch {
         }
         let inner = line.corners.into_iter().filter(|corner| *corner > start && *corner < end);
         let corners = inner.map(|corner| corner - start).collect();
-        let mut vertices = Centreline { places: course, closed: false, corners, width_px: line.width_px }
-            .curve(bounded, Pieces::Lines)
-            .vertices;
+        let mut vertices =
+            Centreline { places: course, corners, width_px: line.width_px, ..Centreline::default() }
+                .curve(bounded, Pieces::Lines)
+                .vertices;
         if turned {
             vertices.reverse();
         }

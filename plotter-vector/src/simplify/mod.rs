@@ -8,6 +8,7 @@ mod cubics;
 mod dynamic_threshold;
 mod farthest;
 mod links;
+mod loose;
 mod polish;
 mod polyline;
 mod promise;

@@ -56,8 +56,7 @@ impl Bounded {
     /// ```
     #[must_use]
     pub fn polyline(&self, sites: &[PxPoint], closed: bool) -> Vec<PxPoint> {
-        let mut line: Vec<PxPoint> = sites.iter().copied().filter(|site| site.is_finite()).collect();
-        line.dedup();
+        let mut line = Self::cleaned(sites);
         if closed && line.len() > 1 && line.first() == line.last() {
             line.pop();
         }
@@ -69,10 +68,17 @@ impl Bounded {
         let vertices = if closed { ring(promise, line) } else { path(promise, &line, first, last) };
         vertices.into_iter().map(|vertex| vertex.at).collect()
     }
+
+    /// The sites that count: finite, and no two equal ones in sequence.
+    pub(super) fn cleaned(sites: &[PxPoint]) -> Vec<PxPoint> {
+        let mut line: Vec<PxPoint> = sites.iter().copied().filter(|site| site.is_finite()).collect();
+        line.dedup();
+        line
+    }
 }
 
 /// The polyline from `start` to `end`, both among its vertices, polished.
-fn path(promise: Promise, sites: &[PxPoint], start: PxPoint, end: PxPoint) -> Vec<Vertex> {
+pub(super) fn path(promise: Promise, sites: &[PxPoint], start: PxPoint, end: PxPoint) -> Vec<Vertex> {
     let mut vertices = whole(Search { promise, start, sites, end });
     polish(promise, sites, &mut vertices, SWEEPS);
     vertices

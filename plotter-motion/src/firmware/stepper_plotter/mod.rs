@@ -74,6 +74,7 @@
 //!
 //! | | there | here |
 //! |---|---|---|
+//! | a byte that came broken on the line ([`SUBSTITUTE`](crate::protocol::SUBSTITUTE)) | drawn as it is | `error: a byte …` |
 //! | a line of 64 bytes or more | continues at the start of the buffer | `error: more than 63 bytes …` |
 //! | beyond 374.1 mm | steps of 16 bits wrap, it runs the other way | drawn, up to the width; beyond the area an error |
 //! | a line during a move | carried out within it; the move is lost, the position wrong | an error, in its turn; but `M4 0` darkens the laser at once |

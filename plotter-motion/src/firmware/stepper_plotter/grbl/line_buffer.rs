@@ -1,6 +1,7 @@
 //! [`LineBuffer`]: from bytes to lines, as Grbl does it.
 
 use super::rx_buffer::LOST;
+use crate::protocol::SUBSTITUTE;
 
 /// Most characters of a line, without blanks and comments.
 pub(super) const MOST: usize = 80;
@@ -31,7 +32,7 @@ impl LineBuffer {
     pub(super) fn push(&mut self, byte: u8) -> bool {
         match (self.comment, byte) {
             (_, b'\n' | b'\r') => return true,
-            (_, LOST) => self.len = MOST + 1,
+            (_, LOST | SUBSTITUTE) => self.len = MOST + 1,
             (Comment::Rest, _) => {}
             (Comment::Parentheses, b')') => self.comment = Comment::None,
             (Comment::Parentheses, _) => {}

@@ -5,6 +5,7 @@ mod refusal;
 
 use super::output::Output;
 use super::{Command, Link, Report, Signal, Status, StepperPlotterSettings, Stop, StoredSettings};
+use crate::protocol::SUBSTITUTE;
 use crate::{PlotOp, Point};
 use core::fmt;
 use line::Request;
@@ -32,6 +33,8 @@ pub(super) struct MDraw {
     line: [u8; MOST_BYTES],
     /// Bytes of the line so far, also of those that found no room.
     len: usize,
+    /// Whether a byte of it was broken.
+    broken: bool,
     /// A line that has come and waits for room.
     pending: Option<Result<Request, Refusal>>,
     /// The motion side carries out a line.
@@ -56,6 +59,7 @@ impl MDraw {
             stored: settings.stored,
             line: [0; MOST_BYTES],
             len: 0,
+            broken: false,
             pending: None,
             in_flight: false,
             early: 0,
@@ -84,6 +88,7 @@ impl MDraw {
 
     pub(super) fn receive(&mut self, byte: u8) -> Option<Signal> {
         if byte != b'\n' {
+            self.broken |= byte == SUBSTITUTE;
             if let Some(slot) = self.line.get_mut(self.len) {
                 *slot = byte;
             }
@@ -91,6 +96,7 @@ impl MDraw {
             return None;
         }
         let request = match self.line.get(..core::mem::take(&mut self.len)) {
+            _ if core::mem::take(&mut self.broken) => Err(Refusal::Broken),
             Some(line) => Ok(Request::read(line)),
             None => Err(Refusal::TooLong),
         };

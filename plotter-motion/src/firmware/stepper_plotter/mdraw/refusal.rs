@@ -9,6 +9,7 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Refusal {
     TooLong,
+    Broken,
     Early,
     NoNumber { command: &'static str },
     Range { command: &'static str, least: i32, most: i32 },
@@ -23,6 +24,7 @@ impl fmt::Display for Refusal {
             Self::TooLong => {
                 write!(f, "more than {} bytes in a line: left out", super::MOST_BYTES)
             }
+            Self::Broken => f.write_str("a byte of this line came broken: left out"),
             Self::Early => f.write_str("sent before the line before it was answered: left out"),
             Self::NoNumber { command } => write!(f, "{command} lacks its number: left out"),
             Self::Range { command, least, most } => {
@@ -49,6 +51,7 @@ mod tests {
         let (axis, end, steps) = (Axis::X, Direction::Minus, u32::MAX);
         let refusals = [
             Refusal::TooLong,
+            Refusal::Broken,
             Refusal::Early,
             Refusal::NoNumber { command: "M1" },
             Refusal::Range { command: "W", least: 1, most: 10_000 },

@@ -1,0 +1,147 @@
+//! The stepper plotter's firmware: Grbl's language on the serial line, two stepper motors, a pen on a servo, a laser.
+//!
+//! The controller is `plotter_motion::firmware::StepperPlotter`, the drivers are those of `plotter-hal`.
+#![no_std]
+#![no_main]
+
+use core::time::Duration;
+use cortex_m::singleton;
+use cortex_m_rt::entry;
+use plotter_firmware::board::{self, Event, Notice};
+use plotter_firmware::machine::PLOTTER;
+use plotter_hal::a4988::Timing;
+use plotter_hal::{
+    A4988, EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo, PenServoSettings, StepperAxes,
+    SwitchSettings,
+};
+use plotter_motion::firmware::StepperPlotter;
+use plotter_motion::protocol::SUBSTITUTE;
+use plotter_motion::{Axis, Direction};
+
+/// How often the switches are looked at, and the watchdog is fed.
+const LOOK: Duration = Duration::from_millis(1);
+/// How long a laser may stay lit after a step: longer than from one step to the next, shorter than it takes to burn.
+const STANDSTILL: Duration = Duration::from_millis(20);
+/// By then the switches have shown what they are.
+const BUTTONS_KNOWN: Duration = Duration::from_millis(25);
+
+/// Where the limit switches are.
+const ENDS: [(Axis, Direction); 4] = [
+    (Axis::X, Direction::Minus),
+    (Axis::X, Direction::Plus),
+    (Axis::Y, Direction::Minus),
+    (Axis::Y, Direction::Plus),
+];
+
+#[entry]
+fn main() -> ! {
+    let Some(parts) = board::plotter::take() else { board::halt() };
+    let inverted = [PLOTTER.stored.x_direction != 0, PLOTTER.stored.y_direction != 0];
+    let x = A4988::new(Axis::X, parts.x.step, parts.x.dir, Timing::A4988).with_enable(parts.enable);
+    let y = A4988::new(Axis::Y, parts.y.step, parts.y.dir, Timing::A4988);
+    let [x_inverted, y_inverted] = inverted;
+    let mut motors = StepperAxes::new(
+        if x_inverted { x.with_inverted_direction() } else { x },
+        if y_inverted { y.with_inverted_direction() } else { y },
+    );
+    let mut laser = Laser::new(parts.laser, STANDSTILL);
+    let pen = PenServoSettings { settle: PLOTTER.pen_settle, ..PenServoSettings::default() };
+    let Ok(mut servo) = PenServo::new(parts.servo, pen) else { board::halt() };
+    let switch = SwitchSettings::default();
+    let [x_min, x_max, y_min, y_max] = parts.limits.map(|pin| LimitSwitch::new(pin, switch));
+    let mut limits = LimitSwitchGroup { x_min, x_max, y_min, y_max };
+    let mut button = EstopInput::new(parts.stop, switch);
+    let was_bitten = parts.rest.was_bitten();
+    let mut board = parts.rest.start();
+
+    // Nothing is promised to a host before it is known what the switches say.
+    let began = board.now();
+    let mut failed = motors.start(began).is_err();
+    let mut free = false;
+    let mut now = began;
+    while now < began + BUTTONS_KNOWN {
+        failed |= limits.tick(now).is_err();
+        match button.tick(now) {
+            Ok(change) => free |= change == Some(EstopChange::FreeSinceStart),
+            Err(_) => failed = true,
+        }
+        (now, _) = board.wait(Some(now + LOOK));
+    }
+    let Ok(controller) = StepperPlotter::new(PLOTTER) else { board::halt() };
+    let Some(plotter) = singleton!(PLOTTER_CELL: StepperPlotter = controller) else { board::halt() };
+    if was_bitten {
+        // Where the motors stand is not known: a person looks first, and says so by `$X` or by homing.
+        board.notify(Notice::Bitten);
+    }
+    if was_bitten || !free {
+        plotter.emergency_stop(now, true);
+        plotter.emergency_stop(now, button.is_pressed());
+    }
+    for (axis, end) in ENDS {
+        plotter.limit_switch(now, axis, end, limits.limits().blocks(axis, end));
+    }
+
+    let mut pen_deg = None;
+    let mut look = now;
+    // The controller is asked when something came for it, and when it is due: neither sooner nor later.
+    let mut asked = true;
+    loop {
+        if asked {
+            while let Some(step) = plotter.poll(now) {
+                failed |= motors.step(step.pulse, now).is_err() | laser.moved(now).is_err();
+                board.stepped(step);
+            }
+            while board.can_send()
+                && let Some(byte) = plotter.transmit(now)
+            {
+                board.send(byte);
+            }
+            failed |= laser.shine(now, plotter.beam()).is_err();
+            if pen_deg.replace(plotter.pen_deg()) != Some(plotter.pen_deg()) {
+                failed |= servo.turn_to(now, f32::from(plotter.pen_deg())).is_err();
+            }
+        }
+        if failed {
+            // Nothing that cannot be trusted goes on: all is switched off until the machine is.
+            let _ = (motors.stop(), laser.off());
+            board.notify(Notice::PinFailed);
+            board::halt();
+        }
+        let due = [plotter.due(), motors.due(), servo.due(), laser.due(), Some(look)].into_iter().flatten().min();
+        let event;
+        (now, event) = board.wait(due);
+        asked = true;
+        match event {
+            Event::Byte(byte) => plotter.receive(now, byte),
+            Event::LineFault => {
+                board.notify(Notice::LineFault);
+                plotter.receive(now, SUBSTITUTE);
+            }
+            Event::Due | Event::Edge(..) => asked = plotter.due().is_some_and(|due| due <= now),
+            Event::EncoderFault => failed = true,
+        }
+        failed |= motors.tick(now).is_err() | servo.tick(now).is_err() | laser.tick(now).is_err();
+        if now >= look {
+            look = now + LOOK;
+            board.feed_watchdog();
+            let before = limits.limits();
+            failed |= limits.tick(now).is_err();
+            let after = limits.limits();
+            for (axis, end) in ENDS {
+                let pressed = after.blocks(axis, end);
+                if pressed != before.blocks(axis, end) {
+                    plotter.limit_switch(now, axis, end, pressed);
+                    asked = true;
+                }
+            }
+            match button.tick(now) {
+                Ok(None) => {}
+                Ok(Some(_)) => {
+                    plotter.emergency_stop(now, button.is_pressed());
+                    asked = true;
+                }
+                Err(_) => failed = true,
+            }
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! The simulated stepper plotter: two motors that follow every pulse, and the serial line, in the time of the bench.
+
+use super::bench::{Bench, Told};
+use super::line::Line;
+use super::pins::{Input, Output, Pwm, Step as StepPin, Wire};
+use super::registers::Uart;
+use crate::board::{Event, Notice, StepperPins};
+use crate::machine;
+use core::cell::Cell;
+use core::time::Duration;
+use cortex_m::singleton;
+use crc::{CRC_64_XZ, Crc, Digest};
+use plotter_motion::firmware::stepper_plotter::Step;
+
+static STEPS_CRC: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
+
+/// Pins of a motor's driver.
+pub type Motor = StepperPins<StepPin, Output>;
+
+/// All that the stepper plotter's firmware gets of its board.
+#[derive(Debug)]
+pub struct Parts {
+    /// The motor to the right.
+    pub x: Motor,
+    /// The motor up.
+    pub y: Motor,
+    /// ENABLE of both drivers.
+    pub enable: Output,
+    /// Servo of the pen, 50 Hz.
+    pub servo: Pwm,
+    /// Laser.
+    pub laser: Pwm,
+    /// Limit switches, normally closed to ground: x lower, x upper, y lower, y upper.
+    pub limits: [Input; 4],
+    /// The emergency stop button: normally closed to ground, so high is pressed.
+    pub stop: Input,
+    /// The rest.
+    pub rest: Rest,
+}
+
+/// What becomes the [`Board`].
+#[derive(Debug)]
+pub struct Rest {
+    bench: Bench,
+    cells: &'static Cells,
+}
+
+#[derive(Debug)]
+struct Cells {
+    step: [Wire; 2],
+    dir: [Wire; 2],
+    position: [Cell<i32>; 2],
+    enable: Wire,
+    servo: Cell<u16>,
+    laser: Cell<u16>,
+    limits: [Wire; 4],
+    stop: Wire,
+}
+
+impl Cells {
+    const fn new() -> Self {
+        Self {
+            step: [const { Cell::new(false) }; 2],
+            dir: [const { Cell::new(false) }; 2],
+            position: [const { Cell::new(0) }; 2],
+            enable: Cell::new(true),
+            servo: Cell::new(0),
+            laser: Cell::new(0),
+            limits: [const { Cell::new(false) }; 4],
+            stop: Cell::new(false),
+        }
+    }
+}
+
+/// Takes the board; `None` the second time.
+pub fn take() -> Option<Parts> {
+    let cells: &'static Cells = singleton!(CELLS: Cells = Cells::new())?;
+    let [x, y] = [0, 1].map(|axis| StepperPins {
+        step: StepPin { level: &cells.step[axis], dir: &cells.dir[axis], position: &cells.position[axis] },
+        dir: Output(&cells.dir[axis]),
+    });
+    Some(Parts {
+        x,
+        y,
+        enable: Output(&cells.enable),
+        servo: Pwm { steps: &cells.servo, full: 20_000 },
+        laser: Pwm { steps: &cells.laser, full: 1_000 },
+        limits: [0, 1, 2, 3].map(|end| Input(&cells.limits[end])),
+        stop: Input(&cells.stop),
+        rest: Rest { bench: Bench::new(), cells },
+    })
+}
+
+/// What comes next.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Next {
+    Due,
+    ToController,
+    ToHost,
+    Host,
+}
+
+/// The simulated machine, with the time that passes on it.
+pub struct Board {
+    now_us: u64,
+    cells: &'static Cells,
+    uart: Uart,
+    to_controller: Line,
+    to_host: Line,
+    bench: Bench,
+    steps: u64,
+    told_steps: u64,
+    digest: Digest<'static, u64>,
+}
+
+impl Rest {
+    /// Whether the watchdog has reset the processor.
+    pub fn was_bitten(&self) -> bool {
+        self.bench.restarted()
+    }
+
+    /// Starts the time.
+    pub fn start(self) -> Board {
+        let Self { mut bench, cells } = self;
+        let now_us = bench.start_us();
+        if bench.stop_pressed() {
+            cells.stop.set(true);
+            bench.tell(now_us, Told::Stop(true));
+        }
+        Board {
+            now_us,
+            cells,
+            uart: Uart::line(),
+            to_controller: Line::new(machine::PLOTTER_BAUD),
+            to_host: Line::new(machine::PLOTTER_BAUD),
+            bench,
+            steps: 0,
+            told_steps: 0,
+            digest: STEPS_CRC.digest(),
+        }
+    }
+}
+
+impl Board {
+    /// The time.
+    pub fn now(&mut self) -> Duration {
+        Duration::from_micros(self.now_us)
+    }
+
+    /// Waits for what comes first: something happens, or it is `due`.
+    pub fn wait(&mut self, due: Option<Duration>) -> (Duration, Event) {
+        // A microsecond that has begun is over when it is due within it.
+        let due_us = due.map(|due| due.as_nanos().div_ceil(1_000) as u64);
+        loop {
+            let next = [
+                (due_us, Next::Due),
+                (self.to_controller.next_us(), Next::ToController),
+                (self.to_host.next_us(), Next::ToHost),
+                (Some(self.bench.horizon_us()), Next::Host),
+            ];
+            let coming = next.into_iter().filter_map(|(at, next)| Some((at?.max(self.now_us), next)));
+            let Some((at, next)) = coming.min() else { continue };
+            self.now_us = at;
+            let now = Duration::from_micros(at);
+            match next {
+                Next::Due => return (now, Event::Due),
+                Next::ToController => {
+                    if let Some(byte) = self.to_controller.pop() {
+                        self.bench.tell(at, Told::HostByte(byte));
+                        let lost = self.bench.is_overrun();
+                        return (now, if lost { Event::LineFault } else { Event::Byte(byte) });
+                    }
+                }
+                Next::ToHost => {
+                    if let Some(byte) = self.to_host.pop() {
+                        self.bench.tell(at, Told::ControllerByte(byte));
+                        // A host answers whole lines.
+                        if byte == b'\n' {
+                            self.bench.listen(at);
+                        }
+                    }
+                }
+                Next::Host => {
+                    self.tell_steps();
+                    let line = &mut self.to_controller;
+                    self.bench.ask(at, &mut self.uart, |byte| {
+                        line.send(at, byte);
+                    });
+                }
+            }
+        }
+    }
+
+    /// Whether a byte can be sent.
+    pub fn can_send(&self) -> bool {
+        self.to_host.has_room()
+    }
+
+    /// Sends a byte to the host.
+    pub fn send(&mut self, byte: u8) {
+        if self.to_host.send(self.now_us, byte) {
+            self.uart.send(byte);
+        }
+    }
+
+    /// A step that the motors got: the bench keeps account of all.
+    pub fn stepped(&mut self, step: Step) {
+        self.steps += 1;
+        let at_us = step.at.as_micros() as u64;
+        self.digest.update(&at_us.to_le_bytes());
+        self.digest.update(&[step.pulse.x().cast_unsigned(), step.pulse.y().cast_unsigned()]);
+    }
+
+    /// Tells a person.
+    pub fn notify(&mut self, notice: Notice) {
+        self.bench.tell(self.now_us, Told::Note(format_args!("{notice}")));
+    }
+
+    /// Keeps the watchdog from biting.
+    pub fn feed_watchdog(&mut self) {}
+
+    fn tell_steps(&mut self) {
+        if core::mem::replace(&mut self.told_steps, self.steps) != self.steps {
+            self.bench.tell(self.now_us, Told::Steps(self.steps, self.digest.clone().finalize()));
+            for (which, position) in self.cells.position.iter().enumerate() {
+                self.bench.tell(self.now_us, Told::Position(which as u8, position.get()));
+            }
+        }
+    }
+}

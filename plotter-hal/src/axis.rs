@@ -1,0 +1,50 @@
+//! The two motors of a machine as one: what a safety gate let through, on the pins of both.
+//!
+//! ```text
+//!  SafetyGate ──Drive──▶ DcAxes ──────▶ bridge of x, bridge of y
+//!             ──Pulse──▶ StepperAxes ─▶ STEP and DIR of x, STEP and DIR of y
+//! ```
+//!
+//! A fault of one motor stops both: with one alone the pen would leave its line. Both are tried whatever fails, and
+//! [`Error`] says what became of either.
+//!
+//! Both may hold something back: a drive for its dead time, a step for its setup time. The gate has let it through, and
+//! may have been latched since: so whoever latches the gate calls `stop` here as well.
+
+mod dc_axes;
+mod stepper_axes;
+
+pub use dc_axes::DcAxes;
+pub use stepper_axes::StepperAxes;
+
+use core::fmt;
+
+/// What failed at either motor, at one of them at least. Both have been stopped as far as this says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Error<E> {
+    /// At the first motor.
+    pub x: Option<E>,
+    /// At the second motor.
+    pub y: Option<E>,
+}
+
+impl<E> Error<E> {
+    /// Both have been tried.
+    fn check(x: Result<(), E>, y: Result<(), E>) -> Result<(), Self> {
+        if x.is_ok() && y.is_ok() { Ok(()) } else { Err(Self { x: x.err(), y: y.err() }) }
+    }
+}
+
+impl<E: fmt::Display> fmt::Display for Error<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.x, &self.y) {
+            (Some(x), Some(y)) => write!(f, "axis x: {x}; axis y: {y}"),
+            (Some(x), None) => write!(f, "axis x: {x}"),
+            (None, Some(y)) => write!(f, "axis y: {y}"),
+            (None, None) => write!(f, "no axis"),
+        }
+    }
+}
+
+impl<E: fmt::Debug + fmt::Display> core::error::Error for Error<E> {}

@@ -1,0 +1,145 @@
+//! A contact that bounces, as a state machine without pins.
+//!
+//! ```text
+//!  contact   ────┐ ┌┐ ┌┐               ┌┐ ┌───    high: pressed
+//!                └─┘└─┘└───────────────┘└─┘
+//!  taken as  ─────────────────────┐    ┌──────    released once it has lasted, pressed at once
+//!                                 └────┘
+//!                      │◀────────▶│
+//!                      release_after
+//! ```
+
+use core::time::Duration;
+use embedded_hal::digital::PinState;
+
+/// How a switch is wired, and how long its contact bounces.
+///
+/// A press is taken at once and a release only when it has lasted. That is the safe side: what is late is the
+/// permission to move. A press believed 20 ms late would be 1.8 mm of travel into the end of an axis at 90 mm/s.
+/// The price is that one spike on the wire counts as a press; where that happens, `press_after` asks for more.
+///
+/// ```
+/// # use core::time::Duration;
+/// # use embedded_hal::digital::PinState;
+/// # use plotter_hal::SwitchSettings;
+/// let normally_open = SwitchSettings { pressed_at: PinState::Low, ..SwitchSettings::default() };
+/// assert_eq!(normally_open.release_after, Duration::from_millis(20));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SwitchSettings {
+    /// Level of the pin while the switch is pressed. A normally closed switch from the pin to ground, with a pull-up,
+    /// shows [`PinState::High`] then, and so does a broken wire; a normally open one shows [`PinState::Low`], and
+    /// its broken wire is found by nobody.
+    pub pressed_at: PinState,
+    /// For how long the pin must show that it is pressed before that is believed; 0 is at once.
+    pub press_after: Duration,
+    /// For how long it must show without a break that it is not, before that is believed.
+    pub release_after: Duration,
+}
+
+impl Default for SwitchSettings {
+    /// Normally closed; pressed at once, released after 20 ms.
+    ///
+    /// Switches of 18 kinds were measured to bounce for at most 6.2 ms, an outlier apart (J. Ganssle, "A Guide to
+    /// Debouncing", 2004); 20 ms leave room for a worn one.
+    fn default() -> Self {
+        Self {
+            pressed_at: PinState::High,
+            press_after: Duration::ZERO,
+            release_after: Duration::from_millis(20),
+        }
+    }
+}
+
+/// What is believed of a contact. Nothing is known of it at first: it counts as pressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Debounce {
+    settings: SwitchSettings,
+    pressed: bool,
+    /// Since when the contact has shown the opposite without a break.
+    differs_since: Option<Duration>,
+}
+
+impl Debounce {
+    pub(crate) const fn new(settings: SwitchSettings) -> Self {
+        Self { settings, pressed: true, differs_since: None }
+    }
+
+    pub(crate) const fn is_pressed(&self) -> bool {
+        self.pressed
+    }
+
+    /// Whether this level of the pin is that of a pressed switch.
+    pub(crate) fn shows_press(&self, is_high: bool) -> bool {
+        PinState::from(is_high) == self.settings.pressed_at
+    }
+
+    /// Takes what the contact shows now; says what is believed.
+    pub(crate) fn update(&mut self, now: Duration, shows_press: bool) -> bool {
+        if shows_press == self.pressed {
+            self.differs_since = None;
+            return self.pressed;
+        }
+        let since = *self.differs_since.get_or_insert(now);
+        if now.saturating_sub(since) >= self.needed() {
+            self.pressed = shows_press;
+            self.differs_since = None;
+        }
+        self.pressed
+    }
+
+    /// The contact cannot be read: pressed, at once.
+    pub(crate) const fn unreadable(&mut self) {
+        self.pressed = true;
+        self.differs_since = None;
+    }
+
+    /// When what is believed changes, if the contact goes on showing what it shows.
+    pub(crate) fn due(&self) -> Option<Duration> {
+        self.differs_since.map(|since| since.saturating_add(self.needed()))
+    }
+
+    /// How long the opposite of what is believed must last.
+    const fn needed(&self) -> Duration {
+        if self.pressed { self.settings.release_after } else { self.settings.press_after }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    fn after(settings: SwitchSettings, shown: &[(u32, bool)]) -> Debounce {
+        let mut debounce = Debounce::new(settings);
+        for &(at_ms, shows_press) in shown {
+            debounce.update(MS * at_ms, shows_press);
+        }
+        debounce
+    }
+
+    #[test]
+    fn a_release_must_last_without_a_break() {
+        let settings = SwitchSettings::default();
+        assert!(after(settings, &[(0, false), (19, false)]).is_pressed());
+        assert!(!after(settings, &[(0, false), (20, false)]).is_pressed());
+        assert!(after(settings, &[(0, false), (19, true), (20, false), (39, false)]).is_pressed());
+        assert_eq!(after(settings, &[(5, false)]).due(), Some(MS * 25));
+    }
+
+    #[test]
+    fn a_press_is_taken_at_once_or_after_its_own_time() {
+        let free = [(0, false), (20, false)];
+        let at_once = SwitchSettings::default();
+        assert!(after(at_once, &[free[0], free[1], (21, true)]).is_pressed());
+        let patient = SwitchSettings { press_after: MS * 3, ..at_once };
+        assert!(!after(patient, &[free[0], free[1], (21, true), (23, true)]).is_pressed());
+        assert!(after(patient, &[free[0], free[1], (21, true), (24, true)]).is_pressed());
+    }
+
+    #[test]
+    fn a_clock_that_goes_back_releases_nothing() {
+        assert!(after(SwitchSettings::default(), &[(30, false), (0, false), (49, false)]).is_pressed());
+    }
+}

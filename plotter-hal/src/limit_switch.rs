@@ -1,0 +1,201 @@
+//! A limit switch on an input pin, debounced; and the four of a plotter.
+//!
+//! ```text
+//!     +3.3 V                        switch │ pin    normally closed, with a pull-up
+//!       │                           ───────┼──────────────────────────────────────────
+//!      ┌┴┐                          free   │ low    closed: the current flows to ground
+//!      └┬┘                          pressed│ high   open
+//!       ├───── pin                  broken │ high   open: counts as pressed, and nothing
+//!       └──o/o── ground             wire   │        drives towards that end
+//! ```
+//!
+//! Read it by [`LimitSwitch::tick`] every millisecond or so, or from an interrupt at both edges of the pin and
+//! at [`LimitSwitch::due`]. A drive towards a pressed switch is what the safety gate takes away (spec 2.6); the
+//! group hands it [`LimitSwitches`].
+
+use crate::SwitchSettings;
+use crate::debounce::Debounce;
+use core::fmt;
+use core::time::Duration;
+use embedded_hal::digital::{self, InputPin};
+use plotter_motion::{Axis, Direction, LimitSwitches};
+
+/// One switch. Until it has shown for [`SwitchSettings::release_after`] that it is free, it counts as pressed; and
+/// so does one whose pin cannot be read.
+///
+/// ```
+/// use core::time::Duration;
+/// use embedded_hal_mock::eh1::digital::{Mock as Pin, State::{High, Low}, Transaction as Read};
+/// use plotter_hal::{LimitSwitch, SwitchSettings};
+///
+/// let pin = Pin::new(&[Read::get(Low), Read::get(Low), Read::get(High)]);
+/// let mut switch = LimitSwitch::new(pin, SwitchSettings::default());
+/// assert!(switch.is_pressed()); // nobody has looked yet
+/// assert!(switch.tick(Duration::ZERO)?);
+/// assert_eq!(switch.due(), Some(Duration::from_millis(20)));
+/// assert!(!switch.tick(Duration::from_millis(20))?); // free
+/// assert!(switch.tick(Duration::from_millis(21))?); // pressed: taken at once
+/// # switch.release().done();
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LimitSwitch<Pin> {
+    pin: Pin,
+    debounce: Debounce,
+}
+
+impl<Pin: InputPin> LimitSwitch<Pin> {
+    /// The switch on `pin`, which is first read by [`tick`](Self::tick).
+    pub const fn new(pin: Pin, settings: SwitchSettings) -> Self {
+        Self { pin, debounce: Debounce::new(settings) }
+    }
+
+    /// Reads the pin; says whether the switch counts as pressed. Never waits.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Pin`]; the switch counts as pressed then.
+    pub fn tick(&mut self, now: Duration) -> Result<bool, Error<Pin::Error>> {
+        match self.pin.is_high() {
+            Ok(is_high) => {
+                let shows_press = self.debounce.shows_press(is_high);
+                Ok(self.debounce.update(now, shows_press))
+            }
+            Err(cause) => {
+                self.debounce.unreadable();
+                Err(Error::Pin(cause))
+            }
+        }
+    }
+
+    /// Whether it counts as pressed, as of the last [`tick`](Self::tick).
+    pub const fn is_pressed(&self) -> bool {
+        self.debounce.is_pressed()
+    }
+
+    /// When to call [`tick`](Self::tick) next if no edge of the pin comes before; `None` if only an edge changes
+    /// anything.
+    pub fn due(&self) -> Option<Duration> {
+        self.debounce.due()
+    }
+
+    /// Gives the pin back.
+    pub fn release(self) -> Pin {
+        self.pin
+    }
+}
+
+/// The pin of a switch could not be read; the switch counts as pressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Error<Pin> {
+    /// The pin's own error.
+    Pin(Pin),
+}
+
+impl<Pin: digital::Error> fmt::Display for Error<Pin> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self::Pin(cause) = self;
+        write!(f, "pin of the limit switch: {}; it counts as pressed", cause.kind())
+    }
+}
+
+impl<Pin: digital::Error> core::error::Error for Error<Pin> {}
+
+/// The switches at both ends of both axes.
+///
+/// ```
+/// # use core::time::Duration;
+/// # use embedded_hal_mock::eh1::digital::{Mock as Pin, State::{High, Low}, Transaction as Read};
+/// # use plotter_hal::{LimitSwitch, LimitSwitchGroup, SwitchSettings};
+/// # use plotter_motion::{Demand, Duty, SafetyGate};
+/// let settings = SwitchSettings { release_after: Duration::ZERO, ..SwitchSettings::default() };
+/// let switch = |level| LimitSwitch::new(Pin::new(&[Read::get(level)]), settings);
+/// let mut switches =
+///     LimitSwitchGroup { x_min: switch(Low), x_max: switch(High), y_min: switch(Low), y_max: switch(Low) };
+///
+/// let mut gate = SafetyGate::default();
+/// gate.set_limits(switches.tick(Duration::ZERO)?);
+/// let drive = gate.pass(Demand { x: Duty::FULL, y: Duty::FULL });
+/// assert_eq!((drive.x(), drive.y()), (Duty::ZERO, Duty::FULL)); // not into the right end
+/// # for switch in [switches.x_min, switches.x_max, switches.y_min, switches.y_max] {
+/// #     switch.release().done();
+/// # }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LimitSwitchGroup<XMin, XMax, YMin, YMax> {
+    /// At the left end.
+    pub x_min: LimitSwitch<XMin>,
+    /// At the right end.
+    pub x_max: LimitSwitch<XMax>,
+    /// At the lower end.
+    pub y_min: LimitSwitch<YMin>,
+    /// At the upper end.
+    pub y_max: LimitSwitch<YMax>,
+}
+
+impl<XMin, XMax, YMin, YMax> LimitSwitchGroup<XMin, XMax, YMin, YMax>
+where
+    XMin: InputPin,
+    XMax: InputPin<Error = XMin::Error>,
+    YMin: InputPin<Error = XMin::Error>,
+    YMax: InputPin<Error = XMin::Error>,
+{
+    /// Reads all four, whichever of them fails. Never waits.
+    ///
+    /// # Errors
+    ///
+    /// [`GroupError`] names the first switch whose pin could not be read. It counts as pressed in
+    /// [`limits`](Self::limits), in which the others are up to date.
+    pub fn tick(&mut self, now: Duration) -> Result<LimitSwitches, GroupError<XMin::Error>> {
+        let at = |axis, end| move |Error::Pin(cause)| GroupError { axis, end, cause };
+        let x_min = self.x_min.tick(now).map_err(at(Axis::X, Direction::Minus));
+        let x_max = self.x_max.tick(now).map_err(at(Axis::X, Direction::Plus));
+        let y_min = self.y_min.tick(now).map_err(at(Axis::Y, Direction::Minus));
+        let y_max = self.y_max.tick(now).map_err(at(Axis::Y, Direction::Plus));
+        Ok(LimitSwitches { x_min: x_min?, x_max: x_max?, y_min: y_min?, y_max: y_max? })
+    }
+
+    /// Which of them count as pressed, as of the last [`tick`](Self::tick): all, before the first.
+    pub const fn limits(&self) -> LimitSwitches {
+        LimitSwitches {
+            x_min: self.x_min.is_pressed(),
+            x_max: self.x_max.is_pressed(),
+            y_min: self.y_min.is_pressed(),
+            y_max: self.y_max.is_pressed(),
+        }
+    }
+
+    /// When to call [`tick`](Self::tick) next if no edge of a pin comes before.
+    pub fn due(&self) -> Option<Duration> {
+        let due = [self.x_min.due(), self.x_max.due(), self.y_min.due(), self.y_max.due()];
+        due.into_iter().flatten().min()
+    }
+}
+
+/// The pin of one of the four switches could not be read; that switch counts as pressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct GroupError<Pin> {
+    /// Of which axis.
+    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
+    pub axis: Axis,
+    /// At which of its ends.
+    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
+    pub end: Direction,
+    /// The pin's own error.
+    pub cause: Pin,
+}
+
+impl<Pin: digital::Error> fmt::Display for GroupError<Pin> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let axis = if self.axis == Axis::X { "x" } else { "y" };
+        let end = if self.end == Direction::Minus { "lower" } else { "upper" };
+        let cause = self.cause.kind();
+        write!(f, "axis {axis}: pin of its {end} limit switch: {cause}; it counts as pressed")
+    }
+}
+
+impl<Pin: digital::Error> core::error::Error for GroupError<Pin> {}

@@ -1,0 +1,188 @@
+//! [`Port`]: a serial port of this computer, with a machine on it.
+
+use core::fmt;
+use core::time::Duration;
+use serialport::{ClearBuffer, ErrorKind, SerialPort};
+use std::io::{self, Read, Write};
+use std::time::Instant;
+
+/// An open serial port: 8 data bits, no parity, 1 stop bit, no flow control.
+///
+/// ```no_run
+/// # use core::time::Duration;
+/// # use plotter_replay::serial::Port;
+/// let mut port = Port::open("/dev/ttyUSB0", 256_000)?;
+/// port.send(&[3, 9, 9, 2, 0, 5, 5, 9, 3, 1])?;
+/// let mut answer = [0; 64];
+/// let bytes = port.receive(&mut answer, Duration::from_millis(10))?;
+/// println!("{:?}", &answer[..bytes]);
+/// # Ok::<(), plotter_replay::serial::PortError>(())
+/// ```
+pub struct Port {
+    name: String,
+    inner: Box<dyn SerialPort>,
+}
+
+impl fmt::Debug for Port {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Port").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+/// What is wrong with a port.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PortError {
+    /// Its name.
+    pub port: String,
+    /// What it is.
+    pub kind: PortErrorKind,
+}
+
+/// What is wrong with a port.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PortErrorKind {
+    /// There is no such port; those that there are.
+    NotThere {
+        /// Their names.
+        others: Vec<String>,
+    },
+    /// Another program has it.
+    Busy,
+    /// This user may not open it.
+    NotAllowed,
+    /// It has gone away.
+    Gone,
+    /// It takes no more bytes.
+    Stuck,
+    /// Something else, in the system's words.
+    Other(String),
+}
+
+impl fmt::Display for PortError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.port)?;
+        match &self.kind {
+            PortErrorKind::NotThere { others } if others.is_empty() => {
+                f.write_str("there is no such serial port, and no other: is the machine plugged in and on?")
+            }
+            PortErrorKind::NotThere { others } => {
+                write!(f, "there is no such serial port; there are {}", others.join(", "))
+            }
+            PortErrorKind::Busy => f.write_str("another program uses this serial port: close it first"),
+            PortErrorKind::NotAllowed => f.write_str(
+                "this user may not open the serial port: on Linux, become a member of its group (`ls -l` names it, \
+                 often dialout) and log in again",
+            ),
+            PortErrorKind::Gone => f.write_str("the serial port has gone away: was the machine unplugged?"),
+            PortErrorKind::Stuck => f.write_str("the serial port takes no more bytes"),
+            PortErrorKind::Other(message) => f.write_str(message),
+        }
+    }
+}
+
+impl core::error::Error for PortError {}
+
+/// How long a byte may wait to be sent.
+const SEND_WITHIN: Duration = Duration::from_secs(5);
+
+impl Port {
+    /// Opens the port `name` (`/dev/ttyUSB0`, `COM3`, …) at `baud` bits a second, and forgets what came before.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError`] if that cannot be done.
+    pub fn open(name: &str, baud: u32) -> Result<Self, PortError> {
+        let inner = serialport::new(name, baud).timeout(SEND_WITHIN).open().map_err(|error| {
+            let kind = match error.kind {
+                ErrorKind::NoDevice if error.description.contains("lock") => PortErrorKind::Busy,
+                ErrorKind::NoDevice if std::path::Path::new(name).exists() => PortErrorKind::Busy,
+                ErrorKind::NoDevice | ErrorKind::Io(io::ErrorKind::NotFound) => PortErrorKind::NotThere {
+                    others: serialport::available_ports()
+                        .unwrap_or_default()
+                        .into_iter()
+                        .map(|port| port.port_name)
+                        .collect(),
+                },
+                ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortErrorKind::NotAllowed,
+                ErrorKind::Io(io::ErrorKind::ResourceBusy) => PortErrorKind::Busy,
+                _ => PortErrorKind::Other(error.description),
+            };
+            PortError { port: name.to_owned(), kind }
+        })?;
+        let port = Self { name: name.to_owned(), inner };
+        port.inner.clear(ClearBuffer::Input).map_err(|error| port.other(&error.into()))?;
+        Ok(port)
+    }
+
+    /// Sends all of `bytes`.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError`] if the port takes nothing for five seconds, or is gone.
+    pub fn send(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        let sent = self.inner.write_all(bytes).and_then(|()| self.inner.flush());
+        sent.map_err(|error| match error.kind() {
+            io::ErrorKind::TimedOut => self.error(PortErrorKind::Stuck),
+            _ => self.other(&error),
+        })
+    }
+
+    /// Waits at most `wait` for bytes; says how many came, which may be none.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError`] if the port is gone.
+    pub fn receive(&mut self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
+        let until = Instant::now() + wait;
+        self.inner
+            .set_timeout(wait.max(Duration::from_millis(1)))
+            .map_err(|error| self.other(&error.into()))?;
+        let result = loop {
+            match self.inner.read(bytes) {
+                Ok(0) if !bytes.is_empty() => break Err(self.error(PortErrorKind::Gone)),
+                Ok(count) => break Ok(count),
+                Err(error) if error.kind() == io::ErrorKind::TimedOut => break Ok(0),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted && Instant::now() < until => {}
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => break Ok(0),
+                Err(error) => break Err(self.other(&error)),
+            }
+        };
+        let restored = self.inner.set_timeout(SEND_WITHIN).map_err(|error| self.other(&error.into()));
+        restored.and(result)
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn error(&self, kind: PortErrorKind) -> PortError {
+        PortError { port: self.name.clone(), kind }
+    }
+
+    fn other(&self, error: &io::Error) -> PortError {
+        self.error(match error.kind() {
+            io::ErrorKind::BrokenPipe | io::ErrorKind::NotFound | io::ErrorKind::UnexpectedEof => {
+                PortErrorKind::Gone
+            }
+            _ => PortErrorKind::Other(error.to_string()),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_port_that_is_not_there_is_said_to_be_so() {
+        let error = Port::open("/dev/no-such-plotter", 9_600).unwrap_err();
+        assert!(matches!(error.kind, PortErrorKind::NotThere { .. }), "{error:?}");
+        assert!(
+            error.to_string().starts_with("/dev/no-such-plotter: there is no such serial port"),
+            "{error}"
+        );
+    }
+}
