@@ -110,7 +110,9 @@ impl Ramps {
             self.put_ramp(up_mm, self.done_mm + up_mm, (self.speed, peak), limits);
         }
         // Whatever rounding has left out, the block ends where and as it should.
-        if let Some(last) = self.ramps.last_mut() {
+        if self.is_over() {
+            (self.done_mm, self.speed) = (self.length_mm, exit);
+        } else if let Some(last) = self.ramps.last_mut() {
             (last.end_mm, last.speed) = (self.length_mm, exit);
         }
     }
@@ -141,7 +143,8 @@ impl Ramps {
     pub(super) fn brake(&mut self, limits: &Limits) -> f64 {
         let exit2 = (self.speed2() - 2.0 * limits.accel * self.rest_mm()).max(0.0);
         let way_mm = (self.speed2() * limits.per_twice_accel).min(self.rest_mm());
-        let (end_mm, exit) = (self.done_mm + way_mm, libm::sqrt(exit2));
+        let stands_mm = (self.done_mm + way_mm).min(self.length_mm);
+        let (end_mm, exit) = (if exit2 > 0.0 { self.length_mm } else { stands_mm }, libm::sqrt(exit2));
         self.next = self.ramps.len();
         self.exit2 = single(exit2);
         self.put_ramp(way_mm, end_mm, (self.speed, exit), limits);
