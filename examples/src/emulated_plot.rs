@@ -43,7 +43,7 @@ pub fn plot_in_emulator<W: Write>(
     // The simulated machine is looked at in whole time steps, and so ends with one.
     let mut end = None;
     loop {
-        let (now, told) = emulator.next()?;
+        let (now, told) = emulator.next_told()?;
         match told {
             Told::Ask => {
                 if end.is_some_and(|end| now >= end) {

@@ -163,7 +163,7 @@ impl Emulator {
     /// # Errors
     ///
     /// The emulator ended, was silent for half a minute, or its firmware stopped.
-    pub fn next(&mut self) -> Result<(Duration, Told), String> {
+    pub fn next_told(&mut self) -> Result<(Duration, Told), String> {
         let head = self.byte()?;
         let mut since_us = u64::from(head >> 4);
         if since_us == 15 {
@@ -172,7 +172,7 @@ impl Emulator {
         self.now_us += since_us;
         let signed = |zigzag: u64| {
             let size = i32::try_from(zigzag / 2).unwrap_or(i32::MAX);
-            if zigzag % 2 == 0 { size } else { -size - 1 }
+            if zigzag.is_multiple_of(2) { size } else { -size - 1 }
         };
         let told = match head & 0xf {
             0 => Told::Ask,

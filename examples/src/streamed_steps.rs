@@ -204,7 +204,7 @@ pub fn streamed_in_emulator(
     let mut made = StreamedSteps::default();
     let (mut before, mut looked, mut idle) = (0, Duration::ZERO, false);
     loop {
-        let (now, told) = emulator.next()?;
+        let (now, told) = emulator.next_told()?;
         match told {
             Told::Ask => {
                 let bytes = host.send();
