@@ -11,6 +11,9 @@ const FARTHEST_PX: f64 = 2.5;
 /// Most pixels of an edge that may be a part of one.
 const MOST_PIXELS: usize = 4;
 
+/// Most nodes of one: a longer way from node to node is noise.
+const MOST_NODES: usize = 6;
+
 /// How much longer than broad the ink of a dot may be, px: its raster ends on whole pixels on either side.
 const LONGER_PX: f64 = 1.0;
 
@@ -38,6 +41,9 @@ fn dot(graph: &Graph, start: usize, scan: Scan<'_>) -> Option<(usize, Vec<usize>
     let mut next = 0;
     while let Some(node) = nodes.get(next).and_then(|node| graph.nodes.get(*node)) {
         next += 1;
+        if nodes.len() > MOST_NODES {
+            return None;
+        }
         for end in &node.ends {
             let edge = graph.edges.get(end.edge)?;
             let (one, other) = edge.nodes?;
@@ -47,9 +53,11 @@ fn dot(graph: &Graph, start: usize, scan: Scan<'_>) -> Option<(usize, Vec<usize>
             }
             if !edges.contains(&end.edge) {
                 edges.push(end.edge);
-                nodes.extend(
-                    [one, other].into_iter().filter(|node| !nodes.contains(node)).collect::<Vec<_>>(),
-                );
+                for node in [one, other] {
+                    if !nodes.contains(&node) {
+                        nodes.push(node);
+                    }
+                }
             }
         }
     }

@@ -7,7 +7,7 @@
 //!
 //! 1. [`Graph`] turns the skeleton into nodes and edges;
 //! 2. [`sites`](site) gives each of an edge's pixels the middle between both edges of the ink, and the width there;
-//! 3. [`spurs`](spur) that stick out no farther than the edge's roughness go;
+//! 3. [`spurs`](spur) that stick out no farther than the edge's roughness go, and [`dots`](dot) become one node each;
 //! 4. [`junctions`](junction): the arms of a crossing are extrapolated from where they are undisturbed, and meet;
 //! 5. [`corners`](corner) of a single line are sharpened in the same way.
 
