@@ -1,7 +1,7 @@
 //! The registers of `mps2-an386` that the simulated plotter needs: the only file here that touches memory by its address.
 //!
 //! Source: Arm, *Cortex-M System Design Kit Technical Reference Manual* (DDI 0479), "APB UART", table 4-3; addresses:
-//! Arm, *Application Note AN386*, table 3-2. There is no crate for these peripherals.
+//! Arm, *Application Note AN386*, table 3-2. We know of no crate for these peripherals.
 #![allow(unsafe_code, reason = "memory-mapped registers have no other access")]
 
 use core::ptr::{read_volatile, write_volatile};
