@@ -24,8 +24,9 @@ const NARROWEST_PX: f64 = 2.0;
 pub(super) fn dots(graph: &mut Graph, scan: Scan<'_>) -> Vec<usize> {
     let mut gone = Vec::new();
     for start in 0..graph.nodes.len() {
-        let Some((node, edges)) = dot(graph, start, scan) else { continue };
-        if let Some(node) = graph.nodes.get_mut(node) {
+        let Some((middle, edges)) = dot(graph, start, scan) else { continue };
+        if let Some(node) = graph.nodes.get_mut(start) {
+            node.at = middle;
             node.ends.clear();
         }
         gone.extend(edges);
@@ -33,8 +34,8 @@ pub(super) fn dots(graph: &mut Graph, scan: Scan<'_>) -> Vec<usize> {
     gone
 }
 
-/// The node deepest in the ink of a dot whose first one is `start`, and its edges.
-fn dot(graph: &Graph, start: usize, scan: Scan<'_>) -> Option<(usize, Vec<usize>)> {
+/// The middle of a dot whose first node is `start`, and its edges.
+fn dot(graph: &Graph, start: usize, scan: Scan<'_>) -> Option<(Pixel, Vec<usize>)> {
     graph.nodes.get(start).filter(|node| !node.ends.is_empty())?;
     let mut nodes = vec![start];
     let mut edges: Vec<usize> = Vec::new();
@@ -66,12 +67,20 @@ fn dot(graph: &Graph, start: usize, scan: Scan<'_>) -> Option<(usize, Vec<usize>
     if edges.is_empty() || pixels().any(far) {
         return None;
     }
-    let at = |node: &usize| graph.nodes.get(*node).map(|node| node.at);
-    let inside_px = |node: &usize| at(node).map_or(0.0, |at| scan.radius_px(at.into(), FARTHEST_PX));
-    // Of equals the first one.
-    let middle = nodes.iter().copied().rev().max_by(|a, b| inside_px(a).total_cmp(&inside_px(b)))?;
-    let at = at(&middle)?;
-    let widths = [(1.0, 0.0), (0.0, 1.0)].map(|along| scan.site(at, along).width_px);
-    let (least, most) = (widths[0].min(widths[1]), widths[0].max(widths[1]));
-    (least >= NARROWEST_PX && most <= least + LONGER_PX).then_some((middle, edges))
+    // The longest cuts through its ink cross in its middle.
+    let longest = |along: (f64, f64)| {
+        let cuts = pixels().map(|pixel| scan.site(*pixel, along));
+        cuts.max_by(|a, b| a.width_px.total_cmp(&b.width_px))
+    };
+    let (down, across) = (longest((1.0, 0.0))?, longest((0.0, 1.0))?);
+    let middle = pixel_at(PxPoint::new(across.centre.x, down.centre.y));
+    let (least, most) = (down.width_px.min(across.width_px), down.width_px.max(across.width_px));
+    let is_dot = least >= NARROWEST_PX && most <= least + LONGER_PX && scan.is_ink_at(middle);
+    is_dot.then_some((middle, edges))
+}
+
+/// The pixel that a place within the picture lies in.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
+fn pixel_at(at: PxPoint) -> Pixel {
+    Pixel::new(at.x as u32, at.y as u32)
 }
