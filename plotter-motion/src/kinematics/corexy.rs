@@ -117,21 +117,31 @@ impl Kinematics for CoreXy {
 mod tests {
     use super::*;
 
-    /// The report's table 1, row by row: the move as (x, y), then the signs of both motors.
-    const TABLE: [(&str, (i32, i32), (i32, i32)); 8] = [
-        ("left", (-1, 0), (-1, -1)),
-        ("right", (1, 0), (1, 1)),
-        ("up", (0, 1), (-1, 1)),
-        ("down", (0, -1), (1, -1)),
-        ("left and up", (-1, 1), (-1, 0)),
-        ("left and down", (-1, -1), (0, -1)),
-        ("right and up", (1, 1), (0, 1)),
-        ("right and down", (1, -1), (1, 0)),
+    /// A row of the report's table 1.
+    struct Row {
+        name: &'static str,
+        axes: (i32, i32),
+        motors: (i32, i32),
+    }
+
+    const fn row(name: &'static str, axes: (i32, i32), motors: (i32, i32)) -> Row {
+        Row { name, axes, motors }
+    }
+
+    const TABLE: [Row; 8] = [
+        row("left", (-1, 0), (-1, -1)),
+        row("right", (1, 0), (1, 1)),
+        row("up", (0, 1), (-1, 1)),
+        row("down", (0, -1), (1, -1)),
+        row("left and up", (-1, 1), (-1, 0)),
+        row("left and down", (-1, -1), (0, -1)),
+        row("right and up", (1, 1), (0, 1)),
+        row("right and down", (1, -1), (1, 0)),
     ];
 
     #[test]
     fn the_direction_table_holds_row_by_row() {
-        for (name, (x, y), motors) in TABLE {
+        for Row { name, axes: (x, y), motors } in TABLE {
             let (first, second) = BeltSigns::DirectionTable.motors(x, y);
             assert_eq!((first.signum(), second.signum()), motors, "{name}");
             // and back: motors driven so move the pen so
