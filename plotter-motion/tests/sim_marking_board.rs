@@ -11,6 +11,7 @@ use core::time::Duration;
 use marking::{Run, TIME_STEP, belt, contouring, equalized, published};
 use plotter_motion::control::LineController;
 use plotter_motion::firmware::MarkingBoardSettings;
+use plotter_motion::kinematics::{BeltSigns, CoreXy};
 use plotter_motion::plant::{MarkingBoardPlant, MarkingBoardPlantSettings};
 use plotter_motion::{
     Demand, Drive, Duty, LimitSwitches, Pen, PenMove, PlotOp, Point, SafetyGate, StepPoint, Vec2, circle,
@@ -233,4 +234,31 @@ fn an_emergency_stop_ends_in_the_run_down() {
     run.rest(Duration::from_secs(5));
     assert!(run.board.has_arrived());
     assert!(run.plant.position_mm().distance(settings.start + Vec2::new(50.0, 0.0)) < 0.05);
+}
+
+/// Which motor is the stronger one, which rail the rougher one, and how the motors are wired does not matter to ours.
+#[test]
+fn other_boards_are_drawn_on_as_well() {
+    const CORNER_MM: f64 = 0.05;
+    let other_signs = CoreXy::new(BeltSigns::TrackingEquations, 46.3).unwrap();
+    for belt in [belt(), other_signs] {
+        let unequal = MarkingBoardPlantSettings::unequal(belt);
+        let [first, second] = unequal.motors;
+        let swapped = MarkingBoardPlantSettings {
+            motors: [second, first],
+            x_rail_n: unequal.y_rail_n,
+            y_rail_n: unequal.x_rail_n,
+            phases: [0.8, 0.4],
+            ..unequal
+        };
+        let (settings, controller) = contouring();
+        let settings = MarkingBoardSettings { belt, ..settings };
+        let mut run = Run::on(settings, controller, &swapped);
+        let ops = rectangle(settings.start, 20.0, 10.0);
+        for (op, next) in ops.clone().zip(settings.moves(ops)) {
+            assert!(run.draw(next.unwrap(), |_| ()), "{belt:?}");
+            let (pen, corner) = (run.plant.position_mm(), op.target().unwrap());
+            assert!(pen.distance(corner) < CORNER_MM, "{belt:?}: {pen:?} for {corner:?}");
+        }
+    }
 }

@@ -235,4 +235,31 @@ mod tests {
         }
         assert_eq!(controller.tick(Duration::from_millis(10)), Demand::NONE);
     }
+
+    #[test]
+    fn the_drive_grows_by_steps_and_falls_near_the_target() {
+        let ramp = DriveRamp { start: 0.1, step: 0.1, most: 0.3, period: Duration::from_millis(100) };
+        let settings = PointToPointSettings {
+            ramp,
+            slow_counts: 100.0,
+            allowed_counts: 10.0,
+            factors: [1.0, 0.5],
+            ..PointToPointSettings::default()
+        };
+        let mut controller = PointToPoint::new(settings);
+        controller.start(Duration::ZERO, StepPoint::new(1000, 1000)); // to the right
+        let mut at = |ms| {
+            let Demand { x, y } = controller.tick(Duration::from_millis(ms));
+            assert!((y.value() - 0.5 * x.value()).abs() < 1e-6, "the factor found by hand");
+            x.value()
+        };
+        assert_eq!((at(5), at(105), at(1000)), (0.1, 0.2, 0.3));
+        for _ in 0..940 {
+            controller.edge(Duration::from_millis(1001), Axis::X, Direction::Plus);
+            controller.edge(Duration::from_millis(1001), Axis::Y, Direction::Plus);
+        }
+        // 60 to go, of which the last 10 need no drive: half way between 0.3 and 0.1
+        let slow = controller.tick(Duration::from_millis(1005)).x.value();
+        assert!((slow - 0.2).abs() < 1e-6, "{slow}");
+    }
 }

@@ -338,3 +338,95 @@ fn next(due: Duration, period: Duration, now: Duration) -> Duration {
     let regular = due.saturating_add(period);
     if regular > now { regular } else { now.saturating_add(period) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::{PointToPoint, PointToPointSettings};
+    use crate::kinematics::BeltSigns;
+    use std::vec::Vec;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    fn settings() -> MarkingBoardSettings {
+        MarkingBoardSettings::new(CoreXy::new(BeltSigns::DirectionTable, 46.3).unwrap())
+    }
+
+    /// A board on its way to the right, with one pulse of either motor 10 ms ago.
+    fn moving() -> MarkingBoard<PointToPoint> {
+        let mut board = MarkingBoard::new(settings(), PointToPoint::new(PointToPointSettings::default()));
+        board.start(Duration::ZERO, PenMove { pen: Pen::Down, target: StepPoint::new(463, 463) });
+        board.tick(5 * MS);
+        board.pulse(10 * MS, Axis::X);
+        board.pulse(10 * MS, Axis::Y);
+        board.tick(20 * MS);
+        board
+    }
+
+    #[test]
+    fn an_arc_becomes_lines_and_what_is_out_of_reach_is_not_drawn() {
+        let draw = |x, y| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
+        let centre = Point::new(150.0, 110.0);
+        let half = PlotOp::DrawArc {
+            centre,
+            sweep_rad: core::f64::consts::PI,
+            to: Point::new(150.0, 120.0),
+            feed_mm_s: None,
+        };
+        let ops = [PlotOp::Travel { to: Point::new(150.0, 100.0) }, half, PlotOp::NewPage];
+        let moves: Vec<PenMove> = settings().moves(ops).map(Result::unwrap).collect();
+        assert!(moves.len() > 10);
+        assert_eq!(moves.last().map(|last| last.target), Some(StepPoint::new(-926, 926)));
+        let belt = settings().belt;
+        for to in &moves {
+            let at = belt.point_at(to.target.into()) + (settings().start - Point::ORIGIN);
+            assert!((at.distance(centre) - 10.0).abs() < 0.5 * 2.0_f64.sqrt() / 46.3, "{at:?}");
+        }
+        let ops = [draw(200.0, 100.0), draw(300.1, 100.0), draw(150.0, 100.0), draw(150.0, f64::NAN)];
+        let moves: Vec<_> = settings().moves(ops).collect();
+        assert_eq!(moves[1].as_ref().unwrap_err().axis, Axis::X);
+        assert_eq!(moves[2].as_ref().unwrap().pen, Pen::Up);
+        assert_eq!(moves[3].as_ref().unwrap_err().axis, Axis::Y);
+    }
+
+    #[test]
+    fn a_motor_that_may_still_turn_is_not_reversed() {
+        let mut board = moving();
+        assert!(board.drive().x().value() > 0.0);
+        board.start(20 * MS, PenMove { pen: Pen::Up, target: StepPoint::new(-463, -463) });
+        board.tick(25 * MS);
+        assert_eq!(board.drive(), Drive::default());
+        board.pulse(26 * MS, Axis::X); // run-down, counted forwards
+        assert_eq!(board.counts(), StepPoint::new(2, 1));
+        board.tick(41 * MS); // 31 ms after the last pulse of the second motor only
+        assert_eq!((board.drive().x().value() < 0.0, board.drive().y().value() < 0.0), (false, true));
+        board.tick(60 * MS);
+        assert!(board.drive().x().value() < 0.0 && board.drive().y().value() < 0.0);
+    }
+
+    #[test]
+    fn a_switch_that_would_reverse_a_running_motor_stops_both() {
+        let mut board = moving();
+        board.start(20 * MS, PenMove { pen: Pen::Down, target: StepPoint::new(0, 926) }); // right and up: motor 2 alone
+        board.tick(25 * MS);
+        assert!(board.drive().x().value() == 0.0 && board.drive().y().value() > 0.0);
+        // up alone would need motor 1 backwards, which ran forwards 15 ms ago
+        board.limit_switches(25 * MS, LimitSwitches { x_max: true, ..LimitSwitches::default() });
+        assert_eq!(board.drive(), Drive::default());
+        board.tick(45 * MS);
+        assert!(board.drive().x().value() < 0.0 && board.drive().y().value() > 0.0);
+    }
+
+    #[test]
+    fn points_are_counted_when_they_are_done() {
+        let mut board = moving();
+        assert_eq!((board.points_done(), board.has_arrived()), (0, false));
+        for _ in 0..462 {
+            board.pulse(30 * MS, Axis::X);
+            board.pulse(30 * MS, Axis::Y);
+        }
+        board.tick(40 * MS);
+        assert_eq!((board.points_done(), board.has_arrived(), board.drive()), (1, true, Drive::default()));
+        assert!(board.position_mm().distance(Point::new(160.0, 100.0)) < 1e-9);
+    }
+}

@@ -39,8 +39,12 @@ impl<C: LineController> Run<C> {
     /// With each encoder so far beyond a mark at first.
     pub fn with_phases(settings: MarkingBoardSettings, controller: C, phases: [f64; 2]) -> Self {
         let unequal = MarkingBoardPlantSettings::unequal(settings.belt);
-        let plant =
-            MarkingBoardPlant::new(&MarkingBoardPlantSettings { phases, ..unequal }, TIME_STEP.as_secs_f64());
+        Self::on(settings, controller, &MarkingBoardPlantSettings { phases, ..unequal })
+    }
+
+    /// On a board of which everything is said.
+    pub fn on(settings: MarkingBoardSettings, controller: C, plant: &MarkingBoardPlantSettings) -> Self {
+        let plant = MarkingBoardPlant::new(plant, TIME_STEP.as_secs_f64());
         Self { now: Duration::ZERO, board: MarkingBoard::new(settings, controller), plant }
     }
 
