@@ -18,6 +18,7 @@
 //! Source of the block between every controller and the motors: the marking board's collision prevention
 //! (spec 2.6).
 
+use crate::kinematics::BeltSigns;
 use crate::{Axis, Direction, StepPair};
 use core::fmt;
 
@@ -312,6 +313,60 @@ impl SafetyGate {
     #[must_use]
     pub fn pass(&self, demand: Demand) -> Drive {
         Drive { x: self.pass_axis(Axis::X, demand.x), y: self.pass_axis(Axis::Y, demand.y) }
+    }
+
+    /// The same for a machine whose two motors share a belt: `demand` is that of the *axes* (x to the right, y up), the drive
+    /// is that of the *motors*.
+    ///
+    /// ```text
+    ///   axes ──▶ towards a pressed switch? taken ──▶ mixed into motors ──▶ along a pressed switch? the motor that ──▶ Drive
+    ///                                                                      pushes at it gets less
+    /// ```
+    ///
+    /// A switch belongs to a sum of both motors, so it must be asked before they are mixed. What asks for more than the
+    /// supply is made smaller as a whole, so that it keeps its direction.
+    ///
+    /// A move *along* a pressed switch drives one motor towards it and the other away from it, equally. If the first is the
+    /// stronger one the carriage goes into the switch all the same. `unequal_share` is by how much each motor's speed may
+    /// differ from their mean, 0 to 1 (NaN counts as 1): the motor that pushes gets (1 − share)/(1 + share) of what the other gets, so
+    /// that whatever they are the carriage stays or retreats. Where both ends of one axis are pressed nothing can retreat,
+    /// and nothing is let through.
+    ///
+    /// ```
+    /// # use plotter_motion::{kinematics::BeltSigns, Demand, Duty, LimitSwitches, SafetyGate};
+    /// let mut gate = SafetyGate::default();
+    /// gate.set_limits(LimitSwitches { x_max: true, ..LimitSwitches::default() });
+    /// let right_and_up = Demand { x: Duty::saturating(0.5), y: Duty::saturating(0.5) };
+    /// let drive = gate.pass_belt(right_and_up, BeltSigns::DirectionTable, 0.0);
+    /// assert_eq!((drive.x().value(), drive.y().value()), (-0.5, 0.5)); // up alone
+    /// let careful = gate.pass_belt(right_and_up, BeltSigns::DirectionTable, 0.2);
+    /// assert_eq!(careful.x().value(), -0.5);
+    /// assert!((careful.y().value() - 0.5 * 0.8 / 1.2).abs() < 1e-6); // and away from the switch
+    /// ```
+    #[must_use]
+    pub fn pass_belt(&self, demand: Demand, signs: BeltSigns, unequal_share: f32) -> Drive {
+        let axes = self.pass(demand);
+        let (x, y) = (axes.x.value(), axes.y.value());
+        let size = (x.abs() + y.abs()).max(1.0);
+        let mut motors = signs.motors(x / size, y / size);
+        let share = if unequal_share.is_nan() { 1.0 } else { unequal_share.clamp(0.0, 1.0) };
+        let kept = (1.0 - share) / (1.0 + share);
+        // what a turn of each motor does to both axes: 1 or -1
+        let (first, second) = (signs.twice_axes(1.0, 0.0), signs.twice_axes(0.0, 1.0));
+        for (axis, first, second) in [(Axis::X, first.0, second.0), (Axis::Y, first.1, second.1)] {
+            let ends = [Direction::Plus, Direction::Minus].map(|end| self.limits.blocks(axis, end));
+            let towards = match ends {
+                [false, false] => continue,
+                [true, true] => return Drive::default(),
+                [true, false] => 1.0,
+                [false, true] => -1.0,
+            };
+            let push = (motors.0 * first * towards, motors.1 * second * towards);
+            let most = |other: f32| (-other).max(0.0) * kept;
+            motors =
+                (push.0.min(most(push.1)) * first * towards, push.1.min(most(push.0)) * second * towards);
+        }
+        Drive { x: Duty::saturating(motors.0), y: Duty::saturating(motors.1) }
     }
 
     /// Lets a step of stepper motors through. One that leads into a switch with either motor is not made with the other: the pen

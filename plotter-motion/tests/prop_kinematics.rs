@@ -1,6 +1,8 @@
 //! Laws of the way from millimetres to motors and back.
 
-use plotter_motion::kinematics::{Backlash, BacklashState, Cartesian, Kinematics, MotorScale};
+use plotter_motion::kinematics::{
+    Backlash, BacklashState, BeltSigns, Cartesian, CoreXy, Kinematics, MotorScale,
+};
 use plotter_motion::{Axis, Direction, Point, StepPoint};
 use proptest::prelude::*;
 
@@ -14,6 +16,10 @@ fn scale() -> impl Strategy<Value = MotorScale> {
 
 fn direction() -> impl Strategy<Value = Direction> {
     prop_oneof![Just(Direction::Plus), Just(Direction::Minus)]
+}
+
+fn signs() -> impl Strategy<Value = BeltSigns> {
+    prop_oneof![Just(BeltSigns::DirectionTable), Just(BeltSigns::TrackingEquations)]
 }
 
 /// An axis with play, as a machine has it: the motor moves a gap, the carriage lies between its two flanks.
@@ -57,6 +63,25 @@ proptest! {
         let machine = Cartesian::new(scales.0, scales.1).unwrap();
         let steps = StepPoint::new(x, y);
         prop_assert_eq!(machine.steps_at(machine.point_at(steps.into())), steps);
+    }
+
+    #[test]
+    fn a_place_survives_the_way_over_a_belt(signs in signs(), scale in scale(), x in -1e6..1e6_f64, y in -1e6..1e6_f64) {
+        let machine = CoreXy::new(signs, scale.steps_per_mm).unwrap();
+        let back = machine.point_at(machine.motors_at(Point::new(x, y)));
+        // the motors' sums are rounded at the size of the larger coordinate
+        let rounding = 2.0 * LAST_BITS * x.abs().max(y.abs());
+        prop_assert!((back.x - x).abs() <= rounding && (back.y - y).abs() <= rounding, "{:?}", back);
+    }
+
+    #[test]
+    fn steps_survive_the_way_over_a_belt(signs in signs(), scale in scale(), first in any::<i32>(), second in any::<i32>()) {
+        let machine = CoreXy::new(signs, scale.steps_per_mm).unwrap();
+        let steps = StepPoint::new(first, second);
+        prop_assert_eq!(machine.steps_at(machine.point_at(steps.into())), steps);
+        let (first, second) = (i64::from(first), i64::from(second));
+        let (x2, y2) = signs.twice_axes(first, second);
+        prop_assert_eq!(signs.motors(x2, y2), (2 * first, 2 * second));
     }
 
     #[test]

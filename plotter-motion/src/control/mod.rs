@@ -1,17 +1,26 @@
 //! Controllers that lead two motors along a straight line.
 //!
 //! [`LineTracking`] is the published one, [`Contouring`] ours; both are a [`LineController`]. A machine's
-//! description chooses between them ([`ChosenController`]); a firmware that has but one names it.
+//! description chooses between them ([`ChosenController`]); a firmware that has but one names it. [`PointToPoint`] is that of
+//! the marking board, whose axes are not its motors; [`Contouring`] leads the motors of a belt as it leads any two.
 
 mod chosen;
 mod contouring;
+mod drive_ramp;
+mod equalizer;
 mod line_tracking;
+mod point_to_point;
 mod shaft_estimator;
+mod speed_meter;
 
 pub use chosen::ChosenController;
 pub use contouring::{Contouring, ContouringSettings, PositionGains, ShaftSettings};
+pub use drive_ramp::DriveRamp;
+pub use equalizer::{Equalizer, EqualizerSettings};
 pub use line_tracking::{LineTracking, LineTrackingSettings};
+pub use point_to_point::{PointToPoint, PointToPointSettings};
 pub use shaft_estimator::{ShaftEstimator, ShaftModel};
+pub use speed_meter::SpeedMeter;
 
 use crate::{Axis, Demand, Direction, Drive, StepPoint};
 use core::time::Duration;

@@ -30,8 +30,8 @@ pub struct ScaleError {
 }
 
 /// Beyond any machine; a product with a coordinate of 32 bits is far from overflow.
-const LEAST_STEPS_PER_MM: f64 = 1e-9;
-const MOST_STEPS_PER_MM: f64 = 1e9;
+pub(super) const LEAST_STEPS_PER_MM: f64 = 1e-9;
+pub(super) const MOST_STEPS_PER_MM: f64 = 1e9;
 
 impl fmt::Display for ScaleError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

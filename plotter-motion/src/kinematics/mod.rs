@@ -7,9 +7,11 @@
 
 mod backlash;
 mod cartesian;
+mod corexy;
 
 pub use backlash::{Backlash, BacklashState, Takeup};
 pub use cartesian::{Cartesian, MotorScale, ScaleError};
+pub use corexy::{BeltSigns, CoreXy};
 
 use crate::{Point, StepPoint, from_mm};
 

@@ -4,10 +4,12 @@ mod axis_plant;
 #[cfg(feature = "alloc")]
 mod bench;
 mod dc_motor;
+mod marking_board;
 mod stepper;
 
 pub use axis_plant::{AxisPlant, CountedEdge, PhaseChange};
 #[cfg(feature = "alloc")]
 pub use bench::{Bench, BenchEvent, BenchSettings};
 pub use dc_motor::{DcMotor, DcMotorState};
+pub use marking_board::{MarkingBoardPlant, MarkingBoardPlantSettings};
 pub use stepper::{StepperAxis, StepperPlant, StepperSettings};
