@@ -326,6 +326,22 @@ fn curves(stretches: &[Stretch], settings: PlannerSettings, lens: Lens, seen: &m
     }
 }
 
+impl Stretch {
+    /// Square of the speed at one of the ends, as the steps near it say: 0 is the first end, 1 the last.
+    fn corner2(&self, end: usize, settings: PlannerSettings, lens: Lens) -> Option<f64> {
+        let accel_mm_s2 = settings.accel_mm_s2;
+        if self.course.shape == Shape::Line {
+            // Between two steps the mean speed is that of a place a step away.
+            let speed = self.end_speeds(lens.clock_hz)?[end];
+            return Some(speed * speed - 2.0 * accel_mm_s2 * 1.5 * self.step_mm());
+        }
+        // From one chord to the next the times of single steps jump by less than a step; and as on curves, the mean speed over
+        // some way is that in its middle.
+        let (speed, way_mm) = self.curve_speeds(lens)?[end];
+        Some(speed * speed - accel_mm_s2 * way_mm)
+    }
+}
+
 /// Audits the speeds at the corners; gives the bins in which they are.
 fn corners(stretches: &[Stretch], settings: PlannerSettings, lens: Lens, seen: &mut Audit) -> Vec<usize> {
     let mut bins = Vec::new();
@@ -341,14 +357,9 @@ fn corners(stretches: &[Stretch], settings: PlannerSettings, lens: Lens, seen: &
         }
         let shorter_mm = before.course.length_mm.min(after.course.length_mm);
         let allowed2 = allowed2(turn_rad, shorter_mm, &settings);
-        let ends = [
-            before.end_speeds(lens.clock_hz).map(|ends| ends[1]),
-            after.end_speeds(lens.clock_hz).map(|ends| ends[0]),
-        ];
-        for (speed, stretch) in ends.into_iter().zip(pair) {
-            let Some(speed) = speed else { continue };
-            // Between two steps the mean speed is that of a place a step away.
-            let at_corner2 = speed * speed - 2.0 * settings.accel_mm_s2 * 1.5 * stretch.step_mm();
+        for at_corner2 in
+            [before.corner2(1, settings, lens), after.corner2(0, settings, lens)].into_iter().flatten()
+        {
             seen.corner_share = seen.corner_share.max(at_corner2 / allowed2);
             seen.corners += 1;
         }
