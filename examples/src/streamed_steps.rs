@@ -5,7 +5,7 @@ use core::time::Duration;
 use crc::{CRC_64_XZ, Crc};
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
-use plotter_motion::protocol::Wire;
+use plotter_motion::plant::SimulatedLine;
 use plotter_motion::{Axis, Machine, StepPoint};
 use plotter_replay::serial::Port;
 use std::collections::VecDeque;
@@ -93,27 +93,6 @@ impl Streamer {
     }
 }
 
-/// One direction of the serial line.
-#[derive(Debug)]
-struct Line {
-    wire: Wire,
-    bytes: VecDeque<(Duration, u8)>,
-}
-
-impl Line {
-    fn new(baud: u32) -> Self {
-        Self { wire: Wire::new(baud), bytes: VecDeque::new() }
-    }
-
-    fn send(&mut self, now: Duration, byte: u8) {
-        self.bytes.push_back((self.wire.send(now), byte));
-    }
-
-    fn next(&self) -> Option<Duration> {
-        self.bytes.front().map(|&(at, _)| at)
-    }
-}
-
 /// Streams `gcode` to the controller on the desk; `start` is when it is switched on.
 ///
 /// # Errors
@@ -134,7 +113,7 @@ pub fn streamed_on_the_desk(
     let mut plotter = StepperPlotter::new(settings).map_err(|error| error.to_string())?;
     let mut host = Streamer::new(gcode);
     let baud = machine.config().serial.baud;
-    let (mut to_controller, mut to_host) = (Line::new(baud), Line::new(baud));
+    let (mut to_controller, mut to_host) = (SimulatedLine::new(baud), SimulatedLine::new(baud));
     let (mut now, mut asked, mut due) = (start, true, None);
     let mut digest = STEPS_CRC.digest();
     let mut made = StreamedSteps::default();
@@ -162,12 +141,12 @@ pub fn streamed_on_the_desk(
         match next {
             Next::Due => {}
             Next::ToController => {
-                if let Some((_, byte)) = to_controller.bytes.pop_front() {
+                if let Some(byte) = to_controller.take() {
                     plotter.receive(now, byte);
                 }
             }
             Next::ToHost => {
-                if let Some((_, byte)) = to_host.bytes.pop_front() {
+                if let Some(byte) = to_host.take() {
                     if made.first_byte.is_zero() {
                         made.first_byte = now;
                     }

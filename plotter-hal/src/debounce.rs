@@ -10,7 +10,7 @@
 //! ```
 
 use core::time::Duration;
-use embedded_hal::digital::PinState;
+use embedded_hal::digital::{InputPin, PinState};
 
 /// How a switch is wired, and how long its contact bounces.
 ///
@@ -51,9 +51,60 @@ impl Default for SwitchSettings {
     }
 }
 
+/// A contact on a pin, and what is believed of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Contact<Pin> {
+    pin: Pin,
+    debounce: Debounce,
+}
+
+/// What a look at a contact told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Seen {
+    /// What its pin shows now.
+    pub(crate) shows_press: bool,
+    /// What is believed.
+    pub(crate) is_pressed: bool,
+}
+
+impl<Pin: InputPin> Contact<Pin> {
+    pub(crate) const fn new(pin: Pin, settings: SwitchSettings) -> Self {
+        Self { pin, debounce: Debounce::new(settings) }
+    }
+
+    /// Reads the pin. One that cannot be read is pressed, at once.
+    pub(crate) fn read(&mut self, now: Duration) -> Result<Seen, Pin::Error> {
+        match self.pin.is_high() {
+            Ok(is_high) => {
+                let shows_press = self.debounce.shows_press(is_high);
+                Ok(Seen { shows_press, is_pressed: self.debounce.update(now, shows_press) })
+            }
+            Err(cause) => {
+                self.debounce.unreadable();
+                Err(cause)
+            }
+        }
+    }
+}
+
+impl<Pin> Contact<Pin> {
+    pub(crate) const fn is_pressed(&self) -> bool {
+        self.debounce.pressed
+    }
+
+    /// When what is believed changes, if the contact goes on showing what it shows.
+    pub(crate) fn due(&self) -> Option<Duration> {
+        self.debounce.due()
+    }
+
+    pub(crate) fn release(self) -> Pin {
+        self.pin
+    }
+}
+
 /// What is believed of a contact. Nothing is known of it at first: it counts as pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Debounce {
+struct Debounce {
     settings: SwitchSettings,
     pressed: bool,
     /// Since when the contact has shown the opposite without a break.
@@ -61,21 +112,17 @@ pub(crate) struct Debounce {
 }
 
 impl Debounce {
-    pub(crate) const fn new(settings: SwitchSettings) -> Self {
+    const fn new(settings: SwitchSettings) -> Self {
         Self { settings, pressed: true, differs_since: None }
     }
 
-    pub(crate) const fn is_pressed(&self) -> bool {
-        self.pressed
-    }
-
     /// Whether this level of the pin is that of a pressed switch.
-    pub(crate) fn shows_press(&self, is_high: bool) -> bool {
+    fn shows_press(&self, is_high: bool) -> bool {
         PinState::from(is_high) == self.settings.pressed_at
     }
 
     /// Takes what the contact shows now; says what is believed.
-    pub(crate) fn update(&mut self, now: Duration, shows_press: bool) -> bool {
+    fn update(&mut self, now: Duration, shows_press: bool) -> bool {
         if shows_press == self.pressed {
             self.differs_since = None;
             return self.pressed;
@@ -89,13 +136,13 @@ impl Debounce {
     }
 
     /// The contact cannot be read: pressed, at once.
-    pub(crate) const fn unreadable(&mut self) {
+    const fn unreadable(&mut self) {
         self.pressed = true;
         self.differs_since = None;
     }
 
     /// When what is believed changes, if the contact goes on showing what it shows.
-    pub(crate) fn due(&self) -> Option<Duration> {
+    fn due(&self) -> Option<Duration> {
         self.differs_since.map(|since| since.saturating_add(self.needed()))
     }
 
@@ -122,9 +169,9 @@ mod tests {
     #[test]
     fn a_release_must_last_without_a_break() {
         let settings = SwitchSettings::default();
-        assert!(after(settings, &[(0, false), (19, false)]).is_pressed());
-        assert!(!after(settings, &[(0, false), (20, false)]).is_pressed());
-        assert!(after(settings, &[(0, false), (19, true), (20, false), (39, false)]).is_pressed());
+        assert!(after(settings, &[(0, false), (19, false)]).pressed);
+        assert!(!after(settings, &[(0, false), (20, false)]).pressed);
+        assert!(after(settings, &[(0, false), (19, true), (20, false), (39, false)]).pressed);
         assert_eq!(after(settings, &[(5, false)]).due(), Some(MS * 25));
     }
 
@@ -132,14 +179,14 @@ mod tests {
     fn a_press_is_taken_at_once_or_after_its_own_time() {
         let free = [(0, false), (20, false)];
         let at_once = SwitchSettings::default();
-        assert!(after(at_once, &[free[0], free[1], (21, true)]).is_pressed());
+        assert!(after(at_once, &[free[0], free[1], (21, true)]).pressed);
         let patient = SwitchSettings { press_after: MS * 3, ..at_once };
-        assert!(!after(patient, &[free[0], free[1], (21, true), (23, true)]).is_pressed());
-        assert!(after(patient, &[free[0], free[1], (21, true), (24, true)]).is_pressed());
+        assert!(!after(patient, &[free[0], free[1], (21, true), (23, true)]).pressed);
+        assert!(after(patient, &[free[0], free[1], (21, true), (24, true)]).pressed);
     }
 
     #[test]
     fn a_clock_that_goes_back_releases_nothing() {
-        assert!(after(SwitchSettings::default(), &[(30, false), (0, false), (49, false)]).is_pressed());
+        assert!(after(SwitchSettings::default(), &[(30, false), (0, false), (49, false)]).pressed);
     }
 }

@@ -13,7 +13,7 @@
 //! ```
 
 use crate::SwitchSettings;
-use crate::debounce::Debounce;
+use crate::debounce::Contact;
 use core::fmt;
 use core::time::Duration;
 use embedded_hal::digital::{self, InputPin};
@@ -49,8 +49,7 @@ use embedded_hal::digital::{self, InputPin};
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EstopInput<Pin> {
-    pin: Pin,
-    debounce: Debounce,
+    contact: Contact<Pin>,
     /// Whether it has shown since the start nothing but that it is free.
     unpressed: bool,
 }
@@ -73,7 +72,7 @@ pub enum EstopChange {
 impl<Pin: InputPin> EstopInput<Pin> {
     /// The button on `pin`, which is first read by [`tick`](Self::tick).
     pub const fn new(pin: Pin, settings: SwitchSettings) -> Self {
-        Self { pin, debounce: Debounce::new(settings), unpressed: true }
+        Self { contact: Contact::new(pin, settings), unpressed: true }
     }
 
     /// Reads the pin; says what has changed. Never waits.
@@ -83,17 +82,9 @@ impl<Pin: InputPin> EstopInput<Pin> {
     /// [`Error::Pin`]; the button counts as pressed then.
     pub fn tick(&mut self, now: Duration) -> Result<Option<EstopChange>, Error<Pin::Error>> {
         let was_pressed = self.is_pressed();
-        let is_high = match self.pin.is_high() {
-            Ok(is_high) => is_high,
-            Err(cause) => {
-                self.debounce.unreadable();
-                self.unpressed = false;
-                return Err(Error::Pin(cause));
-            }
-        };
-        let shows_press = self.debounce.shows_press(is_high);
-        self.unpressed &= !shows_press;
-        Ok(match (was_pressed, self.debounce.update(now, shows_press)) {
+        let seen = self.contact.read(now);
+        self.unpressed &= seen.as_ref().is_ok_and(|seen| !seen.shows_press);
+        Ok(match (was_pressed, seen.map_err(Error::Pin)?.is_pressed) {
             (false, true) => Some(EstopChange::Pressed),
             (true, false) if self.unpressed => Some(EstopChange::FreeSinceStart),
             (true, false) => Some(EstopChange::Released),
@@ -103,17 +94,17 @@ impl<Pin: InputPin> EstopInput<Pin> {
 
     /// Whether the button counts as pressed, as of the last [`tick`](Self::tick).
     pub const fn is_pressed(&self) -> bool {
-        self.debounce.is_pressed()
+        self.contact.is_pressed()
     }
 
     /// When to call [`tick`](Self::tick) next if no edge of the pin comes before.
     pub fn due(&self) -> Option<Duration> {
-        self.debounce.due()
+        self.contact.due()
     }
 
     /// Gives the pin back.
     pub fn release(self) -> Pin {
-        self.pin
+        self.contact.release()
     }
 }
 

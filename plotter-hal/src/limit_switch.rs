@@ -14,7 +14,7 @@
 //! group hands it [`LimitSwitches`].
 
 use crate::SwitchSettings;
-use crate::debounce::Debounce;
+use crate::debounce::Contact;
 use core::fmt;
 use core::time::Duration;
 use embedded_hal::digital::{self, InputPin};
@@ -40,14 +40,13 @@ use plotter_motion::{Axis, Direction, LimitSwitches};
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LimitSwitch<Pin> {
-    pin: Pin,
-    debounce: Debounce,
+    contact: Contact<Pin>,
 }
 
 impl<Pin: InputPin> LimitSwitch<Pin> {
     /// The switch on `pin`, which is first read by [`tick`](Self::tick).
     pub const fn new(pin: Pin, settings: SwitchSettings) -> Self {
-        Self { pin, debounce: Debounce::new(settings) }
+        Self { contact: Contact::new(pin, settings) }
     }
 
     /// Reads the pin; says whether the switch counts as pressed. Never waits.
@@ -56,32 +55,23 @@ impl<Pin: InputPin> LimitSwitch<Pin> {
     ///
     /// [`Error::Pin`]; the switch counts as pressed then.
     pub fn tick(&mut self, now: Duration) -> Result<bool, Error<Pin::Error>> {
-        match self.pin.is_high() {
-            Ok(is_high) => {
-                let shows_press = self.debounce.shows_press(is_high);
-                Ok(self.debounce.update(now, shows_press))
-            }
-            Err(cause) => {
-                self.debounce.unreadable();
-                Err(Error::Pin(cause))
-            }
-        }
+        self.contact.read(now).map(|seen| seen.is_pressed).map_err(Error::Pin)
     }
 
     /// Whether it counts as pressed, as of the last [`tick`](Self::tick).
     pub const fn is_pressed(&self) -> bool {
-        self.debounce.is_pressed()
+        self.contact.is_pressed()
     }
 
     /// When to call [`tick`](Self::tick) next if no edge of the pin comes before; `None` if only an edge changes
     /// anything.
     pub fn due(&self) -> Option<Duration> {
-        self.debounce.due()
+        self.contact.due()
     }
 
     /// Gives the pin back.
     pub fn release(self) -> Pin {
-        self.pin
+        self.contact.release()
     }
 }
 

@@ -1,8 +1,8 @@
 //! A whole machine on the bench: host, serial line, controller, motors and encoders.
 
-use super::AxisPlant;
+use super::{AxisPlant, SimulatedLine};
 use crate::firmware::{Gantry, Notice};
-use crate::protocol::{Host, HostEvent, HostSettings, Wire};
+use crate::protocol::{Host, HostEvent, HostSettings};
 use crate::{Axis, Direction, Machine, PenMove, Point};
 use alloc::collections::VecDeque;
 use core::time::Duration;
@@ -52,34 +52,12 @@ pub struct Bench<I> {
     controller: Gantry,
     x: AxisPlant,
     y: AxisPlant,
-    to_controller: Line,
-    to_host: Line,
+    to_controller: SimulatedLine,
+    to_host: SimulatedLine,
     /// Edges of the present time step.
     edges: VecDeque<(Duration, Axis, Direction)>,
     pwm_steps: [u16; 2],
     drive: [i32; 2],
-}
-
-/// One direction of the serial line, with the bytes that are on it.
-#[derive(Debug)]
-struct Line {
-    wire: Wire,
-    bytes: VecDeque<(Duration, u8)>,
-}
-
-impl Line {
-    fn new(baud: u32) -> Self {
-        Self { wire: Wire::new(baud), bytes: VecDeque::new() }
-    }
-
-    fn send(&mut self, now: Duration, byte: u8) {
-        let through = self.wire.send(now);
-        self.bytes.push_back((through, byte));
-    }
-
-    fn next(&self) -> Option<Duration> {
-        self.bytes.front().map(|&(at, _)| at)
-    }
 }
 
 /// What comes next.
@@ -116,8 +94,8 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
             controller: Gantry::new(machine),
             x: axis(&config.x),
             y: axis(&config.y),
-            to_controller: Line::new(config.serial.baud),
-            to_host: Line::new(config.serial.baud),
+            to_controller: SimulatedLine::new(config.serial.baud),
+            to_host: SimulatedLine::new(config.serial.baud),
             edges: VecDeque::new(),
             pwm_steps: [pwm_steps(&config.x), pwm_steps(&config.y)],
             drive: [0; 2],
@@ -167,7 +145,7 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
         match next {
             Next::Tick => self.controller.tick(at),
             Next::ToController => {
-                if let Some((_, byte)) = self.to_controller.bytes.pop_front() {
+                if let Some(byte) = self.to_controller.take() {
                     record(at, BenchEvent::HostByte(byte));
                     self.controller.receive(at, byte);
                 }
@@ -179,7 +157,7 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
                 }
             }
             Next::ToHost => {
-                if let Some((_, byte)) = self.to_host.bytes.pop_front() {
+                if let Some(byte) = self.to_host.take() {
                     record(at, BenchEvent::ControllerByte(byte));
                     if let Some(event) = self.host.receive(at, byte) {
                         record(at, BenchEvent::Host(event));
@@ -255,7 +233,7 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
 
     /// Takes the next byte off the line to the controller; says which it was.
     pub fn lose_byte(&mut self) -> Option<u8> {
-        self.to_controller.bytes.pop_front().map(|(_, byte)| byte)
+        self.to_controller.take()
     }
 }
 

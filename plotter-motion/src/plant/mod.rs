@@ -5,6 +5,8 @@ mod axis_plant;
 mod bench;
 mod dc_motor;
 mod marking_board;
+#[cfg(feature = "alloc")]
+mod simulated_line;
 mod stepper;
 
 pub use axis_plant::{AxisPlant, CountedEdge, PhaseChange};
@@ -12,4 +14,6 @@ pub use axis_plant::{AxisPlant, CountedEdge, PhaseChange};
 pub use bench::{Bench, BenchEvent, BenchSettings};
 pub use dc_motor::{DcMotor, DcMotorState};
 pub use marking_board::{MarkingBoardPlant, MarkingBoardPlantSettings};
+#[cfg(feature = "alloc")]
+pub use simulated_line::SimulatedLine;
 pub use stepper::{StepperAxis, StepperPlant, StepperSettings};

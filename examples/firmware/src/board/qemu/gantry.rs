@@ -4,9 +4,8 @@
 //! each level goes through a driver and its pins.
 
 use super::bench::{Bench, Told};
-use super::line::Line;
+use super::connection::Connection;
 use super::pins::{Input, Output, Pwm, Wire};
-use super::registers::Uart;
 use crate::board::{Event, MotorPins, Notice};
 use crate::machine;
 use core::cell::Cell;
@@ -189,10 +188,7 @@ pub struct Board {
     step_end_us: u64,
     axes: [SimulatedAxis; 2],
     encoders: [Encoder; 2],
-    uart: Uart,
-    to_controller: Line,
-    to_host: Line,
-    bench: Bench,
+    connection: Connection,
 }
 
 impl Rest {
@@ -209,24 +205,21 @@ impl Rest {
             stop.set(true);
             bench.tell(now_us, Told::Stop(true));
         }
+        if bench.restarted() {
+            // Whatever drove the motors when the processor began anew, its pins do not any more.
+            bench.tell(now_us, Told::Duty(0, 0));
+            bench.tell(now_us, Told::Duty(1, 0));
+        }
         let mut board = Board {
             now_us,
             step_end_us: now_us,
             axes,
             encoders: [x, y],
-            uart: Uart::line(),
-            to_controller: Line::new(machine::BAUD),
-            to_host: Line::new(machine::BAUD),
-            bench,
+            connection: Connection::new(machine::BAUD, bench),
         };
         for encoder in &mut board.encoders {
             // Notes where the shaft stands.
             let _ = encoder.poll();
-        }
-        if board.bench.restarted() {
-            // Whatever drove the motors when the processor began anew, its pins do not any more.
-            board.bench.tell(now_us, Told::Duty(0, 0));
-            board.bench.tell(now_us, Told::Duty(1, 0));
         }
         board.begin_step();
         board
@@ -254,33 +247,23 @@ impl Board {
             match next {
                 Next::Due => return (now, Event::Due),
                 Next::ToController => {
-                    if let Some(byte) = self.to_controller.pop() {
-                        self.bench.tell(at, Told::HostByte(byte));
-                        let lost = self.bench.is_overrun();
-                        return (now, if lost { Event::LineFault } else { Event::Byte(byte) });
+                    if let Some(event) = self.connection.received(at) {
+                        return (now, event);
                     }
                 }
                 Next::Phase => {
                     if let Some((axis, direction)) = self.phase() {
-                        self.bench
+                        self.connection
                             .tell(at, Told::Edge(2 * (axis as u8) + u8::from(direction == Direction::Minus)));
                         return (now, Event::Edge(axis, direction));
                     }
                 }
                 Next::ToHost => {
-                    if let Some(byte) = self.to_host.pop() {
-                        self.bench.tell(at, Told::ControllerByte(byte));
-                        // A count makes a host only wait longer.
-                        if !(b'1'..=b'4').contains(&byte) {
-                            self.bench.listen(at);
-                        }
-                    }
+                    // A count makes a host only wait longer.
+                    self.connection.sent(at, |byte| !(b'1'..=b'4').contains(&byte));
                 }
                 Next::Host => {
-                    let line = &mut self.to_controller;
-                    self.bench.ask(at, &mut self.uart, |byte| {
-                        line.send(at, byte);
-                    });
+                    self.connection.ask(at);
                 }
             }
         }
@@ -288,19 +271,17 @@ impl Board {
 
     /// Whether a byte can be sent.
     pub fn can_send(&self) -> bool {
-        self.to_host.has_room()
+        self.connection.can_send()
     }
 
     /// Sends a byte to the host.
     pub fn send(&mut self, byte: u8) {
-        if self.to_host.send(self.now_us, byte) {
-            self.uart.send(byte);
-        }
+        self.connection.send(self.now_us, byte);
     }
 
     /// Tells a person.
     pub fn notify(&mut self, notice: Notice) {
-        self.bench.tell(self.now_us, Told::Note(format_args!("{notice}")));
+        self.connection.notify(self.now_us, notice);
     }
 
     /// Keeps the watchdog from biting.
@@ -317,11 +298,11 @@ impl Board {
         let [x, y] = &self.axes;
         [
             (due_us, Next::Due),
-            (self.to_controller.next_us(), Next::ToController),
+            (self.connection.to_controller_us(), Next::ToController),
             (x.changes.front().map(|&(at, _)| at), Next::Phase),
             (y.changes.front().map(|&(at, _)| at), Next::Phase),
-            (self.to_host.next_us(), Next::ToHost),
-            (Some(self.bench.horizon_us()), Next::Host),
+            (self.connection.to_host_us(), Next::ToHost),
+            (Some(self.connection.horizon_us()), Next::Host),
         ]
         .into_iter()
         // what is overdue from before happens now
@@ -346,7 +327,7 @@ impl Board {
         for (which, axis) in self.axes.iter_mut().enumerate() {
             let steps = axis.duty_steps();
             if steps != core::mem::replace(&mut axis.told, steps) {
-                self.bench.tell(self.now_us, Told::Duty(which as u8, steps));
+                self.connection.tell(self.now_us, Told::Duty(which as u8, steps));
             }
         }
     }

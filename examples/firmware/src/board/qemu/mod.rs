@@ -5,6 +5,7 @@
 //! anything computes.
 
 pub mod bench;
+mod connection;
 pub mod gantry;
 mod line;
 mod pins;

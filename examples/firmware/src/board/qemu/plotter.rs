@@ -1,9 +1,8 @@
 //! The simulated stepper plotter: two motors that follow every pulse, and the serial line, in the time of the bench.
 
 use super::bench::{Bench, Told};
-use super::line::Line;
+use super::connection::Connection;
 use super::pins::{Input, Output, Pwm, Step as StepPin, Wire};
-use super::registers::Uart;
 use crate::board::{Event, Notice, StepperPins};
 use crate::machine;
 use core::cell::Cell;
@@ -104,10 +103,7 @@ enum Next {
 pub struct Board {
     now_us: u64,
     cells: &'static Cells,
-    uart: Uart,
-    to_controller: Line,
-    to_host: Line,
-    bench: Bench,
+    connection: Connection,
     steps: u64,
     told_steps: u64,
     digest: Digest<'static, u64>,
@@ -130,10 +126,7 @@ impl Rest {
         Board {
             now_us,
             cells,
-            uart: Uart::line(),
-            to_controller: Line::new(machine::PLOTTER_BAUD),
-            to_host: Line::new(machine::PLOTTER_BAUD),
-            bench,
+            connection: Connection::new(machine::PLOTTER_BAUD, bench),
             steps: 0,
             told_steps: 0,
             digest: STEPS_CRC.digest(),
@@ -154,9 +147,9 @@ impl Board {
         loop {
             let next = [
                 (due_us, Next::Due),
-                (self.to_controller.next_us(), Next::ToController),
-                (self.to_host.next_us(), Next::ToHost),
-                (Some(self.bench.horizon_us()), Next::Host),
+                (self.connection.to_controller_us(), Next::ToController),
+                (self.connection.to_host_us(), Next::ToHost),
+                (Some(self.connection.horizon_us()), Next::Host),
             ];
             let coming = next.into_iter().filter_map(|(at, next)| Some((at?.max(self.now_us), next)));
             let Some((at, next)) = coming.min() else { continue };
@@ -165,27 +158,17 @@ impl Board {
             match next {
                 Next::Due => return (now, Event::Due),
                 Next::ToController => {
-                    if let Some(byte) = self.to_controller.pop() {
-                        self.bench.tell(at, Told::HostByte(byte));
-                        let lost = self.bench.is_overrun();
-                        return (now, if lost { Event::LineFault } else { Event::Byte(byte) });
+                    if let Some(event) = self.connection.received(at) {
+                        return (now, event);
                     }
                 }
                 Next::ToHost => {
-                    if let Some(byte) = self.to_host.pop() {
-                        self.bench.tell(at, Told::ControllerByte(byte));
-                        // A host answers whole lines.
-                        if byte == b'\n' {
-                            self.bench.listen(at);
-                        }
-                    }
+                    // A host answers whole lines.
+                    self.connection.sent(at, |byte| byte == b'\n');
                 }
                 Next::Host => {
                     self.tell_steps();
-                    let line = &mut self.to_controller;
-                    self.bench.ask(at, &mut self.uart, |byte| {
-                        line.send(at, byte);
-                    });
+                    self.connection.ask(at);
                 }
             }
         }
@@ -193,14 +176,12 @@ impl Board {
 
     /// Whether a byte can be sent.
     pub fn can_send(&self) -> bool {
-        self.to_host.has_room()
+        self.connection.can_send()
     }
 
     /// Sends a byte to the host.
     pub fn send(&mut self, byte: u8) {
-        if self.to_host.send(self.now_us, byte) {
-            self.uart.send(byte);
-        }
+        self.connection.send(self.now_us, byte);
     }
 
     /// A step that the motors got: the bench keeps account of all.
@@ -213,7 +194,7 @@ impl Board {
 
     /// Tells a person.
     pub fn notify(&mut self, notice: Notice) {
-        self.bench.tell(self.now_us, Told::Note(format_args!("{notice}")));
+        self.connection.notify(self.now_us, notice);
     }
 
     /// Keeps the watchdog from biting.
@@ -221,9 +202,9 @@ impl Board {
 
     fn tell_steps(&mut self) {
         if core::mem::replace(&mut self.told_steps, self.steps) != self.steps {
-            self.bench.tell(self.now_us, Told::Steps(self.steps, self.digest.clone().finalize()));
+            self.connection.tell(self.now_us, Told::Steps(self.steps, self.digest.clone().finalize()));
             for (which, position) in self.cells.position.iter().enumerate() {
-                self.bench.tell(self.now_us, Told::Position(which as u8, position.get()));
+                self.connection.tell(self.now_us, Told::Position(which as u8, position.get()));
             }
         }
     }
