@@ -12,6 +12,7 @@ mod player;
 #[cfg(feature = "serial")]
 pub mod serial;
 mod thin;
+pub mod transport;
 mod virtual_plotter;
 
 pub use bench_recorder::BenchRecorder;

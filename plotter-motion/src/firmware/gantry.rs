@@ -175,16 +175,23 @@ impl<C: LineController> Gantry<C> {
         if let Some(dropped) = received.dropped {
             self.notice(Notice::Dropped(dropped));
         }
-        let Some(target) = received.target else {
-            return;
-        };
-        if target.x > self.most.x || target.y > self.most.y {
-            self.notice(Notice::OutOfArea { target, most: self.most });
-            return;
+        if let Some(target) = received.target {
+            self.go_to(now, target);
         }
-        self.approached = Some(target);
-        let demand = self.controller.start(now, target);
-        self.apply(demand);
+    }
+
+    /// Takes a target, in encoder counts; says whether it is in the machine's area. One outside is refused.
+    pub fn go_to(&mut self, now: Duration, target: StepPoint) -> bool {
+        let StepPoint { x, y } = self.most;
+        let inside = (0..=x).contains(&target.x) && (0..=y).contains(&target.y);
+        if inside {
+            self.approached = Some(target);
+            let demand = self.controller.start(now, target);
+            self.apply(demand);
+        } else {
+            self.notice(Notice::OutOfArea { target, most: self.most });
+        }
+        inside
     }
 
     /// Takes an edge that an encoder's decoder counted.
@@ -274,6 +281,12 @@ impl<C: LineController> Gantry<C> {
     #[must_use]
     pub const fn drive(&self) -> Drive {
         self.drive
+    }
+
+    /// What leads the motors.
+    #[must_use]
+    pub const fn controller(&self) -> &C {
+        &self.controller
     }
 
     /// Where the motors stand, encoder counts.

@@ -1,6 +1,7 @@
 //! The host of the published protocol: sends a drawing target by target and keeps account of the answers.
 
 use super::digits::{OutOfRange, Reply, Sender};
+use super::message::MessageError;
 use crate::{Axis, Direction, PenMove, StepPoint};
 use core::fmt;
 use core::time::Duration;
@@ -62,6 +63,19 @@ pub enum HostNotice {
         /// Where the controller's pulses say it is.
         position: StepPoint,
     },
+    /// A target outside the machine's area, encoder counts; it is left out.
+    OutOfArea(StepPoint),
+    /// The machine knows the digits protocol only.
+    DigitsOnly,
+    /// Nothing comes from the machine any more.
+    Interrupted,
+    /// The machine is heard again, and the drawing goes on.
+    Resumed,
+    /// The machine was switched off in the middle of the drawing and does not know where its motors stand: nothing more is
+    /// sent.
+    MachineRestarted,
+    /// The machine speaks another language: nothing more is sent.
+    NotUnderstood(MessageError),
 }
 
 impl fmt::Display for HostNotice {
@@ -77,6 +91,17 @@ impl fmt::Display for HostNotice {
             Self::GaveUp { target, position } => {
                 write!(f, "gave up: {:?} was not reached, the motors stand at {:?}", at(target), at(position))
             }
+            Self::OutOfArea(target) => {
+                write!(f, "target {:?} lies outside the machine's area: it was left out", at(target))
+            }
+            Self::DigitsOnly => f.write_str("the machine knows the digits protocol only"),
+            Self::Interrupted => f.write_str("nothing comes from the machine: is its cable plugged in?"),
+            Self::Resumed => f.write_str("the machine is heard again: the drawing goes on"),
+            Self::MachineRestarted => f.write_str(
+                "the machine was switched off in the middle of the drawing and does not know where it stands: lead it \
+                 to the origin and begin the drawing anew",
+            ),
+            Self::NotUnderstood(error) => write!(f, "the machine sends {error}"),
         }
     }
 }

@@ -1,10 +1,19 @@
 //! What goes over the serial line, sans-IO: bytes in, meaning out, and back.
 
 pub mod digits;
+pub mod frame;
+mod hello;
 mod host;
+mod link;
+mod link_host;
+mod message;
 mod wire;
 
+pub use hello::Hello;
 pub use host::{Host, HostEvent, HostNotice, HostSettings};
+pub use link::{CALL_ZEROS, LINK_VERSION, Link, LinkCounts, LinkSettings, LinkState};
+pub use link_host::{LinkHost, LinkProgress, Resume};
+pub use message::{MOST_MESSAGE, Message, MessageDecoder, MessageError};
 pub use wire::Wire;
 
 /// What a firmware's serial driver hands to a controller in place of a byte that came broken, or of bytes that were lost:
