@@ -67,7 +67,7 @@ struct Arguments {
     /// voltage
     #[arg(long, value_name = "SHARE", default_value = "0", value_parser = share, allow_negative_numbers = true)]
     motor_off: f64,
-    /// Runs of the loop a second [default: the machine's control.contouring.loop_hz]
+    /// Runs of the loop a second [default: the machine's]
     #[arg(long, value_name = "HZ", value_parser = loop_hz, allow_negative_numbers = true)]
     loop_hz: Option<f64>,
     /// How far the experiments may go to either side, mm [default: a tenth of the axis]

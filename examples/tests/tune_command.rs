@@ -36,7 +36,7 @@ impl Folder {
 }
 
 fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+    value.as_f64().unwrap()
 }
 
 fn of_loop<'a>(axis: &'a Value, name: &str) -> &'a Value {

@@ -130,13 +130,14 @@ fn tuned_loops_keep_their_margins_on_the_true_motor_and_settle() {
     for (name, axis, travel_mm) in motors() {
         let bounds = settings(&axis, LOOP_HZ, travel_mm);
         let found = step_experiment(&mut Bench::new(&axis, TICK_S), bounds).unwrap();
-        let point = relay_experiment(&mut Bench::new(&axis, TICK_S), bounds).unwrap();
-        let point = point.without_friction(found.dry_friction_duty);
+        let as_it_swung = relay_experiment(&mut Bench::new(&axis, TICK_S), bounds).unwrap();
+        let point = as_it_swung.without_friction(found.dry_friction_duty);
         let rule = Simc::default();
         let by = [
             ("data", rule.tune(&IntegratingProcess::of(&axis), TICK_S).unwrap().pid),
             ("step", rule.tune(&found.process, TICK_S).unwrap().pid),
             ("relay", point.astrom_hagglund(PHASE_MARGIN_DEG).unwrap()),
+            ("relay, friction left in", as_it_swung.astrom_hagglund(PHASE_MARGIN_DEG).unwrap()),
         ];
         for (method, pid) in by {
             let reached = margins(&axis, &pid, TICK_S);
@@ -158,11 +159,14 @@ fn tuned_loops_keep_their_margins_on_the_true_motor_and_settle() {
                 assert!(result.drift_counts <= 1.0, "{name}, {method}: {result:?}");
             }
             assert!(reached.stable && result.settled_s.is_some(), "{name}, {method}: {result:?}");
-            if method == "relay" {
-                assert!((reached.phase_margin_deg - PHASE_MARGIN_DEG).abs() < OFF_DEG, "{name}: {reached:?}");
-            } else {
-                let most = SENSITIVITY * rule.max_sensitivity;
-                assert!(reached.max_sensitivity < most, "{name}, {method}: {reached:?}");
+            let most = SENSITIVITY * rule.max_sensitivity;
+            match method {
+                "relay" => {
+                    let off_deg = (reached.phase_margin_deg - PHASE_MARGIN_DEG).abs();
+                    assert!(off_deg < OFF_DEG, "{name}: {reached:?}");
+                }
+                "data" | "step" => assert!(reached.max_sensitivity < most, "{name}, {method}: {reached:?}"),
+                _ => {}
             }
         }
     }
@@ -367,7 +371,7 @@ fn an_axis_that_is_held_on_the_way_ends_the_experiment() {
 
 /// The margins of the contouring controller, which are reckoned for a linear loop, beside what the controller does, on a motor
 /// whose supply is so much stronger than described that the loop has more gain. The encoder is fine, so that there is an edge in
-/// every run: with the gantry's own lines end up to two thirds of the margin.
+/// every run, and none is miscounted where the shaft swings back.
 #[test]
 fn contouring_keeps_the_line_within_its_gain_margin_and_swings_beyond_it() {
     let mut described = MachineConfig::default();
