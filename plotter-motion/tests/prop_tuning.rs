@@ -126,25 +126,45 @@ proptest! {
     #[test]
     fn experiments_end_whatever_is_counted(
         counts in prop::collection::vec(prop_oneof![4 => -3..4_i32, 1 => -1000..1000_i32, 1 => any::<i32>()], 1..200),
-        adds in any::<bool>(),
+        adds in any::<bool>(), odd in prop::option::weighted(0.2, prop::array::uniform3(any::<f64>())),
     ) {
         let bounds = ExperimentSettings { most_s: 5.0, ..settings(1e-3, 2000, &AxisConfig::default()) };
+        let bounds = match odd {
+            Some([tick_s, most_duty, most_s]) => ExperimentSettings { tick_s, most_duty, most_s, ..bounds },
+            None => bounds,
+        };
         let (mut step, mut relay) = (StepExperiment::new(bounds), RelayExperiment::new(bounds));
         let mut count = 0_i32;
         for tick in 0..5_002_usize {
             let next = counts.get(tick % counts.len()).copied().unwrap_or_default();
             count = if adds { count.saturating_add(next) } else { next };
             for demand in [step.tick(count), relay.tick(count)] {
-                prop_assert!(demand.x.value().abs() <= 0.6 + 1e-6 && demand.y.value() == 0.0);
+                let most = if odd.is_some() { 1.0 } else { 0.6 + 1e-6 };
+                prop_assert!(demand.x.value().abs() <= most && demand.y.value() == 0.0);
             }
         }
-        prop_assert!(step.outcome().is_some() && relay.outcome().is_some());
+        prop_assert!(odd.is_some() || (step.outcome().is_some() && relay.outcome().is_some()));
+    }
+
+    /// A loop of any numbers has some margins, in bounded time.
+    #[test]
+    fn margins_are_total(
+        process in prop::array::uniform4(prop_oneof![3 => decades(1e-6, 1e6), 1 => any::<f64>()]),
+        gains in prop::array::uniform4(prop_oneof![3 => 1e-6..1e3_f32, 1 => any::<f32>()]),
+        tick_s in prop_oneof![5 => decades(1e-6, 1.0), 1 => any::<f64>()],
+    ) {
+        let [gain_counts_s, time_constant_s, second_time_constant_s, dead_time_s] = process;
+        let process = IntegratingProcess { gain_counts_s, time_constant_s, second_time_constant_s, dead_time_s };
+        let [kp, ki, kd, derivative_filter_s] = gains;
+        let pid = Pid { kp, ki, kd, derivative_filter_s, output_min: -1.0, output_max: 1.0 };
+        let reached = LoopMargins::of(&SampledLoop { process, compensator: Compensator::Pid(pid), tick_s });
+        prop_assert!(!reached.stable || reached.gain_margin >= 1.0, "{reached:?}");
     }
 
     /// The margins of any PID are where Nyquist's criterion changes its mind.
     #[test]
     fn a_loop_is_stable_up_to_its_gain_margin(
-        axis in axis(), tick_s in tick_s(), delay_ticks in 0.0..4.0_f64,
+        axis in axis(), tick_s in tick_s(), delay_ticks in prop_oneof![4 => 0.0..4.0_f64, 1 => 4.0..100.0],
         lambda_share in decades(0.05, 50.0), factor in decades(0.1, 10.0),
     ) {
         let process = IntegratingProcess { dead_time_s: delay_ticks * tick_s, ..IntegratingProcess::of(&axis) };

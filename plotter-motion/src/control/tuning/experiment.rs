@@ -49,8 +49,9 @@ impl ExperimentSettings {
     /// A duty as the timer makes it, and at most the greatest.
     pub(super) fn whole(&self, duty: f64) -> f64 {
         let steps = f64::from(self.pwm_steps.max(1));
-        let most = libm::floor(self.most_duty.clamp(0.0, 1.0) * steps);
-        libm::round(duty * steps).clamp(-most, most) / steps
+        // A limit that is no number is none at all.
+        let most = libm::floor(self.most_duty.max(0.0).min(1.0) * steps);
+        libm::round(duty * steps).max(-most).min(most) / steps
     }
 
     pub(super) fn demand(&self, duty: f64) -> Demand {

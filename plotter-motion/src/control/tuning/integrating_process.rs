@@ -38,7 +38,7 @@ pub struct IntegratingProcess {
     pub time_constant_s: f64,
     /// Te, 0 for none; s.
     pub second_time_constant_s: f64,
-    /// theta, from a duty to its effect, beyond the sampling itself; 0 or more, at most 1000 ticks; s.
+    /// theta, from a duty to its effect, beyond the sampling itself; 0 or more, at most 300 ticks; s.
     pub dead_time_s: f64,
 }
 
@@ -90,7 +90,7 @@ impl IntegratingProcess {
         let Self { gain_counts_s: k, time_constant_s: t, dead_time_s, .. } = *self;
         let h = at.tick_s;
         let whole = libm::floor(dead_time_s / h);
-        let rest_s = (dead_time_s - whole * h).clamp(0.0, h);
+        let rest_s = (dead_time_s - whole * h).max(0.0).min(h);
         // Of the step response k (t - T) + sum of c e^(p t): the ramp, the constant, and the lags.
         let ramp = at.delay / at.one_less_delay * h;
         let constant = at.delay * (-t - rest_s);

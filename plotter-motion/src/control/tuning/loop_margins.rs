@@ -53,7 +53,7 @@ pub struct LoopMargins {
 }
 
 /// Crossings of the real axis that are kept; a loop of these parts has a handful.
-const MOST_CROSSINGS: usize = 32;
+const MOST_CROSSINGS: usize = 12;
 /// Halvings of a piece of the sweep: to the last bits of a frequency.
 const HALVINGS: u32 = 60;
 

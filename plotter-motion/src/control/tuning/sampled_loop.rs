@@ -27,8 +27,13 @@ pub struct SampledLoop {
 
 /// Frequencies looked at in every decade.
 const POINTS_A_DECADE: f64 = 60.0;
-/// Decades below half the sampling rate, at the most.
-const MOST_DECADES: f64 = 16.0;
+/// Lowest frequency looked at, as a share of half the sampling rate.
+const LOWEST: f64 = 1e-16;
+/// How far a dead time, of up to so many ticks, may turn the response from one frequency to the next.
+const MOST_TURN_RAD: f64 = 0.5;
+const MOST_DEAD_TICKS: f64 = 300.0;
+/// 16 decades, and three hundred ticks of dead time: what it never comes to with numbers.
+const MOST_POINTS: usize = 4096;
 /// How far below every corner of the loop the sweep begins, as a share.
 const BELOW_CORNERS: f64 = 1e-2;
 
@@ -72,13 +77,13 @@ impl SampledLoop {
         let speed =
             factor.abs() * self.compensator.sampled(&middle).size() * self.process.gain_counts_s.abs();
         let lowest = BELOW_CORNERS * if speed > 0.0 { slow.min(speed) } else { slow };
-        let decades = libm::log10(last / lowest).clamp(1.0, MOST_DECADES);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 16 times 60")]
-        let points = libm::ceil(decades * POINTS_A_DECADE) as u32;
-        (0..=points).map(move |i| {
-            let decade = -decades * f64::from(points - i) / f64::from(points);
-            last * libm::pow(10.0, decade)
-        })
+        let lowest = lowest.max(last * LOWEST);
+        let ratio = libm::pow(10.0, 1.0 / POINTS_A_DECADE);
+        // A dead time turns the response evenly with the frequency.
+        let dead_s = self.process.dead_time_s.min(MOST_DEAD_TICKS * self.tick_s);
+        let stride = MOST_TURN_RAD / (dead_s + self.tick_s);
+        let next = move |rad_s: &f64| (*rad_s < last).then(|| (rad_s * ratio).min(rad_s + stride).min(last));
+        core::iter::successors(Some(lowest), next).take(MOST_POINTS)
     }
 
     /// Whether the closed loop is stable with `factor` times the controller's gain.
@@ -114,20 +119,24 @@ fn turn(value: &impl Fn(f64) -> Complex, from: (f64, Complex), to: (f64, Complex
     const MOST_RAD: f64 = 0.6;
     /// Halvings: a curve that turns within a millionth of a piece passes through 0.
     const MOST_DEPTH: u32 = 20;
+    /// Pieces: more turns there are not in one piece of the sweep.
+    const MOST_PIECES: u32 = 40;
     let mut turned = 0.0;
-    let (mut low, mut depth) = (from, 0_u32);
+    let (mut low, mut depth, mut pieces) = (from, 0_u32, 0_u32);
     let mut high = to;
     // The piece from `low` to `high`, at `depth` halvings; what is beyond it comes after.
     loop {
         let angle = wrapped(high.1.angle_rad() - low.1.angle_rad());
-        if angle.abs() > MOST_RAD && depth < MOST_DEPTH {
+        if angle.abs() > MOST_RAD && depth < MOST_DEPTH && pieces < MOST_PIECES {
             let middle = 0.5 * (low.0 + high.0);
             high = (middle, value(middle));
             depth += 1;
             continue;
         }
         turned += angle;
-        if high.0 >= to.0 {
+        pieces += 1;
+        // A frequency that is no number is the last too.
+        if high.0.partial_cmp(&to.0) != Some(core::cmp::Ordering::Less) {
             return turned;
         }
         low = high;

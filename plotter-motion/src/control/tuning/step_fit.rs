@@ -52,7 +52,7 @@ impl StepFit {
         if !(speed > 0.0 && both_s.is_finite()) {
             return None;
         }
-        let both_s = both_s.clamp(1e-3 * end_s, end_s);
+        let both_s = both_s.max(1e-3 * end_s).min(end_s);
         let start = Self {
             speed_counts_s: speed,
             time_constant_s: 0.9 * both_s,
