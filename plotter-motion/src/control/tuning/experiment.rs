@@ -50,8 +50,9 @@ impl ExperimentSettings {
     pub(super) fn whole(&self, duty: f64) -> f64 {
         let steps = f64::from(self.pwm_steps.max(1));
         // A limit that is no number is none at all.
-        let most = libm::floor(self.most_duty.max(0.0).min(1.0) * steps);
-        libm::round(duty * steps).max(-most).min(most) / steps
+        let allowed = if self.most_duty.is_nan() { 0.0 } else { self.most_duty.clamp(0.0, 1.0) };
+        let most = libm::floor(allowed * steps);
+        libm::round(duty * steps).clamp(-most, most) / steps
     }
 
     pub(super) fn demand(&self, duty: f64) -> Demand {
