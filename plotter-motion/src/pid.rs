@@ -125,6 +125,28 @@ impl Pid {
     }
 }
 
+impl Pid {
+    /// The published form of these gains, for `dt_s` from call to call and an output that is full at `full_output` instead of
+    /// at 1: without the derivative's filter, which that form does not have.
+    ///
+    /// ```
+    /// # use plotter_motion::Pid;
+    /// let pid = Pid { kp: 0.02, ki: 2.0, kd: 6e-5, derivative_filter_s: 2e-4, output_min: -1.0, output_max: 1.0 };
+    /// let sum = pid.sum_form(4e-4, 255.0);
+    /// assert!((sum.kp - 5.1).abs() < 1e-5); // 0.02 * 255
+    /// assert!((sum.ki - 0.204).abs() < 1e-5); // 2 * 4e-4 * 255
+    /// assert!((sum.kd - 38.25).abs() < 1e-4); // 6e-5 / 4e-4 * 255
+    /// ```
+    #[must_use]
+    pub fn sum_form(&self, dt_s: f32, full_output: f32) -> SumPid {
+        SumPid {
+            kp: self.kp * full_output,
+            ki: self.ki * dt_s * full_output,
+            kd: self.kd / dt_s * full_output,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -12,6 +12,7 @@ mod line_tracking;
 mod point_to_point;
 mod shaft_estimator;
 mod speed_meter;
+pub mod tuning;
 
 pub use chosen::ChosenController;
 pub use contouring::{Contouring, ContouringSettings, PositionGains, ShaftSettings};
