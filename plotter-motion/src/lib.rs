@@ -32,6 +32,7 @@ mod stepgen;
 mod steps;
 mod sync_stop;
 mod targets;
+pub mod testbed;
 mod toolpath;
 
 pub use axis::{Axis, Direction};

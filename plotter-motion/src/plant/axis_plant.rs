@@ -107,6 +107,20 @@ impl AxisPlant {
         self.state
     }
 
+    /// What the motor takes from its supply under `duty` now, W; below 0 while it brakes and gives back.
+    ///
+    /// ```
+    /// # use plotter_motion::{AxisConfig, Duty, plant::AxisPlant};
+    /// let mut axis = AxisPlant::new(&AxisConfig::default(), 1e-3);
+    /// axis.stall(true);
+    /// axis.step(Duty::FULL, |_| ());
+    /// assert!((axis.power_w(Duty::FULL) - 75.8).abs() < 0.1); // 12 V * 12 V / 1.9 ohm
+    /// ```
+    #[must_use]
+    pub fn power_w(&self, duty: Duty) -> f64 {
+        self.voltage_v(duty) * self.state.current_a
+    }
+
     /// The levels on the encoder's pins.
     #[must_use]
     pub fn phases(&self) -> Phases {
