@@ -1,15 +1,20 @@
 //! Simulated machines: motors, loads, encoders, and a whole machine on its serial line.
 
 mod axis_plant;
+mod belt_drive;
 #[cfg(feature = "alloc")]
 mod bench;
 mod dc_motor;
+mod drive_delay;
 mod marking_board;
+mod matrix;
 mod stepper;
 
 pub use axis_plant::{AxisPlant, CountedEdge, PhaseChange};
 #[cfg(feature = "alloc")]
 pub use bench::{Bench, BenchEvent, BenchSettings};
+pub use belt_drive::{BeltDrive, BeltDriveState};
 pub use dc_motor::{DcMotor, DcMotorState};
+pub use drive_delay::DriveDelay;
 pub use marking_board::{MarkingBoardPlant, MarkingBoardPlantSettings};
 pub use stepper::{StepperAxis, StepperPlant, StepperSettings};

@@ -2,7 +2,7 @@
 
 use super::{Figures, misjudged};
 use crate::control::LineController;
-use crate::plant::AxisPlant;
+use crate::plant::{AxisPlant, DriveDelay};
 use crate::{
     Axis, ConfigError, Demand, Direction, Drive, Machine, Pen, PenMove, Point, SafetyGate, Segment, StepPoint,
 };
@@ -165,6 +165,7 @@ struct Run<'a, C: ?Sized> {
     axes: [AxisPlant; 2],
     gate: SafetyGate,
     drive: Drive,
+    delay: DriveDelay,
     now: Duration,
     next_tick: Option<Duration>,
 }
@@ -183,6 +184,7 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
             axes: [AxisPlant::new(&config.x, dt_s), AxisPlant::new(&config.y, dt_s)],
             gate: SafetyGate::default(),
             drive: Drive::default(),
+            delay: DriveDelay::of(&bed.machine),
             now: Duration::ZERO,
         }
     }
@@ -205,10 +207,11 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
         let mut counts = [0_usize; 2];
         let mut energy_j = 0.0;
         let start = self.now;
+        let drive = self.delay.pass(start, self.drive);
         for (((plant, axis), edges), count) in
             self.axes.iter_mut().zip(Axis::BOTH).zip(&mut edges).zip(&mut counts)
         {
-            let duty = self.drive.axis(axis);
+            let duty = drive.axis(axis);
             plant.step(duty, |edge| {
                 if let Some(place) = edges.get_mut(*count) {
                     *place = (start + time_step.mul_f64(edge.share_of_step), edge.direction);

@@ -9,7 +9,7 @@ use crate::{ConfigError, Machine};
 ///
 /// | | x | y |
 /// |---|---|---|
-/// | moment of inertia, with the load | 1 - share | 1 + share |
+/// | moment of inertia, with load and carriage | 1 - share | 1 + share |
 /// | friction, of all kinds | 1 - 1.2 share | 1 + 1.2 share |
 /// | torque constant | 1 + 0.8 share | 1 - 0.8 share |
 /// | back EMF constant | 1 - 0.8 share | 1 + 0.8 share |
@@ -32,7 +32,9 @@ use crate::{ConfigError, Machine};
 pub fn misjudged(machine: &Machine, share: f64) -> Result<Machine, ConfigError> {
     let mut config = *machine.config();
     for (axis, sign) in [(&mut config.x, -share), (&mut config.y, share)] {
-        let (motor, load) = (&mut axis.motor, &mut axis.load);
+        let (motor, load, transmission) = (&mut axis.motor, &mut axis.load, &mut axis.transmission);
+        transmission.carriage_kg *= 1.0 + sign;
+        transmission.rail_friction_n *= 1.0 + 1.2 * sign;
         motor.inertia_kg_m2 *= 1.0 + sign;
         load.inertia_kg_m2 *= 1.0 + sign;
         load.coulomb_n_m *= 1.0 + 1.2 * sign;
