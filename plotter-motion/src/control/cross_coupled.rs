@@ -36,9 +36,11 @@ pub struct CrossCoupledSettings {
 }
 
 impl CrossCoupledSettings {
-    /// For a machine: what the axes' controllers have at its bandwidth, once more.
+    /// For a machine: half of what the axes' controllers have at its bandwidth, in addition. With more, motors that are much
+    /// stronger than described begin to tremble.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
+        const SHARE: f32 = 0.5;
         let config = machine.config();
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let w = (config.control.contouring.bandwidth_hz * TAU) as f32;
@@ -47,9 +49,9 @@ impl CrossCoupledSettings {
             model.accel_per_volt * model.supply_v
         };
         Self {
-            position: 3.0 * w * w,
-            speed: 3.0 * w,
-            integral: w * w * w,
+            position: SHARE * 3.0 * w * w,
+            speed: SHARE * 3.0 * w,
+            integral: SHARE * w * w * w,
             most: [most(&config.x), most(&config.y)],
         }
     }

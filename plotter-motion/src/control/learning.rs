@@ -58,7 +58,7 @@ impl LearningSettings {
             position: [3.0 * w * w * x, 3.0 * w * w * y],
             speed: [3.0 * w * x, 3.0 * w * y],
             integral: [w * w * w * x, w * w * w * y],
-            lead_s: 0.5 / w,
+            lead_s: 0.0,
             smoothing_s: 0.3 / w,
         }
     }
@@ -127,7 +127,9 @@ impl<'a, C: ContourController> Learning<'a, C> {
         };
         for ((sum, edges), axis) in bin.sum.iter_mut().zip(&mut bin.edges).zip([&state.x, &state.y]) {
             // A line whose end was waited at for long has more edges there than are counted.
-            if let (Some(error), Some(more)) = (axis.edge_error.filter(|e| e.is_finite()), edges.checked_add(1)) {
+            if let (Some(error), Some(more)) =
+                (axis.edge_error.filter(|e| e.is_finite()), edges.checked_add(1))
+            {
                 *sum += error;
                 *edges = more;
             }
@@ -201,10 +203,8 @@ fn correct(line: &mut [LearnedBin], axis: usize, settings: &LearningSettings) {
         let slope = (next - before) / (2.0 * settings.bin_s);
         let short = gain(settings.position) * here + gain(settings.speed) * slope + integral;
         before = here;
-        if let Some(bin) = line.get_mut(index) {
-            if let Some(correction) = bin.correction.get_mut(axis) {
-                *correction = within_supply(*correction + short);
-            }
+        if let Some(correction) = line.get_mut(index).and_then(|bin| bin.correction.get_mut(axis)) {
+            *correction = within_supply(*correction + short);
         }
     }
     for bin in line {

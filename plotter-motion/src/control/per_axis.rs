@@ -60,8 +60,7 @@ impl LineController for PerAxis {
             Axis::X => (sign, 0),
             Axis::Y => (0, sign),
         };
-        self.position =
-            StepPoint::new(self.position.x.saturating_add(x), self.position.y.saturating_add(y));
+        self.position = StepPoint::new(self.position.x.saturating_add(x), self.position.y.saturating_add(y));
         // A count of an axis is one of both motors of the belt.
         let (first, second) = self.signs.motors(x, y);
         let mut demand = Demand::NONE;

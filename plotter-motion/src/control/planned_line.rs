@@ -17,8 +17,8 @@ use core::time::Duration;
 ///
 /// The plan has the limits of the machine's `[control.contouring]`, and the control law runs `loop_hz` times a second. While the
 /// pen lags behind, the reference slows down and finally waits, so that one motor waits for another that is held fast. When
-/// the plan is over, an axis that stands in the middle of its target's count gets no drive; both having stood there
-/// for `settle_ms`, the pen has arrived. What rounding to the steps of the duty took or gave is made up for in the next run.
+/// the plan is over, an axis that stands in the middle of its target's count gets no drive, and one that stands a few counts
+/// beside it is pushed there count by count; both having stood there for `settle_ms`, the pen has arrived. What rounding to the steps of the duty took or gave is made up for in the next run.
 ///
 /// ```
 /// # use core::time::Duration;
@@ -50,9 +50,14 @@ pub struct PlannedLine<C> {
     run_plan_s: f64,
     rate: f32,
     estimated_at: Duration,
+    /// How long the plan has been over.
+    over_for: Duration,
     /// How long both shafts have rested at the target; `None` while they do not.
     settled_for: Option<Duration>,
 }
+
+/// A shaft without an edge for so long, at the end of a line, stands.
+const STANDS: Duration = Duration::from_millis(5);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PlannedAxis {
@@ -65,6 +70,8 @@ struct PlannedAxis {
     resting: bool,
     /// How long there has been no edge.
     still_for: Duration,
+    /// Duty that grows while the shaft stands beside its target.
+    leaning: f32,
     /// How far it was behind at the last edge since the last run, counts.
     edge_error: Option<f32>,
 }
@@ -98,6 +105,7 @@ impl<C: ContourController> PlannedLine<C> {
             duty: Duty::ZERO,
             resting: false,
             still_for: Duration::ZERO,
+            leaning: 0.0,
             edge_error: None,
         };
         Self {
@@ -114,6 +122,7 @@ impl<C: ContourController> PlannedLine<C> {
             run_plan_s: 0.0,
             rate: 1.0,
             estimated_at: Duration::ZERO,
+            over_for: Duration::ZERO,
             settled_for: None,
         }
     }
@@ -202,8 +211,15 @@ impl<C: ContourController> PlannedLine<C> {
         }
         let rest_x = (finished || ux == 0.0) && self.x.rests(self.target.x, tolerance_counts);
         let rest_y = (finished || uy == 0.0) && self.y.rests(self.target.y, tolerance_counts);
-        self.x.drive((!rest_x).then_some(demand.x));
-        self.y.drive((!rest_y).then_some(demand.y));
+        self.over_for = if finished { self.over_for.saturating_add(period) } else { Duration::ZERO };
+        let (target, over_for) = (self.target, self.over_for);
+        for (axis, target, rests, duty) in
+            [(&mut self.x, target.x, rest_x, demand.x), (&mut self.y, target.y, rest_y, demand.y)]
+        {
+            let duty =
+                if finished && axis.is_near(target, over_for) { axis.inch(target, period) } else { duty };
+            axis.drive((!rests).then_some(duty));
+        }
         let settled_for = self.settled_for.unwrap_or_default().saturating_add(period);
         self.settled_for = (finished && rest_x && rest_y).then_some(settled_for);
     }
@@ -220,20 +236,46 @@ impl PlannedAxis {
         self.edge_error = Some(error);
     }
 
-    /// Whether the shaft may be left alone at `target`: it stands in the target's count, near its middle, or without any edge
-    /// for a while, so that nobody can tell where in its count it is. Once left alone it stays so until it leaves the count.
+    /// Whether the shaft may be left alone at `target`: it stands in the target's count, near its middle, or not far from it and
+    /// without any edge for a while. Once left alone it stays so until it leaves the count.
     fn rests(&mut self, target: i32, tolerance: f32) -> bool {
-        const STANDS: Duration = Duration::from_millis(5);
-        let is_near = self.observer.distance_from(target).abs() <= tolerance;
-        self.resting =
-            self.observer.count() == target && (self.resting || is_near || self.still_for >= STANDS);
+        // Farther from the middle a shaft with an x1 encoder may be outside A's high half, and be counted wrongly when it leaves.
+        const NOT_FAR_COUNTS: f32 = 0.4;
+        let distance = self.observer.distance_from(target).abs();
+        let may_rest = self.resting
+            || distance <= tolerance
+            || (distance <= NOT_FAR_COUNTS.max(tolerance) && self.still_for >= STANDS);
+        self.resting = self.observer.count() == target && may_rest;
         self.resting
+    }
+
+    /// Whether, with the plan over for so long, the last counts are better gone one by one than by the control law, which may hunt
+    /// about them for ever: its integral breaks a shaft loose and carries it past the target, again and again.
+    fn is_near(&self, target: i32, over_for: Duration) -> bool {
+        const NEAR_COUNTS: u32 = 4;
+        const LATE: Duration = Duration::from_millis(100);
+        over_for >= LATE || (over_for >= STANDS && self.observer.count().abs_diff(target) <= NEAR_COUNTS)
+    }
+
+    /// Pushes a shaft that stands harder and harder towards its target, and lets it go at the first edge.
+    fn inch(&mut self, target: i32, period: Duration) -> Duty {
+        const SUPPLIES_PER_S: f32 = 0.5; // friction is a few hundredths of the supply: tens of milliseconds
+        if self.still_for < STANDS {
+            self.leaning = 0.0;
+            return Duty::ZERO;
+        }
+        self.observer.stands();
+        let away = self.observer.distance_from(target);
+        let sense = if self.leaning == 0.0 { -away } else { self.leaning };
+        self.leaning += libm::copysignf(SUPPLIES_PER_S * period.as_secs_f32(), sense);
+        self.leaning = self.leaning.clamp(-1.0, 1.0);
+        Duty::saturating(self.leaning)
     }
 
     /// Rounds a duty to the timer's steps; none leaves the shaft alone, with its motor short-circuited.
     fn drive(&mut self, wanted: Option<Duty>) {
         let Some(wanted) = wanted else {
-            self.rounding = 0.0;
+            (self.rounding, self.leaning) = (0.0, 0.0);
             self.duty = Duty::ZERO;
             return;
         };
@@ -270,8 +312,10 @@ impl<C: ContourController> LineController for PlannedLine<C> {
         self.plan = SCurve::plan(length, self.settings.limits).unwrap_or_default();
         (self.plan_s, self.run_plan_s, self.run_at) = (0.0, 0.0, now);
         self.settled_for = None;
+        self.over_for = Duration::ZERO;
         for axis in [&mut self.x, &mut self.y] {
             axis.observer.forget();
+            axis.leaning = 0.0;
         }
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         self.controller.start(self.plan.duration_s() as f32);

@@ -46,17 +46,9 @@ enum Train {
     /// Nothing: the pen is where the shaft is.
     Rigid,
     /// Play: the pen is pushed by either end of it. (Its friction keeps it where it is in between.)
-    Play {
-        half_mm: f64,
-        pen_mm: f64,
-    },
+    Play { half_mm: f64, pen_mm: f64 },
     /// A belt that stretches: the carriage has a speed of its own.
-    Belt {
-        drive: BeltDrive,
-        start_mm: f64,
-        carriage_mm: f64,
-        carriage_mm_s: f64,
-    },
+    Belt { drive: BeltDrive, start_mm: f64, carriage_mm: f64, carriage_mm_s: f64 },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

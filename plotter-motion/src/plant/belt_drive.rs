@@ -97,7 +97,8 @@ impl BeltDrive {
             let force = [c * mm_per_rad, k * mm_per_rad, -c, -k, -k];
             let [f_speed, f_angle, f_v, f_place, f_end] = force;
             let mut a: Matrix<SIZE> = [[0.0; SIZE]; SIZE];
-            a[0] = [-motor.resistance_ohm / l, -motor.back_emf_v_s / l, 0.0, 0.0, 0.0, 1.0 / l, 0.0, 0.0, 0.0];
+            a[0] =
+                [-motor.resistance_ohm / l, -motor.back_emf_v_s / l, 0.0, 0.0, 0.0, 1.0 / l, 0.0, 0.0, 0.0];
             a[1] = [
                 turns * motor.torque_n_m_per_a / j,
                 -turns * load.viscous_n_m_s / j - at_motor * f_speed,

@@ -11,9 +11,9 @@ mod matrix;
 mod stepper;
 
 pub use axis_plant::{AxisPlant, CountedEdge, PhaseChange};
+pub use belt_drive::{BeltDrive, BeltDriveState};
 #[cfg(feature = "alloc")]
 pub use bench::{Bench, BenchEvent, BenchSettings};
-pub use belt_drive::{BeltDrive, BeltDriveState};
 pub use dc_motor::{DcMotor, DcMotorState};
 pub use drive_delay::DriveDelay;
 pub use marking_board::{MarkingBoardPlant, MarkingBoardPlantSettings};

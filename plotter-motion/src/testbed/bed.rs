@@ -48,6 +48,8 @@ pub struct Moment {
     pub desired: Point,
     /// Where it truly is, mm.
     pub pen: Point,
+    /// The place of the line that is nearest to it, mm.
+    pub nearest: Point,
     /// Its distance from the line, mm.
     pub error_mm: f64,
     /// Whether this is part of the drawing, and measured: the pen is down and has not arrived.
@@ -104,7 +106,10 @@ impl TestBed {
     #[must_use]
     pub fn counts(&self, at: Point) -> StepPoint {
         let config = self.machine.config();
-        StepPoint::new(crate::from_mm(at.x, config.x.counts_per_mm), crate::from_mm(at.y, config.y.counts_per_mm))
+        StepPoint::new(
+            crate::from_mm(at.x, config.x.counts_per_mm),
+            crate::from_mm(at.y, config.y.counts_per_mm),
+        )
     }
 
     /// Lets a controller that is at rest at the origin make `moves`, one after the other; `watch` sees every time step.
@@ -265,6 +270,7 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
             target: moved.line.to,
             desired,
             pen,
+            nearest,
             error_mm: pen.distance(nearest),
             is_measured: is_under_way && moved.is_drawn,
         }
