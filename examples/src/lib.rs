@@ -1,6 +1,7 @@
 //! What the examples share: one clear line for every error, and plots with their recordings: simulated, in the emulator, or on
 //! a real machine.
 
+mod controller_contest;
 mod diagnostics;
 mod drawing_file;
 mod emulated_plot;
@@ -22,6 +23,7 @@ mod svg_text;
 mod tuned_axis;
 mod vectorize_settings;
 
+pub use controller_contest::compare_controllers;
 pub use diagnostics::Diagnostics;
 pub use drawing_file::{Diagnostic, DrawingFile, Ops, Reading, Severity};
 pub use emulated_plot::{Recorded, plot_in_emulator};
@@ -31,6 +33,7 @@ pub use loop_chart::{LoopChart, LoopCurve, loop_charts_svg};
 pub use overlay::{Overlay, overlay_png, overlay_step};
 pub use path_deviation::PathDeviation;
 pub use port_plot::plot_on_port;
+use report::escaped;
 pub use report::{Figure, html_page};
 pub use simulated_plot::{PlotOutcome, simulate};
 pub use speed_audit::{Moment, SpeedAudit};

@@ -32,6 +32,7 @@ mod stepgen;
 mod steps;
 mod sync_stop;
 mod targets;
+pub mod testbed;
 mod toolpath;
 
 pub use axis::{Axis, Direction};
@@ -41,7 +42,7 @@ pub use config::{
     AreaConfig, AxisConfig, Bound, ConfigError, ContouringConfig, ControlConfig, ControllerChoice, Decoding,
     DriveChoice, EncoderConfig, HomingConfig, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName,
     MotorConfig, PathChoice, PenConfig, PlannerConfig, PublishedConfig, SerialConfig, StepperConfig,
-    StrokeOrder, SyncStopConfig, ThresholdChoice, VectorizeConfig, VectorizeMode,
+    StrokeOrder, SyncStopConfig, ThresholdChoice, TransmissionConfig, VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};

@@ -17,7 +17,7 @@ struct Preset {
 const GANTRY: Preset = Preset {
     file: "semi-virtual-gantry.toml",
     config: MachineConfig::default,
-    keys: (35, 14),
+    keys: (36, 19),
     repeats: "[y]",
 };
 const STEPPER_PLOTTER: Preset = Preset {

@@ -39,13 +39,14 @@ static_n_m = 1.3e-3
 "#;
 
 /// Numeric keys that the machine has once.
-const OF_THE_MACHINE: [&str; 51] = [
+const OF_THE_MACHINE: [&str; 52] = [
     "schema",
     "area.width_mm",
     "area.height_mm",
     "serial.baud",
     "serial.byte_gap_ms",
     "serial.resync_gap_ms",
+    "control.latency_periods",
     "control.published.kp",
     "control.published.ki",
     "control.published.kd_x",
@@ -94,7 +95,7 @@ const OF_THE_MACHINE: [&str; 51] = [
 ];
 
 /// Numeric keys that each axis has.
-const OF_AN_AXIS: [&str; 17] = [
+const OF_AN_AXIS: [&str; 22] = [
     "counts_per_mm",
     "encoder.lines_per_turn",
     "motor.supply_v",
@@ -108,6 +109,11 @@ const OF_AN_AXIS: [&str; 17] = [
     "load.coulomb_n_m",
     "load.static_n_m",
     "load.viscous_n_m_s",
+    "transmission.backlash_mm",
+    "transmission.stiffness_n_per_mm",
+    "transmission.damping_n_s_per_mm",
+    "transmission.carriage_kg",
+    "transmission.rail_friction_n",
     "stepper.steps_per_mm",
     "stepper.backlash_mm",
     "stepper.start_rate_hz",
@@ -115,9 +121,10 @@ const OF_AN_AXIS: [&str; 17] = [
 ];
 
 /// Keys whose number must be whole.
-const WHOLE: [&str; 9] = [
+const WHOLE: [&str; 10] = [
     "schema",
     "serial.baud",
+    "control.latency_periods",
     "laser.full_power",
     "stepper_motor.full_steps_per_turn",
     "stepper_motor.microsteps",

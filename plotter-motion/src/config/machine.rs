@@ -2,6 +2,7 @@
 
 use super::error::Bound;
 use super::rules::rules;
+use super::transmission::check_transmission;
 use super::{AxisConfig, ConfigError, ControllerChoice, DriveChoice, MachineConfig};
 
 /// A machine whose description has been checked: the only thing that the rest of the crate accepts.
@@ -33,7 +34,8 @@ impl Machine {
     /// - static friction is at least as great as Coulomb friction, and less than the motor's stall torque
     ///   Kt V / R: otherwise the axis could never start;
     /// - under the contouring controller, the feed lies below the speed at which the motor's back EMF
-    ///   reaches the supply: V / Ke rad/s at the shaft.
+    ///   reaches the supply: V / Ke rad/s at the shaft;
+    /// - a belt that stretches pulls at a carriage with a mass, and the rail's friction is less than the motor can pull.
     ///
     /// With stepper motors, for each axis:
     ///
@@ -59,6 +61,7 @@ impl Machine {
                 check_control(&config)?;
                 check_axis(&config.x, &X, &config)?;
                 check_axis(&config.y, &Y, &config)?;
+                check_transmission(&config)?;
             }
             DriveChoice::Stepper => {
                 check_stepper_motor(&config)?;

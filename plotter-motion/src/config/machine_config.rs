@@ -2,7 +2,7 @@
 
 use super::{
     DriveChoice, HomingConfig, LaserConfig, MachineName, PenConfig, PlannerConfig, StepperConfig,
-    VectorizeConfig,
+    TransmissionConfig, VectorizeConfig,
 };
 use crate::plant::StepperSettings;
 
@@ -102,6 +102,8 @@ pub enum ControllerChoice {
 pub struct ControlConfig {
     /// Which controller.
     pub controller: ControllerChoice,
+    /// How many periods of the loop pass before a simulated motor gets what the controller asked for.
+    pub latency_periods: u32,
     /// The published controller's gains and limits.
     pub published: PublishedConfig,
     /// The contouring controller's speeds and bandwidths.
@@ -189,6 +191,8 @@ pub struct AxisConfig {
     pub motor: MotorConfig,
     /// What the motor moves.
     pub load: LoadConfig,
+    /// What lies between its shaft and the pen, as it is simulated.
+    pub transmission: TransmissionConfig,
     /// How it steps, if the machine has stepper motors.
     pub stepper: StepperConfig,
 }
@@ -365,6 +369,7 @@ impl Default for ControlConfig {
     fn default() -> Self {
         Self {
             controller: ControllerChoice::Contouring,
+            latency_periods: 0,
             published: PublishedConfig::default(),
             contouring: ContouringConfig::default(),
         }
@@ -415,6 +420,7 @@ impl Default for AxisConfig {
             encoder: EncoderConfig::default(),
             motor: MotorConfig::default(),
             load: LoadConfig::default(),
+            transmission: TransmissionConfig::default(),
             stepper: StepperConfig::default(),
         }
     }

@@ -18,6 +18,7 @@ mod stepper;
 mod toml_error;
 #[cfg(feature = "toml")]
 mod toml_file;
+mod transmission;
 mod vectorize;
 
 pub use error::{Bound, ConfigError};
@@ -32,4 +33,5 @@ pub use stepper::{
 };
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};
+pub use transmission::TransmissionConfig;
 pub use vectorize::{StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};

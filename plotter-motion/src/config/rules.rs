@@ -3,6 +3,7 @@
 //! This is the only list of keys: the check of a [`MachineConfig`], the reader of TOML files and the test of the
 //! page `docs/machine-config.md` all read it.
 
+use super::transmission::{LATENCY, X_TRANSMISSION, Y_TRANSMISSION};
 use super::{ConfigError, MachineConfig};
 
 /// One key and what may stand behind it.
@@ -69,7 +70,7 @@ impl Rule {
     }
 }
 
-const fn number(
+pub(super) const fn number(
     key: &'static str,
     read: fn(&MachineConfig) -> f64,
     (least, most): (f64, f64),
@@ -79,7 +80,7 @@ const fn number(
     Rule { key, form: Form::Number(NumberRule { read, least, most, unit, remedy }) }
 }
 
-const fn whole(
+pub(super) const fn whole(
     key: &'static str,
     read: fn(&MachineConfig) -> f64,
     (least, most): (f64, f64),
@@ -572,7 +573,7 @@ static Y: [Rule; 19] = axis_rules!(y);
 
 /// All keys, in the order of the documentation.
 pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
-    MACHINE.iter().chain(&X).chain(&Y)
+    MACHINE.iter().chain(&LATENCY).chain(&X).chain(&X_TRANSMISSION).chain(&Y).chain(&Y_TRANSMISSION)
 }
 
 #[cfg(test)]

@@ -7,7 +7,9 @@ use alloc::{format, string::String, vec::Vec};
 const LONGEST_WORD: usize = 48;
 
 /// Endings that name a unit, each with the unit in words, longest first where one ends another.
-const UNITS: [(&str, &str); 42] = [
+const UNITS: [(&str, &str); 45] = [
+    ("_n_s_per_mm", "N s/mm"),
+    ("_n_per_mm", "N/mm"),
     ("_mm_min2", "mm/min^2"),
     ("_mm_s3", "mm/s^3"),
     ("_mm_s2", "mm/s^2"),
@@ -39,6 +41,7 @@ const UNITS: [(&str, &str); 42] = [
     ("_ohm", "ohm"),
     ("_deg", "deg"),
     ("_khz", "kHz"),
+    ("_kg", "kg"),
     ("_hz", "Hz"),
     ("_mm", "mm"),
     ("_px", "px"),
@@ -53,10 +56,10 @@ const UNITS: [(&str, &str); 42] = [
 ];
 
 /// Units of one letter that end other units, tried after all of [`UNITS`].
-const SHORT_UNITS: [(&str, &str); 3] = [("_s", "s"), ("_v", "V"), ("_h", "H")];
+const SHORT_UNITS: [(&str, &str); 5] = [("_s", "s"), ("_v", "V"), ("_h", "H"), ("_g", "g"), ("_n", "N")];
 
 /// How many of the second unit the first one is: a quotient of two exact numbers.
-const CONVERSIONS: [(&str, &str, f64, f64); 31] = [
+const CONVERSIONS: [(&str, &str, f64, f64); 32] = [
     ("mm/min", "mm/s", 1.0, 60.0),
     ("cm/s", "mm/s", 10.0, 1.0),
     ("m/s", "mm/s", 1_000.0, 1.0),
@@ -84,6 +87,7 @@ const CONVERSIONS: [(&str, &str, f64, f64); 31] = [
     ("g cm^2", "kg m^2", 1.0, 1.0e7),
     ("kg cm^2", "kg m^2", 1.0, 1.0e4),
     ("1/in", "1/mm", 1.0, 25.4),
+    ("g", "kg", 1.0, 1_000.0),
     ("mm/s", "mm/min", 60.0, 1.0),
     ("mm", "m", 1.0, 1_000.0),
     ("ms", "s", 1.0, 1_000.0),

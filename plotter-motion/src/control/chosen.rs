@@ -80,4 +80,8 @@ impl LineController for ChosenController {
     fn has_arrived(&self) -> bool {
         self.get().has_arrived()
     }
+
+    fn reference(&self) -> Option<[f64; 2]> {
+        self.get().reference()
+    }
 }

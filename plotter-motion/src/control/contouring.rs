@@ -158,7 +158,7 @@ impl ContouringSettings {
         }
     }
 
-    const fn period(&self) -> Duration {
+    pub(super) const fn period(&self) -> Duration {
         Duration::from_micros(self.period_us as u64)
     }
 }
@@ -388,5 +388,11 @@ impl LineController for Contouring {
         self.settled_for.is_some_and(|settled_for| {
             settled_for >= Duration::from_micros(u64::from(self.settings.settle_us))
         })
+    }
+
+    fn reference(&self) -> Option<[f64; 2]> {
+        let [ux, uy] = self.direction.map(f64::from);
+        let distance = self.plan.at(self.plan_s).distance_mm;
+        Some([f64::from(self.start.x) + distance * ux, f64::from(self.start.y) + distance * uy])
     }
 }

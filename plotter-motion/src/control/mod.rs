@@ -5,22 +5,36 @@
 //! the marking board, whose axes are not its motors; [`Contouring`] leads the motors of a belt as it leads any two.
 
 mod chosen;
+mod contour_controller;
 mod contouring;
+mod cross_coupled;
 mod drive_ramp;
 mod equalizer;
+mod learning;
 mod line_tracking;
+mod per_axis;
+mod planned_line;
+mod planned_pid;
 mod point_to_point;
 mod shaft_estimator;
+mod shaft_observer;
 mod speed_meter;
 pub mod tuning;
 
 pub use chosen::ChosenController;
+pub use contour_controller::{AxisController, AxisState, ContourController, ContourState, TwoAxes};
 pub use contouring::{Contouring, ContouringSettings, PositionGains, ShaftSettings};
+pub use cross_coupled::{CrossCoupled, CrossCoupledSettings};
 pub use drive_ramp::DriveRamp;
 pub use equalizer::{Equalizer, EqualizerSettings};
+pub use learning::{LearnedBin, Learning, LearningSettings};
 pub use line_tracking::{LineTracking, LineTrackingSettings};
+pub use per_axis::PerAxis;
+pub use planned_line::PlannedLine;
+pub use planned_pid::PlannedPid;
 pub use point_to_point::{PointToPoint, PointToPointSettings};
 pub use shaft_estimator::{ShaftEstimator, ShaftModel};
+pub use shaft_observer::ShaftObserver;
 pub use speed_meter::SpeedMeter;
 
 use crate::{Axis, Demand, Direction, Drive, StepPoint};
@@ -51,4 +65,9 @@ pub trait LineController {
 
     /// Whether the motors stand at the target.
     fn has_arrived(&self) -> bool;
+
+    /// Where it wants the motors to be now, encoder counts; `None` for a controller that knows but the target.
+    fn reference(&self) -> Option<[f64; 2]> {
+        None
+    }
 }

@@ -58,14 +58,18 @@ impl ShaftModel {
     pub fn new(config: &AxisConfig) -> Self {
         let motor = &config.motor;
         let counts_per_rad = config.counts_per_turn() / TAU;
-        let inertia = motor.inertia_kg_m2 + config.load.inertia_kg_m2;
+        // a carriage on a belt is moved as if it were on the shaft
+        let m_per_rad = config.mm_per_rad() / 1e3;
+        let carriage = config.transmission.carriage_kg * m_per_rad * m_per_rad;
+        let inertia = motor.inertia_kg_m2 + config.load.inertia_kg_m2 + carriage;
+        let friction = config.load.coulomb_n_m + config.transmission.rail_friction_n * m_per_rad;
         let torque_per_volt = motor.torque_n_m_per_a / motor.resistance_ohm;
         let damping = (torque_per_volt * motor.back_emf_v_s + config.load.viscous_n_m_s) / inertia;
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         Self {
             accel_per_volt: (torque_per_volt / inertia * counts_per_rad) as f32,
             damping_per_s: damping as f32,
-            dry_friction: (config.load.coulomb_n_m / inertia * counts_per_rad) as f32,
+            dry_friction: (friction / inertia * counts_per_rad) as f32,
             supply_v: motor.supply_v as f32,
         }
     }

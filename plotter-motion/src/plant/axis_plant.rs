@@ -1,7 +1,10 @@
 //! One simulated axis: motor, friction, encoder, and a hand that can hold the shaft.
 
+use super::belt_drive::{BeltDrive, BeltDriveState};
 use super::dc_motor::{DcMotor, DcMotorState};
-use crate::{AxisConfig, Decoding, Direction, Duty, Phases, QuadratureX1, QuadratureX2, QuadratureX4};
+use crate::{
+    AxisConfig, Decoding, Direction, Duty, LoadConfig, Phases, QuadratureX1, QuadratureX2, QuadratureX4,
+};
 use core::f64::consts::TAU;
 
 /// A motor with its load and its encoder, moved on in fixed time steps.
@@ -31,6 +34,21 @@ pub struct AxisPlant {
     quarters_per_rad: f64,
     decoder: Decoder,
     stalled: bool,
+    /// What the shaft moves, with a carriage that it is rigidly coupled to.
+    load: LoadConfig,
+    train: Train,
+}
+
+/// What lies between the shaft and the pen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a machine has two axes, and no heap to put it on")]
+enum Train {
+    /// Nothing: the pen is where the shaft is.
+    Rigid,
+    /// Play: the pen is pushed by either end of it. (Its friction keeps it where it is in between.)
+    Play { half_mm: f64, pen_mm: f64 },
+    /// A belt that stretches: the carriage has a speed of its own.
+    Belt { drive: BeltDrive, start_mm: f64, carriage_mm: f64, carriage_mm_s: f64 },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,8 +86,19 @@ impl AxisPlant {
         let decoding = config.encoder.decoding;
         let start_quarters = f64::from(decoding.rest_offset_counts()) * quarters_per_count(decoding);
         let phases = Phases::of_quarter(floor(start_quarters));
+        let load = rigid_load(config);
+        let transmission = &config.transmission;
+        let train = if transmission.stiffness_n_per_mm > 0.0 {
+            let start_mm = start_quarters / quarters_per_rad * config.mm_per_rad();
+            let drive = BeltDrive::new(config, dt_s);
+            Train::Belt { drive, start_mm, carriage_mm: start_mm, carriage_mm_s: 0.0 }
+        } else if transmission.backlash_mm > 0.0 {
+            Train::Play { half_mm: 0.5 * transmission.backlash_mm, pen_mm: 0.0 }
+        } else {
+            Train::Rigid
+        };
         Self {
-            motor: DcMotor::new(&config.motor, &config.load, dt_s),
+            motor: DcMotor::new(&config.motor, &load, dt_s),
             state: DcMotorState { angle_rad: start_quarters / quarters_per_rad, ..DcMotorState::default() },
             config: *config,
             quarters_per_rad,
@@ -79,6 +108,8 @@ impl AxisPlant {
                 Decoding::X4 => Decoder::X4(QuadratureX4::new(phases)),
             },
             stalled: false,
+            load,
+            train,
         }
     }
 
@@ -87,7 +118,7 @@ impl AxisPlant {
         self.stalled = stalled;
     }
 
-    /// Where the axis truly stands, in encoder counts from its start.
+    /// Where the shaft truly stands, in encoder counts from its start.
     #[must_use]
     pub fn position_counts(&self) -> f64 {
         let decoding = self.config.encoder.decoding;
@@ -95,9 +126,28 @@ impl AxisPlant {
             - f64::from(decoding.rest_offset_counts())
     }
 
-    /// Where the axis truly stands, mm from its start.
+    /// Where the pen truly stands, mm from its start: where the shaft is, less what play and belt keep back.
+    ///
+    /// ```
+    /// # use plotter_motion::{AxisConfig, Duty, TransmissionConfig, plant::AxisPlant};
+    /// let worn = TransmissionConfig { backlash_mm: 0.4, ..TransmissionConfig::default() };
+    /// let mut axis = AxisPlant::new(&AxisConfig { transmission: worn, ..AxisConfig::default() }, 1e-5);
+    /// for _ in 0..20_000 {
+    ///     axis.step(Duty::saturating(0.2), |_| ());
+    /// }
+    /// let behind_mm = axis.position_counts() / 40.0 - axis.position_mm();
+    /// assert!((behind_mm - 0.2).abs() < 1e-9); // it began in the middle of its play
+    /// ```
     #[must_use]
     pub fn position_mm(&self) -> f64 {
+        match self.train {
+            Train::Rigid => self.shaft_mm(),
+            Train::Play { pen_mm, .. } => pen_mm,
+            Train::Belt { start_mm, carriage_mm, .. } => carriage_mm - start_mm,
+        }
+    }
+
+    fn shaft_mm(&self) -> f64 {
         self.position_counts() / self.config.counts_per_mm
     }
 
@@ -105,6 +155,20 @@ impl AxisPlant {
     #[must_use]
     pub const fn state(&self) -> DcMotorState {
         self.state
+    }
+
+    /// What the motor takes from its supply under `duty` now, W; below 0 while it brakes and gives back.
+    ///
+    /// ```
+    /// # use plotter_motion::{AxisConfig, Duty, plant::AxisPlant};
+    /// let mut axis = AxisPlant::new(&AxisConfig::default(), 1e-3);
+    /// axis.stall(true);
+    /// axis.step(Duty::FULL, |_| ());
+    /// assert!((axis.power_w(Duty::FULL) - 75.8).abs() < 0.1); // 12 V * 12 V / 1.9 ohm
+    /// ```
+    #[must_use]
+    pub fn power_w(&self, duty: Duty) -> f64 {
+        self.voltage_v(duty) * self.state.current_a
     }
 
     /// The levels on the encoder's pins.
@@ -133,7 +197,7 @@ impl AxisPlant {
     /// order, and nothing is counted here.
     pub fn turn(&mut self, duty: Duty, mut change: impl FnMut(PhaseChange)) {
         let before = self.state.angle_rad * self.quarters_per_rad;
-        self.state = self.moved(self.voltage_v(duty));
+        self.move_on(self.voltage_v(duty));
         let after = self.state.angle_rad * self.quarters_per_rad;
 
         let (first, last) = (floor(before), floor(after));
@@ -154,12 +218,35 @@ impl AxisPlant {
         f64::from(duty.steps(steps)) / f64::from(steps) * self.config.motor.supply_v
     }
 
-    /// The state one step later.
+    /// Goes on by one step, with what lies between shaft and pen.
+    fn move_on(&mut self, voltage_v: f64) {
+        if let Train::Belt { drive, carriage_mm, carriage_mm_s, .. } = &mut self.train {
+            let state = BeltDriveState {
+                motor: self.state,
+                carriage_mm: *carriage_mm,
+                carriage_mm_s: *carriage_mm_s,
+            };
+            let mut next =
+                if self.stalled { drive.step_held(state, voltage_v) } else { drive.step(state, voltage_v) };
+            let turned = (next.motor.angle_rad - self.state.angle_rad) * self.quarters_per_rad;
+            if turned.is_nan() || turned.abs() > MOST_QUARTERS_PER_STEP {
+                next = BeltDriveState { motor: DcMotorState { speed_rad_s: 0.0, ..self.state }, ..state };
+            }
+            (*carriage_mm, *carriage_mm_s) = (next.carriage_mm, next.carriage_mm_s);
+            self.state = next.motor;
+            return;
+        }
+        self.state = self.moved(voltage_v);
+        let shaft_mm = self.shaft_mm();
+        if let Train::Play { half_mm, pen_mm } = &mut self.train {
+            *pen_mm = pen_mm.clamp(shaft_mm - *half_mm, shaft_mm + *half_mm);
+        }
+    }
+
+    /// The shaft's state one step later.
     fn moved(&self, voltage_v: f64) -> DcMotorState {
-        // A shaft cannot turn faster than this in one step; what is beyond it is not a motor any more.
-        const MOST_QUARTERS_PER_STEP: f64 = 10_000.0;
         let state = self.state;
-        let load = &self.config.load;
+        let load = &self.load;
         if self.stalled {
             return self.motor.step_held(state, voltage_v);
         }
@@ -179,6 +266,22 @@ impl AxisPlant {
         }
         let turned = (next.angle_rad - state.angle_rad) * self.quarters_per_rad;
         if turned.abs() <= MOST_QUARTERS_PER_STEP { next } else { self.motor.step_held(state, voltage_v) }
+    }
+}
+
+/// A shaft cannot turn faster than this in one step; what is beyond it is not a motor any more.
+const MOST_QUARTERS_PER_STEP: f64 = 10_000.0;
+
+/// What the shaft of an axis without stretch moves: its own load, and the carriage on its rail.
+fn rigid_load(config: &AxisConfig) -> LoadConfig {
+    let (load, transmission) = (config.load, config.transmission);
+    let m_per_rad = config.mm_per_rad() / 1e3;
+    let rail_n_m = transmission.rail_friction_n * m_per_rad;
+    LoadConfig {
+        inertia_kg_m2: load.inertia_kg_m2 + transmission.carriage_kg * m_per_rad * m_per_rad,
+        coulomb_n_m: load.coulomb_n_m + rail_n_m,
+        static_n_m: load.static_n_m + rail_n_m,
+        ..load
     }
 }
 

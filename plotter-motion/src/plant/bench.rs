@@ -1,6 +1,6 @@
 //! A whole machine on the bench: host, serial line, controller, motors and encoders.
 
-use super::{AxisPlant, SimulatedLine};
+use super::{AxisPlant, DriveDelay, SimulatedLine};
 use crate::firmware::{Gantry, Notice};
 use crate::protocol::{Host, HostEvent, HostSettings};
 use crate::{Axis, Direction, Machine, PenMove, Point};
@@ -50,6 +50,7 @@ pub struct Bench<I> {
     time_step: Duration,
     host: Host<I>,
     controller: Gantry,
+    delay: DriveDelay,
     x: AxisPlant,
     y: AxisPlant,
     to_controller: SimulatedLine,
@@ -92,6 +93,7 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
             time_step,
             host: Host::new(byte_gap, settings.host, moves),
             controller: Gantry::new(machine),
+            delay: DriveDelay::of(machine),
             x: axis(&config.x),
             y: axis(&config.y),
             to_controller: SimulatedLine::new(config.serial.baud),
@@ -105,7 +107,7 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
     /// Goes on by one time step; `record` is told of everything that happens in it, in order of time.
     pub fn step(&mut self, mut record: impl FnMut(Duration, BenchEvent)) {
         let end = self.now + self.time_step;
-        let drive = self.controller.drive();
+        let drive = self.delay.pass(self.now, self.controller.drive());
         for (plant, axis) in [(&mut self.x, Axis::X), (&mut self.y, Axis::Y)] {
             let (now, time_step, edges) = (self.now, self.time_step, &mut self.edges);
             plant.step(drive.axis(axis), |edge| {

@@ -10,6 +10,7 @@
 //! Discretization: exact for a voltage and a torque held over the step (zero-order hold), by the exponential of
 //! the system's matrix, so a long step is as right as a short one and nothing can become unstable.
 
+use super::matrix::{Matrix, exponential};
 use crate::{LoadConfig, MotorConfig};
 
 /// Current, speed and angle of a motor.
@@ -43,55 +44,6 @@ pub struct DcMotor {
     torque_n_m_per_a: f64,
 }
 
-type Matrix = [[f64; 5]; 5];
-
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    let mut c = [[0.0; 5]; 5];
-    for (row, a_row) in c.iter_mut().zip(a) {
-        for (factor, b_row) in a_row.iter().zip(b) {
-            for (entry, b_entry) in row.iter_mut().zip(b_row) {
-                *entry += factor * b_entry;
-            }
-        }
-    }
-    c
-}
-
-/// Exponential by scaling and squaring: the Taylor series of the matrix divided by 2^k, squared k times
-/// (C. Moler, C. Van Loan, "Nineteen Dubious Ways to Compute the Exponential of a Matrix", SIAM Review 2003,
-/// method 3).
-fn exponential(a: &Matrix) -> Matrix {
-    const TAYLOR_TERMS: u32 = 18; // 0.5^18/18! is far below the last bit of 1
-    const MOST_SQUARINGS: u32 = 60;
-    let norm = a.iter().map(|row| row.iter().map(|v| v.abs()).sum::<f64>()).fold(0.0, f64::max);
-    let mut squarings = 0;
-    let mut scale = 1.0;
-    while norm * scale > 0.5 && squarings < MOST_SQUARINGS {
-        scale *= 0.5;
-        squarings += 1;
-    }
-    let scaled = a.map(|row| row.map(|v| v * scale));
-    let mut sum = [[0.0; 5]; 5];
-    for (i, row) in sum.iter_mut().enumerate() {
-        if let Some(entry) = row.get_mut(i) {
-            *entry = 1.0;
-        }
-    }
-    let mut term = sum;
-    for n in 1..=TAYLOR_TERMS {
-        term = product(&term, &scaled).map(|row| row.map(|v| v / f64::from(n)));
-        for (sum_row, term_row) in sum.iter_mut().zip(&term) {
-            for (entry, v) in sum_row.iter_mut().zip(term_row) {
-                *entry += v;
-            }
-        }
-    }
-    for _ in 0..squarings {
-        sum = product(&sum, &sum);
-    }
-    sum
-}
-
 impl DcMotor {
     /// The motor with its load's inertia and viscous friction, over steps of `dt_s`. (Dry friction is not
     /// linear: [`AxisPlant`](super::AxisPlant) adds it as a torque.)
@@ -101,7 +53,7 @@ impl DcMotor {
     pub fn new(motor: &MotorConfig, load: &LoadConfig, dt_s: f64) -> Self {
         let (l, r) = (motor.inductance_h, motor.resistance_ohm);
         let j = motor.inertia_kg_m2 + load.inertia_kg_m2;
-        let mut a = [[0.0; 5]; 5];
+        let mut a: Matrix<5> = [[0.0; 5]; 5];
         a[0] = [-r / l, -motor.back_emf_v_s / l, 0.0, 1.0 / l, 0.0];
         a[1] = [motor.torque_n_m_per_a / j, -load.viscous_n_m_s / j, 0.0, 0.0, -1.0 / j];
         a[2] = [0.0, 1.0, 0.0, 0.0, 0.0];

@@ -1,0 +1,278 @@
+//! [`TestBed`]: a controller on simulated motors, and how far from the line the pen truly was.
+
+use super::{Figures, misjudged};
+use crate::control::LineController;
+use crate::plant::{AxisPlant, DriveDelay};
+use crate::{
+    Axis, ConfigError, Demand, Direction, Drive, Machine, Pen, PenMove, Point, SafetyGate, Segment, StepPoint,
+};
+use core::time::Duration;
+
+/// How a run on the test bed is made and measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestBedSettings {
+    /// Time step of the motors; the nearest of 1 us to 1 ms counts.
+    pub time_step: Duration,
+    /// How long a controller may take for a target before it is given the next one, and the line counts as never finished.
+    pub limit: Duration,
+    /// How long the pen is watched after the last arrival.
+    pub watch_on: Duration,
+    /// How near to the target the pen must stay to have settled, mm.
+    pub settled_mm: f64,
+    /// By which share the description that controllers are given is wrong ([`misjudged`]).
+    pub wrong_share: f64,
+}
+
+impl Default for TestBedSettings {
+    /// Steps of 10 us; 5 s a target; settled within 0.05 mm, two counts of the gantry's encoder, watched for 0.1 s; a
+    /// description that is a quarter wrong.
+    fn default() -> Self {
+        Self {
+            time_step: Duration::from_micros(10),
+            limit: Duration::from_secs(5),
+            watch_on: Duration::from_millis(100),
+            settled_mm: 0.05,
+            wrong_share: 0.25,
+        }
+    }
+}
+
+/// What there is to see in a time step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Time since the start.
+    pub time: Duration,
+    /// Where the pen is to go, mm.
+    pub target: Point,
+    /// Where the controller wants it to be now, mm; the nearest place of the line for a controller that does not say.
+    pub desired: Point,
+    /// Where it truly is, mm.
+    pub pen: Point,
+    /// The place of the line that is nearest to it, mm.
+    pub nearest: Point,
+    /// Its distance from the line, mm.
+    pub error_mm: f64,
+    /// Whether this is part of the drawing, and measured: the pen is down and has not arrived.
+    pub is_measured: bool,
+}
+
+/// Simulated motors on a bench, and the description of them that controllers are given: wrong on purpose.
+///
+/// ```
+/// # use plotter_motion::control::LineTracking;
+/// # use plotter_motion::testbed::{TestBed, TestBedSettings};
+/// # use plotter_motion::{Machine, MachineConfig, Pen, PenMove, StepPoint};
+/// let bed = TestBed::new(&Machine::new(MachineConfig::default())?, TestBedSettings::default())?;
+/// let line = [PenMove { pen: Pen::Down, target: StepPoint::new(400, 0) }]; // 10 mm to the right
+/// let figures = bed.run(&mut LineTracking::new(bed.described()), line, |_moment| ());
+/// assert!(figures.is_finished());
+/// assert_eq!(figures.max_mm, 0.0); // one motor alone cannot leave its line
+/// # Ok::<(), plotter_motion::ConfigError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestBed {
+    machine: Machine,
+    described: Machine,
+    settings: TestBedSettings,
+}
+
+impl TestBed {
+    /// A bench with the motors, loads and encoders of a machine.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] where no machine can be as wrongly described as the settings ask.
+    pub fn new(machine: &Machine, settings: TestBedSettings) -> Result<Self, ConfigError> {
+        const SHORTEST: Duration = Duration::from_micros(1);
+        const LONGEST: Duration = Duration::from_millis(1);
+        let time_step = settings.time_step.clamp(SHORTEST, LONGEST);
+        let described = misjudged(machine, settings.wrong_share)?;
+        Ok(Self { machine: *machine, described, settings: TestBedSettings { time_step, ..settings } })
+    }
+
+    /// The machine as it is.
+    #[must_use]
+    pub const fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// The machine as controllers believe it to be: build yours from this.
+    #[must_use]
+    pub const fn described(&self) -> &Machine {
+        &self.described
+    }
+
+    /// The machine's place that is nearest to a place on the sheet, in encoder counts.
+    #[must_use]
+    pub fn counts(&self, at: Point) -> StepPoint {
+        let config = self.machine.config();
+        StepPoint::new(
+            crate::from_mm(at.x, config.x.counts_per_mm),
+            crate::from_mm(at.y, config.y.counts_per_mm),
+        )
+    }
+
+    /// Lets a controller that is at rest at the origin make `moves`, one after the other; `watch` sees every time step.
+    ///
+    /// A controller of the caller's own type and one behind `dyn` are run alike.
+    pub fn run(
+        &self,
+        controller: &mut (impl LineController + ?Sized),
+        moves: impl IntoIterator<Item = PenMove>,
+        mut watch: impl FnMut(&Moment),
+    ) -> Figures {
+        let mut run = Run::new(self, controller);
+        let mut figures = Figures::default();
+        let mut from = self.on_sheet([0.0; 2]);
+        for PenMove { pen, target } in moves {
+            let to = self.on_sheet([f64::from(target.x), f64::from(target.y)]);
+            run.start(target);
+            let begun = run.now;
+            figures.targets += 1;
+            let mut arrived = false;
+            let move_ = Move { line: Segment::new(from, to), is_drawn: pen == Pen::Down };
+            while !arrived && run.now.saturating_sub(begun) < self.settings.limit {
+                figures.energy_j += run.step();
+                let moment = run.moment(&move_, true);
+                figures.note(&moment, self.settings.settled_mm);
+                watch(&moment);
+                arrived = run.controller.has_arrived();
+            }
+            figures.reached += u32::from(arrived);
+            from = to;
+        }
+        figures.time = run.now;
+        let resting = Move { line: Segment::new(from, from), is_drawn: false };
+        while run.now.saturating_sub(figures.time) < self.settings.watch_on && figures.targets > 0 {
+            figures.energy_j += run.step();
+            let moment = run.moment(&resting, false);
+            figures.note(&moment, self.settings.settled_mm);
+            watch(&moment);
+        }
+        figures
+    }
+
+    fn on_sheet(&self, [x, y]: [f64; 2]) -> Point {
+        let config = self.machine.config();
+        Point::new(x / config.x.counts_per_mm, y / config.y.counts_per_mm)
+    }
+}
+
+struct Move {
+    line: Segment,
+    is_drawn: bool,
+}
+
+/// A run in progress.
+struct Run<'a, C: ?Sized> {
+    bed: &'a TestBed,
+    controller: &'a mut C,
+    axes: [AxisPlant; 2],
+    gate: SafetyGate,
+    drive: Drive,
+    delay: DriveDelay,
+    now: Duration,
+    next_tick: Option<Duration>,
+}
+
+/// More edges than this of one axis in a time step are no motor any more.
+const MOST_EDGES: usize = 64;
+
+impl<'a, C: LineController + ?Sized> Run<'a, C> {
+    fn new(bed: &'a TestBed, controller: &'a mut C) -> Self {
+        let config = bed.machine.config();
+        let dt_s = bed.settings.time_step.as_secs_f64();
+        Self {
+            bed,
+            next_tick: controller.period(),
+            controller,
+            axes: [AxisPlant::new(&config.x, dt_s), AxisPlant::new(&config.y, dt_s)],
+            gate: SafetyGate::default(),
+            drive: Drive::default(),
+            delay: DriveDelay::of(&bed.machine),
+            now: Duration::ZERO,
+        }
+    }
+
+    fn start(&mut self, target: StepPoint) {
+        let demand = self.controller.start(self.now, target);
+        self.apply(demand);
+    }
+
+    fn apply(&mut self, demand: Demand) {
+        self.drive = self.gate.pass(demand);
+        self.controller.applied(self.drive);
+    }
+
+    /// Goes on by one time step; the electrical energy that was taken in it, J.
+    fn step(&mut self) -> f64 {
+        let time_step = self.bed.settings.time_step;
+        let end = self.now + time_step;
+        let mut edges = [[(Duration::ZERO, Direction::Plus); MOST_EDGES]; 2];
+        let mut counts = [0_usize; 2];
+        let mut energy_j = 0.0;
+        let start = self.now;
+        let drive = self.delay.pass(start, self.drive);
+        for (((plant, axis), edges), count) in
+            self.axes.iter_mut().zip(Axis::BOTH).zip(&mut edges).zip(&mut counts)
+        {
+            let duty = drive.axis(axis);
+            plant.step(duty, |edge| {
+                if let Some(place) = edges.get_mut(*count) {
+                    *place = (start + time_step.mul_f64(edge.share_of_step), edge.direction);
+                    *count += 1;
+                }
+            });
+            // What flows back while a motor brakes warms the bridge; no supply takes it.
+            energy_j += plant.power_w(duty).max(0.0) * time_step.as_secs_f64();
+        }
+        let [x, y] = &edges;
+        let (mut x, mut y) = (x.iter().take(counts[0]).peekable(), y.iter().take(counts[1]).peekable());
+        loop {
+            let first = match (x.peek(), y.peek()) {
+                (Some((at_x, _)), Some((at_y, _))) if at_y < at_x => Axis::Y,
+                (None, Some(_)) => Axis::Y,
+                (Some(_), _) => Axis::X,
+                (None, None) => break,
+            };
+            let next = if first == Axis::X { x.next() } else { y.next() };
+            if let Some(&(at, direction)) = next {
+                // An edge is known to the microsecond, as a timer has it.
+                let at = Duration::from_micros(u64::try_from(at.as_micros()).unwrap_or(u64::MAX));
+                self.ticks_until(at);
+                let demand = self.controller.edge(at, first, direction);
+                self.apply(demand);
+            }
+        }
+        self.ticks_until(end);
+        self.now = end;
+        energy_j
+    }
+
+    fn ticks_until(&mut self, end: Duration) {
+        while let (Some(due), Some(period)) = (self.next_tick, self.controller.period()) {
+            if due > end {
+                return;
+            }
+            let demand = self.controller.tick(due);
+            self.apply(demand);
+            self.next_tick = Some(due + period.max(Duration::from_micros(1)));
+        }
+    }
+
+    fn moment(&self, moved: &Move, is_under_way: bool) -> Moment {
+        let [x, y] = &self.axes;
+        let pen = Point::new(x.position_mm(), y.position_mm());
+        let nearest = moved.line.nearest(pen);
+        let desired = self.controller.reference().map_or(nearest, |counts| self.bed.on_sheet(counts));
+        Moment {
+            time: self.now,
+            target: moved.line.to,
+            desired,
+            pen,
+            nearest,
+            error_mm: pen.distance(nearest),
+            is_measured: is_under_way && moved.is_drawn,
+        }
+    }
+}
