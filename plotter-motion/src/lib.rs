@@ -38,10 +38,11 @@ pub use axis::{Axis, Direction};
 pub use bresenham::{Bresenham, StepPair};
 pub use chords::chords;
 pub use config::{
-    AreaConfig, AxisConfig, Bound, ConfigError, ContouringConfig, ControlConfig, ControllerChoice, Decoding,
-    DriveChoice, EncoderConfig, HomingConfig, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName,
-    MotorConfig, PathChoice, PenConfig, PlannerConfig, PublishedConfig, SerialConfig, StepperConfig,
-    StrokeOrder, SyncStopConfig, ThresholdChoice, VectorizeConfig, VectorizeMode,
+    AreaConfig, AxisConfig, BeltConfig, Bound, ConfigError, ContouringConfig, ControlConfig,
+    ControllerChoice, Decoding, DriveChoice, EncoderConfig, HomingConfig, KinematicsChoice, KinematicsConfig,
+    KnownMotors, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName, MotorConfig, PathChoice,
+    PenConfig, PlannerConfig, PointToPointConfig, PublishedConfig, SerialConfig, StepperConfig, StrokeOrder,
+    SyncStopConfig, ThresholdChoice, VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};

@@ -25,5 +25,5 @@ pub use player::{
     Stuck,
 };
 pub use virtual_plotter::{
-    Anomaly, AnomalyKind, Leg, PlotterSettings, Reached, SettingsError, TrackPoint, VirtualPlotter,
+    Anomaly, AnomalyKind, CountedBy, Leg, PlotterSettings, Reached, SettingsError, TrackPoint, VirtualPlotter,
 };

@@ -6,7 +6,10 @@
 //!                  line, column, key, remedy    key, value, range, remedy
 //! ```
 
+mod belt_check;
+mod belt_rules;
 mod error;
+mod kinematics;
 mod machine;
 mod machine_config;
 mod name;
@@ -21,6 +24,7 @@ mod toml_file;
 mod vectorize;
 
 pub use error::{Bound, ConfigError};
+pub use kinematics::{BeltConfig, KinematicsChoice, KinematicsConfig, KnownMotors, PointToPointConfig};
 pub use machine::Machine;
 pub use machine_config::{
     AreaConfig, AxisConfig, ContouringConfig, ControlConfig, ControllerChoice, Decoding, EncoderConfig,

@@ -3,6 +3,7 @@
 //! This is the only list of keys: the check of a [`MachineConfig`], the reader of TOML files and the test of the
 //! page `docs/machine-config.md` all read it.
 
+use super::belt_rules::BELT;
 use super::{ConfigError, MachineConfig};
 
 /// One key and what may stand behind it.
@@ -69,7 +70,7 @@ impl Rule {
     }
 }
 
-const fn number(
+pub(super) const fn number(
     key: &'static str,
     read: fn(&MachineConfig) -> f64,
     (least, most): (f64, f64),
@@ -572,7 +573,7 @@ static Y: [Rule; 19] = axis_rules!(y);
 
 /// All keys, in the order of the documentation.
 pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
-    MACHINE.iter().chain(&X).chain(&Y)
+    MACHINE.iter().chain(&BELT).chain(&X).chain(&Y)
 }
 
 #[cfg(test)]

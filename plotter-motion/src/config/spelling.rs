@@ -7,7 +7,7 @@ use alloc::{format, string::String, vec::Vec};
 const LONGEST_WORD: usize = 48;
 
 /// Endings that name a unit, each with the unit in words, longest first where one ends another.
-const UNITS: [(&str, &str); 42] = [
+const UNITS: [(&str, &str); 43] = [
     ("_mm_min2", "mm/min^2"),
     ("_mm_s3", "mm/s^3"),
     ("_mm_s2", "mm/s^2"),
@@ -23,6 +23,7 @@ const UNITS: [(&str, &str); 42] = [
     ("_mn_m_per_a", "mN m/A"),
     ("_mn_m_s", "mN m s"),
     ("_n_m_s", "N m s"),
+    ("_rad_s", "rad/s"),
     ("_mn_m", "mN m"),
     ("_n_m", "N m"),
     ("_m_s", "m/s"),
@@ -53,7 +54,7 @@ const UNITS: [(&str, &str); 42] = [
 ];
 
 /// Units of one letter that end other units, tried after all of [`UNITS`].
-const SHORT_UNITS: [(&str, &str); 3] = [("_s", "s"), ("_v", "V"), ("_h", "H")];
+const SHORT_UNITS: [(&str, &str); 4] = [("_s", "s"), ("_v", "V"), ("_h", "H"), ("_n", "N")];
 
 /// How many of the second unit the first one is: a quotient of two exact numbers.
 const CONVERSIONS: [(&str, &str, f64, f64); 31] = [
