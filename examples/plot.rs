@@ -20,7 +20,7 @@ use plotter_motion::{
 };
 use plotter_replay::log::{self, Header};
 use plotter_replay::{BenchRecorder, Canvas, Chart, ContourError, PlotterSettings, VirtualPlotter, Ways};
-use plotter_vector::{Algorithm, ErrorReport, Scale, Vectorized, Vectorizer, decode, error_chart, svg};
+use plotter_vector::{Algorithm, ErrorReport, Vectorized, Vectorizer, decode, error_chart, svg};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -100,7 +100,7 @@ fn plot(args: &Args) -> Result<(), String> {
 
     // The drawing goes through the plotter's own language, so what is plotted is what the file says.
     let size_px = (traced.drawing.width_px(), traced.drawing.height_px());
-    let scale = fit(size_px, &machine, args.width_mm)?;
+    let scale = fit_drawing(size_px, &machine, args.width_mm)?;
     let mut text = String::new();
     plotter_vector::hpgl(&traced.drawing, scale, &mut text).map_err(|error| error.to_string())?;
     write_file(&file("drawing.hpgl"), &text)?;
@@ -222,27 +222,11 @@ fn trace(args: &Args, machine: &Machine) -> Result<Vectorized, String> {
         AlgorithmArg::Published => Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
         // One pen, whatever the file says: this machine has no carousel.
         AlgorithmArg::Ours => {
-            let scale = fit((picture.width(), picture.height()), machine, args.width_mm)?;
+            let scale = fit_drawing((picture.width(), picture.height()), machine, args.width_mm)?;
             vectorizer(&machine.config().vectorize, scale.mm_per_px())?
         }
     };
     vectorizer.vectorize(&picture).map_err(|error| at(path, &error))
-}
-
-/// The drawing's place: its left lower corner a little off the origin, as large as asked and as the area allows.
-fn fit((width_px, height_px): (u32, u32), machine: &Machine, width_mm: f64) -> Result<Scale, String> {
-    const MARGIN_MM: f64 = 5.0;
-    if !(width_mm > 0.0 && width_mm.is_finite()) {
-        return Err(format!("--width-mm {width_mm}: give a width above 0 mm"));
-    }
-    let area = machine.config().area;
-    let (width_px, height_px) = (width_px.max(1), height_px.max(1));
-    let height_mm = width_mm * f64::from(height_px) / f64::from(width_px);
-    let corner = Point::new(
-        area.width_mm.min(width_mm + 2.0 * MARGIN_MM),
-        area.height_mm.min(height_mm + 2.0 * MARGIN_MM),
-    );
-    Scale::fit(width_px, height_px, Point::ORIGIN, corner, MARGIN_MM).map_err(|error| error.to_string())
 }
 
 /// Plots on the simulated machine, or with a firmware, and records the serial line.

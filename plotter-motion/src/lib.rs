@@ -9,6 +9,7 @@ extern crate std;
 
 mod axis;
 mod bresenham;
+mod budget;
 mod chords;
 mod config;
 pub mod control;
@@ -36,6 +37,7 @@ mod toolpath;
 
 pub use axis::{Axis, Direction};
 pub use bresenham::{Bresenham, StepPair};
+pub use budget::{Budget, BudgetError, BudgetLimits, BudgetPart};
 pub use chords::chords;
 pub use config::{
     AreaConfig, AxisConfig, BeltConfig, Bound, ConfigError, ContouringConfig, ControlConfig,
