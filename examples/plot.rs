@@ -10,15 +10,17 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    BenchSwitches, Figure, PlotOutcome, Recorded, at, built_firmware, html_page, plot_in_emulator,
-    plot_on_port, print, read_file, run, simulate, vectorizer, write_file,
+    BenchSwitches, Figure, PlotOutcome, Recorded, at, board_header, built_firmware, html_page,
+    plot_in_emulator, plot_on_port, print, read_file, run, simulate, simulate_board, vectorizer, write_file,
 };
+use plotter_motion::firmware::MarkingBoardSettings;
 use plotter_motion::{
-    ControllerChoice, DriveChoice, Machine, MachineConfig, OutOfReach, PenMove, PlotOp, Point, hpgl, targets,
+    ControllerChoice, DriveChoice, KinematicsChoice, Machine, MachineConfig, OutOfReach, PenMove, PlotOp,
+    Point, hpgl, targets,
 };
 use plotter_replay::log::{self, Header};
 use plotter_replay::{BenchRecorder, Canvas, Chart, ContourError, PlotterSettings, VirtualPlotter, Ways};
-use plotter_vector::{Algorithm, ErrorReport, Scale, Vectorized, Vectorizer, decode, error_chart, svg};
+use plotter_vector::{Algorithm, ErrorReport, Vectorized, Vectorizer, decode, error_chart, svg};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -31,6 +33,7 @@ use std::time::Instant;
     name = "plot",
     after_help = "Examples:\n  cargo run --release --example plot\n  \
                   cargo run --release --example plot -- scan.png --controller published --out target/published\n  \
+                  cargo run --release --example plot -- scan.png --machine examples/machines/marking-board.toml\n  \
                   cargo run --release --example plot -- --firmware qemu\n  \
                   cargo run --release --example plot -- scan.png --firmware /dev/ttyUSB0"
 )]
@@ -97,14 +100,17 @@ fn plot(args: &Args) -> Result<(), String> {
 
     // The drawing goes through the plotter's own language, so what is plotted is what the file says.
     let size_px = (traced.drawing.width_px(), traced.drawing.height_px());
-    let scale = fit(size_px, &machine, args.width_mm)?;
+    let scale = fit_drawing(size_px, &machine, args.width_mm)?;
     let mut text = String::new();
     plotter_vector::hpgl(&traced.drawing, scale, &mut text).map_err(|error| error.to_string())?;
     write_file(&file("drawing.hpgl"), &text)?;
     let ops: Vec<PlotOp> =
         hpgl::plot_ops(text.as_bytes()).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
-    let moves: Vec<PenMove> =
-        targets(&machine, ops).collect::<Result<_, OutOfReach>>().map_err(|error| error.to_string())?;
+    let moves: Result<Vec<PenMove>, OutOfReach> = match machine.config().kinematics.kind {
+        KinematicsChoice::CoreXy => MarkingBoardSettings::of(&machine).moves(ops).collect(),
+        _ => targets(&machine, ops).collect(),
+    };
+    let moves = moves.map_err(|error| error.to_string())?;
 
     let log_file = file("session.plog");
     let outcome = record(args, &machine, moves, &log_file)?;
@@ -187,6 +193,13 @@ fn machine(args: &Args) -> Result<Machine, String> {
                       plan for it with the example `stepper`, or give a machine with drive = \"dc\"",
                 ));
             }
+            if config.kinematics.kind == KinematicsChoice::CoreXy && args.firmware.is_some() {
+                return Err(at(
+                    path,
+                    &"this machine has one belt (kinematics.type = \"corexy\"), and the firmwares that --firmware plots with \
+                      move each axis by its own motor: leave --firmware out to simulate it",
+                ));
+            }
             config
         }
         None => MachineConfig::default(),
@@ -209,41 +222,23 @@ fn trace(args: &Args, machine: &Machine) -> Result<Vectorized, String> {
         AlgorithmArg::Published => Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
         // One pen, whatever the file says: this machine has no carousel.
         AlgorithmArg::Ours => {
-            let scale = fit((picture.width(), picture.height()), machine, args.width_mm)?;
+            let scale = fit_drawing((picture.width(), picture.height()), machine, args.width_mm)?;
             vectorizer(&machine.config().vectorize, scale.mm_per_px())?
         }
     };
     vectorizer.vectorize(&picture).map_err(|error| at(path, &error))
 }
 
-/// The drawing's place: its left lower corner a little off the origin, as large as asked and as the area allows.
-fn fit((width_px, height_px): (u32, u32), machine: &Machine, width_mm: f64) -> Result<Scale, String> {
-    const MARGIN_MM: f64 = 5.0;
-    if !(width_mm > 0.0 && width_mm.is_finite()) {
-        return Err(format!("--width-mm {width_mm}: give a width above 0 mm"));
-    }
-    let area = machine.config().area;
-    let (width_px, height_px) = (width_px.max(1), height_px.max(1));
-    let height_mm = width_mm * f64::from(height_px) / f64::from(width_px);
-    let corner = Point::new(
-        area.width_mm.min(width_mm + 2.0 * MARGIN_MM),
-        area.height_mm.min(height_mm + 2.0 * MARGIN_MM),
-    );
-    Scale::fit(width_px, height_px, Point::ORIGIN, corner, MARGIN_MM).map_err(|error| error.to_string())
-}
-
 /// Plots on the simulated machine, or with a firmware, and records the serial line.
 fn record(args: &Args, machine: &Machine, moves: Vec<PenMove>, path: &Path) -> Result<PlotOutcome, String> {
     let config = machine.config();
     let is_real = args.firmware.as_ref().is_some_and(|firmware| firmware != EMULATED);
-    let header = Header::new()
-        .with_number("baud", config.serial.baud.into())
-        .with_text("protocol", "digits")
+    let is_belt = config.kinematics.kind == KinematicsChoice::CoreXy;
+    let header = if is_belt { board_header(machine) } else { line_header(machine) };
+    let header = header
         .with_text("machine", config.name.as_str())
         .with_text("controller", controller_name(machine))
-        .with_text("clock", if is_real { "host" } else { "simulated" })
-        .with_decimal("x_mm_per_pulse", 1.0 / config.x.counts_per_mm)
-        .with_decimal("y_mm_per_pulse", 1.0 / config.y.counts_per_mm);
+        .with_text("clock", if is_real { "host" } else { "simulated" });
     let writer = log::create(path, &header).map_err(|error| at(path, &error))?;
     let bar = ProgressBar::new(moves.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("plotting {bar:40} {pos}/{len} targets, {elapsed}") {
@@ -253,6 +248,7 @@ fn record(args: &Args, machine: &Machine, moves: Vec<PenMove>, path: &Path) -> R
     let recorded = Recorded { drive: args.record_drive };
     let progress = |reached: u32| bar.set_position(reached.into());
     let outcome = match args.firmware.as_deref() {
+        None if is_belt => Ok(simulate_board(machine, moves, recorded, &mut recorder, progress)),
         None => Ok(simulate(machine, moves, recorded, &mut recorder, progress)),
         Some(EMULATED) => {
             let elf = args.elf.clone().unwrap_or_else(|| built_firmware("gantry"));
@@ -265,6 +261,16 @@ fn record(args: &Args, machine: &Machine, moves: Vec<PenMove>, path: &Path) -> R
     let outcome = outcome?;
     recorder.finish().map_err(|error| at(path, &error))?;
     Ok(outcome)
+}
+
+/// What a log of the published protocol says of its line.
+fn line_header(machine: &Machine) -> Header {
+    let config = machine.config();
+    Header::new()
+        .with_number("baud", config.serial.baud.into())
+        .with_text("protocol", "digits")
+        .with_decimal("x_mm_per_pulse", 1.0 / config.x.counts_per_mm)
+        .with_decimal("y_mm_per_pulse", 1.0 / config.y.counts_per_mm)
 }
 
 /// Draws on the virtual plotter what a recording says.

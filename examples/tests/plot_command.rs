@@ -2,7 +2,7 @@
 
 mod built_example;
 
-use built_example::{complaint, data, run_example};
+use built_example::{complaint, data, machine, run_example};
 
 #[test]
 fn the_flag_is_plotted_and_its_recording_replays() {
@@ -52,6 +52,42 @@ fn the_published_controller_plots_too_and_shows_its_error() {
     let json = std::fs::read(directory.path().join("report.json")).unwrap();
     let report: serde_json::Value = serde_json::from_slice(&json).unwrap();
     assert!(report["true_contour_error_mm"]["max"].as_f64().unwrap() > 0.1);
+}
+
+#[test]
+fn the_marking_board_plots_with_both_controllers_and_shows_its_response() {
+    /// A count of a motor is 0.0108 mm of the pen, and the target is rounded to one: seen in the counts are up to two.
+    const COUNTED_MM: f64 = 0.0216;
+    let board = machine("marking-board.toml");
+    let plot = |controller: &str| {
+        let directory = tempfile::tempdir().unwrap();
+        let out = directory.path().to_str().unwrap();
+        let output = run_example("plot", &["--machine", &board, "--controller", controller, "--out", out]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let file = |name: &str| std::fs::read_to_string(directory.path().join(name)).unwrap();
+        // X, Y and the distance from the line, desired beside actual
+        let response = file("response.svg");
+        assert!(
+            ["X (mm)", "Y (mm)", "contour error (mm)", "actual"].iter().all(|text| response.contains(text))
+        );
+        let log = file("session.plog");
+        assert!(log.starts_with("plotter-log 1 {\"protocol\":\"counts\",\"belt_signs\":\"direction-table\""));
+        let report: serde_json::Value = serde_json::from_str(&file("report.json")).unwrap();
+        let number = |path: &str| report.pointer(path).unwrap().as_f64().unwrap();
+        assert_eq!((number("/reached"), number("/anomalies")), (number("/targets"), 0.0), "{controller}");
+        assert!(number("/targets") > 200.0);
+        (number("/contour_error_mm/max"), number("/true_contour_error_mm/max"))
+    };
+    let (counted_mm, true_mm) = plot("contouring");
+    assert!(counted_mm < COUNTED_MM && true_mm < COUNTED_MM, "{counted_mm}, {true_mm}");
+    let (_, true_mm) = plot("published");
+    assert!(true_mm > 0.45, "{true_mm}");
+    let out = tempfile::tempdir().unwrap();
+    let said = complaint(
+        "plot",
+        &["--machine", &board, "--firmware", "qemu", "--out", out.path().to_str().unwrap()],
+    );
+    assert!(said.contains("one belt") && said.contains("leave --firmware out"), "{said}");
 }
 
 #[test]

@@ -9,6 +9,7 @@ extern crate std;
 
 mod axis;
 mod bresenham;
+mod budget;
 mod chords;
 mod config;
 pub mod control;
@@ -37,12 +38,14 @@ mod toolpath;
 
 pub use axis::{Axis, Direction};
 pub use bresenham::{Bresenham, StepPair};
+pub use budget::{Budget, BudgetError, BudgetLimits, BudgetPart};
 pub use chords::chords;
 pub use config::{
-    AreaConfig, AxisConfig, Bound, ConfigError, ContouringConfig, ControlConfig, ControllerChoice, Decoding,
-    DriveChoice, EncoderConfig, HomingConfig, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName,
-    MotorConfig, PathChoice, PenConfig, PlannerConfig, PublishedConfig, SerialConfig, StepperConfig,
-    StrokeOrder, SyncStopConfig, ThresholdChoice, TransmissionConfig, VectorizeConfig, VectorizeMode,
+    AreaConfig, AxisConfig, BeltConfig, Bound, ConfigError, ContouringConfig, ControlConfig,
+    ControllerChoice, Decoding, DriveChoice, EncoderConfig, HomingConfig, KinematicsChoice, KinematicsConfig,
+    KnownMotors, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName, MotorConfig, PathChoice,
+    PenConfig, PlannerConfig, PointToPointConfig, PublishedConfig, SerialConfig, StepperConfig, StrokeOrder,
+    SyncStopConfig, ThresholdChoice, TransmissionConfig, VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};

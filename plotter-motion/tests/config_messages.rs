@@ -80,6 +80,19 @@ fn two_values_that_contradict_each_other_are_named_by_the_one_to_change() {
 }
 
 #[test]
+fn what_does_not_go_with_a_belt_is_named_with_its_line() {
+    let belt = |rest: &str| message(&format!("[kinematics]\ntype = \"corexy\"\n{rest}"));
+    assert_snapshot!(message("[kinematics]\ntype = \"core-xy\""), @r#"line 3, column 8: kinematics.type: the text "core-xy"; write "cartesian" or "corexy": did you mean "corexy"?"#);
+    assert_snapshot!(message("[kinematics]\nsign = 1"), @"line 3, column 1: unknown key `kinematics.sign`; did you mean `signs`?");
+    assert_snapshot!(belt("[x.encoder]\ndecoding = \"x4\""), @r#"line 5, column 12: x.encoder.decoding: "x4" does not go with kinematics.type = "corexy", whose encoders have one phase and count both its edges: write "x2", and half the pulses of a turn as lines_per_turn"#);
+    assert_snapshot!(belt("[x.encoder]\ndecoding = \"x2\"\n[y.encoder]\ndecoding = \"x2\"\n[y]\ncounts_per_mm = 41"), @"line 9, column 17: y.counts_per_mm: 41 counts/mm must be at most 40 counts/mm; both motors drive the same belt: write what x has");
+    assert_snapshot!(message("drive = \"stepper\"\n[kinematics]\ntype = \"corexy\""), @r#"line 4, column 8: kinematics.type: "corexy" does not go with drive = "stepper", whose controller moves each axis by its own motor: write "cartesian", or drive = "dc" for the motors of a belt"#);
+    assert_snapshot!(message("[belt]\nstart_x_cm = 15"), @"line 3, column 1: unknown key `belt.start_x_cm`; the unit here is mm: write `start_x_mm = 150`");
+    assert_snapshot!(message("[point_to_point]\nallowed_error_mm = 0"), @"line 3, column 20: point_to_point.allowed_error_mm: 0 mm lies outside 0.001..=100 mm; the documented marking board has 0.45");
+    assert_snapshot!(message("belt.x_rail_coulomb_kn = 1"), @"line 2, column 6: unknown key `belt.x_rail_coulomb_kn`; did you mean `x_rail_coulomb_n`?");
+}
+
+#[test]
 fn text_that_is_not_toml_is_refused_with_its_line() {
     assert_snapshot!(message("[area"), @"line 2, column 6: unclosed table, expected `]`");
     assert_snapshot!(message("serial.baud = 9600 baud"), @"line 2, column 15: string values must be quoted, expected literal string");
@@ -98,7 +111,7 @@ fn the_first_error_of_the_file_is_told_first() {
 
 #[test]
 fn a_quoted_key_with_a_dot_is_not_the_key_it_spells() {
-    assert_snapshot!(message("\"area.width_mm\" = 1"), @"line 2, column 1: unknown key `area.width_mm`; known here: `schema`, `name`, `drive`, `area`, `serial`, `control`, `sync_stop`, `planner`, `pen`, `laser`, `homing`, `stepper_motor`, `vectorize`, `x`, `y`");
+    assert_snapshot!(message("\"area.width_mm\" = 1"), @"line 2, column 1: unknown key `area.width_mm`; known here: `schema`, `name`, `drive`, `area`, `serial`, `control`, `sync_stop`, `planner`, `pen`, `laser`, `homing`, `stepper_motor`, `vectorize`, `kinematics`, `belt`, `point_to_point`, `x`, `y`");
 }
 
 #[test]

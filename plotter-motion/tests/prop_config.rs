@@ -27,6 +27,13 @@ threshold = "128"
 pens = 3
 [planner]
 s_curve = true
+[kinematics]
+type = "cartesian"
+signs = "tracking-equations"
+[belt]
+known_motors = "each"
+[point_to_point]
+equalize = true
 [x.stepper]
 inverted = true
 [x.encoder]
@@ -94,6 +101,34 @@ const OF_THE_MACHINE: [&str; 52] = [
     "vectorize.max_line_px",
 ];
 
+/// Numeric keys of a machine with a belt.
+const OF_A_BELT: [&str; 24] = [
+    "belt.start_x_mm",
+    "belt.start_y_mm",
+    "belt.speed_window_mm_s",
+    "belt.run_down_ms",
+    "belt.unequal_share",
+    "belt.x_rail_coulomb_n",
+    "belt.x_rail_static_n",
+    "belt.y_rail_coulomb_n",
+    "belt.y_rail_static_n",
+    "point_to_point.allowed_error_mm",
+    "point_to_point.period_ms",
+    "point_to_point.drive_start",
+    "point_to_point.drive_step",
+    "point_to_point.drive_step_ms",
+    "point_to_point.drive_most",
+    "point_to_point.slow_mm",
+    "point_to_point.factor_x",
+    "point_to_point.factor_y",
+    "point_to_point.run_down_ms",
+    "point_to_point.unequal_share",
+    "point_to_point.equalizer_time_constant_ms",
+    "point_to_point.equalizer_pole_rad_s",
+    "point_to_point.equalizer_full_speed_mm_s",
+    "point_to_point.equalizer_most_trim",
+];
+
 /// Numeric keys that each axis has.
 const OF_AN_AXIS: [&str; 22] = [
     "counts_per_mm",
@@ -139,7 +174,7 @@ fn numbers() -> impl Iterator<Item = (String, bool)> {
     let of_axes = ["x", "y"]
         .into_iter()
         .flat_map(|axis| OF_AN_AXIS.into_iter().map(move |key| format!("{axis}.{key}")));
-    let all = OF_THE_MACHINE.into_iter().map(str::to_owned).chain(of_axes);
+    let all = OF_THE_MACHINE.into_iter().chain(OF_A_BELT).map(str::to_owned).chain(of_axes);
     all.map(|key| {
         let is_whole = WHOLE.iter().any(|whole| key.ends_with(whole));
         (key, is_whole)

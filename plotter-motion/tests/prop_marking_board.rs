@@ -5,7 +5,8 @@ use plotter_motion::control::{EqualizerSettings, LineController, PointToPoint, P
 use plotter_motion::firmware::{MarkingBoard, MarkingBoardSettings};
 use plotter_motion::kinematics::{BeltSigns, CoreXy};
 use plotter_motion::{
-    Axis, Demand, Direction, Drive, Duty, LimitSwitches, Pen, PenMove, SafetyGate, StepPoint,
+    Axis, Demand, Direction, Drive, Duty, LimitSwitches, Machine, MachineConfig, Pen, PenMove, SafetyGate,
+    StepPoint,
 };
 use proptest::prelude::*;
 
@@ -196,7 +197,8 @@ proptest! {
         signs in signs(), inputs in prop::collection::vec(input(), 1..200), demands in prop::collection::vec(demand(), 1..20),
         differ in prop::array::uniform2(-1.0..=1.0_f32),
     ) {
-        let settings = MarkingBoardSettings::new(CoreXy::new(signs, 46.3).unwrap());
+        let machine = Machine::new(MachineConfig::marking_board()).unwrap();
+        let settings = MarkingBoardSettings { belt: CoreXy::new(signs, 46.3).unwrap(), ..MarkingBoardSettings::of(&machine) };
         let speeds = differ.map(|by| 1.0 + by * settings.unequal_share);
         holds(settings, Restless(demands, 0), speeds, &inputs)?;
         let point_to_point = PointToPointSettings { signs, equalizer: Some(EqualizerSettings::default()), ..PointToPointSettings::default() };

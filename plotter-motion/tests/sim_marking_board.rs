@@ -8,7 +8,7 @@
 mod marking;
 
 use core::time::Duration;
-use marking::{Run, TIME_STEP, belt, contouring, equalized, published};
+use marking::{Run, TIME_STEP, belt, contouring, equalized, plant, published};
 use plotter_motion::control::LineController;
 use plotter_motion::firmware::MarkingBoardSettings;
 use plotter_motion::kinematics::{BeltSigns, CoreXy};
@@ -60,8 +60,7 @@ fn straight(
 
 /// The same drive on both motors until the pen is 30 mm further right: how far it is beside then, mm.
 fn uncontrolled_drift_mm() -> f64 {
-    let mut plant =
-        MarkingBoardPlant::new(&MarkingBoardPlantSettings::unequal(belt()), TIME_STEP.as_secs_f64());
+    let mut plant = MarkingBoardPlant::new(&plant(), TIME_STEP.as_secs_f64());
     let from = plant.position_mm();
     let demand = Demand { x: Duty::saturating(0.45), y: Duty::ZERO };
     let right = SafetyGate::default().pass_belt(demand, belt().signs(), 0.0);
@@ -189,7 +188,7 @@ fn the_carriage_does_not_go_into_a_switch_along_which_it_moves() {
     const INTO_MM: f64 = 0.01;
     let into = |unequal_share| {
         let start = Point::new(300.0, 150.0);
-        let settings = MarkingBoardPlantSettings { start, ..MarkingBoardPlantSettings::unequal(belt()) };
+        let settings = MarkingBoardPlantSettings { start, ..plant() };
         let mut plant = MarkingBoardPlant::new(&settings, TIME_STEP.as_secs_f64());
         let mut gate = SafetyGate::default();
         let down_and_right = Demand { x: Duty::saturating(0.4), y: Duty::saturating(-0.4) };
@@ -242,7 +241,7 @@ fn other_boards_are_drawn_on_as_well() {
     const CORNER_MM: f64 = 0.05;
     let other_signs = CoreXy::new(BeltSigns::TrackingEquations, 46.3).unwrap();
     for belt in [belt(), other_signs] {
-        let unequal = MarkingBoardPlantSettings::unequal(belt);
+        let unequal = MarkingBoardPlantSettings { belt, ..plant() };
         let [first, second] = unequal.motors;
         let swapped = MarkingBoardPlantSettings {
             motors: [second, first],

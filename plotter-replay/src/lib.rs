@@ -25,6 +25,7 @@ pub use player::{
     Answer, Compared, Controller, Difference, EdgeSource, MachineController, Outcome, Player, PlayerSettings,
     Stuck,
 };
+pub use thin::thin;
 pub use virtual_plotter::{
-    Anomaly, AnomalyKind, Leg, PlotterSettings, Reached, SettingsError, TrackPoint, VirtualPlotter,
+    Anomaly, AnomalyKind, CountedBy, Leg, PlotterSettings, Reached, SettingsError, TrackPoint, VirtualPlotter,
 };

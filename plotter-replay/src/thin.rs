@@ -10,7 +10,15 @@ use plotter_motion::{Point, Vec2};
 ///
 /// Source: C. M. Williams, "An efficient algorithm for the piecewise linear approximation of planar curves",
 /// Computer Graphics and Image Processing 8 (1978).
-pub(crate) fn thin(points: impl IntoIterator<Item = Point>, tolerance_mm: f64) -> Vec<Point> {
+///
+/// ```
+/// # use plotter_motion::Point;
+/// # use plotter_replay::thin;
+/// let nearly_straight = [(0.0, 0.0), (1.0, 0.04), (2.0, 0.0), (2.0, 1.0)].map(|(x, y)| Point::new(x, y));
+/// assert_eq!(thin(nearly_straight, 0.05).len(), 3); // the corner stays
+/// ```
+#[must_use]
+pub fn thin(points: impl IntoIterator<Item = Point>, tolerance_mm: f64) -> Vec<Point> {
     let mut points = points.into_iter().filter(|point| point.is_finite());
     let Some(first) = points.next() else {
         return Vec::new();

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that fails says so by a panic")]
 
 use plotter_motion::plant::{Bench, BenchSettings};
-use plotter_motion::{Machine, MachineConfig, Pen, PenMove, StepPoint};
+use plotter_motion::{Axis, Direction, Machine, MachineConfig, Pen, PenMove, StepPoint};
 use plotter_replay::BenchRecorder;
-use plotter_replay::log::{self, Header};
+use plotter_replay::log::{self, Event, Header, Record};
 use std::path::Path;
 use std::process::Command;
 
@@ -213,4 +213,29 @@ fn what_cannot_be_written_is_named() {
     let ran = info.args(["info", "line.plog"]).current_dir(here).stdout(full).output().unwrap();
     assert_eq!(ran.status.code(), Some(2));
     assert!(String::from_utf8(ran.stderr).unwrap().starts_with("plotter-replay: standard output: cannot be"));
+}
+
+#[test]
+fn a_log_without_a_line_is_drawn_and_not_run_again() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let header = Header::new().with_text("protocol", "counts").with_text("belt_signs", "direction-table");
+    let mut writer = log::create(&here.join("board.plog"), &header).unwrap();
+    for (time, event) in [
+        (0, Event::Target { x: 0, y: 1 }),
+        (9, Event::Edge { axis: Axis::Y, sign: Direction::Plus }),
+        (10, Event::Controller(b"+".to_vec())),
+    ] {
+        writer.write(&Record::at_us(time, event)).unwrap();
+    }
+    writer.finish().unwrap();
+    let info = run(&["info", "board.plog"], here);
+    assert!(info.out.contains("ends at (0.013, 0.013) mm, counted (0, 1)"), "{}", info.out);
+    let check = run(&["check", "board.plog"], here);
+    assert_eq!((check.status, check.err.lines().count()), (2, 1), "{}", check.err);
+    assert!(
+        check.err.contains("its protocol is \"counts\"") && check.err.contains("`render`"),
+        "{}",
+        check.err
+    );
 }

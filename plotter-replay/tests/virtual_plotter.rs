@@ -1,10 +1,11 @@
 //! What the virtual plotter makes of a line that is not as it should be.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that fails says so by a panic")]
 
+use plotter_motion::kinematics::BeltSigns;
 use plotter_motion::protocol::digits;
-use plotter_motion::{Pen, PlotOp, Point, StepPoint};
+use plotter_motion::{Axis, Direction, Pen, PlotOp, Point, StepPoint};
 use plotter_replay::log::{Event, Record};
-use plotter_replay::{AnomalyKind, Canvas, Chart, Layer, PlotterSettings, VirtualPlotter, Ways};
+use plotter_replay::{AnomalyKind, Canvas, Chart, CountedBy, Layer, PlotterSettings, VirtualPlotter, Ways};
 use proptest::prelude::*;
 use std::time::Duration;
 
@@ -224,4 +225,32 @@ proptest! {
         prop_assert!(plotter.contour_error(Ways::All).max_mm.is_finite());
         prop_assert!(plotter.reached_count() <= plotter.target_count());
     }
+}
+
+/// A marking board: no digits and no pulses on a line, but targets and edges of the two motors of its belt.
+#[test]
+fn a_belt_is_drawn_from_its_edges() {
+    let settings = PlotterSettings {
+        belt: Some(BeltSigns::DirectionTable),
+        counted_by: CountedBy::Edges,
+        x_mm_per_pulse: 0.1,
+        y_mm_per_pulse: 0.1,
+        p1: Point::new(150.0, 100.0),
+        reached_tolerance_counts: 1,
+        ..PlotterSettings::default()
+    };
+    let edge = |axis| Event::Edge { axis, sign: Direction::Plus };
+    let mut line = Line::default().event(Event::Pen(Pen::Down)).event(Event::Target { x: 0, y: 4 });
+    for _ in 0..3 {
+        line = line.wait_ms(600).event(edge(Axis::Y));
+    }
+    let plotter = line.says("+").wait_ms(5_000).event(Event::Target { x: 2, y: 4 });
+    let plotter = plotter.wait_ms(600).event(edge(Axis::X)).into(VirtualPlotter::new(settings));
+    // Motor 2 alone goes right and up; three of four counts are near enough, and from there the counts go on.
+    assert_eq!(plotter.position(), Point::new(150.2, 100.1));
+    assert_eq!(plotter.anomalies(), []);
+    assert_eq!((plotter.target_count(), plotter.reached_count()), (2, 1));
+    // The line from (0, 0) to (0, 4) counts is the diagonal, and so is the way.
+    assert!(plotter.legs()[0].points.iter().all(|point| point.at.x == 0));
+    assert_eq!(plotter.legs()[0].reached.unwrap().error, StepPoint::new(0, -1));
 }

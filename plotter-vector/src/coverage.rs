@@ -43,6 +43,21 @@ pub(crate) fn add_coverage(ink: &Bitmap, drawing: &Drawing, tally: &mut ErrorTal
     for_each_error(ink, drawing, |_, error_px| tally.add_error(error_px));
 }
 
+/// The pieces of a drawing of this ink with the ink's widths, to be looked up by place.
+pub(crate) fn with_widths(ink: &Bitmap, drawing: &Drawing) -> Index {
+    let mut segments = segments(drawing);
+    let widths = segments.iter().map(|segment| {
+        if segment.has_probes() {
+            PROBES.map(|part| segment.width_at(part, ink, 0))
+        } else {
+            [0; PROBES.len()]
+        }
+    });
+    let widths: Vec<_> = widths.collect();
+    set_widths(&mut segments, widths);
+    Index::new(segments, ink.width(), ink.height())
+}
+
 /// The pixel with the greatest error of [`coverage`], the first of several in reading order, and its error, px; none
 /// without ink.
 ///
@@ -66,17 +81,7 @@ pub fn worst_pixel(ink: &Bitmap, drawing: &Drawing) -> Option<(Pixel, f64)> {
 }
 
 fn for_each_error(ink: &Bitmap, drawing: &Drawing, mut add: impl FnMut(Pixel, f64)) {
-    let mut segments = segments(drawing);
-    let widths = segments.iter().map(|segment| {
-        if segment.has_probes() {
-            PROBES.map(|part| segment.width_at(part, ink, 0))
-        } else {
-            [0; PROBES.len()]
-        }
-    });
-    let widths: Vec<_> = widths.collect();
-    set_widths(&mut segments, widths);
-    let index = Index::new(segments, ink.width(), ink.height());
+    let index = with_widths(ink, drawing);
     let mut covering = 0;
     for at in ink.ink() {
         add(at, index.error_px(at.into(), &mut covering));
@@ -293,8 +298,15 @@ impl Index {
         self.ends.get(index).and_then(|end| self.entries.get(start..*end)).unwrap_or(&[])
     }
 
+    /// Half the ink's width beyond a pixel's own at the segment that covers a place best, px.
+    pub(crate) fn slack_px(&self, at: PxPoint) -> f64 {
+        let mut nearest = 0;
+        self.error_px(at, &mut nearest);
+        self.segments.get(nearest).map_or(0.0, |segment| segment.slack_px)
+    }
+
     /// The least error of a place over all segments. `covering` is one that covered another place, mostly this one too:
-    /// nothing lies nearer than that.
+    /// nothing lies nearer than that; it becomes the one that covers this place best.
     pub(crate) fn error_px(&self, at: PxPoint, covering: &mut usize) -> f64 {
         if self.segments.is_empty() {
             return at.distance(PxPoint::default());
@@ -326,9 +338,11 @@ impl Index {
                         let near = if nearest_px < least + self.reach_px { self.square(x, y) } else { &[] };
                         for index in near {
                             let Some(segment) = self.segments.get(*index as usize) else { continue };
-                            least = least.min(segment.error_px(at));
+                            let error_px = segment.error_px(at);
+                            if error_px < least {
+                                (least, *covering) = (error_px, *index as usize);
+                            }
                             if least == 0.0 {
-                                *covering = *index as usize;
                                 return 0.0;
                             }
                         }

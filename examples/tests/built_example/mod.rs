@@ -32,3 +32,9 @@ pub fn complaint(name: &str, arguments: &[&str]) -> String {
 pub fn data(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name).to_str().unwrap().to_owned()
 }
+
+/// The file of a machine that comes with the examples.
+#[allow(dead_code, reason = "not every command takes a machine")]
+pub fn machine(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("machines").join(name).to_str().unwrap().to_owned()
+}

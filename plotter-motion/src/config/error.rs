@@ -53,6 +53,15 @@ pub enum ConfigError {
         /// Where the limit comes from, and what would be right.
         remedy: &'static str,
     },
+    /// A choice that does not go with another one.
+    Unfit {
+        /// The key.
+        key: &'static str,
+        /// What was chosen.
+        value: &'static str,
+        /// What it does not go with, and what would be right.
+        remedy: &'static str,
+    },
 }
 
 /// On which side of a limit a value must lie.
@@ -98,7 +107,7 @@ impl ConfigError {
     pub const fn key(&self) -> &'static str {
         match self {
             Self::Schema { .. } => "schema",
-            Self::OutOfRange { key, .. } | Self::Conflict { key, .. } => key,
+            Self::OutOfRange { key, .. } | Self::Conflict { key, .. } | Self::Unfit { key, .. } => key,
         }
     }
 }
@@ -125,6 +134,7 @@ impl fmt::Display for ConfigError {
                 let space = if unit.is_empty() { "" } else { " " };
                 write!(f, "{key}: {value}{space}{unit} must be {bound} {limit}{space}{unit}; {remedy}")
             }
+            Self::Unfit { key, value, remedy } => write!(f, "{key}: \"{value}\" {remedy}"),
         }
     }
 }

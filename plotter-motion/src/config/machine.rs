@@ -1,9 +1,10 @@
 //! [`Machine`]: a description that has been checked.
 
+use super::belt_check::check_belt;
 use super::error::Bound;
 use super::rules::rules;
 use super::transmission::check_transmission;
-use super::{AxisConfig, ConfigError, ControllerChoice, DriveChoice, MachineConfig};
+use super::{AxisConfig, ConfigError, ControllerChoice, DriveChoice, KinematicsChoice, MachineConfig};
 
 /// A machine whose description has been checked: the only thing that the rest of the crate accepts.
 ///
@@ -37,6 +38,9 @@ impl Machine {
     ///   reaches the supply: V / Ke rad/s at the shaft;
     /// - a belt that stretches pulls at a carriage with a mass, and the rail's friction is less than the motor can pull.
     ///
+    /// With one belt the area and the start lie within what both motors can turn, and what is common to both motors is the
+    /// same: see `docs/machine-config.md`. Its serial line is not read.
+    ///
     /// With stepper motors, for each axis:
     ///
     /// - it starts at no more than its greatest rate, and homing runs at no more than that either;
@@ -56,20 +60,31 @@ impl Machine {
         rules().try_for_each(|rule| rule.check(&config))?;
         match config.drive {
             DriveChoice::Dc => {
-                check_area(&config)?;
-                check_serial(&config)?;
+                match config.kinematics.kind {
+                    KinematicsChoice::Cartesian => {
+                        check_area(&config)?;
+                        check_serial(&config)?;
+                    }
+                    KinematicsChoice::CoreXy => check_belt(&config)?,
+                }
                 check_control(&config)?;
                 check_axis(&config.x, &X, &config)?;
                 check_axis(&config.y, &Y, &config)?;
                 check_transmission(&config)?;
             }
             DriveChoice::Stepper => {
+                check_cartesian(&config)?;
                 check_stepper_motor(&config)?;
                 check_stepper(&config.x, &X, config.area.width_mm, &config)?;
                 check_stepper(&config.y, &Y, config.area.height_mm, &config)?;
             }
         }
         Ok(Self { config })
+    }
+
+    /// What leads the motors takes them as this describes them, along lines of their own counts.
+    pub(crate) fn led_motors(&self) -> MachineConfig {
+        self.config.led_motors()
     }
 
     /// The description that was checked.
@@ -80,7 +95,7 @@ impl Machine {
 }
 
 /// Greatest coordinate that five decimal digits carry (the published serial protocol).
-const MAX_COUNTS: f64 = 99_999.0;
+pub(super) const MAX_COUNTS: f64 = 99_999.0;
 /// Bits on the line for a byte: one to start, eight of data, one to stop.
 const BITS_PER_BYTE: f64 = 10.0;
 /// Runs of the loop in a period of the position loop: fewer, and the delay of a run eats the phase margin.
@@ -89,7 +104,7 @@ const RUNS_PER_POSITION_PERIOD: f64 = 10.0;
 const RUNS_PER_OBSERVER_PERIOD: f64 = 4.0;
 
 /// Refuses `value` behind `key` unless it lies on the right side of `limit`.
-fn demand(
+pub(super) fn demand(
     key: &'static str,
     value: f64,
     (bound, limit): (Bound, f64),
@@ -190,7 +205,8 @@ fn check_axis(axis: &AxisConfig, keys: &AxisKeys, config: &MachineConfig) -> Res
     )?;
     if config.control.controller == ControllerChoice::Contouring {
         let counts_per_rad = axis.counts_per_turn() / core::f64::consts::TAU;
-        let shaft_rad_s = config.control.contouring.feed_mm_s * axis.counts_per_mm / counts_per_rad;
+        let motor_mm_s = config.control.contouring.feed_mm_s * config.motor_mm_per_mm();
+        let shaft_rad_s = motor_mm_s * axis.counts_per_mm / counts_per_rad;
         demand(
             keys.supply,
             motor.supply_v,
@@ -204,6 +220,18 @@ fn check_axis(axis: &AxisConfig, keys: &AxisKeys, config: &MachineConfig) -> Res
 
 /// Steps of the far corner: a million short of what 32 bits hold, for play and the way beyond the switches.
 const MAX_STEPS: f64 = 2_146_000_000.0;
+
+fn check_cartesian(config: &MachineConfig) -> Result<(), ConfigError> {
+    match config.kinematics.kind {
+        KinematicsChoice::Cartesian => Ok(()),
+        KinematicsChoice::CoreXy => Err(ConfigError::Unfit {
+            key: "kinematics.type",
+            value: "corexy",
+            remedy: "does not go with drive = \"stepper\", whose controller moves each axis by its own motor: write \
+                     \"cartesian\", or drive = \"dc\" for the motors of a belt",
+        }),
+    }
+}
 
 fn check_stepper_motor(config: &MachineConfig) -> Result<(), ConfigError> {
     let motor = &config.stepper_motor;

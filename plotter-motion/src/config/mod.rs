@@ -6,7 +6,10 @@
 //!                  line, column, key, remedy    key, value, range, remedy
 //! ```
 
+mod belt_check;
+mod belt_rules;
 mod error;
+mod kinematics;
 mod machine;
 mod machine_config;
 mod name;
@@ -22,6 +25,7 @@ mod transmission;
 mod vectorize;
 
 pub use error::{Bound, ConfigError};
+pub use kinematics::{BeltConfig, KinematicsChoice, KinematicsConfig, KnownMotors, PointToPointConfig};
 pub use machine::Machine;
 pub use machine_config::{
     AreaConfig, AxisConfig, ContouringConfig, ControlConfig, ControllerChoice, Decoding, EncoderConfig,

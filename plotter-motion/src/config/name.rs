@@ -15,6 +15,9 @@ impl MachineName {
     /// The documented machine with stepper motors.
     pub const STEPPER_PLOTTER: Self = Self::literal("stepper-plotter");
 
+    /// The documented machine with one belt.
+    pub const MARKING_BOARD: Self = Self::literal("marking-board");
+
     const fn literal(text: &str) -> Self {
         let source = text.as_bytes();
         let mut bytes = [0; Self::MAX_BYTES];

@@ -3,6 +3,7 @@
 //! This is the only list of keys: the check of a [`MachineConfig`], the reader of TOML files and the test of the
 //! page `docs/machine-config.md` all read it.
 
+use super::belt_rules::BELT;
 use super::transmission::{LATENCY, X_TRANSMISSION, Y_TRANSMISSION};
 use super::{ConfigError, MachineConfig};
 
@@ -573,7 +574,14 @@ static Y: [Rule; 19] = axis_rules!(y);
 
 /// All keys, in the order of the documentation.
 pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
-    MACHINE.iter().chain(&LATENCY).chain(&X).chain(&X_TRANSMISSION).chain(&Y).chain(&Y_TRANSMISSION)
+    MACHINE
+        .iter()
+        .chain(&LATENCY)
+        .chain(&BELT)
+        .chain(&X)
+        .chain(&X_TRANSMISSION)
+        .chain(&Y)
+        .chain(&Y_TRANSMISSION)
 }
 
 #[cfg(test)]

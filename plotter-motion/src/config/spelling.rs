@@ -7,7 +7,7 @@ use alloc::{format, string::String, vec::Vec};
 const LONGEST_WORD: usize = 48;
 
 /// Endings that name a unit, each with the unit in words, longest first where one ends another.
-const UNITS: [(&str, &str); 45] = [
+const UNITS: [(&str, &str); 46] = [
     ("_n_s_per_mm", "N s/mm"),
     ("_n_per_mm", "N/mm"),
     ("_mm_min2", "mm/min^2"),
@@ -25,6 +25,7 @@ const UNITS: [(&str, &str); 45] = [
     ("_mn_m_per_a", "mN m/A"),
     ("_mn_m_s", "mN m s"),
     ("_n_m_s", "N m s"),
+    ("_rad_s", "rad/s"),
     ("_mn_m", "mN m"),
     ("_n_m", "N m"),
     ("_m_s", "m/s"),

@@ -1,12 +1,12 @@
 //! [`ChosenController`]: the one that a machine's description asks for.
 
-use super::{Contouring, LineController, LineTracking};
-use crate::{Axis, ControllerChoice, Demand, Direction, Drive, Machine, StepPoint};
+use super::{Contouring, LineController, LineTracking, PointToPoint, PointToPointSettings};
+use crate::{Axis, ControllerChoice, Demand, Direction, Drive, KinematicsChoice, Machine, StepPoint};
 use core::time::Duration;
 
-/// Either controller, for programs that learn only from a file which one it is.
+/// Any of the controllers, for programs that learn only from a file which one it is.
 ///
-/// It is as large as the larger one. A firmware that has but one takes that itself.
+/// It is as large as the largest one. A firmware that has but one takes that itself.
 ///
 /// ```
 /// # use plotter_motion::{Machine, MachineConfig, control::ChosenController};
@@ -14,32 +14,37 @@ use core::time::Duration;
 /// assert!(matches!(ChosenController::of(&machine), ChosenController::Contouring(_)));
 /// # Ok::<(), plotter_motion::ConfigError>(())
 /// ```
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is one controller in a machine, and no heap to put it on"
-)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ChosenController {
-    /// As published.
+    /// As published for motors that each move an axis.
     LineTracking(LineTracking),
+    /// As published for the motors of a belt.
+    PointToPoint(PointToPoint),
     /// Ours.
     Contouring(Contouring),
 }
 
 impl ChosenController {
-    /// The one that a machine's description names, at rest at the origin.
+    /// The one that a machine's description names, at rest at the origin. What was published differs with how the motors move
+    /// the pen; ours is the same.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
-        match machine.config().control.controller {
-            ControllerChoice::Published => Self::LineTracking(LineTracking::new(machine)),
-            ControllerChoice::Contouring => Self::Contouring(Contouring::new(machine)),
+        match (machine.config().control.controller, machine.config().kinematics.kind) {
+            (ControllerChoice::Published, KinematicsChoice::Cartesian) => {
+                Self::LineTracking(LineTracking::new(machine))
+            }
+            (ControllerChoice::Published, KinematicsChoice::CoreXy) => {
+                Self::PointToPoint(PointToPoint::new(PointToPointSettings::of(machine)))
+            }
+            (ControllerChoice::Contouring, _) => Self::Contouring(Contouring::new(machine)),
         }
     }
 
     fn get(&self) -> &dyn LineController {
         match self {
             Self::LineTracking(controller) => controller,
+            Self::PointToPoint(controller) => controller,
             Self::Contouring(controller) => controller,
         }
     }
@@ -47,6 +52,7 @@ impl ChosenController {
     fn get_mut(&mut self) -> &mut dyn LineController {
         match self {
             Self::LineTracking(controller) => controller,
+            Self::PointToPoint(controller) => controller,
             Self::Contouring(controller) => controller,
         }
     }

@@ -129,7 +129,7 @@ impl ContouringSettings {
     pub fn of(machine: &Machine) -> Self {
         // An error across the line is seen on the paper, one along it is not: the loop across is the stiffer one.
         const ACROSS_SHARE: f64 = 1.6;
-        let config = machine.config();
+        let config = &machine.led_motors();
         let contouring = &config.control.contouring;
         // The plan is made in counts, the limits in those of the coarser axis, so that no axis exceeds them.
         let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);

@@ -2,7 +2,7 @@
 
 use super::{DriveRamp, Equalizer, EqualizerSettings, LineController};
 use crate::kinematics::BeltSigns;
-use crate::{Axis, Demand, Direction, Drive, Duty, StepPoint};
+use crate::{Axis, Demand, Direction, Drive, Duty, Machine, StepPoint};
 use core::time::Duration;
 
 /// The published way from point to point (spec 2.4): each axis is driven towards its target until it is within the
@@ -78,6 +78,46 @@ impl Default for PointToPointSettings {
             factors: [1.0, 1.0],
             equalizer: None,
             period: Duration::from_millis(5),
+        }
+    }
+}
+
+impl PointToPointSettings {
+    /// Those of a machine with a belt.
+    ///
+    /// ```
+    /// # use plotter_motion::{Machine, MachineConfig, control::PointToPointSettings};
+    /// let settings = PointToPointSettings::of(&Machine::new(MachineConfig::marking_board())?);
+    /// assert_eq!(settings.allowed_counts, 20.835); // 0.45 mm at 46.3 counts/mm
+    /// assert!(settings.equalizer.is_none());
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        let config = machine.config();
+        let from = &config.point_to_point;
+        let counts_per_mm = config.x.counts_per_mm;
+        #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
+        let single = |value: f64| value as f32;
+        let equalizer = EqualizerSettings {
+            time_constant_s: single(from.equalizer_time_constant_ms * 1e-3),
+            pole_rad_s: single(from.equalizer_pole_rad_s),
+            full_speed_counts_s: single(from.equalizer_full_speed_mm_s * counts_per_mm),
+            most_trim: single(from.equalizer_most_trim),
+        };
+        Self {
+            signs: config.kinematics.signs,
+            allowed_counts: single(from.allowed_error_mm * counts_per_mm),
+            ramp: DriveRamp {
+                start: single(from.drive_start),
+                step: single(from.drive_step),
+                most: single(from.drive_most),
+                period: Duration::from_secs_f64(from.drive_step_ms * 1e-3),
+            },
+            slow_counts: single(from.slow_mm * counts_per_mm),
+            factors: [single(from.factor_x), single(from.factor_y)],
+            equalizer: from.equalize.then_some(equalizer),
+            period: Duration::from_secs_f64(from.period_ms * 1e-3),
         }
     }
 }

@@ -1,10 +1,10 @@
 //! The marking board's controller: one belt, two DC motors, encoders that only count up.
 
-use crate::control::{LineController, SpeedMeter};
+use crate::control::{ChosenController, LineController, SpeedMeter};
 use crate::kinematics::{CoreXy, Kinematics};
 use crate::{
-    Axis, Demand, Direction, Drive, Duty, LimitSwitches, OutOfReach, Pen, PenMove, PlotOp, Point,
-    PulseCounter, SafetyGate, StepPoint, chords,
+    Axis, ControllerChoice, Demand, Direction, Drive, Duty, LimitSwitches, Machine, OutOfReach, Pen, PenMove,
+    PlotOp, Point, PulseCounter, SafetyGate, StepPoint, chords,
 };
 use core::time::Duration;
 
@@ -22,23 +22,34 @@ pub struct MarkingBoardSettings {
     /// How long no pulse must have come from a motor until it is driven the other way. Before that it may still run down, and its
     /// pulses would be counted the wrong way. 0 for the published controller, which did not wait.
     pub run_down: Duration,
+    /// Speed of the pen from which on the speed meters' window has its full length, mm/s (spec 2.3).
+    pub speed_window_mm_s: f64,
 }
 
 impl MarkingBoardSettings {
-    /// A board of 300 mm by 200 mm that is switched on with its pen in the middle: motors that differ by up to 15 %,
-    /// 30 ms for the run-down.
+    /// Those of a machine with a belt; run-down and share are those of the controller that it names.
     ///
-    /// The run-down: when no mark has come for 30 ms from a motor that friction slows down by a counts/s², it has made less
+    /// The documented board has 30 ms for the run-down: when no mark has come for 30 ms from a motor that friction slows down by a counts/s², it has made less
     /// than a count in that time and so turns by at most (1 − a 0.03²/2)/0.03 counts/s now: with a = 500/s² 26 counts/s, which end
     /// after two thirds of a count, with the 1930/s² of the simulated motors after a hundredth.
     #[must_use]
-    pub fn new(belt: CoreXy) -> Self {
+    pub fn of(machine: &Machine) -> Self {
+        let config = machine.config();
+        let (unequal_share, run_down_ms) = match config.control.controller {
+            ControllerChoice::Published => {
+                (config.point_to_point.unequal_share, config.point_to_point.run_down_ms)
+            }
+            ControllerChoice::Contouring => (config.belt.unequal_share, config.belt.run_down_ms),
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
+        let unequal_share = unequal_share as f32;
         Self {
-            belt,
-            start: Point::new(150.0, 100.0),
-            most: Point::new(300.0, 200.0),
-            unequal_share: 0.15,
-            run_down: Duration::from_millis(30),
+            belt: CoreXy::of(machine),
+            start: Point::new(config.belt.start_x_mm, config.belt.start_y_mm),
+            most: Point::new(config.area.width_mm, config.area.height_mm),
+            unequal_share,
+            run_down: Duration::from_secs_f64(run_down_ms * 1e-3),
+            speed_window_mm_s: config.belt.speed_window_mm_s,
         }
     }
 
@@ -52,15 +63,14 @@ impl MarkingBoardSettings {
     ///
     /// ```
     /// # use plotter_motion::firmware::MarkingBoardSettings;
-    /// # use plotter_motion::kinematics::{BeltSigns, CoreXy};
-    /// # use plotter_motion::{rectangle, Point, StepPoint};
-    /// let board = MarkingBoardSettings::new(CoreXy::new(BeltSigns::DirectionTable, 46.3)?);
+    /// # use plotter_motion::{rectangle, Machine, MachineConfig, Point, StepPoint};
+    /// let board = MarkingBoardSettings::of(&Machine::new(MachineConfig::marking_board())?);
     /// let corners = board.moves(rectangle(board.start, 10.0, 20.0)).filter_map(Result::ok);
     /// let targets: Vec<StepPoint> = corners.map(|corner| corner.target).collect();
     /// // up 20 mm, right 10 mm, down, left
     /// let expected = [(0, 0), (-926, 926), (-463, 1389), (463, 463), (0, 0)];
     /// assert_eq!(targets, expected.map(|(first, second)| StepPoint::new(first, second)));
-    /// # Ok::<(), plotter_motion::kinematics::ScaleError>(())
+    /// # Ok::<(), plotter_motion::ConfigError>(())
     /// ```
     pub fn moves<I: IntoIterator<Item = PlotOp>>(
         &self,
@@ -121,19 +131,18 @@ impl BoardMotor {
 /// [`has_arrived`](Self::has_arrived) says so.
 ///
 /// ```
-/// # use plotter_motion::control::{PointToPoint, PointToPointSettings};
-/// # use plotter_motion::firmware::{MarkingBoard, MarkingBoardSettings};
-/// # use plotter_motion::kinematics::{BeltSigns, CoreXy};
-/// # use plotter_motion::{Pen, PenMove, StepPoint};
+/// # use plotter_motion::firmware::MarkingBoard;
+/// # use plotter_motion::{ControllerChoice, Machine, MachineConfig, Pen, PenMove, StepPoint};
 /// # use core::time::Duration;
-/// let settings = MarkingBoardSettings::new(CoreXy::new(BeltSigns::DirectionTable, 46.3)?);
-/// let mut board = MarkingBoard::new(settings, PointToPoint::new(PointToPointSettings::default()));
+/// let mut config = MachineConfig::marking_board();
+/// config.control.controller = ControllerChoice::Published;
+/// let mut board = MarkingBoard::of(&Machine::new(config)?);
 /// board.start(Duration::ZERO, PenMove { pen: Pen::Down, target: StepPoint::new(463, 463) }); // 10 mm to the right
 /// board.tick(Duration::from_millis(5));
 /// assert!(board.drive().x().value() > 0.0 && board.drive().x() == board.drive().y());
 /// board.emergency_stop(Duration::from_millis(6), true);
 /// assert_eq!(board.drive().x().value(), 0.0);
-/// # Ok::<(), plotter_motion::kinematics::ScaleError>(())
+/// # Ok::<(), plotter_motion::ConfigError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarkingBoard<C> {
@@ -151,13 +160,20 @@ pub struct MarkingBoard<C> {
     next_sample: Duration,
 }
 
+impl MarkingBoard<ChosenController> {
+    /// The controller of `machine`, at rest where it is switched on.
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        Self::new(MarkingBoardSettings::of(machine), ChosenController::of(machine))
+    }
+}
+
 impl<C: LineController> MarkingBoard<C> {
     /// The board at rest where it is switched on, its controller at the origin of its counts.
     #[must_use]
     pub fn new(settings: MarkingBoardSettings, controller: C) -> Self {
-        // The window of the speed is full from 30 mm/s on (spec 2.3).
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
-        let full_window_counts_s = (30.0 * settings.belt.steps_per_mm()) as f32;
+        let full_window_counts_s = (settings.speed_window_mm_s * settings.belt.steps_per_mm()) as f32;
         let motor = BoardMotor {
             counter: PulseCounter::default(),
             last_pulse: None,
@@ -343,13 +359,12 @@ fn next(due: Duration, period: Duration, now: Duration) -> Duration {
 mod tests {
     use super::*;
     use crate::control::{PointToPoint, PointToPointSettings};
-    use crate::kinematics::BeltSigns;
     use std::vec::Vec;
 
     const MS: Duration = Duration::from_millis(1);
 
     fn settings() -> MarkingBoardSettings {
-        MarkingBoardSettings::new(CoreXy::new(BeltSigns::DirectionTable, 46.3).unwrap())
+        MarkingBoardSettings::of(&Machine::new(crate::MachineConfig::marking_board()).unwrap())
     }
 
     /// A board on its way to the right, with one pulse of either motor 10 ms ago.

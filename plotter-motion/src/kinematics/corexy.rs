@@ -18,7 +18,7 @@
 
 use super::cartesian::{LEAST_STEPS_PER_MM, MOST_STEPS_PER_MM};
 use super::{Kinematics, MotorPoint, ScaleError};
-use crate::{Axis, Point};
+use crate::{Axis, Machine, Point};
 use core::ops::{Add, Sub};
 
 /// Which way the two motors of a belt turn for a move of the pen.
@@ -30,6 +30,7 @@ use core::ops::{Add, Sub};
 /// assert_eq!(BeltSigns::DirectionTable.twice_axes(1, 0), (1, -1)); // motor 1 alone: half a step right, half a step down
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum BeltSigns {
     /// x = (M1 + M2)/2, y = (M2 − M1)/2: as the report's table of directions says.
     #[default]
@@ -86,6 +87,21 @@ impl CoreXy {
         } else {
             Err(ScaleError { axis: Axis::X, steps_per_mm })
         }
+    }
+
+    /// The belt of a checked machine, with the scale of its first motor.
+    ///
+    /// ```
+    /// # use plotter_motion::kinematics::{CoreXy, Kinematics};
+    /// # use plotter_motion::{Machine, MachineConfig, Point, StepPoint};
+    /// let board = CoreXy::of(&Machine::new(MachineConfig::marking_board())?); // 46.3 pulses/mm
+    /// assert_eq!(board.steps_at(Point::new(10.0, 10.0)), StepPoint::new(0, 926));
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn of(machine: &Machine) -> Self {
+        let config = machine.config();
+        Self { signs: config.kinematics.signs, steps_per_mm: config.x.counts_per_mm }
     }
 
     /// Which way the motors turn.

@@ -2,7 +2,7 @@
 
 use super::dc_motor::{DcMotor, DcMotorState};
 use crate::kinematics::{CoreXy, Kinematics, MotorPoint};
-use crate::{Axis, Drive, Duty, LimitSwitches, LoadConfig, MotorConfig, Point};
+use crate::{Axis, Drive, Duty, LimitSwitches, LoadConfig, Machine, MotorConfig, Point};
 use core::f64::consts::TAU;
 
 /// What a simulated board is made of.
@@ -27,33 +27,23 @@ pub struct MarkingBoardPlantSettings {
 }
 
 impl MarkingBoardPlantSettings {
-    /// A board of 300 mm by 200 mm, its pen in the middle. The report names no motor: both are the gantry's (spec
-    /// 1.8), which at 24 pulses a turn and 46.3 pulses to the millimetre make 30 mm/s at 5 V. They differ as two of a kind
-    /// may: the second has a tenth more field, as with weaker and stronger magnets, and half as much friction again. Gear and pulley have 2e-6 kg m², so that a
-    /// motor at 30 mm/s runs down for 0.6 mm; the rails differ by half.
+    /// The motors, rails and places of a machine with a belt, each encoder in the middle between two marks.
     ///
     /// The mass on the rails is left out: a kilogram moved by 0.52 mm a turn is 1.7e-9 kg m² at either motor, less than a
-    /// thousandth of the gear.
+    /// thousandth of the documented board's gear.
     #[must_use]
-    pub fn unequal(belt: CoreXy) -> Self {
-        let motor = MotorConfig::default();
-        let load = LoadConfig { inertia_kg_m2: 2.0e-6, ..LoadConfig::default() };
-        let stronger = MotorConfig {
-            back_emf_v_s: 1.1 * motor.back_emf_v_s,
-            torque_n_m_per_a: 1.1 * motor.torque_n_m_per_a,
-            ..motor
-        };
-        let rougher =
-            LoadConfig { coulomb_n_m: 1.5 * load.coulomb_n_m, static_n_m: 1.6 * load.static_n_m, ..load };
+    pub fn of(machine: &Machine) -> Self {
+        let config = machine.config();
+        let belt = &config.belt;
         Self {
-            belt,
-            motors: [(motor, load), (stronger, rougher)],
-            pulses_per_turn: 24.0,
+            belt: CoreXy::of(machine),
+            motors: [(config.x.motor, config.x.load), (config.y.motor, config.y.load)],
+            pulses_per_turn: config.x.counts_per_turn(),
             phases: [0.5, 0.5],
-            x_rail_n: [6.0, 8.0],
-            y_rail_n: [9.0, 12.0],
-            start: Point::new(150.0, 100.0),
-            most: Point::new(300.0, 200.0),
+            x_rail_n: [belt.x_rail_coulomb_n, belt.x_rail_static_n],
+            y_rail_n: [belt.y_rail_coulomb_n, belt.y_rail_static_n],
+            start: Point::new(belt.start_x_mm, belt.start_y_mm),
+            most: Point::new(config.area.width_mm, config.area.height_mm),
         }
     }
 }
@@ -70,19 +60,19 @@ impl MarkingBoardPlantSettings {
 /// dynamics" (1988).
 ///
 /// ```
-/// # use plotter_motion::kinematics::{BeltSigns, CoreXy};
 /// # use plotter_motion::plant::{MarkingBoardPlant, MarkingBoardPlantSettings};
-/// # use plotter_motion::{Demand, Duty, SafetyGate};
-/// let belt = CoreXy::new(BeltSigns::DirectionTable, 46.3)?;
-/// let mut board = MarkingBoardPlant::new(&MarkingBoardPlantSettings::unequal(belt), 1e-4);
+/// # use plotter_motion::{Demand, Duty, Machine, MachineConfig, SafetyGate};
+/// let settings = MarkingBoardPlantSettings::of(&Machine::new(MachineConfig::marking_board())?);
+/// let mut board = MarkingBoardPlant::new(&settings, 1e-4);
 /// let start = board.position_mm();
-/// let right = SafetyGate::default().pass_belt(Demand { x: Duty::saturating(0.4), y: Duty::ZERO }, belt.signs(), 0.0);
+/// let demand = Demand { x: Duty::saturating(0.4), y: Duty::ZERO };
+/// let right = SafetyGate::default().pass_belt(demand, settings.belt.signs(), 0.0);
 /// for _ in 0..10_000 {
 ///     board.step(right, |_| ());
 /// }
 /// let moved = board.position_mm() - start;
 /// assert!(moved.x > 20.0 && moved.y.abs() > 0.5); // a second: to the right, and not straight
-/// # Ok::<(), plotter_motion::kinematics::ScaleError>(())
+/// # Ok::<(), plotter_motion::ConfigError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarkingBoardPlant {

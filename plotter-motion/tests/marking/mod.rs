@@ -4,25 +4,29 @@
 //! The marking board's controller and its simulated board, in one time.
 
 use core::time::Duration;
-use plotter_motion::control::{
-    Contouring, DriveRamp, EqualizerSettings, LineController, PointToPoint, PointToPointSettings,
-};
+use plotter_motion::control::{ChosenController, Contouring, LineController};
 use plotter_motion::firmware::{MarkingBoard, MarkingBoardSettings};
-use plotter_motion::kinematics::{BeltSigns, CoreXy};
+use plotter_motion::kinematics::CoreXy;
 use plotter_motion::plant::{MarkingBoardPlant, MarkingBoardPlantSettings};
-use plotter_motion::{
-    AreaConfig, AxisConfig, ContouringConfig, ControlConfig, Decoding, EncoderConfig, LoadConfig, Machine,
-    MachineConfig, PenMove, PlotOp, Point,
-};
+use plotter_motion::{ControllerChoice, Machine, MachineConfig, PenMove, PlotOp, Point, PointToPointConfig};
 
 pub const TIME_STEP: Duration = Duration::from_micros(100);
 
+/// The board of `examples/machines/marking-board.toml`: `tests/config_preset.rs` compares the two.
+pub fn machine() -> Machine {
+    Machine::new(MachineConfig::marking_board()).unwrap()
+}
+
 pub fn belt() -> CoreXy {
-    CoreXy::new(BeltSigns::DirectionTable, 46.3).unwrap()
+    CoreXy::of(&machine())
 }
 
 pub fn settings() -> MarkingBoardSettings {
-    MarkingBoardSettings::new(belt())
+    MarkingBoardSettings::of(&machine())
+}
+
+pub fn plant() -> MarkingBoardPlantSettings {
+    MarkingBoardPlantSettings::of(&machine())
 }
 
 pub struct Run<C> {
@@ -38,8 +42,7 @@ impl<C: LineController> Run<C> {
 
     /// With each encoder so far beyond a mark at first.
     pub fn with_phases(settings: MarkingBoardSettings, controller: C, phases: [f64; 2]) -> Self {
-        let unequal = MarkingBoardPlantSettings::unequal(settings.belt);
-        Self::on(settings, controller, &MarkingBoardPlantSettings { phases, ..unequal })
+        Self::on(settings, controller, &MarkingBoardPlantSettings { phases, ..plant() })
     }
 
     /// On a board of which everything is said.
@@ -94,57 +97,31 @@ impl<C: LineController> Run<C> {
     }
 }
 
+/// The board's published controller, changed.
+fn point_to_point(change: impl FnOnce(&mut PointToPointConfig)) -> (MarkingBoardSettings, ChosenController) {
+    let mut config = MachineConfig::marking_board();
+    config.control.controller = ControllerChoice::Published;
+    change(&mut config.point_to_point);
+    let machine = Machine::new(config).unwrap();
+    (MarkingBoardSettings::of(&machine), ChosenController::of(&machine))
+}
+
 /// As published, without the run-down being waited for and without care at the switches.
-pub fn published() -> (MarkingBoardSettings, PointToPoint) {
-    let settings = MarkingBoardSettings { run_down: Duration::ZERO, unequal_share: 0.0, ..settings() };
-    (settings, PointToPoint::new(PointToPointSettings::default()))
+pub fn published() -> (MarkingBoardSettings, ChosenController) {
+    point_to_point(|_| ())
 }
 
 /// The published directions with ramp and equalizer.
-pub fn equalized() -> (MarkingBoardSettings, PointToPoint) {
-    let point_to_point = PointToPointSettings {
-        equalizer: Some(EqualizerSettings::default()),
-        ramp: DriveRamp { start: 0.15, step: 0.05, most: 0.45, period: Duration::from_millis(100) },
-        slow_counts: 100.0,
-        ..PointToPointSettings::default()
-    };
-    (settings(), PointToPoint::new(point_to_point))
+pub fn equalized() -> (MarkingBoardSettings, ChosenController) {
+    point_to_point(|settings| {
+        settings.equalize = true;
+        (settings.drive_start, settings.drive_step, settings.drive_step_ms) = (0.15, 0.05, 100.0);
+        settings.slow_mm = 2.16;
+        (settings.run_down_ms, settings.unequal_share) = (30.0, 0.15);
+    })
 }
 
-/// The machine that ours believes in: two equal motors, friction between that of the real ones.
-pub fn believed() -> MachineConfig {
-    let motor = AxisConfig {
-        counts_per_mm: 46.3,
-        encoder: EncoderConfig { lines_per_turn: 12, decoding: Decoding::X2 },
-        load: LoadConfig {
-            inertia_kg_m2: 2.0e-6,
-            coulomb_n_m: 1.6e-3,
-            static_n_m: 1.6e-3,
-            viscous_n_m_s: 1.0e-6,
-        },
-        ..AxisConfig::default()
-    };
-    let contouring = ContouringConfig {
-        // along the line of both motors, √2 times that of the pen: 30 mm/s and 200 mm/s²
-        feed_mm_s: 42.4,
-        accel_mm_s2: 283.0,
-        jerk_mm_s3: 5000.0,
-        loop_hz: 1000.0,
-        bandwidth_hz: 15.0,
-        observer_hz: 30.0,
-        arrival_tolerance_counts: 0.45,
-        settle_ms: 20.0,
-    };
-    MachineConfig {
-        area: AreaConfig { width_mm: 300.0, height_mm: 200.0 },
-        x: motor,
-        y: motor,
-        control: ControlConfig { contouring, ..ControlConfig::default() },
-        ..MachineConfig::default()
-    }
-}
-
-/// Ours: both motors led along a planned line.
+/// Ours: both motors led along a planned line. It takes both motors to be the mean of the two.
 pub fn contouring() -> (MarkingBoardSettings, Contouring) {
-    (settings(), Contouring::new(&Machine::new(believed()).unwrap()))
+    (settings(), Contouring::new(&machine()))
 }

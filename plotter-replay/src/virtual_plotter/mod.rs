@@ -20,14 +20,14 @@ mod settings;
 
 pub use anomaly::{Anomaly, AnomalyKind};
 pub use leg::{Leg, TrackPoint};
-pub use settings::{PlotterSettings, SettingsError};
+pub use settings::{CountedBy, PlotterSettings, SettingsError};
 
 use crate::log::{Event, Record};
 use core::time::Duration;
 use drawing::Drawing;
 use host_digits::{Decoded, HostDigits};
 use plotter_motion::protocol::digits::Reply;
-use plotter_motion::{Axis, Pen, PenMove, PlotOp, Point, StepPoint, chords};
+use plotter_motion::{Axis, Direction, Pen, PenMove, PlotOp, Point, StepPoint, chords};
 
 /// A target and where the pulses had led when the controller said that it was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,6 +146,10 @@ impl VirtualPlotter {
                 self.set_pen(*pen);
             }
             Event::Target { x, y } => self.target_taken(StepPoint::new(*x, *y)),
+            Event::Edge { axis, sign } if self.settings.counted_by == CountedBy::Edges => {
+                self.listen();
+                self.count(*axis, *sign);
+            }
             // Edges come again as pulse bytes; the others do not move the pen.
             Event::Edge { .. }
             | Event::Drive { .. }
@@ -269,14 +273,7 @@ impl VirtualPlotter {
         let decoded = self.host.align();
         self.take(decoded);
         match Reply::from_byte(byte) {
-            Some(Reply::Pulse(axis, direction)) => {
-                let coordinate = match axis {
-                    Axis::X => &mut self.counted.x,
-                    Axis::Y => &mut self.counted.y,
-                };
-                *coordinate = coordinate.saturating_add(direction.sign());
-                self.add_point();
-            }
+            Some(Reply::Pulse(axis, direction)) => self.count(axis, direction),
             Some(Reply::Reached) => self.target_reached(),
             Some(Reply::Clear) => {
                 self.host.drop_partial();
@@ -288,6 +285,15 @@ impl VirtualPlotter {
             }
             None => self.note(self.now, AnomalyKind::UnknownReply { byte }),
         }
+    }
+
+    fn count(&mut self, axis: Axis, direction: Direction) {
+        let coordinate = match axis {
+            Axis::X => &mut self.counted.x,
+            Axis::Y => &mut self.counted.y,
+        };
+        *coordinate = coordinate.saturating_add(direction.sign());
+        self.add_point();
     }
 
     /// Notices a silence of the whole line.
@@ -327,6 +333,9 @@ impl VirtualPlotter {
 
     /// The controller's own word on its target.
     fn target_taken(&mut self, taken: StepPoint) {
+        if self.settings.counted_by == CountedBy::Edges {
+            self.last_byte = Some(self.now); // between two moves a controller without a line may rest
+        }
         let decoded = self.host.align();
         self.take(decoded);
         match self.next {
@@ -366,7 +375,9 @@ impl VirtualPlotter {
         self.from = desired;
         let (time, actual) = (self.now, self.counted);
         self.end_leg(Some(Reached { time, desired, actual, error, resync_error }));
-        self.correction = minus(desired, self.counted);
+        if self.settings.counted_by == CountedBy::Answers {
+            self.correction = minus(desired, self.counted);
+        }
         self.leg.correction = self.correction;
     }
 

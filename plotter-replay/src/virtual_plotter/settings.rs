@@ -3,7 +3,8 @@
 use crate::log::Header;
 use core::fmt;
 use core::time::Duration;
-use plotter_motion::{Point, StepPoint, from_mm};
+use plotter_motion::kinematics::{BeltSigns, MotorPoint};
+use plotter_motion::{Point, StepPoint};
 
 /// Scale, origin and limits of a virtual plotter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +15,11 @@ pub struct PlotterSettings {
     pub y_mm_per_pulse: f64,
     /// Where position (0, 0) of the motors lies on the sheet, mm: the origin offset P1.
     pub p1: Point,
+    /// Which way the two motors of a belt turn; `None` where each moves an axis. Counts are those of the motors either way, and
+    /// a belt has one scale, that of x.
+    pub belt: Option<BeltSigns>,
+    /// What says where the motors are.
+    pub counted_by: CountedBy,
     /// A silence of the host inside a target after which the rest of it is not expected any more.
     pub resync_gap: Duration,
     /// A silence with a target under way that is reported.
@@ -26,6 +32,17 @@ pub struct PlotterSettings {
     pub max_entries: usize,
 }
 
+/// What in a log says where the motors are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum CountedBy {
+    /// The controller's answers on the serial line: the protocol `digits`.
+    #[default]
+    Answers,
+    /// The encoders' edges, for a controller that has no such line: the protocol `counts`. Targets are recorded as such, and its
+    /// only answer is `+`, when it has arrived; from a target that was missed the counts go on.
+    Edges,
+}
+
 impl Default for PlotterSettings {
     /// The semi-virtual gantry: 40 pulses a millimetre, origin at the lower left, 100 ms inside a target; up to
     /// 8 million points (128 MB).
@@ -34,6 +51,8 @@ impl Default for PlotterSettings {
             x_mm_per_pulse: 0.025,
             y_mm_per_pulse: 0.025,
             p1: Point::ORIGIN,
+            belt: None,
+            counted_by: CountedBy::Answers,
             resync_gap: Duration::from_millis(100),
             stall_after: Duration::from_secs(1),
             reached_tolerance_counts: 0,
@@ -53,8 +72,8 @@ pub struct SettingsError {
 }
 
 impl PlotterSettings {
-    /// The defaults with what a log's header says: `x_mm_per_pulse`, `y_mm_per_pulse`, `p1_x_mm`, `p1_y_mm` and
-    /// `resync_gap_ms`, each optional.
+    /// The defaults with what a log's header says: `x_mm_per_pulse`, `y_mm_per_pulse`, `p1_x_mm`, `p1_y_mm`,
+    /// `resync_gap_ms`, `reached_tolerance_counts`, `belt_signs` and `protocol`, each optional.
     ///
     /// # Errors
     ///
@@ -71,6 +90,22 @@ impl PlotterSettings {
         let place = |n: f64| n.abs() <= 1e6;
         let pause = |n| (0.0..=3.6e6).contains(&n);
         let base = Self::default();
+        let counts = |n: f64| (0.0..=100_000.0).contains(&n);
+        let belt = match header.text("belt_signs") {
+            Some("direction-table") => Some(BeltSigns::DirectionTable),
+            Some("tracking-equations") => Some(BeltSigns::TrackingEquations),
+            None if !header.has("belt_signs") => None,
+            _ => {
+                let expected = "direction-table or tracking-equations";
+                return Err(SettingsError { key: "belt_signs", expected });
+            }
+        };
+        let counted_by = match header.text("protocol") {
+            Some("counts") => CountedBy::Edges,
+            _ => CountedBy::Answers,
+        };
+        let tolerance = f64::from(base.reached_tolerance_counts);
+        let tolerance = number("reached_tolerance_counts", "0 to 100000 counts", counts, tolerance)?;
         let scale = "a length above 0 and up to 1000 mm";
         Ok(Self {
             x_mm_per_pulse: number("x_mm_per_pulse", scale, length, base.x_mm_per_pulse)?,
@@ -79,6 +114,14 @@ impl PlotterSettings {
                 number("p1_x_mm", "a number within 1e6 mm", place, base.p1.x)?,
                 number("p1_y_mm", "a number within 1e6 mm", place, base.p1.y)?,
             ),
+            belt,
+            counted_by,
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "0 to 100000, as checked"
+            )]
+            reached_tolerance_counts: tolerance as u32,
             resync_gap: Duration::from_secs_f64(
                 number("resync_gap_ms", "0 to 3.6e6 ms", pause, base.resync_gap.as_secs_f64() * 1e3)? / 1e3,
             ),
@@ -96,20 +139,26 @@ impl PlotterSettings {
     /// ```
     #[must_use]
     pub fn to_sheet(&self, at: StepPoint) -> Point {
-        Point::new(
-            self.p1.x + f64::from(at.x) * self.x_mm_per_pulse,
-            self.p1.y + f64::from(at.y) * self.y_mm_per_pulse,
-        )
+        let (x, y) = (f64::from(at.x), f64::from(at.y));
+        match self.belt {
+            None => Point::new(self.p1.x + x * self.x_mm_per_pulse, self.p1.y + y * self.y_mm_per_pulse),
+            Some(signs) => {
+                let (x, y) = signs.twice_axes(x, y);
+                let half = 0.5 * self.x_mm_per_pulse;
+                Point::new(self.p1.x + x * half, self.p1.y + y * half)
+            }
+        }
     }
 
     /// The position of the motors at a place on the sheet: to the nearest count.
     #[must_use]
     pub fn to_counts(&self, on_sheet: Point) -> StepPoint {
         let from_p1 = on_sheet - self.p1;
-        StepPoint::new(
-            from_mm(from_p1.x, 1.0 / self.x_mm_per_pulse),
-            from_mm(from_p1.y, 1.0 / self.y_mm_per_pulse),
-        )
+        let (x, y) = match self.belt {
+            None => (from_p1.x / self.x_mm_per_pulse, from_p1.y / self.y_mm_per_pulse),
+            Some(signs) => signs.motors(from_p1.x / self.x_mm_per_pulse, from_p1.y / self.x_mm_per_pulse),
+        };
+        MotorPoint { x, y }.rounded()
     }
 }
 
@@ -131,9 +180,25 @@ mod tests {
         let settings = PlotterSettings::from_header(&header).unwrap();
         assert_eq!(settings.to_sheet(StepPoint::new(10, 40)), Point::new(1.0, -4.0));
         assert_eq!(settings.resync_gap, Duration::from_millis(50));
-        for bad in [r#"{"x_mm_per_pulse":0}"#, r#"{"p1_x_mm":"left"}"#, r#"{"resync_gap_ms":-1}"#] {
+        for bad in [
+            r#"{"belt_signs":"corexy"}"#,
+            r#"{"x_mm_per_pulse":0}"#,
+            r#"{"p1_x_mm":"left"}"#,
+            r#"{"resync_gap_ms":-1}"#,
+        ] {
             let error = PlotterSettings::from_header(&Header::from_json(bad).unwrap()).unwrap_err();
             assert!(bad.contains(error.key), "{error}");
         }
+    }
+
+    #[test]
+    fn the_counts_of_a_belt_are_its_motors() {
+        let header = r#"{"protocol":"counts","belt_signs":"direction-table","x_mm_per_pulse":0.1,"p1_x_mm":150,
+            "reached_tolerance_counts":42}"#;
+        let settings = PlotterSettings::from_header(&Header::from_json(header).unwrap()).unwrap();
+        assert_eq!((settings.counted_by, settings.reached_tolerance_counts), (CountedBy::Edges, 42));
+        // motor 2 alone: right and up
+        assert_eq!(settings.to_sheet(StepPoint::new(0, 40)), Point::new(152.0, 2.0));
+        assert_eq!(settings.to_counts(Point::new(152.0, 2.0)), StepPoint::new(0, 40));
     }
 }

@@ -314,6 +314,13 @@ impl Check {
     fn run(self, out: &mut impl Write) -> Done {
         let mut has_edges = false;
         let contents = read(&self.log, |record| has_edges |= matches!(record.event, Event::Edge { .. }))?;
+        if let Some(protocol) = contents.header.text("protocol").filter(|&protocol| protocol != "digits") {
+            return Err(format!(
+                "{}: its protocol is {protocol:?}, and only a controller that was led by the one called digits can be run \
+                 again; `render` shows what it did",
+                self.log.display()
+            ));
+        }
         let machine = self.machine(&contents.header)?;
         let edges = if has_edges { EdgeSource::Records } else { EdgeSource::Pulses };
         let usual = if has_edges { Duration::ZERO } else { PULSE_TOLERANCE };
