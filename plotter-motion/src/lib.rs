@@ -40,8 +40,8 @@ pub use chords::chords;
 pub use config::{
     AreaConfig, AxisConfig, Bound, ConfigError, ContouringConfig, ControlConfig, ControllerChoice, Decoding,
     DriveChoice, EncoderConfig, HomingConfig, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName,
-    MotorConfig, PathChoice, PenConfig, PlannerConfig, PublishedConfig, SerialConfig, StepperConfig,
-    StrokeOrder, SyncStopConfig, ThresholdChoice, VectorizeConfig, VectorizeMode,
+    MotorConfig, PathChoice, PenConfig, PlannerConfig, PublishedConfig, SerialConfig, SheetConfig,
+    StepperConfig, StrokeOrder, SyncStopConfig, ThresholdChoice, VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};

@@ -39,7 +39,7 @@ static_n_m = 1.3e-3
 "#;
 
 /// Numeric keys that the machine has once.
-const OF_THE_MACHINE: [&str; 51] = [
+const OF_THE_MACHINE: [&str; 57] = [
     "schema",
     "area.width_mm",
     "area.height_mm",
@@ -91,6 +91,12 @@ const OF_THE_MACHINE: [&str; 51] = [
     "vectorize.pens",
     "vectorize.hatch_mm",
     "vectorize.max_line_px",
+    "sheet.frame_mm",
+    "sheet.begin_mm",
+    "sheet.cut_window_mm",
+    "sheet.cut_clear_mm",
+    "sheet.anchor_mm",
+    "sheet.sensing_mm_s",
 ];
 
 /// Numeric keys that each axis has.

@@ -11,6 +11,7 @@ mod machine;
 mod machine_config;
 mod name;
 mod rules;
+mod sheet;
 #[cfg(feature = "toml")]
 mod spelling;
 mod stepper;
@@ -27,6 +28,7 @@ pub use machine_config::{
     LoadConfig, MachineConfig, MotorConfig, PublishedConfig, SerialConfig, SyncStopConfig,
 };
 pub use name::MachineName;
+pub use sheet::SheetConfig;
 pub use stepper::{
     DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PlannerConfig, StepperConfig,
 };

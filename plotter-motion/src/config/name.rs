@@ -15,6 +15,9 @@ impl MachineName {
     /// The documented machine with stepper motors.
     pub const STEPPER_PLOTTER: Self = Self::literal("stepper-plotter");
 
+    /// The documented machine that draws sheets longer than its table.
+    pub const TEXTILE_PLOTTER: Self = Self::literal("textile-plotter");
+
     const fn literal(text: &str) -> Self {
         let source = text.as_bytes();
         let mut bytes = [0; Self::MAX_BYTES];

@@ -69,7 +69,7 @@ impl Rule {
     }
 }
 
-const fn number(
+pub(super) const fn number(
     key: &'static str,
     read: fn(&MachineConfig) -> f64,
     (least, most): (f64, f64),
@@ -572,7 +572,7 @@ static Y: [Rule; 19] = axis_rules!(y);
 
 /// All keys, in the order of the documentation.
 pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
-    MACHINE.iter().chain(&X).chain(&Y)
+    MACHINE.iter().chain(&super::sheet::RULES).chain(&X).chain(&Y)
 }
 
 #[cfg(test)]
