@@ -2,13 +2,26 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
+mod crossing;
+mod detector;
 mod frame_transform;
 mod readings;
+mod reference_lines;
 mod residual;
+mod rigid;
+mod search;
+mod sheet;
 
+pub use crossing::{Crossing, Found, Passed, found_at};
+pub use detector::{BothEdges, FindLine, Optics, PublishedRule, ScanError, Sighting, Tact, disc_over_line};
 pub use frame_transform::{FrameTransform, TransformError};
 pub use readings::{FrameReadings, Mark, Reading};
+pub use reference_lines::{LayoutError, MOST_CROSSINGS, MarkGroup, ReferenceLines};
 pub use residual::Residual;
+pub use rigid::{FitError, JointEstimate, RigidFit};
+pub use search::{Ask, MarkSearch, PublishedSearch, Search, SearchError, SearchSettings};
+pub use sheet::{SensedJoint, SensorNoise};
