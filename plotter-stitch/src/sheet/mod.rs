@@ -1,0 +1,6 @@
+//! The simulated sheet.
+
+mod noise;
+mod sensor;
+
+pub use sensor::{SensedJoint, SensorNoise};
