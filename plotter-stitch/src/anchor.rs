@@ -15,8 +15,8 @@ const SHORTEST_EDGE_MM: f64 = 10.0;
 pub struct AnchorSettings {
     /// Length of a frame, mm.
     pub frame_mm: f64,
-    /// Length of a joint, across the sheet, mm.
-    pub joint_mm: f64,
+    /// Both ends of a joint, in the coordinates of the frame that it begins, mm.
+    pub joint: [Point; 2],
     /// The most that lines may be moved at a joint, anywhere on it, mm.
     pub most_mm: f64,
     /// Standard deviation of where the edge is found, from where a straight one would be, mm.
@@ -26,7 +26,12 @@ pub struct AnchorSettings {
 impl Default for AnchorSettings {
     /// Frames of 1800 x 1000 mm, 0.01 mm at a joint, an edge that is straight to 0.1 mm.
     fn default() -> Self {
-        Self { frame_mm: 1_800.0, joint_mm: 1_000.0, most_mm: 0.01, edge_sigma_mm: 0.1 }
+        Self {
+            frame_mm: 1_800.0,
+            joint: [Point::ORIGIN, Point::new(0.0, 1_000.0)],
+            most_mm: 0.01,
+            edge_sigma_mm: 0.1,
+        }
     }
 }
 
@@ -131,7 +136,8 @@ impl Anchor {
         }
         let turn_rad = self.wanted_turn();
         self.turn_rad += turn_rad;
-        let middle = Vec2::new(0.0, 0.5 * self.settings.joint_mm);
+        let [one, other] = self.settings.joint;
+        let middle = one.lerp(other, 0.5) - Point::ORIGIN;
         let turned = FrameTransform::new(turn_rad, middle - middle.rotated(turn_rad));
         turned.map_or(*joint, |turned| joint.after(&turned))
     }
@@ -172,7 +178,9 @@ impl Anchor {
 
     /// The turn at this joint: towards a direction in which the offset dies away, slow enough to be stopped again.
     fn wanted_turn(&self) -> f64 {
-        let most_rad = 2.0 * self.settings.most_mm / self.settings.joint_mm;
+        let [one, other] = self.settings.joint;
+        // The ends of the joint go round its middle; the chord is a little shorter than the arc.
+        let most_rad = 2.0 * self.settings.most_mm / one.distance(other);
         let length = self.settings.frame_mm;
         let offset_mm = libm::fabs(self.offset_mm);
         let braking_mm = libm::sqrt(2.0 * most_rad * length * offset_mm);

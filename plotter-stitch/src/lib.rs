@@ -31,5 +31,8 @@ pub use reference_lines::{LayoutError, MOST_CROSSINGS, MarkGroup, ReferenceLines
 pub use residual::Residual;
 pub use rigid::{FitError, JointEstimate, RigidFit};
 pub use search::{Ask, MarkSearch, PublishedSearch, Search, SearchError, SearchSettings};
-pub use sheet::{SensedJoint, SensorNoise};
+pub use sheet::{
+    Feed, FeedSettings, JoinError, JoinFrames, Joined, JointReport, LongSheet, PaperEdge, PaperMove,
+    PublishedJoin, SensedJoint, SensedProbe, SensorNoise, SheetSettings, StripJoin,
+};
 pub use split::{Frame, FrameLayout, FramePasses, Frames, SplitError};
