@@ -4,6 +4,9 @@
 //! and an optical head looks for the lines of the frame before, as published or with ours. What is left at the joints is
 //! measured where lines really go over them.
 //!
+//! With `--traces` nothing is simulated: the scans over the marks of real joints are in files, and how the sheet lay is told, with how sure
+//! that is, or refused where dust was taken for marks or too few are left.
+//!
 //! Look at the magnified joints (`--svg`): with `--method published` lines miss each other by half of the pen's width, with ours by a
 //! few hundredths of a millimetre. Then at the drift: nothing in the joints holds the sheet straight but the paper's edge.
 //!
@@ -12,13 +15,15 @@
 //! cargo run --release --example long_sheet -- --method published --svg published.svg
 //! cargo run --release --example long_sheet -- draft.plt --report sheet.json
 //! cargo run --release --example long_sheet -- --frames 1000 --report long.json
+//! cargo run --release --example long_sheet -- --traces joint1.json joint2.json --out joints.json
 //! ```
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    Diagnostics, DrawingFile, JointFigures, Language, LongSheetMachine, LongSheetReport, LongSheetRun,
-    Reading, Severity, TextilePattern, at, long_sheet_svg, print, read_file, run, write_file,
+    CrossingSet, Diagnostics, DrawingFile, JointFigures, Language, LongSheetMachine, LongSheetReport,
+    LongSheetRun, Reading, Severity, TextilePattern, at, long_sheet_svg, print, read_file, run, told_joints,
+    write_file,
 };
 use plotter_motion::{Machine, MachineConfig, PlotOp};
 use plotter_stitch::{FramePasses, JoinFrames};
@@ -28,7 +33,12 @@ use std::process::ExitCode;
 /// Most frames of one run: a joint of ours takes some milliseconds.
 const MOST_FRAMES: u32 = 100_000;
 
-/// Draws a drawing of any length on a simulated sheet, frame by frame, and measures the joints.
+/// Draws a drawing of any length on a simulated sheet, frame by frame, and measures the joints; or tells from recorded scans how a
+/// sheet lies between two frames.
+///
+/// Recorded scans are stitch-trace/1 (one joint) and stitch-batch/1 (many). Of them a list is written with an object for each
+/// joint: theta (rad), tx and ty (mm) of machine = R(theta) frame + t, their standard deviations and the crossings that agree, or
+/// refused with the reason.
 #[derive(Debug, Parser)]
 #[command(
     name = "long_sheet",
@@ -36,8 +46,11 @@ const MOST_FRAMES: u32 = 100_000;
                   long_sheet --svg sheet.svg\n  \
                   long_sheet --method published --svg published.svg\n  \
                   long_sheet draft.plt --report sheet.json\n  \
-                  long_sheet --frames 1000 --folds 0.01 --report long.json\n\n\
-                  Exit status: 0 all frames are drawn and joined; 1 they are not, and the message says why; 2 wrong options."
+                  long_sheet --frames 1000 --folds 0.01 --report long.json\n  \
+                  long_sheet --traces joint.json --out pose.json\n  \
+                  long_sheet --traces joints/*.json --set paper --out published.json\n\n\
+                  Exit status: 0 all frames are drawn and joined, or every file of scans was read (joints may be refused); 1 they \
+                  are not, and the message says why; 2 wrong options."
 )]
 struct Arguments {
     /// Drawing in HPGL, G-code, SVG or the thesis' text, of any length; - is the standard input [default: a textile
@@ -73,6 +86,23 @@ struct Arguments {
     /// Writes all figures as JSON, joint by joint
     #[arg(long, value_name = "F.json")]
     report: Option<PathBuf>,
+    /// Recorded scans, in place of a drawing
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["file", "frames", "method", "svg", "report", "machine"])]
+    traces: Vec<PathBuf>,
+    /// Which crossings of the traces are used, and by which method
+    #[arg(long, value_enum, default_value = "strip16", requires = "traces")]
+    set: Set,
+    /// Where the list of their joints is written; - is the standard output
+    #[arg(long, value_name = "F.json", default_value = "-", requires = "traces")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Set {
+    /// The three crossings of the published procedure, by the published method
+    Paper,
+    /// Sixteen crossings in the strip that can still be reached, by ours
+    Strip16,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -102,7 +132,16 @@ fn chord(text: &str) -> Result<f64, String> {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    run("long_sheet", || draw_sheet(&arguments))
+    run("long_sheet", || {
+        if arguments.traces.is_empty() {
+            return draw_sheet(&arguments);
+        }
+        let set = match arguments.set {
+            Set::Paper => CrossingSet::Paper,
+            Set::Strip16 => CrossingSet::Strip16,
+        };
+        told_joints(&arguments.traces, set, &arguments.out)
+    })
 }
 
 fn draw_sheet(arguments: &Arguments) -> Result<(), String> {
