@@ -44,8 +44,8 @@ pub use config::{
     AreaConfig, AxisConfig, BeltConfig, Bound, ConfigError, ContouringConfig, ControlConfig,
     ControllerChoice, Decoding, DriveChoice, EncoderConfig, HomingConfig, KinematicsChoice, KinematicsConfig,
     KnownMotors, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName, MotorConfig, PathChoice,
-    PenConfig, PlannerConfig, PointToPointConfig, PublishedConfig, SerialConfig, StepperConfig, StrokeOrder,
-    SyncStopConfig, ThresholdChoice, TransmissionConfig, VectorizeConfig, VectorizeMode,
+    PenConfig, PlannerConfig, PointToPointConfig, PublishedConfig, SerialConfig, SheetConfig, StepperConfig,
+    StrokeOrder, SyncStopConfig, ThresholdChoice, TransmissionConfig, VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};

@@ -34,9 +34,16 @@ const MARKING_BOARD: Preset = Preset {
     repeats: "[y]",
 };
 
+const TEXTILE_PLOTTER: Preset = Preset {
+    file: "textile-plotter.toml",
+    config: MachineConfig::textile_plotter,
+    keys: (50, 5),
+    repeats: "[y.stepper]",
+};
+
 /// Each preset with its text; without text where this crate was unpacked alone.
 fn presets() -> impl Iterator<Item = (Preset, String)> {
-    [GANTRY, STEPPER_PLOTTER, MARKING_BOARD].into_iter().filter_map(|preset| {
+    [GANTRY, STEPPER_PLOTTER, MARKING_BOARD, TEXTILE_PLOTTER].into_iter().filter_map(|preset| {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/machines").join(preset.file);
         let text = fs::read_to_string(&path).ok();
         if text.is_none() {

@@ -46,7 +46,7 @@ static_n_m = 1.3e-3
 "#;
 
 /// Numeric keys that the machine has once.
-const OF_THE_MACHINE: [&str; 52] = [
+const OF_THE_MACHINE: [&str; 58] = [
     "schema",
     "area.width_mm",
     "area.height_mm",
@@ -99,6 +99,12 @@ const OF_THE_MACHINE: [&str; 52] = [
     "vectorize.pens",
     "vectorize.hatch_mm",
     "vectorize.max_line_px",
+    "sheet.frame_mm",
+    "sheet.begin_mm",
+    "sheet.cut_window_mm",
+    "sheet.cut_clear_mm",
+    "sheet.anchor_mm",
+    "sheet.sensing_mm_s",
 ];
 
 /// Numeric keys of a machine with a belt.

@@ -153,6 +153,24 @@ impl FrameTransform {
         Self { angle_rad: -self.angle_rad, cos: self.cos, sin: -self.sin, shift: origin }
     }
 
+    /// First `first`, then this one, as one transform.
+    ///
+    /// ```
+    /// # use plotter_motion::{Point, Vec2};
+    /// # use plotter_stitch::FrameTransform;
+    /// let turned = FrameTransform::new(std::f64::consts::FRAC_PI_2, Vec2::default())?;
+    /// let shifted = FrameTransform::new(0.0, Vec2::new(2.0, 0.0))?;
+    /// let both = turned.after(&shifted); // (1, 0) goes to (3, 0), and up
+    /// assert!(both.to_machine(Point::new(1.0, 0.0)).distance(Point::new(0.0, 3.0)) < 1e-15);
+    /// # Ok::<(), plotter_stitch::TransformError>(())
+    /// ```
+    #[must_use]
+    pub fn after(&self, first: &Self) -> Self {
+        let angle_rad = self.angle_rad + first.angle_rad;
+        let shift = self.to_machine(Point::ORIGIN + first.shift) - Point::ORIGIN;
+        Self { angle_rad, cos: libm::cos(angle_rad), sin: libm::sin(angle_rad), shift }
+    }
+
     /// An operation of the sketch as the machine must do it: its places are transformed, all else stays.
     ///
     /// ```

@@ -48,6 +48,7 @@ impl Machine {
     /// - the far corner of the area has a number of steps that 32 bits hold, and the area lies between the limit
     ///   switches that homing expects;
     ///
+    /// Where frames of a long sheet are drawn, each lies in the area with the windows at its borders,
     /// and the simulated motor has torque up to some rate, more than its friction.
     ///
     /// # Errors
@@ -58,6 +59,7 @@ impl Machine {
             return Err(ConfigError::Schema { found: config.schema });
         }
         rules().try_for_each(|rule| rule.check(&config))?;
+        check_sheet(&config)?;
         match config.drive {
             DriveChoice::Dc => {
                 match config.kinematics.kind {
@@ -134,6 +136,28 @@ fn check_area(config: &MachineConfig) -> Result<(), ConfigError> {
         (Bound::AtMost, height_limit_mm),
         "mm",
         "the serial protocol carries coordinates up to 99999 counts: make the area smaller or y.counts_per_mm less",
+    )
+}
+
+/// A frame and the windows at both of its borders lie in the area.
+fn check_sheet(config: &MachineConfig) -> Result<(), ConfigError> {
+    let sheet = &config.sheet;
+    if sheet.frame_mm <= 0.0 {
+        return Ok(());
+    }
+    demand(
+        "sheet.cut_window_mm",
+        sheet.cut_window_mm,
+        (Bound::AtMost, sheet.begin_mm.min(0.25 * sheet.frame_mm)),
+        "mm",
+        "the frame before and this one both draw there: at most sheet.begin_mm and a quarter of sheet.frame_mm",
+    )?;
+    demand(
+        "sheet.frame_mm",
+        sheet.frame_mm,
+        (Bound::AtMost, config.area.width_mm - sheet.begin_mm - sheet.cut_window_mm),
+        "mm",
+        "the frame ends within the area: area.width_mm less sheet.begin_mm and sheet.cut_window_mm",
     )
 }
 

@@ -2,7 +2,8 @@
 
 use super::{
     BeltConfig, DriveChoice, HomingConfig, KinematicsChoice, KinematicsConfig, LaserConfig, MachineName,
-    PenConfig, PlannerConfig, PointToPointConfig, StepperConfig, TransmissionConfig, VectorizeConfig,
+    PenConfig, PlannerConfig, PointToPointConfig, SheetConfig, StepperConfig, TransmissionConfig,
+    VectorizeConfig,
 };
 use crate::plant::StepperSettings;
 
@@ -44,6 +45,8 @@ pub struct MachineConfig {
     pub stepper_motor: StepperSettings,
     /// How pictures become strokes for it.
     pub vectorize: VectorizeConfig,
+    /// How drawings longer than the table are drawn.
+    pub sheet: SheetConfig,
     /// How the two motors move the pen.
     pub kinematics: KinematicsConfig,
     /// What only a machine with one belt needs.
@@ -333,6 +336,61 @@ impl MachineConfig {
             ..Self::default()
         }
     }
+
+    /// The documented textile plotter: a flatbed of 2000 x 1000 mm (mechanically 2100 x 1100), over which the paper is moved from roll to
+    /// roll, with drives that take step and direction, up to 10 m/s.
+    ///
+    /// ```
+    /// # use plotter_motion::{Machine, MachineConfig};
+    /// let machine = Machine::new(MachineConfig::textile_plotter())?;
+    /// assert_eq!(machine.config().planner.travel_speed_mm_s, 10_000.0);
+    /// assert_eq!(machine.config().sheet.frame_mm, 1800.0);
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn textile_plotter() -> Self {
+        let stepper = StepperConfig {
+            steps_per_mm: 50.0,
+            start_rate_hz: 5_000.0,
+            max_rate_hz: 500_000.0,
+            ..StepperConfig::default()
+        };
+        let axis = AxisConfig { stepper, ..AxisConfig::default() };
+        Self {
+            name: MachineName::TEXTILE_PLOTTER,
+            area: AreaConfig { width_mm: 2_000.0, height_mm: 1_000.0 },
+            planner: PlannerConfig {
+                speed_mm_s: 1_000.0,
+                travel_speed_mm_s: 10_000.0,
+                accel_mm_s2: 20_000.0,
+                jerk_mm_s3: 1_000_000.0,
+                ..PlannerConfig::default()
+            },
+            pen: PenConfig { settle_ms: 50.0, ..PenConfig::default() },
+            homing: HomingConfig {
+                fast_rate_hz: 25_000.0,
+                slow_rate_hz: 2_500.0,
+                pull_off_mm: 50.0,
+                release_mm: 10.0,
+                known_travel_mm: 1_050.0,
+                max_travel_mm: 2_150.0,
+            },
+            stepper_motor: StepperSettings {
+                microsteps: 10,
+                holding_n_m: 10.0,
+                corner_rate_hz: 500_000.0,
+                max_rate_hz: 1_000_000.0,
+                inertia_kg_m2: 0.005,
+                coulomb_n_m: 0.5,
+                viscous_n_m_s: 0.01,
+                ..StepperSettings::default()
+            },
+            sheet: SheetConfig::TEXTILE_PLOTTER,
+            x: axis,
+            y: axis,
+            ..Self::stepper_plotter()
+        }
+    }
 }
 
 impl MachineConfig {
@@ -402,6 +460,7 @@ impl Default for MachineConfig {
             homing: HomingConfig::default(),
             stepper_motor: StepperSettings::default(),
             vectorize: VectorizeConfig::default(),
+            sheet: SheetConfig::default(),
             kinematics: KinematicsConfig::default(),
             belt: BeltConfig::default(),
             point_to_point: PointToPointConfig::default(),

@@ -14,6 +14,7 @@ mod machine;
 mod machine_config;
 mod name;
 mod rules;
+mod sheet;
 #[cfg(feature = "toml")]
 mod spelling;
 mod stepper;
@@ -32,6 +33,7 @@ pub use machine_config::{
     LoadConfig, MachineConfig, MotorConfig, PublishedConfig, SerialConfig, SyncStopConfig,
 };
 pub use name::MachineName;
+pub use sheet::SheetConfig;
 pub use stepper::{
     DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PlannerConfig, StepperConfig,
 };

@@ -17,6 +17,8 @@ impl MachineName {
 
     /// The documented machine with one belt.
     pub const MARKING_BOARD: Self = Self::literal("marking-board");
+    /// The documented machine that draws sheets longer than its table.
+    pub const TEXTILE_PLOTTER: Self = Self::literal("textile-plotter");
 
     const fn literal(text: &str) -> Self {
         let source = text.as_bytes();

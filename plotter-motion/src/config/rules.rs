@@ -578,6 +578,7 @@ pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {
         .iter()
         .chain(&LATENCY)
         .chain(&BELT)
+        .chain(&super::sheet::RULES)
         .chain(&X)
         .chain(&X_TRANSMISSION)
         .chain(&Y)

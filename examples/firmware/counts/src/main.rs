@@ -7,6 +7,7 @@
 
 mod counter;
 mod drawings;
+mod joint;
 
 use core::fmt::Display;
 use core::hint::black_box;
@@ -235,9 +236,28 @@ fn main() -> ! {
         print("step reckoned", filled);
         print("step interrupt", made);
     }
+    for (name, dust) in [("joint from 16 crossings", 0), ("joint with three grains of dust", 3)] {
+        let (tally, silent) = joint::joints(&counter, dust);
+        hprintln!("{}: {} of {} refused", name, silent, tally.count());
+        print(name, tally);
+    }
     debug::exit(debug::EXIT_SUCCESS);
     loop {}
 }
+
+/// `plotter-stitch` needs a heap for its layouts and searches, but none to tell a joint: here nothing may be asked for.
+struct NoHeap;
+
+// SAFETY: it never gives memory.
+unsafe impl core::alloc::GlobalAlloc for NoHeap {
+    unsafe fn alloc(&self, _: core::alloc::Layout) -> *mut u8 {
+        core::ptr::null_mut()
+    }
+    unsafe fn dealloc(&self, _: *mut u8, _: core::alloc::Layout) {}
+}
+
+#[global_allocator]
+static HEAP: NoHeap = NoHeap;
 
 #[panic_handler]
 fn panic(info: &core::panic::PanicInfo<'_>) -> ! {

@@ -1,0 +1,54 @@
+//! A sheet told from 16 crossings: all marks where they are, and some of them dust.
+
+use crate::counter::{Counter, Tally};
+use core::hint::black_box;
+use plotter_motion::{Axis, Vec2};
+use plotter_stitch::{Crossing, FitError, Found, FrameTransform, JointEstimate, RigidFit};
+
+/// The layout of `ReferenceLines::strip16`, without a heap.
+fn crossings() -> [Crossing; 16] {
+    core::array::from_fn(|index| {
+        let (axis, mark_mm, scan_at_mm) = if index < 10 {
+            (Axis::X, [20.0, 180.0][index / 5], [60.0, 280.0, 500.0, 720.0, 940.0][index % 5])
+        } else {
+            (Axis::Y, [90.0, 510.0, 910.0][(index - 10) / 2], [45.0, 155.0][index % 2])
+        };
+        Crossing { axis, mark_mm, scan_at_mm }
+    })
+}
+
+#[inline(never)]
+fn estimate(fit: &RigidFit, crossings: &[Crossing], found: &[Found]) -> Result<JointEstimate, FitError> {
+    fit.estimate(crossings, found)
+}
+
+/// Counts the estimates of a hundred joints with so many grains of dust each, and how many told nothing.
+pub fn joints(counter: &Counter, dust: usize) -> (Tally, u32) {
+    let (crossings, fit) = (crossings(), RigidFit::default());
+    let mut state = 0x2545_F491_4F6C_DD1D_u64;
+    // Evenly spread about zero.
+    let mut random = |most: f64| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        most * ((state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
+    };
+    let (mut tally, mut silent) = (Tally::default(), 0);
+    for _ in 0..100 {
+        let shift = Vec2::new(random(5.0), random(5.0));
+        let Ok(sheet) = FrameTransform::new(random(0.002), shift) else { continue };
+        let mut found = [Found { crossing: 0, at_mm: 0.0, sigma_mm: 0.006 }; 16];
+        for (index, place) in found.iter_mut().enumerate() {
+            (place.crossing, place.at_mm) = (index, crossings[index].place_mm(&sheet) + random(0.025));
+        }
+        for grain in 0..dust {
+            // Five apart: never the same crossing twice, and of both axes.
+            found[(2 + 5 * grain) % 16].at_mm += 6.0 + random(5.0);
+        }
+        let (told, instructions) =
+            counter.count(|| estimate(black_box(&fit), black_box(&crossings), black_box(&found)));
+        silent += u32::from(told.is_err());
+        tally.add(instructions);
+    }
+    (tally, silent)
+}

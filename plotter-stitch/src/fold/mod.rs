@@ -1,0 +1,21 @@
+//! Whether the paper has folded: a line drawn twice, from either end, in an empty place on the diagonal along which a fold would lie.
+//!
+//! ```text
+//!    ┌────────────────────────┐      the ridge of a fold is held by the pen's friction to the side that the pen goes to:
+//!    │ ╲╲                     │      the two strokes over it do not lie on each other
+//!    │   ╲╲   ┌──┐            │
+//!    │     ╲╲ │╲╲│ empty      │              ╲ ╲  with a fold      ╲╲  without
+//!    │       ╲╲──┘            │               ╲ ╲                   ╲╲
+//!    │         ╲╲             │
+//!    └────────────────────────┘
+//! ```
+
+mod direction;
+mod probe;
+mod square;
+mod verdict;
+
+pub use direction::FoldDirection;
+pub use probe::{FoldProbe, ProbeScan};
+pub use square::EmptySquare;
+pub use verdict::{FoldTest, FoldVerdict, Seen};

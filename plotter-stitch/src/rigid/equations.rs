@@ -1,0 +1,194 @@
+//! Least squares of three unknowns: a turn and two shifts.
+
+use crate::FrameTransform;
+use plotter_motion::{Axis, Vec2};
+
+/// The unknown turn is counted as its way at this distance, mm, so that all three unknowns are of one size.
+const LEVER_MM: f64 = 1000.0;
+
+/// A multiplication is a quarter of a division where floats are computed by software.
+const PER_LEVER: f64 = 1.0 / LEVER_MM;
+
+/// Steps of the iteration at the most; four are usual. The equations are nearly linear: with the matrix of the start, which is off by
+/// the turn, each step leaves a hundredth or less of the last one's error.
+const MOST_STEPS: u32 = 16;
+
+/// After a step this small the next one would be a hundredth of it, mm: below all rounding that matters.
+const STILL_MM: f64 = 1e-8;
+
+/// What was found at one crossing, as an equation.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) axis: Axis,
+    pub(super) crossing: usize,
+    pub(super) mark_mm: f64,
+    pub(super) scan_at_mm: f64,
+    pub(super) at_mm: f64,
+    /// 1 / variance, 1/mm².
+    pub(super) weight: f64,
+}
+
+impl Row {
+    pub(super) const EMPTY: Self =
+        Self { axis: Axis::X, crossing: 0, mark_mm: 0.0, scan_at_mm: 0.0, at_mm: 0.0, weight: 0.0 };
+
+    /// How much farther it was found than expected, mm.
+    pub(super) fn shift_mm(&self) -> f64 {
+        self.at_mm - self.mark_mm
+    }
+}
+
+/// A pose of the sheet with sine and cosine at hand.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pose {
+    angle_rad: f64,
+    cos: f64,
+    sin: f64,
+    shift: Vec2,
+}
+
+impl Pose {
+    pub(super) fn new(angle_rad: f64, shift: Vec2) -> Self {
+        Self { angle_rad, cos: libm::cos(angle_rad), sin: libm::sin(angle_rad), shift }
+    }
+
+    pub(super) fn angle_rad(&self) -> f64 {
+        self.angle_rad
+    }
+
+    pub(super) fn transform(&self) -> Option<FrameTransform> {
+        FrameTransform::new(self.angle_rad, self.shift).ok()
+    }
+
+    /// Distance from the mark to the place that was found, in the frame, mm.
+    pub(super) fn residual_mm(&self, row: &Row) -> f64 {
+        let (along_mm, across_mm) = (row.at_mm, row.scan_at_mm);
+        match row.axis {
+            Axis::X => {
+                self.cos * (along_mm - self.shift.x) + self.sin * (across_mm - self.shift.y) - row.mark_mm
+            }
+            Axis::Y => {
+                self.cos * (along_mm - self.shift.y) - self.sin * (across_mm - self.shift.x) - row.mark_mm
+            }
+        }
+    }
+
+    /// The residual, and how it changes with the three unknowns.
+    ///
+    /// ```text
+    /// mark of constant x: e = cos α (x - sx) + sin α (y - sy) - a
+    /// mark of constant y: e = cos α (y - sy) - sin α (x - sx) - b
+    /// ```
+    pub(super) fn residual_and_slope(&self, row: &Row) -> (f64, [f64; 3]) {
+        match row.axis {
+            Axis::X => {
+                let (x, y) = (row.at_mm - self.shift.x, row.scan_at_mm - self.shift.y);
+                let across = self.cos * x + self.sin * y;
+                let along = self.cos * y - self.sin * x;
+                (across - row.mark_mm, [along * PER_LEVER, -self.cos, -self.sin])
+            }
+            Axis::Y => {
+                let (x, y) = (row.scan_at_mm - self.shift.x, row.at_mm - self.shift.y);
+                let along = self.cos * x + self.sin * y;
+                let across = self.cos * y - self.sin * x;
+                (across - row.mark_mm, [-along * PER_LEVER, self.sin, -self.cos])
+            }
+        }
+    }
+}
+
+/// A symmetric matrix of three rows: 00 01 02 11 12 22.
+pub(super) type Symmetric = [f64; 6];
+
+/// Its inverse; none if it is singular or not positive.
+pub(super) fn inverse(m: &Symmetric) -> Option<Symmetric> {
+    let [a, b, c, d, e, f] = *m;
+    let cofactors =
+        [d * f - e * e, c * e - b * f, b * e - c * d, a * f - c * c, b * c - a * e, a * d - b * b];
+    let determinant = a * cofactors[0] + b * cofactors[1] + c * cofactors[2];
+    // Against the product of the diagonal it has no unit: 1 for unknowns that have nothing to do with each other.
+    let is_regular = determinant.is_finite() && determinant > 1e-9 * a * d * f;
+    if !is_regular {
+        return None;
+    }
+    Some(cofactors.map(|cofactor| cofactor / determinant))
+}
+
+/// A symmetric matrix times a vector.
+pub(super) fn times(m: &Symmetric, v: &[f64; 3]) -> [f64; 3] {
+    [
+        m[0] * v[0] + m[1] * v[1] + m[2] * v[2],
+        m[1] * v[0] + m[3] * v[1] + m[4] * v[2],
+        m[2] * v[0] + m[4] * v[1] + m[5] * v[2],
+    ]
+}
+
+/// A pose and how sure it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solution {
+    pub(super) pose: Pose,
+    /// Covariance of the unknowns as the weights say it.
+    pub(super) cofactor: Symmetric,
+    /// Weighted sum of the squares of all residuals; it should be as great as the number of rows less three.
+    pub(super) squares: f64,
+    pub(super) rows: u32,
+}
+
+/// The pose with the least weighted squares over those rows that are in `mask`; none if they do not determine it, or if the
+/// squares are seen to be above `most_squares` on the way.
+///
+/// Gauss and Newton's iteration with the matrix of its start.
+pub(super) fn solve(rows: &[Row], mask: u64, start: Pose, most_squares: f64) -> Option<Solution> {
+    let chosen = || rows.iter().enumerate().filter(|(index, _)| mask >> index & 1 == 1).map(|(_, row)| row);
+    let mut normal = [0.0; 6];
+    for row in chosen() {
+        let (_, slope) = start.residual_and_slope(row);
+        let weighted = slope.map(|slope| slope * row.weight);
+        normal[0] += weighted[0] * slope[0];
+        normal[1] += weighted[0] * slope[1];
+        normal[2] += weighted[0] * slope[2];
+        normal[3] += weighted[1] * slope[1];
+        normal[4] += weighted[1] * slope[2];
+        normal[5] += weighted[2] * slope[2];
+    }
+    let cofactor = inverse(&normal)?;
+    let mut pose = start;
+    for turn in 0..MOST_STEPS {
+        let (mut right, mut squares, mut count) = ([0.0; 3], 0.0, 0);
+        for row in chosen() {
+            let (residual, slope) = pose.residual_and_slope(row);
+            let weighted = residual * row.weight;
+            for (right, slope) in right.iter_mut().zip(slope) {
+                *right += weighted * slope;
+            }
+            squares += weighted * residual;
+            count += 1;
+        }
+        // The start is still far off; one step from it only what is not linear.
+        if turn > 0 && squares > most_squares {
+            return None;
+        }
+        let step = times(&cofactor, &right);
+        pose = Pose::new(
+            pose.angle_rad - step[0] * PER_LEVER,
+            Vec2::new(pose.shift.x - step[1], pose.shift.y - step[2]),
+        );
+        if step.iter().all(|step| libm::fabs(*step) < STILL_MM) {
+            return Some(Solution { pose, cofactor, squares, rows: count });
+        }
+    }
+    None
+}
+
+/// A covariance of the unknowns as one of angle, rad, and shifts, mm.
+pub(super) fn in_radians(m: &Symmetric) -> [[f64; 3]; 3] {
+    let [a, b, c, d, e, f] = *m;
+    let (a, b, c) = (a / LEVER_MM / LEVER_MM, b / LEVER_MM, c / LEVER_MM);
+    [[a, b, c], [b, d, e], [c, e, f]]
+}
+
+/// How far a place moves with the three unknowns, mm; the place from the shifted origin.
+pub(super) fn moved_by(unknowns: &[f64; 3], place: Vec2) -> Vec2 {
+    let turn = unknowns[0] * PER_LEVER;
+    Vec2::new(unknowns[1] - turn * place.y, unknowns[2] + turn * place.x)
+}

@@ -1,0 +1,16 @@
+//! The simulated sheet: how it moves, what its edge is like, and what the optical head sees on it.
+
+mod edge;
+mod feed;
+mod long_sheet;
+mod method;
+mod noise;
+mod probe;
+mod sensor;
+
+pub use edge::PaperEdge;
+pub use feed::{Feed, FeedSettings, PaperMove};
+pub use long_sheet::{JointReport, LongSheet, SheetSettings};
+pub use method::{JoinError, JoinFrames, Joined, PublishedJoin, StripJoin};
+pub use probe::SensedProbe;
+pub use sensor::{SensedJoint, SensorNoise};
