@@ -158,6 +158,11 @@ impl Scan {
         vectorizer.vectorize(&self.picture).map(|traced| traced.drawing).map_err(|error| error.to_string())
     }
 
+    /// No line of the drawing is longer, mm.
+    fn diagonal_mm(&self) -> f64 {
+        f64::from(self.ink.width()).hypot(f64::from(self.ink.height())) * self.scale.mm_per_px()
+    }
+
     /// How far the ink is from something drawn and it from the ink, mm.
     fn distance_mm(&self, drawn: &Drawing) -> [f64; 2] {
         let distance = InkDistance::new(&self.ink, &self.reference);
@@ -226,12 +231,12 @@ struct Control {
 }
 
 impl Control {
-    fn measured(machine: &Machine) -> Result<Self, String> {
+    fn measured(machine: &Machine, length_mm: f64) -> Result<Self, String> {
         /// A machine that does not move at a hundredth of its speed never does.
         const LEAST_SHARE: f64 = 0.01;
         let trial_mm = |speed_share| {
             let slower = Budget { vectorization_mm: 0.0, blend_mm: 0.0, control_mm: 0.0, speed_share };
-            speed_trial(&slowed(machine, &slower)?, 0.0)
+            speed_trial(&slowed(machine, &slower)?, length_mm, 0.0)
         };
         let mut most_share = 1.0;
         let mut fast_mm = trial_mm(most_share)?;
@@ -296,7 +301,7 @@ fn plan(args: &Args, machine: &Machine, scan: &Scan, bar: &ProgressBar) -> Resul
         return Err(Refusal::Other(format!("--max-error-mm: {error}")));
     }
     bar.set_message("trying the machine on its test figure");
-    let control = Control::measured(machine)?;
+    let control = Control::measured(machine, scan.diagonal_mm())?;
     let blends = machine.config().drive == DriveChoice::Stepper;
     bar.set_message("tracing");
     let mut best: Option<(f64, Budget, Traced)> = None;
@@ -324,14 +329,19 @@ fn plan(args: &Args, machine: &Machine, scan: &Scan, bar: &ProgressBar) -> Resul
         return Err(refusal.map_or_else(|| Refusal::Other("nothing to draw".into()), Refusal::Budget));
     };
     bar.set_message("trying the machine as it is to draw");
-    let (budget, machine) = confirmed(machine, budget, &control)?;
+    let (budget, machine) = confirmed(machine, scan, budget, &control)?;
     let ops = traced.drawing.plot_ops(scan.scale).collect();
     Ok(Plan { budget, machine, traced, ops, control })
 }
 
 /// The budget with a speed at which the test figure keeps it: what was measured at two speeds says nothing sure of those between,
 /// nor of rounded corners.
-fn confirmed(machine: &Machine, mut budget: Budget, control: &Control) -> Result<(Budget, Machine), String> {
+fn confirmed(
+    machine: &Machine,
+    scan: &Scan,
+    mut budget: Budget,
+    control: &Control,
+) -> Result<(Budget, Machine), String> {
     const SLOWER: f64 = 0.85;
     const ROUNDING_MM: f64 = 1e-9;
     let allowed_mm = budget.control_mm + budget.blend_mm;
@@ -340,7 +350,7 @@ fn confirmed(machine: &Machine, mut budget: Budget, control: &Control) -> Result
         if budget.speed_share >= control.most_share && budget.blend_mm == 0.0 {
             return Ok((budget, slower)); // as it was tried
         }
-        let trial_mm = speed_trial(&slower, budget.blend_mm)?;
+        let trial_mm = speed_trial(&slower, scan.diagonal_mm(), budget.blend_mm)?;
         // Rounded corners are planned, not found out: no safety is needed for them.
         let found_mm = control.promised_mm((trial_mm - budget.blend_mm).max(0.0)) + budget.blend_mm;
         if found_mm <= allowed_mm + ROUNDING_MM {

@@ -10,13 +10,13 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    BenchSwitches, Figure, PlotOutcome, Recorded, at, board_header, built_firmware, html_page,
+    BenchSwitches, Figure, PlotOutcome, Recorded, at, board_header, built_firmware, fit_drawing, html_page,
     plot_in_emulator, plot_on_port, print, read_file, run, simulate, simulate_board, vectorizer, write_file,
 };
 use plotter_motion::firmware::MarkingBoardSettings;
 use plotter_motion::{
     ControllerChoice, DriveChoice, KinematicsChoice, Machine, MachineConfig, OutOfReach, PenMove, PlotOp,
-    Point, hpgl, targets,
+    hpgl, targets,
 };
 use plotter_replay::log::{self, Header};
 use plotter_replay::{BenchRecorder, Canvas, Chart, ContourError, PlotterSettings, VirtualPlotter, Ways};

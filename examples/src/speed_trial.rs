@@ -10,16 +10,21 @@ const HEADINGS: u32 = 16;
 /// Size of the figure, mm, where the machine has the room.
 const REACH_MM: f64 = 10.0;
 
-/// The test figure: lines of two lengths in all directions there and back, a circle of short chords both ways round, and a
+/// The test figure: three lines as long as the drawing, `length_mm` or what the area has room for; lines of two lengths in all directions there and back, a circle of short chords both ways round, and a
 /// staircase whose steps shrink, in the middle of the machine's area.
 #[must_use]
-pub fn test_figure(machine: &Machine) -> Vec<PlotOp> {
+pub fn test_figure(machine: &Machine, length_mm: f64) -> Vec<PlotOp> {
     let area = machine.config().area;
     let centre = Point::new(0.5 * area.width_mm, 0.5 * area.height_mm);
     let reach_mm = REACH_MM.min(0.4 * area.width_mm.min(area.height_mm));
     let draw = |to| PlotOp::Draw { to, feed_mm_s: None };
     let towards = |turns: f64, length_mm: f64| centre + Vec2::new(length_mm, 0.0).rotated(turns * TAU);
     let mut ops = Vec::new();
+    let half_mm = 0.5 * length_mm.clamp(reach_mm, 0.8 * area.width_mm.min(area.height_mm));
+    // A little off an axis, and far from any.
+    for turns in [0.02, 0.21, 0.38] {
+        ops.extend([PlotOp::Travel { to: towards(turns, half_mm) }, draw(towards(turns, -half_mm))]);
+    }
     for share in [1.0, 0.1] {
         for heading in 0..HEADINGS {
             // Not along the axes alone, nor evenly: no two lines are alike to the motors.
@@ -37,7 +42,7 @@ pub fn test_figure(machine: &Machine) -> Vec<PlotOp> {
     let mut step_mm = 0.2 * reach_mm;
     for _ in 0..12 {
         for way in [Vec2::new(step_mm, 0.0), Vec2::new(0.0, -step_mm)] {
-            at = at + way;
+            at += way;
             ops.push(draw(at));
         }
         step_mm *= 0.8;
@@ -75,17 +80,17 @@ pub fn deviation_mm(path: &FollowedPath) -> f64 {
     most_mm
 }
 
-/// Draws the test figure on the simulated machine; how far the pen left it, mm: infinite if the machine does not finish it.
+/// Draws the test figure for a drawing `length_mm` long on the simulated machine; how far the pen left it, mm: infinite if the machine does not finish it.
 ///
 /// # Errors
 ///
 /// It cannot be planned.
-pub fn speed_trial(machine: &Machine, blend_mm: f64) -> Result<f64, String> {
+pub fn speed_trial(machine: &Machine, length_mm: f64, blend_mm: f64) -> Result<f64, String> {
     // The pauses of a serial line are no motion.
     let serial = SerialConfig { byte_gap_ms: 0.0, ..machine.config().serial };
     let machine =
         Machine::new(MachineConfig { serial, ..*machine.config() }).map_err(|error| error.to_string())?;
-    let path = follow(&machine, &test_figure(&machine), blend_mm)?;
+    let path = follow(&machine, &test_figure(&machine, length_mm), blend_mm)?;
     if !path.is_done || path.drawn.len() != path.commanded.len() {
         return Ok(f64::INFINITY);
     }

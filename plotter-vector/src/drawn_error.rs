@@ -74,7 +74,7 @@ impl<'a> InkDistance<'a> {
                 for step in 1..=steps as u32 {
                     let share = f64::from(step) / steps;
                     let at = PxPoint::new(from.x + (to.x - from.x) * share, from.y + (to.y - from.y) * share);
-                    farthest_px = farthest_px.max(self.from_lines_px(at, farthest_px));
+                    farthest_px = farthest_px.max(self.off_lines_px(at, farthest_px));
                 }
             }
         }
@@ -82,7 +82,7 @@ impl<'a> InkDistance<'a> {
     }
 
     /// How far a place is from the ink's lines, px; some number up to `enough_px` if it is no farther than that.
-    fn from_lines_px(&self, at: PxPoint, enough_px: f64) -> f64 {
+    fn off_lines_px(&self, at: PxPoint, enough_px: f64) -> f64 {
         let (width, height) = (i64::from(self.ink.width()), i64::from(self.ink.height()));
         #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
         let (column, row) = (at.x.floor() as i64, at.y.floor() as i64);
@@ -98,7 +98,7 @@ impl<'a> InkDistance<'a> {
             }
             for (x, y) in around(column, row, ring) {
                 if (0..width).contains(&x) && (0..height).contains(&y) {
-                    least_px = least_px.min(self.from_pixel_px(x, y, at));
+                    least_px = least_px.min(self.off_pixel_px(x, y, at));
                 }
             }
             ring += 1;
@@ -107,7 +107,7 @@ impl<'a> InkDistance<'a> {
     }
 
     /// How far a place is from the lines that join the centre of a pixel to those after it that touch it; infinite for paper.
-    fn from_pixel_px(&self, x: i64, y: i64, at: PxPoint) -> f64 {
+    fn off_pixel_px(&self, x: i64, y: i64, at: PxPoint) -> f64 {
         let centre = |x: i64, y: i64| {
             let pixel = Pixel::new(u32::try_from(x).ok()?, u32::try_from(y).ok()?);
             self.ink.get(pixel).then(|| PxPoint::from(pixel))
