@@ -234,8 +234,8 @@ impl<C: ContourController> PlannedLine<C> {
 
 impl PlannedAxis {
     /// Takes an edge while the reference is `reference` counts beyond `start`.
-    fn edge(&mut self, direction: Direction, start: i32, reference: f64) {
-        let place = self.observer.edge(direction);
+    fn edge(&mut self, direction: Direction, start: i32, reference: f64, planned: Option<Direction>) {
+        let place = self.observer.edge(direction, planned);
         self.still_for = Duration::ZERO;
         let counted = self.observer.count().saturating_sub(start);
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
@@ -280,6 +280,9 @@ impl PlannedAxis {
     /// Rounds a duty to the timer's steps; none leaves the shaft alone, with its motor short-circuited.
     fn drive(&mut self, wanted: Option<Duty>) {
         let Some(wanted) = wanted else {
+            if self.still_for >= STANDS {
+                self.observer.rests();
+            }
             (self.rounding, self.leaning) = (0.0, 0.0);
             self.duty = Duty::ZERO;
             return;
@@ -333,9 +336,14 @@ impl<C: ContourController> LineController for PlannedLine<C> {
         let plan_s = self.run_plan_s + since_run.as_secs_f64() * f64::from(self.rate);
         let reference = self.plan.at(plan_s).distance_mm;
         let [ux, uy] = self.direction.map(f64::from);
+        let is_over = self.plan_s >= self.plan.duration_s();
+        let planned = |unit: f64| {
+            let sense = if unit > 0.0 { Direction::Plus } else { Direction::Minus };
+            (unit != 0.0 && !is_over).then_some(sense)
+        };
         match axis {
-            Axis::X => self.x.edge(direction, self.start.x, reference * ux),
-            Axis::Y => self.y.edge(direction, self.start.y, reference * uy),
+            Axis::X => self.x.edge(direction, self.start.x, reference * ux, planned(ux)),
+            Axis::Y => self.y.edge(direction, self.start.y, reference * uy, planned(uy)),
         }
         self.demand()
     }
