@@ -8,6 +8,9 @@ use proptest::prelude::*;
 
 /// Share of the greatest value that each state takes for the given inputs: rounding of some ten products.
 const RELATIVE_ERROR: f64 = 1e-10;
+/// The same for a belt: its matrix over 0.4 ms is up to 1e5 in size, so that its exponential is squared 18 times, and each
+/// time rounding doubles.
+const STIFF_ERROR: f64 = 1e-8;
 /// Share of the greatest entry times the greatest input: some units in the last place.
 const UNITS_ERROR: f64 = 1e-14;
 
@@ -98,7 +101,7 @@ proptest! {
             [next.motor.current_a, next.motor.speed_rad_s, next.motor.angle_rad, next.carriage_mm_s, next.carriage_mm];
         for (row, found) in found.into_iter().enumerate() {
             let error = (found - expected[row]).abs();
-            prop_assert!(error <= RELATIVE_ERROR * size[row] + rounding, "row {row}: {found} {}", expected[row]);
+            prop_assert!(error <= STIFF_ERROR * size[row] + rounding, "row {row}: {found} {}", expected[row]);
         }
     }
 }

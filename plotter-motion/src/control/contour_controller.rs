@@ -55,17 +55,17 @@ impl AxisState {
 /// ```
 /// # use plotter_motion::control::{AxisController, AxisState};
 /// # use plotter_motion::Duty;
-/// /// A hundredth of the supply for each count that the axis is behind.
+/// /// An eighth of the supply for each count that the axis is behind.
 /// struct Proportional;
 ///
 /// impl AxisController for Proportional {
 ///     fn update(&mut self, state: &AxisState, _dt_s: f32) -> Duty {
-///         Duty::saturating(0.01 * state.error())
+///         Duty::saturating(0.125 * state.error())
 ///     }
 /// }
 ///
 /// let state = AxisState { reference: 12.0, position: 7.0, ..AxisState::default() };
-/// assert_eq!(Proportional.update(&state, 1e-4).value(), 0.05);
+/// assert_eq!(Proportional.update(&state, 1e-4).value(), 0.625);
 /// ```
 pub trait AxisController {
     /// A line begins: what belonged to the last one may be forgotten. `duration_s` is how long the reference takes.

@@ -4,7 +4,7 @@ use super::{
     AxisState, ContourController, ContourState, ContouringSettings, LineController, ShaftObserver,
     ShaftSettings,
 };
-use crate::{Axis, Demand, Direction, Drive, Duty, Machine, SCurve, StepPoint};
+use crate::{Axis, Decoding, Demand, Direction, Drive, Duty, Machine, SCurve, StepPoint};
 use core::time::Duration;
 
 /// Makes a [`LineController`] of a [`ContourController`]: everything but the control law.
@@ -70,6 +70,8 @@ struct PlannedAxis {
     resting: bool,
     /// How long there has been no edge.
     still_for: Duration,
+    /// How far from the middle of its count it may rest if it stands.
+    not_far_counts: f32,
     /// Duty that grows while the shaft stands beside its target.
     leaning: f32,
     /// How far it was behind at the last edge since the last run, counts.
@@ -105,6 +107,11 @@ impl<C: ContourController> PlannedLine<C> {
             duty: Duty::ZERO,
             resting: false,
             still_for: Duration::ZERO,
+            not_far_counts: match decoding {
+                // Farther from the middle it may be outside A's high half, and be counted wrongly when it leaves.
+                Decoding::X1 => 0.4,
+                Decoding::X2 | Decoding::X4 => 0.6, // the whole count
+            },
             leaning: 0.0,
             edge_error: None,
         };
@@ -227,8 +234,8 @@ impl<C: ContourController> PlannedLine<C> {
 
 impl PlannedAxis {
     /// Takes an edge while the reference is `reference` counts beyond `start`.
-    fn edge(&mut self, direction: Direction, start: i32, reference: f64) {
-        let place = self.observer.edge(direction);
+    fn edge(&mut self, direction: Direction, start: i32, reference: f64, planned: Option<Direction>) {
+        let place = self.observer.edge(direction, planned);
         self.still_for = Duration::ZERO;
         let counted = self.observer.count().saturating_sub(start);
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
@@ -239,12 +246,10 @@ impl PlannedAxis {
     /// Whether the shaft may be left alone at `target`: it stands in the target's count, near its middle, or not far from it and
     /// without any edge for a while. Once left alone it stays so until it leaves the count.
     fn rests(&mut self, target: i32, tolerance: f32) -> bool {
-        // Farther from the middle a shaft with an x1 encoder may be outside A's high half, and be counted wrongly when it leaves.
-        const NOT_FAR_COUNTS: f32 = 0.4;
         let distance = self.observer.distance_from(target).abs();
         let may_rest = self.resting
             || distance <= tolerance
-            || (distance <= NOT_FAR_COUNTS.max(tolerance) && self.still_for >= STANDS);
+            || (distance <= self.not_far_counts.max(tolerance) && self.still_for >= STANDS);
         self.resting = self.observer.count() == target && may_rest;
         self.resting
     }
@@ -275,6 +280,9 @@ impl PlannedAxis {
     /// Rounds a duty to the timer's steps; none leaves the shaft alone, with its motor short-circuited.
     fn drive(&mut self, wanted: Option<Duty>) {
         let Some(wanted) = wanted else {
+            if self.still_for >= STANDS {
+                self.observer.rests();
+            }
             (self.rounding, self.leaning) = (0.0, 0.0);
             self.duty = Duty::ZERO;
             return;
@@ -328,9 +336,14 @@ impl<C: ContourController> LineController for PlannedLine<C> {
         let plan_s = self.run_plan_s + since_run.as_secs_f64() * f64::from(self.rate);
         let reference = self.plan.at(plan_s).distance_mm;
         let [ux, uy] = self.direction.map(f64::from);
+        let is_over = self.plan_s >= self.plan.duration_s();
+        let planned = |unit: f64| {
+            let sense = if unit > 0.0 { Direction::Plus } else { Direction::Minus };
+            (unit != 0.0 && !is_over).then_some(sense)
+        };
         match axis {
-            Axis::X => self.x.edge(direction, self.start.x, reference * ux),
-            Axis::Y => self.y.edge(direction, self.start.y, reference * uy),
+            Axis::X => self.x.edge(direction, self.start.x, reference * ux, planned(ux)),
+            Axis::Y => self.y.edge(direction, self.start.y, reference * uy, planned(uy)),
         }
         self.demand()
     }

@@ -84,9 +84,20 @@ impl ShaftObserver {
         self.disturbance = 0.0;
     }
 
-    /// Takes the shaft for one that stands where it is thought to be.
+    /// Takes the shaft for one that stands where it is thought to be; where it was thought to be on the way there says nothing of
+    /// the edges to come.
     pub const fn stands(&mut self) {
         (self.speed, self.disturbance) = (0.0, 0.0);
+        (self.least, self.most) = (self.offset, self.offset);
+    }
+
+    /// Takes the shaft for one that stands at the resting place of its count, or with an x1 encoder in A's high half at least:
+    /// there it was led, and no model is so good that it would know better.
+    pub fn rests(&mut self) {
+        if self.decoding == Decoding::X1 {
+            self.offset = self.offset.clamp(0.0, 0.5);
+        }
+        self.stands();
     }
 
     /// Moves the estimate on by `dt_s` under `voltage_v`; nothing happens unless the time is above 0 and both are
@@ -121,7 +132,12 @@ impl ShaftObserver {
 
     /// Takes an edge, at the moment that was predicted last, and says where it lies: how far from the resting place of the
     /// [`count`](Self::count) that it leads into, in counts.
-    pub fn edge(&mut self, direction: Direction) -> f32 {
+    ///
+    /// `planned` is the direction of a motion under way, if there is one: an x1 edge in it is the next one, whatever the estimate says.
+    pub fn edge(&mut self, direction: Direction, planned: Option<Direction>) -> f32 {
+        if planned == Some(direction) {
+            (self.least, self.most) = (self.offset.max(0.0), self.offset.min(0.5));
+        }
         let (count, place) = self.edge_place(direction);
         #[expect(clippy::cast_precision_loss, reason = "0, 1 or -1")]
         let moved = count.saturating_sub(self.count) as f32;

@@ -66,7 +66,7 @@ pub struct Moment {
 /// let line = [PenMove { pen: Pen::Down, target: StepPoint::new(400, 0) }]; // 10 mm to the right
 /// let figures = bed.run(&mut LineTracking::new(bed.described()), line, |_moment| ());
 /// assert!(figures.is_finished());
-/// assert_eq!(figures.max_mm, 0.0); // one motor alone cannot leave its line
+/// assert!(figures.max_mm < 0.5); // one motor alone cannot leave its line, but go beyond its end
 /// # Ok::<(), plotter_motion::ConfigError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
