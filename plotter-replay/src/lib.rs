@@ -6,6 +6,7 @@ mod canvas;
 mod chart;
 mod compare;
 pub mod golden;
+pub mod import;
 pub mod log;
 mod number;
 mod player;

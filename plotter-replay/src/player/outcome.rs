@@ -179,13 +179,11 @@ impl fmt::Display for Line<'_> {
             Event::Host(bytes) => ('>', bytes),
             Event::Controller(bytes) => ('<', bytes),
             event => {
-                let mut line = String::new();
-                crate::log::write_line(
-                    &mut line,
-                    u64::try_from(self.0.time.as_micros()).unwrap_or(u64::MAX),
-                    event,
-                );
-                let covered = line.rsplit_once(" *").map_or(line.as_str(), |(covered, _)| covered);
+                let mut line = Vec::new();
+                let time_us = u64::try_from(self.0.time.as_micros()).unwrap_or(u64::MAX);
+                crate::log::write_line(&mut line, time_us, &event.view());
+                let line = String::from_utf8_lossy(&line);
+                let covered = line.rsplit_once(" *").map_or(&*line, |(covered, _)| covered);
                 return f.write_str(covered);
             }
         };
