@@ -3,9 +3,16 @@
 //! ```text
 //! cargo bench -p plotter-replay --bench logs
 //! ```
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs, reason = "a benchmark that fails says so by a panic")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    missing_docs,
+    reason = "a benchmark that fails says so by a panic"
+)]
 
-use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
+use criterion::{
+    BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
+};
 use plotter_motion::protocol::digits::Reply;
 use plotter_replay::log::{EventRef, Header, Reader, RecordRef, Writer};
 use serde_json::Value;
@@ -120,13 +127,19 @@ fn logs(criterion: &mut Criterion) {
     assert_eq!(read(&single), read(&grouped));
     assert_eq!(read(&single), read_jsonl(&jsonl));
     assert_eq!(read(&single), read_jsonl_struct(&jsonl));
-    println!("bytes an event: {:.1} one by one, {:.1} in groups of 64, {:.1} as JSON lines",
-        single.len() as f64 / EVENTS as f64, grouped.len() as f64 / EVENTS as f64, jsonl.len() as f64 / EVENTS as f64);
+    println!(
+        "bytes an event: {:.1} one by one, {:.1} in groups of 64, {:.1} as JSON lines",
+        single.len() as f64 / EVENTS as f64,
+        grouped.len() as f64 / EVENTS as f64,
+        jsonl.len() as f64 / EVENTS as f64
+    );
     let mut reading = group(criterion, "read");
     reading.bench_function("one byte a record", |bencher| bencher.iter(|| read(black_box(&single))));
     reading.bench_function("64 bytes a record", |bencher| bencher.iter(|| read(black_box(&grouped))));
     reading.bench_function("JSON lines", |bencher| bencher.iter(|| read_jsonl(black_box(&jsonl))));
-    reading.bench_function("JSON lines into a struct", |bencher| bencher.iter(|| read_jsonl_struct(black_box(&jsonl))));
+    reading.bench_function("JSON lines into a struct", |bencher| {
+        bencher.iter(|| read_jsonl_struct(black_box(&jsonl)))
+    });
     reading.finish();
     let mut writing = group(criterion, "write");
     let room = || Vec::with_capacity(jsonl.len());

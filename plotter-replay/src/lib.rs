@@ -23,12 +23,12 @@ pub use canvas::PngError;
 pub use canvas::{Canvas, CanvasStyle, Layer, Visibility};
 pub use chart::{Chart, Curve, Panel, Role, Run};
 pub use compare::{
-    CompareSettings, Comparison, ContourError, ContourSample, ContourTally, Decoder, FirstDifference, LaneSummary, Place, Ways,
-    compare, contour_samples,
+    CompareSettings, Comparison, ContourError, ContourSample, ContourTally, Decoder, FirstDifference,
+    LaneSummary, Place, Ways, compare, contour_samples,
 };
 pub use player::{
-    AnyController, Answer, Compared, Controller, ControllerError, Difference, EdgeSource, MachineController, MotorStep, Outcome, Pace,
-    PaceSettings, Player, PlayerSettings, Rerun, Stuck,
+    Answer, AnyController, Compared, Controller, ControllerError, Difference, EdgeSource, MachineController,
+    MotorStep, Outcome, Pace, PaceSettings, Player, PlayerSettings, Rerun, Stuck,
 };
 pub use virtual_plotter::{
     Anomaly, AnomalyKind, Leg, PlotterSettings, Reached, SettingsError, TrackPoint, VirtualPlotter,

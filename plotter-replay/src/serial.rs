@@ -111,7 +111,8 @@ type Known = (String, String, bool);
 fn known(port: serialport::SerialPortInfo) -> Known {
     match port.port_type {
         serialport::SerialPortType::UsbPort(usb) => {
-            let words = [usb.manufacturer, usb.product, usb.serial_number].map(Option::unwrap_or_default).join(" ");
+            let words =
+                [usb.manufacturer, usb.product, usb.serial_number].map(Option::unwrap_or_default).join(" ");
             (port.port_name, words, true)
         }
         _ => (port.port_name, String::new(), false),
@@ -224,7 +225,11 @@ impl Port {
         let prepared =
             self.inner.set_timeout(Duration::from_millis(200)).and_then(|()| self.inner.try_clone());
         let writer = prepared.map_err(|error| self.other(&error.into()))?;
-        Ok(crate::record::RelayEnd { name: self.name, reader: Box::new(self.inner), writer: Box::new(writer) })
+        Ok(crate::record::RelayEnd {
+            name: self.name,
+            reader: Box::new(self.inner),
+            writer: Box::new(writer),
+        })
     }
 
     /// Its name.

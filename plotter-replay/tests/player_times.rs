@@ -163,6 +163,11 @@ fn the_difference_shows_what_was_around_it() {
       recorded: byte 0x31 '1' at 1041 us
       now:      byte 0x31 '1' at 1040 us
       equal until then: 9 answered bytes and 0 duty cycles in 19 records
+             9  540 < 31
+            10  600 @ edge x+
+            11  640 < 31
+            12  700 @ edge x+
+            13  740 < 31
             14  800 @ edge x+
             15  840 < 31
             16  900 @ edge x+
@@ -174,6 +179,11 @@ fn the_difference_shows_what_was_around_it() {
             22  1200 @ edge x+
             23  1240 < 31
             24  1300 @ edge x+
+            25  1340 < 31
+            26  1400 @ edge x+
+            27  1440 < 31
+            28  1500 @ edge x+
+            29  1540 < 31
     ");
 }
 

@@ -119,11 +119,7 @@ impl VirtualPlotter {
     }
 }
 
-fn samples_of(
-    legs: &[Leg],
-    settings: PlotterSettings,
-    ways: Ways,
-) -> impl Iterator<Item = ContourSample> {
+fn samples_of(legs: &[Leg], settings: PlotterSettings, ways: Ways) -> impl Iterator<Item = ContourSample> {
     let measured = move |pen| ways == Ways::All || pen == Pen::Down;
     legs.iter().filter(move |leg| measured(leg.pen)).flat_map(move |leg| {
         leg.target.into_iter().flat_map(move |target| {

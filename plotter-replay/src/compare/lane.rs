@@ -132,17 +132,22 @@ impl Lane {
     }
 }
 
-/// How many to leave out on either side until both go on alike: as few as possible together. The same number of both, if
-/// they do not within sight.
+/// How many to leave out on either side until both go on alike: as few as possible, and rather something else on both sides than
+/// something missing on one. The same number of both, if they do not within sight.
 fn meeting(left: &VecDeque<Entry>, right: &VecDeque<Entry>) -> (usize, usize) {
     let alike = |i: usize, j: usize| {
         let rest = left.len().saturating_sub(i).min(right.len().saturating_sub(j)).min(SURE);
         rest > 0 && (0..rest).all(|k| left.get(i + k).map(|e| &e.item) == right.get(j + k).map(|e| &e.item))
     };
-    for together in 1..=LOOK_AHEAD {
-        for i in 0..=together {
-            if alike(i, together - i) {
-                return (i, together - i);
+    for most in 1..=LOOK_AHEAD {
+        if alike(most, most) {
+            return (most, most);
+        }
+        for less in 0..most {
+            for by in [(most, less), (less, most)] {
+                if alike(by.0, by.1) {
+                    return by;
+                }
             }
         }
     }

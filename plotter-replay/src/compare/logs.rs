@@ -163,5 +163,9 @@ fn place(
         around.push_back((index, difference::line(&one, &words)));
         after = after.map(|left| left.saturating_sub(1));
     }
-    Place { what: entry.as_ref().map(|entry| (entry.item.to_string(), entry.time)), record, around: around.into() }
+    Place {
+        what: entry.as_ref().map(|entry| (entry.item.to_string(), entry.time)),
+        record,
+        around: around.into(),
+    }
 }

@@ -87,7 +87,8 @@ pub fn mcap<W: Write + Seek>(
             "targets_sent": integer(), "targets_reached": integer(),
         }),
     )?;
-    let bytes = topic("bytes", json!({ "from": text(), "count": integer(), "hex": text(), "words": text() }))?;
+    let bytes =
+        topic("bytes", json!({ "from": text(), "count": integer(), "hex": text(), "words": text() }))?;
     let drive = topic("drive", json!({ "x": integer(), "y": integer() }))?;
     let events = topic("events", json!({ "kind": text(), "value": text() }))?;
     let plotter = PlotterSettings::from_header(header).map_err(error)?;

@@ -18,7 +18,11 @@ use std::io::{self, Write};
 /// # Errors
 ///
 /// What `out` says.
-pub fn csv(header: &Header, records: impl IntoIterator<Item = Record>, mut out: impl Write) -> io::Result<()> {
+pub fn csv(
+    header: &Header,
+    records: impl IntoIterator<Item = Record>,
+    mut out: impl Write,
+) -> io::Result<()> {
     let mut decoder = Decoder::new(header);
     out.write_all(b"time_us,from,kind,value,words\n")?;
     for record in records {
@@ -29,7 +33,8 @@ pub fn csv(header: &Header, records: impl IntoIterator<Item = Record>, mut out: 
             Event::Controller(bytes) => ("controller", "bytes", hex(bytes)),
             event => {
                 // `TIME @ KIND VALUE`
-                let (kind, value) = line.splitn(3, ' ').nth(2).and_then(|rest| rest.split_once(' ')).unwrap_or_default();
+                let (kind, value) =
+                    line.splitn(3, ' ').nth(2).and_then(|rest| rest.split_once(' ')).unwrap_or_default();
                 let kind = match event {
                     Event::Edge { .. } => "edge",
                     Event::Drive { .. } => "drive",
@@ -53,7 +58,11 @@ pub fn csv(header: &Header, records: impl IntoIterator<Item = Record>, mut out: 
 /// # Errors
 ///
 /// What `out` says.
-pub fn text(header: &Header, records: impl IntoIterator<Item = Record>, mut out: impl Write) -> io::Result<()> {
+pub fn text(
+    header: &Header,
+    records: impl IntoIterator<Item = Record>,
+    mut out: impl Write,
+) -> io::Result<()> {
     let mut decoder = Decoder::new(header);
     for (key, value) in header.entries() {
         writeln!(out, "# {key}: {value}")?;
@@ -92,5 +101,9 @@ pub(super) fn hex(bytes: &[u8]) -> String {
 }
 
 fn cell(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
 }

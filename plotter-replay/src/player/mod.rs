@@ -19,9 +19,9 @@ mod stepper;
 pub use any::{AnyController, ControllerError};
 pub use controller::{Controller, MotorStep};
 pub use machine::MachineController;
+pub use outcome::{Answer, Compared, Difference, Outcome, Stuck};
 pub use pace::{Pace, PaceSettings};
 pub use rerun::Rerun;
-pub use outcome::{Answer, Compared, Difference, Outcome, Stuck};
 pub use run::EdgeSource;
 
 use crate::log::{Event, Header, Record};

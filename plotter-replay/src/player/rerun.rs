@@ -32,10 +32,12 @@ impl<I: Iterator<Item = Record>, C: Controller> Rerun<I, C> {
         let advanced = self.run.advance(record.time);
         self.tell(record.time);
         advanced?;
-        let (makes_steps, moves_pen) = (self.run.controller.makes_steps(), self.run.controller.pen().is_some());
+        let (makes_steps, moves_pen) =
+            (self.run.controller.makes_steps(), self.run.controller.pen().is_some());
         let kept = match &record.event {
             Event::Controller(bytes) => {
-                let inputs: Vec<_> = bytes.iter().copied().filter(|&byte| !self.run.is_answer(byte)).collect();
+                let inputs: Vec<_> =
+                    bytes.iter().copied().filter(|&byte| !self.run.is_answer(byte)).collect();
                 (!inputs.is_empty()).then_some(Event::Controller(inputs))
             }
             // What the controller does is told by it.

@@ -3,9 +3,9 @@
 use super::{Controller, Stuck};
 use crate::log::{Event, Record};
 use core::time::Duration;
-use plotter_motion::{Axis, Direction, Pen, StepPoint};
 use plotter_motion::protocol::Wire;
 use plotter_motion::protocol::digits::Reply;
+use plotter_motion::{Axis, Direction, Pen, StepPoint};
 use std::collections::VecDeque;
 
 /// Ticks in a row that may leave the next tick where it was.
@@ -138,10 +138,7 @@ impl<C: Controller> Run<C> {
             Event::Target { x, y } => self.controller.target(now, self.recorded_pen, StepPoint::new(*x, *y)),
             Event::Switch { name, pressed } => self.controller.switch(now, name, *pressed),
             Event::Estop(pressed) => self.controller.emergency_stop(now, *pressed),
-            Event::Edge { .. }
-            | Event::Controller(_)
-            | Event::Drive { .. }
-            | Event::Note(_) => return Ok(()),
+            Event::Edge { .. } | Event::Controller(_) | Event::Drive { .. } | Event::Note(_) => return Ok(()),
         }
         self.fetch()
     }
@@ -152,7 +149,9 @@ impl<C: Controller> Run<C> {
 
     /// Whether a recorded byte is an answer to compare, or an input.
     pub(super) fn is_answer(&self, byte: u8) -> bool {
-        self.edges == EdgeSource::Records || self.controller.makes_steps() || !matches!(Reply::from_byte(byte), Some(Reply::Pulse(..)))
+        self.edges == EdgeSource::Records
+            || self.controller.makes_steps()
+            || !matches!(Reply::from_byte(byte), Some(Reply::Pulse(..)))
     }
 
     fn fetch(&mut self) -> Result<(), Stuck> {

@@ -121,8 +121,11 @@ impl Recorder {
         sync: impl Fn() -> bool + Send + 'static,
         on_failure: impl FnOnce(&WriteError) + Send + 'static,
     ) -> Result<Self, WriteError> {
-        let shared =
-            Arc::new(Shared { began: Instant::now(), state: Mutex::new(State::default()), woken: Condvar::new() });
+        let shared = Arc::new(Shared {
+            began: Instant::now(),
+            state: Mutex::new(State::default()),
+            woken: Condvar::new(),
+        });
         let theirs = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
             .name(String::from("recorder"))
@@ -210,10 +213,8 @@ impl Shared {
             let over = {
                 let mut state = self.lock();
                 if !state.over {
-                    let (woken, _) = self
-                        .woken
-                        .wait_timeout(state, WRITE_EVERY)
-                        .unwrap_or_else(PoisonError::into_inner);
+                    let (woken, _) =
+                        self.woken.wait_timeout(state, WRITE_EVERY).unwrap_or_else(PoisonError::into_inner);
                     state = woken;
                 }
                 core::mem::swap(&mut state.waiting, &mut batch);
@@ -261,7 +262,8 @@ fn write_batch<W: Write>(writer: &mut Writer<W>, batch: &mut Batch) -> Result<Re
         writer.write_ref(&RecordRef { time: last, event })?;
     }
     if batch.lost > 0 {
-        let note = format!("recorder: {} bytes came too fast for the disk and are not in the log", batch.lost);
+        let note =
+            format!("recorder: {} bytes came too fast for the disk and are not in the log", batch.lost);
         writer.write_ref(&RecordRef { time: last, event: EventRef::Note(note.into()) })?;
     }
     batch.bytes.clear();

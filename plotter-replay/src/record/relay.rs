@@ -64,8 +64,8 @@ impl fmt::Display for RelayStop {
 
 /// Passes every byte on, both ways, and records it, until `stop` is set or an end goes away. Does not end the recording.
 ///
-/// A byte goes on before it is recorded, so that the recording costs the drawing nothing. If the recording fails, the bytes
-/// go on without it.
+/// A byte is recorded before it goes on, which costs a copy in memory: so an answer never stands before what it answers. If
+/// the recording fails, the bytes go on without it.
 #[must_use]
 pub fn relay(host: RelayEnd, controller: RelayEnd, recorder: &Recorder, stop: &Arc<AtomicBool>) -> RelayStop {
     let first: Mutex<Option<RelayStop>> = Mutex::new(None);
@@ -122,10 +122,12 @@ impl Way {
             };
             // While a host does not read, it is tried with one byte at a time, so that nothing waits for it.
             let wait = if dropped > 0 { Some(Duration::ZERO) } else { self.drops_after };
-            let left = send(&mut *writer, bytes, wait, stop).map_err(|error| (to.clone(), error))?;
+            // Before it goes on: an answer must not stand before what it answers.
             recorder.bytes(self.side, bytes);
+            let left = send(&mut *writer, bytes, wait, stop).map_err(|error| (to.clone(), error))?;
             if left > 0 && dropped == 0 {
-                recorder.note(&format!("recorder: {to} takes no bytes: they are recorded, but do not reach it"));
+                recorder
+                    .note(&format!("recorder: {to} takes no bytes: they are recorded, but do not reach it"));
             }
             if left == 0 && dropped > 0 {
                 recorder.note(&format!("recorder: {to} takes bytes again; {dropped} did not reach it"));

@@ -44,7 +44,12 @@ impl Traits {
         let knows_edges = self.has_edges || makes_steps;
         let edges = if knows_edges { EdgeSource::Records } else { EdgeSource::Pulses };
         let tolerance = if knows_edges { Duration::ZERO } else { PULSE_TOLERANCE };
-        PlayerSettings { edges, tolerance, tells_duties: self.has_duties, ..PlayerSettings::from_header(header) }
+        PlayerSettings {
+            edges,
+            tolerance,
+            tells_duties: self.has_duties,
+            ..PlayerSettings::from_header(header)
+        }
     }
 }
 

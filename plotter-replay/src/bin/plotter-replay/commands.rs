@@ -266,8 +266,8 @@ fn read_drawing(path: &Path) -> Result<(Vec<PlotOp>, Vec<hpgl::Error>), String> 
 /// The machine that a file describes.
 pub(crate) fn read_machine(path: &Path) -> Result<Machine, String> {
     let refused = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-    let text =
-        String::from_utf8(read_file(path, MOST_MACHINE_BYTES)?).map_err(|error| refused(&error.utf8_error()))?;
+    let text = String::from_utf8(read_file(path, MOST_MACHINE_BYTES)?)
+        .map_err(|error| refused(&error.utf8_error()))?;
     Machine::from_toml(&text).map_err(|error| refused(&error))
 }
 

@@ -44,7 +44,11 @@ impl Export {
             return match self.to {
                 To::Csv => export::csv(header, records, &mut *out),
                 To::Text => export::text(header, records, &mut *out),
-                To::Mcap => return Err(String::from("export: MCAP is not written to the standard output: give -o FILE")),
+                To::Mcap => {
+                    return Err(String::from(
+                        "export: MCAP is not written to the standard output: give -o FILE",
+                    ));
+                }
             }
             .map(|()| verdict)
             .map_err(|error| cannot("written", "standard output".as_ref(), &error));
@@ -55,7 +59,9 @@ impl Export {
         match self.to {
             To::Csv => export::csv(header, records, file).map_err(unwritable)?,
             To::Text => export::text(header, records, file).map_err(unwritable)?,
-            To::Mcap => write_mcap(header, records, file).map_err(|error| format!("{}: {error}", path.display()))?,
+            To::Mcap => {
+                write_mcap(header, records, file).map_err(|error| format!("{}: {error}", path.display()))?
+            }
         }
         say_damage(out, &contents);
         say(out, &format!("wrote {}", path.display()));

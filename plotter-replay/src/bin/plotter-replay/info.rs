@@ -51,7 +51,9 @@ impl Rate {
         let (mean, most) =
             (self.bytes as f64 / seconds.max(1e-6), self.most_in_window as f64 / WINDOW.as_secs_f64());
         let share = 100.0 * most * 10.0 / f64::from(baud.max(1));
-        format!("{name}: {mean:.0} bytes/s, {most:.0} bytes/s in the fullest 0.1 s ({share:.0} % of the line)")
+        format!(
+            "{name}: {mean:.0} bytes/s, {most:.0} bytes/s in the fullest 0.1 s ({share:.0} % of the line)"
+        )
     }
 }
 

@@ -74,7 +74,10 @@ impl Record {
         let asked = Arc::clone(&stop);
         ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
             .map_err(|error| format!("Ctrl-C cannot be waited for: {error}"))?;
-        say(out, &format!("recording {name} and {} at {} baud into {}", host.name, self.baud, self.out.display()));
+        say(
+            out,
+            &format!("recording {name} and {} at {} baud into {}", host.name, self.baud, self.out.display()),
+        );
         let _ = out.flush();
         if let Some(lasts) = self.lasts {
             let over = Arc::clone(&stop);
@@ -97,7 +100,10 @@ impl Record {
             ),
         );
         if recorded.lost_bytes > 0 {
-            say(out, &format!("{} bytes came too fast for the disk and are not in the log", recorded.lost_bytes));
+            say(
+                out,
+                &format!("{} bytes came too fast for the disk and are not in the log", recorded.lost_bytes),
+            );
         }
         match stopped {
             RelayStop::Asked if recorded.lost_bytes == 0 => Ok(Verdict::Clean),
@@ -132,18 +138,21 @@ impl Record {
                 Ok((end.map_err(|error| error.to_string())?, None))
             }
             (None, Some(link)) => pty_end(link).map(|(end, link)| (end, Some(link))),
-            (None, None) => Err(String::from("record: which port is the host on? --host-port, or --pty to make one")),
+            (None, None) => {
+                Err(String::from("record: which port is the host on? --host-port, or --pty to make one"))
+            }
         }
     }
 }
 
 /// A link to a pseudo terminal, taken away at the end.
 #[cfg(feature = "serial")]
+#[derive(Debug)]
 struct PtyLink {
     link: PathBuf,
     /// Kept open: when no program has the other end open, reading would fail.
     #[cfg(unix)]
-    _other: serialport::TTYPort,
+    _other: std::fs::File,
 }
 
 #[cfg(feature = "serial")]
@@ -157,11 +166,19 @@ impl Drop for PtyLink {
 #[cfg(all(feature = "serial", unix))]
 fn pty_end(link: &std::path::Path) -> Result<(plotter_replay::record::RelayEnd, PtyLink), String> {
     use serialport::{SerialPort, TTYPort};
+    use std::os::unix::fs::OpenOptionsExt as _;
     let cannot = |error: serialport::Error| format!("a port for the host cannot be made: {error}");
-    let (mut ours, mut other) = TTYPort::pair().map_err(cannot)?;
-    let name = other.name().ok_or_else(|| String::from("a port for the host cannot be made: it has no name"))?;
-    // The host program is to open it.
-    other.set_exclusive(false).map_err(cannot)?;
+    let (mut ours, other) = TTYPort::pair().map_err(cannot)?;
+    let name =
+        other.name().ok_or_else(|| String::from("a port for the host cannot be made: it has no name"))?;
+    // Held open without the lock that a serial port takes: the host program is to open it.
+    let held = std::fs::OpenOptions::new()
+        .read(true)
+        .write(true)
+        .custom_flags(libc::O_NOCTTY)
+        .open(&name)
+        .map_err(|error| crate::commands::cannot("opened", name.as_ref(), &error))?;
+    drop(other);
     ours.set_timeout(Duration::from_millis(200)).map_err(cannot)?;
     let writer = ours.try_clone_native().map_err(cannot)?;
     if link.is_symlink() {
@@ -174,10 +191,12 @@ fn pty_end(link: &std::path::Path) -> Result<(plotter_replay::record::RelayEnd, 
         reader: Box::new(ours),
         writer: Box::new(writer),
     };
-    Ok((end, PtyLink { link: link.to_owned(), _other: other }))
+    Ok((end, PtyLink { link: link.to_owned(), _other: held }))
 }
 
 #[cfg(all(feature = "serial", not(unix)))]
 fn pty_end(_: &std::path::Path) -> Result<(plotter_replay::record::RelayEnd, PtyLink), String> {
-    Err(String::from("--pty: this system has no pseudo terminals: use --host-port with a pair of virtual ports"))
+    Err(String::from(
+        "--pty: this system has no pseudo terminals: use --host-port with a pair of virtual ports",
+    ))
 }

@@ -29,7 +29,7 @@ pub(crate) struct Replay {
     #[arg(long, value_name = "FACTOR", value_parser = speed)]
     speed: Option<f64>,
     /// Show what comes from here on, seconds; what is before is run without waiting.
-    #[arg(long, value_name = "S", value_parser = seconds, default_value = "0")]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true, default_value = "0")]
     from: Duration,
     /// Show what comes up to here, seconds, and stop.
     #[arg(long, value_name = "S", value_parser = seconds)]
