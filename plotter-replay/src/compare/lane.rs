@@ -13,7 +13,7 @@ const LOOK_AHEAD: usize = 128;
 /// Entries in a row that must be equal for that.
 const SURE: usize = 4;
 /// Entries that wait for the other side.
-const MOST_WAITING: usize = 1 << 20;
+const MOST_WAITING: usize = 1 << 16;
 
 /// One thing that happened.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -11,7 +11,7 @@
 //! | [`Tool::Saleae`] | Logic 1 and 2: export of the async serial analyzer as CSV | a file, or the analyzer's name |
 //! | [`Tool::Sigrok`] | `sigrok-cli -P uart:rx=D0 -A uart=rx-data --protocol-decoder-samplenum` | a file |
 //! | [`Tool::Raw`] | `cat /dev/ttyUSB0 >FILE`: bare bytes | a file; times are made from the baud rate |
-//! | [`Tool::PlotterRaw`] | `t_us,H|D,hex` after a line `# plotter-raw/1` | `H` is the host |
+//! | [`Tool::PlotterRaw`] | `t_us,H\|D,hex` after a line `# plotter-raw/1` | `H` is the host |
 //!
 //! What cannot be read is told with its line, and the rest is taken.
 
