@@ -12,13 +12,34 @@ fn main() -> std::io::Result<()> {
             std::fs::write(folder.join(format!("seed-{number:03}")), bytes)?;
         }
     }
-    let folder = corpus.join("hpgl");
-    std::fs::create_dir_all(&folder)?;
-    for (number, text) in HPGL.iter().enumerate() {
-        std::fs::write(folder.join(format!("seed-{number:03}")), text)?;
+    for (target, texts) in [("hpgl", &HPGL[..]), ("log", &LOGS), ("import", &RECORDINGS)] {
+        let folder = corpus.join(target);
+        std::fs::create_dir_all(&folder)?;
+        for (number, text) in texts.iter().enumerate() {
+            std::fs::write(folder.join(format!("seed-{number:03}")), text)?;
+        }
     }
     Ok(())
 }
+
+/// A log with every kind of record.
+const LOGS: [&[u8]; 2] = [
+    b"plotter-log 1 {\"baud\":256000,\"sum\":\"30\"}\n0 > 03 09 09 02 00 05 05 09 03 01 *89\n10312 < 31 33 31 *87\n\
+        10350 @ edge x+ *5a\n10351 @ drive x 20 *04\n",
+    include_bytes!("../../plotter-replay/tests/golden/line.plog"),
+];
+
+/// A recording of every tool, each behind the byte that chooses how it is imported.
+const RECORDINGS: [&[u8]; 8] = [
+    b"\x00> 2026/01/15 10:00:00.000000352  length=3 from=0 to=2\n 00 02 2b   ..+\n--\n",
+    b"\x012006-05-30 13:23:49.461075: /dev/ttyS0\n00 31 2B   .1+\n2006-05-30 13:23:49.462: b\n01000010\n",
+    b"\x02(1436509052.249713) host 0200\n(2.5) can0  TX - -  123   [2]  31 2B\n(3.5) x 044#2A\n",
+    b"\x13Time [s],Value,Parity Error,Framing Error\n-0.1,'2',,\n0.2,0x31,,Error\n0.3,,,,\n0.4,\\n,,\n",
+    b"\x03name,type,start_time,duration,data\n\"a\",\"data\",0.1,0.00004,0x02\nb,data,2021-04-27T14:54:31.3Z,,49\n",
+    b"\x14109-189 uart-1: 02\nuart-1: Stop bit\n209-289 uart-1: [0A]\n300-310 uart-1: Frame error\n",
+    b"\x15\x02\x00\x05131+",
+    b"\x06# plotter-raw/1 name=x\n0,H,00\n39,D,3132\n78,H,",
+];
 
 /// Between them, every command of HPGL and HP-GL/2 that is carried out.
 const HPGL: [&[u8]; 12] = [

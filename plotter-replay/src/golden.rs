@@ -12,8 +12,10 @@
 //! With `UPDATE_GOLDEN=1` in the environment the recording is renewed: the same inputs, and what the controller
 //! answers now.
 
-use crate::log::{self, Damage, ReadError, Record, WriteError};
-use crate::{Controller, Difference, EdgeSource, Outcome, Player, PlayerSettings, Stuck};
+use crate::log::{self, Damage, Header, ReadError, Record, WriteError};
+use crate::{
+    CompareSettings, Controller, Difference, EdgeSource, Outcome, Player, PlayerSettings, Stuck, compare,
+};
 use core::fmt;
 use std::path::{Path, PathBuf};
 
@@ -41,6 +43,8 @@ pub enum GoldenError {
         path: PathBuf,
         /// Where what it does now was written to.
         actual: PathBuf,
+        /// Where what is different was written to: the first difference with what is round it, and all in numbers.
+        written: PathBuf,
         /// Where it begins to differ.
         difference: Box<Difference>,
     },
@@ -79,7 +83,7 @@ impl Mode {
 
 /// Re-runs the recording at `path` with a new controller. Edges come from the log, or, if it has none, from its
 /// pulses; times must be exact. If the controller does something else, that is written beside the recording
-/// as `.actual`.
+/// as `.actual`, and what is different as `.diff`.
 ///
 /// # Errors
 ///
@@ -92,30 +96,52 @@ pub fn check<C: Controller>(path: &Path, controller: impl Fn() -> C, mode: Mode)
         .by_ref()
         .collect::<Result<_, _>>()
         .map_err(|damage| GoldenError::Damaged { path: path.to_owned(), damage })?;
-    let edges = EdgeSource::of(&records);
-    let player = Player::new(PlayerSettings { edges, ..PlayerSettings::from_header(&header) });
-    let write = |path: &Path| -> Result<(), GoldenError> {
-        let unwritable = |error| GoldenError::Unwritable { path: path.to_owned(), error };
-        let mut now = Vec::new();
+    let settings = settings_for(&header, &records, &controller());
+    let player = Player::new(settings);
+    let rerun = || -> Result<Vec<Record>, GoldenError> {
         player
-            .rerun(records.iter().cloned(), controller(), |record| now.push(record))
-            .map_err(GoldenError::Stuck)?;
+            .rerun_iter(records.iter().cloned(), controller())
+            .collect::<Result<_, _>>()
+            .map_err(GoldenError::Stuck)
+    };
+    let write = |path: &Path, records: &[Record]| -> Result<(), GoldenError> {
+        let unwritable = |error| GoldenError::Unwritable { path: path.to_owned(), error };
         let mut writer = log::create(path, &header).map_err(unwritable)?;
-        for record in &now {
+        for record in records {
             writer.write(record).map_err(unwritable)?;
         }
         writer.finish().map_err(unwritable).map(drop)
     };
     if mode == Mode::Renew {
-        return write(path);
+        return write(path, &rerun()?);
     }
-    match player.check(records.iter().cloned(), controller()) {
-        Outcome::Equal(_) => Ok(()),
-        Outcome::FirstDifference(difference) => {
-            let actual = beside(path);
-            write(&actual)?;
-            Err(GoldenError::Differs { path: path.to_owned(), actual, difference })
+    let outcome = player.check(records.iter().cloned(), controller());
+    let (actual, written) = (beside(path, "actual"), beside_text(path));
+    let Outcome::FirstDifference(difference) = outcome else {
+        // What an earlier failure left is not true any more.
+        for old in [actual, written] {
+            let _ = std::fs::remove_file(old);
         }
+        return Ok(());
+    };
+    let now = rerun()?;
+    write(&actual, &now)?;
+    let wanted = CompareSettings { tolerance: settings.tolerance, ..CompareSettings::default() };
+    let comparison = compare(&header, || records.iter().cloned(), || now.iter().cloned(), wanted);
+    std::fs::write(&written, format!("{difference}\n\nfirst: recorded, second: now\n{comparison}\n"))
+        .map_err(|error| GoldenError::Unwritable {
+            path: written.clone(),
+            error: WriteError::Sink { message: error.to_string() },
+        })?;
+    Err(GoldenError::Differs { path: path.to_owned(), actual, written, difference })
+}
+
+fn settings_for(header: &Header, records: &[Record], controller: &impl Controller) -> PlayerSettings {
+    let settings = PlayerSettings::of(header, records);
+    if controller.makes_steps() {
+        PlayerSettings { edges: EdgeSource::Records, ..settings }
+    } else {
+        settings
     }
 }
 
@@ -132,10 +158,16 @@ pub fn assert_replays<C: Controller>(path: impl AsRef<Path>, controller: impl Fn
 }
 
 /// `session.plog` to `session.plog.actual`, and `session.plog.gz` to `session.plog.actual.gz`, so that it stays packed.
-fn beside(path: &Path) -> PathBuf {
+fn beside(path: &Path, what: &str) -> PathBuf {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let packed = name.strip_suffix(".gz").map_or("", |_| ".gz");
-    path.with_file_name(format!("{}.actual{packed}", name.trim_end_matches(".gz")))
+    path.with_file_name(format!("{}.{what}{packed}", name.trim_end_matches(".gz")))
+}
+
+/// `session.plog` and `session.plog.gz` to `session.plog.diff`: never packed, it is for people.
+fn beside_text(path: &Path) -> PathBuf {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    path.with_file_name(format!("{}.diff", name.trim_end_matches(".gz")))
 }
 
 impl fmt::Display for GoldenError {
@@ -143,11 +175,12 @@ impl fmt::Display for GoldenError {
         match self {
             Self::Unreadable { path, error } => write!(f, "{}: {error}", path.display()),
             Self::Damaged { path, damage } => write!(f, "{}: {damage}", path.display()),
-            Self::Differs { path, actual, difference } => write!(
+            Self::Differs { path, actual, written, difference } => write!(
                 f,
-                "{}: {difference}\n  what happened now: {} (UPDATE_GOLDEN=1 takes it over)",
+                "{}: {difference}\n  what happened now: {} (UPDATE_GOLDEN=1 takes it over)\n  what is different: {}",
                 path.display(),
-                actual.display()
+                actual.display(),
+                written.display()
             ),
             Self::Stuck(stuck) => stuck.fmt(f),
             Self::Unwritable { path, error } => write!(f, "{}: {error}", path.display()),
@@ -163,7 +196,7 @@ mod tests {
 
     #[test]
     fn what_happened_lies_beside_the_recording() {
-        assert_eq!(beside(Path::new("golden/square.plog")), Path::new("golden/square.plog.actual"));
-        assert_eq!(beside(Path::new("square.plog.gz")), Path::new("square.plog.actual.gz"));
+        assert_eq!(beside(Path::new("golden/square.plog"), "actual"), Path::new("golden/square.plog.actual"));
+        assert_eq!(beside(Path::new("square.plog.gz"), "actual"), Path::new("square.plog.actual.gz"));
     }
 }

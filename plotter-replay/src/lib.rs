@@ -5,10 +5,13 @@ mod bench_recorder;
 mod canvas;
 mod chart;
 mod compare;
+pub mod export;
 pub mod golden;
+pub mod import;
 pub mod log;
 mod number;
 mod player;
+pub mod record;
 #[cfg(feature = "serial")]
 pub mod serial;
 mod thin;
@@ -20,10 +23,13 @@ pub use bench_recorder::BenchRecorder;
 pub use canvas::PngError;
 pub use canvas::{Canvas, CanvasStyle, Layer, Visibility};
 pub use chart::{Chart, Curve, Panel, Role, Run};
-pub use compare::{ContourError, ContourSample, Ways, contour_samples};
+pub use compare::{
+    CompareSettings, Comparison, ContourError, ContourSample, ContourTally, Decoder, FirstDifference,
+    LaneSummary, Place, Ways, compare, contour_samples,
+};
 pub use player::{
-    Answer, Compared, Controller, Difference, EdgeSource, MachineController, Outcome, Player, PlayerSettings,
-    Stuck,
+    Answer, AnyController, Compared, Controller, ControllerError, Difference, EdgeSource, MachineController,
+    MotorStep, Outcome, Pace, PaceSettings, Player, PlayerSettings, Rerun, Stuck,
 };
 pub use thin::thin;
 pub use virtual_plotter::{

@@ -47,6 +47,11 @@ pub enum PortErrorKind {
         /// Their names.
         others: Vec<String>,
     },
+    /// None was named, and there is not just one.
+    WhichOne {
+        /// Those that there are.
+        others: Vec<String>,
+    },
     /// Another program has it.
     Busy,
     /// This user may not open it.
@@ -69,6 +74,12 @@ impl fmt::Display for PortError {
             PortErrorKind::NotThere { others } => {
                 write!(f, "there is no such serial port; there are {}", others.join(", "))
             }
+            PortErrorKind::WhichOne { others } if others.is_empty() => {
+                f.write_str("no serial port was found: is the machine plugged in and on?")
+            }
+            PortErrorKind::WhichOne { others } => {
+                write!(f, "which serial port? There are {}", others.join(", "))
+            }
             PortErrorKind::Busy => f.write_str("another program uses this serial port: close it first"),
             PortErrorKind::NotAllowed => f.write_str(
                 "this user may not open the serial port: on Linux, become a member of its group (`ls -l` names it, \
@@ -82,6 +93,59 @@ impl fmt::Display for PortError {
 }
 
 impl core::error::Error for PortError {}
+
+/// The serial port that is meant: `auto` is the only one on USB, else the only one at all; a name that no port has may be a
+/// part of its name or of what the device on USB calls itself, if only one has it.
+///
+/// # Errors
+///
+/// [`PortErrorKind::WhichOne`] if there are several, or none.
+pub fn find(wanted: &str) -> Result<String, PortError> {
+    let ports = serialport::available_ports().unwrap_or_default();
+    choose(wanted, &ports.into_iter().map(known).collect::<Vec<_>>())
+}
+
+/// A port: its name, what its device says of itself, whether it is on USB.
+type Known = (String, String, bool);
+
+fn known(port: serialport::SerialPortInfo) -> Known {
+    match port.port_type {
+        serialport::SerialPortType::UsbPort(usb) => {
+            let words =
+                [usb.manufacturer, usb.product, usb.serial_number].map(Option::unwrap_or_default).join(" ");
+            (port.port_name, words, true)
+        }
+        _ => (port.port_name, String::new(), false),
+    }
+}
+
+fn choose(wanted: &str, ports: &[Known]) -> Result<String, PortError> {
+    let names = |of: &[&Known]| of.iter().map(|(name, ..)| name.clone()).collect::<Vec<_>>();
+    let which = |others: Vec<String>| {
+        Err(PortError { port: wanted.to_owned(), kind: PortErrorKind::WhichOne { others } })
+    };
+    if wanted.eq_ignore_ascii_case("auto") {
+        let on_usb: Vec<&Known> = ports.iter().filter(|(.., usb)| *usb).collect();
+        let all: Vec<&Known> = ports.iter().collect();
+        return match (on_usb.as_slice(), all.as_slice()) {
+            ([(name, ..)], _) | ([], [(name, ..)]) => Ok(name.clone()),
+            ([], all) => which(names(all)),
+            (several, _) => which(names(several)),
+        };
+    }
+    if ports.iter().any(|(name, ..)| name == wanted) || std::path::Path::new(wanted).exists() {
+        return Ok(wanted.to_owned());
+    }
+    let lower = wanted.to_ascii_lowercase();
+    let has = |text: &str| text.to_ascii_lowercase().contains(&lower);
+    let alike: Vec<&Known> = ports.iter().filter(|(name, words, _)| has(name) || has(words)).collect();
+    match alike.as_slice() {
+        // Opening it says what is wrong.
+        [] => Ok(wanted.to_owned()),
+        [(name, ..)] => Ok(name.clone()),
+        several => which(names(several)),
+    }
+}
 
 /// How long a byte may wait to be sent.
 const SEND_WITHIN: Duration = Duration::from_secs(5);
@@ -152,6 +216,22 @@ impl Port {
         restored.and(result)
     }
 
+    /// Both directions of it for a [`relay`](crate::record::relay), with time-outs of a fifth of a second.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError`] if the system gives no second handle.
+    pub fn into_relay_end(mut self) -> Result<crate::record::RelayEnd, PortError> {
+        let prepared =
+            self.inner.set_timeout(Duration::from_millis(200)).and_then(|()| self.inner.try_clone());
+        let writer = prepared.map_err(|error| self.other(&error.into()))?;
+        Ok(crate::record::RelayEnd {
+            name: self.name,
+            reader: Box::new(self.inner),
+            writer: Box::new(writer),
+        })
+    }
+
     /// Its name.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -175,6 +255,28 @@ impl Port {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_port_is_found_by_what_is_known_of_it() {
+        let port = |name: &str, words: &str, usb| (name.to_owned(), words.to_owned(), usb);
+        let ports = [
+            port("/dev/ttyS0", "", false),
+            port("/dev/ttyUSB0", "FTDI FT232R A50285BI", true),
+            port("/dev/ttyACM3", "STMicroelectronics Nucleo 066", true),
+        ];
+        assert_eq!(choose("nucleo", &ports).unwrap(), "/dev/ttyACM3");
+        assert_eq!(choose("ttyUSB0", &ports).unwrap(), "/dev/ttyUSB0");
+        assert_eq!(choose("/dev/ttyUSB7", &ports).unwrap(), "/dev/ttyUSB7");
+        assert_eq!(choose("auto", &ports[..2]).unwrap(), "/dev/ttyUSB0");
+        assert_eq!(choose("auto", &ports[..1]).unwrap(), "/dev/ttyS0");
+        assert_eq!(
+            choose("auto", &ports).unwrap_err().to_string(),
+            "auto: which serial port? There are /dev/ttyUSB0, /dev/ttyACM3"
+        );
+        assert!(choose("tty", &ports).is_err());
+        let none = choose("auto", &[]).unwrap_err().to_string();
+        assert_eq!(none, "auto: no serial port was found: is the machine plugged in and on?");
+    }
 
     #[test]
     fn a_port_that_is_not_there_is_said_to_be_so() {

@@ -52,10 +52,67 @@ fn a_header_without_settings_is_damage_but_readable() {
         let (damage, records) = read(format!("{header}{GOOD}").as_bytes());
         assert_eq!((damage.len(), records), (1, 1), "{header}");
         assert!(
-            damage[0].starts_with("line 1 (byte 0): the header's settings are no JSON object"),
+            damage[0]
+                .starts_with("line 1 (byte 0): the first line is damaged: its settings are no JSON object"),
             "{damage:?}"
         );
     }
+}
+
+#[test]
+fn a_flipped_bit_in_the_first_line_is_told_and_costs_no_record() {
+    let mut writer = log::Writer::new(Vec::new(), &Header::new().with_number("baud", 256_000)).unwrap();
+    notes(3).for_each(|note| writer.write(&note).unwrap());
+    let log = writer.finish().unwrap();
+    let first = log.iter().position(|&byte| byte == b'\n').unwrap();
+    for at in 0..=first {
+        for bit in 0..8 {
+            let mut hit = log.clone();
+            hit[at] ^= 1 << bit;
+            let (damage, records) = read(&hit);
+            assert!(!damage.is_empty(), "byte {at} bit {bit}: {}", String::from_utf8_lossy(&hit[..=first]));
+            assert_eq!(records, 3, "byte {at} bit {bit}: {damage:?}");
+        }
+    }
+    // Before a log of another version, nothing is guessed.
+    assert!(matches!(Reader::new(&b"plotter-log 2 {}\n0 < 31 *00\n"[..]), Err(ReadError::Version { .. })));
+}
+
+#[test]
+fn settings_of_the_wrong_type_are_as_if_they_were_not_there() {
+    for settings in
+        [r#"{"baud":"fast"}"#, r#"{"baud":-1}"#, r#"{"baud":1e99}"#, r#"{"baud":[1,2]}"#, "{\"baud\":null}"]
+    {
+        let log = format!("plotter-log 1 {settings}\n{GOOD}");
+        let reader = Reader::new(log.as_bytes()).unwrap();
+        assert_eq!(reader.header().baud(), None, "{settings}");
+        assert_eq!(read(log.as_bytes()), (vec![], 1), "{settings}");
+    }
+}
+
+/// A log that another program cuts short, and writes anew, while it is read.
+#[test]
+fn a_log_that_changes_while_it_is_read_is_read_to_some_end() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("session.plog");
+    let write = |count| {
+        let mut writer = log::create(&path, &Header::new()).unwrap();
+        notes(count).for_each(|note| writer.write(&note).unwrap());
+        writer.finish().unwrap();
+    };
+    write(10_000);
+    let mut reader = log::open(&path).unwrap();
+    assert_eq!(reader.by_ref().take(100).filter(Result::is_ok).count(), 100);
+    let file = std::fs::OpenOptions::new().write(true).open(&path).unwrap();
+    file.set_len(70_000).unwrap();
+    let damage: Vec<_> = reader.by_ref().filter_map(Result::err).collect();
+    assert!(damage.iter().all(|one| one.kind == DamageKind::CutEnd) && damage.len() <= 1, "{damage:?}");
+    assert!(reader.summary().records > 1_000);
+
+    let mut reader = log::open(&path).unwrap();
+    assert!(reader.next().unwrap().is_ok());
+    write(5); // shorter than what the reader has gone through
+    assert!(reader.by_ref().count() < 10_000);
 }
 
 #[test]

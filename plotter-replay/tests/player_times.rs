@@ -94,7 +94,7 @@ fn difference(outcome: Outcome) -> Difference {
 fn a_byte_takes_ten_bit_times_and_waits_for_the_one_before() {
     // 39.0625 us a byte at 256000 baud: 100 + 39.06 and then + 39.06, each rounded up
     let records = [edge(100), edge(100), said(140, b"1"), said(179, b"1")];
-    let equal = Outcome::Equal(Compared { records: 4, bytes: 2, duties: 0 });
+    let equal = Outcome::Equal(Compared { records: 4, bytes: 2, ..Compared::default() });
     assert_eq!(check(&records, Counter::default()), equal);
     let late = difference(check(&[edge(100), said(141, b"1")], Counter::default()));
     assert_eq!(late.expected, Answer::Byte { time: us(141), byte: b'1' });
@@ -115,7 +115,7 @@ fn among_equal_times_the_order_of_the_records_decides() {
     let records = [host(50, 1), duty(1), host(50, 1), duty(2)];
     assert_eq!(
         check(&records, Counter::default()),
-        Outcome::Equal(Compared { records: 4, bytes: 0, duties: 2 })
+        Outcome::Equal(Compared { records: 4, duties: 2, ..Compared::default() })
     );
     let wrong = difference(check(&[host(50, 1), host(50, 1), duty(1)], Counter::default()));
     assert_eq!(wrong.got, Answer::Duty { axis: Axis::Y, duty: 2 });
@@ -163,6 +163,11 @@ fn the_difference_shows_what_was_around_it() {
       recorded: byte 0x31 '1' at 1041 us
       now:      byte 0x31 '1' at 1040 us
       equal until then: 9 answered bytes and 0 duty cycles in 19 records
+             9  540 < 31
+            10  600 @ edge x+
+            11  640 < 31
+            12  700 @ edge x+
+            13  740 < 31
             14  800 @ edge x+
             15  840 < 31
             16  900 @ edge x+
@@ -174,6 +179,11 @@ fn the_difference_shows_what_was_around_it() {
             22  1200 @ edge x+
             23  1240 < 31
             24  1300 @ edge x+
+            25  1340 < 31
+            26  1400 @ edge x+
+            27  1440 < 31
+            28  1500 @ edge x+
+            29  1540 < 31
     ");
 }
 

@@ -211,9 +211,17 @@ fn a_golden_recording_holds_fails_and_is_renewed() {
     let other = Machine::new(config).unwrap();
     let error = golden::check(&path, || MachineController::new(&other), golden::Mode::Compare).unwrap_err();
     assert!(error.to_string().contains("first difference at "), "{error}");
+    let diff = std::fs::read_to_string(directory.path().join("house.plog.diff")).unwrap();
+    assert!(diff.contains("duty cycles: ") && diff.contains("    pulse x+"), "{diff}");
     let actual = directory.path().join("house.plog.actual");
     golden::check(&actual, || MachineController::new(&other), golden::Mode::Compare).unwrap();
 
     golden::check(&path, || MachineController::new(&other), golden::Mode::Renew).unwrap();
     golden::check(&path, || MachineController::new(&other), golden::Mode::Compare).unwrap();
+    // What the failure left is gone with it.
+    assert!(!diff_exists(directory.path()) && !actual.exists());
+}
+
+fn diff_exists(directory: &std::path::Path) -> bool {
+    directory.join("house.plog.diff").exists()
 }

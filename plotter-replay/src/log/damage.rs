@@ -41,11 +41,13 @@ pub enum DamageKind {
     },
     /// The log ends inside this line.
     CutEnd,
+    /// The end of the line was hit, and nothing else: the records before and after it are read.
+    LineEnd,
     /// The line is not UTF-8 text.
     NotUtf8,
     /// The line is longer than [`MAX_LINE_BYTES`].
     TooLong,
-    /// The header's settings are no JSON object; the log is read as if there were none.
+    /// The first line is damaged: the log is read with what of its settings can be read.
     Header {
         /// What the JSON reader says.
         message: String,
@@ -123,10 +125,11 @@ impl fmt::Display for DamageKind {
                 write!(f, "time goes back to {} us after {} us", time.as_micros(), previous.as_micros())
             }
             Self::CutEnd => write!(f, "the log ends inside this line"),
+            Self::LineEnd => write!(f, "the line end is damaged; the records on both sides of it are whole"),
             Self::NotUtf8 => write!(f, "not UTF-8 text"),
             Self::TooLong => write!(f, "longer than {MAX_LINE_BYTES} bytes"),
             Self::Header { message } => {
-                write!(f, "the header's settings are no JSON object ({message}): read without them")
+                write!(f, "the first line is damaged: {message}")
             }
             Self::Source { message } => write!(f, "cannot be read any further: {message}"),
         }

@@ -1,5 +1,7 @@
 //! [`Header`]: what a log says about itself in its first line.
 
+use super::text::checksum;
+use super::{MAGIC, ReadError, VERSION};
 use core::fmt;
 use serde_json::{Map, Value};
 
@@ -46,6 +48,52 @@ impl Header {
     pub fn to_json(&self) -> String {
         Value::Object(self.settings.clone()).to_string()
     }
+
+    /// The first line of a log, without its end: magic, version, and the object with its checksum as the last key,
+    /// [`Header::SUM`].
+    pub(super) fn to_line(&self) -> String {
+        let mut settings = self.settings.clone();
+        settings.shift_remove(Self::SUM);
+        let mut line = format!("{MAGIC} {VERSION} {}", Value::Object(settings));
+        // The brace makes room for one more key.
+        line.pop();
+        let sum = checksum(line.as_bytes());
+        let comma = if line.ends_with('{') { "" } else { "," };
+        line.push_str(&format!("{comma}\"{}\":\"{sum:02x}\"}}", Self::SUM));
+        line
+    }
+
+    /// Reads the first line of a log; with it, what is wrong with it, if it can be read in spite of that.
+    pub(super) fn from_line(line: &[u8]) -> Result<(Self, Option<String>), ReadError> {
+        let line = String::from_utf8_lossy(line);
+        let rest =
+            line.strip_prefix(MAGIC).and_then(|rest| rest.strip_prefix(' ')).ok_or(ReadError::NotALog)?;
+        let (version, settings) = rest.split_once(' ').unwrap_or((rest, ""));
+        let sum = Sum::of(&line);
+        if version.parse() != Ok(VERSION) {
+            if sum == Sum::Wrong {
+                // Of a log with another version it would fit.
+                return Err(ReadError::NotALog);
+            }
+            // Only so much of it that the message stays one line.
+            return Err(ReadError::Version { found: version.chars().take(16).collect() });
+        }
+        match Self::from_json(settings) {
+            Err(error) => Ok((
+                Self::new(),
+                Some(format!("its settings are no JSON object ({}): read without them", error.message)),
+            )),
+            Ok(mut header) => {
+                header.settings.shift_remove(Self::SUM);
+                let wrong = String::from("its checksum does not fit: one of the settings may be wrong");
+                Ok((header, (sum == Sum::Wrong).then_some(wrong)))
+            }
+        }
+    }
+
+    /// Key of the checksum of the first line: CRC-8/SMBUS of all of it that stands before the key and its comma, in two
+    /// hex digits. Readers take a header without it as it is.
+    pub const SUM: &str = "sum";
 
     /// With `key` saying `text`.
     #[must_use]
@@ -95,6 +143,35 @@ impl Header {
     #[must_use]
     pub fn baud(&self) -> Option<u32> {
         self.settings.get("baud")?.as_u64().and_then(|baud| u32::try_from(baud).ok()).filter(|&baud| baud > 0)
+    }
+}
+
+/// Whether a first line is as it was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sum {
+    None,
+    Right,
+    Wrong,
+}
+
+impl Sum {
+    fn of(line: &str) -> Self {
+        // The last key and its value, if that is a text of two characters.
+        let last = line.strip_suffix("\"}").and_then(|line| {
+            let (rest, found) = line.split_at_checked(line.len().checked_sub(2)?)?;
+            let (covered, key) = rest.strip_suffix("\":\"")?.rsplit_once('"')?;
+            Some((covered.strip_suffix(',').unwrap_or(covered), key, found))
+        });
+        let Some((covered, key, found)) = last else {
+            return if line.contains(&format!("\"{}\":", Header::SUM)) { Self::Wrong } else { Self::None };
+        };
+        let fits = found == format!("{:02x}", checksum(covered.as_bytes()));
+        match (key == Header::SUM, fits) {
+            (true, true) => Self::Right,
+            (false, false) => Self::None,
+            // A value that is the checksum by chance is one in 256; more likely its key was hit.
+            (true, false) | (false, true) => Self::Wrong,
+        }
     }
 }
 

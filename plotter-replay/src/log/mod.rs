@@ -23,14 +23,18 @@ mod header;
 mod line_source;
 mod reader;
 mod record;
+mod record_ref;
+mod salvage;
 mod text;
 mod writer;
 
 pub use damage::{Damage, DamageKind, Summary, SyntaxError};
 pub use file::{FileReader, FileWriter, LogFile, create, open};
 pub use header::{Header, HeaderError};
+pub(crate) use line_source::LineSource;
 pub use reader::{ReadError, Reader};
 pub use record::{Event, Record, SwitchName, SwitchNameError};
+pub use record_ref::{EventRef, RecordRef};
 pub(crate) use text::write_line;
 pub use writer::{WriteError, Writer};
 

@@ -1,16 +1,20 @@
 //! [`Reader`]: records out of a log, past any damage.
 
 use super::line_source::LineSource;
-use super::text::parse_line;
-use super::{Damage, DamageKind, Header, MAGIC, Record, Summary, VERSION};
+use super::salvage::salvage;
+use super::text::{Parsed, parse_line};
+use super::{Damage, DamageKind, Header, MAGIC, Record, RecordRef, Summary, VERSION};
 use core::fmt;
 use core::time::Duration;
+use std::collections::VecDeque;
 use std::io::BufRead;
 
 /// Reads a log record by record, in constant memory.
 ///
 /// Iterating gives every good record, and for each bad line what is wrong with it and where; it goes on after
-/// it. Line ends may be `\n` or `\r\n`.
+/// it. Line ends may be `\n` or `\r\n`. Where only a line end was hit, the records on both sides of it are read.
+///
+/// Who reads many millions takes [`Reader::next_ref`], which allocates nothing.
 ///
 /// ```
 /// # use plotter_replay::log::Reader;
@@ -27,7 +31,12 @@ use std::io::BufRead;
 pub struct Reader<R> {
     source: LineSource<R>,
     header: Header,
-    header_damage: Option<Damage>,
+    /// Of the record that was read last.
+    bytes: Vec<u8>,
+    /// What is to be given before the next line is read.
+    waiting: VecDeque<Result<Record, Damage>>,
+    /// The record that was lent last, if it is none of the present line.
+    lent: Option<Record>,
     summary: Summary,
     over: bool,
 }
@@ -57,31 +66,86 @@ impl<R: BufRead> Reader<R> {
     ///
     /// # Errors
     ///
-    /// [`ReadError`] if this is no log or one of another version. A log whose header has lost its settings is
-    /// read without them; the damage comes first when iterating.
+    /// [`ReadError`] if this is no log or one of another version. A log whose header is damaged is read without it,
+    /// if a record follows; the damage comes first when iterating.
     pub fn new(inner: R) -> Result<Self, ReadError> {
-        let mut source = LineSource::new(inner);
-        match source.advance() {
-            Err(error) => return Err(ReadError::Source { message: error.to_string() }),
-            Ok(false) => return Err(ReadError::Empty),
-            Ok(true) => {}
-        }
-        let line = String::from_utf8_lossy(source.line());
-        let rest =
-            line.strip_prefix(MAGIC).and_then(|rest| rest.strip_prefix(' ')).ok_or(ReadError::NotALog)?;
-        let (version, settings) = rest.split_once(' ').unwrap_or((rest, ""));
-        if version.parse() != Ok(VERSION) {
-            // Only so much of it that the message stays one line.
-            return Err(ReadError::Version { found: version.chars().take(16).collect() });
-        }
-        let (header, header_damage) = match Header::from_json(settings) {
-            Ok(header) => (header, None),
-            Err(error) => (Header::new(), Some(DamageKind::Header { message: error.message })),
+        let mut reader = Self {
+            source: LineSource::new(inner),
+            header: Header::new(),
+            bytes: Vec::new(),
+            waiting: VecDeque::new(),
+            lent: None,
+            summary: Summary::default(),
+            over: false,
         };
-        let mut reader =
-            Self { source, header, header_damage: None, summary: Summary::default(), over: false };
-        reader.header_damage = header_damage.map(|kind| reader.damage(kind));
+        reader.read_header()?;
         Ok(reader)
+    }
+
+    fn read_header(&mut self) -> Result<(), ReadError> {
+        let failed = |error: std::io::Error| ReadError::Source { message: error.to_string() };
+        if !self.source.advance_short().map_err(failed)? {
+            return Err(ReadError::Empty);
+        }
+        let (refused, message) = match Header::from_line(self.source.line()) {
+            Ok((header, None)) => {
+                self.header = header;
+                return Ok(());
+            }
+            Ok((header, Some(message))) => {
+                self.header = header;
+                (None, message)
+            }
+            Err(error @ ReadError::NotALog) => (Some(error), format!("not {MAGIC:?} and {VERSION}")),
+            Err(error) => return Err(error),
+        };
+        if let Some((header, at, record)) = refused.is_none().then(|| self.header_and_record()).flatten() {
+            self.header = header;
+            let place = self.source.place();
+            let damage = Damage {
+                byte_offset: place.byte_offset.saturating_add(at),
+                bytes: 1,
+                ..self.damage(DamageKind::LineEnd)
+            };
+            self.summary.damaged_bytes = 1;
+            self.waiting.extend([Err(damage), Ok(record)]);
+            return Ok(());
+        }
+        let damage = self.damage(DamageKind::Header { message });
+        self.waiting.push_back(Err(damage));
+        let Some(error) = refused else {
+            return Ok(());
+        };
+        // One flipped bit in the first word must not cost all that follows: a record there can only be in a log.
+        if !self.source.place().ended || !self.source.advance_short().map_err(failed)? {
+            return Err(error);
+        }
+        match self.judge() {
+            Ok(parsed) => {
+                let Some(record) =
+                    parsed.of(self.source.line(), &self.bytes).map(|record| record.to_record())
+                else {
+                    return Err(error);
+                };
+                self.waiting.push_back(Ok(record));
+                Ok(())
+            }
+            Err(_) => Err(error),
+        }
+    }
+
+    /// A first line into which the first record has run because its end was hit, and where that is.
+    fn header_and_record(&mut self) -> Option<(Header, u64, Record)> {
+        let line = self.source.line();
+        memchr::memchr_iter(b'}', line).take(16).find_map(|brace| {
+            let at = brace.checked_add(1)?;
+            let rest = line.get(at.checked_add(1)?..)?;
+            let record = parse_line(rest, &mut self.bytes).ok()?.of(rest, &self.bytes)?.to_record();
+            match Header::from_line(line.get(..at)?) {
+                Ok((header, None)) => Some((header, at as u64, record)),
+                _ => None,
+            }
+        })
     }
 
     /// What the log says about itself.
@@ -109,19 +173,86 @@ impl<R: BufRead> Reader<R> {
         }
     }
 
-    fn judge(&self) -> Result<Record, DamageKind> {
+    fn judge(&mut self) -> Result<Parsed, DamageKind> {
         let place = self.source.place();
         if place.is_too_long() {
             return Err(DamageKind::TooLong);
         }
         // A last line without its end is whole if its checksum says so.
-        let record = parse_line(self.source.line())
+        let parsed = parse_line(self.source.line(), &mut self.bytes)
             .map_err(|kind| if place.ended { kind } else { DamageKind::CutEnd })?;
+        self.in_order(Duration::from_micros(parsed.time_us)).map(|()| parsed)
+    }
+
+    fn in_order(&self, time: Duration) -> Result<(), DamageKind> {
         let previous = self.summary.last.unwrap_or(Duration::ZERO);
-        if record.time < previous {
-            return Err(DamageKind::TimeWentBack { time: record.time, previous });
+        if time < previous { Err(DamageKind::TimeWentBack { time, previous }) } else { Ok(()) }
+    }
+
+    fn took(&mut self, time: Duration) {
+        self.summary.records = self.summary.records.saturating_add(1);
+        self.summary.first.get_or_insert(time);
+        self.summary.last = Some(time);
+    }
+
+    /// Takes the next record without allocating: it is good until the next call. The same as the iterator otherwise.
+    pub fn next_ref(&mut self) -> Option<Result<RecordRef<'_>, Damage>> {
+        let waiting = match self.waiting.pop_front() {
+            Some(waiting) => waiting,
+            None if self.over => return None,
+            None => match self.source.advance() {
+                Ok(false) => {
+                    self.over = true;
+                    return None;
+                }
+                Err(error) => {
+                    self.over = true;
+                    Err(self.damage(DamageKind::Source { message: error.to_string() }))
+                }
+                Ok(true) => match self.judge() {
+                    Ok(parsed) => {
+                        self.took(Duration::from_micros(parsed.time_us));
+                        return parsed.of(self.source.line(), &self.bytes).map(Ok);
+                    }
+                    Err(kind) => self.salvage(kind),
+                },
+            },
+        };
+        match waiting {
+            Err(damage) => Some(Err(damage)),
+            Ok(record) => match self.in_order(record.time) {
+                Err(kind) => Some(Err(self.damage(kind))),
+                Ok(()) => {
+                    self.took(record.time);
+                    Some(Ok(self.lent.insert(record).view()))
+                }
+            },
         }
-        Ok(record)
+    }
+
+    /// What is left of a bad line: the records on both sides of a hit line end, or nothing but the damage.
+    fn salvage(&mut self, kind: DamageKind) -> Result<Record, Damage> {
+        let both = match kind {
+            DamageKind::Checksum { .. } | DamageKind::Syntax(_) | DamageKind::NotUtf8 => {
+                salvage(self.source.line(), &mut self.bytes)
+            }
+            _ => None,
+        };
+        let Some(both) = both else {
+            return Err(self.damage(kind));
+        };
+        let [first, second] = both.records;
+        let damage = Damage {
+            byte_offset: self.source.place().byte_offset.saturating_add(both.at),
+            bytes: both.bytes,
+            after: Some(first.time),
+            ..self.damage(DamageKind::LineEnd)
+        };
+        // The line was counted whole.
+        let lost = self.summary.damaged_bytes.saturating_sub(self.source.place().bytes);
+        self.summary.damaged_bytes = lost.saturating_add(both.bytes);
+        self.waiting.extend([Err(damage), Ok(second)]);
+        Ok(first)
     }
 }
 
@@ -129,32 +260,7 @@ impl<R: BufRead> Iterator for Reader<R> {
     type Item = Result<Record, Damage>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if let Some(damage) = self.header_damage.take() {
-            return Some(Err(damage));
-        }
-        if self.over {
-            return None;
-        }
-        match self.source.advance() {
-            Ok(true) => {}
-            Ok(false) => {
-                self.over = true;
-                return None;
-            }
-            Err(error) => {
-                self.over = true;
-                return Some(Err(self.damage(DamageKind::Source { message: error.to_string() })));
-            }
-        }
-        Some(match self.judge() {
-            Ok(record) => {
-                self.summary.records = self.summary.records.saturating_add(1);
-                self.summary.first.get_or_insert(record.time);
-                self.summary.last = Some(record.time);
-                Ok(record)
-            }
-            Err(kind) => Err(self.damage(kind)),
-        })
+        self.next_ref().map(|item| item.map(|record| record.to_record()))
     }
 }
 

@@ -1,7 +1,7 @@
 //! [`Writer`]: appends records so that a kill costs at most the last half second.
 
 use super::text::write_line;
-use super::{Event, Header, MAGIC, MAX_LINE_BYTES, Record, VERSION};
+use super::{EventRef, Header, MAX_LINE_BYTES, Record, RecordRef};
 use core::fmt;
 use core::time::Duration;
 use std::io::Write;
@@ -22,14 +22,14 @@ const GATHER_BYTES: usize = 8_192;
 /// let mut writer = Writer::new(Vec::new(), &Header::new().with_number("baud", 256_000))?;
 /// writer.write(&Record::at_us(10_312, Event::Controller(b"131".to_vec())))?;
 /// let log = writer.finish()?;
-/// assert_eq!(log, b"plotter-log 1 {\"baud\":256000}\n10312 < 31 33 31 *87\n");
+/// assert_eq!(log, b"plotter-log 1 {\"baud\":256000,\"sum\":\"30\"}\n10312 < 31 33 31 *87\n");
 /// # Ok::<(), plotter_replay::log::WriteError>(())
 /// ```
 #[derive(Debug)]
 pub struct Writer<W: Write> {
     // `None` once it was given back.
     inner: Option<W>,
-    gathered: String,
+    gathered: Vec<u8>,
     last: Duration,
     /// Time of the oldest record that is not written through.
     oldest: Option<Duration>,
@@ -72,7 +72,7 @@ impl<W: Write> Writer<W> {
     ///
     /// [`WriteError::Sink`], or [`WriteError::TooLong`] for a header that no reader would take.
     pub fn new(inner: W, header: &Header) -> Result<Self, WriteError> {
-        let first = format!("{MAGIC} {VERSION} {}\n", header.to_json());
+        let first = format!("{}\n", header.to_line()).into_bytes();
         if first.len() > MAX_LINE_BYTES {
             return Err(WriteError::TooLong { bytes: first.len() });
         }
@@ -88,6 +88,15 @@ impl<W: Write> Writer<W> {
     /// [`WriteError`]. Except for [`WriteError::Sink`], nothing of the record is in the log then, and the next one
     /// may be written.
     pub fn write(&mut self, record: &Record) -> Result<(), WriteError> {
+        self.write_ref(&record.view())
+    }
+
+    /// The same with a record that borrows its bytes.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`], as [`Writer::write`].
+    pub fn write_ref(&mut self, record: &RecordRef<'_>) -> Result<(), WriteError> {
         let Ok(time_us) = u64::try_from(record.time.as_micros()) else {
             return Err(WriteError::TimeTooLarge { time: record.time });
         };
@@ -95,7 +104,7 @@ impl<W: Write> Writer<W> {
         if time < self.last {
             return Err(WriteError::TimeGoesBack { time, previous: self.last });
         }
-        if matches!(&record.event, Event::Host(bytes) | Event::Controller(bytes) if bytes.is_empty()) {
+        if matches!(record.event, EventRef::Host([]) | EventRef::Controller([])) {
             return Err(WriteError::NoBytes);
         }
         let before = self.gathered.len();
@@ -148,7 +157,7 @@ impl<W: Write> Writer<W> {
 
     fn hand_on(&mut self) -> Result<(), WriteError> {
         // Cleared even when the sink fails: a part of it may be out, and must not go out twice.
-        let result = self.inner.as_mut().map_or(Ok(()), |inner| inner.write_all(self.gathered.as_bytes()));
+        let result = self.inner.as_mut().map_or(Ok(()), |inner| inner.write_all(&self.gathered));
         self.gathered.clear();
         result.map_err(sink)
     }
@@ -191,6 +200,7 @@ impl core::error::Error for WriteError {}
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::log::Event;
 
     /// Counts what was written through.
     #[derive(Default)]

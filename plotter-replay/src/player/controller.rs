@@ -2,13 +2,23 @@
 
 use crate::log::SwitchName;
 use core::time::Duration;
-use plotter_motion::{Axis, Direction};
+use plotter_motion::{Axis, Direction, Pen, StepPoint};
 
-/// A whole controller as a state machine without port, thread or clock: inputs with their times in, bytes and
-/// duty cycles out.
+/// A step of either motor or of both: -1, 0 or 1 each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct MotorStep {
+    /// The first motor.
+    pub x: i8,
+    /// The second motor.
+    pub y: i8,
+}
+
+/// A whole controller as a state machine without port, thread or clock: inputs with their times in; bytes, duty
+/// cycles, steps and the pen out.
 ///
 /// Times never decrease. After each input and each tick, the bytes for the line are fetched until there are no
-/// more.
+/// more, then the steps. A controller implements what its machine has: motors with encoders give
+/// [`duty`](Self::duty), stepper motors [`step`](Self::step).
 pub trait Controller {
     /// A byte from the host; `now` is when its last bit came.
     fn receive(&mut self, now: Duration, byte: u8);
@@ -31,6 +41,75 @@ pub trait Controller {
     /// The next byte for the host, if there is one.
     fn transmit(&mut self) -> Option<u8>;
 
+    /// The same for a controller that wants to know when it is asked.
+    fn transmit_at(&mut self, _now: Duration) -> Option<u8> {
+        self.transmit()
+    }
+
     /// Duty cycle of a motor, in signed steps of its PWM timer, as `@ drive` records it.
-    fn duty(&self, axis: Axis) -> i32;
+    fn duty(&self, _axis: Axis) -> i32 {
+        0
+    }
+
+    /// A move that does not come over the line but from the program itself: an `@ target` record, with the pen of the last
+    /// `@ pen` record.
+    fn target(&mut self, _now: Duration, _pen: Pen, _target: StepPoint) {}
+
+    /// Whether the machine has stepper motors: the log's `@ edge` records are then the steps that it made, and compared, not
+    /// encoder counts that it is told.
+    fn makes_steps(&self) -> bool {
+        false
+    }
+
+    /// The next step that is due by `now`, if there is one.
+    fn step(&mut self, _now: Duration) -> Option<MotorStep> {
+        None
+    }
+
+    /// Where the controller has the pen, if it moves it: the log's `@ pen` records are then compared.
+    fn pen(&self) -> Option<Pen> {
+        None
+    }
+}
+
+impl<C: Controller + ?Sized> Controller for Box<C> {
+    fn receive(&mut self, now: Duration, byte: u8) {
+        (**self).receive(now, byte);
+    }
+    fn edge(&mut self, now: Duration, axis: Axis, sign: Direction) {
+        (**self).edge(now, axis, sign);
+    }
+    fn switch(&mut self, now: Duration, name: &SwitchName, pressed: bool) {
+        (**self).switch(now, name, pressed);
+    }
+    fn emergency_stop(&mut self, now: Duration, pressed: bool) {
+        (**self).emergency_stop(now, pressed);
+    }
+    fn next_tick(&self) -> Option<Duration> {
+        (**self).next_tick()
+    }
+    fn tick(&mut self, now: Duration) {
+        (**self).tick(now);
+    }
+    fn transmit(&mut self) -> Option<u8> {
+        (**self).transmit()
+    }
+    fn transmit_at(&mut self, now: Duration) -> Option<u8> {
+        (**self).transmit_at(now)
+    }
+    fn duty(&self, axis: Axis) -> i32 {
+        (**self).duty(axis)
+    }
+    fn target(&mut self, now: Duration, pen: Pen, target: StepPoint) {
+        (**self).target(now, pen, target);
+    }
+    fn makes_steps(&self) -> bool {
+        (**self).makes_steps()
+    }
+    fn step(&mut self, now: Duration) -> Option<MotorStep> {
+        (**self).step(now)
+    }
+    fn pen(&self) -> Option<Pen> {
+        (**self).pen()
+    }
 }

@@ -5,23 +5,32 @@
 //! line of their own, ten bit times each ([`plotter_motion::protocol::Wire`]), and are stamped when the last
 //! bit is through, as a log stamps them.
 
+mod any;
+mod board;
 mod controller;
+mod gantry;
 mod machine;
 mod outcome;
+mod pace;
+mod rerun;
 mod run;
+mod stepper;
 
-pub use controller::Controller;
+pub use any::{AnyController, ControllerError};
+pub use controller::{Controller, MotorStep};
 pub use machine::MachineController;
 pub use outcome::{Answer, Compared, Difference, Outcome, Stuck};
+pub use pace::{Pace, PaceSettings};
+pub use rerun::Rerun;
 pub use run::EdgeSource;
 
 use crate::log::{Event, Header, Record};
 use core::time::Duration;
-use run::Run;
+use run::{Did, Run};
 use std::collections::VecDeque;
 
 /// Records that a difference shows before and after the place.
-const CONTEXT: usize = 5;
+const CONTEXT: usize = 10;
 
 /// How a recording is re-run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,16 +42,33 @@ pub struct PlayerSettings {
     pub tolerance: Duration,
     /// Where the edges come from.
     pub edges: EdgeSource,
+    /// Whether a re-run tells each change of a duty cycle, too.
+    pub tells_duties: bool,
 }
 
 impl Default for PlayerSettings {
     /// 256000 baud, exact, with the recorded edges.
     fn default() -> Self {
-        Self { baud: 256_000, tolerance: Duration::ZERO, edges: EdgeSource::Records }
+        Self { baud: 256_000, tolerance: Duration::ZERO, edges: EdgeSource::Records, tells_duties: true }
     }
 }
 
 impl PlayerSettings {
+    /// The defaults with the baud rate that a log's header says, and with what these records of it allow: edges, if there are
+    /// any, else pulses; duty cycles if there are any.
+    pub fn of<'a>(header: &Header, records: impl IntoIterator<Item = &'a Record>) -> Self {
+        let mut settings =
+            Self { edges: EdgeSource::Pulses, tells_duties: false, ..Self::from_header(header) };
+        for record in records {
+            match record.event {
+                Event::Edge { .. } => settings.edges = EdgeSource::Records,
+                Event::Drive { .. } => settings.tells_duties = true,
+                _ => {}
+            }
+        }
+        settings
+    }
+
     /// The defaults with the baud rate that a log's header says.
     #[must_use]
     pub fn from_header(header: &Header) -> Self {
@@ -73,6 +99,7 @@ impl Player {
             run: Run::new(controller, self.settings.baud, self.settings.edges),
             tolerance: self.settings.tolerance,
             recorded: VecDeque::new(),
+            acted: VecDeque::new(),
             context: VecDeque::new(),
             compared: Compared::default(),
         };
@@ -104,32 +131,16 @@ impl Player {
         controller: impl Controller,
         mut sink: impl FnMut(Record),
     ) -> Result<(), Stuck> {
-        let mut run = Run::new(controller, self.settings.baud, self.settings.edges);
-        for record in records {
-            run.advance(record.time)?;
-            while let Some(&(time, byte)) = run.said.front().filter(|&&(time, _)| time <= record.time) {
-                run.said.pop_front();
-                sink(Record { time, event: Event::Controller(vec![byte]) });
-            }
-            run.feed(&record)?;
-            match record.event {
-                Event::Controller(bytes) => {
-                    let inputs: Vec<_> = bytes.into_iter().filter(|&byte| !run.is_answer(byte)).collect();
-                    if !inputs.is_empty() {
-                        sink(Record { time: record.time, event: Event::Controller(inputs) });
-                    }
-                }
-                Event::Drive { axis, .. } => {
-                    let duty = run.controller.duty(axis);
-                    sink(Record { time: record.time, event: Event::Drive { axis, duty } });
-                }
-                event => sink(Record { time: record.time, event }),
-            }
-        }
-        for (time, byte) in run.said {
-            sink(Record { time, event: Event::Controller(vec![byte]) });
-        }
-        Ok(())
+        self.rerun_iter(records, controller).try_for_each(|record| record.map(&mut sink))
+    }
+
+    /// The same, record by record.
+    pub fn rerun_iter<I: IntoIterator<Item = Record>, C: Controller>(
+        &self,
+        records: I,
+        controller: C,
+    ) -> Rerun<I::IntoIter, C> {
+        Rerun::new(records.into_iter(), controller, self.settings)
     }
 }
 
@@ -139,6 +150,8 @@ struct Check<C> {
     tolerance: Duration,
     /// Recorded answers that were not compared yet: index of the record, time, byte.
     recorded: VecDeque<(u64, Duration, u8)>,
+    /// Recorded steps and moves of the pen that were not compared yet.
+    acted: VecDeque<(u64, Duration, Did)>,
     context: VecDeque<(u64, Record)>,
     compared: Compared,
 }
@@ -170,9 +183,16 @@ impl<C: Controller> Check<C> {
                 }
                 self.compared.duties = self.compared.duties.saturating_add(1);
             }
+            Event::Edge { axis, sign } if self.run.controller.makes_steps() => {
+                self.acted.push_back((index, time, Did::Step(axis, sign)));
+            }
+            Event::Pen(pen) if self.run.controller.pen().is_some() => {
+                self.acted.push_back((index, time, Did::Pen(pen)));
+            }
             _ => {}
         }
         self.compare(index, time)?;
+        self.compare_acts(index, time)?;
         self.compared.records = self.compared.records.saturating_add(1);
         Ok(())
     }
@@ -202,6 +222,29 @@ impl<C: Controller> Check<C> {
         }
     }
 
+    /// The same for steps and the pen.
+    fn compare_acts(&mut self, index: u64, now: Duration) -> Result<(), Box<Difference>> {
+        loop {
+            match (self.acted.front().copied(), self.run.did.front().copied()) {
+                (Some((at, time, act)), Some((done, did))) => {
+                    if act != did || time.abs_diff(done) > self.tolerance {
+                        return Err(self.difference(at, time, answer(time, act), answer(done, did)));
+                    }
+                    self.acted.pop_front();
+                    self.run.did.pop_front();
+                    self.compared.steps = self.compared.steps.saturating_add(1);
+                }
+                (Some((at, time, act)), None) if time.saturating_add(self.tolerance) < now => {
+                    return Err(self.difference(at, time, answer(time, act), Answer::Nothing));
+                }
+                (None, Some((done, did))) if done.saturating_add(self.tolerance) < now => {
+                    return Err(self.difference(index, done, Answer::Nothing, answer(done, did)));
+                }
+                _ => return Ok(()),
+            }
+        }
+    }
+
     fn end(&mut self) -> Result<(), Box<Difference>> {
         let Some(&(index, ref last)) = self.context.back() else {
             return Ok(());
@@ -211,6 +254,10 @@ impl<C: Controller> Check<C> {
             .advance(end.saturating_add(self.tolerance))
             .map_err(|stuck| self.stuck(index, end, stuck))?;
         self.compare(index, end)?;
+        self.compare_acts(index, end)?;
+        if let Some(&(at, time, act)) = self.acted.front() {
+            return Err(self.difference(at, time, answer(time, act), Answer::Nothing));
+        }
         match self.recorded.front().copied() {
             Some((at, time, byte)) => {
                 Err(self.difference(at, time, Answer::Byte { time, byte }, Answer::Nothing))
@@ -225,5 +272,13 @@ impl<C: Controller> Check<C> {
 
     fn difference(&self, index: u64, time: Duration, expected: Answer, got: Answer) -> Box<Difference> {
         Box::new(Difference { time, index, expected, got, until_then: self.compared, context: Vec::new() })
+    }
+}
+
+fn answer(time: Duration, did: Did) -> Answer {
+    match did {
+        Did::Step(axis, sign) => Answer::Step { time, axis, sign },
+        Did::Pen(pen) => Answer::Pen { time, pen },
+        Did::Duty(axis, duty) => Answer::Duty { axis, duty },
     }
 }

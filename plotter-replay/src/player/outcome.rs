@@ -3,7 +3,7 @@
 use crate::log::{Event, Record};
 use core::fmt;
 use core::time::Duration;
-use plotter_motion::Axis;
+use plotter_motion::{Axis, Direction, Pen};
 
 /// What came of a re-run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,6 +23,8 @@ pub struct Compared {
     pub bytes: u64,
     /// Duty cycles that are equal.
     pub duties: u64,
+    /// Steps and moves of the pen that are equal.
+    pub steps: u64,
 }
 
 /// The first difference between a recording and its re-run.
@@ -62,6 +64,22 @@ pub enum Answer {
         /// Signed steps of the PWM timer.
         duty: i32,
     },
+    /// A motor made a step.
+    Step {
+        /// When.
+        time: Duration,
+        /// Which.
+        axis: Axis,
+        /// Which way.
+        sign: Direction,
+    },
+    /// It lifted or lowered the pen.
+    Pen {
+        /// When.
+        time: Duration,
+        /// Where to.
+        pen: Pen,
+    },
     /// It could not be run any further.
     Stuck(Stuck),
 }
@@ -77,6 +95,11 @@ pub enum Stuck {
     },
     /// It sends more than the line can ever take.
     BytesWithoutEnd {
+        /// When.
+        time: Duration,
+    },
+    /// It makes more steps at once than a machine can.
+    StepsWithoutEnd {
         /// When.
         time: Duration,
     },
@@ -106,8 +129,12 @@ impl fmt::Display for Outcome {
 
 impl fmt::Display for Compared {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { records, bytes, duties } = self;
-        write!(f, "{bytes} answered bytes and {duties} duty cycles in {records} records")
+        let Self { records, bytes, duties, steps } = self;
+        write!(f, "{bytes} answered bytes and {duties} duty cycles")?;
+        if *steps > 0 {
+            write!(f, " and {steps} steps and moves of the pen")?;
+        }
+        write!(f, " in {records} records")
     }
 }
 
@@ -137,6 +164,13 @@ impl fmt::Display for Answer {
                 write!(f, " at {} us", time.as_micros())
             }
             Self::Duty { axis, duty } => write!(f, "duty {duty} on motor {}", name(*axis)),
+            Self::Step { time, axis, sign } => {
+                let sign = if *sign == Direction::Plus { '+' } else { '-' };
+                write!(f, "step {}{sign} at {} us", name(*axis), time.as_micros())
+            }
+            Self::Pen { time, pen } => {
+                write!(f, "pen {} at {} us", if *pen == Pen::Up { "up" } else { "down" }, time.as_micros())
+            }
             Self::Stuck(stuck) => stuck.fmt(f),
         }
     }
@@ -154,6 +188,9 @@ impl fmt::Display for Stuck {
             }
             Self::BytesWithoutEnd { time } => {
                 write!(f, "at {} us the controller sends more than the line can take", time.as_micros())
+            }
+            Self::StepsWithoutEnd { time } => {
+                write!(f, "at {} us the controller makes steps without end", time.as_micros())
             }
             Self::LongSilence { silence } => {
                 write!(f, "the recording is silent for {} s, too long to be run through", silence.as_secs())
@@ -179,13 +216,11 @@ impl fmt::Display for Line<'_> {
             Event::Host(bytes) => ('>', bytes),
             Event::Controller(bytes) => ('<', bytes),
             event => {
-                let mut line = String::new();
-                crate::log::write_line(
-                    &mut line,
-                    u64::try_from(self.0.time.as_micros()).unwrap_or(u64::MAX),
-                    event,
-                );
-                let covered = line.rsplit_once(" *").map_or(line.as_str(), |(covered, _)| covered);
+                let mut line = Vec::new();
+                let time_us = u64::try_from(self.0.time.as_micros()).unwrap_or(u64::MAX);
+                crate::log::write_line(&mut line, time_us, &event.view());
+                let line = String::from_utf8_lossy(&line);
+                let covered = line.rsplit_once(" *").map_or(&*line, |(covered, _)| covered);
                 return f.write_str(covered);
             }
         };

@@ -5,6 +5,7 @@ use crate::log::{Event, Record};
 use core::time::Duration;
 use plotter_motion::protocol::Wire;
 use plotter_motion::protocol::digits::Reply;
+use plotter_motion::{Axis, Direction, Pen, StepPoint};
 use std::collections::VecDeque;
 
 /// Ticks in a row that may leave the next tick where it was.
@@ -33,7 +34,19 @@ impl EdgeSource {
     }
 }
 
+/// What a controller does besides sending bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Did {
+    /// A motor made a step.
+    Step(Axis, Direction),
+    /// The pen was lifted or lowered.
+    Pen(Pen),
+    /// A motor got another duty cycle.
+    Duty(Axis, i32),
+}
+
 /// A controller, the line that its bytes go over, and how far in time it is.
+#[derive(Debug)]
 pub(super) struct Run<C> {
     pub(super) controller: C,
     edges: EdgeSource,
@@ -41,11 +54,36 @@ pub(super) struct Run<C> {
     now: Duration,
     /// What it said, with the time of each byte's last bit.
     pub(super) said: VecDeque<(Duration, u8)>,
+    /// What else it did, in its order.
+    pub(super) did: VecDeque<(Duration, Did)>,
+    tells_duties: bool,
+    duties: [i32; 2],
+    /// Where it had the pen last.
+    pen: Option<Pen>,
+    /// Where the log had it last.
+    recorded_pen: Pen,
 }
 
 impl<C: Controller> Run<C> {
     pub(super) fn new(controller: C, baud: u32, edges: EdgeSource) -> Self {
-        Self { controller, edges, wire: Wire::new(baud), now: Duration::ZERO, said: VecDeque::new() }
+        Self {
+            pen: controller.pen(),
+            duties: Axis::BOTH.map(|axis| controller.duty(axis)),
+            controller,
+            edges,
+            wire: Wire::new(baud),
+            now: Duration::ZERO,
+            said: VecDeque::new(),
+            did: VecDeque::new(),
+            tells_duties: false,
+            recorded_pen: Pen::Up,
+        }
+    }
+
+    /// The same, which also tells when a duty cycle changes.
+    pub(super) fn telling_duties(mut self) -> Self {
+        self.tells_duties = true;
+        self
     }
 
     pub(super) fn now(&self) -> Duration {
@@ -90,36 +128,77 @@ impl<C: Controller> Run<C> {
                     }
                 }
             }
-            Event::Edge { axis, sign } if self.edges == EdgeSource::Records => {
+            Event::Edge { axis, sign } if self.takes_edges() => {
                 self.controller.edge(now, *axis, *sign);
             }
+            Event::Pen(pen) => {
+                self.recorded_pen = *pen;
+                return Ok(());
+            }
+            Event::Target { x, y } => self.controller.target(now, self.recorded_pen, StepPoint::new(*x, *y)),
             Event::Switch { name, pressed } => self.controller.switch(now, name, *pressed),
             Event::Estop(pressed) => self.controller.emergency_stop(now, *pressed),
-            Event::Edge { .. }
-            | Event::Controller(_)
-            | Event::Drive { .. }
-            | Event::Pen(_)
-            | Event::Target { .. }
-            | Event::Note(_) => return Ok(()),
+            Event::Edge { .. } | Event::Controller(_) | Event::Drive { .. } | Event::Note(_) => return Ok(()),
         }
         self.fetch()
     }
 
+    fn takes_edges(&self) -> bool {
+        self.edges == EdgeSource::Records && !self.controller.makes_steps()
+    }
+
     /// Whether a recorded byte is an answer to compare, or an input.
     pub(super) fn is_answer(&self, byte: u8) -> bool {
-        self.edges == EdgeSource::Records || !matches!(Reply::from_byte(byte), Some(Reply::Pulse(..)))
+        self.edges == EdgeSource::Records
+            || self.controller.makes_steps()
+            || !matches!(Reply::from_byte(byte), Some(Reply::Pulse(..)))
     }
 
     fn fetch(&mut self) -> Result<(), Stuck> {
         let mut fetched = 0;
-        while let Some(byte) = self.controller.transmit() {
-            fetched += 1;
-            if fetched > MOST_WAITING || self.said.len() >= MOST_WAITING {
-                return Err(Stuck::BytesWithoutEnd { time: self.now });
+        // A step may give an answer, and an answer that is sent room for what gives a step.
+        loop {
+            let before = fetched;
+            while let Some(step) = self.controller.step(self.now) {
+                fetched += 1;
+                if fetched > MOST_WAITING || self.did.len() >= MOST_WAITING {
+                    return Err(Stuck::StepsWithoutEnd { time: self.now });
+                }
+                for (axis, by) in [(Axis::X, step.x), (Axis::Y, step.y)] {
+                    let sign = match by {
+                        0 => continue,
+                        1.. => Direction::Plus,
+                        _ => Direction::Minus,
+                    };
+                    self.did.push_back((self.now, Did::Step(axis, sign)));
+                }
             }
-            let time = self.wire.send(self.now);
-            if self.is_answer(byte) {
-                self.said.push_back((time, byte));
+            while let Some(byte) = self.controller.transmit_at(self.now) {
+                fetched += 1;
+                if fetched > MOST_WAITING || self.said.len() >= MOST_WAITING {
+                    return Err(Stuck::BytesWithoutEnd { time: self.now });
+                }
+                let time = self.wire.send(self.now);
+                if self.is_answer(byte) {
+                    self.said.push_back((time, byte));
+                }
+            }
+            if fetched == before {
+                break;
+            }
+        }
+        let pen = self.controller.pen();
+        if let Some(now) = pen.filter(|_| pen != self.pen) {
+            self.pen = pen;
+            self.did.push_back((self.now, Did::Pen(now)));
+        }
+        if self.tells_duties {
+            for (axis, before) in Axis::BOTH.into_iter().zip(&mut self.duties) {
+                let duty = self.controller.duty(axis);
+                if duty != *before {
+                    *before = duty;
+                    self.did.push_back((self.now, Did::Duty(axis, duty)));
+                }
             }
         }
         Ok(())

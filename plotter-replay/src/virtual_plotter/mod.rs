@@ -179,6 +179,20 @@ impl VirtualPlotter {
         self.leg = self.begin_leg();
     }
 
+    /// Takes the ways so far out, so that a recording of any length is gone through in constant memory; the one under way goes on
+    /// from where the pen is. Position, pen and targets stay.
+    pub fn take_legs(&mut self) -> Vec<Leg> {
+        // What of the present way comes later belongs to the same line.
+        let from = self.from;
+        let target = self.leg.target;
+        self.end_leg(None);
+        self.leg.from = from;
+        self.leg.target = target;
+        self.points = 0;
+        self.full = false;
+        core::mem::take(&mut self.legs)
+    }
+
     /// Scale, origin and limits.
     #[must_use]
     pub fn settings(&self) -> &PlotterSettings {

@@ -1,25 +1,26 @@
-//! The three commands.
+//! The commands, `render`, and what they share.
 
+use crate::check::Check;
+use crate::compare::Compare;
+use crate::export::Export;
+use crate::import::Import;
+use crate::info::Info;
+use crate::record::Record;
+use crate::replay::Replay;
 use clap::{Args, Subcommand};
-use plotter_motion::{ControllerChoice, Machine, MachineConfig, PlotOp, hpgl};
-use plotter_replay::log::{self, Damage, Event, FileReader, Header, Record, Summary};
-use plotter_replay::{
-    Canvas, CanvasStyle, Chart, EdgeSource, Layer, MachineController, Outcome, Player, PlayerSettings,
-    PlotterSettings, VirtualPlotter, Visibility, Ways,
-};
+use plotter_motion::{Machine, PlotOp, hpgl};
+use plotter_replay::log::{self, Damage, FileReader, Header, Summary};
+use plotter_replay::{Canvas, CanvasStyle, Chart, Layer, PlotterSettings, VirtualPlotter, Visibility};
 use std::io::{Read as _, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Longest list of damage or anomalies that is shown.
-const MOST_SHOWN: usize = 20;
+pub(crate) const MOST_SHOWN: usize = 20;
 /// Longest drawing that is read, bytes: some ten million lines.
 const MOST_DRAWING_BYTES: u64 = 256 << 20;
 /// Longest machine file that is read, bytes; a good one has a few thousand.
 const MOST_MACHINE_BYTES: u64 = 1 << 20;
-/// Time by which an answer may be off when the edges are only known from the pulses.
-const PULSE_TOLERANCE: Duration = Duration::from_millis(50);
-
 /// What was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
@@ -30,7 +31,7 @@ pub(crate) enum Verdict {
 }
 
 impl Verdict {
-    fn of(summary: Summary) -> Self {
+    pub(crate) fn of(summary: Summary) -> Self {
         if summary.is_clean() { Self::Clean } else { Self::Found }
     }
 }
@@ -45,12 +46,27 @@ pub(crate) enum Command {
     /// Run the controller again on the recorded bytes and edges and compare every answer and its time.
     #[command(after_help = "Example: plotter-replay check session.plog --machine semi-virtual-gantry.toml")]
     Check(Check),
-    /// Say what a log holds, and what of it is damaged or odd.
+    /// Run the controller again, show what it says and does, and keep it as a log.
+    #[command(after_help = "Example: plotter-replay replay session.plog --speed 1 --skip-gaps 0.5\n\
+        shows the session as fast as it was, without its pauses")]
+    Replay(Replay),
+    /// Compare two logs byte by byte: the first difference, what is round it, and all others in numbers.
+    #[command(after_help = "Example: plotter-replay compare before.plog after.plog --tolerance-us 1000")]
+    Compare(Compare),
+    /// Record a serial line between a host program and a plotter.
+    #[command(after_help = "Example: plotter-replay record --port auto --pty plotter -o session.plog\n\
+        then let the host program open the port ./plotter; Ctrl-C ends the recording")]
+    Record(Record),
+    /// Make a log of what another tool recorded.
+    #[command(after_help = "Example: plotter-replay import capture.txt -o session.plog\n\
+        plotter-replay import --from sigrok --host tx.txt --controller rx.txt -o session.plog")]
+    Import(Import),
+    /// Write a log as a table, as text with what it says, or as MCAP for Foxglove.
+    #[command(after_help = "Example: plotter-replay export session.plog --to csv -o session.csv")]
+    Export(Export),
+    /// Say what a log holds, its rates and gaps, and what of it is damaged or odd.
     #[command(after_help = "Example: plotter-replay info session.plog.gz")]
-    Info {
-        /// The log; packed if its name ends in .gz.
-        log: PathBuf,
-    },
+    Info(Info),
 }
 
 #[derive(Debug, Args)]
@@ -81,20 +97,7 @@ pub(crate) struct Render {
     size: u32,
 }
 
-#[derive(Debug, Args)]
-pub(crate) struct Check {
-    /// The log; packed if its name ends in .gz.
-    log: PathBuf,
-    /// The machine's description [default: the semi-virtual gantry, with the controller that the log's header
-    /// names].
-    #[arg(long, value_name = "FILE.toml")]
-    machine: Option<PathBuf>,
-    /// How far the time of an answer may be off, microseconds [default: 0, or 50000 for a log without edges].
-    #[arg(long, value_name = "US")]
-    tolerance_us: Option<u64>,
-}
-
-type Done = Result<Verdict, String>;
+pub(crate) type Done = Result<Verdict, String>;
 
 impl Command {
     /// Does it.
@@ -106,17 +109,22 @@ impl Command {
         match self {
             Self::Render(render) => render.run(out),
             Self::Check(check) => check.run(out),
-            Self::Info { log } => info(&log, out),
+            Self::Replay(replay) => replay.run(out),
+            Self::Compare(compare) => compare.run(out),
+            Self::Record(record) => record.run(out),
+            Self::Import(import) => import.run(out),
+            Self::Export(export) => export.run(out),
+            Self::Info(info) => info.run(out),
         }
     }
 }
 
 /// Prints a line; what could not be printed is told at the end, by `main`.
-fn say(out: &mut impl Write, line: &str) {
+pub(crate) fn say(out: &mut impl Write, line: &str) {
     let _ = writeln!(out, "{line}");
 }
 
-fn say_first<T: ToString>(out: &mut impl Write, list: &[T], count: u64) {
+pub(crate) fn say_first<T: ToString>(out: &mut impl Write, list: &[T], count: u64) {
     for one in list.iter().take(MOST_SHOWN) {
         say(out, &format!("  {}", one.to_string()));
     }
@@ -126,18 +134,18 @@ fn say_first<T: ToString>(out: &mut impl Write, list: &[T], count: u64) {
     }
 }
 
-fn open(path: &Path) -> Result<FileReader, String> {
+pub(crate) fn open(path: &Path) -> Result<FileReader, String> {
     log::open(path).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 /// Everything in a log, one record after the other.
-struct Contents {
-    header: Header,
-    summary: Summary,
+pub(crate) struct Contents {
+    pub(crate) header: Header,
+    pub(crate) summary: Summary,
     damage: Vec<Damage>,
 }
 
-fn read(path: &Path, mut take: impl FnMut(&Record)) -> Result<Contents, String> {
+pub(crate) fn read(path: &Path, mut take: impl FnMut(&log::Record)) -> Result<Contents, String> {
     let mut reader = open(path)?;
     let mut damage = Vec::new();
     for item in reader.by_ref() {
@@ -156,64 +164,9 @@ fn plotter_for(path: &Path) -> Result<VirtualPlotter, String> {
     Ok(VirtualPlotter::new(settings))
 }
 
-fn say_damage(out: &mut impl Write, contents: &Contents) {
+pub(crate) fn say_damage(out: &mut impl Write, contents: &Contents) {
     say(out, &contents.summary.to_string());
     say_first(out, &contents.damage, contents.summary.damaged_lines);
-}
-
-fn info(path: &Path, out: &mut impl Write) -> Done {
-    let mut plotter = plotter_for(path)?;
-    let mut counts: [(&str, u64); 9] = [
-        ("host bytes", 0),
-        ("controller bytes", 0),
-        ("edges", 0),
-        ("duty cycles", 0),
-        ("switches", 0),
-        ("emergency stops", 0),
-        ("pen", 0),
-        ("targets taken", 0),
-        ("notes", 0),
-    ];
-    let contents = read(path, |record| {
-        let (place, amount) = match &record.event {
-            Event::Host(bytes) => (0, bytes.len() as u64),
-            Event::Controller(bytes) => (1, bytes.len() as u64),
-            Event::Edge { .. } => (2, 1),
-            Event::Drive { .. } => (3, 1),
-            Event::Switch { .. } => (4, 1),
-            Event::Estop(_) => (5, 1),
-            Event::Pen(_) => (6, 1),
-            Event::Target { .. } => (7, 1),
-            _ => (8, 1),
-        };
-        if let Some((_, count)) = counts.get_mut(place) {
-            *count = count.saturating_add(amount);
-        }
-        plotter.push(record);
-    })?;
-    plotter.finish();
-    say(out, &path.display().to_string());
-    for (key, value) in contents.header.entries() {
-        say(out, &format!("  {key}: {value}"));
-    }
-    say_damage(out, &contents);
-    if let (Some(first), Some(last)) = (contents.summary.first, contents.summary.last) {
-        let seconds = last.saturating_sub(first).as_secs_f64();
-        say(out, &format!("duration: {seconds:.6} s, from {} us", first.as_micros()));
-    }
-    for (name, count) in counts.iter().filter(|&&(_, count)| count > 0) {
-        say(out, &format!("{name}: {count}"));
-    }
-    say(out, &format!("targets: {} sent, {} reached", plotter.target_count(), plotter.reached_count()));
-    let (at, counted) = (plotter.position(), plotter.raw_counts());
-    say(out, &format!("ends at ({:.3}, {:.3}) mm, counted ({}, {})", at.x, at.y, counted.x, counted.y));
-    let error = plotter.contour_error(Ways::Drawn);
-    if error.samples > 0 {
-        say(out, &format!("contour error: rms {:.4} mm, max {:.4} mm", error.rms_mm, error.max_mm));
-    }
-    say(out, &format!("anomalies: {}", plotter.anomaly_count()));
-    say_first(out, plotter.anomalies(), plotter.anomaly_count());
-    Ok(Verdict::of(contents.summary))
 }
 
 impl Render {
@@ -280,7 +233,7 @@ impl Render {
     }
 }
 
-fn cannot(be: &str, path: &Path, error: &std::io::Error) -> String {
+pub(crate) fn cannot(be: &str, path: &Path, error: &std::io::Error) -> String {
     format!("{}: cannot be {be}: {error}", path.display())
 }
 
@@ -310,60 +263,25 @@ fn read_drawing(path: &Path) -> Result<(Vec<PlotOp>, Vec<hpgl::Error>), String> 
     Ok((ops, errors))
 }
 
-impl Check {
-    fn run(self, out: &mut impl Write) -> Done {
-        let mut has_edges = false;
-        let contents = read(&self.log, |record| has_edges |= matches!(record.event, Event::Edge { .. }))?;
-        if let Some(protocol) = contents.header.text("protocol").filter(|&protocol| protocol != "digits") {
-            return Err(format!(
-                "{}: its protocol is {protocol:?}, and only a controller that was led by the one called digits can be run \
-                 again; `render` shows what it did",
-                self.log.display()
-            ));
-        }
-        let machine = self.machine(&contents.header)?;
-        let edges = if has_edges { EdgeSource::Records } else { EdgeSource::Pulses };
-        let usual = if has_edges { Duration::ZERO } else { PULSE_TOLERANCE };
-        let tolerance = self.tolerance_us.map_or(usual, Duration::from_micros);
-        let settings = PlayerSettings { edges, tolerance, ..PlayerSettings::from_header(&contents.header) };
-        if !has_edges {
-            say(
-                out,
-                &format!(
-                    "no edges in the log: taken from the pulses, times within {} us, pulses not compared",
-                    tolerance.as_micros()
-                ),
-            );
-        }
-        say_damage(out, &contents);
-        let records = open(&self.log)?.filter_map(Result::ok);
-        let outcome = Player::new(settings).check(records, MachineController::new(&machine));
-        say(out, &outcome.to_string());
-        Ok(match outcome {
-            Outcome::Equal(_) => Verdict::of(contents.summary),
-            Outcome::FirstDifference(_) => Verdict::Found,
-        })
-    }
+/// The machine that a file describes.
+pub(crate) fn read_machine(path: &Path) -> Result<Machine, String> {
+    let refused = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let text = String::from_utf8(read_file(path, MOST_MACHINE_BYTES)?)
+        .map_err(|error| refused(&error.utf8_error()))?;
+    Machine::from_toml(&text).map_err(|error| refused(&error))
+}
 
-    fn machine(&self, header: &Header) -> Result<Machine, String> {
-        if let Some(path) = &self.machine {
-            let refused = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-            let text = String::from_utf8(read_file(path, MOST_MACHINE_BYTES)?)
-                .map_err(|error| refused(&error.utf8_error()))?;
-            return Machine::from_toml(&text).map_err(|error| refused(&error));
-        }
-        let mut config = MachineConfig::default();
-        match header.text("controller") {
-            None => {}
-            Some("published") => config.control.controller = ControllerChoice::Published,
-            Some("contouring") => config.control.controller = ControllerChoice::Contouring,
-            Some(other) => {
-                return Err(format!(
-                    "{}: header key controller: expected published or contouring, found {other:?}; give --machine",
-                    self.log.display()
-                ));
-            }
-        }
-        Machine::new(config).map_err(|error| error.to_string())
+/// Seconds as people give them.
+pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds: f64 = text.parse().map_err(|_| format!("expected seconds, found {text:?}"))?;
+    Duration::try_from_secs_f64(seconds).map_err(|_| format!("expected 0 or more seconds, found {text:?}"))
+}
+
+/// Refuses to write over a file that is there.
+pub(crate) fn is_free(path: &Path, force: bool) -> Result<(), String> {
+    let is_file = std::fs::metadata(path).is_ok_and(|meta| meta.is_file() && meta.len() > 0);
+    if is_file && !force {
+        return Err(format!("{}: is there already: give another name, or --force", path.display()));
     }
+    Ok(())
 }

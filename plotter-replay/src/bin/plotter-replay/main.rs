@@ -1,15 +1,22 @@
-//! Shows what a log of a plotter's serial line holds, draws it, and runs the controller again on it.
+//! Records a plotter's serial line, shows what a log of it holds, draws it, and runs the controller again on it.
 //!
 //! Exit status: 0 clean, 1 damage or a difference found, 2 unreadable, not writable or a wrong command line.
 
+mod check;
 mod commands;
+mod compare;
+mod export;
+mod import;
+mod info;
+mod record;
+mod replay;
 
 use clap::Parser;
 use commands::{Command, Verdict};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// Shows what a log of a plotter's serial line holds, draws it, and runs the controller again on it.
+/// Records a plotter's serial line, shows what a log of it holds, draws it, and runs the controller again on it.
 ///
 /// Exit status: 0 clean, 1 damage or a difference found, 2 unreadable, not writable or a wrong command line.
 #[derive(Debug, Parser)]

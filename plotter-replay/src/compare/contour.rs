@@ -1,6 +1,6 @@
 //! Contour error: how far from the line that it should follow the pen was, over time.
 
-use crate::VirtualPlotter;
+use crate::{Leg, PlotterSettings, VirtualPlotter};
 use core::time::Duration;
 use plotter_motion::{Pen, Point, Segment};
 
@@ -58,26 +58,50 @@ pub fn contour_samples(
     actual.into_iter().map(move |(time, at)| ContourSample { time, error_mm: desired.distance(at) })
 }
 
-impl FromIterator<ContourSample> for ContourError {
-    fn from_iter<I: IntoIterator<Item = ContourSample>>(samples: I) -> Self {
-        let mut error = Self::default();
-        let (mut sum_mm, mut sum_squares_mm2) = (0.0, 0.0);
-        for sample in samples {
-            error.samples = error.samples.saturating_add(1);
-            sum_mm += sample.error_mm;
-            sum_squares_mm2 += sample.error_mm * sample.error_mm;
-            if sample.error_mm > error.max_mm {
-                error.max_mm = sample.error_mm;
-                error.max_at = sample.time;
-            }
+/// A [`ContourError`] that is gathered piece by piece, in constant memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContourTally {
+    error: ContourError,
+    sum_mm: f64,
+    sum_squares_mm2: f64,
+}
+
+impl ContourTally {
+    /// Takes one sample.
+    pub fn push(&mut self, sample: ContourSample) {
+        self.error.samples = self.error.samples.saturating_add(1);
+        self.sum_mm += sample.error_mm;
+        self.sum_squares_mm2 += sample.error_mm * sample.error_mm;
+        if sample.error_mm > self.error.max_mm {
+            self.error.max_mm = sample.error_mm;
+            self.error.max_at = sample.time;
         }
+    }
+
+    /// Takes ways from [`VirtualPlotter::take_legs`].
+    pub fn extend(&mut self, legs: &[Leg], settings: &PlotterSettings, ways: Ways) {
+        samples_of(legs, *settings, ways).for_each(|sample| self.push(sample));
+    }
+
+    /// What has come so far.
+    #[must_use]
+    pub fn error(&self) -> ContourError {
+        let mut error = self.error;
         if error.samples > 0 {
             #[expect(clippy::cast_precision_loss, reason = "a count below 2^53")]
             let count = error.samples as f64;
-            error.mean_mm = sum_mm / count;
-            error.rms_mm = libm::sqrt(sum_squares_mm2 / count);
+            error.mean_mm = self.sum_mm / count;
+            error.rms_mm = libm::sqrt(self.sum_squares_mm2 / count);
         }
         error
+    }
+}
+
+impl FromIterator<ContourSample> for ContourError {
+    fn from_iter<I: IntoIterator<Item = ContourSample>>(samples: I) -> Self {
+        let mut tally = ContourTally::default();
+        samples.into_iter().for_each(|sample| tally.push(sample));
+        tally.error()
     }
 }
 
@@ -85,15 +109,7 @@ impl VirtualPlotter {
     /// Distance of each counted position from the line between the targets before and after it, mm. Ways without
     /// a known target are left out.
     pub fn contour_samples(&self, ways: Ways) -> impl Iterator<Item = ContourSample> {
-        let settings = *self.settings();
-        let measured = move |pen| ways == Ways::All || pen == Pen::Down;
-        self.legs().iter().filter(move |leg| measured(leg.pen)).flat_map(move |leg| {
-            leg.target.into_iter().flat_map(move |target| {
-                let desired = Segment::new(settings.to_sheet(leg.from), settings.to_sheet(target));
-                let actual = leg.points.iter().map(move |point| (point.time(), settings.to_sheet(point.at)));
-                contour_samples(actual, desired)
-            })
-        })
+        samples_of(self.legs(), *self.settings(), ways)
     }
 
     /// Contour error of the track as counted.
@@ -103,10 +119,20 @@ impl VirtualPlotter {
     }
 }
 
+fn samples_of(legs: &[Leg], settings: PlotterSettings, ways: Ways) -> impl Iterator<Item = ContourSample> {
+    let measured = move |pen| ways == Ways::All || pen == Pen::Down;
+    legs.iter().filter(move |leg| measured(leg.pen)).flat_map(move |leg| {
+        leg.target.into_iter().flat_map(move |target| {
+            let desired = Segment::new(settings.to_sheet(leg.from), settings.to_sheet(target));
+            let actual = leg.points.iter().map(move |point| (point.time(), settings.to_sheet(point.at)));
+            contour_samples(actual, desired)
+        })
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::PlotterSettings;
     use crate::log::{Event, Record};
 
     #[test]

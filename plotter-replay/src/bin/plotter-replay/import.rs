@@ -1,0 +1,148 @@
+//! `import`: what another tool recorded, as a log.
+
+use crate::commands::{Done, Verdict, cannot, is_free, say, say_first};
+use clap::{Args, ValueEnum};
+use plotter_replay::import::{ImportSettings, Imported, Side, Source, Tool, detect, import};
+use plotter_replay::log::{self, Header};
+use std::fs::File;
+use std::io::{BufReader, Read as _, Write};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(crate) struct Import {
+    /// The recordings; of tools that write a file a direction, both.
+    #[arg(value_name = "FILE", required_unless_present_any = ["host", "controller"])]
+    files: Vec<PathBuf>,
+    /// A recording of what the host sent.
+    #[arg(long, value_name = "FILE")]
+    host: Vec<PathBuf>,
+    /// A recording of what the controller sent.
+    #[arg(long, value_name = "FILE")]
+    controller: Vec<PathBuf>,
+    /// The tool that wrote them [default: found out].
+    #[arg(long, value_name = "TOOL")]
+    from: Option<From>,
+    /// The log; packed if its name ends in .gz.
+    #[arg(short, long, value_name = "LOG")]
+    out: PathBuf,
+    /// Write over LOG if it is there.
+    #[arg(long)]
+    force: bool,
+    /// Bits a second on the line.
+    #[arg(long, value_name = "RATE", default_value_t = 256_000, value_parser = clap::value_parser!(u32).range(50..))]
+    baud: u32,
+    /// Samples a second of the logic analyzer, for sigrok [default: from the baud rate and the length of a byte].
+    #[arg(long, value_name = "HZ")]
+    sample_rate: Option<f64>,
+    /// What the tool calls the host (a port, an analyzer) [default: by its name, else who speaks first].
+    #[arg(long, value_name = "NAME")]
+    host_name: Option<String>,
+    /// What the tool calls the controller.
+    #[arg(long, value_name = "NAME")]
+    controller_name: Option<String>,
+    /// What the line speaks, for the log's header.
+    #[arg(long, value_name = "NAME", default_value = "digits")]
+    protocol: String,
+}
+
+/// As [`Tool`], for the command line.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum From {
+    Socat,
+    Jpnevulator,
+    Candump,
+    Saleae,
+    Sigrok,
+    Raw,
+    PlotterRaw,
+}
+
+impl From {
+    fn tool(self) -> Tool {
+        match self {
+            Self::Socat => Tool::Socat,
+            Self::Jpnevulator => Tool::Jpnevulator,
+            Self::Candump => Tool::Candump,
+            Self::Saleae => Tool::Saleae,
+            Self::Sigrok => Tool::Sigrok,
+            Self::Raw => Tool::Raw,
+            Self::PlotterRaw => Tool::PlotterRaw,
+        }
+    }
+}
+
+/// The beginning of a file that tells which tool wrote it, bytes.
+const BEGINNING: u64 = 16_384;
+
+fn tool_of(path: &Path) -> Result<Tool, String> {
+    let mut beginning = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(BEGINNING).read_to_end(&mut beginning))
+        .map_err(|error| cannot("read", path, &error))?;
+    if beginning.starts_with(log::MAGIC.as_bytes()) {
+        return Err(format!("{}: is a log already", path.display()));
+    }
+    detect(&beginning).ok_or_else(|| {
+        let tools: Vec<_> = Tool::ALL.iter().map(|tool| tool.name()).collect();
+        format!("{}: no tool known here wrote this: say --from ({})", path.display(), tools.join(", "))
+    })
+}
+
+impl Import {
+    pub(crate) fn run(self, out: &mut impl Write) -> Done {
+        let none = self.files.iter().map(|path| (path, None));
+        let host = self.host.iter().map(|path| (path, Some(Side::Host)));
+        let controller = self.controller.iter().map(|path| (path, Some(Side::Controller)));
+        let mut sources = Vec::new();
+        for (path, side) in none.chain(host).chain(controller) {
+            let tool = match self.from {
+                Some(from) => from.tool(),
+                None => tool_of(path)?,
+            };
+            // Opened once before anything is written.
+            File::open(path).map_err(|error| cannot("read", path, &error))?;
+            let path = path.clone();
+            let name = path.display().to_string();
+            let open = Box::new(move || {
+                let file = File::open(&path)?;
+                Ok(Box::new(BufReader::new(file)) as Box<dyn std::io::BufRead>)
+            });
+            sources.push(Source { name, tool, side, open });
+        }
+        is_free(&self.out, self.force)?;
+        let settings = ImportSettings {
+            baud: self.baud,
+            sample_rate_hz: self.sample_rate,
+            host: self.host_name,
+            controller: self.controller_name,
+        };
+        let tool = sources.first().map_or("", |source| source.tool.name());
+        let header = Header::new()
+            .with_number("baud", u64::from(self.baud))
+            .with_text("protocol", &self.protocol)
+            .with_text("recorded_by", tool);
+        let failed = |error: log::WriteError| format!("{}: {error}", self.out.display());
+        let mut writer = log::create(&self.out, &header).map_err(failed)?;
+        let mut troubles = Vec::new();
+        let imported = import(sources, &settings, &mut writer, |trouble| {
+            if troubles.len() < crate::commands::MOST_SHOWN {
+                troubles.push(trouble);
+            }
+        });
+        let Imported { host_bytes, controller_bytes, troubles: count, sides } =
+            imported.map_err(|error| error.to_string())?;
+        writer.finish().map_err(failed)?;
+        for (name, side) in sides {
+            let side = if side == Side::Host { "the host" } else { "the controller" };
+            say(out, &format!("{name}: {side}"));
+        }
+        say(out, &format!("{tool}: {host_bytes} bytes of the host, {controller_bytes} of the controller"));
+        say(out, &format!("wrote {}", self.out.display()));
+        if host_bytes + controller_bytes == 0 {
+            say(out, "nothing was found in it");
+        }
+        say(out, &format!("not read as it stands: {count}"));
+        say_first(out, &troubles, count);
+        Ok(if count == 0 && host_bytes + controller_bytes > 0 { Verdict::Clean } else { Verdict::Found })
+    }
+}

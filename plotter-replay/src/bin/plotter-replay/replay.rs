@@ -1,0 +1,139 @@
+//! `replay`: a recording, or the controller again on it, as fast as wanted.
+
+use crate::check::{Traits, controller};
+use crate::commands::{Done, Verdict, cannot, is_free, open, read, read_machine, say, say_damage, seconds};
+use clap::Args;
+use plotter_replay::log::{self, Record};
+use plotter_replay::{Decoder, Pace, PaceSettings, Player, Stuck};
+use std::io::{BufRead, Write};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+#[derive(Debug, Args)]
+pub(crate) struct Replay {
+    /// The log; packed if its name ends in .gz.
+    log: PathBuf,
+    /// The machine's description [default: the preset of the controller that the log's header names].
+    #[arg(long, value_name = "FILE.toml")]
+    machine: Option<PathBuf>,
+    /// Show what was recorded, and run no controller.
+    #[arg(long, conflicts_with = "machine")]
+    recorded: bool,
+    /// Keep what the controller says and does now as a log; nothing is shown then, unless a speed or steps are asked for.
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Write over FILE if it is there.
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// How many times as fast as it was [default: without waiting; time is that of the log, no clock is read].
+    #[arg(long, value_name = "FACTOR", value_parser = speed)]
+    speed: Option<f64>,
+    /// Show what comes from here on, seconds; what is before is run without waiting.
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true, default_value = "0")]
+    from: Duration,
+    /// Show what comes up to here, seconds, and stop.
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    to: Option<Duration>,
+    /// Wait at most so many seconds [0.1] where the line is silent.
+    #[arg(long, value_name = "S", value_parser = seconds, num_args = 0..=1, default_missing_value = "0.1")]
+    skip_gaps: Option<Duration>,
+    /// Wait for the Enter key after each record; q ends it.
+    #[arg(long)]
+    step: bool,
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    let speed: Option<f64> = text.parse().ok();
+    speed
+        .filter(|speed| (1e-3..=1e6).contains(speed))
+        .ok_or_else(|| format!("expected a factor of 0.001 to 1000000, found {text:?}"))
+}
+
+impl Replay {
+    pub(crate) fn run(self, out: &mut impl Write) -> Done {
+        let mut traits = Traits::default();
+        let contents = read(&self.log, |record| traits.look(&record.event))?;
+        let header = &contents.header;
+        let machine = self.machine.as_deref().map(read_machine).transpose()?;
+        let records = open(&self.log)?.filter_map(Result::ok);
+        let played: Box<dyn Iterator<Item = Result<Record, Stuck>>> = if self.recorded {
+            Box::new(records.map(Ok))
+        } else {
+            let controller = controller(&self.log, header, machine.as_ref())?;
+            let settings = traits.settings(header, controller.makes_steps());
+            Box::new(Player::new(settings).rerun_iter(records, controller))
+        };
+        let unwritable = |path: &PathBuf, error: log::WriteError| format!("{}: {error}", path.display());
+        let mut writer = match &self.out {
+            Some(path) => {
+                is_free(path, self.force)?;
+                Some((path, log::create(path, header).map_err(|error| unwritable(path, error))?))
+            }
+            None => None,
+        };
+        let shows = writer.is_none() || self.speed.is_some() || self.step;
+        let mut pace = Pace::new(PaceSettings {
+            speed: self.speed,
+            from: self.from,
+            to: self.to.unwrap_or(Duration::MAX),
+            longest_gap: self.skip_gaps.unwrap_or(Duration::MAX),
+        });
+        let mut decoder = Decoder::new(header);
+        let mut keys = std::io::stdin().lock();
+        let mut is_stepping = self.step;
+        let mut verdict = Verdict::of(contents.summary);
+        // Read only where it is waited for.
+        let began = (self.speed.is_some() || self.step).then(Instant::now);
+        for record in played {
+            let record = match record {
+                Ok(record) => record,
+                Err(stuck) => {
+                    say(out, &stuck.to_string());
+                    verdict = Verdict::Found;
+                    break;
+                }
+            };
+            if pace.is_over(record.time) {
+                break;
+            }
+            if let Some((path, writer)) = &mut writer {
+                writer.write(&record).map_err(|error| unwritable(path, error))?;
+            }
+            let words = decoder.words(&record);
+            let wait = pace.wait(record.time, began.map_or(Duration::ZERO, |began| began.elapsed()));
+            if !shows || !pace.shows(record.time) {
+                continue;
+            }
+            if !is_stepping && !wait.is_zero() {
+                // What was shown is seen before it is waited.
+                out.flush().map_err(|error| cannot("written", "standard output".as_ref(), &error))?;
+                std::thread::sleep(wait);
+            }
+            show(out, &record, &words);
+            if is_stepping {
+                let _ = out.flush();
+                let mut key = String::new();
+                match keys.read_line(&mut key) {
+                    Ok(0) | Err(_) => is_stepping = false,
+                    Ok(_) if key.trim().eq_ignore_ascii_case("q") => break,
+                    Ok(_) => {}
+                }
+            }
+        }
+        if let Some((path, writer)) = writer {
+            writer.finish().map_err(|error| unwritable(path, error))?;
+            say(out, &format!("wrote {}", path.display()));
+        }
+        if verdict == Verdict::Found {
+            say_damage(out, &contents);
+        }
+        Ok(verdict)
+    }
+}
+
+fn show(out: &mut impl Write, record: &Record, words: &str) {
+    let mut line = Vec::new();
+    // Into memory: cannot fail.
+    let _ = plotter_replay::export::line(record, words, &mut line);
+    let _ = out.write_all(&line);
+}

@@ -1,0 +1,131 @@
+//! [`Decoder`]: records in words.
+
+use crate::log::{Event, Header, Record};
+use core::fmt::Write as _;
+use core::time::Duration;
+use plotter_motion::protocol::digits::{Receiver, Reply};
+use plotter_motion::{Axis, Direction};
+
+/// Bytes of a record that are put into words; of longer ones it says how many there are.
+const MOST_BYTES: usize = 16;
+
+/// Puts what goes over a line into words: `target 900 600`, `pulse x+`, `reached`.
+///
+/// It must be shown every record from the beginning of a log: the ten bytes of a target come in several.
+///
+/// ```
+/// # use plotter_replay::Decoder;
+/// # use plotter_replay::log::{Event, Header, Record};
+/// let mut decoder = Decoder::new(&Header::new());
+/// assert_eq!(decoder.words(&Record::at_us(0, Event::Host(vec![0, 0, 9, 0, 0]))), "digits 0 0 9 0 0");
+/// assert_eq!(decoder.words(&Record::at_us(90, Event::Host(vec![0, 0, 6, 0, 0]))), "digits 0 0 6 0 0, target 900 600");
+/// assert_eq!(decoder.words(&Record::at_us(900, Event::Controller(b"13+".to_vec()))), "pulse x+ y+, reached");
+/// ```
+#[derive(Clone, Debug)]
+pub struct Decoder {
+    /// `None` for a protocol of text lines.
+    digits: Option<Receiver>,
+}
+
+impl Decoder {
+    /// For the protocol that a log's header names: the ten digits, unless it says another.
+    #[must_use]
+    pub fn new(header: &Header) -> Self {
+        let gap_ms = header.number("resync_gap_ms").filter(|ms| (0.0..=3.6e6).contains(ms)).unwrap_or(100.0);
+        let is_digits = header.text("protocol").is_none_or(|protocol| protocol == "digits");
+        let gap = Duration::try_from_secs_f64(gap_ms / 1e3).unwrap_or(Duration::from_millis(100));
+        Self { digits: is_digits.then(|| Receiver::new(gap)) }
+    }
+
+    /// A record in words; empty for one that says it itself.
+    pub fn words(&mut self, record: &Record) -> String {
+        match &record.event {
+            Event::Host(bytes) => self.host(record.time, bytes),
+            Event::Controller(bytes) if self.digits.is_some() => replies(bytes),
+            Event::Controller(bytes) => quoted(bytes),
+            _ => String::new(),
+        }
+    }
+
+    fn host(&mut self, time: Duration, bytes: &[u8]) -> String {
+        let Some(receiver) = &mut self.digits else {
+            return quoted(bytes);
+        };
+        let mut parts = Vec::new();
+        let mut run = String::new();
+        let end_run = |run: &mut String, parts: &mut Vec<String>| {
+            if !run.is_empty() {
+                parts.push(format!("digits{}", core::mem::take(run)));
+            }
+        };
+        for (at, &byte) in bytes.iter().enumerate() {
+            let received = receiver.push(time, byte);
+            if at >= MOST_BYTES {
+                continue;
+            }
+            if let Some(dropped) = received.dropped {
+                end_run(&mut run, &mut parts);
+                parts.push(dropped.to_string());
+            }
+            if byte <= 9 {
+                let _ = write!(run, " {byte}");
+            }
+            if let Some(target) = received.target {
+                end_run(&mut run, &mut parts);
+                parts.push(format!("target {} {}", target.x, target.y));
+            }
+        }
+        end_run(&mut run, &mut parts);
+        more(parts, bytes)
+    }
+}
+
+fn more(mut parts: Vec<String>, bytes: &[u8]) -> String {
+    if bytes.len() > MOST_BYTES {
+        parts.push(format!("... ({} bytes)", bytes.len()));
+    }
+    parts.join(", ")
+}
+
+fn replies(bytes: &[u8]) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    let mut in_pulses = false;
+    for &byte in bytes.iter().take(MOST_BYTES) {
+        let words = reply(byte);
+        match (words.strip_prefix("pulse "), parts.last_mut()) {
+            (Some(pulse), Some(last)) if in_pulses => {
+                last.push(' ');
+                last.push_str(pulse);
+            }
+            (pulse, _) => {
+                in_pulses = pulse.is_some();
+                parts.push(words);
+            }
+        }
+    }
+    more(parts, bytes)
+}
+
+/// What a controller's byte says in the protocol of ten digits.
+pub(super) fn reply(byte: u8) -> String {
+    match Reply::from_byte(byte) {
+        Some(Reply::Pulse(axis, sign)) => format!("pulse {}", pulse(axis, sign)),
+        Some(Reply::Reached) => String::from("reached"),
+        Some(Reply::Clear) => String::from("clear"),
+        None => format!("0x{byte:02x} says nothing"),
+    }
+}
+
+pub(super) fn pulse(axis: Axis, sign: Direction) -> &'static str {
+    match (axis, sign) {
+        (Axis::X, Direction::Plus) => "x+",
+        (Axis::X, Direction::Minus) => "x-",
+        (Axis::Y, Direction::Plus) => "y+",
+        (Axis::Y, Direction::Minus) => "y-",
+    }
+}
+
+fn quoted(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes.get(..bytes.len().min(64)).unwrap_or(bytes));
+    format!("{text:?}")
+}

@@ -1,0 +1,12 @@
+//! What differs: the pen from its line ([`ContourError`]), one log from another ([`compare`]).
+
+mod contour;
+mod decode;
+mod difference;
+mod lane;
+mod logs;
+
+pub use contour::{ContourError, ContourSample, ContourTally, Ways, contour_samples};
+pub use decode::Decoder;
+pub use difference::{Comparison, FirstDifference, LaneSummary, Place};
+pub use logs::{CompareSettings, compare};

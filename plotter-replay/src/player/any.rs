@@ -1,0 +1,100 @@
+//! [`AnyController`]: the controller of a machine, whichever it is.
+
+use super::{Controller, MachineController};
+use crate::log::Header;
+use core::fmt;
+use plotter_motion::control::ChosenController;
+use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
+use plotter_motion::firmware::{MarkingBoard, MarkingBoardSettings, StepperPlotter};
+use plotter_motion::{ControllerChoice, DriveChoice, KinematicsChoice, Machine, MachineConfig};
+
+/// The controllers of `plotter-motion`, as the header of a log and the description of a machine tell which.
+///
+/// | header | machine | controller |
+/// |---|---|---|
+/// | `controller` `marking-board` | none given | [`MarkingBoard`] with the published controller |
+/// | other | with one belt | [`MarkingBoard`] as the machine's description says |
+/// | `protocol` `grbl` | steppers | [`StepperPlotter`], Grbl's language |
+/// | other | steppers | [`StepperPlotter`], mDraw's language |
+/// | `controller` `published` or `contouring` | none given | [`MachineController`] with that one |
+/// | other | DC motors | [`MachineController`] as the machine's description says |
+///
+/// ```
+/// # use plotter_replay::{AnyController, Controller};
+/// # use plotter_replay::log::Header;
+/// let header = Header::new().with_text("protocol", "grbl").with_text("controller", "stepper-plotter");
+/// assert!(AnyController::of(&header, None)?.makes_steps());
+/// # Ok::<(), plotter_replay::ControllerError>(())
+/// ```
+#[derive(Debug)]
+pub struct AnyController;
+
+/// Why there is no controller for a log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ControllerError {
+    /// What is wrong.
+    pub message: String,
+}
+
+impl AnyController {
+    /// A new controller for a log with this header; without a machine, for the preset that the header names.
+    ///
+    /// # Errors
+    ///
+    /// [`ControllerError`] for a name that is none.
+    pub fn of(header: &Header, machine: Option<&Machine>) -> Result<Box<dyn Controller>, ControllerError> {
+        let said = header.text("controller");
+        let machine = match machine {
+            Some(machine) => *machine,
+            None => preset(said)?,
+        };
+        if machine.config().kinematics.kind == KinematicsChoice::CoreXy {
+            let controller = ChosenController::of(&machine);
+            return Ok(Box::new(MarkingBoard::new(MarkingBoardSettings::of(&machine), controller)));
+        }
+        Ok(match machine.config().drive {
+            DriveChoice::Stepper => {
+                let dialect =
+                    if header.text("protocol") == Some("grbl") { Dialect::Grbl } else { Dialect::MDraw };
+                let settings = StepperPlotterSettings::of(&machine, dialect);
+                Box::new(StepperPlotter::new(settings).map_err(error)?)
+            }
+            _ => Box::new(MachineController::new(&machine)),
+        })
+    }
+}
+
+fn preset(said: Option<&str>) -> Result<Machine, ControllerError> {
+    let mut config = MachineConfig::default();
+    match said {
+        None => {}
+        Some("published") => config.control.controller = ControllerChoice::Published,
+        Some("contouring") => config.control.controller = ControllerChoice::Contouring,
+        Some("stepper-plotter") => config = MachineConfig::stepper_plotter(),
+        Some("marking-board") => {
+            config = MachineConfig::marking_board();
+            config.control.controller = ControllerChoice::Published;
+        }
+        Some(other) => {
+            return Err(ControllerError {
+                message: format!(
+                    "header key controller: expected published, contouring, stepper-plotter or marking-board, found \
+                     {other:?}; give the machine's description"
+                ),
+            });
+        }
+    }
+    Machine::new(config).map_err(error)
+}
+
+fn error(error: impl fmt::Display) -> ControllerError {
+    ControllerError { message: error.to_string() }
+}
+
+impl fmt::Display for ControllerError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl core::error::Error for ControllerError {}
