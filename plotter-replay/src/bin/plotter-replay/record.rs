@@ -7,7 +7,6 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 #[derive(Debug, Args)]
-#[cfg_attr(not(feature = "serial"), expect(dead_code, reason = "read where there are serial ports"))]
 pub(crate) struct Record {
     /// The port that the plotter is on: a name, a part of one that only it has, or `auto` for the only one there is.
     #[arg(long, value_name = "NAME", default_value = "auto")]
@@ -40,10 +39,10 @@ pub(crate) struct Record {
 
 #[cfg(not(feature = "serial"))]
 impl Record {
-    #[expect(clippy::unused_self, reason = "as where there are serial ports")]
     pub(crate) fn run(self, _: &mut impl Write) -> Done {
-        Err(String::from(
-            "record: this program was built without serial ports: cargo install plotter-replay --features serial",
+        Err(format!(
+            "{}: this program was built without serial ports: cargo install plotter-replay --features serial",
+            self.port
         ))
     }
 }
