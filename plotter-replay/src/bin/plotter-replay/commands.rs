@@ -1,11 +1,11 @@
-//! The three commands.
+//! The commands, and what they share.
 
+use crate::render::Render;
 use clap::{Args, Subcommand};
-use plotter_motion::{ControllerChoice, Machine, MachineConfig, PlotOp, hpgl};
+use plotter_motion::{ControllerChoice, Machine, MachineConfig};
 use plotter_replay::log::{self, Damage, Event, FileReader, Header, Record, Summary};
 use plotter_replay::{
-    Canvas, CanvasStyle, Chart, EdgeSource, Layer, MachineController, Outcome, Player, PlayerSettings,
-    PlotterSettings, VirtualPlotter, Visibility, Ways,
+    EdgeSource, MachineController, Outcome, Player, PlayerSettings, PlotterSettings, VirtualPlotter, Ways,
 };
 use std::io::{Read as _, Write};
 use std::path::{Path, PathBuf};
@@ -13,8 +13,6 @@ use std::time::Duration;
 
 /// Longest list of damage or anomalies that is shown.
 const MOST_SHOWN: usize = 20;
-/// Longest drawing that is read, bytes: some ten million lines.
-const MOST_DRAWING_BYTES: u64 = 256 << 20;
 /// Longest machine file that is read, bytes; a good one has a few thousand.
 const MOST_MACHINE_BYTES: u64 = 1 << 20;
 /// Time by which an answer may be off when the edges are only known from the pulses.
@@ -30,7 +28,7 @@ pub(crate) enum Verdict {
 }
 
 impl Verdict {
-    fn of(summary: Summary) -> Self {
+    pub(crate) fn of(summary: Summary) -> Self {
         if summary.is_clean() { Self::Clean } else { Self::Found }
     }
 }
@@ -40,7 +38,8 @@ impl Verdict {
 pub(crate) enum Command {
     /// Draw what the motors did, desired beside actual, and their response over time.
     #[command(after_help = "Example: plotter-replay render session.plog -o pictures\n\
-        writes pictures/plotted.svg, pictures/plotted.png and pictures/response.svg")]
+        writes pictures/plotted.svg, pictures/plotted.png, pictures/response.svg and pictures/recording.html, a page \
+        with a time slider for any browser")]
     Render(Render),
     /// Run the controller again on the recorded bytes and edges and compare every answer and its time.
     #[command(after_help = "Example: plotter-replay check session.plog --machine semi-virtual-gantry.toml")]
@@ -51,34 +50,6 @@ pub(crate) enum Command {
         /// The log; packed if its name ends in .gz.
         log: PathBuf,
     },
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Render {
-    /// The log; packed if its name ends in .gz.
-    log: PathBuf,
-    /// Write plotted.svg, plotted.png and response.svg into this directory [default: the current one, unless
-    /// a single picture is asked for].
-    #[arg(short, long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Write the drawing as SVG.
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
-    /// Write the drawing as PNG.
-    #[arg(long, value_name = "FILE")]
-    png: Option<PathBuf>,
-    /// Write the response of both motors as SVG.
-    #[arg(long, value_name = "FILE")]
-    chart: Option<PathBuf>,
-    /// The drawing that was sent, HPGL: tells the pen, and what should have been drawn.
-    #[arg(long, value_name = "FILE.hpgl")]
-    drawing: Option<PathBuf>,
-    /// Show the moves with the pen up, too.
-    #[arg(long)]
-    travel: bool,
-    /// Longer side of the PNG, pixels.
-    #[arg(long, value_name = "PX", default_value_t = 1_600, value_parser = clap::value_parser!(u32).range(64..=8192))]
-    size: u32,
 }
 
 #[derive(Debug, Args)]
@@ -94,7 +65,7 @@ pub(crate) struct Check {
     tolerance_us: Option<u64>,
 }
 
-type Done = Result<Verdict, String>;
+pub(crate) type Done = Result<Verdict, String>;
 
 impl Command {
     /// Does it.
@@ -112,11 +83,11 @@ impl Command {
 }
 
 /// Prints a line; what could not be printed is told at the end, by `main`.
-fn say(out: &mut impl Write, line: &str) {
+pub(crate) fn say(out: &mut impl Write, line: &str) {
     let _ = writeln!(out, "{line}");
 }
 
-fn say_first<T: ToString>(out: &mut impl Write, list: &[T], count: u64) {
+pub(crate) fn say_first<T: ToString>(out: &mut impl Write, list: &[T], count: u64) {
     for one in list.iter().take(MOST_SHOWN) {
         say(out, &format!("  {}", one.to_string()));
     }
@@ -126,37 +97,53 @@ fn say_first<T: ToString>(out: &mut impl Write, list: &[T], count: u64) {
     }
 }
 
-fn open(path: &Path) -> Result<FileReader, String> {
+pub(crate) fn open(path: &Path) -> Result<FileReader, String> {
     log::open(path).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 /// Everything in a log, one record after the other.
-struct Contents {
-    header: Header,
-    summary: Summary,
+pub(crate) struct Contents {
+    pub(crate) header: Header,
+    pub(crate) summary: Summary,
     damage: Vec<Damage>,
 }
 
-fn read(path: &Path, mut take: impl FnMut(&Record)) -> Result<Contents, String> {
+pub(crate) fn read(path: &Path, mut take: impl FnMut(&Record)) -> Result<Contents, String> {
+    read_all(path, |item| {
+        if let Ok(record) = item {
+            take(record);
+        }
+    })
+}
+
+/// The same, with the damage in its place.
+pub(crate) fn read_all(
+    path: &Path,
+    mut take: impl FnMut(Result<&Record, &Damage>),
+) -> Result<Contents, String> {
     let mut reader = open(path)?;
     let mut damage = Vec::new();
     for item in reader.by_ref() {
         match item {
-            Ok(record) => take(&record),
-            Err(one) if damage.len() < MOST_SHOWN => damage.push(one),
-            Err(_) => {}
+            Ok(record) => take(Ok(&record)),
+            Err(one) => {
+                take(Err(&one));
+                if damage.len() < MOST_SHOWN {
+                    damage.push(one);
+                }
+            }
         }
     }
     Ok(Contents { header: reader.header().clone(), summary: reader.summary(), damage })
 }
 
-fn plotter_for(path: &Path) -> Result<VirtualPlotter, String> {
+pub(crate) fn plotter_for(path: &Path) -> Result<VirtualPlotter, String> {
     let settings = PlotterSettings::from_header(open(path)?.header())
         .map_err(|error| format!("{}: {error}", path.display()))?;
     Ok(VirtualPlotter::new(settings))
 }
 
-fn say_damage(out: &mut impl Write, contents: &Contents) {
+pub(crate) fn say_damage(out: &mut impl Write, contents: &Contents) {
     say(out, &contents.summary.to_string());
     say_first(out, &contents.damage, contents.summary.damaged_lines);
 }
@@ -216,76 +203,12 @@ fn info(path: &Path, out: &mut impl Write) -> Done {
     Ok(Verdict::of(contents.summary))
 }
 
-impl Render {
-    fn run(self, out: &mut impl Write) -> Done {
-        let mut plotter = plotter_for(&self.log)?;
-        let mut verdict = Verdict::Clean;
-        let drawing = match &self.drawing {
-            None => None,
-            Some(path) => {
-                let (ops, errors) = read_drawing(path)?;
-                if !errors.is_empty() {
-                    verdict = Verdict::Found;
-                    say(out, &format!("{}: {} errors, left out", path.display(), errors.len()));
-                    say_first(out, &errors, errors.len() as u64);
-                }
-                plotter = plotter.with_drawing(ops.iter().copied());
-                Some(ops)
-            }
-        };
-        let contents = read(&self.log, |record| plotter.push(record))?;
-        plotter.finish();
-        let single = self.svg.is_some() || self.png.is_some() || self.chart.is_some();
-        let directory = self.out.clone().or_else(|| (!single).then(|| PathBuf::from(".")));
-        let places = |one: &Option<PathBuf>, name: &str| {
-            let in_directory = directory.as_ref().map(|directory| directory.join(name));
-            one.clone().into_iter().chain(in_directory).collect::<Vec<_>>()
-        };
-        if let Some(directory) = &directory {
-            std::fs::create_dir_all(directory).map_err(|error| cannot("written", directory, &error))?;
-        }
-        let mut canvas = Canvas::from_plotter(&plotter, CanvasStyle::default().tolerance_mm);
-        if let Some(ops) = drawing {
-            canvas.remove(Layer::Desired);
-            canvas.add_drawing(Layer::Desired, ops);
-        }
-        let travel = if self.travel { Visibility::Shown } else { Visibility::Hidden };
-        let style = CanvasStyle { travel, longest_px: self.size, ..canvas.fitted_style() };
-        let mut write = |path: &Path, bytes: &[u8]| -> Result<(), String> {
-            std::fs::write(path, bytes).map_err(|error| cannot("written", path, &error))?;
-            say(out, &format!("wrote {}", path.display()));
-            Ok(())
-        };
-        for path in places(&self.svg, "plotted.svg") {
-            write(&path, canvas.to_svg(&style).as_bytes())?;
-        }
-        let pngs = places(&self.png, "plotted.png");
-        #[cfg(feature = "image")]
-        for path in pngs {
-            write(&path, &canvas.to_png(&style).map_err(|error| error.to_string())?)?;
-        }
-        #[cfg(not(feature = "image"))]
-        if self.png.is_some() && !pngs.is_empty() {
-            return Err(String::from("--png: this program was built without the feature image"));
-        }
-        let title = self.log.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        for path in places(&self.chart, "response.svg") {
-            write(&path, Chart::response(&title, &plotter).to_svg().as_bytes())?;
-        }
-        if canvas.lines(Layer::Ink).next().is_none() {
-            say(out, "nothing was drawn");
-        }
-        say_damage(out, &contents);
-        Ok(if verdict == Verdict::Found { verdict } else { Verdict::of(contents.summary) })
-    }
-}
-
-fn cannot(be: &str, path: &Path, error: &std::io::Error) -> String {
+pub(crate) fn cannot(be: &str, path: &Path, error: &std::io::Error) -> String {
     format!("{}: cannot be {be}: {error}", path.display())
 }
 
 /// All of a file, if it has at most `most_bytes`: a device may go on for ever.
-fn read_file(path: &Path, most_bytes: u64) -> Result<Vec<u8>, String> {
+pub(crate) fn read_file(path: &Path, most_bytes: u64) -> Result<Vec<u8>, String> {
     let refused = |error: std::io::Error| cannot("read", path, &error);
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(refused)?;
@@ -294,20 +217,6 @@ fn read_file(path: &Path, most_bytes: u64) -> Result<Vec<u8>, String> {
         return Err(format!("{}: longer than {} MiB", path.display(), most_bytes >> 20));
     }
     Ok(bytes)
-}
-
-/// The operations of a drawing and what of it could not be read.
-fn read_drawing(path: &Path) -> Result<(Vec<PlotOp>, Vec<hpgl::Error>), String> {
-    let text = read_file(path, MOST_DRAWING_BYTES)?;
-    let (mut ops, mut errors) = (Vec::new(), Vec::new());
-    for outcome in hpgl::plot_ops(&text) {
-        match outcome {
-            Ok(op) => ops.push(op),
-            Err(error) if error.is_notice() => {}
-            Err(error) => errors.push(error),
-        }
-    }
-    Ok((ops, errors))
 }
 
 impl Check {

@@ -3,6 +3,8 @@
 //! Exit status: 0 clean, 1 damage or a difference found, 2 unreadable, not writable or a wrong command line.
 
 mod commands;
+mod drawing;
+mod render;
 
 use clap::Parser;
 use commands::{Command, Verdict};
