@@ -42,15 +42,19 @@ fn main() -> ExitCode {
 }
 
 fn write(pulses: u64, path: &std::path::Path) -> Result<(), WriteError> {
-    let header = Header::new().with_number("baud", 256_000).with_text("protocol", "digits").with_text("machine", "rosette");
+    let header = Header::new()
+        .with_number("baud", 256_000)
+        .with_text("protocol", "digits")
+        .with_text("machine", "rosette");
     let mut writer = log::create(path, &header)?;
-    let (mut ns, mut sent, mut at, mut waiting) = (0_u64, 0_u64, StepPoint::new(0, 0), Vec::with_capacity(GROUP));
+    let (mut ns, mut sent, mut at, mut waiting) =
+        (0_u64, 0_u64, StepPoint::new(0, 0), Vec::with_capacity(GROUP));
     for step in 0_u64.. {
         if sent >= pulses {
             break;
         }
         let record = |ns: u64, event| Record { time: Duration::from_nanos(ns), event };
-        let petal = step % 60 == 0;
+        let petal = step.is_multiple_of(60);
         if petal || step % 60 == 1 {
             writer.write(&record(ns, Event::Pen(if petal { Pen::Up } else { Pen::Down })))?;
         }
@@ -61,7 +65,7 @@ fn write(pulses: u64, path: &std::path::Path) -> Result<(), WriteError> {
         for pulse in way(at, target, step) {
             sent += 1;
             ns += BYTE_NS;
-            if sent % 1_000_000 != 0 {
+            if !sent.is_multiple_of(1_000_000) {
                 waiting.push(pulse);
             }
             if waiting.len() >= GROUP {

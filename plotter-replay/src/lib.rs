@@ -6,6 +6,8 @@ mod canvas;
 mod chart;
 mod compare;
 pub mod golden;
+#[cfg(feature = "live")]
+pub mod live;
 pub mod log;
 mod number;
 mod page;

@@ -18,13 +18,13 @@ impl<T> Few<T> {
     }
 
     pub(super) fn push(&mut self, entry: T) {
-        if self.count % self.every == 0 {
+        if self.count.is_multiple_of(self.every) {
             if self.kept.len() >= self.most {
                 let mut keep = [true, false].into_iter().cycle();
                 self.kept.retain(|_| keep.next().unwrap_or(true));
                 self.every = self.every.saturating_mul(2);
             }
-            if self.count % self.every == 0 {
+            if self.count.is_multiple_of(self.every) {
                 self.kept.push(entry);
             }
         }

@@ -3,12 +3,17 @@
 //! A page is one file: style, program and data are in it, and it asks nothing of any network. `assets/` holds what does
 //! not change; [`document`] puts it together.
 
+mod desired;
 mod envelope;
 mod few;
+mod numbers;
 mod recording;
 mod silence;
 mod trail;
 
+#[cfg(feature = "live")]
+pub(crate) use desired::Desired;
+pub(crate) use numbers::{along, signed, steps};
 pub use recording::{PageSettings, RecordingPage};
 #[cfg(feature = "live")]
 pub(crate) use trail::{DRAWN, Trail, TrailPoint};

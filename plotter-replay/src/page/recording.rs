@@ -1,10 +1,11 @@
 //! [`RecordingPage`]: a recording as one page with a time slider.
 
-use super::document;
+use super::desired::Desired;
 use super::envelope::{Envelope, Tally, whole};
 use super::few::Few;
 use super::silence::Silences;
 use super::trail::{DIFFERS, DRAWN, Trail, TrailPoint};
+use super::{along, document, signed, steps};
 use crate::log::{Damage, Event, Header, Record, Summary};
 use crate::{Leg, PlotterSettings, VirtualPlotter};
 use core::time::Duration;
@@ -100,35 +101,6 @@ struct ErrorSums {
     squares_mm2: f64,
     max_mm: f64,
     max_at: Duration,
-}
-
-/// Lines that were meant, as a trail along their own length.
-#[derive(Debug)]
-struct Desired {
-    trail: Trail,
-    length_um: u64,
-    at: Option<Point>,
-}
-
-impl Desired {
-    fn new(tolerance_mm: f64, most: usize) -> Self {
-        Self { trail: Trail::new(tolerance_mm, most), length_um: 0, at: None }
-    }
-
-    fn line(&mut self, from: Point, to: Point) {
-        if self.at.is_none_or(|at| at != from) {
-            self.go(from, 0);
-        }
-        self.go(to, DRAWN);
-    }
-
-    fn go(&mut self, to: Point, state: u8) {
-        let way_mm = self.at.map_or(0.0, |at| at.distance(to));
-        let way_um = u64::try_from(whole(way_mm * 1e3)).unwrap_or(0);
-        self.length_um = self.length_um.saturating_add(way_um);
-        self.trail.push(TrailPoint { at_us: self.length_um, x_mm: to.x, y_mm: to.y, state });
-        self.at = Some(to);
-    }
 }
 
 impl RecordingPage {
@@ -289,8 +261,8 @@ impl RecordingPage {
         let facts = self.facts(header, summary);
         let settings = *self.plotter.settings();
         let (way, way_error_mm) = self.way.finish();
-        let (meant, _) = self.meant.trail.finish();
-        let (undrawn, _) = undrawn.trail.finish();
+        let (meant, _) = self.meant.finish();
+        let (undrawn, _) = undrawn.finish();
         let gap_count = self.silences.count();
         let gaps: Vec<_> =
             self.silences.into_vec().iter().map(|&(start, length)| [micros(start), micros(length)]).collect();
@@ -396,25 +368,4 @@ impl ErrorSums {
 
 fn micros(time: Duration) -> u64 {
     u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
-}
-
-fn signed(time_us: u64) -> i64 {
-    i64::try_from(time_us).unwrap_or(i64::MAX)
-}
-
-/// Each value as its difference from the one before: shorter.
-fn steps(values: impl Iterator<Item = i64>) -> Vec<i64> {
-    let mut before = 0_i64;
-    values.map(|value| value.saturating_sub(core::mem::replace(&mut before, value))).collect()
-}
-
-/// A trail as differences, micrometres and microseconds; the states as one digit each.
-fn along(points: &[TrailPoint], with_time: bool) -> Value {
-    let state = |point: &TrailPoint| char::from(b'0'.saturating_add(point.state.min(9)));
-    json!({
-        "t": if with_time { steps(points.iter().map(|p| signed(p.at_us))) } else { Vec::new() },
-        "x": steps(points.iter().map(|p| whole(p.x_mm * 1e3))),
-        "y": steps(points.iter().map(|p| whole(p.y_mm * 1e3))),
-        "s": points.iter().map(state).collect::<String>(),
-    })
 }

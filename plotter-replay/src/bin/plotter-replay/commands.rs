@@ -1,5 +1,6 @@
 //! The commands, and what they share.
 
+use crate::machine::read_machine;
 use crate::render::Render;
 use clap::{Args, Subcommand};
 use plotter_motion::{ControllerChoice, Machine, MachineConfig};
@@ -14,7 +15,7 @@ use std::time::Duration;
 /// Longest list of damage or anomalies that is shown.
 const MOST_SHOWN: usize = 20;
 /// Longest machine file that is read, bytes; a good one has a few thousand.
-const MOST_MACHINE_BYTES: u64 = 1 << 20;
+pub(crate) const MOST_MACHINE_BYTES: u64 = 1 << 20;
 /// Time by which an answer may be off when the edges are only known from the pulses.
 const PULSE_TOLERANCE: Duration = Duration::from_millis(50);
 
@@ -44,6 +45,26 @@ pub(crate) enum Command {
     /// Run the controller again on the recorded bytes and edges and compare every answer and its time.
     #[command(after_help = "Example: plotter-replay check session.plog --machine semi-virtual-gantry.toml")]
     Check(Check),
+    /// Drive or watch a machine, real or simulated, in a browser or this terminal, and record it.
+    #[cfg(feature = "live")]
+    #[command(
+        after_help = "Examples:\n  plotter-replay live drawing.hpgl                        on a simulated machine\n  \
+        plotter-replay live --port /dev/ttyUSB0 drawing.hpgl    on a real one\n  \
+        plotter-replay live --port auto --terminal drawing.hpgl over ssh"
+    )]
+    Live(crate::live::Live),
+    /// Put a simulated machine on a pseudo terminal, for any program that drives a plotter.
+    #[cfg(all(feature = "live", unix))]
+    #[command(after_help = "Example: plotter-replay simulate semi-virtual-gantry.toml")]
+    Simulate(crate::simulate::Simulate),
+    /// Drive or watch a machine: not in this program, which was built without the feature `live`.
+    #[cfg(not(feature = "live"))]
+    #[command(disable_help_flag = true)]
+    Live {
+        /// What it would have been given.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
     /// Say what a log holds, and what of it is damaged or odd.
     #[command(after_help = "Example: plotter-replay info session.plog.gz")]
     Info {
@@ -77,6 +98,14 @@ impl Command {
         match self {
             Self::Render(render) => render.run(out),
             Self::Check(check) => check.run(out),
+            #[cfg(feature = "live")]
+            Self::Live(live) => live.run(out),
+            #[cfg(all(feature = "live", unix))]
+            Self::Simulate(simulate) => simulate.run(out),
+            #[cfg(not(feature = "live"))]
+            Self::Live { .. } => Err(String::from(
+                "this program was built without the feature live: cargo install plotter-replay --features live",
+            )),
             Self::Info { log } => info(&log, out),
         }
     }
@@ -248,11 +277,8 @@ impl Check {
     }
 
     fn machine(&self, header: &Header) -> Result<Machine, String> {
-        if let Some(path) = &self.machine {
-            let refused = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-            let text = String::from_utf8(read_file(path, MOST_MACHINE_BYTES)?)
-                .map_err(|error| refused(&error.utf8_error()))?;
-            return Machine::from_toml(&text).map_err(|error| refused(&error));
+        if self.machine.is_some() {
+            return read_machine(self.machine.as_deref());
         }
         let mut config = MachineConfig::default();
         match header.text("controller") {

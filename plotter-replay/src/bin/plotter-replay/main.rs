@@ -4,7 +4,12 @@
 
 mod commands;
 mod drawing;
+#[cfg(feature = "live")]
+mod live;
+mod machine;
 mod render;
+#[cfg(all(feature = "live", unix))]
+mod simulate;
 
 use clap::Parser;
 use commands::{Command, Verdict};

@@ -127,7 +127,7 @@ impl Render {
                 plotter.push(record);
                 records = records.saturating_add(1);
                 // The chart needs every point; without one there is no need to keep them.
-                if !is_charted && records % HAND_ON_AFTER == 0 {
+                if !is_charted && records.is_multiple_of(HAND_ON_AFTER) {
                     plotter.take_noted().legs.iter().for_each(|leg| sketch.add(leg));
                 }
             }
