@@ -11,8 +11,8 @@ use plotter_replay::live::{
     Command, Line, LivePage, Pipe, Plan, Server, ServerError, Session, SessionSettings, SimulatedMachine,
     State,
 };
-use plotter_replay::log::{Header, create, open};
-use plotter_replay::{MachineController, PlotterSettings};
+use plotter_replay::log::{FileWriter, Header, Writer, create, open};
+use plotter_replay::{PlotterSettings, VirtualPlotter};
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::sync::Arc;
@@ -53,7 +53,7 @@ fn an_emergency_stop_takes_the_drive_within_one_control_period() {
     let session = Session::open(
         Arc::new(host),
         Some(Box::new(square().into_iter())),
-        None,
+        None::<FileWriter>,
         Some(telemetry.clone()),
         settings(4),
     );
@@ -98,39 +98,54 @@ fn a_paused_session_finishes_its_target_and_sends_no_other() {
     session.command(Command::Resume);
     assert_eq!(session.wait(Duration::from_secs(20)), State::Done);
     // What was recorded is what was drawn.
-    let mut plotter = plotter_replay::VirtualPlotter::new(PlotterSettings::default());
+    let mut plotter = VirtualPlotter::new(PlotterSettings::default());
     open(&path).unwrap().for_each(|record| plotter.push(&record.unwrap()));
     plotter.finish();
     assert_eq!((plotter.reached_count(), plotter.anomaly_count()), (4, 0));
-    let _ = MachineController::new(&machine);
 }
 
 #[test]
 fn a_machine_that_goes_away_fails_the_session() {
     let (host, end) = Pipe::pair();
-    let session =
-        Session::open(Arc::new(host), Some(Box::new(square().into_iter())), None, None, settings(4));
+    let session = Session::open(
+        Arc::new(host),
+        Some(Box::new(square().into_iter())),
+        None::<FileWriter>,
+        None,
+        settings(4),
+    );
     session.command(Command::Start);
     drop(end);
     let State::Failed(why) = session.wait(Duration::from_secs(5)) else { panic!("{:?}", session.state()) };
     assert!(why.contains("gone away"), "{why}");
 }
 
+/// A disk with room for so many bytes.
+struct Disk(usize);
+
+impl Write for Disk {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0 = self.0.checked_sub(bytes.len()).ok_or(std::io::ErrorKind::StorageFull)?;
+        Ok(bytes.len())
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
 #[test]
 fn a_full_disk_stops_the_recording_and_not_the_drawing() {
-    let Ok(recorder) = create("/dev/full".as_ref(), &Header::new()).or_else(|_| {
-        // The header already does not fit: as with a disk that is full from the start, there is no recording.
-        Err::<plotter_replay::log::FileWriter, ()>(())
-    }) else {
-        return;
-    };
+    let recorder = Writer::new(Disk(9_000), &Header::new()).unwrap();
     let (host, end) = Pipe::pair();
     let _simulated = SimulatedMachine::start(&machine(), Arc::new(end), 4.0);
     let moves = Box::new(square().into_iter());
     let settings = SessionSettings { speed: 4.0, ..settings(4) };
     let session = Session::open(Arc::new(host), Some(moves), Some(recorder), None, settings);
+    assert_eq!(session.recording(), "on");
     session.command(Command::Start);
     assert_eq!(session.wait(Duration::from_secs(20)), State::Done);
+    assert_eq!(session.reached(), 4);
+    assert!(session.recording().starts_with("stopped: the log cannot be written"), "{}", session.recording());
 }
 
 /// What the server answers to a request.
@@ -140,16 +155,21 @@ fn ask(address: &str, path: &str, headers: &str) -> String {
     let host_line = if headers.contains("Host:") { String::new() } else { format!("Host: {host}\r\n") };
     write!(stream, "GET {path} HTTP/1.1\r\n{host_line}{headers}\r\n").unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
-    let mut answer = vec![0; 4_096];
-    let count = stream.read(&mut answer).unwrap_or(0);
-    String::from_utf8_lossy(&answer[..count]).into_owned()
+    let (mut answer, mut part) = (Vec::new(), [0; 1_024]);
+    while !answer.windows(2).any(|end| end == b"\r\n") {
+        match stream.read(&mut part) {
+            Ok(count @ 1..) => answer.extend_from_slice(&part[..count]),
+            _ => break,
+        }
+    }
+    String::from_utf8_lossy(&answer).into_owned()
 }
 
 #[test]
 fn only_who_knows_the_token_and_comes_from_this_page_gets_in() {
     let (host, _machine) = Pipe::pair();
     let line: Arc<dyn Line> = Arc::new(host);
-    let session = Session::open(line, None, None, None, SessionSettings::default());
+    let session = Session::open(line, None, None::<FileWriter>, None, SessionSettings::default());
     let page = LivePage::new("gantry", PlotterSettings::default());
     let server =
         Server::open(session.clone(), 0, |sources| page.finish([0.0, 0.0, 1.0, 1.0], sources)).unwrap();
@@ -171,8 +191,10 @@ fn only_who_knows_the_token_and_comes_from_this_page_gets_in() {
     assert_eq!(status(&socket, &format!("{upgrade}Origin: http://plotter.example\r\n")), "403");
     assert_eq!(status("/0/socket", &format!("{upgrade}Origin: {own}\r\n")), "403");
     assert_eq!(status(&socket, &format!("{upgrade}Origin: {own}\r\n")), "101");
-    assert_eq!(status("nonsense", ""), "400");
-    assert_eq!(status(&format!("/{path}"), &format!("X: {}\r\n", "x".repeat(20_000))), "400");
+    assert_eq!(status("nonsense", ""), "403");
+    assert_eq!(status("three words here", ""), "400");
+    // Too long a head is not read to its end, so its answer may be lost with the connection.
+    assert_ne!(status(&format!("/{path}"), &format!("X: {}\r\n", "x".repeat(20_000))), "200");
 
     // A second one on the same port is refused, with what to do.
     let port = own.rsplit(':').next().unwrap().parse().unwrap();

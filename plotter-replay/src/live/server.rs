@@ -1,14 +1,13 @@
 //! [`Server`]: the page of a session, for browsers on this computer only.
 
-use super::line::lock;
 use super::view::Cursor;
 use super::{Command, Session};
 use core::fmt;
 use core::time::Duration;
 use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Instant;
 use tungstenite::handshake::derive_accept_key;
@@ -65,7 +64,7 @@ impl core::error::Error for ServerError {}
 #[derive(Debug)]
 struct Site {
     session: Session,
-    page: Mutex<Arc<str>>,
+    page: String,
     token: String,
     port: u16,
 }
@@ -89,7 +88,7 @@ impl Server {
         getrandom::fill(&mut random).map_err(|error| system(&error))?;
         let token: String = random.iter().map(|byte| format!("{byte:02x}")).collect();
         let sources = format!("ws://127.0.0.1:{port} ws://localhost:{port}");
-        let site = Arc::new(Site { session, page: Mutex::new(page(&sources).into()), token, port });
+        let site = Arc::new(Site { session, page: page(&sources), token, port });
         let watching = Arc::new(AtomicUsize::new(0));
         let server = Self {
             address: format!("http://127.0.0.1:{port}/{}/", site.token),
@@ -152,16 +151,15 @@ impl Site {
         match (path, &request.key) {
             (Some("/socket"), Some(key)) => {
                 let accept = derive_accept_key(key.as_bytes());
-                write!(
-                    stream,
+                let answer = format!(
                     "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
                      Sec-WebSocket-Accept: {accept}\r\n\r\n"
-                )?;
+                );
+                stream.write_all(answer.as_bytes())?;
                 self.talk(stream, request.rest)
             }
             (Some("" | "/"), _) if request.method == "GET" => {
-                let page = Arc::clone(&*lock(&self.page));
-                respond(&mut stream, "200 OK", "text/html; charset=utf-8", &page)
+                respond(&mut stream, "200 OK", "text/html; charset=utf-8", &self.page)
             }
             _ => respond(&mut stream, "404 Not Found", "text/plain", "there is no such page"),
         }
@@ -228,14 +226,13 @@ impl Site {
 const FORBIDDEN: &str = "This page needs the whole address that plotter-replay printed, with its token.\n";
 
 fn respond(stream: &mut TcpStream, status: &str, kind: &str, body: &str) -> io::Result<()> {
-    write!(
-        stream,
+    let answer = format!(
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
          X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nX-Frame-Options: DENY\r\n\
-         Connection: close\r\n\r\n",
+         Connection: close\r\n\r\n{body}",
         body.len()
-    )?;
-    stream.write_all(body.as_bytes())?;
+    );
+    stream.write_all(answer.as_bytes())?;
     stream.flush()
 }
 

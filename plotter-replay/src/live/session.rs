@@ -5,13 +5,14 @@ use super::progress::Plan;
 use super::view::{Cursor, View};
 use super::{Command, GO_ON, STOP, State, Telemetry};
 use crate::PlotterSettings;
-use crate::log::{Event, FileWriter, Record};
+use crate::log::{Event, Record, Writer};
 use crate::serial::PortError;
 use core::time::Duration;
 use plotter_motion::protocol::{Host, HostEvent, HostNotice, HostSettings};
 use plotter_motion::{PenMove, StepPoint};
 use serde_json::Value;
 use std::collections::VecDeque;
+use std::io::Write;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
@@ -73,15 +74,17 @@ impl Session {
     /// Opens a session on `line`. With `moves` it waits for [`Command::Start`]; without, it only watches. What happens goes
     /// to `recorder`. What no byte tells of a simulated machine comes from `telemetry`.
     #[must_use]
-    pub fn open(
+    pub fn open<W: Write + Send + 'static>(
         line: Arc<dyn Line>,
         moves: Option<Moves>,
-        recorder: Option<FileWriter>,
+        recorder: Option<Writer<W>>,
         telemetry: Option<Arc<Mutex<Telemetry>>>,
         settings: SessionSettings,
     ) -> Self {
         let state = if moves.is_some() { State::Ready } else { State::Watching };
-        let view = Mutex::new(View::new(settings.plotter, state, settings.plan));
+        let mut view = View::new(settings.plotter, state, settings.plan);
+        view.recording = String::from(if recorder.is_some() { "on" } else { "none" });
+        let view = Mutex::new(view);
         let shared = Arc::new(Shared { line, view, commands: Mutex::default(), finished: Condvar::new() });
         let session = Self { shared: Arc::clone(&shared) };
         let host = moves.map(|moves| Host::new(settings.byte_gap, settings.host, moves));
@@ -125,6 +128,12 @@ impl Session {
         lock(&self.shared.view).reached
     }
 
+    /// What became of the recording: `on`, `none`, `complete`, or why it stopped.
+    #[must_use]
+    pub fn recording(&self) -> String {
+        lock(&self.shared.view).recording.clone()
+    }
+
     /// Waits at most `wait` for the end; the state then.
     #[must_use]
     pub fn wait(&self, wait: Duration) -> State {
@@ -146,9 +155,9 @@ impl Session {
     }
 }
 
-struct Engine<'a> {
+struct Engine<'a, W: Write> {
     host: Option<Host<Moves>>,
-    recorder: Option<FileWriter>,
+    recorder: Option<Writer<W>>,
     telemetry: Option<Arc<Mutex<Telemetry>>>,
     began: Instant,
     /// Time in which the host's clock stood still.
@@ -163,7 +172,7 @@ struct Engine<'a> {
     shared: &'a Shared,
 }
 
-impl Engine<'_> {
+impl<W: Write> Engine<'_, W> {
     fn run(mut self) {
         let end = loop {
             match self.round() {

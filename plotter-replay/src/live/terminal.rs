@@ -193,8 +193,8 @@ fn draw_response(
     title: &str,
     pick: impl Fn(plotter_motion::Point) -> f64,
 ) {
-    let to = view.now.as_secs_f64();
-    let from = to - CHART_S;
+    let from = (view.now.as_secs_f64() - CHART_S).max(0.0);
+    let to = view.now.as_secs_f64().max(from + 1.0);
     let samples = || view.samples.iter().filter(|sample| sample.time.as_secs_f64() >= from);
     let time = |sample: &super::view::Sample| sample.time.as_secs_f64();
     let desired: Vec<(f64, f64)> = samples().filter_map(|s| Some((time(s), pick(s.line?)))).collect();

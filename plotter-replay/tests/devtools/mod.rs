@@ -1,6 +1,6 @@
-//! A browser without a window, led through its own DevTools protocol.
+//! A browser without a window, led through its own debugging protocol.
 //!
-//! Source: Chrome DevTools Protocol, domains Target, Page, Runtime, Input, Log, Emulation.
+//! Source: the page "Chrome `DevTools` Protocol", domains Target, Page, Runtime, Input, Log, Emulation.
 
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader};
@@ -15,19 +15,19 @@ use tungstenite::{Message, WebSocket};
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A browser with one page.
-pub struct Browser {
+pub(crate) struct Browser {
     process: Child,
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
     session: Option<String>,
     last_id: u64,
     /// What the page complained about.
-    pub complaints: Vec<String>,
+    pub(crate) complaints: Vec<String>,
     _profile: tempfile::TempDir,
 }
 
 impl Browser {
     /// Starts the browser that `CHROMIUM` names, or `chromium`.
-    pub fn start() -> Self {
+    pub(crate) fn start() -> Self {
         let program = std::env::var("CHROMIUM").unwrap_or_else(|_| String::from("chromium"));
         let profile = tempfile::tempdir().unwrap();
         let mut process = Command::new(&program)
@@ -71,7 +71,7 @@ impl Browser {
     }
 
     /// Sends one command; its result.
-    pub fn ask(&mut self, method: &str, params: Value) -> Value {
+    pub(crate) fn ask(&mut self, method: &str, params: Value) -> Value {
         self.last_id += 1;
         let mut request = json!({"id": self.last_id, "method": method, "params": params});
         if let Some(session) = &self.session {
@@ -110,7 +110,7 @@ impl Browser {
     }
 
     /// Goes to a page and waits until it is loaded; how long that took, as the page itself has it.
-    pub fn open(&mut self, address: &str) -> Duration {
+    pub(crate) fn open(&mut self, address: &str) -> Duration {
         self.ask("Page.navigate", json!({"url": address}));
         self.wait_for("location.href !== 'about:blank' && document.readyState === 'complete' && performance.timing.loadEventEnd > 0");
         // Two frames later everything is painted.
@@ -120,7 +120,7 @@ impl Browser {
     }
 
     /// The value of an expression in the page.
-    pub fn eval(&mut self, expression: &str) -> Value {
+    pub(crate) fn eval(&mut self, expression: &str) -> Value {
         let params = json!({"expression": expression, "returnByValue": true, "awaitPromise": true});
         let answer = self.ask("Runtime.evaluate", params);
         assert!(answer.get("exceptionDetails").is_none(), "{expression}: {answer}");
@@ -128,13 +128,13 @@ impl Browser {
     }
 
     /// Text of an element.
-    pub fn text(&mut self, selector: &str) -> String {
+    pub(crate) fn text(&mut self, selector: &str) -> String {
         let text = self.eval(&format!("document.querySelector({}).textContent", json!(selector)));
         text.as_str().unwrap_or_default().to_owned()
     }
 
     /// The value beside a name, of all names and values in the page.
-    pub fn value(&mut self, name: &str) -> String {
+    pub(crate) fn value(&mut self, name: &str) -> String {
         let find = format!(
             "[...document.querySelectorAll('dt')].find((dt) => dt.textContent === {}).nextSibling.textContent",
             json!(name)
@@ -143,7 +143,7 @@ impl Browser {
     }
 
     /// Waits until an expression is true.
-    pub fn wait_for(&mut self, expression: &str) {
+    pub(crate) fn wait_for(&mut self, expression: &str) {
         let until = Instant::now() + PATIENCE;
         while self.eval(&format!("Boolean({expression})")) != json!(true) {
             assert!(Instant::now() < until, "in vain: {expression}");
@@ -152,7 +152,7 @@ impl Browser {
     }
 
     /// Presses and lets go of a key, as a person does.
-    pub fn key(&mut self, key: &str, code: u32) {
+    pub(crate) fn key(&mut self, key: &str, code: u32) {
         for kind in ["keyDown", "keyUp"] {
             let params = json!({"type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code});
             self.ask("Input.dispatchKeyEvent", params);
@@ -160,7 +160,7 @@ impl Browser {
     }
 
     /// Clicks into the middle of an element.
-    pub fn click(&mut self, selector: &str) {
+    pub(crate) fn click(&mut self, selector: &str) {
         let place = self.eval(&format!(
             "(() => {{ const box = document.querySelector({}).getBoundingClientRect(); \
              return [box.x + box.width / 2, box.y + box.height / 2]; }})()",
@@ -174,14 +174,14 @@ impl Browser {
     }
 
     /// Light or dark.
-    pub fn scheme(&mut self, name: &str) {
+    pub(crate) fn scheme(&mut self, name: &str) {
         let features = json!([{"name": "prefers-color-scheme", "value": name}]);
         self.ask("Emulation.setEmulatedMedia", json!({"features": features}));
         self.eval("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))");
     }
 
     /// Keeps what is to be seen as `NAME.png`.
-    pub fn screenshot(&mut self, name: &str) -> PathBuf {
+    pub(crate) fn screenshot(&mut self, name: &str) -> PathBuf {
         let directory = screenshots();
         std::fs::create_dir_all(&directory).unwrap();
         let file = directory.join(format!("{name}.png"));

@@ -120,7 +120,7 @@ impl Live {
                     .map_err(|error| error.to_string())?;
             say(out, &heading.machine);
             say(out, &format!("look at {}", server.address()));
-            out.flush().map_err(|error| error.to_string())?;
+            let _ = out.flush(); // who closed it has seen enough: the machine goes on
             let state = loop {
                 let state = session.wait(Duration::from_secs(3_600));
                 if state.is_final() {

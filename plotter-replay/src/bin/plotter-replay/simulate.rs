@@ -26,7 +26,7 @@ impl Simulate {
         let (end, port) = Port::pseudo_terminal().map_err(|error| error.to_string())?;
         say(out, &format!("{} is simulated on {}", machine.config().name, port.name()));
         say(out, &format!("try: plotter-replay live --port {} drawing.hpgl", port.name()));
-        out.flush().map_err(|error| error.to_string())?;
+        let _ = out.flush(); // who closed it has seen enough: the machine goes on
         let line = PortLine::new(end).map_err(|error| error.to_string())?;
         let error = SimulatedMachine::start(&machine, Arc::new(line), self.speed).wait();
         drop(port); // kept open until here: a program that closes its end must not hang up the machine
