@@ -3,7 +3,7 @@
 use super::State;
 use super::progress::{Pace, Plan};
 use crate::log::{Event, Record};
-use crate::page::{DRAWN, Trail, TrailPoint};
+use crate::page::{DRAWN, Trail, TrailPoint, spread};
 use crate::{PlotterSettings, VirtualPlotter};
 use core::time::Duration;
 use plotter_motion::{Pen, Point, Segment, StepPoint};
@@ -105,10 +105,10 @@ impl View {
         for leg in &noted.legs {
             self.from = settings.to_sheet(leg.from);
             let line = leg.target.map(|target| Segment::new(self.from, settings.to_sheet(target)));
-            for point in &leg.points {
+            for (point, at_us) in leg.points.iter().zip(spread(&leg.points)) {
                 let at = settings.to_sheet(point.at);
                 self.way.push(TrailPoint {
-                    at_us: point.time_us,
+                    at_us,
                     x_mm: at.x,
                     y_mm: at.y,
                     state: if leg.pen == Pen::Down { DRAWN } else { 0 },

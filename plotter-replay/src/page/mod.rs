@@ -9,12 +9,14 @@ mod few;
 mod numbers;
 mod recording;
 mod silence;
+mod spread;
 mod trail;
 
 #[cfg(feature = "live")]
 pub(crate) use desired::Desired;
 pub(crate) use numbers::{along, signed, steps};
 pub use recording::{PageSettings, RecordingPage};
+pub(crate) use spread::spread;
 #[cfg(feature = "live")]
 pub(crate) use trail::{DRAWN, Trail, TrailPoint};
 

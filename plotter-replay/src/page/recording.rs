@@ -5,7 +5,7 @@ use super::envelope::{Envelope, Tally, whole};
 use super::few::Few;
 use super::silence::Silences;
 use super::trail::{DIFFERS, DRAWN, Trail, TrailPoint};
-use super::{along, document, signed, steps};
+use super::{along, document, signed, spread, steps};
 use crate::log::{Damage, Event, Header, Record, Summary};
 use crate::{Leg, PlotterSettings, VirtualPlotter};
 use core::time::Duration;
@@ -221,19 +221,19 @@ impl RecordingPage {
             self.meant.line(line.from, line.to);
         }
         let pen = if is_drawn { DRAWN } else { 0 };
-        for point in &leg.points {
+        for (point, time_us) in leg.points.iter().zip(spread(&leg.points)) {
             let at = settings.to_sheet(point.at);
             let [x, y] = &mut self.curves.actual;
-            x.push(point.time_us, at.x);
-            y.push(point.time_us, at.y);
+            x.push(time_us, at.x);
+            y.push(time_us, at.y);
             let mut state = pen;
             if let Some(line) = line {
                 let nearest = line.nearest(at);
                 let [x, y] = &mut self.curves.line;
-                x.push(point.time_us, nearest.x);
-                y.push(point.time_us, nearest.y);
+                x.push(time_us, nearest.x);
+                y.push(time_us, nearest.y);
                 let error_mm = at.distance(nearest);
-                self.curves.error.push(point.time_us, error_mm);
+                self.curves.error.push(time_us, error_mm);
                 if is_drawn {
                     self.error.push(point.time(), error_mm);
                     // Once it differs, it does so until the error is clearly less.
@@ -242,7 +242,7 @@ impl RecordingPage {
                     state |= if self.differs { DIFFERS } else { 0 };
                 }
             }
-            self.way.push(TrailPoint { at_us: point.time_us, x_mm: at.x, y_mm: at.y, state });
+            self.way.push(TrailPoint { at_us: time_us, x_mm: at.x, y_mm: at.y, state });
         }
     }
 

@@ -347,8 +347,8 @@ impl VirtualPlotter {
         }
         self.next = Some(target);
         self.under_way = self.under_way.saturating_add(1);
+        let found = self.drawing.as_mut().map(|drawing| drawing.pen(target));
         if !self.pen_recorded {
-            let found = self.drawing.as_mut().map(|drawing| drawing.pen(target));
             if found == Some(None) {
                 self.note(time, AnomalyKind::NotInDrawing { target });
             }

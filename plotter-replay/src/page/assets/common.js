@@ -216,7 +216,9 @@ class Chart {
       let last = null;
       for (const point of points) {
         if (!point) { last = null; continue; }
-        const x = X(point[0]), y0 = Y(point[1]), y1 = Y(point[2]);
+        const x = X(point[0]);
+        let y0 = Y(point[1]), y1 = Y(point[2]);
+        if (last !== null && Math.abs(y1 - last) < Math.abs(y0 - last)) [y0, y1] = [y1, y0]; // downhill
         if (last === null) context.moveTo(x, y0);
         else if (run === "steps") { context.lineTo(x, last); context.lineTo(x, y0); }
         else context.lineTo(x, y0);
