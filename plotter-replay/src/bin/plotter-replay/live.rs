@@ -108,10 +108,13 @@ impl Live {
         );
         let heading =
             terminal::Heading { machine: page.about.clone(), is_simulated: self.port.is_none(), area_mm };
-        if self.start {
-            session.command(Command::Start);
-        }
+        let begin = || {
+            if self.start {
+                session.command(Command::Start);
+            }
+        };
         let state = if self.terminal {
+            begin();
             let quit = terminal::run(&session, &heading).map_err(|error| format!("terminal: {error}"))?;
             if quit { session.state() } else { session.wait(LAST_LOOK) }
         } else {
@@ -121,6 +124,7 @@ impl Live {
             say(out, &heading.machine);
             say(out, &format!("look at {}", server.address()));
             let _ = out.flush(); // who closed it has seen enough: the machine goes on
+            begin(); // only now: nothing moves that cannot be watched and stopped
             let state = loop {
                 let state = session.wait(Duration::from_secs(3_600));
                 if state.is_final() {
