@@ -155,7 +155,8 @@ fn a_recording_plays_in_a_browser() {
     );
     assert!(browser.text("#anomalies").contains("bytes were lost"), "{}", browser.text("#anomalies"));
     browser.eval("document.querySelector('#anomalies tr[tabindex]').click()");
-    assert!(number(&browser.value("time")) > played_to);
+    let row = number(&browser.text("#anomalies tr[tabindex] td"));
+    assert!((number(&browser.value("time")) - row).abs() < 1e-5, "{row}");
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
 
@@ -172,13 +173,22 @@ fn a_long_recording_is_a_small_page_that_opens_at_once() {
     assert_eq!(render.status.code(), Some(0), "{render:?}");
     let bytes = std::fs::metadata(&page).unwrap().len();
     let mut browser = Browser::start();
-    // The first page of a new browser pays for the browser.
-    browser.open(&format!("file://{}", page.display()));
-    let opened = (0..3).map(|_| browser.open(&format!("file://{}", page.display()))).min().unwrap();
-    println!("{} pulses: {bytes} bytes, open after {} ms", browser.value("pulses"), opened.as_millis());
+    let address = format!("file://{}", page.display());
+    browser.open(&address); // the first page of a new browser pays for the browser
+    // The time of the processor, which what else runs on this computer does not change.
+    browser.ask("Performance.enable", json!({"timeDomain": "threadTicks"}));
+    let before = browser.busy();
+    let opened = browser.open(&address);
+    let busy = browser.busy() - before;
+    println!(
+        "{} pulses: {bytes} bytes, {:.0} ms of the processor, open after {} ms",
+        browser.value("pulses"),
+        busy * 1e3,
+        opened.as_millis()
+    );
     browser.screenshot("recording-long");
     assert!(bytes < 2_000_000, "{bytes}");
-    assert!(opened < Duration::from_secs(1), "{opened:?}");
+    assert!(busy < 1.0, "{busy} s");
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
 

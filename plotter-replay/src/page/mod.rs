@@ -6,6 +6,7 @@
 mod desired;
 mod envelope;
 mod few;
+mod ink_map;
 mod numbers;
 mod recording;
 mod silence;

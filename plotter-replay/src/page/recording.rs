@@ -3,6 +3,7 @@
 use super::desired::Desired;
 use super::envelope::{Envelope, Tally, whole};
 use super::few::Few;
+use super::ink_map::InkMap;
 use super::silence::Silences;
 use super::trail::{DIFFERS, DRAWN, Trail, TrailPoint};
 use super::{along, document, signed, spread, steps};
@@ -16,7 +17,9 @@ const BODY: &str = include_str!("assets/recording.html");
 const PROGRAM: &str = include_str!("assets/recording.js");
 
 /// Points of the way that a page holds at most, about 12 bytes each.
-const MOST_WAY_POINTS: usize = 50_000;
+const MOST_WAY_POINTS: usize = 40_000;
+/// Lines farther than this from what was recorded are not shown as lines, mm: the page then has a map of the ink.
+const MOST_LINE_ERROR_MM: f64 = 0.3;
 /// Points of what was meant, at most.
 const MOST_DESIRED_POINTS: usize = 30_000;
 /// Points of what was not drawn, at most.
@@ -68,6 +71,7 @@ pub struct RecordingPage {
     settings: PageSettings,
     plotter: VirtualPlotter,
     way: Trail,
+    ink: InkMap,
     meant: Desired,
     has_drawing: bool,
     targets: Few<(u64, StepPoint)>,
@@ -116,6 +120,7 @@ impl RecordingPage {
             settings: PageSettings { tolerance_mm, mark_mm, ..settings },
             plotter: VirtualPlotter::new(plotter),
             way: Trail::new(tolerance_mm, MOST_WAY_POINTS),
+            ink: InkMap::default(),
             meant: Desired::new(tolerance_mm, MOST_DESIRED_POINTS),
             has_drawing: false,
             targets: Few::new(MOST_TARGETS),
@@ -242,6 +247,9 @@ impl RecordingPage {
                     state |= if self.differs { DIFFERS } else { 0 };
                 }
             }
+            if is_drawn {
+                self.ink.push(time_us, at.x, at.y, state & DIFFERS != 0);
+            }
             self.way.push(TrailPoint { at_us: time_us, x_mm: at.x, y_mm: at.y, state });
         }
     }
@@ -261,7 +269,9 @@ impl RecordingPage {
         let facts = self.facts(header, summary);
         let settings = *self.plotter.settings();
         let (way, way_error_mm) = self.way.finish();
-        let (meant, _) = self.meant.finish();
+        let (meant, meant_error_mm) = self.meant.finish();
+        let (first_us, last_us) = (self.first.map_or(0, micros), micros(self.last));
+        let ink = (way_error_mm > MOST_LINE_ERROR_MM).then(|| self.ink.to_json(first_us, last_us));
         let (undrawn, _) = undrawn.finish();
         let gap_count = self.silences.count();
         let gaps: Vec<_> =
@@ -282,12 +292,13 @@ impl RecordingPage {
         json!({
             "title": title,
             "facts": facts,
-            "first_us": self.first.map_or(0, micros),
-            "last_us": micros(self.last),
+            "first_us": first_us,
+            "last_us": last_us,
             "mark_mm": self.settings.mark_mm,
             "way_error_mm": way_error_mm,
             "way": along(&way, true),
-            "meant": along(&meant, false),
+            "ink": ink,
+            "meant": if meant_error_mm > MOST_LINE_ERROR_MM { along(&[], false) } else { along(&meant, false) },
             "undrawn": along(&undrawn, false),
             "targets": {
                 "every": self.targets.every(),

@@ -119,6 +119,13 @@ impl Browser {
         Duration::from_secs_f64(ms.as_f64().unwrap() / 1e3)
     }
 
+    /// Seconds for which the page has kept the processor busy.
+    pub(crate) fn busy(&mut self) -> f64 {
+        let metrics = self.ask("Performance.getMetrics", json!({}));
+        let all = metrics["metrics"].as_array().unwrap();
+        all.iter().find(|one| one["name"] == json!("TaskDuration")).unwrap()["value"].as_f64().unwrap()
+    }
+
     /// The value of an expression in the page.
     pub(crate) fn eval(&mut self, expression: &str) -> Value {
         let params = json!({"expression": expression, "returnByValue": true, "awaitPromise": true});

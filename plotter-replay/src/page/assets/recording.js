@@ -32,12 +32,41 @@ function at({ from_us, width_us, unit, low, high }, time) { // the greatest valu
   return n < 0 ? null : high[n] * unit;
 }
 
+// A recording too long for lines has a map instead: of each cell, since when there is ink.
+let map = null;
+if (data.ink) {
+  const packed = Uint8Array.from(atob(data.ink.cells), (letter) => letter.charCodeAt(0));
+  new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer().then((buffer) => {
+    const bytes = new Uint8Array(buffer), count = data.ink.wide * data.ink.high;
+    map = { since: new Uint16Array(count), differs: new Uint8Array(count), canvas: document.createElement("canvas") };
+    for (let n = 0; n < count; n++) { map.since[n] = (bytes[n] & 127) << 8 | bytes[count + n]; map.differs[n] = bytes[n] >> 7; }
+    map.canvas.width = data.ink.wide; map.canvas.height = data.ink.high;
+    show();
+  });
+}
+function paintMap({ context, X, Y }) {
+  if (!map) return;
+  const { wide, high, x_mm, y_mm, side_mm } = data.ink, share = (now - first) / (last - first) * 32766 + 1;
+  const small = map.canvas.getContext("2d"), picture = small.createImageData(wide, high);
+  const rgb = (name) => [1, 3, 5].map((at) => parseInt(colour(name).slice(at, at + 2), 16)).concat(255); // #rrggbb
+  const [ink, faint, differs] = ["ink", "faint", "differs"].map(rgb);
+  for (let row = 0; row < high; row++) for (let column = 0; column < wide; column++) {
+    const n = row * wide + column, since = map.since[n];
+    if (since === 0) continue;
+    picture.data.set(since > share ? faint : map.differs[n] ? differs : ink, ((high - 1 - row) * wide + column) * 4);
+  }
+  small.putImageData(picture, 0, 0);
+  context.imageSmoothingEnabled = false;
+  context.drawImage(map.canvas, X(x_mm), Y(y_mm + high * side_mm), X(x_mm + wide * side_mm) - X(x_mm), Y(y_mm) - Y(y_mm + high * side_mm));
+}
+
 let now = first, playing = null, painted = 0, layer = null;
 
 const sheet = new Sheet($("sheet"), (canvas) => {
   const { context, ratio, scale } = canvas;
   const thick = Math.max(2.6 * ratio, Math.min(0.35 * scale, 12 * ratio));
   const done = before(way.t, now);
+  if (data.ink) { paintMap(canvas); finishSheet(canvas); return; }
   // What is drawn by now grows on a layer of its own while view and size stay.
   const key = [canvas.X(0), canvas.Y(0), scale, context.canvas.width, context.canvas.height, colour("ink")].join();
   if (!layer || layer.key !== key || done < painted) {
@@ -55,17 +84,21 @@ const sheet = new Sheet($("sheet"), (canvas) => {
   ]);
   painted = done;
   context.drawImage(layer, 0, 0);
-  const [x, y, isDown] = place(now);
+  const [x, y] = place(now);
   if (done > 0 && done < way.length && way.s[done] & DRAWN) {
     context.strokeStyle = colour(way.s[done] & DIFFERS ? "differs" : "ink"); context.lineWidth = thick;
     context.beginPath(); context.moveTo(canvas.X(way.x[done - 1]), canvas.Y(way.y[done - 1])); context.lineTo(canvas.X(x), canvas.Y(y)); context.stroke();
   }
+  finishSheet(canvas);
+});
+function finishSheet(canvas) { // what lies over the ink
+  const { ratio } = canvas, [x, y, isDown] = place(now);
   strokes(meant, 1, meant.length, canvas, [[DRAWN, DRAWN, colour("meant"), ratio]]);
   strokes(undrawn, 1, undrawn.length, canvas, [[DRAWN, DRAWN, colour("undrawn"), 1.6 * ratio, [6 * ratio, 4 * ratio]]]);
   const next = before(targets.t, now) - 1;
   if (next >= 0) crosshair(canvas, targets.x[next], targets.y[next]);
   if (way.length) pen(canvas, x, y, isDown);
-});
+}
 
 function place(time) { // of the pen: x, y, whether it is down, mm/s
   const n = before(way.t, time);
@@ -105,7 +138,7 @@ function show() {
     ["next y", next < 0 ? "–" : about + fixed(targets.y[next], 3, "mm")],
     ["speed x", fixed(vx, 1, "mm/s")], ["speed y", fixed(vy, 1, "mm/s")],
     ["contour error", fixed(at(data.charts[2].curves[0].data, now), 4, "mm")],
-    ["pulses", fixed(at(data.charts[3].curves[0].data, now), 0, "/s")],
+    ["pulse rate", fixed(at(data.charts[3].curves[0].data, now), 0, "/s")],
     ["targets sent", about + count(sent, data.targets.every, data.targets.count)],
     ["targets reached", (data.reached.every > 1 ? "about " : "") + count(done, data.reached.every, data.reached.count)],
     ["line", gap ? "silent" : "–"],
@@ -173,6 +206,6 @@ rows($("gaps"), ["time (s)", "silent for (s)"], data.gaps.map(([start, length]) 
 $("legend").innerHTML = [
   ["meant", 1, "desired"], ["ink", 4, "drawn"], ["differs", 4, "drawn, more than " + data.mark_mm + " mm off"], ["undrawn", 2, "desired, not drawn"], ["faint", 2, "drawn later"], ["travel", 1, "pen up"],
 ].map(([name, width, label]) => "<span><i style='border-top-color:var(--" + name + ");border-top-width:" + width + "px'></i>" + label + "</span>").join("");
-$("exactness").textContent = "Lines are shown within " + data.way_error_mm.toFixed(3) + " mm, at every time; "
+$("exactness").textContent = (data.ink ? "Too long for lines: the ink is a map of cells of " + data.ink.side_mm.toFixed(1) + " mm, each from the time of its first ink; the pen is shown within " : "Lines are shown within ") + data.way_error_mm.toFixed(3) + " mm, at every time; "
   + way.length + " points of the way are kept, and the least and greatest value of each stretch of the charts.";
 seek(last);
