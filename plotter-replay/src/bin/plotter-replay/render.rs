@@ -3,9 +3,9 @@
 use crate::commands::{Contents, Done, Verdict, cannot, plotter_for, read_all, say, say_damage, say_first};
 use crate::drawing::{DrawingFile, USUAL_COUNTS_PER_MM};
 use clap::Args;
-use plotter_motion::PlotOp;
+use plotter_motion::{Pen, PlotOp};
 use plotter_replay::{
-    CanvasStyle, Chart, Layer, PageSettings, RecordingPage, Sketch, VirtualPlotter, Visibility,
+    CanvasStyle, Chart, Layer, Leg, PageSettings, RecordingPage, Sketch, VirtualPlotter, Visibility,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -61,7 +61,12 @@ impl Render {
         };
         let (svgs, pngs) = (places(&self.svg, "plotted.svg"), places(&self.png, "plotted.png"));
         let (charts, pages) = (places(&self.chart, "response.svg"), places(&self.html, "recording.html"));
-        let mut drawn = self.read(drawing.as_ref(), !charts.is_empty(), !pages.is_empty())?;
+        let mut drawn = self.read(
+            drawing.as_ref(),
+            !charts.is_empty(),
+            !pages.is_empty(),
+            !svgs.is_empty() || !pngs.is_empty(),
+        )?;
         if let Some(directory) = &directory {
             std::fs::create_dir_all(directory).map_err(|error| cannot("written", directory, &error))?;
         }
@@ -99,7 +104,7 @@ impl Render {
                 write(&path, html.as_bytes())?;
             }
         }
-        if canvas.lines(Layer::Ink).next().is_none() {
+        if !drawn.drew {
             say(out, "nothing was drawn");
         }
         say_damage(out, &drawn.contents);
@@ -108,7 +113,13 @@ impl Render {
     }
 
     /// Reads the log once, for everything that is wanted of it.
-    fn read(&self, drawing: Option<&Drawing>, is_charted: bool, has_page: bool) -> Result<Drawn, String> {
+    fn read(
+        &self,
+        drawing: Option<&Drawing>,
+        is_charted: bool,
+        has_page: bool,
+        has_picture: bool,
+    ) -> Result<Drawn, String> {
         let mut plotter = plotter_for(&self.log)?;
         let settings = *plotter.settings();
         let page_settings = PageSettings { mark_mm: self.mark_mm, ..PageSettings::default() };
@@ -118,6 +129,14 @@ impl Render {
             page = page.map(|page| page.with_drawing(&drawing.ops));
         }
         let mut sketch = Sketch::new(settings, CanvasStyle::default().tolerance_mm).marking(self.mark_mm);
+        let mut drew = false;
+        let mut hand_on = |legs: &[Leg], sketch: &mut Sketch| {
+            drew |= legs.iter().any(|leg| leg.pen == Pen::Down && leg.points.len() > 1);
+            // Without a picture there is no need to keep its lines.
+            if has_picture {
+                legs.iter().for_each(|leg| sketch.add(leg));
+            }
+        };
         let mut records = 0_u64;
         let contents = read_all(&self.log, |item| match item {
             Ok(record) => {
@@ -128,7 +147,7 @@ impl Render {
                 records = records.saturating_add(1);
                 // The chart needs every point; without one there is no need to keep them.
                 if !is_charted && records.is_multiple_of(HAND_ON_AFTER) {
-                    plotter.take_noted().legs.iter().for_each(|leg| sketch.add(leg));
+                    hand_on(&plotter.take_noted().legs, &mut sketch);
                 }
             }
             Err(damage) => {
@@ -138,8 +157,8 @@ impl Render {
             }
         })?;
         plotter.finish();
-        plotter.legs().iter().for_each(|leg| sketch.add(leg));
-        Ok(Drawn { plotter, page, sketch, contents })
+        hand_on(plotter.legs(), &mut sketch);
+        Ok(Drawn { plotter, page, sketch, contents, drew })
     }
 }
 
@@ -149,6 +168,7 @@ struct Drawn {
     page: Option<RecordingPage>,
     sketch: Sketch,
     contents: Contents,
+    drew: bool,
 }
 
 /// A drawing, and how much of it could not be read.
