@@ -8,8 +8,11 @@ mod compare;
 pub mod export;
 pub mod golden;
 pub mod import;
+#[cfg(feature = "live")]
+pub mod live;
 pub mod log;
 mod number;
+mod page;
 mod player;
 pub mod record;
 #[cfg(feature = "serial")]
@@ -21,17 +24,19 @@ mod virtual_plotter;
 pub use bench_recorder::BenchRecorder;
 #[cfg(feature = "image")]
 pub use canvas::PngError;
-pub use canvas::{Canvas, CanvasStyle, Layer, Visibility};
+pub use canvas::{Canvas, CanvasStyle, DesiredLine, Layer, Sketch, Visibility};
 pub use chart::{Chart, Curve, Panel, Role, Run};
 pub use compare::{
     CompareSettings, Comparison, ContourError, ContourSample, ContourTally, Decoder, FirstDifference,
     LaneSummary, Place, Ways, compare, contour_samples,
 };
+pub use page::{PageSettings, RecordingPage};
 pub use player::{
     Answer, AnyController, Compared, Controller, ControllerError, Difference, EdgeSource, MachineController,
     MotorStep, Outcome, Pace, PaceSettings, Player, PlayerSettings, Rerun, Stuck,
 };
 pub use thin::thin;
 pub use virtual_plotter::{
-    Anomaly, AnomalyKind, CountedBy, Leg, PlotterSettings, Reached, SettingsError, TrackPoint, VirtualPlotter,
+    Anomaly, AnomalyKind, CountedBy, Leg, Noted, PlotterSettings, Reached, SettingsError, TrackPoint,
+    VirtualPlotter,
 };

@@ -179,6 +179,40 @@ impl Port {
         Ok(port)
     }
 
+    /// A second handle of the same port, for another thread.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError`] if the system has none.
+    pub fn try_clone(&self) -> Result<Self, PortError> {
+        let inner = self.inner.try_clone().map_err(|error| self.other(&error.into()))?;
+        Ok(Self { name: self.name.clone(), inner })
+    }
+
+    /// The names of this computer's serial ports.
+    #[must_use]
+    pub fn names() -> Vec<String> {
+        let ports = serialport::available_ports().unwrap_or_default();
+        ports.into_iter().map(|port| port.port_name).collect()
+    }
+
+    /// A pseudo terminal: its machine's end, and the port at the other end, which any program may open by its name.
+    ///
+    /// # Errors
+    ///
+    /// [`PortError`] if the system has no more of them.
+    #[cfg(unix)]
+    pub fn pseudo_terminal() -> Result<(Self, Self), PortError> {
+        let failed = |error: serialport::Error| PortError {
+            port: String::from("pseudo terminal"),
+            kind: PortErrorKind::Other(error.description),
+        };
+        let (machine, port) = serialport::TTYPort::pair().map_err(failed)?;
+        let name = SerialPort::name(&port).unwrap_or_default();
+        let port = Self { name: name.clone(), inner: Box::new(port) };
+        Ok((Self { name, inner: Box::new(machine) }, port))
+    }
+
     /// Sends all of `bytes`.
     ///
     /// # Errors

@@ -254,3 +254,21 @@ fn a_belt_is_drawn_from_its_edges() {
     assert!(plotter.legs()[0].points.iter().all(|point| point.at.x == 0));
     assert_eq!(plotter.legs()[0].reached.unwrap().error, StepPoint::new(0, -1));
 }
+
+#[test]
+fn what_was_drawn_is_not_undrawn_though_the_recording_says_the_pen() {
+    let draw = |x, y| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
+    let drawing = [PlotOp::Travel { to: Point::new(0.025, 0.0) }, draw(0.05, 0.0), draw(0.05, 0.05)];
+    let mut plotter = VirtualPlotter::new(PlotterSettings::default()).with_drawing(drawing);
+    plotter.push(&Record::at_us(0, Event::Pen(Pen::Up)));
+    for (n, x) in [(1, 1), (2, 2)] {
+        plotter.push(&Record::at_us(
+            n * 1_000,
+            Event::Host(digits::encode(StepPoint::new(x, 0)).unwrap().to_vec()),
+        ));
+        plotter.push(&Record::at_us(n * 1_000 + 500, Event::Controller(b"1+".to_vec())));
+        plotter.push(&Record::at_us(n * 1_000 + 600, Event::Pen(Pen::Down)));
+    }
+    let undrawn: Vec<_> = plotter.undrawn().collect();
+    assert_eq!(undrawn, [(Point::new(0.05, 0.0), Point::new(0.05, 0.05))]);
+}

@@ -1,6 +1,6 @@
 //! Where things are in a picture: drawing, frame, scale bar and legend, in mm with y down.
 
-use super::{Canvas, CanvasStyle, Layer, is_shown};
+use super::{Canvas, CanvasStyle, Layer};
 use plotter_motion::Point;
 
 /// Places in the picture, mm from its upper left corner.
@@ -73,8 +73,8 @@ impl Layout {
     pub(super) fn legend(&self, canvas: &Canvas, style: &CanvasStyle) -> Vec<(Layer, Point, Point)> {
         let mut x = self.width_mm - self.frame().0.x;
         let mut entries = Vec::new();
-        for layer in Layer::ALL.into_iter().rev() {
-            if !is_shown(layer, style) || canvas.lines(layer).next().is_none() {
+        for layer in Layer::shown(style).rev() {
+            if canvas.lines(layer).next().is_none() {
                 continue;
             }
             let letters: f64 = layer.label().chars().map(|_| 0.62 * self.letter_mm).sum();

@@ -5,14 +5,15 @@ mod layout;
 mod lettering;
 #[cfg(feature = "image")]
 mod png;
+mod sketch;
 mod svg;
 
 #[cfg(feature = "image")]
 pub use png::PngError;
+pub use sketch::Sketch;
 
 use crate::VirtualPlotter;
-use crate::thin::thin;
-use plotter_motion::{Pen, PlotOp, Point, StepPoint, chords};
+use plotter_motion::{PlotOp, Point, chords};
 
 /// Farthest that an arc's chords may be from it, mm: a tenth of what an eye sees on paper.
 const CHORD_ERROR_MM: f64 = 0.01;
@@ -20,7 +21,7 @@ const CHORD_ERROR_MM: f64 = 0.01;
 /// What a line on a canvas means. They are drawn in this order, the last on top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Layer {
-    /// What was meant: broad and pale.
+    /// What was meant: broad and pale under the ink, or thin over it.
     Desired,
     /// Moves with the pen up: dashed.
     Travel,
@@ -28,10 +29,26 @@ pub enum Layer {
     Ink,
     /// The same, counted afresh from each reached target; only where that differs.
     Resynced,
+    /// Ink that is not where it was meant to be.
+    Differs,
+    /// What was meant and is not there: dashed.
+    Undrawn,
 }
 
 impl Layer {
-    const ALL: [Self; 4] = [Self::Desired, Self::Travel, Self::Ink, Self::Resynced];
+    const ALL: [Self; 6] =
+        [Self::Desired, Self::Travel, Self::Ink, Self::Resynced, Self::Differs, Self::Undrawn];
+
+    /// The layers in the order in which they are drawn.
+    fn shown(style: &CanvasStyle) -> impl DoubleEndedIterator<Item = Self> + use<> {
+        let mut order = Self::ALL;
+        if style.desired == DesiredLine::Over {
+            order.rotate_left(1);
+            order.swap(4, 5);
+        }
+        let travel = style.travel == Visibility::Shown;
+        order.into_iter().filter(move |&layer| travel || layer != Self::Travel)
+    }
 
     fn label(self) -> &'static str {
         match self {
@@ -39,16 +56,25 @@ impl Layer {
             Self::Travel => "pen up",
             Self::Ink => "drawn",
             Self::Resynced => "resynchronized",
+            Self::Differs => "differs",
+            Self::Undrawn => "not drawn",
         }
     }
 
+    fn is_dashed(self) -> bool {
+        matches!(self, Self::Travel | Self::Undrawn)
+    }
+
     /// Red, green, blue.
-    fn colour(self) -> [u8; 3] {
+    fn colour(self, style: &CanvasStyle) -> [u8; 3] {
         match self {
+            Self::Desired if style.desired == DesiredLine::Over => [0x3d, 0x9b, 0xff],
             Self::Desired => [0x9c, 0xc4, 0xec],
             Self::Travel => [0x9a, 0xa8, 0x9a],
             Self::Ink => [0x1a, 0x1a, 0x2e],
             Self::Resynced => [0xd9, 0x5f, 0x02],
+            Self::Differs => [0xd1, 0x24, 0x2f],
+            Self::Undrawn => [0xd9, 0x77, 0x06],
         }
     }
 }
@@ -63,13 +89,25 @@ pub enum Visibility {
     Hidden,
 }
 
+/// Where the line that was meant lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum DesiredLine {
+    /// Under the ink, broader than it and pale: ink that strays leaves it bare.
+    #[default]
+    Under,
+    /// Over the ink, thinner than it: what strays stands beside it.
+    Over,
+}
+
 /// How a canvas looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CanvasStyle {
     /// Width of the drawn line, mm.
     pub ink_width_mm: f64,
-    /// Width of the desired line under it, mm.
+    /// Width of the desired line, mm.
     pub desired_width_mm: f64,
+    /// Where the desired line lies.
+    pub desired: DesiredLine,
     /// Blank paper round the drawing, mm.
     pub margin_mm: f64,
     /// How far a line in the picture may be from the recorded one, mm; a tenth of the pen by default.
@@ -86,6 +124,7 @@ impl Default for CanvasStyle {
         Self {
             ink_width_mm: 0.35,
             desired_width_mm: 1.0,
+            desired: DesiredLine::Under,
             margin_mm: 8.0,
             tolerance_mm: 0.035,
             travel: Visibility::Hidden,
@@ -119,33 +158,9 @@ impl Canvas {
     /// What a virtual plotter has drawn, the targets it had, and, where they differ, the resynchronized track.
     #[must_use]
     pub fn from_plotter(plotter: &VirtualPlotter, tolerance_mm: f64) -> Self {
-        let settings = plotter.settings();
-        let mut desired = Joined::new(Layer::Desired);
-        let mut travel = Joined::new(Layer::Travel);
-        let mut ink = Joined::new(Layer::Ink);
-        let mut resynced = Joined::new(Layer::Resynced);
-        let mut canvas = Self::new();
-        for leg in plotter.legs() {
-            let way = || leg.points.iter().map(|point| settings.to_sheet(point.at));
-            match leg.pen {
-                Pen::Down => {
-                    ink.add(&mut canvas, thin(way(), tolerance_mm));
-                    if let Some(target) = leg.target {
-                        desired
-                            .add(&mut canvas, vec![settings.to_sheet(leg.from), settings.to_sheet(target)]);
-                    }
-                }
-                Pen::Up => travel.add(&mut canvas, thin(way(), tolerance_mm)),
-            }
-            if leg.correction != StepPoint::default() && leg.pen == Pen::Down {
-                let shift = settings.to_sheet(leg.correction) - settings.p1;
-                resynced.add(&mut canvas, thin(way().map(|at| at + shift), tolerance_mm));
-            }
-        }
-        for joined in [desired, travel, ink, resynced] {
-            canvas.lines.extend((!joined.line.is_empty()).then_some((joined.layer, joined.line)));
-        }
-        canvas
+        let mut sketch = Sketch::new(*plotter.settings(), tolerance_mm);
+        plotter.legs().iter().for_each(|leg| sketch.add(leg));
+        sketch.finish()
     }
 
     /// Adds a line; a single point is a dot. Points that are not finite are left out.
@@ -191,7 +206,8 @@ impl Canvas {
     /// Lower left and upper right of all lines that `style` shows, mm; `None` for a blank sheet.
     #[must_use]
     pub fn bounds(&self, style: &CanvasStyle) -> Option<(Point, Point)> {
-        let shown = self.lines.iter().filter(|&&(layer, _)| is_shown(layer, style));
+        let travel = style.travel == Visibility::Shown;
+        let shown = self.lines.iter().filter(|&&(layer, _)| travel || layer != Layer::Travel);
         shown.flat_map(|(_, line)| line.iter().copied()).fold(None, |bounds, p| {
             let (low, high) = bounds.unwrap_or((p, p));
             Some((Point::new(low.x.min(p.x), low.y.min(p.y)), Point::new(high.x.max(p.x), high.y.max(p.y))))
@@ -214,29 +230,13 @@ impl Canvas {
             ..base
         }
     }
-}
 
-fn is_shown(layer: Layer, style: &CanvasStyle) -> bool {
-    layer != Layer::Travel || style.travel == Visibility::Shown
-}
-
-/// Joins ways that go on from each other.
-struct Joined {
-    layer: Layer,
-    line: Vec<Point>,
-}
-
-impl Joined {
-    fn new(layer: Layer) -> Self {
-        Self { layer, line: Vec::new() }
-    }
-
-    fn add(&mut self, canvas: &mut Canvas, way: Vec<Point>) {
-        if self.line.is_empty() || self.line.last() != way.first() {
-            canvas.add(self.layer, core::mem::replace(&mut self.line, way));
-        } else {
-            self.line.extend(way.into_iter().skip(1));
-        }
+    /// The fitted style, with the desired line thin over the thick one that was drawn.
+    #[must_use]
+    pub fn comparing_style(&self) -> CanvasStyle {
+        let fitted = self.fitted_style();
+        let (ink_width_mm, desired_width_mm) = (fitted.ink_width_mm * 2.0, fitted.ink_width_mm * 0.4);
+        CanvasStyle { ink_width_mm, desired_width_mm, desired: DesiredLine::Over, ..fitted }
     }
 }
 

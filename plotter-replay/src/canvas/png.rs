@@ -3,7 +3,7 @@
 use super::layout::Layout;
 use super::lettering;
 use super::svg::line_width;
-use super::{Canvas, CanvasStyle, Layer, is_shown};
+use super::{Canvas, CanvasStyle, Layer};
 use crate::thin::thin;
 use core::fmt;
 use plotter_motion::Point;
@@ -51,16 +51,16 @@ impl Canvas {
         };
         sheet.pixels.fill(Color::WHITE);
         sheet.furniture();
-        for layer in Layer::ALL.into_iter().filter(|&layer| is_shown(layer, style)) {
+        for layer in Layer::shown(style) {
             let places = |line: &[Point]| line.iter().map(|&at| layout.place(at)).collect::<Vec<_>>();
             let lines = self.lines(layer).map(|line| thin(places(line), THIN_PX / px_per_mm));
-            sheet.draw(lines, line_width(layer, style), layer.colour(), layer == Layer::Travel);
+            sheet.draw(lines, line_width(layer, style), layer.colour(style), layer.is_dashed());
         }
         for (layer, start, text) in layout.legend(self, style) {
             let y = start.y - 0.3 * layout.letter_mm;
             let sample = vec![Point::new(start.x, y), Point::new(text.x - 0.4 * layout.letter_mm, y)];
             let width_mm = (layout.letter_mm / 8.0).min(line_width(layer, style)).max(layout.hair_mm);
-            sheet.draw([sample], width_mm, layer.colour(), layer == Layer::Travel);
+            sheet.draw([sample], width_mm, layer.colour(style), layer.is_dashed());
             sheet.write(layer.label(), text);
         }
         sheet.pixels.encode_png().map_err(|error| PngError::Encoder { message: error.to_string() })

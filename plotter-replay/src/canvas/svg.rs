@@ -1,7 +1,7 @@
 //! A canvas as SVG, in mm.
 
 use super::layout::Layout;
-use super::{Canvas, CanvasStyle, Layer, is_shown};
+use super::{Canvas, CanvasStyle, Layer};
 use crate::number::plain;
 use crate::thin::thin;
 use core::fmt::Write as _;
@@ -28,7 +28,7 @@ impl Canvas {
         writeln!(svg, "<title>plot: desired and drawn lines</title>")?;
         writeln!(svg, "<rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>")?;
         write_furniture(svg, layout)?;
-        for layer in Layer::ALL.into_iter().filter(|&layer| is_shown(layer, style)) {
+        for layer in Layer::shown(style) {
             self.write_layer(svg, layer, style, layout)?;
         }
         for (layer, start, text) in self.legend(layout, style) {
@@ -41,7 +41,8 @@ impl Canvas {
                 pen(
                     layer,
                     (layout.letter_mm / 8.0).min(line_width(layer, style)).max(layout.hair_mm),
-                    layout
+                    layout,
+                    style
                 )
             )?;
             write_text(svg, layout, text, layer.label())?;
@@ -64,7 +65,7 @@ impl Canvas {
         if lines.peek().is_none() {
             return Ok(());
         }
-        write!(svg, "<path {} d=\"", pen(layer, line_width(layer, style), layout))?;
+        write!(svg, "<path {} d=\"", pen(layer, line_width(layer, style), layout, style))?;
         for line in lines {
             let mut letter = 'M';
             for at in thin(line.iter().map(|&at| layout.place(at)), style.tolerance_mm) {
@@ -84,15 +85,15 @@ impl Canvas {
 pub(super) fn line_width(layer: Layer, style: &CanvasStyle) -> f64 {
     let width = match layer {
         Layer::Desired => style.desired_width_mm,
-        Layer::Ink => style.ink_width_mm,
-        Layer::Travel | Layer::Resynced => style.ink_width_mm / 2.0,
+        Layer::Ink | Layer::Differs => style.ink_width_mm,
+        Layer::Travel | Layer::Resynced | Layer::Undrawn => style.ink_width_mm / 2.0,
     };
     if width.is_finite() { width.clamp(1e-3, 1e3) } else { 0.3 }
 }
 
-fn pen(layer: Layer, width_mm: f64, layout: &Layout) -> String {
-    let [r, g, b] = layer.colour();
-    let dash = if layer == Layer::Travel {
+fn pen(layer: Layer, width_mm: f64, layout: &Layout, style: &CanvasStyle) -> String {
+    let [r, g, b] = layer.colour(style);
+    let dash = if layer.is_dashed() {
         format!(" stroke-dasharray=\"{} {}\"", mm(layout.letter_mm * 0.5), mm(layout.letter_mm * 0.4))
     } else {
         String::new()

@@ -1,5 +1,6 @@
 //! Finds the targets of a log again in the drawing that was sent, to know the pen.
 
+use core::ops::Range;
 use plotter_motion::{Pen, PenMove, StepPoint};
 
 /// How far ahead a target is looked for: a host may leave out moves of no length.
@@ -10,11 +11,13 @@ const LOOK_AHEAD: usize = 64;
 pub(super) struct Drawing {
     stops: Vec<PenMove>,
     next: usize,
+    /// Stops that were passed over.
+    passed_over: Vec<Range<usize>>,
 }
 
 impl Drawing {
     pub(super) fn new(stops: Vec<PenMove>) -> Self {
-        Self { stops, next: 0 }
+        Self { stops, next: 0, passed_over: Vec::new() }
     }
 
     /// The pen on the way to `target`; `None` if that is not among what comes next. A target sent again is the
@@ -30,11 +33,26 @@ impl Drawing {
                 Some(stop) if near(stop.target) && index > self.next => return Some(stop.pen),
                 _ => {}
             }
+            if index > self.next {
+                self.passed_over.push(self.next..index);
+            }
             self.next = index.saturating_add(1);
             return Some(pen);
         }
         let last = self.stops.get(self.next.checked_sub(1)?)?;
         near(last.target).then_some(last.pen)
+    }
+
+    /// The lines to the stops that were passed over or have not come yet: from, to.
+    pub(super) fn undrawn(&self) -> impl Iterator<Item = (StepPoint, StepPoint)> {
+        let rest = self.next..self.stops.len();
+        let ranges = self.passed_over.iter().cloned().chain([rest]);
+        ranges.flatten().filter_map(|index| {
+            let stop = self.stops.get(index)?;
+            let before = index.checked_sub(1).and_then(|before| self.stops.get(before));
+            let from = before.map_or(StepPoint::default(), |before| before.target);
+            (stop.pen == Pen::Down).then_some((from, stop.target))
+        })
     }
 }
 
@@ -59,5 +77,22 @@ mod tests {
         assert_eq!(drawing.pen(at(201)), Some(Pen::Down));
         assert_eq!(drawing.pen(at(100)), Some(Pen::Up));
         assert_eq!(drawing.pen(at(0)), None);
+        assert_eq!(drawing.undrawn().next(), None);
+    }
+
+    #[test]
+    fn what_was_passed_over_and_what_never_came_is_undrawn() {
+        let stop = |x, pen| PenMove { pen, target: StepPoint::new(x, 0) };
+        let mut drawing = Drawing::new(vec![
+            stop(100, Pen::Down),
+            stop(200, Pen::Down),
+            stop(300, Pen::Up),
+            stop(400, Pen::Down),
+            stop(500, Pen::Down),
+        ]);
+        drawing.pen(StepPoint::new(100, 0));
+        drawing.pen(StepPoint::new(400, 0));
+        let lines: Vec<_> = drawing.undrawn().map(|(from, to)| (from.x, to.x)).collect();
+        assert_eq!(lines, [(100, 200), (400, 500)]);
     }
 }

@@ -16,10 +16,12 @@ mod anomaly;
 mod drawing;
 mod host_digits;
 mod leg;
+mod noted;
 mod settings;
 
 pub use anomaly::{Anomaly, AnomalyKind};
 pub use leg::{Leg, TrackPoint};
+pub use noted::Noted;
 pub use settings::{CountedBy, PlotterSettings, SettingsError};
 
 use crate::log::{Event, Record};
@@ -193,6 +195,36 @@ impl VirtualPlotter {
         core::mem::take(&mut self.legs)
     }
 
+    /// Gives away all ways, targets and anomalies so far, the beginning of the way under way too, and forgets them: so a
+    /// recording of any length is followed in constant memory. Position, pen, counts and the target under way stay.
+    ///
+    /// ```
+    /// # use plotter_replay::{PlotterSettings, VirtualPlotter, log::{Event, Record}};
+    /// let mut plotter = VirtualPlotter::new(PlotterSettings::default());
+    /// plotter.push(&Record::at_us(900, Event::Controller(b"111".to_vec())));
+    /// assert_eq!(plotter.take_noted().legs[0].points.len(), 4); // the start and three pulses
+    /// assert!(plotter.take_noted().legs.is_empty());
+    /// assert_eq!(plotter.raw_counts().x, 3);
+    /// ```
+    pub fn take_noted(&mut self) -> Noted {
+        self.end_leg(None);
+        self.points = 0;
+        self.full = false;
+        Noted {
+            legs: core::mem::take(&mut self.legs),
+            targets: core::mem::take(&mut self.targets),
+            anomalies: core::mem::take(&mut self.anomalies),
+        }
+    }
+
+    /// The lines of the drawing that the host passed over or has not come to: from, to, mm on the sheet. Only with a
+    /// drawing, and only with the pen down.
+    pub fn undrawn(&self) -> impl Iterator<Item = (Point, Point)> {
+        let settings = self.settings;
+        let lines = self.drawing.iter().flat_map(Drawing::undrawn);
+        lines.map(move |(from, to)| (settings.to_sheet(from), settings.to_sheet(to)))
+    }
+
     /// Scale, origin and limits.
     #[must_use]
     pub fn settings(&self) -> &PlotterSettings {
@@ -335,8 +367,8 @@ impl VirtualPlotter {
         }
         self.next = Some(target);
         self.under_way = self.under_way.saturating_add(1);
+        let found = self.drawing.as_mut().map(|drawing| drawing.pen(target));
         if !self.pen_recorded {
-            let found = self.drawing.as_mut().map(|drawing| drawing.pen(target));
             if found == Some(None) {
                 self.note(time, AnomalyKind::NotInDrawing { target });
             }

@@ -1,6 +1,7 @@
 //! `check`: the controller again, compared with its recording.
 
-use crate::commands::{Done, Verdict, open, read, read_machine, say, say_damage};
+use crate::commands::{Done, Verdict, open, read, say, say_damage};
+use crate::machine::read_machine;
 use clap::Args;
 use plotter_motion::Machine;
 use plotter_replay::log::{Event, Header};
@@ -74,7 +75,7 @@ impl Check {
         let mut traits = Traits::default();
         let contents = read(&self.log, |record| traits.look(&record.event))?;
         let header = &contents.header;
-        let machine = self.machine.as_deref().map(read_machine).transpose()?;
+        let machine = self.machine.as_deref().map(|path| read_machine(Some(path))).transpose()?;
         let first = controller(&self.log, header, machine.as_ref())?;
         let mut settings = traits.settings(header, first.makes_steps());
         settings.tolerance = self.tolerance_us.map_or(settings.tolerance, Duration::from_micros);

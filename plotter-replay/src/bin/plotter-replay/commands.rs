@@ -1,4 +1,4 @@
-//! The commands, `render`, and what they share.
+//! The commands, and what they share.
 
 use crate::check::Check;
 use crate::compare::Compare;
@@ -6,21 +6,19 @@ use crate::export::Export;
 use crate::import::Import;
 use crate::info::Info;
 use crate::record::Record;
+use crate::render::Render;
 use crate::replay::Replay;
-use clap::{Args, Subcommand};
-use plotter_motion::{Machine, PlotOp, hpgl};
+use clap::Subcommand;
 use plotter_replay::log::{self, Damage, FileReader, Header, Summary};
-use plotter_replay::{Canvas, CanvasStyle, Chart, Layer, PlotterSettings, VirtualPlotter, Visibility};
+use plotter_replay::{PlotterSettings, VirtualPlotter};
 use std::io::{Read as _, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 /// Longest list of damage or anomalies that is shown.
 pub(crate) const MOST_SHOWN: usize = 20;
-/// Longest drawing that is read, bytes: some ten million lines.
-const MOST_DRAWING_BYTES: u64 = 256 << 20;
 /// Longest machine file that is read, bytes; a good one has a few thousand.
-const MOST_MACHINE_BYTES: u64 = 1 << 20;
+pub(crate) const MOST_MACHINE_BYTES: u64 = 1 << 20;
 /// What was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
@@ -41,7 +39,8 @@ impl Verdict {
 pub(crate) enum Command {
     /// Draw what the motors did, desired beside actual, and their response over time.
     #[command(after_help = "Example: plotter-replay render session.plog -o pictures\n\
-        writes pictures/plotted.svg, pictures/plotted.png and pictures/response.svg")]
+        writes pictures/plotted.svg, pictures/plotted.png, pictures/response.svg and pictures/recording.html, a page \
+        with a time slider for any browser")]
     Render(Render),
     /// Run the controller again on the recorded bytes and edges and compare every answer and its time.
     #[command(after_help = "Example: plotter-replay check session.plog --machine semi-virtual-gantry.toml")]
@@ -64,37 +63,29 @@ pub(crate) enum Command {
     /// Write a log as a table, as text with what it says, or as MCAP for Foxglove.
     #[command(after_help = "Example: plotter-replay export session.plog --to csv -o session.csv")]
     Export(Export),
+    /// Drive or watch a machine, real or simulated, in a browser or this terminal, and record it.
+    #[cfg(feature = "live")]
+    #[command(
+        after_help = "Examples:\n  plotter-replay live drawing.hpgl                        on a simulated machine\n  \
+        plotter-replay live --port /dev/ttyUSB0 drawing.hpgl    on a real one\n  \
+        plotter-replay live --port auto --terminal drawing.hpgl over ssh"
+    )]
+    Live(crate::live::Live),
+    /// Put a simulated machine on a pseudo terminal, for any program that drives a plotter.
+    #[cfg(all(feature = "live", unix))]
+    #[command(after_help = "Example: plotter-replay simulate semi-virtual-gantry.toml")]
+    Simulate(crate::simulate::Simulate),
+    /// Drive or watch a machine: not in this program, which was built without the feature `live`.
+    #[cfg(not(feature = "live"))]
+    #[command(disable_help_flag = true)]
+    Live {
+        /// What it would have been given.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
     /// Say what a log holds, its rates and gaps, and what of it is damaged or odd.
     #[command(after_help = "Example: plotter-replay info session.plog.gz")]
     Info(Info),
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Render {
-    /// The log; packed if its name ends in .gz.
-    log: PathBuf,
-    /// Write plotted.svg, plotted.png and response.svg into this directory [default: the current one, unless
-    /// a single picture is asked for].
-    #[arg(short, long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Write the drawing as SVG.
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
-    /// Write the drawing as PNG.
-    #[arg(long, value_name = "FILE")]
-    png: Option<PathBuf>,
-    /// Write the response of both motors as SVG.
-    #[arg(long, value_name = "FILE")]
-    chart: Option<PathBuf>,
-    /// The drawing that was sent, HPGL: tells the pen, and what should have been drawn.
-    #[arg(long, value_name = "FILE.hpgl")]
-    drawing: Option<PathBuf>,
-    /// Show the moves with the pen up, too.
-    #[arg(long)]
-    travel: bool,
-    /// Longer side of the PNG, pixels.
-    #[arg(long, value_name = "PX", default_value_t = 1_600, value_parser = clap::value_parser!(u32).range(64..=8192))]
-    size: u32,
 }
 
 pub(crate) type Done = Result<Verdict, String>;
@@ -115,6 +106,14 @@ impl Command {
             Self::Import(import) => import.run(out),
             Self::Export(export) => export.run(out),
             Self::Info(info) => info.run(out),
+            #[cfg(feature = "live")]
+            Self::Live(live) => live.run(out),
+            #[cfg(all(feature = "live", unix))]
+            Self::Simulate(simulate) => simulate.run(out),
+            #[cfg(not(feature = "live"))]
+            Self::Live { .. } => Err(String::from(
+                "this program was built without the feature live: cargo install plotter-replay --features live",
+            )),
         }
     }
 }
@@ -146,19 +145,35 @@ pub(crate) struct Contents {
 }
 
 pub(crate) fn read(path: &Path, mut take: impl FnMut(&log::Record)) -> Result<Contents, String> {
+    read_all(path, |item| {
+        if let Ok(record) = item {
+            take(record);
+        }
+    })
+}
+
+/// The same, with the damage in its place.
+pub(crate) fn read_all(
+    path: &Path,
+    mut take: impl FnMut(Result<&log::Record, &Damage>),
+) -> Result<Contents, String> {
     let mut reader = open(path)?;
     let mut damage = Vec::new();
     for item in reader.by_ref() {
         match item {
-            Ok(record) => take(&record),
-            Err(one) if damage.len() < MOST_SHOWN => damage.push(one),
-            Err(_) => {}
+            Ok(record) => take(Ok(&record)),
+            Err(one) => {
+                take(Err(&one));
+                if damage.len() < MOST_SHOWN {
+                    damage.push(one);
+                }
+            }
         }
     }
     Ok(Contents { header: reader.header().clone(), summary: reader.summary(), damage })
 }
 
-fn plotter_for(path: &Path) -> Result<VirtualPlotter, String> {
+pub(crate) fn plotter_for(path: &Path) -> Result<VirtualPlotter, String> {
     let settings = PlotterSettings::from_header(open(path)?.header())
         .map_err(|error| format!("{}: {error}", path.display()))?;
     Ok(VirtualPlotter::new(settings))
@@ -169,76 +184,12 @@ pub(crate) fn say_damage(out: &mut impl Write, contents: &Contents) {
     say_first(out, &contents.damage, contents.summary.damaged_lines);
 }
 
-impl Render {
-    fn run(self, out: &mut impl Write) -> Done {
-        let mut plotter = plotter_for(&self.log)?;
-        let mut verdict = Verdict::Clean;
-        let drawing = match &self.drawing {
-            None => None,
-            Some(path) => {
-                let (ops, errors) = read_drawing(path)?;
-                if !errors.is_empty() {
-                    verdict = Verdict::Found;
-                    say(out, &format!("{}: {} errors, left out", path.display(), errors.len()));
-                    say_first(out, &errors, errors.len() as u64);
-                }
-                plotter = plotter.with_drawing(ops.iter().copied());
-                Some(ops)
-            }
-        };
-        let contents = read(&self.log, |record| plotter.push(record))?;
-        plotter.finish();
-        let single = self.svg.is_some() || self.png.is_some() || self.chart.is_some();
-        let directory = self.out.clone().or_else(|| (!single).then(|| PathBuf::from(".")));
-        let places = |one: &Option<PathBuf>, name: &str| {
-            let in_directory = directory.as_ref().map(|directory| directory.join(name));
-            one.clone().into_iter().chain(in_directory).collect::<Vec<_>>()
-        };
-        if let Some(directory) = &directory {
-            std::fs::create_dir_all(directory).map_err(|error| cannot("written", directory, &error))?;
-        }
-        let mut canvas = Canvas::from_plotter(&plotter, CanvasStyle::default().tolerance_mm);
-        if let Some(ops) = drawing {
-            canvas.remove(Layer::Desired);
-            canvas.add_drawing(Layer::Desired, ops);
-        }
-        let travel = if self.travel { Visibility::Shown } else { Visibility::Hidden };
-        let style = CanvasStyle { travel, longest_px: self.size, ..canvas.fitted_style() };
-        let mut write = |path: &Path, bytes: &[u8]| -> Result<(), String> {
-            std::fs::write(path, bytes).map_err(|error| cannot("written", path, &error))?;
-            say(out, &format!("wrote {}", path.display()));
-            Ok(())
-        };
-        for path in places(&self.svg, "plotted.svg") {
-            write(&path, canvas.to_svg(&style).as_bytes())?;
-        }
-        let pngs = places(&self.png, "plotted.png");
-        #[cfg(feature = "image")]
-        for path in pngs {
-            write(&path, &canvas.to_png(&style).map_err(|error| error.to_string())?)?;
-        }
-        #[cfg(not(feature = "image"))]
-        if self.png.is_some() && !pngs.is_empty() {
-            return Err(String::from("--png: this program was built without the feature image"));
-        }
-        let title = self.log.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        for path in places(&self.chart, "response.svg") {
-            write(&path, Chart::response(&title, &plotter).to_svg().as_bytes())?;
-        }
-        if canvas.lines(Layer::Ink).next().is_none() {
-            say(out, "nothing was drawn");
-        }
-        say_damage(out, &contents);
-        Ok(if verdict == Verdict::Found { verdict } else { Verdict::of(contents.summary) })
-    }
-}
-
 pub(crate) fn cannot(be: &str, path: &Path, error: &std::io::Error) -> String {
     format!("{}: cannot be {be}: {error}", path.display())
 }
 
 /// All of a file, if it has at most `most_bytes`: a device may go on for ever.
-fn read_file(path: &Path, most_bytes: u64) -> Result<Vec<u8>, String> {
+pub(crate) fn read_file(path: &Path, most_bytes: u64) -> Result<Vec<u8>, String> {
     let refused = |error: std::io::Error| cannot("read", path, &error);
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(refused)?;
@@ -247,28 +198,6 @@ fn read_file(path: &Path, most_bytes: u64) -> Result<Vec<u8>, String> {
         return Err(format!("{}: longer than {} MiB", path.display(), most_bytes >> 20));
     }
     Ok(bytes)
-}
-
-/// The operations of a drawing and what of it could not be read.
-fn read_drawing(path: &Path) -> Result<(Vec<PlotOp>, Vec<hpgl::Error>), String> {
-    let text = read_file(path, MOST_DRAWING_BYTES)?;
-    let (mut ops, mut errors) = (Vec::new(), Vec::new());
-    for outcome in hpgl::plot_ops(&text) {
-        match outcome {
-            Ok(op) => ops.push(op),
-            Err(error) if error.is_notice() => {}
-            Err(error) => errors.push(error),
-        }
-    }
-    Ok((ops, errors))
-}
-
-/// The machine that a file describes.
-pub(crate) fn read_machine(path: &Path) -> Result<Machine, String> {
-    let refused = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-    let text = String::from_utf8(read_file(path, MOST_MACHINE_BYTES)?)
-        .map_err(|error| refused(&error.utf8_error()))?;
-    Machine::from_toml(&text).map_err(|error| refused(&error))
 }
 
 /// Seconds as people give them.

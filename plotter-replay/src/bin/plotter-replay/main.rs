@@ -5,11 +5,18 @@
 mod check;
 mod commands;
 mod compare;
+mod drawing;
 mod export;
 mod import;
 mod info;
+#[cfg(feature = "live")]
+mod live;
+mod machine;
 mod record;
+mod render;
 mod replay;
+#[cfg(all(feature = "live", unix))]
+mod simulate;
 
 use clap::Parser;
 use commands::{Command, Verdict};

@@ -1,7 +1,8 @@
 //! `replay`: a recording, or the controller again on it, as fast as wanted.
 
 use crate::check::{Traits, controller};
-use crate::commands::{Done, Verdict, cannot, is_free, open, read, read_machine, say, say_damage, seconds};
+use crate::commands::{Done, Verdict, cannot, is_free, open, read, say, say_damage, seconds};
+use crate::machine::read_machine;
 use clap::Args;
 use plotter_replay::log::{self, Record};
 use plotter_replay::{Decoder, Pace, PaceSettings, Player, Stuck};
@@ -54,7 +55,7 @@ impl Replay {
         let mut traits = Traits::default();
         let contents = read(&self.log, |record| traits.look(&record.event))?;
         let header = &contents.header;
-        let machine = self.machine.as_deref().map(read_machine).transpose()?;
+        let machine = self.machine.as_deref().map(|path| read_machine(Some(path))).transpose()?;
         let records = open(&self.log)?.filter_map(Result::ok);
         let played: Box<dyn Iterator<Item = Result<Record, Stuck>>> = if self.recorded {
             Box::new(records.map(Ok))

@@ -1,0 +1,268 @@
+//! `live`: a machine watched and driven while it draws.
+
+use crate::commands::{Done, Verdict, say, say_first};
+use crate::drawing::DrawingFile;
+use crate::machine::{read_machine, speed};
+use clap::Args;
+use plotter_motion::{ControllerChoice, DriveChoice, Machine, PenMove, targets};
+use plotter_replay::PlotterSettings;
+use plotter_replay::live::{
+    Command, Line, LivePage, Pipe, PortLine, Server, Session, SessionSettings, SimulatedMachine, State,
+    Telemetry, terminal,
+};
+use plotter_replay::log::{self, FileWriter, Header};
+use plotter_replay::serial::Port;
+use std::cell::RefCell;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// How long a page has for the last of it.
+const LAST_LOOK: Duration = Duration::from_millis(1_500);
+
+/// What is driven, and what with.
+#[derive(Debug, Args)]
+pub(crate) struct Live {
+    /// The drawing: HPGL, G-code or the thesis' text. Without one, the machine is watched only.
+    drawing: Option<PathBuf>,
+    /// The serial port of a machine, or `auto` for the only one there is.
+    #[arg(long, value_name = "DEV", conflicts_with = "simulate")]
+    port: Option<String>,
+    /// Simulate the machine of this file instead [default without --port: the semi-virtual gantry].
+    #[arg(long, value_name = "MACHINE.toml")]
+    simulate: Option<PathBuf>,
+    /// The description of the machine on the port [default: the semi-virtual gantry].
+    #[arg(long, value_name = "MACHINE.toml", conflicts_with = "simulate")]
+    machine: Option<PathBuf>,
+    /// Seconds of a simulated machine in one of ours.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed, conflicts_with = "port")]
+    speed: f64,
+    /// The recording.
+    #[arg(short, long, value_name = "LOG", default_value = "live.plog")]
+    output: PathBuf,
+    /// Show it in this terminal, not in a browser.
+    #[arg(long)]
+    terminal: bool,
+    /// Port of 127.0.0.1 for the page; 0 takes any that is free.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0)]
+    http_port: u16,
+    /// Begin at once, without waiting for Start.
+    #[arg(long, requires = "drawing")]
+    start: bool,
+}
+
+/// What a line leads to.
+struct Connected {
+    line: Arc<dyn Line>,
+    telemetry: Option<Arc<Mutex<Telemetry>>>,
+    /// Lives as long as the machine is needed.
+    _simulated: Option<SimulatedMachine>,
+    name: String,
+}
+
+impl Live {
+    /// Does it.
+    pub(crate) fn run(self, out: &mut impl Write) -> Done {
+        let machine = read_machine(self.simulate.as_deref().or(self.machine.as_deref()))?;
+        if machine.config().drive == DriveChoice::Stepper {
+            return Err(String::from(
+                "this machine has stepper motors (drive = \"stepper\"), and live speaks the protocol of machines with \
+                 encoders: give one with drive = \"dc\"",
+            ));
+        }
+        let config = machine.config();
+        let plotter = PlotterSettings {
+            x_mm_per_pulse: 1.0 / config.x.counts_per_mm,
+            y_mm_per_pulse: 1.0 / config.y.counts_per_mm,
+            ..PlotterSettings::default()
+        };
+        let mut page = LivePage::new(config.name.as_str(), plotter);
+        let drawing = self.drawing.as_deref().map(DrawingFile::open).transpose()?;
+        let mut verdict = Verdict::Clean;
+        if let (Some(drawing), Some(path)) = (&drawing, &self.drawing)
+            && look_through(drawing, path, &machine, &mut page, out)? > 0
+        {
+            verdict = Verdict::Found;
+        }
+        let connected = self.connect(&machine)?;
+        let recorder = self.recorder(&machine)?;
+        let plan = drawing.is_some().then(|| page.plan());
+        let settings = SessionSettings {
+            plotter,
+            byte_gap: Duration::from_secs_f64(config.serial.byte_gap_ms / 1e3),
+            plan,
+            speed: self.speed,
+            pwm_steps: [config.x.motor.pwm_steps, config.y.motor.pwm_steps],
+            ..SessionSettings::default()
+        };
+        let area_mm = page.area_mm().unwrap_or([0.0, 0.0, config.area.width_mm, config.area.height_mm]);
+        self.describe(&mut page, &machine, &connected.name);
+        let moves = drawing.map(|drawing| moves(&drawing, &machine)).transpose()?;
+        let session = Session::open(
+            Arc::clone(&connected.line),
+            moves,
+            Some(recorder),
+            connected.telemetry.clone(),
+            settings,
+        );
+        let heading =
+            terminal::Heading { machine: page.about.clone(), is_simulated: self.port.is_none(), area_mm };
+        let begin = || {
+            if self.start {
+                session.command(Command::Start);
+            }
+        };
+        let state = if self.terminal {
+            begin();
+            let quit = terminal::run(&session, &heading).map_err(|error| format!("terminal: {error}"))?;
+            if quit { session.state() } else { session.wait(LAST_LOOK) }
+        } else {
+            let server =
+                Server::open(session.clone(), self.http_port, |sources| page.finish(area_mm, sources))
+                    .map_err(|error| error.to_string())?;
+            say(out, &heading.machine);
+            say(out, &format!("look at {}", server.address()));
+            let _ = out.flush(); // who closed it has seen enough: the machine goes on
+            begin(); // only now: nothing moves that cannot be watched and stopped
+            let state = loop {
+                let state = session.wait(Duration::from_secs(3_600));
+                if state.is_final() {
+                    break state;
+                }
+            };
+            let until = Instant::now() + LAST_LOOK;
+            while server.connections() > 0 && Instant::now() < until {
+                std::thread::sleep(Duration::from_millis(20));
+            }
+            state
+        };
+        say(out, &format!("wrote {}", self.output.display()));
+        match state {
+            State::Failed(why) => {
+                Err(format!("{why}; the recording up to here is in {}", self.output.display()))
+            }
+            _ => {
+                let targets = plan.map_or(0, |plan| plan.targets);
+                let reached = session.reached();
+                if plan.is_some() {
+                    say(out, &format!("targets: {reached} of {targets} reached"));
+                }
+                Ok(if reached < targets { Verdict::Found } else { verdict })
+            }
+        }
+    }
+
+    fn connect(&self, machine: &Machine) -> Result<Connected, String> {
+        let Some(name) = &self.port else {
+            let (host, end) = Pipe::pair();
+            let simulated = SimulatedMachine::start(machine, Arc::new(end), self.speed);
+            let telemetry = Some(simulated.telemetry());
+            let name = String::from("none: simulated in this program");
+            return Ok(Connected { line: Arc::new(host), telemetry, _simulated: Some(simulated), name });
+        };
+        let name = if name == "auto" { only_port()? } else { name.clone() };
+        let port = Port::open(&name, machine.config().serial.baud).map_err(|error| error.to_string())?;
+        let line = PortLine::new(port).map_err(|error| error.to_string())?;
+        Ok(Connected { line: Arc::new(line), telemetry: None, _simulated: None, name })
+    }
+
+    fn recorder(&self, machine: &Machine) -> Result<FileWriter, String> {
+        let config = machine.config();
+        let controller = match config.control.controller {
+            ControllerChoice::Published => "published",
+            _ => "contouring",
+        };
+        let header = Header::new()
+            .with_number("baud", config.serial.baud.into())
+            .with_text("protocol", "digits")
+            .with_text("machine", config.name.as_str())
+            .with_text("controller", controller)
+            .with_text("clock", if self.port.is_some() { "host" } else { "simulated, as the host saw it" })
+            .with_decimal("x_mm_per_pulse", 1.0 / config.x.counts_per_mm)
+            .with_decimal("y_mm_per_pulse", 1.0 / config.y.counts_per_mm);
+        log::create(&self.output, &header).map_err(|error| format!("{}: {error}", self.output.display()))
+    }
+
+    fn describe(&self, page: &mut LivePage, machine: &Machine, port: &str) {
+        let config = machine.config();
+        page.is_simulated = self.port.is_none();
+        if page.is_simulated {
+            page.about =
+                format!("{} is SIMULATED: no motor turns, at {} times its time.", config.name, self.speed);
+            page.stops =
+                String::from("The stop takes the voltage off the simulated motors at its next time step.");
+        } else {
+            page.about = format!("The machine on {port}, taken for a {}.", config.name);
+            page.stops = String::from(
+                "The stop sends the byte `!` at once and no further target. A controller that does not know it finishes \
+                 its target: keep your hand at the machine's own switch.",
+            );
+        }
+        let fact = |name: &str, value: String| (name.to_owned(), value);
+        page.facts = vec![
+            fact("port", port.to_owned()),
+            fact("baud", config.serial.baud.to_string()),
+            fact("resolution", format!("{} × {} counts/mm", config.x.counts_per_mm, config.y.counts_per_mm)),
+            fact("area", format!("{} × {} mm", config.area.width_mm, config.area.height_mm)),
+            fact("origin P1", String::from("0, 0 mm (lower left)")),
+            fact("recording", self.output.display().to_string()),
+        ];
+    }
+}
+
+fn only_port() -> Result<String, String> {
+    let names = Port::names();
+    match names.as_slice() {
+        [one] => Ok(one.clone()),
+        [] => Err(String::from("--port auto: there is no serial port: is the machine plugged in and on?")),
+        several => {
+            Err(format!("--port auto: there are several serial ports, name one: {}", several.join(", ")))
+        }
+    }
+}
+
+/// The moves of a drawing, as they are asked for; what cannot be read or reached was said before.
+fn moves(
+    drawing: &DrawingFile,
+    machine: &Machine,
+) -> Result<Box<dyn Iterator<Item = PenMove> + Send>, String> {
+    let ops = drawing.ops(machine.config().x.counts_per_mm)?.filter_map(Result::ok);
+    Ok(Box::new(targets(machine, ops).filter_map(Result::ok)))
+}
+
+/// Goes through a drawing once, for its length and picture; says what of it cannot be drawn, and how much that is.
+fn look_through(
+    drawing: &DrawingFile,
+    path: &Path,
+    machine: &Machine,
+    page: &mut LivePage,
+    out: &mut impl Write,
+) -> Result<u64, String> {
+    // Reading and reaching take turns, and both may fail.
+    let said = RefCell::new((Vec::new(), 0_u64));
+    let note = |error: String| {
+        let (first, errors) = &mut *said.borrow_mut();
+        *errors = errors.saturating_add(1);
+        if first.len() < 20 {
+            first.push(error);
+        }
+    };
+    let ops = drawing.ops(machine.config().x.counts_per_mm)?;
+    let ops = ops.filter_map(|item| item.map_err(note).ok());
+    for next in targets(machine, ops) {
+        match next {
+            Ok(next) => page.push(next),
+            Err(error) => note(error.to_string()),
+        }
+    }
+    let (first, errors) = said.take();
+    if errors > 0 {
+        say(out, &format!("{}: {errors} errors, left out", path.display()));
+        say_first(out, &first, errors);
+    }
+    if page.plan().targets == 0 {
+        return Err(format!("{}: there is nothing in it that this machine could draw", path.display()));
+    }
+    Ok(errors)
+}

@@ -1,0 +1,27 @@
+//! The machine that a command line names.
+
+use crate::commands::{MOST_MACHINE_BYTES, read_file};
+use plotter_motion::{Machine, MachineConfig};
+use std::path::Path;
+
+/// The machine of a file, or the semi-virtual gantry.
+///
+/// # Errors
+///
+/// The file, and what is wrong with it.
+pub(crate) fn read_machine(path: Option<&Path>) -> Result<Machine, String> {
+    let Some(path) = path else {
+        return Machine::new(MachineConfig::default()).map_err(|error| error.to_string());
+    };
+    let refused = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let text = String::from_utf8(read_file(path, MOST_MACHINE_BYTES)?)
+        .map_err(|error| refused(&error.utf8_error()))?;
+    Machine::from_toml(&text).map_err(|error| refused(&error))
+}
+
+/// How fast a simulated machine's time passes.
+#[cfg(feature = "live")]
+pub(crate) fn speed(text: &str) -> Result<f64, String> {
+    let factor: f64 = text.parse().map_err(|_| String::from("expected a number"))?;
+    if (0.01..=100.0).contains(&factor) { Ok(factor) } else { Err(String::from("expected 0.01 to 100")) }
+}

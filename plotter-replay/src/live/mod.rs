@@ -1,0 +1,29 @@
+//! A machine watched and driven while it draws, in a browser or a terminal.
+//!
+//! ```text
+//!  drawing ──▶ Session ──▶ Line ──▶ machine on a serial port, or SimulatedMachine
+//!                │  ▲
+//!      recording ◀┘  └──▶ Server ──▶ browser (127.0.0.1 only)     or a terminal
+//! ```
+//!
+//! A [`Session`] owns the line: it sends the drawing target by target, records every byte, and keeps what is to be seen in
+//! bounded memory. A [`Server`] or [`terminal::run`] shows that and hands on commands. The emergency stop goes past the
+//! session's own loop: whoever presses it writes [`STOP`] on the line at once.
+
+mod commands;
+mod line;
+mod page;
+mod progress;
+mod server;
+mod session;
+mod simulated;
+pub mod terminal;
+mod view;
+
+pub use commands::{Command, GO_ON, STOP, State};
+pub use line::{Line, Pipe, PortLine};
+pub use page::LivePage;
+pub use progress::Plan;
+pub use server::{Server, ServerError};
+pub use session::{Session, SessionSettings};
+pub use simulated::{SimulatedMachine, Telemetry};

@@ -1,0 +1,106 @@
+//! [`LivePage`]: the page of a session.
+
+use super::Plan;
+use crate::PlotterSettings;
+use crate::page::{Desired, along, document};
+use plotter_motion::{Pen, PenMove};
+use serde_json::json;
+
+const BODY: &str = include_str!("../page/assets/live.html");
+const PROGRAM: &str = include_str!("../page/assets/live.js");
+
+/// Points of the drawing that the page shows, at most.
+const MOST_DESIRED_POINTS: usize = 30_000;
+
+/// What a page shows that does not change: the drawing, and words about the machine. The moves go in one by one, in bounded
+/// memory.
+///
+/// ```
+/// # use plotter_motion::{Pen, PenMove, StepPoint};
+/// # use plotter_replay::{PlotterSettings, live::LivePage};
+/// let mut page = LivePage::new("gantry", PlotterSettings::default());
+/// page.push(PenMove { pen: Pen::Up, target: StepPoint::new(400, 0) });
+/// page.push(PenMove { pen: Pen::Down, target: StepPoint::new(400, 800) });
+/// assert_eq!((page.plan().targets, page.plan().way_mm), (2, 30.0));
+/// assert_eq!(page.area_mm(), Some([0.0, 0.0, 10.0, 20.0]));
+/// ```
+#[derive(Debug)]
+pub struct LivePage {
+    /// Name of the machine.
+    pub title: String,
+    /// Whether it is simulated.
+    pub is_simulated: bool,
+    /// A sentence about what is on the other end of the line.
+    pub about: String,
+    /// What the emergency stop does to this machine.
+    pub stops: String,
+    /// Names and values.
+    pub facts: Vec<(String, String)>,
+    settings: PlotterSettings,
+    meant: Desired,
+    plan: Plan,
+    at: plotter_motion::Point,
+    area_mm: Option<[f64; 4]>,
+}
+
+impl LivePage {
+    /// The page of a machine of this name and scale, without a drawing yet.
+    #[must_use]
+    pub fn new(title: &str, settings: PlotterSettings) -> Self {
+        Self {
+            title: title.to_owned(),
+            is_simulated: false,
+            about: String::new(),
+            stops: String::new(),
+            facts: Vec::new(),
+            settings,
+            meant: Desired::new(0.5 * settings.x_mm_per_pulse, MOST_DESIRED_POINTS),
+            plan: Plan::default(),
+            at: settings.p1,
+            area_mm: None,
+        }
+    }
+
+    /// Takes the next move of the drawing.
+    pub fn push(&mut self, next: PenMove) {
+        let to = self.settings.to_sheet(next.target);
+        self.plan.targets = self.plan.targets.saturating_add(1);
+        self.plan.way_mm += self.at.distance(to);
+        if next.pen == Pen::Down {
+            self.meant.line(self.at, to);
+        }
+        for at in [self.at, to] {
+            let [x0, y0, x1, y1] = self.area_mm.unwrap_or([at.x, at.y, at.x, at.y]);
+            self.area_mm = Some([x0.min(at.x), y0.min(at.y), x1.max(at.x), y1.max(at.y)]);
+        }
+        self.at = to;
+    }
+
+    /// How much the drawing is.
+    #[must_use]
+    pub fn plan(&self) -> Plan {
+        self.plan
+    }
+
+    /// What the moves cover, lower left and upper right, mm.
+    #[must_use]
+    pub fn area_mm(&self) -> Option<[f64; 4]> {
+        self.area_mm
+    }
+
+    /// The page, which shows `area_mm`, and may open its socket at `sources`.
+    #[must_use]
+    pub fn finish(self, area_mm: [f64; 4], sources: &str) -> String {
+        let (meant, _) = self.meant.finish();
+        let data = json!({
+            "title": self.title,
+            "simulated": self.is_simulated,
+            "about": self.about,
+            "stops": self.stops,
+            "facts": self.facts,
+            "box": area_mm,
+            "meant": along(&meant, false),
+        });
+        document(&format!("{} - live", self.title), BODY, PROGRAM, &data.to_string(), sources)
+    }
+}

@@ -1,0 +1,378 @@
+//! [`Session`]: a drawing on its way to a machine.
+
+use super::line::{Line, lock};
+use super::progress::Plan;
+use super::view::{Cursor, View};
+use super::{Command, GO_ON, STOP, State, Telemetry};
+use crate::PlotterSettings;
+use crate::log::{Event, Record, Writer};
+use crate::serial::PortError;
+use core::time::Duration;
+use plotter_motion::protocol::{Host, HostEvent, HostNotice, HostSettings};
+use plotter_motion::{PenMove, StepPoint};
+use serde_json::Value;
+use std::collections::VecDeque;
+use std::io::Write;
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread;
+use std::time::Instant;
+
+/// Longest time for which the line is listened to at once.
+const LISTEN: Duration = Duration::from_millis(2);
+/// How often the response is sampled.
+const SAMPLE_EVERY: Duration = Duration::from_millis(20);
+
+/// How a session goes.
+#[derive(Clone, Debug)]
+pub struct SessionSettings {
+    /// Scale and origin of the machine.
+    pub plotter: PlotterSettings,
+    /// Pause after each byte, 10 ms as published.
+    pub byte_gap: Duration,
+    /// Patience with the machine.
+    pub host: HostSettings,
+    /// How much the drawing is, if there is one.
+    pub plan: Option<Plan>,
+    /// How many seconds of the machine pass in one of ours; 1 for any that is real.
+    pub speed: f64,
+    /// Duty steps that are the whole supply, of both motors.
+    pub pwm_steps: [u32; 2],
+}
+
+impl Default for SessionSettings {
+    /// The semi-virtual gantry as published, in its own time, nothing to draw.
+    fn default() -> Self {
+        Self {
+            plotter: PlotterSettings::default(),
+            byte_gap: Duration::from_millis(10),
+            host: HostSettings::default(),
+            plan: None,
+            speed: 1.0,
+            pwm_steps: [255; 2],
+        }
+    }
+}
+
+/// A drawing on its way to a machine, in a thread of its own; clones are handles of the same session.
+#[derive(Clone, Debug)]
+pub struct Session {
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    line: Arc<dyn Line>,
+    view: Mutex<View>,
+    commands: Mutex<VecDeque<Command>>,
+    finished: Condvar,
+}
+
+/// The moves of a drawing, in order.
+type Moves = Box<dyn Iterator<Item = PenMove> + Send>;
+
+impl Session {
+    /// Opens a session on `line`. With `moves` it waits for [`Command::Start`]; without, it only watches. What happens goes
+    /// to `recorder`. What no byte tells of a simulated machine comes from `telemetry`.
+    #[must_use]
+    pub fn open<W: Write + Send + 'static>(
+        line: Arc<dyn Line>,
+        moves: Option<Moves>,
+        recorder: Option<Writer<W>>,
+        telemetry: Option<Arc<Mutex<Telemetry>>>,
+        settings: SessionSettings,
+    ) -> Self {
+        let state = if moves.is_some() { State::Ready } else { State::Watching };
+        let mut view = View::new(settings.plotter, state, settings.plan);
+        view.recording = String::from(if recorder.is_some() { "on" } else { "none" });
+        let view = Mutex::new(view);
+        let shared = Arc::new(Shared { line, view, commands: Mutex::default(), finished: Condvar::new() });
+        let session = Self { shared: Arc::clone(&shared) };
+        let host = moves.map(|moves| Host::new(settings.byte_gap, settings.host, moves));
+        thread::spawn(move || {
+            let engine = Engine {
+                host,
+                recorder,
+                telemetry,
+                began: Instant::now(),
+                frozen: Duration::ZERO,
+                frozen_since: None,
+                under_way: None,
+                at: StepPoint::default(),
+                last: Duration::ZERO,
+                settings,
+                shared: &shared,
+            };
+            engine.run();
+        });
+        session
+    }
+
+    /// Does what a person asks. An emergency stop is on the line when this returns.
+    pub fn command(&self, command: Command) {
+        if command == Command::Stop {
+            // The line's own failure is met by the session's loop, which says so.
+            let _ = self.shared.line.send(&[STOP]);
+        }
+        lock(&self.shared.commands).push_back(command);
+    }
+
+    /// What it is doing.
+    #[must_use]
+    pub fn state(&self) -> State {
+        lock(&self.shared.view).state.clone()
+    }
+
+    /// Targets of the drawing that were reached.
+    #[must_use]
+    pub fn reached(&self) -> u64 {
+        lock(&self.shared.view).reached
+    }
+
+    /// What became of the recording: `on`, `none`, `complete`, or why it stopped.
+    #[must_use]
+    pub fn recording(&self) -> String {
+        lock(&self.shared.view).recording.clone()
+    }
+
+    /// Waits at most `wait` for the end; the state then.
+    #[must_use]
+    pub fn wait(&self, wait: Duration) -> State {
+        let view = lock(&self.shared.view);
+        let (view, _) = self
+            .shared
+            .finished
+            .wait_timeout_while(view, wait, |view| !view.state.is_final())
+            .unwrap_or_else(PoisonError::into_inner);
+        view.state.clone()
+    }
+
+    pub(super) fn update(&self, cursor: &mut Cursor) -> Value {
+        lock(&self.shared.view).update(cursor)
+    }
+
+    pub(super) fn look<R>(&self, look: impl FnOnce(&View) -> R) -> R {
+        look(&lock(&self.shared.view))
+    }
+}
+
+struct Engine<'a, W: Write> {
+    host: Option<Host<Moves>>,
+    recorder: Option<Writer<W>>,
+    telemetry: Option<Arc<Mutex<Telemetry>>>,
+    began: Instant,
+    /// Time in which the host's clock stood still.
+    frozen: Duration,
+    frozen_since: Option<Duration>,
+    /// The target that was sent and is not reached, and when it was sent.
+    under_way: Option<(PenMove, Duration)>,
+    /// The last target.
+    at: StepPoint,
+    last: Duration,
+    settings: SessionSettings,
+    shared: &'a Shared,
+}
+
+impl<W: Write> Engine<'_, W> {
+    fn run(mut self) {
+        let end = loop {
+            match self.round() {
+                Ok(None) => {}
+                Ok(Some(end)) => break end,
+                Err(error) => break State::Failed(error.to_string()),
+            }
+        };
+        if let State::Failed(why) = &end {
+            self.take(Event::Note(format!("the line failed: {why}")));
+        }
+        let kept = self.recorder.take().map(|recorder| recorder.finish().map(|_| ()));
+        let mut view = lock(&self.shared.view);
+        match kept {
+            Some(Err(error)) => view.recording = format!("stopped: {error}"),
+            Some(Ok(())) => view.recording = String::from("complete"),
+            None => {}
+        }
+        view.duty = None;
+        let now = self.began.elapsed().mul_f64(self.settings.speed);
+        view.sample(now);
+        view.state = end;
+        self.shared.finished.notify_all();
+    }
+
+    fn now(&self) -> Duration {
+        self.began.elapsed().mul_f64(self.settings.speed)
+    }
+
+    /// Once round: commands, host, line. The end, if that is it.
+    fn round(&mut self) -> Result<Option<State>, PortError> {
+        self.obey()?;
+        let state = lock(&self.shared.view).state.clone();
+        let now = self.now();
+        let host_now = self.host_clock(now, &state);
+        let drawing = state == State::Running || (state == State::Paused && self.under_way.is_some());
+        let mut wait = LISTEN;
+        if drawing && self.host.is_some() {
+            self.send(host_now)?;
+            if let Some(host) = &self.host {
+                if host.is_done() {
+                    return Ok(Some(State::Done));
+                }
+                let due = host.next_wake().map_or(LISTEN, |wake| wake.saturating_sub(host_now));
+                wait = due.div_f64(self.settings.speed.max(1e-3)).min(LISTEN);
+            }
+        }
+        let mut bytes = [0; 1_024];
+        let count = self.shared.line.receive(&mut bytes, wait)?;
+        let bytes = bytes.get(..count).unwrap_or_default();
+        if !bytes.is_empty() {
+            let host_now = host_now.max(self.now().saturating_sub(self.frozen));
+            self.take(Event::Controller(bytes.to_vec()));
+            for &byte in bytes {
+                let event = self.host.as_mut().and_then(|host| host.receive(host_now, byte));
+                if let Some(event) = event {
+                    self.event(event);
+                }
+            }
+        }
+        self.look();
+        Ok(None)
+    }
+
+    fn obey(&mut self) -> Result<(), PortError> {
+        loop {
+            let Some(command) = lock(&self.shared.commands).pop_front() else {
+                return Ok(());
+            };
+            let next = {
+                let mut view = lock(&self.shared.view);
+                if command == Command::Clear {
+                    view.clear();
+                }
+                let next = view.state.after(command);
+                let before = next.clone().map(|next| core::mem::replace(&mut view.state, next));
+                before.zip(next)
+            };
+            match (command, next) {
+                (Command::Stop, _) => self.take(Event::Estop(true)),
+                (Command::Resume, Some((State::Stopped, _))) => {
+                    self.shared.line.send(&[GO_ON])?;
+                    self.take(Event::Estop(false));
+                    let mut view = lock(&self.shared.view);
+                    if self.host.is_none() {
+                        view.state = State::Watching;
+                    } else if self.under_way.is_none() && view.done.targets == 0 {
+                        view.state = State::Ready; // it was stopped before it began
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// The host's clock stands still while nothing can come of its patience.
+    fn host_clock(&mut self, now: Duration, state: &State) -> Duration {
+        let stands = matches!(state, State::Ready | State::Stopped)
+            || (*state == State::Paused && self.under_way.is_none());
+        match (stands, self.frozen_since) {
+            (true, None) => self.frozen_since = Some(now),
+            (false, Some(since)) => {
+                self.frozen = self.frozen.saturating_add(now.saturating_sub(since));
+                self.frozen_since = None;
+            }
+            _ => {}
+        }
+        self.frozen_since.unwrap_or(now).saturating_sub(self.frozen)
+    }
+
+    fn send(&mut self, host_now: Duration) -> Result<(), PortError> {
+        let Some(host) = &mut self.host else {
+            return Ok(());
+        };
+        let event = host.poll(host_now);
+        let mut bytes = Vec::new();
+        while let Some(byte) = host.next_byte(host_now) {
+            bytes.push(byte);
+        }
+        if let Some(event) = event {
+            self.event(event);
+        }
+        if !bytes.is_empty() {
+            self.shared.line.send(&bytes)?;
+            self.take(Event::Host(bytes));
+        }
+        Ok(())
+    }
+
+    fn event(&mut self, event: HostEvent) {
+        let now = self.now();
+        match event {
+            HostEvent::Begun(next) => {
+                self.under_way = Some((next, now));
+                self.take(Event::Pen(next.pen));
+            }
+            HostEvent::Reached(reached) => {
+                let began = self.under_way.take().map_or(now, |(_, began)| began);
+                let length_mm = self.pass(reached.target);
+                let mut view = lock(&self.shared.view);
+                view.pace.target(length_mm, now.saturating_sub(began));
+                view.reached = view.reached.saturating_add(1);
+            }
+            HostEvent::Notice(notice) => {
+                if let HostNotice::GaveUp { target, .. } = notice {
+                    self.under_way = None;
+                    self.pass(target);
+                }
+                lock(&self.shared.view).message(now, notice.to_string());
+                self.take(Event::Note(format!("host: {notice}")));
+            }
+        }
+    }
+
+    /// A target is behind us: the length of its way, mm.
+    fn pass(&mut self, target: StepPoint) -> f64 {
+        let to_sheet = |at| self.settings.plotter.to_sheet(at);
+        let length_mm = to_sheet(self.at).distance(to_sheet(target));
+        self.at = target;
+        let mut view = lock(&self.shared.view);
+        view.done.targets = view.done.targets.saturating_add(1);
+        view.done.way_mm += length_mm;
+        length_mm
+    }
+
+    /// Something happened: on the screen, and into the recording.
+    fn take(&mut self, event: Event) {
+        self.last = self.now().max(self.last);
+        let record = Record { time: self.last, event };
+        let mut view = lock(&self.shared.view);
+        view.push(&record);
+        if let Some(recorder) = &mut self.recorder
+            && let Err(error) = recorder.write(&record)
+        {
+            // The drawing goes on; what was written stays.
+            view.recording = format!("stopped: {error}");
+            view.message(record.time, format!("recording stopped, drawing goes on: {error}"));
+            self.recorder = None;
+        }
+    }
+
+    /// Now and then: a sample of the response, and the recording written through.
+    fn look(&mut self) {
+        let now = self.now();
+        let mut view = lock(&self.shared.view);
+        let every = SAMPLE_EVERY.mul_f64(self.settings.speed);
+        if view.samples.back().is_some_and(|sample| now.saturating_sub(sample.time) < every) {
+            return;
+        }
+        if let Some(telemetry) = &self.telemetry {
+            let duty = lock(telemetry).duty;
+            let [x, y] = self.settings.pwm_steps.map(|steps| f64::from(steps.max(1)));
+            view.duty = Some([f64::from(duty[0]) / x, f64::from(duty[1]) / y]);
+        }
+        view.sample(now);
+        if let Some(recorder) = &mut self.recorder
+            && let Err(error) = recorder.tick(now)
+        {
+            view.recording = format!("stopped: {error}");
+            self.recorder = None;
+        }
+    }
+}

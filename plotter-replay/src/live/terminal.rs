@@ -1,0 +1,282 @@
+//! A session in a terminal, for who is logged in from elsewhere.
+
+use super::view::View;
+use super::{Command, Session};
+use core::time::Duration;
+use plotter_motion::Pen;
+use ratatui::Frame;
+use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::symbols::Marker;
+use ratatui::text::{Line, Span};
+use ratatui::widgets::canvas::{Canvas, Circle, Line as Stroke};
+use ratatui::widgets::{Axis, Block, Chart, Dataset, Gauge, GraphType, Paragraph};
+use std::io;
+
+/// Twenty pictures a second.
+const UPDATE_EVERY: Duration = Duration::from_millis(50);
+/// Seconds that the charts show.
+const CHART_S: f64 = 20.0;
+
+/// What stands above the numbers and never changes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Heading {
+    /// Which machine, and whether it is simulated.
+    pub machine: String,
+    /// Whether it is simulated: shown as such.
+    pub is_simulated: bool,
+    /// Lower left and upper right of the drawing or the machine's area, mm.
+    pub area_mm: [f64; 4],
+}
+
+/// Shows a session in the terminal until it ends or the user quits; says whether he did. Enter starts, space pauses and
+/// resumes, Esc stops, c clears, q quits.
+///
+/// # Errors
+///
+/// The terminal cannot be read or written.
+pub fn run(session: &Session, heading: &Heading) -> io::Result<bool> {
+    let mut terminal = ratatui::try_init()?;
+    let result = (|| {
+        loop {
+            session.look(|view| terminal.draw(|frame| draw(frame, view, heading)).map(|_| ()))?;
+            if session.state().is_final() {
+                return Ok(false);
+            }
+            if !event::poll(UPDATE_EVERY)? {
+                continue;
+            }
+            let Event::Key(key) = event::read()? else { continue };
+            if key.kind != KeyEventKind::Press {
+                continue;
+            }
+            let interrupted = key.code == KeyCode::Char('c') && key.modifiers.contains(KeyModifiers::CONTROL);
+            match key.code {
+                _ if interrupted => return Ok(true),
+                KeyCode::Esc => session.command(Command::Stop),
+                KeyCode::Enter => session.command(Command::Start),
+                KeyCode::Char('c') => session.command(Command::Clear),
+                KeyCode::Char('q') => return Ok(true),
+                KeyCode::Char(' ') => {
+                    let running = session.state().name() == "running";
+                    session.command(if running { Command::Pause } else { Command::Resume });
+                }
+                _ => {}
+            }
+        }
+    })();
+    ratatui::try_restore()?;
+    result
+}
+
+fn draw(frame: &mut Frame<'_>, view: &View, heading: &Heading) {
+    let [top, middle, bottom] =
+        Layout::vertical([Constraint::Length(3), Constraint::Min(10), Constraint::Length(10)])
+            .areas(frame.area());
+    let [sheet, numbers] = Layout::horizontal([Constraint::Min(30), Constraint::Length(34)]).areas(middle);
+    let [x, y] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).areas(bottom);
+    draw_heading(frame, top, view, heading);
+    draw_sheet(frame, sheet, view, heading);
+    draw_numbers(frame, numbers, view);
+    draw_response(frame, x, view, "X (mm)", |at| at.x);
+    draw_response(frame, y, view, "Y (mm)", |at| at.y);
+}
+
+fn draw_heading(frame: &mut Frame<'_>, area: Rect, view: &View, heading: &Heading) {
+    let [words, progress] = Layout::vertical([Constraint::Length(2), Constraint::Length(1)]).areas(area);
+    let colour = match view.state.name() {
+        "stopped" | "failed" => Color::Red,
+        "paused" | "ready" => Color::Yellow,
+        _ => Color::Green,
+    };
+    let kind = if heading.is_simulated { "SIMULATED " } else { "REAL MACHINE " };
+    let state =
+        Span::styled(view.state.name().to_uppercase(), Style::new().fg(colour).add_modifier(Modifier::BOLD));
+    let first = Line::from(vec![
+        Span::styled(kind, Style::new().fg(Color::Yellow)),
+        Span::raw(heading.machine.clone()),
+        Span::raw("   "),
+        state,
+    ]);
+    let message = match &view.state {
+        super::State::Failed(why) => why.clone(),
+        _ => view.messages.back().map_or_else(String::new, |(_, text)| text.clone()),
+    };
+    let keys = "Esc EMERGENCY STOP  Enter start  Space pause/resume  c clear  q quit";
+    let second = if message.is_empty() { keys.to_owned() } else { message };
+    frame.render_widget(Paragraph::new(vec![first, Line::raw(second)]), words);
+    if let Some(plan) = view.plan {
+        #[expect(clippy::cast_precision_loss, reason = "targets below 2^53")]
+        let ratio = (view.done.targets as f64 / plan.targets.max(1) as f64).clamp(0.0, 1.0);
+        let rest = view.remaining().map_or_else(|| String::from("-"), |rest| minutes(rest.as_secs_f64()));
+        let label = format!("{} of {} targets, {rest} left", view.done.targets, plan.targets);
+        frame.render_widget(Gauge::default().ratio(ratio).label(label).use_unicode(true), progress);
+    }
+}
+
+fn minutes(seconds: f64) -> String {
+    let whole = libm::round(seconds);
+    let minutes = libm::floor(whole / 60.0);
+    format!("{minutes:.0}:{:02.0}", whole - 60.0 * minutes)
+}
+
+fn draw_sheet(frame: &mut Frame<'_>, area: Rect, view: &View, heading: &Heading) {
+    let [x0, y0, x1, y1] = heading.area_mm;
+    // A letter's place is about twice as high as wide: the same mm both ways.
+    let (wide, high) = (f64::from(area.width.max(3)) - 2.0, f64::from(area.height.max(3)) - 2.0);
+    let per_place =
+        ((x1 - x0).max(1.0) / wide.max(1.0)).max((y1 - y0).max(1.0) / (2.0 * high.max(1.0))) * 1.02;
+    let (half_x, half_y) = (per_place * wide / 2.0, per_place * high);
+    let (cx, cy) = (f64::midpoint(x0, x1), f64::midpoint(y0, y1));
+    let at = view.plotter.position();
+    let canvas = Canvas::default()
+        .block(Block::bordered().title("sheet"))
+        .marker(Marker::Braille)
+        .x_bounds([cx - half_x, cx + half_x])
+        .y_bounds([cy - half_y, cy + half_y])
+        .paint(|context| {
+            let points = view.way.settled().iter().copied().chain(view.way.last());
+            let mut before = None;
+            for point in points {
+                if let Some((x1, y1)) = before
+                    && point.state & crate::page::DRAWN != 0
+                {
+                    context.draw(&Stroke { x1, y1, x2: point.x_mm, y2: point.y_mm, color: Color::White });
+                }
+                before = Some((point.x_mm, point.y_mm));
+            }
+            context.layer();
+            let color = if view.plotter.pen() == Pen::Down { Color::Red } else { Color::Yellow };
+            context.draw(&Circle { x: at.x, y: at.y, radius: per_place, color });
+        });
+    frame.render_widget(canvas, area);
+}
+
+fn draw_numbers(frame: &mut Frame<'_>, area: Rect, view: &View) {
+    let at = view.plotter.position();
+    let next = view.plotter.next_target();
+    let [vx, vy] = view.speed_mm_s();
+    let number = |value: Option<f64>, unit: &str| {
+        value.map_or_else(|| String::from("-"), |value| format!("{value:.3} {unit}"))
+    };
+    let percent = |axis: usize| {
+        let duty = view.duty.and_then(|duty| duty.get(axis).copied());
+        duty.map_or_else(|| String::from("not told"), |duty| format!("{:.1} %", duty * 100.0))
+    };
+    let rows = [
+        ("time", format!("{:.2} s", view.now.as_secs_f64())),
+        ("pen", String::from(if view.plotter.pen() == Pen::Down { "down" } else { "up" })),
+        ("position x", number(Some(at.x), "mm")),
+        ("position y", number(Some(at.y), "mm")),
+        ("next x", number(next.map(|next| next.x), "mm")),
+        ("next y", number(next.map(|next| next.y), "mm")),
+        ("speed x", format!("{vx:.1} mm/s")),
+        ("speed y", format!("{vy:.1} mm/s")),
+        ("duty x", percent(0)),
+        ("duty y", percent(1)),
+        ("contour error", number(Some(view.error_mm), "mm")),
+        ("greatest, drawn", number(Some(view.worst_mm), "mm")),
+        ("targets reached", view.reached.to_string()),
+        ("anomalies", view.plotter.anomaly_count().to_string()),
+        ("recording", view.recording.clone()),
+    ];
+    let lines: Vec<Line<'_>> =
+        rows.into_iter().map(|(name, value)| Line::raw(format!("{name:16}{value:>15}"))).collect();
+    frame.render_widget(Paragraph::new(lines).block(Block::bordered().title("now")), area);
+}
+
+fn draw_response(
+    frame: &mut Frame<'_>,
+    area: Rect,
+    view: &View,
+    title: &str,
+    pick: impl Fn(plotter_motion::Point) -> f64,
+) {
+    let from = (view.now.as_secs_f64() - CHART_S).max(0.0);
+    let to = view.now.as_secs_f64().max(from + 1.0);
+    let samples = || view.samples.iter().filter(|sample| sample.time.as_secs_f64() >= from);
+    let time = |sample: &super::view::Sample| sample.time.as_secs_f64();
+    let desired: Vec<(f64, f64)> = samples().filter_map(|s| Some((time(s), pick(s.line?)))).collect();
+    let actual: Vec<(f64, f64)> = samples().map(|s| (time(s), pick(s.at))).collect();
+    let all = || desired.iter().chain(&actual).map(|&(_, value)| value);
+    let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let (low, high) = if high - low > 1e-3 { (low, high) } else { (low.min(0.0), low.max(0.0) + 1.0) };
+    let dataset = |name, data, color| {
+        Dataset::default()
+            .name(name)
+            .marker(Marker::Braille)
+            .graph_type(GraphType::Line)
+            .style(Style::new().fg(color))
+            .data(data)
+    };
+    let chart =
+        Chart::new(vec![dataset("desired", &desired, Color::Blue), dataset("actual", &actual, Color::White)])
+            .block(Block::bordered().title(title.to_owned()))
+            .x_axis(Axis::default().bounds([from, to]).labels([format!("{from:.0} s"), format!("{to:.0} s")]))
+            .y_axis(Axis::default().bounds([low, high]).labels([format!("{low:.1}"), format!("{high:.1}")]));
+    frame.render_widget(chart, area);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::PlotterSettings;
+    use crate::live::{Plan, State};
+    use crate::log::{Event, Record};
+    use plotter_motion::StepPoint;
+    use plotter_motion::protocol::digits;
+    use ratatui::Terminal;
+    use ratatui::backend::TestBackend;
+
+    /// A square of 10 mm, three sides of which are drawn and half of the fourth.
+    fn view() -> View {
+        let plan = Plan { targets: 4, way_mm: 40.0 };
+        let mut view = View::new(PlotterSettings::default(), State::Running, Some(plan));
+        let mut us = 0;
+        let corners = [(400, 0, b'1', 400), (400, 400, b'3', 400), (0, 400, b'2', 400), (0, 0, b'4', 200)];
+        view.push(&Record::at_us(0, Event::Pen(Pen::Down)));
+        for (x, y, pulse, count) in corners {
+            let digits = digits::encode(StepPoint::new(x, y)).unwrap();
+            view.push(&Record::at_us(us, Event::Host(digits.to_vec())));
+            for n in 0..count {
+                us += 2_500;
+                view.push(&Record::at_us(us, Event::Controller(vec![pulse])));
+                if n % 8 == 0 {
+                    view.sample(Duration::from_micros(us));
+                }
+            }
+            if count == 400 {
+                view.push(&Record::at_us(us, Event::Controller(vec![b'+'])));
+                view.pace.target(10.0, Duration::from_secs(1));
+                view.done = Plan { targets: view.done.targets + 1, way_mm: view.done.way_mm + 10.0 };
+                view.reached += 1;
+            }
+        }
+        view.duty = Some([0.0, -0.25]);
+        view.recording = String::from("square.plog");
+        view
+    }
+
+    #[test]
+    fn the_terminal_shows_sheet_numbers_and_response() {
+        let mut terminal = Terminal::new(TestBackend::new(110, 36)).unwrap();
+        let heading = Heading {
+            machine: String::from("semi-virtual-gantry"),
+            is_simulated: true,
+            area_mm: [0.0, 0.0, 10.0, 10.0],
+        };
+        let view = view();
+        terminal.draw(|frame| draw(frame, &view, &heading)).unwrap();
+        insta::assert_snapshot!(terminal.backend());
+    }
+
+    #[test]
+    fn a_tiny_terminal_does_no_harm() {
+        let view = view();
+        for (wide, high) in [(1, 1), (20, 5), (40, 12)] {
+            let mut terminal = Terminal::new(TestBackend::new(wide, high)).unwrap();
+            terminal.draw(|frame| draw(frame, &view, &Heading::default())).unwrap();
+        }
+    }
+}

@@ -1,0 +1,142 @@
+// Shows a machine while it draws, and hands on what a person asks.
+const data = JSON.parse($("data").textContent);
+const sums = (steps) => { let sum = 0; return steps.map((step) => (sum += step) * 1e-3); };
+const meant = { x: sums(data.meant.x), y: sums(data.meant.y), s: Array.from(data.meant.s, Number), length: data.meant.s.length };
+const way = { x: [], y: [], s: [], length: 0 };
+const WINDOW = 30; // seconds that the charts show
+let last = null, latest = null, layer = null, painted = 0, socket = null;
+
+const sheet = new Sheet($("sheet"), (canvas) => {
+  const { context, ratio, scale } = canvas;
+  const thick = Math.max(2.6 * ratio, Math.min(0.35 * scale, 12 * ratio));
+  strokes(meant, 1, meant.length, canvas, [[DRAWN, DRAWN, colour("meant"), ratio]]);
+  const key = [canvas.X(0), canvas.Y(0), scale, context.canvas.width, context.canvas.height, colour("ink")].join();
+  if (!layer || layer.key !== key || painted > way.length) {
+    layer = document.createElement("canvas");
+    layer.width = context.canvas.width; layer.height = context.canvas.height;
+    layer.key = key; painted = 0;
+  }
+  const ink = layer.getContext("2d");
+  ink.lineJoin = ink.lineCap = "round";
+  const styles = [[DRAWN, 0, colour("travel"), ratio, [2 * ratio, 5 * ratio]], [DRAWN, DRAWN, colour("ink"), thick]];
+  strokes(way, painted, way.length, { context: ink, X: canvas.X, Y: canvas.Y, ratio }, styles);
+  painted = way.length;
+  context.drawImage(layer, 0, 0);
+  if (latest && way.length) { // the end that is not settled
+    const end = { x: [way.x.at(-1), latest[0]], y: [way.y.at(-1), latest[1]], s: [0, latest[2]] };
+    strokes(end, 1, 2, canvas, styles);
+  }
+  strokes(meant, 1, meant.length, canvas, [[DRAWN, DRAWN, colour("meant"), Math.max(1, ratio * 0.8)]]);
+  if (last && last.next) crosshair(canvas, last.next[0], last.next[1]);
+  if (last) pen(canvas, last.at[0], last.at[1], last.pen === "down");
+});
+sheet.box = data.box;
+
+const curve = (role, label, run) => ({ role, label, run, points: [] });
+const charts = ["X", "Y"].map((name) => new Chart($("charts"), name, "mm", [curve("target", "target", "steps"), curve("desired", "on the line"), curve("actual", "actual")]));
+const error = new Chart($("charts"), "contour error", "mm", [curve("error", "distance from the line")]);
+charts.push(error);
+
+const fixed = (value, digits, unit) => value === null || value === undefined ? "–" : value.toFixed(digits) + " " + unit;
+const clock = (s) => s === null ? "–" : s < 60 ? s.toFixed(0) + " s" : Math.floor(s / 60) + " min " + String(Math.round(s % 60)).padStart(2, "0") + " s";
+const duty = (share) => share === undefined ? "not told by this machine" : (share * 100).toFixed(1) + " %";
+const BANNERS = {
+  ready: ["", "Ready: press Start to draw."], watching: ["", "Watching: there is no drawing to send."], running: ["good", "Drawing."],
+  paused: ["", "Paused: the target under way is finished, no further one is sent."],
+  stopped: ["bad", "EMERGENCY STOP. Resume lets the motors go on."], done: ["good", "Finished."], failed: ["bad", ""],
+};
+
+function banner(kind, text) {
+  $("banner").className = "banner " + kind;
+  $("banner").textContent = text;
+  $("banner").hidden = !text;
+}
+
+function take(update) {
+  last = update;
+  if (update.afresh) { way.x = []; way.y = []; way.s = []; way.length = 0; painted = 0; layer = null; }
+  for (let n = 0; n < update.way.length; n += 3) {
+    way.x.push(update.way[n] * 1e-3); way.y.push(update.way[n + 1] * 1e-3); way.s.push(update.way[n + 2]);
+  }
+  way.length = way.x.length;
+  latest = update.last && [update.last[0] * 1e-3, update.last[1] * 1e-3, update.last[2]];
+  for (const [time, at, line, target] of update.samples) {
+    [0, 1].forEach((axis) => {
+      const [targets, desired, actual] = charts[axis].curves;
+      targets.points.push(target && [time, target[axis], target[axis]]);
+      desired.points.push(line && [time, line[axis], line[axis]]);
+      actual.points.push([time, at[axis], at[axis]]);
+    });
+    const off = line && Math.hypot(line[0] - at[0], line[1] - at[1]);
+    error.curves[0].points.push(line && [time, off, off]);
+  }
+  for (const chart of charts) {
+    for (const each of chart.curves) if (each.points.length > 4000) each.points.splice(0, each.points.length - 3000);
+    chart.span = [Math.max(0, update.time_s - WINDOW), Math.max(update.time_s, 1)];
+    chart.changed();
+  }
+  const [kind, text] = BANNERS[update.state];
+  banner(kind, update.state === "failed" ? update.failure + " The recording up to here is kept." : text);
+  document.body.dataset.state = update.state;
+  $("start").disabled = update.state !== "ready";
+  $("pause").disabled = update.state !== "running";
+  $("resume").disabled = update.state !== "paused" && update.state !== "stopped";
+  $("stop").disabled = update.state === "done" || update.state === "failed";
+  $("progress").value = update.targets ? update.sent / update.targets : 0;
+  fill($("done"), [
+    ["targets done", update.targets === null ? String(update.sent) : update.sent + " of " + update.targets],
+    ["reached", String(update.reached)],
+    ["remaining", update.state === "done" ? "–" : clock(update.remaining_s)],
+    ["recording", update.recording],
+  ]);
+  const next = update.next || [null, null], shares = update.duty || [];
+  fill($("now"), [
+    ["time", fixed(update.time_s, 2, "s")],
+    ["pen", update.pen],
+    ["position x", fixed(update.at[0], 3, "mm")], ["position y", fixed(update.at[1], 3, "mm")],
+    ["next x", fixed(next[0], 3, "mm")], ["next y", fixed(next[1], 3, "mm")],
+    ["speed x", fixed(update.speed_mm_s[0], 1, "mm/s")], ["speed y", fixed(update.speed_mm_s[1], 1, "mm/s")],
+    ["duty x", duty(shares[0])], ["duty y", duty(shares[1])],
+    ["contour error", fixed(update.error_mm, 4, "mm")], ["greatest, drawn", fixed(update.worst_mm, 4, "mm")],
+    ["anomalies", String(update.anomalies)],
+  ]);
+  $("messages").replaceChildren(...update.messages.slice().reverse().map(([time, words]) => {
+    const row = document.createElement("tr");
+    for (const [name, cellText] of [["time", time.toFixed(3) + " s"], ["", words]]) {
+      const cell = document.createElement("td");
+      cell.className = name; cell.textContent = cellText;
+      row.append(cell);
+    }
+    return row;
+  }));
+}
+
+let due = false;
+function paint() { due = false; sheet.draw(); charts.forEach((chart) => chart.draw()); }
+
+function ask(command) { if (socket && socket.readyState === WebSocket.OPEN) socket.send(command); }
+function connect() {
+  socket = new WebSocket(location.href.replace(/^http/, "ws").replace(/\/?$/, "/") + "socket");
+  socket.onmessage = (event) => { take(JSON.parse(event.data)); if (!due) { due = true; requestAnimationFrame(paint); } };
+  socket.onclose = () => {
+    for (const name of ["start", "pause", "resume", "stop"]) $(name).disabled = true;
+    if (last && (last.state === "done" || last.state === "failed")) return;
+    banner("bad", "The program that drives the machine does not answer any more: this page stops nothing now.");
+    setTimeout(connect, 1000);
+  };
+}
+for (const name of ["start", "pause", "resume", "stop", "clear"]) $(name).addEventListener("click", () => ask(name));
+window.addEventListener("keydown", (event) => {
+  if (event.key === "Escape") { event.preventDefault(); ask("stop"); return; } // always
+  if (event.ctrlKey || event.altKey || event.metaKey || event.repeat || event.target.tagName === "BUTTON") return;
+  const running = last && last.state === "running";
+  const command = { Enter: "start", " ": running ? "pause" : "resume", c: "clear" }[event.key];
+  if (command) { event.preventDefault(); ask(command); }
+});
+window.addEventListener("repaint", () => { layer = null; charts.forEach((chart) => chart.changed()); paint(); });
+$("title").textContent = data.title;
+$("kind").textContent = data.simulated ? "SIMULATED MACHINE" : "REAL MACHINE";
+$("about").textContent = data.about;
+$("stops").textContent = data.stops;
+fill($("facts"), data.facts);
+connect();
