@@ -16,6 +16,7 @@ mod drawing;
 mod error_chart;
 mod error_report;
 mod figures;
+pub mod follow;
 mod gcode;
 mod graph;
 mod gray;
