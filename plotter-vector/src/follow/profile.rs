@@ -91,7 +91,7 @@ mod tests {
         for x in [100.0, 150.0, 200.0] {
             let cut = across(&flat, PxPoint::new(x, 151.5), (0.0, 1.0), 4.0).unwrap();
             assert!((cut.middle_px - (150.3 - 151.5)).abs() < 0.15, "{cut:?}");
-            assert!((cut.width_px - 5.0).abs() < 0.4, "{cut:?}");
+            assert!((cut.width_px - 5.0).abs() < 0.6, "{cut:?}");
         }
         assert_eq!(across(&flat, PxPoint::new(150.0, 100.0), (0.0, 1.0), 4.0), None);
     }
