@@ -17,6 +17,7 @@ mod drawn_error;
 mod error_chart;
 mod error_report;
 mod figures;
+pub mod follow;
 mod gcode;
 mod graph;
 mod gray;

@@ -1,0 +1,251 @@
+//! [`Lines`]: the middle of each line that a window shows.
+
+use super::flat::Flat;
+use super::tips::sharpened;
+use crate::{Bitmap, Bounded, Gray, Pixel, PxPoint, Vectorizer, despeckle, pen_width_px, split_by_width};
+
+/// Side of the blocks in which the darkest and the lightest place are found, px.
+const BLOCK_PX: usize = 4;
+
+/// Least darkness of ink.
+const LEAST_DARK: f32 = 0.12;
+
+/// Of places along a line, px from one to the next.
+pub(super) const SPACING_PX: f64 = 2.0;
+
+/// A turn by more than this is a corner, which stays: cosine of 25 degrees.
+const CORNER_COS: f64 = 0.906;
+
+/// A piece of a line's middle.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    /// Places in order, about 2 px from each other; in pixels of the window, then of the paper.
+    pub(super) places: Vec<PxPoint>,
+    /// Whether the last place is joined to the first.
+    pub(super) closed: bool,
+    /// Whether the line goes on behind its first and its last place, where the window ends.
+    pub(super) open: [bool; 2],
+}
+
+/// What a window shows.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lines {
+    /// Pieces of lines inside of the trusted part of the window.
+    pub(super) pieces: Vec<Piece>,
+    /// Width of the lines, px; 0 without ink.
+    pub(super) width_px: f64,
+    /// From the window's border to the trusted part, px.
+    pub(super) margin_px: f64,
+    /// The middle of ink that is too thick for a line, if there is any.
+    pub(super) area: Option<PxPoint>,
+    /// Whether there is any ink.
+    pub(super) has_ink: bool,
+}
+
+/// The ink of a window: darker than half way between the darkest and the lightest place around.
+fn ink(flat: &Flat) -> Option<Bitmap> {
+    let (width, height) = flat.size();
+    let (columns, rows) = (width.div_ceil(BLOCK_PX), height.div_ceil(BLOCK_PX));
+    let mut ends = vec![(0.0_f32, 1.0_f32); columns * rows];
+    for (y, row) in flat.rows().enumerate() {
+        for (block, part) in row.chunks(BLOCK_PX).enumerate() {
+            if let Some((most, least)) = ends.get_mut(y / BLOCK_PX * columns + block) {
+                for dark in part {
+                    *most = most.max(*dark);
+                    *least = least.min(*dark);
+                }
+            }
+        }
+    }
+    let least_dark = LEAST_DARK.max(8.0 * flat.noise);
+    let level = |x: usize, y: usize| {
+        let (mut most, mut least) = (0.0_f32, 1.0_f32);
+        for v in y.saturating_sub(1)..=(y + 1).min(rows - 1) {
+            for u in x.saturating_sub(1)..=(x + 1).min(columns - 1) {
+                if let Some((high, low)) = ends.get(v * columns + u) {
+                    most = most.max(*high);
+                    least = least.min(*low);
+                }
+            }
+        }
+        // Ink all around: no rim is near.
+        let base = if most - least > 0.25 * most { least.max(0.0) } else { 0.0 };
+        if most < least_dark { f32::INFINITY } else { (0.5 * (most + base)).max(0.6 * least_dark) }
+    };
+    let levels: Vec<f32> =
+        (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).map(|(x, y)| level(x, y)).collect();
+    let mut ink = Bitmap::new(u32::try_from(width).ok()?, u32::try_from(height).ok()?).ok()?;
+    for (y, row) in flat.rows().enumerate() {
+        for (block, part) in row.chunks(BLOCK_PX).enumerate() {
+            let level = levels.get(y / BLOCK_PX * columns + block).copied().unwrap_or(f32::INFINITY);
+            for (i, _) in part.iter().enumerate().filter(|(_, dark)| **dark > level) {
+                let x = u32::try_from(block * BLOCK_PX + i).ok()?;
+                ink.set(Pixel::new(x, u32::try_from(y).ok()?), true);
+            }
+        }
+    }
+    Some(ink)
+}
+
+/// Whether a block of 16 x 16 px is all ink.
+fn has_solid_block(ink: &Bitmap) -> bool {
+    (0..ink.height() / 16).any(|row| {
+        let mut all = ink.row(16 * row).to_vec();
+        for y in 16 * row + 1..16 * row + 16 {
+            all.iter_mut().zip(ink.row(y)).for_each(|(word, more)| *word &= more);
+        }
+        all.iter().any(|word| (0..4).any(|part| word >> (16 * part) & 0xffff == 0xffff))
+    })
+}
+
+impl Lines {
+    /// The lines of a whole window; what is wider than `max_line_px` is an area.
+    pub(super) fn of(flat: &Flat, max_line_px: u32) -> Self {
+        let Some(mut ink) = ink(flat) else { return Self::default() };
+        let pen_px = pen_width_px(&ink).unwrap_or(max_line_px).max(1);
+        despeckle(&mut ink, 4 + crate::smallest_mark_px(pen_px) / 2);
+        if ink.count() == 0 {
+            return Self::default();
+        }
+        let mut area = None;
+        if has_solid_block(&ink) {
+            let split = split_by_width(&ink, max_line_px);
+            area = middle_of(&split.thick);
+            ink = split.thin;
+        }
+        let width_px = f64::from(pen_width_px(&ink).unwrap_or(pen_px));
+        let margin_px = 5.0 + 1.5 * width_px;
+        let levels = flat.rows().flatten().map(|dark| super::whole::level(255.0 * (1.0 - dark))).collect();
+        let grey = Gray::of_checked_size(ink.width(), ink.height(), levels);
+        let vectorizer = Vectorizer {
+            ours: Bounded { tolerance_px: 0.25 },
+            band_rows: ink.height().max(1),
+            ..Vectorizer::default()
+        };
+        let strokes = vectorizer.centring(max_line_px).strokes(&ink, Some((&grey, true)));
+        let (width, height) = (f64::from(ink.width()), f64::from(ink.height()));
+        let trusted = |at: &PxPoint| {
+            at.x >= margin_px && at.y >= margin_px && at.x <= width - margin_px && at.y <= height - margin_px
+        };
+        let fine = strokes.iter().map(|stroke| resampled(&stroke.vertices, 1.0)).collect();
+        let pieces = sharpened(fine, width_px)
+            .iter()
+            .flat_map(|stroke| clipped(&resampled(stroke, SPACING_PX), trusted))
+            .collect();
+        Self { pieces, width_px, margin_px, area, has_ink: true }
+    }
+}
+
+/// The middle of a picture's ink.
+fn middle_of(ink: &Bitmap) -> Option<PxPoint> {
+    let (mut x, mut y, mut count) = (0.0, 0.0, 0.0);
+    for at in ink.ink() {
+        x += f64::from(at.x) + 0.5;
+        y += f64::from(at.y) + 0.5;
+        count += 1.0;
+    }
+    (count > 0.0).then(|| PxPoint::new(x / count, y / count))
+}
+
+/// Places along a polyline, as far from each other as said or a little less, with its ends and corners among them.
+pub(super) fn resampled(vertices: &[PxPoint], spacing_px: f64) -> Vec<PxPoint> {
+    let Some(first) = vertices.first() else { return Vec::new() };
+    let mut places = vec![*first];
+    // A stretch from corner to corner is divided evenly.
+    let mut stretch = vec![*first];
+    for (i, vertex) in vertices.iter().enumerate().skip(1) {
+        stretch.push(*vertex);
+        let next = vertices.get(i + 1);
+        let corner = next.is_none_or(|next| {
+            let before = vertices.get(i - 1).copied().unwrap_or(*vertex);
+            cosine(vertex.minus(before), next.minus(*vertex)) < CORNER_COS
+        });
+        if corner {
+            divide(&stretch, spacing_px, &mut places);
+            stretch = vec![*vertex];
+        }
+    }
+    places
+}
+
+fn divide(stretch: &[PxPoint], spacing_px: f64, places: &mut Vec<PxPoint>) {
+    let length: f64 =
+        stretch.windows(2).map(|pair| if let [a, b] = pair { a.distance(*b) } else { 0.0 }).sum();
+    if length <= 0.0 {
+        return;
+    }
+    let parts = super::whole::count(libm::ceil(length / spacing_px)).max(1);
+    let step = length / f64::from(u32::try_from(parts).unwrap_or(1));
+    let (mut next, mut passed) = (step, 0.0);
+    for pair in stretch.windows(2) {
+        let [a, b] = pair else { continue };
+        let way = a.distance(*b);
+        while next <= passed + way && next < length - 0.5 * step {
+            places.push(a.along(b.minus(*a), (next - passed) / way));
+            next += step;
+        }
+        passed += way;
+    }
+    places.extend(stretch.last());
+}
+
+/// Cosine of the angle between two ways; 1 where one has no length.
+pub(super) fn cosine(one: (f64, f64), other: (f64, f64)) -> f64 {
+    let lengths = libm::hypot(one.0, one.1) * libm::hypot(other.0, other.1);
+    if lengths > 0.0 { (one.0 * other.0 + one.1 * other.1) / lengths } else { 1.0 }
+}
+
+/// The parts of a line inside of the trusted part of the window.
+fn clipped(places: &[PxPoint], trusted: impl Fn(&PxPoint) -> bool) -> Vec<Piece> {
+    let mut pieces: Vec<Piece> = Vec::new();
+    let mut inside = false;
+    for (i, place) in places.iter().enumerate() {
+        if !trusted(place) {
+            if inside && let Some(piece) = pieces.last_mut() {
+                piece.open[1] = true;
+            }
+            inside = false;
+            continue;
+        }
+        if !inside {
+            pieces.push(Piece { places: Vec::new(), closed: false, open: [i > 0, false] });
+            inside = true;
+        }
+        if let Some(piece) = pieces.last_mut() {
+            piece.places.push(*place);
+        }
+    }
+    let is_loop = places.len() > 3 && places.first() == places.last();
+    if is_loop && places.iter().all(&trusted) {
+        if let Some(piece) = pieces.first_mut() {
+            piece.places.pop();
+            piece.closed = true;
+        }
+    } else if is_loop && places.first().is_some_and(&trusted) && pieces.len() > 1 {
+        // The piece over the seam of the loop is one.
+        if let Some(last) = pieces.pop()
+            && let Some(first) = pieces.first_mut()
+        {
+            let mut whole = last.places;
+            whole.pop();
+            whole.append(&mut first.places);
+            first.places = whole;
+            first.open[0] = last.open[0];
+        }
+    }
+    pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_stay_and_the_rest_is_even() {
+        let corner = [(0.0, 0.0), (5.0, 0.0), (5.0, 2.0)].map(|(x, y)| PxPoint::new(x, y));
+        let places = resampled(&corner, 2.0);
+        assert_eq!(places.len(), 5);
+        assert_eq!((places[3], places[4]), (corner[1], corner[2]));
+        assert!((places[1].x - 5.0 / 3.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,534 @@
+//! [`MappingFollower`]: a map of the lines, and each of them followed once.
+
+use super::align::aligned;
+use super::flat::Flat;
+use super::line_map::{LineMap, State};
+use super::lines::Lines;
+use super::paper::nearest;
+use super::play::Play;
+use super::registration::{View, registered};
+use super::search::Search;
+use super::{End, FollowReport, LineFollower, Lost, MappingSettings, Step, Tool, trail};
+use crate::{Gray, PxPoint};
+
+/// Half of the side of what a glance looks at, px.
+const GLANCE_PX: usize = 100;
+
+/// A line farther than this from the tool is gone back to before it is followed on, px.
+const OFF_PX: f64 = 0.45;
+
+/// The tool is lowered when it is as near, px.
+const ARRIVED_PX: f64 = 0.35;
+
+/// How the play of an axis is felt: to and fro twice, in moves so small that no other line is taken for this one, px.
+const FEELING_PX: [f64; 16] =
+    [2.0, 4.0, 6.0, 8.0, 6.0, 4.0, 2.0, 0.0, 2.0, 4.0, 6.0, 8.0, 6.0, 4.0, 2.0, 0.0];
+
+/// Lines before which the play is felt, at most: where it is not seen it does not matter as much.
+const MOST_FELT: u32 = 4;
+
+/// Most pictures in one place.
+const MOST_FIXES: u32 = 14;
+
+/// Most pictures without anything new.
+const MOST_IDLE: u32 = 120;
+
+#[derive(Clone, Copy, Debug)]
+enum Doing {
+    /// Nothing yet.
+    Starting,
+    /// On the way to a node, with the tool lifted.
+    Going(u32),
+    /// At a node, with the tool lifted: moves to and fro to feel the play of the axes.
+    Feeling { node: u32, turn: usize },
+    /// On a line: the last node, the link that is being followed and the node at its end, and the way that it came.
+    Following { node: u32, link: Option<(u32, u32)>, heading: (f64, f64) },
+    /// On the way to a place that no window has shown.
+    Searching(PxPoint),
+}
+
+/// Ours: follows each line once, through crossings and tips, with a table that misses.
+///
+/// From each window come the middles of its lines, to a fraction of a pixel, junctions as they truly are. They go into a map,
+/// and where they lie in it tells where the camera truly is; so the table's error never adds up, and the play of its axes is
+/// learned. The tool goes along the map's lines: straight on at crossings, into the very tips of corners, to every branch; it is lifted
+/// only to go to a line that is not joined to this one. Only lines that are connected in the ink are joined in the map, so those that come near
+/// do not matter. The width of the lines is found from each window.
+///
+/// ```
+/// # use plotter_vector::{PxPoint, follow::*};
+/// let ring: Vec<PxPoint> = (0..=60).map(|i| f64::from(i) * 0.10471975511965977).map(|a| PxPoint::new(300.0 + 120.0 * a.cos(), 300.0 + 120.0 * a.sin())).collect();
+/// let paper = Paper::drawn(600, 600, &[(ring.clone(), 5.0)])?;
+/// let mut camera = SimulatedCamera::new(&paper, CameraSettings::default());
+/// let mut table = SimulatedTable::new(PxPoint::new(300.0, 200.0), TableError { random_px: 1.0, play_px: 3.0, seed: 1 });
+/// let mut follower = MappingFollower::new(MappingSettings::default());
+/// let end = loop {
+///     match follower.observe(&camera.window(table.place()), table.commanded()) {
+///         Step::Move { path, tool } => path.into_iter().for_each(|to| table.go(to, tool)),
+///         Step::LineLost { .. } => {}
+///         Step::Done(end) => break end,
+///     }
+/// };
+/// assert_eq!((end, follower.report().lifts), (End::Complete, 0));
+/// let judged = judge(&[ring], table.strokes(), 2.0);
+/// assert!(judged.coverage > 0.99 && judged.rms_px < 0.6, "{judged:?}");
+/// # Ok::<(), plotter_vector::GrayError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MappingFollower {
+    settings: MappingSettings,
+    map: LineMap,
+    play: [Play; 2],
+    doing: Doing,
+    search: Option<Search>,
+    /// Where the camera truly is.
+    place: PxPoint,
+    /// Where all of a window was looked at last.
+    looked_at: Option<PxPoint>,
+    window_px: Option<(u32, u32)>,
+    width_px: f64,
+    margin_px: f64,
+    tool: Tool,
+    tries: u32,
+    fixes: u32,
+    idle: u32,
+    felt: u32,
+    last_seen: Lost,
+    report: FollowReport,
+    ended: Option<End>,
+}
+
+impl MappingFollower {
+    /// Before the first window.
+    #[must_use]
+    pub fn new(settings: MappingSettings) -> Self {
+        Self {
+            settings,
+            map: LineMap::default(),
+            play: [Play::default(); 2],
+            doing: Doing::Starting,
+            search: None,
+            place: PxPoint::default(),
+            looked_at: None,
+            window_px: None,
+            width_px: 4.0,
+            margin_px: 12.0,
+            tool: Tool::Up,
+            tries: 0,
+            fixes: 0,
+            idle: 0,
+            felt: 0,
+            last_seen: Lost::OneColour,
+            report: FollowReport::default(),
+            ended: None,
+        }
+    }
+
+    /// What was seen and followed so far.
+    #[must_use]
+    pub fn report(&self) -> FollowReport {
+        FollowReport {
+            seen_px: [State::Ahead, State::Followed, State::Outside, State::GivenUp]
+                .map(|state| self.map.length_of(state))
+                .iter()
+                .sum(),
+            followed_px: self.map.length_of(State::Followed),
+            given_up_px: self.map.length_of(State::GivenUp),
+            outside_px: self.map.length_of(State::Outside),
+            line_width_px: self.width_px,
+            play_px: self.play.map(|axis| axis.play_px),
+            ..self.report.clone()
+        }
+    }
+
+    /// Where the camera truly is, by the map.
+    #[must_use]
+    pub const fn place(&self) -> PxPoint {
+        self.place
+    }
+
+    /// The pieces of lines that the map holds, and whether each was followed.
+    pub fn seen_lines(&self) -> impl Iterator<Item = ([PxPoint; 2], bool)> {
+        let is_line = |link: &&super::line_map::Link| !link.contact && link.state != State::Ghost;
+        self.map
+            .links
+            .iter()
+            .filter(is_line)
+            .map(|link| (link.ends.map(|end| self.map.at(end)), link.state == State::Followed))
+    }
+
+    /// What a correct window is like, or what is wrong with it.
+    fn check(&mut self, window: &Gray) -> bool {
+        let size = (window.width(), window.height());
+        let known = *self.window_px.get_or_insert(size);
+        known == size && size.0.min(size.1) >= 16
+    }
+
+    fn lost(&mut self, at: PxPoint, why: Lost) -> Step {
+        self.tries += 1;
+        self.last_seen = why;
+        if self.tries > self.settings.max_tries {
+            return self.end(End::NoLine { at, why });
+        }
+        Step::LineLost { at, tries: self.tries, why }
+    }
+
+    fn end(&mut self, end: End) -> Step {
+        self.ended = Some(end);
+        Step::Done(end)
+    }
+
+    /// Puts all that a window shows into the map.
+    fn look(&mut self, flat: &Flat, middle: PxPoint) -> usize {
+        let place = self.place;
+        let lines = Lines::of(flat, self.settings.max_line_px);
+        self.looked_at = Some(place);
+        if lines.width_px > 0.0 && !lines.pieces.is_empty() {
+            self.width_px = lines.width_px;
+        }
+        if lines.margin_px > 0.0 {
+            self.margin_px = lines.margin_px;
+        }
+        self.last_seen = if lines.has_ink { Lost::TooThick } else { Lost::OneColour };
+        if let Some(area) = lines.area {
+            let at = place.along(area.minus(middle), 1.0);
+            if self.report.areas.iter().all(|known| known.distance(at) > 60.0)
+                && self.report.areas.len() < 1000
+            {
+                self.report.areas.push(at);
+            }
+        }
+        let mut pieces = lines.pieces;
+        for at in pieces.iter_mut().flat_map(|piece| &mut piece.places) {
+            *at = place.along(at.minus(middle), 1.0);
+        }
+        let (known, first_link) = (self.map.nodes.len(), self.map.links.len());
+        aligned(&mut self.map, flat, &pieces, middle, place, self.margin_px);
+        let dark_at = |at: PxPoint| flat.at(middle.along(at.minus(place), 1.0));
+        let mut darks: Vec<f32> =
+            pieces.iter().flat_map(|piece| &piece.places).step_by(7).map(|at| dark_at(*at)).collect();
+        darks.sort_by(f32::total_cmp);
+        let half = 0.5 * darks.get(darks.len() / 2).copied().unwrap_or(1.0);
+        let new = self.map.insert(&pieces, self.width_px, &|at| dark_at(at) > half);
+        self.mark_outside(first_link);
+        self.find_ghosts(flat, middle, known);
+        let trusted = (middle.x - self.margin_px, middle.y - self.margin_px);
+        if let Some(search) = &mut self.search {
+            search.see(place, trusted);
+        }
+        new
+    }
+
+    fn is_reachable(&self, at: PxPoint) -> bool {
+        self.settings.area.is_none_or(|[from, to]| {
+            at.x >= from.x - 0.5 && at.y >= from.y - 0.5 && at.x <= to.x + 0.5 && at.y <= to.y + 0.5
+        })
+    }
+
+    /// New links that lead out of the area are not followed.
+    fn mark_outside(&mut self, first_link: usize) {
+        for id in first_link..self.map.links.len() {
+            let Some(link) = self.map.links.get(id).copied().filter(|link| !link.contact) else { continue };
+            let inside = link.ends.map(|end| self.is_reachable(self.map.at(end)));
+            if inside == [true, true] {
+                continue;
+            }
+            if let Some(link) = self.map.links.get_mut(id) {
+                link.state = State::Outside;
+            }
+            let at = self.map.at(if inside[0] { link.ends[0] } else { link.ends[1] });
+            let is_new = self.report.leaves.iter().all(|known| known.distance(at) > 10.0);
+            if (inside[0] || inside[1]) && is_new && self.report.leaves.len() < 1000 {
+                self.report.leaves.push(at);
+            }
+        }
+    }
+
+    /// Lines of the map that are not there.
+    fn find_ghosts(&mut self, flat: &Flat, middle: PxPoint, known: usize) {
+        let reach = libm::hypot(middle.x, middle.y);
+        for id in self.map.near(self.place, reach) {
+            let seen_at = middle.along(self.map.at(id).minus(self.place), 1.0);
+            let is_ahead =
+                self.map.links_of(id).any(|(_, link, _)| link.state == State::Ahead && !link.contact);
+            let inside = flat.holds(seen_at, self.margin_px + 8.0);
+            if (id as usize) < known && is_ahead && inside && flat.at(seen_at) < 0.05 + 2.0 * flat.noise {
+                self.map.miss(id);
+            }
+        }
+    }
+
+    /// The commands that lead through places, inside of the machine's area.
+    fn commands(&mut self, path: &[PxPoint]) -> Vec<PxPoint> {
+        let area = self.settings.area;
+        let [x, y] = &mut self.play;
+        path.iter()
+            .map(|to| {
+                let command = PxPoint::new(x.command(to.x), y.command(to.y));
+                area.map_or(command, |[from, to]| {
+                    PxPoint::new(
+                        command.x.clamp(from.x, to.x.max(from.x)),
+                        command.y.clamp(from.y, to.y.max(from.y)),
+                    )
+                })
+            })
+            .collect()
+    }
+
+    fn go(&mut self, path: &[PxPoint], tool: Tool) -> Step {
+        if tool == Tool::Down && self.tool == Tool::Up && self.report.followed_px > 0.0 {
+            self.report.lifts += 1;
+        }
+        if tool == Tool::Down {
+            // Only whether anything was followed; the length comes from the map.
+            self.report.followed_px = 1.0;
+        }
+        self.tool = tool;
+        self.report.moves += 1;
+        Step::Move { path: self.commands(path), tool }
+    }
+
+    /// Some of the way to a place, with the tool lifted.
+    fn travel(&mut self, to: PxPoint) -> Step {
+        let middle = self.window_px.map_or(100.0, |(width, height)| 0.5 * f64::from(width.min(height)));
+        let way = self.place.distance(to);
+        let part = if way > middle { middle / way } else { 1.0 };
+        let next = self.place.along(to.minus(self.place), part);
+        self.go(&[next], Tool::Up)
+    }
+
+    /// What to do when the tool is on no line.
+    fn choose(&mut self, at: PxPoint) -> Step {
+        self.fixes = 0;
+        if let Some(node) = trail::start(&mut self.map, self.place) {
+            self.doing = Doing::Going(node);
+            return self.travel(self.map.at(node));
+        }
+        let next = if self.settings.search { self.search.as_mut().and_then(Search::next) } else { None };
+        if let Some(to) = next {
+            let to = self.settings.area.map_or(to, |[from, end]| {
+                PxPoint::new(to.x.clamp(from.x, end.x.max(from.x)), to.y.clamp(from.y, end.y.max(from.y)))
+            });
+            self.doing = Doing::Searching(to);
+            return self.travel(to);
+        }
+        if self.map.nodes.is_empty() {
+            let why = self.last_seen;
+            if self.search.is_some() { self.end(End::NoLine { at, why }) } else { self.lost(at, why) }
+        } else {
+            self.end(End::Complete)
+        }
+    }
+
+    /// Gives up what is ahead at a node.
+    fn give_up(&mut self, node: u32) {
+        let links: Vec<u32> = self
+            .map
+            .links_of(node)
+            .filter(|(_, link, _)| !link.contact && link.state == State::Ahead)
+            .map(|found| found.0)
+            .collect();
+        links.into_iter().for_each(|link| self.map.set_state(link, State::GivenUp));
+    }
+
+    /// The next step, or none if more of the window must be looked at first.
+    fn decide(&mut self, at: PxPoint, looked: bool) -> Option<Step> {
+        match self.doing {
+            Doing::Starting => Some(self.choose(at)),
+            Doing::Searching(to) => {
+                // New lines come first; the place is reached as well as the table can without lines.
+                let has_lines = trail::start(&mut self.map, self.place).is_some();
+                let far = self.place.distance(to) > 2.0 && self.fixes < MOST_FIXES;
+                if has_lines || !far {
+                    return Some(self.choose(at));
+                }
+                if self.place.distance(to) < 20.0 {
+                    self.fixes += 1;
+                }
+                Some(self.travel(to))
+            }
+            Doing::Going(node) => {
+                let still =
+                    self.map.links_of(node).any(|(_, link, _)| link.state == State::Ahead && !link.contact);
+                if !still {
+                    return Some(self.choose(at));
+                }
+                let way = self.place.distance(self.map.at(node));
+                if way <= ARRIVED_PX || self.fixes >= MOST_FIXES {
+                    if way > 3.0 {
+                        self.give_up(node);
+                        return Some(self.choose(at));
+                    }
+                    self.fixes = 0;
+                    let unknown = self.play.iter().any(Play::is_unknown);
+                    if unknown && self.felt < MOST_FELT {
+                        self.felt += 1;
+                        self.doing = Doing::Feeling { node, turn: 0 };
+                        return self.decide(at, looked);
+                    }
+                    self.doing = Doing::Following { node, link: None, heading: (0.0, 0.0) };
+                    return self.decide(at, looked);
+                }
+                if way < 20.0 {
+                    self.fixes += 1;
+                }
+                Some(self.travel(self.map.at(node)))
+            }
+            Doing::Feeling { node, turn } => {
+                let home = self.map.at(node);
+                let axis = turn / FEELING_PX.len();
+                let Some(off_px) = FEELING_PX.get(turn % FEELING_PX.len()).filter(|_| axis < 2) else {
+                    self.doing = Doing::Going(node);
+                    return Some(self.travel(home));
+                };
+                self.doing = Doing::Feeling { node, turn: turn + 1 };
+                let (dx, dy) = if axis == 0 { (*off_px, 0.0) } else { (0.0, *off_px) };
+                Some(self.travel(PxPoint::new(home.x + dx, home.y + dy)))
+            }
+            Doing::Following { node, link, heading } => self.follow(at, node, link, heading, looked),
+        }
+    }
+
+    fn follow(
+        &mut self,
+        at: PxPoint,
+        node: u32,
+        link: Option<(u32, u32)>,
+        heading: (f64, f64),
+        looked: bool,
+    ) -> Option<Step> {
+        // Back to the line first, if the table went off it.
+        let on_line = link.map_or_else(
+            || self.map.at(node),
+            |(_, far)| nearest(self.place, self.map.at(node), self.map.at(far)),
+        );
+        if self.tool == Tool::Down && self.place.distance(on_line) > OFF_PX && self.fixes < MOST_FIXES {
+            self.fixes += 1;
+            return Some(self.go(&[on_line], Tool::Down));
+        }
+        let (mut node, mut link, mut heading) = (node, link, heading);
+        let mut path: Vec<PxPoint> = Vec::new();
+        let mut from = self.place;
+        let mut length = 0.0;
+        while length < self.settings.step_px {
+            let (id, far) = match link {
+                Some(chosen) => chosen,
+                None => {
+                    let Some((id, near, far)) = trail::next(&self.map, node, heading) else { break };
+                    if near != node {
+                        path.push(self.map.at(near));
+                        node = near;
+                    }
+                    (id, far)
+                }
+            };
+            let to = self.map.at(far);
+            let share = self.play[0].share(from.x, to.x).min(self.play[1].share(from.y, to.y));
+            if share < 1.0 && self.fixes < MOST_FIXES {
+                // The play is not known yet: a small move, and a look.
+                if path.is_empty() {
+                    self.fixes += 1;
+                    path.push(from.along(to.minus(from), share));
+                    link = Some((id, far));
+                }
+                break;
+            }
+            self.fixes = 0;
+            self.idle = 0;
+            self.map.set_state(id, State::Followed);
+            length += from.distance(to);
+            heading = to.minus(self.map.at(node));
+            path.push(to);
+            (node, link, from) = (far, None, to);
+        }
+        if path.is_empty() {
+            if !looked {
+                return None;
+            }
+            return Some(self.choose(at));
+        }
+        self.doing = Doing::Following { node, link, heading };
+        Some(self.go(&path, Tool::Down))
+    }
+}
+
+impl LineFollower for MappingFollower {
+    fn observe(&mut self, window: &Gray, pose: PxPoint) -> Step {
+        if let Some(end) = self.ended {
+            return Step::Done(end);
+        }
+        self.report.windows += 1;
+        if self.report.windows > self.settings.max_windows {
+            return self.end(End::WindowLimit { at: pose });
+        }
+        if !self.check(window) {
+            return self.lost(pose, Lost::WindowSize);
+        }
+        let (width, height) = (f64::from(window.width()), f64::from(window.height()));
+        let middle = PxPoint::new(0.5 * width, 0.5 * height);
+        if self.search.is_none()
+            && let (Some(area), true) = (self.settings.area, self.settings.search)
+        {
+            self.search = Some(Search::new(area, width.min(height) - 2.0 * self.margin_px));
+        }
+        if let Doing::Starting = self.doing {
+            self.play[0].forget(pose.x);
+            self.play[1].forget(pose.y);
+        }
+        let predicted = PxPoint::new(self.play[0].place(pose.x), self.play[1].place(pose.y));
+        let far_from_look =
+            self.looked_at.is_none_or(|at| at.distance(predicted) > (0.14 * width.min(height)).min(40.0));
+        let glance = matches!(self.doing, Doing::Following { .. }) && !far_from_look;
+        let mut flat = Flat::of(window, self.settings.correction.as_ref(), glance.then_some(GLANCE_PX));
+        let mut is_whole = !glance;
+        let reach_px = if glance { 92.0 } else { 140.0 };
+        let view = View { flat: &flat, middle, width_px: self.width_px, reach_px };
+        let mut fix = registered(&mut self.map, &view, predicted, is_whole);
+        if glance && fix.is_none_or(|fix| fix.is_lost()) {
+            flat = Flat::of(window, self.settings.correction.as_ref(), None);
+            is_whole = true;
+            let view = View { flat: &flat, middle, width_px: self.width_px, reach_px: 140.0 };
+            fix = registered(&mut self.map, &view, predicted, true);
+        }
+        if fix.is_some_and(|fix| fix.is_lost()) {
+            let lines = Lines::of(&flat, self.settings.max_line_px);
+            let why = match (lines.has_ink, lines.pieces.is_empty()) {
+                (false, _) => Lost::OneColour,
+                (true, true) => Lost::TooThick,
+                (true, false) => Lost::Elsewhere,
+            };
+            return self.lost(pose, why);
+        }
+        let place = fix.map_or(predicted, |fix| fix.place);
+        let is_sure = fix.map_or([false; 2], |fix| fix.is_sure);
+        self.play[0].measure(pose.x, place.x, is_sure[0]);
+        self.play[1].measure(pose.y, place.y, is_sure[1]);
+        self.place = place;
+        if !self.map.nodes.is_empty() {
+            self.tries = 0;
+        }
+
+        self.idle += 1;
+        if is_whole && self.look(&flat, middle) > 0 {
+            self.idle = 0;
+        }
+        if self.idle > MOST_IDLE {
+            self.idle = 0;
+            if let Doing::Going(node) | Doing::Following { node, .. } = self.doing {
+                self.give_up(node);
+            }
+            return self.choose(pose);
+        }
+        if let Some(step) = self.decide(pose, is_whole) {
+            return step;
+        }
+        let whole = Flat::of(window, self.settings.correction.as_ref(), None);
+        if self.look(&whole, middle) > 0 {
+            self.idle = 0;
+        }
+        match self.decide(pose, true) {
+            Some(step) => step,
+            None => self.choose(pose),
+        }
+    }
+}

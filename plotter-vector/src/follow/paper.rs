@@ -1,0 +1,151 @@
+//! [`Paper`]: the drawing under the simulated camera.
+
+use super::whole::{count, floor, inside, level};
+use crate::{Gray, GrayError, PxPoint};
+
+/// A drawing on white paper, as shares of the light that each place reflects. A camera pixel sees a pixel of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Paper {
+    width: usize,
+    height: usize,
+    reflected: Vec<f32>,
+}
+
+impl Paper {
+    /// The paper of a picture: 255 is white. Outside of the picture all is white.
+    #[must_use]
+    pub fn of(picture: &Gray) -> Self {
+        let reflected = picture.pixels().iter().map(|level| f32::from(*level) / 255.0).collect();
+        Self { width: picture.width() as usize, height: picture.height() as usize, reflected }
+    }
+
+    /// Strokes of a round pen: polylines in pixels of the paper, each with the width of its pen in px. A pixel is as dark as the
+    /// pen covers it.
+    ///
+    /// # Errors
+    /// A size that no picture may have.
+    ///
+    /// ```
+    /// # use plotter_vector::{PxPoint, follow::Paper};
+    /// let line = vec![PxPoint::new(0.0, 2.0), PxPoint::new(8.0, 2.0)];
+    /// let paper = Paper::drawn(8, 4, &[(line, 2.0)])?;
+    /// assert_eq!(paper.picture()?.pixels()[..32].chunks(8).map(|row| row[4]).collect::<Vec<_>>(), [255, 0, 0, 255]);
+    /// # Ok::<(), plotter_vector::GrayError>(())
+    /// ```
+    pub fn drawn(width: u32, height: u32, strokes: &[(Vec<PxPoint>, f64)]) -> Result<Self, GrayError> {
+        let mut paper = Self::of(&Gray::new(width, height, vec![255; width as usize * height as usize])?);
+        for (stroke, pen_px) in strokes {
+            for pair in stroke.windows(2) {
+                if let [from, to] = pair {
+                    paper.draw(*from, *to, 0.5 * pen_px);
+                }
+            }
+        }
+        Ok(paper)
+    }
+
+    fn draw(&mut self, from: PxPoint, to: PxPoint, radius_px: f64) {
+        let reach = radius_px + 1.0;
+        let rows = floor(from.y.min(to.y) - reach)..=floor(from.y.max(to.y) + reach);
+        let columns = floor(from.x.min(to.x) - reach)..=floor(from.x.max(to.x) + reach);
+        for y in rows.filter_map(|y| inside(y, self.height)) {
+            for x in columns.clone().filter_map(|x| inside(x, self.width)) {
+                #[expect(clippy::cast_precision_loss, reason = "a pixel's number is small")]
+                let at = PxPoint::new(x as f64 + 0.5, y as f64 + 0.5);
+                let covered = (radius_px - distance(at, from, to) + 0.5).clamp(0.0, 1.0);
+                #[expect(clippy::cast_possible_truncation, reason = "from 0 to 1")]
+                let left = 1.0 - covered as f32;
+                if let Some(share) = self.reflected.get_mut(y * self.width + x) {
+                    *share = share.min(left);
+                }
+            }
+        }
+    }
+
+    /// Size of the paper, px.
+    #[must_use]
+    pub fn size(&self) -> (usize, usize) {
+        (self.width, self.height)
+    }
+
+    /// The paper as a picture.
+    ///
+    /// # Errors
+    /// None for papers made of pictures.
+    pub fn picture(&self) -> Result<Gray, GrayError> {
+        let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
+        let levels = self.reflected.iter().map(|share| level(255.0 * share)).collect();
+        Gray::new(side(self.width), side(self.height), levels)
+    }
+
+    /// As an unfocused lens shows it: each point is a Gaussian spot of this standard deviation, px.
+    #[must_use]
+    pub(super) fn blurred(&self, sd_px: f64) -> Self {
+        if sd_px <= 0.0 {
+            return self.clone();
+        }
+        let reach = count(3.0 * sd_px).max(1);
+        #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "a few pixels")]
+        let weight = |i: usize| libm::exp(-0.5 * (i as f64 / sd_px) * (i as f64 / sd_px)) as f32;
+        let half: Vec<f32> = (0..=reach).map(weight).collect();
+        let sum: f32 = half.iter().skip(1).sum::<f32>() * 2.0 + 1.0;
+        let kernel: Vec<f32> = half.iter().skip(1).rev().chain(&half).map(|weight| weight / sum).collect();
+        let along = convolved(&self.reflected, self.width, &kernel);
+        let turned = transposed(&along, self.width, self.height);
+        let across = convolved(&turned, self.height, &kernel);
+        Self { reflected: transposed(&across, self.height, self.width), ..*self }
+    }
+
+    /// The share of the light that a place reflects, between four pixels.
+    pub(super) fn at(&self, x: f32, y: f32) -> f32 {
+        let (x, y) = (x - 0.5, y - 0.5);
+        let (left, top) = (x.floor(), y.floor());
+        let (right_part, low_part) = (x - left, y - top);
+        #[expect(clippy::cast_possible_truncation, reason = "saturates far outside of the paper")]
+        let (left, top) = (left as i32, top as i32);
+        let share = |x: i32, y: i32| match (inside(x, self.width), inside(y, self.height)) {
+            (Some(x), Some(y)) => self.reflected.get(y * self.width + x).copied().unwrap_or(1.0),
+            _ => 1.0,
+        };
+        let (right, low) = (left.saturating_add(1), top.saturating_add(1));
+        let above = share(left, top) * (1.0 - right_part) + share(right, top) * right_part;
+        let below = share(left, low) * (1.0 - right_part) + share(right, low) * right_part;
+        above * (1.0 - low_part) + below * low_part
+    }
+}
+
+/// Rows folded with a kernel; outside of them all is white.
+fn convolved(levels: &[f32], width: usize, kernel: &[f32]) -> Vec<f32> {
+    let reach = kernel.len() / 2;
+    let mut folded = Vec::with_capacity(levels.len());
+    let mut padded = vec![1.0; width + 2 * reach];
+    for row in levels.chunks(width.max(1)) {
+        if let Some(middle) = padded.get_mut(reach..reach + row.len()) {
+            middle.copy_from_slice(row);
+        }
+        folded.extend(
+            padded.windows(kernel.len()).map(|near| near.iter().zip(kernel).map(|(a, b)| a * b).sum::<f32>()),
+        );
+    }
+    folded
+}
+
+/// Columns as rows.
+pub(super) fn transposed(levels: &[f32], width: usize, height: usize) -> Vec<f32> {
+    let at = |x: usize, y: usize| levels.get(y * width + x).copied().unwrap_or(1.0);
+    (0..width).flat_map(|x| (0..height).map(move |y| (x, y))).map(|(x, y)| at(x, y)).collect()
+}
+
+/// Distance of a place from a piece of a straight line.
+pub(super) fn distance(at: PxPoint, from: PxPoint, to: PxPoint) -> f64 {
+    at.distance(nearest(at, from, to))
+}
+
+/// The point of a piece of a straight line that is nearest.
+pub(super) fn nearest(at: PxPoint, from: PxPoint, to: PxPoint) -> PxPoint {
+    let (dx, dy) = to.minus(from);
+    let length2 = dx * dx + dy * dy;
+    let (px, py) = at.minus(from);
+    let part = if length2 > 0.0 { ((px * dx + py * dy) / length2).clamp(0.0, 1.0) } else { 0.0 };
+    from.along((dx, dy), part)
+}

@@ -1,0 +1,261 @@
+//! [`PublishedFollower`]: circles around the current place, and always the same hand.
+
+use super::circle::ring;
+use super::exits::{circumference, low_pass, middles, offset};
+use super::{LineFollower, Lost, Step, Tool};
+use crate::{Bitmap, Gray, Pixel, PxPoint};
+
+/// The hand on which a follower turns off at a junction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Hand {
+    /// Always the leftmost way.
+    Left,
+    /// Always the rightmost way.
+    #[default]
+    Right,
+}
+
+/// The parameters of the published follower.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PublishedSettings {
+    /// Darker levels are line (section 4.8).
+    pub level: u8,
+    /// Least share of background on the circle of a step: 0.65 (section 4.6).
+    pub background: f64,
+    /// Shortest run of line or background on a circle: 4 (section 4.7).
+    pub min_run: usize,
+    /// Least radius of a step, px: the thinnest allowed line, which the user gives; three values were enough in practice.
+    pub thinnest_px: u32,
+    /// Greatest number of places in a window (section 4.1).
+    pub max_points: usize,
+    /// On which side it turns off.
+    pub hand: Hand,
+    /// The way that it came before the first window.
+    pub heading: (f64, f64),
+}
+
+impl Default for PublishedSettings {
+    /// The thesis' own figures; for what it does not give: a level half way, lines from 4 px on, 40 places a window, and a first
+    /// way to the right.
+    fn default() -> Self {
+        Self {
+            level: 100,
+            background: 0.65,
+            min_run: 4,
+            thinnest_px: 4,
+            max_points: 40,
+            hand: Hand::Right,
+            heading: (1.0, 0.0),
+        }
+    }
+}
+
+/// The line follower as published: C. Ekholm, "Automaattisen plasmaleikkurin ohjauslogiikan kehitys" (Kajaani, 2005).
+///
+/// In each window: [threshold](PublishedSettings::level); circles grow from the middle until one meets the line; from there step by
+/// step, each to the middle of a run of line on the smallest circle with 65 % background, the low-pass filtered; of the exits
+/// the way back goes, and of the rest the next on one side is taken, by the angle from cross and dot product. Ends at
+/// the window's border, or after [`PublishedSettings::max_points`]. It never says that it is done: "the
+/// user stops it".
+///
+/// ```
+/// # use plotter_vector::{Gray, PxPoint, follow::{LineFollower, PublishedFollower, PublishedSettings, Step}};
+/// let row: Vec<u8> = vec![255; 100];
+/// let line: Vec<u8> = vec![0; 100];
+/// let levels: Vec<u8> = (0..100).flat_map(|y| if (48..53).contains(&y) { &line } else { &row }.clone()).collect();
+/// let mut follower = PublishedFollower::new(PublishedSettings::default());
+/// let Step::Move { path, .. } = follower.observe(&Gray::new(100, 100, levels)?, PxPoint::new(0.0, 0.0)) else { panic!() };
+/// let end = path.last().unwrap();
+/// assert!(end.x > 40.0 && end.y.abs() <= 1.0, "to the right, along the line: {end:?}");
+/// # Ok::<(), plotter_vector::GrayError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PublishedFollower {
+    settings: PublishedSettings,
+    /// Direction of the last move along the line.
+    heading: (f64, f64),
+    tries: u32,
+}
+
+impl PublishedFollower {
+    /// Before the first window.
+    #[must_use]
+    pub const fn new(settings: PublishedSettings) -> Self {
+        Self { settings, heading: settings.heading, tries: 0 }
+    }
+
+    fn threshold(&self, window: &Gray) -> Option<Bitmap> {
+        let mut ink = Bitmap::new(window.width(), window.height()).ok()?;
+        for (y, row) in (0..).zip(window.rows()) {
+            for (x, level) in (0..).zip(row) {
+                if *level < self.settings.level {
+                    ink.set(Pixel::new(x, y), true);
+                }
+            }
+        }
+        Some(ink)
+    }
+
+    /// The next place, if the circle stays inside of the window.
+    fn next(&self, ink: &Bitmap, at: Pixel, heading: (f64, f64)) -> Option<Pixel> {
+        let least = i32::try_from(self.settings.thinnest_px.clamp(1, 1 << 14)).ok()?;
+        for radius in least.. {
+            let around = circumference(ink, at, radius)?;
+            let background = around.iter().filter(|(_, line)| !line).count();
+            #[expect(clippy::cast_precision_loss, reason = "a circle in a window")]
+            let share = background as f64 / around.len().max(1) as f64;
+            if share < self.settings.background {
+                continue;
+            }
+            let ring: Vec<Pixel> = around.iter().map(|(pixel, _)| *pixel).collect();
+            let mut lines: Vec<bool> = around.iter().map(|(_, line)| *line).collect();
+            low_pass(&mut lines, self.settings.min_run);
+            let exits = middles(&ring, &lines);
+            return Some(choose(at, heading, &exits, self.settings.hand).unwrap_or(at));
+        }
+        None
+    }
+}
+
+/// Angle from the way back to an exit, 0 up to 360 degrees, growing to the right hand first (section 4.4).
+fn angle_deg(back: (f64, f64), way: (f64, f64)) -> f64 {
+    let dot = back.0 * way.0 + back.1 * way.1;
+    // On a picture, y down, this turns against the clock: from behind over the right hand.
+    let cross = back.1 * way.0 - back.0 * way.1;
+    let angle = libm::atan2(cross, dot).to_degrees();
+    if angle < 0.0 { angle + 360.0 } else { angle }
+}
+
+/// The exit on the wanted hand; the way back only when there is no other.
+fn choose(at: Pixel, heading: (f64, f64), exits: &[Pixel], hand: Hand) -> Option<Pixel> {
+    let back = (-heading.0, -heading.1);
+    let mut angles: Vec<(f64, Pixel)> =
+        exits.iter().map(|exit| (angle_deg(back, exit.minus(at)), *exit)).collect();
+    if angles.len() < 2 {
+        return exits.first().copied();
+    }
+    // The way back is the one nearest to 0, from either side.
+    let near = |angle: f64| angle.min(360.0 - angle);
+    let (way_back, _) = angles.iter().enumerate().min_by(|(_, a), (_, b)| near(a.0).total_cmp(&near(b.0)))?;
+    angles.remove(way_back);
+    let by_angle = |a: &&(f64, Pixel), b: &&(f64, Pixel)| a.0.total_cmp(&b.0);
+    let chosen = match hand {
+        Hand::Right => angles.iter().min_by(by_angle),
+        Hand::Left => angles.iter().max_by(by_angle),
+    };
+    chosen.map(|(_, exit)| *exit)
+}
+
+impl LineFollower for PublishedFollower {
+    fn observe(&mut self, window: &Gray, pose: PxPoint) -> Step {
+        self.tries = self.tries.saturating_add(1);
+        let lost = |why| Step::LineLost { at: pose, tries: self.tries, why };
+        let Some(ink) = self.threshold(window) else { return lost(Lost::WindowSize) };
+        let middle = Pixel::new(window.width() / 2, window.height() / 2);
+        // A circle larger than the picture means that there is no line.
+        let largest = i32::try_from(window.width().max(window.height())).unwrap_or(i32::MAX);
+        let meets = |radius: i32| {
+            let on_line = |way| offset(middle, way, &ink).filter(|pixel| ink.get(*pixel));
+            ring(radius).into_iter().find_map(on_line)
+        };
+        let Some(nearest) = (0..largest).find_map(meets) else { return lost(Lost::OneColour) };
+        self.tries = 0;
+
+        let mut places = vec![nearest];
+        let mut at = nearest;
+        for _ in 0..self.settings.max_points {
+            let Some(next) = self.next(&ink, at, self.heading) else { break };
+            if next == at {
+                // No exit at all: a dead end, where one turns round.
+                self.heading = (-self.heading.0, -self.heading.1);
+                break;
+            }
+            self.heading = next.minus(at);
+            places.push(next);
+            at = next;
+        }
+        let centre = PxPoint::new(0.5 * f64::from(window.width()), 0.5 * f64::from(window.height()));
+        let to_paper = |pixel: &Pixel| pose.along(PxPoint::from(*pixel).minus(centre), 1.0);
+        Step::Move { path: merged(&places.iter().map(to_paper).collect::<Vec<_>>()), tool: Tool::Down }
+    }
+}
+
+/// A path without the places that lie straight between their neighbours.
+///
+/// ```
+/// # use plotter_vector::{PxPoint, follow::merged};
+/// let path = [(0.0, 0.0), (2.0, 1.0), (4.0, 2.0), (4.0, 5.0)].map(|(x, y)| PxPoint::new(x, y));
+/// assert_eq!(merged(&path), [path[0], path[2], path[3]]);
+/// ```
+#[must_use]
+pub fn merged(path: &[PxPoint]) -> Vec<PxPoint> {
+    let mut kept: Vec<PxPoint> = Vec::new();
+    for place in path {
+        if let [.., before, last] = kept.as_slice() {
+            let (one, other) = (last.minus(*before), place.minus(*last));
+            let straight =
+                one.0 * other.1 - one.1 * other.0 == 0.0 && one.0 * other.0 + one.1 * other.1 > 0.0;
+            if straight {
+                kept.pop();
+            }
+        }
+        kept.push(*place);
+    }
+    kept
+}
+
+/// From pixels of the camera to steps of the motors: the thesis' multiplier (section 4.9).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelScale {
+    /// Steps of the motors for a pixel.
+    pub steps_per_px: f64,
+}
+
+impl PixelScale {
+    /// The moves of a path in steps, each from the place before; rounded so that no error adds up.
+    ///
+    /// ```
+    /// # use plotter_vector::{PxPoint, follow::PixelScale};
+    /// let path = [PxPoint::new(0.5, 0.0), PxPoint::new(1.0, 0.0), PxPoint::new(1.5, 2.0)];
+    /// let moves = PixelScale { steps_per_px: 2.5 }.moves(PxPoint::new(0.0, 0.0), &path);
+    /// assert_eq!(moves, [(1, 0), (2, 0), (1, 5)]); // 1.25, 2.5 and 3.75 steps in all
+    /// ```
+    #[must_use]
+    pub fn moves(self, from: PxPoint, path: &[PxPoint]) -> Vec<(i32, i32)> {
+        let steps = |px: f64| super::whole::floor(px * self.steps_per_px + 0.5);
+        let mut at = (0, 0);
+        let mut moves = Vec::with_capacity(path.len());
+        for place in path {
+            let to = (steps(place.x - from.x), steps(place.y - from.y));
+            moves.push((to.0.saturating_sub(at.0), to.1.saturating_sub(at.1)));
+            at = to;
+        }
+        moves
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_three_ways_of_figure_8() {
+        // The thesis' place: ways to (0, -3), (-1, -3) and (0, 3); it came along (0, 3), that is from below, y up.
+        // On a picture y is down: came going up.
+        let at = Pixel::new(10, 10);
+        let exits = [Pixel::new(10, 13), Pixel::new(9, 7), Pixel::new(10, 7)];
+        let going_up = (0.0, -3.0);
+        assert_eq!(choose(at, going_up, &exits, Hand::Right), Some(Pixel::new(10, 7)));
+        assert_eq!(choose(at, going_up, &exits, Hand::Left), Some(Pixel::new(9, 7)));
+        assert_eq!(choose(at, going_up, &exits[..1], Hand::Left), Some(Pixel::new(10, 13)), "a dead end");
+    }
+
+    #[test]
+    fn an_empty_window_is_an_error_that_counts() {
+        let white = Gray::new(40, 40, vec![255; 1600]).unwrap();
+        let mut follower = PublishedFollower::new(PublishedSettings::default());
+        let at = PxPoint::new(3.0, 4.0);
+        assert_eq!(follower.observe(&white, at), Step::LineLost { at, tries: 1, why: Lost::OneColour });
+        assert_eq!(follower.observe(&white, at), Step::LineLost { at, tries: 2, why: Lost::OneColour });
+    }
+}

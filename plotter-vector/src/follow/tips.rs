@@ -1,0 +1,205 @@
+//! [`sharpened`]: the tips of sharp corners, where two arms of a line run into each other.
+//!
+//! Near a tip there is no paper between the arms, so their ink has one middle: a stub, from which both arms go off. The arms are
+//! taken from where they are apart, and meet where they meet.
+//!
+//! ```text
+//!    \ /  arms             \   /
+//!     Y                     \ /
+//!     |   stub               V   the tip
+//! ```
+
+use super::lines::cosine;
+use crate::PxPoint;
+
+/// An arm at the foot of a stub.
+#[derive(Clone, Debug)]
+struct Arm {
+    stroke: usize,
+    /// Whether the arm is the stroke's part behind the foot.
+    behind: bool,
+    /// Places from the foot on.
+    places: Vec<PxPoint>,
+    direction: (f64, f64),
+    middle: PxPoint,
+}
+
+/// Joins the arms of sharp tips in lines of some width; places along the strokes are about a pixel from each other.
+pub(super) fn sharpened(mut strokes: Vec<Vec<PxPoint>>, width_px: f64) -> Vec<Vec<PxPoint>> {
+    let longest = 9.0 * width_px + 6.0;
+    // Each tip takes its stub away: there are no more than stubs.
+    for _ in 0..strokes.len() {
+        let Some((stub, one, other, at)) = lonely(&strokes, longest, width_px) else { break };
+        join(&mut strokes, stub, &one, &other, at);
+    }
+    for _ in 0..strokes.len() {
+        let Some((split, stub, one, other, at)) = grown_on(&strokes, longest, width_px) else { break };
+        strokes = split;
+        join(&mut strokes, stub, &one, &other, at);
+    }
+    strokes
+}
+
+/// A stub that is a stroke of its own, with its arms and its tip.
+fn lonely(strokes: &[Vec<PxPoint>], longest: f64, width_px: f64) -> Option<(usize, Arm, Arm, PxPoint)> {
+    strokes.iter().enumerate().filter(|(_, places)| places.len() > 1 && length(places) < longest).find_map(
+        |(stub, places)| {
+            let backward: Vec<PxPoint> = places.iter().rev().copied().collect();
+            let found =
+                tip(strokes, stub, places, width_px).or_else(|| tip(strokes, stub, &backward, width_px));
+            found.map(|(one, other, at)| (stub, one, other, at))
+        },
+    )
+}
+
+/// The strokes with a stub cut off.
+type Cut = (Vec<Vec<PxPoint>>, usize, Arm, Arm, PxPoint);
+
+/// A stub that one arm goes on into, and where the other arm ends: the strokes with the stub cut off.
+fn grown_on(strokes: &[Vec<PxPoint>], longest: f64, width_px: f64) -> Option<Cut> {
+    let reach = 0.8 * width_px + 2.0;
+    for (index, stroke) in strokes.iter().enumerate() {
+        for (other, end) in strokes.iter().enumerate().flat_map(|(other, ends)| {
+            ends.first().into_iter().chain(ends.last()).map(move |end| (other, *end))
+        }) {
+            let nearest = stroke
+                .iter()
+                .enumerate()
+                .min_by(|(_, a), (_, b)| a.distance(end).total_cmp(&b.distance(end)));
+            let Some((at, _)) = nearest.filter(|(_, place)| other != index && place.distance(end) < reach)
+            else {
+                continue;
+            };
+            let (before, behind) = (stroke.get(..=at).unwrap_or(&[]), stroke.get(at..).unwrap_or(&[]));
+            for (arm, stub, turned) in [(before, behind, false), (behind, before, true)] {
+                if stub.len() < 3 || arm.len() < 4 || length(stub) >= longest {
+                    continue;
+                }
+                let mut split = strokes.to_vec();
+                if let Some(stroke) = split.get_mut(index) {
+                    *stroke = arm.to_vec();
+                }
+                let mut places = stub.to_vec();
+                if turned {
+                    places.reverse();
+                }
+                split.push(places.clone());
+                let last = split.len() - 1;
+                if let Some((one, other, tip)) = tip(&split, last, &places, width_px) {
+                    return Some((split, last, one, other, tip));
+                }
+            }
+        }
+    }
+    None
+}
+
+/// Puts one stroke over the tip in the place of the stub and the arms' strokes.
+fn join(strokes: &mut Vec<Vec<PxPoint>>, stub: usize, one: &Arm, other: &Arm, at: PxPoint) {
+    let mut whole: Vec<PxPoint> = one.places.iter().rev().copied().collect();
+    whole.push(at);
+    whole.extend(&other.places);
+    for gone in [stub, one.stroke, other.stroke] {
+        if let Some(stroke) = strokes.get_mut(gone) {
+            stroke.clear();
+        }
+    }
+    strokes.push(whole);
+    strokes.retain(|stroke| !stroke.is_empty());
+}
+
+fn length(places: &[PxPoint]) -> f64 {
+    places.windows(2).map(|pair| if let [a, b] = pair { a.distance(*b) } else { 0.0 }).sum()
+}
+
+/// Both arms and the tip, if a stroke is the stub of one, with its foot first.
+fn tip(
+    strokes: &[Vec<PxPoint>],
+    stub: usize,
+    places: &[PxPoint],
+    width_px: f64,
+) -> Option<(Arm, Arm, PxPoint)> {
+    let (foot, free) = (*places.first()?, *places.last()?);
+    let reach = 0.8 * width_px + 2.0;
+    let mut arms: Vec<Arm> = Vec::new();
+    for (index, stroke) in strokes.iter().enumerate().filter(|(index, _)| *index != stub) {
+        // Another line near the free end: no tip.
+        if stroke.iter().any(|at| at.distance(free) < reach.min(0.5 * foot.distance(free) + 1.0)) {
+            return None;
+        }
+        let nearest =
+            stroke.iter().enumerate().min_by(|(_, a), (_, b)| a.distance(foot).total_cmp(&b.distance(foot)));
+        let Some((at, _)) = nearest.filter(|(_, place)| place.distance(foot) < reach) else { continue };
+        for behind in [false, true] {
+            let part: Vec<PxPoint> = if behind {
+                stroke.iter().skip(at).copied().collect()
+            } else {
+                stroke.iter().take(at + 1).rev().copied().collect()
+            };
+            let own: Vec<PxPoint> =
+                part.into_iter().skip_while(|place| place.distance(foot) < width_px + 2.0).collect();
+            if own.len() < 4 {
+                continue;
+            }
+            let near: Vec<PxPoint> =
+                own.iter().copied().take(super::whole::count(5.0 * width_px + 8.0)).collect();
+            let (middle, direction) = fitted(&near)?;
+            arms.push(Arm { stroke: index, behind, places: own, direction, middle });
+        }
+    }
+    let [one, other] = <[Arm; 2]>::try_from(arms).ok()?;
+    if one.stroke == other.stroke && one.behind == other.behind {
+        return None;
+    }
+    let out = free.minus(foot);
+    let mean = (one.direction.0 + other.direction.0, one.direction.1 + other.direction.1);
+    if cosine(one.direction, other.direction) < 0.2 || cosine(out, mean) > -0.85 {
+        return None;
+    }
+    let cross = one.direction.0 * other.direction.1 - one.direction.1 * other.direction.0;
+    let between = other.middle.minus(one.middle);
+    let along = (between.0 * other.direction.1 - between.1 * other.direction.0) / cross;
+    let met = one.middle.along(one.direction, along);
+    // The ink ends about half a width behind the tip, the more the sharper it is.
+    let sound = cross.abs() > 0.03 && met.distance(free) < 1.5 * width_px + 0.4 * foot.distance(free) + 2.0;
+    Some((one, other, if sound { met } else { free }))
+}
+
+/// The straight line through places, by least squares across it: its middle, and its direction from the first on.
+fn fitted(places: &[PxPoint]) -> Option<(PxPoint, (f64, f64))> {
+    let count = f64::from(u32::try_from(places.len()).ok()?);
+    let sum = places.iter().fold((0.0, 0.0), |sum, at| (sum.0 + at.x, sum.1 + at.y));
+    let middle = PxPoint::new(sum.0 / count, sum.1 / count);
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for at in places {
+        let (dx, dy) = at.minus(middle);
+        xx += dx * dx;
+        xy += dx * dy;
+        yy += dy * dy;
+    }
+    let angle = 0.5 * libm::atan2(2.0 * xy, xx - yy);
+    let direction = (libm::cos(angle), libm::sin(angle));
+    let way = places.last()?.minus(*places.first()?);
+    let sign = if way.0 * direction.0 + way.1 * direction.1 < 0.0 { -1.0 } else { 1.0 };
+    Some((middle, (sign * direction.0, sign * direction.1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stub_with_two_arms_becomes_a_tip() {
+        // A tip at (0, 0) of about 23 degrees; the arms part at 20 px from it.
+        let arm = |side: f64| -> Vec<PxPoint> {
+            (20..80).map(|i| PxPoint::new(f64::from(i), side * 0.2 * f64::from(i))).collect()
+        };
+        let one: Vec<PxPoint> =
+            arm(1.0).into_iter().rev().chain([PxPoint::new(18.0, 0.0)]).chain(arm(-1.0)).collect();
+        let stub: Vec<PxPoint> = (-2..=18).rev().map(|i| PxPoint::new(f64::from(i), 0.0)).collect();
+        let strokes = sharpened(vec![one, stub], 5.0);
+        assert_eq!(strokes.len(), 1);
+        let tip = strokes[0].iter().map(|at| at.x.hypot(at.y)).fold(f64::MAX, f64::min);
+        assert!(tip < 1e-6, "{tip}");
+    }
+}

@@ -1,0 +1,122 @@
+//! Which way next: every line once, with few lifts.
+//!
+//! Fleury's rule (1883): of several ways take one that is no bridge, that is from which what is left here can still be reached; of
+//! those the one straight on. What no window has shown yet counts as joined to everything.
+
+use super::line_map::{LineMap, Link, State};
+use super::lines::cosine;
+use crate::PxPoint;
+use std::collections::HashSet;
+
+/// Most nodes that are visited to tell a bridge.
+const MOST_VISITED: usize = 20_000;
+
+/// Nodes of a line that tell its direction.
+const AHEAD: usize = 4;
+
+const fn is_ahead(link: &Link) -> bool {
+    !link.contact && matches!(link.state, State::Ahead)
+}
+
+/// A node, and all that touch it.
+fn cluster(map: &LineMap, node: u32) -> Vec<u32> {
+    let mut found = vec![node];
+    let mut i = 0;
+    while let Some(id) = found.get(i).copied() {
+        for (_, link, other) in map.links_of(id) {
+            if link.contact && !found.contains(&other) && found.len() < 16 {
+                found.push(other);
+            }
+        }
+        i += 1;
+    }
+    found
+}
+
+/// The way of a line behind a link, over a few nodes.
+fn course(map: &LineMap, from: u32, to: u32) -> (f64, f64) {
+    let (mut before, mut at) = (from, to);
+    for _ in 1..AHEAD {
+        let mut rest = map.links_of(at).filter(|(_, link, other)| !link.contact && *other != before);
+        let (Some((_, _, next)), None) = (rest.next(), rest.next()) else { break };
+        (before, at) = (at, next);
+    }
+    map.at(at).minus(map.at(from))
+}
+
+/// Whether the places `here` can be reached again from the other end of a link without it.
+fn returns(map: &LineMap, link: u32, from: u32, here: &[u32]) -> bool {
+    let mut seen: HashSet<u32> = HashSet::from([from]);
+    let mut open = vec![from];
+    while let Some(id) = open.pop() {
+        let is_unknown = map.node(id).is_some_and(|node| node.open);
+        if here.contains(&id) || is_unknown || seen.len() > MOST_VISITED {
+            return true;
+        }
+        for (other_link, found, other) in map.links_of(id) {
+            if other_link != link && (found.contact || is_ahead(found)) && seen.insert(other) {
+                open.push(other);
+            }
+        }
+    }
+    false
+}
+
+/// The link to follow from a node, with its near and its far end.
+pub(super) fn next(map: &LineMap, node: u32, heading: (f64, f64)) -> Option<(u32, u32, u32)> {
+    let here = cluster(map, node);
+    let mut ways: Vec<(u32, u32, u32)> = Vec::new();
+    for near in &here {
+        ways.extend(
+            map.links_of(*near)
+                .filter(|(_, link, _)| is_ahead(link))
+                .map(|(link, _, far)| (link, *near, far)),
+        );
+    }
+    if ways.len() > 1 {
+        let free: Vec<_> =
+            ways.iter().copied().filter(|(link, _, far)| returns(map, *link, *far, &here)).collect();
+        if !free.is_empty() {
+            ways = free;
+        }
+    }
+    let straight = |(_, near, far): &(u32, u32, u32)| {
+        let way = course(map, *near, *far);
+        // Of equal ways that of the line itself.
+        cosine(heading, way) + if *near == node { 1e-3 } else { 0.0 }
+    };
+    ways.into_iter().max_by(|a, b| straight(a).total_cmp(&straight(b)).then(b.0.cmp(&a.0)))
+}
+
+/// Where to begin: of the lines nearest to a place an end that is one (or another odd node), so that no piece is left behind;
+/// of a loop the nearest place.
+pub(super) fn start(map: &mut LineMap, from: PxPoint) -> Option<u32> {
+    let all: Vec<u32> = map.ahead().collect();
+    let distance = |id: &u32| map.at(*id).distance(from);
+    let nearest = all.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)))?;
+    let mut seen: HashSet<u32> = HashSet::from([nearest]);
+    let mut open = std::collections::VecDeque::from([nearest]);
+    let mut best: Option<(f64, u32)> = None;
+    while let Some(id) = open.pop_front() {
+        let here = cluster(map, id);
+        let arms: usize =
+            here.iter().map(|id| map.links_of(*id).filter(|(_, link, _)| is_ahead(link)).count()).sum();
+        let is_unknown = map.node(id).is_some_and(|node| node.open);
+        let own = map.links_of(id).any(|(_, link, _)| is_ahead(link));
+        if own && arms % 2 == 1 && !is_unknown {
+            let near = distance(&id);
+            if best.is_none_or(|(least, _)| near < least) {
+                best = Some((near, id));
+            }
+        }
+        if seen.len() > MOST_VISITED {
+            break;
+        }
+        for (_, link, other) in map.links_of(id) {
+            if (link.contact || is_ahead(link)) && seen.insert(other) {
+                open.push_back(other);
+            }
+        }
+    }
+    Some(best.map_or(nearest, |(_, id)| id))
+}
