@@ -146,7 +146,8 @@ impl Zones {
             let end = if rises { high } else { low };
             if !is_past(end_x, end) {
                 self.last = (zone, low, high);
-                return give(Part { zone, t0: from, t1 });
+                // One that ends where the wanted begins has no length there.
+                return if from < t1 { give(Part { zone, t0: from, t1 }) } else { Ok(()) };
             }
             let to = span.crossing(t0, t1, end).max(from);
             // A start on the border itself leaves a part without length.
