@@ -47,7 +47,7 @@ fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn 
     writeln!(text, "use plotter_motion::firmware::GantrySettings;")?;
     writeln!(
         text,
-        "use plotter_motion::{{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotionLimits, MotorConfig}};"
+        "use plotter_motion::{{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotionLimits, MotorConfig, TransmissionConfig}};"
     )?;
     writeln!(text, "use plotter_motion::{{PublishedConfig, StepPoint, StepperConfig, SyncStop}};")?;
     writeln!(text, "/// Bits a second of the gantry's line.\npub const BAUD: u32 = {};", config.serial.baud)?;
