@@ -3,7 +3,7 @@
 
 mod built_example;
 
-use built_example::{complaint, data, run_example, run_with_input};
+use built_example::{Folder, complaint, data, run_example, run_with_input};
 use plotter_examples::{DrawingFile, Reading};
 use plotter_motion::{PlotOp, Point, chords};
 use std::path::{Path, PathBuf};
@@ -11,24 +11,7 @@ use std::path::{Path, PathBuf};
 /// A plotter unit, mm.
 const UNIT_MM: f64 = 0.025;
 
-/// A folder for the results of a test.
-struct Folder(tempfile::TempDir);
-
 impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn file(&self, name: &str) -> String {
-        self.0.path().join(name).to_str().unwrap().to_owned()
-    }
-
-    fn write(&self, name: &str, contents: &str) -> String {
-        let path = self.file(name);
-        std::fs::write(&path, contents).unwrap();
-        path
-    }
-
     /// Converts a file into one of another name; gives its path, its text and what was said.
     fn convert(&self, from: &str, to: &str, options: &[&str]) -> (String, String, String) {
         let path = self.file(to);

@@ -3,27 +3,10 @@
 
 mod built_example;
 
-use built_example::{complaint, data, run_example, run_with_input};
+use built_example::{Folder, complaint, data, run_example, run_with_input};
 use serde_json::Value;
 
-/// A folder for the results of a test.
-struct Folder(tempfile::TempDir);
-
 impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn file(&self, name: &str) -> String {
-        self.0.path().join(name).to_str().unwrap().to_owned()
-    }
-
-    fn write(&self, name: &str, contents: &str) -> String {
-        let path = self.file(name);
-        std::fs::write(&path, contents).unwrap();
-        path
-    }
-
     /// The report of a sheet that is drawn.
     fn report(&self, arguments: &[&str]) -> Value {
         let report = self.file("report.json");

@@ -3,29 +3,12 @@
 
 mod built_example;
 
-use built_example::{complaint, data, run_example, run_with_input};
+use built_example::{Folder, complaint, data, run_example, run_with_input};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// A folder for the results of a test.
-struct Folder(tempfile::TempDir);
-
 impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn file(&self, name: &str) -> String {
-        self.0.path().join(name).to_str().unwrap().to_owned()
-    }
-
-    fn write(&self, name: &str, contents: impl AsRef<[u8]>) -> String {
-        let path = self.file(name);
-        std::fs::write(&path, contents).unwrap();
-        path
-    }
-
     /// The report of a plot that succeeds.
     fn report(&self, arguments: &[&str]) -> Value {
         let report = self.file("report.json");

@@ -3,7 +3,7 @@
 
 mod built_example;
 
-use built_example::{complaint, data, run_example, run_with_input};
+use built_example::{Folder, complaint, data, run_example, run_with_input};
 
 #[test]
 fn all_files_are_written_and_the_report_has_all_keys() {
@@ -183,23 +183,7 @@ fn the_centre_of_the_lower_left_pixel_is_the_origin_of_the_plotter_file() {
     assert!(text.contains("PU0,8;\nPD16,8;\n") || text.contains("PU16,8;\nPD0,8;\n"), "{text}");
 }
 
-/// A folder with pictures, and what `trace` says of them.
-struct Folder(tempfile::TempDir);
-
 impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.0.path().join(name).to_str().unwrap().to_owned()
-    }
-
-    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> String {
-        std::fs::write(self.path(name), bytes).unwrap();
-        self.path(name)
-    }
-
     /// White paper, with rectangles (left, top, width, height) of these grey levels.
     fn gray(&self, (width, height): (usize, usize), marks: &[([usize; 4], u8)]) -> String {
         let mut levels = vec![255; width * height];
@@ -221,7 +205,7 @@ impl Folder {
     }
 
     fn report(&self, picture: &str, options: &[&str]) -> serde_json::Value {
-        let json = self.path("report.json");
+        let json = self.file("report.json");
         let output = run_example("trace", &[&[picture, "--report", &json], options].concat());
         assert!(output.status.success(), "{options:?}: {}", String::from_utf8_lossy(&output.stderr));
         serde_json::from_slice(&std::fs::read(json).unwrap()).unwrap()
@@ -271,7 +255,7 @@ fn pens_are_told_apart_by_colour() {
     let palette = "schema = 1\n[[pen]]\nnumber = 4\nname = \"ink\"\ncolour = \"#000000\"\n[[pen]]\nnumber = 2\n\
                    colour = \"#d01818\"\n";
     let palette = folder.write("palette.toml", palette);
-    let (svg, plt) = (folder.path("a.svg"), folder.path("a.plt"));
+    let (svg, plt) = (folder.file("a.svg"), folder.file("a.plt"));
     for (pens, numbers) in [("2", [1, 2]), ("auto", [1, 2]), (palette.as_str(), [4, 2])] {
         let report = folder.report(&picture, &["--pens", pens, "--svg", &svg, "--hpgl", &plt]);
         let found = report["pens"].as_array().unwrap();
@@ -316,7 +300,7 @@ fn hatching_fills_an_area_that_is_outlined_otherwise() {
 #[test]
 fn the_overlay_is_a_picture_four_times_as_large_in_the_pens_colours() {
     let folder = Folder::new();
-    let png = folder.path("overlay.png");
+    let png = folder.file("overlay.png");
     let output = run_example("trace", &[&folder.colour(), "--pens", "2", "--overlay", &png]);
     assert!(String::from_utf8(output.stdout).unwrap().contains("circled"));
     let image = image::open(&png).unwrap().to_rgb8();
@@ -359,7 +343,7 @@ fn the_machines_file_is_asked_and_an_option_wins_over_it() {
 fn the_number_of_threads_changes_nothing() {
     let folder = Folder::new();
     let strokes = |threads| {
-        let points = folder.path("points.txt");
+        let points = folder.file("points.txt");
         assert!(run_example("trace", &["--threads", threads, "--points", &points]).status.success());
         std::fs::read(points).unwrap()
     };
@@ -428,8 +412,8 @@ fn a_sheet_that_cannot_be_held_is_traced_by_rows() {
         if inside || outside { 0 } else { 0xff_u8 }
     };
     let dark = folder.write("dark.pbm", pbm(width, height, frame));
-    let svg = folder.path("a.svg");
-    let plt = folder.path("a.plt");
+    let svg = folder.file("a.svg");
+    let plt = folder.file("a.plt");
     let report = folder.report(&dark, &["--svg", &svg, "--hpgl", &plt]);
     assert_eq!((&report["strokes"], &report["pen_px"]), (&1.into(), &8.into()));
     let most_mb = report["peak_rss_mb"].as_f64().unwrap_or(0.0);
@@ -455,7 +439,7 @@ fn the_overlay_of_a_long_sheet_shows_its_worst_place() {
     // Longer than an overlay may be: every second row and column is shown.
     let line = |x, y| if x == 30 && (500..8500).contains(&y) { 0xff } else { 0 };
     let sheet = folder.write("long.pbm", pbm(400, 9000, line));
-    let png = folder.path("look.png");
+    let png = folder.file("look.png");
     let output = run_example("trace", &[&sheet, "--overlay", &png]);
     let said = String::from_utf8(output.stdout).unwrap();
     // The corners of the line's lower end lie farthest: it is drawn a quarter of a pixel less far.
@@ -476,7 +460,7 @@ fn by_rows_and_whole_are_the_same_bytes() {
     let inverted = |name: &str| {
         let mut picture = image::open(name).unwrap().to_luma8();
         picture.iter_mut().for_each(|level| *level = !*level);
-        let path = folder.path("inverted.pgm");
+        let path = folder.file("inverted.pgm");
         picture.save(&path).unwrap();
         path
     };
@@ -487,7 +471,7 @@ fn by_rows_and_whole_are_the_same_bytes() {
             let whole = vectorizer.vectorize(&whole).unwrap();
             let mut expected = String::new();
             plotter_vector::svg(&whole.drawing, 1.0, &mut expected).unwrap();
-            let svg = folder.path("a.svg");
+            let svg = folder.file("a.svg");
             let report = folder.report(
                 picture,
                 &[&["--svg", svg.as_str()][..], if arcs { &["--arcs"] } else { &[] }].concat(),

@@ -38,3 +38,27 @@ pub fn data(name: &str) -> String {
 pub fn machine(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("machines").join(name).to_str().unwrap().to_owned()
 }
+
+/// A folder for the results of a test.
+#[allow(dead_code, reason = "not every command writes files")]
+pub struct Folder(pub tempfile::TempDir);
+
+#[allow(dead_code, reason = "not every command writes files")]
+impl Folder {
+    /// An empty one, which is gone when the test is over.
+    pub fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    /// The path of a file in it.
+    pub fn file(&self, name: &str) -> String {
+        self.0.path().join(name).to_str().unwrap().to_owned()
+    }
+
+    /// Writes a file; gives its path.
+    pub fn write(&self, name: &str, contents: impl AsRef<[u8]>) -> String {
+        let path = self.file(name);
+        std::fs::write(&path, contents).unwrap();
+        path
+    }
+}

@@ -17,6 +17,7 @@ mod planned_line;
 mod planned_pid;
 mod point_to_point;
 mod shaft_estimator;
+mod shaft_motion;
 mod shaft_observer;
 mod speed_meter;
 pub mod tuning;

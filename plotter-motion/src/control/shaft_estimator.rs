@@ -1,5 +1,6 @@
 //! Where a shaft is between two edges of its encoder, how fast it turns, and what holds it back.
 
+use super::shaft_motion::{Fading, ShaftMotion};
 use crate::{AxisConfig, Decoding, Direction};
 use core::f64::consts::TAU;
 
@@ -23,19 +24,9 @@ use core::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShaftEstimator {
     model: ShaftModel,
-    decoding: Decoding,
-    observer_rad_s: f32,
     drag_limit: f32,
-    /// Count of the interval the shaft is in.
-    count: i32,
-    /// Place relative to `count`, in counts.
-    offset: f32,
-    speed: f32,
+    motion: ShaftMotion,
     drag: f32,
-    /// Least and greatest `offset` since the last edge.
-    least: f32,
-    most: f32,
-    since_correction_s: f32,
 }
 
 /// A motor and its load as the control loop sees them, in encoder counts.
@@ -90,22 +81,12 @@ impl ShaftEstimator {
         // What a drag may be, as a share of what the supply can push: more would only wind up while a shaft
         // is held fast.
         const DRAG_SHARE: f32 = 0.1;
-        let mut estimator = Self {
+        Self {
             model,
-            decoding,
-            observer_rad_s,
             drag_limit: DRAG_SHARE * model.accel_per_volt * model.supply_v,
-            count: 0,
-            offset: 0.0,
-            speed: 0.0,
+            motion: ShaftMotion::at_rest(decoding, observer_rad_s),
             drag: 0.0,
-            least: 0.0,
-            most: 0.0,
-            since_correction_s: 0.0,
-        };
-        estimator.offset = estimator.decoding.rest_offset_counts();
-        (estimator.least, estimator.most) = (estimator.offset, estimator.offset);
-        estimator
+        }
     }
 
     /// The model it reckons with.
@@ -117,21 +98,19 @@ impl ShaftEstimator {
     /// The count of the interval that the shaft is in.
     #[must_use]
     pub const fn count(&self) -> i32 {
-        self.count
+        self.motion.count
     }
 
     /// How far the shaft is from the resting place of `count`, in counts.
     #[must_use]
     pub fn distance_from(&self, count: i32) -> f32 {
-        #[expect(clippy::cast_precision_loss, reason = "a checked machine has at most 99999 counts")]
-        let whole = self.count.saturating_sub(count) as f32;
-        whole + (self.offset - self.decoding.rest_offset_counts())
+        self.motion.distance_from(count)
     }
 
     /// Speed, counts/s.
     #[must_use]
     pub const fn speed_counts_s(&self) -> f32 {
-        self.speed
+        self.motion.speed
     }
 
     /// What holds the shaft back, counts/s^2: the dry friction of the machine's description and the drag found
@@ -147,92 +126,41 @@ impl ShaftEstimator {
         if dt_s <= 0.0 || !dt_s.is_finite() || !voltage_v.is_finite() {
             return;
         }
-        self.since_correction_s += dt_s;
+        self.motion.wait(dt_s);
         let ShaftModel { accel_per_volt, damping_per_s, .. } = self.model;
         let push = accel_per_volt * voltage_v;
         let friction = self.friction_counts_s2();
-        if self.speed == 0.0 && push.abs() <= friction.max(0.0) {
+        let speed = self.motion.speed;
+        if speed == 0.0 && push.abs() <= friction.max(0.0) {
             return;
         }
-        let sense = if self.speed == 0.0 { push } else { self.speed };
+        let sense = if speed == 0.0 { push } else { speed };
         let accel = push - libm::copysignf(1.0, sense) * friction;
-        // exact for a constant push: the speed tends to accel / damping with the time constant 1 / damping
-        let decay = libm::expf(-damping_per_s * dt_s);
-        let last = accel / damping_per_s;
-        let next = last + (self.speed - last) * decay;
-        if next * sense < 0.0 && self.speed != 0.0 {
-            // friction stops the shaft on the way: it covers half of what it would at this speed until then
-            self.offset += self.speed * self.speed / (self.speed - next) * dt_s / 2.0;
-            self.speed = 0.0;
-        } else {
-            self.offset += last * dt_s + (self.speed - last) * ((1.0 - decay) / damping_per_s);
-            self.speed = next;
-        }
-        self.least = self.least.min(self.offset);
-        self.most = self.most.max(self.offset);
+        self.motion.turn(dt_s, accel, sense, damping_per_s);
     }
 
     /// Takes an edge, at the moment that was predicted last.
     pub fn edge(&mut self, direction: Direction) {
-        let (count, place) = self.edge_place(direction);
-        #[expect(clippy::cast_precision_loss, reason = "0, 1 or -1")]
-        let moved = count.saturating_sub(self.count) as f32;
-        self.count = count;
-        self.offset -= moved;
-        self.correct(place - self.offset, true);
-        (self.least, self.most) = (place, place);
+        let place = self.motion.enter(direction);
+        let difference = place - self.motion.offset;
+        let Fading { fade, t } = self.motion.correct(difference);
+        // While a shaft is held fast, the drag would only wind up.
+        let speed = self.motion.speed;
+        if speed != 0.0 {
+            let drag = self.drag - libm::copysignf(1.0, speed) * difference * fade * fade * fade / (t * t);
+            self.drag = drag.clamp(-self.drag_limit, self.drag_limit);
+        }
+        self.motion.stands_at(place);
     }
 
     /// Takes note that no edge came up to the moment that was predicted last.
     pub fn no_edge(&mut self) {
-        let (least, most) = match self.decoding {
-            Decoding::X1 => (-0.5, 1.0),
-            Decoding::X2 | Decoding::X4 => (0.0, 1.0),
-        };
-        let inside = self.offset.clamp(least, most);
-        if inside != self.offset {
-            self.correct(inside - self.offset, false);
-            self.offset = inside;
-            // Something holds the shaft that the model does not know, so where it was thought to be says
+        if let Some(inside) = self.motion.without_edge() {
+            // Something holds the shaft that the model does not know: that is no drag, and where it was thought to be says
             // nothing of the edges it has met.
-            (self.least, self.most) = (inside, inside);
+            self.motion.correct(inside - self.motion.offset);
+            self.motion.offset = inside;
+            self.motion.stands_at(inside);
         }
-    }
-
-    /// The count after an edge, and the edge's place relative to it.
-    fn edge_place(&self, direction: Direction) -> (i32, f32) {
-        // How far beyond an edge the estimate must have been for it to be met a second time.
-        const BEYOND_COUNTS: f32 = 0.1;
-        let next = self.count.saturating_add(direction.sign());
-        match (self.decoding, direction) {
-            (Decoding::X2 | Decoding::X4, Direction::Plus) => (next, 0.0),
-            (Decoding::X2 | Decoding::X4, Direction::Minus) => (next, 1.0),
-            // Forwards the counted edge is the start of A's high half, backwards its end.
-            (Decoding::X1, Direction::Plus) => {
-                let again = self.least < -BEYOND_COUNTS && self.offset < 0.5;
-                (if again { self.count } else { next }, 0.0)
-            }
-            (Decoding::X1, Direction::Minus) => {
-                let again = self.most > 0.5 + BEYOND_COUNTS && self.offset > 0.0;
-                (if again { self.count } else { next }, 0.5)
-            }
-        }
-    }
-
-    /// Takes a measured difference into position and speed, and into the drag if it may be blamed: while a
-    /// shaft is held fast the drag would only wind up.
-    fn correct(&mut self, difference: f32, blame_drag: bool) {
-        const SHORTEST_S: f32 = 2e-5; // below a few timer ticks a difference says nothing of the speed
-        let t = self.since_correction_s.max(SHORTEST_S);
-        let z = libm::expf(-self.observer_rad_s * t);
-        let fade = 1.0 - z;
-        self.offset += difference * (1.0 - z * z * z);
-        self.speed += difference * 1.5 * fade * fade * (1.0 + z) / t;
-        if blame_drag && self.speed != 0.0 {
-            let drag =
-                self.drag - libm::copysignf(1.0, self.speed) * difference * fade * fade * fade / (t * t);
-            self.drag = drag.clamp(-self.drag_limit, self.drag_limit);
-        }
-        self.since_correction_s = 0.0;
     }
 }
