@@ -100,10 +100,15 @@ impl ReferenceLines {
         Self::strip(&[60.0, 280.0, 500.0, 720.0, 940.0], &[90.0, 510.0, 910.0])
     }
 
-    /// Ours with 24 crossings, most of them near the joint's ends, where a rotation shows most.
+    /// Ours with 24 crossings. Those along x, which tell the angle too, lie as near to the joint's ends as they can, where a
+    /// rotation shows most: 12, and two more on a line in the middle; the others are ten.
     #[must_use]
     pub fn strip24() -> Self {
-        Self::strip(&[20.0, 45.0, 70.0, 95.0, 905.0, 930.0, 955.0, 980.0], &[90.0, 360.0, 640.0, 910.0])
+        let mut lines =
+            Self::strip(&[10.0, 28.0, 46.0, 954.0, 972.0, 990.0], &[90.0, 290.0, 510.0, 710.0, 910.0]);
+        let middle = MarkGroup { axis: Axis::X, at_mm: vec![100.0], scans_mm: vec![10.0, 990.0] };
+        lines.marks.push(middle);
+        lines
     }
 
     /// Ours with 32 crossings.

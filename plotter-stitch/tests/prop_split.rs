@@ -231,6 +231,56 @@ proptest! {
         prop_assert_eq!(pauses(&mut frames.iter().flat_map(Frame::sheet_ops)), pauses(&mut ops.iter().copied()));
     }
 
+    /// Where a stroke goes over from one frame to another, and only there, both tell a break point: also where vertices lie on
+    /// borders and on the ends of windows.
+    #[test]
+    fn a_stroke_goes_over_at_break_points_only(
+        places in prop::collection::vec((0_u32..80, 0_u32..60), 2..20),
+        window_mm in windows(),
+    ) {
+        let places: Vec<Point> =
+            places.iter().map(|(x, y)| Point::new(5.0 * f64::from(*x), 5.0 * f64::from(*y))).collect();
+        let travel = PlotOp::Travel { to: places[0] };
+        let lines = places[1..].iter().zip(1_u16..);
+        let ops: Vec<PlotOp> = std::iter::once(travel)
+            .chain(lines.map(|(to, number)| PlotOp::Draw { to: *to, feed_mm_s: Some(f64::from(number)) }))
+            .collect();
+        let frames = by_passes(&ops, layout(window_mm)).unwrap();
+        let mut drawn: BTreeMap<u64, Vec<(usize, Piece)>> = BTreeMap::new();
+        for (index, frame) in frames.iter().enumerate() {
+            let mut of_frame = BTreeMap::new();
+            pieces(frame.sheet_ops(), &mut of_frame);
+            for (number, of_op) in of_frame {
+                drawn.entry(number).or_default().extend(of_op.into_iter().map(|piece| (index, piece)));
+            }
+        }
+        let mut begins: Vec<Vec<Point>> = vec![Vec::new(); frames.len()];
+        let mut ends = begins.clone();
+        let mut at = places[0];
+        let mut was_in = None;
+        for number in 1..places.len() {
+            let mut rest = drawn[&f64::from(u16::try_from(number).unwrap()).to_bits()].clone();
+            while !rest.is_empty() {
+                let (frame, piece) = rest.swap_remove(rest.iter().position(|(_, piece)| piece.from == at).unwrap());
+                if let Some(before) = was_in.filter(|before| *before != frame) {
+                    prop_assert_eq!(frame.abs_diff(before), 1);
+                    ends[frame.min(before)].push(at);
+                    begins[frame.max(before)].push(at);
+                }
+                (at, was_in) = (piece.to(), Some(frame));
+            }
+        }
+        let sorted = |places: &[Point]| {
+            let mut bits: Vec<_> = places.iter().map(|p| (p.x.to_bits(), p.y.to_bits())).collect();
+            bits.sort_unstable();
+            bits
+        };
+        for (index, frame) in frames.iter().enumerate() {
+            prop_assert_eq!(sorted(frame.begin_breaks()), sorted(&begins[index]), "begin of frame {}", index);
+            prop_assert_eq!(sorted(frame.end_breaks()), sorted(&ends[index]), "end of frame {}", index);
+        }
+    }
+
     /// Strokes that go back by no more than a frame's length give the same frames in one pass as in many.
     #[test]
     fn one_pass_gives_the_frames_of_many(mut strokes in strokes(), window_mm in windows()) {
@@ -258,7 +308,10 @@ proptest! {
         });
         let ops = ops_of(&strokes);
         let streamed: Result<Vec<_>, _> = Frames::new(ops.iter().copied(), layout).collect();
-        let all = |frames: Vec<Frame>| frames.iter().map(|f| f.ops().collect::<Vec<_>>()).collect::<Vec<_>>();
+        let all = |frames: Vec<Frame>| {
+            let all = |f: &Frame| (f.ops().collect::<Vec<_>>(), f.begin_breaks().to_vec(), f.end_breaks().to_vec());
+            frames.iter().map(all).collect::<Vec<_>>()
+        };
         prop_assert_eq!(streamed.map(all), by_passes(&ops, layout).map(all));
     }
 

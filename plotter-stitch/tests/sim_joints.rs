@@ -127,7 +127,7 @@ fn a_hundred_thousand_joints() {
         single_crossing_mm(1_000, signal),
     );
     show("published", &published_on(JOINTS, SensorNoise::default()));
-    for (crossings, p99_mm, max_mm) in [(16, 0.045, 0.075), (24, 0.037, 0.065), (32, 0.036, 0.065)] {
+    for (crossings, p99_mm, max_mm) in [(16, 0.045, 0.075), (24, 0.036, 0.060), (32, 0.036, 0.060)] {
         let outcome = ours_on(JOINTS, &layout(crossings), SensorNoise::default());
         show(&format!("ours, {crossings} crossings"), &outcome);
         let (rms_mm, least_mm) = against_the_least(&layout(crossings), &outcome);

@@ -131,7 +131,11 @@ impl Gatherer {
         self.at = op.target().unwrap_or(self.at);
         let goes_on = core::mem::replace(&mut self.is_down, true);
         self.current = Some(Current { span, goes_on, comes_from: self.stroke_in.take(), done: None });
-        self.go_on()
+        self.go_on()?;
+        if self.current.is_none() && self.stroke_in.is_none() {
+            self.stroke_in = self.zones.end_zone(&span);
+        }
+        Ok(())
     }
 
     /// Takes of the current operation what belongs to the open frames.

@@ -119,6 +119,21 @@ impl Zones {
         pending.map_or(Ok(()), each)
     }
 
+    /// The zone in which a span ends that has no part at its end, though that lies where something is wanted: it came as far, and
+    /// no farther.
+    pub(super) fn end_zone(&self, span: &Span) -> Option<Zone> {
+        let x = span.at(1.0).x;
+        let (wanted_low, wanted_high) = self.wanted;
+        if x < wanted_low || x > wanted_high {
+            return None;
+        }
+        let mut before = (0.0, 0.0);
+        span.turning_points().iter().for_each(|t| before = (before.1, t));
+        let rises = x > span.at(before.0).x;
+        let (zone, low, _) = self.locate(x, x);
+        Some(if rises && x <= low { self.next(zone, false) } else { zone })
+    }
+
     /// The parts of a stretch on which x rises or falls throughout.
     fn monotone<E>(
         &mut self,
