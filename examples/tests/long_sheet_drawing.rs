@@ -94,7 +94,7 @@ fn machines_that_move_no_sheet_are_refused() {
     assert!(said.contains("sheet.frame_mm is 0"), "{said}");
     let folder = Folder::new();
     let text = std::fs::read_to_string(data("../machines/textile-plotter.toml")).unwrap();
-    let zero = folder.write("zero.toml", &text.replace("frame_mm = 1800.0", "frame_mm = -1.0"));
+    let zero = folder.write("zero.toml", text.replace("frame_mm = 1800.0", "frame_mm = -1.0"));
     let said = complaint("long_sheet", &["--machine", &zero]);
     assert!(said.contains("sheet.frame_mm: -1 mm lies outside"), "{said}");
 }

@@ -62,7 +62,8 @@ pub struct MarkGroup {
 const JOINT: [Point; 2] = [Point::new(20.0, 0.0), Point::new(20.0, 1000.0)];
 
 impl ReferenceLines {
-    fn strip(x_scans_mm: &[f64], y_marks_mm: &[f64]) -> Self {
+    /// Marks of constant x and their scans, then those of constant y.
+    fn of(x_marks_mm: &[f64], x_scans_mm: &[f64], y_marks_mm: &[f64], y_scans_mm: &[f64]) -> Self {
         let group = |axis, at_mm: &[f64], scans_mm: &[f64]| MarkGroup {
             axis,
             at_mm: at_mm.to_vec(),
@@ -71,26 +72,19 @@ impl ReferenceLines {
         Self {
             schema: 1,
             joint: JOINT,
-            marks: vec![
-                group(Axis::X, &[20.0, 180.0], x_scans_mm),
-                group(Axis::Y, y_marks_mm, &[45.0, 155.0]),
-            ],
+            marks: vec![group(Axis::X, x_marks_mm, x_scans_mm), group(Axis::Y, y_marks_mm, y_scans_mm)],
         }
+    }
+
+    fn strip(x_scans_mm: &[f64], y_marks_mm: &[f64]) -> Self {
+        Self::of(&[20.0, 180.0], x_scans_mm, y_marks_mm, &[45.0, 155.0])
     }
 
     /// As published: both borders, and a Y marker that is scanned on the left and on the right, in the order of
     /// [`Mark::ALL`](crate::Mark::ALL).
     #[must_use]
     pub fn published() -> Self {
-        let group = |axis, at_mm, scans_mm| MarkGroup { axis, at_mm, scans_mm };
-        Self {
-            schema: 1,
-            joint: JOINT,
-            marks: vec![
-                group(Axis::X, vec![20.0, 1820.0], vec![520.0]),
-                group(Axis::Y, vec![500.0], vec![25.0, 1825.0]),
-            ],
-        }
+        Self::of(&[20.0, 1820.0], &[520.0], &[500.0], &[25.0, 1825.0])
     }
 
     /// Ours with 16 crossings: two lines of constant x crossed five times, three of constant y crossed twice, all in the strip of
@@ -100,15 +94,16 @@ impl ReferenceLines {
         Self::strip(&[60.0, 280.0, 500.0, 720.0, 940.0], &[90.0, 510.0, 910.0])
     }
 
-    /// Ours with 24 crossings. Those along x, which tell the angle too, lie as near to the joint's ends as they can, where a
-    /// rotation shows most: 12, and two more on a line in the middle; the others are ten.
+    /// Ours with 24 crossings: seven lines of constant x crossed as near to the joint's ends as they can be, where a rotation shows
+    /// most, and five of constant y crossed twice.
     #[must_use]
     pub fn strip24() -> Self {
-        let mut lines =
-            Self::strip(&[10.0, 28.0, 46.0, 954.0, 972.0, 990.0], &[90.0, 290.0, 510.0, 710.0, 910.0]);
-        let middle = MarkGroup { axis: Axis::X, at_mm: vec![100.0], scans_mm: vec![10.0, 990.0] };
-        lines.marks.push(middle);
-        lines
+        Self::of(
+            &[20.0, 45.0, 70.0, 95.0, 120.0, 145.0, 170.0],
+            &[10.0, 990.0],
+            &[90.0, 290.0, 510.0, 710.0, 910.0],
+            &[45.0, 155.0],
+        )
     }
 
     /// Ours with 32 crossings.

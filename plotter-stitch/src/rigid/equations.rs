@@ -1,6 +1,7 @@
 //! Least squares of three unknowns: a turn and two shifts.
 
 use crate::FrameTransform;
+use nalgebra::{Matrix3, Vector3};
 use plotter_motion::{Axis, Vec2};
 
 /// The unknown turn is counted as its way at this distance, mm, so that all three unknowns are of one size.
@@ -79,48 +80,33 @@ impl Pose {
     /// mark of constant x: e = cos α (x - sx) + sin α (y - sy) - a
     /// mark of constant y: e = cos α (y - sy) - sin α (x - sx) - b
     /// ```
-    pub(super) fn residual_and_slope(&self, row: &Row) -> (f64, [f64; 3]) {
+    pub(super) fn residual_and_slope(&self, row: &Row) -> (f64, Vector3<f64>) {
         match row.axis {
             Axis::X => {
                 let (x, y) = (row.at_mm - self.shift.x, row.scan_at_mm - self.shift.y);
                 let across = self.cos * x + self.sin * y;
                 let along = self.cos * y - self.sin * x;
-                (across - row.mark_mm, [along * PER_LEVER, -self.cos, -self.sin])
+                (across - row.mark_mm, Vector3::new(along * PER_LEVER, -self.cos, -self.sin))
             }
             Axis::Y => {
                 let (x, y) = (row.scan_at_mm - self.shift.x, row.at_mm - self.shift.y);
                 let along = self.cos * x + self.sin * y;
                 let across = self.cos * y - self.sin * x;
-                (across - row.mark_mm, [-along * PER_LEVER, self.sin, -self.cos])
+                (across - row.mark_mm, Vector3::new(-along * PER_LEVER, self.sin, -self.cos))
             }
         }
     }
 }
 
-/// A symmetric matrix of three rows: 00 01 02 11 12 22.
-pub(super) type Symmetric = [f64; 6];
+/// How much greater an unknown's variance may be than if the others were known; more tells nothing.
+const MOST_INFLATION: f64 = 1e9;
 
-/// Its inverse; none if it is singular or not positive.
-pub(super) fn inverse(m: &Symmetric) -> Option<Symmetric> {
-    let [a, b, c, d, e, f] = *m;
-    let cofactors =
-        [d * f - e * e, c * e - b * f, b * e - c * d, a * f - c * c, b * c - a * e, a * d - b * b];
-    let determinant = a * cofactors[0] + b * cofactors[1] + c * cofactors[2];
-    // Against the product of the diagonal it has no unit: 1 for unknowns that have nothing to do with each other.
-    let is_regular = determinant.is_finite() && determinant > 1e-9 * a * d * f;
-    if !is_regular {
-        return None;
-    }
-    Some(cofactors.map(|cofactor| cofactor / determinant))
-}
-
-/// A symmetric matrix times a vector.
-pub(super) fn times(m: &Symmetric, v: &[f64; 3]) -> [f64; 3] {
-    [
-        m[0] * v[0] + m[1] * v[1] + m[2] * v[2],
-        m[1] * v[0] + m[3] * v[1] + m[4] * v[2],
-        m[2] * v[0] + m[4] * v[1] + m[5] * v[2],
-    ]
+/// The inverse of a normal matrix; none if it is singular or nearly so.
+fn inverse(normal: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    let inverse = normal.try_inverse()?;
+    let inflation = normal.diagonal().component_mul(&inverse.diagonal());
+    // A NaN lies in no range.
+    inflation.iter().all(|inflation| (0.0..MOST_INFLATION).contains(inflation)).then_some(inverse)
 }
 
 /// A pose and how sure it is.
@@ -128,7 +114,7 @@ pub(super) fn times(m: &Symmetric, v: &[f64; 3]) -> [f64; 3] {
 pub(super) struct Solution {
     pub(super) pose: Pose,
     /// Covariance of the unknowns as the weights say it.
-    pub(super) cofactor: Symmetric,
+    pub(super) cofactor: Matrix3<f64>,
     /// Weighted sum of the squares of all residuals; it should be as great as the number of rows less three.
     pub(super) squares: f64,
     pub(super) rows: u32,
@@ -140,27 +126,26 @@ pub(super) struct Solution {
 /// Gauss and Newton's iteration with the matrix of its start.
 pub(super) fn solve(rows: &[Row], mask: u64, start: Pose, most_squares: f64) -> Option<Solution> {
     let chosen = || rows.iter().enumerate().filter(|(index, _)| mask >> index & 1 == 1).map(|(_, row)| row);
-    let mut normal = [0.0; 6];
+    let mut normal = Matrix3::zeros();
     for row in chosen() {
         let (_, slope) = start.residual_and_slope(row);
-        let weighted = slope.map(|slope| slope * row.weight);
-        normal[0] += weighted[0] * slope[0];
-        normal[1] += weighted[0] * slope[1];
-        normal[2] += weighted[0] * slope[2];
-        normal[3] += weighted[1] * slope[1];
-        normal[4] += weighted[1] * slope[2];
-        normal[5] += weighted[2] * slope[2];
+        let weighted = slope * row.weight;
+        // Symmetric, and each multiplication is dear where floats of this precision are made by software.
+        for column in 0..3 {
+            for row in column..3 {
+                normal[(row, column)] += weighted[column] * slope[row];
+            }
+        }
     }
+    normal.fill_upper_triangle_with_lower_triangle();
     let cofactor = inverse(&normal)?;
     let mut pose = start;
     for turn in 0..MOST_STEPS {
-        let (mut right, mut squares, mut count) = ([0.0; 3], 0.0, 0);
+        let (mut right, mut squares, mut count) = (Vector3::zeros(), 0.0, 0);
         for row in chosen() {
             let (residual, slope) = pose.residual_and_slope(row);
             let weighted = residual * row.weight;
-            for (right, slope) in right.iter_mut().zip(slope) {
-                *right += weighted * slope;
-            }
+            right += slope * weighted;
             squares += weighted * residual;
             count += 1;
         }
@@ -168,10 +153,10 @@ pub(super) fn solve(rows: &[Row], mask: u64, start: Pose, most_squares: f64) -> 
         if turn > 0 && squares > most_squares {
             return None;
         }
-        let step = times(&cofactor, &right);
+        let step = cofactor * right;
         pose = Pose::new(
-            pose.angle_rad - step[0] * PER_LEVER,
-            Vec2::new(pose.shift.x - step[1], pose.shift.y - step[2]),
+            pose.angle_rad - step.x * PER_LEVER,
+            Vec2::new(pose.shift.x - step.y, pose.shift.y - step.z),
         );
         if step.iter().all(|step| libm::fabs(*step) < STILL_MM) {
             return Some(Solution { pose, cofactor, squares, rows: count });
@@ -181,14 +166,13 @@ pub(super) fn solve(rows: &[Row], mask: u64, start: Pose, most_squares: f64) -> 
 }
 
 /// A covariance of the unknowns as one of angle, rad, and shifts, mm.
-pub(super) fn in_radians(m: &Symmetric) -> [[f64; 3]; 3] {
-    let [a, b, c, d, e, f] = *m;
-    let (a, b, c) = (a / LEVER_MM / LEVER_MM, b / LEVER_MM, c / LEVER_MM);
-    [[a, b, c], [b, d, e], [c, e, f]]
+pub(super) fn in_radians(covariance: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    let unit = Matrix3::from_diagonal(&Vector3::new(PER_LEVER, 1.0, 1.0));
+    (unit * covariance * unit).into()
 }
 
 /// How far a place moves with the three unknowns, mm; the place from the shifted origin.
-pub(super) fn moved_by(unknowns: &[f64; 3], place: Vec2) -> Vec2 {
-    let turn = unknowns[0] * PER_LEVER;
-    Vec2::new(unknowns[1] - turn * place.y, unknowns[2] + turn * place.x)
+pub(super) fn moved_by(unknowns: &Vector3<f64>, place: Vec2) -> Vec2 {
+    let turn = unknowns.x * PER_LEVER;
+    Vec2::new(unknowns.y - turn * place.y, unknowns.z + turn * place.x)
 }

@@ -7,7 +7,7 @@ mod error;
 pub use error::FitError;
 
 use crate::{Crossing, Found, FrameTransform, MOST_CROSSINGS};
-use equations::{Pose, Row, Solution, in_radians, moved_by, solve, times};
+use equations::{Pose, Row, Solution, in_radians, moved_by, solve};
 use plotter_motion::{Axis, Point, Vec2};
 
 /// No machine is so large, mm. Up to here nothing below overflows.
@@ -168,7 +168,7 @@ impl RigidFit {
         let transform = solution.pose.transform().ok_or(geometry)?;
         self.check_reliability(rows, inliers, &solution, scale)?;
         let variance = scale * scale * unsteady(&solution);
-        let mut covariance = in_radians(&solution.cofactor.map(|cofactor| cofactor * variance));
+        let mut covariance = in_radians(&(solution.cofactor * variance));
         covariance[1][1] += self.common_mm * self.common_mm;
         covariance[2][2] += self.common_mm * self.common_mm;
         let estimate = JointEstimate { transform, covariance, inliers, scale };
@@ -300,9 +300,8 @@ impl RigidFit {
             }
             let (_, slope) = solution.pose.residual_and_slope(row);
             // What one unit of it in the equations moves; weighted, that is what one millimetre moves.
-            let moved = times(&solution.cofactor, &slope);
-            let own: f64 = moved.iter().zip(slope).map(|(moved, slope)| moved * slope).sum();
-            let redundancy = (1.0 - own * row.weight).max(f64::MIN_POSITIVE);
+            let moved = solution.cofactor * slope;
+            let redundancy = (1.0 - moved.dot(&slope) * row.weight).max(f64::MIN_POSITIVE);
             let (square, limit_square) = (gate * gate * row.weight, redundancy * redundancy * most_square);
             for &end in &ends {
                 // As squares: gate / √weight / redundancy · weight · |moved|, without roots and divisions.
