@@ -34,6 +34,8 @@ mod textile_pattern;
 mod told_joints;
 mod true_path;
 mod tuned_axis;
+mod tuning;
+mod tuning_report;
 mod vectorize_settings;
 
 pub use controller_contest::compare_controllers;
@@ -70,6 +72,8 @@ pub use textile_pattern::TextilePattern;
 pub use told_joints::told_joints;
 pub use true_path::TruePath;
 pub use tuned_axis::{Law, SimulatedAxis, StepResponse};
+pub use tuning::{TunedAxis, TuningMethod, TuningSettings};
+pub use tuning_report::{TuningReport, tuned_lines};
 pub use vectorize_settings::vectorizer;
 
 use std::fmt::Display;

@@ -133,7 +133,7 @@ fn pens_of_gcode_are_lifted_as_asked() {
         assert!(farthest_mm(&strokes(&original), &strokes(&gcode)) < 0.02, "{options:?}");
     }
     let (_, text, _) = folder.convert(&original, "c.nc", &["--gcode-pen", "z"]);
-    let plain = folder.write("d.nc", &text.replace("Z5", "Z2").replace("Z0", "Z-1"));
+    let plain = folder.write("d.nc", text.replace("Z5", "Z2").replace("Z0", "Z-1"));
     let (_, text, _) = folder.convert(&plain, "e.plt", &["--convention", "z"]);
     assert!(text.contains("PU400,400;\n") && text.contains("PD800,400;\n"), "{text}");
 }

@@ -27,7 +27,7 @@ fn folds_of_a_fifth_of_a_millimetre_are_seen_and_flat_paper_is_flat() {
 }
 
 #[test]
-#[ignore = "some 100,000 probes, for the table in docs/results.md: run it in release"]
+#[ignore = "some 100,000 probes, for the table in docs/results.md; run by .ci/run"]
 fn missed_folds_and_false_alarms() {
     println!("strokes apart, mm   taken for a fold   with dust on every tenth scan");
     for apart_mm in [0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5, 1.0, 2.0] {
@@ -44,7 +44,7 @@ fn missed_folds_and_false_alarms() {
 }
 
 #[test]
-#[ignore = "how the defaults of FoldTest are found: prints what flat paper does, run it in release"]
+#[ignore = "how the defaults of FoldTest are found: prints what flat paper does; run by .ci/run"]
 fn what_a_second_stroke_does_on_flat_paper() {
     const PROBES: u32 = 5_000;
     let (mut means, mut spreads) = (Vec::new(), Vec::new());

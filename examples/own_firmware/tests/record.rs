@@ -20,7 +20,7 @@ struct Motor {
 const STEP: Duration = Duration::from_micros(100);
 
 #[test]
-#[ignore = "writes the golden log anew, from the motors on"]
+#[ignore = "writes the golden log anew, from the motors on: cargo test --test record -- --ignored"]
 fn record_a_square() {
     let mut firmware = OwnFirmware::default();
     let mut motors = [Motor { travelled: 0.0 }, Motor { travelled: 0.0 }];
