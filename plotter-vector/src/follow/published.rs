@@ -1,7 +1,7 @@
 //! [`PublishedFollower`]: circles around the current place, and always the same hand.
 
 use super::circle::ring;
-use super::exits::{circumference, low_pass, middles, offset};
+use super::exits::{circumference, connected, low_pass, middles, offset};
 use super::{LineFollower, Lost, Step, Tool};
 use crate::{Bitmap, Gray, Pixel, PxPoint};
 
@@ -32,11 +32,17 @@ pub struct PublishedSettings {
     pub hand: Hand,
     /// The way that it came before the first window.
     pub heading: (f64, f64),
+    /// Whether only exits count that ink inside of the circle joins to the current place: proposed in section 4.12, and not built
+    /// there, so not as published. See [`connected_exits`](super::connected_exits).
+    pub only_connected: bool,
+    /// What the machine can reach: the upper left and the lower right corner. Lines outside are not seen. Not as published,
+    /// where nothing keeps it from moving anywhere.
+    pub area: Option<[PxPoint; 2]>,
 }
 
 impl Default for PublishedSettings {
     /// The thesis' own figures; for what it does not give: a level half way, lines from 4 px on, 40 places a window, and a first
-    /// way to the right.
+    /// way to the right; all exits count, and no area bounds it.
     fn default() -> Self {
         Self {
             level: 100,
@@ -46,6 +52,8 @@ impl Default for PublishedSettings {
             max_points: 40,
             hand: Hand::Right,
             heading: (1.0, 0.0),
+            only_connected: false,
+            area: None,
         }
     }
 }
@@ -84,12 +92,19 @@ impl PublishedFollower {
         Self { settings, heading: settings.heading, tries: 0 }
     }
 
-    fn threshold(&self, window: &Gray) -> Option<Bitmap> {
+    /// The line's pixels, as far as the machine reaches.
+    fn threshold(&self, window: &Gray, to_paper: impl Fn(Pixel) -> PxPoint) -> Option<Bitmap> {
         let mut ink = Bitmap::new(window.width(), window.height()).ok()?;
+        let reached = |at: PxPoint| {
+            self.settings
+                .area
+                .is_none_or(|[from, to]| at.x >= from.x && at.y >= from.y && at.x <= to.x && at.y <= to.y)
+        };
         for (y, row) in (0..).zip(window.rows()) {
             for (x, level) in (0..).zip(row) {
-                if *level < self.settings.level {
-                    ink.set(Pixel::new(x, y), true);
+                let pixel = Pixel::new(x, y);
+                if *level < self.settings.level && reached(to_paper(pixel)) {
+                    ink.set(pixel, true);
                 }
             }
         }
@@ -100,7 +115,11 @@ impl PublishedFollower {
     fn next(&self, ink: &Bitmap, at: Pixel, heading: (f64, f64)) -> Option<Pixel> {
         let least = i32::try_from(self.settings.thinnest_px.clamp(1, 1 << 14)).ok()?;
         for radius in least.. {
-            let around = circumference(ink, at, radius)?;
+            let around = if self.settings.only_connected {
+                connected(ink, at, radius)?
+            } else {
+                circumference(ink, at, radius)?
+            };
             let background = around.iter().filter(|(_, line)| !line).count();
             #[expect(clippy::cast_precision_loss, reason = "a circle in a window")]
             let share = background as f64 / around.len().max(1) as f64;
@@ -150,7 +169,9 @@ impl LineFollower for PublishedFollower {
     fn observe(&mut self, window: &Gray, pose: PxPoint) -> Step {
         self.tries = self.tries.saturating_add(1);
         let lost = |why| Step::LineLost { at: pose, tries: self.tries, why };
-        let Some(ink) = self.threshold(window) else { return lost(Lost::WindowSize) };
+        let centre = PxPoint::new(0.5 * f64::from(window.width()), 0.5 * f64::from(window.height()));
+        let to_paper = |pixel: Pixel| pose.along(PxPoint::from(pixel).minus(centre), 1.0);
+        let Some(ink) = self.threshold(window, to_paper) else { return lost(Lost::WindowSize) };
         let middle = Pixel::new(window.width() / 2, window.height() / 2);
         // A circle larger than the picture means that there is no line.
         let largest = i32::try_from(window.width().max(window.height())).unwrap_or(i32::MAX);
@@ -174,9 +195,7 @@ impl LineFollower for PublishedFollower {
             places.push(next);
             at = next;
         }
-        let centre = PxPoint::new(0.5 * f64::from(window.width()), 0.5 * f64::from(window.height()));
-        let to_paper = |pixel: &Pixel| pose.along(PxPoint::from(*pixel).minus(centre), 1.0);
-        Step::Move { path: merged(&places.iter().map(to_paper).collect::<Vec<_>>()), tool: Tool::Down }
+        Step::Move { path: merged(&places.into_iter().map(to_paper).collect::<Vec<_>>()), tool: Tool::Down }
     }
 }
 
