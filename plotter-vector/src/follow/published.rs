@@ -2,7 +2,7 @@
 
 use super::circle::ring;
 use super::exits::{circumference, connected, low_pass, middles, offset};
-use super::{LineFollower, Lost, Step, Tool};
+use super::{End, LineFollower, Lost, Step, Tool};
 use crate::{Bitmap, Gray, Pixel, PxPoint};
 
 /// The hand on which a follower turns off at a junction.
@@ -38,11 +38,13 @@ pub struct PublishedSettings {
     /// What the machine can reach: the upper left and the lower right corner. Lines outside are not seen. Not as published,
     /// where nothing keeps it from moving anywhere.
     pub area: Option<[PxPoint; 2]>,
+    /// How many pictures in a row may show no line, or none that it can take a step on.
+    pub max_tries: u32,
 }
 
 impl Default for PublishedSettings {
     /// The thesis' own figures; for what it does not give: a level half way, lines from 4 px on, 40 places a window, and a first
-    /// way to the right; all exits count, and no area bounds it.
+    /// way to the right; all exits count, no area bounds it, and 8 pictures may show no line.
     fn default() -> Self {
         Self {
             level: 100,
@@ -54,7 +56,27 @@ impl Default for PublishedSettings {
             heading: (1.0, 0.0),
             only_connected: false,
             area: None,
+            max_tries: 8,
         }
+    }
+}
+
+impl PublishedSettings {
+    /// For lines from this width on, px: the least radius is that width, and the low-pass filter leaves what such a line crosses
+    /// a circle with. On a diagonal that is only 1/√2 of its width in pixels, so that the thesis' 4 suits lines from 6 px on;
+    /// with it a line of 5 px ends wherever it runs at 45 degrees.
+    ///
+    /// ```
+    /// # use plotter_vector::follow::PublishedSettings;
+    /// let runs = [1, 4, 5, 6, 20].map(|thinnest_px| PublishedSettings::for_lines(thinnest_px).min_run);
+    /// assert_eq!(runs, [1, 2, 3, 4, 4]);
+    /// ```
+    #[must_use]
+    pub fn for_lines(thinnest_px: u32) -> Self {
+        let published = Self::default();
+        let crossed = super::whole::floor(f64::from(thinnest_px) * core::f64::consts::FRAC_1_SQRT_2);
+        let min_run = usize::try_from(crossed).unwrap_or(1).clamp(1, published.min_run);
+        Self { thinnest_px, min_run, ..published }
     }
 }
 
@@ -63,8 +85,8 @@ impl Default for PublishedSettings {
 /// In each window: [threshold](PublishedSettings::level); circles grow from the middle until one meets the line; from there step by
 /// step, each to the middle of a run of line on the smallest circle with 65 % background, the low-pass filtered; of the exits
 /// the way back goes, and of the rest the next on one side is taken, by the angle from cross and dot product. Ends at
-/// the window's border, or after [`PublishedSettings::max_points`]. It never says that it is done: "the
-/// user stops it".
+/// the window's border, or after [`PublishedSettings::max_points`]. It never says that all is done: "the
+/// user stops it"; only after [`PublishedSettings::max_tries`] pictures without a line it ends.
 ///
 /// ```
 /// # use plotter_vector::{Gray, PxPoint, follow::{LineFollower, PublishedFollower, PublishedSettings, Step}};
@@ -83,13 +105,14 @@ pub struct PublishedFollower {
     /// Direction of the last move along the line.
     heading: (f64, f64),
     tries: u32,
+    ended: Option<End>,
 }
 
 impl PublishedFollower {
     /// Before the first window.
     #[must_use]
     pub const fn new(settings: PublishedSettings) -> Self {
-        Self { settings, heading: settings.heading, tries: 0 }
+        Self { settings, heading: settings.heading, tries: 0, ended: None }
     }
 
     /// The line's pixels, as far as the machine reaches.
@@ -165,13 +188,26 @@ fn choose(at: Pixel, heading: (f64, f64), exits: &[Pixel], hand: Hand) -> Option
     chosen.map(|(_, exit)| *exit)
 }
 
+impl PublishedFollower {
+    /// Another picture, or the end when there were enough.
+    fn lost(&mut self, at: PxPoint, why: Lost) -> Step {
+        self.tries = self.tries.saturating_add(1);
+        if self.tries > self.settings.max_tries {
+            self.ended = Some(End::NoLine { at, why });
+            return Step::Done(End::NoLine { at, why });
+        }
+        Step::LineLost { at, tries: self.tries, why }
+    }
+}
+
 impl LineFollower for PublishedFollower {
     fn observe(&mut self, window: &Gray, pose: PxPoint) -> Step {
-        self.tries = self.tries.saturating_add(1);
-        let lost = |why| Step::LineLost { at: pose, tries: self.tries, why };
+        if let Some(end) = self.ended {
+            return Step::Done(end);
+        }
         let centre = PxPoint::new(0.5 * f64::from(window.width()), 0.5 * f64::from(window.height()));
         let to_paper = |pixel: Pixel| pose.along(PxPoint::from(pixel).minus(centre), 1.0);
-        let Some(ink) = self.threshold(window, to_paper) else { return lost(Lost::WindowSize) };
+        let Some(ink) = self.threshold(window, to_paper) else { return self.lost(pose, Lost::WindowSize) };
         let middle = Pixel::new(window.width() / 2, window.height() / 2);
         // A circle larger than the picture means that there is no line.
         let largest = i32::try_from(window.width().max(window.height())).unwrap_or(i32::MAX);
@@ -179,8 +215,7 @@ impl LineFollower for PublishedFollower {
             let on_line = |way| offset(middle, way, &ink).filter(|pixel| ink.get(*pixel));
             ring(radius).into_iter().find_map(on_line)
         };
-        let Some(nearest) = (0..largest).find_map(meets) else { return lost(Lost::OneColour) };
-        self.tries = 0;
+        let Some(nearest) = (0..largest).find_map(meets) else { return self.lost(pose, Lost::OneColour) };
 
         let mut places = vec![nearest];
         let mut at = nearest;
@@ -195,6 +230,12 @@ impl LineFollower for PublishedFollower {
             places.push(next);
             at = next;
         }
+        if places.len() == 1 && nearest == middle {
+            // Nowhere to go, though the line is in the middle.
+            let is_dark = window.pixels().iter().all(|level| *level < self.settings.level);
+            return self.lost(pose, if is_dark { Lost::OneColour } else { Lost::TooThick });
+        }
+        self.tries = 0;
         Step::Move { path: merged(&places.into_iter().map(to_paper).collect::<Vec<_>>()), tool: Tool::Down }
     }
 }
