@@ -25,7 +25,7 @@ use plotter_examples::{
 use plotter_motion::Machine;
 use plotter_vector::follow::{
     CameraSettings, Correction, End, Hand, Lens, LineFollower, MappingFollower, MappingSettings, Paper,
-    PublishedFollower, PublishedSettings, SimulatedCamera, SimulatedTable, Step, TableError, judge,
+    PublishedFollower, PublishedSettings, SimulatedCamera, SimulatedTable, Step, TableError, Tool, judge,
 };
 use plotter_vector::{Gray, PxPoint, Vectorizer, decode};
 use std::path::{Path, PathBuf};
@@ -91,7 +91,7 @@ struct Arguments {
     /// Of the camera's noise and the table's errors
     #[arg(long, value_name = "N", default_value = "1")]
     seed: u64,
-    /// The lens' correction, as calibrate_camera writes it
+    /// The lens' correction, as `calibrate_camera` writes it
     #[arg(long, value_name = "F.json")]
     correction: Option<PathBuf>,
     /// Takes the windows from a camera (built with --features camera), or from a folder's pictures in the order of their names
@@ -294,6 +294,13 @@ fn follow(arguments: &Arguments) -> Result<(), String> {
         (None, Eyes::Simulated(_)) => None,
         (path, _) => Some(MovesFile::new(path.as_deref())?),
     };
+    let settle_s = 1e-3 * f64::from(arguments.settle_ms);
+    if let Some(file) = &mut moves_file {
+        file.push(&machine, &[machine.at()], Tool::Up)?;
+    }
+    if let Eyes::Real(source) = &eyes {
+        source.wait(machine.now_s() + settle_s);
+    }
     let most = match &follower {
         Follower::Ours(_) => u64::MAX, // it knows itself
         Follower::Published(..) => arguments.windows.unwrap_or(PUBLISHED_WINDOWS),
@@ -345,7 +352,7 @@ fn follow(arguments: &Arguments) -> Result<(), String> {
                     frames.push(FollowFrame { at: table.place(), tool });
                 })?;
                 if let Eyes::Real(source) = &eyes {
-                    source.wait(seconds + 1e-3 * f64::from(arguments.settle_ms));
+                    source.wait(seconds + settle_s);
                 }
             }
             Step::LineLost { .. } => lost += 1,

@@ -116,7 +116,7 @@ impl FollowGif {
             encoder.write_frame(&changed(&before, &pixels, width, delay))?;
             before = pixels;
         }
-        encoder.into_inner().map_err(gif::EncodingError::from)
+        encoder.into_inner()
     }
 }
 

@@ -72,6 +72,12 @@ impl FollowMachine {
         self.at
     }
 
+    /// Seconds since the machine left the origin.
+    #[must_use]
+    pub fn now_s(&self) -> f64 {
+        self.plot.now_s()
+    }
+
     /// A place on the sheet, mm.
     #[must_use]
     pub fn on_sheet(&self, place: PxPoint) -> Point {

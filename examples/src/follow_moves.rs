@@ -72,13 +72,12 @@ impl MovesFile {
         format!("{}: cannot be written", self.name)
     }
 
-    /// Writes a move.
+    /// Writes a move; the first one, number 0, is the way to the start.
     ///
     /// # Errors
     ///
     /// A file that cannot be written.
     pub fn push(&mut self, machine: &FollowMachine, path: &[PxPoint], tool: Tool) -> Result<(), String> {
-        self.moves += 1;
         let name = if tool == Tool::Down { "down" } else { "up" };
         for to in path {
             let place = machine.on_sheet(*to);
@@ -99,6 +98,7 @@ impl MovesFile {
                 return Err(self.failed());
             }
         }
+        self.moves += 1;
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! [`V4lCamera`]: pictures of a web camera, through Video4Linux.
+//! [`V4lCamera`]: pictures of a web camera, through V4L2.
 
 use crate::at;
 use linuxvideo::format::{PixFormat, PixelFormat};
@@ -24,7 +24,7 @@ const PAUSE: Duration = Duration::from_millis(5);
 const TRIES: usize = 5;
 
 /// A camera that runs.
-pub struct V4lCamera {
+pub(crate) struct V4lCamera {
     name: String,
     stream: ReadStream,
     format: Format,
@@ -54,7 +54,7 @@ impl V4lCamera {
     /// # Errors
     ///
     /// What is no camera, is used by another program, or has no form of pictures that can be read.
-    pub fn open(path: &Path) -> Result<Self, String> {
+    pub(crate) fn open(path: &Path) -> Result<Self, String> {
         let failed = |error: std::io::Error| at(path, &format!("cannot be used as a camera: {error}"));
         let device = Device::open(path).map_err(failed)?;
         let offered: Vec<PixelFormat> = device
@@ -80,7 +80,7 @@ impl V4lCamera {
 
     /// What it is called.
     #[must_use]
-    pub fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
@@ -89,7 +89,7 @@ impl V4lCamera {
     /// # Errors
     ///
     /// A camera that was unplugged, or gives nothing for five seconds.
-    pub fn picture(&mut self) -> Result<Gray, String> {
+    pub(crate) fn picture(&mut self) -> Result<Gray, String> {
         for _ in 0..STALE {
             self.bytes()?;
         }

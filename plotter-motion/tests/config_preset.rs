@@ -47,7 +47,7 @@ const PLASMA_FOLLOWER: Preset =
 /// The camera and the torch are chosen, not documented: the code has no such machine, so it is said here.
 fn plasma_follower() -> MachineConfig {
     let mut config = MachineConfig::stepper_plotter();
-    config.name = MachineName::new("plasma-follower").expect("short");
+    config.name = MachineName::new("plasma-follower").unwrap_or(config.name);
     (config.area.width_mm, config.area.height_mm) = (1000.0, 500.0);
     (config.planner.speed_mm_s, config.planner.travel_speed_mm_s) = (18.0, 80.0);
     config.pen.settle_ms = 800.0;
