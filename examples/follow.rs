@@ -310,8 +310,8 @@ fn follow(arguments: &Arguments) -> Result<(), String> {
     if let Ok(style) = ProgressStyle::with_template("following: {pos} windows, {elapsed}") {
         bar.set_style(style);
     }
-    let mut gif = arguments.animation.as_ref().filter(|path| path.extension().is_some_and(|e| e == "gif"));
-    let mut film = gif.take().map(|_| FollowGif::default());
+    let is_gif = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "gif");
+    let mut film = arguments.animation.as_ref().filter(|path| is_gif(path)).map(|_| FollowGif::default());
     let (mut windows, mut moves, mut lost) = (0_u64, 0_u64, 0_u64);
     let mut frames: Vec<FollowFrame> = Vec::new();
     let mut window_px = camera.width_px;
