@@ -1,53 +1,62 @@
 //! A camera that follows the lines of a drawing larger than what it sees, and a torch that goes with it.
 //!
 //! A picture lies under a simulated camera that blurs, on a simulated table that misses. Window by window the line follower says
-//! where to go: the published one with its circles and its same hand, or ours with its map. Its moves go through the machine's
+//! where to go: the published one with its circles and its same hand, or ours with its map. Each move goes through the machine's
 //! planner to timed steps; the table adds its errors. At the end the path that the tool really took is compared with the drawing.
 //!
 //! Look at the path over the drawing, and try the published method on the same figure: it cuts sharp corners, turns round in them, and
 //! never knows that it is done.
 //!
+//! With `--from` the windows come from a camera, or from a folder with pictures, and the moves are printed for the machine.
+//!
 //! ```text
 //! cargo run --release --example follow -- --svg follow.svg
-//! cargo run --release --example follow -- drawing.png --table-error 1 --animation follow.html
+//! cargo run --release --example follow -- drawing.png --table-error 1 --animation follow.gif
 //! cargo run --release --example follow -- drawing.png --method published --hand left --report follow.json
+//! cargo run --release --features camera --example follow -- --from /dev/video0 --correction camera.json --moves moves.gcode
 //! ```
 
-use base64::Engine as _;
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use plotter_examples::{SteppedFigures, SteppedPlot, at, print, read_file, run, write_file};
-use plotter_motion::kinematics::MotorScale;
-use plotter_motion::{Machine, PlannerSettings, PlotOp, Point, StepGenSettings};
+use plotter_examples::{
+    FollowFrame, FollowGif, FollowMachine, FollowOutcome, MovesFile, WindowSource, at, follow_page,
+    follow_svg, print, read_file, run, write_file,
+};
+use plotter_motion::Machine;
 use plotter_vector::follow::{
-    CameraSettings, FollowReport, Hand, Judged, Lens, LineFollower, MappingFollower, MappingSettings, Paper,
+    CameraSettings, Correction, End, Hand, Lens, LineFollower, MappingFollower, MappingSettings, Paper,
     PublishedFollower, PublishedSettings, SimulatedCamera, SimulatedTable, Step, TableError, Tool, judge,
 };
 use plotter_vector::{Gray, PxPoint, Vectorizer, decode};
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// The machine, where no other is given.
 const MACHINE: &str = include_str!("machines/plasma-follower.toml");
 
-/// Windows without anything new, after which the published follower is stopped.
+/// Windows after which the published follower is stopped.
 const PUBLISHED_WINDOWS: u64 = 400;
 
-/// Follows the lines of a picture with a simulated camera on a simulated table.
+/// Windows after which ours is stopped: a sheet of 10,000 x 5,000 px full of lines needs fewer.
+const WINDOWS: u64 = 2_000_000;
+
+/// Follows the lines of a picture with a simulated camera on a simulated table, or what a real camera sees.
 #[derive(Debug, Parser)]
 #[command(
     name = "follow",
     after_help = "Examples:\n  \
                   follow --svg follow.svg\n  \
-                  follow drawing.png --table-error 1 --play 3 --animation follow.html\n  \
-                  follow drawing.png --camera blur=2,noise=8,rim=0.5,barrel=0.03,size=240\n  \
-                  follow drawing.png --method published --hand left --report follow.json\n\n\
-                  Exit status: 0 followed to the end; 1 no line, lost on the way, or a file that cannot be read; 2 wrong options. \
-                  The published method never ends by itself: it is stopped after --windows."
+                  follow drawing.png --table-error 1 --play 3 --animation follow.gif\n  \
+                  follow drawing.png --camera blur=2,noise=8,rim=0.5,barrel=0.03,size=240 --correction camera.json\n  \
+                  follow drawing.png --method published --hand left --report follow.json\n  \
+                  follow --from pictures/ --moves moves.csv\n\n\
+                  Exit status: 0 followed to the end, or the published method, which never ends by itself, until it was stopped; \
+                  1 no line, lost on the way, the pictures of --from are at their end, a camera that gives none, or a file that cannot be read; 2 wrong options. \
+                  Files are written as far as it came."
 )]
 struct Arguments {
     /// Picture with dark lines on light paper: PNG, JPEG, TIFF, PBM or PGM [default: a drawing of its own]
+    #[arg(conflicts_with = "from")]
     image: Option<PathBuf>,
     /// Which follower
     #[arg(long, value_enum, default_value = "ours")]
@@ -61,10 +70,10 @@ struct Arguments {
     /// What each axis of the table loses where it turns round, px [default: 3 times the table's error]
     #[arg(long, value_name = "PX", value_parser = error_px, allow_negative_numbers = true)]
     play: Option<f64>,
-    /// On which hand the published follower turns off
-    #[arg(long, value_enum, default_value = "right")]
-    hand: Side,
-    /// Where the camera stands at first, px [default: the middle of the picture]
+    /// On which hand the published follower turns off [default: right]; ours goes straight on, and takes no hand
+    #[arg(long, value_enum)]
+    hand: Option<Side>,
+    /// Where the camera stands at first, px [default: the middle of the picture, or of the machine]
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     start: Option<[f64; 2]>,
     /// The thinnest line, px, which the published follower must be told
@@ -82,11 +91,26 @@ struct Arguments {
     /// Of the camera's noise and the table's errors
     #[arg(long, value_name = "N", default_value = "1")]
     seed: u64,
+    /// The lens' correction, as `calibrate_camera` writes it
+    #[arg(long, value_name = "F.json")]
+    correction: Option<PathBuf>,
+    /// Takes the windows from a camera (built with --features camera), or from a folder's pictures in the order of their names
+    #[arg(long, value_name = "/dev/videoN|FOLDER", conflicts_with_all = ["camera", "table_error", "play", "seed"])]
+    from: Option<PathBuf>,
+    /// With --from: side of the square cut out of each picture's middle, px [default: the shorter side]
+    #[arg(long, value_name = "PX", requires = "from", value_parser = clap::value_parser!(u32).range(16..=4096))]
+    window: Option<u32>,
+    /// With --from a camera: pause after each move, until the machine stands still, ms
+    #[arg(long, value_name = "MS", default_value = "100", value_parser = clap::value_parser!(u32).range(0..=60_000))]
+    settle_ms: u32,
+    /// Writes the moves as they come: a table as .csv, otherwise G-code [default with --from: a table on the standard output]
+    #[arg(long, value_name = "F.csv|F.gcode")]
+    moves: Option<PathBuf>,
     /// Writes the path over the drawing, with the windows
     #[arg(long, value_name = "F.svg")]
     svg: Option<PathBuf>,
-    /// Writes a page that plays what the camera did
-    #[arg(long, value_name = "F.html")]
+    /// Writes what the camera did and saw: an animated picture, or a page that plays it
+    #[arg(long, value_name = "F.gif|F.html")]
     animation: Option<PathBuf>,
     /// Writes the figures and the path as JSON
     #[arg(long, value_name = "F.json")]
@@ -97,6 +121,8 @@ struct Arguments {
 enum Method {
     /// Circles around the current place, always the same hand
     Published,
+    /// As published, but only exits count that ink joins to the current place
+    Connected,
     /// A map of the lines, each followed once
     Ours,
 }
@@ -149,11 +175,19 @@ fn camera(text: &str) -> Result<Box<CameraSettings>, String> {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    if let Some(path) =
-        arguments.animation.as_deref().filter(|path| path.extension().is_none_or(|e| e != "html"))
-    {
-        eprintln!("follow: {}: the animation is a page: name it F.html", path.display());
+    let is_animation =
+        |path: &&Path| path.extension().is_some_and(|ending| ending == "gif" || ending == "html");
+    if let Some(path) = arguments.animation.as_deref().filter(|path| !is_animation(path)) {
+        eprintln!(
+            "follow: {}: the animation is a picture or a page: name it F.gif or F.html",
+            path.display()
+        );
         return ExitCode::from(2);
+    }
+    if arguments.hand.is_some() && arguments.method == Method::Ours {
+        eprintln!(
+            "follow: --hand is for the published method: ours goes straight on at crossings, and takes every branch"
+        );
     }
     run("follow", || follow(&arguments))
 }
@@ -180,335 +214,268 @@ fn built_in() -> Result<Paper, String> {
     Paper::drawn(880, 700, &strokes).map_err(|error| error.to_string())
 }
 
-/// A moment of the run.
-struct Frame {
-    at: PxPoint,
-    tool: Tool,
+/// What lies under the camera, where that is known.
+struct Sheet {
+    picture: Gray,
+    /// The middles of its lines.
+    truth: Vec<Vec<PxPoint>>,
+}
+
+/// Where windows come from.
+enum Eyes {
+    Simulated(Box<SimulatedCamera>),
+    Real(WindowSource),
+}
+
+/// Either follower, with its correction of the lens.
+enum Follower {
+    Ours(Box<MappingFollower>),
+    Published(PublishedFollower, Option<Box<Correction>>),
+}
+
+impl Follower {
+    fn new(arguments: &Arguments, area: [PxPoint; 2], correction: Option<Correction>) -> Self {
+        if arguments.method == Method::Ours {
+            return Self::Ours(Box::new(MappingFollower::new(MappingSettings {
+                area: Some(area),
+                max_windows: arguments.windows.unwrap_or(WINDOWS),
+                correction,
+                ..MappingSettings::default()
+            })));
+        }
+        let settings = PublishedSettings {
+            hand: if arguments.hand == Some(Side::Left) { Hand::Left } else { Hand::Right },
+            only_connected: arguments.method == Method::Connected,
+            area: Some(area),
+            ..PublishedSettings::for_lines(arguments.thinnest)
+        };
+        Self::Published(PublishedFollower::new(settings), correction.map(Box::new))
+    }
+
+    fn observe(&mut self, window: &Gray, pose: PxPoint) -> Step {
+        match self {
+            Self::Ours(follower) => follower.observe(window, pose),
+            Self::Published(follower, Some(correction)) => {
+                follower.observe(&correction.corrected(window), pose)
+            }
+            Self::Published(follower, None) => follower.observe(window, pose),
+        }
+    }
 }
 
 fn follow(arguments: &Arguments) -> Result<(), String> {
-    let (picture, name) = match &arguments.image {
-        Some(path) => {
-            (decode(&read_file(path)?).map_err(|error| at(path, &error))?, path.display().to_string())
-        }
-        None => (built_in()?.picture().map_err(|error| error.to_string())?, "the built-in drawing".into()),
+    let name = match (&arguments.from, &arguments.image) {
+        (Some(path), _) | (None, Some(path)) => path.display().to_string(),
+        (None, None) => "the built-in drawing".into(),
     };
-    let size = [f64::from(picture.width()), f64::from(picture.height())];
-    let traced = Vectorizer::default().vectorize(&picture).map_err(|error| format!("{name}: {error}"))?;
-    let truth: Vec<Vec<PxPoint>> = traced.drawing.chords(0.05).strokes().map(<[PxPoint]>::to_vec).collect();
-    let mut motion = Motion::new(arguments, size)?;
+    let sheet = if arguments.from.is_none() { Some(sheet(arguments, &name)?) } else { None };
+    let size = sheet.as_ref().map(|sheet| [sheet.picture.width(), sheet.picture.height()].map(f64::from));
+    let mut machine = FollowMachine::new(&machine(arguments)?, arguments.mm_per_px, size, arguments.start)?;
+    let correction = correction(arguments)?;
 
-    let settings = CameraSettings { seed: arguments.seed, ..*arguments.camera };
-    let mut camera = SimulatedCamera::new(&Paper::of(&picture), settings);
-    let play_px = arguments.play.unwrap_or(3.0 * arguments.table_error);
-    let error = TableError { random_px: arguments.table_error, play_px, seed: arguments.seed };
-    let [x, y] = arguments.start.unwrap_or([0.5 * size[0], 0.5 * size[1]]);
-    let start = PxPoint::new(x.clamp(0.0, motion.area_px[0]), y.clamp(0.0, motion.area_px[1]));
-    let mut table = SimulatedTable::new(start, error);
-
-    let mut ours = MappingFollower::new(MappingSettings {
-        area: Some([PxPoint::new(0.0, 0.0), PxPoint::new(motion.area_px[0], motion.area_px[1])]),
-        max_windows: arguments.windows.unwrap_or(2_000_000),
-        ..MappingSettings::default()
-    });
-    let hand = if arguments.hand == Side::Left { Hand::Left } else { Hand::Right };
-    let published =
-        PublishedSettings { hand, thinnest_px: arguments.thinnest, ..PublishedSettings::default() };
-    let mut published = PublishedFollower::new(published);
-    let most = arguments.windows.unwrap_or(PUBLISHED_WINDOWS);
+    let camera = CameraSettings { seed: arguments.seed, ..*arguments.camera };
+    let mut eyes = match (&arguments.from, &sheet) {
+        (None, Some(sheet)) => {
+            Eyes::Simulated(Box::new(SimulatedCamera::new(&Paper::of(&sheet.picture), camera)))
+        }
+        (from, _) => {
+            Eyes::Real(WindowSource::open(from.as_deref().unwrap_or(Path::new("")), arguments.window)?)
+        }
+    };
+    let random_px = if sheet.is_some() { arguments.table_error } else { 0.0 };
+    let play_px = arguments.play.unwrap_or(3.0 * random_px);
+    let mut table =
+        SimulatedTable::new(machine.at(), TableError { random_px, play_px, seed: arguments.seed });
+    let [right, low] = machine.area_px();
+    let area = [PxPoint::new(0.0, 0.0), PxPoint::new(right, low)];
+    let corrected_px = correction.as_ref().map(Correction::size_px);
+    let mut follower = Follower::new(arguments, area, correction);
+    let mut moves_file = match (&arguments.moves, &eyes) {
+        (None, Eyes::Simulated(_)) => None,
+        (path, _) => Some(MovesFile::new(path.as_deref())?),
+    };
+    let settle_s = 1e-3 * f64::from(arguments.settle_ms);
+    if let Some(file) = &mut moves_file {
+        file.push(&machine, &[machine.at()], Tool::Up)?;
+    }
+    if let Eyes::Real(source) = &eyes {
+        source.wait(machine.now_s() + settle_s);
+    }
+    let most = match &follower {
+        Follower::Ours(_) => u64::MAX, // it knows itself
+        Follower::Published(..) => arguments.windows.unwrap_or(PUBLISHED_WINDOWS),
+    };
 
     let bar = ProgressBar::new_spinner();
     if let Ok(style) = ProgressStyle::with_template("following: {pos} windows, {elapsed}") {
         bar.set_style(style);
     }
+    let is_gif = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "gif");
+    let mut film = arguments.animation.as_ref().filter(|path| is_gif(path)).map(|_| FollowGif::default());
     let (mut windows, mut moves, mut lost) = (0_u64, 0_u64, 0_u64);
-    let mut frames = Vec::new();
+    let mut frames: Vec<FollowFrame> = Vec::new();
+    let mut window_px = camera.width_px;
     let end = loop {
-        let window = camera.window(table.place());
-        let step = match arguments.method {
-            Method::Ours => ours.observe(&window, table.commanded()),
-            Method::Published if windows >= most => break None,
-            Method::Published => published.observe(&window, table.commanded()),
+        if windows >= most {
+            break Ended::Stopped;
+        }
+        let window = match &mut eyes {
+            Eyes::Simulated(camera) => camera.window(table.place()),
+            Eyes::Real(source) => match source.next_window() {
+                Ok(Some(window)) => window,
+                Ok(None) => break Ended::NoMorePictures(table.commanded()),
+                Err(error) => break Ended::Failed(error),
+            },
         };
+        window_px = window.width();
+        if let Some((width, height)) = corrected_px.filter(|size| *size != (window.width(), window.height()))
+        {
+            break Ended::Failed(format!(
+                "the correction is for windows of {width} x {height} px, this one has {} x {}: calibrate with such windows",
+                window.width(),
+                window.height()
+            ));
+        }
+        if let Some(film) = &mut film {
+            film.see(&window, frames.len());
+        }
         windows += 1;
         bar.set_position(windows);
-        match step {
+        match follower.observe(&window, table.commanded()) {
             Step::Move { path, tool } => {
                 moves += 1;
-                for to in path {
-                    motion.go(to, tool)?;
+                if let Some(file) = &mut moves_file {
+                    file.push(&machine, &path, tool)?;
+                }
+                let seconds = machine.make(&path, tool, &mut |to, tool| {
                     table.go(to, tool);
-                    frames.push(Frame { at: table.place(), tool });
+                    frames.push(FollowFrame { at: table.place(), tool });
+                })?;
+                if let Eyes::Real(source) = &eyes {
+                    source.wait(seconds + settle_s);
                 }
             }
-            Step::LineLost { at, tries, why } => {
-                lost += 1;
-                if arguments.method == Method::Published && tries > 8 {
-                    return Err(format!("{name}: no line in view at ({:.1}, {:.1}) px: {why}", at.x, at.y));
-                }
-            }
-            Step::Done(end) => break Some(end),
+            Step::LineLost { .. } => lost += 1,
+            Step::Done(end) => break Ended::Said(end),
         }
     };
     bar.finish_and_clear();
-    let judged = judge(&truth, table.strokes(), 2.0);
-    let finished = end == Some(plotter_vector::follow::End::Complete);
-    let outcome = Outcome {
+    if let Some(file) = moves_file {
+        file.finish()?;
+    }
+    let outcome = FollowOutcome {
         name: &name,
         windows,
         moves,
         lost,
         lifts: table.strokes().len().saturating_sub(1),
-        finished,
-        said: end.map_or_else(
-            || format!("stopped after {windows} windows; it never ends by itself"),
-            |end| end.to_string(),
-        ),
-        judged,
-        map: (arguments.method == Method::Ours).then(|| ours.report()),
-        motion: motion.finish()?,
+        finished: end == Ended::Said(End::Complete),
+        said: end.told(windows),
+        judged: sheet.as_ref().map(|sheet| judge(&sheet.truth, table.strokes(), 2.0)),
+        map: if let Follower::Ours(ours) = &follower { Some(ours.report()) } else { None },
+        motion: machine.finish()?,
+    };
+    write_files(arguments, sheet, table.strokes(), (&frames, film), window_px, &outcome)?;
+    if arguments.from.is_none() || arguments.moves.is_some() {
+        print(&outcome.table())?;
+    } else {
+        eprint!("{}", outcome.table());
+    }
+    match end {
+        Ended::Said(End::Complete) | Ended::Stopped => Ok(()),
+        _ => Err(format!("{name}: {}", outcome.said)),
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+enum Ended {
+    Said(End),
+    /// After as many windows as were allowed.
+    Stopped,
+    /// The folder has no more.
+    NoMorePictures(PxPoint),
+    /// The camera, or a picture.
+    Failed(String),
+}
+
+impl Ended {
+    fn told(&self, windows: u64) -> String {
+        match self {
+            Self::Said(end) => end.to_string(),
+            Self::Stopped => format!("stopped after {windows} windows; it never ends by itself"),
+            Self::NoMorePictures(at) => {
+                format!(
+                    "no more pictures after {windows}; lines may be left; stopped at ({:.1}, {:.1}) px",
+                    at.x, at.y
+                )
+            }
+            Self::Failed(error) => error.clone(),
+        }
+    }
+}
+
+fn sheet(arguments: &Arguments, name: &str) -> Result<Sheet, String> {
+    let picture = match &arguments.image {
+        Some(path) => decode(&read_file(path)?).map_err(|error| at(path, &error))?,
+        None => built_in()?.picture().map_err(|error| error.to_string())?,
+    };
+    let traced = Vectorizer::default().vectorize(&picture).map_err(|error| format!("{name}: {error}"))?;
+    let truth = traced.drawing.chords(0.05).strokes().map(<[PxPoint]>::to_vec).collect();
+    Ok(Sheet { picture, truth })
+}
+
+fn machine(arguments: &Arguments) -> Result<Machine, String> {
+    let (text, named) = match &arguments.machine {
+        Some(path) => {
+            (String::from_utf8(read_file(path)?).map_err(|error| at(path, &error))?, path.as_path())
+        }
+        None => (MACHINE.to_owned(), Path::new("machines/plasma-follower.toml")),
+    };
+    Machine::from_toml(&text).map_err(|error| at(named, &error))
+}
+
+fn correction(arguments: &Arguments) -> Result<Option<Correction>, String> {
+    let Some(path) = &arguments.correction else { return Ok(None) };
+    let correction = serde_json::from_slice(&read_file(path)?)
+        .map_err(|error| at(path, &format!("is no correction of calibrate_camera: {error}")))?;
+    Ok(Some(correction))
+}
+
+fn write_files(
+    arguments: &Arguments,
+    sheet: Option<Sheet>,
+    strokes: &[Vec<PxPoint>],
+    (frames, film): (&[FollowFrame], Option<FollowGif>),
+    window_px: u32,
+    outcome: &FollowOutcome<'_>,
+) -> Result<(), String> {
+    // Without the drawing: white paper, as large as the way and its windows.
+    let picture = match sheet {
+        Some(sheet) => sheet.picture,
+        None => {
+            let far = |part: fn(&FollowFrame) -> f64| frames.iter().map(part).fold(0.0, f64::max);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+            let side = |px: f64| (px + f64::from(window_px)).clamp(1.0, 8192.0) as u32;
+            let (width, height) = (side(far(|frame| frame.at.x)), side(far(|frame| frame.at.y)));
+            let levels = vec![u8::MAX; width as usize * height as usize];
+            Gray::new(width, height, levels).map_err(|error| error.to_string())?
+        }
     };
     if let Some(path) = &arguments.svg {
-        write_file(path, svg(&picture, table.strokes(), &frames, settings.width_px)?)?;
+        write_file(path, follow_svg(&picture, strokes, frames, window_px)?)?;
     }
     if let Some(path) = &arguments.animation {
-        write_file(path, page(&picture, &frames, settings.width_px, &outcome)?)?;
+        match film {
+            Some(film) => {
+                let gif = film.encode(&picture, frames, window_px).map_err(|error| at(path, &error))?;
+                write_file(path, gif)?;
+            }
+            None => write_file(path, follow_page(&picture, frames, window_px, &outcome.table())?)?,
+        }
     }
     if let Some(path) = &arguments.report {
-        write_file(path, outcome.json(table.strokes())?)?;
+        write_file(path, outcome.json(strokes)?)?;
     }
-    print(&outcome.table())?;
-    if finished || end.is_none() { Ok(()) } else { Err(format!("{name}: {}", outcome.said)) }
-}
-
-/// The machine that makes the moves: its planner and its steps.
-struct Motion {
-    plot: SteppedPlot,
-    mm_per_px: f64,
-    height_px: f64,
-    /// What the camera can reach of the picture, px.
-    area_px: [f64; 2],
-    speed_mm_s: f64,
-}
-
-impl Motion {
-    fn new(arguments: &Arguments, size: [f64; 2]) -> Result<Self, String> {
-        let (text, named) = match &arguments.machine {
-            Some(path) => {
-                (String::from_utf8(read_file(path)?).map_err(|error| at(path, &error))?, path.as_path())
-            }
-            None => (MACHINE.to_owned(), Path::new("machines/plasma-follower.toml")),
-        };
-        let machine = Machine::from_toml(&text).map_err(|error| at(named, &error))?;
-        let config = machine.config();
-        let motor = |steps_per_mm| MotorScale { steps_per_mm, inverted: false };
-        let motors = [motor(config.x.stepper.steps_per_mm), motor(config.y.stepper.steps_per_mm)];
-        let finest = motors[0].steps_per_mm.max(motors[1].steps_per_mm);
-        let settings = PlannerSettings { resolution_mm: 0.5 / finest, ..PlannerSettings::of(&machine) };
-        let reach = [config.area.width_mm, config.area.height_mm].map(|mm| mm / arguments.mm_per_px);
-        Ok(Self {
-            plot: SteppedPlot::new(settings, StepGenSettings::of(&machine), motors)?,
-            mm_per_px: arguments.mm_per_px,
-            height_px: size[1].min(reach[1]),
-            area_px: [size[0].min(reach[0]), size[1].min(reach[1])],
-            speed_mm_s: settings.speed_mm_s,
-        })
-    }
-
-    fn push(&mut self, op: PlotOp) -> Result<(), String> {
-        self.plot.push(op, &mut |_| {}).map_err(|error| format!("the machine cannot do that: {error}"))
-    }
-
-    fn go(&mut self, to: PxPoint, tool: Tool) -> Result<(), String> {
-        // Millimetres, y up.
-        let to = Point { x: to.x * self.mm_per_px, y: (self.height_px - to.y) * self.mm_per_px };
-        self.push(match tool {
-            Tool::Down => PlotOp::Draw { to, feed_mm_s: Some(self.speed_mm_s) },
-            Tool::Up => PlotOp::Travel { to },
-        })
-    }
-
-    fn finish(self) -> Result<SteppedFigures, String> {
-        self.plot.finish(&mut |_| {}).map_err(|error| error.to_string())
-    }
-}
-
-struct Outcome<'a> {
-    name: &'a str,
-    windows: u64,
-    moves: u64,
-    lost: u64,
-    lifts: usize,
-    finished: bool,
-    said: String,
-    judged: Judged,
-    map: Option<FollowReport>,
-    motion: SteppedFigures,
-}
-
-impl Outcome<'_> {
-    fn table(&self) -> String {
-        let judged = &self.judged;
-        let mut text = format!(
-            "{}: {}\n  windows {}, moves {}, pictures without the line {}, lifts {}\n  covered {:.2} % of {:.0} px of lines, followed twice {:.2} %\n  \
-             path {:.0} px, off the middle of the lines: rms {:.2} px, at most {:.2} px at ({:.0}, {:.0})\n  \
-             machine: {:.1} s in motion, {} steps\n",
-            self.name,
-            self.said,
-            self.windows,
-            self.moves,
-            self.lost,
-            self.lifts,
-            100.0 * judged.coverage,
-            judged.true_px,
-            100.0 * judged.repeated,
-            judged.path_px,
-            judged.rms_px,
-            judged.max_px,
-            judged.worst.x,
-            judged.worst.y,
-            self.motion.motion_s,
-            self.motion.steps,
-        );
-        if let Some(map) = &self.map {
-            let _ = writeln!(
-                text,
-                "  lines {:.1} px wide; play found: {:.2} and {:.2} px",
-                map.line_width_px, map.play_px[0], map.play_px[1]
-            );
-            for (what, places) in
-                [("a line leaves the machine's area", &map.leaves), ("an area of ink, left out", &map.areas)]
-            {
-                if let Some(first) = places.first() {
-                    let _ = writeln!(
-                        text,
-                        "  {what}: {} times, first at ({:.0}, {:.0})",
-                        places.len(),
-                        first.x,
-                        first.y
-                    );
-                }
-            }
-        }
-        text
-    }
-
-    fn json(&self, strokes: &[Vec<PxPoint>]) -> Result<String, String> {
-        let pairs = |stroke: &Vec<PxPoint>| -> Vec<[f64; 2]> {
-            stroke.iter().map(|at| [at.x, at.y].map(|v| libm::round(1000.0 * v) / 1000.0)).collect()
-        };
-        let strokes: Vec<Vec<[f64; 2]>> = strokes.iter().map(pairs).collect();
-        let value = serde_json::json!({
-            "windows": self.windows,
-            "moves": self.moves,
-            "lost": self.lost,
-            "lifts": self.lifts,
-            "finished": self.finished,
-            "end": self.said,
-            "coverage": self.judged.coverage,
-            "repeated": self.judged.repeated,
-            "rms_px": self.judged.rms_px,
-            "max_px": self.judged.max_px,
-            "lines_px": self.judged.true_px,
-            "path_px": self.judged.path_px,
-            "motion_s": self.motion.motion_s,
-            "steps": self.motion.steps,
-            "map": self.map,
-            "path_points": strokes.concat(),
-            "strokes": strokes,
-        });
-        serde_json::to_string(&value).map(|text| text + "\n").map_err(|error| error.to_string())
-    }
-}
-
-/// The picture as the source of an image.
-fn embedded(picture: &Gray) -> Result<String, String> {
-    let mut png = std::io::Cursor::new(Vec::new());
-    let image = image::GrayImage::from_raw(picture.width(), picture.height(), picture.pixels().to_vec());
-    let image = image.ok_or("the picture cannot be held")?;
-    image.write_to(&mut png, image::ImageFormat::Png).map_err(|error| error.to_string())?;
-    Ok(format!(
-        "data:image/png;base64,{}",
-        base64::engine::general_purpose::STANDARD.encode(png.into_inner())
-    ))
-}
-
-fn svg(picture: &Gray, strokes: &[Vec<PxPoint>], frames: &[Frame], window_px: u32) -> Result<String, String> {
-    let (width, height) = (picture.width(), picture.height());
-    let mut text = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\">\n\
-         <image href=\"{}\" width=\"{width}\" height=\"{height}\" opacity=\"0.35\"/>\n",
-        embedded(picture)?
-    );
-    let side = f64::from(window_px);
-    let mut shown = PxPoint::new(f64::MAX, f64::MAX);
-    for frame in frames {
-        // As many windows as can be told apart.
-        if frame.at.distance(shown) > 0.5 * side {
-            shown = frame.at;
-            let (left, top) = (shown.x - 0.5 * side, shown.y - 0.5 * side);
-            let _ = writeln!(
-                text,
-                "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{side}\" height=\"{side}\" fill=\"none\" stroke=\"#2a6fb0\" \
-                 stroke-opacity=\"0.25\"/>"
-            );
-        }
-    }
-    for (i, stroke) in strokes.iter().enumerate() {
-        let places: Vec<String> = stroke.iter().map(|at| format!("{:.2},{:.2}", at.x, at.y)).collect();
-        let _ = writeln!(
-            text,
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"#d01818\" stroke-width=\"1\" stroke-linejoin=\"round\"/>",
-            places.join(" ")
-        );
-        let next = strokes.get(i + 1).and_then(|next| next.first());
-        if let (Some(from), Some(to)) = (stroke.last(), next) {
-            let _ = writeln!(
-                text,
-                "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" stroke=\"#18a018\" stroke-width=\"0.7\" \
-                 stroke-dasharray=\"3 3\"/>",
-                from.x, from.y, to.x, to.y
-            );
-        }
-    }
-    text.push_str("</svg>\n");
-    Ok(text)
-}
-
-fn page(picture: &Gray, frames: &[Frame], window_px: u32, outcome: &Outcome<'_>) -> Result<String, String> {
-    let places: Vec<[f64; 3]> = frames
-        .iter()
-        .map(|frame| {
-            let round = |v: f64| libm::round(10.0 * v) / 10.0;
-            [round(frame.at.x), round(frame.at.y), if frame.tool == Tool::Down { 1.0 } else { 0.0 }]
-        })
-        .collect();
-    let places = serde_json::to_string(&places).map_err(|error| error.to_string())?;
-    let escaped = outcome.table().replace('&', "&amp;").replace('<', "&lt;");
-    Ok(format!(
-        r##"<!doctype html><meta charset="utf-8"><title>follow</title>
-<style>body{{font:14px sans-serif;margin:1em}}canvas{{max-width:100%;border:1px solid #ccc}}</style>
-<canvas id="c" width="{width}" height="{height}"></canvas>
-<p><button id="play">pause</button> <input id="t" type="range" min="0" value="0" style="width:60%"></p>
-<pre>{escaped}</pre>
-<script>
-const places={places},side={window_px};
-const c=document.getElementById("c"),g=c.getContext("2d"),t=document.getElementById("t"),b=document.getElementById("play");
-t.max=places.length;let n=0,on=true;const image=new Image();image.src="{image}";
-function draw(){{
-  g.clearRect(0,0,c.width,c.height);g.globalAlpha=.4;g.drawImage(image,0,0);g.globalAlpha=1;
-  g.lineWidth=1.2;
-  for(let i=1;i<n;i++){{g.beginPath();g.strokeStyle=places[i][2]?"#d01818":"#9c9";g.moveTo(places[i-1][0],places[i-1][1]);g.lineTo(places[i][0],places[i][1]);g.stroke();}}
-  const p=places[Math.max(0,n-1)];if(p){{g.strokeStyle="#2a6fb0";g.strokeRect(p[0]-side/2,p[1]-side/2,side,side);g.fillStyle="#2a6fb0";g.fillRect(p[0]-2,p[1]-2,4,4);}}
-}}
-function tick(){{if(on&&n<places.length){{n=Math.min(places.length,n+Math.max(1,places.length/900));n=Math.floor(n);t.value=n;draw();}}requestAnimationFrame(tick);}}
-b.onclick=()=>{{if(n>=places.length)n=0;on=!on||n==0;b.textContent=on?"pause":"play";}};
-t.oninput=()=>{{n=+t.value;on=false;b.textContent="play";draw();}};
-image.onload=()=>{{draw();tick();}};
-</script>
-"##,
-        width = picture.width(),
-        height = picture.height(),
-        image = embedded(picture)?,
-    ))
+    Ok(())
 }

@@ -141,15 +141,31 @@ impl SteppedPlot {
         Ok(())
     }
 
+    /// Nothing comes for now: the machine goes on until it stands. More may be pushed afterwards.
+    ///
+    /// # Errors
+    ///
+    /// Never, as far as is known.
+    pub fn rest(&mut self, each: &mut impl FnMut(Happening)) -> Result<(), PlanError> {
+        while !self.planner.has_room() && self.advance(each) {}
+        self.planner.finish()?;
+        while self.advance(each) {}
+        Ok(())
+    }
+
+    /// Seconds since the machine began.
+    #[must_use]
+    pub fn now_s(&self) -> f64 {
+        seconds(self.steps.tick())
+    }
+
     /// Nothing more comes: the machine goes on until it stands.
     ///
     /// # Errors
     ///
     /// Never, as far as is known.
     pub fn finish(mut self, each: &mut impl FnMut(Happening)) -> Result<SteppedFigures, PlanError> {
-        while !self.planner.has_room() && self.advance(each) {}
-        self.planner.finish()?;
-        while self.advance(each) {}
+        self.rest(each)?;
         let pen = self.pen;
         self.audit.finish(self.steps.tick(), |moment| each(Happening::Moment(moment, pen)));
         if self.pen == Pen::Down {

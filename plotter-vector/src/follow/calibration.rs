@@ -174,6 +174,44 @@ impl Correction {
         self.pitch_px
     }
 
+    /// Size of the windows that it corrects, px: that of the picture it was measured on.
+    #[must_use]
+    pub const fn size_px(&self) -> (u32, u32) {
+        self.size_px
+    }
+
+    /// A window as a lens without distortion shows it; one of another size than [`Correction::size_px`] as it is.
+    ///
+    /// For followers that do not correct windows themselves, as ours does.
+    ///
+    /// ```
+    /// # use plotter_vector::{Pixel, PxPoint, follow::*};
+    /// # let rows = (0..21).map(|i| f64::from(i) * 20.0);
+    /// # let grid: Vec<_> = rows.flat_map(|at| [
+    /// #     (vec![PxPoint::new(0.0, at), PxPoint::new(400.0, at)], 3.0),
+    /// #     (vec![PxPoint::new(at, 0.0), PxPoint::new(at, 400.0)], 3.0),
+    /// # ]).collect();
+    /// // A grid with a line each 20 px, under a lens that bends it.
+    /// let bad = CameraSettings { lens: Lens { barrel: 0.08 }, rim_light: 1.0, ..Default::default() };
+    /// let mut camera = SimulatedCamera::new(&Paper::drawn(400, 400, &grid)?, bad);
+    /// let window = camera.window(PxPoint::new(200.0, 200.0));
+    /// let straight = Correction::measured(&window)?.corrected(&window);
+    /// // The line 120 px above the middle is straight again, from the left to the right.
+    /// let dark = |picture: &plotter_vector::Gray| (0..10).filter(|i| picture.get(Pixel::new(15 + 30 * i, 30)).unwrap() < 110).count();
+    /// assert_eq!((dark(&straight), dark(&window) < 6), (10, true));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn corrected(&self, window: &Gray) -> Gray {
+        let (width, height) = self.size_px;
+        if (window.width(), window.height()) != self.size_px {
+            return window.clone();
+        }
+        let place = (0..height as usize).flat_map(|y| (0..width as usize).map(move |x| (x, y)));
+        let levels = place.map(|(x, y)| super::whole::level(self.level(window, x, y))).collect();
+        Gray::of_checked_size(width, height, levels)
+    }
+
     /// The level of a corrected window's pixel.
     pub(super) fn level(&self, window: &Gray, x: usize, y: usize) -> f32 {
         #[expect(clippy::cast_precision_loss, reason = "a window is small")]

@@ -76,10 +76,15 @@ pub(super) fn middles(ring: &[Pixel], lines: &[bool]) -> Vec<Pixel> {
 #[must_use]
 pub fn connected_exits(ink: &Bitmap, at: Pixel, radius_px: u32) -> Vec<Pixel> {
     let radius = i32::try_from(radius_px.min(1 << 14)).unwrap_or(0);
-    let Some(around) = circumference(ink, at, radius) else { return Vec::new() };
-    if !ink.get(at) {
-        return Vec::new();
-    }
+    let around = connected(ink, at, radius).unwrap_or_default();
+    let (ring, lines): (Vec<Pixel>, Vec<bool>) = around.into_iter().unzip();
+    middles(&ring, &lines)
+}
+
+/// The circumference of a circle, where only line that the ink in the circle joins to its middle counts as line; none where
+/// the circle leaves the picture.
+pub(super) fn connected(ink: &Bitmap, at: Pixel, radius: i32) -> Option<Vec<(Pixel, bool)>> {
+    let around = circumference(ink, at, radius)?;
     let side = 2 * radius + 1;
     let limit = (f64::from(radius) + 0.5) * (f64::from(radius) + 0.5);
     let index =
@@ -107,9 +112,7 @@ pub fn connected_exits(ink: &Bitmap, at: Pixel, radius_px: u32) -> Vec<Pixel> {
                 && seen.get(index(near)).copied().unwrap_or(false)
         })
     };
-    let ring: Vec<Pixel> = around.iter().map(|(pixel, _)| *pixel).collect();
-    let lines: Vec<bool> = around.iter().map(|(pixel, line)| *line && reached(pixel)).collect();
-    middles(&ring, &lines)
+    Some(around.into_iter().map(|(pixel, line)| (pixel, line && reached(&pixel))).collect())
 }
 
 #[cfg(test)]

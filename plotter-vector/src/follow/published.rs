@@ -1,8 +1,8 @@
 //! [`PublishedFollower`]: circles around the current place, and always the same hand.
 
 use super::circle::ring;
-use super::exits::{circumference, low_pass, middles, offset};
-use super::{LineFollower, Lost, Step, Tool};
+use super::exits::{circumference, connected, low_pass, middles, offset};
+use super::{End, LineFollower, Lost, Step, Tool};
 use crate::{Bitmap, Gray, Pixel, PxPoint};
 
 /// The hand on which a follower turns off at a junction.
@@ -32,11 +32,19 @@ pub struct PublishedSettings {
     pub hand: Hand,
     /// The way that it came before the first window.
     pub heading: (f64, f64),
+    /// Whether only exits count that ink inside of the circle joins to the current place: proposed in section 4.12, and not built
+    /// there, so not as published. See [`connected_exits`](super::connected_exits).
+    pub only_connected: bool,
+    /// What the machine can reach: the upper left and the lower right corner. Lines outside are not seen. Not as published,
+    /// where nothing keeps it from moving anywhere.
+    pub area: Option<[PxPoint; 2]>,
+    /// How many pictures in a row may show no line, or none that it can take a step on.
+    pub max_tries: u32,
 }
 
 impl Default for PublishedSettings {
     /// The thesis' own figures; for what it does not give: a level half way, lines from 4 px on, 40 places a window, and a first
-    /// way to the right.
+    /// way to the right; all exits count, no area bounds it, and 8 pictures may show no line.
     fn default() -> Self {
         Self {
             level: 100,
@@ -46,7 +54,29 @@ impl Default for PublishedSettings {
             max_points: 40,
             hand: Hand::Right,
             heading: (1.0, 0.0),
+            only_connected: false,
+            area: None,
+            max_tries: 8,
         }
+    }
+}
+
+impl PublishedSettings {
+    /// For lines from this width on, px: the least radius is that width, and the low-pass filter leaves what such a line crosses
+    /// a circle with. On a diagonal that is only 1/√2 of its width in pixels, so that the thesis' 4 suits lines from 6 px on;
+    /// with it a line of 5 px ends wherever it runs at 45 degrees.
+    ///
+    /// ```
+    /// # use plotter_vector::follow::PublishedSettings;
+    /// let runs = [1, 4, 5, 6, 20].map(|thinnest_px| PublishedSettings::for_lines(thinnest_px).min_run);
+    /// assert_eq!(runs, [1, 2, 3, 4, 4]);
+    /// ```
+    #[must_use]
+    pub fn for_lines(thinnest_px: u32) -> Self {
+        let published = Self::default();
+        let crossed = super::whole::floor(f64::from(thinnest_px) * core::f64::consts::FRAC_1_SQRT_2);
+        let min_run = usize::try_from(crossed).unwrap_or(1).clamp(1, published.min_run);
+        Self { thinnest_px, min_run, ..published }
     }
 }
 
@@ -55,8 +85,8 @@ impl Default for PublishedSettings {
 /// In each window: [threshold](PublishedSettings::level); circles grow from the middle until one meets the line; from there step by
 /// step, each to the middle of a run of line on the smallest circle with 65 % background, the low-pass filtered; of the exits
 /// the way back goes, and of the rest the next on one side is taken, by the angle from cross and dot product. Ends at
-/// the window's border, or after [`PublishedSettings::max_points`]. It never says that it is done: "the
-/// user stops it".
+/// the window's border, or after [`PublishedSettings::max_points`]. It never says that all is done: "the
+/// user stops it"; only after [`PublishedSettings::max_tries`] pictures without a line it ends.
 ///
 /// ```
 /// # use plotter_vector::{Gray, PxPoint, follow::{LineFollower, PublishedFollower, PublishedSettings, Step}};
@@ -75,21 +105,29 @@ pub struct PublishedFollower {
     /// Direction of the last move along the line.
     heading: (f64, f64),
     tries: u32,
+    ended: Option<End>,
 }
 
 impl PublishedFollower {
     /// Before the first window.
     #[must_use]
     pub const fn new(settings: PublishedSettings) -> Self {
-        Self { settings, heading: settings.heading, tries: 0 }
+        Self { settings, heading: settings.heading, tries: 0, ended: None }
     }
 
-    fn threshold(&self, window: &Gray) -> Option<Bitmap> {
+    /// The line's pixels, as far as the machine reaches.
+    fn threshold(&self, window: &Gray, to_paper: impl Fn(Pixel) -> PxPoint) -> Option<Bitmap> {
         let mut ink = Bitmap::new(window.width(), window.height()).ok()?;
+        let reached = |at: PxPoint| {
+            self.settings
+                .area
+                .is_none_or(|[from, to]| at.x >= from.x && at.y >= from.y && at.x <= to.x && at.y <= to.y)
+        };
         for (y, row) in (0..).zip(window.rows()) {
             for (x, level) in (0..).zip(row) {
-                if *level < self.settings.level {
-                    ink.set(Pixel::new(x, y), true);
+                let pixel = Pixel::new(x, y);
+                if *level < self.settings.level && reached(to_paper(pixel)) {
+                    ink.set(pixel, true);
                 }
             }
         }
@@ -100,7 +138,11 @@ impl PublishedFollower {
     fn next(&self, ink: &Bitmap, at: Pixel, heading: (f64, f64)) -> Option<Pixel> {
         let least = i32::try_from(self.settings.thinnest_px.clamp(1, 1 << 14)).ok()?;
         for radius in least.. {
-            let around = circumference(ink, at, radius)?;
+            let around = if self.settings.only_connected {
+                connected(ink, at, radius)?
+            } else {
+                circumference(ink, at, radius)?
+            };
             let background = around.iter().filter(|(_, line)| !line).count();
             #[expect(clippy::cast_precision_loss, reason = "a circle in a window")]
             let share = background as f64 / around.len().max(1) as f64;
@@ -146,11 +188,26 @@ fn choose(at: Pixel, heading: (f64, f64), exits: &[Pixel], hand: Hand) -> Option
     chosen.map(|(_, exit)| *exit)
 }
 
+impl PublishedFollower {
+    /// Another picture, or the end when there were enough.
+    fn lost(&mut self, at: PxPoint, why: Lost) -> Step {
+        self.tries = self.tries.saturating_add(1);
+        if self.tries > self.settings.max_tries {
+            self.ended = Some(End::NoLine { at, why });
+            return Step::Done(End::NoLine { at, why });
+        }
+        Step::LineLost { at, tries: self.tries, why }
+    }
+}
+
 impl LineFollower for PublishedFollower {
     fn observe(&mut self, window: &Gray, pose: PxPoint) -> Step {
-        self.tries = self.tries.saturating_add(1);
-        let lost = |why| Step::LineLost { at: pose, tries: self.tries, why };
-        let Some(ink) = self.threshold(window) else { return lost(Lost::WindowSize) };
+        if let Some(end) = self.ended {
+            return Step::Done(end);
+        }
+        let centre = PxPoint::new(0.5 * f64::from(window.width()), 0.5 * f64::from(window.height()));
+        let to_paper = |pixel: Pixel| pose.along(PxPoint::from(pixel).minus(centre), 1.0);
+        let Some(ink) = self.threshold(window, to_paper) else { return self.lost(pose, Lost::WindowSize) };
         let middle = Pixel::new(window.width() / 2, window.height() / 2);
         // A circle larger than the picture means that there is no line.
         let largest = i32::try_from(window.width().max(window.height())).unwrap_or(i32::MAX);
@@ -158,8 +215,7 @@ impl LineFollower for PublishedFollower {
             let on_line = |way| offset(middle, way, &ink).filter(|pixel| ink.get(*pixel));
             ring(radius).into_iter().find_map(on_line)
         };
-        let Some(nearest) = (0..largest).find_map(meets) else { return lost(Lost::OneColour) };
-        self.tries = 0;
+        let Some(nearest) = (0..largest).find_map(meets) else { return self.lost(pose, Lost::OneColour) };
 
         let mut places = vec![nearest];
         let mut at = nearest;
@@ -174,9 +230,13 @@ impl LineFollower for PublishedFollower {
             places.push(next);
             at = next;
         }
-        let centre = PxPoint::new(0.5 * f64::from(window.width()), 0.5 * f64::from(window.height()));
-        let to_paper = |pixel: &Pixel| pose.along(PxPoint::from(*pixel).minus(centre), 1.0);
-        Step::Move { path: merged(&places.iter().map(to_paper).collect::<Vec<_>>()), tool: Tool::Down }
+        if places.len() == 1 && nearest == middle {
+            // Nowhere to go, though the line is in the middle.
+            let is_dark = window.pixels().iter().all(|level| *level < self.settings.level);
+            return self.lost(pose, if is_dark { Lost::OneColour } else { Lost::TooThick });
+        }
+        self.tries = 0;
+        Step::Move { path: merged(&places.into_iter().map(to_paper).collect::<Vec<_>>()), tool: Tool::Down }
     }
 }
 
