@@ -10,7 +10,7 @@ pub(super) enum CharacterSet {
     #[default]
     Latin1,
     /// ASCII with letters of a language in the place of some signs: the one of [`NATIONAL`].
-    National(usize),
+    National(u8),
     /// HP's Roman Extensions from `!` on.
     RomanExtensions,
     /// ASCII, and the Roman Extensions 128 higher.
@@ -68,7 +68,7 @@ impl CharacterSet {
         if is(7) {
             return Some(Self::RomanExtensions);
         }
-        NATIONAL.iter().position(|(known, _, _)| is(*known)).map(Self::National)
+        Self::national(|(known, _, _)| is(*known))
     }
 
     /// The set that `SD` and `AD` know by this number: Latin-1 if it is not known here, as a printer takes what it has.
@@ -80,7 +80,11 @@ impl CharacterSet {
         if is(PRINTERS_ROMAN8) {
             return Self::Roman8;
         }
-        NATIONAL.iter().position(|(_, known, _)| is(*known)).map_or(Self::Latin1, Self::National)
+        Self::national(|(_, known, _)| is(*known)).unwrap_or_default()
+    }
+
+    fn national(is: impl Fn(&(u16, u16, [u8; 12])) -> bool) -> Option<Self> {
+        (0..).zip(&NATIONAL).find(|(_, set)| is(set)).map(|(which, _)| Self::National(which))
     }
 
     /// What a byte means: Latin-1, or from [`OWN`] on a character of one's own.
@@ -92,7 +96,7 @@ impl CharacterSet {
         match self {
             Self::National(which) => {
                 let sign = REPLACED.iter().position(|sign| *sign == byte);
-                let letters = NATIONAL.get(which).map(|(_, _, letters)| letters);
+                let letters = NATIONAL.get(usize::from(which)).map(|(_, _, letters)| letters);
                 let letter = sign.zip(letters).and_then(|(sign, letters)| letters.get(sign));
                 letter.copied().unwrap_or(byte).into()
             }

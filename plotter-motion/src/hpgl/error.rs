@@ -126,7 +126,8 @@ pub enum Error {
         /// Which set.
         set_number: f64,
     },
-    /// A character of `DL` for which there is no room: 255 numbers each, 1024 in all. It is left out.
+    /// A character of `DL` for which there is no room: 255 numbers each, and all together a byte for each place of the polygon
+    /// buffer. It is left out.
     NoRoomForCharacter {
         /// The first letter of the command.
         at: Position,
@@ -330,8 +331,8 @@ impl fmt::Display for Error {
             ),
             Self::NoRoomForCharacter { command, .. } => write!(
                 f,
-                "{command} has no room for its character, which is left out: one takes at most 255 numbers, all together \
-                 1024; DL without numbers forgets all"
+                "{command} has no room for its character, which is left out: it may have 255 numbers, and fewer if many \
+                 are kept; DL without numbers forgets all"
             ),
             Self::NotFilled { command, .. } => {
                 write!(f, "{command} fills no polygon that did not fit: divide it into smaller ones")

@@ -1,7 +1,5 @@
 //! [`OwnCharacters`]: characters that a text draws once and uses in its labels: `DL`.
 
-/// Numbers that are kept of all characters together, if labels are drawn at all.
-const NUMBERS: usize = if cfg!(feature = "font") { 1024 } else { 0 };
 /// In the place of an x: the pen is lifted on the way to the next place.
 const LIFT: i8 = -128;
 /// Steps of the grid of `DL` in a capital letter's width and height.
@@ -10,10 +8,10 @@ const LIFT: i8 = -128;
 /// twice as high as a capital letter.
 pub(super) const GRID: f64 = 32.0;
 
-/// Characters of the text's own, one after the other: its byte, how many numbers it has, the numbers.
+/// Characters of the text's own, one after the other in `BYTES` bytes: its byte, how many numbers it has, the numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct OwnCharacters {
-    store: [i8; NUMBERS],
+pub(super) struct OwnCharacters<const BYTES: usize> {
+    store: [i8; BYTES],
     used: usize,
     /// Where the character begins that is being told, if one is.
     open: Option<usize>,
@@ -28,9 +26,9 @@ pub(super) struct OwnPlace {
     pub(super) lifted: bool,
 }
 
-impl OwnCharacters {
+impl<const BYTES: usize> OwnCharacters<BYTES> {
     pub(super) const fn new() -> Self {
-        Self { store: [0; NUMBERS], used: 0, open: None }
+        Self { store: [0; BYTES], used: 0, open: None }
     }
 
     /// Forgets all.
@@ -122,10 +120,11 @@ impl OwnCharacters {
     }
 }
 
-#[cfg(all(test, feature = "font"))]
+#[cfg(test)]
 mod tests {
-    use super::*;
     use std::vec::Vec;
+
+    type OwnCharacters = super::OwnCharacters<1024>;
 
     fn told(characters: &mut OwnCharacters, byte: u8, numbers: &[i8]) -> bool {
         let room = characters.begin(byte) && numbers.iter().all(|number| characters.push(*number));

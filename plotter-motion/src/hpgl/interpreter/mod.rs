@@ -103,8 +103,9 @@ enum Item {
 ///
 /// # Memory
 ///
-/// All of it is in the struct. The polygon buffer is what is big: 17 bytes for each of its `VERTICES` places. A corner takes
-/// a place and an arc three; a plotter of 1986 had room for a few hundred corners. The default is 1024 places, 21 KiB in
+/// All of it is in the struct. The polygon buffer is what is big: 17 bytes for each of its `VERTICES` places, and one more for
+/// the characters that a text draws itself (`DL`). A corner takes
+/// a place and an arc three; a plotter of 1986 had room for a few hundred corners. The default is 1024 places, 22 KiB in
 /// all; a small controller takes `Interpreter<64>`, 5 KiB. At least 8 places are needed: what `EA` and `EW` draw lies there
 /// too. A side that does not fit is drawn as it comes, with a report ([`Error::PolygonTooLong`]): no line is lost.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,7 +142,7 @@ pub struct Interpreter<const VERTICES: usize = USUAL_VERTICES> {
     // labels
     lettering: Lettering,
     sets: CharacterSets,
-    own: OwnCharacters,
+    own: OwnCharacters<VERTICES>,
     kept: [u16; MOST_KEPT],
     kept_count: usize,
     /// A label to be drawn later, and which of its bytes is next while it is.

@@ -17,9 +17,10 @@ const USUAL_SHADE_PERCENT: f64 = 50.0;
 
 /// Rasters that `RF` defines.
 const RASTERS: usize = 8;
+const NO_RASTER: u8 = u8::MAX;
 
 /// How polygons are filled.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fill {
     kind: Kind,
     /// Distance of hatching as the text says it, in its own units along x; 0 for the usual one.
@@ -30,17 +31,31 @@ pub(super) struct Fill {
     own_spacing: f64,
     /// A place on a line.
     anchor: Vec2,
-    /// How much of the paper each raster of `RF` inks, %.
-    rasters_percent: [Option<f64>; RASTERS],
+    /// How much of the paper each raster of `RF` inks, whole %; [`NO_RASTER`] for one that is not defined.
+    rasters_percent: [u8; RASTERS],
     /// Dots with ink of the raster that is being told.
     inked: f64,
 }
 
+impl Default for Fill {
+    fn default() -> Self {
+        Self {
+            kind: Kind::Solid,
+            spacing: 0.0,
+            angle_deg: 0.0,
+            shade_percent: 0.0,
+            own_spacing: 0.0,
+            anchor: Vec2::default(),
+            rasters_percent: [NO_RASTER; RASTERS],
+            inked: 0.0,
+        }
+    }
+}
+
 /// What `FT` knows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// A pen's width apart, back and forth.
-    #[default]
     Solid,
     /// Likewise, all in one direction.
     SolidOneWay,
@@ -203,9 +218,9 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     /// A raster has no lines: the pen shades as much of the paper as it would ink.
     fn set_raster_fill(&mut self, open: &Open) -> Result<(), Error> {
         let raster = open.whole(1, 1, 1, 8, "a raster from 1 to 8")?;
-        let percent = self.fill.rasters_percent.get(usize::from(raster) - 1).copied().flatten();
-        self.fill.kind = percent.map_or(Kind::Solid, |_| Kind::Shaded);
-        self.fill.shade_percent = percent.unwrap_or(0.0);
+        let percent = self.fill.rasters_percent.get(usize::from(raster) - 1).copied().unwrap_or(NO_RASTER);
+        self.fill.kind = if percent == NO_RASTER { Kind::Solid } else { Kind::Shaded };
+        self.fill.shade_percent = percent.into();
         Ok(())
     }
 
@@ -239,7 +254,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     /// `RF` without dots forgets a raster, without numbers all of them.
     pub(super) fn set_raster(&mut self, open: &Open) -> Result<(), Error> {
         if open.given() == 0 {
-            self.fill.rasters_percent = [None; RASTERS];
+            self.fill.rasters_percent = [NO_RASTER; RASTERS];
             return Ok(());
         }
         let raster = open.whole(0, 1, 1, 8, "a raster from 1 to 8")?;
@@ -247,7 +262,10 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         if dots == 0 && open.given() > 1 {
             return Err(open.missing("a pen for each dot of the raster"));
         }
-        let percent = (dots > 0).then(|| 100.0 * self.fill.inked / f64::from(dots));
+        // Rounded up: a raster with ink has some.
+        let percent = libm::ceil(100.0 * self.fill.inked / f64::from(dots.max(1)));
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 100")]
+        let percent = if dots > 0 { percent as u8 } else { NO_RASTER };
         if let Some(slot) = self.fill.rasters_percent.get_mut(usize::from(raster) - 1) {
             *slot = percent;
         }

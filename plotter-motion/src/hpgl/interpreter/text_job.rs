@@ -59,7 +59,11 @@ impl TextJob {
     }
 
     /// The next stretch of a stroke; `None` after the last of `characters`.
-    pub(super) fn next(&mut self, characters: &[u16], own: &OwnCharacters) -> Option<Piece> {
+    pub(super) fn next<const BYTES: usize>(
+        &mut self,
+        characters: &[u16],
+        own: &OwnCharacters<BYTES>,
+    ) -> Option<Piece> {
         loop {
             if let Some(glyph) = &mut self.glyph {
                 if let Some(piece) = glyph.next(&self.metrics, own) {
@@ -78,7 +82,7 @@ impl TextJob {
 }
 
 impl Glyph {
-    fn next(&mut self, metrics: &Metrics, own: &OwnCharacters) -> Option<Piece> {
+    fn next<const BYTES: usize>(&mut self, metrics: &Metrics, own: &OwnCharacters<BYTES>) -> Option<Piece> {
         loop {
             let (next, ends) = match self.strokes.next(own) {
                 Next::Place { x, y, begins } => (Some((x, y)), begins),
@@ -114,7 +118,7 @@ impl Strokes {
         Self::Font(&[], &[])
     }
 
-    fn next(&mut self, own: &OwnCharacters) -> Next {
+    fn next<const BYTES: usize>(&mut self, own: &OwnCharacters<BYTES>) -> Next {
         match self {
             Self::Font(strokes, accent) => match **strokes {
                 [x, y, ..] if x != b' ' => {
