@@ -14,6 +14,7 @@ mod chords;
 mod config;
 pub mod control;
 mod decimal;
+mod decimal_text;
 mod encoder;
 pub mod firmware;
 pub mod gcode;
@@ -54,7 +55,8 @@ pub use geom::{Point, Segment, Vec2};
 pub use homing::{Homed, Homing, HomingAxis, HomingError, HomingStatus, HomingStep};
 pub use pid::{Pid, PidState, SumPid, SumPidState};
 pub use planner::{
-    Action, Course, PathMode, Phase, PlanError, Planner, PlannerSettings, Shape, junction_speed,
+    Action, AllModes, Course, ExactOnly, Modes, PathMode, Phase, PlanError, Planner, PlannerSettings, Shape,
+    junction_speed,
 };
 pub use profile::{MotionLimits, ProfileError, ProfilePoint, Ramp, SCurve, Trapezoid, TrapezoidMove};
 pub use pulse_counter::PulseCounter;

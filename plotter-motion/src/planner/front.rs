@@ -5,6 +5,7 @@ use super::block::{Block, Kind, single};
 use super::junction::{Corner, corner_speed2};
 use super::limits::Limits;
 use super::merge::{Merged, Merger};
+use super::modes::{Keep as _, Modes};
 use super::ring::{Ring, least, narrow};
 use super::{PathMode, PlanError, PlannerSettings, Shape};
 use crate::{Pen, PlotOp, Point, Vec2};
@@ -63,9 +64,17 @@ struct Turn {
     length_mm: f64,
 }
 
+/// What is put off where corners are rounded.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Rounding {
+    merger: Merger,
+    /// A segment whose end may still be rounded.
+    held: Option<Merged>,
+}
+
 /// Makes blocks of plot operations.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Front {
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Front<M: Modes> {
     pub(super) limits: Limits,
     position: Point,
     pen: Pen,
@@ -73,12 +82,10 @@ pub(super) struct Front {
     run: Option<Run>,
     /// Square of the greatest speed of a segment too short for a block, which is still to come.
     short_cruise2: Option<f32>,
-    merger: Merger,
-    /// A segment whose end may still be rounded.
-    held: Option<Merged>,
+    rounding: M::Kept<Rounding>,
 }
 
-impl Front {
+impl<M: Modes> Front<M> {
     pub(super) fn new(settings: &PlannerSettings) -> Self {
         Self::at(Limits::of(settings), Point::ORIGIN)
     }
@@ -91,8 +98,7 @@ impl Front {
             power: u16::MAX,
             run: None,
             short_cruise2: None,
-            merger: Merger::default(),
-            held: None,
+            rounding: M::Kept::default(),
         }
     }
 
@@ -108,7 +114,7 @@ impl Front {
     /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; else what ends a
     /// run (a line and two spirals, the line held back) and the new one.
     pub(super) const fn most_blocks(settings: &PlannerSettings) -> usize {
-        match settings.path {
+        match settings.path_of::<M>() {
             PathMode::Exact => 2,
             PathMode::Tolerance { .. } => 5,
         }
@@ -208,7 +214,7 @@ impl Front {
         let run = self.run(pen, settings, ring);
         self.pen = pen;
         self.position = to;
-        match settings.path {
+        match settings.path_of::<M>() {
             PathMode::Exact => {
                 let way = Way::new(to - run.at);
                 if way.length_mm < self.limits.resolution_mm {
@@ -219,7 +225,8 @@ impl Front {
                 }
             }
             PathMode::Tolerance { path_tolerance_mm } => {
-                let merged = self.merger.push(from, to, cruise2, MERGED_SHARE * path_tolerance_mm);
+                let Some(rounding) = self.rounding.get_mut() else { return };
+                let merged = rounding.merger.push(from, to, cruise2, MERGED_SHARE * path_tolerance_mm);
                 if let Some(merged) = merged {
                     self.blend(merged, path_tolerance_mm, settings, ring);
                 }
@@ -272,11 +279,11 @@ impl Front {
         if let Some(cruise2) = self.short_cruise2.take() {
             self.emit_line(self.position, cruise2, ring);
         }
-        if let PathMode::Tolerance { path_tolerance_mm } = settings.path {
-            if let Some(merged) = self.merger.end() {
+        if let PathMode::Tolerance { path_tolerance_mm } = settings.path_of::<M>() {
+            if let Some(merged) = self.rounding.get_mut().and_then(|rounding| rounding.merger.end()) {
                 self.blend(merged, path_tolerance_mm, settings, ring);
             }
-            if let Some(held) = self.held.take() {
+            if let Some(held) = self.rounding.get_mut().and_then(|rounding| rounding.held.take()) {
                 self.emit_line(held.to, held.cruise2, ring);
             }
         }
@@ -290,7 +297,8 @@ impl Front {
         settings: &PlannerSettings,
         ring: &mut Ring<N>,
     ) {
-        let (Some(held), Some(run)) = (self.held.replace(next), self.run) else { return };
+        let held = self.rounding.get_mut().and_then(|rounding| rounding.held.replace(next));
+        let (Some(held), Some(run)) = (held, self.run) else { return };
         // The blocks given so far reach to where the corner before has been left.
         let (way_in, way_out) = (held.to - run.at, next.to - next.from);
         let (in_mm, out_mm) = (length(way_in), length(way_out));

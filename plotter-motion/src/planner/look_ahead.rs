@@ -2,6 +2,7 @@
 
 use super::block::Kind;
 use super::front::Front;
+use super::modes::{AllModes, Keep as _, Modes};
 use super::ramps::Ramps;
 use super::ring::Ring;
 use super::s_curve::SCurveState;
@@ -38,9 +39,9 @@ use core::time::Duration;
 /// # Ok::<(), plotter_motion::PlanError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Planner<const N: usize> {
+pub struct Planner<const N: usize, M: Modes = AllModes> {
     settings: PlannerSettings,
-    front: Front,
+    front: Front<M>,
     ring: Ring<N>,
     /// Whether blocks have come since the ring was planned.
     stale: bool,
@@ -48,21 +49,40 @@ pub struct Planner<const N: usize> {
     ramps: Ramps,
     /// Whether the machine is to stop on the path.
     hold: bool,
-    s_curve: SCurveState,
+    s_curve: M::Kept<SCurveState>,
 }
 
 impl<const N: usize> Planner<N> {
-    /// Room for what one operation can become.
-    const ENOUGH: () = assert!(N >= 8, "a planner needs at least 8 blocks");
-
     /// A planner of a machine that stands at the origin with its pen up.
     ///
     /// # Errors
     ///
     /// [`PlanError::Setting`] for a limit that no motion can be planned with.
     pub fn new(settings: PlannerSettings) -> Result<Self, PlanError> {
+        Self::with_modes(settings)
+    }
+}
+
+impl<const N: usize, M: Modes> Planner<N, M> {
+    /// Room for what one operation can become.
+    const ENOUGH: () = assert!(N >= 8, "a planner needs at least 8 blocks");
+
+    /// As [`Planner::new`], with the modes of its type.
+    ///
+    /// ```
+    /// # use plotter_motion::{ExactOnly, PlanError, Planner, PlannerSettings};
+    /// let settings = PlannerSettings { jerk_mm_s3: Some(20_000.0), ..PlannerSettings::default() };
+    /// let refused = Planner::<16, ExactOnly>::with_modes(settings);
+    /// assert_eq!(refused.err(), Some(PlanError::Mode { quantity: "jerk_mm_s3" }));
+    /// assert!(Planner::<16>::new(settings).is_ok());
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError::Mode`] for a mode that is not among them, and as [`Planner::new`].
+    pub fn with_modes(settings: PlannerSettings) -> Result<Self, PlanError> {
         () = Self::ENOUGH;
-        settings.check()?;
+        settings.check::<M>()?;
         Ok(Self {
             settings,
             front: Front::new(&settings),
@@ -70,7 +90,7 @@ impl<const N: usize> Planner<N> {
             stale: false,
             ramps: Ramps::OVER,
             hold: false,
-            s_curve: SCurveState::default(),
+            s_curve: M::Kept::default(),
         })
     }
 
@@ -83,7 +103,7 @@ impl<const N: usize> Planner<N> {
     /// Whether [`Planner::push`] takes another operation now.
     #[must_use]
     pub const fn has_room(&self) -> bool {
-        self.ring.room() >= Front::most_blocks(&self.settings)
+        self.ring.room() >= Front::<M>::most_blocks(&self.settings)
     }
 
     /// Whether nothing is left to be taken, also after a feed hold. Operations that were put off come after [`Planner::finish`].
@@ -132,7 +152,7 @@ impl<const N: usize> Planner<N> {
         self.ring.clear();
         self.ramps = Ramps::OVER;
         self.hold = false;
-        self.s_curve = SCurveState::default();
+        self.s_curve = M::Kept::default();
     }
 
     /// Feed hold: the machine brakes within its limits, along the path, and stands as soon as it can. Actions go on to come until
@@ -152,7 +172,7 @@ impl<const N: usize> Planner<N> {
 
     /// Ends a feed hold: the machine goes on from where it is.
     pub fn resume(&mut self) {
-        if !core::mem::take(&mut self.hold) || self.settings.jerk_mm_s3.is_some() {
+        if !core::mem::take(&mut self.hold) || self.jerk_mm_s3().is_some() {
             return;
         }
         let (limits, rest_mm) = (self.front.limits, self.ramps.rest_mm());
@@ -163,10 +183,14 @@ impl<const N: usize> Planner<N> {
         }
     }
 
+    const fn jerk_mm_s3(&self) -> Option<f64> {
+        self.settings.jerk_of::<M>()
+    }
+
     /// Whether the machine is at rest after what has been taken.
     fn stands(&self) -> bool {
-        if self.settings.jerk_mm_s3.is_some() {
-            self.s_curve.stands()
+        if self.jerk_mm_s3().is_some() {
+            self.s_curve.get().is_none_or(SCurveState::stands)
         } else if self.ramps.rest_mm() > 0.0 {
             self.ramps.speed2() <= 0.0
         } else {
@@ -176,7 +200,7 @@ impl<const N: usize> Planner<N> {
 
     /// Brakes on what is left of the course, and with what speed is left on the next.
     fn brake(&mut self) {
-        if self.settings.jerk_mm_s3.is_none() && self.ramps.rest_mm() > 0.0 {
+        if self.jerk_mm_s3().is_none() && self.ramps.rest_mm() > 0.0 {
             let exit2 = self.ramps.brake(&self.front.limits);
             self.ring.enter_at_most(exit2, self.front.limits.twice_accel);
         }
@@ -184,15 +208,15 @@ impl<const N: usize> Planner<N> {
 
     /// The next thing for the motors to do; `None` when nothing is known, or the machine is held.
     pub fn next_action(&mut self) -> Option<Action> {
-        if core::mem::take(&mut self.stale) && self.settings.jerk_mm_s3.is_none() {
+        if core::mem::take(&mut self.stale) && self.jerk_mm_s3().is_none() {
             self.ring.plan(self.front.limits.twice_accel);
         }
         if let Some(phase) = self.ramps.next() {
             return Some(Action::Phase(phase));
         }
-        if let Some(jerk_mm_s3) = self.settings.jerk_mm_s3
+        if let (Some(jerk_mm_s3), Some(s_curve)) = (self.jerk_mm_s3(), self.s_curve.get_mut())
             && let Some(phase) =
-                self.s_curve.next_phase(&mut self.ring, self.settings.accel_mm_s2, jerk_mm_s3, self.hold)
+                s_curve.next_phase(&mut self.ring, self.settings.accel_mm_s2, jerk_mm_s3, self.hold)
         {
             return Some(Action::Phase(phase));
         }
@@ -206,8 +230,11 @@ impl<const N: usize> Planner<N> {
             Kind::SelectPen => Action::SelectPen(head.number()),
             Kind::NewPage => Action::NewPage,
         };
-        if self.settings.jerk_mm_s3.is_some() && head.is_path() {
-            self.s_curve.begin();
+        if self.jerk_mm_s3().is_some()
+            && head.is_path()
+            && let Some(s_curve) = self.s_curve.get_mut()
+        {
+            s_curve.begin();
         } else {
             self.ramps.begin(head, self.ring.next_entry2(), &self.front.limits);
             self.ring.pop();

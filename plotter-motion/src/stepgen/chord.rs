@@ -3,6 +3,7 @@
 use super::slice::{FRACTION_BITS, fixed};
 use crate::chords::chord_count;
 use crate::kinematics::Kinematics;
+use crate::planner::Modes;
 use crate::{Course, Point, Shape, StepPoint, Vec2};
 
 /// A straight way between two whole steps, and where along the course it ends.
@@ -24,9 +25,11 @@ pub(super) struct Chords {
 
 impl Chords {
     /// `tolerance_mm`: how far a chord may be from the course.
-    pub(super) fn new(course: Course, from: Point, tolerance_mm: f64) -> Self {
+    pub(super) fn new<M: Modes>(course: Course, from: Point, tolerance_mm: f64) -> Self {
         let count = match course.shape {
             Shape::Line => 1,
+            // A planner with such modes gives none.
+            Shape::Spiral { .. } if !M::ALL => 1,
             Shape::Arc { centre, sweep_rad } => {
                 let radius_mm = (from - centre).length().max((course.to - centre).length());
                 chord_count(radius_mm, sweep_rad, tolerance_mm)
@@ -41,7 +44,7 @@ impl Chords {
     }
 
     /// The next chord.
-    pub(super) fn next(&mut self, kinematics: &impl Kinematics) -> Option<Chord> {
+    pub(super) fn next<M: Modes>(&mut self, kinematics: &impl Kinematics) -> Option<Chord> {
         if self.next >= self.count {
             return None;
         }
@@ -49,15 +52,16 @@ impl Chords {
         let (place, way_mm) = if self.next == self.count {
             (self.course.to, self.course.length_mm)
         } else {
-            self.place(f64::from(self.next) / f64::from(self.count))
+            self.place::<M>(f64::from(self.next) / f64::from(self.count))
         };
         Some(Chord { to: kinematics.steps_at(place), end: fixed(way_mm, FRACTION_BITS) })
     }
 
     /// The place at a share of the angle, and how far along it is.
-    fn place(&self, share: f64) -> (Point, f64) {
+    fn place<M: Modes>(&self, share: f64) -> (Point, f64) {
         let Course { shape, to, length_mm, .. } = self.course;
         match shape {
+            Shape::Spiral { .. } if !M::ALL => (to, length_mm),
             Shape::Line => (self.from.lerp(to, share), length_mm * share),
             Shape::Arc { centre, sweep_rad } => {
                 let out = self.from - centre;

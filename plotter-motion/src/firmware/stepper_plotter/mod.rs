@@ -126,10 +126,12 @@ mod settings;
 mod status;
 
 pub use command::{Command, Report, Signal, Stop};
+pub use grbl::Grbl;
 pub use link::{COMMANDS, Link, REPORTS};
+pub use mdraw::MDraw;
 pub use motion::{Motion, Step};
 pub use plotter::StepperPlotter;
 pub use queue::Queue;
-pub use receive::Receive;
+pub use receive::{Host, Receive};
 pub use settings::{Dialect, SettingsError, StepperPlotterSettings, StoredSettings};
 pub use status::{Activity, Status};

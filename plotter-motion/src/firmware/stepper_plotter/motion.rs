@@ -6,6 +6,7 @@ use super::{
     StoredSettings,
 };
 use crate::kinematics::{Cartesian, Kinematics};
+use crate::planner::{AllModes, Modes};
 use crate::{
     Action, Axis, Beam, Blocked, Direction, LimitSwitches, MotorEvent, Pen, Phase, Planner, PlotOp, Point,
     Pulse, SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, TimedEvent,
@@ -37,11 +38,11 @@ enum State {
 /// After each input, call [`poll`](Self::poll) until it gives no step; then arm a timer for [`due`](Self::due) and call it
 /// again at that time. After each call, the servo gets [`pen_deg`](Self::pen_deg) and the laser [`beam`](Self::beam).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub struct Motion<M: Modes = AllModes> {
     settings: StepperPlotterSettings,
     cartesian: Cartesian,
-    planner: Planner<BLOCKS>,
-    steps: StepGen<Cartesian>,
+    planner: Planner<BLOCKS, M>,
+    steps: StepGen<Cartesian, M>,
     gate: SafetyGate,
     state: State,
     /// Steps really made.
@@ -72,16 +73,29 @@ impl Motion {
     ///
     /// [`SettingsError`] for limits that no motion can be planned with.
     pub fn new(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
+        Self::with_modes(settings)
+    }
+}
+
+impl<M: Modes> Motion<M> {
+    /// As [`Motion::new`], with the modes of its type.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] for limits that no motion can be planned with, and for a mode that is not among them.
+    pub fn with_modes(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
         let cartesian = settings.cartesian().map_err(SettingsError::Scale)?;
-        let mut planner = Planner::new(settings.limits()).map_err(SettingsError::Planner)?;
+        let mut planner = Planner::with_modes(settings.limits()).map_err(SettingsError::Planner)?;
         darken(&mut planner);
         // mDraw moves the servo itself, and the motion waits for that.
         let pen_settle = match settings.dialect {
             Dialect::MDraw => Duration::ZERO,
             Dialect::Grbl => settings.pen_settle,
         };
-        let steps =
-            StepGen::new(cartesian, StepGenSettings { clock_hz: 1e6, pen_settle, laser: settings.laser });
+        let steps = StepGen::with_modes(
+            cartesian,
+            StepGenSettings { clock_hz: 1e6, pen_settle, laser: settings.laser },
+        );
         Ok(Self {
             settings,
             cartesian,
@@ -195,7 +209,7 @@ impl Motion {
     pub fn restart(&mut self, stored: StoredSettings, link: &mut Link) {
         let settings = StepperPlotterSettings { stored, ..self.settings };
         // The limits were good, and only become less: a planner that cannot be had leaves the old one.
-        if let Ok(planner) = Planner::new(settings.limits()) {
+        if let Ok(planner) = Planner::with_modes(settings.limits()) {
             self.settings = settings;
             self.planner = planner;
         }
@@ -489,7 +503,7 @@ impl Motion {
 }
 
 /// The laser has no power until it is told one.
-fn darken(planner: &mut Planner<BLOCKS>) {
+fn darken<M: Modes>(planner: &mut Planner<BLOCKS, M>) {
     let pushed = planner.push(PlotOp::LaserPower { share: 0.0 });
     debug_assert!(pushed.is_ok(), "it is empty");
 }

@@ -202,6 +202,8 @@ pub enum SettingsError {
     Scale(ScaleError),
     /// The limits of the motion.
     Planner(PlanError),
+    /// The host's language is another one than the controller is built for.
+    Dialect(Dialect),
 }
 
 impl fmt::Display for SettingsError {
@@ -209,6 +211,10 @@ impl fmt::Display for SettingsError {
         match self {
             Self::Scale(error) => error.fmt(f),
             Self::Planner(error) => error.fmt(f),
+            Self::Dialect(dialect) => write!(
+                f,
+                "the dialect is {dialect:?}: build the controller with a host that speaks it, or with Receive"
+            ),
         }
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Source: the Grbl project's wiki, "Grbl v1.1 Interface", and its tables of errors and alarms (`doc/csv`).
 
+use crate::decimal_text::Decimals;
 use crate::gcode::{Error, Problem, Word};
 use crate::{HomingError, Point};
 
@@ -120,12 +121,17 @@ impl Alarm {
     }
 }
 
+/// Rounded to thousandths.
+pub(super) fn rounded(value: f64) -> f64 {
+    libm::round(value * 1e3) / 1e3 + 0.0
+}
+
 /// As [`Point`], rounded to micrometres: no `-0.000` is told.
-pub(super) fn coordinate(mm: f64) -> f64 {
-    libm::round(mm * 1e3) / 1e3 + 0.0
+pub(super) fn coordinate(mm: f64) -> Decimals<3> {
+    Decimals(rounded(mm))
 }
 
 /// Both coordinates of a place.
-pub(super) fn coordinates(at: Point) -> (f64, f64) {
+pub(super) fn coordinates(at: Point) -> (Decimals<3>, Decimals<3>) {
     (coordinate(at.x), coordinate(at.y))
 }

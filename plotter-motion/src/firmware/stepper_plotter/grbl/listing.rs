@@ -6,6 +6,7 @@ use super::super::{COMMANDS, StepperPlotterSettings};
 use super::MOST_COMMANDS;
 use super::codes::coordinate;
 use super::rx_buffer::RX_BYTES;
+use crate::decimal_text::Decimals;
 use crate::gcode::Modes;
 
 /// What is being listed.
@@ -50,7 +51,7 @@ impl Listing {
                 7 => out.line(format_args!("[G30:0.000,0.000,0.000]")),
                 8 => {
                     let (x, y) = (coordinate(modes.offset.x), coordinate(modes.offset.y));
-                    out.line(format_args!("[G92:{x:.3},{y:.3},0.000]"));
+                    out.line(format_args!("[G92:{x},{y},0.000]"));
                 }
                 9 => out.line(format_args!("[TLO:0.000]")),
                 10 => out.line(format_args!("[PRB:0.000,0.000,0.000:0]")),
@@ -107,9 +108,9 @@ fn setting(index: u8, settings: &StepperPlotterSettings, out: &mut Output) -> bo
         _ => return false,
     };
     if is_whole {
-        out.line(format_args!("${number}={value:.0}"));
+        out.line(format_args!("${number}={}", Decimals::<0>(value)));
     } else {
-        out.line(format_args!("${number}={value:.3}"));
+        out.line(format_args!("${number}={}", Decimals::<3>(value)));
     }
     true
 }

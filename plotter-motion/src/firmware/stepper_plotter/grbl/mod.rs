@@ -10,8 +10,9 @@ mod status_report;
 use super::output::Output;
 use super::{Activity, Command, Link, Report, Signal, Status, StepperPlotterSettings, Stop, StoredSettings};
 use crate::Point;
+use crate::decimal_text::Trimmed;
 use crate::gcode::{BlockDelete, Interpreter, ReadOptions};
-use codes::{Alarm, Code, coordinate};
+use codes::{Alarm, Code, rounded};
 use line_buffer::LineBuffer;
 use listing::Listing;
 use rx_buffer::RxBuffer;
@@ -34,7 +35,7 @@ enum Wait {
 
 /// The receive side for programs that stream to Grbl. Each line is answered by one `ok` or `error`, in their order.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Grbl {
+pub struct Grbl {
     settings: StepperPlotterSettings,
     rx: RxBuffer,
     line: LineBuffer,
@@ -273,8 +274,8 @@ impl Grbl {
             if modes.relative { 91 } else { 90 },
             modes.spindle,
             modes.tool,
-            coordinate(feed),
-            coordinate(modes.power),
+            Trimmed(rounded(feed)),
+            Trimmed(rounded(modes.power)),
         ));
     }
 }

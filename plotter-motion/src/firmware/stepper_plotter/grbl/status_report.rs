@@ -4,6 +4,7 @@ use super::super::{Activity, Link, Status, settings::FULL_POWER};
 use super::codes::{coordinate, coordinates};
 use super::listing::BLOCKS;
 use super::{Grbl, MOST_COMMANDS, REPORTS_WITHOUT_OFFSET};
+use crate::decimal_text::Decimals;
 use core::fmt;
 
 impl Grbl {
@@ -20,15 +21,15 @@ impl Grbl {
         let (x, y) = coordinates(status.at);
         let blocks = link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS);
         let bytes = self.rx.room();
-        let feed_mm_min = status.speed_mm_s * 60.0;
-        let power = f64::from(status.laser) / f64::from(u16::MAX) * FULL_POWER;
+        let feed_mm_min = Decimals::<0>(status.speed_mm_s * 60.0);
+        let power = Decimals::<0>(f64::from(status.laser) / f64::from(u16::MAX) * FULL_POWER);
         let pins = Pins {
             x: status.limits.x_min || status.limits.x_max,
             y: status.limits.y_min || status.limits.y_max,
         };
         let offset = self.offset();
         self.out.line(format_args!(
-            "<{state}|MPos:{x:.3},{y:.3},0.000|Bf:{blocks},{bytes}|FS:{feed_mm_min:.0},{power:.0}{pins}{offset}>"
+            "<{state}|MPos:{x},{y},0.000|Bf:{blocks},{bytes}|FS:{feed_mm_min},{power}{pins}{offset}>"
         ));
     }
 
@@ -62,10 +63,10 @@ impl fmt::Display for Pins {
 }
 
 /// `|WCO:`.
-struct Offset(Option<(f64, f64)>);
+struct Offset(Option<(Decimals<3>, Decimals<3>)>);
 
 impl fmt::Display for Offset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.map_or(Ok(()), |(x, y)| write!(f, "|WCO:{x:.3},{y:.3},0.000"))
+        self.0.map_or(Ok(()), |(x, y)| write!(f, "|WCO:{x},{y},0.000"))
     }
 }

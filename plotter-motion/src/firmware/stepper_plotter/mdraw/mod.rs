@@ -26,7 +26,7 @@ const MOST_SIDE_MM: i32 = 10_000;
 
 /// The receive side for mDraw. One line at a time; each is answered by one `OK`.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct MDraw {
+pub struct MDraw {
     settings: StepperPlotterSettings,
     /// What the host has stored; `settings.stored` is what holds until the next restart.
     stored: StoredSettings,

@@ -1,0 +1,149 @@
+//! [`Decimals`]: a number as text. The standard library's way for any number takes 12 KB of a microcontroller's flash.
+
+use core::fmt;
+
+/// Most bytes of a `u64` and its point.
+const MOST_BYTES: usize = 21;
+
+/// A number with so many decimals, 0 to 3, as `{:.3}` writes it, to the last byte: its exact value rounded to nearest, halves to even.
+/// Beyond 9·10¹⁵ it is cut off.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Decimals<const PLACES: usize>(pub(crate) f64);
+
+/// A number of at most three decimals with no more of them than it needs, as `{}` writes it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Trimmed(pub(crate) f64);
+
+/// Bits of an `f64` after its sign: an exponent, and a mantissa without its first 1.
+const MANTISSA_BITS: u32 = 52;
+
+/// The magnitude in units of the last decimal.
+fn units(value: f64, units_per_one: u64) -> u64 {
+    let bits = value.abs().to_bits();
+    let exponent = bits >> MANTISSA_BITS;
+    let mantissa = bits & ((1 << MANTISSA_BITS) - 1);
+    // The value is mantissa / 2^shift.
+    let (mantissa, exponent) =
+        if exponent == 0 { (mantissa, 1) } else { (mantissa | 1 << MANTISSA_BITS, exponent) };
+    let Some(shift) = 1075_u64.checked_sub(exponent) else { return u64::MAX };
+    if shift >= u64::from(u64::BITS) {
+        return 0; // less than half of a thousandth
+    }
+    let (whole, rest) = (mantissa >> shift, mantissa & ((1 << shift) - 1));
+    // 53 bits and the ten of a thousand.
+    let scaled = rest * units_per_one;
+    let (low, lost) = (scaled >> shift, scaled & ((1 << shift) - 1));
+    let below = whole.saturating_mul(units_per_one).saturating_add(low);
+    let twice = lost << 1;
+    let up = match twice.cmp(&(1 << shift)) {
+        core::cmp::Ordering::Less => 0,
+        core::cmp::Ordering::Equal => below & 1,
+        core::cmp::Ordering::Greater => 1,
+    };
+    below.saturating_add(up)
+}
+
+fn write(f: &mut fmt::Formatter<'_>, value: f64, places: usize, trims: bool) -> fmt::Result {
+    let units_per_one = [1, 10, 100, 1000].get(places).copied().unwrap_or(1);
+    let mut rest = units(value, units_per_one);
+    let mut text = [0; MOST_BYTES];
+    let mut begin = MOST_BYTES;
+    let (mut written, mut silent) = (0, trims);
+    while rest > 0 || written <= places {
+        #[expect(clippy::cast_possible_truncation, reason = "a digit")]
+        let digit = (rest % 10) as u8;
+        rest /= 10;
+        if written == places {
+            silent = false;
+        }
+        silent &= digit == 0;
+        if !silent {
+            if written == places && places > 0 && begin < MOST_BYTES {
+                begin -= 1;
+                put(&mut text, begin, b'.');
+            }
+            begin -= 1;
+            put(&mut text, begin, b'0' + digit);
+        }
+        written += 1;
+    }
+    if value.is_sign_negative() {
+        f.write_str("-")?;
+    }
+    f.write_str(text.get(begin..).and_then(|text| core::str::from_utf8(text).ok()).unwrap_or_default())
+}
+
+fn put(text: &mut [u8; MOST_BYTES], place: usize, byte: u8) {
+    if let Some(slot) = text.get_mut(place) {
+        *slot = byte;
+    }
+}
+
+impl<const PLACES: usize> fmt::Display for Decimals<PLACES> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write(f, self.0, PLACES, false)
+    }
+}
+
+impl fmt::Display for Trimmed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write(f, self.0, 3, true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::format;
+
+    fn same(value: f64) {
+        assert_eq!(format!("{}", Decimals::<0>(value)), format!("{value:.0}"));
+        assert_eq!(format!("{}", Decimals::<1>(value)), format!("{value:.1}"));
+        assert_eq!(format!("{}", Decimals::<3>(value)), format!("{value:.3}"));
+    }
+
+    #[test]
+    fn halves_go_to_even_and_zeros_keep_their_sign() {
+        for value in [
+            0.0,
+            -0.0,
+            0.5,
+            1.5,
+            2.5,
+            -2.5,
+            0.0625,
+            0.1875,
+            0.0005,
+            0.0015,
+            -0.0004,
+            0.9995,
+            0.9996,
+            999.9995,
+            12.0,
+            87.58,
+            1e-300,
+            5e-324,
+            4e15,
+            9_007_199_254_740_991.0,
+            8_388_608.062_5,
+        ] {
+            same(value);
+        }
+        assert_eq!(format!("{}", Decimals::<3>(1e300)), "18446744073709551.615");
+    }
+
+    proptest! {
+        #[test]
+        fn every_number_is_written_as_the_standard_library_does(
+            value in -9e15_f64..9e15, small in -100.0_f64..100.0, sixteenths in -100_000_i32..100_000, thousandths in -1_000_000_000_i64..1_000_000_000,
+        ) {
+            same(value);
+            same(small);
+            same(f64::from(sixteenths) / 16.0);
+            let thousandths = thousandths as f64 / 1e3;
+            same(thousandths);
+            prop_assert_eq!(format!("{}", Trimmed(thousandths)), format!("{thousandths}"));
+        }
+    }
+}
