@@ -3,7 +3,7 @@
 use super::blend::{Blend, GROWTH, Room, to_pole};
 use super::block::{Block, Kind, single};
 use super::junction::{Corner, corner_speed2};
-use super::limits::Limits;
+use super::limits::{Limits, Shares};
 use super::merge::{Merged, Merger};
 use super::modes::{Keep as _, Modes};
 use super::ring::{Ring, least, narrow};
@@ -83,6 +83,9 @@ pub(super) struct Front<M: Modes> {
     /// Square of the greatest speed of a segment too short for a block, which is still to come.
     short_cruise2: Option<f32>,
     rounding: M::Kept<Rounding>,
+    shares: M::Kept<Shares>,
+    /// Lines are jogs.
+    jogs: bool,
 }
 
 impl<M: Modes> Front<M> {
@@ -99,6 +102,8 @@ impl<M: Modes> Front<M> {
             run: None,
             short_cruise2: None,
             rounding: M::Kept::default(),
+            shares: M::Kept::default(),
+            jogs: false,
         }
     }
 
@@ -108,7 +113,8 @@ impl<M: Modes> Front<M> {
 
     /// Begins anew at another place, with the pen up.
     pub(super) fn restart(&mut self, position: Point) {
-        *self = Self { power: self.power, ..Self::at(self.limits, position) };
+        let shares = core::mem::take(&mut self.shares);
+        *self = Self { power: self.power, shares, ..Self::at(self.limits, position) };
     }
 
     /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; else what ends a
@@ -126,10 +132,9 @@ impl<M: Modes> Front<M> {
         settings: &PlannerSettings,
         ring: &mut Ring<N>,
     ) -> Result<(), PlanError> {
-        let place = |place: Point| {
-            let near = place.x.abs() <= FARTHEST_MM && place.y.abs() <= FARTHEST_MM;
-            if near { Ok(place) } else { Err(PlanError::Place { place }) }
-        };
+        if core::mem::take(&mut self.jogs) {
+            self.end_run(settings, ring);
+        }
         let feed2 = |feed_mm_s: Option<f64>| match feed_mm_s {
             None => Ok(self.limits.speed2),
             Some(feed) if feed > 0.0 && feed.is_finite() => {
@@ -167,6 +172,45 @@ impl<M: Modes> Front<M> {
             PlotOp::NewPage => self.stand(Block::new_page(), settings, ring),
         }
         Ok(())
+    }
+
+    /// A travel at this speed, or at that of travels if it is less, whatever the shares of the speeds are.
+    pub(super) fn jog<const N: usize>(
+        &mut self,
+        to: Point,
+        speed_mm_s: f64,
+        settings: &PlannerSettings,
+        ring: &mut Ring<N>,
+    ) -> Result<(), PlanError> {
+        let to = place(to)?;
+        if !(speed_mm_s > 0.0 && speed_mm_s.is_finite()) {
+            return Err(PlanError::Feed { feed_mm_s: speed_mm_s });
+        }
+        if !self.jogs {
+            self.end_run(settings, ring);
+            self.jogs = true;
+        }
+        let speed2 = least(narrow(speed_mm_s * speed_mm_s), self.limits.travel2);
+        self.line(to, Pen::Up, speed2, settings, ring);
+        Ok(())
+    }
+
+    /// Other shares of the speeds hold, for what is in the ring too. `under_way2` is the square of the greatest speed on the
+    /// course under way.
+    pub(super) fn rescale<const N: usize>(
+        &mut self,
+        shares: Shares,
+        under_way2: f32,
+        forced2: f64,
+        ring: &mut Ring<N>,
+    ) {
+        if let Some(kept) = self.shares.get_mut() {
+            *kept = shares;
+        }
+        let last2 = ring.rescale(&shares, &self.limits, under_way2, forced2);
+        if let Some(exit) = self.run.as_mut().and_then(|run| run.exit.as_mut()) {
+            exit.cruise2 = last2;
+        }
     }
 
     /// Ends the run: what has been put off comes, and the machine stops.
@@ -415,18 +459,32 @@ impl<M: Modes> Front<M> {
     fn emit<const N: usize>(&mut self, stretch: Stretch, ring: &mut Ring<N>) {
         let Some(run) = &mut self.run else { return };
         let Stretch { shape, to, length_mm, entry, exit, feed2, most2, most_entry2 } = stretch;
-        let cruise2 = least(feed2, most2);
+        let asked2 = match self.shares.get() {
+            Some(shares) if !self.jogs => shares.of(run.pen, feed2, &self.limits),
+            _ => feed2,
+        };
+        let cruise2 = least(asked2, most2);
         let mut block = Block::path(shape, to, length_mm, run.pen, self.power, feed2);
         block.cruise2 = cruise2;
+        if self.jogs && block.kind == Kind::Line {
+            block.kind = Kind::Jog;
+        }
         if let Some(before) = run.exit {
             let shorter_mm = least(before.length_mm, length_mm);
             let corner2 = corner_speed2(before.direction, entry, shorter_mm, &self.limits);
-            block.max_entry2 = least(least(corner2, before.cruise2), least(cruise2, most_entry2));
+            block.corner2 = least(corner2, most_entry2);
+            block.max_entry2 = least(block.corner2, least(before.cruise2, cruise2));
         }
         run.at = to;
         run.exit = Some(Exit { direction: exit, length_mm, cruise2 });
         ring.push(block);
     }
+}
+
+/// A place that is near enough.
+fn place(place: Point) -> Result<Point, PlanError> {
+    let near = place.x.abs() <= FARTHEST_MM && place.y.abs() <= FARTHEST_MM;
+    if near { Ok(place) } else { Err(PlanError::Place { place }) }
 }
 
 /// A straight way as the look-ahead reckons with it.

@@ -1,7 +1,8 @@
 //! [`Limits`]: a planner's settings as it reckons with them for every block.
 
 use super::PlannerSettings;
-use super::ring::narrow;
+use super::ring::{least, narrow};
+use crate::Pen;
 
 /// What is the same for every block, computed once. Small numbers are `f32`, which small processors reckon with in hardware; they
 /// are rounded down, so that no limit is exceeded by the rounding.
@@ -35,6 +36,29 @@ impl Limits {
             travel2: narrow(travel_speed_mm_s * travel_speed_mm_s),
             junction_deviation_mm: narrow(settings.junction_deviation_mm),
             resolution_mm: narrow(settings.resolution_mm),
+        }
+    }
+}
+
+/// Squares of the shares of the speeds that operations ask for, as a person at the machine sets them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Shares {
+    pub(super) draw2: f32,
+    pub(super) travel2: f32,
+}
+
+impl Default for Shares {
+    fn default() -> Self {
+        Self { draw2: 1.0, travel2: 1.0 }
+    }
+}
+
+impl Shares {
+    /// The square of a speed that was asked for, as it is then; no more than the machine's.
+    pub(super) fn of(&self, pen: Pen, feed2: f32, limits: &Limits) -> f32 {
+        match pen {
+            Pen::Down => least(feed2 * self.draw2, limits.speed2),
+            Pen::Up => least(feed2 * self.travel2, limits.travel2),
         }
     }
 }

@@ -1,14 +1,19 @@
 //! [`Planner`]: the look-ahead as a whole.
 
-use super::block::Kind;
+use super::block::{Block, Kind};
 use super::front::Front;
+use super::limits::Shares;
 use super::modes::{AllModes, Keep as _, Modes};
 use super::ramps::Ramps;
-use super::ring::Ring;
+use super::ring::{Ring, narrow};
 use super::s_curve::SCurveState;
 use super::{Action, PlanError, PlannerSettings};
 use crate::{PlotOp, Point};
 use core::time::Duration;
+
+/// What a speed may be multiplied by.
+const LEAST_SHARE: f64 = 0.01;
+const MOST_SHARE: f64 = 100.0;
 
 /// Plans the motion along a tool path while it comes in: look-ahead over `N` blocks.
 ///
@@ -50,6 +55,8 @@ pub struct Planner<const N: usize, M: Modes = AllModes> {
     /// Whether the machine is to stop on the path.
     hold: bool,
     s_curve: M::Kept<SCurveState>,
+    /// The course given last, for its greatest speed at other shares.
+    under_way: M::Kept<Block>,
 }
 
 impl<const N: usize> Planner<N> {
@@ -91,6 +98,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             ramps: Ramps::OVER,
             hold: false,
             s_curve: M::Kept::default(),
+            under_way: M::Kept::default(),
         })
     }
 
@@ -129,6 +137,80 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         }
         self.stale = true;
         self.front.push(op, &self.settings, &mut self.ring)
+    }
+
+    /// Takes a travel at this speed, mm/s, or at that of travels if it is less; [`Planner::override_speeds`] does not change it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Planner::push`].
+    pub fn push_jog(&mut self, to: Point, speed_mm_s: f64) -> Result<(), PlanError> {
+        if !self.has_room() {
+            return Err(PlanError::Full);
+        }
+        self.stale = true;
+        self.front.jog(to, speed_mm_s, &self.settings, &mut self.ring)
+    }
+
+    /// From here on the speeds that operations ask for are multiplied by these shares, with the pen down and up: a person at the
+    /// machine has it go slower or faster. It changes its speed within its limits, along the path, from the end of the phase taken
+    /// last (50 ms at the most); no share makes it faster than the limits of [`PlannerSettings`]. Shares are taken as 0.01 to 100.
+    ///
+    /// Without [`AllModes`] nothing changes.
+    ///
+    /// ```
+    /// # use plotter_motion::{Action, PlanError, Planner, PlannerSettings, PlotOp, Point};
+    /// // 100 mm at 100 mm/s², 10 mm/s: 0.1 s up, 9.9 s, 0.1 s down
+    /// let settings = PlannerSettings { speed_mm_s: 50.0, accel_mm_s2: 100.0, ..PlannerSettings::default() };
+    /// let mut planner = Planner::<16>::new(settings)?;
+    /// planner.push(PlotOp::Draw { to: Point::new(100.0, 0.0), feed_mm_s: Some(10.0) })?;
+    /// planner.finish()?;
+    /// planner.override_speeds(2.0, 1.0);
+    /// let mut time_s = 0.0;
+    /// while let Some(action) = planner.next_action() {
+    ///     if let Action::Phase(phase) = action {
+    ///         time_s += phase.duration_s;
+    ///     }
+    /// }
+    /// assert!((time_s - 5.2).abs() < 1e-6); // 20 mm/s: 0.2 s and 2 mm up, 4.8 s for 96 mm, 0.2 s down
+    /// # Ok::<(), PlanError>(())
+    /// ```
+    pub fn override_speeds(&mut self, draw_share: f64, travel_share: f64) {
+        let Some(under_way) = self.under_way.get() else { return };
+        let square = |share: f64| {
+            let share = if share > LEAST_SHARE { share.min(MOST_SHARE) } else { LEAST_SHARE };
+            narrow(share * share)
+        };
+        let shares = Shares { draw2: square(draw_share), travel2: square(travel_share) };
+        let limits = self.front.limits;
+        let under_way2 = under_way.cruise2_at(&shares, &limits);
+        if self.settings.jerk_of::<M>().is_some() {
+            self.front.rescale(shares, f32::INFINITY, 0.0, &mut self.ring);
+            if let Some(s_curve) = self.s_curve.get_mut() {
+                s_curve.choose_anew();
+            }
+            return;
+        }
+        let rest_mm = self.ramps.rest_mm();
+        let next2 = self.ring.get(0).map_or(0.0, |head| head.entry2);
+        let forced2 = if rest_mm > 0.0 {
+            (self.ramps.speed2() - 2.0 * limits.accel * rest_mm).max(0.0)
+        } else {
+            f64::from(next2)
+        };
+        self.front.rescale(shares, under_way2, forced2, &mut self.ring);
+        if rest_mm <= 0.0 {
+            self.ring.enter_with(next2, limits.twice_accel);
+            return;
+        }
+        self.ramps.cruise_at(under_way2);
+        if self.hold {
+            self.brake();
+            return;
+        }
+        let most2 = self.ramps.speed2() + 2.0 * limits.accel * rest_mm;
+        let exit2 = self.ring.enter_at_most(most2, limits.twice_accel);
+        self.ramps.plan(exit2, &limits);
     }
 
     /// No operation comes for now: what has been put off to see what follows is planned, and the machine stops at its end. More
@@ -225,7 +307,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         }
         let head = self.ring.get(0)?;
         let action = match head.kind {
-            Kind::Line | Kind::Arc | Kind::Narrowing | Kind::Widening => Action::Course(head.course()),
+            Kind::Line | Kind::Jog | Kind::Arc | Kind::Narrowing | Kind::Widening => {
+                Action::Course(head.course())
+            }
             Kind::Dwell => Action::Dwell(Duration::try_from_secs_f64(head.length()).unwrap_or_default()),
             Kind::SelectPen => Action::SelectPen(head.number()),
             Kind::NewPage => Action::NewPage,
@@ -236,6 +320,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         {
             s_curve.begin();
         } else {
+            if let Some(under_way) = self.under_way.get_mut() {
+                *under_way = *head;
+            }
             self.ramps.begin(head, self.ring.next_entry2(), &self.front.limits);
             self.ring.pop();
             if self.hold {
