@@ -66,7 +66,8 @@ impl fmt::Display for PlanError {
             Self::Unknown => f.write_str("an operation that is not known here"),
             Self::Mode { quantity } => write!(
                 f,
-                "{quantity} asks for curves or S-curves: build with AllModes, or leave it exact and without a limit of the jerk"
+                "{quantity} asks for what is not built in: build with AllModes, or leave the path exact, the jerk without a limit \
+                 and the axes without play"
             ),
             Self::Setting { quantity, value, least, most } => {
                 write!(f, "{quantity} is {value}: it must lie in {least}..={most}")

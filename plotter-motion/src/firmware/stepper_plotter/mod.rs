@@ -119,9 +119,11 @@ mod link;
 mod mdraw;
 mod motion;
 mod output;
+mod play;
 mod plotter;
 mod queue;
 mod receive;
+mod setting;
 mod settings;
 mod status;
 
@@ -133,5 +135,6 @@ pub use motion::{Motion, Step};
 pub use plotter::StepperPlotter;
 pub use queue::Queue;
 pub use receive::{Host, Receive};
+pub use setting::{Setting, SettingProblem};
 pub use settings::{Dialect, SettingsError, StepperPlotterSettings, StoredSettings};
 pub use status::{Activity, Status};

@@ -134,6 +134,13 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         self.receive.stored()
     }
 
+    /// The settings as they hold now, also those that the host has changed in Grbl's dialect: to be kept by the firmware, for the next
+    /// start.
+    #[must_use]
+    pub fn settings(&self) -> StepperPlotterSettings {
+        StepperPlotterSettings { stored: self.stored(), ..*self.motion.settings() }
+    }
+
     /// What the machine does.
     #[must_use]
     pub fn status(&self, now: Duration) -> Status {

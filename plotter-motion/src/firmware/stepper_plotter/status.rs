@@ -10,6 +10,8 @@ pub enum Activity {
     Idle,
     /// It draws or travels, or is about to.
     Run,
+    /// It is being moved by hand, or ends that.
+    Jog,
     /// It is being held: brakes, or stands.
     Hold {
         /// Whether it stands.

@@ -25,6 +25,8 @@ impl Code {
     pub(super) const LOCKED: Self = Self(9);
     /// Too many characters in a line; it was not carried out.
     pub(super) const OVERFLOW: Self = Self(11);
+    /// A setting asks a motor for more steps than it can be given.
+    pub(super) const STEP_RATE: Self = Self(12);
     /// The target of a jog lies outside the area; it was not carried out.
     pub(super) const JOG_TARGET: Self = Self(15);
     /// A jog with a command that has no place in it.
@@ -53,6 +55,8 @@ impl Code {
     pub(super) const CENTRE: Self = Self(35);
     /// Words that nothing uses.
     pub(super) const UNUSED: Self = Self(36);
+    /// The value of a setting is out of its range. Grbl 1.1 has no number for it; this is that of its successor grblHAL.
+    pub(super) const SETTING_RANGE: Self = Self(52);
 
     /// The number that fits best to what the reader complains of.
     pub(super) fn of(error: Error) -> Self {

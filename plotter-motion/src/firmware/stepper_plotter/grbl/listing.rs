@@ -2,7 +2,7 @@
 
 use super::super::output::Output;
 use super::super::settings::FULL_POWER;
-use super::super::{COMMANDS, StepperPlotterSettings};
+use super::super::{COMMANDS, Setting, StepperPlotterSettings};
 use super::MOST_COMMANDS;
 use super::codes::coordinate;
 use super::rx_buffer::RX_BYTES;
@@ -35,7 +35,14 @@ impl Listing {
         out: &mut Output,
     ) -> bool {
         match self {
-            Self::Settings => return setting(index, settings, out),
+            Self::Settings => {
+                let Some((number, value, is_whole)) = setting(index, settings) else { return false };
+                if is_whole {
+                    out.line(format_args!("${number}={}", Decimals::<0>(value)));
+                } else {
+                    out.line(format_args!("${number}={}", Decimals::<3>(value)));
+                }
+            }
             Self::Build => match index {
                 0 => out.line(format_args!("[VER:1.1h.20190830:plotter-motion]")),
                 1 => out.line(format_args!("[OPT:V,{BLOCKS},{RX_BYTES}]")),
@@ -63,14 +70,14 @@ impl Listing {
 }
 
 /// The settings as Grbl numbers them; those that this machine has no use for are what Grbl comes with.
-fn setting(index: u8, settings: &StepperPlotterSettings, out: &mut Output) -> bool {
+fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, bool)> {
     let StepperPlotterSettings { planner, stored, home_x, .. } = settings;
     let whole = |number: u8, value: u32| (number, f64::from(value), true);
     let direction_mask = u32::from(stored.x_direction & 1) | u32::from(stored.y_direction & 1) << 1;
     let pulses_mm_min = |rate_hz: u32| f64::from(rate_hz) / settings.x_steps_per_mm * 60.0;
     let travel_mm_min = planner.travel_speed_mm_s.max(planner.speed_mm_s) * 60.0;
     let pull_off_mm = f64::from(home_x.pull_off_steps) / settings.x_steps_per_mm;
-    let (number, value, is_whole) = match index {
+    Some(match index {
         0 => whole(0, 10),
         1 => whole(1, 255), // the motors hold
         2 => whole(2, 0),
@@ -105,12 +112,15 @@ fn setting(index: u8, settings: &StepperPlotterSettings, out: &mut Output) -> bo
         31 => (130, f64::from(stored.width_mm), false),
         32 => (131, f64::from(stored.height_mm), false),
         33 => (132, 1.0, false),
-        _ => return false,
-    };
-    if is_whole {
-        out.line(format_args!("${number}={}", Decimals::<0>(value)));
-    } else {
-        out.line(format_args!("${number}={}", Decimals::<3>(value)));
-    }
-    true
+        _ => return None,
+    })
+}
+
+/// Whether this is what the settings already say.
+pub(super) fn is_listed(setting: Setting, settings: &StepperPlotterSettings) -> bool {
+    /// Half of the last digit that is told.
+    const ALIKE: f64 = 5e-4;
+    (0..)
+        .map_while(|index| self::setting(index, settings))
+        .any(|(number, value, _)| number == setting.number && libm::fabs(value - setting.value) <= ALIKE)
 }

@@ -4,6 +4,7 @@ mod block;
 mod codes;
 mod line_buffer;
 mod listing;
+mod overrides;
 mod rx_buffer;
 mod status_report;
 
@@ -15,13 +16,14 @@ use crate::gcode::{BlockDelete, Interpreter, ReadOptions};
 use codes::{Alarm, Code, rounded};
 use line_buffer::LineBuffer;
 use listing::Listing;
+use overrides::Overrides;
 use rx_buffer::RxBuffer;
 
 /// Most commands that one line becomes: what the interpreter gives, and what goes before and after it.
 const MOST_COMMANDS: usize = 12;
 /// Most bytes that are written at one time.
 const MOST_ANSWER: usize = 320;
-/// The longest way of telling the offset only now and then: so many reports without it.
+/// The longest way of telling the offset, or the overrides, only now and then: so many reports without it.
 const REPORTS_WITHOUT_OFFSET: u8 = 10;
 
 /// What the line in hand waits for before it is answered.
@@ -31,6 +33,8 @@ enum Wait {
     Home,
     /// `M0`: until it goes on.
     Finish,
+    /// `$n=value`.
+    Set,
 }
 
 /// The receive side for programs that stream to Grbl. Each line is answered by one `ok` or `error`, in their order.
@@ -47,6 +51,10 @@ pub struct Grbl {
     stopped: bool,
     status_wanted: bool,
     reports_to_offset: u8,
+    reports_to_overrides: u8,
+    overrides: Overrides,
+    /// What was sent to the motion side last is a jog.
+    jogs: bool,
     greeting: bool,
     out: Output,
 }
@@ -64,6 +72,9 @@ impl Grbl {
             stopped: false,
             status_wanted: false,
             reports_to_offset: 0,
+            reports_to_overrides: 0,
+            overrides: Overrides::USUAL,
+            jogs: false,
             greeting: true,
             out: Output::new(),
         }
@@ -92,10 +103,16 @@ impl Grbl {
                 self.rx.clear();
                 self.line.clear();
                 (self.wait, self.listing) = (None, None);
+                (self.overrides, self.reports_to_overrides) = (Overrides::USUAL, 0);
                 return Some(Signal::Reset);
             }
-            // Real-time commands for what this machine has not: overrides, a door, a jog to be cancelled.
-            0x80.. => {}
+            0x85 => return Some(Signal::JogCancel),
+            // Others are for what this machine has not: a door, coolant.
+            0x80.. => {
+                let signal = self.overrides.take(byte)?;
+                self.reports_to_overrides = 0;
+                return Some(signal);
+            }
             _ => self.rx.push(byte),
         }
         None
@@ -146,7 +163,7 @@ impl Grbl {
             None => Err(Code::OVERFLOW),
             Some(b"") => Ok(()),
             Some([b'$', command @ ..]) => self.system(command, status, link),
-            Some(_) if self.alarm.is_some() => Err(Code::LOCKED),
+            Some(_) if self.alarm.is_some() || self.is_jogging(status, link) => Err(Code::LOCKED),
             Some(text) => self.block(text, link),
         };
         match done {
@@ -195,7 +212,19 @@ impl Grbl {
                     (Some(_), Err(_)) => self.error(Code::LOCKED),
                 }
             }
+            Report::Jogged { at } => {
+                self.interpreter.stand_at(at);
+                self.stopped = true;
+                self.jogs = false;
+            }
+            Report::Set { at } => {
+                self.interpreter.stand_at(at);
+                if self.wait.take() == Some(Wait::Set) {
+                    self.out.line(format_args!("ok"));
+                }
+            }
             Report::Stopped { at, why } => {
+                self.jogs = false;
                 self.interpreter = interpreter(&self.settings);
                 self.interpreter.stand_at(at);
                 self.stopped = true;
@@ -225,15 +254,18 @@ impl Grbl {
         let stands = matches!(status.activity, Activity::Idle | Activity::Stopped);
         let is_idle = self.alarm.is_some() || (stands && link.commands.is_empty());
         match command {
-            b"" => self.out.line(format_args!("[HLP:$$ $# $G $I $N $J=line $X $H ~ ! ? ctrl-x]")),
+            b"" => self.out.line(format_args!("[HLP:$$ $# $G $I $N $x=val $J=line $X $H ~ ! ? ctrl-x]")),
             b"G" => self.tell_modes(),
             b"$" | b"#" | b"I" | b"N" | b"H" | b"X" if !is_idle => return Err(Code::NOT_IDLE),
             b"$" => self.listing = Some((Listing::Settings, 0)),
             b"#" => self.listing = Some((Listing::Offsets, 0)),
             b"I" => self.listing = Some((Listing::Build, 0)),
             b"N" => self.listing = Some((Listing::Startup, 0)),
-            [b'J', b'=', jog @ ..] if self.alarm.is_none() => return self.jog(jog, link),
-            [b'J', b'=', ..] => return Err(Code::LOCKED),
+            [b'J', b'=', ..] if self.alarm.is_some() => return Err(Code::LOCKED),
+            [b'J', b'=', ..] if !is_idle && !self.is_jogging(status, link) => return Err(Code::NOT_IDLE),
+            [b'J', b'=', jog @ ..] => return self.jog(jog, link),
+            [b'0'..=b'9', ..] if !is_idle => return Err(Code::NOT_IDLE),
+            [b'0'..=b'9', ..] => return self.change(command, link),
             b"H" | b"X" if status.emergency_button => {
                 self.out.line(format_args!("[MSG:{}]", Stop::Emergency));
                 return Err(Code::LOCKED);
@@ -256,8 +288,15 @@ impl Grbl {
         Ok(())
     }
 
+    /// Whether the machine is moved by hand, or is about to be.
+    fn is_jogging(&self, status: &Status, link: &Link) -> bool {
+        let waits = self.jogs && !link.commands.is_empty();
+        status.activity == Activity::Jog || waits
+    }
+
     /// Sends a command that may come after a stop.
     fn command(&mut self, link: &mut Link, command: Command) {
+        self.jogs = matches!(command, Command::Jog { .. });
         if core::mem::take(&mut self.stopped) {
             send(link, Command::GoOn);
         }

@@ -3,6 +3,7 @@
 use super::super::{Activity, Link, Status, settings::FULL_POWER};
 use super::codes::{coordinate, coordinates};
 use super::listing::BLOCKS;
+use super::overrides::Overrides;
 use super::{Grbl, MOST_COMMANDS, REPORTS_WITHOUT_OFFSET};
 use crate::decimal_text::Decimals;
 use core::fmt;
@@ -11,9 +12,11 @@ impl Grbl {
     pub(super) fn tell_status(&mut self, status: &Status, link: &Link) {
         let state = match status.activity {
             _ if self.alarm.is_some() => "Alarm",
+            Activity::Idle if self.is_jogging(status, link) => "Jog",
             Activity::Idle if !link.commands.is_empty() => "Run",
             Activity::Idle | Activity::Stopped => "Idle",
             Activity::Run => "Run",
+            Activity::Jog => "Jog",
             Activity::Hold { stands: true } => "Hold:0",
             Activity::Hold { stands: false } => "Hold:1",
             Activity::Home => "Home",
@@ -28,9 +31,20 @@ impl Grbl {
             y: status.limits.y_min || status.limits.y_max,
         };
         let offset = self.offset();
+        let overrides = self.overrides_told(offset.0.is_some());
         self.out.line(format_args!(
-            "<{state}|MPos:{x},{y},0.000|Bf:{blocks},{bytes}|FS:{feed_mm_min},{power}{pins}{offset}>"
+            "<{state}|MPos:{x},{y},0.000|Bf:{blocks},{bytes}|FS:{feed_mm_min},{power}{pins}{offset}{overrides}>"
         ));
+    }
+
+    /// Overrides are told when they have changed, and now and then; not together with the offset.
+    fn overrides_told(&mut self, with_offset: bool) -> Told {
+        if with_offset || self.reports_to_overrides > 0 {
+            self.reports_to_overrides = self.reports_to_overrides.saturating_sub(1);
+            return Told(None);
+        }
+        self.reports_to_overrides = REPORTS_WITHOUT_OFFSET;
+        Told(Some(self.overrides))
     }
 
     /// Offsets change seldom, and are told now and then.
@@ -42,6 +56,15 @@ impl Grbl {
         self.reports_to_offset = REPORTS_WITHOUT_OFFSET;
         let offset = self.interpreter.modes().offset;
         Offset(Some((coordinate(offset.x), coordinate(offset.y))))
+    }
+}
+
+/// `|Ov:`.
+struct Told(Option<Overrides>);
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.map_or(Ok(()), |overrides| overrides.fmt(f))
     }
 }
 

@@ -134,11 +134,15 @@ impl MDraw {
     }
 
     fn take(&mut self, report: Report) {
+        // This side neither jogs nor changes settings on the way.
+        if matches!(report, Report::Jogged { .. } | Report::Set { .. }) {
+            return;
+        }
         if report != Report::Done {
             (self.pen_down, self.laser_on) = (false, false);
         }
         let refusal = match report {
-            Report::Done => None,
+            Report::Done | Report::Jogged { .. } | Report::Set { .. } => None,
             Report::Homed { at, result } => {
                 self.stand_at(at);
                 result.err().map(Refusal::Homing)
