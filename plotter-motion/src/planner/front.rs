@@ -251,7 +251,8 @@ impl<M: Modes> Front<M> {
         ring: &mut Ring<N>,
     ) {
         let (out, end) = (self.position - centre, to - centre);
-        let (near_mm, far_mm) = (length(out).min(length(end)), length(out).max(length(end)));
+        let (near_mm, far_mm) =
+            (out.length_near().min(end.length_near()), out.length_near().max(end.length_near()));
         let length_mm = 0.5 * (near_mm + far_mm) * sweep_rad.abs();
         if length_mm <= settings.resolution_mm || near_mm <= settings.resolution_mm {
             return self.line(to, Pen::Down, cruise2, settings, ring);
@@ -263,7 +264,7 @@ impl<M: Modes> Front<M> {
         // A quarter turn ahead of the radius, or behind it.
         let ahead = |radius: Vec2| {
             let along = if sweep_rad > 0.0 { radius.perpendicular() } else { -radius.perpendicular() };
-            along * (1.0 / length(radius))
+            along * (1.0 / radius.length_near())
         };
         let shape = Shape::Arc { centre, sweep_rad };
         let most2 = narrow(settings.accel_mm_s2 * near_mm);
@@ -301,7 +302,7 @@ impl<M: Modes> Front<M> {
         let (Some(held), Some(run)) = (held, self.run) else { return };
         // The blocks given so far reach to where the corner before has been left.
         let (way_in, way_out) = (held.to - run.at, next.to - next.from);
-        let (in_mm, out_mm) = (length(way_in), length(way_out));
+        let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
         if in_mm > 0.0 && out_mm > 0.0 {
             let (along, after) = (way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
             let corner = Corner::new(-along.dot(after));
@@ -447,7 +448,7 @@ impl Way {
             let share = 1.0 / length_mm;
             return Self { length_mm, direction: [x * share, y * share] };
         }
-        let length_mm = length(way);
+        let length_mm = way.length_near();
         let direction = if length_mm > 0.0 { direction(way * (1.0 / length_mm)) } else { [0.0; 2] };
         Self { length_mm: single(length_mm), direction }
     }
@@ -456,10 +457,4 @@ impl Way {
 /// As the look-ahead reckons with it.
 fn direction(way: Vec2) -> [f32; 2] {
     [single(way.x), single(way.y)]
-}
-
-/// Length of a way on the sheet, which is no longer than 10⁷ mm: without the scaling of `hypot`, which costs more than the rest
-/// of a plain block.
-fn length(way: Vec2) -> f64 {
-    libm::sqrt(way.length_squared())
 }

@@ -7,8 +7,8 @@ use super::ramps::Ramps;
 use super::ring::Ring;
 use super::s_curve::SCurveState;
 use super::{Action, PlanError, PlannerSettings};
+use crate::seconds::duration;
 use crate::{PlotOp, Point};
-use core::time::Duration;
 
 /// Plans the motion along a tool path while it comes in: look-ahead over `N` blocks.
 ///
@@ -226,7 +226,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         let head = self.ring.get(0)?;
         let action = match head.kind {
             Kind::Line | Kind::Arc | Kind::Narrowing | Kind::Widening => Action::Course(head.course()),
-            Kind::Dwell => Action::Dwell(Duration::try_from_secs_f64(head.length()).unwrap_or_default()),
+            Kind::Dwell => Action::Dwell(duration(head.length()).unwrap_or_default()),
             Kind::SelectPen => Action::SelectPen(head.number()),
             Kind::NewPage => Action::NewPage,
         };

@@ -3,10 +3,10 @@
 use super::super::output::Output;
 use super::super::settings::FULL_POWER;
 use super::super::{COMMANDS, StepperPlotterSettings};
-use super::MOST_COMMANDS;
 use super::codes::coordinate;
 use super::rx_buffer::RX_BYTES;
-use crate::decimal_text::Decimals;
+use super::{MOST_COMMANDS, OUTPUT};
+use crate::decimal_text::{Decimals, Whole};
 use crate::gcode::Modes;
 
 /// What is being listed.
@@ -32,21 +32,21 @@ impl Listing {
         index: u8,
         settings: &StepperPlotterSettings,
         modes: &Modes,
-        out: &mut Output,
+        out: &mut Output<OUTPUT>,
     ) -> bool {
         match self {
             Self::Settings => return setting(index, settings, out),
             Self::Build => match index {
                 0 => out.line(format_args!("[VER:1.1h.20190830:plotter-motion]")),
-                1 => out.line(format_args!("[OPT:V,{BLOCKS},{RX_BYTES}]")),
+                1 => out.line(format_args!("[OPT:V,{},{}]", Whole(BLOCKS as u64), Whole(RX_BYTES as u64))),
                 _ => return false,
             },
             Self::Startup => match index {
-                0 | 1 => out.line(format_args!("$N{index}=")),
+                0 | 1 => out.line(format_args!("$N{}=", Whole(index.into()))),
                 _ => return false,
             },
             Self::Offsets => match index {
-                0..=5 => out.line(format_args!("[G{}:0.000,0.000,0.000]", 54 + index)),
+                0..=5 => out.line(format_args!("[G{}:0.000,0.000,0.000]", Whole(54 + u64::from(index)))),
                 6 => out.line(format_args!("[G28:0.000,0.000,0.000]")),
                 7 => out.line(format_args!("[G30:0.000,0.000,0.000]")),
                 8 => {
@@ -63,7 +63,7 @@ impl Listing {
 }
 
 /// The settings as Grbl numbers them; those that this machine has no use for are what Grbl comes with.
-fn setting(index: u8, settings: &StepperPlotterSettings, out: &mut Output) -> bool {
+fn setting(index: u8, settings: &StepperPlotterSettings, out: &mut Output<OUTPUT>) -> bool {
     let StepperPlotterSettings { planner, stored, home_x, .. } = settings;
     let whole = |number: u8, value: u32| (number, f64::from(value), true);
     let direction_mask = u32::from(stored.x_direction & 1) | u32::from(stored.y_direction & 1) << 1;
@@ -108,9 +108,9 @@ fn setting(index: u8, settings: &StepperPlotterSettings, out: &mut Output) -> bo
         _ => return false,
     };
     if is_whole {
-        out.line(format_args!("${number}={}", Decimals::<0>(value)));
+        out.line(format_args!("${}={}", Whole(number.into()), Decimals::<0>(value)));
     } else {
-        out.line(format_args!("${number}={}", Decimals::<3>(value)));
+        out.line(format_args!("${}={}", Whole(number.into()), Decimals::<3>(value)));
     }
     true
 }
