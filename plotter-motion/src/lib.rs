@@ -29,6 +29,7 @@ mod profile;
 pub mod protocol;
 mod pulse_counter;
 mod safety;
+mod seconds;
 mod shapes;
 mod stepgen;
 mod steps;
@@ -36,6 +37,7 @@ mod sync_stop;
 mod targets;
 pub mod testbed;
 mod toolpath;
+mod turn;
 
 pub use axis::{Axis, Direction};
 pub use bresenham::{Bresenham, StepPair};

@@ -1,8 +1,8 @@
 //! [`Block`]: a stretch of path in the look-ahead.
 
 use super::blend::GROWTH;
-use super::limits::{Limits, Shares};
-use super::ring::{least, narrow};
+use super::limits::{Limits, Share, Wish};
+use super::ring::narrow;
 use super::{Course, Shape};
 use crate::{Pen, Point};
 use core::time::Duration;
@@ -94,15 +94,14 @@ impl Block {
         u8::try_from(self.power).unwrap_or(u8::MAX)
     }
 
-    /// Square of the greatest speed on it, at these shares of the speeds that were asked for.
-    pub(super) fn cruise2_at(&self, shares: &Shares, limits: &Limits) -> f32 {
-        let feed2 = self.feed_mm_s * self.feed_mm_s;
-        let asked2 = if self.kind == Kind::Jog {
-            least(feed2, limits.travel2)
-        } else {
-            shares.of(self.pen, feed2, limits)
+    /// What its speed is made of.
+    pub(super) fn wish(&self, limits: &Limits) -> Wish {
+        let share = match (self.kind, self.pen) {
+            (Kind::Jog, _) => Share::Jog,
+            (_, Pen::Up) => Share::Travel,
+            (_, Pen::Down) => Share::Draw,
         };
-        least(asked2, self.form2(limits))
+        Wish { feed_mm_s: self.feed_mm_s, form2: self.form2(limits), share }
     }
 
     /// Square of the greatest speed that its form allows: on an arc that of its lesser radius.

@@ -3,7 +3,7 @@
 use super::blend::{Blend, GROWTH, Room, to_pole};
 use super::block::{Block, Kind, single};
 use super::junction::{Corner, corner_speed2};
-use super::limits::{Limits, Shares};
+use super::limits::{Limits, Share, Shares};
 use super::merge::{Merged, Merger};
 use super::modes::{Keep as _, Modes};
 use super::ring::{Ring, least, narrow};
@@ -295,7 +295,8 @@ impl<M: Modes> Front<M> {
         ring: &mut Ring<N>,
     ) {
         let (out, end) = (self.position - centre, to - centre);
-        let (near_mm, far_mm) = (length(out).min(length(end)), length(out).max(length(end)));
+        let (near_mm, far_mm) =
+            (out.length_near().min(end.length_near()), out.length_near().max(end.length_near()));
         let length_mm = 0.5 * (near_mm + far_mm) * sweep_rad.abs();
         if length_mm <= settings.resolution_mm || near_mm <= settings.resolution_mm {
             return self.line(to, Pen::Down, cruise2, settings, ring);
@@ -307,7 +308,7 @@ impl<M: Modes> Front<M> {
         // A quarter turn ahead of the radius, or behind it.
         let ahead = |radius: Vec2| {
             let along = if sweep_rad > 0.0 { radius.perpendicular() } else { -radius.perpendicular() };
-            along * (1.0 / length(radius))
+            along * (1.0 / radius.length_near())
         };
         let shape = Shape::Arc { centre, sweep_rad };
         let most2 = narrow(settings.accel_mm_s2 * near_mm);
@@ -345,7 +346,7 @@ impl<M: Modes> Front<M> {
         let (Some(held), Some(run)) = (held, self.run) else { return };
         // The blocks given so far reach to where the corner before has been left.
         let (way_in, way_out) = (held.to - run.at, next.to - next.from);
-        let (in_mm, out_mm) = (length(way_in), length(way_out));
+        let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
         if in_mm > 0.0 && out_mm > 0.0 {
             let (along, after) = (way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
             let corner = Corner::new(-along.dot(after));
@@ -459,10 +460,12 @@ impl<M: Modes> Front<M> {
     fn emit<const N: usize>(&mut self, stretch: Stretch, ring: &mut Ring<N>) {
         let Some(run) = &mut self.run else { return };
         let Stretch { shape, to, length_mm, entry, exit, feed2, most2, most_entry2 } = stretch;
-        let asked2 = match self.shares.get() {
-            Some(shares) if !self.jogs => shares.of(run.pen, feed2, &self.limits),
-            _ => feed2,
+        let share = match run.pen {
+            _ if self.jogs => Share::Jog,
+            Pen::Up => Share::Travel,
+            Pen::Down => Share::Draw,
         };
+        let asked2 = self.shares.get().map_or(feed2, |shares| shares.of(share, feed2, &self.limits));
         let cruise2 = least(asked2, most2);
         let mut block = Block::path(shape, to, length_mm, run.pen, self.power, feed2);
         block.cruise2 = cruise2;
@@ -505,7 +508,7 @@ impl Way {
             let share = 1.0 / length_mm;
             return Self { length_mm, direction: [x * share, y * share] };
         }
-        let length_mm = length(way);
+        let length_mm = way.length_near();
         let direction = if length_mm > 0.0 { direction(way * (1.0 / length_mm)) } else { [0.0; 2] };
         Self { length_mm: single(length_mm), direction }
     }
@@ -514,10 +517,4 @@ impl Way {
 /// As the look-ahead reckons with it.
 fn direction(way: Vec2) -> [f32; 2] {
     [single(way.x), single(way.y)]
-}
-
-/// Length of a way on the sheet, which is no longer than 10⁷ mm: without the scaling of `hypot`, which costs more than the rest
-/// of a plain block.
-fn length(way: Vec2) -> f64 {
-    libm::sqrt(way.length_squared())
 }

@@ -1,15 +1,15 @@
 //! [`Planner`]: the look-ahead as a whole.
 
-use super::block::{Block, Kind};
+use super::block::Kind;
 use super::front::Front;
-use super::limits::Shares;
+use super::limits::{Shares, Wish};
 use super::modes::{AllModes, Keep as _, Modes};
 use super::ramps::Ramps;
 use super::ring::{Ring, narrow};
 use super::s_curve::SCurveState;
 use super::{Action, PlanError, PlannerSettings};
+use crate::seconds::duration;
 use crate::{PlotOp, Point};
-use core::time::Duration;
 
 /// What a speed may be multiplied by.
 const LEAST_SHARE: f64 = 0.01;
@@ -56,7 +56,7 @@ pub struct Planner<const N: usize, M: Modes = AllModes> {
     hold: bool,
     s_curve: M::Kept<SCurveState>,
     /// The course given last, for its greatest speed at other shares.
-    under_way: M::Kept<Block>,
+    under_way: M::Kept<Wish>,
 }
 
 impl<const N: usize> Planner<N> {
@@ -183,7 +183,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         };
         let shares = Shares { draw2: square(draw_share), travel2: square(travel_share) };
         let limits = self.front.limits;
-        let under_way2 = under_way.cruise2_at(&shares, &limits);
+        let under_way2 = under_way.cruise2(&shares, &limits);
         if self.settings.jerk_of::<M>().is_some() {
             self.front.rescale(shares, f32::INFINITY, 0.0, &mut self.ring);
             if let Some(s_curve) = self.s_curve.get_mut() {
@@ -310,7 +310,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             Kind::Line | Kind::Jog | Kind::Arc | Kind::Narrowing | Kind::Widening => {
                 Action::Course(head.course())
             }
-            Kind::Dwell => Action::Dwell(Duration::try_from_secs_f64(head.length()).unwrap_or_default()),
+            Kind::Dwell => Action::Dwell(duration(head.length()).unwrap_or_default()),
             Kind::SelectPen => Action::SelectPen(head.number()),
             Kind::NewPage => Action::NewPage,
         };
@@ -321,7 +321,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             s_curve.begin();
         } else {
             if let Some(under_way) = self.under_way.get_mut() {
-                *under_way = *head;
+                *under_way = head.wish(&self.front.limits);
             }
             self.ramps.begin(head, self.ring.next_entry2(), &self.front.limits);
             self.ring.pop();

@@ -106,7 +106,7 @@ impl<const N: usize> Ring<N> {
         for index in 0..self.len {
             let Some(block) = self.get_mut(index) else { continue };
             if block.is_path() {
-                block.cruise2 = block.cruise2_at(shares, limits);
+                block.cruise2 = block.wish(limits).cruise2(shares, limits);
                 let most2 = least(block.corner2, least(before2, block.cruise2));
                 // What can no longer be avoided was allowed before, and is no corner's business.
                 block.max_entry2 = if block.corner2 > 0.0 { most2.max(single(forced2)) } else { 0.0 };

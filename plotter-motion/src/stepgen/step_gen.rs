@@ -344,7 +344,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     /// The chord after the one that has been stepped, if it is not shorter than a step.
     fn next_chord(&mut self) {
         self.due = None;
-        while let Some(chord) = self.chords.next::<M>(&self.kinematics) {
+        while let Some(chord) = self.chords.next::<M>(&self.course, &self.kinematics) {
             self.line = Bresenham::new(self.line.position(), chord.to);
             self.due = Due::new(self.chord_from, chord.end, self.line.remaining());
             self.chord_from = chord.end;
@@ -361,8 +361,11 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         if !self.settings.laser || dark || self.course_speed <= 0 {
             return 0;
         }
-        let power = i128::from(speed) * i128::from(self.course.laser_power) / i128::from(self.course_speed);
-        let power = u16::try_from(power.max(0)).unwrap_or(u16::MAX).min(self.course.laser_power);
+        let (speed, full) = (speed.max(0).unsigned_abs(), self.course_speed.unsigned_abs());
+        // So that the product fits; 16 bits less of such speeds are no loss.
+        let (speed, full) = if speed >= 1 << 47 { (speed >> 16, (full >> 16).max(1)) } else { (speed, full) };
+        let power = speed * u64::from(self.course.laser_power) / full;
+        let power = u16::try_from(power).unwrap_or(u16::MAX).min(self.course.laser_power);
         // A laser that is on at all has some power.
         (power & !0xFF) | 0x80
     }
@@ -424,7 +427,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
 
     fn begin(&mut self, course: Course) {
         self.put(course.pen);
-        self.chords = Chords::new::<M>(course, self.at, self.chord_tolerance_mm);
+        self.chords = Chords::new::<M>(&course, self.at, self.chord_tolerance_mm);
         self.course_speed = speed_fixed(course.feed_mm_s / self.settings.clock_hz);
         self.course = course;
         self.at = course.to;

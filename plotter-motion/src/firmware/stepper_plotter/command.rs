@@ -1,6 +1,7 @@
 //! What the two tasks tell each other: [`Command`], [`Signal`] and [`Report`].
 
 use super::{Activity, Setting};
+use crate::decimal_text::Plain;
 use crate::{Axis, Direction, Homed, HomingError, PlotOp, Point};
 use core::fmt;
 
@@ -88,8 +89,8 @@ impl fmt::Display for Stop {
         match self {
             Self::Emergency => f.write_str("emergency stop: release the button, then reset"),
             Self::Limit { axis, end } => {
-                let axis = if *axis == Axis::X { "x" } else { "y" };
-                let end = if *end == Direction::Minus { "lower" } else { "upper" };
+                let axis = Plain(if *axis == Axis::X { "x" } else { "y" });
+                let end = Plain(if *end == Direction::Minus { "lower" } else { "upper" });
                 write!(f, "axis {axis}: stopped by its {end} limit switch; home the machine")
             }
             Self::Reset { .. } => f.write_str("stopped by a reset"),

@@ -112,7 +112,9 @@
 //! Sources: spec 5 (Dounaev and Phan); the firmware xybot and the program mDraw; the Grbl project's wiki on version 1.1.
 
 mod area;
+mod bytes;
 mod command;
+mod command_queue;
 mod grbl;
 mod homing_run;
 mod link;
@@ -128,8 +130,9 @@ mod settings;
 mod status;
 
 pub use command::{Command, Report, Signal, Stop};
+pub use command_queue::{COMMANDS, CommandQueue};
 pub use grbl::Grbl;
-pub use link::{COMMANDS, Link, REPORTS};
+pub use link::{Link, REPORTS};
 pub use mdraw::MDraw;
 pub use motion::{Motion, Step};
 pub use plotter::StepperPlotter;

@@ -74,9 +74,9 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
                 return step;
             }
             // What has been done is answered, and the next line may be waiting.
-            let before = self.link.commands.room();
+            let before = self.link.commands.len();
             self.work(now);
-            if self.link.commands.room() >= before {
+            if self.link.commands.len() <= before {
                 return None;
             }
         }

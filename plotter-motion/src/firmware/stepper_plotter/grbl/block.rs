@@ -5,7 +5,7 @@ use super::codes::{Alarm, Code};
 use super::listing::is_listed;
 use super::{Grbl, Wait, send};
 use crate::decimal::Decimal;
-use crate::gcode::{Block, Problem, Reader, Word};
+use crate::gcode::{Block, Outcomes, Problem, Reader, Word};
 use crate::{PlotOp, Point};
 
 /// Slower is not slower, mm/s: a step of 0.01 mm takes ten seconds.
@@ -41,9 +41,9 @@ impl Grbl {
         let travel = read(b"G0M5")?.into_iter().chain([block]);
         let mut to = None;
         for block in travel {
-            let taken = interpreter.push(Ok(block));
-            debug_assert!(taken.is_ok(), "what the line before gave has been taken");
-            while let Some(op) = interpreter.next_op() {
+            let mut outcomes = Outcomes::NONE;
+            interpreter.carry_out(&block, &mut outcomes).map_err(Code::of)?;
+            while let Some(op) = outcomes.take() {
                 to = op.map_err(Code::of)?.target().or(to);
             }
         }
@@ -83,12 +83,12 @@ impl Grbl {
 
     fn carry_out(&mut self, block: &Block, link: &mut Link) -> Result<(), Code> {
         let before = self.interpreter.modes();
-        let taken = self.interpreter.push(Ok(*block));
-        debug_assert!(taken.is_ok(), "what the line before gave has been taken");
+        let mut outcomes = Outcomes::NONE;
+        self.interpreter.carry_out(block, &mut outcomes).map_err(Code::of)?;
         let mut ops = [None; super::MOST_COMMANDS];
         let mut slots = ops.iter_mut();
         let mut pauses = false;
-        while let Some(op) = self.interpreter.next_op() {
+        while let Some(op) = outcomes.take() {
             match op {
                 Ok(mut op) => {
                     if let PlotOp::Draw { feed_mm_s: Some(feed), .. }

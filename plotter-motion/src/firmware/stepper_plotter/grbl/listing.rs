@@ -3,10 +3,10 @@
 use super::super::output::Output;
 use super::super::settings::FULL_POWER;
 use super::super::{COMMANDS, Setting, StepperPlotterSettings};
-use super::MOST_COMMANDS;
 use super::codes::coordinate;
 use super::rx_buffer::RX_BYTES;
-use crate::decimal_text::Decimals;
+use super::{MOST_COMMANDS, OUTPUT};
+use crate::decimal_text::{Decimals, Whole};
 use crate::gcode::Modes;
 
 /// What is being listed.
@@ -32,28 +32,28 @@ impl Listing {
         index: u8,
         settings: &StepperPlotterSettings,
         modes: &Modes,
-        out: &mut Output,
+        out: &mut Output<OUTPUT>,
     ) -> bool {
         match self {
             Self::Settings => {
                 let Some((number, value, is_whole)) = setting(index, settings) else { return false };
                 if is_whole {
-                    out.line(format_args!("${number}={}", Decimals::<0>(value)));
+                    out.line(format_args!("${}={}", Whole(number.into()), Decimals::<0>(value)));
                 } else {
-                    out.line(format_args!("${number}={}", Decimals::<3>(value)));
+                    out.line(format_args!("${}={}", Whole(number.into()), Decimals::<3>(value)));
                 }
             }
             Self::Build => match index {
                 0 => out.line(format_args!("[VER:1.1h.20190830:plotter-motion]")),
-                1 => out.line(format_args!("[OPT:V,{BLOCKS},{RX_BYTES}]")),
+                1 => out.line(format_args!("[OPT:V,{},{}]", Whole(BLOCKS as u64), Whole(RX_BYTES as u64))),
                 _ => return false,
             },
             Self::Startup => match index {
-                0 | 1 => out.line(format_args!("$N{index}=")),
+                0 | 1 => out.line(format_args!("$N{}=", Whole(index.into()))),
                 _ => return false,
             },
             Self::Offsets => match index {
-                0..=5 => out.line(format_args!("[G{}:0.000,0.000,0.000]", 54 + index)),
+                0..=5 => out.line(format_args!("[G{}:0.000,0.000,0.000]", Whole(54 + u64::from(index)))),
                 6 => out.line(format_args!("[G28:0.000,0.000,0.000]")),
                 7 => out.line(format_args!("[G30:0.000,0.000,0.000]")),
                 8 => {

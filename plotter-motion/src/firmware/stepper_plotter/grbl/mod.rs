@@ -8,21 +8,22 @@ mod overrides;
 mod rx_buffer;
 mod status_report;
 
+use super::command_queue::COMMANDS_OF_A_LINE as MOST_COMMANDS;
 use super::output::Output;
 use super::{Activity, Command, Link, Report, Signal, Status, StepperPlotterSettings, Stop, StoredSettings};
 use crate::Point;
-use crate::decimal_text::Trimmed;
-use crate::gcode::{BlockDelete, Interpreter, ReadOptions};
+use crate::decimal_text::{Plain, Trimmed, Whole};
+use crate::gcode::{BlockDelete, LineInterpreter, ReadOptions};
 use codes::{Alarm, Code, rounded};
 use line_buffer::LineBuffer;
 use listing::Listing;
 use overrides::Overrides;
 use rx_buffer::RxBuffer;
 
-/// Most commands that one line becomes: what the interpreter gives, and what goes before and after it.
-const MOST_COMMANDS: usize = 12;
-/// Most bytes that are written at one time.
-const MOST_ANSWER: usize = 320;
+/// Most bytes that are written at one time: an alarm with its message, and the line's answer.
+const MOST_ANSWER: usize = 208;
+/// Bytes that wait to be sent.
+const OUTPUT: usize = 256;
 /// The longest way of telling the offset, or the overrides, only now and then: so many reports without it.
 const REPORTS_WITHOUT_OFFSET: u8 = 10;
 
@@ -43,7 +44,7 @@ pub struct Grbl {
     settings: StepperPlotterSettings,
     rx: RxBuffer,
     line: LineBuffer,
-    interpreter: Interpreter,
+    interpreter: LineInterpreter,
     wait: Option<Wait>,
     listing: Option<(Listing, u8)>,
     alarm: Option<Alarm>,
@@ -56,7 +57,7 @@ pub struct Grbl {
     /// What was sent to the motion side last is a jog.
     jogs: bool,
     greeting: bool,
-    out: Output,
+    out: Output<OUTPUT>,
 }
 
 impl Grbl {
@@ -175,7 +176,7 @@ impl Grbl {
     }
 
     fn error(&mut self, Code(number): Code) {
-        self.out.line(format_args!("error:{number}"));
+        self.out.line(format_args!("error:{}", Whole(number.into())));
     }
 
     fn greet(&mut self) {
@@ -187,7 +188,7 @@ impl Grbl {
 
     fn alarm(&mut self, alarm: Alarm) {
         self.alarm = Some(alarm);
-        self.out.line(format_args!("ALARM:{}", alarm.0));
+        self.out.line(format_args!("ALARM:{}", Whole(alarm.0.into())));
     }
 
     fn take(&mut self, report: Report) {
@@ -308,19 +309,19 @@ impl Grbl {
         let feed = modes.feed_mm_s.unwrap_or(0.0) * 60.0 / if modes.inches { 25.4 } else { 1.0 };
         self.out.line(format_args!(
             "[GC:G{} G54 G17 G{} G{} G94 M{} M9 T{} F{} S{}]",
-            modes.motion,
-            if modes.inches { 20 } else { 21 },
-            if modes.relative { 91 } else { 90 },
-            modes.spindle,
-            modes.tool,
+            Whole(modes.motion.into()),
+            Plain(if modes.inches { "20" } else { "21" }),
+            Plain(if modes.relative { "91" } else { "90" }),
+            Whole(modes.spindle.into()),
+            Whole(modes.tool.into()),
             Trimmed(rounded(feed)),
             Trimmed(rounded(modes.power)),
         ));
     }
 }
 
-fn interpreter(settings: &StepperPlotterSettings) -> Interpreter {
-    Interpreter::with_options(ReadOptions {
+fn interpreter(settings: &StepperPlotterSettings) -> LineInterpreter {
+    LineInterpreter::new(ReadOptions {
         pen: settings.convention(),
         block_delete: BlockDelete::CarryOut,
         ..ReadOptions::default()

@@ -5,12 +5,12 @@ use super::codes::{coordinate, coordinates};
 use super::listing::BLOCKS;
 use super::overrides::Overrides;
 use super::{Grbl, MOST_COMMANDS, REPORTS_WITHOUT_OFFSET};
-use crate::decimal_text::Decimals;
+use crate::decimal_text::{Decimals, Plain, Whole};
 use core::fmt;
 
 impl Grbl {
     pub(super) fn tell_status(&mut self, status: &Status, link: &Link) {
-        let state = match status.activity {
+        let state = Plain(match status.activity {
             _ if self.alarm.is_some() => "Alarm",
             Activity::Idle if self.is_jogging(status, link) => "Jog",
             Activity::Idle if !link.commands.is_empty() => "Run",
@@ -20,10 +20,10 @@ impl Grbl {
             Activity::Hold { stands: true } => "Hold:0",
             Activity::Hold { stands: false } => "Hold:1",
             Activity::Home => "Home",
-        };
+        });
         let (x, y) = coordinates(status.at);
-        let blocks = link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS);
-        let bytes = self.rx.room();
+        let blocks = Whole(link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS) as u64);
+        let bytes = Whole(self.rx.room() as u64);
         let feed_mm_min = Decimals::<0>(status.speed_mm_s * 60.0);
         let power = Decimals::<0>(f64::from(status.laser) / f64::from(u16::MAX) * FULL_POWER);
         let pins = Pins {

@@ -13,6 +13,8 @@ use refusal::Refusal;
 
 /// Most bytes of a line. The original's buffer has 64 with the line end, and begins again at its start.
 const MOST_BYTES: usize = 63;
+/// Bytes that wait to be sent.
+const OUTPUT: usize = 512;
 /// Most bytes that one line is answered with.
 const MOST_ANSWER: usize = 320;
 /// Most commands that one line becomes.
@@ -49,7 +51,7 @@ pub struct MDraw {
     laser_on: bool,
     /// The motion side waits to hear that its stop has been heard of.
     stopped: bool,
-    out: Output,
+    out: Output<OUTPUT>,
 }
 
 impl MDraw {
