@@ -1,10 +1,12 @@
 //! [`Motion`]: the task that moves: commands in, steps out, each at its time.
 
+mod by_hand;
+
 use super::homing_run::HomingRun;
 use super::play::{CLOCK_HZ, Play};
 use super::{
-    Activity, Command, Dialect, Link, Report, Setting, SettingsError, Signal, Status, StepperPlotterSettings,
-    Stop, StoredSettings,
+    Activity, Command, Dialect, Link, Report, SettingsError, Signal, Status, StepperPlotterSettings, Stop,
+    StoredSettings,
 };
 use crate::kinematics::{Backlash, Cartesian, Kinematics};
 use crate::planner::{AllModes, Keep as _, Modes};
@@ -319,36 +321,6 @@ impl<M: Modes> Motion<M> {
         self.play.get().map_or(self.position, |play| play.carriage(self.position))
     }
 
-    /// Whether the machine is being moved by hand, or is about to be.
-    fn jogs_now(&self, link: &Link) -> bool {
-        let waits = !self.unfinished
-            && self.planner.is_empty()
-            && matches!(link.commands.first(), Some(Command::Jog { .. }));
-        self.state == State::Ready && (self.jogs || waits)
-    }
-
-    /// Brakes what is moved by hand, and forgets the rest of it.
-    fn cancel(&mut self, link: &mut Link) {
-        (self.jogs, self.cancelling) = (true, true);
-        self.start_at = None;
-        while let Some(Command::Jog { .. }) = link.commands.first() {
-            link.commands.pop();
-        }
-        self.planner.hold();
-    }
-
-    /// What has been cancelled stands.
-    fn jogged(&mut self, link: &mut Link) {
-        self.halt(link);
-        self.state = State::Stopped;
-        let _ = link.reports.push(Report::Jogged { at: self.position_mm() });
-    }
-
-    fn override_speeds(&mut self) {
-        let (draw, travel) = self.speed_percents;
-        self.planner.override_speeds(f64::from(draw) / 100.0, f64::from(travel) / 100.0);
-    }
-
     /// Gives the laser its share of the power.
     fn shine(&mut self) {
         let power = u32::from(self.laser) * u32::from(self.laser_percent) / 100;
@@ -625,26 +597,6 @@ impl<M: Modes> Motion<M> {
                 self.gate.reset();
             }
         }
-    }
-
-    /// The machine is another one from here on; its motors stay where they are.
-    fn set(&mut self, setting: Setting) {
-        let settings = setting.applied(self.settings);
-        let (Ok(cartesian), Ok(planner)) = (settings.cartesian(), Planner::with_modes(settings.limits()))
-        else {
-            debug_assert!(false, "the receive side has looked at {setting:?}");
-            return;
-        };
-        (self.settings, self.cartesian, self.planner) = (settings, cartesian, planner);
-        self.base = self.time_of(self.steps.tick());
-        self.steps = step_gen(cartesian, &settings);
-        self.steps.clear(self.carriage());
-        if let Some(play) = self.play.get_mut() {
-            play.begin_anew(&settings);
-        }
-        self.planner.clear(self.position_mm());
-        darken(&mut self.planner);
-        self.override_speeds();
     }
 
     fn wait(&mut self, now: Duration, duration: Duration) {
