@@ -373,6 +373,18 @@ fn a_stop_within_the_play_loses_no_place() {
 }
 
 #[test]
+fn a_small_controller_overrides_the_laser_alone_and_tells_so() {
+    let mut small = StepperPlotter::<Grbl, ExactOnly>::with_modes(settings())
+        .unwrap_or_else(|error| unreachable!("{error}"));
+    for byte in [FEED_LESS_10, LASER_LESS_10, b'?', b'?'] {
+        small.receive(Duration::ZERO, byte);
+        while small.transmit(Duration::ZERO).is_some() {}
+    }
+    let percents = small.status(Duration::ZERO).percents;
+    assert_eq!((percents.draw, percents.travel, percents.laser), (100, 100, 90));
+}
+
+#[test]
 fn a_small_controller_has_no_play_and_says_so() {
     let machine = StepperPlotterSettings { backlash: PLAY, ..settings() };
     let small = StepperPlotter::<Grbl, ExactOnly>::with_modes(machine);

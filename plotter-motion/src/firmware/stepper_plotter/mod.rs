@@ -94,7 +94,8 @@
 //!   on, ctrl-X stops at once; the place stays known, as it is counted by steps really made.
 //! - Overrides act on the way, as soon as the phase in progress is over: feeds (`0x90` to `0x94`, 10 to 200 %), travels (`0x95` to
 //!   `0x97`: 100, 50, 25 %), the laser's power (`0x99` to `0x9D`). The machine's limits hold whatever they say. They are told as `Ov`
-//!   when they have changed, and now and then; a reset ends them.
+//!   when they have changed, and now and then; a reset ends them. A
+//!   controller with [`ExactOnly`](crate::ExactOnly) overrides the laser only, and tells so.
 //! - `$J=` moves by hand at its own `F`, from rest or after another jog, while G-code is locked out (`error:9`); `0x85` or `!` brakes
 //!   along the path and forgets the jogs that wait, and the place stays known.
 //! - `$$ $# $I $G $N $X $H` are answered; `$n=value` changes what [`Setting`] lists, at rest: out of range it is `error:52`
@@ -151,4 +152,4 @@ pub use queue::Queue;
 pub use receive::{Host, Receive};
 pub use setting::{Setting, SettingProblem};
 pub use settings::{Dialect, SettingsError, StepperPlotterSettings, StoredSettings};
-pub use status::{Activity, Status};
+pub use status::{Activity, Percents, Status};

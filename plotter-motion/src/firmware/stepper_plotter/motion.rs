@@ -5,8 +5,8 @@ mod by_hand;
 use super::homing_run::HomingRun;
 use super::play::{CLOCK_HZ, Play};
 use super::{
-    Activity, Command, Dialect, Link, Report, SettingsError, Signal, Status, StepperPlotterSettings, Stop,
-    StoredSettings,
+    Activity, Command, Dialect, Link, Percents, Report, SettingsError, Signal, Status,
+    StepperPlotterSettings, Stop, StoredSettings,
 };
 use crate::kinematics::{Backlash, Cartesian, Kinematics};
 use crate::planner::{AllModes, Keep as _, Modes};
@@ -66,11 +66,9 @@ pub struct Motion<M: Modes = AllModes> {
     jogs: bool,
     cancelling: bool,
     dark: bool,
-    /// The laser's power as the path has it, and how many percent of it are given.
+    /// The laser's power as the path has it, and the overrides in force.
     laser: u16,
-    laser_percent: u8,
-    /// Percent of the speeds, with the pen down and up.
-    speed_percents: (u8, u8),
+    percents: Percents,
     /// The phase in progress and when it began.
     phase: Option<(Duration, Phase)>,
     pen_deg: u8,
@@ -127,8 +125,7 @@ impl<M: Modes> Motion<M> {
             cancelling: false,
             dark: false,
             laser: 0,
-            laser_percent: 100,
-            speed_percents: (100, 100),
+            percents: Percents::default(),
             phase: None,
             pen_deg: settings.stored.pen_up_deg,
             beam: Beam::OFF,
@@ -195,11 +192,13 @@ impl<M: Modes> Motion<M> {
             Signal::Hold if self.state == State::Ready => self.hold(),
             Signal::Hold => {}
             Signal::Speeds { draw_percent, travel_percent } => {
-                self.speed_percents = (draw_percent, travel_percent);
-                self.override_speeds();
+                if M::ALL {
+                    (self.percents.draw, self.percents.travel) = (draw_percent, travel_percent);
+                    self.override_speeds();
+                }
             }
             Signal::LaserPercent(percent) => {
-                self.laser_percent = percent;
+                self.percents.laser = percent;
                 self.shine();
             }
             // A jog that ends is not to go on.
@@ -211,7 +210,7 @@ impl<M: Modes> Motion<M> {
             Signal::Reset => {
                 let during = self.status(now).activity;
                 self.stop(Stop::Reset { during }, link);
-                (self.speed_percents, self.laser_percent) = ((100, 100), 100);
+                self.percents = Percents::default();
                 self.override_speeds();
             }
             Signal::LaserOff => {
@@ -250,8 +249,7 @@ impl<M: Modes> Motion<M> {
             self.settings = settings;
             self.planner = planner;
         }
-        self.speed_percents = (100, 100);
-        self.laser_percent = 100;
+        self.percents = Percents::default();
         if self.gate.is_stopped() {
             self.stop(Stop::Emergency, link);
         } else {
@@ -310,6 +308,7 @@ impl<M: Modes> Motion<M> {
             at: self.position_mm(),
             speed_mm_s,
             laser: self.beam.power(),
+            percents: self.percents,
             limits: self.gate.limits(),
             emergency_stop: self.gate.is_stopped(),
             emergency_button: self.gate.is_button_pressed(),
@@ -323,7 +322,7 @@ impl<M: Modes> Motion<M> {
 
     /// Gives the laser its share of the power.
     fn shine(&mut self) {
-        let power = u32::from(self.laser) * u32::from(self.laser_percent) / 100;
+        let power = u32::from(self.laser) * u32::from(self.percents.laser) / 100;
         let power = u16::try_from(power).unwrap_or(u16::MAX);
         self.beam = self.gate.pass_laser(if self.dark { 0 } else { power });
     }

@@ -74,7 +74,7 @@ impl Grbl {
             status_wanted: false,
             reports_to_offset: 0,
             reports_to_overrides: 0,
-            overrides: Overrides::USUAL,
+            overrides: Overrides::default(),
             jogs: false,
             greeting: true,
             out: Output::new(),
@@ -104,7 +104,7 @@ impl Grbl {
                 self.rx.clear();
                 self.line.clear();
                 (self.wait, self.listing) = (None, None);
-                (self.overrides, self.reports_to_overrides) = (Overrides::USUAL, 0);
+                (self.overrides, self.reports_to_overrides) = (Overrides::default(), 0);
                 return Some(Signal::Reset);
             }
             0x85 => return Some(Signal::JogCancel),

@@ -1,40 +1,34 @@
 //! [`Overrides`]: shares of speeds and power that a person at the program sets on the way, by single bytes.
 
-use super::super::Signal;
-use core::fmt;
+use super::super::{Percents, Signal};
 
-/// Percent of what is asked for. 100 of each while nothing is said.
+/// What a person asks for.
 ///
 /// Source: the Grbl project's wiki, "Grbl v1.1 Commands", on extended-ASCII realtime commands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Overrides {
-    feed: u8,
-    rapid: u8,
-    laser: u8,
-}
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Overrides(Percents);
 
 /// Least and greatest share of feeds and of the laser's power.
 const LEAST: u8 = 10;
 const MOST: u8 = 200;
 
 impl Overrides {
-    pub(super) const USUAL: Self = Self { feed: 100, rapid: 100, laser: 100 };
-
     /// Takes a byte; gives what the motion side must know if it is one of these.
     pub(super) fn take(&mut self, byte: u8) -> Option<Signal> {
+        let Percents { draw, travel, laser } = &mut self.0;
         match byte {
-            0x90..=0x94 => self.feed = changed(self.feed, byte - 0x90),
-            0x95 => self.rapid = 100,
-            0x96 => self.rapid = 50,
-            0x97 => self.rapid = 25,
+            0x90..=0x94 => *draw = changed(*draw, byte - 0x90),
+            0x95 => *travel = 100,
+            0x96 => *travel = 50,
+            0x97 => *travel = 25,
             0x99..=0x9D => {
-                self.laser = changed(self.laser, byte - 0x99);
-                return Some(Signal::LaserPercent(self.laser));
+                *laser = changed(*laser, byte - 0x99);
+                return Some(Signal::LaserPercent(*laser));
             }
             // 0x9E stops the laser while the machine is held: there it is dark anyway.
             _ => return None,
         }
-        Some(Signal::Speeds { draw_percent: self.feed, travel_percent: self.rapid })
+        Some(Signal::Speeds { draw_percent: *draw, travel_percent: *travel })
     }
 }
 
@@ -50,30 +44,23 @@ fn changed(percent: u8, how: u8) -> u8 {
     percent.clamp(LEAST, MOST)
 }
 
-impl fmt::Display for Overrides {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { feed, rapid, laser } = self;
-        write!(f, "|Ov:{feed},{rapid},{laser}")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn shares_stay_between_10_and_200_percent() {
-        let mut overrides = Overrides::USUAL;
+        let mut overrides = Overrides::default();
         for _ in 0..20 {
             overrides.take(0x91);
             overrides.take(0x9B);
         }
-        assert_eq!((overrides.feed, overrides.laser), (200, 10));
+        assert_eq!((overrides.0.draw, overrides.0.laser), (200, 10));
         overrides.take(0x94);
         assert_eq!(overrides.take(0x97), Some(Signal::Speeds { draw_percent: 199, travel_percent: 25 }));
         overrides.take(0x90);
         assert_eq!(overrides.take(0x99), Some(Signal::LaserPercent(100)));
-        assert_eq!((overrides.feed, overrides.rapid), (100, 25));
+        assert_eq!((overrides.0.draw, overrides.0.travel), (100, 25));
         assert_eq!(overrides.take(0x98), None);
     }
 }

@@ -1,9 +1,8 @@
 //! The answer to `?`.
 
-use super::super::{Activity, Link, Status, settings::FULL_POWER};
+use super::super::{Activity, Link, Percents, Status, settings::FULL_POWER};
 use super::codes::{coordinate, coordinates};
 use super::listing::BLOCKS;
-use super::overrides::Overrides;
 use super::{Grbl, MOST_COMMANDS, REPORTS_WITHOUT_OFFSET};
 use crate::decimal_text::{Decimals, Plain, Whole};
 use core::fmt;
@@ -31,20 +30,20 @@ impl Grbl {
             y: status.limits.y_min || status.limits.y_max,
         };
         let offset = self.offset();
-        let overrides = self.overrides_told(offset.0.is_some());
+        let overrides = self.overrides_told(status.percents, offset.0.is_some());
         self.out.line(format_args!(
             "<{state}|MPos:{x},{y},0.000|Bf:{blocks},{bytes}|FS:{feed_mm_min},{power}{pins}{offset}{overrides}>"
         ));
     }
 
     /// Overrides are told when they have changed, and now and then; not together with the offset.
-    fn overrides_told(&mut self, with_offset: bool) -> Told {
+    fn overrides_told(&mut self, percents: Percents, with_offset: bool) -> Told {
         if with_offset || self.reports_to_overrides > 0 {
             self.reports_to_overrides = self.reports_to_overrides.saturating_sub(1);
             return Told(None);
         }
         self.reports_to_overrides = REPORTS_WITHOUT_OFFSET;
-        Told(Some(self.overrides))
+        Told(Some(percents))
     }
 
     /// Offsets change seldom, and are told now and then.
@@ -60,11 +59,14 @@ impl Grbl {
 }
 
 /// `|Ov:`.
-struct Told(Option<Overrides>);
+struct Told(Option<Percents>);
 
 impl fmt::Display for Told {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.map_or(Ok(()), |overrides| overrides.fmt(f))
+        self.0.map_or(Ok(()), |Percents { draw, travel, laser }| {
+            let [draw, travel, laser] = [draw, travel, laser].map(|percent| Whole(percent.into()));
+            write!(f, "|Ov:{draw},{travel},{laser}")
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a person does on the way: jogs that are cancelled, other shares of the speeds, other settings.
 
-use super::super::{Command, Link, Report, Setting};
+use super::super::{Command, Link, Percents, Report, Setting};
 use super::{Motion, State, darken, step_gen};
 use crate::Planner;
 use crate::planner::{Keep as _, Modes};
@@ -32,7 +32,7 @@ impl<M: Modes> Motion<M> {
     }
 
     pub(super) fn override_speeds(&mut self) {
-        let (draw, travel) = self.speed_percents;
+        let Percents { draw, travel, .. } = self.percents;
         self.planner.override_speeds(f64::from(draw) / 100.0, f64::from(travel) / 100.0);
     }
 
