@@ -4,7 +4,7 @@
 use plotter_motion::control::{ContouringSettings, LineTrackingSettings};
 use plotter_motion::firmware::GantrySettings;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
-use plotter_motion::{AxisConfig, ControllerChoice, Machine};
+use plotter_motion::{AxisConfig, ControllerChoice, Machine, PathMode, PlannerSettings};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -127,6 +127,13 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
     writeln!(
         text,
         "/// The stepper plotter's settings.\npub const PLOTTER: StepperPlotterSettings = {literal};"
+    )?;
+    let PlannerSettings { path, jerk_mm_s3, .. } = settings.planner;
+    let modes = if path == PathMode::Exact && jerk_mm_s3.is_none() { "ExactOnly" } else { "AllModes" };
+    writeln!(
+        text,
+        "/// The stepper plotter's controller, with what its settings need.\npub type StepperPlotter = \
+         plotter_motion::firmware::StepperPlotter<plotter_motion::firmware::stepper_plotter::Grbl, plotter_motion::{modes}>;"
     )?;
     Ok(())
 }

@@ -12,7 +12,7 @@ fn main() -> std::io::Result<()> {
             std::fs::write(folder.join(format!("seed-{number:03}")), bytes)?;
         }
     }
-    for (target, texts) in [("hpgl", &HPGL[..]), ("log", &LOGS), ("import", &RECORDINGS)] {
+    for (target, texts) in [("hpgl", &HPGL[..]), ("gcode", &GCODE), ("log", &LOGS), ("import", &RECORDINGS)] {
         let folder = corpus.join(target);
         std::fs::create_dir_all(&folder)?;
         for (number, text) in texts.iter().enumerate() {
@@ -41,8 +41,21 @@ const RECORDINGS: [&[u8]; 8] = [
     b"\x06# plotter-raw/1 name=x\n0,H,00\n39,D,3132\n78,H,",
 ];
 
+/// Each way of lifting a pen, behind the byte that chooses it, and between them every word that is read.
+const GCODE: [&[u8]; 9] = [
+    b"\x00%\nN10 G21 G90 G17\r\nM5\nG0 X1.5Y-2\nM3 S90\ng1x2 y3 f1200 (a remark) ; and another\nX4\nM5\nM2\n%\n",
+    b"\x01G20\nG0 Z5\nG0 X1 Y1\nG1 Z-1 F100\nG2 X2 Y0 I0.5 J-0.5\nG3 X1 Y1 R1\nG3 X1 Y1 R-1\nG0 Z5\nM30\n",
+    b"\x02M103 (disable RPM)\nM300 S50\nG4 P120\nG1 X10 Y10 F3500.00\nM300 S30.00 (pen down)\nG4 P120\nG1 X12\nM17\nM18\nM01 (wait?)\n",
+    b"\x03G91\nM3 S1000\nG1 X1 F6000\nS500 X1\nG92 X0 Y0\nG90 G53 G0 X5\nM4 S0\nG28\n",
+    b"\x04M4 S255\nG1X5F300\nM5\nG0X0Y0\n/G1 X99\n",
+    b"\x05G1 X10 Y10 Z90 F1000\nG1 Z130\nG1 X20\nG1 Z90\n",
+    b"\x06G00 X1\nG01 X2 Y2\nG1 X.5 Y-.5 E0.3\nG80\nM280 P0 S40\nM106 S255\n",
+    b"\x07M280 P0 S90\nG0 X1\nM280 P0 S40\nG1 X2 F60\nM280 P0 S90\nG4 S0.5\nN5 G1 X3*71\nG1 X1e3\nG1 X1 X2\nM6 T3\n",
+    b"\x08G1 X10 Y10 A50\nM1 90\nM2 U160 D90\nG38.2 X1\nG1 X99999999999\n$H\nG5.1 X1\nG2 X1 Y1 I1 R2\nG1 X",
+];
+
 /// Between them, every command of HPGL and HP-GL/2 that is carried out.
-const HPGL: [&[u8]; 12] = [
+const HPGL: [&[u8]; 14] = [
     b"IN;DF;SP1;VS2.5;PU400,400;PD800,400,800,800;PR;PD-10,20;PA;CI200;CI100,60;PU;SP0;PG;",
     b"\x1b.(;\x1b.I81;;17:IN;IP0,0,4000,3000;SC0,100,0,75,1;PU10,10;PD20,20;IR25,25;RO90;PS4000,3000;PD1,1;",
     b"IW0,0,1000,1000;PU-500,500;PD2000,500;CI700;IW;LT2,5;PD0,0,900,0;LT-4;AA0,0,90;LT0;PD5,5;UL1,3,1,0,2;LT1;PD99,0;",
@@ -54,5 +67,7 @@ const HPGL: [&[u8]; 12] = [
     b"PE7<=OkGest;PE<=o\xD5c\xC9S\xC2\xBF<yR\xC3\xBFT\xC2\xBF;PE>\xC5:\xC3\xBF\xBF;",
     b"PE<=o\xC3\x95c\xC3\x89S\xC3\x82\xC2\xBF;",
     b"\x1bE\x1b&l1X\x1b%0BBPIN;NP8;PC1,0,0,0;PUPDPA5 5-3\x1b%0Anot read\x1b%1BPD;CO\"a;b\";MG;OE;\x1bE",
+    b"BLkept\x03PU5,5;PB;CS33;CA-1;DL65,0,0,32,32,-128,9,9;LB[{\x0eA\x0fA\x03SA;LBA\x03SS;AD1,39;SD1,277;LB\xC5\x03LM1;",
+    b"RF2,2,2,1,0,0,0;FT11,2;RA90,90;FT21,3;RR9,9;CV1,2;RP3;DL65;DL;",
     b"@PJL\x1b%-12345X@PJL ENTER LANGUAGE=HPGL2\r\nIN;PD1,2,,3;ZZ;PD--1;PU:;SP300;LBopen",
 ];

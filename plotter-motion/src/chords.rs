@@ -83,7 +83,8 @@ pub fn chords<I: IntoIterator<Item = PlotOp>>(
 /// arc.
 pub(crate) fn chord_count(radius_mm: f64, sweep_rad: f64, tolerance_mm: f64) -> u32 {
     let flattest = (tolerance_mm / radius_mm).clamp(0.0, 1.0);
-    let finest_rad = 2.0 * libm::acos(1.0 - flattest);
+    // The tangent of a quarter of the angle, whose square is (1 − cos) / (1 + cos) of its half.
+    let finest_rad = 4.0 * libm::atan(libm::sqrt(flattest / (2.0 - flattest)));
     let count = libm::ceil(libm::fabs(sweep_rad) / finest_rad);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number, clamped")]
     let count = if count.is_nan() { 1 } else { count.clamp(1.0, MOST_CHORDS) as u32 };

@@ -14,6 +14,7 @@
 //! steps, so a switch is only ever met at a rate that may be started and stopped at once: the way is fast where the
 //! axis is known to be longer, and slow after that, as in the source (spec 5.3).
 
+use crate::decimal_text::{Plain, Whole};
 use crate::{Axis, Direction, LimitSwitches, Machine, StepperConfig};
 use core::fmt;
 
@@ -188,23 +189,26 @@ impl HomingError {
 
 impl fmt::Display for HomingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let axis = match self.axis() {
+        let axis = Plain(match self.axis() {
             Axis::X => "x",
             Axis::Y => "y",
-        };
-        let name = |end| if end == Direction::Minus { "lower" } else { "upper" };
+        });
+        let name = |end| Plain(if end == Direction::Minus { "lower" } else { "upper" });
+        let whole = |steps: u32| Whole(steps.into());
         match *self {
             Self::Missing { end, steps, .. } => write!(
                 f,
-                "axis {axis}: the {} limit switch did not come within {steps} steps; check its wire, whether the motor \
+                "axis {axis}: the {} limit switch did not come within {} steps; check its wire, whether the motor \
                  turns at all, and the greatest travel in the settings",
-                name(end)
+                name(end),
+                whole(steps)
             ),
             Self::Stuck { end, steps, .. } => write!(
                 f,
-                "axis {axis}: the {} limit switch is still pressed {steps} steps off it; check whether it sticks or its \
+                "axis {axis}: the {} limit switch is still pressed {} steps off it; check whether it sticks or its \
                  wire is broken, and whether the motor turns the right way",
-                name(end)
+                name(end),
+                whole(steps)
             ),
             Self::Wrong { end, .. } => write!(
                 f,
@@ -218,13 +222,15 @@ impl fmt::Display for HomingError {
             ),
             Self::Short { steps, .. } => write!(
                 f,
-                "axis {axis}: only {steps} steps between its limit switches; check what stands in the way, and the \
-                 distance of the origin from the switch"
+                "axis {axis}: only {} steps between its limit switches; check what stands in the way, and the \
+                 distance of the origin from the switch",
+                whole(steps)
             ),
             Self::Early { steps, .. } => write!(
                 f,
-                "axis {axis}: the lower limit switch came {steps} steps too early; the motor lost steps: check its \
-                 current and the belt, or home with lower rates"
+                "axis {axis}: the lower limit switch came {} steps too early; the motor lost steps: check its \
+                 current and the belt, or home with lower rates",
+                whole(steps)
             ),
         }
     }

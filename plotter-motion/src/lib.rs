@@ -14,6 +14,7 @@ mod chords;
 mod config;
 pub mod control;
 mod decimal;
+mod decimal_text;
 mod encoder;
 pub mod firmware;
 pub mod gcode;
@@ -28,6 +29,7 @@ mod profile;
 pub mod protocol;
 mod pulse_counter;
 mod safety;
+mod seconds;
 mod shapes;
 mod stepgen;
 mod steps;
@@ -35,6 +37,7 @@ mod sync_stop;
 mod targets;
 pub mod testbed;
 mod toolpath;
+mod turn;
 
 pub use axis::{Axis, Direction};
 pub use bresenham::{Bresenham, StepPair};
@@ -54,7 +57,8 @@ pub use geom::{Point, Segment, Vec2};
 pub use homing::{Homed, Homing, HomingAxis, HomingError, HomingStatus, HomingStep};
 pub use pid::{Pid, PidState, SumPid, SumPidState};
 pub use planner::{
-    Action, Course, PathMode, Phase, PlanError, Planner, PlannerSettings, Shape, junction_speed,
+    Action, AllModes, Course, ExactOnly, Modes, PathMode, Phase, PlanError, Planner, PlannerSettings, Shape,
+    junction_speed,
 };
 pub use profile::{MotionLimits, ProfileError, ProfilePoint, Ramp, SCurve, Trapezoid, TrapezoidMove};
 pub use pulse_counter::PulseCounter;

@@ -130,3 +130,31 @@ fn a_fill_that_is_too_fine_is_said() {
          set a wider pen (PW) or distance (FT)>"
     );
 }
+
+#[test]
+fn a_raster_is_shaded_as_much_as_it_inks() {
+    // One dot of four has ink: as a shading of 25 %. Without dots it is forgotten, and what nobody has defined is solid.
+    let pen = "PW0.25;PU0,0;";
+    let shaded = ops(&format!("{pen}FT10,25;RA80,80;"));
+    assert_eq!(ops(&format!("{pen}RF2,2,2,1,0,0,0;FT11,2;RA80,80;")), shaded);
+    let solid = ops(&format!("{pen}FT1;RA80,80;"));
+    assert_eq!(ops(&format!("{pen}FT11,2;RA80,80;")), solid);
+    assert_eq!(ops(&format!("{pen}RF2,2,2,1,0,0,0;RF2;FT11,2;RA80,80;")), solid);
+    assert_eq!(ops(&format!("{pen}RF2,2,2,1,0,0,0;RF;FT11,2;RA80,80;")), solid);
+    assert_eq!(ops(&format!("{pen}RF1,1,1,0;FT11,1;RA80,80;")), ops(&format!("{pen}FT10,0;RA80,80;")));
+    assert!(ops("RF9,1,1,0").contains("it takes a raster from 1 to 8"));
+    assert!(ops("RF1,8,8").contains("RF lacks a pen for each dot of the raster"));
+}
+
+#[test]
+fn a_printers_lines_lie_stand_slant_and_cross() {
+    let frame = "IP0,0,3000,4000;PU0,0;";
+    for (number, lines) in
+        [(1, "FT3,0,0"), (2, "FT3,0,90"), (3, "FT3,0,45"), (4, "FT3,0,135"), (5, "FT4,0,0"), (6, "FT4,0,45")]
+    {
+        let printer = ops(&format!("{frame}FT21,{number};RA400,400;"));
+        assert_eq!(printer, ops(&format!("{frame}{lines};RA400,400;")), "{number}");
+        assert!(printer.contains('D'));
+    }
+    assert!(ops("FT22").contains("FT with 22 is left out"));
+}

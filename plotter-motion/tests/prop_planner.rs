@@ -4,8 +4,8 @@
 use core::time::Duration;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::{
-    Action, MotorEvent, PathMode, Phase, PlanError, Planner, PlannerSettings, PlotOp, Point, Shape, StepGen,
-    StepGenSettings, StepPoint, from_mm,
+    Action, Course, MotorEvent, PathMode, Pen, Phase, PlanError, Planner, PlannerSettings, PlotOp, Point,
+    Shape, StepGen, StepGenSettings, StepPoint, from_mm, junction_speed,
 };
 use proptest::prelude::*;
 
@@ -72,10 +72,26 @@ fn settings() -> impl Strategy<Value = PlannerSettings> {
     )
 }
 
-/// All actions of a path; `hold` says after which actions a feed hold begins, which ends when the machine stands.
-fn actions(settings: PlannerSettings, ops: &[PlotOp], hold: &[usize]) -> Vec<Action> {
+/// What a person at the machine does.
+#[derive(Clone, Copy, Debug)]
+enum Touch {
+    /// A feed hold, which ends when the machine stands.
+    Hold,
+    /// Shares of the speeds with the pen down and up.
+    Shares(f64, f64),
+}
+
+/// All actions of a path; `touches` says after how many of them something is done, and `told` hears each action with the shares that
+/// held when it was taken.
+fn actions_told(
+    settings: PlannerSettings,
+    ops: &[PlotOp],
+    touches: &[(usize, Touch)],
+    mut told: impl FnMut(Action, (f64, f64)),
+) -> Vec<Action> {
     let mut turns = 0;
-    let mut hold = hold.to_vec();
+    let mut touches = touches.to_vec();
+    let mut shares = (1.0, 1.0);
     let mut planner = Planner::<16>::new(settings).unwrap();
     let (mut actions, mut waiting, mut finished) = (Vec::new(), ops.iter().copied().peekable(), false);
     loop {
@@ -89,12 +105,21 @@ fn actions(settings: PlannerSettings, ops: &[PlotOp], hold: &[usize]) -> Vec<Act
         if !finished && waiting.peek().is_none() {
             finished = planner.finish().is_ok();
         }
-        if hold.contains(&actions.len()) {
-            hold.retain(|&at| at != actions.len());
-            planner.hold();
+        for &(_, touch) in touches.iter().filter(|(at, _)| *at == actions.len()) {
+            match touch {
+                Touch::Hold => planner.hold(),
+                Touch::Shares(draw, travel) => {
+                    planner.override_speeds(draw, travel);
+                    shares = (draw, travel);
+                }
+            }
         }
+        touches.retain(|(at, _)| *at != actions.len());
         match planner.next_action() {
-            Some(action) => actions.push(action),
+            Some(action) => {
+                told(action, shares);
+                actions.push(action);
+            }
             None if planner.is_held() => planner.resume(),
             None => {
                 assert!(finished && planner.is_empty());
@@ -106,7 +131,11 @@ fn actions(settings: PlannerSettings, ops: &[PlotOp], hold: &[usize]) -> Vec<Act
     }
 }
 
-fn check(settings: PlannerSettings, ops: &[PlotOp], hold: &[usize]) -> Result<(), TestCaseError> {
+fn actions(settings: PlannerSettings, ops: &[PlotOp]) -> Vec<Action> {
+    actions_told(settings, ops, &[], |_, _| {})
+}
+
+fn check(settings: PlannerSettings, ops: &[PlotOp], touches: &[(usize, Touch)]) -> Result<(), TestCaseError> {
     let motor = MotorScale { steps_per_mm: STEPS_PER_MM, inverted: false };
     let step_settings =
         StepGenSettings { pen_settle: Duration::from_millis(1), ..StepGenSettings::default() };
@@ -117,7 +146,13 @@ fn check(settings: PlannerSettings, ops: &[PlotOp], hold: &[usize]) -> Result<()
     let mut done_mm = 0.0;
     let mut length_mm = 0.0;
     let mut cruise = 0.0;
-    for action in actions(settings, ops, hold) {
+    // What the speed is to become at the shares in force, and the direction before, of exact lines.
+    let mut wanted = 0.0;
+    let mut before_course: Option<(Course, Point)> = None;
+    let mut all_shares = Vec::new();
+    let actions = actions_told(settings, ops, touches, |_, shares| all_shares.push(shares));
+    let overridden = touches.iter().any(|(_, touch)| matches!(touch, Touch::Shares(..)));
+    for (action, shares) in actions.into_iter().zip(all_shares) {
         match action {
             Action::Course(course) => {
                 prop_assert!(length_mm - done_mm < 10.0 * GAP_MM, "{done_mm} of {length_mm} mm");
@@ -126,8 +161,31 @@ fn check(settings: PlannerSettings, ops: &[PlotOp], hold: &[usize]) -> Result<()
                 if course.shape == Shape::Line {
                     prop_assert!((straight - course.length_mm).abs() <= 1e-5 * straight + GAP_MM);
                 }
+                let speed = last.map_or(0.0, |last| last.at(last.duration_s).speed_mm_s);
+                if let Some((before, from)) = before_course.filter(|(before, _)| {
+                    settings.path == PathMode::Exact
+                        && before.shape == Shape::Line
+                        && course.shape == Shape::Line
+                }) && straight > 0.0
+                    && from.distance(before.to) > 0.0
+                {
+                    let (into, out) = (before.to - from, course.to - before.to);
+                    let cos_theta = -into.dot(out) / (into.length() * out.length());
+                    let most =
+                        junction_speed(cos_theta, settings.accel_mm_s2, settings.junction_deviation_mm);
+                    prop_assert!(speed <= most * (1.0 + 1e-3) + 1e-2, "{speed} of {most} mm/s at {at:?}");
+                }
+                before_course = Some((course, at));
                 at = course.to;
                 (done_mm, length_mm, cruise) = (0.0, course.length_mm, course.feed_mm_s);
+                let (share, most) = match course.pen {
+                    Pen::Down => (shares.0, settings.speed_mm_s),
+                    Pen::Up => (shares.1, settings.travel_speed_mm_s),
+                };
+                wanted = (cruise * share).min(most);
+                if overridden {
+                    cruise = most;
+                }
             }
             Action::Phase(phase) => {
                 // A feed hold waits for no more than a phase.
@@ -135,6 +193,19 @@ fn check(settings: PlannerSettings, ops: &[PlotOp], hold: &[usize]) -> Result<()
                 prop_assert!((phase.from_mm - done_mm).abs() < 10.0 * GAP_MM, "{phase:?} after {done_mm}");
                 let end = phase.at(phase.duration_s);
                 done_mm = end.distance_mm;
+                if let Some((course, _)) = before_course {
+                    let (share, most) = match course.pen {
+                        Pen::Down => (shares.0, settings.speed_mm_s),
+                        Pen::Up => (shares.1, settings.travel_speed_mm_s),
+                    };
+                    wanted = (course.feed_mm_s * share).min(most);
+                }
+                // Faster than is wanted is only a machine that brakes as hard as it may.
+                if settings.jerk_mm_s3.is_none() && end.speed_mm_s > wanted * (1.0 + 1e-4) + GAP_MM_S {
+                    let least = -settings.accel_mm_s2 * (1.0 - 1e-2) + 0.1;
+                    let is_short = phase.duration_s < GAP_S;
+                    prop_assert!(is_short || phase.accel_mm_s2 <= least, "{phase:?}, {wanted} mm/s wanted");
+                }
                 for place in [phase.at(0.0), phase.at(0.5 * phase.duration_s), end] {
                     let speed = place.speed_mm_s;
                     prop_assert!(
@@ -178,6 +249,13 @@ fn check(settings: PlannerSettings, ops: &[PlotOp], hold: &[usize]) -> Result<()
     Ok(())
 }
 
+fn touch() -> impl Strategy<Value = Touch> {
+    prop_oneof![
+        1 => Just(Touch::Hold),
+        3 => (0.1..2.0, 0.25..1.0).prop_map(|(draw, travel)| Touch::Shares(draw, travel)),
+    ]
+}
+
 proptest! {
     #[test]
     fn any_path_is_walked_to_its_end_within_the_limits(
@@ -193,7 +271,17 @@ proptest! {
         settings in settings(),
         hold in prop::collection::vec(0..200_usize, 1..6),
     ) {
-        check(settings, &path(&parts), &hold)?;
+        let touches: Vec<_> = hold.into_iter().map(|at| (at, Touch::Hold)).collect();
+        check(settings, &path(&parts), &touches)?;
+    }
+
+    #[test]
+    fn speeds_are_overridden_within_the_limits(
+        parts in prop::collection::vec(operation(), 1..40),
+        settings in settings(),
+        touches in prop::collection::vec((0..200_usize, touch()), 1..12),
+    ) {
+        check(settings, &path(&parts), &touches)?;
     }
 
     #[test]
@@ -211,7 +299,7 @@ proptest! {
         }
         planner.finish().unwrap();
         let long = time_s(core::iter::from_fn(|| planner.next_action()).collect());
-        let short = time_s(actions(settings, &path(&parts), &[]));
+        let short = time_s(actions(settings, &path(&parts)));
         prop_assert!(long <= short * (1.0 + ROUNDING), "{long} s against {short} s");
     }
 }

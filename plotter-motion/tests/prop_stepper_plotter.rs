@@ -5,7 +5,8 @@ mod stepper_bench;
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Activity, Dialect, StepperPlotterSettings};
-use plotter_motion::{Axis, Direction, LimitSwitches, StepPoint};
+use plotter_motion::kinematics::Backlash;
+use plotter_motion::{Axis, Direction, LimitSwitches, StepPoint, from_mm};
 use proptest::prelude::*;
 use std::collections::VecDeque;
 use stepper_bench::Bench;
@@ -108,6 +109,7 @@ fn stream(lines: &[String], end: &str, counts_characters: bool, pieces: &[(u8, u
 #[derive(Clone, Debug)]
 enum Input {
     Text(String),
+    Byte(u8),
     Wait(u16),
     Switch(Axis, Direction, bool),
     Button(bool),
@@ -133,12 +135,15 @@ fn input(dialect: Dialect) -> impl Strategy<Value = Input> {
             1 => Just("$X\n".to_owned()),
             1 => Just("!".to_owned()),
             1 => Just("~".to_owned()),
+            1 => Just("$J=G91 X7 Y-3 F3000\n".to_owned()),
+            1 => Just("$120=300\n".to_owned()),
             1 => Just("\u{18}".to_owned()),
         ]
         .boxed(),
     };
     prop_oneof![
         4 => text.prop_map(Input::Text),
+        1 => (0x84..0xA0_u8).prop_map(Input::Byte),
         4 => (0..2_000_u16).prop_map(Input::Wait),
         2 => (axis, end, any::<bool>()).prop_map(|(axis, end, pressed)| Input::Switch(axis, end, pressed)),
         1 => any::<bool>().prop_map(Input::Button),
@@ -205,6 +210,7 @@ impl Watch {
                     self.plotter.receive(self.now, byte);
                 }
             }
+            Input::Byte(byte) => self.plotter.receive(self.now, *byte),
             Input::Wait(ms) => self.run_to(self.now + Duration::from_millis((*ms).into()))?,
             Input::Switch(axis, end, pressed) => {
                 self.limits.set(*axis, *end, *pressed);
@@ -228,8 +234,9 @@ impl Watch {
     }
 }
 
-fn watch(dialect: Dialect, laser: bool, inputs: &[Input]) -> Result<(), TestCaseError> {
-    let settings = StepperPlotterSettings { laser, ..settings(dialect) };
+fn watch(dialect: Dialect, laser: bool, play: u16, inputs: &[Input]) -> Result<(), TestCaseError> {
+    let backlash = Backlash { x_steps: play, y_steps: play / 2 };
+    let settings = StepperPlotterSettings { laser, backlash, ..settings(dialect) };
     let mut watch = Watch {
         plotter: StepperPlotter::new(settings).map_err(|error| TestCaseError::fail(error.to_string()))?,
         now: Duration::ZERO,
@@ -242,6 +249,32 @@ fn watch(dialect: Dialect, laser: bool, inputs: &[Input]) -> Result<(), TestCase
         watch.take(input)?;
     }
     Ok(())
+}
+
+/// What a person does by hand, at the edge of the area too.
+fn by_hand() -> impl Strategy<Value = Input> {
+    let side = |most: u16| prop_oneof![Just(0), Just(most), 0..most];
+    let text = prop_oneof![
+        4 => (side(380), side(310), 60..9_000_u16).prop_map(|(x, y, f)| format!("G1 X{x} Y{y} F{f}\n")),
+        1 => (side(380), side(310)).prop_map(|(x, y)| format!("G0 X{x} Y{y}\n")),
+        1 => (0..200_u16).prop_map(|x| format!("G3 X{} Y100 I{} F6000\n", x + 100, x)),
+        3 => (-200..200_i16, -200..200_i16).prop_map(|(x, y)| format!("$J=G91 X{x} Y{y} F9000\n")),
+        1 => Just("!".to_owned()),
+        2 => Just("~".to_owned()),
+        1 => Just("\u{18}$X\n".to_owned()),
+        1 => Just("$X\n".to_owned()),
+    ];
+    prop_oneof![
+        5 => text.prop_map(Input::Text),
+        3 => prop_oneof![Just(0x85), 0x90..0x98_u8].prop_map(Input::Byte),
+        5 => (0..1_500_u16).prop_map(Input::Wait),
+    ]
+}
+
+/// Steps of the carriage outside of the area, at most.
+fn outside(at: StepPoint) -> i32 {
+    let most = StepPoint::new(from_mm(380.0, 87.58), from_mm(310.0, 87.58));
+    [-at.x, -at.y, at.x - most.x, at.y - most.y].into_iter().max().unwrap_or(0)
 }
 
 proptest! {
@@ -298,16 +331,16 @@ proptest! {
 
     #[test]
     fn no_step_leads_into_a_switch_or_comes_while_stopped_with_mdraw(
-        inputs in prop::collection::vec(input(Dialect::MDraw), 1..60), laser in any::<bool>(),
+        inputs in prop::collection::vec(input(Dialect::MDraw), 1..60), laser in any::<bool>(), play in 0..9_u16,
     ) {
-        watch(Dialect::MDraw, laser, &inputs)?;
+        watch(Dialect::MDraw, laser, play, &inputs)?;
     }
 
     #[test]
     fn no_step_leads_into_a_switch_or_comes_while_stopped_with_grbl(
-        inputs in prop::collection::vec(input(Dialect::Grbl), 1..60), laser in any::<bool>(),
+        inputs in prop::collection::vec(input(Dialect::Grbl), 1..60), laser in any::<bool>(), play in 0..9_u16,
     ) {
-        watch(Dialect::Grbl, laser, &inputs)?;
+        watch(Dialect::Grbl, laser, play, &inputs)?;
     }
 
     #[test]
@@ -323,5 +356,57 @@ proptest! {
         bench.take_answers();
         let answers = bench.ask("\n$X\n");
         prop_assert!(answers.ends_with("ok\r\n"), "{}", answers);
+    }
+}
+
+proptest! {
+    // Each case is minutes of the machine's time.
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
+
+    #[test]
+    fn nothing_done_by_hand_leads_out_of_the_area_or_loses_the_place(
+        inputs in prop::collection::vec(by_hand(), 1..60),
+        jerk_mm_s3 in prop_oneof![Just(None), Just(Some(20_000.0))],
+        play in 0..9_u16,
+    ) {
+        let mut machine = settings(Dialect::Grbl);
+        machine.planner.jerk_mm_s3 = jerk_mm_s3;
+        machine.backlash = Backlash { x_steps: play, y_steps: play / 2 };
+        let mut bench = Bench::new(machine);
+        bench.switches = false;
+        for input in &inputs {
+            match input {
+                Input::Text(text) => bench.send(text),
+                Input::Byte(byte) => bench.send_bytes(&[*byte]),
+                Input::Wait(ms) => bench.run_for(Duration::from_millis((*ms).into())),
+                _ => {}
+            }
+        }
+        // A hold or a cancelled jog ends at rest, and whatever was asked for, a line goes where it says.
+        bench.send("!");
+        bench.send_bytes(&[0x85]);
+        bench.run_for(Duration::from_secs(20));
+        let stands = bench.plotter.position();
+        bench.run_for(Duration::from_secs(20));
+        prop_assert_eq!(bench.plotter.position(), stands);
+        bench.send("\u{18}");
+        bench.run_out();
+        bench.take_answers();
+        let answers = bench.ask("$X\nG90\nG1 X12 Y34 F3000\n");
+        prop_assert!(answers.ends_with("ok\r\nok\r\nok\r\n"), "{}", answers);
+        // The carriages, from the motors' steps alone.
+        let mut gap = [0_i32; 2];
+        let most = [i32::from(play), i32::from(play / 2)];
+        let (mut motors, mut carriage) = (StepPoint::default(), StepPoint::default());
+        for made in &bench.made {
+            let ways = [made.position.x - motors.x, made.position.y - motors.y];
+            for ((gap, way), most) in gap.iter_mut().zip(ways).zip(most) {
+                *gap = (*gap + way).clamp(0, most);
+            }
+            motors = made.position;
+            carriage = StepPoint::new(motors.x - gap[0], motors.y - gap[1]);
+            prop_assert!(outside(carriage) <= 0, "{:?}", carriage);
+        }
+        prop_assert_eq!(carriage, StepPoint::new(from_mm(12.0, 87.58), from_mm(34.0, 87.58)));
     }
 }

@@ -20,7 +20,7 @@ const ROUNDED_MM: f64 = 0.005;
 /// The limits are GRBL's (`gcode.c`, version 1.1).
 pub(super) fn sweep_rad(from: Point, to: Point, centre: Point, left: bool) -> Result<f64, Problem> {
     let (out, end) = (from - centre, to - centre);
-    let (start_mm, end_mm) = (out.length(), end.length());
+    let (start_mm, end_mm) = (out.length_near(), end.length_near());
     let off_mm = (end_mm - start_mm).abs();
     if off_mm > MOST_MM || (off_mm > LEAST_MM && off_mm > MOST_SHARE * start_mm) || start_mm == 0.0 {
         return Err(Problem::ArcRadii { start_mm, end_mm });
@@ -36,7 +36,7 @@ pub(super) fn sweep_rad(from: Point, to: Point, centre: Point, left: bool) -> Re
 /// The centre of an arc with this radius, mm: the one of less than half a turn, or with a negative radius of more.
 pub(super) fn centre(from: Point, to: Point, radius_mm: f64, left: bool) -> Result<Point, Problem> {
     let chord = to - from;
-    let length_mm = chord.length();
+    let length_mm = chord.length_near();
     if length_mm == 0.0 {
         return Err(Problem::ArcWithoutEnd);
     }

@@ -121,6 +121,7 @@ impl Block {
     }
 
     /// Where a word of this block stands.
+    #[inline(never)] // for the sake of small processors: it is in every complaint
     #[must_use]
     pub fn place(&self, word: Word) -> Position {
         let further = word.column.saturating_sub(self.at.column);

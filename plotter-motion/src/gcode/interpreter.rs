@@ -1,4 +1,4 @@
-//! [`Interpreter`]: lines in, plot operations out.
+//! [`Interpreter`]: lines in, plot operations out; [`LineInterpreter`]: the same without a memory for what a line has given.
 
 use super::line::Line;
 use super::machine::Machine;
@@ -12,15 +12,16 @@ type Outcome = Result<PlotOp, Error>;
 
 /// What a line has given, in its order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Outcomes {
+pub(crate) struct Outcomes {
     slots: [Option<Outcome>; MOST_OUTCOMES],
     count: u8,
     taken: u8,
 }
 
 impl Outcomes {
-    const NONE: Self = Self { slots: [None; MOST_OUTCOMES], count: 0, taken: 0 };
+    pub(crate) const NONE: Self = Self { slots: [None; MOST_OUTCOMES], count: 0, taken: 0 };
 
+    #[inline(never)] // for the sake of small processors
     pub(super) fn give(&mut self, outcome: Outcome) {
         match self.slots.get_mut(usize::from(self.count)) {
             Some(slot) => {
@@ -31,7 +32,7 @@ impl Outcomes {
         }
     }
 
-    fn take(&mut self) -> Option<Outcome> {
+    pub(crate) fn take(&mut self) -> Option<Outcome> {
         if self.taken == self.count {
             (self.count, self.taken) = (0, 0);
             return None;
@@ -75,9 +76,15 @@ impl Outcomes {
 /// - The power of a laser is told before the first line that needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interpreter {
+    line: LineInterpreter,
+    outcomes: Outcomes,
+}
+
+/// What of an [`Interpreter`] holds from one line to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LineInterpreter {
     options: ReadOptions,
     machine: Machine,
-    outcomes: Outcomes,
 }
 
 impl Default for Interpreter {
@@ -97,7 +104,7 @@ impl Interpreter {
     /// A machine that has just been switched on.
     #[must_use]
     pub fn with_options(options: ReadOptions) -> Self {
-        Self { options, machine: Machine::new(), outcomes: Outcomes::NONE }
+        Self { line: LineInterpreter::new(options), outcomes: Outcomes::NONE }
     }
 
     /// Takes the next line, or the error that the reader gave instead.
@@ -107,7 +114,7 @@ impl Interpreter {
     /// [`Undrained`] when [`Interpreter::next_op`] still has something to give; the line is not taken.
     pub fn push(&mut self, block: Result<Block, Error>) -> Result<(), Undrained> {
         self.drained()?;
-        if let Err(error) = block.and_then(|block| self.carry_out(&block)) {
+        if let Err(error) = block.and_then(|block| self.line.carry_out(&block, &mut self.outcomes)) {
             self.outcomes = Outcomes::NONE;
             self.outcomes.give(Err(error));
         }
@@ -121,7 +128,7 @@ impl Interpreter {
     /// As [`Interpreter::push`].
     pub fn finish(&mut self) -> Result<(), Undrained> {
         self.drained()?;
-        self.machine.leave_dot(&self.options, &mut self.outcomes);
+        self.line.machine.leave_dot(&self.line.options, &mut self.outcomes);
         Ok(())
     }
 
@@ -133,28 +140,46 @@ impl Interpreter {
     /// What holds from one line to the next.
     #[must_use]
     pub fn modes(&self) -> Modes {
-        self.machine.modes()
+        self.line.modes()
     }
 
     /// The machine has been moved by something else, or stopped on its way: the pen stands at `point`, in mm on the sheet. What has
     /// been set by `G92` stays.
     pub fn stand_at(&mut self, point: Point) {
-        self.machine.stand_at(point);
+        self.line.stand_at(point);
     }
 
     fn drained(&self) -> Result<(), Undrained> {
         if self.outcomes.taken == self.outcomes.count { Ok(()) } else { Err(Undrained) }
     }
+}
 
-    fn carry_out(&mut self, block: &Block) -> Result<(), Error> {
+impl LineInterpreter {
+    /// A machine that has just been switched on.
+    pub(crate) fn new(options: ReadOptions) -> Self {
+        Self { options, machine: Machine::new() }
+    }
+
+    /// As [`Interpreter::modes`].
+    pub(crate) fn modes(&self) -> Modes {
+        self.machine.modes()
+    }
+
+    /// As [`Interpreter::stand_at`].
+    pub(crate) fn stand_at(&mut self, point: Point) {
+        self.machine.stand_at(point);
+    }
+
+    /// Carries a line out as a whole, or not at all: what `out` has after an error is none of it.
+    pub(crate) fn carry_out(&mut self, block: &Block, out: &mut Outcomes) -> Result<(), Error> {
         if block.is_deleted() && self.options.block_delete == BlockDelete::LeaveOut {
             return Ok(());
         }
-        self.outcomes = Outcomes { count: 0, taken: 0, ..self.outcomes };
+        (out.count, out.taken) = (0, 0);
         let line = Line::read(block)?;
         // What an error leaves half done is forgotten.
         let mut machine = self.machine;
-        machine.carry_out(&line, &self.options, &mut self.outcomes)?;
+        machine.carry_out(&line, &self.options, out)?;
         self.machine = machine;
         Ok(())
     }

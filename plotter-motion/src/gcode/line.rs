@@ -104,8 +104,8 @@ impl<'b> Line<'b> {
         if word.number.is_none() {
             return Err(Problem::NoNumber { letter: word.letter }.at(at));
         }
-        let unknown = Problem::Unknown { command: word }.at(at);
-        let tenths = word.tenths().ok_or(unknown)?;
+        let unknown = || Problem::Unknown { command: word }.at(at);
+        let tenths = word.tenths().ok_or_else(unknown)?;
         let (mut code, meaning) =
             if word.letter == b'G' { Code::general(tenths) } else { Code::miscellaneous(tenths) };
         match (tenths, bare) {
@@ -143,7 +143,7 @@ impl<'b> Line<'b> {
             Code::Stop(stop) => self.stop = Some(stop),
             Code::Quiet => {}
             Code::QuietWithWords => self.owned = true,
-            Code::Unknown => return Err(unknown),
+            Code::Unknown => return Err(unknown()),
         }
         if let Some(meaning) = meaning {
             self.notice = Some(Problem::Unsupported { command: word, meaning }.at(at));

@@ -6,8 +6,8 @@ use super::interpreter::Outcomes;
 use super::line::{Line, Told};
 use super::pen_convention::{LaserCommand, PenConvention, ServoCommand};
 use super::{DwellUnit, Error, Modes, Problem, ReadOptions, Remark, Word};
+use crate::seconds::duration;
 use crate::{PlotOp, Point, Vec2};
-use core::time::Duration;
 
 const MM_PER_INCH: f64 = 25.4;
 
@@ -104,7 +104,7 @@ impl Machine {
         self.set_modes(line)?;
         if line.tool_change.is_some() {
             let expected = "M6 needs a T before it: which pen";
-            let pen = self.tool.ok_or(Problem::Missing { expected }.at(line.block.position()))?;
+            let pen = self.tool.ok_or_else(|| Problem::Missing { expected }.at(line.block.position()))?;
             self.leave_dot(options, out);
             out.give(Ok(PlotOp::SelectPen { pen }));
         }
@@ -158,7 +158,7 @@ impl Machine {
             |word: Word, expected| Problem::BadParameter { word, expected }.at(line.block.place(word));
         if let Some(word) = line.word(b'F').filter(|_| !line.owned) {
             let feed = word.number.filter(|feed| *feed > 0.0);
-            let feed = feed.ok_or(refused(word, "a speed is above 0"))?;
+            let feed = feed.ok_or_else(|| refused(word, "a speed is above 0"))?;
             self.feed_mm_s = (!self.inverse_time).then_some(feed * self.unit_mm / 60.0);
         }
         if let Some(word) = line.word(b'T').filter(|_| !line.owned) {
@@ -169,7 +169,7 @@ impl Machine {
             )]
             let pen = word.number.map(|number| (number as u8, number));
             let pen = pen.filter(|(pen, number)| f64::from(*pen) == *number);
-            let (pen, _) = pen.ok_or(refused(word, "a pen is a whole number from 0 to 255"))?;
+            let (pen, _) = pen.ok_or_else(|| refused(word, "a pen is a whole number from 0 to 255"))?;
             self.tool = Some(pen);
         }
         Ok(())
@@ -275,8 +275,8 @@ impl Machine {
         };
         let seconds = word.number.unwrap_or_default() * unit_s;
         let expected = "a time is not below 0";
-        let duration = Duration::try_from_secs_f64(seconds)
-            .map_err(|_| Problem::BadParameter { word, expected }.at(line.block.place(word)))?;
+        let duration = duration(seconds)
+            .ok_or_else(|| Problem::BadParameter { word, expected }.at(line.block.place(word)))?;
         let settles = core::mem::take(&mut self.settling) && duration <= options.settle;
         if !settles && !duration.is_zero() {
             self.leave_dot(options, out);

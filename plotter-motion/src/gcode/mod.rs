@@ -138,6 +138,7 @@ pub use block::{Block, Remark, Word};
 pub use detection::{Detection, detect};
 pub use error::{Error, Problem};
 pub use interpreter::Interpreter;
+pub(crate) use interpreter::{LineInterpreter, Outcomes};
 pub use modes::Modes;
 pub use pen_convention::{LaserCommand, PenConvention, ServoCommand};
 pub use plot_ops::{PlotOps, plot_ops};

@@ -29,8 +29,12 @@ impl RemarkReader {
         if bytes == b"new sheet" {
             return Some(Remark::NewSheet);
         }
-        let pen = core::str::from_utf8(bytes.strip_prefix(b"pen ")?).ok()?;
-        pen.bytes().all(|byte| byte.is_ascii_digit()).then(|| pen.parse().ok().map(Remark::Pen)).flatten()
+        let digits = bytes.strip_prefix(b"pen ")?;
+        let pen = digits.iter().try_fold(0_u8, |pen, byte| {
+            let digit = byte.checked_sub(b'0').filter(|digit| *digit < 10)?;
+            pen.checked_mul(10)?.checked_add(digit)
+        });
+        pen.filter(|_| !digits.is_empty()).map(Remark::Pen)
     }
 }
 

@@ -117,6 +117,23 @@ pub enum Error {
         /// How many places the buffer has.
         places: u32,
     },
+    /// A set of characters whose signs are not known here. Only a notice: labels are drawn in ASCII. See [`Error::is_notice`].
+    UnknownSigns {
+        /// The first letter of the command.
+        at: Position,
+        /// `CS` or `CA`.
+        command: Mnemonic,
+        /// Which set.
+        set_number: f64,
+    },
+    /// A character of `DL` for which there is no room: 255 numbers each, and all together a byte for each place of the polygon
+    /// buffer. It is left out.
+    NoRoomForCharacter {
+        /// The first letter of the command.
+        at: Position,
+        /// Which one.
+        command: Mnemonic,
+    },
     /// A polygon that did not fit into the buffer is not filled.
     NotFilled {
         /// The command that should fill it.
@@ -133,7 +150,8 @@ pub enum Error {
         /// Distance of the lines, mm.
         spacing_mm: f64,
     },
-    /// A label whose place depends on its length has more than 150 characters: the others are left out.
+    /// A label whose place depends on its length, or that is drawn later (`BL`), has more than 150 characters: the others are left
+    /// out.
     LabelTooLong {
         /// Its first letter.
         at: Position,
@@ -171,6 +189,8 @@ impl Error {
             | Self::BadParameter { at, .. }
             | Self::NotInPolygon { at, .. }
             | Self::PolygonTooLong { at, .. }
+            | Self::UnknownSigns { at, .. }
+            | Self::NoRoomForCharacter { at, .. }
             | Self::NotFilled { at, .. }
             | Self::TooFine { at, .. }
             | Self::LabelTooLong { at, .. }
@@ -194,6 +214,8 @@ impl Error {
             | Self::BadParameter { command, .. }
             | Self::NotInPolygon { command, .. }
             | Self::PolygonTooLong { command, .. }
+            | Self::UnknownSigns { command, .. }
+            | Self::NoRoomForCharacter { command, .. }
             | Self::NotFilled { command, .. }
             | Self::TooFine { command, .. }
             | Self::LabelTooLong { command, .. }
@@ -205,7 +227,11 @@ impl Error {
     /// passes over it.
     #[must_use]
     pub fn is_notice(&self) -> bool {
-        matches!(self, Self::Unsupported { command, .. } if command.meaning().is_some())
+        match self {
+            Self::Unsupported { command, .. } => command.meaning().is_some(),
+            Self::UnknownSigns { .. } => true,
+            _ => false,
+        }
     }
 }
 
@@ -298,6 +324,16 @@ impl fmt::Display for Error {
                 "{command} adds to a polygon that is longer than the {places} places there are for it: what follows is \
                  drawn at once, and the polygon cannot be filled"
             ),
+            Self::UnknownSigns { command, set_number, .. } => write!(
+                f,
+                "{command} chooses character set {set_number}, whose signs are not known here: labels are drawn in ASCII; known \
+                 are 0, 6, 7, 9, 30 to 39, and -1 for the characters of DL"
+            ),
+            Self::NoRoomForCharacter { command, .. } => write!(
+                f,
+                "{command} has no room for its character, which is left out: it may have 255 numbers, and fewer if many \
+                 are kept; DL without numbers forgets all"
+            ),
             Self::NotFilled { command, .. } => {
                 write!(f, "{command} fills no polygon that did not fit: divide it into smaller ones")
             }
@@ -308,8 +344,8 @@ impl fmt::Display for Error {
             ),
             Self::LabelTooLong { command, .. } => write!(
                 f,
-                "{command} has more than 150 characters, and those are left out: only with label origin 1 (LO1) may a \
-                 label be longer"
+                "{command} has more than 150 characters, and those are left out: only LB with label origin 1 (LO1) may be \
+                 longer"
             ),
             Self::TooManyParameters { command, given, takes, .. } => {
                 write!(f, "{command} has {given} numbers and takes {takes}: the others are left out")

@@ -73,10 +73,11 @@
 //! | `LT` `UL` | line types 1 to 8, fitted ones from −1, dots at the ends with 0; patterns of the text's own |
 //! | `PM` `EP` `FP` | polygons: kept, edged, filled (even-odd or winding) |
 //! | `EA` `ER` `RA` `RR` `EW` `WG` | rectangles and wedges, edged and filled; they stay in the polygon buffer |
-//! | `FT` `AC` `UF` | solid, lines, crossed lines, shading, and lines at the mean of distances of the text's own; where the lines lie |
-//! | `LB` `DT` | labels in Latin-1 or UTF-8, with carriage return, line feed, backspace and tabulator |
-//! | `SI` `SR` `DI` `DR` `SL` `DV` `LO` `ES` `CP` `SD` | size, direction, slant, path and origin of labels, room between characters; of a printer's font its height |
-//! | `SM` `UC` | a symbol at each place; a character of the text's own |
+//! | `FT` `AC` `UF` `RF` | solid, lines, crossed lines, shading, and lines at the mean of distances of the text's own; where the lines lie; a raster (`RF`) is shaded as much as it inks |
+//! | `LB` `DT` `BL` `PB` | labels in Latin-1 or UTF-8, with carriage return, line feed, backspace and tabulator; kept, and drawn later |
+//! | `CS` `CA` `SS` `SA` | letters of a language in the place of signs (ISO 646), HP's Roman Extensions; shift out and shift in |
+//! | `SI` `SR` `DI` `DR` `SL` `DV` `LO` `ES` `CP` `SD` | size, direction, slant, path and origin of labels, room between characters; of a printer's font its height and set (also `AD`) |
+//! | `SM` `UC` `DL` | a symbol at each place; a character of the text's own, once or as part of a set |
 //! | `XT` `YT` `TL` | ticks |
 //! | `ESC .` `ESC %` `ESC E` | device control is passed over; so is what another language says; `ESC E` starts afresh |
 //!
@@ -84,10 +85,11 @@
 //! unsupported.
 //!
 //! What means nothing to a machine with one pen that draws what it is told is passed over without a word: colours and their
-//! order (`PC` `NP` `CR` `TR` `MC` …), ends and joins of thick lines (`LA`), the choice among fonts and character sets (`CS`
-//! `CA` `SS` `SA` …), forces and accelerations, questions to the plotter (`OE` `OP` `OS` …), its display and cutter, comments.
-//! What would be seen and is not done is said, as [`Error::Unsupported`]: `RP` (replot), `NR` (wait), `BL` `PB` (buffered
-//! labels), `DL` (characters to download), `RF` `SV` (raster and screens), `PP`, `TD`, `LM`, `CV`, digitizing.
+//! order (`PC` `NP` `CR` `TR` `MC` …), ends and joins of thick lines (`LA`), the looks of fonts (`FI` `CF` …), forces,
+//! accelerations, and motion without stops (`CV`), which is the planner's business, questions to the plotter (`OE` `OP` `OS` …),
+//! its display and cutter, comments. What would be seen and is not done is said, as [`Error::Unsupported`]: `RP` (replot: whoever
+//! has the text can read it again; a reader in constant memory has not kept it), `NR` (wait), `SV` (screened lines), `PP`, `TD`,
+//! digitizing.
 //!
 //! # Bad input
 //!
@@ -97,6 +99,7 @@
 
 mod arc;
 mod bezier;
+mod character_set;
 mod command;
 mod encoded;
 mod error;
@@ -107,6 +110,7 @@ mod hatch;
 mod interpreter;
 mod lettering;
 mod line_type;
+mod own_characters;
 mod pen_path;
 mod piece;
 mod plot_ops;

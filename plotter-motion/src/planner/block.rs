@@ -1,6 +1,8 @@
 //! [`Block`]: a stretch of path in the look-ahead.
 
 use super::blend::GROWTH;
+use super::limits::{Limits, Share, Wish};
+use super::ring::narrow;
 use super::{Course, Shape};
 use crate::{Pen, Point};
 use core::time::Duration;
@@ -10,6 +12,8 @@ use core::time::Duration;
 pub(super) enum Kind {
     #[default]
     Line,
+    /// A line with the pen up, at a speed that shares of the speeds do not change.
+    Jog,
     Arc,
     /// Logarithmic spirals that narrow and widen.
     Narrowing,
@@ -37,12 +41,13 @@ pub(super) struct Block {
     /// Square of the speed at its start as it is planned, and the greatest that its corner allows.
     pub(super) entry2: f32,
     pub(super) max_entry2: f32,
+    /// Square of the greatest speed at its start for the corner there.
+    pub(super) corner2: f32,
     /// Square of the greatest speed on it.
     pub(super) cruise2: f32,
     pub(super) kind: Kind,
     pen: Pen,
-    number: u8,
-    /// Power of the laser, in 65535ths.
+    /// Power of the laser, in 65535ths; the number of a pen that is taken.
     power: u16,
 }
 
@@ -63,7 +68,7 @@ impl Block {
     }
 
     pub(super) fn select_pen(pen: u8) -> Self {
-        Self { kind: Kind::SelectPen, number: pen, ..Self::default() }
+        Self { kind: Kind::SelectPen, power: pen.into(), ..Self::default() }
     }
 
     pub(super) fn new_page() -> Self {
@@ -82,11 +87,34 @@ impl Block {
 
     /// Whether it moves.
     pub(super) fn is_path(&self) -> bool {
-        matches!(self.kind, Kind::Line | Kind::Arc | Kind::Narrowing | Kind::Widening)
+        matches!(self.kind, Kind::Line | Kind::Jog | Kind::Arc | Kind::Narrowing | Kind::Widening)
     }
 
     pub(super) fn number(&self) -> u8 {
-        self.number
+        u8::try_from(self.power).unwrap_or(u8::MAX)
+    }
+
+    /// What its speed is made of.
+    pub(super) fn wish(&self, limits: &Limits) -> Wish {
+        let share = match (self.kind, self.pen) {
+            (Kind::Jog, _) => Share::Jog,
+            (_, Pen::Up) => Share::Travel,
+            (_, Pen::Down) => Share::Draw,
+        };
+        Wish { feed_mm_s: self.feed_mm_s, form2: self.form2(limits), share }
+    }
+
+    /// Square of the greatest speed that its form allows: on an arc that of its lesser radius.
+    fn form2(&self, limits: &Limits) -> f32 {
+        /// What the length and the angle may have been rounded by.
+        const ROUNDING: f64 = 1e-6;
+        if self.kind != Kind::Arc {
+            return f32::INFINITY;
+        }
+        // The length is the angle times the mean of both radii.
+        let end_mm = self.to.distance(self.centre);
+        let other_mm = 2.0 * self.length() / f64::from(self.sweep_rad.abs()) - end_mm;
+        narrow(limits.accel * end_mm.min(other_mm).max(0.0) * (1.0 - ROUNDING))
     }
 
     pub(super) fn course(&self) -> Course {

@@ -31,6 +31,11 @@ pub enum PlanError {
     },
     /// An operation that this planner does not know.
     Unknown,
+    /// A way of planning that this one was built without: see [`ExactOnly`](super::ExactOnly).
+    Mode {
+        /// The setting that asks for it.
+        quantity: &'static str,
+    },
     /// A setting outside its range.
     Setting {
         /// Which one.
@@ -59,6 +64,11 @@ impl fmt::Display for PlanError {
             }
             Self::Power { share } => write!(f, "a laser power of {share}: it must lie in 0..=1"),
             Self::Unknown => f.write_str("an operation that is not known here"),
+            Self::Mode { quantity } => write!(
+                f,
+                "{quantity} asks for what is not built in: build with AllModes, or leave the path exact, the jerk without a limit \
+                 and the axes without play"
+            ),
             Self::Setting { quantity, value, least, most } => {
                 write!(f, "{quantity} is {value}: it must lie in {least}..={most}")
             }

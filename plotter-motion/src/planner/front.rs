@@ -3,8 +3,9 @@
 use super::blend::{Blend, GROWTH, Room, to_pole};
 use super::block::{Block, Kind, single};
 use super::junction::{Corner, corner_speed2};
-use super::limits::Limits;
+use super::limits::{Limits, Share, Shares};
 use super::merge::{Merged, Merger};
+use super::modes::{Keep as _, Modes};
 use super::ring::{Ring, least, narrow};
 use super::{PathMode, PlanError, PlannerSettings, Shape};
 use crate::{Pen, PlotOp, Point, Vec2};
@@ -63,9 +64,17 @@ struct Turn {
     length_mm: f64,
 }
 
+/// What is put off where corners are rounded.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Rounding {
+    merger: Merger,
+    /// A segment whose end may still be rounded.
+    held: Option<Merged>,
+}
+
 /// Makes blocks of plot operations.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Front {
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Front<M: Modes> {
     pub(super) limits: Limits,
     position: Point,
     pen: Pen,
@@ -73,12 +82,13 @@ pub(super) struct Front {
     run: Option<Run>,
     /// Square of the greatest speed of a segment too short for a block, which is still to come.
     short_cruise2: Option<f32>,
-    merger: Merger,
-    /// A segment whose end may still be rounded.
-    held: Option<Merged>,
+    rounding: M::Kept<Rounding>,
+    shares: M::Kept<Shares>,
+    /// Lines are jogs.
+    jogs: bool,
 }
 
-impl Front {
+impl<M: Modes> Front<M> {
     pub(super) fn new(settings: &PlannerSettings) -> Self {
         Self::at(Limits::of(settings), Point::ORIGIN)
     }
@@ -91,8 +101,9 @@ impl Front {
             power: u16::MAX,
             run: None,
             short_cruise2: None,
-            merger: Merger::default(),
-            held: None,
+            rounding: M::Kept::default(),
+            shares: M::Kept::default(),
+            jogs: false,
         }
     }
 
@@ -102,13 +113,14 @@ impl Front {
 
     /// Begins anew at another place, with the pen up.
     pub(super) fn restart(&mut self, position: Point) {
-        *self = Self { power: self.power, ..Self::at(self.limits, position) };
+        let shares = core::mem::take(&mut self.shares);
+        *self = Self { power: self.power, shares, ..Self::at(self.limits, position) };
     }
 
     /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; else what ends a
     /// run (a line and two spirals, the line held back) and the new one.
     pub(super) const fn most_blocks(settings: &PlannerSettings) -> usize {
-        match settings.path {
+        match settings.path_of::<M>() {
             PathMode::Exact => 2,
             PathMode::Tolerance { .. } => 5,
         }
@@ -120,10 +132,9 @@ impl Front {
         settings: &PlannerSettings,
         ring: &mut Ring<N>,
     ) -> Result<(), PlanError> {
-        let place = |place: Point| {
-            let near = place.x.abs() <= FARTHEST_MM && place.y.abs() <= FARTHEST_MM;
-            if near { Ok(place) } else { Err(PlanError::Place { place }) }
-        };
+        if core::mem::take(&mut self.jogs) {
+            self.end_run(settings, ring);
+        }
         let feed2 = |feed_mm_s: Option<f64>| match feed_mm_s {
             None => Ok(self.limits.speed2),
             Some(feed) if feed > 0.0 && feed.is_finite() => {
@@ -161,6 +172,45 @@ impl Front {
             PlotOp::NewPage => self.stand(Block::new_page(), settings, ring),
         }
         Ok(())
+    }
+
+    /// A travel at this speed, or at that of travels if it is less, whatever the shares of the speeds are.
+    pub(super) fn jog<const N: usize>(
+        &mut self,
+        to: Point,
+        speed_mm_s: f64,
+        settings: &PlannerSettings,
+        ring: &mut Ring<N>,
+    ) -> Result<(), PlanError> {
+        let to = place(to)?;
+        if !(speed_mm_s > 0.0 && speed_mm_s.is_finite()) {
+            return Err(PlanError::Feed { feed_mm_s: speed_mm_s });
+        }
+        if !self.jogs {
+            self.end_run(settings, ring);
+            self.jogs = true;
+        }
+        let speed2 = least(narrow(speed_mm_s * speed_mm_s), self.limits.travel2);
+        self.line(to, Pen::Up, speed2, settings, ring);
+        Ok(())
+    }
+
+    /// Other shares of the speeds hold, for what is in the ring too. `under_way2` is the square of the greatest speed on the
+    /// course under way.
+    pub(super) fn rescale<const N: usize>(
+        &mut self,
+        shares: Shares,
+        under_way2: f32,
+        forced2: f64,
+        ring: &mut Ring<N>,
+    ) {
+        if let Some(kept) = self.shares.get_mut() {
+            *kept = shares;
+        }
+        let last2 = ring.rescale(&shares, &self.limits, under_way2, forced2);
+        if let Some(exit) = self.run.as_mut().and_then(|run| run.exit.as_mut()) {
+            exit.cruise2 = last2;
+        }
     }
 
     /// Ends the run: what has been put off comes, and the machine stops.
@@ -208,7 +258,7 @@ impl Front {
         let run = self.run(pen, settings, ring);
         self.pen = pen;
         self.position = to;
-        match settings.path {
+        match settings.path_of::<M>() {
             PathMode::Exact => {
                 let way = Way::new(to - run.at);
                 if way.length_mm < self.limits.resolution_mm {
@@ -219,7 +269,8 @@ impl Front {
                 }
             }
             PathMode::Tolerance { path_tolerance_mm } => {
-                let merged = self.merger.push(from, to, cruise2, MERGED_SHARE * path_tolerance_mm);
+                let Some(rounding) = self.rounding.get_mut() else { return };
+                let merged = rounding.merger.push(from, to, cruise2, MERGED_SHARE * path_tolerance_mm);
                 if let Some(merged) = merged {
                     self.blend(merged, path_tolerance_mm, settings, ring);
                 }
@@ -244,7 +295,8 @@ impl Front {
         ring: &mut Ring<N>,
     ) {
         let (out, end) = (self.position - centre, to - centre);
-        let (near_mm, far_mm) = (length(out).min(length(end)), length(out).max(length(end)));
+        let (near_mm, far_mm) =
+            (out.length_near().min(end.length_near()), out.length_near().max(end.length_near()));
         let length_mm = 0.5 * (near_mm + far_mm) * sweep_rad.abs();
         if length_mm <= settings.resolution_mm || near_mm <= settings.resolution_mm {
             return self.line(to, Pen::Down, cruise2, settings, ring);
@@ -256,7 +308,7 @@ impl Front {
         // A quarter turn ahead of the radius, or behind it.
         let ahead = |radius: Vec2| {
             let along = if sweep_rad > 0.0 { radius.perpendicular() } else { -radius.perpendicular() };
-            along * (1.0 / length(radius))
+            along * (1.0 / radius.length_near())
         };
         let shape = Shape::Arc { centre, sweep_rad };
         let most2 = narrow(settings.accel_mm_s2 * near_mm);
@@ -272,11 +324,11 @@ impl Front {
         if let Some(cruise2) = self.short_cruise2.take() {
             self.emit_line(self.position, cruise2, ring);
         }
-        if let PathMode::Tolerance { path_tolerance_mm } = settings.path {
-            if let Some(merged) = self.merger.end() {
+        if let PathMode::Tolerance { path_tolerance_mm } = settings.path_of::<M>() {
+            if let Some(merged) = self.rounding.get_mut().and_then(|rounding| rounding.merger.end()) {
                 self.blend(merged, path_tolerance_mm, settings, ring);
             }
-            if let Some(held) = self.held.take() {
+            if let Some(held) = self.rounding.get_mut().and_then(|rounding| rounding.held.take()) {
                 self.emit_line(held.to, held.cruise2, ring);
             }
         }
@@ -290,10 +342,11 @@ impl Front {
         settings: &PlannerSettings,
         ring: &mut Ring<N>,
     ) {
-        let (Some(held), Some(run)) = (self.held.replace(next), self.run) else { return };
+        let held = self.rounding.get_mut().and_then(|rounding| rounding.held.replace(next));
+        let (Some(held), Some(run)) = (held, self.run) else { return };
         // The blocks given so far reach to where the corner before has been left.
         let (way_in, way_out) = (held.to - run.at, next.to - next.from);
-        let (in_mm, out_mm) = (length(way_in), length(way_out));
+        let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
         if in_mm > 0.0 && out_mm > 0.0 {
             let (along, after) = (way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
             let corner = Corner::new(-along.dot(after));
@@ -407,18 +460,34 @@ impl Front {
     fn emit<const N: usize>(&mut self, stretch: Stretch, ring: &mut Ring<N>) {
         let Some(run) = &mut self.run else { return };
         let Stretch { shape, to, length_mm, entry, exit, feed2, most2, most_entry2 } = stretch;
-        let cruise2 = least(feed2, most2);
+        let share = match run.pen {
+            _ if self.jogs => Share::Jog,
+            Pen::Up => Share::Travel,
+            Pen::Down => Share::Draw,
+        };
+        let asked2 = self.shares.get().map_or(feed2, |shares| shares.of(share, feed2, &self.limits));
+        let cruise2 = least(asked2, most2);
         let mut block = Block::path(shape, to, length_mm, run.pen, self.power, feed2);
         block.cruise2 = cruise2;
+        if self.jogs && block.kind == Kind::Line {
+            block.kind = Kind::Jog;
+        }
         if let Some(before) = run.exit {
             let shorter_mm = least(before.length_mm, length_mm);
             let corner2 = corner_speed2(before.direction, entry, shorter_mm, &self.limits);
-            block.max_entry2 = least(least(corner2, before.cruise2), least(cruise2, most_entry2));
+            block.corner2 = least(corner2, most_entry2);
+            block.max_entry2 = least(block.corner2, least(before.cruise2, cruise2));
         }
         run.at = to;
         run.exit = Some(Exit { direction: exit, length_mm, cruise2 });
         ring.push(block);
     }
+}
+
+/// A place that is near enough.
+fn place(place: Point) -> Result<Point, PlanError> {
+    let near = place.x.abs() <= FARTHEST_MM && place.y.abs() <= FARTHEST_MM;
+    if near { Ok(place) } else { Err(PlanError::Place { place }) }
 }
 
 /// A straight way as the look-ahead reckons with it.
@@ -439,7 +508,7 @@ impl Way {
             let share = 1.0 / length_mm;
             return Self { length_mm, direction: [x * share, y * share] };
         }
-        let length_mm = length(way);
+        let length_mm = way.length_near();
         let direction = if length_mm > 0.0 { direction(way * (1.0 / length_mm)) } else { [0.0; 2] };
         Self { length_mm: single(length_mm), direction }
     }
@@ -448,10 +517,4 @@ impl Way {
 /// As the look-ahead reckons with it.
 fn direction(way: Vec2) -> [f32; 2] {
     [single(way.x), single(way.y)]
-}
-
-/// Length of a way on the sheet, which is no longer than 10⁷ mm: without the scaling of `hypot`, which costs more than the rest
-/// of a plain block.
-fn length(way: Vec2) -> f64 {
-    libm::sqrt(way.length_squared())
 }

@@ -1,7 +1,7 @@
 //! [`Limits`]: a planner's settings as it reckons with them for every block.
 
 use super::PlannerSettings;
-use super::ring::narrow;
+use super::ring::{least, narrow};
 
 /// What is the same for every block, computed once. Small numbers are `f32`, which small processors reckon with in hardware; they
 /// are rounded down, so that no limit is exceeded by the rounding.
@@ -36,5 +36,55 @@ impl Limits {
             junction_deviation_mm: narrow(settings.junction_deviation_mm),
             resolution_mm: narrow(settings.resolution_mm),
         }
+    }
+}
+
+/// Squares of the shares of the speeds that operations ask for, as a person at the machine sets them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Shares {
+    pub(super) draw2: f32,
+    pub(super) travel2: f32,
+}
+
+impl Default for Shares {
+    fn default() -> Self {
+        Self { draw2: 1.0, travel2: 1.0 }
+    }
+}
+
+/// Which share holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Share {
+    Draw,
+    #[default]
+    Travel,
+    /// None: it is as fast as was asked for.
+    Jog,
+}
+
+impl Shares {
+    /// The square of a speed that was asked for, as it is then; no more than the machine's.
+    pub(super) fn of(&self, share: Share, feed2: f32, limits: &Limits) -> f32 {
+        match share {
+            Share::Draw => least(feed2 * self.draw2, limits.speed2),
+            Share::Travel => least(feed2 * self.travel2, limits.travel2),
+            Share::Jog => least(feed2, limits.travel2),
+        }
+    }
+}
+
+/// What the greatest speed on a block is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Wish {
+    pub(super) feed_mm_s: f32,
+    /// Square of the greatest speed that its form allows.
+    pub(super) form2: f32,
+    pub(super) share: Share,
+}
+
+impl Wish {
+    /// Square of the greatest speed at these shares.
+    pub(super) fn cruise2(&self, shares: &Shares, limits: &Limits) -> f32 {
+        least(shares.of(self.share, self.feed_mm_s * self.feed_mm_s, limits), self.form2)
     }
 }

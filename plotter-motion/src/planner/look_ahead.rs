@@ -2,12 +2,18 @@
 
 use super::block::Kind;
 use super::front::Front;
+use super::limits::{Shares, Wish};
+use super::modes::{AllModes, Keep as _, Modes};
 use super::ramps::Ramps;
-use super::ring::Ring;
+use super::ring::{Ring, narrow};
 use super::s_curve::SCurveState;
 use super::{Action, PlanError, PlannerSettings};
+use crate::seconds::duration;
 use crate::{PlotOp, Point};
-use core::time::Duration;
+
+/// What a speed may be multiplied by.
+const LEAST_SHARE: f64 = 0.01;
+const MOST_SHARE: f64 = 100.0;
 
 /// Plans the motion along a tool path while it comes in: look-ahead over `N` blocks.
 ///
@@ -38,9 +44,9 @@ use core::time::Duration;
 /// # Ok::<(), plotter_motion::PlanError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Planner<const N: usize> {
+pub struct Planner<const N: usize, M: Modes = AllModes> {
     settings: PlannerSettings,
-    front: Front,
+    front: Front<M>,
     ring: Ring<N>,
     /// Whether blocks have come since the ring was planned.
     stale: bool,
@@ -48,21 +54,42 @@ pub struct Planner<const N: usize> {
     ramps: Ramps,
     /// Whether the machine is to stop on the path.
     hold: bool,
-    s_curve: SCurveState,
+    s_curve: M::Kept<SCurveState>,
+    /// The course given last, for its greatest speed at other shares.
+    under_way: M::Kept<Wish>,
 }
 
 impl<const N: usize> Planner<N> {
-    /// Room for what one operation can become.
-    const ENOUGH: () = assert!(N >= 8, "a planner needs at least 8 blocks");
-
     /// A planner of a machine that stands at the origin with its pen up.
     ///
     /// # Errors
     ///
     /// [`PlanError::Setting`] for a limit that no motion can be planned with.
     pub fn new(settings: PlannerSettings) -> Result<Self, PlanError> {
+        Self::with_modes(settings)
+    }
+}
+
+impl<const N: usize, M: Modes> Planner<N, M> {
+    /// Room for what one operation can become.
+    const ENOUGH: () = assert!(N >= 8, "a planner needs at least 8 blocks");
+
+    /// As [`Planner::new`], with the modes of its type.
+    ///
+    /// ```
+    /// # use plotter_motion::{ExactOnly, PlanError, Planner, PlannerSettings};
+    /// let settings = PlannerSettings { jerk_mm_s3: Some(20_000.0), ..PlannerSettings::default() };
+    /// let refused = Planner::<16, ExactOnly>::with_modes(settings);
+    /// assert_eq!(refused.err(), Some(PlanError::Mode { quantity: "jerk_mm_s3" }));
+    /// assert!(Planner::<16>::new(settings).is_ok());
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError::Mode`] for a mode that is not among them, and as [`Planner::new`].
+    pub fn with_modes(settings: PlannerSettings) -> Result<Self, PlanError> {
         () = Self::ENOUGH;
-        settings.check()?;
+        settings.check::<M>()?;
         Ok(Self {
             settings,
             front: Front::new(&settings),
@@ -70,7 +97,8 @@ impl<const N: usize> Planner<N> {
             stale: false,
             ramps: Ramps::OVER,
             hold: false,
-            s_curve: SCurveState::default(),
+            s_curve: M::Kept::default(),
+            under_way: M::Kept::default(),
         })
     }
 
@@ -83,7 +111,7 @@ impl<const N: usize> Planner<N> {
     /// Whether [`Planner::push`] takes another operation now.
     #[must_use]
     pub const fn has_room(&self) -> bool {
-        self.ring.room() >= Front::most_blocks(&self.settings)
+        self.ring.room() >= Front::<M>::most_blocks(&self.settings)
     }
 
     /// Whether nothing is left to be taken, also after a feed hold. Operations that were put off come after [`Planner::finish`].
@@ -111,6 +139,80 @@ impl<const N: usize> Planner<N> {
         self.front.push(op, &self.settings, &mut self.ring)
     }
 
+    /// Takes a travel at this speed, mm/s, or at that of travels if it is less; [`Planner::override_speeds`] does not change it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Planner::push`].
+    pub fn push_jog(&mut self, to: Point, speed_mm_s: f64) -> Result<(), PlanError> {
+        if !self.has_room() {
+            return Err(PlanError::Full);
+        }
+        self.stale = true;
+        self.front.jog(to, speed_mm_s, &self.settings, &mut self.ring)
+    }
+
+    /// From here on the speeds that operations ask for are multiplied by these shares, with the pen down and up: a person at the
+    /// machine has it go slower or faster. It changes its speed within its limits, along the path, from the end of the phase taken
+    /// last (50 ms at the most); no share makes it faster than the limits of [`PlannerSettings`]. Shares are taken as 0.01 to 100.
+    ///
+    /// Without [`AllModes`] nothing changes.
+    ///
+    /// ```
+    /// # use plotter_motion::{Action, PlanError, Planner, PlannerSettings, PlotOp, Point};
+    /// // 100 mm at 100 mm/s², 10 mm/s: 0.1 s up, 9.9 s, 0.1 s down
+    /// let settings = PlannerSettings { speed_mm_s: 50.0, accel_mm_s2: 100.0, ..PlannerSettings::default() };
+    /// let mut planner = Planner::<16>::new(settings)?;
+    /// planner.push(PlotOp::Draw { to: Point::new(100.0, 0.0), feed_mm_s: Some(10.0) })?;
+    /// planner.finish()?;
+    /// planner.override_speeds(2.0, 1.0);
+    /// let mut time_s = 0.0;
+    /// while let Some(action) = planner.next_action() {
+    ///     if let Action::Phase(phase) = action {
+    ///         time_s += phase.duration_s;
+    ///     }
+    /// }
+    /// assert!((time_s - 5.2).abs() < 1e-6); // 20 mm/s: 0.2 s and 2 mm up, 4.8 s for 96 mm, 0.2 s down
+    /// # Ok::<(), PlanError>(())
+    /// ```
+    pub fn override_speeds(&mut self, draw_share: f64, travel_share: f64) {
+        let Some(under_way) = self.under_way.get() else { return };
+        let square = |share: f64| {
+            let share = if share > LEAST_SHARE { share.min(MOST_SHARE) } else { LEAST_SHARE };
+            narrow(share * share)
+        };
+        let shares = Shares { draw2: square(draw_share), travel2: square(travel_share) };
+        let limits = self.front.limits;
+        let under_way2 = under_way.cruise2(&shares, &limits);
+        if self.settings.jerk_of::<M>().is_some() {
+            self.front.rescale(shares, f32::INFINITY, 0.0, &mut self.ring);
+            if let Some(s_curve) = self.s_curve.get_mut() {
+                s_curve.choose_anew();
+            }
+            return;
+        }
+        let rest_mm = self.ramps.rest_mm();
+        let next2 = self.ring.get(0).map_or(0.0, |head| head.entry2);
+        let forced2 = if rest_mm > 0.0 {
+            (self.ramps.speed2() - 2.0 * limits.accel * rest_mm).max(0.0)
+        } else {
+            f64::from(next2)
+        };
+        self.front.rescale(shares, under_way2, forced2, &mut self.ring);
+        if rest_mm <= 0.0 {
+            self.ring.enter_with(next2, limits.twice_accel);
+            return;
+        }
+        self.ramps.cruise_at(under_way2);
+        if self.hold {
+            self.brake();
+            return;
+        }
+        let most2 = self.ramps.speed2() + 2.0 * limits.accel * rest_mm;
+        let exit2 = self.ring.enter_at_most(most2, limits.twice_accel);
+        self.ramps.plan(exit2, &limits);
+    }
+
     /// No operation comes for now: what has been put off to see what follows is planned, and the machine stops at its end. More
     /// may be pushed afterwards.
     ///
@@ -132,7 +234,7 @@ impl<const N: usize> Planner<N> {
         self.ring.clear();
         self.ramps = Ramps::OVER;
         self.hold = false;
-        self.s_curve = SCurveState::default();
+        self.s_curve = M::Kept::default();
     }
 
     /// Feed hold: the machine brakes within its limits, along the path, and stands as soon as it can. Actions go on to come until
@@ -152,7 +254,7 @@ impl<const N: usize> Planner<N> {
 
     /// Ends a feed hold: the machine goes on from where it is.
     pub fn resume(&mut self) {
-        if !core::mem::take(&mut self.hold) || self.settings.jerk_mm_s3.is_some() {
+        if !core::mem::take(&mut self.hold) || self.jerk_mm_s3().is_some() {
             return;
         }
         let (limits, rest_mm) = (self.front.limits, self.ramps.rest_mm());
@@ -163,10 +265,14 @@ impl<const N: usize> Planner<N> {
         }
     }
 
+    const fn jerk_mm_s3(&self) -> Option<f64> {
+        self.settings.jerk_of::<M>()
+    }
+
     /// Whether the machine is at rest after what has been taken.
     fn stands(&self) -> bool {
-        if self.settings.jerk_mm_s3.is_some() {
-            self.s_curve.stands()
+        if self.jerk_mm_s3().is_some() {
+            self.s_curve.get().is_none_or(SCurveState::stands)
         } else if self.ramps.rest_mm() > 0.0 {
             self.ramps.speed2() <= 0.0
         } else {
@@ -176,7 +282,7 @@ impl<const N: usize> Planner<N> {
 
     /// Brakes on what is left of the course, and with what speed is left on the next.
     fn brake(&mut self) {
-        if self.settings.jerk_mm_s3.is_none() && self.ramps.rest_mm() > 0.0 {
+        if self.jerk_mm_s3().is_none() && self.ramps.rest_mm() > 0.0 {
             let exit2 = self.ramps.brake(&self.front.limits);
             self.ring.enter_at_most(exit2, self.front.limits.twice_accel);
         }
@@ -184,15 +290,15 @@ impl<const N: usize> Planner<N> {
 
     /// The next thing for the motors to do; `None` when nothing is known, or the machine is held.
     pub fn next_action(&mut self) -> Option<Action> {
-        if core::mem::take(&mut self.stale) && self.settings.jerk_mm_s3.is_none() {
+        if core::mem::take(&mut self.stale) && self.jerk_mm_s3().is_none() {
             self.ring.plan(self.front.limits.twice_accel);
         }
         if let Some(phase) = self.ramps.next() {
             return Some(Action::Phase(phase));
         }
-        if let Some(jerk_mm_s3) = self.settings.jerk_mm_s3
+        if let (Some(jerk_mm_s3), Some(s_curve)) = (self.jerk_mm_s3(), self.s_curve.get_mut())
             && let Some(phase) =
-                self.s_curve.next_phase(&mut self.ring, self.settings.accel_mm_s2, jerk_mm_s3, self.hold)
+                s_curve.next_phase(&mut self.ring, self.settings.accel_mm_s2, jerk_mm_s3, self.hold)
         {
             return Some(Action::Phase(phase));
         }
@@ -201,14 +307,22 @@ impl<const N: usize> Planner<N> {
         }
         let head = self.ring.get(0)?;
         let action = match head.kind {
-            Kind::Line | Kind::Arc | Kind::Narrowing | Kind::Widening => Action::Course(head.course()),
-            Kind::Dwell => Action::Dwell(Duration::try_from_secs_f64(head.length()).unwrap_or_default()),
+            Kind::Line | Kind::Jog | Kind::Arc | Kind::Narrowing | Kind::Widening => {
+                Action::Course(head.course())
+            }
+            Kind::Dwell => Action::Dwell(duration(head.length()).unwrap_or_default()),
             Kind::SelectPen => Action::SelectPen(head.number()),
             Kind::NewPage => Action::NewPage,
         };
-        if self.settings.jerk_mm_s3.is_some() && head.is_path() {
-            self.s_curve.begin();
+        if self.jerk_mm_s3().is_some()
+            && head.is_path()
+            && let Some(s_curve) = self.s_curve.get_mut()
+        {
+            s_curve.begin();
         } else {
+            if let Some(under_way) = self.under_way.get_mut() {
+                *under_way = head.wish(&self.front.limits);
+            }
             self.ramps.begin(head, self.ring.next_entry2(), &self.front.limits);
             self.ring.pop();
             if self.hold {

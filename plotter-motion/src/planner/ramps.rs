@@ -79,6 +79,10 @@ impl Ramps {
     fn plan_from(&mut self, entry2: f64, (exit2, exit): (f64, f64), limits: &Limits) {
         let rest_mm = self.rest_mm();
         self.next = self.ramps.len();
+        // The greatest speed has become less meanwhile: that comes first.
+        if entry2 > f64::from(self.cruise2) * (1.0 + f64::from(ALIKE)) {
+            return self.plan_down(entry2, (exit2, exit), limits);
+        }
         // Where speeding up and braking meet: first as `f32`, to see what there is to reckon.
         let (entry2_single, exit2_single) = (single(entry2), single(exit2));
         let peak2 = 0.5 * (entry2_single + exit2_single) + limits.accel_single * single(rest_mm);
@@ -115,6 +119,35 @@ impl Ramps {
         } else if let Some(last) = self.ramps.last_mut() {
             (last.end_mm, last.speed) = (self.length_mm, exit);
         }
+    }
+
+    /// From a speed above the greatest one: brakes to that, goes on with it, and brakes for the end; or brakes all the way.
+    fn plan_down(&mut self, entry2: f64, (exit2, exit): (f64, f64), limits: &Limits) {
+        let rest_mm = self.rest_mm();
+        let cruise2 = f64::from(self.cruise2);
+        let first_end_mm = self.done_mm + (entry2 - cruise2) * limits.per_twice_accel;
+        let last_begin_mm = self.length_mm - (cruise2 - exit2).max(0.0) * limits.per_twice_accel;
+        let cruise_mm = last_begin_mm - first_end_mm;
+        if exit2 > cruise2 * (1.0 + f64::from(ALIKE)) || !self.counts(cruise_mm) {
+            let duration_s = 2.0 * rest_mm / (self.speed + exit);
+            if duration_s > 0.0 {
+                let accel = (exit - self.speed) / duration_s;
+                self.put(Ramp { duration_s, accel, end_mm: self.length_mm, speed: exit });
+            }
+            return;
+        }
+        self.put_ramp(self.length_mm - last_begin_mm, self.length_mm, (self.cruise, exit), limits);
+        let duration_s = cruise_mm / self.cruise;
+        self.put(Ramp { duration_s, accel: 0.0, end_mm: last_begin_mm, speed: self.cruise });
+        self.put_ramp(first_end_mm - self.done_mm, first_end_mm, (self.speed, self.cruise), limits);
+        if let Some(last) = self.ramps.last_mut() {
+            (last.end_mm, last.speed) = (self.length_mm, exit);
+        }
+    }
+
+    /// Another greatest speed holds on what is left of the block.
+    pub(super) fn cruise_at(&mut self, cruise2: f32) {
+        (self.cruise2, self.cruise) = (cruise2, root(cruise2));
     }
 
     /// Whether a part of the block is longer than what rounding leaves.

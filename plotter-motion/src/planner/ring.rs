@@ -1,6 +1,7 @@
 //! [`Ring`]: the blocks that are known ahead, and the speeds between them.
 
-use super::block::Block;
+use super::block::{Block, single};
+use super::limits::{Limits, Shares};
 
 /// The blocks that are known ahead.
 ///
@@ -95,6 +96,37 @@ impl<const N: usize> Ring<N> {
                 self.planned = index;
             }
         }
+    }
+
+    /// Other shares of the speeds that were asked for hold. `before2` is the square of the greatest speed on what comes before
+    /// the head, `forced2` that with which the head is entered however hard the machine brakes from now on. Gives the
+    /// square of the greatest speed on the last block.
+    pub(super) fn rescale(&mut self, shares: &Shares, limits: &Limits, before2: f32, forced2: f64) -> f32 {
+        let (mut before2, mut forced2) = (before2, forced2);
+        for index in 0..self.len {
+            let Some(block) = self.get_mut(index) else { continue };
+            if block.is_path() {
+                block.cruise2 = block.wish(limits).cruise2(shares, limits);
+                let most2 = least(block.corner2, least(before2, block.cruise2));
+                // What can no longer be avoided was allowed before, and is no corner's business.
+                block.max_entry2 = if block.corner2 > 0.0 { most2.max(single(forced2)) } else { 0.0 };
+                before2 = block.cruise2;
+                forced2 = (forced2 - 2.0 * limits.accel * block.length()).max(0.0);
+            } else {
+                forced2 = 0.0;
+            }
+        }
+        self.planned = 0;
+        before2
+    }
+
+    /// Plans anew with a head that is entered with exactly this square of a speed.
+    pub(super) fn enter_with(&mut self, entry2: f32, twice_accel: f32) {
+        if let Some(head) = self.get_mut(0) {
+            head.entry2 = entry2;
+        }
+        self.planned = 0;
+        self.plan(twice_accel);
     }
 
     /// Plans anew with a head that is entered with no more than this square of a speed; gives the one with which it is.

@@ -247,6 +247,11 @@ impl SCurveState {
         self.choose_next(Chosen::None);
     }
 
+    /// What has been chosen and not been taken is chosen anew: other speeds are allowed.
+    pub(super) fn choose_anew(&mut self) {
+        self.choose_next(Chosen::None);
+    }
+
     fn choose_next(&mut self, chosen: Chosen) {
         (self.chosen, self.taken, self.taken_s) = (chosen, 0, 0.0);
     }
@@ -378,6 +383,12 @@ impl SCurveState {
                 return Chosen::One { jerk: 0.0, time_s };
             }
         }
+        // Faster than is wanted from now on: braking to that, unless a place ahead wants more.
+        if state.speed > ahead.cruise + STANDSTILL_MM_S
+            && let Some(phase) = self.slow_down(&ahead, rest_mm, part_s, limits)
+        {
+            return phase;
+        }
         // The quickest way to full speed, as long as nothing has to be braked for at the end of its next phase.
         if let Some((jerk, time_s)) = state.next_to_cruise(ahead.cruise, limits) {
             let (after, way_mm) = state.after(jerk, time_s);
@@ -435,6 +446,30 @@ impl SCurveState {
             time_s = self.time_to(rest_mm, low, time_s);
         }
         Chosen::One { jerk: low, time_s }
+    }
+
+    /// The next part of the braking to the cruising speed, if it keeps what lies ahead.
+    fn slow_down<const N: usize>(
+        &self,
+        ahead: &Ahead<N>,
+        rest_mm: f64,
+        part_s: f64,
+        limits: Limits,
+    ) -> Option<Chosen> {
+        let state = self.state;
+        let Braking { in_s, steady_s, out_s } = state.braking(ahead.cruise, limits);
+        let phases = [(-limits.jerk, in_s), (0.0, steady_s), (limits.jerk, out_s)];
+        let &(jerk, time_s) = phases.iter().find(|phase| phase.1 > SHORTEST_PHASE_S)?;
+        let time_s = time_s.min(part_s);
+        let (after, way_mm) = state.after(jerk, time_s);
+        let keeps = ahead.places().iter().all(|&(place_mm, most)| {
+            after.speed <= most || after.braking_mm(most, limits) <= place_mm - way_mm + SLACK_MM
+        });
+        if jerk >= 0.0 && !keeps {
+            return None;
+        }
+        let time_s = if way_mm > rest_mm { self.time_to(rest_mm, jerk, time_s) } else { time_s };
+        Some(Chosen::One { jerk, time_s })
     }
 
     /// The next phase of the braking for the place that leaves no time, if there is one.

@@ -1,6 +1,6 @@
 //! [`PlannerSettings`]: the limits of a machine's motion, and how its path is followed.
 
-use super::PlanError;
+use super::{Modes, PlanError};
 use crate::{Machine, PathChoice};
 
 /// How nearly a path is followed.
@@ -93,8 +93,14 @@ impl PlannerSettings {
         }
     }
 
-    /// Checks every number by itself.
-    pub(super) fn check(&self) -> Result<(), PlanError> {
+    /// Checks every number by itself, and whether these modes are built in.
+    pub(super) fn check<M: Modes>(&self) -> Result<(), PlanError> {
+        if self.path != self.path_of::<M>() {
+            return Err(PlanError::Mode { quantity: "path" });
+        }
+        if self.jerk_mm_s3 != self.jerk_of::<M>() {
+            return Err(PlanError::Mode { quantity: "jerk_mm_s3" });
+        }
         let (least, most) = LIMITS;
         let checks = [
             ("speed_mm_s", self.speed_mm_s, least, most),

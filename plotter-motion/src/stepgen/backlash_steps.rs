@@ -1,8 +1,8 @@
 //! [`BacklashSteps`]: the extra steps of axes with play, between the steps of a path.
 
 use super::{MotorEvent, TimedEvent};
+use crate::Machine;
 use crate::kinematics::Backlash;
-use crate::{Direction, Machine};
 
 /// Inserts the steps that take up the play of an axis where it turns round.
 ///
@@ -28,7 +28,8 @@ use crate::{Direction, Machine};
 pub struct BacklashSteps {
     play: Backlash,
     interval_ticks: u64,
-    driven: (Direction, Direction),
+    /// How much of the play each axis has taken up when all that is owed has been made, seen from where it is driven backwards.
+    taken_up: (i32, i32),
     /// Extra steps to come, with sign.
     owed: (i32, i32),
     /// When the next of them may come.
@@ -40,8 +41,7 @@ impl BacklashSteps {
     /// Axes that have been driven backwards last, as homing leaves them. Extra steps of an axis come `interval_ticks` apart.
     #[must_use]
     pub const fn new(play: Backlash, interval_ticks: u64) -> Self {
-        let driven = (Direction::Minus, Direction::Minus);
-        Self { play, interval_ticks, driven, owed: (0, 0), next_tick: 0, waiting: None }
+        Self { play, interval_ticks, taken_up: (0, 0), owed: (0, 0), next_tick: 0, waiting: None }
     }
 
     /// The play of a machine with stepper motors; extra steps come at the slower start rate of its axes, by a clock of `clock_hz`.
@@ -81,13 +81,20 @@ impl BacklashSteps {
         self.waiting = None;
         if let MotorEvent::Step { x, y } = waiting.event {
             let before = self.owed;
-            self.owed.0 += turn(&mut self.driven.0, x, self.play.x_steps);
-            self.owed.1 += turn(&mut self.driven.1, y, self.play.y_steps);
+            self.owed.0 += turn(&mut self.taken_up.0, x, self.play.x_steps);
+            self.owed.1 += turn(&mut self.taken_up.1, y, self.play.y_steps);
             if before != self.owed {
                 self.next_tick = self.next_tick.max(waiting.tick.saturating_add(self.interval_ticks));
             }
         }
         Some(waiting)
+    }
+
+    /// The motors have been stopped at once: nothing is owed any more, and of its play each axis has taken up so many steps, seen from
+    /// where it is driven backwards.
+    pub fn clear(&mut self, x_taken_up: u16, y_taken_up: u16) {
+        self.taken_up = (x_taken_up.into(), y_taken_up.into());
+        (self.owed, self.waiting) = ((0, 0), None);
     }
 
     /// An extra step that is still to come when the path has ended.
@@ -108,11 +115,11 @@ impl BacklashSteps {
 }
 
 /// The extra steps of an axis that makes a step.
-fn turn(driven: &mut Direction, step: i8, play: u16) -> i32 {
-    let direction = match step.signum() {
-        1 => Direction::Plus,
-        -1 => Direction::Minus,
+fn turn(taken_up: &mut i32, step: i8, play: u16) -> i32 {
+    let wanted = match step.signum() {
+        1 => play.into(),
+        -1 => 0,
         _ => return 0,
     };
-    if core::mem::replace(driven, direction) == direction { 0 } else { direction.sign() * i32::from(play) }
+    wanted - core::mem::replace(taken_up, wanted)
 }

@@ -143,8 +143,14 @@ fn product(number: i64, ticks: i64, bits: u32) -> i64 {
 /// To the nearest with so many bits of fraction; saturates.
 pub(super) fn fixed(value: f64, bits: u32) -> i64 {
     #[expect(clippy::cast_possible_truncation, reason = "a cast saturates")]
-    let fixed = libm::rint(libm::ldexp(value, i32::try_from(bits).unwrap_or(0))) as i64;
+    let fixed = libm::rint(value * power_of_two(bits)) as i64;
     fixed
+}
+
+/// 2^bits, exactly.
+const fn power_of_two(bits: u32) -> f64 {
+    const BIAS: u64 = 1023;
+    f64::from_bits((BIAS + bits as u64) << 52)
 }
 
 /// A speed in mm a tick as a slice has it.

@@ -3,8 +3,10 @@
 use super::chord::Chords;
 use super::slice::{Slice, speed_fixed};
 use crate::kinematics::Kinematics;
+use crate::planner::{AllModes, Modes};
 use crate::{Action, Bresenham, Course, Machine, Pen, Phase, Point, StepPair, StepPoint};
 use core::fmt;
+use core::marker::PhantomData;
 use core::time::Duration;
 
 /// Farthest that a chord may be from its course, steps.
@@ -128,7 +130,8 @@ struct Running {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct StepGen<K> {
+pub struct StepGen<K, M: Modes = AllModes> {
+    modes: PhantomData<M>,
     kinematics: K,
     settings: StepGenSettings,
     chord_tolerance_mm: f64,
@@ -199,6 +202,13 @@ impl Due {
 impl<K: Kinematics> StepGen<K> {
     /// Motors that stand where the pen is at the origin.
     pub fn new(kinematics: K, settings: StepGenSettings) -> Self {
+        Self::with_modes(kinematics, settings)
+    }
+}
+
+impl<K: Kinematics, M: Modes> StepGen<K, M> {
+    /// As [`StepGen::new`], for a planner with the modes of its type.
+    pub fn with_modes(kinematics: K, settings: StepGenSettings) -> Self {
         let scale = |x, y| {
             let motors = kinematics.motors_at(Point::new(x, y));
             libm::fabs(motors.x).max(libm::fabs(motors.y))
@@ -207,6 +217,7 @@ impl<K: Kinematics> StepGen<K> {
         let clock_hz = if settings.clock_hz.is_finite() { settings.clock_hz.clamp(1e3, 1e9) } else { 1e6 };
         let steps = kinematics.steps_at(Point::ORIGIN);
         Self {
+            modes: PhantomData,
             kinematics,
             settings: StepGenSettings { clock_hz, ..settings },
             chord_tolerance_mm: CHORD_STEPS / steps_per_mm,
@@ -333,7 +344,7 @@ impl<K: Kinematics> StepGen<K> {
     /// The chord after the one that has been stepped, if it is not shorter than a step.
     fn next_chord(&mut self) {
         self.due = None;
-        while let Some(chord) = self.chords.next(&self.kinematics) {
+        while let Some(chord) = self.chords.next::<M>(&self.course, &self.kinematics) {
             self.line = Bresenham::new(self.line.position(), chord.to);
             self.due = Due::new(self.chord_from, chord.end, self.line.remaining());
             self.chord_from = chord.end;
@@ -350,8 +361,11 @@ impl<K: Kinematics> StepGen<K> {
         if !self.settings.laser || dark || self.course_speed <= 0 {
             return 0;
         }
-        let power = i128::from(speed) * i128::from(self.course.laser_power) / i128::from(self.course_speed);
-        let power = u16::try_from(power.max(0)).unwrap_or(u16::MAX).min(self.course.laser_power);
+        let (speed, full) = (speed.max(0).unsigned_abs(), self.course_speed.unsigned_abs());
+        // So that the product fits; 16 bits less of such speeds are no loss.
+        let (speed, full) = if speed >= 1 << 47 { (speed >> 16, (full >> 16).max(1)) } else { (speed, full) };
+        let power = speed * u64::from(self.course.laser_power) / full;
+        let power = u16::try_from(power).unwrap_or(u16::MAX).min(self.course.laser_power);
         // A laser that is on at all has some power.
         (power & !0xFF) | 0x80
     }
@@ -413,7 +427,7 @@ impl<K: Kinematics> StepGen<K> {
 
     fn begin(&mut self, course: Course) {
         self.put(course.pen);
-        self.chords = Chords::new(course, self.at, self.chord_tolerance_mm);
+        self.chords = Chords::new::<M>(&course, self.at, self.chord_tolerance_mm);
         self.course_speed = speed_fixed(course.feed_mm_s / self.settings.clock_hz);
         self.course = course;
         self.at = course.to;

@@ -52,9 +52,14 @@ impl Bench {
         self
     }
 
-    /// Sends bytes without letting time pass.
+    /// Sends text without letting time pass.
     pub(crate) fn send(&mut self, text: &str) {
-        for &byte in text.as_bytes() {
+        self.send_bytes(text.as_bytes());
+    }
+
+    /// Likewise bytes that are no text.
+    pub(crate) fn send_bytes(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
             self.plotter.receive(self.now, byte);
             self.settle();
         }

@@ -8,13 +8,12 @@ use core::time::Duration;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
 use plotter_firmware::board::{self, Event, Notice};
-use plotter_firmware::machine::PLOTTER;
+use plotter_firmware::machine::{PLOTTER, StepperPlotter};
 use plotter_hal::a4988::Timing;
 use plotter_hal::{
     A4988, EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo, PenServoSettings,
     StepperAxes, SwitchSettings,
 };
-use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::SettingsError;
 use plotter_motion::protocol::SUBSTITUTE;
 use plotter_motion::{Axis, Direction};
@@ -71,7 +70,7 @@ fn main() -> ! {
         }
         (now, _) = board.wait(Some(now + LOOK));
     }
-    let Some(Ok(plotter)) = singleton!(CELL: Controller = StepperPlotter::new(PLOTTER)) else {
+    let Some(Ok(plotter)) = singleton!(CELL: Controller = StepperPlotter::with_modes(PLOTTER)) else {
         board::halt()
     };
     if was_bitten {

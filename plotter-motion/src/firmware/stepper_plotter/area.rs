@@ -19,7 +19,7 @@ pub(super) fn contains(most: Point, from: Point, op: PlotOp) -> bool {
     }
     let PlotOp::DrawArc { centre, sweep_rad, .. } = op else { return true };
     let out = from - centre;
-    let radius_mm = out.length().max((to - centre).length());
+    let radius_mm = out.length_near().max((to - centre).length_near());
     let begin = libm::atan2(out.y, out.x);
     let (low, high) = if sweep_rad < 0.0 { (begin + sweep_rad, begin) } else { (begin, begin + sweep_rad) };
     // A begin of -π to π and a sweep of a turn at most: from -3π to 3π, in quarters.

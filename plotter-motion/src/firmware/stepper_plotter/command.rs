@@ -1,6 +1,7 @@
 //! What the two tasks tell each other: [`Command`], [`Signal`] and [`Report`].
 
-use super::Activity;
+use super::{Activity, Setting};
+use crate::decimal_text::Plain;
 use crate::{Axis, Direction, Homed, HomingError, PlotOp, Point};
 use core::fmt;
 
@@ -9,6 +10,15 @@ use core::fmt;
 pub enum Command {
     /// Plans and does this. What follows closely is planned together with it.
     Plot(PlotOp),
+    /// A travel by hand, at this speed in mm/s whatever the share of travels is; [`Signal::JogCancel`] ends it.
+    Jog {
+        /// Where to, mm.
+        to: Point,
+        /// How fast, above 0; no faster than travels are.
+        speed_mm_s: f64,
+    },
+    /// From here on this holds of the machine; it changes at a standstill. [`Report::Set`] follows.
+    Set(Setting),
     /// Waits until all before is done, then turns the pen's servo there, degrees. What follows waits until the pen has settled.
     Servo(u8),
     /// From here on these are the servo's degrees with the pen up and down.
@@ -40,6 +50,17 @@ pub enum Signal {
     Resume,
     /// Stops at once and forgets all commands; [`Report::Stopped`] follows.
     Reset,
+    /// What is moved by hand brakes along its path and is forgotten; [`Report::Jogged`] follows. Nothing else is touched.
+    JogCancel,
+    /// From here on speeds are this many percent of what they are asked to be.
+    Speeds {
+        /// With the pen down.
+        draw_percent: u8,
+        /// With the pen up.
+        travel_percent: u8,
+    },
+    /// From here on the laser has this many percent of the power it is asked to have.
+    LaserPercent(u8),
     /// The laser stays off in what has been commanded up to now.
     LaserOff,
 }
@@ -68,8 +89,8 @@ impl fmt::Display for Stop {
         match self {
             Self::Emergency => f.write_str("emergency stop: release the button, then reset"),
             Self::Limit { axis, end } => {
-                let axis = if *axis == Axis::X { "x" } else { "y" };
-                let end = if *end == Direction::Minus { "lower" } else { "upper" };
+                let axis = Plain(if *axis == Axis::X { "x" } else { "y" });
+                let end = Plain(if *end == Direction::Minus { "lower" } else { "upper" });
                 write!(f, "axis {axis}: stopped by its {end} limit switch; home the machine")
             }
             Self::Reset { .. } => f.write_str("stopped by a reset"),
@@ -88,6 +109,16 @@ pub enum Report {
         at: Point,
         /// How long the axes are, or why it gave up.
         result: Result<Homed, HomingError>,
+    },
+    /// A jog has been cancelled: the machine stands, and leaves out what was commanded until [`Command::GoOn`].
+    Jogged {
+        /// Where the pen is now, mm.
+        at: Point,
+    },
+    /// What came of [`Command::Set`].
+    Set {
+        /// Where the pen is now, mm.
+        at: Point,
     },
     /// The machine has been stopped, and has left out what was commanded.
     Stopped {

@@ -1,9 +1,7 @@
 //! [`Link`]: both queues between the two sides.
 
-use super::{Command, Queue, Report};
+use super::{CommandQueue, Queue, Report};
 
-/// Commands on their way to the motion side: fifteen, and those of one more line of G-code.
-pub const COMMANDS: usize = 27;
 /// Reports on their way back; the receive side waits for at most one, and a machine is not stopped twice before that is told.
 pub const REPORTS: usize = 4;
 
@@ -11,7 +9,7 @@ pub const REPORTS: usize = 4;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Link {
     /// To the motion side.
-    pub commands: Queue<Command, COMMANDS>,
+    pub commands: CommandQueue,
     /// To the receive side.
     pub reports: Queue<Report, REPORTS>,
 }

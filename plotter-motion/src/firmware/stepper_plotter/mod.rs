@@ -92,14 +92,26 @@
 //!
 //! - `?` is answered by `<Run|MPos:…|Bf:…|FS:…>` (`Pn` for pressed switches, `WCO` now and then), `!` brakes along the path, `~` goes
 //!   on, ctrl-X stops at once; the place stays known, as it is counted by steps really made.
-//! - `$$ $# $I $G $N $X $H $J=` are answered; settings are not changed by `$n=`.
+//! - Overrides act on the way, as soon as the phase in progress is over: feeds (`0x90` to `0x94`, 10 to 200 %), travels (`0x95` to
+//!   `0x97`: 100, 50, 25 %), the laser's power (`0x99` to `0x9D`). The machine's limits hold whatever they say. They are told as `Ov`
+//!   when they have changed, and now and then; a reset ends them. A
+//!   controller with [`ExactOnly`](crate::ExactOnly) overrides the laser only, and tells so.
+//! - `$J=` moves by hand at its own `F`, from rest or after another jog, while G-code is locked out (`error:9`); `0x85` or `!` brakes
+//!   along the path and forgets the jogs that wait, and the place stays known.
+//! - `$$ $# $I $G $N $X $H` are answered; `$n=value` changes what [`Setting`] lists, at rest: out of range it is `error:52`
+//!   (grblHAL's), beyond 100,000 steps/s `error:12`, for what cannot be changed `error:3`, unless it says what is so already. What is to be
+//!   kept is [`StepperPlotter::settings`].
 //! - Errors and alarms have Grbl's numbers. A target outside the area is `ALARM:2` and `error:33`: what was accepted is drawn to its
 //!   end, and then the pen goes up. A limit switch is `ALARM:1`, the emergency stop `ALARM:10` (grblHAL's, Grbl has none). In an alarm
 //!   lines get `error:9` until `$X` or `$H`.
 //! - `M0` waits for `~`. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`] says. With the
 //!   pen up the machine travels at its own speed, whatever `F` says.
-//! - Overrides, probes, other coordinate systems, the safety door and cancelling a jog are not there; a line that needs one is
-//!   `error:20`.
+//! - Probes, other coordinate systems, coolant and the safety door are not there; a line that needs one is `error:20`.
+//!
+//! # Play
+//!
+//! Where an axis turns round, extra steps take up its play ([`StepperPlotterSettings::backlash`]) while the path goes on. What is told
+//! as a place is that of the carriage, also after a stop within the play.
 //!
 //! # Stops
 //!
@@ -112,24 +124,32 @@
 //! Sources: spec 5 (Dounaev and Phan); the firmware xybot and the program mDraw; the Grbl project's wiki on version 1.1.
 
 mod area;
+mod bytes;
 mod command;
+mod command_queue;
 mod grbl;
 mod homing_run;
 mod link;
 mod mdraw;
 mod motion;
 mod output;
+mod play;
 mod plotter;
 mod queue;
 mod receive;
+mod setting;
 mod settings;
 mod status;
 
 pub use command::{Command, Report, Signal, Stop};
-pub use link::{COMMANDS, Link, REPORTS};
+pub use command_queue::{COMMANDS, CommandQueue};
+pub use grbl::Grbl;
+pub use link::{Link, REPORTS};
+pub use mdraw::MDraw;
 pub use motion::{Motion, Step};
 pub use plotter::StepperPlotter;
 pub use queue::Queue;
-pub use receive::Receive;
+pub use receive::{Host, Receive};
+pub use setting::{Setting, SettingProblem};
 pub use settings::{Dialect, SettingsError, StepperPlotterSettings, StoredSettings};
-pub use status::{Activity, Status};
+pub use status::{Activity, Percents, Status};

@@ -1,14 +1,18 @@
 //! [`Motion`]: the task that moves: commands in, steps out, each at its time.
 
+mod by_hand;
+
 use super::homing_run::HomingRun;
+use super::play::{CLOCK_HZ, Play};
 use super::{
-    Activity, Command, Dialect, Link, Report, SettingsError, Signal, Status, StepperPlotterSettings, Stop,
-    StoredSettings,
+    Activity, Command, Dialect, Link, Percents, Report, SettingsError, Signal, Status,
+    StepperPlotterSettings, Stop, StoredSettings,
 };
-use crate::kinematics::{Cartesian, Kinematics};
+use crate::kinematics::{Backlash, Cartesian, Kinematics};
+use crate::planner::{AllModes, Keep as _, Modes};
 use crate::{
-    Action, Axis, Beam, Blocked, Direction, LimitSwitches, MotorEvent, Pen, Phase, Planner, PlotOp, Point,
-    Pulse, SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, TimedEvent,
+    Action, Axis, Beam, Blocked, Direction, LimitSwitches, MotorEvent, Pen, Phase, PlanError, Planner,
+    PlotOp, Point, Pulse, SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, TimedEvent,
 };
 use core::time::Duration;
 
@@ -37,11 +41,12 @@ enum State {
 /// After each input, call [`poll`](Self::poll) until it gives no step; then arm a timer for [`due`](Self::due) and call it
 /// again at that time. After each call, the servo gets [`pen_deg`](Self::pen_deg) and the laser [`beam`](Self::beam).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub struct Motion<M: Modes = AllModes> {
     settings: StepperPlotterSettings,
     cartesian: Cartesian,
-    planner: Planner<BLOCKS>,
-    steps: StepGen<Cartesian>,
+    planner: Planner<BLOCKS, M>,
+    steps: StepGen<Cartesian, M>,
+    play: M::Kept<Play>,
     gate: SafetyGate,
     state: State,
     /// Steps really made.
@@ -57,7 +62,13 @@ pub struct Motion {
     /// Operations have been planned that may have been put off.
     unfinished: bool,
     held: bool,
+    /// What is planned are jogs; and they are to end.
+    jogs: bool,
+    cancelling: bool,
     dark: bool,
+    /// The laser's power as the path has it, and the overrides in force.
+    laser: u16,
+    percents: Percents,
     /// The phase in progress and when it began.
     phase: Option<(Duration, Phase)>,
     pen_deg: u8,
@@ -72,21 +83,35 @@ impl Motion {
     ///
     /// [`SettingsError`] for limits that no motion can be planned with.
     pub fn new(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
+        Self::with_modes(settings)
+    }
+}
+
+impl<M: Modes> Motion<M> {
+    /// As [`Motion::new`], with the modes of its type.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] for limits that no motion can be planned with, and for a mode that is not among them.
+    pub fn with_modes(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
         let cartesian = settings.cartesian().map_err(SettingsError::Scale)?;
-        let mut planner = Planner::new(settings.limits()).map_err(SettingsError::Planner)?;
+        let mut planner = Planner::with_modes(settings.limits()).map_err(SettingsError::Planner)?;
         darken(&mut planner);
-        // mDraw moves the servo itself, and the motion waits for that.
-        let pen_settle = match settings.dialect {
-            Dialect::MDraw => Duration::ZERO,
-            Dialect::Grbl => settings.pen_settle,
-        };
-        let steps =
-            StepGen::new(cartesian, StepGenSettings { clock_hz: 1e6, pen_settle, laser: settings.laser });
+        let steps = step_gen(cartesian, &settings);
+        let mut play = M::Kept::<Play>::default();
+        match play.get_mut() {
+            Some(play) => *play = Play::new(&settings),
+            None if settings.backlash != Backlash::default() => {
+                return Err(SettingsError::Planner(PlanError::Mode { quantity: "backlash" }));
+            }
+            None => {}
+        }
         Ok(Self {
             settings,
             cartesian,
             planner,
             steps,
+            play,
             gate: SafetyGate::default(),
             state: State::Ready,
             position: StepPoint::default(),
@@ -96,7 +121,11 @@ impl Motion {
             start_at: None,
             unfinished: false,
             held: false,
+            jogs: false,
+            cancelling: false,
             dark: false,
+            laser: 0,
+            percents: Percents::default(),
             phase: None,
             pen_deg: settings.stored.pen_up_deg,
             beam: Beam::OFF,
@@ -116,6 +145,10 @@ impl Motion {
                     Some(Command::Unlock) => {
                         self.gate.reset();
                         self.state = State::Ready;
+                    }
+                    Some(Command::Set(setting)) => {
+                        self.set(setting);
+                        let _ = link.reports.push(Report::Set { at: self.position_mm() });
                     }
                     Some(command) => self.leave_out(command),
                 },
@@ -152,9 +185,24 @@ impl Motion {
     /// Takes a signal from the receive side.
     pub fn signal(&mut self, now: Duration, signal: Signal, link: &mut Link) {
         match signal {
+            // A jog that is held is over, as in Grbl.
+            Signal::Hold | Signal::JogCancel if self.jogs_now(link) => self.cancel(link),
+            Signal::JogCancel => {}
             // Homing is not held, as in Grbl; what has been stopped neither.
             Signal::Hold if self.state == State::Ready => self.hold(),
             Signal::Hold => {}
+            Signal::Speeds { draw_percent, travel_percent } => {
+                if M::ALL {
+                    (self.percents.draw, self.percents.travel) = (draw_percent, travel_percent);
+                    self.override_speeds();
+                }
+            }
+            Signal::LaserPercent(percent) => {
+                self.percents.laser = percent;
+                self.shine();
+            }
+            // A jog that ends is not to go on.
+            Signal::Resume if self.cancelling => {}
             Signal::Resume => {
                 self.held = false;
                 self.planner.resume();
@@ -162,6 +210,8 @@ impl Motion {
             Signal::Reset => {
                 let during = self.status(now).activity;
                 self.stop(Stop::Reset { during }, link);
+                self.percents = Percents::default();
+                self.override_speeds();
             }
             Signal::LaserOff => {
                 self.dark = true;
@@ -195,10 +245,11 @@ impl Motion {
     pub fn restart(&mut self, stored: StoredSettings, link: &mut Link) {
         let settings = StepperPlotterSettings { stored, ..self.settings };
         // The limits were good, and only become less: a planner that cannot be had leaves the old one.
-        if let Ok(planner) = Planner::new(settings.limits()) {
+        if let Ok(planner) = Planner::with_modes(settings.limits()) {
             self.settings = settings;
             self.planner = planner;
         }
+        self.percents = Percents::default();
         if self.gate.is_stopped() {
             self.stop(Stop::Emergency, link);
         } else {
@@ -219,7 +270,13 @@ impl Motion {
         self.beam
     }
 
-    /// Where the motors stand: steps really made.
+    /// The settings as they hold now.
+    #[must_use]
+    pub const fn settings(&self) -> &StepperPlotterSettings {
+        &self.settings
+    }
+
+    /// Where the motors stand: steps really made, also those that take up play.
     #[must_use]
     pub const fn position(&self) -> StepPoint {
         self.position
@@ -228,7 +285,7 @@ impl Motion {
     /// Where the pen is by the steps really made, mm.
     #[must_use]
     pub fn position_mm(&self) -> Point {
-        self.cartesian.point_at(self.position.into())
+        self.cartesian.point_at(self.carriage().into())
     }
 
     /// What the receive side may know.
@@ -237,6 +294,7 @@ impl Motion {
         let activity = match self.state {
             State::Stopped => Activity::Stopped,
             State::Homing(_) => Activity::Home,
+            State::Ready if self.jogs => Activity::Jog,
             State::Ready if self.held => Activity::Hold { stands: !self.moves(now) },
             State::Ready if self.moves(now) || !self.planner.is_empty() || self.unfinished => Activity::Run,
             State::Ready => Activity::Idle,
@@ -250,10 +308,23 @@ impl Motion {
             at: self.position_mm(),
             speed_mm_s,
             laser: self.beam.power(),
+            percents: self.percents,
             limits: self.gate.limits(),
             emergency_stop: self.gate.is_stopped(),
             emergency_button: self.gate.is_button_pressed(),
         }
+    }
+
+    /// Where the carriage is, steps.
+    fn carriage(&self) -> StepPoint {
+        self.play.get().map_or(self.position, |play| play.carriage(self.position))
+    }
+
+    /// Gives the laser its share of the power.
+    fn shine(&mut self) {
+        let power = u32::from(self.laser) * u32::from(self.percents.laser) / 100;
+        let power = u16::try_from(power).unwrap_or(u16::MAX);
+        self.beam = self.gate.pass_laser(if self.dark { 0 } else { power });
     }
 
     /// Whether something is on its way: steps, or a pause that is not over.
@@ -286,7 +357,8 @@ impl Motion {
                 }
             }
             MotorEvent::Laser(power) => {
-                self.beam = self.gate.pass_laser(if self.dark { 0 } else { power });
+                self.laser = power;
+                self.shine();
             }
             // A person does that, and says when it is done.
             MotorEvent::SelectPen(_) | MotorEvent::NewPage => self.hold(),
@@ -300,6 +372,9 @@ impl Motion {
             Ok(pulse) => {
                 self.position.x = self.position.x.saturating_add(pulse.x().into());
                 self.position.y = self.position.y.saturating_add(pulse.y().into());
+                if let Some(play) = self.play.get_mut() {
+                    play.made(pulse);
+                }
                 Some(pulse)
             }
             Err(Blocked::Stopped) => {
@@ -323,21 +398,29 @@ impl Motion {
         let at = self.position_mm();
         self.planner.clear(at);
         darken(&mut self.planner);
-        self.steps.clear(self.position);
+        self.steps.clear(self.carriage());
+        if let Some(play) = self.play.get_mut() {
+            play.stopped();
+        }
         while let Some(command) = link.commands.pop() {
             self.leave_out(command);
         }
         (self.next, self.phase, self.start_at) = (None, None, None);
         (self.at_rest, self.unfinished, self.held, self.dark) = (true, false, false, false);
+        (self.jogs, self.cancelling, self.laser) = (false, false, 0);
         self.beam = Beam::OFF;
         self.put_pen(Pen::Up);
     }
 
     /// What does not move is done even so.
     fn leave_out(&mut self, command: Command) {
-        if let Command::PenAngles { up_deg, down_deg } = command {
-            self.settings.stored.pen_up_deg = up_deg;
-            self.settings.stored.pen_down_deg = down_deg;
+        match command {
+            Command::PenAngles { up_deg, down_deg } => {
+                self.settings.stored.pen_up_deg = up_deg;
+                self.settings.stored.pen_down_deg = down_deg;
+            }
+            Command::Set(setting) => self.set(setting),
+            _ => {}
         }
     }
 
@@ -350,7 +433,7 @@ impl Motion {
 
     /// Gets the next event, or does what is to be done at rest; says whether there may be more.
     fn go_on(&mut self, now: Duration, link: &mut Link) -> bool {
-        if let Some(event) = self.steps.next_event() {
+        if let Some(event) = self.next_event() {
             self.next = Some(event);
             return true;
         }
@@ -375,11 +458,18 @@ impl Motion {
             debug_assert!(pushed.is_ok(), "all events have been taken");
             return true;
         }
+        if !self.unfinished || self.held || self.cancelling {
+            // The carriage too comes to where it should be.
+            if let Some(event) = self.play.get_mut().and_then(Play::rest) {
+                self.next = Some(event);
+                return true;
+            }
+        }
         if self.held {
             self.at_rest = true;
             return false;
         }
-        if self.unfinished && self.planner.finish().is_ok() {
+        if self.unfinished && !self.cancelling && self.planner.finish().is_ok() {
             self.unfinished = false;
             return true;
         }
@@ -391,6 +481,13 @@ impl Motion {
             return false;
         }
         self.phase = None;
+        if self.cancelling {
+            self.jogged(link);
+            return true;
+        }
+        if core::mem::take(&mut self.jogs) {
+            return true;
+        }
         match link.commands.pop() {
             // What was sent before the stop was heard of.
             Some(Command::Servo(_) | Command::Home) if self.gate.is_stopped() => {
@@ -402,9 +499,39 @@ impl Motion {
         true
     }
 
+    /// The next event of what has been planned, and of the play on its way.
+    fn next_event(&mut self) -> Option<TimedEvent> {
+        loop {
+            if let Some(event) = self.play.get_mut().and_then(Play::next_event) {
+                return Some(event);
+            }
+            let event = self.steps.next_event()?;
+            match self.play.get_mut() {
+                Some(play) => {
+                    if let Some(event) = play.push(event) {
+                        return Some(event);
+                    }
+                }
+                None => return Some(event),
+            }
+        }
+    }
+
     /// Plans what the queue has and the planner takes.
     fn fill(&mut self, now: Duration, link: &mut Link) {
         while self.planner.has_room()
+            && !self.cancelling
+            && let Some(Command::Jog { to, speed_mm_s }) = link.commands.first()
+            && (self.jogs || (!self.unfinished && self.planner.is_empty()))
+        {
+            link.commands.pop();
+            let planned = self.planner.push_jog(to, speed_mm_s);
+            debug_assert!(planned.is_ok(), "the receive side has looked at it: {planned:?}");
+            self.taken(now);
+            self.jogs = true;
+        }
+        while self.planner.has_room()
+            && !self.jogs
             && let Some(Command::Plot(op)) = link.commands.first()
         {
             link.commands.pop();
@@ -413,21 +540,36 @@ impl Motion {
             }
             let planned = self.planner.push(op);
             debug_assert!(planned.is_ok(), "the receive side has looked at {op:?}: {planned:?}");
-            self.unfinished = true;
-            if self.at_rest && self.start_at.is_none() {
-                self.start_at = now.checked_add(self.settings.gather);
-            }
+            self.taken(now);
         }
         // What comes next waits for a standstill: nothing more is planned together with this.
-        if self.unfinished && link.commands.first().is_some_and(|next| !matches!(next, Command::Plot(_))) {
+        let jogs = self.jogs;
+        let waits = |next| match next {
+            Command::Plot(_) => jogs,
+            Command::Jog { .. } => !jogs,
+            _ => true,
+        };
+        if self.unfinished && !self.cancelling && link.commands.first().is_some_and(waits) {
             self.unfinished = self.planner.finish().is_err();
+        }
+    }
+
+    /// Something has been planned.
+    fn taken(&mut self, now: Duration) {
+        self.unfinished = true;
+        if self.at_rest && self.start_at.is_none() {
+            self.start_at = now.checked_add(self.settings.gather);
         }
     }
 
     /// Carries out what waits for a standstill, at a standstill.
     fn stand(&mut self, command: Command, now: Duration, link: &mut Link) {
         match command {
-            Command::Plot(_) => debug_assert!(false, "an empty planner has room"),
+            Command::Plot(_) | Command::Jog { .. } => debug_assert!(false, "an empty planner has room"),
+            Command::Set(setting) => {
+                self.set(setting);
+                let _ = link.reports.push(Report::Set { at: self.position_mm() });
+            }
             Command::Servo(deg) => {
                 if deg != self.pen_deg {
                     self.pen_deg = deg;
@@ -480,6 +622,9 @@ impl Motion {
         };
         if result.is_ok() {
             self.position = StepPoint::default();
+            if let Some(play) = self.play.get_mut() {
+                play.homed();
+            }
         }
         self.halt(link);
         self.state = State::Ready;
@@ -488,8 +633,18 @@ impl Motion {
     }
 }
 
+/// What makes the steps of a machine.
+fn step_gen<M: Modes>(cartesian: Cartesian, settings: &StepperPlotterSettings) -> StepGen<Cartesian, M> {
+    // mDraw moves the servo itself, and the motion waits for that.
+    let pen_settle = match settings.dialect {
+        Dialect::MDraw => Duration::ZERO,
+        Dialect::Grbl => settings.pen_settle,
+    };
+    StepGen::with_modes(cartesian, StepGenSettings { clock_hz: CLOCK_HZ, pen_settle, laser: settings.laser })
+}
+
 /// The laser has no power until it is told one.
-fn darken(planner: &mut Planner<BLOCKS>) {
+fn darken<M: Modes>(planner: &mut Planner<BLOCKS, M>) {
     let pushed = planner.push(PlotOp::LaserPower { share: 0.0 });
     debug_assert!(pushed.is_ok(), "it is empty");
 }

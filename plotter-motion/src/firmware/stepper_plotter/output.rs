@@ -1,35 +1,23 @@
 //! [`Output`]: text on its way to the host.
 
+use super::bytes::Bytes;
 use core::fmt;
 
-/// Bytes that wait to be sent.
-const SIZE: usize = 512;
-
-/// Bytes that wait for the line. Whoever writes has looked at [`Output::room`] before; what finds no room is lost.
+/// At most `N` bytes that wait for the line. Whoever writes has looked at [`Output::room`] before; what finds no room is lost.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Output {
-    bytes: [u8; SIZE],
-    first: usize,
-    len: usize,
-}
+pub(super) struct Output<const N: usize>(Bytes<N>);
 
-impl Output {
+impl<const N: usize> Output<N> {
     pub(super) const fn new() -> Self {
-        Self { bytes: [0; SIZE], first: 0, len: 0 }
+        Self(Bytes::new())
     }
 
     pub(super) const fn room(&self) -> usize {
-        SIZE - self.len
+        self.0.room()
     }
 
     pub(super) fn pop(&mut self) -> Option<u8> {
-        if self.len == 0 {
-            return None;
-        }
-        let byte = self.bytes.get(self.first).copied();
-        self.first = (self.first + 1) % SIZE;
-        self.len -= 1;
-        byte
+        self.0.pop()
     }
 
     /// Writes a line with its end.
@@ -40,17 +28,11 @@ impl Output {
     }
 }
 
-impl fmt::Write for Output {
+impl<const N: usize> fmt::Write for Output<N> {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         for &byte in text.as_bytes() {
-            debug_assert!(self.len < SIZE, "room was looked at before");
-            let place = (self.first + self.len) % SIZE;
-            if self.len < SIZE
-                && let Some(slot) = self.bytes.get_mut(place)
-            {
-                *slot = byte;
-                self.len += 1;
-            }
+            let written = self.0.push(byte);
+            debug_assert!(written, "room was looked at before");
         }
         Ok(())
     }

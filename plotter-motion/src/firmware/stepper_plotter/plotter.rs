@@ -1,6 +1,9 @@
 //! [`StepperPlotter`]: both sides in one.
 
-use super::{Link, Motion, Receive, SettingsError, Status, Step, StepperPlotterSettings, StoredSettings};
+use super::{
+    Host, Link, Motion, Receive, SettingsError, Status, Step, StepperPlotterSettings, StoredSettings,
+};
+use crate::planner::{AllModes, Modes};
 use crate::{Axis, Beam, Direction, Point, StepPoint};
 use core::time::Duration;
 
@@ -10,10 +13,24 @@ use core::time::Duration;
 /// each of them and at [`due`](Self::due), call [`poll`](Self::poll) until it gives no more steps, fetch the answers
 /// ([`transmit`](Self::transmit)) and set the servo ([`pen_deg`](Self::pen_deg)) and the laser ([`beam`](Self::beam)). Times
 /// never go back.
+///
+/// For a small processor it is built for one language and fewer ways of planning:
+///
+/// ```
+/// # use plotter_motion::ExactOnly;
+/// # use plotter_motion::firmware::StepperPlotter;
+/// # use plotter_motion::firmware::stepper_plotter::{Dialect, Grbl, SettingsError, StepperPlotterSettings};
+/// let settings = StepperPlotterSettings { dialect: Dialect::Grbl, ..StepperPlotterSettings::default() };
+/// let small = StepperPlotter::<Grbl, ExactOnly>::with_modes(settings)?;
+/// assert!(size_of_val(&small) < size_of::<StepperPlotter>());
+/// # let other = StepperPlotter::<Grbl, ExactOnly>::with_modes(StepperPlotterSettings::default());
+/// # assert_eq!(other.err(), Some(SettingsError::Dialect(Dialect::MDraw)));
+/// # Ok::<(), SettingsError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct StepperPlotter {
-    receive: Receive,
-    motion: Motion,
+pub struct StepperPlotter<H: Host = Receive, M: Modes = AllModes> {
+    receive: H,
+    motion: Motion<M>,
     link: Link,
 }
 
@@ -24,7 +41,21 @@ impl StepperPlotter {
     ///
     /// [`SettingsError`] for limits that no motion can be planned with.
     pub fn new(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
-        Ok(Self { receive: Receive::new(settings), motion: Motion::new(settings)?, link: Link::default() })
+        Self::with_modes(settings)
+    }
+}
+
+impl<H: Host, M: Modes> StepperPlotter<H, M> {
+    /// As [`StepperPlotter::new`], with the language and the modes of its type.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] for a language or a mode that is not among them, and as [`StepperPlotter::new`].
+    pub fn with_modes(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
+        if !H::speaks(settings.dialect) {
+            return Err(SettingsError::Dialect(settings.dialect));
+        }
+        Ok(Self { receive: H::new(settings), motion: Motion::with_modes(settings)?, link: Link::default() })
     }
 
     /// Takes a byte from the host.
@@ -43,9 +74,9 @@ impl StepperPlotter {
                 return step;
             }
             // What has been done is answered, and the next line may be waiting.
-            let before = self.link.commands.room();
+            let before = self.link.commands.len();
             self.work(now);
-            if self.link.commands.room() >= before {
+            if self.link.commands.len() <= before {
                 return None;
             }
         }
@@ -99,8 +130,15 @@ impl StepperPlotter {
 
     /// What the host has stored, to be kept by the firmware.
     #[must_use]
-    pub const fn stored(&self) -> StoredSettings {
+    pub fn stored(&self) -> StoredSettings {
         self.receive.stored()
+    }
+
+    /// The settings as they hold now, also those that the host has changed in Grbl's dialect: to be kept by the firmware, for the next
+    /// start.
+    #[must_use]
+    pub fn settings(&self) -> StepperPlotterSettings {
+        StepperPlotterSettings { stored: self.stored(), ..*self.motion.settings() }
     }
 
     /// What the machine does.

@@ -1,23 +1,56 @@
-//! [`Receive`]: the task that talks to the host.
+//! [`Host`]: the task that talks to the host; [`Receive`]: that of either dialect.
 
 use super::grbl::Grbl;
 use super::mdraw::MDraw;
 use super::{Dialect, Link, Signal, Status, StepperPlotterSettings, StoredSettings};
 use crate::Point;
 
-/// The receive side: bytes from the host in, commands for the motion side out, and answers.
+/// A receive side: bytes from the host in, commands for the motion side out, and answers.
 ///
 /// After each byte and each report call [`work`](Self::work), and fetch the answers with [`transmit`](Self::transmit).
-#[derive(Clone, Debug, PartialEq)]
-pub struct Receive {
-    host: Host,
+pub trait Host: Clone + core::fmt::Debug + PartialEq + Sized {
+    /// The receive side of a machine that has just been switched on.
+    fn new(settings: StepperPlotterSettings) -> Self;
+
+    /// Whether it is for hosts that speak this.
+    fn speaks(dialect: Dialect) -> bool;
+
+    /// Takes a byte from the host; gives what the motion side must know at once.
+    fn receive(&mut self, byte: u8) -> Option<Signal>;
+
+    /// Takes reports, carries out lines and answers them, as far as both queues have room.
+    fn work(&mut self, status: &Status, link: &mut Link);
+
+    /// The next byte for the host, if there is one.
+    fn transmit(&mut self) -> Option<u8>;
+
+    /// What the host has stored up to now, to be kept.
+    fn stored(&self) -> StoredSettings;
+
+    /// Begins anew with what has been stored, the pen at `at`.
+    fn restart(&mut self, at: Point);
 }
 
-#[expect(clippy::large_enum_variant, reason = "there is one host to a machine, and no heap to put it on")]
+/// The receive side for either dialect, as the settings say. See [`Host`] for what it does.
 #[derive(Clone, Debug, PartialEq)]
-enum Host {
+pub struct Receive {
+    host: Either,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Either {
     MDraw(MDraw),
     Grbl(Grbl),
+}
+
+/// Hands a call on to the dialect.
+macro_rules! either {
+    ($host:expr, $name:ident ( $($argument:expr),* )) => {
+        match $host {
+            Either::MDraw(mdraw) => mdraw.$name($($argument),*),
+            Either::Grbl(grbl) => grbl.$name($($argument),*),
+        }
+    };
 }
 
 impl Receive {
@@ -25,50 +58,74 @@ impl Receive {
     #[must_use]
     pub fn new(settings: StepperPlotterSettings) -> Self {
         let host = match settings.dialect {
-            Dialect::MDraw => Host::MDraw(MDraw::new(settings)),
-            Dialect::Grbl => Host::Grbl(Grbl::new(settings)),
+            Dialect::MDraw => Either::MDraw(MDraw::new(settings)),
+            Dialect::Grbl => Either::Grbl(Grbl::new(settings)),
         };
         Self { host }
     }
 
-    /// Takes a byte from the host; gives what the motion side must know at once.
+    /// See [`Host::receive`].
     pub fn receive(&mut self, byte: u8) -> Option<Signal> {
-        match &mut self.host {
-            Host::MDraw(mdraw) => mdraw.receive(byte),
-            Host::Grbl(grbl) => grbl.receive(byte),
-        }
+        either!(&mut self.host, receive(byte))
     }
 
-    /// Takes reports, carries out lines and answers them, as far as both queues have room.
+    /// See [`Host::work`].
     pub fn work(&mut self, status: &Status, link: &mut Link) {
-        match &mut self.host {
-            Host::MDraw(mdraw) => mdraw.work(status, link),
-            Host::Grbl(grbl) => grbl.work(status, link),
-        }
+        either!(&mut self.host, work(status, link));
     }
 
-    /// The next byte for the host, if there is one.
+    /// See [`Host::transmit`].
     pub fn transmit(&mut self) -> Option<u8> {
-        match &mut self.host {
-            Host::MDraw(mdraw) => mdraw.transmit(),
-            Host::Grbl(grbl) => grbl.transmit(),
-        }
+        either!(&mut self.host, transmit())
     }
 
-    /// What the host has stored up to now, to be kept.
+    /// See [`Host::stored`].
     #[must_use]
     pub const fn stored(&self) -> StoredSettings {
-        match &self.host {
-            Host::MDraw(mdraw) => mdraw.stored(),
-            Host::Grbl(grbl) => grbl.stored(),
-        }
+        either!(&self.host, stored())
     }
 
-    /// Begins anew with what has been stored, the pen at `at`.
+    /// See [`Host::restart`].
     pub fn restart(&mut self, at: Point) {
-        match &mut self.host {
-            Host::MDraw(mdraw) => mdraw.restart(at),
-            Host::Grbl(grbl) => grbl.restart(at),
-        }
+        either!(&mut self.host, restart(at));
     }
 }
+
+/// All of them call the type's own, which are there without the trait.
+macro_rules! host {
+    ($host:ty, $speaks:pat) => {
+        impl Host for $host {
+            fn new(settings: StepperPlotterSettings) -> Self {
+                Self::new(settings)
+            }
+
+            fn speaks(dialect: Dialect) -> bool {
+                matches!(dialect, $speaks)
+            }
+
+            fn receive(&mut self, byte: u8) -> Option<Signal> {
+                self.receive(byte)
+            }
+
+            fn work(&mut self, status: &Status, link: &mut Link) {
+                self.work(status, link);
+            }
+
+            fn transmit(&mut self) -> Option<u8> {
+                self.transmit()
+            }
+
+            fn stored(&self) -> StoredSettings {
+                self.stored()
+            }
+
+            fn restart(&mut self, at: Point) {
+                self.restart(at);
+            }
+        }
+    };
+}
+
+host!(Receive, _);
+host!(MDraw, Dialect::MDraw);
+host!(Grbl, Dialect::Grbl);

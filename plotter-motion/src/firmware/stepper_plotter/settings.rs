@@ -1,7 +1,7 @@
 //! [`StepperPlotterSettings`]: what the controller has to know of its machine.
 
 use crate::gcode::PenConvention;
-use crate::kinematics::{Cartesian, MotorScale, ScaleError};
+use crate::kinematics::{Backlash, Cartesian, MotorScale, ScaleError};
 use crate::{Axis, HomingAxis, Machine, PlanError, PlannerSettings, StepGenSettings};
 use core::fmt;
 use core::time::Duration;
@@ -92,6 +92,8 @@ pub struct StepperPlotterSettings {
     /// How long a machine at rest waits for more lines before it starts, so that it knows more than the first: it would stop at its
     /// end otherwise.
     pub gather: Duration,
+    /// Play of both axes, in steps of their motors. It takes [`AllModes`](crate::AllModes).
+    pub backlash: Backlash,
     /// How x is homed.
     pub home_x: HomingAxis,
     /// How y is homed.
@@ -115,6 +117,7 @@ impl Default for StepperPlotterSettings {
             laser: false,
             pen: PenConvention::Spindle,
             gather: Duration::from_millis(50),
+            backlash: Backlash::default(),
             home_x: HomingAxis::default(),
             home_y: HomingAxis::default(),
         }
@@ -160,6 +163,7 @@ impl StepperPlotterSettings {
             planner: PlannerSettings::of(machine),
             pen_settle: steps.pen_settle,
             laser: steps.laser,
+            backlash: Backlash::of(machine),
             home_x: HomingAxis::of(machine, Axis::X),
             home_y: HomingAxis::of(machine, Axis::Y),
             ..Self::default()
@@ -202,6 +206,8 @@ pub enum SettingsError {
     Scale(ScaleError),
     /// The limits of the motion.
     Planner(PlanError),
+    /// The host's language is another one than the controller is built for.
+    Dialect(Dialect),
 }
 
 impl fmt::Display for SettingsError {
@@ -209,6 +215,10 @@ impl fmt::Display for SettingsError {
         match self {
             Self::Scale(error) => error.fmt(f),
             Self::Planner(error) => error.fmt(f),
+            Self::Dialect(dialect) => write!(
+                f,
+                "the dialect is {dialect:?}: build the controller with a host that speaks it, or with Receive"
+            ),
         }
     }
 }

@@ -10,6 +10,8 @@ pub enum Activity {
     Idle,
     /// It draws or travels, or is about to.
     Run,
+    /// It is being moved by hand, or ends that.
+    Jog,
     /// It is being held: brakes, or stands.
     Hold {
         /// Whether it stands.
@@ -19,6 +21,23 @@ pub enum Activity {
     Home,
     /// It has been stopped, and leaves commands out until [`Command::GoOn`](super::Command::GoOn).
     Stopped,
+}
+
+/// Percent of what is asked for: 100 of each while nobody says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Percents {
+    /// Of speeds with the pen down.
+    pub draw: u8,
+    /// Of speeds with the pen up.
+    pub travel: u8,
+    /// Of the laser's power.
+    pub laser: u8,
+}
+
+impl Default for Percents {
+    fn default() -> Self {
+        Self { draw: 100, travel: 100, laser: 100 }
+    }
 }
 
 /// A view of the motion side. Two tasks share it under a lock.
@@ -32,6 +51,8 @@ pub struct Status {
     pub speed_mm_s: f64,
     /// Power of the laser, in 65535ths.
     pub laser: u16,
+    /// The overrides in force.
+    pub percents: Percents,
     /// Which limit switches are pressed.
     pub limits: LimitSwitches,
     /// Whether the emergency stop is latched.

@@ -32,8 +32,9 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             b"PR" => self.relative = true,
             b"PE" => self.decoder = Some(Decoder::new(self.bytes)),
             b"UC" => self.begin_character(),
-            b"LB" | b"SM" if !FONT => self.leave_out(command, at),
-            b"LB" => self.label_from = self.at,
+            b"LB" | b"SM" | b"BL" | b"PB" | b"DL" if !FONT => self.leave_out(command, at),
+            b"LB" | b"PB" => self.label_from = self.at,
+            b"BL" => self.buffered_count = 0,
             b"SM" => self.symbol = None,
             letters if takes(letters).is_some() => {}
             letters if is_quiet(letters) => self.open = None,
@@ -54,6 +55,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
                 Some((x, _)) => self.go_to(x, value),
             },
             b"UC" => self.character_number(&mut open, value, at),
+            b"DL" => self.own_number(&mut open, value, at),
+            b"RF" => self.raster_number(&mut open, value, at),
             b"BZ" | b"BR" => {
                 open.push(value, at);
                 self.curve(&mut open);
@@ -66,7 +69,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     pub(super) fn byte(&mut self, byte: u8, at: Position) {
         let Some(open) = self.open else { return };
         match open.command.letters() {
-            b"LB" => self.label_byte(byte, &open),
+            b"LB" => self.label_byte(byte),
+            b"BL" => self.buffer_byte(byte),
             b"SM" => self.symbol = Some(byte).filter(|byte| *byte > b' '),
             b"PE" => self.encoded_byte(byte, at, &open),
             _ => {}
@@ -151,15 +155,34 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
                 Ok(())
             }
             b"LB" => {
-                self.end_label(open);
+                self.end_label();
                 Ok(())
             }
             b"CP" => {
                 self.move_by_characters(open);
                 Ok(())
             }
+            b"PB" => {
+                self.playing = Some(0);
+                Ok(())
+            }
+            b"DL" => {
+                self.end_own(open);
+                Ok(())
+            }
+            b"CS" | b"CA" => self.set_characters(open),
+            b"SS" | b"SA" => {
+                self.sets.is_alternate = open.command.letters() == b"SA";
+                Ok(())
+            }
+            b"LM" if open.or(0, 0.0) != 0.0 => {
+                Err(open.bad(0, "0: characters of one byte; those of two have no strokes here"))
+            }
+            b"RF" => self.set_raster(open),
             b"UC" => self.end_character(open),
-            b"SI" | b"SR" | b"DI" | b"DR" | b"SL" | b"DV" | b"LO" | b"ES" | b"SD" => self.set_lettering(open),
+            b"SI" | b"SR" | b"DI" | b"DR" | b"SL" | b"DV" | b"LO" | b"ES" | b"SD" | b"AD" => {
+                self.set_lettering(open)
+            }
             _ => Ok(()),
         }
     }
@@ -168,12 +191,12 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
 /// How many numbers a command takes at most; `None` for one that is not carried out.
 fn takes(letters: &[u8; 2]) -> Option<u32> {
     Some(match letters {
-        b"PU" | b"PD" | b"PA" | b"PR" | b"BZ" | b"BR" | b"UC" | b"SD" | b"BP" => u32::MAX,
-        b"IN" | b"DF" | b"PG" | b"AF" | b"AH" | b"FR" => u32::MAX,
-        b"LB" | b"PE" | b"SM" | b"EP" | b"XT" | b"YT" => 0,
-        b"SP" | b"WU" | b"CT" | b"RO" | b"FP" | b"SL" | b"LO" => 1,
+        b"PU" | b"PD" | b"PA" | b"PR" | b"BZ" | b"BR" | b"UC" | b"SD" | b"AD" | b"BP" => u32::MAX,
+        b"IN" | b"DF" | b"PG" | b"AF" | b"AH" | b"FR" | b"DL" | b"RF" | b"SS" | b"SA" => u32::MAX,
+        b"LB" | b"BL" | b"PB" | b"PE" | b"SM" | b"EP" | b"XT" | b"YT" => 0,
+        b"SP" | b"WU" | b"CT" | b"RO" | b"FP" | b"SL" | b"LO" | b"CS" | b"CA" => 1,
         b"VS" | b"PW" | b"PT" | b"CI" | b"EA" | b"ER" | b"RA" | b"RR" | b"PM" | b"AC" | b"PS" | b"TL"
-        | b"CP" | b"SI" | b"SR" | b"DI" | b"DR" | b"DV" | b"ES" => 2,
+        | b"CP" | b"LM" | b"SI" | b"SR" | b"DI" | b"DR" | b"DV" | b"ES" => 2,
         b"FT" | b"LT" => 3,
         b"AA" | b"AR" | b"EW" | b"WG" | b"IP" | b"IR" | b"IW" => 4,
         b"AT" | b"RT" => 5,
@@ -185,21 +208,19 @@ fn takes(letters: &[u8; 2]) -> Option<u32> {
 }
 
 /// What says nothing to a machine with one pen that draws what it is told: colours, the order of drawing, forces and
-/// accelerations, ends and joins of thick lines, the choice of fonts, questions to the plotter, its display and its
+/// accelerations, motion without a stop (which the planner sees to), ends and joins of thick lines, the looks of fonts, questions to the plotter, its display and its
 /// cutter. A person who reads what was left out of a drawing wants to read nothing of these.
 fn is_quiet(letters: &[u8; 2]) -> bool {
     matches!(
         letters,
-        b"AD"
-            | b"AP"
+        b"AP"
             | b"AS"
-            | b"CA"
             | b"CC"
             | b"CF"
             | b"CM"
             | b"CO"
             | b"CR"
-            | b"CS"
+            | b"CV"
             | b"DS"
             | b"DT"
             | b"EC"
@@ -234,9 +255,7 @@ fn is_quiet(letters: &[u8; 2]) -> bool {
             | b"OW"
             | b"PC"
             | b"QL"
-            | b"SA"
             | b"SB"
-            | b"SS"
             | b"ST"
             | b"TR"
             | b"VA"
@@ -249,6 +268,6 @@ fn is_quiet(letters: &[u8; 2]) -> bool {
 fn has_no_place_in_polygons(letters: &[u8; 2]) -> bool {
     matches!(
         letters,
-        b"EA" | b"ER" | b"RA" | b"RR" | b"EW" | b"WG" | b"EP" | b"FP" | b"LB" | b"UC" | b"XT" | b"YT"
+        b"EA" | b"ER" | b"RA" | b"RR" | b"EW" | b"WG" | b"EP" | b"FP" | b"LB" | b"PB" | b"UC" | b"XT" | b"YT"
     )
 }

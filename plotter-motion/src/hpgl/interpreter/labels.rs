@@ -1,5 +1,7 @@
-//! Labels, symbols, characters of the text's own, and ticks: `LB`, `SM`, `UC`, `CP`, `XT`, `YT`.
+//! Labels, symbols, characters of the text's own, and ticks: `LB`, `BL`, `PB`, `SM`, `UC`, `DL`, `CP`, `XT`, `YT`; the sets that
+//! characters are taken from: `CS`, `CA`, `SS`, `SA`.
 
+use super::super::character_set::CharacterSet;
 use super::super::lettering::MOST_KEPT;
 use super::super::piece::Piece;
 use super::super::scaling::limited;
@@ -14,6 +16,8 @@ const BACKSPACE: u8 = 8;
 const TAB: u8 = 9;
 const LINE_FEED: u8 = 10;
 const CARRIAGE_RETURN: u8 = 13;
+const SHIFT_OUT: u8 = 14;
+const SHIFT_IN: u8 = 15;
 /// What stands for a character that is not in Latin-1.
 const UNKNOWN: u8 = b'?';
 /// In place of a first byte: the character that it began has been dealt with.
@@ -31,23 +35,26 @@ const PEN_CONTROL: f64 = 99.0;
 
 impl<const VERTICES: usize> Interpreter<VERTICES> {
     /// One more byte of a label, in Latin-1 or UTF-8.
-    pub(super) fn label_byte(&mut self, byte: u8, open: &Open) {
+    pub(super) fn label_byte(&mut self, byte: u8) {
         match (self.lead.take(), byte) {
             (Some(lead @ ..0xE0), 0x80..=0xBF) if lead != CONTINUED => {
-                self.character(((lead & 3) << 6) | (byte & 0x3F), open);
+                let character = ((lead & 3) << 6) | (byte & 0x3F);
+                if character >= 0xA0 {
+                    self.keep(character.into());
+                }
             }
             (Some(lead), 0x80..=0xBF) => {
                 if lead != CONTINUED {
-                    self.character(UNKNOWN, open);
+                    self.keep(UNKNOWN.into());
                 }
                 self.lead = Some(CONTINUED);
             }
             (lead, _) => {
-                self.lone_lead(lead, open);
+                self.lone_lead(lead);
                 if matches!(byte, 0xC2 | 0xC3 | 0xE0..=0xF4) {
                     self.lead = Some(byte);
                 } else {
-                    self.character(byte, open);
+                    self.character(byte);
                 }
             }
         }
@@ -56,29 +63,62 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         }
     }
 
-    /// What might have been the first byte of several is a letter of Latin-1.
-    fn lone_lead(&mut self, lead: Option<u8>, open: &Open) {
+    /// What might have been the first byte of several is a letter by itself.
+    fn lone_lead(&mut self, lead: Option<u8>) {
         if let Some(lead) = lead.filter(|lead| *lead != CONTINUED) {
-            self.character(lead, open);
+            self.character(lead);
         }
     }
 
-    fn character(&mut self, character: u8, open: &Open) {
-        match character {
-            BACKSPACE | LINE_FEED | CARRIAGE_RETURN | TAB => self.control(character),
-            // Other control characters choose among fonts, or nothing.
+    /// A byte that is a character by itself, in the set that holds.
+    fn character(&mut self, byte: u8) {
+        match byte {
+            BACKSPACE | LINE_FEED | CARRIAGE_RETURN | TAB => self.control(byte),
+            SHIFT_OUT | SHIFT_IN => self.sets.is_alternate = byte == SHIFT_OUT,
+            // Other control characters mean nothing.
             0..=31 | 127..=159 => {}
-            _ => {
-                if let Some(slot) = self.kept.get_mut(self.kept_count) {
-                    *slot = character;
-                    self.kept_count += 1;
-                } else if self.kept_count == MOST_KEPT {
-                    // Counted once more, so that it is said once.
-                    self.kept_count += 1;
-                    self.report = Some(Error::LabelTooLong { at: open.at, command: open.command });
-                }
-            }
+            _ => self.keep(self.sets.set().character(byte)),
         }
+    }
+
+    fn keep(&mut self, character: u16) {
+        if let Some(slot) = self.kept.get_mut(self.kept_count) {
+            *slot = character;
+            self.kept_count += 1;
+        } else if self.kept_count == MOST_KEPT {
+            // Counted once more, so that it is said once.
+            self.kept_count += 1;
+            self.say_too_long();
+        }
+    }
+
+    fn say_too_long(&mut self) {
+        self.report = self.latest.map(|(command, at)| Error::LabelTooLong { at, command });
+    }
+
+    /// One more byte of a label that is drawn later.
+    pub(super) fn buffer_byte(&mut self, byte: u8) {
+        if let Some(slot) = self.buffered.get_mut(self.buffered_count) {
+            *slot = byte;
+            self.buffered_count += 1;
+        } else if self.buffered_count == MOST_KEPT {
+            self.buffered_count += 1;
+            self.say_too_long();
+        }
+    }
+
+    /// Goes on with the label that was kept, if it is being drawn; says whether it was.
+    pub(super) fn play(&mut self) -> bool {
+        let Some(next) = self.playing else { return false };
+        let count = self.buffered_count.min(MOST_KEPT);
+        if let Some(byte) = self.buffered.get(..count).and_then(|bytes| bytes.get(next)).copied() {
+            self.playing = Some(next + 1);
+            self.label_byte(byte);
+        } else {
+            self.playing = None;
+            self.end_label();
+        }
+        true
     }
 
     /// Moves the pen as a control character says, after what stands before it.
@@ -119,9 +159,9 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         }
     }
 
-    pub(super) fn end_label(&mut self, open: &Open) {
+    pub(super) fn end_label(&mut self) {
         let lead = self.lead.take();
-        self.lone_lead(lead, open);
+        self.lone_lead(lead);
         self.draw_kept();
         if !self.lettering.goes_on() {
             self.at = self.label_from;
@@ -132,8 +172,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     pub(super) fn draw_symbol(&mut self, symbol: u8) {
         let metrics = self.lettering.metrics(&self.scaling);
         let first = self.at - (metrics.right + metrics.up) * 0.5;
-        self.kept = [symbol; MOST_KEPT];
-        self.kept_count = 1;
+        self.kept_count = 0;
+        self.keep(self.sets.set().character(symbol));
         self.job = Job::Text(TextJob::new(metrics, first));
     }
 
@@ -168,6 +208,48 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             Some((x, at)) => Err(Error::OddCoordinates { at, command: open.command, x }),
             None => Ok(()),
         }
+    }
+
+    /// One more number of `DL`: which character, then where its pen goes.
+    pub(super) fn own_number(&mut self, open: &mut Open, value: f64, at: Position) {
+        let first = open.given() == 0;
+        open.push(value, at);
+        let (least, most) = if first { (33.0, 126.0) } else { (-128.0, 127.0) };
+        let rounded = libm::round(value);
+        if !(least..=most).contains(&rounded) {
+            self.own.give_up();
+            let expected = if first {
+                "the number of a character, 33 to 126"
+            } else {
+                "steps of the grid from -127 to 127, or -128 to lift the pen"
+            };
+            self.report = Some(Error::BadParameter { at, command: open.command, value, expected });
+            return;
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the range above")]
+        let has_room = if first { self.own.begin(rounded as u8) } else { self.own.push(rounded as i8) };
+        if !has_room {
+            self.report = Some(Error::NoRoomForCharacter { at: open.at, command: open.command });
+        }
+    }
+
+    /// `DL` without numbers forgets all characters of the text's own.
+    pub(super) fn end_own(&mut self, open: &Open) {
+        if open.given() == 0 {
+            self.own.clear();
+        }
+        self.own.end();
+    }
+
+    /// `CS` and `CA`.
+    pub(super) fn set_characters(&mut self, open: &Open) -> Result<(), Error> {
+        let set = CharacterSet::numbered(open.or(0, 0.0));
+        match open.command.letters() {
+            b"CS" => self.sets.standard = set.unwrap_or_default(),
+            _ => self.sets.alternate = set.unwrap_or_default(),
+        }
+        let (at, command, set_number) = (open.at, open.command, open.or(0, 0.0));
+        set.map(|_| ()).ok_or(Error::UnknownSigns { at, command, set_number })
     }
 
     /// `CP`: by so many characters and lines up; without numbers, to the start of the next line.
@@ -229,13 +311,23 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
                 self.lettering.line_start = self.at;
             }
             b"ES" => self.lettering.extra = Vec2::new(open.or(0, 0.0), open.or(1, 0.0)),
-            // SD: pairs of a kind and a value, of which the height in points is the fourth kind.
+            // SD and AD: pairs of a kind and a value, of which the set of characters is the first kind and the height in
+            // points the fourth.
             _ => {
-                let pairs = open.numbers().chunks_exact(2);
-                if let Some([_, points]) =
-                    pairs.rev().find(|pair| matches!(pair, [4.0, points] if *points > 0.0))
-                {
-                    self.lettering.set_points(*points);
+                let last = |kind: f64| {
+                    let mut pairs = open.numbers().chunks_exact(2).rev();
+                    pairs.find_map(|pair| {
+                        matches!(pair, [is, _] if *is == kind).then(|| pair.last().copied())?
+                    })
+                };
+                let set = last(1.0).map_or(CharacterSet::default(), CharacterSet::of_printer);
+                if letters == b"AD" {
+                    self.sets.alternate = set;
+                } else {
+                    self.sets.standard = set;
+                    if let Some(points) = last(4.0).filter(|points| *points > 0.0) {
+                        self.lettering.set_points(points);
+                    }
                 }
             }
         }

@@ -10,9 +10,11 @@ mod rounds;
 mod setup;
 mod text_job;
 
+use super::character_set::CharacterSets;
 use super::encoded::{Bytes, Decoder};
 use super::lettering::{Lettering, MOST_KEPT};
 use super::line_type::{LineType, PATTERNS, Pattern};
+use super::own_characters::OwnCharacters;
 use super::pen_path::PenPath;
 use super::piece::Piece;
 use super::polygon::Polygon;
@@ -101,8 +103,9 @@ enum Item {
 ///
 /// # Memory
 ///
-/// All of it is in the struct. The polygon buffer is what is big: 17 bytes for each of its `VERTICES` places. A corner takes
-/// a place and an arc three; a plotter of 1986 had room for a few hundred corners. The default is 1024 places, 21 KiB in
+/// All of it is in the struct. The polygon buffer is what is big: 17 bytes for each of its `VERTICES` places, and one more for
+/// the characters that a text draws itself (`DL`). A corner takes
+/// a place and an arc three; a plotter of 1986 had room for a few hundred corners. The default is 1024 places, 22 KiB in
 /// all; a small controller takes `Interpreter<64>`, 5 KiB. At least 8 places are needed: what `EA` and `EW` draw lies there
 /// too. A side that does not fit is drawn as it comes, with a report ([`Error::PolygonTooLong`]): no line is lost.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,8 +141,14 @@ pub struct Interpreter<const VERTICES: usize = USUAL_VERTICES> {
     symbol: Option<u8>,
     // labels
     lettering: Lettering,
-    kept: [u8; MOST_KEPT],
+    sets: CharacterSets,
+    own: OwnCharacters<VERTICES>,
+    kept: [u16; MOST_KEPT],
     kept_count: usize,
+    /// A label to be drawn later, and which of its bytes is next while it is.
+    buffered: [u8; MOST_KEPT],
+    buffered_count: usize,
+    playing: Option<usize>,
     /// Where the pen was before the label.
     label_from: Vec2,
     /// The first byte of a character that may have two.
@@ -219,8 +228,13 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             tick_percent: setup::USUAL_TICK_PERCENT,
             symbol: None,
             lettering: Lettering::new(),
+            sets: CharacterSets::default(),
+            own: OwnCharacters::new(),
             kept: [0; MOST_KEPT],
             kept_count: 0,
+            buffered: [0; MOST_KEPT],
+            buffered_count: 0,
+            playing: None,
             label_from: Vec2::default(),
             lead: None,
             polygon: Polygon::new(),
@@ -322,7 +336,12 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
                 }
                 continue;
             }
-            let (piece, patterned) = self.next_of_job()?;
+            let Some((piece, patterned)) = self.next_of_job() else {
+                if self.play() {
+                    continue;
+                }
+                return None;
+            };
             self.path_feed_mm_s = self.feed();
             self.lay(piece, patterned);
         }
@@ -345,7 +364,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             },
             Job::Fill(hatch, patterned) => hatch.next(&self.polygon).map(|piece| (piece, *patterned)),
             Job::Text(text) => {
-                text.next(self.kept.get(..self.kept_count).unwrap_or(&self.kept)).map(|piece| (piece, false))
+                let kept = self.kept.get(..self.kept_count).unwrap_or(&self.kept);
+                text.next(kept, &self.own).map(|piece| (piece, false))
             }
         };
         if next.is_some() {
@@ -409,6 +429,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         let empty = self.job == Job::None
             && self.path.is_empty()
             && self.report.is_none()
+            && self.playing.is_none()
             && self.queue.iter().all(Option::is_none);
         if empty { Ok(()) } else { Err(Undrained) }
     }

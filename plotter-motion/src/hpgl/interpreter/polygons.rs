@@ -1,10 +1,10 @@
 //! Polygons: `PM`, `EP`, `FP`, rectangles, and how they are filled: `FT`, `AC`, `UF`.
 
-use super::super::Error;
 use super::super::UNITS_PER_MM;
 use super::super::hatch::{Hatch, Lay, Rule};
 use super::super::piece::{Piece, turned_deg};
 use super::super::polygon::Cursor;
+use super::super::{Error, Position};
 use super::Interpreter;
 use super::job::Job;
 use super::open::Open;
@@ -15,8 +15,12 @@ const USUAL_SPACING_SHARE: f64 = 0.01;
 /// The shading where none is said, %.
 const USUAL_SHADE_PERCENT: f64 = 50.0;
 
+/// Rasters that `RF` defines.
+const RASTERS: usize = 8;
+const NO_RASTER: u8 = u8::MAX;
+
 /// How polygons are filled.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fill {
     kind: Kind,
     /// Distance of hatching as the text says it, in its own units along x; 0 for the usual one.
@@ -27,13 +31,31 @@ pub(super) struct Fill {
     own_spacing: f64,
     /// A place on a line.
     anchor: Vec2,
+    /// How much of the paper each raster of `RF` inks, whole %; [`NO_RASTER`] for one that is not defined.
+    rasters_percent: [u8; RASTERS],
+    /// Dots with ink of the raster that is being told.
+    inked: f64,
+}
+
+impl Default for Fill {
+    fn default() -> Self {
+        Self {
+            kind: Kind::Solid,
+            spacing: 0.0,
+            angle_deg: 0.0,
+            shade_percent: 0.0,
+            own_spacing: 0.0,
+            anchor: Vec2::default(),
+            rasters_percent: [NO_RASTER; RASTERS],
+            inked: 0.0,
+        }
+    }
 }
 
 /// What `FT` knows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// A pen's width apart, back and forth.
-    #[default]
     Solid,
     /// Likewise, all in one direction.
     SolidOneWay,
@@ -104,7 +126,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         if self.polygon.is_overflown() {
             return Err(Error::NotFilled { at, command });
         }
-        let Fill { kind, spacing, angle_deg, shade_percent, own_spacing, anchor } = self.fill;
+        let Fill { kind, spacing, angle_deg, shade_percent, own_spacing, anchor, .. } = self.fill;
         let width = self.width_units();
         let hatching = |spacing: f64| {
             let spacing = libm::fabs(spacing) * self.scaling.x_factor();
@@ -160,13 +182,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     }
 
     pub(super) fn set_fill(&mut self, open: &Open) -> Result<(), Error> {
-        let kind = open.whole(
-            0,
-            1,
-            1,
-            22,
-            "a fill type: 1 and 2 solid, 3 lines, 4 crossed lines, 5 or 10 shaded, 6 own",
-        )?;
+        let expected = "a fill type: 1 and 2 solid, 3 lines, 4 crossed lines, 5 or 10 shaded, 6 own, 11 a raster, 21 a printer's lines";
+        let kind = open.whole(0, 1, 1, 22, expected)?;
         let mut fill = self.fill;
         fill.kind = match kind {
             1 => Kind::Solid,
@@ -174,9 +191,10 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             3 => Kind::Lines,
             4 => Kind::Crossed,
             5 | 10 => Kind::Shaded,
-            6 | 11 => Kind::Own,
-            // A printer's patterns of dots.
-            _ => Kind::Lines,
+            6 => Kind::Own,
+            11 => return self.set_raster_fill(open),
+            21 => return self.set_printers_lines(open),
+            _ => return Err(open.bad(0, expected)),
         };
         match fill.kind {
             Kind::Lines | Kind::Crossed | Kind::Own => {
@@ -194,6 +212,63 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             Kind::Solid | Kind::SolidOneWay => {}
         }
         self.fill = fill;
+        Ok(())
+    }
+
+    /// A raster has no lines: the pen shades as much of the paper as it would ink.
+    fn set_raster_fill(&mut self, open: &Open) -> Result<(), Error> {
+        let raster = open.whole(1, 1, 1, 8, "a raster from 1 to 8")?;
+        let percent = self.fill.rasters_percent.get(usize::from(raster) - 1).copied().unwrap_or(NO_RASTER);
+        self.fill.kind = if percent == NO_RASTER { Kind::Solid } else { Kind::Shaded };
+        self.fill.shade_percent = percent.into();
+        Ok(())
+    }
+
+    /// The six patterns of lines that a printer has.
+    ///
+    /// Source: Hewlett-Packard, *PCL 5 Printer Language Technical Reference Manual*, chapter 13, "HP-defined cross-hatch patterns".
+    fn set_printers_lines(&mut self, open: &Open) -> Result<(), Error> {
+        let expected = "lines that lie 1, stand 2, rise 3 or fall 4, or are crossed: upright 5 or slanting 6";
+        let (kind, angle_deg) = match open.whole(1, 1, 1, 6, expected)? {
+            1 => (Kind::Lines, 0.0),
+            2 => (Kind::Lines, 90.0),
+            3 => (Kind::Lines, 45.0),
+            4 => (Kind::Lines, 135.0),
+            5 => (Kind::Crossed, 0.0),
+            _ => (Kind::Crossed, 45.0),
+        };
+        self.fill = Fill { kind, angle_deg, spacing: 0.0, ..self.fill };
+        Ok(())
+    }
+
+    /// One more number of `RF`: which raster, its width and height, and a pen for each dot.
+    pub(super) fn raster_number(&mut self, open: &mut Open, value: f64, at: Position) {
+        match open.given() {
+            0 => self.fill.inked = 0.0,
+            3.. if value != 0.0 => self.fill.inked += 1.0,
+            _ => {}
+        }
+        open.push(value, at);
+    }
+
+    /// `RF` without dots forgets a raster, without numbers all of them.
+    pub(super) fn set_raster(&mut self, open: &Open) -> Result<(), Error> {
+        if open.given() == 0 {
+            self.fill.rasters_percent = [NO_RASTER; RASTERS];
+            return Ok(());
+        }
+        let raster = open.whole(0, 1, 1, 8, "a raster from 1 to 8")?;
+        let dots = open.given().saturating_sub(3);
+        if dots == 0 && open.given() > 1 {
+            return Err(open.missing("a pen for each dot of the raster"));
+        }
+        // Rounded up: a raster with ink has some.
+        let percent = libm::ceil(100.0 * self.fill.inked / f64::from(dots.max(1)));
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 100")]
+        let percent = if dots > 0 { percent as u8 } else { NO_RASTER };
+        if let Some(slot) = self.fill.rasters_percent.get_mut(usize::from(raster) - 1) {
+            *slot = percent;
+        }
         Ok(())
     }
 

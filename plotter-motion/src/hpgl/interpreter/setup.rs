@@ -1,5 +1,6 @@
 //! What coordinates and lines are: `IN`, `DF`, `IP`, `IR`, `SC`, `RO`, `PS`, `IW`, `LT`, `UL`, `PW`, `PT`, `WU`, `TL`.
 
+use super::super::character_set::CharacterSets;
 use super::super::line_type::{LineType, Pattern};
 use super::super::scaling::{Kind, UserArea};
 use super::super::window::Window;
@@ -43,6 +44,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         self.widths_mm = [USUAL_WIDTH_MM; PENS];
         self.width_mm = USUAL_WIDTH_MM;
         self.width_in_percent = false;
+        self.own.clear();
+        self.buffered_count = 0;
     }
 
     /// `DF`
@@ -58,6 +61,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         self.tick_percent = USUAL_TICK_PERCENT;
         self.symbol = None;
         self.lettering.initialize();
+        self.sets = CharacterSets::default();
         self.lead = None;
         self.set_usual_fill();
     }

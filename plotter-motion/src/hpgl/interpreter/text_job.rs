@@ -1,8 +1,10 @@
 //! [`TextJob`]: characters as strokes.
 
+use super::super::character_set::OWN;
 #[cfg(feature = "font")]
 use super::super::font;
 use super::super::lettering::Metrics;
+use super::super::own_characters::{GRID as OWN_GRID, OwnCharacters};
 use super::super::piece::Piece;
 use crate::Vec2;
 
@@ -23,12 +25,32 @@ pub(super) struct TextJob {
 /// One character, stroke by stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Glyph {
-    /// What is left of its strokes, and of those of its accent.
-    strokes: &'static [u8],
-    accent: &'static [u8],
+    strokes: Strokes,
     at: Vec2,
     /// Where the pen has come to within a stroke, and whether it has marked anything.
     pen: Option<(Vec2, bool)>,
+}
+
+/// What is left of a character.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Strokes {
+    /// Of the font, and of its accent.
+    Font(&'static [u8], &'static [u8]),
+    /// Of the text's own: which one, and how many of its numbers have been used.
+    Own(u8, usize),
+}
+
+/// What comes next of a character.
+enum Next {
+    /// A stroke begins or goes on there, in widths and heights of a capital letter.
+    Place {
+        x: f64,
+        y: f64,
+        begins: bool,
+    },
+    /// The stroke ends.
+    Lift,
+    End,
 }
 
 impl TextJob {
@@ -37,60 +59,89 @@ impl TextJob {
     }
 
     /// The next stretch of a stroke; `None` after the last of `characters`.
-    pub(super) fn next(&mut self, characters: &[u8]) -> Option<Piece> {
+    pub(super) fn next<const BYTES: usize>(
+        &mut self,
+        characters: &[u16],
+        own: &OwnCharacters<BYTES>,
+    ) -> Option<Piece> {
         loop {
             if let Some(glyph) = &mut self.glyph {
-                if let Some(piece) = glyph.next(&self.metrics) {
+                if let Some(piece) = glyph.next(&self.metrics, own) {
                     return Some(piece);
                 }
                 self.glyph = None;
             }
             let character = *characters.get(self.next)?;
             self.next += 1;
-            #[cfg(feature = "font")]
-            let (strokes, accent) = font::strokes(character);
-            #[cfg(not(feature = "font"))]
-            let (strokes, accent): (&str, &str) = {
-                let _ = character;
-                ("", "")
-            };
-            self.glyph = Some(Glyph {
-                strokes: strokes.as_bytes(),
-                accent: accent.as_bytes(),
-                at: self.at,
-                pen: None,
-            });
+            let [_, byte] = character.to_be_bytes();
+            let strokes = if character >= OWN { Strokes::Own(byte, 0) } else { Strokes::of_font(byte) };
+            self.glyph = Some(Glyph { strokes, at: self.at, pen: None });
             self.at = self.at + self.metrics.advance;
         }
     }
 }
 
 impl Glyph {
-    fn next(&mut self, metrics: &Metrics) -> Option<Piece> {
+    fn next<const BYTES: usize>(&mut self, metrics: &Metrics, own: &OwnCharacters<BYTES>) -> Option<Piece> {
         loop {
-            match *self.strokes {
-                [] | [b' ', ..] => {
-                    self.strokes = match self.strokes {
-                        [] if self.accent.is_empty() && self.pen.is_none() => return None,
-                        [] => core::mem::take(&mut self.accent),
-                        [_, rest @ ..] => rest,
-                    };
-                    // A stroke of one place is a dot.
-                    if let Some((at, false)) = self.pen.take() {
-                        return Some(Piece::Line { from: at, to: at });
-                    }
+            let (next, ends) = match self.strokes.next(own) {
+                Next::Place { x, y, begins } => (Some((x, y)), begins),
+                Next::Lift => (None, true),
+                Next::End if self.pen.is_none() => return None,
+                Next::End => (None, true),
+            };
+            let before = if ends { self.pen.take() } else { None };
+            if let Some((x, y)) = next {
+                let to = self.at + metrics.right * x + metrics.up * y;
+                if let Some((from, _)) = self.pen.replace((to, false)) {
+                    self.pen = Some((to, true));
+                    return Some(Piece::Line { from, to });
                 }
-                [x, y, ..] => {
-                    self.strokes = self.strokes.get(2..).unwrap_or(&[]);
+            }
+            // A stroke of one place is a dot.
+            if let Some((at, false)) = before {
+                return Some(Piece::Line { from: at, to: at });
+            }
+        }
+    }
+}
+
+impl Strokes {
+    #[cfg(feature = "font")]
+    fn of_font(character: u8) -> Self {
+        let (strokes, accent) = font::strokes(character);
+        Self::Font(strokes.as_bytes(), accent.as_bytes())
+    }
+
+    #[cfg(not(feature = "font"))]
+    fn of_font(_: u8) -> Self {
+        Self::Font(&[], &[])
+    }
+
+    fn next<const BYTES: usize>(&mut self, own: &OwnCharacters<BYTES>) -> Next {
+        match self {
+            Self::Font(strokes, accent) => match **strokes {
+                [x, y, ..] if x != b' ' => {
+                    *strokes = strokes.get(2..).unwrap_or(&[]);
                     let x = (f64::from(x) - f64::from(b'0')) / GRID.0;
                     let y = (f64::from(y) - f64::from(b'e')) / GRID.1;
-                    let to = self.at + metrics.right * x + metrics.up * y;
-                    if let Some((from, _)) = self.pen.replace((to, false)) {
-                        self.pen = Some((to, true));
-                        return Some(Piece::Line { from, to });
-                    }
+                    Next::Place { x, y, begins: false }
                 }
-                [_] => self.strokes = &[],
+                [_, ref rest @ ..] => {
+                    *strokes = rest;
+                    Next::Lift
+                }
+                [] if accent.is_empty() => Next::End,
+                [] => {
+                    *strokes = core::mem::take(accent);
+                    Next::Lift
+                }
+            },
+            Self::Own(byte, used) => {
+                let Some((place, next)) = own.place(*byte, *used) else { return Next::End };
+                *used = next;
+                let (x, y) = (f64::from(place.x) / OWN_GRID, f64::from(place.y) / OWN_GRID);
+                Next::Place { x, y, begins: place.lifted }
             }
         }
     }

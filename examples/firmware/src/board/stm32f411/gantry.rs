@@ -4,7 +4,7 @@ use super::clock::Clock;
 use super::line::Line;
 use crate::board::{Event, MotorPins, Notice};
 use crate::machine;
-use core::cell::RefCell;
+use core::cell::{Cell, RefCell};
 use core::time::Duration;
 use critical_section::Mutex;
 use heapless::spsc::Queue;
@@ -133,8 +133,17 @@ static ENCODERS: Mutex<RefCell<Option<Encoders>>> = Mutex::new(RefCell::new(None
 static EDGES: Mutex<RefCell<Queue<(u64, Axis, Direction), MOST_EDGES>>> =
     Mutex::new(RefCell::new(Queue::new()));
 
+/// What the program calls at an edge: only one that has encoders carries what that takes.
+static AT_EDGE: Mutex<Cell<Option<fn()>>> = Mutex::new(Cell::new(None));
+
 #[interrupt]
 fn EXTI9_5() {
+    if let Some(at_edge) = critical_section::with(|cs| AT_EDGE.borrow(cs).get()) {
+        at_edge();
+    }
+}
+
+fn count_edges() {
     critical_section::with(|cs| {
         if let Some(shared) = ENCODERS.borrow_ref_mut(cs).as_mut() {
             // First, so that an edge from here on comes again.
@@ -185,6 +194,7 @@ impl Rest {
         critical_section::with(|cs| {
             ENCODERS.borrow_ref_mut(cs).replace(Encoders { exti, clock, encoders: [x, y], failed });
         });
+        critical_section::with(|cs| AT_EDGE.borrow(cs).set(Some(count_edges)));
         unmask(Interrupt::EXTI9_5);
         watchdog.start(WATCHDOG_MS.millis());
         Board { line, lamp, watchdog, last: Duration::ZERO }

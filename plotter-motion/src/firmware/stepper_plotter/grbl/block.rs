@@ -1,9 +1,11 @@
 //! A line of G-code becomes commands.
 
-use super::super::{Command, Link, StoredSettings, area};
+use super::super::{Command, Link, Setting, SettingProblem, StoredSettings, area};
 use super::codes::{Alarm, Code};
+use super::listing::is_listed;
 use super::{Grbl, Wait, send};
-use crate::gcode::{Block, Problem, Reader, Word};
+use crate::decimal::Decimal;
+use crate::gcode::{Block, Outcomes, Problem, Reader, Word};
 use crate::{PlotOp, Point};
 
 /// Slower is not slower, mm/s: a step of 0.01 mm takes ten seconds.
@@ -21,7 +23,7 @@ impl Grbl {
         done
     }
 
-    /// A movement by hand: with the pen up, at the speed of travels. Of its line only the place is kept.
+    /// A movement by hand, with the pen up. Of its line only the place is kept.
     pub(super) fn jog(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
         let block = read(text)?.ok_or(Code::BAD_JOG)?;
         let is_allowed = |word: &Word| match word.letter {
@@ -39,19 +41,37 @@ impl Grbl {
         let travel = read(b"G0M5")?.into_iter().chain([block]);
         let mut to = None;
         for block in travel {
-            let taken = interpreter.push(Ok(block));
-            debug_assert!(taken.is_ok(), "what the line before gave has been taken");
-            while let Some(op) = interpreter.next_op() {
+            let mut outcomes = Outcomes::NONE;
+            interpreter.carry_out(&block, &mut outcomes).map_err(Code::of)?;
+            while let Some(op) = outcomes.take() {
                 to = op.map_err(Code::of)?.target().or(to);
             }
         }
         let Some(to) = to else { return Ok(()) };
-        let travel = PlotOp::Travel { to };
-        if !area::contains(self.most(), to, travel) {
+        if !area::contains(self.most(), to, PlotOp::Travel { to }) {
             return Err(Code::JOG_TARGET);
         }
         self.interpreter.stand_at(to);
-        self.command(link, Command::Plot(travel));
+        let speed_mm_s =
+            interpreter.modes().feed_mm_s.map_or(LEAST_FEED_MM_S, |feed| feed.max(LEAST_FEED_MM_S));
+        self.command(link, Command::Jog { to, speed_mm_s });
+        Ok(())
+    }
+
+    /// `$n=value`, without its `$`.
+    pub(super) fn change(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
+        let setting = setting(text)?;
+        match setting.checked(&self.settings) {
+            Ok(settings) => self.settings = settings,
+            // Whoever sends all settings back changes none.
+            Err(SettingProblem::Fixed) if is_listed(setting, &self.settings) => return Ok(()),
+            Err(SettingProblem::Negative) => return Err(Code::NEGATIVE),
+            Err(SettingProblem::OutOfRange) => return Err(Code::SETTING_RANGE),
+            Err(SettingProblem::StepRate) => return Err(Code::STEP_RATE),
+            Err(_) => return Err(Code::BAD_STATEMENT),
+        }
+        send(link, Command::Set(setting));
+        self.wait = Some(Wait::Set);
         Ok(())
     }
 
@@ -63,12 +83,12 @@ impl Grbl {
 
     fn carry_out(&mut self, block: &Block, link: &mut Link) -> Result<(), Code> {
         let before = self.interpreter.modes();
-        let taken = self.interpreter.push(Ok(*block));
-        debug_assert!(taken.is_ok(), "what the line before gave has been taken");
+        let mut outcomes = Outcomes::NONE;
+        self.interpreter.carry_out(block, &mut outcomes).map_err(Code::of)?;
         let mut ops = [None; super::MOST_COMMANDS];
         let mut slots = ops.iter_mut();
         let mut pauses = false;
-        while let Some(op) = self.interpreter.next_op() {
+        while let Some(op) = outcomes.take() {
             match op {
                 Ok(mut op) => {
                     if let PlotOp::Draw { feed_mm_s: Some(feed), .. }
@@ -115,6 +135,24 @@ impl Grbl {
         }
         Ok(())
     }
+}
+
+/// A setting's number and its value.
+fn setting(text: &[u8]) -> Result<Setting, Code> {
+    let mut parts = text.splitn(2, |byte| *byte == b'=');
+    let (number, value) = (parts.next().unwrap_or(&[]), parts.next().ok_or(Code::BAD_STATEMENT)?);
+    let number = number.iter().try_fold(0_u8, |number, byte| {
+        let digit = char::from(*byte).to_digit(10).and_then(|digit| u8::try_from(digit).ok())?;
+        number.checked_mul(10)?.checked_add(digit)
+    });
+    let number = number.ok_or(Code::BAD_STATEMENT)?;
+    let (first, rest) = value.split_first().ok_or(Code::BAD_NUMBER)?;
+    let mut decimal = Decimal::begin(*first).ok_or(Code::BAD_NUMBER)?;
+    if !rest.iter().all(|byte| decimal.push(*byte)) {
+        return Err(Code::BAD_NUMBER);
+    }
+    let value = decimal.value().filter(|value| value.is_finite()).ok_or(Code::BAD_NUMBER)?;
+    Ok(Setting { number, value })
 }
 
 /// The words of a line; none if it has no words.

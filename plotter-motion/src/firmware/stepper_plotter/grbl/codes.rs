@@ -2,6 +2,7 @@
 //!
 //! Source: the Grbl project's wiki, "Grbl v1.1 Interface", and its tables of errors and alarms (`doc/csv`).
 
+use crate::decimal_text::Decimals;
 use crate::gcode::{Error, Problem, Word};
 use crate::{HomingError, Point};
 
@@ -24,6 +25,8 @@ impl Code {
     pub(super) const LOCKED: Self = Self(9);
     /// Too many characters in a line; it was not carried out.
     pub(super) const OVERFLOW: Self = Self(11);
+    /// A setting asks a motor for more steps than it can be given.
+    pub(super) const STEP_RATE: Self = Self(12);
     /// The target of a jog lies outside the area; it was not carried out.
     pub(super) const JOG_TARGET: Self = Self(15);
     /// A jog with a command that has no place in it.
@@ -52,6 +55,8 @@ impl Code {
     pub(super) const CENTRE: Self = Self(35);
     /// Words that nothing uses.
     pub(super) const UNUSED: Self = Self(36);
+    /// The value of a setting is out of its range. Grbl 1.1 has no number for it; this is that of its successor grblHAL.
+    pub(super) const SETTING_RANGE: Self = Self(52);
 
     /// The number that fits best to what the reader complains of.
     pub(super) fn of(error: Error) -> Self {
@@ -120,12 +125,17 @@ impl Alarm {
     }
 }
 
+/// Rounded to thousandths.
+pub(super) fn rounded(value: f64) -> f64 {
+    libm::round(value * 1e3) / 1e3 + 0.0
+}
+
 /// As [`Point`], rounded to micrometres: no `-0.000` is told.
-pub(super) fn coordinate(mm: f64) -> f64 {
-    libm::round(mm * 1e3) / 1e3 + 0.0
+pub(super) fn coordinate(mm: f64) -> Decimals<3> {
+    Decimals(rounded(mm))
 }
 
 /// Both coordinates of a place.
-pub(super) fn coordinates(at: Point) -> (f64, f64) {
+pub(super) fn coordinates(at: Point) -> (Decimals<3>, Decimals<3>) {
     (coordinate(at.x), coordinate(at.y))
 }

@@ -2,10 +2,11 @@
 
 use super::super::output::Output;
 use super::super::settings::FULL_POWER;
-use super::super::{COMMANDS, StepperPlotterSettings};
-use super::MOST_COMMANDS;
+use super::super::{COMMANDS, Setting, StepperPlotterSettings};
 use super::codes::coordinate;
 use super::rx_buffer::RX_BYTES;
+use super::{MOST_COMMANDS, OUTPUT};
+use crate::decimal_text::{Decimals, Whole};
 use crate::gcode::Modes;
 
 /// What is being listed.
@@ -31,26 +32,33 @@ impl Listing {
         index: u8,
         settings: &StepperPlotterSettings,
         modes: &Modes,
-        out: &mut Output,
+        out: &mut Output<OUTPUT>,
     ) -> bool {
         match self {
-            Self::Settings => return setting(index, settings, out),
+            Self::Settings => {
+                let Some((number, value, is_whole)) = setting(index, settings) else { return false };
+                if is_whole {
+                    out.line(format_args!("${}={}", Whole(number.into()), Decimals::<0>(value)));
+                } else {
+                    out.line(format_args!("${}={}", Whole(number.into()), Decimals::<3>(value)));
+                }
+            }
             Self::Build => match index {
                 0 => out.line(format_args!("[VER:1.1h.20190830:plotter-motion]")),
-                1 => out.line(format_args!("[OPT:V,{BLOCKS},{RX_BYTES}]")),
+                1 => out.line(format_args!("[OPT:V,{},{}]", Whole(BLOCKS as u64), Whole(RX_BYTES as u64))),
                 _ => return false,
             },
             Self::Startup => match index {
-                0 | 1 => out.line(format_args!("$N{index}=")),
+                0 | 1 => out.line(format_args!("$N{}=", Whole(index.into()))),
                 _ => return false,
             },
             Self::Offsets => match index {
-                0..=5 => out.line(format_args!("[G{}:0.000,0.000,0.000]", 54 + index)),
+                0..=5 => out.line(format_args!("[G{}:0.000,0.000,0.000]", Whole(54 + u64::from(index)))),
                 6 => out.line(format_args!("[G28:0.000,0.000,0.000]")),
                 7 => out.line(format_args!("[G30:0.000,0.000,0.000]")),
                 8 => {
                     let (x, y) = (coordinate(modes.offset.x), coordinate(modes.offset.y));
-                    out.line(format_args!("[G92:{x:.3},{y:.3},0.000]"));
+                    out.line(format_args!("[G92:{x},{y},0.000]"));
                 }
                 9 => out.line(format_args!("[TLO:0.000]")),
                 10 => out.line(format_args!("[PRB:0.000,0.000,0.000:0]")),
@@ -62,14 +70,14 @@ impl Listing {
 }
 
 /// The settings as Grbl numbers them; those that this machine has no use for are what Grbl comes with.
-fn setting(index: u8, settings: &StepperPlotterSettings, out: &mut Output) -> bool {
+fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, bool)> {
     let StepperPlotterSettings { planner, stored, home_x, .. } = settings;
     let whole = |number: u8, value: u32| (number, f64::from(value), true);
     let direction_mask = u32::from(stored.x_direction & 1) | u32::from(stored.y_direction & 1) << 1;
     let pulses_mm_min = |rate_hz: u32| f64::from(rate_hz) / settings.x_steps_per_mm * 60.0;
     let travel_mm_min = planner.travel_speed_mm_s.max(planner.speed_mm_s) * 60.0;
     let pull_off_mm = f64::from(home_x.pull_off_steps) / settings.x_steps_per_mm;
-    let (number, value, is_whole) = match index {
+    Some(match index {
         0 => whole(0, 10),
         1 => whole(1, 255), // the motors hold
         2 => whole(2, 0),
@@ -104,12 +112,15 @@ fn setting(index: u8, settings: &StepperPlotterSettings, out: &mut Output) -> bo
         31 => (130, f64::from(stored.width_mm), false),
         32 => (131, f64::from(stored.height_mm), false),
         33 => (132, 1.0, false),
-        _ => return false,
-    };
-    if is_whole {
-        out.line(format_args!("${number}={value:.0}"));
-    } else {
-        out.line(format_args!("${number}={value:.3}"));
-    }
-    true
+        _ => return None,
+    })
+}
+
+/// Whether this is what the settings already say.
+pub(super) fn is_listed(setting: Setting, settings: &StepperPlotterSettings) -> bool {
+    /// Half of the last digit that is told.
+    const ALIKE: f64 = 5e-4;
+    (0..)
+        .map_while(|index| self::setting(index, settings))
+        .any(|(number, value, _)| number == setting.number && libm::fabs(value - setting.value) <= ALIKE)
 }

@@ -4,23 +4,27 @@ mod block;
 mod codes;
 mod line_buffer;
 mod listing;
+mod overrides;
 mod rx_buffer;
 mod status_report;
 
+use super::command_queue::COMMANDS_OF_A_LINE as MOST_COMMANDS;
 use super::output::Output;
 use super::{Activity, Command, Link, Report, Signal, Status, StepperPlotterSettings, Stop, StoredSettings};
 use crate::Point;
-use crate::gcode::{BlockDelete, Interpreter, ReadOptions};
-use codes::{Alarm, Code, coordinate};
+use crate::decimal_text::{Plain, Trimmed, Whole};
+use crate::gcode::{BlockDelete, LineInterpreter, ReadOptions};
+use codes::{Alarm, Code, rounded};
 use line_buffer::LineBuffer;
 use listing::Listing;
+use overrides::Overrides;
 use rx_buffer::RxBuffer;
 
-/// Most commands that one line becomes: what the interpreter gives, and what goes before and after it.
-const MOST_COMMANDS: usize = 12;
-/// Most bytes that are written at one time.
-const MOST_ANSWER: usize = 320;
-/// The longest way of telling the offset only now and then: so many reports without it.
+/// Most bytes that are written at one time: an alarm with its message, and the line's answer.
+const MOST_ANSWER: usize = 208;
+/// Bytes that wait to be sent.
+const OUTPUT: usize = 256;
+/// The longest way of telling the offset, or the overrides, only now and then: so many reports without it.
 const REPORTS_WITHOUT_OFFSET: u8 = 10;
 
 /// What the line in hand waits for before it is answered.
@@ -30,15 +34,17 @@ enum Wait {
     Home,
     /// `M0`: until it goes on.
     Finish,
+    /// `$n=value`.
+    Set,
 }
 
 /// The receive side for programs that stream to Grbl. Each line is answered by one `ok` or `error`, in their order.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Grbl {
+pub struct Grbl {
     settings: StepperPlotterSettings,
     rx: RxBuffer,
     line: LineBuffer,
-    interpreter: Interpreter,
+    interpreter: LineInterpreter,
     wait: Option<Wait>,
     listing: Option<(Listing, u8)>,
     alarm: Option<Alarm>,
@@ -46,8 +52,12 @@ pub(super) struct Grbl {
     stopped: bool,
     status_wanted: bool,
     reports_to_offset: u8,
+    reports_to_overrides: u8,
+    overrides: Overrides,
+    /// What was sent to the motion side last is a jog.
+    jogs: bool,
     greeting: bool,
-    out: Output,
+    out: Output<OUTPUT>,
 }
 
 impl Grbl {
@@ -63,6 +73,9 @@ impl Grbl {
             stopped: false,
             status_wanted: false,
             reports_to_offset: 0,
+            reports_to_overrides: 0,
+            overrides: Overrides::default(),
+            jogs: false,
             greeting: true,
             out: Output::new(),
         }
@@ -91,10 +104,16 @@ impl Grbl {
                 self.rx.clear();
                 self.line.clear();
                 (self.wait, self.listing) = (None, None);
+                (self.overrides, self.reports_to_overrides) = (Overrides::default(), 0);
                 return Some(Signal::Reset);
             }
-            // Real-time commands for what this machine has not: overrides, a door, a jog to be cancelled.
-            0x80.. => {}
+            0x85 => return Some(Signal::JogCancel),
+            // Others are for what this machine has not: a door, coolant.
+            0x80.. => {
+                let signal = self.overrides.take(byte)?;
+                self.reports_to_overrides = 0;
+                return Some(signal);
+            }
             _ => self.rx.push(byte),
         }
         None
@@ -145,7 +164,7 @@ impl Grbl {
             None => Err(Code::OVERFLOW),
             Some(b"") => Ok(()),
             Some([b'$', command @ ..]) => self.system(command, status, link),
-            Some(_) if self.alarm.is_some() => Err(Code::LOCKED),
+            Some(_) if self.alarm.is_some() || self.is_jogging(status, link) => Err(Code::LOCKED),
             Some(text) => self.block(text, link),
         };
         match done {
@@ -157,7 +176,7 @@ impl Grbl {
     }
 
     fn error(&mut self, Code(number): Code) {
-        self.out.line(format_args!("error:{number}"));
+        self.out.line(format_args!("error:{}", Whole(number.into())));
     }
 
     fn greet(&mut self) {
@@ -169,7 +188,7 @@ impl Grbl {
 
     fn alarm(&mut self, alarm: Alarm) {
         self.alarm = Some(alarm);
-        self.out.line(format_args!("ALARM:{}", alarm.0));
+        self.out.line(format_args!("ALARM:{}", Whole(alarm.0.into())));
     }
 
     fn take(&mut self, report: Report) {
@@ -194,7 +213,19 @@ impl Grbl {
                     (Some(_), Err(_)) => self.error(Code::LOCKED),
                 }
             }
+            Report::Jogged { at } => {
+                self.interpreter.stand_at(at);
+                self.stopped = true;
+                self.jogs = false;
+            }
+            Report::Set { at } => {
+                self.interpreter.stand_at(at);
+                if self.wait.take() == Some(Wait::Set) {
+                    self.out.line(format_args!("ok"));
+                }
+            }
             Report::Stopped { at, why } => {
+                self.jogs = false;
                 self.interpreter = interpreter(&self.settings);
                 self.interpreter.stand_at(at);
                 self.stopped = true;
@@ -224,15 +255,18 @@ impl Grbl {
         let stands = matches!(status.activity, Activity::Idle | Activity::Stopped);
         let is_idle = self.alarm.is_some() || (stands && link.commands.is_empty());
         match command {
-            b"" => self.out.line(format_args!("[HLP:$$ $# $G $I $N $J=line $X $H ~ ! ? ctrl-x]")),
+            b"" => self.out.line(format_args!("[HLP:$$ $# $G $I $N $x=val $J=line $X $H ~ ! ? ctrl-x]")),
             b"G" => self.tell_modes(),
             b"$" | b"#" | b"I" | b"N" | b"H" | b"X" if !is_idle => return Err(Code::NOT_IDLE),
             b"$" => self.listing = Some((Listing::Settings, 0)),
             b"#" => self.listing = Some((Listing::Offsets, 0)),
             b"I" => self.listing = Some((Listing::Build, 0)),
             b"N" => self.listing = Some((Listing::Startup, 0)),
-            [b'J', b'=', jog @ ..] if self.alarm.is_none() => return self.jog(jog, link),
-            [b'J', b'=', ..] => return Err(Code::LOCKED),
+            [b'J', b'=', ..] if self.alarm.is_some() => return Err(Code::LOCKED),
+            [b'J', b'=', ..] if !is_idle && !self.is_jogging(status, link) => return Err(Code::NOT_IDLE),
+            [b'J', b'=', jog @ ..] => return self.jog(jog, link),
+            [b'0'..=b'9', ..] if !is_idle => return Err(Code::NOT_IDLE),
+            [b'0'..=b'9', ..] => return self.change(command, link),
             b"H" | b"X" if status.emergency_button => {
                 self.out.line(format_args!("[MSG:{}]", Stop::Emergency));
                 return Err(Code::LOCKED);
@@ -255,8 +289,15 @@ impl Grbl {
         Ok(())
     }
 
+    /// Whether the machine is moved by hand, or is about to be.
+    fn is_jogging(&self, status: &Status, link: &Link) -> bool {
+        let waits = self.jogs && !link.commands.is_empty();
+        status.activity == Activity::Jog || waits
+    }
+
     /// Sends a command that may come after a stop.
     fn command(&mut self, link: &mut Link, command: Command) {
+        self.jogs = matches!(command, Command::Jog { .. });
         if core::mem::take(&mut self.stopped) {
             send(link, Command::GoOn);
         }
@@ -268,19 +309,19 @@ impl Grbl {
         let feed = modes.feed_mm_s.unwrap_or(0.0) * 60.0 / if modes.inches { 25.4 } else { 1.0 };
         self.out.line(format_args!(
             "[GC:G{} G54 G17 G{} G{} G94 M{} M9 T{} F{} S{}]",
-            modes.motion,
-            if modes.inches { 20 } else { 21 },
-            if modes.relative { 91 } else { 90 },
-            modes.spindle,
-            modes.tool,
-            coordinate(feed),
-            coordinate(modes.power),
+            Whole(modes.motion.into()),
+            Plain(if modes.inches { "20" } else { "21" }),
+            Plain(if modes.relative { "91" } else { "90" }),
+            Whole(modes.spindle.into()),
+            Whole(modes.tool.into()),
+            Trimmed(rounded(feed)),
+            Trimmed(rounded(modes.power)),
         ));
     }
 }
 
-fn interpreter(settings: &StepperPlotterSettings) -> Interpreter {
-    Interpreter::with_options(ReadOptions {
+fn interpreter(settings: &StepperPlotterSettings) -> LineInterpreter {
+    LineInterpreter::new(ReadOptions {
         pen: settings.convention(),
         block_delete: BlockDelete::CarryOut,
         ..ReadOptions::default()

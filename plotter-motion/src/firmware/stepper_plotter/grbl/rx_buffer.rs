@@ -1,6 +1,6 @@
 //! [`RxBuffer`]: bytes that have come and wait to be read.
 
-use super::super::Queue;
+use super::super::bytes::Bytes;
 
 /// Bytes that the controller keeps: a program that counts characters sends no more before they are answered.
 pub(super) const RX_BYTES: usize = 128;
@@ -15,7 +15,7 @@ const SPARE: usize = 2;
 /// half a coordinate would be drawn. A line of which a part had found room is answered as too long.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RxBuffer {
-    bytes: Queue<u8, { RX_BYTES + SPARE }>,
+    bytes: Bytes<{ RX_BYTES + SPARE }>,
     /// The byte before.
     last: u8,
     losing: Losing,
@@ -31,7 +31,7 @@ enum Losing {
 
 impl RxBuffer {
     pub(super) const fn new() -> Self {
-        Self { bytes: Queue::new(), last: b'\n', losing: Losing::Nothing }
+        Self { bytes: Bytes::new(), last: b'\n', losing: Losing::Nothing }
     }
 
     pub(super) fn push(&mut self, byte: u8) {
@@ -52,7 +52,7 @@ impl RxBuffer {
         self.losing = losing;
         if let Some(byte) = kept {
             let pushed = self.bytes.push(byte);
-            debug_assert!(pushed.is_ok(), "a line needs no more than the spare room to end");
+            debug_assert!(pushed, "a line needs no more than the spare room to end");
         }
     }
 

@@ -1,35 +1,49 @@
 //! The answer to `?`.
 
-use super::super::{Activity, Link, Status, settings::FULL_POWER};
+use super::super::{Activity, Link, Percents, Status, settings::FULL_POWER};
 use super::codes::{coordinate, coordinates};
 use super::listing::BLOCKS;
 use super::{Grbl, MOST_COMMANDS, REPORTS_WITHOUT_OFFSET};
+use crate::decimal_text::{Decimals, Plain, Whole};
 use core::fmt;
 
 impl Grbl {
     pub(super) fn tell_status(&mut self, status: &Status, link: &Link) {
-        let state = match status.activity {
+        let state = Plain(match status.activity {
             _ if self.alarm.is_some() => "Alarm",
+            Activity::Idle if self.is_jogging(status, link) => "Jog",
             Activity::Idle if !link.commands.is_empty() => "Run",
             Activity::Idle | Activity::Stopped => "Idle",
             Activity::Run => "Run",
+            Activity::Jog => "Jog",
             Activity::Hold { stands: true } => "Hold:0",
             Activity::Hold { stands: false } => "Hold:1",
             Activity::Home => "Home",
-        };
+        });
         let (x, y) = coordinates(status.at);
-        let blocks = link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS);
-        let bytes = self.rx.room();
-        let feed_mm_min = status.speed_mm_s * 60.0;
-        let power = f64::from(status.laser) / f64::from(u16::MAX) * FULL_POWER;
+        let blocks = Whole(link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS) as u64);
+        let bytes = Whole(self.rx.room() as u64);
+        let feed_mm_min = Decimals::<0>(status.speed_mm_s * 60.0);
+        let power = Decimals::<0>(f64::from(status.laser) / f64::from(u16::MAX) * FULL_POWER);
         let pins = Pins {
             x: status.limits.x_min || status.limits.x_max,
             y: status.limits.y_min || status.limits.y_max,
         };
         let offset = self.offset();
+        let overrides = self.overrides_told(status.percents, offset.0.is_some());
         self.out.line(format_args!(
-            "<{state}|MPos:{x:.3},{y:.3},0.000|Bf:{blocks},{bytes}|FS:{feed_mm_min:.0},{power:.0}{pins}{offset}>"
+            "<{state}|MPos:{x},{y},0.000|Bf:{blocks},{bytes}|FS:{feed_mm_min},{power}{pins}{offset}{overrides}>"
         ));
+    }
+
+    /// Overrides are told when they have changed, and now and then; not together with the offset.
+    fn overrides_told(&mut self, percents: Percents, with_offset: bool) -> Told {
+        if with_offset || self.reports_to_overrides > 0 {
+            self.reports_to_overrides = self.reports_to_overrides.saturating_sub(1);
+            return Told(None);
+        }
+        self.reports_to_overrides = REPORTS_WITHOUT_OFFSET;
+        Told(Some(percents))
     }
 
     /// Offsets change seldom, and are told now and then.
@@ -41,6 +55,18 @@ impl Grbl {
         self.reports_to_offset = REPORTS_WITHOUT_OFFSET;
         let offset = self.interpreter.modes().offset;
         Offset(Some((coordinate(offset.x), coordinate(offset.y))))
+    }
+}
+
+/// `|Ov:`.
+struct Told(Option<Percents>);
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.map_or(Ok(()), |Percents { draw, travel, laser }| {
+            let [draw, travel, laser] = [draw, travel, laser].map(|percent| Whole(percent.into()));
+            write!(f, "|Ov:{draw},{travel},{laser}")
+        })
     }
 }
 
@@ -62,10 +88,10 @@ impl fmt::Display for Pins {
 }
 
 /// `|WCO:`.
-struct Offset(Option<(f64, f64)>);
+struct Offset(Option<(Decimals<3>, Decimals<3>)>);
 
 impl fmt::Display for Offset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.map_or(Ok(()), |(x, y)| write!(f, "|WCO:{x:.3},{y:.3},0.000"))
+        self.0.map_or(Ok(()), |(x, y)| write!(f, "|WCO:{x},{y},0.000"))
     }
 }

@@ -13,6 +13,8 @@ use refusal::Refusal;
 
 /// Most bytes of a line. The original's buffer has 64 with the line end, and begins again at its start.
 const MOST_BYTES: usize = 63;
+/// Bytes that wait to be sent.
+const OUTPUT: usize = 512;
 /// Most bytes that one line is answered with.
 const MOST_ANSWER: usize = 320;
 /// Most commands that one line becomes.
@@ -26,7 +28,7 @@ const MOST_SIDE_MM: i32 = 10_000;
 
 /// The receive side for mDraw. One line at a time; each is answered by one `OK`.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct MDraw {
+pub struct MDraw {
     settings: StepperPlotterSettings,
     /// What the host has stored; `settings.stored` is what holds until the next restart.
     stored: StoredSettings,
@@ -49,7 +51,7 @@ pub(super) struct MDraw {
     laser_on: bool,
     /// The motion side waits to hear that its stop has been heard of.
     stopped: bool,
-    out: Output,
+    out: Output<OUTPUT>,
 }
 
 impl MDraw {
@@ -134,11 +136,15 @@ impl MDraw {
     }
 
     fn take(&mut self, report: Report) {
+        // This side neither jogs nor changes settings on the way.
+        if matches!(report, Report::Jogged { .. } | Report::Set { .. }) {
+            return;
+        }
         if report != Report::Done {
             (self.pen_down, self.laser_on) = (false, false);
         }
         let refusal = match report {
-            Report::Done => None,
+            Report::Done | Report::Jogged { .. } | Report::Set { .. } => None,
             Report::Homed { at, result } => {
                 self.stand_at(at);
                 result.err().map(Refusal::Homing)

@@ -1,0 +1,58 @@
+//! What a person does on the way: jogs that are cancelled, other shares of the speeds, other settings.
+
+use super::super::{Command, Link, Percents, Report, Setting};
+use super::{Motion, State, darken, step_gen};
+use crate::Planner;
+use crate::planner::{Keep as _, Modes};
+
+impl<M: Modes> Motion<M> {
+    /// Whether the machine is being moved by hand, or is about to be.
+    pub(super) fn jogs_now(&self, link: &Link) -> bool {
+        let waits = !self.unfinished
+            && self.planner.is_empty()
+            && matches!(link.commands.first(), Some(Command::Jog { .. }));
+        self.state == State::Ready && (self.jogs || waits)
+    }
+
+    /// Brakes what is moved by hand, and forgets the rest of it.
+    pub(super) fn cancel(&mut self, link: &mut Link) {
+        (self.jogs, self.cancelling) = (true, true);
+        self.start_at = None;
+        while let Some(Command::Jog { .. }) = link.commands.first() {
+            link.commands.pop();
+        }
+        self.planner.hold();
+    }
+
+    /// What has been cancelled stands.
+    pub(super) fn jogged(&mut self, link: &mut Link) {
+        self.halt(link);
+        self.state = State::Stopped;
+        let _ = link.reports.push(Report::Jogged { at: self.position_mm() });
+    }
+
+    pub(super) fn override_speeds(&mut self) {
+        let Percents { draw, travel, .. } = self.percents;
+        self.planner.override_speeds(f64::from(draw) / 100.0, f64::from(travel) / 100.0);
+    }
+
+    /// The machine is another one from here on; its motors stay where they are.
+    pub(super) fn set(&mut self, setting: Setting) {
+        let settings = setting.applied(self.settings);
+        let (Ok(cartesian), Ok(planner)) = (settings.cartesian(), Planner::with_modes(settings.limits()))
+        else {
+            debug_assert!(false, "the receive side has looked at {setting:?}");
+            return;
+        };
+        (self.settings, self.cartesian, self.planner) = (settings, cartesian, planner);
+        self.base = self.time_of(self.steps.tick());
+        self.steps = step_gen(cartesian, &settings);
+        self.steps.clear(self.carriage());
+        if let Some(play) = self.play.get_mut() {
+            play.begin_anew(&settings);
+        }
+        self.planner.clear(self.position_mm());
+        darken(&mut self.planner);
+        self.override_speeds();
+    }
+}

@@ -1,0 +1,128 @@
+//! [`Setting`]: one number of a machine's settings, as Grbl numbers them.
+
+use super::StepperPlotterSettings;
+use crate::HomingAxis;
+use core::ops::RangeInclusive;
+
+/// Greatest rate of a motor, pulses/s: ten ticks of the clock a step.
+const MOST_HZ: f64 = 1e5;
+/// Sides of the area, mm: as they are kept.
+const SIDES_MM: RangeInclusive<f64> = 1.0..=65_535.0;
+
+/// One setting of the machine with its value, in Grbl's numbers and units (`$n=value`): see
+/// [`StepperPlotterSettings`](super::StepperPlotterSettings) for what it changes.
+///
+/// | number | meaning | range |
+/// |---|---|---|
+/// | 3 | directions of the motors: 1 turns x round, 2 y; they hold after the next start | 0 to 3 |
+/// | 11 | junction deviation, mm | 0 to 10 |
+/// | 24, 25, 27 | homing: slow and fast, mm/min; from the switch to the origin, mm | up to 100,000 pulses/s; 0.01 to 100 |
+/// | 100, 101 | steps/mm of x and y | 0.01 to 10,000 |
+/// | 110, 111 | greatest speed along the path, mm/min: one for both axes | 0.1 to 600,000; up to 100,000 pulses/s |
+/// | 120, 121 | greatest acceleration along the path, mm/s²: one for both axes | 1 to 1,000,000 |
+/// | 130, 131 | width and height of the area, whole mm | 1 to 65,535 |
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// Grbl's number of it.
+    pub number: u8,
+    /// Its value.
+    pub value: f64,
+}
+
+/// Why a setting is not taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SettingProblem {
+    /// There is no such setting, or it cannot be changed.
+    Fixed,
+    /// It is below 0.
+    Negative,
+    /// It lies outside its range.
+    OutOfRange,
+    /// A motor would have to make more than 100,000 steps/s.
+    StepRate,
+}
+
+impl Setting {
+    /// The settings with this one changed.
+    ///
+    /// ```
+    /// # use plotter_motion::firmware::stepper_plotter::{Setting, SettingProblem, StepperPlotterSettings};
+    /// let settings = StepperPlotterSettings::default();
+    /// let slower = Setting { number: 110, value: 3000.0 }.checked(&settings)?; // mm/min
+    /// assert_eq!(slower.planner.speed_mm_s, 50.0);
+    /// let wrong = Setting { number: 110, value: 1e5 }; // 1667 mm/s of 87.58 steps
+    /// assert_eq!(wrong.checked(&settings), Err(SettingProblem::StepRate));
+    /// # Ok::<(), SettingProblem>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`SettingProblem`]; then nothing is to be changed.
+    pub fn checked(
+        self,
+        settings: &StepperPlotterSettings,
+    ) -> Result<StepperPlotterSettings, SettingProblem> {
+        let Self { number, value } = self;
+        let range = match number {
+            3 => 0.0..=3.0,
+            11 => 0.0..=10.0,
+            24 | 25 => 0.1..=f64::MAX,
+            27 => 0.01..=100.0,
+            100 | 101 => 0.01..=10_000.0,
+            110 | 111 => 0.1..=600_000.0,
+            120 | 121 => 1.0..=1e6,
+            130 | 131 => SIDES_MM,
+            _ => return Err(SettingProblem::Fixed),
+        };
+        if value < 0.0 {
+            return Err(SettingProblem::Negative);
+        }
+        if !range.contains(&value) || (number == 3 && libm::floor(value) != value) {
+            return Err(SettingProblem::OutOfRange);
+        }
+        let settings = self.applied(*settings);
+        let StepperPlotterSettings { x_steps_per_mm, y_steps_per_mm, planner, home_x, home_y, .. } = settings;
+        let speed_mm_s = planner.speed_mm_s.max(planner.travel_speed_mm_s);
+        let homing_hz = home_x.fast_hz.max(home_y.fast_hz).max(home_x.slow_hz).max(home_y.slow_hz);
+        if (speed_mm_s * x_steps_per_mm.max(y_steps_per_mm)).max(homing_hz.into()) > MOST_HZ {
+            return Err(SettingProblem::StepRate);
+        }
+        Ok(settings)
+    }
+
+    /// The settings with this one changed, which has been checked.
+    pub(super) fn applied(self, mut settings: StepperPlotterSettings) -> StepperPlotterSettings {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+        let whole = |value: f64| value as u32;
+        let Self { number, value } = self;
+        let scales = [settings.x_steps_per_mm, settings.y_steps_per_mm];
+        let mut homing = |change: &dyn Fn(&mut HomingAxis, f64)| {
+            change(&mut settings.home_x, scales[0]);
+            change(&mut settings.home_y, scales[1]);
+        };
+        let side_mm = || u16::try_from(whole(value)).unwrap_or(u16::MAX);
+        match number {
+            3 => {
+                let mask = whole(value);
+                settings.stored.x_direction = u8::from(mask & 1 != 0);
+                settings.stored.y_direction = u8::from(mask & 2 != 0);
+            }
+            11 => settings.planner.junction_deviation_mm = value,
+            24 => homing(&|axis, scale| axis.slow_hz = whole(libm::round(value / 60.0 * scale)).max(1)),
+            25 => homing(&|axis, scale| axis.fast_hz = whole(libm::round(value / 60.0 * scale)).max(1)),
+            27 => homing(&|axis, scale| axis.pull_off_steps = whole(libm::round(value * scale)).max(1)),
+            100 => settings.x_steps_per_mm = value,
+            101 => settings.y_steps_per_mm = value,
+            110 | 111 => {
+                settings.planner.speed_mm_s = value / 60.0;
+                settings.planner.travel_speed_mm_s = value / 60.0;
+            }
+            120 | 121 => settings.planner.accel_mm_s2 = value,
+            130 => settings.stored.width_mm = side_mm(),
+            131 => settings.stored.height_mm = side_mm(),
+            _ => {}
+        }
+        settings
+    }
+}

@@ -1,0 +1,95 @@
+//! [`Modes`]: which ways of planning a program is built with.
+
+use super::{PathMode, PlannerSettings};
+use core::fmt::Debug;
+use core::marker::PhantomData;
+
+/// Which ways of planning a program is built with: [`AllModes`], or [`ExactOnly`] for a small one. What both can do they do alike, to
+/// the last bit.
+///
+/// Nobody else implements it.
+pub trait Modes: sealed::Sealed {
+    /// Whether curves within a tolerance and S-curves are there.
+    #[doc(hidden)]
+    const ALL: bool;
+    /// Memory that only those need.
+    #[doc(hidden)]
+    type Kept<T: Part>: Keep<T>;
+}
+
+/// All ways of planning: [`PlannerSettings`] choose one for each job.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct AllModes;
+
+/// [`PathMode::Exact`] with constant accelerations and nothing else. The firmware of the stepper plotter takes a fifth less program
+/// memory with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct ExactOnly;
+
+impl Modes for AllModes {
+    const ALL: bool = true;
+    type Kept<T: Part> = Here<T>;
+}
+
+impl Modes for ExactOnly {
+    const ALL: bool = false;
+    type Kept<T: Part> = Nowhere<T>;
+}
+
+mod sealed {
+    pub trait Sealed: Clone + core::fmt::Debug + PartialEq {}
+    impl Sealed for super::AllModes {}
+    impl Sealed for super::ExactOnly {}
+}
+
+/// What can be kept.
+#[doc(hidden)]
+pub trait Part: Clone + Debug + Default + PartialEq {}
+impl<T: Clone + Debug + Default + PartialEq> Part for T {}
+
+/// What is kept, or not.
+#[doc(hidden)]
+pub trait Keep<T>: Part {
+    fn get(&self) -> Option<&T>;
+    fn get_mut(&mut self) -> Option<&mut T>;
+}
+
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Here<T>(T);
+
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Nowhere<T>(PhantomData<T>);
+
+impl<T: Part> Keep<T> for Here<T> {
+    fn get(&self) -> Option<&T> {
+        Some(&self.0)
+    }
+
+    fn get_mut(&mut self) -> Option<&mut T> {
+        Some(&mut self.0)
+    }
+}
+
+impl<T: Part> Keep<T> for Nowhere<T> {
+    fn get(&self) -> Option<&T> {
+        None
+    }
+
+    fn get_mut(&mut self) -> Option<&mut T> {
+        None
+    }
+}
+
+impl PlannerSettings {
+    /// The way to follow the path: only what these modes can do is left in the program.
+    pub(super) const fn path_of<M: Modes>(&self) -> PathMode {
+        if M::ALL { self.path } else { PathMode::Exact }
+    }
+
+    /// As [`Self::path_of`], the jerk.
+    pub(super) const fn jerk_of<M: Modes>(&self) -> Option<f64> {
+        if M::ALL { self.jerk_mm_s3 } else { None }
+    }
+}
