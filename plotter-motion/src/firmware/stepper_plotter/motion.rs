@@ -40,7 +40,6 @@ enum State {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion<M: Modes = AllModes> {
     settings: StepperPlotterSettings,
-    cartesian: Cartesian,
     planner: Planner<BLOCKS, M>,
     steps: StepGen<Cartesian, M>,
     gate: SafetyGate,
@@ -98,7 +97,6 @@ impl<M: Modes> Motion<M> {
         );
         Ok(Self {
             settings,
-            cartesian,
             planner,
             steps,
             gate: SafetyGate::default(),
@@ -242,7 +240,7 @@ impl<M: Modes> Motion<M> {
     /// Where the pen is by the steps really made, mm.
     #[must_use]
     pub fn position_mm(&self) -> Point {
-        self.cartesian.point_at(self.position.into())
+        self.steps.kinematics().point_at(self.position.into())
     }
 
     /// What the receive side may know.
@@ -456,7 +454,7 @@ impl<M: Modes> Motion<M> {
                 } else {
                     self.settings.pen_settle
                 };
-                let run = HomingRun::new(&self.settings, now.saturating_add(settle));
+                let run = HomingRun::new(now.saturating_add(settle));
                 self.state = State::Homing(run);
             }
             Command::Pause => self.hold(),
@@ -478,7 +476,7 @@ impl<M: Modes> Motion<M> {
 
     /// One turn of homing.
     fn home(&mut self, mut run: HomingRun, now: Duration, link: &mut Link) -> Option<Step> {
-        let result = match run.next(self.gate.limits()) {
+        let result = match run.next(&self.settings, self.gate.limits()) {
             Ok((at, _)) if at > now => {
                 self.due = Some(at);
                 self.state = State::Homing(run);

@@ -2,7 +2,7 @@
 
 use super::super::{Command, Link, StoredSettings, area};
 use super::codes::{Alarm, Code};
-use super::{Grbl, Wait, send};
+use super::{Grbl, Wait, read_options, send};
 use crate::gcode::{Block, Outcomes, Problem, Reader, Word};
 use crate::{PlotOp, Point};
 
@@ -40,7 +40,7 @@ impl Grbl {
         let mut to = None;
         for block in travel {
             let mut outcomes = Outcomes::NONE;
-            interpreter.carry_out(&block, &mut outcomes).map_err(Code::of)?;
+            interpreter.carry_out(&block, &read_options(&self.settings), &mut outcomes).map_err(Code::of)?;
             while let Some(op) = outcomes.take() {
                 to = op.map_err(Code::of)?.target().or(to);
             }
@@ -64,7 +64,7 @@ impl Grbl {
     fn carry_out(&mut self, block: &Block, link: &mut Link) -> Result<(), Code> {
         let before = self.interpreter.modes();
         let mut outcomes = Outcomes::NONE;
-        self.interpreter.carry_out(block, &mut outcomes).map_err(Code::of)?;
+        self.interpreter.carry_out(block, &read_options(&self.settings), &mut outcomes).map_err(Code::of)?;
         let mut ops = [None; super::MOST_COMMANDS];
         let mut slots = ops.iter_mut();
         let mut pauses = false;

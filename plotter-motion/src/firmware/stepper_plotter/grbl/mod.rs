@@ -21,7 +21,7 @@ use rx_buffer::RxBuffer;
 /// Most bytes that are written at one time: an alarm with its message, and the line's answer.
 const MOST_ANSWER: usize = 208;
 /// Bytes that wait to be sent.
-const OUTPUT: usize = 256;
+const OUTPUT: usize = 224;
 /// The longest way of telling the offset only now and then: so many reports without it.
 const REPORTS_WITHOUT_OFFSET: u8 = 10;
 
@@ -58,7 +58,7 @@ impl Grbl {
             settings,
             rx: RxBuffer::new(),
             line: LineBuffer::new(),
-            interpreter: interpreter(&settings),
+            interpreter: LineInterpreter::new(),
             wait: None,
             listing: None,
             alarm: None,
@@ -197,7 +197,7 @@ impl Grbl {
                 }
             }
             Report::Stopped { at, why } => {
-                self.interpreter = interpreter(&self.settings);
+                self.interpreter = LineInterpreter::new();
                 self.interpreter.stand_at(at);
                 self.stopped = true;
                 match why {
@@ -281,12 +281,9 @@ impl Grbl {
     }
 }
 
-fn interpreter(settings: &StepperPlotterSettings) -> LineInterpreter {
-    LineInterpreter::new(ReadOptions {
-        pen: settings.convention(),
-        block_delete: BlockDelete::CarryOut,
-        ..ReadOptions::default()
-    })
+/// How lines are read.
+fn read_options(settings: &StepperPlotterSettings) -> ReadOptions {
+    ReadOptions { pen: settings.convention(), block_delete: BlockDelete::CarryOut, ..ReadOptions::default() }
 }
 
 fn send(link: &mut Link, command: Command) {
