@@ -72,7 +72,6 @@ fn digits(f: &mut fmt::Formatter<'_>, number: u64, places: usize) -> fmt::Result
         if rest == 0 && count > places {
             break;
         }
-        #[expect(clippy::cast_possible_truncation, reason = "a digit")]
         let digit = (rest % 10) as u8;
         (*slot, rest, count) = (b'0' + digit, rest / 10, count + 1);
     }

@@ -33,8 +33,13 @@ const ENDS: [(Axis, Direction); 4] = [
     (Axis::Y, Direction::Plus),
 ];
 
-/// What is put together where it stays: there is no room for a second one on the stack.
 type Controller = Result<StepperPlotter, SettingsError>;
+
+/// The controller, where it stays. By itself, so that the stack is free again of what it takes to put it there.
+#[inline(never)]
+fn controller() -> Option<&'static mut StepperPlotter> {
+    singleton!(CELL: Controller = StepperPlotter::with_modes(PLOTTER))?.as_mut().ok()
+}
 
 #[entry]
 fn main() -> ! {
@@ -70,9 +75,7 @@ fn main() -> ! {
         }
         (now, _) = board.wait(Some(now + LOOK));
     }
-    let Some(Ok(plotter)) = singleton!(CELL: Controller = StepperPlotter::with_modes(PLOTTER)) else {
-        board::halt()
-    };
+    let Some(plotter) = controller() else { board::halt() };
     if was_bitten {
         // Where the motors stand is not known: a person looks first, and says so by `$X` or by homing.
         board.notify(Notice::Bitten);

@@ -37,7 +37,6 @@ pub struct Receive {
     host: Either,
 }
 
-#[expect(clippy::large_enum_variant, reason = "there is one host to a machine, and no heap to put it on")]
 #[derive(Clone, Debug, PartialEq)]
 enum Either {
     MDraw(MDraw),

@@ -11,6 +11,7 @@ const LEAST_FEED_MM_S: f64 = 1e-3;
 
 impl Grbl {
     /// Carries a line out as a whole, or not at all.
+    #[inline(never)] // its memory on the stack is for its own time only, as that of a jog
     pub(super) fn block(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
         let Some(block) = read(text)? else { return Ok(()) };
         let before = self.interpreter;
@@ -22,6 +23,7 @@ impl Grbl {
     }
 
     /// A movement by hand: with the pen up, at the speed of travels. Of its line only the place is kept.
+    #[inline(never)]
     pub(super) fn jog(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
         let block = read(text)?.ok_or(Code::BAD_JOG)?;
         let is_allowed = |word: &Word| match word.letter {

@@ -290,3 +290,30 @@ fn send(link: &mut Link, command: Command) {
     let sent = link.commands.push(command);
     debug_assert!(sent.is_ok(), "room was looked at before");
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Axis, Direction, HomingError};
+    use std::format;
+
+    #[test]
+    fn the_longest_answers_find_room() {
+        let (axis, end, steps) = (Axis::X, Direction::Minus, u32::MAX);
+        let homing = [
+            HomingError::Missing { axis, end, steps },
+            HomingError::Stuck { axis, end, steps },
+            HomingError::Wrong { axis, end },
+            HomingError::Both { axis },
+            HomingError::Short { axis, steps },
+            HomingError::Early { axis, steps },
+        ];
+        let stops = [Stop::Emergency, Stop::Limit { axis, end }];
+        let texts =
+            homing.map(|error| format!("{error}")).into_iter().chain(stops.map(|stop| format!("{stop}")));
+        for text in texts {
+            let answer = format!("ALARM:10\r\n[MSG:{text}]\r\nerror:9\r\n");
+            assert!(answer.len() <= MOST_ANSWER, "{} bytes: {answer}", answer.len());
+        }
+    }
+}
