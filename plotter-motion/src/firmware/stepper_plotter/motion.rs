@@ -161,6 +161,11 @@ impl<M: Modes> Motion<M> {
         self.due
     }
 
+    /// Commands have come for a side that waits for nothing.
+    pub(super) fn wake(&mut self, now: Duration) {
+        self.due = self.due.or(Some(now));
+    }
+
     /// Takes a signal from the receive side.
     pub fn signal(&mut self, now: Duration, signal: Signal, link: &mut Link) {
         match signal {
