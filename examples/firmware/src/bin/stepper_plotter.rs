@@ -98,15 +98,16 @@ fn main() -> ! {
                 failed |= motors.step(step.pulse, now).is_err() | laser.moved(now).is_err();
                 board.stepped(step);
             }
-            while board.can_send()
-                && let Some(byte) = plotter.transmit(now)
-            {
-                board.send(byte);
-            }
             failed |= laser.shine(now, plotter.beam()).is_err();
             if pen_deg.replace(plotter.pen_deg()) != Some(plotter.pen_deg()) {
                 failed |= servo.turn_to(now, f32::from(plotter.pen_deg())).is_err();
             }
+        }
+        // A long answer goes on whenever there is room for more of it.
+        while board.can_send()
+            && let Some(byte) = plotter.transmit(now)
+        {
+            board.send(byte);
         }
         if failed {
             // Nothing that cannot be trusted goes on: all is switched off until the machine is.
