@@ -282,12 +282,20 @@ enum Phase {
 pub struct Homing {
     x: HomingAxis,
     y: HomingAxis,
+    progress: HomingProgress,
+}
+
+/// How far homing has come: all of [`Homing`] but the axes, which it is told each time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct HomingProgress {
     axis: Axis,
     phase: Phase,
     /// Steps made in this phase.
     taken: u32,
     /// Whether the switch that the phase leaves has opened, and after how many steps.
     opened: Option<u32>,
+    /// The axis has turned out to be shorter than was said.
+    is_shorter: bool,
     /// Steps from where the lower switch was touched.
     count: i64,
     homed: Homed,
@@ -304,24 +312,36 @@ impl Homing {
 
     /// Homing of both axes, from wherever they stand.
     #[must_use]
-    pub fn new(x: HomingAxis, y: HomingAxis) -> Self {
-        let checked = |axis: HomingAxis| HomingAxis { pull_off_steps: axis.pull_off_steps.max(1), ..axis };
-        Self {
-            x: checked(x),
-            y: checked(y),
-            axis: Axis::X,
-            phase: Phase::Start,
-            taken: 0,
-            opened: None,
-            count: 0,
-            homed: Homed::default(),
-            wanted: None,
-            ended: None,
-        }
+    pub const fn new(x: HomingAxis, y: HomingAxis) -> Self {
+        Self { x, y, progress: HomingProgress::START }
     }
 
     /// What is wanted, with the limit switches as they are now: to be called before every step.
     pub fn update(&mut self, limits: LimitSwitches) -> HomingStatus {
+        self.progress.update([&self.x, &self.y], limits)
+    }
+
+    /// The step that was wanted has been made. A step that was not made (an emergency stop) is simply not told.
+    pub fn made(&mut self) {
+        self.progress.made();
+    }
+}
+
+impl HomingProgress {
+    pub(crate) const START: Self = Self {
+        axis: Axis::X,
+        phase: Phase::Start,
+        taken: 0,
+        opened: None,
+        is_shorter: false,
+        count: 0,
+        homed: Homed { x_steps: 0, y_steps: 0 },
+        wanted: None,
+        ended: None,
+    };
+
+    /// As [`Homing::update`].
+    pub(crate) fn update(&mut self, axes: [&HomingAxis; 2], limits: LimitSwitches) -> HomingStatus {
         // Ends: every phase wants a step, fails, or is followed by one that wants a step.
         loop {
             match self.ended {
@@ -329,10 +349,14 @@ impl Homing {
                 Some(Err(error)) => return HomingStatus::Failed(error),
                 None => {}
             }
-            match self.look(limits) {
+            match self.look(self.settings(axes), limits) {
                 Ok(Some(direction)) => {
                     self.wanted = Some(direction);
-                    let step = HomingStep { axis: self.axis, direction, rate_hz: self.rate_hz() };
+                    let step = HomingStep {
+                        axis: self.axis,
+                        direction,
+                        rate_hz: self.rate_hz(&self.settings(axes)),
+                    };
                     return HomingStatus::Step(step);
                 }
                 Ok(None) => {} // the next phase looks at once
@@ -342,26 +366,19 @@ impl Homing {
         }
     }
 
-    /// The step that was wanted has been made. A step that was not made (an emergency stop) is simply not told.
-    pub fn made(&mut self) {
+    /// As [`Homing::made`].
+    pub(crate) fn made(&mut self) {
         if let Some(direction) = self.wanted.take() {
             self.taken = self.taken.saturating_add(1);
             self.count += i64::from(direction.sign());
         }
     }
 
-    fn settings(&self) -> HomingAxis {
-        match self.axis {
-            Axis::X => self.x,
-            Axis::Y => self.y,
-        }
-    }
-
-    const fn settings_mut(&mut self) -> &mut HomingAxis {
-        match self.axis {
-            Axis::X => &mut self.x,
-            Axis::Y => &mut self.y,
-        }
+    /// The axis in hand, as it is now known to be.
+    fn settings(&self, [x, y]: [&HomingAxis; 2]) -> HomingAxis {
+        let axis = if self.axis == Axis::X { *x } else { *y };
+        let known_steps = if self.is_shorter { 0 } else { axis.known_steps };
+        HomingAxis { pull_off_steps: axis.pull_off_steps.max(1), known_steps, ..axis }
     }
 
     fn enter(&mut self, phase: Phase) {
@@ -369,9 +386,12 @@ impl Homing {
     }
 
     /// The direction of the step that the phase wants; none where it is over.
-    fn look(&mut self, limits: LimitSwitches) -> Result<Option<Direction>, HomingError> {
+    fn look(
+        &mut self,
+        settings: HomingAxis,
+        limits: LimitSwitches,
+    ) -> Result<Option<Direction>, HomingError> {
         let axis = self.axis;
-        let settings = self.settings();
         let pressed = |end| limits.blocks(axis, end);
         if pressed(Direction::Minus) && pressed(Direction::Plus) {
             return Err(HomingError::Both { axis });
@@ -387,7 +407,7 @@ impl Homing {
                 Ok(None)
             }
             Phase::Seek(end) => {
-                self.leave(opposite(end), pressed(opposite(end)))?;
+                self.leave(&settings, opposite(end), pressed(opposite(end)))?;
                 if !pressed(end) {
                     self.within(settings.most_steps, end)?;
                     return Ok(Some(end));
@@ -395,7 +415,7 @@ impl Homing {
                 if end == Direction::Plus && self.taken < settings.known_steps {
                     // Met where the axis was said to go on, perhaps at a rate that cannot be stopped without losing
                     // steps: all over again, without that knowledge.
-                    self.settings_mut().known_steps = 0;
+                    self.is_shorter = true;
                     self.enter(Phase::Seek(Direction::Minus));
                 } else {
                     self.enter(Phase::Leave(end));
@@ -406,7 +426,7 @@ impl Homing {
                 if pressed(opposite(end)) {
                     return Err(HomingError::Wrong { axis, end: opposite(end) });
                 }
-                self.leave(end, pressed(end))?;
+                self.leave(&settings, end, pressed(end))?;
                 if self.opened.is_some_and(|opened| self.taken - opened >= settings.pull_off_steps) {
                     self.enter(Phase::Touch(end));
                     return Ok(None);
@@ -418,14 +438,14 @@ impl Homing {
                     return Err(HomingError::Wrong { axis, end: opposite(end) });
                 }
                 if pressed(end) {
-                    self.touched(end)?;
+                    self.touched(&settings, end)?;
                     return Ok(None);
                 }
                 self.within(settings.pull_off_steps.saturating_add(settings.release_steps), end)?;
                 Ok(Some(end))
             }
             Phase::Return => {
-                self.leave(Direction::Plus, pressed(Direction::Plus))?;
+                self.leave(&settings, Direction::Plus, pressed(Direction::Plus))?;
                 let origin = i64::from(settings.pull_off_steps);
                 if pressed(Direction::Minus) {
                     return Err(HomingError::Early {
@@ -437,7 +457,7 @@ impl Homing {
                     return Ok(Some(Direction::Minus));
                 }
                 if axis == Axis::X {
-                    self.axis = Axis::Y;
+                    (self.axis, self.is_shorter) = (Axis::Y, false);
                     self.enter(Phase::Start);
                 } else {
                     self.ended = Some(Ok(self.homed));
@@ -448,14 +468,14 @@ impl Homing {
     }
 
     /// The switch at `end` was met slowly: the lower one is where counting begins, the upper one where it ends.
-    fn touched(&mut self, end: Direction) -> Result<(), HomingError> {
+    fn touched(&mut self, settings: &HomingAxis, end: Direction) -> Result<(), HomingError> {
         if end == Direction::Minus {
             self.count = 0;
             self.enter(Phase::Seek(Direction::Plus));
             return Ok(());
         }
         let (axis, steps) = (self.axis, u32::try_from(self.count).unwrap_or_default());
-        if steps <= self.settings().pull_off_steps.saturating_mul(2) {
+        if steps <= settings.pull_off_steps.saturating_mul(2) {
             return Err(HomingError::Short { axis, steps });
         }
         match axis {
@@ -467,9 +487,9 @@ impl Homing {
     }
 
     /// Watches the switch at `end`, which this phase goes away from: pressed, it opens soon; open, it stays so.
-    fn leave(&mut self, end: Direction, pressed: bool) -> Result<(), HomingError> {
+    fn leave(&mut self, settings: &HomingAxis, end: Direction, pressed: bool) -> Result<(), HomingError> {
         let (axis, steps) = (self.axis, self.taken);
-        let is_near = steps < self.settings().release_steps;
+        let is_near = steps < settings.release_steps;
         match (pressed, self.opened) {
             (false, None) => self.opened = Some(steps),
             (true, None) if !is_near => return Err(HomingError::Stuck { axis, end, steps }),
@@ -491,8 +511,7 @@ impl Homing {
     }
 
     /// How fast the next step may be: v² = v0² + 2 a s from where the phase began, and from where it must be slow.
-    fn rate_hz(&self) -> u32 {
-        let settings = self.settings();
+    fn rate_hz(&self, settings: &HomingAxis) -> u32 {
         let start_hz = settings.start_hz.min(settings.fast_hz).max(1);
         let slow_hz = settings.slow_hz.clamp(1, start_hz);
         // Steps for which the way is known to be free; the last of them is slow already.

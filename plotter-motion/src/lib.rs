@@ -54,6 +54,7 @@ pub use config::{
 pub use config::{TomlError, TomlPlace};
 pub use encoder::{Phases, QuadratureX1, QuadratureX2, QuadratureX4};
 pub use geom::{Point, Segment, Vec2};
+pub(crate) use homing::HomingProgress;
 pub use homing::{Homed, Homing, HomingAxis, HomingError, HomingStatus, HomingStep};
 pub use pid::{Pid, PidState, SumPid, SumPidState};
 pub use planner::{

@@ -76,6 +76,7 @@ impl Outcomes {
 /// - The power of a laser is told before the first line that needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interpreter {
+    options: ReadOptions,
     line: LineInterpreter,
     outcomes: Outcomes,
 }
@@ -83,7 +84,6 @@ pub struct Interpreter {
 /// What of an [`Interpreter`] holds from one line to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LineInterpreter {
-    options: ReadOptions,
     machine: Machine,
 }
 
@@ -104,7 +104,7 @@ impl Interpreter {
     /// A machine that has just been switched on.
     #[must_use]
     pub fn with_options(options: ReadOptions) -> Self {
-        Self { line: LineInterpreter::new(options), outcomes: Outcomes::NONE }
+        Self { options, line: LineInterpreter::new(), outcomes: Outcomes::NONE }
     }
 
     /// Takes the next line, or the error that the reader gave instead.
@@ -114,7 +114,9 @@ impl Interpreter {
     /// [`Undrained`] when [`Interpreter::next_op`] still has something to give; the line is not taken.
     pub fn push(&mut self, block: Result<Block, Error>) -> Result<(), Undrained> {
         self.drained()?;
-        if let Err(error) = block.and_then(|block| self.line.carry_out(&block, &mut self.outcomes)) {
+        if let Err(error) =
+            block.and_then(|block| self.line.carry_out(&block, &self.options, &mut self.outcomes))
+        {
             self.outcomes = Outcomes::NONE;
             self.outcomes.give(Err(error));
         }
@@ -128,7 +130,7 @@ impl Interpreter {
     /// As [`Interpreter::push`].
     pub fn finish(&mut self) -> Result<(), Undrained> {
         self.drained()?;
-        self.line.machine.leave_dot(&self.line.options, &mut self.outcomes);
+        self.line.machine.leave_dot(&self.options, &mut self.outcomes);
         Ok(())
     }
 
@@ -156,8 +158,8 @@ impl Interpreter {
 
 impl LineInterpreter {
     /// A machine that has just been switched on.
-    pub(crate) fn new(options: ReadOptions) -> Self {
-        Self { options, machine: Machine::new() }
+    pub(crate) fn new() -> Self {
+        Self { machine: Machine::new() }
     }
 
     /// As [`Interpreter::modes`].
@@ -171,15 +173,20 @@ impl LineInterpreter {
     }
 
     /// Carries a line out as a whole, or not at all: what `out` has after an error is none of it.
-    pub(crate) fn carry_out(&mut self, block: &Block, out: &mut Outcomes) -> Result<(), Error> {
-        if block.is_deleted() && self.options.block_delete == BlockDelete::LeaveOut {
+    pub(crate) fn carry_out(
+        &mut self,
+        block: &Block,
+        options: &ReadOptions,
+        out: &mut Outcomes,
+    ) -> Result<(), Error> {
+        if block.is_deleted() && options.block_delete == BlockDelete::LeaveOut {
             return Ok(());
         }
         (out.count, out.taken) = (0, 0);
         let line = Line::read(block)?;
         // What an error leaves half done is forgotten.
         let mut machine = self.machine;
-        machine.carry_out(&line, &self.options, out)?;
+        machine.carry_out(&line, options, out)?;
         self.machine = machine;
         Ok(())
     }

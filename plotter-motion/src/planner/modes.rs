@@ -21,7 +21,7 @@ pub trait Modes: sealed::Sealed {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct AllModes;
 
-/// [`PathMode::Exact`] with constant accelerations and nothing else. The firmware of the stepper plotter takes a fifth less program
+/// [`PathMode::Exact`] with constant accelerations and nothing else. The firmware of the stepper plotter takes a quarter less program
 /// memory with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ExactOnly;

@@ -241,6 +241,12 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         }
     }
 
+    /// How the motors move the pen.
+    #[must_use]
+    pub const fn kinematics(&self) -> &K {
+        &self.kinematics
+    }
+
     /// Where the motors have been stepped to.
     #[must_use]
     pub const fn steps(&self) -> StepPoint {

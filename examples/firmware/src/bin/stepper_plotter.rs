@@ -33,8 +33,13 @@ const ENDS: [(Axis, Direction); 4] = [
     (Axis::Y, Direction::Plus),
 ];
 
-/// What is put together where it stays: there is no room for a second one on the stack.
 type Controller = Result<StepperPlotter, SettingsError>;
+
+/// The controller, where it stays. By itself, so that the stack is free again of what it takes to put it there.
+#[inline(never)]
+fn controller() -> Option<&'static mut StepperPlotter> {
+    singleton!(CELL: Controller = StepperPlotter::with_modes(PLOTTER))?.as_mut().ok()
+}
 
 #[entry]
 fn main() -> ! {
@@ -70,9 +75,7 @@ fn main() -> ! {
         }
         (now, _) = board.wait(Some(now + LOOK));
     }
-    let Some(Ok(plotter)) = singleton!(CELL: Controller = StepperPlotter::with_modes(PLOTTER)) else {
-        board::halt()
-    };
+    let Some(plotter) = controller() else { board::halt() };
     if was_bitten {
         // Where the motors stand is not known: a person looks first, and says so by `$X` or by homing.
         board.notify(Notice::Bitten);
@@ -95,15 +98,16 @@ fn main() -> ! {
                 failed |= motors.step(step.pulse, now).is_err() | laser.moved(now).is_err();
                 board.stepped(step);
             }
-            while board.can_send()
-                && let Some(byte) = plotter.transmit(now)
-            {
-                board.send(byte);
-            }
             failed |= laser.shine(now, plotter.beam()).is_err();
             if pen_deg.replace(plotter.pen_deg()) != Some(plotter.pen_deg()) {
                 failed |= servo.turn_to(now, f32::from(plotter.pen_deg())).is_err();
             }
+        }
+        // A long answer goes on whenever there is room for more of it.
+        while board.can_send()
+            && let Some(byte) = plotter.transmit(now)
+        {
+            board.send(byte);
         }
         if failed {
             // Nothing that cannot be trusted goes on: all is switched off until the machine is.

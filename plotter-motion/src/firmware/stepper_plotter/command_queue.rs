@@ -8,13 +8,16 @@ use core::time::Duration;
 pub const COMMANDS: usize = 27;
 /// Most commands that one line of G-code becomes: what the interpreter gives, and what goes before and after it.
 pub(super) const COMMANDS_OF_A_LINE: usize = 12;
-/// Words that the commands of one line take at most: an arc, three dots with the power of a laser, and what takes a word or two.
-const WORDS_OF_A_LINE: usize = 48;
+/// Words that the commands of one line take at most, and some: an arc, two dots, the power of a laser for each, a pause, the pen that is
+/// lifted.
+const WORDS_OF_A_LINE: usize = 56;
 /// Words of a line that is drawn, and of the longest command, an arc.
-const WORDS_OF_A_DRAW: usize = 4;
-const MOST_WORDS: usize = 7;
+const WORDS_OF_A_DRAW: usize = 7;
+const MOST_WORDS: usize = 13;
 /// Words for all: fifteen lines that are drawn, or eight arcs, and one more line of G-code.
 const WORDS: usize = (COMMANDS - COMMANDS_OF_A_LINE) * WORDS_OF_A_DRAW + WORDS_OF_A_LINE;
+/// Most numbers of a command.
+const MOST_NUMBERS: usize = 6;
 
 /// The commands that wait, first in, first out: fifteen lines or eight arcs, and those of one more line of G-code.
 ///
@@ -26,8 +29,8 @@ const WORDS: usize = (COMMANDS - COMMANDS_OF_A_LINE) * WORDS_OF_A_DRAW + WORDS_O
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandQueue {
-    /// Of each command first what it is, how many numbers follow, and a small number; then those numbers, the bits of an `f64` each.
-    words: [u64; WORDS],
+    /// Of each command first what it is, how many numbers follow, and two small ones; then those numbers, the bits of an `f64` in two words.
+    words: [u32; WORDS],
     first: usize,
     used: usize,
     len: usize,
@@ -52,27 +55,30 @@ impl CommandQueue {
     ///
     /// `command` itself when there is no room for it.
     pub fn push(&mut self, command: Command) -> Result<(), Command> {
-        let Packed { kind, small, numbers, count } = Packed::of(command);
-        if self.len == COMMANDS || WORDS - self.used < count + 1 {
+        let Packed { head, numbers } = Packed::of(command);
+        let [_, count, ..] = head;
+        if self.len == COMMANDS || WORDS - self.used < words(count) {
             return Err(command);
         }
-        self.put(u64::from(kind) | (count as u64) << 8 | u64::from(small) << 32);
-        for number in numbers.iter().take(count) {
-            self.put(number.to_bits());
+        self.put(u32::from_le_bytes(head));
+        for number in numbers.iter().take(count.into()) {
+            let [a, b, c, d, e, f, g, h] = number.to_le_bytes();
+            self.put(u32::from_le_bytes([a, b, c, d]));
+            self.put(u32::from_le_bytes([e, f, g, h]));
         }
         self.len += 1;
         Ok(())
     }
 
-    fn put(&mut self, word: u64) {
+    fn put(&mut self, word: u32) {
         if let Some(slot) = self.words.get_mut((self.first + self.used) % WORDS) {
             *slot = word;
             self.used += 1;
         }
     }
 
-    fn word(&self, index: usize) -> u64 {
-        self.words.get((self.first + index) % WORDS).copied().unwrap_or_default()
+    fn word(&self, index: usize) -> [u8; 4] {
+        self.words.get((self.first + index) % WORDS).copied().unwrap_or_default().to_le_bytes()
     }
 
     /// The first command, which stays.
@@ -82,22 +88,21 @@ impl CommandQueue {
             return None;
         }
         let head = self.word(0);
-        let [kind, count, ..] = head.to_le_bytes();
-        let mut numbers = [0.0; MOST_WORDS - 1];
-        for (slot, index) in numbers.iter_mut().zip(1..=usize::from(count)) {
-            *slot = f64::from_bits(self.word(index));
+        let [_, count, ..] = head;
+        let mut numbers = [0.0; MOST_NUMBERS];
+        for (slot, index) in numbers.iter_mut().zip(0..count) {
+            let ([a, b, c, d], [e, f, g, h]) = (self.word(words(index)), self.word(words(index) + 1));
+            *slot = f64::from_le_bytes([a, b, c, d, e, f, g, h]);
         }
-        let small = (head >> 32) as u32;
-        Some(Packed { kind, small, numbers, count: count.into() }.command())
+        Some(Packed { head, numbers }.command())
     }
 
     /// Takes the first command out.
     pub fn pop(&mut self) -> Option<Command> {
         let command = self.first()?;
-        let [_, count, ..] = self.word(0).to_le_bytes();
-        let words = 1 + usize::from(count);
-        self.first = (self.first + words) % WORDS;
-        (self.used, self.len) = (self.used - words, self.len - 1);
+        let [_, count, ..] = self.word(0);
+        self.first = (self.first + words(count)) % WORDS;
+        (self.used, self.len) = (self.used - words(count), self.len - 1);
         Some(command)
     }
 
@@ -124,71 +129,73 @@ impl CommandQueue {
     }
 }
 
-/// A command as words: numbers are those of its operation, in their order.
+/// Words of a command with so many numbers.
+fn words(numbers: u8) -> usize {
+    1 + 2 * usize::from(numbers)
+}
+
+/// A command as it is kept: what it is, how many numbers it has, two small ones; and the numbers.
 struct Packed {
-    kind: u8,
-    small: u32,
-    numbers: [f64; MOST_WORDS - 1],
-    count: usize,
+    head: [u8; 4],
+    numbers: [f64; MOST_NUMBERS],
 }
 
 impl Packed {
     fn of(command: Command) -> Self {
-        let (kind, small) = match command {
+        let head = match command {
             Command::Plot(op) => return Self::of_op(op),
             Command::Jog { to, speed_mm_s } => {
-                let numbers = [to.x, to.y, speed_mm_s, 0.0, 0.0, 0.0];
-                return Self { kind: 14, small: 0, numbers, count: 3 };
+                return Self { head: [14, 3, 0, 0], numbers: [to.x, to.y, speed_mm_s, 0.0, 0.0, 0.0] };
             }
             Command::Set(Setting { number, value }) => {
-                let numbers = [value, 0.0, 0.0, 0.0, 0.0, 0.0];
-                return Self { kind: 15, small: number.into(), numbers, count: 1 };
+                return Self { head: [15, 1, number, 0], numbers: [value, 0.0, 0.0, 0.0, 0.0, 0.0] };
             }
-            Command::Servo(deg) => (7, deg.into()),
-            Command::PenAngles { up_deg, down_deg } => (8, u32::from(up_deg) | u32::from(down_deg) << 8),
-            Command::Home => (9, 0),
-            Command::Pause => (10, 0),
-            Command::Finish => (11, 0),
-            Command::GoOn => (12, 0),
-            Command::Unlock => (13, 0),
+            Command::Servo(deg) => [7, 0, deg, 0],
+            Command::PenAngles { up_deg, down_deg } => [8, 0, up_deg, down_deg],
+            Command::Home => [9, 0, 0, 0],
+            Command::Pause => [10, 0, 0, 0],
+            Command::Finish => [11, 0, 0, 0],
+            Command::GoOn => [12, 0, 0, 0],
+            Command::Unlock => [13, 0, 0, 0],
         };
-        Self { kind, small, numbers: [0.0; MOST_WORDS - 1], count: 0 }
+        Self { head, numbers: [0.0; MOST_NUMBERS] }
     }
 
     fn of_op(op: PlotOp) -> Self {
-        let mut numbers = [0.0; MOST_WORDS - 1];
+        let mut numbers = [0.0; MOST_NUMBERS];
         let [a, b, c, d, e, f] = &mut numbers;
-        let (mut kind, mut small, mut count) = (0, 0, 2);
-        // A speed that is left to the machine is none at all.
+        // A speed that is left to the machine is no number.
         let speed = |feed_mm_s: Option<f64>| feed_mm_s.unwrap_or(f64::NAN);
-        match op {
-            PlotOp::Travel { to } => (*a, *b) = (to.x, to.y),
+        let head = match op {
+            PlotOp::Travel { to } => {
+                (*a, *b) = (to.x, to.y);
+                [0, 2, 0, 0]
+            }
             PlotOp::Draw { to, feed_mm_s } => {
                 (*a, *b, *c) = (to.x, to.y, speed(feed_mm_s));
-                (kind, count) = (1, 3);
+                [1, 3, 0, 0]
             }
             PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } => {
                 (*a, *b, *c) = (to.x, to.y, speed(feed_mm_s));
                 (*d, *e, *f) = (centre.x, centre.y, sweep_rad);
-                (kind, count) = (2, 6);
+                [2, 6, 0, 0]
             }
             PlotOp::LaserPower { share } => {
                 *a = share;
-                (kind, count) = (3, 1);
+                [3, 1, 0, 0]
             }
             PlotOp::Dwell { duration } => {
-                *a = f64::from_bits(duration.as_secs());
-                (kind, small, count) = (4, duration.subsec_nanos(), 1);
+                (*a, *b) = (f64::from_bits(duration.as_secs()), duration.subsec_nanos().into());
+                [4, 2, 0, 0]
             }
-            PlotOp::SelectPen { pen } => (kind, small, count) = (5, pen.into(), 0),
-            PlotOp::NewPage => (kind, count) = (6, 0),
-        }
-        Self { kind, small, numbers, count }
+            PlotOp::SelectPen { pen } => [5, 0, pen, 0],
+            PlotOp::NewPage => [6, 0, 0, 0],
+        };
+        Self { head, numbers }
     }
 
     fn command(self) -> Command {
-        let Self { kind, small, numbers: [a, b, c, d, e, f], .. } = self;
-        let [low, high, ..] = small.to_le_bytes();
+        let Self { head: [kind, _, low, high], numbers: [a, b, c, d, e, f] } = self;
         let to = Point::new(a, b);
         let feed_mm_s = (!c.is_nan()).then_some(c);
         match kind {
@@ -196,7 +203,8 @@ impl Packed {
             1 => Command::Plot(PlotOp::Draw { to, feed_mm_s }),
             2 => Command::Plot(PlotOp::DrawArc { centre: Point::new(d, e), sweep_rad: f, to, feed_mm_s }),
             3 => Command::Plot(PlotOp::LaserPower { share: a }),
-            4 => Command::Plot(PlotOp::Dwell { duration: Duration::new(a.to_bits(), small) }),
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below a second")]
+            4 => Command::Plot(PlotOp::Dwell { duration: Duration::new(a.to_bits(), b as u32) }),
             5 => Command::Plot(PlotOp::SelectPen { pen: low }),
             6 => Command::Plot(PlotOp::NewPage),
             7 => Command::Servo(low),
@@ -263,15 +271,17 @@ mod tests {
             let mut queue = CommandQueue::new();
             let mut taken = 0;
             while queue.room() >= COMMANDS_OF_A_LINE {
-                // An arc, three dots with power, and more.
+                // One after a stop: two dots and an arc of a laser, a pause for another pen, and the pen is lifted.
                 let mut most = queue.clone();
-                most.push(ARC).unwrap();
-                for _ in 0..3 {
-                    most.push(LINE).unwrap();
-                    most.push(Command::Plot(PlotOp::LaserPower { share: 1.0 })).unwrap();
+                let power = Command::Plot(PlotOp::LaserPower { share: 1.0 });
+                let dwell = Command::Plot(PlotOp::Dwell { duration: Duration::ZERO });
+                let travel = Command::Plot(PlotOp::Travel { to: Point::ORIGIN });
+                let pen = Command::Plot(PlotOp::SelectPen { pen: 1 });
+                for command in [Command::GoOn, power, LINE, pen, power, LINE, dwell, power, ARC] {
+                    most.push(command).unwrap();
                 }
-                for _ in 0..5 {
-                    most.push(Command::Plot(PlotOp::Dwell { duration: Duration::ZERO })).unwrap();
+                for command in [travel, Command::Pause, Command::Finish] {
+                    most.push(command).unwrap();
                 }
                 queue.push(command).unwrap();
                 taken += 1;

@@ -1,28 +1,29 @@
 //! [`HomingRun`]: homing with the times of its steps.
 
 use super::StepperPlotterSettings;
-use crate::{Axis, Homed, Homing, HomingError, HomingStatus, LimitSwitches, StepPair};
+use crate::{Axis, Homed, HomingError, HomingProgress, HomingStatus, LimitSwitches, StepPair};
 use core::time::Duration;
 
 /// Homing in progress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct HomingRun {
-    homing: Homing,
+    homing: HomingProgress,
     /// The step before, or when it may begin.
     last: Duration,
 }
 
 impl HomingRun {
-    pub(super) fn new(settings: &StepperPlotterSettings, start: Duration) -> Self {
-        Self { homing: Homing::new(settings.home_x, settings.home_y), last: start }
+    pub(super) const fn new(start: Duration) -> Self {
+        Self { homing: HomingProgress::START, last: start }
     }
 
     /// The next step with its time; or what came of it all.
     pub(super) fn next(
         &mut self,
+        settings: &StepperPlotterSettings,
         limits: LimitSwitches,
     ) -> Result<(Duration, StepPair), Result<Homed, HomingError>> {
-        match self.homing.update(limits) {
+        match self.homing.update([&settings.home_x, &settings.home_y], limits) {
             HomingStatus::Done(homed) => Err(Ok(homed)),
             HomingStatus::Failed(error) => Err(Err(error)),
             HomingStatus::Step(step) => {

@@ -6,7 +6,7 @@
 //! ```text
 //!            Receive                  Link                   Motion
 //!  bytes ──▶ lines, words ──▶ [ commands, 27 ] ──▶ planner ▶ steps ▶ safety gate ──▶ Step, each at its time
-//!  bytes ◀── answers      ◀── [ reports, 4   ] ◀── done, homed, stopped             pen_deg, beam
+//!  bytes ◀── answers      ◀── [ reports, 3   ] ◀── done, homed, stopped             pen_deg, beam
 //!                 └────── Signal: hold, resume, reset, laser off ──▶  (at once)       ▲
 //!                 ◀────── Status: what it does, where it is ─────────┘     limit switches, emergency stop
 //! ```

@@ -43,7 +43,6 @@ enum State {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion<M: Modes = AllModes> {
     settings: StepperPlotterSettings,
-    cartesian: Cartesian,
     planner: Planner<BLOCKS, M>,
     steps: StepGen<Cartesian, M>,
     play: M::Kept<Play>,
@@ -108,7 +107,6 @@ impl<M: Modes> Motion<M> {
         }
         Ok(Self {
             settings,
-            cartesian,
             planner,
             steps,
             play,
@@ -180,6 +178,11 @@ impl<M: Modes> Motion<M> {
     #[must_use]
     pub const fn due(&self) -> Option<Duration> {
         self.due
+    }
+
+    /// Commands have come for a side that waits for nothing.
+    pub(super) fn wake(&mut self, now: Duration) {
+        self.due = self.due.or(Some(now));
     }
 
     /// Takes a signal from the receive side.
@@ -285,7 +288,7 @@ impl<M: Modes> Motion<M> {
     /// Where the pen is by the steps really made, mm.
     #[must_use]
     pub fn position_mm(&self) -> Point {
-        self.cartesian.point_at(self.carriage().into())
+        self.steps.kinematics().point_at(self.carriage().into())
     }
 
     /// What the receive side may know.
@@ -584,7 +587,7 @@ impl<M: Modes> Motion<M> {
                 } else {
                     self.settings.pen_settle
                 };
-                let run = HomingRun::new(&self.settings, now.saturating_add(settle));
+                let run = HomingRun::new(now.saturating_add(settle));
                 self.state = State::Homing(run);
             }
             Command::Pause => self.hold(),
@@ -606,7 +609,7 @@ impl<M: Modes> Motion<M> {
 
     /// One turn of homing.
     fn home(&mut self, mut run: HomingRun, now: Duration, link: &mut Link) -> Option<Step> {
-        let result = match run.next(self.gate.limits()) {
+        let result = match run.next(&self.settings, self.gate.limits()) {
             Ok((at, _)) if at > now => {
                 self.due = Some(at);
                 self.state = State::Homing(run);

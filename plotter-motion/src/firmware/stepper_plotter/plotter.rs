@@ -82,7 +82,8 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         }
     }
 
-    /// When [`poll`](Self::poll) is to be called next, if nothing comes before; known after it has given no step.
+    /// When [`poll`](Self::poll) is to be called next, if nothing comes before; known after it has given no step and
+    /// [`transmit`](Self::transmit) no byte.
     #[must_use]
     pub const fn due(&self) -> Option<Duration> {
         self.motion.due()
@@ -122,7 +123,11 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         let byte = self.receive.transmit();
         if byte.is_none() {
             // There is room for more.
+            let before = self.link.commands.len();
             self.work(now);
+            if self.link.commands.len() > before {
+                self.motion.wake(now);
+            }
             return self.receive.transmit();
         }
         byte

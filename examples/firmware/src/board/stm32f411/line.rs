@@ -8,7 +8,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::serial::{Rx, Tx};
 
 /// Bytes that came and were not fetched: the loop takes less time than the line for these, a planned block included.
-const COME: usize = 64;
+const COME: usize = 32;
 /// Bytes that wait to be sent.
 const TO_SEND: usize = 128;
 

@@ -3,7 +3,7 @@
 use super::super::{Command, Link, Setting, SettingProblem, StoredSettings, area};
 use super::codes::{Alarm, Code};
 use super::listing::is_listed;
-use super::{Grbl, Wait, send};
+use super::{Grbl, Wait, read_options, send};
 use crate::decimal::Decimal;
 use crate::gcode::{Block, Outcomes, Problem, Reader, Word};
 use crate::{PlotOp, Point};
@@ -13,6 +13,7 @@ const LEAST_FEED_MM_S: f64 = 1e-3;
 
 impl Grbl {
     /// Carries a line out as a whole, or not at all.
+    #[inline(never)] // its memory on the stack is for its own time only, as that of a jog
     pub(super) fn block(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
         let Some(block) = read(text)? else { return Ok(()) };
         let before = self.interpreter;
@@ -24,6 +25,7 @@ impl Grbl {
     }
 
     /// A movement by hand, with the pen up. Of its line only the place is kept.
+    #[inline(never)]
     pub(super) fn jog(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
         let block = read(text)?.ok_or(Code::BAD_JOG)?;
         let is_allowed = |word: &Word| match word.letter {
@@ -42,7 +44,7 @@ impl Grbl {
         let mut to = None;
         for block in travel {
             let mut outcomes = Outcomes::NONE;
-            interpreter.carry_out(&block, &mut outcomes).map_err(Code::of)?;
+            interpreter.carry_out(&block, &read_options(&self.settings), &mut outcomes).map_err(Code::of)?;
             while let Some(op) = outcomes.take() {
                 to = op.map_err(Code::of)?.target().or(to);
             }
@@ -84,7 +86,7 @@ impl Grbl {
     fn carry_out(&mut self, block: &Block, link: &mut Link) -> Result<(), Code> {
         let before = self.interpreter.modes();
         let mut outcomes = Outcomes::NONE;
-        self.interpreter.carry_out(block, &mut outcomes).map_err(Code::of)?;
+        self.interpreter.carry_out(block, &read_options(&self.settings), &mut outcomes).map_err(Code::of)?;
         let mut ops = [None; super::MOST_COMMANDS];
         let mut slots = ops.iter_mut();
         let mut pauses = false;
@@ -110,8 +112,7 @@ impl Grbl {
         if moves && has_axis && (1..=3).contains(&modes.motion) && modes.feed_mm_s.is_none() {
             return Err(Code::NO_FEED);
         }
-        let most =
-            Point::new(f64::from(self.settings.stored.width_mm), f64::from(self.settings.stored.height_mm));
+        let most = self.most();
         let mut at = before.position;
         for op in ops.iter().flatten() {
             if !area::contains(most, at, *op) {

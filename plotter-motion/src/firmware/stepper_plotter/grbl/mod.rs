@@ -23,7 +23,7 @@ use rx_buffer::RxBuffer;
 /// Most bytes that are written at one time: an alarm with its message, and the line's answer.
 const MOST_ANSWER: usize = 208;
 /// Bytes that wait to be sent.
-const OUTPUT: usize = 256;
+const OUTPUT: usize = 224;
 /// The longest way of telling the offset, or the overrides, only now and then: so many reports without it.
 const REPORTS_WITHOUT_OFFSET: u8 = 10;
 
@@ -66,7 +66,7 @@ impl Grbl {
             settings,
             rx: RxBuffer::new(),
             line: LineBuffer::new(),
-            interpreter: interpreter(&settings),
+            interpreter: LineInterpreter::new(),
             wait: None,
             listing: None,
             alarm: None,
@@ -226,7 +226,7 @@ impl Grbl {
             }
             Report::Stopped { at, why } => {
                 self.jogs = false;
-                self.interpreter = interpreter(&self.settings);
+                self.interpreter = LineInterpreter::new();
                 self.interpreter.stand_at(at);
                 self.stopped = true;
                 match why {
@@ -320,15 +320,39 @@ impl Grbl {
     }
 }
 
-fn interpreter(settings: &StepperPlotterSettings) -> LineInterpreter {
-    LineInterpreter::new(ReadOptions {
-        pen: settings.convention(),
-        block_delete: BlockDelete::CarryOut,
-        ..ReadOptions::default()
-    })
+/// How lines are read.
+fn read_options(settings: &StepperPlotterSettings) -> ReadOptions {
+    ReadOptions { pen: settings.convention(), block_delete: BlockDelete::CarryOut, ..ReadOptions::default() }
 }
 
 fn send(link: &mut Link, command: Command) {
     let sent = link.commands.push(command);
     debug_assert!(sent.is_ok(), "room was looked at before");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Axis, Direction, HomingError};
+    use std::format;
+
+    #[test]
+    fn the_longest_answers_find_room() {
+        let (axis, end, steps) = (Axis::X, Direction::Minus, u32::MAX);
+        let homing = [
+            HomingError::Missing { axis, end, steps },
+            HomingError::Stuck { axis, end, steps },
+            HomingError::Wrong { axis, end },
+            HomingError::Both { axis },
+            HomingError::Short { axis, steps },
+            HomingError::Early { axis, steps },
+        ];
+        let stops = [Stop::Emergency, Stop::Limit { axis, end }];
+        let texts =
+            homing.map(|error| format!("{error}")).into_iter().chain(stops.map(|stop| format!("{stop}")));
+        for text in texts {
+            let answer = format!("ALARM:10\r\n[MSG:{text}]\r\nerror:9\r\n");
+            assert!(answer.len() <= MOST_ANSWER, "{} bytes: {answer}", answer.len());
+        }
+    }
 }

@@ -44,7 +44,7 @@ impl<M: Modes> Motion<M> {
             debug_assert!(false, "the receive side has looked at {setting:?}");
             return;
         };
-        (self.settings, self.cartesian, self.planner) = (settings, cartesian, planner);
+        (self.settings, self.planner) = (settings, planner);
         self.base = self.time_of(self.steps.tick());
         self.steps = step_gen(cartesian, &settings);
         self.steps.clear(self.carriage());
