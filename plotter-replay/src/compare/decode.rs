@@ -112,6 +112,8 @@ pub(super) fn reply(byte: u8) -> String {
         Some(Reply::Pulse(axis, sign)) => format!("pulse {}", pulse(axis, sign)),
         Some(Reply::Reached) => String::from("reached"),
         Some(Reply::Clear) => String::from("clear"),
+        Some(Reply::Stopped) => String::from("stopped"),
+        Some(Reply::GoesOn) => String::from("goes on"),
         None => format!("0x{byte:02x} says nothing"),
     }
 }

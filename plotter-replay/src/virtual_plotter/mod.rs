@@ -329,6 +329,7 @@ impl VirtualPlotter {
                 self.from = StepPoint::default();
                 self.leg = self.begin_leg();
             }
+            Some(Reply::Stopped | Reply::GoesOn) => {}
             None => self.note(self.now, AnomalyKind::UnknownReply { byte }),
         }
     }
