@@ -6,6 +6,7 @@ mod canvas;
 mod chart;
 mod compare;
 pub mod export;
+mod frames;
 pub mod golden;
 pub mod import;
 #[cfg(feature = "live")]
