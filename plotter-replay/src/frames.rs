@@ -39,9 +39,8 @@ impl FrameReader {
         let said = frame.map(|frame| match frame {
             Err(error) => Said::Damaged(error),
             Ok(frame) => match frame.kind {
-                Kind::Hello => {
-                    Hello::from_bytes(frame.payload).map_or(Said::Damaged(DecodeError::Malformed), Said::Hello)
-                }
+                Kind::Hello => Hello::from_bytes(frame.payload)
+                    .map_or(Said::Damaged(DecodeError::Malformed), Said::Hello),
                 Kind::Data => Said::Data(frame.sequence, frame.payload.to_vec(), frame.acknowledged),
                 Kind::Acknowledge => Said::Acknowledge(frame.acknowledged),
                 Kind::Order => {

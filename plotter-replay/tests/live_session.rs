@@ -48,7 +48,7 @@ fn until(what: &str, mut is_so: impl FnMut() -> bool) {
 fn an_emergency_stop_takes_the_drive_within_one_control_period() {
     let machine = machine();
     let (host, end) = Pipe::pair();
-    let simulated = SimulatedMachine::start(&machine, Arc::new(end), 1.0);
+    let simulated = SimulatedMachine::start(&machine, Arc::new(end), 1.0, 7);
     let telemetry = simulated.telemetry();
     let session = Session::open(
         Arc::new(host),
@@ -80,7 +80,7 @@ fn an_emergency_stop_takes_the_drive_within_one_control_period() {
 fn a_paused_session_finishes_its_target_and_sends_no_other() {
     let machine = machine();
     let (host, end) = Pipe::pair();
-    let _simulated = SimulatedMachine::start(&machine, Arc::new(end), 4.0);
+    let _simulated = SimulatedMachine::start(&machine, Arc::new(end), 4.0, 7);
     let settings = SessionSettings { speed: 4.0, ..settings(4) };
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("session.plog");
@@ -137,7 +137,7 @@ impl Write for Disk {
 fn a_full_disk_stops_the_recording_and_not_the_drawing() {
     let recorder = Writer::new(Disk(9_000), &Header::new()).unwrap();
     let (host, end) = Pipe::pair();
-    let _simulated = SimulatedMachine::start(&machine(), Arc::new(end), 4.0);
+    let _simulated = SimulatedMachine::start(&machine(), Arc::new(end), 4.0, 7);
     let moves = Box::new(square().into_iter());
     let settings = SessionSettings { speed: 4.0, ..settings(4) };
     let session = Session::open(Arc::new(host), Some(moves), Some(recorder), None, settings);

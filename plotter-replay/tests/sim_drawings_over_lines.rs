@@ -278,7 +278,7 @@ fn drawings_by_frames_come_whole_over_a_bad_line() {
 }
 
 #[test]
-#[ignore = "a thousand drawings: half a minute in a release build"]
+#[ignore = "a thousand drawings, half a minute in a release build: .ci/run"]
 fn a_thousand_drawings_by_frames_come_whole_over_a_bad_line() {
     drawings_by_frames(1000);
 }
@@ -409,7 +409,7 @@ fn drawings_by_digits_are_ruined_and_our_host_notices_all() {
 }
 
 #[test]
-#[ignore = "a thousand drawings, most of them with long silences"]
+#[ignore = "a thousand drawings, most of them with long silences: .ci/run"]
 fn of_a_thousand_drawings_by_digits_our_host_notices_all_that_are_ruined() {
     drawings_by_digits(1000);
 }

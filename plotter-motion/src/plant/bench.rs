@@ -1,9 +1,9 @@
 //! A whole machine on the bench: host, serial line, controller, motors and encoders.
 
 use super::{AxisPlant, DriveDelay, SimulatedLine};
+use crate::control::LineController;
 use crate::firmware::{Gantry, LinkedGantry, Notice};
 use crate::protocol::{Host, HostEvent, HostSettings};
-use crate::control::LineController;
 use crate::{Axis, Direction, Drive, Machine, PenMove, Point};
 use alloc::collections::VecDeque;
 use core::time::Duration;

@@ -141,8 +141,12 @@ impl fmt::Display for AnomalyKind {
                 sent.x, sent.y, taken.x, taken.y
             ),
             Self::DamagedFrame { side: Side::Host } => f.write_str("a frame of the host came damaged"),
-            Self::DamagedFrame { side: Side::Controller } => f.write_str("a frame of the controller came damaged"),
-            Self::FramesMissing { count: 0 } => f.write_str("frames are missing in the log: what came makes no sense"),
+            Self::DamagedFrame { side: Side::Controller } => {
+                f.write_str("a frame of the controller came damaged")
+            }
+            Self::FramesMissing { count: 0 } => {
+                f.write_str("frames are missing in the log: what came makes no sense")
+            }
             Self::FramesMissing { count } => write!(f, "{count} frame(s) came that are not in the log"),
             Self::Refused { target } => {
                 write!(f, "target ({}, {}) was refused: outside the machine's area", target.x, target.y)

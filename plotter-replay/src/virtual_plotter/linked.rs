@@ -29,6 +29,8 @@ pub(super) struct Linked {
     host: FrameStream,
     controller: FrameStream,
     session: u16,
+    /// Whether the machine has begun it: what comes before is of an earlier one.
+    is_open: bool,
     /// Targets sent and not reached, with their number since the machine was switched on, the first of them under way.
     ahead: VecDeque<(u32, PenMove)>,
     next_number: u32,
@@ -43,6 +45,7 @@ impl Linked {
             host: FrameStream::default(),
             controller: FrameStream::default(),
             session: 0,
+            is_open: false,
             ahead: VecDeque::new(),
             next_number: 1,
             last_target: StepPoint::default(),
@@ -105,11 +108,18 @@ impl VirtualPlotter {
         if session != self.linked.session {
             self.linked.session = session;
             (self.linked.host, self.linked.controller) = (FrameStream::default(), FrameStream::default());
-            self.linked.last_target = StepPoint::default();
+            (self.linked.last_target, self.linked.is_open) = (StepPoint::default(), false);
         }
         let acknowledged = match said {
-            None | Some(Said::Hello(_) | Said::Order(..)) => return,
-            Some(Said::Damaged(_)) => return self.note(self.now, AnomalyKind::DamagedFrame { side }),
+            Some(Said::Hello(hello)) => {
+                self.linked.is_open |= side == Side::Controller && session != 0 && hello.session == session;
+                return;
+            }
+            None | Some(Said::Order(..)) => return,
+            Some(Said::Damaged(_)) if self.linked.is_open => {
+                return self.note(self.now, AnomalyKind::DamagedFrame { side });
+            }
+            Some(Said::Damaged(_)) => return,
             Some(Said::Acknowledge(until)) => until,
             Some(Said::Data(number, payload, until)) => {
                 let stream = match side {

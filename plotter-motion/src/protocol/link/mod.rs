@@ -23,8 +23,8 @@ mod settings;
 
 pub use settings::{LinkCounts, LinkSettings};
 
-use super::{Hello, Order};
 use super::frame::{DecodeError, Decoder, Frame, Kind, MOST_BYTES, MOST_PAYLOAD};
+use super::{Hello, Order};
 use core::time::Duration;
 use incoming::Incoming;
 use orders::{Given, Taken};
@@ -450,7 +450,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
     /// Puts an order on the line, if one is due; what is on its way there is cut short for one that was not sent yet.
     fn order_frame(&mut self, now: Duration) -> bool {
         let is_open = matches!(self.state, LinkState::Open | LinkState::Interrupted);
-        let Some((order, number)) = self.given.due(now, is_open, self.is_sending(), self.settings.least_retry)
+        let Some((order, number)) =
+            self.given.due(now, is_open, self.is_sending(), self.settings.least_retry)
         else {
             return false;
         };
