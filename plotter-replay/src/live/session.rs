@@ -92,6 +92,9 @@ struct Shared {
     commands: Mutex<VecDeque<Command>>,
     /// Whether the machine may speak frames, so that a stop is `00 21 00`.
     may_be_linked: AtomicBool,
+    /// Whether a stop is on the line that the session's loop has not taken note of: until then it sends nothing, lest it sends an
+    /// older order to go on.
+    stop_is_new: Mutex<bool>,
     finished: Condvar,
 }
 
@@ -118,6 +121,7 @@ impl Session {
             view,
             commands: Mutex::default(),
             may_be_linked: AtomicBool::new(moves.is_some() && settings.link != LinkChoice::Digits),
+            stop_is_new: Mutex::default(),
             finished: Condvar::new(),
         });
         let session = Self { shared: Arc::clone(&shared) };
@@ -134,6 +138,7 @@ impl Session {
                 at: StepPoint::default(),
                 last: Duration::ZERO,
                 failure: None,
+                wants_stop: false,
                 is_resumed: false,
                 settings,
                 shared: &shared,
@@ -146,6 +151,8 @@ impl Session {
     /// Does what a person asks. An emergency stop is on the line when this returns.
     pub fn command(&self, command: Command) {
         if command == Command::Stop {
+            let mut stop_is_new = lock(&self.shared.stop_is_new);
+            *stop_is_new = true;
             // The line's own failure is met by the session's loop, which says so.
             let _ = self.shared.line.send(self.shared.stop_bytes());
         }
@@ -215,6 +222,8 @@ struct Engine<'a, W: Write> {
     last: Duration,
     /// What ends the drawing before its end.
     failure: Option<String>,
+    /// Whether a person has stopped it here, and has not let it go on.
+    wants_stop: bool,
     /// Whether what another host has drawn was taken into account.
     is_resumed: bool,
     settings: SessionSettings,
@@ -302,6 +311,9 @@ impl<W: Write> Engine<'_, W> {
             let Some(command) = lock(&self.shared.commands).pop_front() else {
                 return Ok(());
             };
+            if command == Command::Resume && *lock(&self.shared.stop_is_new) {
+                continue; // it was stopped again since
+            }
             let next = {
                 let mut view = lock(&self.shared.view);
                 if command == Command::Clear {
@@ -313,6 +325,7 @@ impl<W: Write> Engine<'_, W> {
             };
             match (command, next) {
                 (Command::Stop, _) => {
+                    (self.wants_stop, *lock(&self.shared.stop_is_new)) = (true, false);
                     // Its bytes are out. Over frames it is also told in a way that is answered.
                     let bytes = self.shared.stop_bytes().to_vec();
                     self.take(Event::Host(bytes));
@@ -332,6 +345,7 @@ impl<W: Write> Engine<'_, W> {
                     }
                 }
                 (Command::Resume, Some((State::Stopped, _))) => {
+                    self.wants_stop = false;
                     let order = self.host.as_mut().map(|host| (host.order(Order::GoOn), host.is_linked()));
                     // Where nobody has answered a call yet, both ways are tried.
                     if order.is_none_or(|(byte, is_linked)| byte.is_some() || !is_linked) {
@@ -371,7 +385,9 @@ impl<W: Write> Engine<'_, W> {
     }
 
     fn send(&mut self, host_now: Duration) -> Result<(), PortError> {
-        let Some(host) = &mut self.host else {
+        let shared = self.shared;
+        let stop_is_new = lock(&shared.stop_is_new);
+        let Some(host) = self.host.as_mut().filter(|_| !*stop_is_new) else {
             return Ok(());
         };
         let event = host.poll(host_now);
@@ -421,7 +437,7 @@ impl<W: Write> Engine<'_, W> {
         let mut view = lock(&self.shared.view);
         match (notice, &view.state) {
             (HostNotice::Stopped, State::Running | State::Paused) => view.state = State::Stopped,
-            (HostNotice::GoesOn, State::Stopped) => view.state = State::Running,
+            (HostNotice::GoesOn, State::Stopped) if !self.wants_stop => view.state = State::Running,
             (HostNotice::DigitsOnly, _) => self.shared.may_be_linked.store(false, Ordering::Relaxed),
             _ => {}
         }

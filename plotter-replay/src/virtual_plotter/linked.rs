@@ -90,6 +90,7 @@ impl VirtualPlotter {
                 self.host.drop_partial();
                 self.next = None;
                 self.under_way = 0;
+                self.forget_call();
                 self.linked.speech = Speech::Frames;
                 true
             }
@@ -101,6 +102,22 @@ impl VirtualPlotter {
                 true
             }
         }
+    }
+
+    /// What a log of digits has noted of a call and its answer was neither.
+    fn forget_call(&mut self) {
+        let is_greeting = |kind: &AnomalyKind| {
+            matches!(kind, AnomalyKind::UnknownReply { .. } | AnomalyKind::BeganInsideTarget { .. })
+        };
+        while self.anomalies.last().is_some_and(|anomaly| is_greeting(&anomaly.kind)) {
+            self.anomalies.pop();
+            self.anomaly_count = self.anomaly_count.saturating_sub(1);
+        }
+        while self.targets.last().is_some_and(|&(_, target)| target == StepPoint::default()) {
+            self.targets.pop();
+            self.target_count = self.target_count.saturating_sub(1);
+        }
+        self.leg.target = None;
     }
 
     fn said(&mut self, side: Side, said: Option<Said>) {
