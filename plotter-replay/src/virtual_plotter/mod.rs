@@ -284,6 +284,12 @@ impl VirtualPlotter {
         &self.legs
     }
 
+    /// Whether the line speaks the reliable link: the way is then known where the machine told it, every 20 ms and at each target.
+    #[must_use]
+    pub fn is_linked(&self) -> bool {
+        self.linked.speech == Speech::Frames
+    }
+
     /// Targets that the host sent, encoder counts, with the time of their last digit.
     #[must_use]
     pub fn targets(&self) -> &[(Duration, StepPoint)] {

@@ -10,7 +10,7 @@ use plotter_replay::live::{
     State, Telemetry, terminal,
 };
 use plotter_replay::log::{self, FileWriter, Header};
-use plotter_replay::serial::Port;
+use plotter_replay::serial::{Port, find};
 use plotter_replay::{DrawingMark, PlotterSettings, ResumePoint};
 use std::cell::RefCell;
 use std::io::Write;
@@ -26,7 +26,7 @@ const LAST_LOOK: Duration = Duration::from_millis(1_500);
 pub(crate) struct Live {
     /// The drawing: HPGL, G-code or the thesis' text. Without one, the machine is watched only.
     drawing: Option<PathBuf>,
-    /// The serial port of a machine, or `auto` for the only one there is.
+    /// The serial port of a machine: a name, a part of one that only it has, or `auto` for the only one there is.
     #[arg(long, value_name = "DEV", conflicts_with = "simulate")]
     port: Option<String>,
     /// Simulate the machine of this file instead [default without --port: the semi-virtual gantry].
@@ -207,7 +207,7 @@ impl Live {
             let name = String::from("none: simulated in this program");
             return Ok(Connected { line: Arc::new(host), telemetry, _simulated: Some(simulated), name });
         };
-        let name = if name == "auto" { only_port()? } else { name.clone() };
+        let name = find(name).map_err(|error| error.to_string())?;
         let port = Port::open(&name, machine.config().serial.baud).map_err(|error| error.to_string())?;
         let line = PortLine::new(port).map_err(|error| error.to_string())?;
         Ok(Connected { line: Arc::new(line), telemetry: None, _simulated: None, name })
@@ -288,17 +288,6 @@ impl Live {
             fact("origin P1", String::from("0, 0 mm (lower left)")),
             fact("recording", self.output.display().to_string()),
         ];
-    }
-}
-
-fn only_port() -> Result<String, String> {
-    let names = Port::names();
-    match names.as_slice() {
-        [one] => Ok(one.clone()),
-        [] => Err(String::from("--port auto: there is no serial port: is the machine plugged in and on?")),
-        several => {
-            Err(format!("--port auto: there are several serial ports, name one: {}", several.join(", ")))
-        }
     }
 }
 
