@@ -91,7 +91,7 @@ fn recording(here: &Path) {
             "--link",
             "digits",
             "--speed",
-            "4",
+            "2",
             "drawing.hpgl",
             "--start",
             "-o",
@@ -234,7 +234,11 @@ fn a_machine_behind_a_pseudo_terminal_is_started_watched_stopped_resumed_and_fin
     browser.wait_for("Math.hypot(...last.speed_mm_s) > 20");
     browser.key("Escape", 27);
     browser.wait_for("document.body.dataset.state === 'stopped'");
-    std::thread::sleep(Duration::from_millis(400)); // run-down
+    // The motors have run down when the machine has told nothing new for a while, on a busy computer too.
+    browser.wait_for(
+        "(window.rest = window.rest?.at === String(last.counts) ? window.rest : { at: String(last.counts), since: performance.now() }) \
+         && performance.now() - window.rest.since > 1000",
+    );
     let stopped = (browser.value("position x"), browser.value("position y"));
     browser.screenshot("live-stopped");
     std::thread::sleep(Duration::from_millis(500));

@@ -439,9 +439,9 @@ fn the_cable_out_for_ten_seconds_costs_ten_seconds() {
 #[test]
 fn a_stop_over_a_bad_line_is_obeyed_and_costs_no_target() {
     let mut slowest = Duration::ZERO;
-    for number in 0..50 {
-        let moves = drawing(number, 60);
-        let mut line = linked_line(&Faults::mixed(0.01), number, &moves, 3);
+    for number in 0..20 {
+        let moves = drawing(number, 120);
+        let mut line = linked_line(&Faults::mixed(0.01), number, &moves, 20);
         line.run(Duration::from_millis(300 + 7 * number), |_, _| false);
         for order in [Order::Stop, Order::GoOn, Order::Hold, Order::GoOn] {
             let began = line.now;
@@ -459,7 +459,7 @@ fn a_stop_over_a_bad_line_is_obeyed_and_costs_no_target() {
         assert!(line.run(line.now + 60 * SECOND, |host, _| host.host.is_done()), "{number}");
         assert_drawn(&line, &moves, &format!("drawing {number}"));
     }
-    println!("the slowest of 50 stops came {:.2} ms after the order", slowest.as_secs_f64() * 1e3);
+    println!("the slowest of 20 stops came {:.2} ms after the order", slowest.as_secs_f64() * 1e3);
     // Three bytes and a hold-up of 20 ms, or the repetition after 30 ms.
     assert!(slowest < SECOND / 10, "{slowest:?}");
 }

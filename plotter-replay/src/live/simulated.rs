@@ -94,10 +94,6 @@ fn run<C: BenchController>(
             Err(error) => return error,
         };
         for &byte in bytes.get(..count).unwrap_or_default() {
-            if byte == Order::Stop.byte() && told.duty != [0; 2] {
-                // (a frame may hold this byte, too: then it is no stop)
-                told.stopped = Some((bench.now(), None));
-            }
             bench.disturb(byte);
         }
         let now = Instant::now();
@@ -105,7 +101,11 @@ fn run<C: BenchController>(
         before = now;
         due = due.min(bench.now().saturating_add(MOST_BEHIND.mul_f64(speed)));
         while bench.now() < due {
-            bench.step(|_, event| match event {
+            bench.step(|at, event| match event {
+                // (a frame may hold this byte, too: then it is no stop)
+                BenchEvent::HostByte(byte) if byte == Order::Stop.byte() && told.duty != [0; 2] => {
+                    told.stopped = Some((at, None));
+                }
                 BenchEvent::ControllerByte(byte) => answers.push(byte),
                 BenchEvent::Drive(Axis::X, duty) => told.duty[0] = duty,
                 BenchEvent::Drive(Axis::Y, duty) => told.duty[1] = duty,

@@ -25,6 +25,8 @@ const MOST_WAY_CHARACTERS: usize = 1_200_000;
 const FEW_POINTS: usize = 20_000;
 /// Lines farther than this from what was recorded are not shown as lines, mm: the page then has a map of the ink.
 const MOST_LINE_ERROR_MM: f64 = 0.3;
+/// Ways of more points are not shown as lines either: a browser would paint them for more than a second.
+const MOST_LINE_POINTS: u64 = 40_000;
 /// Points of what was meant, at most.
 const MOST_DESIRED_POINTS: usize = 30_000;
 /// Points of what was not drawn, at most.
@@ -276,7 +278,9 @@ impl RecordingPage {
         let (way, way_error_mm) = packed_way(self.way);
         let (meant, meant_error_mm) = self.meant.finish();
         let (first_us, last_us) = (self.first.map_or(0, micros), micros(self.last));
-        let ink = (way_error_mm > MOST_LINE_ERROR_MM).then(|| self.ink.to_json(first_us, last_us));
+        let points = way.get("count").and_then(Value::as_u64).unwrap_or(0);
+        let is_long = way_error_mm > MOST_LINE_ERROR_MM || points > MOST_LINE_POINTS;
+        let ink = is_long.then(|| self.ink.to_json(first_us, last_us));
         let (undrawn, _) = undrawn.finish();
         let gap_count = self.silences.count();
         let gaps: Vec<_> =
