@@ -168,10 +168,9 @@ fn a_firmware_that_is_not_there_is_said_to_be_so() {
 }
 
 /// A simulated machine at one end of a pseudo terminal, in the time of the clock, until nobody listens any more.
-fn serve(controller: impl BenchController, mut line: Port) {
-    let machine = Machine::new(MachineConfig::default()).unwrap();
+fn serve(machine: &Machine, controller: impl BenchController, mut line: Port) {
     let moves = std::iter::empty::<PenMove>();
-    let mut bench = Bench::with_controller(&machine, BenchSettings::default(), controller, moves);
+    let mut bench = Bench::with_controller(machine, BenchSettings::default(), controller, moves);
     let began = Instant::now();
     let (mut bytes, mut answers) = ([0; 256], Vec::new());
     while began.elapsed() < Duration::from_secs(60) {
@@ -201,8 +200,8 @@ fn a_machine_on_a_port_is_spoken_to_in_the_best_language_that_it_knows() {
     // (the ports stay open: the last one to close a pseudo terminal hangs up the machine)
     let (first, new_port) = Port::pseudo_terminal().unwrap();
     let (second, old_port) = Port::pseudo_terminal().unwrap();
-    std::thread::spawn(move || serve(linked, first));
-    std::thread::spawn(move || serve(Gantry::new(&machine), second));
+    std::thread::spawn(move || serve(&machine, linked, first));
+    std::thread::spawn(move || serve(&machine, Gantry::new(&machine), second));
     for (port, frames) in [(&new_port, true), (&old_port, false)] {
         let out = directory.path().join(if frames { "new" } else { "old" });
         let output = run_example(
