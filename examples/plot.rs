@@ -10,8 +10,9 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    BenchSwitches, Figure, PlotOutcome, Recorded, at, board_header, built_firmware, fit_drawing, html_page,
-    plot_in_emulator, plot_on_port, print, read_file, run, simulate, simulate_board, vectorizer, write_file,
+    BenchSwitches, Figure, PlotOutcome, PortLanguage, Recorded, at, board_header, built_firmware,
+    fit_drawing, html_page, plot_in_emulator, plot_on_port, print, read_file, run, simulate, simulate_board,
+    vectorizer, write_file,
 };
 use plotter_motion::firmware::MarkingBoardSettings;
 use plotter_motion::{
@@ -53,9 +54,12 @@ struct Args {
     #[arg(long, value_name = "MM", default_value_t = 50.0, allow_negative_numbers = true)]
     width_mm: f64,
     /// Plots with a firmware instead of the simulated machine: `qemu` for the one in examples/firmware, in the emulator, or the
-    /// serial port of a machine that speaks the published protocol
+    /// serial port of a machine that speaks the published protocol or the reliable link
     #[arg(long, value_name = "qemu|PORT")]
     firmware: Option<String>,
+    /// What is spoken with a machine on a port
+    #[arg(long, value_name = "auto|digits", default_value = "auto")]
+    link: LinkArg,
     /// The firmware for --firmware qemu [default: the gantry's, as built in examples/firmware]
     #[arg(long, value_name = "ELF", requires = "firmware")]
     elf: Option<PathBuf>,
@@ -73,6 +77,14 @@ enum ControllerArg {
     Published,
     /// A planned speed, errors along and across the line
     Contouring,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum LinkArg {
+    /// The reliable link if the machine knows it, else the ten digits; it is called at its origin
+    Auto,
+    /// The published ten digits
+    Digits,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -234,7 +246,8 @@ fn record(args: &Args, machine: &Machine, moves: Vec<PenMove>, path: &Path) -> R
     let config = machine.config();
     let is_real = args.firmware.as_ref().is_some_and(|firmware| firmware != EMULATED);
     let is_belt = config.kinematics.kind == KinematicsChoice::CoreXy;
-    let header = if is_belt { board_header(machine) } else { line_header(machine) };
+    let may_be_linked = is_real && args.link == LinkArg::Auto;
+    let header = if is_belt { board_header(machine) } else { line_header(machine, may_be_linked) };
     let header = header
         .with_text("machine", config.name.as_str())
         .with_text("controller", controller_name(machine))
@@ -255,7 +268,11 @@ fn record(args: &Args, machine: &Machine, moves: Vec<PenMove>, path: &Path) -> R
             let switches = BenchSwitches::default();
             plot_in_emulator(machine, &elf, switches, moves, recorded, &mut recorder, progress)
         }
-        Some(port) => plot_on_port(machine, port, moves, &mut recorder, progress),
+        Some(port) => {
+            let language =
+                if may_be_linked { PortLanguage::Link(clock_bits()) } else { PortLanguage::Digits };
+            plot_on_port(machine, port, language, moves, &mut recorder, progress)
+        }
     };
     bar.finish_and_clear();
     let outcome = outcome?;
@@ -263,12 +280,18 @@ fn record(args: &Args, machine: &Machine, moves: Vec<PenMove>, path: &Path) -> R
     Ok(outcome)
 }
 
-/// What a log of the published protocol says of its line.
-fn line_header(machine: &Machine) -> Header {
+/// Bits that are others each time.
+fn clock_bits() -> u16 {
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
+    u16::try_from(since.as_millis() & 0xffff).unwrap_or(1)
+}
+
+/// What a log says of its line: that of the published protocol, or of the reliable link.
+fn line_header(machine: &Machine, may_be_linked: bool) -> Header {
     let config = machine.config();
     Header::new()
         .with_number("baud", config.serial.baud.into())
-        .with_text("protocol", "digits")
+        .with_text("protocol", if may_be_linked { "link" } else { "digits" })
         .with_decimal("x_mm_per_pulse", 1.0 / config.x.counts_per_mm)
         .with_decimal("y_mm_per_pulse", 1.0 / config.y.counts_per_mm)
 }

@@ -68,7 +68,7 @@ pub use loop_chart::{LoopChart, LoopCurve, loop_charts_svg};
 pub use marks_file::read_marks;
 pub use overlay::{Overlay, overlay_png, overlay_step};
 pub use path_deviation::PathDeviation;
-pub use port_plot::plot_on_port;
+pub use port_plot::{PortLanguage, plot_on_port};
 use report::escaped;
 pub use report::{Figure, html_page};
 pub use simulated_board::{SimulatedBoard, board_header, simulate_board};

@@ -3,6 +3,12 @@
 mod built_example;
 
 use built_example::{complaint, data, machine, run_example};
+use plotter_motion::firmware::{Gantry, LinkedGantry};
+use plotter_motion::plant::{Bench, BenchController, BenchEvent, BenchSettings};
+use plotter_motion::protocol::LinkSettings;
+use plotter_motion::{Machine, MachineConfig, PenMove};
+use plotter_replay::serial::Port;
+use std::time::{Duration, Instant};
 
 #[test]
 fn the_flag_is_plotted_and_its_recording_replays() {
@@ -159,4 +165,64 @@ fn a_firmware_that_is_not_there_is_said_to_be_so() {
     assert!(said.contains("the firmware is not built") && said.contains("cargo build --release"), "{said}");
     let said = complaint("plot", &["--firmware", "/dev/no-such-plotter", "--out", out]);
     assert!(said.starts_with("plot: /dev/no-such-plotter: there is no such serial port"), "{said}");
+}
+
+/// A simulated machine at one end of a pseudo terminal, in the time of the clock, until nobody listens any more.
+fn serve(machine: &Machine, controller: impl BenchController, mut line: Port) {
+    let moves = std::iter::empty::<PenMove>();
+    let mut bench = Bench::with_controller(machine, BenchSettings::default(), controller, moves);
+    let began = Instant::now();
+    let (mut bytes, mut answers) = ([0; 256], Vec::new());
+    while began.elapsed() < Duration::from_secs(60) {
+        let Ok(count) = line.receive(&mut bytes, Duration::from_millis(1)) else { return };
+        bytes[..count].iter().for_each(|&byte| bench.disturb(byte));
+        while bench.now() < began.elapsed() {
+            bench.step(|_, event| {
+                if let BenchEvent::ControllerByte(byte) = event {
+                    answers.push(byte);
+                }
+            });
+        }
+        if !answers.is_empty() && line.send(&answers).is_err() {
+            return;
+        }
+        answers.clear();
+    }
+}
+
+#[test]
+fn a_machine_on_a_port_is_spoken_to_in_the_best_language_that_it_knows() {
+    let directory = tempfile::tempdir().unwrap();
+    let picture = directory.path().join("line.pbm");
+    std::fs::write(&picture, "P1 9 3\n0 0 0 0 0 0 0 0 0\n0 1 1 1 1 1 1 1 0\n0 0 0 0 0 0 0 0 0\n").unwrap();
+    let machine = Machine::new(MachineConfig::default()).unwrap();
+    let linked = LinkedGantry::<4, 64>::new(Gantry::new(&machine), 7, LinkSettings::default());
+    // (the ports stay open: the last one to close a pseudo terminal hangs up the machine)
+    let (first, new_port) = Port::pseudo_terminal().unwrap();
+    let (second, old_port) = Port::pseudo_terminal().unwrap();
+    std::thread::spawn(move || serve(&machine, linked, first));
+    std::thread::spawn(move || serve(&machine, Gantry::new(&machine), second));
+    for (port, frames) in [(&new_port, true), (&old_port, false)] {
+        let out = directory.path().join(if frames { "new" } else { "old" });
+        let output = run_example(
+            "plot",
+            &[
+                picture.to_str().unwrap(),
+                "--width-mm",
+                "4",
+                "--firmware",
+                port.name(),
+                "--out",
+                out.to_str().unwrap(),
+            ],
+        );
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let report: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap();
+        assert_eq!((&report["reached"], &report["anomalies"]), (&report["targets"], &serde_json::json!(0)));
+        assert!(report["targets"].as_u64() > Some(0));
+        let said =
+            String::from_utf8_lossy(&output.stdout).contains("the machine knows the digits protocol only");
+        assert_eq!(said, !frames);
+    }
 }

@@ -3,7 +3,7 @@
 
 use core::time::Duration;
 use libfuzzer_sys::fuzz_target;
-use plotter_motion::protocol::{Link, LinkSettings, LinkState, MessageDecoder};
+use plotter_motion::protocol::{Link, LinkSettings, LinkState, MessageDecoder, Order};
 
 fuzz_target!(|bytes: &[u8]| {
     let settings = LinkSettings::default();
@@ -14,6 +14,12 @@ fuzz_target!(|bytes: &[u8]| {
             let now = Duration::from_millis(n as u64);
             link.receive(now, byte);
             link.write(&[byte]);
+            if let Some(order) = Order::from_byte(byte) {
+                link.order(order);
+            }
+            if let Some((number, _)) = link.take_order() {
+                link.order_taken(number);
+            }
             let spoken = std::iter::from_fn(|| link.transmit(now)).take(2000).count();
             assert!(spoken < 2000);
             let mut read = [0; 8];

@@ -1,10 +1,10 @@
-//! The bytes of a session, from the call to the first target reached: what docs/serial-protocol.md shows.
+//! The bytes of a session, from the call to the first target reached, then a stop: what docs/serial-protocol.md shows.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use core::fmt::Write;
 use core::time::Duration;
-use plotter_motion::protocol::{Link, LinkSettings, Message};
+use plotter_motion::protocol::{Link, LinkSettings, Message, Order};
 use plotter_motion::{Pen, StepPoint};
 
 type End = Link<4, 64>;
@@ -55,5 +55,16 @@ fn a_session_is_these_bytes() {
     write(&mut machine, Message::Reached(1));
     says("machine", &mut machine, &mut host, now, &mut text);
     says("host", &mut host, &mut machine, now, &mut text);
+    // A stop, and on again.
+    for order in [Order::Stop, Order::GoOn] {
+        let number = host.order(order);
+        says("host", &mut host, &mut machine, now, &mut text);
+        assert_eq!(machine.take_order(), Some((number, order)));
+        write(&mut machine, Message::Stands { order: number.into(), state: order });
+        says("machine", &mut machine, &mut host, now, &mut text);
+        host.order_taken(number);
+        now += Duration::from_millis(100);
+        says("host", &mut host, &mut machine, now, &mut text);
+    }
     insta::assert_snapshot!(text);
 }

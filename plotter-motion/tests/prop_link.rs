@@ -8,13 +8,13 @@
 
 use core::time::Duration;
 use plotter_motion::protocol::frame::{DecodeError, Decoder, Frame, Kind};
-use plotter_motion::protocol::{Hello, Link, LinkSettings, Message, MessageDecoder};
+use plotter_motion::protocol::{Hello, Link, LinkSettings, Message, MessageDecoder, Order};
 use plotter_motion::{Pen, StepPoint};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
 fn kinds() -> impl Strategy<Value = Kind> {
-    prop_oneof![Just(Kind::Hello), Just(Kind::Data), Just(Kind::Acknowledge)]
+    prop_oneof![Just(Kind::Hello), Just(Kind::Data), Just(Kind::Acknowledge), Just(Kind::Order)]
 }
 
 fn messages() -> impl Strategy<Value = Message> {
@@ -27,6 +27,8 @@ fn messages() -> impl Strategy<Value = Message> {
         point.prop_map(Message::Moved),
         any::<u32>().prop_map(Message::Reached),
         any::<u32>().prop_map(Message::Refused),
+        (any::<u32>(), prop_oneof![Just(Order::GoOn), Just(Order::Hold), Just(Order::Stop)])
+            .prop_map(|(order, state)| Message::Stands { order, state }),
     ]
 }
 

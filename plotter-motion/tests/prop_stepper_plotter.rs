@@ -163,10 +163,11 @@ struct Watch {
 }
 
 impl Watch {
-    fn settle(&mut self) -> Result<(), TestCaseError> {
+    /// Every step that is due.
+    fn steps(&mut self) -> Result<(), TestCaseError> {
         loop {
             let (before, activity) = (self.plotter.position(), self.plotter.status(self.now).activity);
-            let Some(step) = self.plotter.poll(self.now) else { break };
+            let Some(step) = self.plotter.poll(self.now) else { return Ok(()) };
             let moves = [(Axis::X, step.pulse.x()), (Axis::Y, step.pulse.y())];
             prop_assert!(moves.iter().any(|(_, sign)| *sign != 0));
             for (axis, sign) in moves.into_iter().filter(|(_, sign)| *sign != 0) {
@@ -183,7 +184,17 @@ impl Watch {
                 prop_assert_eq!(self.plotter.position(), StepPoint::new(before.x + x, before.y + y));
             }
         }
-        while self.plotter.transmit(self.now).is_some() {}
+    }
+
+    /// All that is to be done now: what is answered may make room for a line that is due at once.
+    fn settle(&mut self) -> Result<(), TestCaseError> {
+        loop {
+            self.steps()?;
+            while self.plotter.transmit(self.now).is_some() {}
+            if self.plotter.due().is_none_or(|due| due > self.now) {
+                break;
+            }
+        }
         self.latched &= self.button || self.plotter.status(self.now).emergency_stop;
         prop_assert_eq!(self.latched, self.plotter.status(self.now).emergency_stop);
         if self.latched {

@@ -6,6 +6,7 @@ mod canvas;
 mod chart;
 mod compare;
 pub mod export;
+mod frames;
 pub mod golden;
 pub mod import;
 #[cfg(feature = "live")]
@@ -15,6 +16,7 @@ mod number;
 mod page;
 mod player;
 pub mod record;
+mod resume;
 #[cfg(feature = "serial")]
 pub mod serial;
 mod thin;
@@ -35,6 +37,7 @@ pub use player::{
     Answer, AnyController, Compared, Controller, ControllerError, Difference, EdgeSource, MachineController,
     MotorStep, Outcome, Pace, PaceSettings, Player, PlayerSettings, Rerun, Stuck,
 };
+pub use resume::{DrawingMark, ResumeError, ResumePoint};
 pub use thin::thin;
 pub use virtual_plotter::{
     Anomaly, AnomalyKind, CountedBy, Leg, Noted, PlotterSettings, Reached, SettingsError, TrackPoint,

@@ -7,9 +7,11 @@
     reason = "a test that fails says so by a panic"
 )]
 
+use std::io::{BufRead, BufReader};
 use std::net::TcpListener;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 const MACHINE: &str = "schema = 1\nname = \"test-bed\"\n[serial]\nbyte_gap_ms = 0.0\n[area]\nwidth_mm = 100.0\nheight_mm = 100.0\n";
 
@@ -93,4 +95,134 @@ fn a_drawing_in_any_language_is_drawn_and_recorded() {
         run(&["live", "far.hpgl", "--simulate", "machine.toml", "--speed", "4", "--start"], here);
     assert_eq!(status, Some(1));
     assert!(out.contains("far.hpgl: 1 errors, left out") && out.contains("lies outside"), "{out}");
+}
+
+/// A program that ends with the test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A machine on a pseudo terminal, and its port.
+fn simulated(arguments: &[&str], here: &Path) -> (Running, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_plotter-replay"))
+        .args([&["simulate", "machine.toml"], arguments].concat())
+        .current_dir(here)
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    let port = line.trim().split_once(" is simulated on ").unwrap().1.to_owned();
+    (Running(child), port)
+}
+
+/// Lines of 5 mm, to and fro.
+fn zigzag() -> String {
+    let corners = (1..=40).map(|n| format!(",{},{}", n * 40, (n % 2) * 200));
+    format!("IN;PU0,0;PD0,0{};", corners.collect::<String>())
+}
+
+fn info(log: &str, here: &Path) -> String {
+    run(&["info", log], here).1
+}
+
+#[test]
+fn a_host_that_was_killed_goes_on_from_its_log_and_every_target_is_drawn_once() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    std::fs::write(here.join("machine.toml"), MACHINE).unwrap();
+    std::fs::write(here.join("drawing.hpgl"), zigzag()).unwrap();
+    std::fs::write(here.join("other.hpgl"), "IN;PU0,0;PD400,0;").unwrap();
+    let (_machine, port) = simulated(&["--speed", "2"], here);
+    let drive = ["live", "--port", &port, "--machine", "machine.toml", "--start"];
+    let first = Command::new(env!("CARGO_BIN_EXE_plotter-replay"))
+        .args([&drive[..], &["drawing.hpgl", "-o", "one.plog"]].concat())
+        .current_dir(here)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut first = Running(first);
+    let until = Instant::now() + Duration::from_secs(60);
+    let reached = |log: &str| -> u32 {
+        let said = info(log, here);
+        let words = said.split(" reached").next().unwrap_or_default();
+        words.rsplit(' ').next().and_then(|n| n.parse().ok()).unwrap_or(0)
+    };
+    while reached("one.plog") < 5 {
+        assert!(Instant::now() < until, "{}", info("one.plog", here));
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    first.0.kill().unwrap();
+    first.0.wait().unwrap();
+    let before = reached("one.plog");
+    assert!((5..41).contains(&before), "{before}");
+    // Another drawing is refused, and so is a log that would be written over.
+    for (arguments, word) in [
+        (["other.hpgl", "--resume", "one.plog", "-o", "two.plog"], "another drawing"),
+        (["drawing.hpgl", "--resume", "one.plog", "-o", "one.plog"], "give another one"),
+        (["drawing.hpgl", "--resume", "machine.toml", "-o", "two.plog"], "machine.toml: "),
+    ] {
+        let (status, _, err) = run(&[&drive[..], &arguments].concat(), here);
+        assert_eq!(status, Some(2), "{err}");
+        assert!(err.contains(word), "{err}");
+    }
+    let (status, out, err) =
+        run(&[&drive[..], &["drawing.hpgl", "--resume", "one.plog", "-o", "two.plog"]].concat(), here);
+    assert_eq!((status, err.as_str()), (Some(0), ""), "{out}");
+    assert!(out.contains("targets: 41 of 41 reached"), "{out}");
+    // The second log holds no target that the first host's machine had begun.
+    let after = info("two.plog", here);
+    assert!(after.contains("ends at (40.000, 0.000) mm") && after.contains("anomalies: 0"), "{after}");
+    let sent: u32 = after.split("targets: ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!(sent + before <= 41 && sent > 0, "{before} before, {sent} after\n{after}");
+}
+
+#[test]
+fn a_machine_that_knows_digits_only_is_spoken_to_in_digits_or_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    std::fs::write(here.join("machine.toml"), MACHINE).unwrap();
+    std::fs::write(here.join("line.hpgl"), "IN;PU0,0;PD200,0,200,200;PU0,0;").unwrap();
+    let drive = |port: &str, link: &str, log: &str| {
+        let arguments = [
+            "live",
+            "--port",
+            port,
+            "--machine",
+            "machine.toml",
+            "--start",
+            "line.hpgl",
+            "--link",
+            link,
+            "-o",
+            log,
+        ];
+        run(&arguments, here)
+    };
+    let (_old, old) = simulated(&["--digits", "--speed", "2"], here);
+    let (_new, new) = simulated(&["--speed", "2"], here);
+    for (port, link, log, speech) in [
+        (&old, "auto", "a.plog", "the machine knows the digits protocol only"),
+        (&old, "digits", "b.plog", "protocol: \"digits\""),
+        (&new, "digits", "c.plog", "protocol: \"digits\""),
+        (&new, "frames", "d.plog", "protocol: \"link\""),
+    ] {
+        let (status, out, err) = drive(port, link, log);
+        assert_eq!((status, err.as_str()), (Some(0), ""), "{log}: {out}");
+        let said = info(log, here);
+        assert!(said.contains(speech), "{log}: {said}");
+        assert!(
+            said.contains("targets: 3 sent, 3 reached") && said.contains("anomalies: 0"),
+            "{log}: {said}"
+        );
+        assert!(said.contains("ends at (0.000, 0.000) mm"), "{log}: {said}");
+    }
+    let (status, _, err) = drive(&old, "frames", "e.plog");
+    assert_eq!(status, Some(2), "{err}");
+    assert!(err.contains("the machine knows the digits protocol only"), "{err}");
 }

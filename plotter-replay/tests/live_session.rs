@@ -48,7 +48,7 @@ fn until(what: &str, mut is_so: impl FnMut() -> bool) {
 fn an_emergency_stop_takes_the_drive_within_one_control_period() {
     let machine = machine();
     let (host, end) = Pipe::pair();
-    let simulated = SimulatedMachine::start(&machine, Arc::new(end), 1.0);
+    let simulated = SimulatedMachine::start(&machine, Arc::new(end), 1.0, 7);
     let telemetry = simulated.telemetry();
     let session = Session::open(
         Arc::new(host),
@@ -62,8 +62,10 @@ fn an_emergency_stop_takes_the_drive_within_one_control_period() {
     let period = Duration::from_secs_f64(1.0 / machine.config().control.contouring.loop_hz);
     for _ in 0..3 {
         until("it moves", || telemetry.lock().unwrap().duty != [0, 0]);
+        let before = telemetry.lock().unwrap().stopped;
         session.command(Command::Stop);
-        until("it stopped", || matches!(telemetry.lock().unwrap().stopped, Some((_, Some(_)))));
+        let last = || telemetry.lock().unwrap().stopped;
+        until("it stopped", || last() != before && matches!(last(), Some((_, Some(_)))));
         let (pressed, off) = telemetry.lock().unwrap().stopped.unwrap();
         assert!(off.unwrap() - pressed <= period, "{pressed:?} {off:?}");
         until("the session knows", || session.state() == State::Stopped);
@@ -80,7 +82,7 @@ fn an_emergency_stop_takes_the_drive_within_one_control_period() {
 fn a_paused_session_finishes_its_target_and_sends_no_other() {
     let machine = machine();
     let (host, end) = Pipe::pair();
-    let _simulated = SimulatedMachine::start(&machine, Arc::new(end), 4.0);
+    let _simulated = SimulatedMachine::start(&machine, Arc::new(end), 4.0, 7);
     let settings = SessionSettings { speed: 4.0, ..settings(4) };
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("session.plog");
@@ -135,9 +137,9 @@ impl Write for Disk {
 
 #[test]
 fn a_full_disk_stops_the_recording_and_not_the_drawing() {
-    let recorder = Writer::new(Disk(9_000), &Header::new()).unwrap();
+    let recorder = Writer::new(Disk(3_000), &Header::new()).unwrap();
     let (host, end) = Pipe::pair();
-    let _simulated = SimulatedMachine::start(&machine(), Arc::new(end), 4.0);
+    let _simulated = SimulatedMachine::start(&machine(), Arc::new(end), 4.0, 7);
     let moves = Box::new(square().into_iter());
     let settings = SessionSettings { speed: 4.0, ..settings(4) };
     let session = Session::open(Arc::new(host), Some(moves), Some(recorder), None, settings);

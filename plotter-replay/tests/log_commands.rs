@@ -304,7 +304,7 @@ fn no_file_makes_a_command_fall_over() {
 
 /// Five million and a hundred million events, and a line of a gigabyte.
 #[test]
-#[ignore = "two minutes: peak memory of long logs"]
+#[ignore = "peak memory of long logs, two minutes: cargo test --release -p plotter-replay --test log_commands -- --ignored"]
 #[cfg(target_os = "linux")]
 fn memory_does_not_grow_with_the_log() {
     let directory = tempfile::tempdir().unwrap();

@@ -14,7 +14,7 @@ use line::{Connection, End};
 use plotter_motion::control::LineController;
 use plotter_motion::firmware::{Gantry, GantrySettings, LinkedGantry};
 use plotter_motion::protocol::{
-    Host, HostEvent, HostNotice, HostSettings, LinkHost, LinkSettings, Resume, digits,
+    Host, HostEvent, HostNotice, HostSettings, LinkHost, LinkSettings, Order, Resume, digits,
 };
 use plotter_motion::{Axis, Demand, Direction, Drive, Pen, PenMove, StepPoint};
 use plotter_replay::transport::Faults;
@@ -278,7 +278,7 @@ fn drawings_by_frames_come_whole_over_a_bad_line() {
 }
 
 #[test]
-#[ignore = "a thousand drawings: half a minute in a release build"]
+#[ignore = "a thousand drawings, half a minute in a release build: .ci/run"]
 fn a_thousand_drawings_by_frames_come_whole_over_a_bad_line() {
     drawings_by_frames(1000);
 }
@@ -409,7 +409,7 @@ fn drawings_by_digits_are_ruined_and_our_host_notices_all() {
 }
 
 #[test]
-#[ignore = "a thousand drawings, most of them with long silences"]
+#[ignore = "a thousand drawings, most of them with long silences: .ci/run"]
 fn of_a_thousand_drawings_by_digits_our_host_notices_all_that_are_ruined() {
     drawings_by_digits(1000);
 }
@@ -434,6 +434,34 @@ fn the_cable_out_for_ten_seconds_costs_ten_seconds() {
         line.now.as_secs_f64()
     );
     assert!(line.now < whole.now + 11 * SECOND);
+}
+
+#[test]
+fn a_stop_over_a_bad_line_is_obeyed_and_costs_no_target() {
+    let mut slowest = Duration::ZERO;
+    for number in 0..20 {
+        let moves = drawing(number, 120);
+        let mut line = linked_line(&Faults::mixed(0.01), number, &moves, 20);
+        line.run(Duration::from_millis(300 + 7 * number), |_, _| false);
+        for order in [Order::Stop, Order::GoOn, Order::Hold, Order::GoOn] {
+            let began = line.now;
+            line.host.host.order(order);
+            let until = began + 5 * SECOND;
+            assert!(line.run(until, |_, machine| machine.inner.state() == order), "{number}: {order:?}");
+            if order == Order::Stop {
+                slowest = slowest.max(line.now - began);
+            }
+            assert!(line.run(until, |host, _| host.host.state() == order), "{number}: {order:?} is not told");
+            let stands = drawn(&line).len();
+            line.run(line.now + SECOND / 10, |_, _| false);
+            assert!(order == Order::GoOn || drawn(&line).len() == stands, "{number}: {order:?}");
+        }
+        assert!(line.run(line.now + 60 * SECOND, |host, _| host.host.is_done()), "{number}");
+        assert_drawn(&line, &moves, &format!("drawing {number}"));
+    }
+    println!("the slowest of 20 stops came {:.2} ms after the order", slowest.as_secs_f64() * 1e3);
+    // Three bytes and a hold-up of 20 ms, or the repetition after 30 ms.
+    assert!(slowest < SECOND / 10, "{slowest:?}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The semi-virtual gantry's controller: the published protocol on one side, two DC motors on the other.
 
 use crate::control::{ChosenController, LineController};
+use crate::protocol::Order;
 use crate::protocol::digits::{Dropped, Receiver, Reply};
 use crate::{Axis, Demand, Direction, Drive, LimitSwitches, Machine, SafetyGate, StepPoint};
 use core::fmt;
@@ -77,6 +78,9 @@ pub struct Gantry<C = ChosenController> {
     told: StepPoint,
     /// Whether the host is to be told that the target is reached.
     tell_reached: bool,
+    /// The host has stopped the motors, and waits to be told so.
+    stopped_by_host: bool,
+    tell_stopped: bool,
     next_tick: Option<Duration>,
     notices: [Option<Notice>; MOST_NOTICES],
 }
@@ -164,13 +168,20 @@ impl<C: LineController> Gantry<C> {
             approached: None,
             told: StepPoint::default(),
             tell_reached: false,
+            stopped_by_host: false,
+            tell_stopped: false,
             notices: [None; MOST_NOTICES],
         }
     }
 
     /// Takes a byte from the host. A target that comes before the one before is reached takes its place, as in the
-    /// published program: so a host can go on after a target that cannot be reached.
+    /// published program: so a host can go on after a target that cannot be reached. [`Order::Stop`] and [`Order::GoOn`] are
+    /// obeyed at once, whatever came of a target before them, and answered.
     pub fn receive(&mut self, now: Duration, byte: u8) {
+        if let Some(order @ (Order::Stop | Order::GoOn)) = Order::from_byte(byte) {
+            self.tell_stopped = true;
+            return self.stop_by_host(order == Order::Stop);
+        }
         let received = self.receiver.push(now, byte);
         if let Some(dropped) = received.dropped {
             self.notice(Notice::Dropped(dropped));
@@ -242,9 +253,22 @@ impl<C: LineController> Gantry<C> {
         free
     }
 
+    /// Takes the host's own emergency stop: both motors stay off until the host takes it back, whatever is done at the machine;
+    /// and what was stopped at the machine stays stopped, whatever the host says. Position and target are kept.
+    pub fn stop_by_host(&mut self, stopped: bool) {
+        self.stopped_by_host = stopped;
+        self.apply(self.demand);
+    }
+
+    /// Whether the motors are off by an emergency stop: the button's, or the host's.
+    #[must_use]
+    pub const fn is_stopped(&self) -> bool {
+        self.stopped_by_host || self.gate.is_stopped()
+    }
+
     fn apply(&mut self, demand: Demand) {
         self.demand = demand;
-        self.drive = self.gate.pass(demand);
+        self.drive = if self.stopped_by_host { Drive::default() } else { self.gate.pass(demand) };
         self.controller.applied(self.drive);
         if self.approached.is_some() && self.controller.has_arrived() {
             self.approached = None;
@@ -258,6 +282,9 @@ impl<C: LineController> Gantry<C> {
     /// The next byte for the host, if there is one.
     #[must_use]
     pub fn transmit(&mut self) -> Option<u8> {
+        if core::mem::take(&mut self.tell_stopped) {
+            return Some(if self.is_stopped() { Reply::Stopped } else { Reply::GoesOn }.byte());
+        }
         let position = self.controller.position();
         let ahead = |is: i32, told: i32| i64::from(is) - i64::from(told);
         let (x, y) = (ahead(position.x, self.told.x), ahead(position.y, self.told.y));

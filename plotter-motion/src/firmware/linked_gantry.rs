@@ -3,7 +3,7 @@
 use super::{Gantry, Notice};
 use crate::control::{ChosenController, LineController};
 use crate::protocol::digits::{Reply, TARGET_BYTES};
-use crate::protocol::{Link, LinkSettings, LinkState, Message, MessageDecoder};
+use crate::protocol::{Link, LinkSettings, LinkState, Message, MessageDecoder, Order};
 use crate::{Axis, Direction, Pen, StepPoint};
 use core::time::Duration;
 
@@ -16,7 +16,8 @@ const DIGITS_WAIT: Duration = Duration::from_millis(5);
 /// After the first session it knows frames only, until it is switched off.
 ///
 /// The next targets wait in the link's window, so the motors need not wait for the line. The host is told every 20 ms where
-/// the motors are, and of each target reached.
+/// the motors are, and of each target reached. Orders pass the window by: a stop has acted when [`receive`](Self::receive) of its
+/// last byte returns.
 ///
 /// Time, edges and switches go to the gantry itself ([`gantry_mut`](Self::gantry_mut)); after each of them, and after each byte,
 /// [`poll`](Self::poll) this one, and fetch the bytes for the line.
@@ -40,6 +41,11 @@ pub struct LinkedGantry<const WINDOW: usize, const PAYLOAD: usize, C = ChosenCon
     position: StepPoint,
     told_at: Duration,
     status_due: bool,
+    /// No further target is begun.
+    is_held: bool,
+    /// The last order in a session, and what the host was told of it.
+    order: u8,
+    told_order: (u8, Order),
     /// Bytes of digits that wait, and when the last of them came.
     held: [u8; TARGET_BYTES],
     held_length: u8,
@@ -67,6 +73,9 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> LinkedGantry<
             position: StepPoint::default(),
             told_at: Duration::ZERO,
             status_due: false,
+            is_held: false,
+            order: 0,
+            told_order: (0, Order::GoOn),
             held: [0; TARGET_BYTES],
             held_length: 0,
             held_at: Duration::ZERO,
@@ -96,11 +105,39 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> LinkedGantry<
         self.pen
     }
 
-    /// Takes a byte from the host.
+    /// What the last order and the button leave the machine to do.
+    #[must_use]
+    pub const fn state(&self) -> Order {
+        if self.gantry.is_stopped() {
+            Order::Stop
+        } else if self.is_held {
+            Order::Hold
+        } else {
+            Order::GoOn
+        }
+    }
+
+    fn obey(&mut self, number: u8, order: Order) {
+        self.is_held = order == Order::Hold;
+        self.gantry.stop_by_host(order == Order::Stop);
+        if number > 0 {
+            // An order that comes again was not known to have come: it is answered again.
+            self.order = number;
+            self.told_order.0 = 0;
+        }
+    }
+
+    /// Takes a byte from the host. An order is obeyed when this returns.
     pub fn receive(&mut self, now: Duration, byte: u8) {
         self.link.receive(now, byte);
+        if let Some((number, order)) = self.link.take_order() {
+            self.obey(number, order);
+        }
         if self.link.state() != LinkState::Idle {
             return;
+        }
+        if Order::from_byte(byte).is_some() {
+            return self.gantry.receive(now, byte); // before any digits that wait
         }
         if now > self.held_at.saturating_add(DIGITS_WAIT) {
             self.let_digits_pass(now);
@@ -135,11 +172,12 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> LinkedGantry<
             (self.decoder, self.answer) = (MessageDecoder::default(), None);
             self.last_target = StepPoint::default();
             self.status_due = true;
+            (self.order, self.told_order) = (0, (0, Order::GoOn));
         }
         self.note_pulses();
         self.report(now);
         // The pen and the motors are led to one target at a time.
-        while self.answer.is_none() && !self.under_way && !self.status_due {
+        while self.answer.is_none() && !self.under_way && !self.status_due && self.state() == Order::GoOn {
             let Some((pen, target)) = self.next_target() else { break };
             self.taken = self.taken.wrapping_add(1);
             if self.gantry.go_to(now, target) {
@@ -198,6 +236,10 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> LinkedGantry<
                 return;
             }
             (self.status_due, self.told) = (false, position);
+        }
+        let (order, state) = (self.order, self.state());
+        if self.told_order != (order, state) && self.tell(Message::Stands { order: order.into(), state }) {
+            self.told_order = (order, state);
         }
         let by = StepPoint::new(
             self.position.x.wrapping_sub(self.told.x),

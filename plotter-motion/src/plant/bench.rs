@@ -1,9 +1,10 @@
 //! A whole machine on the bench: host, serial line, controller, motors and encoders.
 
 use super::{AxisPlant, DriveDelay, SimulatedLine};
-use crate::firmware::{Gantry, Notice};
+use crate::control::LineController;
+use crate::firmware::{Gantry, LinkedGantry, Notice};
 use crate::protocol::{Host, HostEvent, HostSettings};
-use crate::{Axis, Direction, Machine, PenMove, Point};
+use crate::{Axis, Direction, Drive, Machine, PenMove, Point};
 use alloc::collections::VecDeque;
 use core::time::Duration;
 
@@ -40,16 +41,91 @@ pub enum BenchEvent {
     Controller(Notice),
 }
 
-/// A host, a serial line, a [`Gantry`] and its two simulated motors in one time.
+/// A controller that a [`Bench`] has on its end of the line.
+pub trait BenchController {
+    /// Takes a byte from the host.
+    fn receive(&mut self, now: Duration, byte: u8);
+    /// Takes an edge of an encoder.
+    fn edge(&mut self, now: Duration, axis: Axis, direction: Direction);
+    /// When [`tick`](Self::tick) has something to do, if ever; what waits for the line is left out while that is busy.
+    fn next_tick(&self, line_is_free: bool) -> Option<Duration>;
+    /// Does what is due.
+    fn tick(&mut self, now: Duration);
+    /// The next byte for the host, if there is one.
+    fn transmit(&mut self, now: Duration, line_is_free: bool) -> Option<u8>;
+    /// The next thing that it noticed.
+    fn take_notice(&mut self) -> Option<Notice>;
+    /// What both motors get.
+    fn drive(&self) -> Drive;
+}
+
+/// Its bytes wait on the line, however many they are.
+impl<C: LineController> BenchController for Gantry<C> {
+    fn receive(&mut self, now: Duration, byte: u8) {
+        Self::receive(self, now, byte);
+    }
+    fn edge(&mut self, now: Duration, axis: Axis, direction: Direction) {
+        Self::edge(self, now, axis, direction);
+    }
+    fn next_tick(&self, _: bool) -> Option<Duration> {
+        Self::next_tick(self)
+    }
+    fn tick(&mut self, now: Duration) {
+        Self::tick(self, now);
+    }
+    fn transmit(&mut self, _: Duration, _: bool) -> Option<u8> {
+        Self::transmit(self)
+    }
+    fn take_notice(&mut self) -> Option<Notice> {
+        Self::take_notice(self)
+    }
+    fn drive(&self) -> Drive {
+        Self::drive(self)
+    }
+}
+
+/// It is asked for a byte whenever the line can take one.
+impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> BenchController
+    for LinkedGantry<WINDOW, PAYLOAD, C>
+{
+    fn receive(&mut self, now: Duration, byte: u8) {
+        Self::receive(self, now, byte);
+        self.poll(now);
+    }
+    fn edge(&mut self, now: Duration, axis: Axis, direction: Direction) {
+        self.gantry_mut().edge(now, axis, direction);
+        self.poll(now);
+    }
+    fn next_tick(&self, line_is_free: bool) -> Option<Duration> {
+        let wake = self.next_wake().filter(|_| line_is_free);
+        [self.gantry().next_tick(), wake].into_iter().flatten().min()
+    }
+    fn tick(&mut self, now: Duration) {
+        self.gantry_mut().tick(now);
+        self.poll(now);
+    }
+    fn transmit(&mut self, now: Duration, line_is_free: bool) -> Option<u8> {
+        if line_is_free { Self::transmit(self, now) } else { None }
+    }
+    fn take_notice(&mut self) -> Option<Notice> {
+        Self::take_notice(self)
+    }
+    fn drive(&self) -> Drive {
+        self.gantry().drive()
+    }
+}
+
+/// A host, a serial line, a [`Gantry`] or another [`BenchController`] and its two simulated motors in one time.
 ///
 /// Everything happens at whole microseconds; of what happens at the same one, the controller's tick comes
 /// first. A byte is through ten bit times after it was put on the line. The crate's page shows one at work.
 #[derive(Debug)]
-pub struct Bench<I> {
+pub struct Bench<I, C = Gantry> {
     now: Duration,
     time_step: Duration,
     host: Host<I>,
-    controller: Gantry,
+    controller: C,
+    ticked: Option<Duration>,
     delay: DriveDelay,
     x: AxisPlant,
     y: AxisPlant,
@@ -76,6 +152,14 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
     /// `serial.byte_gap_ms`.
     #[must_use]
     pub fn new(machine: &Machine, settings: BenchSettings, moves: I) -> Self {
+        Self::with_controller(machine, settings, Gantry::new(machine), moves)
+    }
+}
+
+impl<I: Iterator<Item = PenMove>, C: BenchController> Bench<I, C> {
+    /// The same with another controller, at rest at the origin.
+    #[must_use]
+    pub fn with_controller(machine: &Machine, settings: BenchSettings, controller: C, moves: I) -> Self {
         let config = machine.config();
         const SHORTEST: Duration = Duration::from_micros(1);
         const LONGEST: Duration = Duration::from_millis(1); // a few of the position loop's runs
@@ -92,7 +176,8 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
             now: Duration::ZERO,
             time_step,
             host: Host::new(byte_gap, settings.host, moves),
-            controller: Gantry::new(machine),
+            controller,
+            ticked: None,
             delay: DriveDelay::of(machine),
             x: axis(&config.x),
             y: axis(&config.y),
@@ -131,8 +216,12 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
     }
 
     fn next_event(&self) -> Option<(Duration, Next)> {
+        let line_is_free = self.to_host.next().is_none();
+        // What has nothing to say although it is due is asked again a microsecond later.
+        let tick = self.controller.next_tick(line_is_free);
+        let later = self.ticked.map_or(Duration::ZERO, |at| at + Duration::from_micros(1));
         [
-            (self.controller.next_tick(), Next::Tick),
+            (tick.map(|at| at.max(later)), Next::Tick),
             (self.to_controller.next(), Next::ToController),
             (self.edges.front().map(|&(at, ..)| at), Next::Edge),
             (self.to_host.next(), Next::ToHost),
@@ -145,7 +234,10 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
 
     fn handle(&mut self, at: Duration, next: Next, record: &mut impl FnMut(Duration, BenchEvent)) {
         match next {
-            Next::Tick => self.controller.tick(at),
+            Next::Tick => {
+                self.controller.tick(at);
+                self.ticked = Some(at);
+            }
             Next::ToController => {
                 if let Some(byte) = self.to_controller.take() {
                     record(at, BenchEvent::HostByte(byte));
@@ -175,7 +267,7 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
                 }
             }
         }
-        while let Some(byte) = self.controller.transmit() {
+        while let Some(byte) = self.controller.transmit(at, self.to_host.next().is_none()) {
             self.to_host.send(at, byte);
         }
         while let Some(notice) = self.controller.take_notice() {
@@ -211,12 +303,12 @@ impl<I: Iterator<Item = PenMove>> Bench<I> {
 
     /// The controller.
     #[must_use]
-    pub const fn controller(&self) -> &Gantry {
+    pub const fn controller(&self) -> &C {
         &self.controller
     }
 
     /// The controller, to press its switches.
-    pub const fn controller_mut(&mut self) -> &mut Gantry {
+    pub const fn controller_mut(&mut self) -> &mut C {
         &mut self.controller
     }
 

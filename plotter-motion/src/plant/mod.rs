@@ -15,7 +15,7 @@ mod stepper;
 pub use axis_plant::{AxisPlant, CountedEdge, PhaseChange};
 pub use belt_drive::{BeltDrive, BeltDriveState};
 #[cfg(feature = "alloc")]
-pub use bench::{Bench, BenchEvent, BenchSettings};
+pub use bench::{Bench, BenchController, BenchEvent, BenchSettings};
 pub use dc_motor::{DcMotor, DcMotorState};
 pub use drive_delay::DriveDelay;
 pub use marking_board::{MarkingBoardPlant, MarkingBoardPlantSettings};

@@ -5,10 +5,13 @@
 //!  controller ──▶ host   1 x+1   2 x-1   3 y+1   4 y-1   (or a b c d)    + target reached    C clear
 //! ```
 //!
+//! Ours adds two bytes, each in both directions: `!` and `~`, see [`Order`].
+//!
 //! A target of x = 2993, y = 13955 is `3 9 9 2 0  5 5 9 3 1`. There is no frame and no checksum: were the ten
 //! bytes simply counted, one lost byte would shift every later target. [`Receiver`] therefore takes up the
 //! thread again at a byte that cannot be a digit and at a silence inside a target.
 
+use super::Order;
 use crate::{Axis, Direction, StepPoint};
 use core::fmt;
 use core::time::Duration;
@@ -75,6 +78,10 @@ pub enum Reply {
     Reached,
     /// Clear: the position is (0, 0) from here.
     Clear,
+    /// After a byte that ordered it: the motors are off and stay off.
+    Stopped,
+    /// After a byte that ordered it: the motors are free again.
+    GoesOn,
 }
 
 impl Reply {
@@ -93,6 +100,8 @@ impl Reply {
             Self::Pulse(Axis::Y, Direction::Minus) => b'4',
             Self::Reached => b'+',
             Self::Clear => b'C',
+            Self::Stopped => Order::Stop.byte(),
+            Self::GoesOn => Order::GoOn.byte(),
         }
     }
 
@@ -106,7 +115,11 @@ impl Reply {
             b'4' | b'd' => Self::Pulse(Axis::Y, Direction::Minus),
             b'+' => Self::Reached,
             b'C' => Self::Clear,
-            _ => return None,
+            _ => match Order::from_byte(byte) {
+                Some(Order::Stop) => Self::Stopped,
+                Some(Order::GoOn) => Self::GoesOn,
+                _ => return None,
+            },
         })
     }
 }

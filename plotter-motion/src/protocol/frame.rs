@@ -36,6 +36,8 @@ pub enum Kind {
     Data = b'D',
     /// What has come; the payload says what has come out of order.
     Acknowledge = b'A',
+    /// An order outside the streams, with a number of its own.
+    Order = b'O',
 }
 
 impl Kind {
@@ -44,6 +46,7 @@ impl Kind {
             b'H' => Self::Hello,
             b'D' => Self::Data,
             b'A' => Self::Acknowledge,
+            b'O' => Self::Order,
             _ => return None,
         })
     }

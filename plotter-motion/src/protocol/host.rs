@@ -65,6 +65,12 @@ pub enum HostNotice {
     },
     /// A target outside the machine's area, encoder counts; it is left out.
     OutOfArea(StepPoint),
+    /// The motors are off by an emergency stop, the machine says.
+    Stopped,
+    /// The machine begins no further target until it is told to go on.
+    Held,
+    /// Neither stopped nor held any more, the machine says.
+    GoesOn,
     /// The machine knows the digits protocol only.
     DigitsOnly,
     /// Nothing comes from the machine any more.
@@ -94,6 +100,9 @@ impl fmt::Display for HostNotice {
             Self::OutOfArea(target) => {
                 write!(f, "target {:?} lies outside the machine's area: it was left out", at(target))
             }
+            Self::Stopped => f.write_str("the machine is stopped: both motors are off"),
+            Self::Held => f.write_str("the machine waits after this target"),
+            Self::GoesOn => f.write_str("the machine goes on"),
             Self::DigitsOnly => f.write_str("the machine knows the digits protocol only"),
             Self::Interrupted => f.write_str("nothing comes from the machine: is its cable plugged in?"),
             Self::Resumed => f.write_str("the machine is heard again: the drawing goes on"),
@@ -283,6 +292,8 @@ impl<I: Iterator<Item = PenMove>> Host<I> {
         match reply {
             Reply::Pulse(axis, direction) => self.count(now, axis, direction),
             Reply::Clear => self.position = StepPoint::default(),
+            Reply::Stopped => return Some(HostEvent::Notice(HostNotice::Stopped)),
+            Reply::GoesOn => return Some(HostEvent::Notice(HostNotice::GoesOn)),
             Reply::Reached => {
                 let State::Waiting { retries, .. } = self.state else {
                     return None;

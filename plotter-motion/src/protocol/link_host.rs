@@ -2,7 +2,7 @@
 
 use super::link::{Link, LinkSettings, LinkState};
 use super::message::{Message, MessageDecoder};
-use super::{Host, HostEvent, HostNotice, HostSettings};
+use super::{Host, HostEvent, HostNotice, HostSettings, Order};
 use crate::{PenMove, StepPoint};
 use core::time::Duration;
 
@@ -64,6 +64,9 @@ pub struct LinkHost<I, const WINDOW: usize, const PAYLOAD: usize> {
     finished: bool,
     event: Option<HostEvent>,
     session: u16,
+    /// What the machine says it does, and the last order by digits that is not out.
+    state: Order,
+    order_byte: Option<u8>,
 }
 
 impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> LinkHost<I, WINDOW, PAYLOAD> {
@@ -100,6 +103,8 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
             finished: false,
             event: None,
             session: 0,
+            state: Order::GoOn,
+            order_byte: None,
         }
     }
 
@@ -110,10 +115,39 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
         self
     }
 
+    /// Gives an order, which goes out before anything else; what became of it, a notice says. An order that was not answered is
+    /// repeated, over frames. To a machine of digits a hold is nothing: it has one target at a time, so send it no other.
+    pub const fn order(&mut self, order: Order) {
+        if self.digits.is_none() {
+            self.link.order(order);
+        } else if !matches!(order, Order::Hold) {
+            self.order_byte = Some(order.byte());
+        }
+    }
+
+    /// What the machine says that it does.
+    #[must_use]
+    pub const fn state(&self) -> Order {
+        self.state
+    }
+
+    /// Whether the machine is known to speak the digits protocol only.
+    #[must_use]
+    pub const fn is_digits(&self) -> bool {
+        self.digits.is_some()
+    }
+
     /// Takes a byte from the machine.
     pub fn receive(&mut self, now: Duration, byte: u8) {
         match &mut self.digits {
-            Some(host) => self.event = host.receive(now, byte),
+            Some(host) => {
+                self.event = host.receive(now, byte);
+                match self.event {
+                    Some(HostEvent::Notice(HostNotice::Stopped)) => self.state = Order::Stop,
+                    Some(HostEvent::Notice(HostNotice::GoesOn)) => self.state = Order::GoOn,
+                    _ => {}
+                }
+            }
             None => self.link.receive(now, byte),
         }
     }
@@ -154,7 +188,7 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
         if self.link.session() != self.session {
             self.session = self.link.session();
             (self.decoder, self.status, self.written) = (MessageDecoder::default(), false, 0);
-            self.last_target = StepPoint::default();
+            (self.last_target, self.state) = (StepPoint::default(), Order::GoOn);
         }
         let mut byte = [0];
         while self.link.read(&mut byte) == 1 {
@@ -202,6 +236,16 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
             Message::Refused(count) => {
                 (self.reached_there, self.refused) = (count, Some(count));
                 None
+            }
+            Message::Stands { order, state } => {
+                let order = u8::try_from(order).unwrap_or(0);
+                self.link.order_taken(order);
+                let is_new = core::mem::replace(&mut self.state, state) != state;
+                is_new.then_some(HostEvent::Notice(match state {
+                    Order::Stop => HostNotice::Stopped,
+                    Order::Hold => HostNotice::Held,
+                    Order::GoOn => HostNotice::GoesOn,
+                }))
             }
             Message::Target { .. } => None,
         }
@@ -288,7 +332,7 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
     #[must_use]
     pub fn next_byte(&mut self, now: Duration) -> Option<u8> {
         match &mut self.digits {
-            Some(host) => host.next_byte(now),
+            Some(host) => self.order_byte.take().or_else(|| host.next_byte(now)),
             None => self.link.transmit(now),
         }
     }
@@ -297,6 +341,7 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
     #[must_use]
     pub fn next_wake(&self) -> Option<Duration> {
         match &self.digits {
+            Some(_) if self.order_byte.is_some() => Some(Duration::ZERO),
             Some(host) => host.next_wake(),
             None => self.link.next_wake(),
         }

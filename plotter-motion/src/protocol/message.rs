@@ -3,6 +3,7 @@
 //! A byte for its kind, then numbers in LEB128 (seven bits a byte, low ones first, the eighth set where more follow; DWARF 5,
 //! section 7.6); those that may be below 0 as 2n, or -2n-1.
 
+use super::Order;
 use crate::{Pen, StepPoint};
 use core::fmt;
 
@@ -35,6 +36,14 @@ pub enum Message {
     Reached(u32),
     /// Machine: the target after so many is outside its area; it was left out, and counts as reached.
     Refused(u32),
+    /// Machine: whether it is stopped or held now; said when that changes, after each order, and after the status of one that
+    /// is not free.
+    Stands {
+        /// The last order taken in this session, by its number; 0 for none.
+        order: u32,
+        /// What holds.
+        state: Order,
+    },
 }
 
 const DRAW: u8 = 0x01;
@@ -43,6 +52,7 @@ const STATUS: u8 = 0x10;
 const MOVED: u8 = 0x11;
 const REACHED: u8 = 0x12;
 const REFUSED: u8 = 0x13;
+const STANDS: u8 = 0x14;
 
 /// Most bytes of a message.
 pub const MOST_MESSAGE: usize = 1 + 5 * 5;
@@ -67,6 +77,7 @@ impl Message {
             Self::Moved(by) => (MOVED, [zigzag(by.x), zigzag(by.y), 0, 0, 0], 2),
             Self::Reached(count) => (REACHED, [count, 0, 0, 0, 0], 1),
             Self::Refused(count) => (REFUSED, [count, 0, 0, 0, 0], 1),
+            Self::Stands { order, state } => (STANDS, [order, u32::from(state.byte()), 0, 0, 0], 2),
         };
         let mut bytes = [0; MOST_MESSAGE];
         let mut places = bytes.iter_mut();
@@ -105,12 +116,15 @@ pub enum MessageError {
     Kind(u8),
     /// A number of more than 32 bits.
     Number,
+    /// A state that this version does not know.
+    State(u32),
 }
 
 impl fmt::Display for MessageError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Kind(kind) => write!(f, "a message of the unknown kind {kind:#04x}: is one side newer?"),
+            Self::State(state) => write!(f, "the unknown state {state:#04x}: is one side newer?"),
             Self::Number => f.write_str("a message with a number of more than 32 bits"),
         }
     }
@@ -140,7 +154,7 @@ impl MessageDecoder {
     /// Takes a byte; says what came to its end with it.
     pub fn push(&mut self, byte: u8) -> Option<Result<Message, MessageError>> {
         if self.kind == 0 {
-            if matches!(byte, DRAW | TRAVEL | STATUS | MOVED | REACHED | REFUSED) {
+            if matches!(byte, DRAW | TRAVEL | STATUS | MOVED | REACHED | REFUSED | STANDS) {
                 self.kind = byte;
                 return None;
             }
@@ -176,6 +190,10 @@ impl MessageDecoder {
             MOVED => Message::Moved(point),
             REACHED => Message::Reached(a),
             REFUSED => Message::Refused(a),
+            STANDS => match u8::try_from(b).ok().and_then(Order::from_byte) {
+                Some(state) => Message::Stands { order: a, state },
+                None => return Some(Err(MessageError::State(b))),
+            },
             _ => Message::Status {
                 boot: a,
                 taken: b,

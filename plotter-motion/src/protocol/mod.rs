@@ -7,6 +7,7 @@ mod host;
 mod link;
 mod link_host;
 mod message;
+mod order;
 mod wire;
 
 pub use hello::Hello;
@@ -14,6 +15,7 @@ pub use host::{Host, HostEvent, HostNotice, HostSettings};
 pub use link::{CALL_ZEROS, LINK_VERSION, Link, LinkCounts, LinkSettings, LinkState};
 pub use link_host::{LinkHost, LinkProgress, Resume};
 pub use message::{MOST_MESSAGE, Message, MessageDecoder, MessageError};
+pub use order::Order;
 pub use wire::Wire;
 
 /// What a firmware's serial driver hands to a controller in place of a byte that came broken, or of bytes that were lost:

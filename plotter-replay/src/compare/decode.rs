@@ -1,10 +1,13 @@
 //! [`Decoder`]: records in words.
 
+use crate::frames::{FrameReader, Said};
+use crate::import::Side;
 use crate::log::{Event, Header, Record};
 use core::fmt::Write as _;
 use core::time::Duration;
 use plotter_motion::protocol::digits::{Receiver, Reply};
-use plotter_motion::{Axis, Direction};
+use plotter_motion::protocol::{Hello, Message, MessageDecoder, Order};
+use plotter_motion::{Axis, Direction, Pen};
 
 /// Bytes of a record that are put into words; of longer ones it says how many there are.
 const MOST_BYTES: usize = 16;
@@ -25,6 +28,9 @@ const MOST_BYTES: usize = 16;
 pub struct Decoder {
     /// `None` for a protocol of text lines.
     digits: Option<Receiver>,
+    frames: FrameReader,
+    /// Whether the sides speak frames now.
+    is_linked: bool,
 }
 
 impl Decoder {
@@ -32,19 +38,49 @@ impl Decoder {
     #[must_use]
     pub fn new(header: &Header) -> Self {
         let gap_ms = header.number("resync_gap_ms").filter(|ms| (0.0..=3.6e6).contains(ms)).unwrap_or(100.0);
-        let is_digits = header.text("protocol").is_none_or(|protocol| protocol == "digits");
+        let is_digits = header.text("protocol").is_none_or(|protocol| matches!(protocol, "digits" | "link"));
         let gap = Duration::try_from_secs_f64(gap_ms / 1e3).unwrap_or(Duration::from_millis(100));
-        Self { digits: is_digits.then(|| Receiver::new(gap)) }
+        Self {
+            digits: is_digits.then(|| Receiver::new(gap)),
+            frames: FrameReader::default(),
+            is_linked: false,
+        }
     }
 
     /// A record in words; empty for one that says it itself.
     pub fn words(&mut self, record: &Record) -> String {
+        let frames = match &record.event {
+            Event::Host(bytes) if self.digits.is_some() => self.frames(Side::Host, bytes),
+            Event::Controller(bytes) if self.digits.is_some() => self.frames(Side::Controller, bytes),
+            _ => None,
+        };
+        if let Some(words) = frames {
+            return words;
+        }
         match &record.event {
             Event::Host(bytes) => self.host(record.time, bytes),
             Event::Controller(bytes) if self.digits.is_some() => replies(bytes),
             Event::Controller(bytes) => quoted(bytes),
             _ => String::new(),
         }
+    }
+
+    /// What comes to its end with these bytes, once a machine has greeted.
+    fn frames(&mut self, side: Side, bytes: &[u8]) -> Option<String> {
+        let mut parts = Vec::new();
+        for &byte in bytes {
+            let Some(said) = self.frames.push(side, byte) else { continue };
+            self.is_linked |= side == Side::Controller && matches!(said, Said::Hello(_));
+            parts.push(said);
+        }
+        if !self.is_linked {
+            return None;
+        }
+        Some(if parts.is_empty() {
+            format!("... ({} bytes of a frame)", bytes.len())
+        } else {
+            parts.iter().map(frame).collect::<Vec<_>>().join(", ")
+        })
     }
 
     fn host(&mut self, time: Duration, bytes: &[u8]) -> String {
@@ -59,6 +95,11 @@ impl Decoder {
             }
         };
         for (at, &byte) in bytes.iter().enumerate() {
+            if let Some(order) = Order::from_byte(byte) {
+                end_run(&mut run, &mut parts);
+                parts.push(frame(&Said::Order(0, Some(order))));
+                continue;
+            }
             let received = receiver.push(time, byte);
             if at >= MOST_BYTES {
                 continue;
@@ -77,6 +118,48 @@ impl Decoder {
         }
         end_run(&mut run, &mut parts);
         more(parts, bytes)
+    }
+}
+
+/// A frame in words. Messages that go on from one frame to the next are told as far as they are in this one.
+fn frame(said: &Said) -> String {
+    match said {
+        Said::Hello(Hello { session: 0, .. }) => String::from("hello"),
+        Said::Hello(Hello { session, .. }) => format!("hello, session {session:#06x}"),
+        Said::Acknowledge(until) => format!("has all before {until}"),
+        Said::Order(_, Some(Order::Stop)) => String::from("order stop"),
+        Said::Order(_, Some(Order::Hold)) => String::from("order hold"),
+        Said::Order(_, Some(Order::GoOn)) => String::from("order go on"),
+        Said::Order(number, None) => format!("order {number}, unknown"),
+        Said::Damaged(error) => error.to_string(),
+        Said::Data(number, payload, _) => {
+            let mut decoder = MessageDecoder::default();
+            let mut words = format!("data {number}:");
+            for message in payload.iter().filter_map(|&byte| decoder.push(byte)) {
+                let _ = match message {
+                    Ok(message) => write!(words, " {}", said_in_words(message)),
+                    Err(_) => write!(words, " ..."),
+                };
+            }
+            words
+        }
+    }
+}
+
+fn said_in_words(message: Message) -> String {
+    match message {
+        Message::Target { pen: Pen::Down, by } => format!("draw by {} {}", by.x, by.y),
+        Message::Target { pen: Pen::Up, by } => format!("travel by {} {}", by.x, by.y),
+        Message::Status { boot, taken, reached, position } => {
+            format!("status boot {boot} taken {taken} reached {reached} at {} {}", position.x, position.y)
+        }
+        Message::Moved(by) => format!("moved {} {}", by.x, by.y),
+        Message::Reached(count) => format!("reached {count}"),
+        Message::Refused(count) => format!("refused {count}"),
+        Message::Stands { state: Order::Stop, .. } => String::from("stopped"),
+        Message::Stands { state: Order::Hold, .. } => String::from("held"),
+        Message::Stands { state: Order::GoOn, .. } => String::from("goes on"),
+        _ => String::from("something newer"),
     }
 }
 
@@ -112,6 +195,8 @@ pub(super) fn reply(byte: u8) -> String {
         Some(Reply::Pulse(axis, sign)) => format!("pulse {}", pulse(axis, sign)),
         Some(Reply::Reached) => String::from("reached"),
         Some(Reply::Clear) => String::from("clear"),
+        Some(Reply::Stopped) => String::from("stopped"),
+        Some(Reply::GoesOn) => String::from("goes on"),
         None => format!("0x{byte:02x} says nothing"),
     }
 }

@@ -1,11 +1,5 @@
 //! [`Command`] and [`State`]: what a person may ask of a session, and what it is doing.
 
-/// The byte that stops a machine at once. It is no digit, so no target holds it; the published controller knows no such
-/// byte, ours and the simulated machine do. Grbl has the same one for a feed hold.
-pub const STOP: u8 = b'!';
-/// The byte that lets a stopped machine go on.
-pub const GO_ON: u8 = b'~';
-
 /// What a person asks of a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Command {

@@ -8,22 +8,23 @@
 //!
 //! A [`Session`] owns the line: it sends the drawing target by target, records every byte, and keeps what is to be seen in
 //! bounded memory. A [`Server`] or [`terminal::run`] shows that and hands on commands. The emergency stop goes past the
-//! session's own loop: whoever presses it writes [`STOP`] on the line at once.
+//! session's own loop: whoever presses it writes it on the line at once ([`plotter_motion::protocol::Order::Stop`]).
 
 mod commands;
 mod line;
 mod page;
 mod progress;
+mod sender;
 mod server;
 mod session;
 mod simulated;
 pub mod terminal;
 mod view;
 
-pub use commands::{Command, GO_ON, STOP, State};
+pub use commands::{Command, State};
 pub use line::{Line, Pipe, PortLine};
 pub use page::LivePage;
 pub use progress::Plan;
 pub use server::{Server, ServerError};
-pub use session::{Session, SessionSettings};
+pub use session::{LinkChoice, Session, SessionSettings};
 pub use simulated::{SimulatedMachine, Telemetry};

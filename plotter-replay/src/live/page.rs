@@ -99,7 +99,7 @@ impl LivePage {
             "stops": self.stops,
             "facts": self.facts,
             "box": area_mm,
-            "meant": along(&meant, false),
+            "meant": along(&meant),
         });
         document(&format!("{} - live", self.title), BODY, PROGRAM, &data.to_string(), sources)
     }

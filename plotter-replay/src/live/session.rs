@@ -2,17 +2,19 @@
 
 use super::line::{Line, lock};
 use super::progress::Plan;
+use super::sender::Sender;
 use super::view::{Cursor, View};
-use super::{Command, GO_ON, STOP, State, Telemetry};
+use super::{Command, State, Telemetry};
 use crate::PlotterSettings;
 use crate::log::{Event, Record, Writer};
 use crate::serial::PortError;
 use core::time::Duration;
-use plotter_motion::protocol::{Host, HostEvent, HostNotice, HostSettings};
+use plotter_motion::protocol::{HostEvent, HostNotice, HostSettings, Order, Resume};
 use plotter_motion::{PenMove, StepPoint};
 use serde_json::Value;
 use std::collections::VecDeque;
 use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
@@ -21,6 +23,18 @@ use std::time::Instant;
 const LISTEN: Duration = Duration::from_millis(2);
 /// How often the response is sampled.
 const SAMPLE_EVERY: Duration = Duration::from_millis(20);
+
+/// What is spoken with the machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LinkChoice {
+    /// Frames, if the machine knows them, else digits. It is called when the drawing begins, at the origin.
+    #[default]
+    Auto,
+    /// Ten digits a target, as published. The machine is not called.
+    Digits,
+    /// Frames; a machine that does not know them is refused.
+    Frames,
+}
 
 /// How a session goes.
 #[derive(Clone, Debug)]
@@ -37,6 +51,14 @@ pub struct SessionSettings {
     pub speed: f64,
     /// Duty steps that are the whole supply, of both motors.
     pub pwm_steps: [u32; 2],
+    /// What is spoken.
+    pub link: LinkChoice,
+    /// Number of a session of frames: one that the last host is not likely to have taken, such as the low bits of a clock.
+    pub nonce: u16,
+    /// Bits a second of the line.
+    pub baud: u32,
+    /// Where another host has left the drawing; its moves are all of them, from the first.
+    pub resume: Option<Resume>,
 }
 
 impl Default for SessionSettings {
@@ -49,6 +71,10 @@ impl Default for SessionSettings {
             plan: None,
             speed: 1.0,
             pwm_steps: [255; 2],
+            link: LinkChoice::Auto,
+            nonce: 1,
+            baud: 256_000,
+            resume: None,
         }
     }
 }
@@ -64,11 +90,16 @@ struct Shared {
     line: Arc<dyn Line>,
     view: Mutex<View>,
     commands: Mutex<VecDeque<Command>>,
+    /// Whether the machine may speak frames, so that a stop is `00 21 00`.
+    may_be_linked: AtomicBool,
+    /// Whether a stop is on the line that the session's loop has not taken note of: until then it sends nothing, lest it sends an
+    /// older order to go on.
+    stop_is_new: Mutex<bool>,
     finished: Condvar,
 }
 
 /// The moves of a drawing, in order.
-type Moves = Box<dyn Iterator<Item = PenMove> + Send>;
+pub(super) type Moves = Box<dyn Iterator<Item = PenMove> + Send>;
 
 impl Session {
     /// Opens a session on `line`. With `moves` it waits for [`Command::Start`]; without, it only watches. What happens goes
@@ -85,9 +116,16 @@ impl Session {
         let mut view = View::new(settings.plotter, state, settings.plan);
         view.recording = String::from(if recorder.is_some() { "on" } else { "none" });
         let view = Mutex::new(view);
-        let shared = Arc::new(Shared { line, view, commands: Mutex::default(), finished: Condvar::new() });
+        let shared = Arc::new(Shared {
+            line,
+            view,
+            commands: Mutex::default(),
+            may_be_linked: AtomicBool::new(moves.is_some() && settings.link != LinkChoice::Digits),
+            stop_is_new: Mutex::default(),
+            finished: Condvar::new(),
+        });
         let session = Self { shared: Arc::clone(&shared) };
-        let host = moves.map(|moves| Host::new(settings.byte_gap, settings.host, moves));
+        let host = moves.map(|moves| Sender::new(&settings, moves));
         thread::spawn(move || {
             let engine = Engine {
                 host,
@@ -99,6 +137,9 @@ impl Session {
                 under_way: None,
                 at: StepPoint::default(),
                 last: Duration::ZERO,
+                failure: None,
+                wants_stop: false,
+                is_resumed: false,
                 settings,
                 shared: &shared,
             };
@@ -110,8 +151,10 @@ impl Session {
     /// Does what a person asks. An emergency stop is on the line when this returns.
     pub fn command(&self, command: Command) {
         if command == Command::Stop {
+            let mut stop_is_new = lock(&self.shared.stop_is_new);
+            *stop_is_new = true;
             // The line's own failure is met by the session's loop, which says so.
-            let _ = self.shared.line.send(&[STOP]);
+            let _ = self.shared.line.send(self.shared.stop_bytes());
         }
         lock(&self.shared.commands).push_back(command);
     }
@@ -155,8 +198,17 @@ impl Session {
     }
 }
 
+impl Shared {
+    /// What stops the machine at once: a zero on either side makes a stop by itself of it where frames are spoken.
+    fn stop_bytes(&self) -> &'static [u8] {
+        const { &[0, Order::Stop.byte(), 0] }
+            .get(if self.may_be_linked.load(Ordering::Relaxed) { 0..3 } else { 1..2 })
+            .unwrap_or_default()
+    }
+}
+
 struct Engine<'a, W: Write> {
-    host: Option<Host<Moves>>,
+    host: Option<Sender>,
     recorder: Option<Writer<W>>,
     telemetry: Option<Arc<Mutex<Telemetry>>>,
     began: Instant,
@@ -168,6 +220,12 @@ struct Engine<'a, W: Write> {
     /// The last target.
     at: StepPoint,
     last: Duration,
+    /// What ends the drawing before its end.
+    failure: Option<String>,
+    /// Whether a person has stopped it here, and has not let it go on.
+    wants_stop: bool,
+    /// Whether what another host has drawn was taken into account.
+    is_resumed: bool,
     settings: SessionSettings,
     shared: &'a Shared,
 }
@@ -182,7 +240,7 @@ impl<W: Write> Engine<'_, W> {
             }
         };
         if let State::Failed(why) = &end {
-            self.take(Event::Note(format!("the line failed: {why}")));
+            self.take(Event::Note(format!("the session failed: {why}")));
         }
         let kept = self.recorder.take().map(|recorder| recorder.finish().map(|_| ()));
         let mut view = lock(&self.shared.view);
@@ -208,10 +266,20 @@ impl<W: Write> Engine<'_, W> {
         let state = lock(&self.shared.view).state.clone();
         let now = self.now();
         let host_now = self.host_clock(now, &state);
-        let drawing = state == State::Running || (state == State::Paused && self.under_way.is_some());
+        // On the reliable link the machine is told to wait; by digits it is told nothing more.
+        let is_digits = self.host.as_ref().is_none_or(Sender::is_digits);
+        let drawing = match state {
+            State::Running => true,
+            State::Paused => !is_digits || self.under_way.is_some(),
+            State::Stopped => self.host.as_ref().is_some_and(Sender::is_linked),
+            _ => false,
+        };
         let mut wait = LISTEN;
         if drawing && self.host.is_some() {
             self.send(host_now)?;
+            if let Some(why) = self.failure.take() {
+                return Ok(Some(State::Failed(why)));
+            }
             if let Some(host) = &self.host {
                 if host.is_done() {
                     return Ok(Some(State::Done));
@@ -232,6 +300,7 @@ impl<W: Write> Engine<'_, W> {
                     self.event(event);
                 }
             }
+            self.resumed();
         }
         self.look();
         Ok(None)
@@ -242,6 +311,9 @@ impl<W: Write> Engine<'_, W> {
             let Some(command) = lock(&self.shared.commands).pop_front() else {
                 return Ok(());
             };
+            if command == Command::Resume && *lock(&self.shared.stop_is_new) {
+                continue; // it was stopped again since
+            }
             let next = {
                 let mut view = lock(&self.shared.view);
                 if command == Command::Clear {
@@ -252,10 +324,34 @@ impl<W: Write> Engine<'_, W> {
                 before.zip(next)
             };
             match (command, next) {
-                (Command::Stop, _) => self.take(Event::Estop(true)),
+                (Command::Stop, _) => {
+                    (self.wants_stop, *lock(&self.shared.stop_is_new)) = (true, false);
+                    // Its bytes are out. Over frames it is also told in a way that is answered.
+                    let bytes = self.shared.stop_bytes().to_vec();
+                    self.take(Event::Host(bytes));
+                    if let Some(host) = &mut self.host {
+                        let _ = host.order(Order::Stop);
+                    }
+                }
+                (Command::Pause, Some(_)) => {
+                    if let Some(host) = &mut self.host {
+                        let _ = host.order(Order::Hold);
+                    }
+                }
+                (Command::Resume, Some((State::Paused, _))) => {
+                    // (a byte would tell a machine of digits what it has not asked for)
+                    if let Some(host) = self.host.as_mut().filter(|host| !host.is_digits()) {
+                        let _ = host.order(Order::GoOn);
+                    }
+                }
                 (Command::Resume, Some((State::Stopped, _))) => {
-                    self.shared.line.send(&[GO_ON])?;
-                    self.take(Event::Estop(false));
+                    self.wants_stop = false;
+                    let order = self.host.as_mut().map(|host| (host.order(Order::GoOn), host.is_linked()));
+                    // Where nobody has answered a call yet, both ways are tried.
+                    if order.is_none_or(|(byte, is_linked)| byte.is_some() || !is_linked) {
+                        self.shared.line.send(&[Order::GoOn.byte()])?;
+                        self.take(Event::Host(vec![Order::GoOn.byte()]));
+                    }
                     let mut view = lock(&self.shared.view);
                     if self.host.is_none() {
                         view.state = State::Watching;
@@ -270,8 +366,13 @@ impl<W: Write> Engine<'_, W> {
 
     /// The host's clock stands still while nothing can come of its patience.
     fn host_clock(&mut self, now: Duration, state: &State) -> Duration {
-        let stands = matches!(state, State::Ready | State::Stopped)
-            || (*state == State::Paused && self.under_way.is_none());
+        let is_digits = self.host.as_ref().is_none_or(Sender::is_digits);
+        let stands = match state {
+            State::Ready => true,
+            State::Stopped => !self.host.as_ref().is_some_and(Sender::is_linked),
+            State::Paused => is_digits && self.under_way.is_none(),
+            _ => false,
+        };
         match (stands, self.frozen_since) {
             (true, None) => self.frozen_since = Some(now),
             (false, Some(since)) => {
@@ -284,14 +385,14 @@ impl<W: Write> Engine<'_, W> {
     }
 
     fn send(&mut self, host_now: Duration) -> Result<(), PortError> {
-        let Some(host) = &mut self.host else {
+        let shared = self.shared;
+        let stop_is_new = lock(&shared.stop_is_new);
+        let Some(host) = self.host.as_mut().filter(|_| !*stop_is_new) else {
             return Ok(());
         };
         let event = host.poll(host_now);
-        let mut bytes = Vec::new();
-        while let Some(byte) = host.next_byte(host_now) {
-            bytes.push(byte);
-        }
+        let ahead = LISTEN.mul_f64(self.settings.speed.max(1.0));
+        let bytes = host.bytes(host_now, ahead);
         if let Some(event) = event {
             self.event(event);
         }
@@ -317,14 +418,44 @@ impl<W: Write> Engine<'_, W> {
                 view.reached = view.reached.saturating_add(1);
             }
             HostEvent::Notice(notice) => {
-                if let HostNotice::GaveUp { target, .. } = notice {
+                if let HostNotice::GaveUp { target, .. } | HostNotice::OutOfArea(target) = notice {
                     self.under_way = None;
                     self.pass(target);
                 }
+                if self.host.as_ref().is_some_and(|host| host.ends_by(notice)) {
+                    self.failure = Some(notice.to_string());
+                }
+                self.follow(notice);
                 lock(&self.shared.view).message(now, notice.to_string());
                 self.take(Event::Note(format!("host: {notice}")));
             }
         }
+    }
+
+    /// The machine is stopped or goes on, whoever wanted it so.
+    fn follow(&self, notice: HostNotice) {
+        let mut view = lock(&self.shared.view);
+        match (notice, &view.state) {
+            (HostNotice::Stopped, State::Running | State::Paused) => view.state = State::Stopped,
+            (HostNotice::GoesOn, State::Stopped) if !self.wants_stop => view.state = State::Running,
+            (HostNotice::DigitsOnly, _) => self.shared.may_be_linked.store(false, Ordering::Relaxed),
+            _ => {}
+        }
+    }
+
+    /// What another host has drawn is done.
+    fn resumed(&mut self) {
+        if self.is_resumed || self.settings.resume.is_none() {
+            return;
+        }
+        let Some((_, reached)) = self.host.as_ref().filter(|host| host.is_linked()).and_then(Sender::resumed)
+        else {
+            return;
+        };
+        self.is_resumed = true;
+        let mut view = lock(&self.shared.view);
+        view.done.targets = view.done.targets.saturating_add(reached.into());
+        view.reached = view.reached.saturating_add(reached.into());
     }
 
     /// A target is behind us: the length of its way, mm.

@@ -1,10 +1,11 @@
 //! [`SimulatedMachine`]: a machine at the other end of a line, in the time of the clock on the wall.
 
 use super::line::{Line, lock};
-use super::{GO_ON, STOP};
 use crate::serial::PortError;
 use core::time::Duration;
-use plotter_motion::plant::{Bench, BenchEvent, BenchSettings};
+use plotter_motion::firmware::{Gantry, LinkedGantry};
+use plotter_motion::plant::{Bench, BenchController, BenchEvent, BenchSettings};
+use plotter_motion::protocol::{LinkSettings, Order};
 use plotter_motion::{Axis, Machine, PenMove};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
@@ -36,10 +37,28 @@ const LISTEN: Duration = Duration::from_micros(200);
 const MOST_BEHIND: Duration = Duration::from_millis(50);
 
 impl SimulatedMachine {
-    /// Starts `machine` at the end `line` of a line; `speed` seconds of it pass in one of ours.
+    /// Starts `machine` at the end `line` of a line; `speed` seconds of it pass in one of ours. It speaks digits, and frames with
+    /// a host that calls; `boot` is its number since it was switched on, another one each time.
     #[must_use]
-    pub fn start(machine: &Machine, line: Arc<dyn Line>, speed: f64) -> Self {
-        let bench = Bench::new(machine, BenchSettings::default(), std::iter::empty::<PenMove>());
+    pub fn start(machine: &Machine, line: Arc<dyn Line>, speed: f64, boot: u32) -> Self {
+        let controller = LinkedGantry::<4, 64>::new(Gantry::new(machine), boot, LinkSettings::default());
+        Self::with_controller(machine, controller, line, speed)
+    }
+
+    /// The same with a controller that speaks digits only.
+    #[must_use]
+    pub fn of_digits(machine: &Machine, line: Arc<dyn Line>, speed: f64) -> Self {
+        Self::with_controller(machine, Gantry::new(machine), line, speed)
+    }
+
+    fn with_controller<C: BenchController + Send + 'static>(
+        machine: &Machine,
+        controller: C,
+        line: Arc<dyn Line>,
+        speed: f64,
+    ) -> Self {
+        let moves = std::iter::empty::<PenMove>();
+        let bench = Bench::with_controller(machine, BenchSettings::default(), controller, moves);
         let telemetry = Arc::<Mutex<Telemetry>>::default();
         let shared = Arc::clone(&telemetry);
         let thread = thread::spawn(move || run(bench, &*line, speed, &shared));
@@ -59,8 +78,8 @@ impl SimulatedMachine {
     }
 }
 
-fn run(
-    mut bench: Bench<std::iter::Empty<PenMove>>,
+fn run<C: BenchController>(
+    mut bench: Bench<std::iter::Empty<PenMove>, C>,
     line: &dyn Line,
     speed: f64,
     telemetry: &Mutex<Telemetry>,
@@ -75,26 +94,18 @@ fn run(
             Err(error) => return error,
         };
         for &byte in bytes.get(..count).unwrap_or_default() {
-            let now = bench.now();
-            match byte {
-                STOP => {
-                    told.stopped = Some((now, None));
-                    bench.controller_mut().emergency_stop(now, true);
-                }
-                GO_ON => {
-                    bench.controller_mut().emergency_stop(now, false);
-                    bench.controller_mut().reset_emergency_stop(now);
-                }
-                // What a host on another line than the bench's own sends.
-                digit => bench.disturb(digit),
-            }
+            bench.disturb(byte);
         }
         let now = Instant::now();
         due = due.saturating_add(now.saturating_duration_since(before).mul_f64(speed));
         before = now;
         due = due.min(bench.now().saturating_add(MOST_BEHIND.mul_f64(speed)));
         while bench.now() < due {
-            bench.step(|_, event| match event {
+            bench.step(|at, event| match event {
+                // (a frame may hold this byte, too: then it is no stop)
+                BenchEvent::HostByte(byte) if byte == Order::Stop.byte() && told.duty != [0; 2] => {
+                    told.stopped = Some((at, None));
+                }
                 BenchEvent::ControllerByte(byte) => answers.push(byte),
                 BenchEvent::Drive(Axis::X, duty) => told.duty[0] = duty,
                 BenchEvent::Drive(Axis::Y, duty) => told.duty[1] = duty,

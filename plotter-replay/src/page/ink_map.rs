@@ -1,10 +1,8 @@
 //! [`InkMap`]: which places of the sheet have ink, and since when, however long the drawing is.
 
-use flate2::Compression;
-use flate2::write::ZlibEncoder;
+use super::numbers::zipped;
 use serde_json::{Value, json};
 use std::collections::HashMap;
-use std::io::Write;
 
 /// Cells a side at most.
 const MOST_CELLS: i32 = 512;
@@ -90,43 +88,18 @@ impl InkMap {
                 (*up, *down) = (a, b);
             }
         }
-        let mut packed = ZlibEncoder::new(Vec::new(), Compression::best());
-        let written = packed.write_all(&upper).and_then(|()| packed.write_all(&lower));
-        let bytes = written.and_then(|()| packed.finish()).unwrap_or_default();
         let side_mm = self.side_mm();
         json!({
             "side_mm": side_mm, "wide": wide, "high": high,
             "x_mm": f64::from(self.low.0) * side_mm, "y_mm": f64::from(self.low.1) * side_mm,
-            "cells": base64(&bytes),
+            "cells": zipped(&[&upper, &lower]),
         })
     }
-}
-
-/// RFC 4648, section 4.
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let word =
-            three.iter().fold(0_u32, |word, &byte| word << 8 | u32::from(byte)) << (8 * (3 - three.len()));
-        for place in 0..4 {
-            let six = usize::try_from(word >> (18 - 6 * place) & 63).unwrap_or(0);
-            let letter = LETTERS.get(six).copied().unwrap_or(b'=');
-            text.push(if place > three.len() { '=' } else { char::from(letter) });
-        }
-    }
-    text
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn base64_is_as_in_its_standard() {
-        let texts = ["", "f", "fo", "foo", "foob", "fooba", "foobar"].map(|text| base64(text.as_bytes()));
-        assert_eq!(texts, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
-    }
 
     #[test]
     fn the_map_grows_with_the_drawing_and_keeps_the_first_ink() {

@@ -4,6 +4,7 @@ use super::desired::Desired;
 use super::envelope::{Envelope, Tally, whole};
 use super::few::Few;
 use super::ink_map::InkMap;
+use super::numbers::packed;
 use super::silence::Silences;
 use super::trail::{DIFFERS, DRAWN, Trail, TrailPoint};
 use super::{along, document, signed, spread, steps};
@@ -16,10 +17,16 @@ use serde_json::{Value, json};
 const BODY: &str = include_str!("assets/recording.html");
 const PROGRAM: &str = include_str!("assets/recording.js");
 
-/// Points of the way that a page holds at most, about 12 bytes each.
-const MOST_WAY_POINTS: usize = 40_000;
+/// Points of the way that a page holds at most, about 3 bytes each where they are many.
+const MOST_WAY_POINTS: usize = 400_000;
+/// Characters of the way that a page holds at most: what is more is made coarser.
+const MOST_WAY_CHARACTERS: usize = 1_200_000;
+/// Points of a way that is exact to the micrometre.
+const FEW_POINTS: usize = 20_000;
 /// Lines farther than this from what was recorded are not shown as lines, mm: the page then has a map of the ink.
 const MOST_LINE_ERROR_MM: f64 = 0.3;
+/// Ways of more points are not shown as lines either: a browser would paint them for more than a second.
+const MOST_LINE_POINTS: u64 = 40_000;
 /// Points of what was meant, at most.
 const MOST_DESIRED_POINTS: usize = 30_000;
 /// Points of what was not drawn, at most.
@@ -268,10 +275,12 @@ impl RecordingPage {
         self.plotter.undrawn().for_each(|(from, to)| undrawn.line(from, to));
         let facts = self.facts(header, summary);
         let settings = *self.plotter.settings();
-        let (way, way_error_mm) = self.way.finish();
+        let (way, way_error_mm) = packed_way(self.way);
         let (meant, meant_error_mm) = self.meant.finish();
         let (first_us, last_us) = (self.first.map_or(0, micros), micros(self.last));
-        let ink = (way_error_mm > MOST_LINE_ERROR_MM).then(|| self.ink.to_json(first_us, last_us));
+        let points = way.get("count").and_then(Value::as_u64).unwrap_or(0);
+        let is_long = way_error_mm > MOST_LINE_ERROR_MM || points > MOST_LINE_POINTS;
+        let ink = is_long.then(|| self.ink.to_json(first_us, last_us));
         let (undrawn, _) = undrawn.finish();
         let gap_count = self.silences.count();
         let gaps: Vec<_> =
@@ -296,10 +305,10 @@ impl RecordingPage {
             "last_us": last_us,
             "mark_mm": self.settings.mark_mm,
             "way_error_mm": way_error_mm,
-            "way": along(&way, true),
+            "way": way,
             "ink": ink,
-            "meant": if meant_error_mm > MOST_LINE_ERROR_MM { along(&[], false) } else { along(&meant, false) },
-            "undrawn": along(&undrawn, false),
+            "meant": if meant_error_mm > MOST_LINE_ERROR_MM { along(&[]) } else { along(&meant) },
+            "undrawn": along(&undrawn),
             "targets": {
                 "every": self.targets.every(),
                 "t": steps(targets.iter().map(|&(time_us, _)| signed(time_us))),
@@ -358,6 +367,27 @@ impl RecordingPage {
             facts.push((shortened(key.replace('_', " ")), shortened(value.trim_matches('"').to_owned())));
         }
         facts
+    }
+}
+
+/// The way in as many characters as a page has for it, and how far it is from the recorded one, mm. A way of few points is exact
+/// to the micrometre.
+fn packed_way(mut way: Trail) -> (Value, f64) {
+    loop {
+        let (points, error_mm) = way.clone().finish();
+        let unit_um = if points.len() <= FEW_POINTS {
+            1
+        } else {
+            u32::try_from(whole(error_mm * 1e3 / 8.0)).unwrap_or(1)
+        };
+        let value = packed(&points, unit_um);
+        let characters = value.get("bytes").and_then(Value::as_str).map_or(0, str::len);
+        if characters <= MOST_WAY_CHARACTERS {
+            // Half a unit of place and half a unit of time.
+            let rounding_mm = if unit_um > 1 { f64::from(unit_um) * 1e-3 } else { 0.0 };
+            return (value, error_mm + rounding_mm);
+        }
+        way.coarsen();
     }
 }
 

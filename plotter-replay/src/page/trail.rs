@@ -142,7 +142,7 @@ impl Trail {
 
     /// Doubles the tolerance and lets what is kept through again. From then on a stretch smaller than the tolerance
     /// takes the state of what is before it, too: ink over no ink, a difference over none.
-    fn coarsen(&mut self) {
+    pub(crate) fn coarsen(&mut self) {
         self.tolerance_mm = (self.tolerance_mm * 2.0).max(1e-6);
         self.error_mm += self.tolerance_mm;
         self.rounds = self.rounds.saturating_add(1);

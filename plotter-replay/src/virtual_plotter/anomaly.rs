@@ -1,5 +1,6 @@
 //! What in a log does not fit the protocol or itself.
 
+use crate::import::Side;
 use core::fmt;
 use core::time::Duration;
 use plotter_motion::StepPoint;
@@ -73,6 +74,21 @@ pub enum AnomalyKind {
         /// Taken.
         taken: StepPoint,
     },
+    /// A frame of the reliable link came damaged, or of a session that began before the log; who sent it, sends it again.
+    DamagedFrame {
+        /// Who.
+        side: Side,
+    },
+    /// Frames of the reliable link came, and are not in the log: what they said is not known.
+    FramesMissing {
+        /// How many; 0 if only that makes sense of what came.
+        count: u64,
+    },
+    /// The machine refused a target that lies outside its area.
+    Refused {
+        /// The target.
+        target: StepPoint,
+    },
     /// A target that is not in the given drawing; its way is drawn.
     NotInDrawing {
         /// The target.
@@ -124,6 +140,17 @@ impl fmt::Display for AnomalyKind {
                 "the host sent target ({}, {}), the controller took ({}, {})",
                 sent.x, sent.y, taken.x, taken.y
             ),
+            Self::DamagedFrame { side: Side::Host } => f.write_str("a frame of the host came damaged"),
+            Self::DamagedFrame { side: Side::Controller } => {
+                f.write_str("a frame of the controller came damaged")
+            }
+            Self::FramesMissing { count: 0 } => {
+                f.write_str("frames are missing in the log: what came makes no sense")
+            }
+            Self::FramesMissing { count } => write!(f, "{count} frame(s) came that are not in the log"),
+            Self::Refused { target } => {
+                write!(f, "target ({}, {}) was refused: outside the machine's area", target.x, target.y)
+            }
             Self::NotInDrawing { target } => {
                 write!(f, "target ({}, {}) is not in the drawing: its way is drawn", target.x, target.y)
             }

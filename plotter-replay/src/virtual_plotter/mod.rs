@@ -9,6 +9,8 @@
 //!             └─ target (2, 1) ─┘ └─ the way ────┘ └ position == target?
 //! ```
 //!
+//! The reliable link says the same in frames; there the pen is known, and nothing is lost that one side has not noticed.
+//!
 //! Two tracks are kept: *as counted*, and *resynchronized*, which starts afresh at each reached target. A lost
 //! pulse shifts the first for ever and the second until the next `+`.
 
@@ -16,6 +18,7 @@ mod anomaly;
 mod drawing;
 mod host_digits;
 mod leg;
+mod linked;
 mod noted;
 mod settings;
 
@@ -28,6 +31,8 @@ use crate::log::{Event, Record};
 use core::time::Duration;
 use drawing::Drawing;
 use host_digits::{Decoded, HostDigits};
+use linked::{Linked, Speech};
+use plotter_motion::protocol::Order;
 use plotter_motion::protocol::digits::Reply;
 use plotter_motion::{Axis, Direction, Pen, PenMove, PlotOp, Point, StepPoint, chords};
 
@@ -62,6 +67,7 @@ pub struct Reached {
 pub struct VirtualPlotter {
     settings: PlotterSettings,
     host: HostDigits,
+    linked: Linked,
     drawing: Option<Drawing>,
     pen: Pen,
     pen_recorded: bool,
@@ -93,6 +99,11 @@ impl VirtualPlotter {
         Self {
             settings,
             host: HostDigits::new(settings.resync_gap),
+            linked: Linked::new(if settings.counted_by == CountedBy::Link {
+                Speech::Calling(0)
+            } else {
+                Speech::Digits
+            }),
             drawing: None,
             pen,
             pen_recorded: false,
@@ -273,6 +284,12 @@ impl VirtualPlotter {
         &self.legs
     }
 
+    /// Whether the line speaks the reliable link: the way is then known where the machine told it, every 20 ms and at each target.
+    #[must_use]
+    pub fn is_linked(&self) -> bool {
+        self.linked.speech == Speech::Frames
+    }
+
     /// Targets that the host sent, encoder counts, with the time of their last digit.
     #[must_use]
     pub fn targets(&self) -> &[(Duration, StepPoint)] {
@@ -310,12 +327,19 @@ impl VirtualPlotter {
 
     fn host_byte(&mut self, byte: u8) {
         self.listen();
+        // (an order is no digit: it belongs to no target)
+        if self.host_link_byte(byte) || Order::from_byte(byte).is_some() {
+            return;
+        }
         let decoded = self.host.push(self.now, byte);
         self.take(decoded);
     }
 
     fn controller_byte(&mut self, byte: u8) {
         self.listen();
+        if self.controller_link_byte(byte) {
+            return;
+        }
         let decoded = self.host.align();
         self.take(decoded);
         match Reply::from_byte(byte) {
@@ -329,6 +353,7 @@ impl VirtualPlotter {
                 self.from = StepPoint::default();
                 self.leg = self.begin_leg();
             }
+            Some(Reply::Stopped | Reply::GoesOn) => {}
             None => self.note(self.now, AnomalyKind::UnknownReply { byte }),
         }
     }
@@ -421,7 +446,7 @@ impl VirtualPlotter {
         self.from = desired;
         let (time, actual) = (self.now, self.counted);
         self.end_leg(Some(Reached { time, desired, actual, error, resync_error }));
-        if self.settings.counted_by == CountedBy::Answers {
+        if self.settings.counted_by != CountedBy::Edges {
             self.correction = minus(desired, self.counted);
         }
         self.leg.correction = self.correction;

@@ -41,6 +41,9 @@ pub enum CountedBy {
     /// The encoders' edges, for a controller that has no such line: the protocol `counts`. Targets are recorded as such, and its
     /// only answer is `+`, when it has arrived; from a target that was missed the counts go on.
     Edges,
+    /// The machine's messages on the reliable link, or its answers in digits where it knew no other: the protocol `link`. A log of
+    /// [`Answers`](Self::Answers) in which a machine greets a host becomes one of these.
+    Link,
 }
 
 impl Default for PlotterSettings {
@@ -102,6 +105,7 @@ impl PlotterSettings {
         };
         let counted_by = match header.text("protocol") {
             Some("counts") => CountedBy::Edges,
+            Some("link") => CountedBy::Link,
             _ => CountedBy::Answers,
         };
         let tolerance = f64::from(base.reached_tolerance_counts);

@@ -16,16 +16,18 @@
 //! ```
 
 mod incoming;
+mod orders;
 mod outgoing;
 mod round_trip;
 mod settings;
 
 pub use settings::{LinkCounts, LinkSettings};
 
-use super::Hello;
 use super::frame::{DecodeError, Decoder, Frame, Kind, MOST_BYTES, MOST_PAYLOAD};
+use super::{Hello, Order};
 use core::time::Duration;
 use incoming::Incoming;
+use orders::{Given, Taken};
 use outgoing::{LEAST_PAYLOAD, Outgoing};
 
 /// Version of the link that this is.
@@ -123,6 +125,9 @@ pub struct Link<const WINDOW: usize, const PAYLOAD: usize> {
     acknowledge: bool,
     greet: bool,
     greeted: Option<Duration>,
+    /// A host's order that the machine has not answered, and the machine's last one.
+    given: Given,
+    taken: Taken,
 }
 
 impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
@@ -155,6 +160,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
             acknowledge: false,
             greet: state == LinkState::Calling,
             greeted: None,
+            given: Given::default(),
+            taken: Taken::default(),
         }
     }
 
@@ -199,8 +206,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
     /// A machine takes no notice.
     pub fn call(&mut self, nonce: u16) {
         if self.role != Role::Machine {
-            let Self { settings, counts, heard, spoke, .. } = *self;
-            *self = Self { counts, heard, spoke, ..Self::host(nonce, settings) };
+            let Self { settings, counts, heard, spoke, given, .. } = *self;
+            *self = Self { counts, heard, spoke, given: given.unsent(), ..Self::host(nonce, settings) };
         }
     }
 
@@ -237,6 +244,26 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         self.line.done < self.line.length
     }
 
+    /// A host's order to the machine, which takes the place of any before it; its number in this session. A frame on its way out
+    /// is cut for it, and it is sent again every [`LinkSettings::least_retry`] until [`order_taken`](Self::order_taken). A machine
+    /// gives none.
+    ///
+    /// [`Order::Stop`] is preceded by `00 21 00`: what can be no frame, and is obeyed by a machine in whatever session or none.
+    pub const fn order(&mut self, order: Order) -> u8 {
+        self.given.give(order)
+    }
+
+    /// The machine has answered the order of this number.
+    pub fn order_taken(&mut self, number: u8) {
+        self.given.answered(number);
+    }
+
+    /// A machine's next order and its number; 0 for one that has none. It is there as soon as its last byte has come, whatever
+    /// waits in the streams.
+    pub const fn take_order(&mut self) -> Option<(u8, Order)> {
+        self.taken.take()
+    }
+
     // ---- what comes
 
     /// Takes a byte from the line.
@@ -250,6 +277,9 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
             1
         };
         self.zero_at = now;
+        if self.role == Role::Machine {
+            self.taken.byte(byte);
+        }
         if self.zeros == CALLED_BY_ZEROS && self.role == Role::Machine {
             self.greet = true;
         }
@@ -284,6 +314,13 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
             Kind::Acknowledge => {
                 let bytes = payload.iter().zip([0, 8, 16, 24]);
                 bytes.fold(0, |bits, (&byte, shift)| bits | u32::from(byte) << shift)
+            }
+            Kind::Order => {
+                if let Some(order) = payload.first().copied().and_then(Order::from_byte) {
+                    self.taken.frame(sequence, order);
+                }
+                self.heard = now;
+                return;
             }
         };
         self.heard = now;
@@ -338,7 +375,7 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
 
     /// The next byte for the line, if there is one. The line must take it.
     pub fn transmit(&mut self, now: Duration) -> Option<u8> {
-        if !self.is_sending() {
+        if !self.order_frame(now) && !self.is_sending() {
             let listens = matches!(self.state, LinkState::Open | LinkState::Interrupted);
             if listens && now.saturating_sub(self.heard) >= self.settings.interrupted_after {
                 self.state = LinkState::Interrupted;
@@ -410,6 +447,30 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         self.put(Kind::Hello, 0, &hello.to_bytes())
     }
 
+    /// Puts an order on the line, if one is due; what is on its way there is cut short for one that was not sent yet.
+    fn order_frame(&mut self, now: Duration) -> bool {
+        let is_open = matches!(self.state, LinkState::Open | LinkState::Interrupted);
+        let Some((order, number)) =
+            self.given.due(now, is_open, self.is_sending(), self.settings.least_retry)
+        else {
+            return false;
+        };
+        if let Some(sequence) = self.line.sequence.take().filter(|_| self.is_sending()) {
+            self.outgoing.cut(now, sequence);
+        }
+        if !(is_open && self.put(Kind::Order, number, &[order.byte()])) {
+            self.line = OnTheLine { bytes: [0; MOST_BYTES], length: 0, done: 0, sequence: None };
+        }
+        // The zero ends what was cut; a stop by itself is known without its frame, too.
+        let ahead: &[u8] = if order == Order::Stop { &[0, Order::Stop.byte(), 0] } else { &[0] };
+        self.line.bytes.rotate_right(ahead.len());
+        for (place, &byte) in self.line.bytes.iter_mut().zip(ahead) {
+            *place = byte;
+        }
+        self.line.length += ahead.len();
+        true
+    }
+
     /// Puts a frame of the session on the line, if one is due.
     fn frame(&mut self, now: Duration) -> bool {
         let LinkSettings { least_retry, most_retry, keep_alive, .. } = self.settings;
@@ -466,14 +527,16 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
             return Some(Duration::ZERO);
         }
         let greeting = self.greeting_at();
+        let is_open = matches!(self.state, LinkState::Open | LinkState::Interrupted);
+        let order = self.given.due_at(is_open, self.settings.least_retry);
         if !matches!(self.state, LinkState::Open | LinkState::Interrupted) {
-            return greeting;
+            return [greeting, order].into_iter().flatten().min();
         }
         let LinkSettings { least_retry, most_retry, keep_alive, interrupted_after, .. } = self.settings;
         let late_after = self.outgoing.late_after(least_retry, most_retry);
         let interrupted =
             (self.state == LinkState::Open).then(|| self.heard.saturating_add(interrupted_after));
         let speak = Some(self.spoke.saturating_add(keep_alive));
-        [greeting, self.outgoing.late_at(late_after), interrupted, speak].into_iter().flatten().min()
+        [greeting, order, self.outgoing.late_at(late_after), interrupted, speak].into_iter().flatten().min()
     }
 }

@@ -178,6 +178,13 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Outgoing<WINDOW, PAYLOAD> {
         }
     }
 
+    /// A number's frame was cut on its way out.
+    pub(super) fn cut(&mut self, now: Duration, sequence: u8) {
+        if let Some(slot) = self.slot(sequence) {
+            (slot.through, slot.lost) = (now, true);
+        }
+    }
+
     /// After how long a frame counts as late; longer each time that nothing came.
     pub(super) fn late_after(&self, least: Duration, most: Duration) -> Duration {
         let learned = self.round_trip.map_or(least.saturating_mul(4), RoundTrip::late_after);

@@ -67,6 +67,12 @@ pub(crate) fn controller(
             log.display()
         ));
     }
+    if header.text("protocol") == Some("link") {
+        return Err(format!(
+            "{}: its protocol is \"link\", and a recording of that has no edges to run a controller on; `render` shows what it did",
+            log.display()
+        ));
+    }
     AnyController::of(header, machine).map_err(|error| format!("{}: {error} (--machine)", log.display()))
 }
 

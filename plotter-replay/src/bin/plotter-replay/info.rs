@@ -166,7 +166,19 @@ impl Info {
         say(out, &format!("ends at ({:.3}, {:.3}) mm, counted ({}, {})", at.x, at.y, counted.x, counted.y));
         let error = contour.error();
         if error.samples > 0 {
-            say(out, &format!("contour error: rms {:.4} mm, max {:.4} mm", error.rms_mm, error.max_mm));
+            let told =
+                if plotter.is_linked() { " (where the machine told its place: every 20 ms)" } else { "" };
+            say(out, &format!("contour error: rms {:.4} mm, max {:.4} mm{told}", error.rms_mm, error.max_mm));
+        }
+        if controller.bytes > 0 && counts.iter().any(|&(name, count)| name == "edges" && count == 0) {
+            say(
+                out,
+                if plotter.is_linked() {
+                    "no edges recorded: `check` cannot run the controller again on this"
+                } else {
+                    "no edges recorded: `check` takes them from the pulses"
+                },
+            );
         }
         notes.iter().for_each(|note| say(out, &format!("note at {note}")));
         say(out, &format!("anomalies: {}", plotter.anomaly_count()));

@@ -2,16 +2,16 @@
 
 use crate::commands::{Done, Verdict, say, say_first};
 use crate::drawing::DrawingFile;
-use crate::machine::{read_machine, speed};
-use clap::Args;
+use crate::machine::{clock_bits, read_machine, speed};
+use clap::{Args, ValueEnum};
 use plotter_motion::{ControllerChoice, DriveChoice, Machine, PenMove, targets};
-use plotter_replay::PlotterSettings;
 use plotter_replay::live::{
-    Command, Line, LivePage, Pipe, PortLine, Server, Session, SessionSettings, SimulatedMachine, State,
-    Telemetry, terminal,
+    Command, Line, LinkChoice, LivePage, Pipe, PortLine, Server, Session, SessionSettings, SimulatedMachine,
+    State, Telemetry, terminal,
 };
 use plotter_replay::log::{self, FileWriter, Header};
-use plotter_replay::serial::Port;
+use plotter_replay::serial::{Port, find};
+use plotter_replay::{DrawingMark, PlotterSettings, ResumePoint};
 use std::cell::RefCell;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ const LAST_LOOK: Duration = Duration::from_millis(1_500);
 pub(crate) struct Live {
     /// The drawing: HPGL, G-code or the thesis' text. Without one, the machine is watched only.
     drawing: Option<PathBuf>,
-    /// The serial port of a machine, or `auto` for the only one there is.
+    /// The serial port of a machine: a name, a part of one that only it has, or `auto` for the only one there is.
     #[arg(long, value_name = "DEV", conflicts_with = "simulate")]
     port: Option<String>,
     /// Simulate the machine of this file instead [default without --port: the semi-virtual gantry].
@@ -35,11 +35,18 @@ pub(crate) struct Live {
     /// The description of the machine on the port [default: the semi-virtual gantry].
     #[arg(long, value_name = "MACHINE.toml", conflicts_with = "simulate")]
     machine: Option<PathBuf>,
+    /// What is spoken with the machine.
+    #[arg(long, value_enum, default_value_t)]
+    link: Link,
+    /// Go on with the drawing that the host of this log was sending when it ended; the machine must have been on since, and speak
+    /// frames.
+    #[arg(long, value_name = "LOG", requires_all = ["drawing", "port"])]
+    resume: Option<PathBuf>,
     /// Seconds of a simulated machine in one of ours.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed, conflicts_with = "port")]
     speed: f64,
-    /// The recording.
-    #[arg(short, long, value_name = "LOG", default_value = "live.plog")]
+    /// The recording [default: live.plog, or the first of live-2.plog, live-3.plog, ... that is not there].
+    #[arg(short, long, value_name = "LOG", default_value_os_t = free_name(), hide_default_value = true)]
     output: PathBuf,
     /// Show it in this terminal, not in a browser.
     #[arg(long)]
@@ -50,6 +57,35 @@ pub(crate) struct Live {
     /// Begin at once, without waiting for Start.
     #[arg(long, requires = "drawing")]
     start: bool,
+}
+
+/// What is spoken.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum Link {
+    /// The reliable link if the machine knows it, else digits; it is called at the start, at its origin
+    #[default]
+    Auto,
+    /// The published ten digits a target; the machine is not called
+    Digits,
+    /// The reliable link, or nothing
+    Frames,
+}
+
+impl From<Link> for LinkChoice {
+    fn from(link: Link) -> Self {
+        match link {
+            Link::Auto => Self::Auto,
+            Link::Digits => Self::Digits,
+            Link::Frames => Self::Frames,
+        }
+    }
+}
+
+/// A name for a recording that none before it has: the last one may be needed for --resume.
+fn free_name() -> PathBuf {
+    let names = core::iter::once(PathBuf::from("live.plog"));
+    let more = (2..10_000_u32).map(|n| PathBuf::from(format!("live-{n}.plog")));
+    names.chain(more).find(|name| !name.exists()).unwrap_or_else(|| PathBuf::from("live.plog"))
 }
 
 /// What a line leads to.
@@ -80,13 +116,15 @@ impl Live {
         let mut page = LivePage::new(config.name.as_str(), plotter);
         let drawing = self.drawing.as_deref().map(DrawingFile::open).transpose()?;
         let mut verdict = Verdict::Clean;
+        let mut mark = DrawingMark::default();
         if let (Some(drawing), Some(path)) = (&drawing, &self.drawing)
-            && look_through(drawing, path, &machine, &mut page, out)? > 0
+            && look_through(drawing, path, &machine, &mut page, &mut mark, out)? > 0
         {
             verdict = Verdict::Found;
         }
+        let resume = self.resume_point(mark)?;
         let connected = self.connect(&machine)?;
-        let recorder = self.recorder(&machine)?;
+        let recorder = self.recorder(&machine, mark, resume)?;
         let plan = drawing.is_some().then(|| page.plan());
         let settings = SessionSettings {
             plotter,
@@ -94,6 +132,10 @@ impl Live {
             plan,
             speed: self.speed,
             pwm_steps: [config.x.motor.pwm_steps, config.y.motor.pwm_steps],
+            link: self.link.into(),
+            nonce: u16::try_from(clock_bits() & 0xffff).unwrap_or(1),
+            baud: config.serial.baud,
+            resume: resume.map(|point| point.resume),
             ..SessionSettings::default()
         };
         let area_mm = page.area_mm().unwrap_or([0.0, 0.0, config.area.width_mm, config.area.height_mm]);
@@ -156,18 +198,54 @@ impl Live {
     fn connect(&self, machine: &Machine) -> Result<Connected, String> {
         let Some(name) = &self.port else {
             let (host, end) = Pipe::pair();
-            let simulated = SimulatedMachine::start(machine, Arc::new(end), self.speed);
+            let end = Arc::new(end);
+            let simulated = match self.link {
+                Link::Digits => SimulatedMachine::of_digits(machine, end, self.speed),
+                Link::Auto | Link::Frames => SimulatedMachine::start(machine, end, self.speed, clock_bits()),
+            };
             let telemetry = Some(simulated.telemetry());
             let name = String::from("none: simulated in this program");
             return Ok(Connected { line: Arc::new(host), telemetry, _simulated: Some(simulated), name });
         };
-        let name = if name == "auto" { only_port()? } else { name.clone() };
+        let name = find(name).map_err(|error| error.to_string())?;
         let port = Port::open(&name, machine.config().serial.baud).map_err(|error| error.to_string())?;
         let line = PortLine::new(port).map_err(|error| error.to_string())?;
         Ok(Connected { line: Arc::new(line), telemetry: None, _simulated: None, name })
     }
 
-    fn recorder(&self, machine: &Machine) -> Result<FileWriter, String> {
+    /// Where the last host left the drawing.
+    fn resume_point(&self, mark: DrawingMark) -> Result<Option<ResumePoint>, String> {
+        let Some(log) = &self.resume else { return Ok(None) };
+        let same = |a: &Path, b: &Path| {
+            a == b || a.canonicalize().ok().is_some_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+        };
+        if same(log, &self.output) {
+            return Err(format!(
+                "{}: this log is read for --resume: give another one with -o",
+                log.display()
+            ));
+        }
+        if matches!(self.link, Link::Digits) {
+            return Err(String::from(
+                "--resume: a machine of digits does not say where it stands: --link auto or frames",
+            ));
+        }
+        let point = ResumePoint::read(log).map_err(|error| format!("{}: {error}", log.display()))?;
+        if point.drawing.is_some_and(|drawing| drawing != mark) {
+            return Err(format!(
+                "{}: it was another drawing, or of another machine or scale, that this host was sending",
+                log.display()
+            ));
+        }
+        Ok(Some(point))
+    }
+
+    fn recorder(
+        &self,
+        machine: &Machine,
+        mark: DrawingMark,
+        resume: Option<ResumePoint>,
+    ) -> Result<FileWriter, String> {
         let config = machine.config();
         let controller = match config.control.controller {
             ControllerChoice::Published => "published",
@@ -175,12 +253,14 @@ impl Live {
         };
         let header = Header::new()
             .with_number("baud", config.serial.baud.into())
-            .with_text("protocol", "digits")
+            .with_text("protocol", if matches!(self.link, Link::Digits) { "digits" } else { "link" })
             .with_text("machine", config.name.as_str())
             .with_text("controller", controller)
             .with_text("clock", if self.port.is_some() { "host" } else { "simulated, as the host saw it" })
             .with_decimal("x_mm_per_pulse", 1.0 / config.x.counts_per_mm)
             .with_decimal("y_mm_per_pulse", 1.0 / config.y.counts_per_mm);
+        let header = if mark.moves > 0 { mark.written_to(header) } else { header };
+        let header = resume.map_or(header.clone(), |point| point.written_to(header));
         log::create(&self.output, &header).map_err(|error| format!("{}: {error}", self.output.display()))
     }
 
@@ -195,8 +275,8 @@ impl Live {
         } else {
             page.about = format!("The machine on {port}, taken for a {}.", config.name);
             page.stops = String::from(
-                "The stop sends the byte `!` at once and no further target. A controller that does not know it finishes \
-                 its target: keep your hand at the machine's own switch.",
+                "The stop sends the byte `!` at once and no further target. Controllers of this family take the voltage off both \
+                 motors at it; one that does not know it finishes its target: keep your hand at the machine's own switch.",
             );
         }
         let fact = |name: &str, value: String| (name.to_owned(), value);
@@ -208,17 +288,6 @@ impl Live {
             fact("origin P1", String::from("0, 0 mm (lower left)")),
             fact("recording", self.output.display().to_string()),
         ];
-    }
-}
-
-fn only_port() -> Result<String, String> {
-    let names = Port::names();
-    match names.as_slice() {
-        [one] => Ok(one.clone()),
-        [] => Err(String::from("--port auto: there is no serial port: is the machine plugged in and on?")),
-        several => {
-            Err(format!("--port auto: there are several serial ports, name one: {}", several.join(", ")))
-        }
     }
 }
 
@@ -237,6 +306,7 @@ fn look_through(
     path: &Path,
     machine: &Machine,
     page: &mut LivePage,
+    mark: &mut DrawingMark,
     out: &mut impl Write,
 ) -> Result<u64, String> {
     // Reading and reaching take turns, and both may fail.
@@ -252,7 +322,10 @@ fn look_through(
     let ops = ops.filter_map(|item| item.map_err(note).ok());
     for next in targets(machine, ops) {
         match next {
-            Ok(next) => page.push(next),
+            Ok(next) => {
+                page.push(next);
+                mark.push(next);
+            }
             Err(error) => note(error.to_string()),
         }
     }

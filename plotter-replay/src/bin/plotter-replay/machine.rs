@@ -25,3 +25,11 @@ pub(crate) fn speed(text: &str) -> Result<f64, String> {
     let factor: f64 = text.parse().map_err(|_| String::from("expected a number"))?;
     if (0.01..=100.0).contains(&factor) { Ok(factor) } else { Err(String::from("expected 0.01 to 100")) }
 }
+
+/// Bits that are others each time: of the clock.
+#[cfg(feature = "live")]
+pub(crate) fn clock_bits() -> u32 {
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    // (a session and a switching-on are told apart by them, no more: the millisecond does)
+    u32::try_from(since.unwrap_or_default().as_millis() & 0xffff_ffff).unwrap_or(1)
+}

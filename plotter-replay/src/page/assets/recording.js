@@ -1,4 +1,5 @@
-// Plays a recording.
+// Plays a recording. What is packed is unpacked by the browser, and waited for: the page is ready when `data-ready` says so.
+(async () => {
 const data = JSON.parse($("data").textContent);
 
 function sums(steps, unit) { // from differences
@@ -7,10 +8,31 @@ function sums(steps, unit) { // from differences
   for (let n = 0; n < steps.length; n++) { sum += steps[n]; values[n] = sum * unit; }
   return values;
 }
-function unpack({ t, x, y, s }) {
-  return { t: sums(t, 1e-6), x: sums(x, 1e-3), y: sums(y, 1e-3), s: Uint8Array.from(s, (digit) => digit.charCodeAt(0) - 48), length: s.length };
+function unpack({ x, y, s }) {
+  return { x: sums(x, 1e-3), y: sums(y, 1e-3), s: Uint8Array.from(s, (digit) => digit.charCodeAt(0) - 48), length: s.length };
 }
-const way = unpack(data.way), meant = unpack(data.meant), undrawn = unpack(data.undrawn);
+async function unzipped(text) {
+  const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  return new Uint8Array(await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+}
+async function unpackWay({ unit_um, count, bytes }) { // times, x, y: differences in LEB128, x and y signed in the lowest bit; then states
+  const packed = await unzipped(bytes);
+  let at = 0;
+  const column = (unit, isSigned) => {
+    const values = new Float64Array(count);
+    let sum = 0;
+    for (let n = 0; n < count; n++) {
+      let number = 0, place = 1, byte;
+      do { byte = packed[at++]; number += (byte & 127) * place; place *= 128; } while (byte > 127);
+      sum += isSigned ? (number % 2 ? -(number + 1) / 2 : number / 2) : number;
+      values[n] = sum * unit;
+    }
+    return values;
+  };
+  return { t: column(unit_um * 1e-6, false), x: column(unit_um * 1e-3, true), y: column(unit_um * 1e-3, true), s: packed.subarray(at), length: count };
+}
+document.body.dataset.ready = "no";
+const way = await unpackWay(data.way), meant = unpack(data.meant), undrawn = unpack(data.undrawn);
 const targets = { t: sums(data.targets.t, 1e-6), x: sums(data.targets.x, 1e-3), y: sums(data.targets.y, 1e-3) };
 const reached = sums(data.reached.t, 1e-6);
 const first = data.first_us * 1e-6, last = Math.max(data.last_us * 1e-6, first + 1e-6);
@@ -35,14 +57,10 @@ function at({ from_us, width_us, unit, low, high }, time) { // the greatest valu
 // A recording too long for lines has a map instead: of each cell, since when there is ink.
 let map = null;
 if (data.ink) {
-  const packed = Uint8Array.from(atob(data.ink.cells), (letter) => letter.charCodeAt(0));
-  new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer().then((buffer) => {
-    const bytes = new Uint8Array(buffer), count = data.ink.wide * data.ink.high;
-    map = { since: new Uint16Array(count), differs: new Uint8Array(count), canvas: document.createElement("canvas") };
-    for (let n = 0; n < count; n++) { map.since[n] = (bytes[n] & 127) << 8 | bytes[count + n]; map.differs[n] = bytes[n] >> 7; }
-    map.canvas.width = data.ink.wide; map.canvas.height = data.ink.high;
-    show();
-  });
+  const bytes = await unzipped(data.ink.cells), count = data.ink.wide * data.ink.high;
+  map = { since: new Uint16Array(count), differs: new Uint8Array(count), canvas: document.createElement("canvas") };
+  for (let n = 0; n < count; n++) { map.since[n] = (bytes[n] & 127) << 8 | bytes[count + n]; map.differs[n] = bytes[n] >> 7; }
+  map.canvas.width = data.ink.wide; map.canvas.height = data.ink.high;
 }
 function paintMap({ context, X, Y }) {
   if (!map) return;
@@ -209,3 +227,6 @@ $("legend").innerHTML = [
 $("exactness").textContent = (data.ink ? "Too long for lines: the ink is a map of cells of " + data.ink.side_mm.toFixed(1) + " mm, each from the time of its first ink; the pen is shown within " : "Lines are shown within ") + data.way_error_mm.toFixed(3) + " mm, at every time; "
   + way.length + " points of the way are kept, and the least and greatest value of each stretch of the charts.";
 seek(last);
+document.body.dataset.ready = "yes";
+document.body.dataset.readyMs = performance.now();
+})();
