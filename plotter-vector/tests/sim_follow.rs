@@ -3,7 +3,9 @@
 
 mod follow_figures;
 
-use follow_figures::{Figure, Run, dense_with, figures, ours, polyline, published, wrong_choices};
+use follow_figures::{
+    Figure, Run, dense_with, figures, mixed, ours, polyline, published, sharper_tips, wrong_choices,
+};
 use plotter_vector::PxPoint;
 use plotter_vector::follow::{CameraSettings, End, MappingSettings, TableError};
 
@@ -26,36 +28,77 @@ fn lap(figure: &Figure, error: TableError, seed: u64) -> Run {
     ours(figure, start, CameraSettings { seed, ..CameraSettings::default() }, error, settings(figure))
 }
 
-#[test]
-fn a_crossing_and_a_corner_are_followed_once() {
-    let corner = polyline(&[(40.3, 170.2), (110.7, 40.1), (180.4, 165.8)]);
-    let across = polyline(&[(30.2, 100.4), (220.9, 110.3)]);
-    let figure = Figure { name: "small", width: 260, height: 210, lines: vec![corner, across], pen_px: 4.0 };
+/// A lap of a small figure, under a camera of 160 x 160 px.
+fn small_lap(name: &'static str, lines: &[&[(f64, f64)]], pen_px: f64) -> Run {
+    let lines = lines.iter().map(|line| polyline(line)).collect();
+    let figure = Figure { name, width: 260, height: 210, lines, pen_px };
     let camera = CameraSettings { width_px: 160, height_px: 160, ..CameraSettings::default() };
     let run = ours(&figure, PxPoint::new(120.0, 100.0), camera, table(3), settings(&figure));
-    println!("{:?} {:?}", run.judged, run.report);
-    assert_eq!((run.end, wrong_choices(&figure, &run.strokes)), (End::Complete, (0, 0)));
-    assert!(run.judged.coverage > 0.97 && run.judged.rms_px < 0.6, "{:?}", run.judged);
-    assert!(run.judged.repeated < 0.05 && run.report.lifts < 5, "{:?} {:?}", run.judged, run.report);
+    println!("{name}: {:?} {:?}", run.judged, run.report);
+    assert_eq!((run.end, wrong_choices(&figure, &run.strokes)), (End::Complete, (0, 0)), "{name}");
+    run
 }
 
 #[test]
-#[ignore = "half a minute in release"]
+fn a_crossing_and_a_corner_are_followed_once() {
+    let corner = [(40.3, 170.2), (110.7, 40.1), (180.4, 165.8)];
+    let across = [(30.2, 100.4), (220.9, 110.3)];
+    let run = small_lap("corner", &[&corner, &across], 4.0);
+    assert!(run.judged.coverage > 0.98 && run.judged.rms_px < 0.4, "{:?}", run.judged);
+    assert!(run.judged.repeated < 0.03 && run.report.lifts < 4, "{:?} {:?}", run.judged, run.report);
+}
+
+#[test]
+fn tips_are_followed_to_and_fro() {
+    let run = small_lap(
+        "tips",
+        &[&[(50.3, 170.2), (80.1, 40.4), (112.6, 168.3), (150.4, 42.2), (195.1, 165.9)]],
+        5.0,
+    );
+    assert!(run.judged.coverage > 0.98 && run.judged.rms_px < 0.5, "{:?}", run.judged);
+    assert!(run.judged.repeated < 0.05 && run.report.lifts < 4, "{:?} {:?}", run.judged, run.report);
+}
+
+#[test]
+fn junctions_are_lifted_over_as_seldom_as_can_be() {
+    let run = small_lap(
+        "junctions",
+        &[&[(40.2, 60.3), (220.4, 68.1)], &[(80.6, 40.1), (88.3, 170.5)], &[(150.2, 65.1), (140.7, 172.4)]],
+        5.0,
+    );
+    // Six odd nodes, the ends and the foot of the tee: three strokes.
+    assert!(run.judged.coverage > 0.99 && run.judged.rms_px < 0.4, "{:?}", run.judged);
+    assert!(run.judged.repeated < 0.02 && run.report.lifts == 2, "{:?} {:?}", run.judged, run.report);
+}
+
+#[test]
+fn dense_lines_are_followed_one_by_one() {
+    let rows: Vec<[(f64, f64); 2]> =
+        (0..5).map(|i| 70.3 + 8.0 * f64::from(i)).map(|y| [(60.2, y), (180.4, y)]).collect();
+    let lines: Vec<&[(f64, f64)]> = rows.iter().map(<[_; 2]>::as_slice).collect();
+    let run = small_lap("dense", &lines, 4.0);
+    assert!(run.judged.coverage > 0.99 && run.judged.rms_px < 0.4, "{:?}", run.judged);
+    assert!(run.judged.repeated < 0.01 && run.report.lifts == 4, "{:?} {:?}", run.judged, run.report);
+}
+
+#[test]
+#[ignore = "three laps of each figure, a minute in release: .ci/run runs it"]
 fn every_figure_is_covered_without_a_wrong_choice() {
-    for figure in figures().iter().take(3) {
-        let run = lap(figure, table(1), 1);
-        let (shortcuts, turns) = wrong_choices(figure, &run.strokes);
-        let name = figure.name;
-        println!("{name}: {:?} {:?} {shortcuts} {turns}", run.judged, run.report);
-        assert_eq!((run.end, shortcuts, turns), (End::Complete, 0, 0), "{name}");
-        assert!(run.judged.coverage > 0.99, "{name}: {:?}", run.judged);
-        assert!(run.judged.rms_px < 0.5, "{name}: {:?}", run.judged);
-        assert!(run.judged.repeated < 0.03, "{name}: {:?}", run.judged);
+    for (figure, most_lifts) in figures().iter().zip([8, 8, 9, 26]) {
+        for seed in 0..3 {
+            let run = lap(figure, table(seed), seed);
+            let name = format!("{} {seed}", figure.name);
+            println!("{name}: {:?} {:?}", run.judged, run.report);
+            assert_eq!((run.end, wrong_choices(figure, &run.strokes)), (End::Complete, (0, 0)), "{name}");
+            assert!(run.judged.coverage > 0.995 && run.judged.rms_px < 0.35, "{name}: {:?}", run.judged);
+            assert!(run.judged.repeated < 0.04, "{name}: {:?}", run.judged);
+            assert!(run.report.lifts <= most_lifts, "{name}: {:?}", run.report);
+        }
     }
 }
 
 #[test]
-#[ignore = "half a minute in release"]
+#[ignore = "not reached: 0.30 px rms on the corners, see docs/results.md"]
 fn an_exact_table_leaves_what_the_picture_leaves() {
     for figure in figures() {
         let run = lap(&figure, TableError::default(), 1);
@@ -76,85 +119,52 @@ fn the_published_follower_is_never_right_on_dense_lines() {
     assert!(shortcuts + turns > 5, "{shortcuts} {turns}");
 }
 
-/// Laps of each figure: the table of `docs/results.md`.
+/// Laps of each figure: the table of `docs/results.md`. `SEEDS=from..to` are the laps, `FIGURE` is a figure's name; each lap is
+/// a line, so that a run can be split, stopped and gone on with.
 #[test]
-#[ignore = "two minutes in release"]
+#[ignore = "minutes in release: SEEDS=0..3 cargo test --release -p plotter-vector --test sim_follow -- --ignored --nocapture laps"]
 fn laps_of_the_four_figures() {
-    let laps: u64 = std::env::var("LAPS").map_or(10, |laps| laps.parse().unwrap());
-    println!(
-        "| figure | published: shortcuts, turned back | ours | coverage | twice | rms | greatest | lifts |"
-    );
-    for figure in figures() {
-        let first = figure.lines[0][0];
-        let (mut theirs, mut own) = ((0, 0), (0, 0));
-        let (mut coverage, mut repeated, mut squares, mut most, mut lifts, mut wrong_laps, mut complete) =
-            (1.0_f64, 0.0_f64, 0.0, 0.0_f64, 0, 0, 0);
-        for seed in 0..laps {
-            let camera = CameraSettings { seed, ..CameraSettings::default() };
-            let wrong = wrong_choices(&figure, &published(&figure, first, camera, table(seed), 1.0));
-            theirs = (theirs.0 + wrong.0, theirs.1 + wrong.1);
-            let run = lap(&figure, table(seed), seed);
-            let wrong = wrong_choices(&figure, &run.strokes);
-            own = (own.0 + wrong.0, own.1 + wrong.1);
-            wrong_laps += u32::from(wrong != (0, 0));
-            complete += u32::from(run.end == End::Complete);
-            coverage = coverage.min(run.judged.coverage);
-            repeated = repeated.max(run.judged.repeated);
-            squares += run.judged.rms_px * run.judged.rms_px;
-            most = most.max(run.judged.max_px);
-            lifts += run.report.lifts;
+    let seeds = std::env::var("SEEDS").unwrap_or_else(|_| "0..3".to_owned());
+    let (from, to) = seeds.split_once("..").unwrap();
+    let only = std::env::var("FIGURE").unwrap_or_default();
+    println!("| figure, lap | wrong | coverage | twice | rms | greatest | lifts | windows | end |");
+    let more = [dense_with(4.0, 4.0, true), sharper_tips(), mixed()];
+    let all = figures().into_iter().chain(more);
+    for figure in &all.filter(|figure| only.is_empty() || figure.name == only).collect::<Vec<_>>() {
+        for seed in from.parse::<u64>().unwrap()..to.parse().unwrap() {
+            let run = lap(figure, table(seed), seed);
+            let (shortcuts, turns) = wrong_choices(figure, &run.strokes);
+            let Run { judged, report, end, .. } = run;
+            println!(
+                "| {} {seed} | {shortcuts}, {turns} | {:.4} | {:.4} | {:.3} | {:.2} at {:.0} {:.0} | {} | {} | {end:?} |",
+                figure.name,
+                judged.coverage,
+                judged.repeated,
+                judged.rms_px,
+                judged.max_px,
+                judged.worst.x,
+                judged.worst.y,
+                report.lifts,
+                report.windows,
+            );
         }
-        println!(
-            "| {} | {}, {} | {}, {} in {wrong_laps} of {laps} laps, {complete} complete | {coverage:.4} | {repeated:.3} | {:.3} | {most:.2} | {:.1} |",
-            figure.name,
-            theirs.0,
-            theirs.1,
-            own.0,
-            own.1,
-            (squares / laps as f64).sqrt(),
-            lifts as f64 / laps as f64
-        );
     }
 }
 
-/// Where it still works: one thing changed at a time.
+/// The published follower on the same laps.
 #[test]
-#[ignore = "two minutes in release"]
-fn where_it_still_works() {
-    let said = |name: String, figure: &Figure, camera: CameraSettings, error: TableError| {
-        let run = ours(figure, PxPoint::new(200.0, 200.0), camera, error, settings(figure));
-        let judged = run.judged;
-        println!(
-            "| {name} | {:.4} | {:.3} | {:.2} | {:.2} | {} | {:?} |",
-            judged.coverage, judged.repeated, judged.rms_px, judged.max_px, run.report.lifts, run.end
-        );
-    };
-    println!("| | coverage | twice | rms | greatest | lifts | end |");
-    let [_, _, junctions, _] = figures();
-    for blur in 0..=4 {
-        let camera = CameraSettings { blur_px: f64::from(blur), ..CameraSettings::default() };
-        said(format!("blur {blur} px"), &junctions, camera, table(1));
-    }
-    for noise in [0, 5, 10, 20, 40] {
-        let camera = CameraSettings { noise_levels: f64::from(noise), ..CameraSettings::default() };
-        said(format!("noise {noise} levels"), &junctions, camera, table(1));
-    }
-    for pen in [1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 16.0, 20.0] {
-        let figure = Figure { pen_px: pen, ..junctions.clone() };
-        said(format!("line {pen} px"), &figure, CameraSettings::default(), table(1));
-    }
-    for error in 0..=6 {
-        let error = f64::from(error);
-        let table = TableError { random_px: error, play_px: error, seed: 1 };
-        said(format!("table {error} px"), &junctions, CameraSettings::default(), table);
-    }
-    for gap in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0] {
-        said(
-            format!("gap {gap} px, exact table"),
-            &dense_with(4.0, gap),
-            CameraSettings::default(),
-            TableError::default(),
-        );
-        said(format!("gap {gap} px"), &dense_with(4.0, gap), CameraSettings::default(), table(1));
+#[ignore = "a minute in release, prints wrong choices: SEEDS=0..10 cargo test --release -p plotter-vector --test sim_follow -- --ignored --nocapture published_laps"]
+fn published_laps() {
+    let seeds = std::env::var("SEEDS").unwrap_or_else(|_| "0..3".to_owned());
+    let (from, to) = seeds.split_once("..").unwrap();
+    for figure in figures() {
+        let (mut shortcuts, mut turns) = (0, 0);
+        for seed in from.parse::<u64>().unwrap()..to.parse().unwrap() {
+            let camera = CameraSettings { seed, ..CameraSettings::default() };
+            let strokes = published(&figure, figure.lines[0][0], camera, table(seed), 1.0);
+            let wrong = wrong_choices(&figure, &strokes);
+            (shortcuts, turns) = (shortcuts + wrong.0, turns + wrong.1);
+        }
+        println!("| {} | {shortcuts} shortcuts, {turns} turned back |", figure.name);
     }
 }

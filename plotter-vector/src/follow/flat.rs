@@ -66,6 +66,11 @@ impl Flat {
         (self.width, self.height)
     }
 
+    /// The window's column and row that it begins at.
+    pub(super) const fn origin(&self) -> [usize; 2] {
+        [self.left, self.top]
+    }
+
     /// The rows, from the top.
     pub(super) fn rows(&self) -> impl Iterator<Item = &[f32]> {
         self.dark.chunks(self.width.max(1))

@@ -163,6 +163,15 @@ impl LineMap {
         (length > 3.0).then(|| (way.0 / length, way.1 / length))
     }
 
+    /// Whether another part of a line is so near that both are one piece of ink.
+    pub(super) fn is_crowded(&self, id: u32, reach_px: f64) -> bool {
+        // Nodes of one line have numbers near each other.
+        let own = u32::try_from(super::whole::count(reach_px)).unwrap_or(u32::MAX);
+        self.near(self.at(id), reach_px)
+            .into_iter()
+            .any(|other| other.abs_diff(id) > own && self.arms(other) > 0 && !self.connected(id, other, 3))
+    }
+
     fn add_node(&mut self, at: PxPoint) -> u32 {
         let id = u32::try_from(self.nodes.len()).unwrap_or(u32::MAX);
         self.nodes.push(Node { at, links: Vec::new(), seen: 1, missed: 0, open: false });

@@ -1,5 +1,6 @@
 //! [`Lines`]: the middle of each line that a window shows.
 
+use super::centred::centred;
 use super::flat::Flat;
 use super::tips::sharpened;
 use crate::{Bitmap, Bounded, Gray, Pixel, PxPoint, Vectorizer, despeckle, pen_width_px, split_by_width};
@@ -130,7 +131,11 @@ impl Lines {
         let fine = strokes.iter().map(|stroke| resampled(&stroke.vertices, 1.0)).collect();
         let pieces = sharpened(fine, width_px)
             .iter()
-            .flat_map(|stroke| clipped(&resampled(stroke, SPACING_PX), trusted))
+            .flat_map(|stroke| {
+                let mut places = resampled(stroke, SPACING_PX);
+                centred(flat, &mut places, width_px);
+                clipped(&places, trusted)
+            })
             .collect();
         Self { pieces, width_px, margin_px, area, has_ink: true }
     }
@@ -193,6 +198,11 @@ fn divide(stretch: &[PxPoint], spacing_px: f64, places: &mut Vec<PxPoint>) {
 pub(super) fn cosine(one: (f64, f64), other: (f64, f64)) -> f64 {
     let lengths = libm::hypot(one.0, one.1) * libm::hypot(other.0, other.1);
     if lengths > 0.0 { (one.0 * other.0 + one.1 * other.1) / lengths } else { 1.0 }
+}
+
+/// A small number as a float.
+pub(super) fn count_f64(count: usize) -> f64 {
+    f64::from(u32::try_from(count).unwrap_or(u32::MAX))
 }
 
 /// The parts of a line inside of the trusted part of the window.

@@ -1,78 +1,104 @@
 //! [`Play`]: what each axis of the table loses where it turns round, learned on the way.
 //!
 //! ```text
-//!   command = wanted place − offset ± half of the play        + while the axis goes up, − while it goes down
+//!   pushed   stays where it is while the command is within half of the play, and is pushed along beyond
+//!   place  = pushed + offset
+//!   command  that pushes it to a place = place − offset ± half of the play        + upwards, − downwards
 //! ```
 //!
-//! When an axis turns round, the play is taken up at once. How large it is shows in the pictures: what is missing after a turn
-//! is added to the estimate once the axis answers again.
+//! An axis that moved in the pictures is pushed in this direction at the end of the move, so that its place less its command is
+//! the offset less (upwards) or more (downwards) half of the play: once seen in both directions, the play is known.
 
-/// A way back shorter than this is no turn, px: the axis waits.
-const NO_TURN_PX: f64 = 0.3;
+/// Moves shorter than this are not made, px: the axis waits.
+const NO_MOVE_PX: f64 = 0.12;
 
-/// Farther from the turn the play is taken up, or the lines here do not show it, px.
+/// An axis that moved so far in the pictures is pushed, px.
+const PUSHED_PX: f64 = 0.3;
+
+/// After so much way in one direction it is pushed, or the lines here do not show it, px.
 const TURNING_PX: f64 = 5.0;
 
-/// An axis that moved so far answers, px.
-const ANSWERS_PX: f64 = 3.0;
+/// A way beyond which an old turn tells nothing about the play, px: the random error grows with it.
+const MEMORY_PX: f64 = 60.0;
 
 /// Most play, px.
 const MOST_PX: f64 = 30.0;
+
+/// An axis that was seen pushed.
+#[derive(Clone, Copy, Debug)]
+struct Pushed {
+    /// Place less command, px.
+    off_px: f64,
+    /// All the way that was commanded till then, px.
+    way_px: f64,
+}
 
 /// Play and offset of an axis.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Play {
     /// Estimated play, px.
     pub(super) play_px: f64,
-    /// True place minus command, in the middle of the play, px.
+    /// True place less that of what is pushed.
     offset_px: f64,
-    /// The way that it went last: 1 up, −1 down, 0 not yet known.
+    pushed_px: f64,
+    /// The last command, and all the way commanded.
+    sent_px: f64,
+    way_px: f64,
+    /// The direction of the last command, 1 up, −1 down, 0 not yet known, and the way since it turned.
     side: f64,
-    /// The farthest place wanted since it turned.
-    extreme_px: f64,
-    /// Where it turned.
-    turned_px: f64,
-    /// How often the play was learned.
+    since_turn_px: f64,
+    /// Whether it turned since the last picture.
+    has_turned: bool,
+    /// When it was seen pushed last, downwards and upwards.
+    seen: [Option<Pushed>; 2],
+    /// Whether the play of this turn is learned.
+    is_learned: bool,
+    /// How often the play was learned, and what the last turns showed.
     learned: u32,
-    /// The play that the last turns showed.
     shown_px: [f64; 9],
-    /// The offset before it turned, until the play is taken up.
-    before: Option<f64>,
     /// Command and true place when last looked.
     last: Option<(f64, f64)>,
 }
 
 impl Play {
+    /// What is pushed at a command.
+    fn pushed(&self, command: f64) -> f64 {
+        let half = 0.5 * self.play_px;
+        self.pushed_px.clamp(command - half, command + half)
+    }
+
     /// The true place that belongs to a command.
     pub(super) fn place(&self, command: f64) -> f64 {
-        command + self.offset_px - 0.5 * self.play_px * self.side
+        self.pushed(command) + self.offset_px
     }
 
     /// The command that leads to a place.
     pub(super) fn command(&mut self, wanted: f64) -> f64 {
-        let ahead = (wanted - self.extreme_px) * self.side;
-        if self.side == 0.0 {
-            if (wanted - self.extreme_px).abs() > NO_TURN_PX {
-                self.side = libm::copysign(1.0, wanted - self.extreme_px);
-                self.extreme_px = wanted;
-            }
-        } else if ahead > 0.0 {
-            self.extreme_px = wanted;
-        } else if -ahead > NO_TURN_PX {
-            self.before = Some(self.offset_px);
-            self.side = -self.side;
-            self.turned_px = self.extreme_px;
-            self.extreme_px = wanted;
+        let target = wanted - self.offset_px;
+        let way = target - self.pushed_px;
+        if way.abs() < NO_MOVE_PX {
+            return self.sent_px;
         }
-        wanted - self.offset_px + 0.5 * self.play_px * self.side
+        let command = target + libm::copysign(0.5 * self.play_px, way);
+        let moved = command - self.sent_px;
+        if moved != 0.0 {
+            let side = libm::copysign(1.0, moved);
+            if side != self.side {
+                (self.side, self.since_turn_px, self.is_learned) = (side, 0.0, false);
+                self.has_turned = true;
+            }
+            self.since_turn_px += moved.abs();
+            self.way_px += moved.abs();
+        }
+        (self.sent_px, self.pushed_px) = (command, target);
+        command
     }
 
     /// How far the axis may go on to `wanted` in one move, as a share: a turn whose play is not known well is gone in
     /// small moves, with a look after each.
     pub(super) fn share(&self, from: f64, wanted: f64) -> f64 {
         let way = wanted - from;
-        let is_turning = self.before.is_some() && (self.extreme_px - self.turned_px).abs() < TURNING_PX;
-        let turns = self.side == 0.0 || way * self.side < 0.0 || is_turning;
+        let turns = way * self.side <= 0.0 || (!self.is_learned && self.since_turn_px < TURNING_PX);
         if turns && self.is_unknown() && way.abs() > 0.4 { 0.4 / way.abs() } else { 1.0 }
     }
 
@@ -81,41 +107,65 @@ impl Play {
         self.learned < 2
     }
 
+    /// Standard deviation of what the play may hide in the next picture, px, after the axis was sent to `command`.
+    pub(super) fn doubt_px(&self, command: f64) -> f64 {
+        if !self.is_unknown() {
+            return if self.has_turned { 0.3 } else { 0.0 };
+        }
+        self.last.map_or(0.0, |(last, _)| 0.5 * (command - last).abs().min(TURNING_PX))
+    }
+
     /// Takes the true place that a picture shows, if it shows it well.
     pub(super) fn measure(&mut self, command: f64, place: f64, is_sure: bool) {
-        self.offset_px = place - command + 0.5 * self.play_px * self.side;
-        let last = self.last.replace((command, place));
+        self.pushed_px = self.pushed(command);
+        self.sent_px = command;
+        self.offset_px = place - self.pushed_px;
+        let has_turned = core::mem::take(&mut self.has_turned);
         if !is_sure {
+            self.last = None;
             return;
         }
-        let (Some(before), Some((last_command, last_place))) = (self.before, last) else { return };
-        let (commanded, moved) = (command - last_command, place - last_place);
-        if commanded * self.side < 0.3 || (moved / commanded < 0.6 && moved * self.side < ANSWERS_PX) {
+        let Some((last_command, last_place)) = self.last.replace((command, place)) else { return };
+        let (commanded, moved) = ((command - last_command) * self.side, (place - last_place) * self.side);
+        // A move that went to and fro tells nothing; nor does one that ended before it began to push.
+        let to_and_fro = has_turned && self.since_turn_px > commanded + NO_MOVE_PX;
+        if commanded <= 0.0 || moved < PUSHED_PX || moved > commanded + 1.0 || to_and_fro {
             return;
         }
-        // It answers: what was missing on the way is play that was not known.
-        let missing = (before - self.offset_px) * self.side;
-        // The middle of what the last turns showed: a single one may be far off.
+        let seen = Pushed { off_px: place - command, way_px: self.way_px };
+        let [down, up] = &mut self.seen;
+        let (own, other) = if self.side > 0.0 { (up, down) } else { (down, up) };
+        *own = Some(seen);
+        let other = other.filter(|other| seen.way_px - other.way_px < MEMORY_PX);
+        if let (Some(other), false) = (other, self.is_learned) {
+            self.is_learned = true;
+            self.learn((other.off_px - seen.off_px) * self.side);
+        }
+        self.pushed_px = command - 0.5 * self.play_px * self.side;
+        self.offset_px = place - self.pushed_px;
+    }
+
+    /// The mean of the middle half of what the last turns showed: a single one may be far off.
+    fn learn(&mut self, play_px: f64) {
         let slot = usize::try_from(self.learned).unwrap_or(0) % self.shown_px.len();
         if let Some(shown) = self.shown_px.get_mut(slot) {
-            *shown = (self.play_px + missing).clamp(0.0, MOST_PX);
+            *shown = play_px.clamp(0.0, MOST_PX);
         }
         self.learned = self.learned.saturating_add(1);
         let known = usize::try_from(self.learned).unwrap_or(usize::MAX).min(self.shown_px.len());
         let mut sorted = self.shown_px;
         if let Some(known) = sorted.get_mut(..known) {
             known.sort_by(f64::total_cmp);
-            self.play_px = known.get((known.len() - 1) / 2).copied().unwrap_or(0.0);
+            let middle = known.get(known.len() / 4..known.len() - known.len() / 4).unwrap_or(&[]);
+            self.play_px =
+                middle.iter().sum::<f64>() / f64::from(u32::try_from(middle.len().max(1)).unwrap_or(1));
         }
-        self.before = None;
-        self.offset_px = place - command + 0.5 * self.play_px * self.side;
     }
 
-    /// Forgets the way: the machine stands somewhere else.
+    /// Begins at a place.
     pub(super) fn forget(&mut self, place: f64) {
-        self.extreme_px = place;
-        self.before = None;
-        self.last = None;
+        (self.pushed_px, self.sent_px, self.offset_px) = (place, place, 0.0);
+        (self.last, self.seen) = (None, [None; 2]);
     }
 }
 

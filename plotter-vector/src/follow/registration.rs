@@ -2,11 +2,12 @@
 //!
 //! At each place of the map that the window should show, the line is cut across. How far its middle lies from where it should
 //! be is one equation for the camera's shift; a straight line says nothing of the shift along it, curves, corners and
-//! crossings tell both. Least squares with Huber's weights (P. J. Huber, "Robust estimation of a location parameter", 1964)
-//! take the shift, less of it in a direction of which little is told.
+//! crossings tell both. The most probable shift, given where the camera should be, is that of least squares with Huber's weights
+//! (P. J. Huber, "Robust estimation of a location parameter", 1964) and the prior.
 
 use super::flat::Flat;
 use super::line_map::LineMap;
+use super::prior::{Information, Prior};
 use super::profile::{Cut, across};
 use crate::PxPoint;
 
@@ -16,19 +17,26 @@ const MOST_CUTS: usize = 64;
 /// Distances beyond this weigh less, px.
 const HUBER_PX: f64 = 0.4;
 
-/// What as many places tell counts half: less is mostly what the rims near other lines pretend.
-const HALF: f64 = 1.0;
+/// Standard deviation of one distance, px.
+const CUT_PX: f64 = 0.3;
 
-/// So many places tell an axis well.
-const SURE: f64 = 2.5;
+/// Lines next to each other are off together: more places than this tell no more.
+const INDEPENDENT: f64 = 8.0;
+
+/// Nearer to the tool than this a place goes by so much of the way to where it is seen: the tool comes there next.
+const NEAR_TOOL_PX: f64 = 25.0;
+const NEAR_GAIN: f64 = 0.5;
+
+/// Standard deviation of an axis that is told well, px.
+const SURE_PX: f64 = 0.25;
 
 /// Where the camera is, and how well that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fix {
     /// The camera's true place.
     pub(super) place: PxPoint,
-    /// Whether x and y are told by lines.
-    pub(super) is_sure: [bool; 2],
+    /// What the lines tell of it.
+    pub(super) told: Information,
     /// Places where a line was found, and all where one should be.
     pub(super) found: usize,
     pub(super) expected: usize,
@@ -73,6 +81,7 @@ impl View<'_> {
             .into_iter()
             .filter(|id| self.flat.holds(self.seen_at(camera, map.at(*id)), margin))
             .filter_map(|id| map.direction(id).map(|(x, y)| (id, (-y, x))))
+            .filter(|(id, _)| !map.is_crowded(*id, 1.2 * self.width_px + 1.0))
             .collect();
         let step = near.len().div_ceil(MOST_CUTS).max(1);
         near.into_iter().step_by(step).collect()
@@ -96,24 +105,21 @@ impl View<'_> {
         places.iter().filter_map(equation).collect()
     }
 
-    /// The shift of the camera, whole pixels, at which most places of the map are dark.
-    fn coarse(&self, map: &LineMap, places: &[(u32, (f64, f64))], camera: PxPoint, reach: i32) -> PxPoint {
-        let step = (reach / 20).max(1);
-        let mut best = (f32::NEG_INFINITY, camera);
-        for dy in (-reach..=reach).step_by(usize::try_from(step).unwrap_or(1)) {
-            for dx in (-reach..=reach).step_by(usize::try_from(step).unwrap_or(1)) {
-                let moved = PxPoint::new(camera.x + f64::from(dx), camera.y + f64::from(dy));
-                let dark: f32 = places
+    /// Of the camera's places so many whole pixels around, that at which most places of the map are dark; of alike ones the most
+    /// probable.
+    fn coarse(&self, map: &LineMap, places: &[(u32, (f64, f64))], prior: &Prior, reach: i32) -> PxPoint {
+        let step = usize::try_from((reach / 20).max(1)).unwrap_or(1);
+        let count = f64::from(u32::try_from(places.len().max(1)).unwrap_or(u32::MAX));
+        let mut best = (f64::NEG_INFINITY, prior.place);
+        for dy in (-reach..=reach).step_by(step) {
+            for dx in (-reach..=reach).step_by(step) {
+                let off = (f64::from(dx), f64::from(dy));
+                let moved = prior.place.along(off, 1.0);
+                let dark: f64 = places
                     .iter()
-                    .map(|(id, _)| self.flat.at(self.seen_at(moved, map.at(*id))).clamp(0.0, 1.0))
+                    .map(|(id, _)| f64::from(self.flat.at(self.seen_at(moved, map.at(*id)))).clamp(0.0, 1.0))
                     .sum();
-                #[expect(
-                    clippy::cast_precision_loss,
-                    clippy::cast_possible_truncation,
-                    reason = "small numbers"
-                )]
-                let score = dark / places.len().max(1) as f32
-                    - 0.004 * libm::hypot(f64::from(dx), f64::from(dy)) as f32;
+                let score = dark / count - 0.01 * prior.off(moved);
                 if score > best.0 {
                     best = (score, moved);
                 }
@@ -123,34 +129,36 @@ impl View<'_> {
     }
 }
 
-/// The camera's true place, from where it should be; `far` looks up to 40 px around when nothing fits. Places of the map that
+/// The camera's true place, from where it should be; `reach_px` around when nothing fits. Places of the map that
 /// are yet to be followed move a little to where they are seen. `None` when the window should show no line.
-pub(super) fn registered(map: &mut LineMap, view: &View<'_>, predicted: PxPoint, far: bool) -> Option<Fix> {
-    let places = view.places(map, predicted);
+pub(super) fn registered(map: &mut LineMap, view: &View<'_>, prior: &Prior, reach_px: i32) -> Option<Fix> {
+    let places = view.places(map, prior.place);
     if places.is_empty() {
         return None;
     }
-    let mut camera = predicted;
+    let mut camera = prior.place;
     let mut equations = view.equations(map, &places, camera);
-    if 10 * equations.len() < 7 * places.len() {
-        for reach in [8, 40] {
-            if reach == 40 && (!far || 3 * equations.len() >= places.len()) {
-                break;
-            }
-            let moved = view.coarse(map, &places, camera, reach);
-            let found = view.equations(map, &places, moved);
-            if found.len() > equations.len() {
-                (camera, equations) = (moved, found);
-            }
+    if 10 * equations.len() < 7 * places.len() && reach_px > 0 {
+        let moved = view.coarse(map, &places, prior, reach_px);
+        let found = view.equations(map, &places, moved);
+        if found.len() > equations.len() {
+            (camera, equations) = (moved, found);
         }
     }
-    let mut information = [0.0; 3];
+    // Found elsewhere than it should be: the prior was wrong.
+    let is_elsewhere = !prior.allows(camera);
+    let mut told = Information::default();
     for pass in 0..3 {
         if pass > 0 {
             equations = view.equations(map, &places, camera);
         }
+        let known = if is_elsewhere {
+            Prior { place: camera, information: Information::of_axes([2.0, 2.0]) }
+        } else {
+            *prior
+        };
         let shift;
-        (shift, information) = solved(&equations);
+        (shift, told) = solved(&equations, camera, &known);
         camera = camera.along(shift, 1.0);
         if pass > 0 && libm::hypot(shift.0, shift.1) < 0.02 {
             break;
@@ -158,7 +166,7 @@ pub(super) fn registered(map: &mut LineMap, view: &View<'_>, predicted: PxPoint,
     }
     let expected = places.len();
     let found = equations.len();
-    let fix = Fix { place: camera, is_sure: sure(information), found, expected };
+    let fix = Fix { place: camera, told, found, expected };
     if !fix.is_lost() {
         for Equation { node, normal, .. } in &equations {
             refine(map, view, *node, *normal, camera);
@@ -167,39 +175,33 @@ pub(super) fn registered(map: &mut LineMap, view: &View<'_>, predicted: PxPoint,
     Some(fix)
 }
 
-/// The shift that explains the distances best, and the information on it.
-fn solved(equations: &[Equation]) -> ((f64, f64), [f64; 3]) {
-    let mut shift = (0.0, 0.0);
-    let mut sums = [0.0; 3];
+/// The most probable shift, and the information on it that the lines carry.
+fn solved(equations: &[Equation], camera: PxPoint, prior: &Prior) -> ((f64, f64), Information) {
+    let off = prior.place.minus(camera);
+    let (mut shift, mut told) = ((0.0, 0.0), Information::default());
     for _ in 0..5 {
-        let (mut xx, mut xy, mut yy, mut bx, mut by) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let (mut bx, mut by, mut sum) = (0.0, 0.0, 0.0);
+        told = Information::default();
         for Equation { normal: (nx, ny), off_px, weight, .. } in equations {
             let rest = off_px + nx * shift.0 + ny * shift.1;
             let weight = weight * if rest.abs() > HUBER_PX { HUBER_PX / rest.abs() } else { 1.0 };
-            xx += weight * nx * nx;
-            xy += weight * nx * ny;
-            yy += weight * ny * ny;
+            told =
+                told.plus(Information { xx: weight * nx * nx, xy: weight * nx * ny, yy: weight * ny * ny });
             bx -= weight * nx * off_px;
             by -= weight * ny * off_px;
+            sum += weight;
         }
-        // Along the direction told best, and across it.
-        let angle = 0.5 * libm::atan2(2.0 * xy, xx - yy);
-        let (u, v) = (libm::cos(angle), libm::sin(angle));
-        let part = |u: f64, v: f64| {
-            let told = u * u * xx + 2.0 * u * v * xy + v * v * yy;
-            // Less than half a place tells nothing.
-            if told < 0.5 { 0.0 } else { (u * bx + v * by) * told / (told * told + HALF * HALF) }
-        };
-        let (along, across) = (part(u, v), part(-v, u));
-        shift = (along * u - across * v, along * v + across * u);
-        sums = [xx, xy, yy];
+        let scale = (INDEPENDENT / f64::max(sum, 1e-9)).min(1.0) / (CUT_PX * CUT_PX);
+        told = told.scaled(scale);
+        let (px, py) = prior.information.times(off);
+        shift = told.plus(prior.information).solve((scale * bx + px, scale * by + py));
     }
-    (shift, sums)
+    (shift, told)
 }
 
-/// Which of both axes are told, whatever the other one is.
-fn sure([xx, xy, yy]: [f64; 3]) -> [bool; 2] {
-    [xx - xy * xy / yy.max(1e-9) > SURE, yy - xy * xy / xx.max(1e-9) > SURE]
+/// Which of both axes are told well.
+pub(super) fn sure(told: Information) -> [bool; 2] {
+    told.axis_sd().map(|sd| sd < SURE_PX)
 }
 
 /// Moves a node to where its line is seen, the less the more often it was seen.
@@ -210,8 +212,13 @@ fn refine(map: &mut LineMap, view: &View<'_>, node: u32, normal: (f64, f64), cam
         return;
     }
     let Some(cut) = across(view.flat, view.seen_at(camera, at), normal, view.width_px) else { return };
-    if !cut.is_lopsided && cut.middle_px.abs() < 1.0 && cut.width_px < 1.6 * view.width_px + 1.5 {
-        let gain = 1.0 / f64::from(seen.min(8) + 1);
-        map.shift(node, at.along(normal, gain * cut.middle_px));
+    if cut.is_lopsided || cut.middle_px.abs() > 0.4 * view.width_px {
+        return;
+    }
+    // Ink as wide as the line is one line: then it is where it is seen.
+    if cut.width_px < 1.2 * view.width_px + 0.6 && at.distance(camera) < NEAR_TOOL_PX {
+        map.shift(node, at.along(normal, NEAR_GAIN * cut.middle_px));
+    } else if cut.width_px < 1.6 * view.width_px + 1.5 {
+        map.shift(node, at.along(normal, cut.middle_px / f64::from(seen.min(8) + 1)));
     }
 }

@@ -12,6 +12,9 @@
 use super::lines::cosine;
 use crate::PxPoint;
 
+/// A straight arm deviates by less, px.
+const STRAIGHT_PX: f64 = 0.5;
+
 /// An arm at the foot of a stub.
 #[derive(Clone, Debug)]
 struct Arm {
@@ -141,9 +144,7 @@ fn tip(
             if own.len() < 4 {
                 continue;
             }
-            let near: Vec<PxPoint> =
-                own.iter().copied().take(super::whole::count(5.0 * width_px + 8.0)).collect();
-            let (middle, direction) = fitted(&near)?;
+            let (middle, direction) = arm(&own, width_px)?;
             arms.push(Arm { stroke: index, behind, places: own, direction, middle });
         }
     }
@@ -153,7 +154,9 @@ fn tip(
     }
     let out = free.minus(foot);
     let mean = (one.direction.0 + other.direction.0, one.direction.1 + other.direction.1);
-    if cosine(one.direction, other.direction) < 0.2 || cosine(out, mean) > -0.85 {
+    // The way of a short stub is mostly noise.
+    let least = if foot.distance(free) < 1.2 * width_px { -0.5 } else { -0.85 };
+    if cosine(one.direction, other.direction) < 0.2 || cosine(out, mean) > least {
         return None;
     }
     let cross = one.direction.0 * other.direction.1 - one.direction.1 * other.direction.0;
@@ -165,8 +168,27 @@ fn tip(
     Some((one, other, if sound { met } else { free }))
 }
 
+/// The straight line through an arm's places, over as long a part of it as is straight.
+fn arm(own: &[PxPoint], width_px: f64) -> Option<(PxPoint, (f64, f64))> {
+    let is_straight = |part: &[PxPoint], (middle, (x, y)): (PxPoint, (f64, f64))| {
+        part.iter().all(|at| {
+            let off = at.minus(middle);
+            (off.0 * y - off.1 * x).abs() < STRAIGHT_PX
+        })
+    };
+    // Next to the foot blur draws the arms together.
+    let clear = own.get(super::whole::count(width_px)..).filter(|clear| clear.len() > 24).unwrap_or(own);
+    for widths in [16.0, 10.0] {
+        let part = clear.get(..super::whole::count(widths * width_px).min(clear.len())).unwrap_or(clear);
+        if let Some(line) = fitted(part).filter(|line| is_straight(part, *line)) {
+            return Some(line);
+        }
+    }
+    fitted(own.get(..super::whole::count(5.0 * width_px + 8.0).min(own.len())).unwrap_or(own))
+}
+
 /// The straight line through places, by least squares across it: its middle, and its direction from the first on.
-fn fitted(places: &[PxPoint]) -> Option<(PxPoint, (f64, f64))> {
+pub(super) fn fitted(places: &[PxPoint]) -> Option<(PxPoint, (f64, f64))> {
     let count = f64::from(u32::try_from(places.len()).ok()?);
     let sum = places.iter().fold((0.0, 0.0), |sum, at| (sum.0 + at.x, sum.1 + at.y));
     let middle = PxPoint::new(sum.0 / count, sum.1 / count);

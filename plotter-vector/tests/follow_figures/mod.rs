@@ -82,12 +82,12 @@ pub fn junctions() -> Figure {
     Figure { name: "junctions", width: 720, height: 660, lines, pen_px: 5.0 }
 }
 
-/// (d) Dense parallel lines: one to and fro, and hatching beside it; as much paper between lines as they are wide.
+/// (d) Dense parallel lines: one to and fro with square turns, and hatching beside it; as much paper between lines as they are wide.
 pub fn dense() -> Figure {
-    dense_with(4.0, 4.0)
+    dense_with(4.0, 4.0, false)
 }
 
-pub fn dense_with(pen_px: f64, gap_px: f64) -> Figure {
+pub fn dense_with(pen_px: f64, gap_px: f64, is_round: bool) -> Figure {
     let pitch = pen_px + gap_px;
     let mut snake = Vec::new();
     for i in 0..12 {
@@ -95,10 +95,9 @@ pub fn dense_with(pen_px: f64, gap_px: f64) -> Figure {
         let ends = [(70.2, y), (440.6, y)];
         let [from, to] = if i % 2 == 0 { ends } else { [ends[1], ends[0]] };
         snake.extend([from, to]);
-        // Round about to the next one.
         let out = if i % 2 == 0 { 1.0 } else { -1.0 };
         let turn = |k: i32| std::f64::consts::PI * f64::from(k) / 12.0;
-        if i < 11 {
+        if i < 11 && is_round {
             snake.extend((1..12).map(|k| {
                 (to.0 + out * 0.5 * pitch * turn(k).sin(), y + 0.5 * pitch * (1.0 - turn(k).cos()))
             }));
@@ -109,11 +108,45 @@ pub fn dense_with(pen_px: f64, gap_px: f64) -> Figure {
         let x = 90.4 + pitch * f64::from(i);
         lines.push(polyline(&[(x, 300.1), (x + 60.0, 560.6)]));
     }
-    Figure { name: "dense", width: 520, height: 620, lines, pen_px }
+    let name = if is_round { "round dense" } else { "dense" };
+    Figure { name, width: 520, height: 620, lines, pen_px }
 }
 
 pub fn figures() -> [Figure; 4] {
     [corners(), tips(), junctions(), dense()]
+}
+
+/// Tips of 9, 7, 5 and 3 degrees: the ink of the last one's arms is one over 80 px.
+pub fn sharper_tips() -> Figure {
+    let mut line = vec![(60.3, 420.4)];
+    let mut x = 110.2;
+    for (i, step) in [0.0, 30.0, 24.0, 18.0, 12.0, 8.0].into_iter().enumerate() {
+        x += step;
+        line.push((x, if i % 2 == 0 { 80.5 } else { 420.4 }));
+    }
+    line.push((330.6, 60.2));
+    Figure { name: "sharper tips", width: 400, height: 500, lines: vec![polyline(&line)], pen_px: 5.0 }
+}
+
+/// The built-in drawing of the `follow` example: rings of three widths, a line through them, tips, a rectangle and hatching.
+pub fn mixed() -> Figure {
+    let circle = |x: f64, y: f64, radius: f64| -> Vec<PxPoint> {
+        let at = |i: i32| f64::from(i) * std::f64::consts::TAU / 120.0;
+        (0..=120).map(|i| PxPoint::new(x + radius * at(i).cos(), y + radius * at(i).sin())).collect()
+    };
+    let mut lines = vec![
+        circle(260.0, 260.0, 180.0),
+        circle(260.0, 260.0, 110.0),
+        circle(310.0, 260.0, 40.0),
+        polyline(&[(40.0, 262.0), (480.0, 255.0)]),
+        polyline(&[(520.0, 90.0), (560.0, 430.0), (610.0, 95.0), (650.0, 425.0), (690.0, 100.0)]),
+        polyline(&[(560.0, 480.0), (820.0, 480.0), (820.0, 620.0), (560.0, 620.0), (560.0, 480.0)]),
+    ];
+    for i in 0..9 {
+        let x = 120.0 + 11.0 * f64::from(i);
+        lines.push(polyline(&[(x, 500.0), (x + 120.0, 640.0)]));
+    }
+    Figure { name: "mixed", width: 880, height: 700, lines, pen_px: 4.0 }
 }
 
 /// What came of a run.
@@ -187,18 +220,17 @@ pub fn length(line: &[PxPoint]) -> f64 {
 pub fn wrong_choices(figure: &Figure, strokes: &[Vec<PxPoint>]) -> (u32, u32) {
     let route = Route::of(&figure.lines);
     let ends: Vec<PxPoint> = figure.lines.iter().flat_map(|line| [line[0], line[line.len() - 1]]).collect();
-    let sharp: Vec<PxPoint> = figure
+    let sharp: Vec<(PxPoint, f64)> = figure
         .lines
         .iter()
         .flat_map(|line| line.windows(3))
-        .filter(|three| {
-            let (a, b) = (
-                (three[1].x - three[0].x, three[1].y - three[0].y),
-                (three[2].x - three[1].x, three[2].y - three[1].y),
-            );
-            a.0 * b.0 + a.1 * b.1 < -0.5 * a.0.hypot(a.1) * b.0.hypot(b.1)
+        .filter_map(|three| {
+            let a = (three[0].x - three[1].x, three[0].y - three[1].y);
+            let b = (three[2].x - three[1].x, three[2].y - three[1].y);
+            let angle = ((a.0 * b.0 + a.1 * b.1) / (a.0.hypot(a.1) * b.0.hypot(b.1))).acos();
+            // As far as the arms' ink is one, and the camera's blur.
+            (angle < 1.05).then(|| (three[1], 0.5 * figure.pen_px / (0.5 * angle).sin() + 6.0))
         })
-        .map(|three| three[1])
         .collect();
     let outside_px = 0.5 * figure.pen_px + 1.0;
     let (mut shortcuts, mut turns) = (0, 0);
@@ -219,7 +251,7 @@ pub fn wrong_choices(figure: &Figure, strokes: &[Vec<PxPoint>]) -> (u32, u32) {
             }
             outside = 0.0;
             let Some((_, line, along)) = near else { continue };
-            if sharp.iter().any(|tip| tip.distance(at) < 45.0) {
+            if sharp.iter().any(|(tip, reach_px)| tip.distance(at) < *reach_px) {
                 continue;
             }
             let near_end = ends.iter().any(|end| end.distance(at) < 12.0);

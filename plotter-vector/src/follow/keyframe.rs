@@ -1,0 +1,313 @@
+//! [`Keyframe`]: how far the camera went since a window, from the two windows alone.
+//!
+//! Corners, crossings and the ends of lines tell both directions, a bundle of straight lines only the one across it. Where the
+//! darkness rises or falls in the first window, the second one shows at first order
+//!
+//! ```text
+//!   second(q) = first(q) + g · d         g: gradient of the first window, d: how far the guess of the camera's place is off
+//! ```
+//!
+//! Least squares over these places give d and the information on it; the darkness is resampled at the new guess until d is small.
+//!
+//! Source: B. D. Lucas, T. Kanade, "An iterative image registration technique with an application to stereo vision" (1981), with
+//! the gradient taken once, from the first window (S. Baker, I. Matthews, "Lucas-Kanade 20 years on", 2004).
+
+use super::flat::Flat;
+use super::prior::{Information, Prior};
+use crate::PxPoint;
+
+/// Most places that are compared.
+const MOST_PLACES: usize = 2000;
+
+/// Least gradient of such a place, darkness per px, and in standard deviations of the noise.
+const LEAST_GRADIENT: f32 = 0.03;
+const LEAST_GRADIENT_NOISES: f32 = 3.0;
+
+/// Distances from the border of a window that are not compared, px.
+const MARGIN_PX: f64 = 4.0;
+
+/// Darkness may differ by so much before a place weighs less.
+const HUBER: f64 = 0.08;
+
+/// Squared gradients that one half of a line's end has: less tells nothing.
+const LEAST_TOLD: f64 = 0.15;
+
+/// Standard deviation of what noise and the light make of the shift where it is told well, px.
+const SYSTEMATIC_PX: f64 = 0.06;
+
+/// Windows that differ by more do not show the same.
+const MOST_MISFIT: f64 = 0.08;
+
+/// Fewer places in common tell nothing.
+const LEAST_PLACES: f64 = 60.0;
+
+/// A step beyond half of a line's width would lead to another rim, px.
+const MOST_SHIFT_PX: f64 = 1.5;
+
+/// A place known better needs no second guess, px.
+const SURE_PX: f64 = 1.2;
+
+/// From guess to guess, px, and most of them to either side.
+const GUESS_PX: f64 = 2.0;
+const MOST_GUESSES: i32 = 4;
+
+/// By so much more must a guess fit that is a standard deviation farther off.
+const DOUBT: f64 = 0.05;
+
+/// A window to compare others with.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Keyframe {
+    /// The camera's place.
+    camera: PxPoint,
+    /// Places from there, darkness, and its gradient: 20 bytes each.
+    places: Vec<([f32; 2], f32, [f32; 2])>,
+    /// Mean squared gradient that is mere noise, in each axis.
+    noise: f64,
+}
+
+impl Keyframe {
+    /// A window whose middle is at `camera`.
+    pub(super) fn of(flat: &Flat, middle: PxPoint, camera: PxPoint) -> Self {
+        let (width, height) = flat.size();
+        let rows: Vec<&[f32]> = flat.rows().collect();
+        let noise = flat.noise;
+        let least = LEAST_GRADIENT.max(LEAST_GRADIENT_NOISES * noise * 0.35);
+        let mut places = Vec::new();
+        let [left, top] = flat.origin();
+        for y in 3..height.saturating_sub(3) {
+            let (Some(above), Some(row), Some(below)) = (rows.get(y - 1), rows.get(y), rows.get(y + 1))
+            else {
+                break;
+            };
+            let triples = above.windows(3).zip(row.windows(3)).zip(below.windows(3)).enumerate();
+            for (x, ((a, b), c)) in triples.skip(3).take(width.saturating_sub(8)) {
+                let (&[a0, a1, a2], &[b0, b1, b2], &[c0, c1, c2]) = (a, b, c) else { continue };
+                // Scharr's gradient: its direction is true to a degree.
+                let gx = (3.0 * (a2 - a0 + c2 - c0) + 10.0 * (b2 - b0)) / 32.0;
+                let gy = (3.0 * (c0 - a0 + c2 - a2) + 10.0 * (c1 - a1)) / 32.0;
+                if gx * gx + gy * gy < least * least {
+                    continue;
+                }
+                let mean = 0.25 * b1 + 0.125 * (a1 + b0 + b2 + c1) + 0.0625 * (a0 + a2 + c0 + c2);
+                #[expect(clippy::cast_precision_loss, reason = "a window is small")]
+                let seen = PxPoint::new((left + x + 1) as f64 + 0.5, (top + y) as f64 + 0.5);
+                let (dx, dy) = seen.minus(middle);
+                #[expect(clippy::cast_possible_truncation, reason = "a window is small")]
+                places.push(([dx as f32, dy as f32], mean, [gx, gy]));
+            }
+        }
+        let step = places.len().div_ceil(MOST_PLACES).max(1);
+        let places = places.into_iter().step_by(step).collect();
+        // Sum of the squares of Scharr's coefficients: 4 * (3 / 32)² + 2 * (10 / 32)².
+        Self { camera, places, noise: 0.23 * f64::from(noise) * f64::from(noise) }
+    }
+
+    /// The camera's place by a new window, with what is known before; it may be off by `sound_px` whatever
+    /// the prior says. `None` where the windows do not fit each other.
+    ///
+    /// Where little is known, several guesses are tried, and of what they lead to that which fits best.
+    pub(super) fn place(&self, flat: &Flat, middle: PxPoint, prior: &Prior, sound_px: f64) -> Option<Prior> {
+        let [(one, one_sd_px), (other, other_sd_px)] = prior.information.known();
+        let guesses = |sd_px: f64| {
+            let most = super::whole::floor(2.5 * sd_px / GUESS_PX).min(MOST_GUESSES);
+            let most = if sd_px > SURE_PX { most } else { 0 };
+            (-most..=most).map(|i| GUESS_PX * f64::from(i))
+        };
+        let from = guesses(one_sd_px).flat_map(|along| {
+            let from = prior.place.along(one, along);
+            guesses(other_sd_px).map(move |across| from.along(other, across))
+        });
+        let found = from.filter_map(|from| {
+            let fit = self.fit(flat, middle, from)?;
+            let sound = prior.allows(fit.camera) || fit.camera.distance(prior.place) < sound_px;
+            let doubt = prior.off(fit.camera);
+            (sound && fit.misfit < MOST_MISFIT).then_some((fit.misfit * (1.0 + DOUBT * doubt), fit))
+        });
+        let (_, fit) = found.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(prior.fused(&Prior { place: fit.camera, information: fit.told }))
+    }
+
+    /// What a guess of the camera's place leads to; `None` without enough in common.
+    fn fit(&self, flat: &Flat, middle: PxPoint, guess: PxPoint) -> Option<Fit> {
+        let mut fit = Fit { camera: guess, ..Fit::default() };
+        for _ in 0..12 {
+            let (mut xx, mut xy, mut yy, mut bx, mut by) = (0.0, 0.0, 0.0, 0.0, 0.0);
+            let (mut count, mut squares) = (0.0, 0.0);
+            let from = middle.along(self.camera.minus(fit.camera), 1.0);
+            for ([dx, dy], dark, [gx, gy]) in &self.places {
+                let seen = from.along((f64::from(*dx), f64::from(*dy)), 1.0);
+                if !flat.holds(seen, MARGIN_PX) {
+                    continue;
+                }
+                let rest = f64::from(flat.at(seen) - dark);
+                let (gx, gy) = (f64::from(*gx), f64::from(*gy));
+                let weight = if rest.abs() > HUBER { HUBER / rest.abs() } else { 1.0 };
+                xx += weight * gx * gx;
+                xy += weight * gx * gy;
+                yy += weight * gy * gy;
+                bx += weight * gx * rest;
+                by += weight * gy * rest;
+                count += 1.0;
+                squares += (rest * rest).min(4.0 * HUBER * HUBER);
+            }
+            if count < LEAST_PLACES {
+                return None;
+            }
+            fit.misfit = libm::sqrt(squares / count);
+            let seen = Information { xx: xx - count * self.noise, xy, yy: yy - count * self.noise };
+            let shift;
+            (shift, fit.told) = seen.told((bx, by), LEAST_TOLD, SYSTEMATIC_PX);
+            let length = libm::hypot(shift.0, shift.1);
+            fit.camera =
+                fit.camera.along(shift, if length > MOST_SHIFT_PX { MOST_SHIFT_PX / length } else { 1.0 });
+            if length < 0.01 {
+                break;
+            }
+        }
+        Some(fit)
+    }
+}
+
+/// Where a guess led.
+#[derive(Clone, Copy, Debug, Default)]
+struct Fit {
+    camera: PxPoint,
+    told: Information,
+    /// Root of the mean square of what differs, darkness.
+    misfit: f64,
+}
+
+/// A place nearer than this to that of a keyframe gets none of its own, px.
+const NEAR_PX: f64 = 45.0;
+
+/// Most keyframes that are kept: at about 40 kB each.
+const MOST_KEYFRAMES: usize = 2048;
+
+/// Standard deviation of how far the camera may be off in directions that the windows on the way did not tell, px.
+const ASTRAY_PX: f64 = 3.0;
+
+/// A window with fewer places is nearly empty.
+const LEAST_KEPT: usize = 120;
+
+/// A place known worse is looked for in the windows around, px; so many of them, so far away.
+const LOST_PX: f64 = 2.0;
+const MOST_TRIED: usize = 4;
+const FARTHEST_PX: f64 = 160.0;
+
+/// Windows to compare others with, one about every [`NEAR_PX`]: coming back to one the camera's place is that of before.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Keyframes {
+    kept: Vec<Keyframe>,
+    active: Option<usize>,
+}
+
+impl Keyframes {
+    /// Where the camera is, by the keyframe that was chosen last; see [`Keyframe::place`].
+    pub(super) fn place(
+        &mut self,
+        flat: &Flat,
+        middle: PxPoint,
+        prior: &Prior,
+        sound_px: f64,
+    ) -> Option<Prior> {
+        let [(_, one_sd_px), (_, other_sd_px)] = prior.information.known();
+        if f64::max(one_sd_px, other_sd_px) > LOST_PX {
+            // After a way without lines: which of the windows around is this?
+            let mut near: Vec<(f64, usize)> = self
+                .kept
+                .iter()
+                .enumerate()
+                .map(|(i, frame)| (frame.camera.distance(prior.place), i))
+                .collect();
+            near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            for (_, i) in near.into_iter().take(MOST_TRIED).filter(|(distance, _)| *distance < FARTHEST_PX) {
+                if let Some(found) =
+                    self.kept.get(i).and_then(|frame| frame.place(flat, middle, prior, sound_px))
+                {
+                    self.active = Some(i);
+                    return Some(found);
+                }
+            }
+        }
+        self.kept.get(self.active?)?.place(flat, middle, prior, sound_px)
+    }
+
+    /// Chooses the keyframe near a place, or makes one of the window; gives the camera's place by it. `told` is what the window
+    /// tells, and `across_px` the standard deviation in the direction told best: across lines nobody goes astray, that would be the next one.
+    pub(super) fn choose(
+        &mut self,
+        flat: &Flat,
+        middle: PxPoint,
+        camera: PxPoint,
+        told: Information,
+        across_px: f64,
+    ) -> PxPoint {
+        let near = self.kept.iter().enumerate().map(|(i, frame)| (frame.camera.distance(camera), i));
+        let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(distance, _)| *distance < NEAR_PX);
+        if let Some((_, i)) = nearest {
+            if self.active == Some(i) {
+                return camera;
+            }
+            let prior = Prior { place: camera, information: told.astray(across_px, ASTRAY_PX) };
+            if let Some(found) = self.kept.get(i).and_then(|frame| frame.place(flat, middle, &prior, 0.0)) {
+                self.active = Some(i);
+                return found.place;
+            }
+        }
+        if self.kept.len() == MOST_KEYFRAMES {
+            // The oldest ones are the farthest, most likely.
+            self.kept.drain(..MOST_KEYFRAMES / 2);
+        }
+        let frame = Keyframe::of(flat, middle, camera);
+        if frame.places.len() < LEAST_KEPT {
+            self.active = None;
+            return camera;
+        }
+        self.kept.push(frame);
+        self.active = Some(self.kept.len() - 1);
+        camera
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::follow::{CameraSettings, Paper, SimulatedCamera};
+
+    fn line(from: (f64, f64), to: (f64, f64)) -> (Vec<PxPoint>, f64) {
+        (vec![PxPoint::new(from.0, from.1), PxPoint::new(to.0, to.1)], 4.0)
+    }
+
+    /// The prior's standard deviation is 1 px in both axes.
+    fn found(strokes: &[(Vec<PxPoint>, f64)], moved: (f64, f64)) -> Option<Prior> {
+        let paper = Paper::drawn(300, 300, strokes).unwrap();
+        let settings = CameraSettings { width_px: 200, height_px: 200, ..CameraSettings::default() };
+        let mut camera = SimulatedCamera::new(&paper, settings);
+        let (at, middle) = (PxPoint::new(150.0, 150.0), PxPoint::new(100.0, 100.0));
+        let mut flat = |at: PxPoint| Flat::of(&camera.window(at), None, None);
+        let frame = Keyframe::of(&flat(at), middle, at);
+        let next = flat(at.along(moved, 1.0));
+        frame.place(&next, middle, &Prior { place: at, information: Information::of_axes([1.0; 2]) }, 0.0)
+    }
+
+    #[test]
+    fn the_end_of_a_line_tells_both_directions() {
+        let place = found(&[line((100.0, 150.0), (400.0, 150.0))], (1.7, -1.2)).unwrap().place;
+        assert!(place.distance(PxPoint::new(151.7, 148.8)) < 0.1, "{place:?}");
+    }
+
+    #[test]
+    fn a_line_that_goes_on_tells_one_direction_only() {
+        let found = found(&[line((-50.0, 150.0), (400.0, 150.0))], (1.7, -1.2)).unwrap();
+        assert!((found.place.y - 148.8).abs() < 0.1 && (found.place.x - 150.0).abs() < 0.1, "{found:?}");
+        assert!(found.information.xx < 1.1 && found.information.yy > 100.0, "{found:?}");
+    }
+
+    #[test]
+    fn of_parallel_lines_the_nearest_is_the_same() {
+        let rows = (0..12).map(|i| 100.0 + 8.0 * f64::from(i));
+        let lines: Vec<_> = rows.map(|y| line((100.0, y), (200.0, y))).collect();
+        let place = found(&lines, (0.0, 2.0)).unwrap().place;
+        assert!(place.distance(PxPoint::new(150.0, 152.0)) < 0.1, "{place:?}");
+    }
+}
