@@ -4,6 +4,7 @@
 use plotter_motion::control::{ContouringSettings, LineTrackingSettings};
 use plotter_motion::firmware::GantrySettings;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
+use plotter_motion::kinematics::Backlash;
 use plotter_motion::{AxisConfig, ControllerChoice, Machine, PathMode, PlannerSettings};
 use std::error::Error;
 use std::fmt::Write as _;
@@ -107,6 +108,7 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
         "use plotter_motion::firmware::stepper_plotter::{{Dialect, StepperPlotterSettings, StoredSettings}};"
     )?;
     writeln!(text, "use plotter_motion::gcode::{{LaserCommand, PenConvention, ServoCommand}};")?;
+    writeln!(text, "use plotter_motion::kinematics::Backlash;")?;
     writeln!(text, "use plotter_motion::{{HomingAxis, PathMode, PlannerSettings}};")?;
     let baud = machine.config().serial.baud;
     writeln!(
@@ -129,7 +131,9 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
         "/// The stepper plotter's settings.\npub const PLOTTER: StepperPlotterSettings = {literal};"
     )?;
     let PlannerSettings { path, jerk_mm_s3, .. } = settings.planner;
-    let modes = if path == PathMode::Exact && jerk_mm_s3.is_none() { "ExactOnly" } else { "AllModes" };
+    let is_plain =
+        path == PathMode::Exact && jerk_mm_s3.is_none() && settings.backlash == Backlash::default();
+    let modes = if is_plain { "ExactOnly" } else { "AllModes" };
     writeln!(
         text,
         "/// The stepper plotter's controller, with what its settings need.\npub type StepperPlotter = \

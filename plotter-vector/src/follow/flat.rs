@@ -8,6 +8,15 @@ use crate::{Gray, PxPoint};
 /// Side of the tiles in which the paper's level is found, px: wider than any line that is followed but its rims.
 const TILE_PX: usize = 25;
 
+/// Where even the lightest place is darker, there is no paper, of 255.
+const DARKEST_LIGHT: f32 = 50.0;
+
+/// A window of fewer tiles a side is small.
+const SMALL_TILES: usize = 8;
+
+/// The level that paper gets for the second time.
+const EVEN_LEVEL: f32 = 200.0;
+
 /// The share of a tile's pixels that are darker than its paper: lines may fill most of it.
 const PAPER_SHARE: f32 = 0.9;
 
@@ -50,6 +59,12 @@ impl Flat {
         }
         let mut flat = Self { left, top, width, height, dark: levels, noise: 0.0 };
         flat.divide_by_paper();
+        if width.min(height) < SMALL_TILES * TILE_PX {
+            // The same light falls off within few tiles, in each of them so much that its lightest tenth is all on one side. What is
+            // left of it after the first time is even enough.
+            flat.dark.iter_mut().for_each(|dark| *dark = EVEN_LEVEL * (1.0 - *dark));
+            flat.divide_by_paper();
+        }
         flat.noise = flat.measured_noise();
         // The paper's level is that of its lightest tenth, which noise makes lighter.
         let bias = LIGHTEST_TENTH * flat.noise;
@@ -128,6 +143,11 @@ impl Flat {
         }
         let mut paper: Vec<f32> = histograms.iter().map(paper_level).collect();
         let lightest = paper.iter().copied().fold(1.0_f32, f32::max);
+        if lightest < DARKEST_LIGHT {
+            // Ink all over, a covered lens, or no light: there is nothing to be seen.
+            self.dark.fill(0.0);
+            return;
+        }
         fill_dark(&mut paper, columns, rows, DARKEST_PAPER * lightest);
         let across: Vec<(usize, f32)> = (0..self.width).map(|x| between(x, self.width, columns)).collect();
         let mut levels = vec![0.0; columns];

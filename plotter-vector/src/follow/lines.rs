@@ -43,6 +43,18 @@ pub(super) struct Lines {
     pub(super) has_ink: bool,
 }
 
+/// The darkness of the faintest line in a window.
+fn least_dark(flat: &Flat) -> f32 {
+    LEAST_DARK.max(8.0 * flat.noise)
+}
+
+/// Whether a piece is as dark along its middle as a line; the grain of the paper and what is left of uneven light are not.
+fn is_dark(flat: &Flat, places: &[PxPoint]) -> bool {
+    let mut darks: Vec<f32> = places.iter().map(|at| flat.at(*at)).collect();
+    darks.sort_by(f32::total_cmp);
+    darks.get(darks.len() / 2).is_some_and(|median| *median >= least_dark(flat))
+}
+
 /// The ink of a window: darker than half way between the darkest and the lightest place around.
 fn ink(flat: &Flat) -> Option<Bitmap> {
     let (width, height) = flat.size();
@@ -58,7 +70,7 @@ fn ink(flat: &Flat) -> Option<Bitmap> {
             }
         }
     }
-    let least_dark = LEAST_DARK.max(8.0 * flat.noise);
+    let least_dark = least_dark(flat);
     let level = |x: usize, y: usize| {
         let (mut most, mut least) = (0.0_f32, 1.0_f32);
         for v in y.saturating_sub(1)..=(y + 1).min(rows - 1) {
@@ -136,6 +148,7 @@ impl Lines {
                 centred(flat, &mut places, width_px);
                 clipped(&places, trusted)
             })
+            .filter(|piece| is_dark(flat, &piece.places))
             .collect();
         Self { pieces, width_px, margin_px, area, has_ink: true }
     }

@@ -210,6 +210,13 @@ impl MappingFollower {
         self.tries += 1;
         self.last_seen = why;
         if self.tries > self.settings.max_tries {
+            // Where nothing can be made out on the way of the search, it goes on elsewhere: what is followed is done.
+            let searches =
+                matches!(self.doing, Doing::Searching(_)) && self.map.length_of(State::Followed) > 0.0;
+            if searches && why != Lost::WindowSize {
+                self.tries = 0;
+                return self.choose(at);
+            }
             return self.end(End::NoLine { at, why });
         }
         Step::LineLost { at, tries: self.tries, why }
@@ -398,7 +405,8 @@ impl MappingFollower {
             self.doing = Doing::Searching(to);
             return self.travel(to);
         }
-        if self.map.nodes.is_empty() {
+        // What is on the map for nothing to be followed was no line: the grain of the paper, the rim of a light.
+        if [State::Followed, State::Outside].iter().all(|state| self.map.length_of(*state) == 0.0) {
             let why = self.last_seen;
             if self.search.is_some() { self.end(End::NoLine { at, why }) } else { self.lost(at, why) }
         } else {

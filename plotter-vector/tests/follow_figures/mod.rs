@@ -193,7 +193,9 @@ pub fn published(
 ) -> Vec<Vec<PxPoint>> {
     let mut camera = SimulatedCamera::new(&figure.paper(), camera);
     let mut table = SimulatedTable::new(start, table);
-    let mut follower = PublishedFollower::new(PublishedSettings::default());
+    // It takes pictures until there is a line, as published.
+    let settings = PublishedSettings { max_tries: u32::MAX, ..PublishedSettings::default() };
+    let mut follower = PublishedFollower::new(settings);
     let lines: f64 = figure.lines.iter().map(|line| length(line)).sum();
     // A window takes it 100 px on, or it is stuck.
     let mut windows = 0.0;
