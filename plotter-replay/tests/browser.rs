@@ -260,7 +260,7 @@ fn a_machine_behind_a_pseudo_terminal_is_started_watched_stopped_resumed_and_fin
     let info =
         Command::new(PROGRAM).args(["info", "session.plog"]).current_dir(here.path()).output().unwrap();
     let info = String::from_utf8(info.stdout).unwrap();
-    assert!(info.contains("emergency stops: 2") && info.contains("nothing lost"), "{info}");
+    assert!(info.contains("host: the machine is stopped") && info.contains("nothing lost"), "{info}");
 }
 
 #[test]
