@@ -148,7 +148,7 @@ impl Line {
                 LinkSettings::default(),
                 Duration::ZERO,
                 HostSettings::default(),
-                moves.iter().copied(),
+                Vec::from(moves).into_iter(),
             ),
             bench: Bench::with_controller(&machine, settings, controller, std::iter::empty()),
             wire: Wire::new(256_000),
