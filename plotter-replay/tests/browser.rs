@@ -254,13 +254,14 @@ fn a_machine_behind_a_pseudo_terminal_is_started_watched_stopped_resumed_and_fin
     browser.screenshot("live-done");
     assert_eq!(browser.value("targets done"), "10 of 10");
     assert_eq!(browser.value("reached"), "10");
+    assert_eq!(browser.value("anomalies"), "0");
     assert_eq!(browser.complaints, Vec::<String>::new());
     assert_eq!(live.finish(), (Some(0), String::new()));
 
     let info =
         Command::new(PROGRAM).args(["info", "session.plog"]).current_dir(here.path()).output().unwrap();
     let info = String::from_utf8(info.stdout).unwrap();
-    assert!(info.contains("host: the machine is stopped") && info.contains("nothing lost"), "{info}");
+    assert!(info.contains("stopped over the line: 1") && info.contains("nothing lost"), "{info}");
 }
 
 #[test]

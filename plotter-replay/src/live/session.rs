@@ -5,9 +5,9 @@ use super::progress::Plan;
 use super::sender::Sender;
 use super::view::{Cursor, View};
 use super::{Command, State, Telemetry};
-use crate::PlotterSettings;
 use crate::log::{Event, Record, Writer};
 use crate::serial::PortError;
+use crate::{CountedBy, PlotterSettings};
 use core::time::Duration;
 use plotter_motion::protocol::{HostEvent, HostNotice, HostSettings, Order, Resume};
 use plotter_motion::{PenMove, StepPoint};
@@ -110,8 +110,12 @@ impl Session {
         moves: Option<Moves>,
         recorder: Option<Writer<W>>,
         telemetry: Option<Arc<Mutex<Telemetry>>>,
-        settings: SessionSettings,
+        mut settings: SessionSettings,
     ) -> Self {
+        let may_be_linked = moves.is_some() && settings.link != LinkChoice::Digits;
+        if may_be_linked {
+            settings.plotter.counted_by = CountedBy::Link;
+        }
         let state = if moves.is_some() { State::Ready } else { State::Watching };
         let mut view = View::new(settings.plotter, state, settings.plan);
         view.recording = String::from(if recorder.is_some() { "on" } else { "none" });
@@ -120,7 +124,7 @@ impl Session {
             line,
             view,
             commands: Mutex::default(),
-            may_be_linked: AtomicBool::new(moves.is_some() && settings.link != LinkChoice::Digits),
+            may_be_linked: AtomicBool::new(may_be_linked),
             stop_is_new: Mutex::default(),
             finished: Condvar::new(),
         });

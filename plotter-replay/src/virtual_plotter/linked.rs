@@ -3,7 +3,7 @@
 use super::{AnomalyKind, VirtualPlotter};
 use crate::frames::{FrameReader, FrameStream, Said};
 use crate::import::Side;
-use plotter_motion::protocol::{CALL_ZEROS, Message, MessageError};
+use plotter_motion::protocol::{CALL_ZEROS, Message, MessageError, Order};
 use plotter_motion::{Pen, PenMove, StepPoint};
 use std::collections::VecDeque;
 
@@ -35,6 +35,8 @@ pub(super) struct Linked {
     ahead: VecDeque<(u32, PenMove)>,
     next_number: u32,
     last_target: StepPoint,
+    /// What the machine said last of itself.
+    order: Order,
 }
 
 impl Linked {
@@ -49,6 +51,7 @@ impl Linked {
             ahead: VecDeque::new(),
             next_number: 1,
             last_target: StepPoint::default(),
+            order: Order::GoOn,
         }
     }
 }
@@ -219,6 +222,12 @@ impl VirtualPlotter {
                 }
                 (self.next, self.under_way) = (None, 0);
                 self.begin_ahead();
+            }
+            Message::Stands { state, .. } => {
+                if state == Order::Stop && self.linked.order != Order::Stop {
+                    self.stop_count = self.stop_count.saturating_add(1);
+                }
+                self.linked.order = state;
             }
             _ => {}
         }

@@ -86,6 +86,7 @@ pub struct VirtualPlotter {
     targets: Vec<(Duration, StepPoint)>,
     target_count: u64,
     reached_count: u64,
+    stop_count: u64,
     anomalies: Vec<Anomaly>,
     anomaly_count: u64,
 }
@@ -121,6 +122,7 @@ impl VirtualPlotter {
             targets: Vec::new(),
             target_count: 0,
             reached_count: 0,
+            stop_count: 0,
             anomalies: Vec::new(),
             anomaly_count: 0,
         }
@@ -313,6 +315,12 @@ impl VirtualPlotter {
         self.reached_count
     }
 
+    /// How often the machine told on the line that it was stopped.
+    #[must_use]
+    pub fn stop_count(&self) -> u64 {
+        self.stop_count
+    }
+
     /// What did not fit, in its order.
     #[must_use]
     pub fn anomalies(&self) -> &[Anomaly] {
@@ -353,7 +361,8 @@ impl VirtualPlotter {
                 self.from = StepPoint::default();
                 self.leg = self.begin_leg();
             }
-            Some(Reply::Stopped | Reply::GoesOn) => {}
+            Some(Reply::Stopped) => self.stop_count = self.stop_count.saturating_add(1),
+            Some(Reply::GoesOn) => {}
             None => self.note(self.now, AnomalyKind::UnknownReply { byte }),
         }
     }

@@ -162,6 +162,9 @@ impl Info {
             say(out, &format!("  {:.3} s from {} us", silence.as_secs_f64(), from.as_micros()));
         }
         say(out, &format!("targets: {} sent, {} reached", plotter.target_count(), plotter.reached_count()));
+        if plotter.stop_count() > 0 {
+            say(out, &format!("stopped over the line: {}", plotter.stop_count()));
+        }
         let (at, counted) = (plotter.position(), plotter.raw_counts());
         say(out, &format!("ends at ({:.3}, {:.3}) mm, counted ({}, {})", at.x, at.y, counted.x, counted.y));
         let error = contour.error();
