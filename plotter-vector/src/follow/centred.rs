@@ -3,6 +3,8 @@
 //! Thinning rounds corners, is drawn into the foot of a tee, and cuts the inside of narrow turns. Where a cut across shows one line,
 //! its middle counts; what lies between two such parts is straight if they are on one line, and a corner if their lines meet here.
 
+use super::corners::{CORNER_COS, LONG, crossing, sharpen, square, straight, turn};
+use super::crowd::Crowd;
 use super::flat::Flat;
 use super::lines::cosine;
 use super::profile::across;
@@ -17,19 +19,41 @@ const ONE_LINE: f64 = 1.2;
 /// A part between two others is straight when they turn by less: cosine of 12 degrees.
 const STRAIGHT_COS: f64 = 0.978;
 
-/// A corner turns by more: cosine of 35 degrees.
-const CORNER_COS: f64 = 0.82;
+/// Lines that turn by more have a bend: cosine of 5 degrees.
+const BENT_COS: f64 = 0.9962;
 
-/// Puts the places of a line, about 2 px from each other, into its middle; the first and the last stay.
-pub(super) fn centred(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
+/// Where a line turns back, its arms are one piece of ink as far as they are nearer to each other than its width and this, px.
+const ONE_INK_PX: f64 = 2.5;
+
+/// A line turns back where the way along it is longer than the straight one by this factor.
+const TURN_FACTOR: f64 = 1.3;
+
+/// Places before and behind a turn that are looked at.
+const TURN_PLACES: usize = 40;
+
+/// Puts the places of lines, about 2 px from each other, into their middles; the first and the last of each stay.
+pub(super) fn centred(flat: &Flat, lines: &mut [Vec<PxPoint>], width_px: f64) {
+    let crowd = Crowd::of(lines, flat.size(), width_px + ONE_INK_PX);
+    for (line, places) in lines.iter_mut().enumerate() {
+        let beside: Vec<bool> = places.iter().map(|at| crowd.is_near(line, *at)).collect();
+        centre(flat, places, &beside, width_px);
+    }
+}
+
+/// Puts the places of a line into its middle, but those with another line `beside` them.
+fn centre(flat: &Flat, places: &mut [PxPoint], beside: &[bool], width_px: f64) {
     let mut is_sound = vec![false; places.len()];
+    let in_turn = turns(places, width_px);
+    let stays =
+        |i: usize| [in_turn.get(i), beside.get(i)].into_iter().any(|stays| stays.copied().unwrap_or(true));
     for _ in 0..2 {
         let before = places.to_vec();
         for (i, three) in before.windows(3).enumerate() {
             let &[a, at, b] = three else { continue };
             let (x, y) = b.minus(a);
             let length = libm::hypot(x, y);
-            if length < 1.0 || cosine(at.minus(a), b.minus(at)) < CORNER_COS {
+            let turns = cosine(at.minus(a), b.minus(at)) < CORNER_COS;
+            if length < 1.0 || turns || stays(i + 1) {
                 continue;
             }
             let normal = (-y / length, x / length);
@@ -46,7 +70,56 @@ pub(super) fn centred(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
         }
     }
     bridge(places, &is_sound, width_px);
-    sharpen(places, width_px);
+    turn(places, &in_turn, width_px);
+    square(flat, places, width_px);
+    sharpen(flat, places, width_px);
+}
+
+/// The places that are in sharp turns.
+fn turns(places: &[PxPoint], width_px: f64) -> Vec<bool> {
+    let mut found: Vec<bool> = (0..places.len()).map(|i| is_in_turn(places, i, width_px)).collect();
+    // From the tip itself both arms go off straight.
+    let mut last = None;
+    for i in 0..found.len() {
+        if !found.get(i).copied().unwrap_or(false) {
+            continue;
+        }
+        if let Some(last) = last.filter(|last| i - last <= 4) {
+            found.iter_mut().take(i).skip(last).for_each(|tip| *tip = true);
+        }
+        last = Some(i);
+    }
+    found
+}
+
+/// Whether a place is so near to a sharp turn that the line's other arm is in the same ink.
+fn is_in_turn(places: &[PxPoint], i: usize, width_px: f64) -> bool {
+    let Some(at) = places.get(i) else { return false };
+    let turns_back = |other: &PxPoint, count: usize| {
+        let apart = at.distance(*other);
+        apart < width_px + ONE_INK_PX
+            && super::lines::count_f64(count) * super::lines::SPACING_PX > TURN_FACTOR * apart + 1.0
+    };
+    let before = places.get(..i).unwrap_or(&[]).iter().rev().take(TURN_PLACES).enumerate();
+    let behind = places.get(i + 1..).unwrap_or(&[]).iter().take(TURN_PLACES).enumerate();
+    before.chain(behind).any(|(k, other)| turns_back(other, k + 1))
+}
+
+/// Where a line bends between two places, if it does: where its straight parts before and behind them meet.
+fn bend(places: &[PxPoint], first: usize, last: usize) -> Option<PxPoint> {
+    let (one, other) = (
+        straight(places.get(first.checked_sub(LONG)?..=first)?, LONG, 0.3)?,
+        straight(places.get(last..=last + LONG)?, LONG, 0.3)?,
+    );
+    if cosine(one.1, other.1) > BENT_COS {
+        return None;
+    }
+    let met = crossing(one, other);
+    let (from, to) = (places.get(first)?, places.get(last)?);
+    let way = to.minus(*from);
+    let off = met.minus(*from);
+    let share = (off.0 * way.0 + off.1 * way.1) / (way.0 * way.0 + way.1 * way.1);
+    (0.1..0.9).contains(&share).then_some(met)
 }
 
 /// Runs of places that are no line of their own, over a crossing or the foot of a tee, go straight on.
@@ -70,82 +143,22 @@ fn bridge(places: &mut [PxPoint], is_sound: &[bool], width_px: f64) {
             let way = to.minus(from);
             let agree = cosine(from.minus(before), way) > STRAIGHT_COS
                 && cosine(behind.minus(to), way) > STRAIGHT_COS;
-            if agree && from.distance(to) < 3.0 * width_px + 10.0 {
-                let parts = super::lines::count_f64(last - first);
+            if agree && from.distance(to) < 8.0 * width_px + 20.0 {
+                let bend = bend(places, first, last).unwrap_or_else(|| from.along(way, 0.5));
+                let parts = [from.distance(bend), bend.distance(to)];
                 for (k, place) in places.iter_mut().enumerate().take(last).skip(first + 1) {
-                    *place = from.along(way, super::lines::count_f64(k - first) / parts);
+                    let gone = super::lines::count_f64(k - first) / super::lines::count_f64(last - first)
+                        * (parts[0] + parts[1]);
+                    *place = if gone < parts[0] {
+                        from.along(bend.minus(from), gone / parts[0])
+                    } else {
+                        bend.along(to.minus(bend), (gone - parts[0]) / parts[1].max(1e-9))
+                    };
                 }
             }
         }
         i = end + 1;
     }
-}
-
-/// Corners are where the straight parts on both sides meet.
-fn sharpen(places: &mut [PxPoint], width_px: f64) {
-    let old = places.to_vec();
-    // Of each side: what the corner bends, px; how much behind it is looked at, px; least number of places; and how far these may be off
-    // a straight line, px. A narrow turn of a curve is none.
-    for (skip_px, fit_px, least, most_off_px) in
-        [(1.1 * width_px, 12.0, 4, 0.35), (0.6 * width_px, 5.0, 3, 0.2)]
-    {
-        let (skip, fit) = (super::whole::count(0.5 * skip_px).max(1), super::whole::count(0.5 * fit_px));
-        let mut done_till = 0;
-        for i in 0..old.len() {
-            if i < done_till || i < skip + least {
-                continue;
-            }
-            let Some(at) = old.get(i) else { break };
-            let before = old.get((i - skip).saturating_sub(fit)..=i - skip).unwrap_or(&[]);
-            let behind = old.get(i + skip..(i + skip + fit + 1).min(old.len())).unwrap_or(&[]);
-            let (Some(one), Some(other)) =
-                (straight(before, least, most_off_px), straight(behind, least, most_off_px))
-            else {
-                continue;
-            };
-            let turn = cosine(one.1, other.1);
-            if !(-0.7..CORNER_COS).contains(&turn) {
-                continue;
-            }
-            let cross = one.1.0 * other.1.1 - one.1.1 * other.1.0;
-            let between = other.0.minus(one.0);
-            let along = (between.0 * other.1.1 - between.1 * other.1.0) / cross;
-            let met = one.0.along(one.1, along);
-            // This is the place of the corner, none beside it.
-            let nearest = old
-                .iter()
-                .enumerate()
-                .skip(i - skip)
-                .take(2 * skip + 1)
-                .min_by(|(_, a), (_, b)| a.distance(met).total_cmp(&b.distance(met)));
-            if nearest.is_none_or(|(k, _)| k != i) || at.distance(met) > 0.6 * width_px {
-                continue;
-            }
-            for (k, place) in places.iter_mut().enumerate().skip(i - skip).take(2 * skip + 1) {
-                let end = old.get(if k < i { i - skip } else { i + skip }).copied().unwrap_or(met);
-                let share = super::lines::count_f64(k.abs_diff(i)) / super::lines::count_f64(skip);
-                *place = met.along(end.minus(met), share);
-            }
-            done_till = i + skip;
-        }
-        if done_till > 0 && skip_px > width_px {
-            // The corners that are farther from each other are done; nearer ones are tried only without them.
-            return;
-        }
-    }
-}
-
-/// Middle and direction of places that are on a straight line.
-fn straight(places: &[PxPoint], least: usize, most_off_px: f64) -> Option<(PxPoint, (f64, f64))> {
-    if places.len() < least {
-        return None;
-    }
-    let (middle, direction) = super::tips::fitted(places)?;
-    let off = |at: &PxPoint| {
-        let (x, y) = at.minus(middle);
-        (x * direction.1 - y * direction.0).abs()
-    };
-    places.iter().all(|at| off(at) < most_off_px).then_some((middle, direction))
 }
 
 #[cfg(test)]
@@ -163,8 +176,9 @@ mod tests {
         // Cut by 1.5 px, and half a pixel beside the line.
         let rounded =
             [(20.0, 60.5), (78.5, 60.5), (79.5, 62.0), (79.5, 120.0)].map(|(x, y)| PxPoint::new(x, y));
-        let mut places = super::super::lines::resampled(&rounded, 2.0);
-        centred(&flat, &mut places, 5.0);
+        let mut lines = [super::super::lines::resampled(&rounded, 2.0)];
+        centred(&flat, &mut lines, 5.0);
+        let [places] = lines;
         let nearest = places.iter().map(|at| at.distance(corner[1])).fold(f64::MAX, f64::min);
         assert!(nearest < 0.25, "{nearest}");
         let inner = places.iter().filter(|at| at.x > 30.0 && at.x < 70.0);

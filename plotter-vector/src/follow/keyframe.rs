@@ -21,7 +21,7 @@ const MOST_PLACES: usize = 2000;
 
 /// Least gradient of such a place, darkness per px, and in standard deviations of the noise.
 const LEAST_GRADIENT: f32 = 0.03;
-const LEAST_GRADIENT_NOISES: f32 = 3.0;
+const LEAST_GRADIENT_NOISES: f32 = 5.0;
 
 /// Distances from the border of a window that are not compared, px.
 const MARGIN_PX: f64 = 4.0;
@@ -71,7 +71,7 @@ impl Keyframe {
         let (width, height) = flat.size();
         let rows: Vec<&[f32]> = flat.rows().collect();
         let noise = flat.noise;
-        let least = LEAST_GRADIENT.max(LEAST_GRADIENT_NOISES * noise * 0.35);
+        let least = LEAST_GRADIENT.max(LEAST_GRADIENT_NOISES * noise * 0.48);
         let mut places = Vec::new();
         let [left, top] = flat.origin();
         for y in 3..height.saturating_sub(3) {

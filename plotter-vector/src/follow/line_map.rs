@@ -27,6 +27,9 @@ const SAME_COS: f64 = 0.7;
 /// Nodes to either side that tell a line's direction.
 const DIRECTION_NODES: usize = 3;
 
+/// A line turns back where the way along it is longer than the straight one by this factor.
+const TURN_FACTOR: f64 = 1.3;
+
 /// Most nodes: with all around them about 200 bytes each.
 pub(super) const MAX_NODES: usize = 1 << 24;
 
@@ -163,13 +166,36 @@ impl LineMap {
         (length > 3.0).then(|| (way.0 / length, way.1 / length))
     }
 
-    /// Whether another part of a line is so near that both are one piece of ink.
+    /// Whether another part of a line, or the other arm of a sharp turn, is so near that both are one piece of ink.
     pub(super) fn is_crowded(&self, id: u32, reach_px: f64) -> bool {
-        // Nodes of one line have numbers near each other.
-        let own = u32::try_from(super::whole::count(reach_px)).unwrap_or(u32::MAX);
-        self.near(self.at(id), reach_px)
-            .into_iter()
-            .any(|other| other.abs_diff(id) > own && self.arms(other) > 0 && !self.connected(id, other, 3))
+        let at = self.at(id);
+        let hops = super::whole::count(libm::ceil(TURN_FACTOR * reach_px / super::lines::SPACING_PX)) + 1;
+        let own = self.around(id, hops);
+        self.near(at, reach_px).into_iter().any(|other| {
+            let hops = own.iter().find(|(node, _)| *node == other).map(|(_, hops)| *hops);
+            let turned = |hops: usize| {
+                let way_px = super::lines::SPACING_PX * super::lines::count_f64(hops);
+                way_px > TURN_FACTOR * self.at(other).distance(at) + super::lines::SPACING_PX
+            };
+            hops.is_none_or(turned) && self.arms(other) > 0
+        })
+    }
+
+    /// The nodes that are reached over so many links at most, and over how many.
+    fn around(&self, from: u32, most_hops: usize) -> Vec<(u32, usize)> {
+        let mut found = vec![(from, 0)];
+        let mut i = 0;
+        while let Some((id, hops)) = found.get(i).copied() {
+            if hops < most_hops {
+                for (_, link, other) in self.links_of(id) {
+                    if link.state != State::Ghost && found.iter().all(|(node, _)| *node != other) {
+                        found.push((other, hops + 1));
+                    }
+                }
+            }
+            i += 1;
+        }
+        found
     }
 
     fn add_node(&mut self, at: PxPoint) -> u32 {
@@ -215,24 +241,7 @@ impl LineMap {
 
     /// Whether a node can be reached over so many links.
     fn connected(&self, from: u32, to: u32, hops: usize) -> bool {
-        let mut seen = vec![from];
-        let mut edge = vec![from];
-        for _ in 0..=hops {
-            if edge.contains(&to) {
-                return true;
-            }
-            let mut next = Vec::new();
-            for id in edge {
-                for (_, link, other) in self.links_of(id) {
-                    if link.state != State::Ghost && !seen.contains(&other) {
-                        seen.push(other);
-                        next.push(other);
-                    }
-                }
-            }
-            edge = next;
-        }
-        false
+        self.around(from, hops).iter().any(|(id, _)| *id == to)
     }
 
     /// The node of the map that a place of a line is, among the first `known`.

@@ -14,6 +14,11 @@ const LEAST_DARK: f32 = 0.12;
 /// Of places along a line, px from one to the next.
 pub(super) const SPACING_PX: f64 = 2.0;
 
+/// From the window's border to the trusted part: a tip is drawn truly only when its arms are seen. In widths of a line, and at most as
+/// a share of the window's side.
+const MARGIN_WIDTHS: f64 = 9.0;
+const MARGIN_SHARE: f64 = 0.15;
+
 /// A turn by more than this is a corner, which stays: cosine of 25 degrees.
 const CORNER_COS: f64 = 0.906;
 
@@ -127,7 +132,8 @@ impl Lines {
             ink = split.thin;
         }
         let width_px = f64::from(pen_width_px(&ink).unwrap_or(pen_px));
-        let margin_px = 5.0 + 1.5 * width_px;
+        let side_px = count_f64(flat.size().0.min(flat.size().1));
+        let margin_px = (5.0 + 1.5 * width_px).max((MARGIN_WIDTHS * width_px).min(MARGIN_SHARE * side_px));
         let levels = flat.rows().flatten().map(|dark| super::whole::level(255.0 * (1.0 - dark))).collect();
         let grey = Gray::of_checked_size(ink.width(), ink.height(), levels);
         let vectorizer = Vectorizer {
@@ -140,14 +146,13 @@ impl Lines {
         let trusted = |at: &PxPoint| {
             at.x >= margin_px && at.y >= margin_px && at.x <= width - margin_px && at.y <= height - margin_px
         };
-        let fine = strokes.iter().map(|stroke| resampled(&stroke.vertices, 1.0)).collect();
-        let pieces = sharpened(fine, width_px)
+        let fine: Vec<_> = strokes.iter().map(|stroke| resampled(&stroke.vertices, 1.0)).collect();
+        let mut middles: Vec<Vec<PxPoint>> =
+            sharpened(fine, width_px).iter().map(|stroke| resampled(stroke, SPACING_PX)).collect();
+        centred(flat, &mut middles, width_px);
+        let pieces = middles
             .iter()
-            .flat_map(|stroke| {
-                let mut places = resampled(stroke, SPACING_PX);
-                centred(flat, &mut places, width_px);
-                clipped(&places, trusted)
-            })
+            .flat_map(|places| clipped(places, trusted))
             .filter(|piece| is_dark(flat, &piece.places))
             .collect();
         Self { pieces, width_px, margin_px, area, has_ink: true }
@@ -262,6 +267,101 @@ fn clipped(places: &[PxPoint], trusted: impl Fn(&PxPoint) -> bool) -> Vec<Piece>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::follow::{CameraSettings, Paper, Route, SimulatedCamera};
+
+    fn at_angle(at: PxPoint, angle: f64, way_px: f64) -> PxPoint {
+        PxPoint::new(at.x + way_px * angle.cos(), at.y + way_px * angle.sin())
+    }
+
+    /// How far places that are found lie beside the lines drawn, in twelve positions within 90 px: at most, and the mean of the
+    /// positions' greatest distances; and how far a drawn place is from all that are found, at most.
+    fn off(pen_px: f64, drawn: &dyn Fn(f64, PxPoint) -> Vec<Vec<PxPoint>>) -> [f64; 3] {
+        let (mut worst, mut sum, mut missed) = (0.0_f64, 0.0, 0.0_f64);
+        for k in 0..12_u8 {
+            let at = PxPoint::new(150.3 + 0.13 * f64::from(k), 149.7 + 0.31 * f64::from(k));
+            let lines = drawn(0.37 + 0.523 * f64::from(k), at);
+            let strokes: Vec<_> = lines.iter().map(|line| (line.clone(), pen_px)).collect();
+            let paper = Paper::drawn(300, 300, &strokes).unwrap();
+            let settings = CameraSettings { seed: u64::from(k), ..CameraSettings::default() };
+            let window = SimulatedCamera::new(&paper, settings).window(PxPoint::new(150.0, 150.0));
+            let pieces = Lines::of(&Flat::of(&window, None, None), 40).pieces;
+            let found: Vec<Vec<PxPoint>> = pieces.into_iter().map(|piece| piece.places).collect();
+            let apart = |places: &[Vec<PxPoint>], route: &Route| {
+                let near = places.iter().flatten().filter(|place| place.distance(at) < 90.0);
+                near.map(|place| route.nearest(*place, 50.0).map_or(50.0, |found| found.0))
+                    .fold(0.0, f64::max)
+            };
+            let greatest = apart(&found, &Route::of(&lines));
+            let fine: Vec<_> = lines.iter().map(|line| resampled(line, 1.0)).collect();
+            (worst, sum) = (worst.max(greatest), sum + greatest);
+            missed = missed.max(apart(&fine, &Route::of(&found)));
+        }
+        [worst, sum / 12.0, missed]
+    }
+
+    #[test]
+    fn tips_and_corners_are_where_they_are() {
+        for (degrees, most) in
+            [(12.0, 1.3), (18.0, 1.3), (26.0, 1.2), (35.0, 0.6), (50.0, 0.6), (90.0, 0.8), (120.0, 0.3)]
+        {
+            let half = 0.5 * f64::to_radians(degrees);
+            let off = off(5.0, &|turn, at| {
+                vec![vec![at_angle(at, turn + half, 120.0), at, at_angle(at, turn - half, 120.0)]]
+            });
+            assert!(off[0] < most && off[1] < 0.4 && off[2] < 2.3, "{degrees}: {off:?}");
+        }
+    }
+
+    #[test]
+    fn crossings_and_tees_are_straight() {
+        for degrees in [20.0, 30.0, 45.0, 60.0, 90.0] {
+            let angle = f64::to_radians(degrees);
+            let across = |turn: f64, at: PxPoint| vec![at_angle(at, turn, 120.0), at_angle(at, turn, -120.0)];
+            let crossing = off(5.0, &|turn, at| vec![across(turn, at), across(turn + angle, at)]);
+            assert!(crossing[0] < 0.3 && crossing[2] < 0.3, "{degrees}: {crossing:?}");
+            let tee =
+                off(5.0, &|turn, at| vec![across(turn, at), vec![at, at_angle(at, turn + angle, 120.0)]]);
+            assert!(tee[0] < 1.5 && tee[1] < 0.3 && tee[2] < 1.6, "{degrees}: {tee:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_that_bends_where_another_ends_has_its_corner() {
+        // The line itself turns by 14 degrees.
+        let off = off(5.0, &|turn, at| {
+            let bent = vec![at_angle(at, turn, 120.0), at, at_angle(at, turn + 2.9, 120.0)];
+            vec![bent, vec![at, at_angle(at, turn + 1.4, 120.0)]]
+        });
+        assert!(off[0] < 0.7, "{off:?}");
+    }
+
+    #[test]
+    fn turns_to_the_next_line_are_square_or_round() {
+        for pitch_px in [8.0, 10.0, 12.0] {
+            let turn = |turn: f64, at: PxPoint, is_round: bool| {
+                let beside = turn + core::f64::consts::FRAC_PI_2;
+                let (next, middle) = (at_angle(at, beside, pitch_px), at_angle(at, beside, 0.5 * pitch_px));
+                let mut line = vec![at_angle(at, turn, 100.0), at];
+                // Half around the middle, away from the lines.
+                let half = (1..12_u8).map(|k| beside + core::f64::consts::PI * (1.0 - f64::from(k) / 12.0));
+                line.extend(half.filter(|_| is_round).map(|angle| at_angle(middle, angle, 0.5 * pitch_px)));
+                line.extend([next, at_angle(next, turn, 100.0)]);
+                vec![line]
+            };
+            let square = off(4.0, &|angle, at| turn(angle, at, false));
+            let round = off(4.0, &|angle, at| turn(angle, at, true));
+            assert!(square[0] < 0.8 && square[2] < 0.8, "{pitch_px}: {square:?}");
+            assert!(round[0] < 1.6 && round[1] < 1.0, "{pitch_px}: {round:?}");
+        }
+    }
+
+    #[test]
+    fn a_narrow_curve_has_no_corners() {
+        let off = off(5.0, &|turn, at| {
+            vec![(0..40_u8).map(|k| at_angle(at, turn + 0.1 * f64::from(k), 15.0)).collect()]
+        });
+        assert!(off[0] < 0.7, "{off:?}");
+    }
 
     #[test]
     fn corners_stay_and_the_rest_is_even() {

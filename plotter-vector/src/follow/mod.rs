@@ -26,6 +26,8 @@ mod calibration;
 mod camera;
 mod centred;
 mod circle;
+mod corners;
+mod crowd;
 mod exits;
 mod flat;
 mod judge;

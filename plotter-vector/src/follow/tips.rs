@@ -29,6 +29,8 @@ struct Arm {
 
 /// Joins the arms of sharp tips in lines of some width; places along the strokes are about a pixel from each other.
 pub(super) fn sharpened(mut strokes: Vec<Vec<PxPoint>>, width_px: f64) -> Vec<Vec<PxPoint>> {
+    without_crumbs(&mut strokes, width_px);
+    part_ends(&mut strokes, width_px);
     let longest = 9.0 * width_px + 6.0;
     // Each tip takes its stub away: there are no more than stubs.
     for _ in 0..strokes.len() {
@@ -41,6 +43,57 @@ pub(super) fn sharpened(mut strokes: Vec<Vec<PxPoint>>, width_px: f64) -> Vec<Ve
         join(&mut strokes, stub, &one, &other, at);
     }
     strokes
+}
+
+/// Takes away what thinning leaves in corners: short strokes wholly inside of the ink of others.
+fn without_crumbs(strokes: &mut Vec<Vec<PxPoint>>, width_px: f64) {
+    let mut i = 0;
+    while i < strokes.len() {
+        let is_crumb = strokes.get(i).is_some_and(|stroke| {
+            length(stroke) < 1.5 * width_px + 2.0
+                && stroke.iter().all(|at| {
+                    let others = strokes.iter().enumerate().filter(|(k, _)| *k != i);
+                    others
+                        .flat_map(|(_, other)| other)
+                        .any(|other| other.distance(*at) < 0.6 * width_px + 0.8)
+                })
+        });
+        if is_crumb {
+            strokes.remove(i);
+        } else {
+            i += 1;
+        }
+    }
+}
+
+/// Two strokes that end together have a stub twice: it stays with one of them, on which the other ends.
+fn part_ends(strokes: &mut [Vec<PxPoint>], width_px: f64) {
+    for i in 0..strokes.len() {
+        for is_last in [false, true] {
+            let Some(own) = strokes.get(i) else { continue };
+            let Some(end) = (if is_last { own.last() } else { own.first() }).copied() else { continue };
+            let meets = |other: &Vec<PxPoint>| {
+                other.first().into_iter().chain(other.last()).any(|at| at.distance(end) < 0.6 * width_px)
+            };
+            let beside = |at: &PxPoint, other: &[PxPoint]| {
+                other.iter().any(|place| place.distance(*at) < 0.35 * width_px + 0.3)
+            };
+            let tail = |other: &[PxPoint]| {
+                let from_end: Box<dyn Iterator<Item = &PxPoint>> =
+                    if is_last { Box::new(own.iter().rev()) } else { Box::new(own.iter()) };
+                from_end.take_while(|at| beside(at, other)).count()
+            };
+            let others = strokes.iter().enumerate().filter(|(k, other)| *k != i && meets(other));
+            let tail = others.map(|(_, other)| tail(other)).max().unwrap_or(0);
+            if tail > 3 && tail + 4 < own.len() {
+                let rest = if is_last { own.get(..own.len() - tail) } else { own.get(tail..) };
+                let rest = rest.unwrap_or(&[]).to_vec();
+                if let Some(stroke) = strokes.get_mut(i) {
+                    *stroke = rest;
+                }
+            }
+        }
+    }
 }
 
 /// A stub that is a stroke of its own, with its arms and its tip.
@@ -127,7 +180,9 @@ fn tip(
     let mut arms: Vec<Arm> = Vec::new();
     for (index, stroke) in strokes.iter().enumerate().filter(|(index, _)| *index != stub) {
         // Another line near the free end: no tip.
-        if stroke.iter().any(|at| at.distance(free) < reach.min(0.5 * foot.distance(free) + 1.0)) {
+        let long = foot.distance(free);
+        let least = reach.min(0.5 * long + f64::min(0.4 * long, 1.0));
+        if stroke.iter().any(|at| at.distance(free) < least) {
             return None;
         }
         let nearest =
@@ -156,12 +211,15 @@ fn tip(
     let mean = (one.direction.0 + other.direction.0, one.direction.1 + other.direction.1);
     // The way of a short stub is mostly noise.
     let least = if foot.distance(free) < 1.2 * width_px { -0.5 } else { -0.85 };
-    if cosine(one.direction, other.direction) < 0.2 || cosine(out, mean) > least {
+    let between = cosine(one.direction, other.direction);
+    // Thinning leaves a stub as long as the arms' ink is one.
+    let longest = 0.8 * width_px / libm::sqrt(0.5 * (1.0 - between)).max(1e-3) + 0.5 * width_px + 2.0;
+    if between < -0.3 || foot.distance(free) > longest || cosine(out, mean) > least {
         return None;
     }
     let cross = one.direction.0 * other.direction.1 - one.direction.1 * other.direction.0;
-    let between = other.middle.minus(one.middle);
-    let along = (between.0 * other.direction.1 - between.1 * other.direction.0) / cross;
+    let apart = other.middle.minus(one.middle);
+    let along = (apart.0 * other.direction.1 - apart.1 * other.direction.0) / cross;
     let met = one.middle.along(one.direction, along);
     // The ink ends about half a width behind the tip, the more the sharper it is.
     let sound = cross.abs() > 0.03 && met.distance(free) < 1.5 * width_px + 0.4 * foot.distance(free) + 2.0;

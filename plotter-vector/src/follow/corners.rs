@@ -1,0 +1,211 @@
+//! Corners of lines where their straight parts meet: thinning and blur round them, and draw the arms of sharp ones together.
+
+use super::flat::Flat;
+use super::lines::cosine;
+use crate::PxPoint;
+
+/// A corner turns by more: cosine of 35 degrees.
+pub(super) const CORNER_COS: f64 = 0.82;
+
+/// The arms of sharper tips meet at too small an angle for their crossing: cosine of a turn by 145 degrees.
+const SHARP_COS: f64 = -0.82;
+
+/// Places of a straight line that a curve of a few widths has not.
+pub(super) const LONG: usize = 6;
+
+/// The corner of a square turn is as dark as the line, but for blur; beside a round one it is about 0.7 as dark.
+const SQUARE_DARK: f32 = 0.84;
+
+/// The arms of a sharp turn go on straight from where they are apart to where they meet.
+pub(super) fn turn(places: &mut [PxPoint], in_turn: &[bool], width_px: f64) {
+    let is_in = |i: usize| in_turn.get(i).copied().unwrap_or(false);
+    let mut i = 0;
+    while i < places.len() {
+        if !is_in(i) {
+            i += 1;
+            continue;
+        }
+        let end = (i..places.len()).find(|k| !is_in(*k)).unwrap_or(places.len());
+        if let Some((corner, met)) = meeting(places, i, end, width_px) {
+            let (from, to) = (places.get(i - 1).copied(), places.get(end).copied());
+            for (k, place) in places.iter_mut().enumerate().take(end).skip(i) {
+                let (other, parts) = if k < corner { (from, corner + 1 - i) } else { (to, end - corner) };
+                let share = super::lines::count_f64(k.abs_diff(corner)) / super::lines::count_f64(parts);
+                *place = met.along(other.unwrap_or(met).minus(met), share);
+            }
+        }
+        i = end;
+    }
+}
+
+/// Where the arms before place `first` and from place `end` on meet, and the place between them that is nearest to it.
+fn meeting(places: &[PxPoint], first: usize, end: usize, width_px: f64) -> Option<(usize, PxPoint)> {
+    let run = places.get(first..end)?;
+    // As much of each arm as must be gone on for.
+    let fit = run.len().max(8);
+    let before = places.get(first.saturating_sub(fit)..first)?;
+    let behind = places.get(end..(end + fit).min(places.len()))?;
+    let (one, other) = (straight(before, 4, 0.35)?, straight(behind, 4, 0.35)?);
+    let cross = one.1.0 * other.1.1 - one.1.1 * other.1.0;
+    if cross.abs() < 0.05 || cosine(one.1, other.1) > CORNER_COS {
+        return None;
+    }
+    let mut met = crossing(one, other);
+    if cosine(one.1, other.1) < SHARP_COS {
+        // Where along the middle of the arms they meet is better told by the end of their ink.
+        let ends = [places.get(first.checked_sub(1)?)?, places.get(end)?];
+        let far = |at: &PxPoint| at.distance(*ends[0]) + at.distance(*ends[1]);
+        let tip = run.iter().max_by(|a, b| far(a).total_cmp(&far(b)))?;
+        let (x, y) = (one.1.0 - other.1.0, one.1.1 - other.1.1);
+        let off = tip.minus(met);
+        met = met.along((x, y), (off.0 * x + off.1 * y) / (x * x + y * y));
+    }
+    let nearest = run.iter().enumerate().min_by(|(_, a), (_, b)| a.distance(met).total_cmp(&b.distance(met)));
+    nearest.filter(|(_, at)| at.distance(met) < 0.6 * width_px + 1.0).map(|(k, _)| (first + k, met))
+}
+
+/// Square turns from one line to the next beside it have their two corners, which thinning cuts off; round ones stay.
+pub(super) fn square(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
+    let most = super::whole::count(2.0 * width_px) + 4;
+    let mut i = LONG;
+    while i + LONG < places.len() {
+        let found = (i + 2..=i + most).find_map(|j| Some((j, corners(flat, places, i, j, width_px)?)));
+        let Some((j, [one, other])) = found else {
+            i += 1;
+            continue;
+        };
+        let (Some(from), Some(to)) = (places.get(i).copied(), places.get(j).copied()) else { break };
+        let way = [from.distance(one), one.distance(other), other.distance(to)];
+        let parts = super::lines::count_f64(j - i) / (way[0] + way[1] + way[2]);
+        // As many places as before, a corner at the nearest of each.
+        let first = (i + super::whole::count(way[0] * parts + 0.5)).clamp(i + 1, j - 2);
+        let second = (j - super::whole::count(way[2] * parts + 0.5).min(j)).clamp(first + 1, j - 1);
+        for ([a, b], [begin, end]) in
+            [([from, one], [i, first]), ([one, other], [first, second]), ([other, to], [second, j])]
+        {
+            let count = super::lines::count_f64(end - begin);
+            for (k, place) in places.iter_mut().enumerate().take(end + 1).skip(begin) {
+                *place = a.along(b.minus(a), super::lines::count_f64(k - begin) / count);
+            }
+        }
+        i = j + 1;
+    }
+}
+
+/// The corners of a square turn between an arm that ends at place `i` and one that begins at place `j`.
+fn corners(flat: &Flat, places: &[PxPoint], i: usize, j: usize, width_px: f64) -> Option<[PxPoint; 2]> {
+    if j < i + 3 {
+        return None;
+    }
+    let before = straight(places.get(i - LONG..=i)?, LONG, 0.3)?;
+    let behind = straight(places.get(j..=j + LONG)?, LONG, 0.3)?;
+    let ((at, along), (other, back)) = (before, behind);
+    let (x, y) = other.minus(at);
+    let apart_px = (x * along.1 - y * along.0).abs();
+    let is_turn = cosine(along, back) < -0.9 && apart_px > 1.2 * width_px && apart_px < 4.0 * width_px;
+    // The arms end here: behind them the line is bent.
+    let goes_on = straight(places.get(i + 1 - LONG..=i + 1)?, LONG, 0.3).is_some()
+        || straight(places.get(j - 1..j + LONG)?, LONG, 0.3).is_some();
+    if !is_turn || goes_on {
+        return None;
+    }
+    let run = places.get(i..=j)?;
+    let far = |place: &PxPoint| {
+        let (x, y) = place.minus(at);
+        x * along.0 + y * along.1
+    };
+    let top = run.iter().max_by(|a, b| far(a).total_cmp(&far(b)))?;
+    let out = (along.0 - back.0, along.1 - back.1);
+    let meet = |(from, way): (PxPoint, (f64, f64))| {
+        let (x, y) = top.minus(from);
+        from.along(way, (x * out.0 + y * out.1) / (way.0 * out.0 + way.1 * out.1))
+    };
+    let corners = [meet(before), meet(behind)];
+    // In a round turn the ink is lighter there.
+    let is_square = corners.iter().all(|corner| flat.at(*corner) > SQUARE_DARK * flat.at(*top));
+    let is_near = corners.iter().all(|corner| run.iter().any(|at| at.distance(*corner) < width_px));
+    (is_square && is_near).then_some(corners)
+}
+
+/// Corners are where the straight parts on both sides meet.
+pub(super) fn sharpen(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
+    let old = places.to_vec();
+    // Of each side: what the corner bends, px; how much behind it is looked at, px; least number of places; and how far these may be off
+    // a straight line, px. A narrow turn of a curve is none.
+    for (skip_px, fit_px, least, most_off_px) in
+        [(1.1 * width_px, 12.0, 4, 0.35), (0.6 * width_px, 5.0, 3, 0.2)]
+    {
+        let (skip, fit) = (super::whole::count(0.5 * skip_px).max(1), super::whole::count(0.5 * fit_px));
+        let mut done_till = 0;
+        for i in 0..old.len() {
+            if i < done_till || i < skip + least {
+                continue;
+            }
+            let Some(at) = old.get(i) else { break };
+            let before = old.get((i - skip).saturating_sub(fit)..=i - skip).unwrap_or(&[]);
+            let behind = old.get(i + skip..(i + skip + fit + 1).min(old.len())).unwrap_or(&[]);
+            let (Some(one), Some(other)) =
+                (straight(before, least, most_off_px), straight(behind, least, most_off_px))
+            else {
+                continue;
+            };
+            // A curve is bent on both sides.
+            let far =
+                [old.get((i - skip).saturating_sub(LONG)..=i - skip), old.get(i + skip..=i + skip + LONG)];
+            let is_long =
+                |arm: Option<&[PxPoint]>| arm.is_some_and(|arm| straight(arm, LONG, most_off_px).is_some());
+            if fit < LONG && !far.into_iter().any(is_long) {
+                continue;
+            }
+            let turn = cosine(one.1, other.1);
+            if !(-0.7..CORNER_COS).contains(&turn) {
+                continue;
+            }
+            let met = crossing(one, other);
+            // Beside a narrow turn that is round the ink is lighter.
+            if fit < LONG && flat.at(met) < SQUARE_DARK * flat.at(one.0) {
+                continue;
+            }
+            // This is the place of the corner, none beside it.
+            let nearest = old
+                .iter()
+                .enumerate()
+                .skip(i - skip)
+                .take(2 * skip + 1)
+                .min_by(|(_, a), (_, b)| a.distance(met).total_cmp(&b.distance(met)));
+            if nearest.is_none_or(|(k, _)| k != i) || at.distance(met) > 0.6 * width_px {
+                continue;
+            }
+            for (k, place) in places.iter_mut().enumerate().skip(i - skip).take(2 * skip + 1) {
+                let end = old.get(if k < i { i - skip } else { i + skip }).copied().unwrap_or(met);
+                let share = super::lines::count_f64(k.abs_diff(i)) / super::lines::count_f64(skip);
+                *place = met.along(end.minus(met), share);
+            }
+            done_till = i + skip;
+        }
+        if done_till > 0 && skip_px > width_px {
+            // The corners that are farther from each other are done; nearer ones are tried only without them.
+            return;
+        }
+    }
+}
+
+/// Where two lines cross that are not parallel, each a place and its direction of length 1.
+pub(super) fn crossing(one: (PxPoint, (f64, f64)), other: (PxPoint, (f64, f64))) -> PxPoint {
+    let cross = one.1.0 * other.1.1 - one.1.1 * other.1.0;
+    let between = other.0.minus(one.0);
+    one.0.along(one.1, (between.0 * other.1.1 - between.1 * other.1.0) / cross)
+}
+
+/// Middle and direction of places that are on a straight line.
+pub(super) fn straight(places: &[PxPoint], least: usize, most_off_px: f64) -> Option<(PxPoint, (f64, f64))> {
+    if places.len() < least {
+        return None;
+    }
+    let (middle, direction) = super::tips::fitted(places)?;
+    let off = |at: &PxPoint| {
+        let (x, y) = at.minus(middle);
+        (x * direction.1 - y * direction.0).abs()
+    };
+    places.iter().all(|at| off(at) < most_off_px).then_some((middle, direction))
+}
