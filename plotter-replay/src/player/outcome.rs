@@ -1,9 +1,13 @@
 //! What came of a re-run: equal, or the first difference.
 
-use crate::log::{Event, Record};
+use crate::compare::{Decoder, IN_A_FRAME, line};
+use crate::log::{Event, Header, Record};
 use core::fmt;
 use core::time::Duration;
 use plotter_motion::{Axis, Direction, Pen};
+
+/// Records that a frame may have, byte by byte, and some between them.
+const MOST_OF_A_FRAME: u64 = 2_000;
 
 /// What came of a re-run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -138,15 +142,51 @@ impl fmt::Display for Compared {
     }
 }
 
+impl Difference {
+    /// The same, with what each record says beside it, and the whole of the frame that the place is in. `records` are those of the
+    /// recording from its beginning, as [`Player::inputs`](super::Player::inputs) gives them, `header` is the one for these.
+    #[must_use]
+    pub fn in_words(&self, header: &Header, records: impl IntoIterator<Item = Record>) -> String {
+        let last = self.context.last().map_or(self.index, |&(index, _)| index);
+        let mut decoder = Decoder::new(header);
+        let mut told = self.head();
+        let mut frame = None;
+        let began = self.context.first().map_or(self.index, |&(index, _)| index);
+        for (index, record) in (0_u64..).zip(records) {
+            let words = decoder.words(&record);
+            if (began..=last).contains(&index) {
+                let mark = if index == self.index { '>' } else { ' ' };
+                told.push_str(&format!("\n  {mark} {index:>6}  {}", line(&record, &words)));
+            }
+            if index >= self.index && frame.is_none() && decoder.is_linked() {
+                let ends = matches!(record.event, Event::Controller(_)) && !words.starts_with(IN_A_FRAME);
+                frame = ends.then_some((index, words));
+            }
+            if index >= last && (frame.is_some() || index > self.index.saturating_add(MOST_OF_A_FRAME)) {
+                break;
+            }
+        }
+        if let Some((index, words)) = frame.filter(|_| matches!(self.expected, Answer::Byte { .. })) {
+            told.push_str(&format!("\n  the recorded frame ends at record {index}: {words}"));
+        }
+        told
+    }
+
+    fn head(&self) -> String {
+        let Self { time, index, expected, got, until_then, .. } = self;
+        format!(
+            "first difference at {} us, record {index}\n  recorded: {expected}\n  now:      {got}\n  equal until then: {until_then}",
+            time.as_micros()
+        )
+    }
+}
+
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "first difference at {} us, record {}", self.time.as_micros(), self.index)?;
-        writeln!(f, "  recorded: {}", self.expected)?;
-        writeln!(f, "  now:      {}", self.got)?;
-        write!(f, "  equal until then: {}", self.until_then)?;
+        f.write_str(&self.head())?;
         for (index, record) in &self.context {
             let mark = if *index == self.index { '>' } else { ' ' };
-            write!(f, "\n  {mark} {index:>6}  {}", Line(record))?;
+            write!(f, "\n  {mark} {index:>6}  {}", line(record, ""))?;
         }
         Ok(())
     }
@@ -203,29 +243,5 @@ fn name(axis: Axis) -> char {
     match axis {
         Axis::X => 'x',
         Axis::Y => 'y',
-    }
-}
-
-/// A record as its line in the log, without the checksum; long runs of bytes are shortened.
-struct Line<'a>(&'a Record);
-
-impl fmt::Display for Line<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const MOST: usize = 16;
-        let (channel, bytes) = match &self.0.event {
-            Event::Host(bytes) => ('>', bytes),
-            Event::Controller(bytes) => ('<', bytes),
-            event => {
-                let mut line = Vec::new();
-                let time_us = u64::try_from(self.0.time.as_micros()).unwrap_or(u64::MAX);
-                crate::log::write_line(&mut line, time_us, &event.view());
-                let line = String::from_utf8_lossy(&line);
-                let covered = line.rsplit_once(" *").map_or(&*line, |(covered, _)| covered);
-                return f.write_str(covered);
-            }
-        };
-        write!(f, "{} {channel}", self.0.time.as_micros())?;
-        bytes.iter().take(MOST).try_for_each(|byte| write!(f, " {byte:02x}"))?;
-        if bytes.len() > MOST { write!(f, " ... ({} bytes)", bytes.len()) } else { Ok(()) }
     }
 }
