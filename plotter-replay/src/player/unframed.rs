@@ -20,8 +20,11 @@ use std::collections::VecDeque;
 
 /// How often a machine tells where its motors are: what it tells has happened since then.
 const TOLD_EVERY: Duration = Duration::from_millis(20);
-/// Edges that a message may stand for: 40 s of a full line at 256000 baud. More are left out.
-const MOST_EDGES: u32 = 1 << 20;
+/// Edges that may be told at once beyond one a microsecond since the beginning, which is more than any motor makes: where a machine stood
+/// before, and what it went on while a cable was out. More are left out.
+const MOST_AT_ONCE: u64 = 1 << 18;
+/// Records that wait for edges before them.
+const MOST_WAITING: usize = 1 << 20;
 /// First byte by which a host opens a session in such a recording; the number of it follows, low byte first. No message begins
 /// with it.
 pub(crate) const SESSION: u8 = b'H';
@@ -45,6 +48,8 @@ pub(super) struct Unframed<I> {
     before: Option<u32>,
     position: StepPoint,
     told: Duration,
+    /// Edges so far.
+    edges: u64,
     /// In the order of their times; edges may still come between them.
     waiting: VecDeque<Record>,
     now: Duration,
@@ -67,6 +72,7 @@ impl<I: Iterator<Item = Record>> Unframed<I> {
             before: None,
             position: StepPoint::default(),
             told: Duration::ZERO,
+            edges: 0,
             waiting: VecDeque::new(),
             now: Duration::ZERO,
             is_over: false,
@@ -192,15 +198,15 @@ impl<I: Iterator<Item = Record>> Unframed<I> {
         self.told = self.now;
         self.position =
             StepPoint::new(self.position.x.wrapping_add(by.x), self.position.y.wrapping_add(by.y));
-        if most == 0 || most > MOST_EDGES {
+        let micros = |time: Duration| u64::try_from(time.as_micros()).unwrap_or(u64::MAX);
+        let edges = self.edges.saturating_add(most.into());
+        if most == 0 || edges > micros(self.now).saturating_add(MOST_AT_ONCE) {
             return;
         }
-        let lasts = self.now.saturating_sub(since);
+        self.edges = edges;
+        let lasts_us = micros(self.now.saturating_sub(since));
         for n in 1..=most {
-            let time = since
-                + Duration::from_micros(
-                    u64::try_from(lasts.as_micros()).unwrap_or(u64::MAX) * u64::from(n) / u64::from(most),
-                );
+            let time = since + Duration::from_micros(lasts_us * u64::from(n) / u64::from(most));
             for (axis, way, total) in [(Axis::X, by.x, x), (Axis::Y, by.y, y)] {
                 // Bresenham: the n-th of `most` brings this axis on if its share grows by a whole count.
                 let share = |n: u32| u64::from(n) * u64::from(total) / u64::from(most);
@@ -241,7 +247,8 @@ impl<I: Iterator<Item = Record>> Iterator for Unframed<I> {
         loop {
             // Later edges come after this.
             let settled = self.now.saturating_sub(TOLD_EVERY);
-            if self.waiting.front().is_some_and(|record| self.is_over || record.time <= settled) {
+            let is_full = self.is_over || self.waiting.len() > MOST_WAITING;
+            if self.waiting.front().is_some_and(|record| is_full || record.time <= settled) {
                 return self.waiting.pop_front();
             }
             if self.is_over {

@@ -1,8 +1,9 @@
 //! `replay`: a recording, or the controller again on it, as fast as wanted.
 
 use crate::check::Rerunnable;
-use crate::commands::{Contents, Done, Verdict, cannot, is_free, open, read, say, say_damage, seconds};
+use crate::commands::{Contents, Done, Verdict, is_free, open, read, say, say_damage, seconds};
 use clap::Args;
+use plotter_replay::export;
 use plotter_replay::log::{self, Header, Record};
 use plotter_replay::{Decoder, Pace, PaceSettings, Player, Stuck};
 use std::io::{BufRead, Write};
@@ -51,6 +52,13 @@ fn speed(text: &str) -> Result<f64, String> {
 
 impl Replay {
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
+        if let Some(to) = self.to.filter(|&to| to < self.from) {
+            return Err(format!(
+                "--to {} s comes before --from {} s",
+                to.as_secs_f64(),
+                self.from.as_secs_f64()
+            ));
+        }
         let (header, contents, played): (Header, Contents, Box<dyn Iterator<Item = Result<Record, Stuck>>>);
         if self.recorded {
             contents = read(&self.log, |_| {})?;
@@ -108,10 +116,12 @@ impl Replay {
             }
             if !is_stepping && !wait.is_zero() {
                 // What was shown is seen before it is waited.
-                out.flush().map_err(|error| cannot("written", "standard output".as_ref(), &error))?;
+                let _ = out.flush(); // what fails here fails at the end, too
                 std::thread::sleep(wait);
             }
-            show(out, &record, &words);
+            if show(out, &record, &words).is_err() && writer.is_none() {
+                break; // whoever closed the pipe has seen enough
+            }
             if is_stepping {
                 let _ = out.flush();
                 let mut key = String::new();
@@ -133,9 +143,8 @@ impl Replay {
     }
 }
 
-fn show(out: &mut impl Write, record: &Record, words: &str) {
+fn show(out: &mut impl Write, record: &Record, words: &str) -> std::io::Result<()> {
     let mut line = Vec::new();
-    // Into memory: cannot fail.
-    let _ = plotter_replay::export::line(record, words, &mut line);
-    let _ = out.write_all(&line);
+    export::line(record, words, &mut line)?;
+    out.write_all(&line)
 }
