@@ -138,7 +138,7 @@ pub fn check<C: Controller>(path: &Path, controller: impl Fn() -> C, mode: Mode)
     let wanted = CompareSettings { tolerance: settings.tolerance, ..CompareSettings::default() };
     let recorded = || player.inputs(records.iter().cloned());
     let comparison = compare(&written_header, recorded, || now.iter().cloned(), wanted);
-    let told = difference.in_words(&written_header, recorded());
+    let told = difference.in_words(&written_header, recorded);
     std::fs::write(&written, format!("{told}\n\nfirst: recorded, second: now\n{comparison}\n")).map_err(
         |error| GoldenError::Unwritable {
             path: written.clone(),

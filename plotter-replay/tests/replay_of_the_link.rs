@@ -134,7 +134,7 @@ fn what_differs_is_told_in_words() {
         let Outcome::FirstDifference(difference) = player.check(records.iter().cloned(), controller) else {
             panic!("equal, though the machine is smaller");
         };
-        let words = difference.in_words(&player.header(&header), player.inputs(records));
+        let words = difference.in_words(&player.header(&header), || player.inputs(records.iter().cloned()));
         assert!(words.contains("reached"), "{words}");
         assert!(words.lines().count() >= 20, "{words}");
     }
@@ -155,7 +155,7 @@ fn a_golden_recording_of_frames_holds_fails_and_is_renewed() {
     let error = replays(&other, golden::Mode::Compare).unwrap_err().to_string();
     assert!(error.contains("first difference at "), "{error}");
     let diff = std::fs::read_to_string(directory.path().join("house.plog.diff")).unwrap();
-    assert!(diff.contains("the recorded frame ends at record") && diff.contains("reached"), "{diff}");
+    assert!(diff.contains("its frame ends at record") && diff.contains("reached"), "{diff}");
     replays(&other, golden::Mode::Renew).unwrap();
     replays(&other, golden::Mode::Compare).unwrap();
 

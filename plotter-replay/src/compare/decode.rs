@@ -14,7 +14,10 @@ use plotter_motion::{Axis, Direction, Pen, StepPoint};
 const MOST_BYTES: usize = 16;
 
 /// How the words of bytes begin that end no frame.
-pub(crate) const IN_A_FRAME: &str = "...";
+const IN_A_FRAME: &str = "...";
+
+/// Records that a frame may have, byte by byte, and some between them.
+const MOST_OF_A_FRAME: u64 = 2_000;
 
 /// Puts what goes over a line into words: `target 900 600`, `pulse x+`, `reached`.
 ///
@@ -64,9 +67,22 @@ impl Decoder {
         }
     }
 
-    /// Whether the sides speak frames now.
-    pub(crate) const fn is_linked(&self) -> bool {
-        self.is_linked
+    /// The controller's frame that record `index` is in: the record that ends it, and what it says. `None` where no frames are spoken, or
+    /// the records end before it. `records` are those from the beginning.
+    pub fn frame_at(
+        header: &Header,
+        records: impl IntoIterator<Item = Record>,
+        index: u64,
+    ) -> Option<(u64, String)> {
+        let mut decoder = Self::new(header);
+        for (at, record) in (0..=index.saturating_add(MOST_OF_A_FRAME)).zip(records) {
+            let words = decoder.words(&record);
+            let is_in = at >= index && decoder.is_linked && matches!(record.event, Event::Controller(_));
+            if is_in && !words.starts_with(IN_A_FRAME) {
+                return Some((at, words));
+            }
+        }
+        None
     }
 
     /// A record in words; empty for one that says it itself.

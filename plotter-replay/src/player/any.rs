@@ -18,7 +18,7 @@ use std::path::Path;
 /// | header | machine | controller |
 /// |---|---|---|
 /// | `controller` `marking-board` | none given | [`MarkingBoard`] with the published controller |
-/// | other | with one belt | [`MarkingBoard`] as the machine's description says |
+/// | `protocol` neither `digits` nor `link` | with one belt | [`MarkingBoard`] as the machine's description says |
 /// | `protocol` `grbl` | steppers | [`StepperPlotter`], Grbl's language |
 /// | other | steppers | [`StepperPlotter`], mDraw's language |
 /// | `controller` `published` or `contouring` | none given | [`MachineController`] with that one |
@@ -88,7 +88,8 @@ impl AnyController {
             Some(machine) => *machine,
             None => preset(said)?,
         };
-        if machine.config().kinematics.kind == KinematicsChoice::CoreXy {
+        let has_line = matches!(header.text("protocol"), Some("digits" | "link"));
+        if machine.config().kinematics.kind == KinematicsChoice::CoreXy && !has_line {
             let controller = ChosenController::of(&machine);
             return Ok(Box::new(MarkingBoard::new(MarkingBoardSettings::of(&machine), controller)));
         }

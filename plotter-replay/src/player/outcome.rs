@@ -1,13 +1,10 @@
 //! What came of a re-run: equal, or the first difference.
 
-use crate::compare::{Decoder, IN_A_FRAME, line};
-use crate::log::{Event, Header, Record};
+use crate::compare::{Decoder, line};
+use crate::log::{Header, Record};
 use core::fmt;
 use core::time::Duration;
 use plotter_motion::{Axis, Direction, Pen};
-
-/// Records that a frame may have, byte by byte, and some between them.
-const MOST_OF_A_FRAME: u64 = 2_000;
 
 /// What came of a re-run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -146,28 +143,26 @@ impl Difference {
     /// The same, with what each record says beside it, and the whole of the frame that the place is in. `records` are those of the
     /// recording from its beginning, as [`Player::inputs`](super::Player::inputs) gives them, `header` is the one for these.
     #[must_use]
-    pub fn in_words(&self, header: &Header, records: impl IntoIterator<Item = Record>) -> String {
-        let last = self.context.last().map_or(self.index, |&(index, _)| index);
+    pub fn in_words<I: IntoIterator<Item = Record>>(
+        &self,
+        header: &Header,
+        records: impl Fn() -> I,
+    ) -> String {
+        let bounds = (self.context.first(), self.context.last());
+        let (Some(&(began, _)), Some(&(last, _))) = bounds else { return self.head() };
         let mut decoder = Decoder::new(header);
         let mut told = self.head();
-        let mut frame = None;
-        let began = self.context.first().map_or(self.index, |&(index, _)| index);
-        for (index, record) in (0_u64..).zip(records) {
+        for (index, record) in (0..=last).zip(records()) {
             let words = decoder.words(&record);
-            if (began..=last).contains(&index) {
+            if index >= began {
                 let mark = if index == self.index { '>' } else { ' ' };
                 told.push_str(&format!("\n  {mark} {index:>6}  {}", line(&record, &words)));
             }
-            if index >= self.index && frame.is_none() && decoder.is_linked() {
-                let ends = matches!(record.event, Event::Controller(_)) && !words.starts_with(IN_A_FRAME);
-                frame = ends.then_some((index, words));
-            }
-            if index >= last && (frame.is_some() || index > self.index.saturating_add(MOST_OF_A_FRAME)) {
-                break;
-            }
         }
-        if let Some((index, words)) = frame.filter(|_| matches!(self.expected, Answer::Byte { .. })) {
-            told.push_str(&format!("\n  the recorded frame ends at record {index}: {words}"));
+        if let Answer::Byte { .. } = self.expected
+            && let Some((index, words)) = Decoder::frame_at(header, records(), self.index)
+        {
+            told.push_str(&format!("\n  its frame ends at record {index}: {words}"));
         }
         told
     }

@@ -6,8 +6,8 @@ use clap::Args;
 use plotter_motion::Machine;
 use plotter_replay::log::{Header, Record};
 use plotter_replay::{
-    AnyController, CompareSettings, Controller, EdgeSource, Outcome, Player, PlayerSettings, RecordingTraits,
-    compare,
+    AnyController, CompareSettings, Controller, Decoder, EdgeSource, Outcome, Player, PlayerSettings,
+    RecordingTraits, compare,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -101,7 +101,7 @@ impl Check {
             return Ok(Verdict::of(log.contents.summary));
         };
         let header = player.header(&log.header);
-        say(out, &difference.in_words(&header, player.inputs(log.records())));
+        say(out, &difference.in_words(&header, || player.inputs(log.records())));
         // The rest in numbers: how much of all is other than recorded.
         let again = || {
             let controller = log.controller().into_iter();
@@ -109,12 +109,16 @@ impl Check {
                 .flat_map(|controller| player.rerun_iter(log.records(), controller).map_while(Result::ok))
         };
         let wanted = CompareSettings { tolerance: settings.tolerance, ..CompareSettings::default() };
-        let comparison = compare(&header, || player.inputs(log.records()), again, wanted);
+        let comparison = compare(&header, || player.inputs(log.records()), &again, wanted);
         if let Some(first) = comparison.first {
             say(out, "what is done now, there:");
             for (index, line) in first.right.around {
                 let mark = if Some(index) == first.right.record { '>' } else { ' ' };
                 say(out, &format!("  {mark} {index:>6}  {line}"));
+            }
+            let frame = first.right.record.and_then(|record| Decoder::frame_at(&header, again(), record));
+            if let Some((index, words)) = frame {
+                say(out, &format!("  its frame ends at record {index}: {words}"));
             }
         }
         say(out, "in all (first: recorded, second: now):");
