@@ -109,7 +109,7 @@ impl Check {
                 .flat_map(|controller| player.rerun_iter(log.records(), controller).map_while(Result::ok))
         };
         let wanted = CompareSettings { tolerance: settings.tolerance, ..CompareSettings::default() };
-        let comparison = compare(&header, || player.inputs(log.records()), &again, wanted);
+        let comparison = compare(&header, || player.inputs(log.records()), again, wanted);
         if let Some(first) = comparison.first {
             say(out, "what is done now, there:");
             for (index, line) in first.right.around {
