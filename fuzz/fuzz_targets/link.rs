@@ -27,7 +27,10 @@ fuzz_target!(|bytes: &[u8]| {
             for &byte in &read[..length] {
                 let _ = messages.push(byte);
             }
-            assert!(link.next_wake().is_some() || matches!(link.state(), LinkState::Idle | LinkState::DigitsOnly | LinkState::Restarted));
+            assert!(
+                link.next_wake().is_some()
+                    || matches!(link.state(), LinkState::Idle | LinkState::DigitsOnly | LinkState::Restarted)
+            );
         }
     }
 });

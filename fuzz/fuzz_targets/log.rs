@@ -29,7 +29,8 @@ fuzz_target!(|bytes: &[u8]| {
         writer.write(record).expect("it was read");
     }
     let written = writer.finish().expect("memory takes all");
-    let again: Vec<Record> = Reader::new(&written[..]).expect("it was written").map(|r| r.expect("it was written")).collect();
+    let again: Vec<Record> =
+        Reader::new(&written[..]).expect("it was written").map(|r| r.expect("it was written")).collect();
     assert_eq!(again, records);
     if let Ok(settings) = PlotterSettings::from_header(&header) {
         let mut plotter = VirtualPlotter::new(settings);

@@ -71,6 +71,19 @@ impl<W: Write> BenchRecorder<W> {
         }
     }
 
+    /// Writes through what waits since half a second: see [`Writer::tick`].
+    pub fn tick(&mut self, now: Duration) {
+        if self.error.is_none() {
+            self.error = self.writer.tick(now).err();
+        }
+    }
+
+    /// Why nothing is written any more, if so.
+    #[must_use]
+    pub const fn failure(&self) -> Option<&WriteError> {
+        self.error.as_ref()
+    }
+
     /// Writes everything through and gives the sink back.
     ///
     /// # Errors

@@ -1,8 +1,77 @@
 //! [`FrameReader`]: the frames of a recorded reliable link, both directions, and [`FrameStream`], their payloads in order.
 
 use crate::import::Side;
+use crate::log::{Event, Record};
+use plotter_motion::StepPoint;
 use plotter_motion::protocol::frame::{DecodeError, Decoder, Kind};
 use plotter_motion::protocol::{Hello, Message, MessageDecoder, MessageError, Order};
+
+/// What a machine says of itself before anything else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Introduction {
+    pub(crate) hello: Hello,
+    pub(crate) boot: u32,
+    /// Targets taken and reached before.
+    pub(crate) taken: u32,
+    pub(crate) reached: u32,
+    pub(crate) position: StepPoint,
+}
+
+/// Looks for the first [`Introduction`] in a recording.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct IntroductionSearch {
+    frames: FrameReader,
+    stream: FrameStream,
+    session: u16,
+    hello: Option<Hello>,
+    pub(crate) found: Option<Introduction>,
+}
+
+impl IntroductionSearch {
+    /// Takes the next record.
+    pub(crate) fn push(&mut self, record: &Record) {
+        let (side, bytes) = match &record.event {
+            Event::Host(bytes) => (Side::Host, bytes),
+            Event::Controller(bytes) => (Side::Controller, bytes),
+            _ => return,
+        };
+        if self.found.is_none() {
+            bytes.iter().for_each(|&byte| self.byte(side, byte));
+        }
+    }
+
+    fn byte(&mut self, side: Side, byte: u8) {
+        let said = self.frames.push(side, byte);
+        if self.frames.session() != self.session {
+            (self.session, self.stream) = (self.frames.session(), FrameStream::default());
+        }
+        match (side, said) {
+            (Side::Controller, Some(Said::Hello(hello))) => self.hello = Some(hello),
+            (Side::Controller, Some(Said::Data(number, payload, _))) => {
+                for message in self.stream.data(number, payload) {
+                    if let (Ok(Message::Status { boot, taken, reached, position }), Some(hello)) =
+                        (message, self.hello)
+                    {
+                        let new = Introduction { hello, boot, taken, reached, position };
+                        self.found.get_or_insert(new);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Introduction {
+    /// The first in a recording; `None` where no machine says anything over frames.
+    pub(crate) fn find(records: impl IntoIterator<Item = Record>) -> Option<Self> {
+        let mut search = IntroductionSearch::default();
+        records.into_iter().find_map(|record| {
+            search.push(&record);
+            search.found
+        })
+    }
+}
 
 /// What a frame says.
 #[derive(Clone, Debug, PartialEq, Eq)]

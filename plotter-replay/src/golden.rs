@@ -50,6 +50,11 @@ pub enum GoldenError {
     },
     /// The controller cannot be run to the end.
     Stuck(Stuck),
+    /// A recording of frames without edges cannot be renewed: it is run message by message, and that gives no frames.
+    NoEdges {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file cannot be written.
     Unwritable {
         /// The file.
@@ -81,8 +86,8 @@ impl Mode {
     }
 }
 
-/// Re-runs the recording at `path` with a new controller. Edges come from the log, or, if it has none, from its
-/// pulses; times must be exact. If the controller does something else, that is written beside the recording
+/// Re-runs the recording at `path` with a new controller. Edges come from the log, and times must be exact; or, if it has none, from
+/// what the machine told of its motors ([`crate::RecordingTraits::settings`]). If the controller does something else, that is written beside the recording
 /// as `.actual`, and what is different as `.diff`.
 ///
 /// # Errors
@@ -104,15 +109,19 @@ pub fn check<C: Controller>(path: &Path, controller: impl Fn() -> C, mode: Mode)
             .collect::<Result<_, _>>()
             .map_err(GoldenError::Stuck)
     };
+    let written_header = player.header(&header);
     let write = |path: &Path, records: &[Record]| -> Result<(), GoldenError> {
         let unwritable = |error| GoldenError::Unwritable { path: path.to_owned(), error };
-        let mut writer = log::create(path, &header).map_err(unwritable)?;
+        let mut writer = log::create(path, &written_header).map_err(unwritable)?;
         for record in records {
             writer.write(record).map_err(unwritable)?;
         }
         writer.finish().map_err(unwritable).map(drop)
     };
     if mode == Mode::Renew {
+        if settings.edges == EdgeSource::Messages {
+            return Err(GoldenError::NoEdges { path: path.to_owned() });
+        }
         return write(path, &rerun()?);
     }
     let outcome = player.check(records.iter().cloned(), controller());
@@ -127,12 +136,15 @@ pub fn check<C: Controller>(path: &Path, controller: impl Fn() -> C, mode: Mode)
     let now = rerun()?;
     write(&actual, &now)?;
     let wanted = CompareSettings { tolerance: settings.tolerance, ..CompareSettings::default() };
-    let comparison = compare(&header, || records.iter().cloned(), || now.iter().cloned(), wanted);
-    std::fs::write(&written, format!("{difference}\n\nfirst: recorded, second: now\n{comparison}\n"))
-        .map_err(|error| GoldenError::Unwritable {
+    let recorded = || player.inputs(records.iter().cloned());
+    let comparison = compare(&written_header, recorded, || now.iter().cloned(), wanted);
+    let told = difference.in_words(&written_header, recorded);
+    std::fs::write(&written, format!("{told}\n\nfirst: recorded, second: now\n{comparison}\n")).map_err(
+        |error| GoldenError::Unwritable {
             path: written.clone(),
             error: WriteError::Sink { message: error.to_string() },
-        })?;
+        },
+    )?;
     Err(GoldenError::Differs { path: path.to_owned(), actual, written, difference })
 }
 
@@ -183,6 +195,12 @@ impl fmt::Display for GoldenError {
                 written.display()
             ),
             Self::Stuck(stuck) => stuck.fmt(f),
+            Self::NoEdges { path } => write!(
+                f,
+                "{}: it has no edges of the motors, so its frames cannot be made anew: record it again (`plotter-replay simulate -o` \
+                 and `live` without --port record edges, too)",
+                path.display()
+            ),
             Self::Unwritable { path, error } => write!(f, "{}: {error}", path.display()),
         }
     }

@@ -34,8 +34,9 @@ pub use compare::{
 };
 pub use page::{PageSettings, RecordingPage};
 pub use player::{
-    Answer, AnyController, Compared, Controller, ControllerError, Difference, EdgeSource, MachineController,
-    MotorStep, Outcome, Pace, PaceSettings, Player, PlayerSettings, Rerun, Stuck,
+    Answer, AnyController, Compared, Controller, ControllerError, Difference, EdgeSource, Inputs,
+    LinkedController, LinkedMachine, MachineController, MotorStep, Outcome, Pace, PaceSettings, Player,
+    PlayerSettings, RecordingTraits, Rerun, Stuck,
 };
 pub use resume::{DrawingMark, ResumeError, ResumePoint};
 pub use thin::thin;

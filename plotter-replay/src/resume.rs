@@ -1,11 +1,10 @@
 //! [`ResumePoint`]: where a drawing was left, from the log of the host that sent it.
 
-use crate::frames::{FrameReader, FrameStream, Said};
-use crate::import::Side;
-use crate::log::{self, Event, Header, ReadError};
+use crate::frames::Introduction;
+use crate::log::{self, Header, ReadError};
 use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
-use plotter_motion::protocol::{Message, Resume};
+use plotter_motion::protocol::Resume;
 use plotter_motion::{Pen, PenMove};
 use std::path::Path;
 
@@ -106,28 +105,8 @@ impl ResumePoint {
         if let Some((boot, before)) = whole("link_boot").zip(whole("link_before")) {
             return Ok(Self { resume: Resume { boot, before }, drawing });
         }
-        let mut frames = FrameReader::default();
-        let (mut stream, mut session) = (FrameStream::default(), 0);
-        for record in reader.filter_map(Result::ok) {
-            let (side, bytes) = match &record.event {
-                Event::Host(bytes) => (Side::Host, bytes),
-                Event::Controller(bytes) => (Side::Controller, bytes),
-                _ => continue,
-            };
-            for &byte in bytes {
-                let said = frames.push(side, byte);
-                if frames.session() != session {
-                    (session, stream) = (frames.session(), FrameStream::default());
-                }
-                let (Side::Controller, Some(Said::Data(number, payload, _))) = (side, said) else { continue };
-                for message in stream.data(number, payload) {
-                    if let Ok(Message::Status { boot, taken, .. }) = message {
-                        return Ok(Self { resume: Resume { boot, before: taken }, drawing });
-                    }
-                }
-            }
-        }
-        Err(ResumeError::NoStatus)
+        let first = Introduction::find(reader.filter_map(Result::ok)).ok_or(ResumeError::NoStatus)?;
+        Ok(Self { resume: Resume { boot: first.boot, before: first.taken }, drawing })
     }
 
     /// The header of a log that goes on with the drawing.

@@ -15,11 +15,15 @@
     reason = "a test that fails says so by a panic"
 )]
 
+mod linked_session;
+
+use linked_session::LinkedSession;
 use plotter_motion::plant::{Bench, BenchSettings};
 use plotter_motion::{
     ControllerChoice, DriveChoice, KinematicsChoice, Machine, Pen, PenMove, StepPoint, TransmissionConfig,
 };
 use plotter_replay::log::{self, Event, Header, Record, Writer};
+use plotter_replay::transport::Faults;
 use plotter_replay::{AnyController, BenchRecorder, Player, PlayerSettings, golden};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -76,15 +80,19 @@ fn sessions(name: &str, machine: &Machine) -> Vec<(String, Header, Machine)> {
     }
 }
 
-/// A tick mark: up, down and to the right, and home.
+/// Up, down and to the right, and home.
+fn tick_mark() -> [PenMove; 4] {
+    let moves = [(Pen::Up, 0, 24), (Pen::Down, 12, 8), (Pen::Down, 48, 56), (Pen::Up, 0, 0)];
+    moves.map(|(pen, x, y)| PenMove { pen, target: StepPoint::new(x, y) })
+}
+
+/// A tick mark.
 fn record(header: &Header, machine: &Machine) -> Vec<u8> {
     let writer = Writer::new(Vec::new(), header).unwrap();
     if machine.config().drive == DriveChoice::Stepper {
         return record_stepper(header, machine, writer);
     }
-    let moves = [(Pen::Up, 0, 24), (Pen::Down, 12, 8), (Pen::Down, 48, 56), (Pen::Up, 0, 0)];
-    let moves = moves.map(|(pen, x, y)| PenMove { pen, target: StepPoint::new(x, y) });
-    let mut bench = Bench::new(machine, BenchSettings::default(), moves.into_iter());
+    let mut bench = Bench::new(machine, BenchSettings::default(), tick_mark().into_iter());
     let mut recorder = BenchRecorder::new(writer);
     while !bench.host().is_done() && bench.now() < Duration::from_secs(20) {
         bench.step(|time, event| recorder.record(time, event));
@@ -147,6 +155,27 @@ fn every_preset_replays_its_golden_logs() {
             golden::assert_replays(&path, || AnyController::of(&header, Some(&machine)).unwrap());
         }
     }
+}
+
+/// The same tick mark by frames, over a line that damages two bytes in a hundred: what was lost is sent again, and is in the log.
+#[test]
+fn the_gantry_behind_the_link_replays_its_golden_log() {
+    let path = directory("tests/golden/semi-virtual-gantry.linked.plog");
+    let machine = linked_session::machine(ControllerChoice::Contouring);
+    if golden::Mode::from_env() == golden::Mode::Renew {
+        let header = Header::new()
+            .with_number("baud", u64::from(machine.config().serial.baud))
+            .with_text("machine", "semi-virtual-gantry")
+            .with_text("protocol", "link")
+            .with_text("controller", "contouring")
+            .with_number("boot", linked_session::BOOT.into());
+        let mut session = LinkedSession::new(&machine, &Faults::mixed(0.02), 5, tick_mark().to_vec());
+        let mut recorder = BenchRecorder::new(Writer::new(Vec::new(), &header).unwrap());
+        session.run(Duration::from_secs(20), |time, event| recorder.record(time, event), |_, _| {});
+        assert!(session.host.link().counts().sent_again > 0, "nothing was damaged");
+        std::fs::write(&path, recorder.finish().unwrap()).unwrap();
+    }
+    golden::assert_replays(&path, || AnyController::of_log(&path, None).unwrap());
 }
 
 #[test]

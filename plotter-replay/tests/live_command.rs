@@ -182,6 +182,54 @@ fn a_host_that_was_killed_goes_on_from_its_log_and_every_target_is_drawn_once() 
     assert!(sent + before <= 41 && sent > 0, "{before} before, {sent} after\n{after}");
 }
 
+/// The machine's own log is run again to the same bytes; that of a recorder between the two, message by message; and so is the host's.
+#[test]
+fn what_was_recorded_of_frames_in_the_machine_beside_it_and_at_the_host_is_run_again() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    std::fs::write(here.join("machine.toml"), MACHINE).unwrap();
+    std::fs::write(here.join("line.hpgl"), "IN;PU0,0;PD200,0,200,200;PU0,0;").unwrap();
+    let (machine, port) = simulated(&["--speed", "2", "-o", "machine.plog"], here);
+    let relay = Command::new(env!("CARGO_BIN_EXE_plotter-replay"))
+        .args(["record", "--port", &port, "--pty", "between", "-o", "record.plog"])
+        .current_dir(here)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut relay = Running(relay);
+    let until = Instant::now() + Duration::from_secs(30);
+    while !here.join("between").exists() {
+        assert!(Instant::now() < until, "the recorder does not begin");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let drive = ["live", "--port", "between", "--machine", "machine.toml", "--start", "line.hpgl"];
+    let (status, out, err) = run(&[&drive[..], &["--link", "frames", "-o", "host.plog"]].concat(), here);
+    assert_eq!((status, err.as_str()), (Some(0), ""), "{out}");
+    std::thread::sleep(Duration::from_millis(700)); // what is older than half a second is in the log
+    relay.0.kill().unwrap();
+    relay.0.wait().unwrap();
+    drop(machine); // killed
+    for (log, words) in [
+        ("machine.plog", ["equal: ", " duty cycles in "]),
+        ("record.plog", ["the motors are where the machine told", "equal: "]),
+        ("host.plog", ["the motors are where the machine told", "equal: "]),
+    ] {
+        let (status, out, err) = run(&["check", log, "--machine", "machine.toml"], here);
+        assert_eq!((status, err.as_str()), (Some(0), ""), "{log}: {out}");
+        assert!(words.iter().all(|word| out.contains(word)), "{log}: {out}");
+    }
+    // A machine half as wide refuses a target, and that is said.
+    std::fs::write(here.join("small.toml"), MACHINE.replace("width_mm = 100.0", "width_mm = 4.0")).unwrap();
+    for log in ["machine.plog", "record.plog"] {
+        let (status, out, _) = run(&["check", log, "--machine", "small.toml"], here);
+        assert_eq!(status, Some(1), "{log}: {out}");
+        assert!(out.contains("first difference at ") && out.contains("refused 1"), "{log}: {out}");
+    }
+    let (status, out, _) = run(&["replay", "record.plog", "--machine", "machine.toml"], here);
+    assert_eq!(status, Some(0));
+    assert!(out.contains("target 200 0 pen down") && out.contains("reached 3"), "{out}");
+}
+
 #[test]
 fn a_machine_that_knows_digits_only_is_spoken_to_in_digits_or_refused() {
     let directory = tempfile::tempdir().unwrap();

@@ -8,11 +8,11 @@
 
 use plotter_motion::{Machine, MachineConfig, Pen, PenMove, SerialConfig, StepPoint};
 use plotter_replay::live::{
-    Command, Line, LivePage, Pipe, Plan, Server, ServerError, Session, SessionSettings, SimulatedMachine,
-    State,
+    Command, Line, LinkChoice, LivePage, MachineLog, Pipe, Plan, Recording, Server, ServerError, Session,
+    SessionSettings, SimulatedMachine, State,
 };
-use plotter_replay::log::{FileWriter, Header, Writer, create, open};
-use plotter_replay::{PlotterSettings, VirtualPlotter};
+use plotter_replay::log::{Header, LogFile, Writer, create, open};
+use plotter_replay::{AnyController, PlotterSettings, VirtualPlotter, golden};
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::sync::Arc;
@@ -53,7 +53,7 @@ fn an_emergency_stop_takes_the_drive_within_one_control_period() {
     let session = Session::open(
         Arc::new(host),
         Some(Box::new(square().into_iter())),
-        None::<FileWriter>,
+        None::<Recording<LogFile>>,
         Some(telemetry.clone()),
         settings(4),
     );
@@ -88,7 +88,7 @@ fn a_paused_session_finishes_its_target_and_sends_no_other() {
     let path = directory.path().join("session.plog");
     let recorder = create(&path, &Header::new()).unwrap();
     let moves = Box::new(square().into_iter());
-    let session = Session::open(Arc::new(host), Some(moves), Some(recorder), None, settings);
+    let session = Session::open(Arc::new(host), Some(moves), Some(Recording::Line(recorder)), None, settings);
     session.command(Command::Start);
     session.command(Command::Pause);
     until("the target under way is finished", || session.reached() == 1 || session.state() == State::Paused);
@@ -112,7 +112,7 @@ fn a_machine_that_goes_away_fails_the_session() {
     let session = Session::open(
         Arc::new(host),
         Some(Box::new(square().into_iter())),
-        None::<FileWriter>,
+        None::<Recording<LogFile>>,
         None,
         settings(4),
     );
@@ -137,17 +137,64 @@ impl Write for Disk {
 
 #[test]
 fn a_full_disk_stops_the_recording_and_not_the_drawing() {
-    let recorder = Writer::new(Disk(3_000), &Header::new()).unwrap();
-    let (host, end) = Pipe::pair();
-    let _simulated = SimulatedMachine::start(&machine(), Arc::new(end), 4.0, 7);
-    let moves = Box::new(square().into_iter());
-    let settings = SessionSettings { speed: 4.0, ..settings(4) };
-    let session = Session::open(Arc::new(host), Some(moves), Some(recorder), None, settings);
-    assert_eq!(session.recording(), "on");
-    session.command(Command::Start);
-    assert_eq!(session.wait(Duration::from_secs(20)), State::Done);
-    assert_eq!(session.reached(), 4);
-    assert!(session.recording().starts_with("stopped: the log cannot be written"), "{}", session.recording());
+    for is_machines in [false, true] {
+        let writer = Writer::new(Disk(3_000), &Header::new()).unwrap();
+        let (host, end) = Pipe::pair();
+        let log = MachineLog::new(writer);
+        let (recording, log) = if is_machines {
+            (Recording::Machine(log.clone()), Some(log))
+        } else {
+            (Recording::Line(Writer::new(Disk(3_000), &Header::new()).unwrap()), None)
+        };
+        let _simulated = SimulatedMachine::logged(&machine(), Arc::new(end), 4.0, Some(7), log);
+        let moves = Box::new(square().into_iter());
+        let settings = SessionSettings { speed: 4.0, ..settings(4) };
+        let session = Session::open(Arc::new(host), Some(moves), Some(recording), None, settings);
+        assert_eq!(session.recording(), "on");
+        session.command(Command::Start);
+        assert_eq!(session.wait(Duration::from_secs(20)), State::Done);
+        assert_eq!(session.reached(), 4);
+        assert!(
+            session.recording().starts_with("stopped: the log cannot be written"),
+            "{}",
+            session.recording()
+        );
+    }
+}
+
+/// What a simulated machine has recorded of itself is run again to the same bytes: by frames and by digits, with a stop in it.
+#[test]
+fn a_session_with_a_simulated_machine_is_run_again_to_the_same_bytes() {
+    let directory = tempfile::tempdir().unwrap();
+    for boot in [Some(7), None] {
+        let path = directory.path().join("session.plog.gz");
+        let header = Header::new().with_number("baud", 256_000);
+        let header = boot.map_or(header.clone(), |boot| header.with_number("boot", boot.into()));
+        let log = MachineLog::new(create(&path, &header).unwrap());
+        let (host, end) = Pipe::pair();
+        let machine = machine();
+        let simulated = SimulatedMachine::logged(&machine, Arc::new(end), 2.0, boot, Some(log.clone()));
+        let telemetry = simulated.telemetry();
+        let link = if boot.is_some() { LinkChoice::Frames } else { LinkChoice::Digits };
+        let settings = SessionSettings { speed: 2.0, link, ..settings(4) };
+        let moves = Box::new(square().into_iter());
+        let recording = Some(Recording::Machine(log));
+        let session =
+            Session::open(Arc::new(host), Some(moves), recording, Some(telemetry.clone()), settings);
+        session.command(Command::Start);
+        until("it moves", || telemetry.lock().unwrap().duty != [0, 0]);
+        session.command(Command::Stop);
+        until("it is stopped", || session.state() == State::Stopped);
+        session.command(Command::Resume);
+        assert_eq!(session.wait(Duration::from_secs(20)), State::Done);
+        assert_eq!(session.recording(), "complete");
+        golden::check(&path, || AnyController::of_log(&path, Some(&machine)).unwrap(), golden::Mode::Compare)
+            .unwrap();
+        let mut plotter = VirtualPlotter::new(PlotterSettings::default());
+        open(&path).unwrap().for_each(|record| plotter.push(&record.unwrap()));
+        plotter.finish();
+        assert_eq!((plotter.reached_count(), plotter.anomaly_count(), plotter.stop_count()), (4, 0, 1));
+    }
 }
 
 /// What the server answers to a request.
@@ -171,7 +218,7 @@ fn ask(address: &str, path: &str, headers: &str) -> String {
 fn only_who_knows_the_token_and_comes_from_this_page_gets_in() {
     let (host, _machine) = Pipe::pair();
     let line: Arc<dyn Line> = Arc::new(host);
-    let session = Session::open(line, None, None::<FileWriter>, None, SessionSettings::default());
+    let session = Session::open(line, None, None::<Recording<LogFile>>, None, SessionSettings::default());
     let page = LivePage::new("gantry", PlotterSettings::default());
     let server =
         Server::open(session.clone(), 0, |sources| page.finish([0.0, 0.0, 1.0, 1.0], sources)).unwrap();

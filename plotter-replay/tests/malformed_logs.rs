@@ -139,6 +139,26 @@ fn each_damage_is_told_with_its_place() {
     assert_eq!(records, 2);
 }
 
+/// Two records on one line, of which one is of another time, are no neighbours.
+#[test]
+fn two_records_on_a_line_that_do_not_follow_are_lost_once() {
+    let second = "10350 @ edge x+ *5a";
+    let log =
+        format!("{HEADER}20000 @ estop 1 *{:02x}\n{}{second}\n", sum("20000 @ estop 1 "), GOOD.trim_end());
+    let mut reader = Reader::new(log.as_bytes()).unwrap();
+    assert_eq!(reader.by_ref().filter(Result::is_err).count(), 1);
+    let summary = reader.summary();
+    assert_eq!((summary.records, summary.damaged_lines), (1, 1));
+    assert_eq!(summary.damaged_bytes, (GOOD.len() + second.len()) as u64);
+}
+
+/// CRC-8/SMBUS.
+fn sum(text: &str) -> u8 {
+    text.bytes().fold(0, |sum, byte| {
+        (0..8).fold(sum ^ byte, |sum, _| if sum & 0x80 == 0 { sum << 1 } else { sum << 1 ^ 7 })
+    })
+}
+
 #[test]
 fn line_ends_of_either_kind_are_read() {
     let log = format!("{HEADER}{GOOD}{GOOD}").replace('\n', "\r\n");

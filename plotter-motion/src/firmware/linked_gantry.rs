@@ -9,6 +9,8 @@ use core::time::Duration;
 
 /// How often the host is told where the motors are.
 const REPORT_EVERY: Duration = Duration::from_millis(20);
+/// Most bytes of a message of that: its kind and two numbers.
+const MOST_MOVED: usize = 1 + 2 * 5;
 /// How long digits wait, lest they are part of a call.
 const DIGITS_WAIT: Duration = Duration::from_millis(5);
 
@@ -286,7 +288,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> LinkedGantry<
     /// When [`poll`](Self::poll) or [`transmit`](Self::transmit) has something to do, unless something happens before.
     #[must_use]
     pub fn next_wake(&self) -> Option<Duration> {
-        let report = (self.session != 0 && self.told != self.position)
+        // What finds no room is told when some comes, with a byte of the host.
+        let report = (self.session != 0 && self.told != self.position && self.link.room() >= MOST_MOVED)
             .then(|| self.told_at.saturating_add(REPORT_EVERY));
         let digits = (self.held_length > 0).then(|| self.held_at.saturating_add(DIGITS_WAIT));
         [self.link.next_wake(), report, digits].into_iter().flatten().min()

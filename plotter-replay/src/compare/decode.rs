@@ -1,16 +1,23 @@
 //! [`Decoder`]: records in words.
 
-use crate::frames::{FrameReader, Said};
+use crate::frames::{FrameReader, FrameStream, Said};
 use crate::import::Side;
 use crate::log::{Event, Header, Record};
+use crate::player::SESSION;
 use core::fmt::Write as _;
 use core::time::Duration;
 use plotter_motion::protocol::digits::{Receiver, Reply};
-use plotter_motion::protocol::{Hello, Message, MessageDecoder, Order};
-use plotter_motion::{Axis, Direction, Pen};
+use plotter_motion::protocol::{Hello, Message, MessageDecoder, MessageError, Order};
+use plotter_motion::{Axis, Direction, Pen, StepPoint};
 
 /// Bytes of a record that are put into words; of longer ones it says how many there are.
 const MOST_BYTES: usize = 16;
+
+/// How the words of bytes begin that end no frame.
+const IN_A_FRAME: &str = "...";
+
+/// Records that a frame may have, byte by byte, and some between them.
+const MOST_OF_A_FRAME: u64 = 2_000;
 
 /// Puts what goes over a line into words: `target 900 600`, `pulse x+`, `reached`.
 ///
@@ -29,8 +36,16 @@ pub struct Decoder {
     /// `None` for a protocol of text lines.
     digits: Option<Receiver>,
     frames: FrameReader,
+    /// The session, and what of either side has come in it.
+    session: u16,
+    streams: [FrameStream; 2],
+    /// The host's last target.
+    target: StepPoint,
     /// Whether the sides speak frames now.
     is_linked: bool,
+    /// Whether messages are recorded without frames.
+    is_messages: bool,
+    answers: MessageDecoder,
 }
 
 impl Decoder {
@@ -43,13 +58,38 @@ impl Decoder {
         Self {
             digits: is_digits.then(|| Receiver::new(gap)),
             frames: FrameReader::default(),
+            session: 0,
+            streams: Default::default(),
+            target: StepPoint::default(),
             is_linked: false,
+            is_messages: header.text("protocol") == Some("messages"),
+            answers: MessageDecoder::default(),
         }
+    }
+
+    /// The controller's frame that record `index` is in: the record that ends it, and what it says. `None` where no frames are spoken, or
+    /// the records end before it. `records` are those from the beginning.
+    pub fn frame_at(
+        header: &Header,
+        records: impl IntoIterator<Item = Record>,
+        index: u64,
+    ) -> Option<(u64, String)> {
+        let mut decoder = Self::new(header);
+        for (at, record) in (0..=index.saturating_add(MOST_OF_A_FRAME)).zip(records) {
+            let words = decoder.words(&record);
+            let is_in = at >= index && decoder.is_linked && matches!(record.event, Event::Controller(_));
+            if is_in && !words.starts_with(IN_A_FRAME) {
+                return Some((at, words));
+            }
+        }
+        None
     }
 
     /// A record in words; empty for one that says it itself.
     pub fn words(&mut self, record: &Record) -> String {
         let frames = match &record.event {
+            Event::Host(bytes) if self.is_messages => Some(self.host_message(bytes)),
+            Event::Controller(bytes) if self.is_messages => Some(self.answers(bytes)),
             Event::Host(bytes) if self.digits.is_some() => self.frames(Side::Host, bytes),
             Event::Controller(bytes) if self.digits.is_some() => self.frames(Side::Controller, bytes),
             _ => None,
@@ -71,16 +111,86 @@ impl Decoder {
         for &byte in bytes {
             let Some(said) = self.frames.push(side, byte) else { continue };
             self.is_linked |= side == Side::Controller && matches!(said, Said::Hello(_));
-            parts.push(said);
+            let words = self.frame(side, said);
+            parts.push(words);
         }
         if !self.is_linked {
             return None;
         }
+        let plural = if bytes.len() == 1 { "" } else { "s" };
         Some(if parts.is_empty() {
-            format!("... ({} bytes of a frame)", bytes.len())
+            format!("{IN_A_FRAME} {} byte{plural} of a frame", bytes.len())
         } else {
-            parts.iter().map(frame).collect::<Vec<_>>().join(", ")
+            parts.join(", ")
         })
+    }
+
+    /// A frame in words.
+    fn frame(&mut self, side: Side, said: Said) -> String {
+        let session = self.frames.session();
+        if session != self.session {
+            (self.session, self.streams, self.target) = (session, Default::default(), StepPoint::default());
+        }
+        let [host, machine] = &mut self.streams;
+        let (stream, other) = if side == Side::Host { (host, machine) } else { (machine, host) };
+        let (number, messages) = match said {
+            Said::Data(number, payload, until) => {
+                // (what the recording does not have, the stream goes on without)
+                let _ = other.acknowledged(until);
+                (number, stream.data(number, payload))
+            }
+            said => {
+                if let Said::Acknowledge(until) = said {
+                    let _ = other.acknowledged(until);
+                }
+                return unnumbered(&said);
+            }
+        };
+        let words: Vec<_> = messages.into_iter().map(|message| self.said(message)).collect();
+        if words.is_empty() {
+            // It was sent again, or one before it is missing, or its message goes on in the next.
+            format!("data {number}: nothing new yet")
+        } else {
+            format!("data {number}: {}", words.join(", "))
+        }
+    }
+
+    fn said(&mut self, message: Result<Message, MessageError>) -> String {
+        match message {
+            Ok(Message::Target { pen, by }) => {
+                let StepPoint { x, y } = self.target;
+                self.target = StepPoint::new(x.wrapping_add(by.x), y.wrapping_add(by.y));
+                let pen = if pen == Pen::Up { "pen up" } else { "pen down" };
+                format!("target {} {} {pen}", self.target.x, self.target.y)
+            }
+            Ok(message) => said_in_words(message),
+            Err(error) => error.to_string(),
+        }
+    }
+
+    /// What a host says in a recording without frames: see [`crate::EdgeSource::Messages`].
+    fn host_message(&mut self, bytes: &[u8]) -> String {
+        match *bytes {
+            [SESSION, low, high] => {
+                self.target = StepPoint::default();
+                format!("session {:#06x}", u16::from_le_bytes([low, high]))
+            }
+            [byte] if Order::from_byte(byte).is_some() => unnumbered(&Said::Order(0, Order::from_byte(byte))),
+            _ => {
+                let mut decoder = MessageDecoder::default();
+                let messages: Vec<_> = bytes.iter().filter_map(|&byte| decoder.push(byte)).collect();
+                messages.into_iter().map(|message| self.said(message)).collect::<Vec<_>>().join(", ")
+            }
+        }
+    }
+
+    /// What a machine answers in such a recording, perhaps byte by byte.
+    fn answers(&mut self, bytes: &[u8]) -> String {
+        let messages: Vec<_> = bytes.iter().filter_map(|&byte| self.answers.push(byte)).collect();
+        if messages.is_empty() {
+            return format!("{IN_A_FRAME} part of a message");
+        }
+        messages.into_iter().map(|message| self.said(message)).collect::<Vec<_>>().join(", ")
     }
 
     fn host(&mut self, time: Duration, bytes: &[u8]) -> String {
@@ -97,7 +207,7 @@ impl Decoder {
         for (at, &byte) in bytes.iter().enumerate() {
             if let Some(order) = Order::from_byte(byte) {
                 end_run(&mut run, &mut parts);
-                parts.push(frame(&Said::Order(0, Some(order))));
+                parts.push(unnumbered(&Said::Order(0, Some(order))));
                 continue;
             }
             let received = receiver.push(time, byte);
@@ -121,35 +231,22 @@ impl Decoder {
     }
 }
 
-/// A frame in words. Messages that go on from one frame to the next are told as far as they are in this one.
-fn frame(said: &Said) -> String {
+/// A frame that is none of a stream in words.
+fn unnumbered(said: &Said) -> String {
     match said {
         Said::Hello(Hello { session: 0, .. }) => String::from("hello"),
         Said::Hello(Hello { session, .. }) => format!("hello, session {session:#06x}"),
-        Said::Acknowledge(until) => format!("has all before {until}"),
+        Said::Acknowledge(until) | Said::Data(_, _, until) => format!("has all before {until}"),
         Said::Order(_, Some(Order::Stop)) => String::from("order stop"),
         Said::Order(_, Some(Order::Hold)) => String::from("order hold"),
         Said::Order(_, Some(Order::GoOn)) => String::from("order go on"),
         Said::Order(number, None) => format!("order {number}, unknown"),
         Said::Damaged(error) => error.to_string(),
-        Said::Data(number, payload, _) => {
-            let mut decoder = MessageDecoder::default();
-            let mut words = format!("data {number}:");
-            for message in payload.iter().filter_map(|&byte| decoder.push(byte)) {
-                let _ = match message {
-                    Ok(message) => write!(words, " {}", said_in_words(message)),
-                    Err(_) => write!(words, " ..."),
-                };
-            }
-            words
-        }
     }
 }
 
 fn said_in_words(message: Message) -> String {
     match message {
-        Message::Target { pen: Pen::Down, by } => format!("draw by {} {}", by.x, by.y),
-        Message::Target { pen: Pen::Up, by } => format!("travel by {} {}", by.x, by.y),
         Message::Status { boot, taken, reached, position } => {
             format!("status boot {boot} taken {taken} reached {reached} at {} {}", position.x, position.y)
         }

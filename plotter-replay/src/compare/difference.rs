@@ -136,7 +136,7 @@ impl fmt::Display for LaneSummary {
 }
 
 /// A record as its line in the log without the checksum, long runs of bytes shortened, and what it says.
-pub(super) fn line(record: &Record, words: &str) -> String {
+pub(crate) fn line(record: &Record, words: &str) -> String {
     const MOST: usize = 16;
     let (event, more) = match &record.event {
         Event::Host(bytes) if bytes.len() > MOST => {

@@ -8,5 +8,6 @@ mod logs;
 
 pub use contour::{ContourError, ContourSample, ContourTally, Ways, contour_samples};
 pub use decode::Decoder;
+pub(crate) use difference::line;
 pub use difference::{Comparison, FirstDifference, LaneSummary, Place};
 pub use logs::{CompareSettings, compare};

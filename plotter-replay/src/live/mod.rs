@@ -12,6 +12,7 @@
 
 mod commands;
 mod line;
+mod machine_log;
 mod page;
 mod progress;
 mod sender;
@@ -23,6 +24,7 @@ mod view;
 
 pub use commands::{Command, State};
 pub use line::{Line, Pipe, PortLine};
+pub use machine_log::{MachineLog, Recording};
 pub use page::LivePage;
 pub use progress::Plan;
 pub use server::{Server, ServerError};

@@ -1,11 +1,12 @@
 //! [`Session`]: a drawing on its way to a machine.
 
 use super::line::{Line, lock};
+use super::machine_log::Recording;
 use super::progress::Plan;
 use super::sender::Sender;
 use super::view::{Cursor, View};
 use super::{Command, State, Telemetry};
-use crate::log::{Event, Record, Writer};
+use crate::log::{Event, Record};
 use crate::serial::PortError;
 use crate::{CountedBy, PlotterSettings};
 use core::time::Duration;
@@ -108,7 +109,7 @@ impl Session {
     pub fn open<W: Write + Send + 'static>(
         line: Arc<dyn Line>,
         moves: Option<Moves>,
-        recorder: Option<Writer<W>>,
+        recorder: Option<Recording<W>>,
         telemetry: Option<Arc<Mutex<Telemetry>>>,
         mut settings: SessionSettings,
     ) -> Self {
@@ -213,7 +214,7 @@ impl Shared {
 
 struct Engine<'a, W: Write> {
     host: Option<Sender>,
-    recorder: Option<Writer<W>>,
+    recorder: Option<Recording<W>>,
     telemetry: Option<Arc<Mutex<Telemetry>>>,
     began: Instant,
     /// Time in which the host's clock stood still.
@@ -246,7 +247,7 @@ impl<W: Write> Engine<'_, W> {
         if let State::Failed(why) = &end {
             self.take(Event::Note(format!("the session failed: {why}")));
         }
-        let kept = self.recorder.take().map(|recorder| recorder.finish().map(|_| ()));
+        let kept = self.recorder.take().map(|recorder| recorder.finish());
         let mut view = lock(&self.shared.view);
         match kept {
             Some(Err(error)) => view.recording = format!("stopped: {error}"),

@@ -1,12 +1,14 @@
 //! [`SimulatedMachine`]: a machine at the other end of a line, in the time of the clock on the wall.
 
 use super::line::{Line, lock};
+use super::machine_log::MachineLog;
 use crate::serial::PortError;
 use core::time::Duration;
 use plotter_motion::firmware::{Gantry, LinkedGantry};
 use plotter_motion::plant::{Bench, BenchController, BenchEvent, BenchSettings};
 use plotter_motion::protocol::{LinkSettings, Order};
 use plotter_motion::{Axis, Machine, PenMove};
+use std::io::{Sink, Write};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::Instant;
@@ -41,27 +43,46 @@ impl SimulatedMachine {
     /// a host that calls; `boot` is its number since it was switched on, another one each time.
     #[must_use]
     pub fn start(machine: &Machine, line: Arc<dyn Line>, speed: f64, boot: u32) -> Self {
-        let controller = LinkedGantry::<4, 64>::new(Gantry::new(machine), boot, LinkSettings::default());
-        Self::with_controller(machine, controller, line, speed)
+        Self::logged(machine, line, speed, Some(boot), None::<MachineLog<Sink>>)
     }
 
     /// The same with a controller that speaks digits only.
     #[must_use]
     pub fn of_digits(machine: &Machine, line: Arc<dyn Line>, speed: f64) -> Self {
-        Self::with_controller(machine, Gantry::new(machine), line, speed)
+        Self::logged(machine, line, speed, None, None::<MachineLog<Sink>>)
     }
 
-    fn with_controller<C: BenchController + Send + 'static>(
+    /// Either of them (without `boot`: digits only), which writes all that it does into `log`.
+    #[must_use]
+    pub fn logged<W: Write + Send + 'static>(
+        machine: &Machine,
+        line: Arc<dyn Line>,
+        speed: f64,
+        boot: Option<u32>,
+        log: Option<MachineLog<W>>,
+    ) -> Self {
+        let gantry = Gantry::new(machine);
+        match boot {
+            Some(boot) => {
+                let linked = LinkedGantry::<4, 64>::new(gantry, boot, LinkSettings::default());
+                Self::with_controller(machine, linked, line, speed, log)
+            }
+            None => Self::with_controller(machine, gantry, line, speed, log),
+        }
+    }
+
+    fn with_controller<C: BenchController + Send + 'static, W: Write + Send + 'static>(
         machine: &Machine,
         controller: C,
         line: Arc<dyn Line>,
         speed: f64,
+        log: Option<MachineLog<W>>,
     ) -> Self {
         let moves = std::iter::empty::<PenMove>();
         let bench = Bench::with_controller(machine, BenchSettings::default(), controller, moves);
         let telemetry = Arc::<Mutex<Telemetry>>::default();
         let shared = Arc::clone(&telemetry);
-        let thread = thread::spawn(move || run(bench, &*line, speed, &shared));
+        let thread = thread::spawn(move || run(bench, &*line, speed, &shared, log.as_ref()));
         Self { telemetry, thread: Some(thread) }
     }
 
@@ -78,11 +99,12 @@ impl SimulatedMachine {
     }
 }
 
-fn run<C: BenchController>(
+fn run<C: BenchController, W: Write>(
     mut bench: Bench<std::iter::Empty<PenMove>, C>,
     line: &dyn Line,
     speed: f64,
     telemetry: &Mutex<Telemetry>,
+    log: Option<&MachineLog<W>>,
 ) -> PortError {
     let mut before = Instant::now();
     let mut due = Duration::ZERO;
@@ -101,15 +123,20 @@ fn run<C: BenchController>(
         before = now;
         due = due.min(bench.now().saturating_add(MOST_BEHIND.mul_f64(speed)));
         while bench.now() < due {
-            bench.step(|at, event| match event {
-                // (a frame may hold this byte, too: then it is no stop)
-                BenchEvent::HostByte(byte) if byte == Order::Stop.byte() && told.duty != [0; 2] => {
-                    told.stopped = Some((at, None));
+            bench.step(|at, event| {
+                match event {
+                    // (a frame may hold this byte, too: then it is no stop)
+                    BenchEvent::HostByte(byte) if byte == Order::Stop.byte() && told.duty != [0; 2] => {
+                        told.stopped = Some((at, None));
+                    }
+                    BenchEvent::ControllerByte(byte) => answers.push(byte),
+                    BenchEvent::Drive(Axis::X, duty) => told.duty[0] = duty,
+                    BenchEvent::Drive(Axis::Y, duty) => told.duty[1] = duty,
+                    _ => {}
                 }
-                BenchEvent::ControllerByte(byte) => answers.push(byte),
-                BenchEvent::Drive(Axis::X, duty) => told.duty[0] = duty,
-                BenchEvent::Drive(Axis::Y, duty) => told.duty[1] = duty,
-                _ => {}
+                if let Some(log) = log {
+                    log.record(at, event);
+                }
             });
             if let Some((_, off @ None)) = &mut told.stopped
                 && told.duty == [0, 0]
@@ -119,6 +146,9 @@ fn run<C: BenchController>(
         }
         told.time = bench.now();
         *lock(telemetry) = told;
+        if let Some(log) = log {
+            log.tick(told.time);
+        }
         if !answers.is_empty() {
             if let Err(error) = line.send(&answers) {
                 return error;

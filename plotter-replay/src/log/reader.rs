@@ -1,7 +1,7 @@
 //! [`Reader`]: records out of a log, past any damage.
 
 use super::line_source::LineSource;
-use super::salvage::salvage;
+use super::salvage::{Both, salvage};
 use super::text::{Parsed, parse_line};
 use super::{Damage, DamageKind, Header, MAGIC, Record, RecordRef, Summary, VERSION};
 use core::fmt;
@@ -238,6 +238,10 @@ impl<R: BufRead> Reader<R> {
             }
             _ => None,
         };
+        // Records of another time are no neighbours that a line end kept apart, and the line is counted as lost once.
+        let both = both.filter(|Both { records: [first, second], .. }| {
+            self.in_order(first.time).is_ok() && first.time <= second.time
+        });
         let Some(both) = both else {
             return Err(self.damage(kind));
         };

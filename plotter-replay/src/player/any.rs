@@ -1,23 +1,29 @@
 //! [`AnyController`]: the controller of a machine, whichever it is.
 
-use super::{Controller, MachineController};
-use crate::log::Header;
+use super::told::Told;
+use super::{Controller, EdgeSource, LinkedController, LinkedMachine, MachineController, RecordingTraits};
+use crate::log::{self, Header};
 use core::fmt;
 use plotter_motion::control::ChosenController;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
-use plotter_motion::firmware::{MarkingBoard, MarkingBoardSettings, StepperPlotter};
+use plotter_motion::firmware::{
+    Gantry, GantrySettings, LinkedGantry, MarkingBoard, MarkingBoardSettings, StepperPlotter,
+};
+use plotter_motion::protocol::LinkSettings;
 use plotter_motion::{ControllerChoice, DriveChoice, KinematicsChoice, Machine, MachineConfig};
+use std::path::Path;
 
 /// The controllers of `plotter-motion`, as the header of a log and the description of a machine tell which.
 ///
 /// | header | machine | controller |
 /// |---|---|---|
 /// | `controller` `marking-board` | none given | [`MarkingBoard`] with the published controller |
-/// | other | with one belt | [`MarkingBoard`] as the machine's description says |
+/// | `protocol` neither `digits` nor `link` | with one belt | [`MarkingBoard`] as the machine's description says |
 /// | `protocol` `grbl` | steppers | [`StepperPlotter`], Grbl's language |
 /// | other | steppers | [`StepperPlotter`], mDraw's language |
 /// | `controller` `published` or `contouring` | none given | [`MachineController`] with that one |
 /// | other | DC motors | [`MachineController`] as the machine's description says |
+/// | `boot` | as of [`MachineController`] | [`LinkedController`]: a machine that spoke frames ([`LinkedMachine`]) |
 ///
 /// ```
 /// # use plotter_replay::{AnyController, Controller};
@@ -37,6 +43,40 @@ pub struct ControllerError {
 }
 
 impl AnyController {
+    /// A new controller for the log of this name: of a machine that speaks frames in it, one that does so, too.
+    ///
+    /// # Errors
+    ///
+    /// [`ControllerError`] for a log that cannot be read, and as [`of`](Self::of).
+    pub fn of_log(path: &Path, machine: Option<&Machine>) -> Result<Box<dyn Controller>, ControllerError> {
+        let reader = log::open(path).map_err(error)?;
+        let header = reader.header().clone();
+        let mut traits = RecordingTraits::default();
+        reader.filter_map(Result::ok).for_each(|record| traits.look(&record));
+        Self::of_recording(&header, &traits, machine)
+    }
+
+    /// The same for a recording that was looked through. One of frames that has no edges is run on motors that were where it tells:
+    /// how a controller leads them, it cannot show ([`EdgeSource::Messages`]).
+    ///
+    /// # Errors
+    ///
+    /// As [`of`](Self::of).
+    pub fn of_recording(
+        header: &Header,
+        traits: &RecordingTraits,
+        machine: Option<&Machine>,
+    ) -> Result<Box<dyn Controller>, ControllerError> {
+        let header = traits.header(header);
+        if traits.settings(&header, false).edges != EdgeSource::Messages {
+            return Self::of(&header, machine);
+        }
+        let machine = machine.map_or_else(|| preset(header.text("controller")), |machine| Ok(*machine))?;
+        let boot = LinkedMachine::of_header(&header).map_or(0, |linked| linked.boot);
+        let gantry = Gantry::with_settings(GantrySettings::of(&machine), Told::default());
+        Ok(Box::new(LinkedGantry::<4, 64, Told>::new(gantry, boot, LinkSettings::default())))
+    }
+
     /// A new controller for a log with this header; without a machine, for the preset that the header names.
     ///
     /// # Errors
@@ -48,7 +88,8 @@ impl AnyController {
             Some(machine) => *machine,
             None => preset(said)?,
         };
-        if machine.config().kinematics.kind == KinematicsChoice::CoreXy {
+        let has_line = matches!(header.text("protocol"), Some("digits" | "link"));
+        if machine.config().kinematics.kind == KinematicsChoice::CoreXy && !has_line {
             let controller = ChosenController::of(&machine);
             return Ok(Box::new(MarkingBoard::new(MarkingBoardSettings::of(&machine), controller)));
         }
@@ -59,7 +100,20 @@ impl AnyController {
                 let settings = StepperPlotterSettings::of(&machine, dialect);
                 Box::new(StepperPlotter::new(settings).map_err(error)?)
             }
-            _ => Box::new(MachineController::new(&machine)),
+            _ => match LinkedMachine::of_header(header) {
+                None => Box::new(MachineController::new(&machine)),
+                Some(LinkedMachine { boot, window: 4, payload: 64 }) => {
+                    Box::new(LinkedController::<4, 64>::new(&machine, boot))
+                }
+                Some(LinkedMachine { window, payload, .. }) => {
+                    return Err(ControllerError {
+                        message: format!(
+                            "its machine takes {window} frames of {payload} bytes, and the one here takes 4 of 64: in a test, \
+                             LinkedController::<{window}, {payload}> does what it did"
+                        ),
+                    });
+                }
+            },
         })
     }
 }

@@ -46,6 +46,18 @@ pub trait Controller {
         self.transmit()
     }
 
+    /// Whether it is asked for a byte only when the line can take one, as an interrupt of a serial port asks: a frame says what is
+    /// true when it begins. Else all bytes are fetched at once, and wait.
+    fn waits_for_line(&self) -> bool {
+        false
+    }
+
+    /// When one that [waits for the line](Self::waits_for_line) is to be [ticked](Self::tick) for what it has to say on a free line,
+    /// unless something happens before.
+    fn next_transmission(&self) -> Option<Duration> {
+        None
+    }
+
     /// Duty cycle of a motor, in signed steps of its PWM timer, as `@ drive` records it.
     fn duty(&self, _axis: Axis) -> i32 {
         0
@@ -96,6 +108,12 @@ impl<C: Controller + ?Sized> Controller for Box<C> {
     }
     fn transmit_at(&mut self, now: Duration) -> Option<u8> {
         (**self).transmit_at(now)
+    }
+    fn waits_for_line(&self) -> bool {
+        (**self).waits_for_line()
+    }
+    fn next_transmission(&self) -> Option<Duration> {
+        (**self).next_transmission()
     }
     fn duty(&self, axis: Axis) -> i32 {
         (**self).duty(axis)

@@ -8,7 +8,7 @@ use plotter_motion::firmware::Gantry;
 use plotter_motion::{Axis, Direction};
 
 /// Steps of the PWM timer of the published controller, and of most others: 8 bits.
-const PWM_STEPS: u16 = 255;
+pub(super) const PWM_STEPS: u16 = 255;
 
 /// As [`MachineController`](super::MachineController), with motors of 255 steps of PWM.
 impl<C: LineController> Controller for Gantry<C> {

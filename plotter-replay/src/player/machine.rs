@@ -20,12 +20,7 @@ impl MachineController {
     /// The controller of this machine, at rest at (0, 0).
     #[must_use]
     pub fn new(machine: &Machine) -> Self {
-        let config = machine.config();
-        let steps = [config.x.motor.pwm_steps, config.y.motor.pwm_steps];
-        Self {
-            gantry: Gantry::new(machine),
-            pwm_steps: steps.map(|steps| u16::try_from(steps).unwrap_or(u16::MAX)),
-        }
+        Self { gantry: Gantry::new(machine), pwm_steps: pwm_steps(machine) }
     }
 
     /// The controller itself.
@@ -45,20 +40,7 @@ impl Controller for MachineController {
     }
 
     fn switch(&mut self, now: Duration, name: &SwitchName, pressed: bool) {
-        let (axis, end) = match name.as_str() {
-            "x-min" => (Axis::X, Direction::Minus),
-            "x-max" => (Axis::X, Direction::Plus),
-            "y-min" => (Axis::Y, Direction::Minus),
-            "y-max" => (Axis::Y, Direction::Plus),
-            "reset" => {
-                if pressed {
-                    self.gantry.reset_emergency_stop(now);
-                }
-                return;
-            }
-            _ => return,
-        };
-        self.gantry.limit_switch(now, axis, end, pressed);
+        Controller::switch(&mut self.gantry, now, name, pressed);
     }
 
     fn emergency_stop(&mut self, now: Duration, pressed: bool) {
@@ -78,11 +60,20 @@ impl Controller for MachineController {
     }
 
     fn duty(&self, axis: Axis) -> i32 {
-        let [x_steps, y_steps] = self.pwm_steps;
-        let steps = match axis {
-            Axis::X => x_steps,
-            Axis::Y => y_steps,
-        };
-        self.gantry.drive().axis(axis).steps(steps)
+        self.gantry.drive().axis(axis).steps(steps_of(self.pwm_steps, axis))
+    }
+}
+
+/// Steps of the PWM timers of both motors.
+pub(super) fn pwm_steps(machine: &Machine) -> [u16; 2] {
+    let config = machine.config();
+    let steps = [config.x.motor.pwm_steps, config.y.motor.pwm_steps];
+    steps.map(|steps| u16::try_from(steps).unwrap_or(u16::MAX))
+}
+
+pub(super) const fn steps_of([x_steps, y_steps]: [u16; 2], axis: Axis) -> u16 {
+    match axis {
+        Axis::X => x_steps,
+        Axis::Y => y_steps,
     }
 }

@@ -9,20 +9,32 @@ mod any;
 mod board;
 mod controller;
 mod gantry;
+mod inputs;
+mod linked;
+mod linked_machine;
 mod machine;
 mod outcome;
 mod pace;
 mod rerun;
 mod run;
 mod stepper;
+mod told;
+mod traits;
+mod unframed;
+mod unlinked;
 
 pub use any::{AnyController, ControllerError};
 pub use controller::{Controller, MotorStep};
+pub use inputs::Inputs;
+pub use linked::LinkedController;
+pub use linked_machine::LinkedMachine;
 pub use machine::MachineController;
 pub use outcome::{Answer, Compared, Difference, Outcome, Stuck};
 pub use pace::{Pace, PaceSettings};
 pub use rerun::Rerun;
 pub use run::EdgeSource;
+pub use traits::RecordingTraits;
+pub(crate) use unframed::SESSION;
 
 use crate::log::{Event, Header, Record};
 use core::time::Duration;
@@ -54,19 +66,12 @@ impl Default for PlayerSettings {
 }
 
 impl PlayerSettings {
-    /// The defaults with the baud rate that a log's header says, and with what these records of it allow: edges, if there are
-    /// any, else pulses; duty cycles if there are any.
+    /// The defaults with the baud rate that a log's header says, and with what these records of it allow: see
+    /// [`RecordingTraits::settings`].
     pub fn of<'a>(header: &Header, records: impl IntoIterator<Item = &'a Record>) -> Self {
-        let mut settings =
-            Self { edges: EdgeSource::Pulses, tells_duties: false, ..Self::from_header(header) };
-        for record in records {
-            match record.event {
-                Event::Edge { .. } => settings.edges = EdgeSource::Records,
-                Event::Drive { .. } => settings.tells_duties = true,
-                _ => {}
-            }
-        }
-        settings
+        let mut traits = RecordingTraits::default();
+        records.into_iter().for_each(|record| traits.look(record));
+        traits.settings(header, false)
     }
 
     /// The defaults with the baud rate that a log's header says.
@@ -90,11 +95,25 @@ impl Player {
         Self { settings }
     }
 
+    /// The records as a controller is run on them; those of which an outcome tells.
+    pub fn inputs<I: IntoIterator<Item = Record>>(&self, records: I) -> Inputs<I::IntoIter> {
+        Inputs::new(records.into_iter(), self.settings.edges)
+    }
+
+    /// The header of what comes of a re-run: that of the recording, unless it is run message by message.
+    #[must_use]
+    pub fn header(&self, header: &Header) -> Header {
+        match self.settings.edges {
+            EdgeSource::Messages => header.clone().with_text("protocol", "messages"),
+            EdgeSource::Records | EdgeSource::Pulses => header.clone(),
+        }
+    }
+
     /// Runs `controller` on the records and compares each answered byte with its time, and each recorded duty
     /// cycle. What the controller would say after the last record is not compared: the recorder may have been
     /// stopped.
     pub fn check(&self, records: impl IntoIterator<Item = Record>, controller: impl Controller) -> Outcome {
-        let mut records = (0_u64..).zip(records);
+        let mut records = (0_u64..).zip(self.inputs(records));
         let mut check = Check {
             run: Run::new(controller, self.settings.baud, self.settings.edges),
             tolerance: self.settings.tolerance,
@@ -140,7 +159,7 @@ impl Player {
         records: I,
         controller: C,
     ) -> Rerun<I::IntoIter, C> {
-        Rerun::new(records.into_iter(), controller, self.settings)
+        Rerun::new(self.inputs(records), controller, self.settings)
     }
 }
 

@@ -1,6 +1,7 @@
 //! What came of a re-run: equal, or the first difference.
 
-use crate::log::{Event, Record};
+use crate::compare::{Decoder, line};
+use crate::log::{Header, Record};
 use core::fmt;
 use core::time::Duration;
 use plotter_motion::{Axis, Direction, Pen};
@@ -138,15 +139,49 @@ impl fmt::Display for Compared {
     }
 }
 
+impl Difference {
+    /// The same, with what each record says beside it, and the whole of the frame that the place is in. `records` are those of the
+    /// recording from its beginning, as [`Player::inputs`](super::Player::inputs) gives them, `header` is the one for these.
+    #[must_use]
+    pub fn in_words<I: IntoIterator<Item = Record>>(
+        &self,
+        header: &Header,
+        records: impl Fn() -> I,
+    ) -> String {
+        let bounds = (self.context.first(), self.context.last());
+        let (Some(&(began, _)), Some(&(last, _))) = bounds else { return self.head() };
+        let mut decoder = Decoder::new(header);
+        let mut told = self.head();
+        for (index, record) in (0..=last).zip(records()) {
+            let words = decoder.words(&record);
+            if index >= began {
+                let mark = if index == self.index { '>' } else { ' ' };
+                told.push_str(&format!("\n  {mark} {index:>6}  {}", line(&record, &words)));
+            }
+        }
+        if let Answer::Byte { .. } = self.expected
+            && let Some((index, words)) = Decoder::frame_at(header, records(), self.index)
+        {
+            told.push_str(&format!("\n  its frame ends at record {index}: {words}"));
+        }
+        told
+    }
+
+    fn head(&self) -> String {
+        let Self { time, index, expected, got, until_then, .. } = self;
+        format!(
+            "first difference at {} us, record {index}\n  recorded: {expected}\n  now:      {got}\n  equal until then: {until_then}",
+            time.as_micros()
+        )
+    }
+}
+
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "first difference at {} us, record {}", self.time.as_micros(), self.index)?;
-        writeln!(f, "  recorded: {}", self.expected)?;
-        writeln!(f, "  now:      {}", self.got)?;
-        write!(f, "  equal until then: {}", self.until_then)?;
+        f.write_str(&self.head())?;
         for (index, record) in &self.context {
             let mark = if *index == self.index { '>' } else { ' ' };
-            write!(f, "\n  {mark} {index:>6}  {}", Line(record))?;
+            write!(f, "\n  {mark} {index:>6}  {}", line(record, ""))?;
         }
         Ok(())
     }
@@ -203,29 +238,5 @@ fn name(axis: Axis) -> char {
     match axis {
         Axis::X => 'x',
         Axis::Y => 'y',
-    }
-}
-
-/// A record as its line in the log, without the checksum; long runs of bytes are shortened.
-struct Line<'a>(&'a Record);
-
-impl fmt::Display for Line<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const MOST: usize = 16;
-        let (channel, bytes) = match &self.0.event {
-            Event::Host(bytes) => ('>', bytes),
-            Event::Controller(bytes) => ('<', bytes),
-            event => {
-                let mut line = Vec::new();
-                let time_us = u64::try_from(self.0.time.as_micros()).unwrap_or(u64::MAX);
-                crate::log::write_line(&mut line, time_us, &event.view());
-                let line = String::from_utf8_lossy(&line);
-                let covered = line.rsplit_once(" *").map_or(&*line, |(covered, _)| covered);
-                return f.write_str(covered);
-            }
-        };
-        write!(f, "{} {channel}", self.0.time.as_micros())?;
-        bytes.iter().take(MOST).try_for_each(|byte| write!(f, " {byte:02x}"))?;
-        if bytes.len() > MOST { write!(f, " ... ({} bytes)", bytes.len()) } else { Ok(()) }
     }
 }

@@ -1,5 +1,6 @@
 //! [`Rerun`]: the recording that a controller gives on the inputs of another.
 
+use super::inputs::Inputs;
 use super::run::{Did, Run};
 use super::{Controller, PlayerSettings, Stuck};
 use crate::log::{Event, Record};
@@ -10,14 +11,14 @@ use std::collections::VecDeque;
 /// the controller says and does now. Its time never goes back, so that it can be written as a log.
 #[derive(Debug)]
 pub struct Rerun<I, C> {
-    records: I,
+    records: Inputs<I>,
     run: Run<C>,
     ready: VecDeque<Record>,
     is_over: bool,
 }
 
 impl<I: Iterator<Item = Record>, C: Controller> Rerun<I, C> {
-    pub(super) fn new(records: I, controller: C, settings: PlayerSettings) -> Self {
+    pub(super) fn new(records: Inputs<I>, controller: C, settings: PlayerSettings) -> Self {
         let run = Run::new(controller, settings.baud, settings.edges);
         let run = if settings.tells_duties { run.telling_duties() } else { run };
         Self { records, run, ready: VecDeque::new(), is_over: false }
@@ -25,12 +26,21 @@ impl<I: Iterator<Item = Record>, C: Controller> Rerun<I, C> {
 
     /// The controller, as it is now.
     pub fn controller(&self) -> &C {
-        &self.run.controller
+        &self.run.controller.inner
     }
 
     fn take(&mut self, record: Record) -> Result<(), Stuck> {
         let advanced = self.run.advance(record.time);
-        self.tell(record.time);
+        let waits = self.run.controller.waits_for_line();
+        if waits {
+            // What is through at the time of a record comes after what the controller takes then: it was not free before.
+            if let Some(before) = record.time.checked_sub(Duration::from_micros(1)) {
+                self.tell(before);
+            }
+            self.tell_acts(record.time);
+        } else {
+            self.tell(record.time);
+        }
         advanced?;
         let (makes_steps, moves_pen) =
             (self.run.controller.makes_steps(), self.run.controller.pen().is_some());
@@ -48,6 +58,9 @@ impl<I: Iterator<Item = Record>, C: Controller> Rerun<I, C> {
         };
         self.ready.extend(kept.map(|event| Record { time: record.time, event }));
         let fed = self.run.feed(&record);
+        if waits && matches!(record.event, Event::Controller(_)) {
+            self.tell(record.time);
+        }
         self.tell_acts(record.time);
         fed
     }

@@ -1,7 +1,8 @@
 //! A controller that is led through recorded time.
 
-use super::{Controller, Stuck};
-use crate::log::{Event, Record};
+use super::unlinked::Unlinked;
+use super::{Controller, RecordingTraits, Stuck};
+use crate::log::{Event, Header, Record};
 use core::time::Duration;
 use plotter_motion::protocol::Wire;
 use plotter_motion::protocol::digits::Reply;
@@ -10,8 +11,12 @@ use std::collections::VecDeque;
 
 /// Ticks in a row that may leave the next tick where it was.
 const MOST_TICKS_AT_ONCE: u32 = 1_000;
+/// Ticks in a row of a controller that waits for the line which may find nothing that they can do: a second of them.
+const MOST_TICKS_OVERDUE: u32 = 1_000_000;
 /// Bytes that may wait for the line: 40 s of it at 256000 baud.
 const MOST_WAITING: usize = 1_000_000;
+/// How long a re-run message by message waits for an answer that was recorded.
+const LONGEST_WAIT: Duration = Duration::from_secs(1);
 /// Silence between two records, or before the first, that is still run through tick by tick.
 const LONGEST_SILENCE: Duration = Duration::from_secs(3_600);
 
@@ -24,13 +29,17 @@ pub enum EdgeSource {
     /// The controller's own pulse bytes, for a log without edges. They come one byte later than the edges came,
     /// so that only the order of the other answers is exact.
     Pulses,
+    /// The machine's messages on the reliable link, for a log of frames without edges: it is run again message by message, and its
+    /// answers are compared without their frames.
+    Messages,
 }
 
 impl EdgeSource {
-    /// What these records allow: their edges if there are any, else the pulses.
+    /// What these records allow: their edges if there are any, else the messages or pulses.
     pub fn of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Self {
-        let has_edges = records.into_iter().any(|record| matches!(record.event, Event::Edge { .. }));
-        if has_edges { Self::Records } else { Self::Pulses }
+        let mut traits = RecordingTraits::default();
+        records.into_iter().for_each(|record| traits.look(record));
+        traits.settings(&Header::new(), false).edges
     }
 }
 
@@ -48,10 +57,18 @@ pub(super) enum Did {
 /// A controller, the line that its bytes go over, and how far in time it is.
 #[derive(Debug)]
 pub(super) struct Run<C> {
-    pub(super) controller: C,
+    pub(super) controller: Unlinked<C>,
     edges: EdgeSource,
     wire: Wire,
+    /// When the byte is through that is on the line of a controller that waits for it.
+    busy_until: Option<Duration>,
+    /// When such a controller was ticked last.
+    ticked: Option<Duration>,
     now: Duration,
+    /// How much later than recorded it is, of a re-run message by message: how long it was waited for answers.
+    late: Duration,
+    /// Bytes of answers that were recorded and that were said.
+    answers: [u64; 2],
     /// What it said, with the time of each byte's last bit.
     pub(super) said: VecDeque<(Duration, u8)>,
     /// What else it did, in its order.
@@ -66,13 +83,21 @@ pub(super) struct Run<C> {
 
 impl<C: Controller> Run<C> {
     pub(super) fn new(controller: C, baud: u32, edges: EdgeSource) -> Self {
+        let controller = match edges {
+            EdgeSource::Messages => Unlinked::behind_a_link(controller),
+            EdgeSource::Records | EdgeSource::Pulses => Unlinked::plain(controller),
+        };
         Self {
             pen: controller.pen(),
             duties: Axis::BOTH.map(|axis| controller.duty(axis)),
             controller,
             edges,
             wire: Wire::new(baud),
+            busy_until: None,
+            ticked: None,
             now: Duration::ZERO,
+            late: Duration::ZERO,
+            answers: [0; 2],
             said: VecDeque::new(),
             did: VecDeque::new(),
             tells_duties: false,
@@ -90,10 +115,32 @@ impl<C: Controller> Run<C> {
         self.now
     }
 
-    /// Runs every tick that is due up to `to`, each at its own time.
+    /// Runs every tick that is due up to the recorded time `to`, each at its own time.
     pub(super) fn advance(&mut self, to: Duration) -> Result<(), Stuck> {
+        self.run_to(to.saturating_add(self.late))
+    }
+
+    /// Where the motors were is only told every 20 ms, so what is recorded as done may need some more: edges of the next way must
+    /// not come before. All that follows is so much later.
+    fn wait_for_answers(&mut self) -> Result<(), Stuck> {
+        let until = self.now.saturating_add(LONGEST_WAIT);
+        let began = self.now;
+        while let [recorded, said] = self.answers
+            && said < recorded
+            && let Some(due) = self.controller.next_tick().filter(|&due| due <= until)
+        {
+            self.run_to(due)?;
+        }
+        self.late = self.late.saturating_add(self.now.saturating_sub(began));
+        Ok(())
+    }
+
+    fn run_to(&mut self, to: Duration) -> Result<(), Stuck> {
         if to.saturating_sub(self.now) > LONGEST_SILENCE {
             return Err(Stuck::LongSilence { silence: to.saturating_sub(self.now) });
+        }
+        if self.controller.waits_for_line() {
+            return self.advance_with_line(to);
         }
         let mut at_once = 0;
         while let Some(due) = self.controller.next_tick().filter(|&due| due <= to) {
@@ -110,10 +157,49 @@ impl<C: Controller> Run<C> {
         Ok(())
     }
 
+    /// The same for a controller that waits for the line, in the order of [`plotter_motion::plant::Bench`]: of what happens at
+    /// the same time the tick comes first, then what the records say, then the line is free.
+    fn advance_with_line(&mut self, to: Duration) -> Result<(), Stuck> {
+        let mut overdue = 0;
+        loop {
+            let free = self.busy_until.is_none();
+            let transmission = self.controller.next_transmission().filter(|_| free);
+            let due = [self.controller.next_tick(), transmission].into_iter().flatten().min();
+            // What has nothing to say although it is due is asked again a microsecond later.
+            let later = self.ticked.map_or(Duration::ZERO, |at| at.saturating_add(Duration::from_micros(1)));
+            let tick = due.map(|due| due.max(later).max(self.now)).filter(|&at| at <= to);
+            let through = self.busy_until.map(|at| at.max(self.now)).filter(|&at| at < to);
+            match (tick, through) {
+                (Some(at), through) if through.is_none_or(|through| at <= through) => {
+                    overdue = if due.is_some_and(|due| due < at) { overdue + 1 } else { 0 };
+                    if overdue > MOST_TICKS_OVERDUE {
+                        return Err(Stuck::TicksWithoutEnd { time: at });
+                    }
+                    self.now = at;
+                    self.ticked = Some(at);
+                    self.controller.tick(at);
+                }
+                (_, Some(at)) => {
+                    self.now = at;
+                    self.busy_until = None;
+                }
+                _ => break,
+            }
+            self.fetch()?;
+        }
+        self.now = self.now.max(to);
+        Ok(())
+    }
+
     /// Hands the controller what the record says, if that is an input.
     pub(super) fn feed(&mut self, record: &Record) -> Result<(), Stuck> {
         let now = self.now;
         match &record.event {
+            Event::Controller(bytes) if self.edges == EdgeSource::Messages => {
+                let [recorded, _] = &mut self.answers;
+                *recorded = recorded.saturating_add(bytes.len() as u64);
+                return self.wait_for_answers();
+            }
             Event::Host(bytes) => {
                 for &byte in bytes {
                     self.controller.receive(now, byte);
@@ -138,23 +224,26 @@ impl<C: Controller> Run<C> {
             Event::Target { x, y } => self.controller.target(now, self.recorded_pen, StepPoint::new(*x, *y)),
             Event::Switch { name, pressed } => self.controller.switch(now, name, *pressed),
             Event::Estop(pressed) => self.controller.emergency_stop(now, *pressed),
+            // What was said at this time is through now, not before.
+            Event::Controller(_) if self.busy_until.is_some_and(|at| at <= now) => self.busy_until = None,
             Event::Edge { .. } | Event::Controller(_) | Event::Drive { .. } | Event::Note(_) => return Ok(()),
         }
         self.fetch()
     }
 
     fn takes_edges(&self) -> bool {
-        self.edges == EdgeSource::Records && !self.controller.makes_steps()
+        self.edges != EdgeSource::Pulses && !self.controller.makes_steps()
     }
 
     /// Whether a recorded byte is an answer to compare, or an input.
     pub(super) fn is_answer(&self, byte: u8) -> bool {
-        self.edges == EdgeSource::Records
+        self.edges != EdgeSource::Pulses
             || self.controller.makes_steps()
             || !matches!(Reply::from_byte(byte), Some(Reply::Pulse(..)))
     }
 
     fn fetch(&mut self) -> Result<(), Stuck> {
+        let at = self.now.saturating_sub(self.late);
         let mut fetched = 0;
         // A step may give an answer, and an answer that is sent room for what gives a step.
         loop {
@@ -170,17 +259,22 @@ impl<C: Controller> Run<C> {
                         1.. => Direction::Plus,
                         _ => Direction::Minus,
                     };
-                    self.did.push_back((self.now, Did::Step(axis, sign)));
+                    self.did.push_back((at, Did::Step(axis, sign)));
                 }
             }
-            while let Some(byte) = self.controller.transmit_at(self.now) {
+            while self.busy_until.is_none()
+                && let Some(byte) = self.controller.transmit_at(self.now)
+            {
                 fetched += 1;
                 if fetched > MOST_WAITING || self.said.len() >= MOST_WAITING {
                     return Err(Stuck::BytesWithoutEnd { time: self.now });
                 }
                 let time = self.wire.send(self.now);
+                self.busy_until = self.controller.waits_for_line().then_some(time);
                 if self.is_answer(byte) {
-                    self.said.push_back((time, byte));
+                    let [_, said] = &mut self.answers;
+                    *said = said.saturating_add(1);
+                    self.said.push_back((time.saturating_sub(self.late), byte));
                 }
             }
             if fetched == before {
@@ -190,14 +284,14 @@ impl<C: Controller> Run<C> {
         let pen = self.controller.pen();
         if let Some(now) = pen.filter(|_| pen != self.pen) {
             self.pen = pen;
-            self.did.push_back((self.now, Did::Pen(now)));
+            self.did.push_back((at, Did::Pen(now)));
         }
         if self.tells_duties {
             for (axis, before) in Axis::BOTH.into_iter().zip(&mut self.duties) {
                 let duty = self.controller.duty(axis);
                 if duty != *before {
                     *before = duty;
-                    self.did.push_back((self.now, Did::Duty(axis, duty)));
+                    self.did.push_back((at, Did::Duty(axis, duty)));
                 }
             }
         }

@@ -158,7 +158,10 @@ impl Browser {
     pub(crate) fn wait_for(&mut self, expression: &str) {
         let until = Instant::now() + PATIENCE;
         while self.eval(&format!("Boolean({expression})")) != json!(true) {
-            assert!(Instant::now() < until, "in vain: {expression}");
+            if Instant::now() >= until {
+                let page = self.eval("document.body.dataset.state + '\\n' + document.body.innerText");
+                panic!("in vain: {expression}\nthe page shows:\n{}", page.as_str().unwrap_or_default());
+            }
             std::thread::sleep(Duration::from_millis(20));
         }
     }

@@ -1,19 +1,17 @@
 //! `check`: the controller again, compared with its recording.
 
-use crate::commands::{Done, Verdict, open, read, say, say_damage};
+use crate::commands::{Contents, Done, Verdict, open, read, say, say_damage};
 use crate::machine::read_machine;
 use clap::Args;
 use plotter_motion::Machine;
-use plotter_replay::log::{Event, Header};
+use plotter_replay::log::{Header, Record};
 use plotter_replay::{
-    AnyController, CompareSettings, Controller, EdgeSource, Player, PlayerSettings, compare,
+    AnyController, CompareSettings, Controller, Decoder, EdgeSource, Outcome, Player, PlayerSettings,
+    RecordingTraits, compare,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-
-/// Time by which an answer may be off when the edges are only known from the pulses.
-const PULSE_TOLERANCE: Duration = Duration::from_millis(50);
 
 #[derive(Debug, Args)]
 pub(crate) struct Check {
@@ -22,94 +20,109 @@ pub(crate) struct Check {
     /// The machine's description [default: the preset of the controller that the log's header names].
     #[arg(long, value_name = "FILE.toml")]
     machine: Option<PathBuf>,
-    /// How far the time of an answer may be off, microseconds [default: 0, or 50000 for a log without edges].
+    /// How far the time of an answer may be off, microseconds [default: 0; for a log without edges 50000, or 1000000 if it is one of frames].
     #[arg(long, value_name = "US")]
     tolerance_us: Option<u64>,
 }
 
-/// What a log has that decides how it is re-run.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Traits {
-    has_edges: bool,
-    has_duties: bool,
+/// A log that a controller is to be run on again.
+pub(crate) struct Rerunnable {
+    pub(crate) contents: Contents,
+    header: Header,
+    traits: RecordingTraits,
+    machine: Option<Machine>,
+    log: PathBuf,
 }
 
-impl Traits {
-    pub(crate) fn look(&mut self, event: &Event) {
-        self.has_edges |= matches!(event, Event::Edge { .. });
-        self.has_duties |= matches!(event, Event::Drive { .. });
-    }
-
-    /// How a log with this header and these traits is re-run.
-    pub(crate) fn settings(self, header: &Header, makes_steps: bool) -> PlayerSettings {
-        let knows_edges = self.has_edges || makes_steps;
-        let edges = if knows_edges { EdgeSource::Records } else { EdgeSource::Pulses };
-        let tolerance = if knows_edges { Duration::ZERO } else { PULSE_TOLERANCE };
-        PlayerSettings {
-            edges,
-            tolerance,
-            tells_duties: self.has_duties,
-            ..PlayerSettings::from_header(header)
+impl Rerunnable {
+    /// Reads a log, and the machine's description if there is one.
+    pub(crate) fn read(log: &Path, machine: Option<&Path>) -> Result<Self, String> {
+        let mut traits = RecordingTraits::default();
+        let contents = read(log, |record| traits.look(record))?;
+        let machine = machine.map(|path| read_machine(Some(path))).transpose()?;
+        let header = traits.header(&contents.header);
+        let said = |key| header.text(key);
+        if said("protocol") == Some("counts") && said("controller") != Some("marking-board") {
+            return Err(format!(
+                "{}: its protocol is \"counts\", and only a controller that was led by bytes or by moves on its line can be run \
+                 again; `render` shows what it did",
+                log.display()
+            ));
         }
+        if traits.under_way_before() > 0 {
+            return Err(format!(
+                "{}: it begins while the machine is on its way to a target of an earlier host, and does not say to which; \
+                 `render` shows what it did",
+                log.display()
+            ));
+        }
+        Ok(Self { contents, header, traits, machine, log: log.to_owned() })
     }
-}
 
-/// A new controller for a log.
-pub(crate) fn controller(
-    log: &Path,
-    header: &Header,
-    machine: Option<&Machine>,
-) -> Result<Box<dyn Controller>, String> {
-    if header.text("protocol") == Some("counts") && header.text("controller") != Some("marking-board") {
-        return Err(format!(
-            "{}: its protocol is \"counts\", and only a controller that was led by bytes or by moves on its line can be run again; \
-             `render` shows what it did",
-            log.display()
-        ));
+    /// A new controller of its machine.
+    pub(crate) fn controller(&self) -> Result<Box<dyn Controller>, String> {
+        AnyController::of_recording(&self.header, &self.traits, self.machine.as_ref())
+            .map_err(|error| format!("{}: {error} (--machine)", self.log.display()))
     }
-    if header.text("protocol") == Some("link") {
-        return Err(format!(
-            "{}: its protocol is \"link\", and a recording of that has no edges to run a controller on; `render` shows what it did",
-            log.display()
-        ));
+
+    /// How it is run again.
+    pub(crate) fn settings(&self, controller: &dyn Controller) -> PlayerSettings {
+        self.traits.settings(&self.header, controller.makes_steps())
     }
-    AnyController::of(header, machine).map_err(|error| format!("{}: {error} (--machine)", log.display()))
+
+    /// Its records, from the beginning.
+    pub(crate) fn records(&self) -> impl Iterator<Item = Record> + use<> {
+        open(&self.log).into_iter().flatten().filter_map(Result::ok)
+    }
 }
 
 impl Check {
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
-        let mut traits = Traits::default();
-        let contents = read(&self.log, |record| traits.look(&record.event))?;
-        let header = &contents.header;
-        let machine = self.machine.as_deref().map(|path| read_machine(Some(path))).transpose()?;
-        let first = controller(&self.log, header, machine.as_ref())?;
-        let mut settings = traits.settings(header, first.makes_steps());
+        let log = Rerunnable::read(&self.log, self.machine.as_deref())?;
+        let first = log.controller()?;
+        let mut settings = log.settings(&*first);
         settings.tolerance = self.tolerance_us.map_or(settings.tolerance, Duration::from_micros);
-        if settings.edges == EdgeSource::Pulses {
-            say(
-                out,
-                &format!(
-                    "no edges in the log: taken from the pulses, times within {} us, pulses not compared",
-                    settings.tolerance.as_micros()
-                ),
-            );
+        let by = match settings.edges {
+            EdgeSource::Records => None,
+            EdgeSource::Pulses => Some("taken from the pulses, which are not compared"),
+            EdgeSource::Messages => Some(
+                "the motors are where the machine told, and not led; its messages are compared, not its frames",
+            ),
+        };
+        if let Some(by) = by {
+            let within = settings.tolerance.as_micros();
+            say(out, &format!("no edges in the log: {by}; times within {within} us"));
         }
-        say_damage(out, &contents);
+        say_damage(out, &log.contents);
         let player = Player::new(settings);
-        let records = || open(&self.log).into_iter().flatten().filter_map(Result::ok);
-        let outcome = player.check(records(), first);
-        say(out, &outcome.to_string());
-        if outcome.is_equal() {
-            return Ok(Verdict::of(contents.summary));
-        }
+        let outcome = player.check(log.records(), first);
+        let Outcome::FirstDifference(difference) = outcome else {
+            say(out, &outcome.to_string());
+            return Ok(Verdict::of(log.contents.summary));
+        };
+        let header = player.header(&log.header);
+        say(out, &difference.in_words(&header, || player.inputs(log.records())));
         // The rest in numbers: how much of all is other than recorded.
         let again = || {
-            let controller = controller(&self.log, header, machine.as_ref()).into_iter();
-            controller.flat_map(|controller| player.rerun_iter(records(), controller).map_while(Result::ok))
+            let controller = log.controller().into_iter();
+            controller
+                .flat_map(|controller| player.rerun_iter(log.records(), controller).map_while(Result::ok))
         };
         let wanted = CompareSettings { tolerance: settings.tolerance, ..CompareSettings::default() };
+        let comparison = compare(&header, || player.inputs(log.records()), again, wanted);
+        if let Some(first) = comparison.first {
+            say(out, "what is done now, there:");
+            for (index, line) in first.right.around {
+                let mark = if Some(index) == first.right.record { '>' } else { ' ' };
+                say(out, &format!("  {mark} {index:>6}  {line}"));
+            }
+            let frame = first.right.record.and_then(|record| Decoder::frame_at(&header, again(), record));
+            if let Some((index, words)) = frame {
+                say(out, &format!("  its frame ends at record {index}: {words}"));
+            }
+        }
         say(out, "in all (first: recorded, second: now):");
-        for lane in compare(header, records, again, wanted).lanes {
+        for lane in comparison.lanes {
             say(out, &format!("  {lane}"));
         }
         Ok(Verdict::Found)

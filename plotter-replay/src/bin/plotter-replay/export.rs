@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use plotter_replay::export;
 use plotter_replay::log::Record;
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -41,7 +41,7 @@ impl Export {
         let verdict = Verdict::of(contents.summary);
         let Some(path) = &self.out else {
             // What comes out is read by another program: it is told of damage by the exit status only.
-            return match self.to {
+            let written = match self.to {
                 To::Csv => export::csv(header, records, &mut *out),
                 To::Text => export::text(header, records, &mut *out),
                 To::Mcap => {
@@ -49,9 +49,14 @@ impl Export {
                         "export: MCAP is not written to the standard output: give -o FILE",
                     ));
                 }
-            }
-            .map(|()| verdict)
-            .map_err(|error| cannot("written", "standard output".as_ref(), &error));
+            };
+            return match written {
+                Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+                    Err(cannot("written", "standard output".as_ref(), &error))
+                }
+                // Whoever closed the pipe has seen enough.
+                _ => Ok(verdict),
+            };
         };
         is_free(path, self.force)?;
         let unwritable = |error: std::io::Error| cannot("written", path, &error);

@@ -2,14 +2,14 @@
 
 use crate::commands::{Done, Verdict, say, say_first};
 use crate::drawing::DrawingFile;
-use crate::machine::{clock_bits, read_machine, speed};
+use crate::machine::{clock_bits, header_of, read_machine, speed};
 use clap::{Args, ValueEnum};
-use plotter_motion::{ControllerChoice, DriveChoice, Machine, PenMove, targets};
+use plotter_motion::{DriveChoice, Machine, PenMove, targets};
 use plotter_replay::live::{
-    Command, Line, LinkChoice, LivePage, Pipe, PortLine, Server, Session, SessionSettings, SimulatedMachine,
-    State, Telemetry, terminal,
+    Command, Line, LinkChoice, LivePage, MachineLog, Pipe, PortLine, Recording, Server, Session,
+    SessionSettings, SimulatedMachine, State, Telemetry, terminal,
 };
-use plotter_replay::log::{self, FileWriter, Header};
+use plotter_replay::log::{self, FileWriter, LogFile};
 use plotter_replay::serial::{Port, find};
 use plotter_replay::{DrawingMark, PlotterSettings, ResumePoint};
 use std::cell::RefCell;
@@ -123,8 +123,10 @@ impl Live {
             verdict = Verdict::Found;
         }
         let resume = self.resume_point(mark)?;
-        let connected = self.connect(&machine)?;
-        let recorder = self.recorder(&machine, mark, resume)?;
+        let port = self.open_port(&machine)?;
+        let boot = (port.is_none() && !matches!(self.link, Link::Digits)).then(clock_bits);
+        let writer = self.recorder(&machine, mark, resume, boot)?;
+        let (connected, recording) = self.connect(&machine, port, boot, writer);
         let plan = drawing.is_some().then(|| page.plan());
         let settings = SessionSettings {
             plotter,
@@ -144,7 +146,7 @@ impl Live {
         let session = Session::open(
             Arc::clone(&connected.line),
             moves,
-            Some(recorder),
+            Some(recording),
             connected.telemetry.clone(),
             settings,
         );
@@ -195,22 +197,33 @@ impl Live {
         }
     }
 
-    fn connect(&self, machine: &Machine) -> Result<Connected, String> {
-        let Some(name) = &self.port else {
-            let (host, end) = Pipe::pair();
-            let end = Arc::new(end);
-            let simulated = match self.link {
-                Link::Digits => SimulatedMachine::of_digits(machine, end, self.speed),
-                Link::Auto | Link::Frames => SimulatedMachine::start(machine, end, self.speed, clock_bits()),
-            };
-            let telemetry = Some(simulated.telemetry());
-            let name = String::from("none: simulated in this program");
-            return Ok(Connected { line: Arc::new(host), telemetry, _simulated: Some(simulated), name });
-        };
+    /// The machine's port, if it is on one, and what that is called.
+    fn open_port(&self, machine: &Machine) -> Result<Option<(PortLine, String)>, String> {
+        let Some(name) = &self.port else { return Ok(None) };
         let name = find(name).map_err(|error| error.to_string())?;
         let port = Port::open(&name, machine.config().serial.baud).map_err(|error| error.to_string())?;
-        let line = PortLine::new(port).map_err(|error| error.to_string())?;
-        Ok(Connected { line: Arc::new(line), telemetry: None, _simulated: None, name })
+        Ok(Some((PortLine::new(port).map_err(|error| error.to_string())?, name)))
+    }
+
+    /// The machine on its port, whose line is recorded here; or a simulated one, which records itself.
+    fn connect(
+        &self,
+        machine: &Machine,
+        port: Option<(PortLine, String)>,
+        boot: Option<u32>,
+        writer: FileWriter,
+    ) -> (Connected, Recording<LogFile>) {
+        if let Some((line, name)) = port {
+            let connected = Connected { line: Arc::new(line), telemetry: None, _simulated: None, name };
+            return (connected, Recording::Line(writer));
+        }
+        let (host, end) = Pipe::pair();
+        let log = MachineLog::new(writer);
+        let simulated = SimulatedMachine::logged(machine, Arc::new(end), self.speed, boot, Some(log.clone()));
+        let telemetry = Some(simulated.telemetry());
+        let name = String::from("none: simulated in this program");
+        let connected = Connected { line: Arc::new(host), telemetry, _simulated: Some(simulated), name };
+        (connected, Recording::Machine(log))
     }
 
     /// Where the last host left the drawing.
@@ -245,20 +258,11 @@ impl Live {
         machine: &Machine,
         mark: DrawingMark,
         resume: Option<ResumePoint>,
+        boot: Option<u32>,
     ) -> Result<FileWriter, String> {
-        let config = machine.config();
-        let controller = match config.control.controller {
-            ControllerChoice::Published => "published",
-            _ => "contouring",
-        };
-        let header = Header::new()
-            .with_number("baud", config.serial.baud.into())
-            .with_text("protocol", if matches!(self.link, Link::Digits) { "digits" } else { "link" })
-            .with_text("machine", config.name.as_str())
-            .with_text("controller", controller)
-            .with_text("clock", if self.port.is_some() { "host" } else { "simulated, as the host saw it" })
-            .with_decimal("x_mm_per_pulse", 1.0 / config.x.counts_per_mm)
-            .with_decimal("y_mm_per_pulse", 1.0 / config.y.counts_per_mm);
+        let header =
+            header_of(machine, if matches!(self.link, Link::Digits) { "digits" } else { "link" }, boot)
+                .with_text("clock", if self.port.is_some() { "host" } else { "simulated" });
         let header = if mark.moves > 0 { mark.written_to(header) } else { header };
         let header = resume.map_or(header.clone(), |point| point.written_to(header));
         log::create(&self.output, &header).map_err(|error| format!("{}: {error}", self.output.display()))

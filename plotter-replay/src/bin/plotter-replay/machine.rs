@@ -1,7 +1,11 @@
 //! The machine that a command line names.
 
 use crate::commands::{MOST_MACHINE_BYTES, read_file};
+#[cfg(feature = "live")]
+use plotter_motion::ControllerChoice;
 use plotter_motion::{Machine, MachineConfig};
+#[cfg(feature = "live")]
+use plotter_replay::log::Header;
 use std::path::Path;
 
 /// The machine of a file, or the semi-virtual gantry.
@@ -17,6 +21,27 @@ pub(crate) fn read_machine(path: Option<&Path>) -> Result<Machine, String> {
     let text = String::from_utf8(read_file(path, MOST_MACHINE_BYTES)?)
         .map_err(|error| refused(&error.utf8_error()))?;
     Machine::from_toml(&text).map_err(|error| refused(&error))
+}
+
+/// What a log's header says of a machine; `boot` is that of one that is simulated here, and speaks frames.
+#[cfg(feature = "live")]
+pub(crate) fn header_of(machine: &Machine, protocol: &str, boot: Option<u32>) -> Header {
+    let config = machine.config();
+    let controller = match config.control.controller {
+        ControllerChoice::Published => "published",
+        _ => "contouring",
+    };
+    let header = Header::new()
+        .with_number("baud", config.serial.baud.into())
+        .with_text("protocol", protocol)
+        .with_text("machine", config.name.as_str())
+        .with_text("controller", controller)
+        .with_decimal("x_mm_per_pulse", 1.0 / config.x.counts_per_mm)
+        .with_decimal("y_mm_per_pulse", 1.0 / config.y.counts_per_mm);
+    match boot {
+        Some(boot) => header.with_number("boot", boot.into()),
+        None => header,
+    }
 }
 
 /// How fast a simulated machine's time passes.

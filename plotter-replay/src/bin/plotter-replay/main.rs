@@ -47,8 +47,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// The standard output, with the first failure to write to it. A closed pipe is none: whoever closed it has seen
-/// enough.
+/// The standard output, with the first failure to write to it. A closed pipe is none, and who writes on is told of it: whoever closed
+/// it has seen enough.
 #[derive(Debug, Default)]
 struct Output {
     failure: Option<io::Error>,
@@ -56,9 +56,10 @@ struct Output {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if let Err(error) = io::stdout().write_all(bytes)
-            && error.kind() != io::ErrorKind::BrokenPipe
-        {
+        if let Err(error) = io::stdout().write_all(bytes) {
+            if error.kind() == io::ErrorKind::BrokenPipe {
+                return Err(error);
+            }
             self.failure.get_or_insert(error);
         }
         Ok(bytes.len())

@@ -1,10 +1,10 @@
 //! `replay`: a recording, or the controller again on it, as fast as wanted.
 
-use crate::check::{Traits, controller};
-use crate::commands::{Done, Verdict, cannot, is_free, open, read, say, say_damage, seconds};
-use crate::machine::read_machine;
+use crate::check::Rerunnable;
+use crate::commands::{Contents, Done, Verdict, is_free, open, read, say, say_damage, seconds};
 use clap::Args;
-use plotter_replay::log::{self, Record};
+use plotter_replay::export;
+use plotter_replay::log::{self, Header, Record};
 use plotter_replay::{Decoder, Pace, PaceSettings, Player, Stuck};
 use std::io::{BufRead, Write};
 use std::path::PathBuf;
@@ -52,18 +52,27 @@ fn speed(text: &str) -> Result<f64, String> {
 
 impl Replay {
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
-        let mut traits = Traits::default();
-        let contents = read(&self.log, |record| traits.look(&record.event))?;
-        let header = &contents.header;
-        let machine = self.machine.as_deref().map(|path| read_machine(Some(path))).transpose()?;
-        let records = open(&self.log)?.filter_map(Result::ok);
-        let played: Box<dyn Iterator<Item = Result<Record, Stuck>>> = if self.recorded {
-            Box::new(records.map(Ok))
+        if let Some(to) = self.to.filter(|&to| to < self.from) {
+            return Err(format!(
+                "--to {} s comes before --from {} s",
+                to.as_secs_f64(),
+                self.from.as_secs_f64()
+            ));
+        }
+        let (header, contents, played): (Header, Contents, Box<dyn Iterator<Item = Result<Record, Stuck>>>);
+        if self.recorded {
+            contents = read(&self.log, |_| {})?;
+            header = contents.header.clone();
+            played = Box::new(open(&self.log)?.filter_map(Result::ok).map(Ok));
         } else {
-            let controller = controller(&self.log, header, machine.as_ref())?;
-            let settings = traits.settings(header, controller.makes_steps());
-            Box::new(Player::new(settings).rerun_iter(records, controller))
-        };
+            let log = Rerunnable::read(&self.log, self.machine.as_deref())?;
+            let controller = log.controller()?;
+            let player = Player::new(log.settings(&*controller));
+            header = player.header(&log.contents.header);
+            played = Box::new(player.rerun_iter(log.records(), controller));
+            contents = log.contents;
+        }
+        let header = &header;
         let unwritable = |path: &PathBuf, error: log::WriteError| format!("{}: {error}", path.display());
         let mut writer = match &self.out {
             Some(path) => {
@@ -107,10 +116,12 @@ impl Replay {
             }
             if !is_stepping && !wait.is_zero() {
                 // What was shown is seen before it is waited.
-                out.flush().map_err(|error| cannot("written", "standard output".as_ref(), &error))?;
+                let _ = out.flush(); // what fails here fails at the end, too
                 std::thread::sleep(wait);
             }
-            show(out, &record, &words);
+            if show(out, &record, &words).is_err() && writer.is_none() {
+                break; // whoever closed the pipe has seen enough
+            }
             if is_stepping {
                 let _ = out.flush();
                 let mut key = String::new();
@@ -132,9 +143,8 @@ impl Replay {
     }
 }
 
-fn show(out: &mut impl Write, record: &Record, words: &str) {
+fn show(out: &mut impl Write, record: &Record, words: &str) -> std::io::Result<()> {
     let mut line = Vec::new();
-    // Into memory: cannot fail.
-    let _ = plotter_replay::export::line(record, words, &mut line);
-    let _ = out.write_all(&line);
+    export::line(record, words, &mut line)?;
+    out.write_all(&line)
 }

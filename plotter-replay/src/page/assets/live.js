@@ -125,10 +125,15 @@ function connect() {
     setTimeout(connect, 1000);
   };
 }
-for (const name of ["start", "pause", "resume", "stop", "clear"]) $(name).addEventListener("click", () => ask(name));
+for (const name of ["start", "pause", "resume", "stop", "clear"]) {
+  $(name).addEventListener("click", (event) => {
+    if (event.detail > 0) $(name).blur(); // clicked, not chosen by the keyboard: Space is to pause, not to press it again
+    ask(name);
+  });
+}
 window.addEventListener("keydown", (event) => {
   if (event.key === "Escape") { event.preventDefault(); ask("stop"); return; } // always
-  if (event.ctrlKey || event.altKey || event.metaKey || event.repeat || event.target.tagName === "BUTTON") return;
+  if (event.ctrlKey || event.altKey || event.metaKey || event.repeat || event.target.matches?.("button:enabled")) return;
   const running = last && last.state === "running";
   const command = { Enter: "start", " ": running ? "pause" : "resume", c: "clear" }[event.key];
   if (command) { event.preventDefault(); ask(command); }
