@@ -102,6 +102,10 @@ impl Machine {
         out: &mut Outcomes,
     ) -> Result<(), Error> {
         self.set_modes(line)?;
+        if let ([], Some(Remark::Pen(pen))) = (line.block.words(), line.block.remark()) {
+            self.leave_dot(options, out);
+            out.give(Ok(PlotOp::SelectPen { pen }));
+        }
         if line.tool_change.is_some() {
             let expected = "M6 needs a T before it: which pen";
             let pen = self.tool.ok_or_else(|| Problem::Missing { expected }.at(line.block.position()))?;
@@ -326,14 +330,22 @@ impl Machine {
         if !moves && !line.has(b"Z") {
             return Ok(false);
         }
-        if self.motion == Motion::None {
-            // A canned cycle and its like have been reported already.
-            return if line.notice.is_some() { Ok(false) } else { Err(Problem::NoMotion.at(at)) };
-        }
         let to = Point::new(
             self.coordinate(line, b'X', self.at.x, self.offset.x),
             self.coordinate(line, b'Y', self.at.y, self.offset.y),
         );
+        if self.motion == Motion::None {
+            if line.notice.is_none() {
+                return Err(Problem::NoMotion.at(at));
+            }
+            // A spline and its like have been reported: what follows it is to begin where it would have ended.
+            if moves {
+                self.leave_dot(options, out);
+                out.give(Ok(PlotOp::Travel { to }));
+                (self.at, self.settling) = (to, false);
+            }
+            return Ok(false);
+        }
         let arc = match self.motion {
             Motion::Arc { left } if moves => {
                 Some(self.arc(line, to, left).map_err(|problem| problem.at(at))?)
@@ -365,6 +377,10 @@ impl Machine {
 
     /// Whether the Z of a line puts the pen down.
     fn height(&mut self, line: &Line<'_>, options: &ReadOptions) -> Option<bool> {
+        if line.machine_coordinates && line.has(b"Z") {
+            // Zero is the top there.
+            return Some(false);
+        }
         let unit = if let PenConvention::Height { .. } = options.pen { self.unit_mm } else { 1.0 };
         let z = line.number(b'Z')? * unit;
         self.z = if self.relative { self.z + z } else { z };
