@@ -1,6 +1,6 @@
 //! [`gcode`]: a drawing as a program for GRBL and its like.
 
-use crate::stroke_op::{StrokeOp, stroke_ops};
+use crate::stroke_op::stroke_ops;
 use crate::{Drawing, Scale};
 use core::fmt::Write;
 use plotter_motion::gcode::{WriteError, WriteOptions, Writer};
@@ -36,10 +36,7 @@ pub fn gcode(
             writer.push(select)?;
         }
         for op in stroke_ops(drawing, index, scale) {
-            match op {
-                StrokeOp::Op(op) => writer.push(op)?,
-                StrokeOp::Arc { centre, sweep_rad, to } => writer.arc(centre, sweep_rad, to, None)?,
-            }
+            writer.push(op)?;
         }
     }
     writer.finish().map(drop)
