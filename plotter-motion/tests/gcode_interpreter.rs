@@ -212,6 +212,16 @@ fn a_line_is_carried_out_whole_or_not_at_all() {
 }
 
 #[test]
+fn an_origin_is_set_there_or_here_and_g92_counts_from_it() {
+    assert_eq!(ops("G10 L2 P1 X5 Y7\nG1 X1 Y1\nG53 X1 Y1"), "D6,8 D1,1");
+    assert_eq!(ops("G0 X10 Y10\nG10 L20 P0 X0\nG1 X1 Y1\nG10 P1 L2 X0\nX1"), "U10,10 D11,1 D1,1");
+    assert_eq!(ops("G0 X10\nG92 X0\nG10 L20 P1 X2\nG1 X3\nG92.1\nX0"), "U10,0 D11,0 D-2,0");
+    let other = ops("G10 L2 P2 X5\nG10 L1 P1 R1\nG10 L20 X1\nG1 X1").replace("> ", ">\n");
+    assert_eq!(other.matches("G10 (another coordinate system) is not supported").count(), 3, "{other}");
+    assert!(other.ends_with("D1,0"), "{other}");
+}
+
+#[test]
 fn what_follows_a_spline_begins_where_it_ends() {
     assert_eq!(
         ops("M3\nG1 X1\nG5 I0 J3 P0 Q-3 X5 Y5\nG1 Y9").replace("> ", ">\n"),

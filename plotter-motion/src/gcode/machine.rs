@@ -18,8 +18,9 @@ pub(super) struct Machine {
     at: Point,
     /// Height of the pen as the text counts it: mm, or what a servo makes of it.
     z: f64,
-    /// What is added to a coordinate: `G92`.
+    /// What is added to a coordinate: `G10` and `G92`; and what of it `G10` has set.
     offset: Vec2,
+    origin: Vec2,
     unit_mm: f64,
     relative: bool,
     absolute_centres: bool,
@@ -47,6 +48,7 @@ impl Machine {
             at: Point::ORIGIN,
             z: 0.0,
             offset: Vec2::new(0.0, 0.0),
+            origin: Vec2::new(0.0, 0.0),
             unit_mm: 1.0,
             relative: false,
             absolute_centres: false,
@@ -117,7 +119,8 @@ impl Machine {
             Some(Action::Dwell) => self.dwell(line, options, out)?,
             Some(Action::Home) => self.home(line, options, out),
             Some(Action::Offset) => self.set_offset(line),
-            Some(Action::NoOffset) => self.offset = Vec2::new(0.0, 0.0),
+            Some(Action::NoOffset) => self.offset = self.origin,
+            Some(Action::Origin { here }) => self.set_origin(line, here),
             Some(Action::Other) | None => {}
         }
         if let Some(motion) = line.motion {
@@ -320,6 +323,19 @@ impl Machine {
             self.offset.y = self.at.y - y * self.unit_mm;
         }
         self.z = word(b'Z').unwrap_or(self.z);
+    }
+
+    fn set_origin(&mut self, line: &Line<'_>, here: bool) {
+        // The offset of G92 stays on top of it.
+        let own = self.offset + -self.origin;
+        let number = |letter| line.number(letter).map(|number| number * self.unit_mm);
+        if let Some(x) = number(b'X') {
+            self.origin.x = if here { self.at.x - x - own.x } else { x };
+        }
+        if let Some(y) = number(b'Y') {
+            self.origin.y = if here { self.at.y - y - own.y } else { y };
+        }
+        self.offset = self.origin + own;
     }
 
     /// The movement of a line, if it has one.
