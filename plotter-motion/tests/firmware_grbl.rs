@@ -252,6 +252,20 @@ fn the_button_zero_of_a_sender_sets_the_origin_and_is_told_at_once() {
     );
     bench.ask("G0 X5\n");
     assert_eq!(bench.plotter.position(), StepPoint::new(1314, 1752));
+    // A reset ends the offset of G92 and keeps that of G10.
+    bench.ask("G92 X0\n");
+    let offsets = |bench: &mut Bench| {
+        let told = bench.ask("$#\n");
+        told.lines()
+            .filter(|line| line.starts_with("[G54") || line.starts_with("[G92"))
+            .map(str::to_owned)
+            .collect()
+    };
+    let before: Vec<String> = offsets(&mut bench);
+    assert_eq!(before, ["[G54:10.000,20.000,0.000]", "[G92:5.000,0.000,0.000]"]);
+    bench.ask("\u{18}");
+    let after: Vec<String> = offsets(&mut bench);
+    assert_eq!(after, ["[G54:10.000,20.000,0.000]", "[G92:0.000,0.000,0.000]"]);
 }
 
 #[test]

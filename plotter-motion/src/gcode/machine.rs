@@ -71,6 +71,7 @@ impl Machine {
         Modes {
             position: self.at,
             offset: self.offset,
+            origin: self.origin,
             inches: self.unit_mm != 1.0,
             relative: self.relative,
             motion: match self.motion {
@@ -90,6 +91,12 @@ impl Machine {
             tool: self.tool.unwrap_or(0),
             pen_down: self.pen_down,
         }
+    }
+
+    /// As switched on, but that the origin set by `G10` stays.
+    pub(super) fn reset(&mut self) {
+        let origin = self.origin;
+        *self = Self { origin, offset: origin, ..Self::new() };
     }
 
     pub(super) fn stand_at(&mut self, point: Point) {
