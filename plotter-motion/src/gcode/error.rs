@@ -21,7 +21,7 @@ pub enum Problem {
         /// What stands there.
         byte: u8,
     },
-    /// A loop or a subprogram, as LinuxCNC has them. What is in it is carried out once, where it stands.
+    /// A loop or a subprogram, as `LinuxCNC` has them. What is in it is carried out once, where it stands.
     Control {
         /// The `O` with its number.
         number: Word,

@@ -10,7 +10,7 @@ const MOST: f64 = 1e9;
 /// Commands whose words are a text for people, or the name of a file.
 const TEXT_COMMANDS: [f64; 3] = [23.0, 117.0, 118.0];
 
-/// How `sub`, `endsub`, `call`, `if`, `do`, `while`, `repeat`, `break` and `return` begin, which LinuxCNC has after an `O` with its
+/// How `sub`, `endsub`, `call`, `if`, `do`, `while`, `repeat`, `break` and `return` begin, which `LinuxCNC` has after an `O` with its
 /// number.
 const CONTROL_WORDS: &[u8] = b"SECIDWRB";
 
