@@ -40,13 +40,18 @@ pub fn svg_drawing(bytes: &[u8], tolerance_mm: f64) -> Result<SvgOps, String> {
         };
         read_svg(bytes, &SvgOptions { pens, ..options }).map_err(error)
     };
-    let mut svg = read(SvgPens::ByLayer)?;
-    let numbers: Option<Vec<u8>> = svg.pens.iter().map(|pen| pen_of_group(&pen.name)).collect();
-    let numbers = match numbers.filter(|numbers| !numbers.is_empty()) {
-        Some(numbers) => numbers,
+    let may_name_pens = bytes.windows(PEN_GROUP.len()).any(|word| word == PEN_GROUP.as_bytes());
+    let by_groups = if may_name_pens { Some(read(SvgPens::ByLayer)?) } else { None };
+    let by_groups = by_groups.and_then(|svg| {
+        let numbers: Option<Vec<u8>> = svg.pens.iter().map(|pen| pen_of_group(&pen.name)).collect();
+        numbers.filter(|numbers| !numbers.is_empty()).map(|numbers| (svg, numbers))
+    });
+    let (svg, numbers) = match by_groups {
+        Some(found) => found,
         None => {
-            svg = read(SvgPens::ByColour)?;
-            svg.pens.iter().map(|pen| pen.number).collect()
+            let svg = read(SvgPens::ByColour)?;
+            let numbers = svg.pens.iter().map(|pen| pen.number).collect();
+            (svg, numbers)
         }
     };
     let most_pen = numbers.iter().copied().max().unwrap_or(0);

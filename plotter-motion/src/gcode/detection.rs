@@ -82,7 +82,8 @@ impl Places {
 ///
 /// A servo or a Z axis is up where it is at the first `G0` across the sheet, or else at the first movement; if it had not been
 /// told a place by then, the first place it is told is down, and of heights the highest is up. The other place is the one farthest
-/// from that; of heights, the lowest. `G53` tells no height. Heights above and below 0 are told apart there, others half way between the lowest and the lowest `G0`.
+/// from that; of heights, the lowest. `G53` tells no height. Heights above and below 0 are told apart there, others half way
+/// between the lowest and the lowest `G0`.
 ///
 /// The full power of a laser is 1000, as GRBL has it, or the greatest `S` if that is more; 255 for a fan and for mDraw.
 /// `G4 P` counts milliseconds if every P is a whole number from 20 up, or 0.

@@ -98,9 +98,9 @@
 //! | `N`, `O`, `%` | | nothing |
 //!
 //! Nothing is done for `G17 G40 G49 G54`…`G59.3 G61 G64 G94`, coolant, drives (`M17 M18 M84`), and questions and settings of
-//! printers and of mDraw; what else is known by name is reported as [`Problem::Unsupported`], a notice; the end of a spline is gone to with the pen
-//! up, so that what follows stands where it should. All `G` and `M`
-//! words of a line are done, but two that exclude each other are an error.
+//! printers and of mDraw; what else is known by name is reported as [`Problem::Unsupported`], a notice; the end of a spline is
+//! gone to with the pen up, so that what follows stands where it should. All `G` and `M` words of a line are done, but two that
+//! exclude each other are an error.
 //!
 //! # Bad input
 //!

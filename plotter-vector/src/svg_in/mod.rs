@@ -251,12 +251,12 @@ impl core::error::Error for SvgError {}
 
 /// Reads a drawing from the text of an SVG file.
 ///
-/// Shapes, paths, `use`, groups, nested `svg`, style sheets, transforms, `viewBox` and units (mm, in, pt, px at 96 an
-/// inch) are resolved as the format says. A shape is drawn along its stroke, however wide; one without a stroke along
-/// the border of its fill, once. Curves become chords, or arcs where [`SvgOptions::arcs`] asks for them, dashes strokes, markers shapes; a line of no length with round
-/// or square caps is a dot. What is hidden (`display`, `visibility`, opacity 0, no paint) is not drawn, nor is what has the
-/// colour of the paper. The colour of a gradient is that of its first visible stop, of a pattern black. What no pen
-/// draws is counted in [`SvgLeftOut`]. Other files are never opened.
+/// Shapes, paths, `use`, groups, nested `svg`, style sheets, transforms, `viewBox` and units (mm, in, pt, px at 96 an inch) are
+/// resolved as the format says. A shape is drawn along its stroke, however wide; one without a stroke along the border of its
+/// fill, once. Curves become chords, or arcs where [`SvgOptions::arcs`] asks for them, dashes strokes, markers shapes; a line of
+/// no length with round or square caps is a dot. What is hidden (`display`, `visibility`, opacity 0, no paint) is not drawn, nor
+/// is what has the colour of the paper. The colour of a gradient is that of its first visible stop, of a pattern black. What no
+/// pen draws is counted in [`SvgLeftOut`]. Other files are never opened.
 ///
 /// Coordinates are parsed in single precision: to 0.001 px or 0.0003 mm up to 4 m from the origin. Arcs are first
 /// made into cubic curves that are 0.03 % of the radius off at most, and no more than 0.1 of the file's units; that
