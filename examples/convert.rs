@@ -35,9 +35,9 @@ const SVG_MOST_MM: f64 = 100_000.0;
 /// Converts a drawing between HPGL, G-code, SVG and the thesis' text.
 ///
 /// Lines and arcs, pens, speeds and pauses are converted as far as the target knows them. Arcs stay arcs in HPGL (AA), G-code (G2,
-/// G3) and SVG (A). Of SVG strokes are read, in mm by width, height and viewBox, with the lower left corner as the origin: each
-/// colour is a pen, 1, 2, … in the order in which they come; fills are left out with a notice. In SVG written here each pen is a
-/// group.
+/// G3) and SVG (A). SVG is read in mm by width, height and viewBox, with the lower left corner as the origin: along strokes, and
+/// along the border of what is only filled; each colour is a pen, 1, 2, … in the order in which they come. In SVG written here each
+/// pen is a group, and is that pen when it is read again.
 #[derive(Debug, Parser)]
 #[command(
     name = "convert",
@@ -238,6 +238,9 @@ struct Writer<'a> {
     path: &'a Path,
     /// Why the sink, which the target keeps to itself, has refused text.
     failure: Rc<RefCell<Option<io::Error>>>,
+    has_drawn: bool,
+    /// The line at which a new sheet was asked for, on which nothing has been drawn yet.
+    sheet_owed: Option<Option<u32>>,
     /// What has been said once already.
     said_pens: bool,
     said_pages: bool,
@@ -307,6 +310,8 @@ impl<'a> Writer<'a> {
             counts_per_mm: arguments.counts_per_mm,
             path,
             failure,
+            has_drawn: false,
+            sheet_owed: None,
             said_pens: false,
             said_pages: false,
             said_dwells: false,
@@ -315,8 +320,28 @@ impl<'a> Writer<'a> {
         })
     }
 
-    /// Writes an operation, or says why not.
+    /// Takes the next operation. Plotters that advance their paper do so when they are told; nobody is asked for a sheet before
+    /// something is drawn on it, nor before anything has been drawn at all.
     fn push(&mut self, op: PlotOp, line: Option<u32>, at: &mut At, said: &mut Diagnostics) {
+        let advances = matches!(self.target, Target::Hpgl(_));
+        match op {
+            PlotOp::NewPage if !advances => {
+                self.sheet_owed = self.has_drawn.then_some(line);
+                return;
+            }
+            PlotOp::Draw { .. } | PlotOp::DrawArc { .. } => {
+                self.has_drawn = true;
+                if let Some(line) = self.sheet_owed.take() {
+                    self.put(PlotOp::NewPage, line, at, said);
+                }
+            }
+            _ => {}
+        }
+        self.put(op, line, at, said);
+    }
+
+    /// Writes an operation, or says why not.
+    fn put(&mut self, op: PlotOp, line: Option<u32>, at: &mut At, said: &mut Diagnostics) {
         let from = at.place;
         at.place = op.target().unwrap_or(from);
         if let Some((is_said, text)) = self.unknown(op) {

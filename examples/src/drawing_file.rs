@@ -1,6 +1,6 @@
 //! [`DrawingFile`]: a drawing in any of the languages, read as plot operations and diagnostics.
 
-use crate::{Language, at, svg_strokes};
+use crate::{Language, at, svg_drawing};
 use plotter_motion::hpgl::thesis_text;
 use plotter_motion::{PlotOp, gcode, hpgl};
 use serde::Serialize;
@@ -197,10 +197,10 @@ impl DrawingFile {
                     Source::Held(bytes) => bytes.clone(),
                     Source::File(path) => crate::read_file(path)?,
                 };
-                let strokes = svg_strokes(&bytes, how.tolerance_mm)
+                let drawing = svg_drawing(&bytes, how.tolerance_mm)
                     .map_err(|error| format!("{}: {error}", self.name))?;
-                colours = strokes.colours;
-                Box::new(strokes.diagnostics.into_iter().map(Err).chain(strokes.ops.into_iter().map(Ok)))
+                colours = drawing.colours;
+                Box::new(drawing.diagnostics.into_iter().map(Err).chain(drawing.ops.into_iter().map(Ok)))
             }
         };
         Ok(Ops { inner, place, colours, failed: false })

@@ -25,10 +25,16 @@ const COLOURS: [[u8; 3]; 8] = [
 /// Colour of a pen as an SVG has it: one that the drawing says, else one of a carousel of eight.
 #[must_use]
 pub fn pen_colour(pen: u8, colours: &[[u8; 3]]) -> String {
-    let index = usize::from(pen.saturating_sub(1));
-    let [red, green, blue] =
-        colours.get(index).or_else(|| COLOURS.get(index % COLOURS.len())).copied().unwrap_or_default();
+    let own = colours.get(usize::from(pen.saturating_sub(1))).copied();
+    let [red, green, blue] = own.unwrap_or_else(|| usual_colour(pen));
     format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+/// Colour of a pen of which none is known: red, green, blue.
+#[must_use]
+pub fn usual_colour(pen: u8) -> [u8; 3] {
+    let index = usize::from(pen.saturating_sub(1));
+    COLOURS.get(index % COLOURS.len()).copied().unwrap_or_default()
 }
 
 /// Gathers the places of a pen, step by step, as paths of straight lines that are no farther than a tolerance from them.

@@ -89,7 +89,7 @@ impl SvgText {
             self.grow(place);
         }
         let large = u8::from(sweep_rad.abs() > 0.5 * TAU);
-        // The group turns the picture upside down, and the sense of arcs with it.
+        // The pen's group turns the picture upside down, and the sense of arcs with it.
         let positive = u8::from(sweep_rad > 0.0);
         let (radius, x, y) = (short(radius_mm), short(to.x), short(to.y));
         let _ = write!(self.stroke, "A{radius} {radius} 0 {large} {positive} {x} {y}");
@@ -127,9 +127,7 @@ impl SvgText {
         let width = (most.x - corner.x + PEN_MM).ceil().max(1.0);
         let height = (most.y - corner.y + PEN_MM).ceil().max(1.0);
         let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"{} {} {} {}\">\n\
-             <g transform=\"scale(1 -1)\" fill=\"none\" stroke-width=\"{PEN_MM}\" stroke-linecap=\"round\" \
-             stroke-linejoin=\"round\">\n",
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"{} {} {} {}\">\n",
             short(width),
             short(height),
             short(corner.x),
@@ -138,10 +136,14 @@ impl SvgText {
             short(height)
         );
         for (pen, strokes) in &self.pens {
-            let _ =
-                writeln!(svg, "<g id=\"pen-{pen}\" stroke=\"{}\">\n{strokes}</g>", pen_colour(*pen, colours));
+            let colour = pen_colour(*pen, colours);
+            let _ = writeln!(
+                svg,
+                "<g id=\"pen-{pen}\" transform=\"scale(1 -1)\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{PEN_MM}\" \
+                 stroke-linecap=\"round\" stroke-linejoin=\"round\">\n{strokes}</g>"
+            );
         }
-        svg.push_str("</g>\n</svg>\n");
+        svg.push_str("</svg>\n");
         svg
     }
 }
@@ -169,7 +171,11 @@ mod tests {
         text.push(PlotOp::DrawArc { centre: Point::new(15.5, 5.0), sweep_rad: quarter, to, feed_mm_s: None });
         let svg = text.finish(&[]);
         assert!(svg.contains("width=\"21mm\" height=\"11mm\" viewBox=\"0 -11 21 11\""), "{svg}");
-        assert!(svg.contains("<g id=\"pen-2\" stroke=\"#c62828\">\n<path d=\"M10 5L20.5 5\"/>"), "{svg}");
+        assert!(
+            svg.contains("<g id=\"pen-2\" transform=\"scale(1 -1)\" fill=\"none\" stroke=\"#c62828\""),
+            "{svg}"
+        );
+        assert!(svg.contains("<path d=\"M10 5L20.5 5\"/>"), "{svg}");
         assert!(svg.contains("<path d=\"M20.5 5A5 5 0 0 1 15.5 10\"/>"), "{svg}");
     }
 

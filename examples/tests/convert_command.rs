@@ -99,6 +99,56 @@ fn svg_and_hpgl_keep_strokes_and_pens() {
 }
 
 #[test]
+fn every_language_becomes_every_other_one() {
+    let folder = Folder::new();
+    // Two pens, of which one is not the next; an arc, a circle, a curve, letters, a dot; a sheet that is put out at the end.
+    let hpgl = "IN;SP1;PU400,400;PD800,400,811,1203;PU1000,1000;CI300;PU500,2000;PD;AA900,2000,-135;PU3000,100;PD;PU;SP4;\
+                PU2000,2000;SI0.5,0.7;LBHi!\x03;PU3000,3000;PD;BZ3500,3000,3500,3500,4000,3500;PU;SP0;PG;";
+    let original = folder.write("a.plt", hpgl);
+    let suffixes = ["plt", "gcode", "svg", "txt"];
+    let files = suffixes.map(|suffix| match suffix {
+        "plt" => original.clone(),
+        _ => folder.convert(&original, &format!("a.{suffix}"), &[]).0,
+    });
+    let pens = |path: &str| strokes(path).iter().map(|(pen, _)| *pen).collect::<Vec<u8>>();
+    let all_in =
+        |path: &str| strokes(path).into_iter().map(|(_, places)| (1, places)).collect::<Vec<Stroke>>();
+    assert_eq!(pens(&original).last(), Some(&4));
+    for (from, file) in suffixes.iter().zip(&files) {
+        for to in suffixes.iter().filter(|to| *to != from) {
+            let (other, text, said) = folder.convert(file, &format!("{from}.{to}"), &[]);
+            let one_pen = [from, to].iter().any(|suffix| **suffix == "txt");
+            let most = farthest_mm(&all_in(file), &all_in(&other));
+            assert!(most < 1.5 * UNIT_MM, "{from} to {to}: {most}");
+            assert!(one_pen || pens(&other) == pens(&original), "{from} to {to}");
+            assert!(!text.contains("new sheet") && !said.contains("sheet"), "{from} to {to}: {said}");
+            let loses_pens = **to == *"txt";
+            assert_eq!(said.contains("one pen"), loses_pens, "{from} to {to}: {said}");
+        }
+    }
+}
+
+#[test]
+fn a_sheet_is_asked_for_once_something_is_drawn_on_it() {
+    let folder = Folder::new();
+    let original = folder.write("a.plt", "IN;PG;PU400,400;PD800,400;PG;PG;PU;PU0,400;PD400,400;PU;PG;");
+    let (_, text, _) = folder.convert(&original, "a.gcode", &[]);
+    assert_eq!(text.matches("M0 (new sheet)").count(), 1, "{text}");
+    let (_, _, said) = folder.convert(&original, "a.svg", &[]);
+    assert!(said.contains("line 1: the target has no sheets"), "{said}");
+}
+
+#[test]
+fn nobody_waits_for_the_pen_that_draws_first() {
+    let folder = Folder::new();
+    let original = folder.write("a.plt", "IN;SP3;PU400,400;PD800,400;SP5;PD800,800;PU;SP0;");
+    let (gcode, text, _) = folder.convert(&original, "a.gcode", &[]);
+    assert!(text.contains("\n(pen 3)\n") && text.matches("M0").count() == 1, "{text}");
+    let (_, back, _) = folder.convert(&gcode, "b.plt", &[]);
+    assert!(back.contains("SP3;") && back.contains("SP5;"), "{back}");
+}
+
+#[test]
 fn thesis_text_is_counts_and_chords() {
     let folder = Folder::new();
     let original = folder.write("a.plt", "IN;SP2;PU400,400;PD800,400;PD;AA800,800,90;PU;");
@@ -144,14 +194,13 @@ fn what_svg_has_and_plotters_lack_is_said() {
     let svg = folder.write(
         "a.svg",
         "<svg xmlns='http://www.w3.org/2000/svg' width='4in' height='96' viewBox='0 0 384 96'>\n\
-         <text x='3' y='9'>words</text>\n<rect width='9' height='9'/>\n\
+         <text x='3' y='9'>words</text>\n\
          <path d='M0 96 L96 0' stroke='red'/><path d='M96 96 C150 96 96 0 192 0' stroke='blue' fill='none'/></svg>",
     );
     let (_, text, said) = folder.convert(&svg, "a.hpgl", &[]);
     assert!(text.starts_with("IN;\nSP1;\nPU0,0;\nPD1016,1016;\n"), "{text}");
     assert!(text.contains("SP2;\nPU1016,0;\n"), "{text}");
-    assert!(said.contains("a.svg: line 2, column 1: text is left out"), "{said}");
-    assert!(said.contains("1 shape is filled without a stroke"), "{said}");
+    assert!(said.contains("a.svg: line 2: a text is left out"), "{said}");
 }
 
 #[test]
@@ -159,7 +208,7 @@ fn places_out_of_reach_are_left_out_of_every_language() {
     let folder = Folder::new();
     let far = folder.write(
         "far.svg",
-        "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0H40V1e30H9V8' stroke='red'/></svg>",
+        "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0H40V900000H9V8' stroke='red' fill='none'/></svg>",
     );
     for to in ["a.plt", "a.nc", "a.txt", "b.svg"] {
         let (_, text, said) = folder.convert(&far, to, &[]);

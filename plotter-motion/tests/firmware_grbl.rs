@@ -241,6 +241,34 @@ fn an_offset_by_g92_is_told_and_a_stream_of_short_lines_runs_through() {
 }
 
 #[test]
+fn the_button_zero_of_a_sender_sets_the_origin_and_is_told_at_once() {
+    let mut bench = bench();
+    bench.ask("G0 X10 Y20\n??");
+    assert_eq!(bench.ask("G10 P0 L20 X0 Y0 Z0\n"), "ok\r\n");
+    // 10 mm are 875.8 steps, and 876 steps 10.002 mm.
+    assert_eq!(
+        bench.ask("?"),
+        "<Idle|MPos:10.002,20.005,0.000|Bf:15,128|FS:0,0|WCO:10.000,20.000,0.000>\r\n"
+    );
+    bench.ask("G0 X5\n");
+    assert_eq!(bench.plotter.position(), StepPoint::new(1314, 1752));
+    // A reset ends the offset of G92 and keeps that of G10.
+    bench.ask("G92 X0\n");
+    let offsets = |bench: &mut Bench| {
+        let told = bench.ask("$#\n");
+        told.lines()
+            .filter(|line| line.starts_with("[G54") || line.starts_with("[G92"))
+            .map(str::to_owned)
+            .collect()
+    };
+    let before: Vec<String> = offsets(&mut bench);
+    assert_eq!(before, ["[G54:10.000,20.000,0.000]", "[G92:5.000,0.000,0.000]"]);
+    bench.ask("\u{18}");
+    let after: Vec<String> = offsets(&mut bench);
+    assert_eq!(after, ["[G54:10.000,20.000,0.000]", "[G92:0.000,0.000,0.000]"]);
+}
+
+#[test]
 fn a_feed_next_to_nothing_still_moves() {
     let mut bench = bench();
     bench.send("M3\nG1 X1 F0.0000001\n");

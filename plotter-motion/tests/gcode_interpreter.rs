@@ -169,6 +169,8 @@ fn a_laser_draws_by_g1_while_it_has_power() {
 #[test]
 fn tools_pauses_and_ends() {
     assert_eq!(ops("T2 M6\nT3\nG1 X1\nM6\nM0 (pen 4)\nM0 (New sheet)\nM6"), "S2 D1,0 S3 S4 N S3");
+    // A pen is named in a line of its own too, or it is a remark.
+    assert_eq!(ops("(pen 2)\nG1 X1 (pen 3)\n; pen 4\n(new sheet)\n(pen 5 is red)"), "S2 D1,0 S4");
     // The end sets back what GRBL does, and what follows is drawn as well.
     assert_eq!(by(ReadOptions::default(), "M3\nG91 G0 X1\nM2\nX3\n%\nM3\nX4"), "D1,0 U3,0 D4,0");
     let named =
@@ -203,10 +205,34 @@ fn a_line_is_carried_out_whole_or_not_at_all() {
     <line 8, column 4 (byte 63): X lacks its number: a word is like `X10`>
     D0,2 <line 9, column 7 (byte 71): E5 means nothing to the commands of its line and is left out>
     <line 10, column 1 (byte 77): G77 is no known command: check its number>
-    <line 11, column 1 (byte 81): G81 (canned cycle) is not supported and is left out>
+    U1,2 <line 11, column 1 (byte 81): G81 (canned cycle) is not supported and is left out>
     <line 12, column 1 (byte 92): coordinates that no command asks for: put G0 or G1 before them>
     U3,2 <line 15, column 4 (byte 109): M5 excludes M3, which stands before it: divide the line>
     "#);
+}
+
+#[test]
+fn an_origin_is_set_there_or_here_and_g92_counts_from_it() {
+    assert_eq!(ops("G10 L2 P1 X5 Y7\nG1 X1 Y1\nG53 X1 Y1"), "D6,8 D1,1");
+    assert_eq!(ops("G0 X10 Y10\nG10 L20 P0 X0\nG1 X1 Y1\nG10 P1 L2 X0\nX1"), "U10,10 D11,1 D1,1");
+    assert_eq!(ops("G0 X10\nG92 X0\nG10 L20 P1 X2\nG1 X3\nG92.1\nX0"), "U10,0 D11,0 D-2,0");
+    let other = ops("G10 L2 P2 X5\nG10 L1 P1 R1\nG10 L20 X1\nG1 X1").replace("> ", ">\n");
+    assert_eq!(other.matches("G10 (another coordinate system) is not supported").count(), 3, "{other}");
+    assert!(other.ends_with("D1,0"), "{other}");
+}
+
+#[test]
+fn what_follows_a_spline_begins_where_it_ends() {
+    assert_eq!(
+        ops("M3\nG1 X1\nG5 I0 J3 P0 Q-3 X5 Y5\nG1 Y9").replace("> ", ">\n"),
+        "D1,0 U5,5 <line 3, column 1 (byte 9): G5 (spline) is not supported and is left out>\nD5,9"
+    );
+}
+
+#[test]
+fn a_height_of_the_machine_is_above_the_sheet() {
+    let z = ReadOptions { pen: PenConvention::Height { threshold_mm: 0.0 }, ..Default::default() };
+    assert_eq!(by(z, "G53 G0 Z0\nG0 X1\nZ0\nG1 X2\nG53 G0 Z0\nG0 X3"), "U1,0 D2,0 U3,0");
 }
 
 #[test]

@@ -159,3 +159,36 @@ fn a_text_that_is_cut_off_keeps_what_is_whole() {
         plot_ops(b"G1 X20\nG1 X").filter_map(Result::err).map(|error| error.to_string()).collect();
     assert_eq!(reports, ["line 2, column 4 (byte 10): X lacks its number: a word is like `X10`"]);
 }
+
+#[test]
+fn fusion_retracts_in_machine_coordinates() {
+    let text = "%\nO01001 (FLAG)\nN10 G90 G94 G17 G91.1\nN15 G21\nN20 G53 G0 Z0.\n\nN25 T1 M6\nN30 S5000 M3\nN35 G54\n\
+        N40 G0 X10. Y10.\nN45 G43 Z15. H1\nN47 G0 Z5.\nN50 G1 Z0. F333.\nN55 X20. F1000.\nN60 G2 X25. Y5. I0. J-5.\nN65 G0 Z15.\n\
+        N70 M5\nN75 G53 G0 Z0.\nN85 G28 G91 X0. Y0.\nN90 G90\nN95 M30\n%\n";
+    is_read_as(text, PenConvention::Height { threshold_mm: 0.0 }, "[10 10]-20 10~25 5");
+}
+
+#[test]
+fn a_height_without_a_way_is_none() {
+    // A probe and a tool's length have a Z; the pen is lifted by its servo.
+    let text = "G21 G90\nG38.2 Z-10 F100\nG43.1 Z1\nM5\nG0 X10 Y10\nM3 S90\nG1 X20 F600\nM5\nM2\n";
+    is_read_as(text, PenConvention::Spindle, "[10 10]-20 10");
+}
+
+#[test]
+fn linuxcnc_with_what_only_it_reckons() {
+    let text = "%\n(AXIS)\nG21 G90 G64 P0.01 G17 G40 G49\nG54\n#<zsafe> = 5\nO100 sub\nO100 endsub\nT1 M6 (one)\nG0 Z5\n\
+        G0 X10 Y10\nG1 Z-1 F100\nG1 X20\nG2 X30 Y10 R5\nG3 X40 Y10 I5 J0 P1\nG0 Z5\nO100 call\nM2\n%\n";
+    let strokes = "<line 5, column 1 (byte 43): `#` begins a variable, which is not reckoned here: have the numbers written out>\
+        <line 6, column 1 (byte 56): O100 controls a loop or a subprogram, which is not done here: have it written out>\
+        <line 7, column 1 (byte 65): O100 controls a loop or a subprogram, which is not done here: have it written out>\
+        [10 10]-20 10~30 10~40 10\
+        <line 16, column 1 (byte 165): O100 controls a loop or a subprogram, which is not done here: have it written out>";
+    is_read_as(text, PenConvention::Height { threshold_mm: 0.0 }, strokes);
+}
+
+#[test]
+fn lower_case_without_blanks_and_ways() {
+    let text = "g21\r\ng90\r\nm5\r\ng0x10y10\r\nm3s90\r\ng1x20.5y10f600\r\nx30\r\ng91\r\nx-5.y-.5\r\ng90g3x10y10r20\r\nm5\r\n";
+    is_read_as(text, PenConvention::Spindle, "[10 10]-20.5 10-30 10-25 9.5~10 10");
+}

@@ -232,6 +232,14 @@ fn farthest(of: &[Segment], from: &[Segment]) -> (f64, Point) {
     all.fold((0.0, Point::ORIGIN), |worst, next| if next.0 > worst.0 { next } else { worst })
 }
 
+fn has_hp2xx() -> bool {
+    let is_there = Command::new("hp2xx").arg("-v").stdin(Stdio::null()).output().is_ok();
+    if !is_there {
+        eprintln!("skipped: hp2xx is not installed");
+    }
+    is_there
+}
+
 /// The real files by name; none where they or hp2xx are not at hand.
 fn files() -> io::Result<Vec<(String, PathBuf)>> {
     let collection = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/real/hpgl"));
@@ -239,8 +247,7 @@ fn files() -> io::Result<Vec<(String, PathBuf)>> {
         eprintln!("skipped: there is no collection of real files beside the checkout");
         return Ok(Vec::new());
     }
-    if Command::new("hp2xx").arg("-v").stdin(Stdio::null()).output().is_err() {
-        eprintln!("skipped: hp2xx is not installed");
+    if !has_hp2xx() {
         return Ok(Vec::new());
     }
     let mut files: Vec<PathBuf> =
@@ -305,6 +312,48 @@ fn what_is_written_is_drawn_by_hp2xx_in_every_layout() -> io::Result<()> {
             let text = writer.finish().expect("a string takes all");
             let name = format!("{name}, {coordinates:?}");
             wrong.extend(compared(&name, text.as_bytes(), &folder("written"), TOLERANCE_UNITS)?.err());
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    Ok(())
+}
+
+/// Texts in the habits of programs and people, written for this test, of which hp2xx reads the whole.
+const MANNERS: [(&str, &[u8]); 21] = [
+    ("Inkscape", b"IN;SP1;PU0,0;PU400,1200;PD400,2000,1400,2000,1400,1200,400,1200;PU2000,1000;PD2400,1600,2800,1000;PU0,0;SP0;IN; "),
+    ("Inkscape, relative", b"IN;SP1;PU0,0;PR;PU400,1200;PD0,800,1000,0,0,-800,-1000,0;PU1600,-200;PD400,600,400,-600;PA;PU0,0;SP0;"),
+    ("pstoedit", b"IN;SC;PU;PU;SP1;LT;VS10\nSP2;PU762,1016;PD762,3048;PD2794,3048;PD2794,1016;PD762,1016;\nSP1;PU1000,1200;PD1500,1250;\n\
+                   PU;SP;EC;PG1;EC1;OE\n"),
+    ("QCad", b"\x1b%-1BBPIN;SP1;PA;PU1000,1000;PD5000,1000;PD5000,4000;PU3000,2500;CI600;PU2000,2000;AA1500,2000,90;PU;SP0;PG;"),
+    ("Eagle", b"IN;IP0,0,10160,7620;SC0,100000,0,75000;SP1;VS5;LT;PA;PU 12700,25400;PD 50800,25400;PD 50800 50800;PU;SP2;\
+                PA 10000 10000 PD 20000 20000PU;SP0;"),
+    ("KiCad", b"IN;VS20;PU;PA;SP1;\nPU 1000,1000;PD 1000,3000;PD 3000,3000;PU 3500,2000;CI 300;PU;PA 500,500;AA 900,500,120.00,5;\nPU;PA 0,0;SP0;\n"),
+    ("CorelDRAW", b"\x03;IN;VS32,1;VS32,2;WU0;PW0.350,1;LT;SP1;PU2000 3000;PD2500 3000 2500 3500 2000 3500 2000 3000;PU0 0;SP0;"),
+    ("a cutter", b"\x03IN;PA;!ST1;!FS100;VS10;FS80;PU100,200;PD1000,200;PD1000,1000;PU;PA0,0;!PG;SP0;"),
+    ("BASIC on a 7475A", b"\x1b.(\x1b.I81;;17:\x1b.N;19:\x1b.@;0:IN;SP1;PA 1000,1000;PD;PA 2000,1000\x1b.L;PA 2000,2000;PU;\x1b.Y\r\nSP 0\r\n\x1b.)"),
+    ("signs for separators", b"IN SP1 PA100-200 PD300-200,300+400 PU PA-50+60PD0,0PU"),
+    ("vpype", b"IN;DF;PS4;SP1;PU6000,4000;PD6500,4500,7000,4000;PU;PU3000,3000;PD3000,3500;PU;SP0;IN;"),
+    ("decimals", b"IN;SP1;PU10.5,.5;PD400.25,.75,800.,+300.5;PR.5,-.5;PA;PU;"),
+    ("no separators", b"INSP1PU400 400PD800 400 800 800PUPA1000 1000PDPR100 0 0 100PU"),
+    ("lower case", b"in;sp1;pu400,400;pd800,400,800,800;pu;pa1000,1000;ci200;sp0;"),
+    ("SC, isotropic", b"IN;IP1000,1000,9000,5000;SC0,100,0,100,1;SP1;PU0,0;PD100,0,100,100,0,100,0,0;PU;"),
+    ("SC, isotropic, to the left", b"IN;IP1000,1000,9000,5000;SC0,100,0,100,1,0,0;SP1;PU0,0;PD100,0,100,100,0,100,0,0;PU;"),
+    ("SC, isotropic, to the right", b"IN;IP1000,1000,9000,5000;SC0,100,0,100,1,100,50;SP1;PU0,0;PD100,0,100,100,0,100,0,0;PU;"),
+    ("SC, by a point and factors", b"IN;IP1000,1000,9000,5000;SC0,40,0,20,2;SP1;PU0,0;PD100,0,100,100,0,100,0,0;PU;"),
+    ("SC, mirrored and off", b"IN;IP1000,1000,9000,5000;SC100,0,0,50;SP1;PU0,0;PD100,0,100,50;PU;SC;PU20,20;PD500,600;PU;"),
+    ("arcs", b"IN;SP1;PA2000,2000;PD;AA3000,2000,180;AR0,1000,-90;PU;PA6000,3000;PD;AA5000,3000,360;PU;PA500,500;PD;AA500,1500,-45,15;PU;"),
+    ("rectangles", b"IN;SP1;PA1000,1000;EA2000,3000;ER500,500;PU3000,3000;EA2500,2500;PU4000,1000;ER-200,700;PU;RO90;PU500,500;PD900,500;PU;"),
+];
+
+#[test]
+fn texts_in_the_manner_of_programs_are_where_hp2xx_draws_them() -> io::Result<()> {
+    let mut wrong = Vec::new();
+    for (name, text) in MANNERS {
+        let complaints: Vec<String> =
+            plot_ops(text).filter_map(Result::err).map(|error| error.to_string()).collect();
+        assert_eq!(complaints, Vec::<String>::new(), "{name}");
+        if has_hp2xx() {
+            wrong.extend(compared(name, &prepared(text, &[]), &folder("manners"), TOLERANCE_UNITS)?.err());
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

@@ -107,6 +107,12 @@ fn garbage_between_commands_is_reported_once() {
 }
 
 #[test]
+fn what_editors_and_cutters_add_is_passed_over() {
+    assert_eq!(events(b"\xEF\xBB\xBFPU;"), "PU.");
+    assert_eq!(events(b"!ST1;PU;!FS80\nPD1,2;!PG;"), "PU. PD 1 2.");
+}
+
+#[test]
 fn a_truncated_text_says_what_is_missing() {
     let ends: Vec<String> = [
         &b"P"[..],

@@ -2,6 +2,7 @@
 
 use crate::Curve;
 use crate::curve::{CHORD_ERROR_PX, Course, are_handles, is_bulge};
+use crate::stroke_op::stroke_ops;
 use core::fmt;
 use plotter_motion::{PlotOp, Point};
 use std::borrow::Cow;
@@ -333,6 +334,24 @@ impl Drawing {
             let rest = (1..stroke.len()).filter_map(move |vertex| stroke.get(vertex).copied());
             select.into_iter().chain(travel).chain(rest.chain(dot).map(draw))
         })
+    }
+
+    /// The same, but that arcs stay arcs: [`PlotOp::DrawArc`].
+    ///
+    /// ```
+    /// # use plotter_vector::{Curve, Drawing, PxPoint, Scale};
+    /// use plotter_motion::{PlotOp, Point};
+    /// let vertices = vec![PxPoint::new(2.0, 10.0), PxPoint::new(18.0, 10.0)];
+    /// let mut drawing = Drawing::new(20, 10);
+    /// drawing.push_curve(1, Curve { vertices, bulges: vec![1.0], ..Curve::default() }); // half a circle over the top
+    /// let ops: Vec<PlotOp> = drawing.plot_ops_with_arcs(Scale::new(10, 0.5, Point::ORIGIN)?).collect();
+    /// let (centre, to) = (Point::new(5.0, 0.0), Point::new(9.0, 0.0));
+    /// assert_eq!(ops[1], PlotOp::DrawArc { centre, sweep_rad: -std::f64::consts::PI, to, feed_mm_s: None });
+    /// # Ok::<(), plotter_vector::ScaleError>(())
+    /// ```
+    pub fn plot_ops_with_arcs(&self, scale: Scale) -> impl Iterator<Item = PlotOp> + '_ {
+        (0..self.ends.len())
+            .flat_map(move |index| self.select_pen(index).into_iter().chain(stroke_ops(self, index, scale)))
     }
 }
 

@@ -1,6 +1,6 @@
 //! [`gcode`]: a drawing as a program for GRBL and its like.
 
-use crate::stroke_op::{StrokeOp, stroke_ops};
+use crate::stroke_op::stroke_ops;
 use crate::{Drawing, Scale};
 use core::fmt::Write;
 use plotter_motion::gcode::{WriteError, WriteOptions, Writer};
@@ -36,10 +36,7 @@ pub fn gcode(
             writer.push(select)?;
         }
         for op in stroke_ops(drawing, index, scale) {
-            match op {
-                StrokeOp::Op(op) => writer.push(op)?,
-                StrokeOp::Arc { centre, sweep_rad, to } => writer.arc(centre, sweep_rad, to, None)?,
-            }
+            writer.push(op)?;
         }
     }
     writer.finish().map(drop)
@@ -67,7 +64,7 @@ mod tests {
         assert_eq!(
             text,
             format!(
-                "G21\nG90\nM5\nM0 (pen 1)\nG0 X0.5 Y5.5\n{lower}G1 X7.5 Y5.5 F1800\n{lift}G0 X2.5 Y2.5\n{lower}{lift}\
+                "G21\nG90\nM5\n(pen 1)\nG0 X0.5 Y5.5\n{lower}G1 X7.5 Y5.5 F1800\n{lift}G0 X2.5 Y2.5\n{lower}{lift}\
                  M0 (pen 2)\nG0 X3 Y3\n{lower}G2 X5 Y3 I1 J0\nG2 X3 Y3 I-1 J0\n{lift}M2\n"
             )
         );

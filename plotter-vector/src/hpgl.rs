@@ -1,6 +1,6 @@
 //! [`hpgl`]: a drawing as a plotter file.
 
-use crate::stroke_op::{StrokeOp, stroke_ops};
+use crate::stroke_op::stroke_ops;
 use crate::{Drawing, Scale};
 use core::f64::consts::PI;
 use core::fmt::Write;
@@ -37,24 +37,16 @@ pub fn hpgl(drawing: &Drawing, scale: Scale, out: &mut impl Write) -> Result<(),
         let mut before = None;
         let mut dot = false;
         for op in stroke_ops(drawing, index, scale) {
-            let (StrokeOp::Op(PlotOp::Draw { to, .. } | PlotOp::Travel { to }) | StrokeOp::Arc { to, .. }) =
-                op
-            else {
-                continue;
-            };
+            let Some(to) = op.target() else { continue };
             let place = PenMove::from_op(PlotOp::Travel { to }, UNITS_PER_MM).map(|to| to.target);
-            let travel = matches!(op, StrokeOp::Op(PlotOp::Travel { .. }));
+            let travel = matches!(op, PlotOp::Travel { .. });
             // The first vertex after a travel may be a dot, which stays.
             let repeated = place == before && !travel && !dot;
             before = place;
             dot = travel;
-            match op {
-                StrokeOp::Op(op) if !repeated => writer.push(op)?,
-                // Most of a turn may well end where it began.
-                StrokeOp::Arc { centre, sweep_rad, to } if !repeated || sweep_rad.abs() > PI => {
-                    writer.arc(centre, sweep_rad, to, None)?;
-                }
-                _ => {}
+            // Most of a turn may well end where it began.
+            if !repeated || matches!(op, PlotOp::DrawArc { sweep_rad, .. } if sweep_rad.abs() > PI) {
+                writer.push(op)?;
             }
         }
     }

@@ -1,38 +1,23 @@
-//! [`StrokeOp`]: a stroke on the sheet with its arcs, for the writers that can say them.
+//! The operations of a stroke with its arcs, for the writers that can say them.
 
 use crate::curve::{CHORD_ERROR_PX, Piece};
 use crate::{Drawing, Scale};
-use plotter_motion::{PlotOp, Point};
-
-/// A plot operation, or an arc from where the pen stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum StrokeOp {
-    Op(PlotOp),
-    Arc {
-        centre: Point,
-        /// Counter-clockwise above 0, y being up.
-        sweep_rad: f64,
-        to: Point,
-    },
-}
+use plotter_motion::PlotOp;
 
 /// The operations of one stroke: those of [`Drawing::plot_ops`], but for the arcs. Cubic curves come as chords, as there.
-pub(crate) fn stroke_ops(
-    drawing: &Drawing,
-    index: usize,
-    scale: Scale,
-) -> impl Iterator<Item = StrokeOp> + '_ {
+pub(crate) fn stroke_ops(drawing: &Drawing, index: usize, scale: Scale) -> impl Iterator<Item = PlotOp> + '_ {
     let stroke = drawing.stroke(index);
-    let draw = move |to| StrokeOp::Op(PlotOp::Draw { to: scale.to_sheet(to), feed_mm_s: None });
-    let travel = stroke.first().map(|to| StrokeOp::Op(PlotOp::Travel { to: scale.to_sheet(*to) }));
+    let draw = move |to| PlotOp::Draw { to: scale.to_sheet(to), feed_mm_s: None };
+    let travel = stroke.first().map(|to| PlotOp::Travel { to: scale.to_sheet(*to) });
     let dot = if stroke.len() == 1 { stroke.first().map(|at| draw(*at)) } else { None };
     let drawn = drawing.course(index).pieces().flat_map(move |piece| {
         let arc = if let Piece::Arc(arc) = piece { Some(arc) } else { None };
-        let arc_op = arc.map(|arc| StrokeOp::Arc {
+        let arc_op = arc.map(|arc| PlotOp::DrawArc {
             centre: scale.to_sheet(arc.centre),
             // The picture's y is down.
             sweep_rad: -arc.sweep_rad,
             to: scale.to_sheet(arc.to),
+            feed_mm_s: None,
         });
         let chords = arc.is_none().then(|| piece.chords(CHORD_ERROR_PX).map(draw));
         arc_op.into_iter().chain(chords.into_iter().flatten())

@@ -42,7 +42,7 @@ impl fmt::Display for Word {
     }
 }
 
-/// What a comment says that a program acts upon: [`Writer`](super::Writer) writes these after `M0`.
+/// What a comment says that a program acts upon: [`Writer`](super::Writer) writes these after `M0`, or a pen in a line of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Remark {
     /// `(new sheet)`.
@@ -51,7 +51,7 @@ pub enum Remark {
     Pen(u8),
 }
 
-/// The words of one line, in their order; at least one and at most 16.
+/// The words of one line, in their order; at most 16, and at least one where no comment names a pen.
 ///
 /// ```
 /// # use plotter_motion::gcode::Reader;
@@ -93,7 +93,7 @@ impl Block {
         true
     }
 
-    /// Where its first word stands.
+    /// Where its first word stands, or its comment.
     #[must_use]
     pub fn position(&self) -> Position {
         self.at

@@ -20,6 +20,10 @@ pub(super) enum Action {
     Home,
     Offset,
     NoOffset,
+    /// `G10`: where the origin of the work lies (`L2`), or what the coordinates here are (`L20`).
+    Origin {
+        here: bool,
+    },
     /// What is not carried out, and takes the words of the line.
     Other,
 }
@@ -118,7 +122,7 @@ impl Code {
             730 | 760 | 810 | 820 | 830 | 840 | 850 | 860 | 870 | 880 | 890 => {
                 (Self::Motion(Motion::None), "canned cycle")
             }
-            100 => (Self::Action(Action::Other), "set coordinate system"),
+            100 => (Self::Action(Action::Other), "another coordinate system"),
             281 | 301 => (Self::Action(Action::Other), "set the place of homing"),
             290 => (Self::Action(Action::Other), "bed levelling"),
             923 => (Self::Action(Action::Other), "restore the offset"),
@@ -127,7 +131,8 @@ impl Code {
             930 => (Self::InverseTime(true), "inverse time feed rate"),
             950 => (Self::InverseTime(true), "feed rate per revolution"),
             410 | 420 => (Self::Quiet, "cutter compensation"),
-            430 | 431 => (Self::Quiet, "tool length"),
+            430 => (Self::Quiet, "tool length"),
+            431 => (Self::Action(Action::Other), "tool length"),
             510 => (Self::Action(Action::Other), "scaling"),
             680 => (Self::Action(Action::Other), "rotation"),
             _ => return (Self::Unknown, None),

@@ -81,8 +81,9 @@ impl Places {
 /// | none of them | [`PenConvention::Motion`] |
 ///
 /// A servo or a Z axis is up where it is at the first `G0` across the sheet, or else at the first movement; if it had not been
-/// told a place by then, the first place it is told is down. The other place is the one farthest from that; of heights, the
-/// lowest. Heights above and below 0 are told apart there, others half way between the lowest and the lowest `G0`.
+/// told a place by then, the first place it is told is down, and of heights the highest is up. The other place is the one farthest
+/// from that; of heights, the lowest. `G53` tells no height. Heights above and below 0 are told apart there, others half way
+/// between the lowest and the lowest `G0`.
 ///
 /// The full power of a laser is 1000, as GRBL has it, or the greatest `S` if that is more; 255 for a fan and for mDraw.
 /// `G4 P` counts milliseconds if every P is a whole number from 20 up, or 0.
@@ -182,9 +183,10 @@ impl Detection {
         if let Some(inches) = line.inches {
             self.unit_mm = if inches { 25.4 } else { 1.0 };
         }
-        let moves = line.may_move() && line.has(b"XY");
+        let may_move = line.may_move() && self.motion != Motion::None;
+        let moves = may_move && line.has(b"XY");
         self.take_told(&line);
-        if let (true, Some(z)) = (line.may_move(), line.number(b'Z')) {
+        if let (true, Some(z)) = (may_move && !line.machine_coordinates, line.number(b'Z')) {
             let z = z * self.unit_mm;
             self.z.put(if self.relative { self.z.now.unwrap_or_default() + z } else { z });
         }
@@ -281,7 +283,7 @@ impl Detection {
     /// The convention of a text that moves along Z.
     fn height(&self) -> PenConvention {
         let Places { least: down, most, .. } = self.z;
-        let up = self.z.up_and_down().map_or(most, |(up, _)| up);
+        let up = self.z.at_rapid.or(self.z.at_move).unwrap_or(most);
         if up <= down {
             // It never draws lower than it travels: these are no heights.
             let (up, down) = (up / self.unit_mm, most / self.unit_mm);

@@ -21,6 +21,11 @@ pub enum Problem {
         /// What stands there.
         byte: u8,
     },
+    /// A loop or a subprogram, as `LinuxCNC` has them. What is in it is carried out once, where it stands.
+    Control {
+        /// The `O` with its number.
+        number: Word,
+    },
     /// A number without its letter.
     NoLetter,
     /// A letter without its number.
@@ -28,7 +33,7 @@ pub enum Problem {
         /// The letter.
         letter: u8,
     },
-    /// A sign or a point without a digit, or a second point.
+    /// A sign or a point without a digit, a second point, or a comma.
     BadNumber {
         /// The letter before it.
         letter: u8,
@@ -158,6 +163,18 @@ impl fmt::Display for Letter {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
+            Self::UnexpectedByte { byte: byte @ (b'#' | b'[') } => write!(
+                f,
+                "`{}` begins {}, which is not reckoned here: have the numbers written out",
+                char::from(byte),
+                if byte == b'#' { "a variable" } else { "an expression" }
+            ),
+            Self::Control { number } => {
+                write!(
+                    f,
+                    "{number} controls a loop or a subprogram, which is not done here: have it written out"
+                )
+            }
             Self::UnexpectedByte { byte } if byte.is_ascii_graphic() => {
                 write!(f, "`{}` begins no word: a word is a letter and a number", char::from(byte))
             }

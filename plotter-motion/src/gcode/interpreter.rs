@@ -167,6 +167,11 @@ impl LineInterpreter {
         self.machine.modes()
     }
 
+    /// As after a reset of the controller: the origin set by `G10` is kept, all else is not.
+    pub(crate) fn reset(&mut self) {
+        self.machine.reset();
+    }
+
     /// As [`Interpreter::stand_at`].
     pub(crate) fn stand_at(&mut self, point: Point) {
         self.machine.stand_at(point);

@@ -106,7 +106,7 @@ impl<'b> Line<'b> {
         }
         let unknown = || Problem::Unknown { command: word }.at(at);
         let tenths = word.tenths().ok_or_else(unknown)?;
-        let (mut code, meaning) =
+        let (mut code, mut meaning) =
             if word.letter == b'G' { Code::general(tenths) } else { Code::miscellaneous(tenths) };
         match (tenths, bare) {
             (_, None) => {}
@@ -125,6 +125,13 @@ impl<'b> Line<'b> {
         let has = |letters: &[u8]| self.block.words().iter().any(|word| letters.contains(&word.letter));
         if word.letter == b'M' && ((tenths == 20 && has(b"UD")) || (tenths == 50 && has(b"ABHW"))) {
             code = Code::QuietWithWords;
+        }
+        // There is one coordinate system: that of G54, which is the first, and the one in force, which is 0.
+        if (word.letter, tenths) == (b'G', 100)
+            && let (Some(0.0 | 1.0), Some(form @ (2.0 | 20.0))) =
+                (self.block.number(b'P'), self.block.number(b'L'))
+        {
+            (code, meaning) = (Code::Action(Action::Origin { here: form > 2.0 }), None);
         }
         match code {
             Code::Motion(motion) => self.motion = Some(motion),
@@ -184,7 +191,12 @@ impl<'b> Line<'b> {
 
     /// The first word that nothing in this line uses, of those that are worth a notice.
     pub(super) fn unused(&self, is_arc: bool) -> Option<Error> {
-        if self.owned || matches!(self.action, Some(Action::Home | Action::Offset | Action::Other)) {
+        if self.owned
+            || matches!(
+                self.action,
+                Some(Action::Home | Action::Offset | Action::Origin { .. } | Action::Other)
+            )
+        {
             return None;
         }
         let used: &[u8] = if is_arc { b"IJR" } else { b"" };

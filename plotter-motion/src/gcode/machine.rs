@@ -18,8 +18,9 @@ pub(super) struct Machine {
     at: Point,
     /// Height of the pen as the text counts it: mm, or what a servo makes of it.
     z: f64,
-    /// What is added to a coordinate: `G92`.
+    /// What is added to a coordinate: `G10` and `G92`; and what of it `G10` has set.
     offset: Vec2,
+    origin: Vec2,
     unit_mm: f64,
     relative: bool,
     absolute_centres: bool,
@@ -47,6 +48,7 @@ impl Machine {
             at: Point::ORIGIN,
             z: 0.0,
             offset: Vec2::new(0.0, 0.0),
+            origin: Vec2::new(0.0, 0.0),
             unit_mm: 1.0,
             relative: false,
             absolute_centres: false,
@@ -69,6 +71,7 @@ impl Machine {
         Modes {
             position: self.at,
             offset: self.offset,
+            origin: self.origin,
             inches: self.unit_mm != 1.0,
             relative: self.relative,
             motion: match self.motion {
@@ -90,6 +93,12 @@ impl Machine {
         }
     }
 
+    /// As switched on, but that the origin set by `G10` stays.
+    pub(super) fn reset(&mut self) {
+        let origin = self.origin;
+        *self = Self { origin, offset: origin, ..Self::new() };
+    }
+
     pub(super) fn stand_at(&mut self, point: Point) {
         self.at = point;
         (self.dot_owed, self.settling) = (false, false);
@@ -102,6 +111,10 @@ impl Machine {
         out: &mut Outcomes,
     ) -> Result<(), Error> {
         self.set_modes(line)?;
+        if let ([], Some(Remark::Pen(pen))) = (line.block.words(), line.block.remark()) {
+            self.leave_dot(options, out);
+            out.give(Ok(PlotOp::SelectPen { pen }));
+        }
         if line.tool_change.is_some() {
             let expected = "M6 needs a T before it: which pen";
             let pen = self.tool.ok_or_else(|| Problem::Missing { expected }.at(line.block.position()))?;
@@ -113,7 +126,8 @@ impl Machine {
             Some(Action::Dwell) => self.dwell(line, options, out)?,
             Some(Action::Home) => self.home(line, options, out),
             Some(Action::Offset) => self.set_offset(line),
-            Some(Action::NoOffset) => self.offset = Vec2::new(0.0, 0.0),
+            Some(Action::NoOffset) => self.offset = self.origin,
+            Some(Action::Origin { here }) => self.set_origin(line, here),
             Some(Action::Other) | None => {}
         }
         if let Some(motion) = line.motion {
@@ -318,6 +332,19 @@ impl Machine {
         self.z = word(b'Z').unwrap_or(self.z);
     }
 
+    fn set_origin(&mut self, line: &Line<'_>, here: bool) {
+        // The offset of G92 stays on top of it.
+        let own = self.offset + -self.origin;
+        let number = |letter| line.number(letter).map(|number| number * self.unit_mm);
+        if let Some(x) = number(b'X') {
+            self.origin.x = if here { self.at.x - x - own.x } else { x };
+        }
+        if let Some(y) = number(b'Y') {
+            self.origin.y = if here { self.at.y - y - own.y } else { y };
+        }
+        self.offset = self.origin + own;
+    }
+
     /// The movement of a line, if it has one.
     fn go(&mut self, line: &Line<'_>, options: &ReadOptions, out: &mut Outcomes) -> Result<bool, Error> {
         let at = line.block.position();
@@ -326,14 +353,22 @@ impl Machine {
         if !moves && !line.has(b"Z") {
             return Ok(false);
         }
-        if self.motion == Motion::None {
-            // A canned cycle and its like have been reported already.
-            return if line.notice.is_some() { Ok(false) } else { Err(Problem::NoMotion.at(at)) };
-        }
         let to = Point::new(
             self.coordinate(line, b'X', self.at.x, self.offset.x),
             self.coordinate(line, b'Y', self.at.y, self.offset.y),
         );
+        if self.motion == Motion::None {
+            if line.notice.is_none() {
+                return Err(Problem::NoMotion.at(at));
+            }
+            // A spline and its like have been reported: what follows it is to begin where it would have ended.
+            if moves {
+                self.leave_dot(options, out);
+                out.give(Ok(PlotOp::Travel { to }));
+                (self.at, self.settling) = (to, false);
+            }
+            return Ok(false);
+        }
         let arc = match self.motion {
             Motion::Arc { left } if moves => {
                 Some(self.arc(line, to, left).map_err(|problem| problem.at(at))?)
@@ -365,6 +400,10 @@ impl Machine {
 
     /// Whether the Z of a line puts the pen down.
     fn height(&mut self, line: &Line<'_>, options: &ReadOptions) -> Option<bool> {
+        if line.machine_coordinates && line.has(b"Z") {
+            // Zero is the top there.
+            return Some(false);
+        }
         let unit = if let PenConvention::Height { .. } = options.pen { self.unit_mm } else { 1.0 };
         let z = line.number(b'Z')? * unit;
         self.z = if self.relative { self.z + z } else { z };

@@ -81,24 +81,26 @@
 //! | `G2`, `G3` | X Y, and I J or R | an arc, clockwise or counter-clockwise; R below 0 for more than half a turn; a whole circle by I J where it ends as it begins |
 //! | `G4` | P or S | waits: P as [`ReadOptions::dwell_unit`] says, S seconds |
 //! | `G28`, `G30` | X Y Z | travels to the origin, or along the axes named only; numbers do not count |
-//! | `G53` | | coordinates of this line without the offset of `G92` |
+//! | `G53` | | coordinates of this line without the offsets of `G10` and `G92` |
 //! | `G90`, `G91` | | coordinates are places, or ways |
 //! | `G90.1`, `G91.1` | | I and J are a place, or count from where the arc begins |
 //! | `G20`, `G21` | | inches, millimetres |
 //! | `G92` | X Y Z | here is that place; without words, the origin |
 //! | `G92.1`, `G92.2` | | that no longer |
+//! | `G10` | L2 or L20, P0 or P1, X Y | the origin is there; or here is that place, as the button *zero* of most programs has it |
 //! | `G80` | | coordinates without a command are an error from here on |
 //! | `M3`, `M4`, `M5`, `S` | | pens, servos and lasers, as above; so `M1 …`, `M4 …`, `M106`, `M107`, `M280`, `M300` |
 //! | `M6` | T | takes the pen T, also one of an earlier line |
-//! | `M0 (pen 2)`, `M0 (new sheet)` | | what [`Writer`] writes for another pen and a new sheet; every other `M0` and `M1` is a pause, and reported |
+//! | `M0 (pen 2)`, `(pen 1)`, `M0 (new sheet)` | | what [`Writer`] writes for another pen, the first one, and a new sheet; every other `M0` and `M1` is a pause, and reported |
 //! | `M2`, `M30` | | pen up; modes as GRBL sets them back then. What follows is read on |
 //! | `F`, `S`, `T` | | hold until another one comes |
 //! | coordinates alone | | the last of `G0` to `G3` again; `G0` at first |
 //! | `N`, `O`, `%` | | nothing |
 //!
 //! Nothing is done for `G17 G40 G49 G54`…`G59.3 G61 G64 G94`, coolant, drives (`M17 M18 M84`), and questions and settings of
-//! printers and of mDraw; what else is known by name is reported as [`Problem::Unsupported`], a notice. All `G` and `M`
-//! words of a line are done, but two that exclude each other are an error.
+//! printers and of mDraw; what else is known by name is reported as [`Problem::Unsupported`], a notice; the end of a spline is
+//! gone to with the pen up, so that what follows stands where it should. All `G` and `M` words of a line are done, but two that
+//! exclude each other are an error.
 //!
 //! # Bad input
 //!

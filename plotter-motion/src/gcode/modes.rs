@@ -20,8 +20,10 @@ use crate::{Point, Vec2};
 pub struct Modes {
     /// Where the pen is, mm on the sheet.
     pub position: Point,
-    /// What is added to a coordinate, mm: `G92`.
+    /// What is added to a coordinate, mm: `G10` and `G92`.
     pub offset: Vec2,
+    /// What of it is set by `G10`, mm.
+    pub origin: Vec2,
     /// `G20`, not `G21`.
     pub inches: bool,
     /// `G91`, not `G90`.

@@ -1,7 +1,7 @@
 //! [`Reader`]: bytes in, lines of words out.
 
 use super::remark::RemarkReader;
-use super::{Block, Error, Position, Problem, Word};
+use super::{Block, Error, Position, Problem, Remark, Word};
 use crate::decimal::Decimal;
 
 /// Greatest magnitude of a number: what [`Writer`](super::Writer) writes at most.
@@ -9,6 +9,10 @@ const MOST: f64 = 1e9;
 
 /// Commands whose words are a text for people, or the name of a file.
 const TEXT_COMMANDS: [f64; 3] = [23.0, 117.0, 118.0];
+
+/// How `sub`, `endsub`, `call`, `if`, `do`, `while`, `repeat`, `break` and `return` begin, which `LinuxCNC` has after an `O` with its
+/// number.
+const CONTROL_WORDS: &[u8] = b"SECIDWRB";
 
 /// The mark that some editors put before a text.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
@@ -51,7 +55,7 @@ const START: State = State::Between { after_m: false };
 ///
 /// It takes words with and without blanks, in either case; numbers with sign and point; comments in `( )` and after `;`; `%`
 /// and `/` before a line; checksums (`*71`, the bytes before it by exclusive or), which must be right; lines that end with
-/// LF, CR or both. Control characters are blanks. Lines without words give nothing.
+/// LF, CR or both. Control characters are blanks. Lines without words give nothing, but for `(pen 2)`.
 ///
 /// An error ends the line: what stands in it is not carried out, and the next one is read as if nothing had been.
 ///
@@ -169,7 +173,7 @@ impl Reader {
                 }
                 let (letter, start, number) = (*letter, *start, *number);
                 match byte {
-                    b'.' => return Err(Problem::BadNumber { letter }.at(start)),
+                    b'.' | b',' => return Err(Problem::BadNumber { letter }.at(start)),
                     b'e' | b'E' => return Err(Problem::Exponent { letter }.at(start)),
                     _ => self.word(letter, start, Some(number))?,
                 }
@@ -201,9 +205,21 @@ impl Reader {
         self.state = State::Between { after_m };
         match byte {
             b'A'..=b'Z' | b'a'..=b'z' => {
-                self.state = State::Letter { letter: byte.to_ascii_uppercase(), at };
+                let letter = byte.to_ascii_uppercase();
+                let before = self.block.words().last();
+                if let Some(number) = before.filter(|word| word.letter == b'O')
+                    && CONTROL_WORDS.contains(&letter)
+                {
+                    return Err(Problem::Control { number: *number }.at(self.block.place(*number)));
+                }
+                self.state = State::Letter { letter, at };
             }
-            b'(' | b';' => self.comment(byte == b'('),
+            b'(' | b';' => {
+                if is_first {
+                    self.block.at = at;
+                }
+                self.comment(byte == b'(');
+            }
             b'*' if !is_first => {
                 // With this byte it is what it was before.
                 self.sum ^= byte;
@@ -308,7 +324,8 @@ impl Reader {
             self.block = Block::EMPTY;
             return Some(Err(error));
         }
-        let is_empty = self.block.words().is_empty();
+        // A pen's number counts without words too.
+        let is_empty = self.block.words().is_empty() && !matches!(self.block.remark, Some(Remark::Pen(_)));
         let block = core::mem::replace(&mut self.block, Block::EMPTY);
         (!is_empty).then_some(Ok(block))
     }

@@ -95,7 +95,7 @@ pub enum PenControl<'a> {
 /// How another pen comes into the holder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum PenChange {
-    /// `M0 (pen 2)`: the machine waits until somebody has changed it.
+    /// `M0 (pen 2)`: the machine waits until somebody has changed it. The first is named only, `(pen 1)`.
     #[default]
     Pause,
     /// `T2 M6`: the machine changes it.

@@ -30,8 +30,8 @@ type Steps = (i64, i64);
 ///   to where the pen stands is a dot, or nothing within a stroke.
 /// - An arc is `G2` or `G3` with its centre from where it begins.
 /// - The power of a laser is written where the next line begins, for [`PenControl::Laser`] only.
-/// - Another pen is asked for with the pen up, as [`WriteOptions::pen_change`] says; pen 0 is none to ask for. A new sheet
-///   is `M0 (new sheet)`. A dwell is `G4`.
+/// - Another pen is asked for with the pen up, as [`WriteOptions::pen_change`] says; pen 0 is none to ask for. The pen that draws
+///   first is in the holder already: it is named, `(pen 1)`, and nothing waits. A new sheet is `M0 (new sheet)`. A dwell is `G4`.
 ///
 /// ```
 /// # use plotter_motion::{PlotOp, Point, gcode};
@@ -52,6 +52,7 @@ pub struct Writer<'a, W> {
     index: u64,
     /// Where the text has put the pen; `None` before the first line.
     pen: Option<Pen>,
+    /// The pen that was asked for last, 0 for whichever has drawn without; `None` while none has drawn.
     holder: Option<u8>,
     /// Where the text has put the machine; `None` before the first movement.
     at: Option<Steps>,
@@ -116,8 +117,9 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
             PlotOp::SelectPen { pen } => {
                 self.put(Pen::Up)?;
                 if pen > 0 && self.holder != Some(pen) {
-                    self.holder = Some(pen);
+                    let is_first = self.holder.replace(pen).is_none();
                     match self.options.pen_change {
+                        PenChange::Pause if is_first => writeln!(self.out, "(pen {pen})")?,
                         PenChange::Pause => writeln!(self.out, "M0 (pen {pen})")?,
                         PenChange::Tool => writeln!(self.out, "T{pen} M6")?,
                     }
@@ -317,6 +319,7 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
     /// The pen down where it stands, at the origin if nothing else was said, for a line or for a dot, which does not move.
     fn begin_line(&mut self, moves: bool, feed: i64) -> Result<(), WriteError> {
         self.start()?;
+        self.holder.get_or_insert(0);
         if self.at.is_none() {
             self.travel((0, 0))?;
         }
@@ -489,9 +492,11 @@ mod tests {
         let ops = [pen(1), draw(1.0, 0.0), pen(1), pen(2), draw(2.0, 0.0), pen(0), PlotOp::NewPage, dwell];
         assert_eq!(
             written(quick(), &ops),
-            "G21\nG90\nM5\nM0 (pen 1)\nG0 X0 Y0\nM3 S90\nG1 X1 Y0 F1800\nM5\nM0 (pen 2)\nM3 S90\nG1 X2 Y0\nM5\n\
+            "G21\nG90\nM5\n(pen 1)\nG0 X0 Y0\nM3 S90\nG1 X1 Y0 F1800\nM5\nM0 (pen 2)\nM3 S90\nG1 X2 Y0\nM5\n\
              M0 (new sheet)\nG4 P1.25\nM2\n"
         );
+        // Whatever has drawn before was in the holder: another pen is waited for.
+        assert!(written(quick(), &[draw(1.0, 0.0), pen(1), draw(2.0, 0.0)]).contains("M5\nM0 (pen 1)\n"));
         let marlin =
             WriteOptions { dwell_unit: DwellUnit::Milliseconds, pen_change: PenChange::Tool, ..quick() };
         assert_eq!(written(marlin, &[pen(3), dwell]), "G21\nG90\nM5\nT3 M6\nG4 P1250\nM2\n");

@@ -84,12 +84,12 @@
 //! Labels and symbols need the feature `font` (part of `std`), 5 KiB of strokes; without it they are reported as
 //! unsupported.
 //!
-//! What means nothing to a machine with one pen that draws what it is told is passed over without a word: colours and their
-//! order (`PC` `NP` `CR` `TR` `MC` …), ends and joins of thick lines (`LA`), the looks of fonts (`FI` `CF` …), forces,
-//! accelerations, and motion without stops (`CV`), which is the planner's business, questions to the plotter (`OE` `OP` `OS` …),
-//! its display and cutter, comments. What would be seen and is not done is said, as [`Error::Unsupported`]: `RP` (replot: whoever
-//! has the text can read it again; a reader in constant memory has not kept it), `NR` (wait), `SV` (screened lines), `PP`, `TD`,
-//! digitizing.
+//! What means nothing to a machine with one pen that draws what it is told is passed over without a word: colours and their order
+//! (`PC` `NP` `CR` `TR` `MC` …), ends and joins of thick lines (`LA`), the looks of fonts (`FI` `CF` …), forces, accelerations,
+//! and motion without stops (`CV`), which is the planner's business, questions to the plotter (`OE` `OP` `OS` …), its display and
+//! cutter (also what begins with `!`), comments. What would be seen and is not done is said, as [`Error::Unsupported`]: `RP`
+//! (replot: whoever has the text can read it again; a reader in constant memory has not kept it), `NR` (wait), `SV` (screened
+//! lines), `PP`, `TD`, digitizing.
 //!
 //! # Bad input
 //!

@@ -6,6 +6,8 @@ use crate::decimal::Decimal;
 
 /// Greatest magnitude of a number: 2³⁰, the range of the widest HP-GL/2 plotters.
 const MAX_NUMBER: f64 = 1_073_741_824.0;
+/// What some editors put before a text.
+const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 /// Ends a label unless `DT` says otherwise: the control character ETX.
 const ETX: u8 = 3;
 
@@ -75,6 +77,8 @@ enum State {
     Quoted { command: Mnemonic },
     /// Within bytes that only `;` ends.
     UntilSemicolon { command: Mnemonic },
+    /// Within what a cutter is told about itself, as `!ST1`, before its `;`.
+    Cutter,
     /// After an error, before the next `;` or letter.
     Skip,
     /// In the other language of a printer, after `ESC %0A`.
@@ -99,6 +103,7 @@ enum Comma {
 /// It owns no buffer: a `PD` with a hundred thousand coordinates is a hundred thousand events. It takes
 /// - either case, a missing `;`, and a lone `;` anywhere;
 /// - numbers with sign and point, separated by commas, blanks or line ends, or by nothing before a sign;
+/// - what begins with `!` up to its `;` (a Roland's own settings, as `!ST1;`), which gives nothing;
 /// - labels up to their terminator, which `DT` sets and `IN` and `DF` set back, so that a label is never read as
 ///   commands; strings, comments, and encoded data likewise;
 /// - escape sequences: device control (`ESC .`) between any two bytes, and the change of a printer's language
@@ -179,7 +184,9 @@ impl Reader {
             return Some(Err(Error::BadEscape { at, byte: None }));
         }
         match state {
-            State::Idle | State::Skip | State::OtherLanguage | State::JobLanguage { .. } => None,
+            State::Idle | State::Cutter | State::Skip | State::OtherLanguage | State::JobLanguage { .. } => {
+                None
+            }
             State::Letter { letter, .. } => Some(Err(Error::BadMnemonic { at, letter, byte: None })),
             State::Numbers { command, number: Some((number, start)), .. } => {
                 Some(self.number(command, number, start, true))
@@ -241,6 +248,12 @@ impl Reader {
                 }
                 Ok(Some(Event::Byte { byte, at, last: false }))
             }
+            State::Cutter => {
+                if matches!(byte, b';' | b'\n' | b'\r') {
+                    self.state = State::Idle;
+                }
+                Ok(None)
+            }
             State::Skip => {
                 if byte == b';' {
                     self.state = State::Idle;
@@ -263,8 +276,10 @@ impl Reader {
     fn idle(&mut self, byte: u8, at: Position) -> Result<Option<Event>, Error> {
         if byte.is_ascii_alphabetic() {
             self.state = State::Letter { letter: byte, at };
-        } else if byte == b';' || is_blank(byte) {
+        } else if byte == b';' || is_blank(byte) || is_mark(byte, at) {
             self.state = State::Idle;
+        } else if byte == b'!' {
+            self.state = State::Cutter;
         } else {
             self.state = State::Skip;
             return Err(Error::UnexpectedByte { at, command: None, byte });
@@ -424,6 +439,11 @@ impl Reader {
 
 fn after_number(number: Option<(Decimal, Position)>, comma: Comma) -> Comma {
     if number.is_some() { Comma::No } else { comma }
+}
+
+/// Whether a byte is of the mark before a text.
+fn is_mark(byte: u8, at: Position) -> bool {
+    usize::try_from(at.offset).is_ok_and(|offset| BYTE_ORDER_MARK.get(offset) == Some(&byte))
 }
 
 /// Space, line end, or a control character such as the padding and end marks of old files.

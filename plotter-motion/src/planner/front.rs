@@ -75,7 +75,6 @@ struct Rounding {
 /// Makes blocks of plot operations.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Front<M: Modes> {
-    pub(super) limits: Limits,
     position: Point,
     pen: Pen,
     power: u16,
@@ -89,13 +88,12 @@ pub(super) struct Front<M: Modes> {
 }
 
 impl<M: Modes> Front<M> {
-    pub(super) fn new(settings: &PlannerSettings) -> Self {
-        Self::at(Limits::of(settings), Point::ORIGIN)
+    pub(super) fn new() -> Self {
+        Self::at(Point::ORIGIN)
     }
 
-    fn at(limits: Limits, position: Point) -> Self {
+    fn at(position: Point) -> Self {
         Self {
-            limits,
             position,
             pen: Pen::Up,
             power: u16::MAX,
@@ -114,7 +112,7 @@ impl<M: Modes> Front<M> {
     /// Begins anew at another place, with the pen up.
     pub(super) fn restart(&mut self, position: Point) {
         let shares = core::mem::take(&mut self.shares);
-        *self = Self { power: self.power, shares, ..Self::at(self.limits, position) };
+        *self = Self { power: self.power, shares, ..Self::at(position) };
     }
 
     /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; else what ends a
@@ -129,33 +127,33 @@ impl<M: Modes> Front<M> {
     pub(super) fn push<const N: usize>(
         &mut self,
         op: PlotOp,
-        settings: &PlannerSettings,
+        limits: &Limits,
         ring: &mut Ring<N>,
     ) -> Result<(), PlanError> {
         if core::mem::take(&mut self.jogs) {
-            self.end_run(settings, ring);
+            self.end_run(limits, ring);
         }
         let feed2 = |feed_mm_s: Option<f64>| match feed_mm_s {
-            None => Ok(self.limits.speed2),
+            None => Ok(limits.speed2),
             Some(feed) if feed > 0.0 && feed.is_finite() => {
-                let feed = feed.min(settings.speed_mm_s);
+                let feed = feed.min(limits.settings.speed_mm_s);
                 Ok(narrow(feed * feed))
             }
             Some(feed_mm_s) => Err(PlanError::Feed { feed_mm_s }),
         };
         match op {
             PlotOp::Travel { to } => {
-                self.line(place(to)?, Pen::Up, self.limits.travel2, settings, ring);
+                self.line(place(to)?, Pen::Up, limits.travel2, limits, ring);
             }
             PlotOp::Draw { to, feed_mm_s } => {
-                self.line(place(to)?, Pen::Down, feed2(feed_mm_s)?, settings, ring);
+                self.line(place(to)?, Pen::Down, feed2(feed_mm_s)?, limits, ring);
             }
             PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } => {
                 let (centre, to, feed2) = (place(centre)?, place(to)?, feed2(feed_mm_s)?);
                 if sweep_rad.is_nan() || sweep_rad.abs() > TAU + TURN_SLACK_RAD {
                     return Err(PlanError::Sweep { sweep_rad });
                 }
-                self.arc(centre, sweep_rad.clamp(-TAU, TAU), to, feed2, settings, ring);
+                self.arc(centre, sweep_rad.clamp(-TAU, TAU), to, feed2, limits, ring);
             }
             PlotOp::LaserPower { share } => {
                 if !(0.0..=1.0).contains(&share) {
@@ -164,12 +162,12 @@ impl<M: Modes> Front<M> {
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 65535")]
                 let power = libm::round(share * f64::from(u16::MAX)) as u16;
                 // What was put off is still of the old power.
-                self.flush(settings, ring);
+                self.flush(limits, ring);
                 self.power = power;
             }
-            PlotOp::Dwell { duration } => self.stand(Block::dwell(duration), settings, ring),
-            PlotOp::SelectPen { pen } => self.stand(Block::select_pen(pen), settings, ring),
-            PlotOp::NewPage => self.stand(Block::new_page(), settings, ring),
+            PlotOp::Dwell { duration } => self.stand(Block::dwell(duration), limits, ring),
+            PlotOp::SelectPen { pen } => self.stand(Block::select_pen(pen), limits, ring),
+            PlotOp::NewPage => self.stand(Block::new_page(), limits, ring),
         }
         Ok(())
     }
@@ -179,7 +177,7 @@ impl<M: Modes> Front<M> {
         &mut self,
         to: Point,
         speed_mm_s: f64,
-        settings: &PlannerSettings,
+        limits: &Limits,
         ring: &mut Ring<N>,
     ) -> Result<(), PlanError> {
         let to = place(to)?;
@@ -187,11 +185,11 @@ impl<M: Modes> Front<M> {
             return Err(PlanError::Feed { feed_mm_s: speed_mm_s });
         }
         if !self.jogs {
-            self.end_run(settings, ring);
+            self.end_run(limits, ring);
             self.jogs = true;
         }
-        let speed2 = least(narrow(speed_mm_s * speed_mm_s), self.limits.travel2);
-        self.line(to, Pen::Up, speed2, settings, ring);
+        let speed2 = least(narrow(speed_mm_s * speed_mm_s), limits.travel2);
+        self.line(to, Pen::Up, speed2, limits, ring);
         Ok(())
     }
 
@@ -202,25 +200,26 @@ impl<M: Modes> Front<M> {
         shares: Shares,
         under_way2: f32,
         forced2: f64,
+        limits: &Limits,
         ring: &mut Ring<N>,
     ) {
         if let Some(kept) = self.shares.get_mut() {
             *kept = shares;
         }
-        let last2 = ring.rescale(&shares, &self.limits, under_way2, forced2);
+        let last2 = ring.rescale(&shares, limits, under_way2, forced2);
         if let Some(exit) = self.run.as_mut().and_then(|run| run.exit.as_mut()) {
             exit.cruise2 = last2;
         }
     }
 
     /// Ends the run: what has been put off comes, and the machine stops.
-    pub(super) fn end_run<const N: usize>(&mut self, settings: &PlannerSettings, ring: &mut Ring<N>) {
-        self.flush(settings, ring);
+    pub(super) fn end_run<const N: usize>(&mut self, limits: &Limits, ring: &mut Ring<N>) {
+        self.flush(limits, ring);
         self.run = None;
     }
 
-    fn stand<const N: usize>(&mut self, block: Block, settings: &PlannerSettings, ring: &mut Ring<N>) {
-        self.end_run(settings, ring);
+    fn stand<const N: usize>(&mut self, block: Block, limits: &Limits, ring: &mut Ring<N>) {
+        self.end_run(limits, ring);
         if matches!(block.kind, Kind::SelectPen | Kind::NewPage) {
             self.pen = Pen::Up;
         }
@@ -228,11 +227,11 @@ impl<M: Modes> Front<M> {
     }
 
     /// The run with this pen: the one in progress, or a new one.
-    fn run<const N: usize>(&mut self, pen: Pen, settings: &PlannerSettings, ring: &mut Ring<N>) -> Run {
+    fn run<const N: usize>(&mut self, pen: Pen, limits: &Limits, ring: &mut Ring<N>) -> Run {
         match self.run {
             Some(run) if run.pen == pen => run,
             _ => {
-                self.end_run(settings, ring);
+                self.end_run(limits, ring);
                 let run = Run { pen, at: self.position, exit: None };
                 self.run = Some(run);
                 run
@@ -245,42 +244,44 @@ impl<M: Modes> Front<M> {
         to: Point,
         pen: Pen,
         cruise2: f32,
-        settings: &PlannerSettings,
+        limits: &Limits,
         ring: &mut Ring<N>,
     ) {
         let from = self.position;
         if to == from {
             if pen != self.pen {
-                self.put_pen(pen, settings, ring);
+                self.put_pen(pen, limits, ring);
             }
             return;
         }
-        let run = self.run(pen, settings, ring);
+        let run = self.run(pen, limits, ring);
         self.pen = pen;
         self.position = to;
-        match settings.path_of::<M>() {
+        match limits.settings.path_of::<M>() {
             PathMode::Exact => {
                 let way = Way::new(to - run.at);
-                if way.length_mm < self.limits.resolution_mm {
+                if way.length_mm < limits.resolution_mm {
                     self.short_cruise2 = Some(cruise2);
                 } else {
                     self.short_cruise2 = None;
-                    self.emit_way(to, way, cruise2, ring);
+                    self.emit_way(to, way, cruise2, limits, ring);
                 }
             }
             PathMode::Tolerance { path_tolerance_mm } => {
                 let Some(rounding) = self.rounding.get_mut() else { return };
-                let merged = rounding.merger.push(from, to, cruise2, MERGED_SHARE * path_tolerance_mm);
+                let start = rounding.held.map_or(run.at, |held| held.to);
+                let within_mm = MERGED_SHARE * path_tolerance_mm;
+                let merged = rounding.merger.push(start, from, to, cruise2, within_mm);
                 if let Some(merged) = merged {
-                    self.blend(merged, path_tolerance_mm, settings, ring);
+                    self.blend(merged, path_tolerance_mm, limits, ring);
                 }
             }
         }
     }
 
     /// The pen is lowered where it stands, which leaves a dot, or lifted.
-    fn put_pen<const N: usize>(&mut self, pen: Pen, settings: &PlannerSettings, ring: &mut Ring<N>) {
-        self.end_run(settings, ring);
+    fn put_pen<const N: usize>(&mut self, pen: Pen, limits: &Limits, ring: &mut Ring<N>) {
+        self.end_run(limits, ring);
         self.pen = pen;
         ring.push(Block::path(Shape::Line, self.position, 0.0, pen, self.power, 0.0));
     }
@@ -291,18 +292,18 @@ impl<M: Modes> Front<M> {
         sweep_rad: f64,
         to: Point,
         cruise2: f32,
-        settings: &PlannerSettings,
+        limits: &Limits,
         ring: &mut Ring<N>,
     ) {
         let (out, end) = (self.position - centre, to - centre);
         let (near_mm, far_mm) =
             (out.length_near().min(end.length_near()), out.length_near().max(end.length_near()));
         let length_mm = 0.5 * (near_mm + far_mm) * sweep_rad.abs();
-        if length_mm <= settings.resolution_mm || near_mm <= settings.resolution_mm {
-            return self.line(to, Pen::Down, cruise2, settings, ring);
+        if length_mm <= limits.settings.resolution_mm || near_mm <= limits.settings.resolution_mm {
+            return self.line(to, Pen::Down, cruise2, limits, ring);
         }
-        self.run(Pen::Down, settings, ring);
-        self.flush(settings, ring);
+        self.run(Pen::Down, limits, ring);
+        self.flush(limits, ring);
         self.pen = Pen::Down;
         self.position = to;
         // A quarter turn ahead of the radius, or behind it.
@@ -311,25 +312,26 @@ impl<M: Modes> Front<M> {
             along * (1.0 / radius.length_near())
         };
         let shape = Shape::Arc { centre, sweep_rad };
-        let most2 = narrow(settings.accel_mm_s2 * near_mm);
+        let most2 = narrow(limits.accel() * near_mm);
         let (entry, exit) = (direction(ahead(out)), direction(ahead(end)));
         let length_mm = single(length_mm);
         let stretch =
             Stretch { shape, to, length_mm, entry, exit, feed2: cruise2, most2, most_entry2: most2 };
-        self.emit(stretch, ring);
+        self.emit(stretch, limits, ring);
     }
 
     /// Gives out what has been put off. The run goes on.
-    fn flush<const N: usize>(&mut self, settings: &PlannerSettings, ring: &mut Ring<N>) {
+    fn flush<const N: usize>(&mut self, limits: &Limits, ring: &mut Ring<N>) {
         if let Some(cruise2) = self.short_cruise2.take() {
-            self.emit_line(self.position, cruise2, ring);
+            self.emit_line(self.position, cruise2, limits, ring);
         }
-        if let PathMode::Tolerance { path_tolerance_mm } = settings.path_of::<M>() {
-            if let Some(merged) = self.rounding.get_mut().and_then(|rounding| rounding.merger.end()) {
-                self.blend(merged, path_tolerance_mm, settings, ring);
+        if let PathMode::Tolerance { path_tolerance_mm } = limits.settings.path_of::<M>() {
+            let at = self.position;
+            if let Some(merged) = self.rounding.get_mut().and_then(|rounding| rounding.merger.end(at)) {
+                self.blend(merged, path_tolerance_mm, limits, ring);
             }
             if let Some(held) = self.rounding.get_mut().and_then(|rounding| rounding.held.take()) {
-                self.emit_line(held.to, held.cruise2, ring);
+                self.emit_line(held.to, held.cruise2, limits, ring);
             }
         }
     }
@@ -339,39 +341,39 @@ impl<M: Modes> Front<M> {
         &mut self,
         next: Merged,
         path_tolerance_mm: f64,
-        settings: &PlannerSettings,
+        limits: &Limits,
         ring: &mut Ring<N>,
     ) {
         let held = self.rounding.get_mut().and_then(|rounding| rounding.held.replace(next));
         let (Some(held), Some(run)) = (held, self.run) else { return };
         // The blocks given so far reach to where the corner before has been left.
-        let (way_in, way_out) = (held.to - run.at, next.to - next.from);
+        let (way_in, way_out) = (held.to - run.at, next.to - held.to);
         let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
         if in_mm > 0.0 && out_mm > 0.0 {
             let (along, after) = (way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
             let corner = Corner::new(-along.dot(after));
             let turn_rad = libm::atan2(along.cross(after), along.dot(after));
             let room = Room {
-                deviation_mm: path_tolerance_mm - held.deviation_mm.max(next.deviation_mm),
+                deviation_mm: path_tolerance_mm - f64::from(held.deviation_mm.max(next.deviation_mm)),
                 // The next corner is left its half of the segment between.
                 tangent_mm: in_mm.min(0.5 * out_mm),
                 cruise2: f64::from(least(held.cruise2, next.cruise2)),
-                accel_mm_s2: settings.accel_mm_s2,
+                accel_mm_s2: limits.accel(),
             };
             let blend = Blend::choose(corner, turn_rad.abs(), room);
             let tangent_mm = blend.tangent_mm(corner, turn_rad.abs());
             let blend_mm = blend.length_mm(turn_rad.abs());
-            if tangent_mm.is_finite() && blend_mm > settings.resolution_mm {
+            if tangent_mm.is_finite() && blend_mm > limits.settings.resolution_mm {
                 // However short: a curve that begins elsewhere is another curve.
                 if in_mm - tangent_mm > SHORTEST_MM {
-                    self.emit_line(held.to - along * tangent_mm, held.cruise2, ring);
+                    self.emit_line(held.to - along * tangent_mm, held.cruise2, limits, ring);
                 }
                 let turn = Turn { vertex: held.to, along, after, turn_rad, tangent_mm, length_mm: blend_mm };
-                self.emit_blend(blend, turn, least(held.cruise2, next.cruise2), settings, ring);
+                self.emit_blend(blend, turn, least(held.cruise2, next.cruise2), limits, ring);
                 return;
             }
         }
-        self.emit_line(held.to, held.cruise2, ring);
+        self.emit_line(held.to, held.cruise2, limits, ring);
     }
 
     fn emit_blend<const N: usize>(
@@ -379,7 +381,7 @@ impl<M: Modes> Front<M> {
         blend: Blend,
         turn: Turn,
         cruise2: f32,
-        settings: &PlannerSettings,
+        limits: &Limits,
         ring: &mut Ring<N>,
     ) {
         let Turn { vertex, along, after, turn_rad, tangent_mm, length_mm } = turn;
@@ -389,12 +391,12 @@ impl<M: Modes> Front<M> {
         match blend {
             Blend::Arc { radius_mm } => {
                 let shape = Shape::Arc { centre: begin + inwards(along) * radius_mm, sweep_rad: turn_rad };
-                let most2 = narrow(settings.accel_mm_s2 * radius_mm);
+                let most2 = narrow(limits.accel() * radius_mm);
                 let (entry, exit, feed2) = (direction(along), direction(after), cruise2);
                 let length_mm = single(length_mm);
                 let arc =
                     Stretch { shape, to: end, length_mm, entry, exit, feed2, most2, most_entry2: most2 };
-                self.emit(arc, ring);
+                self.emit(arc, limits, ring);
             }
             Blend::Spirals { radius_mm, deviation_mm } => {
                 let grown_mm = radius_mm * libm::exp(GROWTH * 0.5 * turn_rad.abs());
@@ -414,10 +416,10 @@ impl<M: Modes> Front<M> {
                     most2: f32::INFINITY,
                     most_entry2: f32::INFINITY,
                 };
-                self.emit(narrowing, ring);
+                self.emit(narrowing, limits, ring);
                 let pole = apex + to_pole(middle, inwards(middle), radius_mm, GROWTH);
                 let widening = Shape::Spiral { pole, sweep_rad, growth: GROWTH };
-                let apex2 = narrow(settings.accel_mm_s2 * radius_mm);
+                let apex2 = narrow(limits.accel() * radius_mm);
                 let widening = Stretch {
                     shape: widening,
                     to: end,
@@ -426,19 +428,26 @@ impl<M: Modes> Front<M> {
                     most_entry2: apex2,
                     ..narrowing
                 };
-                self.emit(widening, ring);
+                self.emit(widening, limits, ring);
             }
         }
     }
 
-    fn emit_line<const N: usize>(&mut self, to: Point, cruise2: f32, ring: &mut Ring<N>) {
+    fn emit_line<const N: usize>(&mut self, to: Point, cruise2: f32, limits: &Limits, ring: &mut Ring<N>) {
         if let Some(run) = self.run {
-            self.emit_way(to, Way::new(to - run.at), cruise2, ring);
+            self.emit_way(to, Way::new(to - run.at), cruise2, limits, ring);
         }
     }
 
     /// Gives out a line, if it has a length.
-    fn emit_way<const N: usize>(&mut self, to: Point, way: Way, cruise2: f32, ring: &mut Ring<N>) {
+    fn emit_way<const N: usize>(
+        &mut self,
+        to: Point,
+        way: Way,
+        cruise2: f32,
+        limits: &Limits,
+        ring: &mut Ring<N>,
+    ) {
         let Way { length_mm, direction } = way;
         if length_mm > 0.0 {
             let most = f32::INFINITY;
@@ -452,12 +461,12 @@ impl<M: Modes> Front<M> {
                 most2: most,
                 most_entry2: most,
             };
-            self.emit(line, ring);
+            self.emit(line, limits, ring);
         }
     }
 
     /// Gives out a block with the speed that the corner at its start allows.
-    fn emit<const N: usize>(&mut self, stretch: Stretch, ring: &mut Ring<N>) {
+    fn emit<const N: usize>(&mut self, stretch: Stretch, limits: &Limits, ring: &mut Ring<N>) {
         let Some(run) = &mut self.run else { return };
         let Stretch { shape, to, length_mm, entry, exit, feed2, most2, most_entry2 } = stretch;
         let share = match run.pen {
@@ -465,7 +474,7 @@ impl<M: Modes> Front<M> {
             Pen::Up => Share::Travel,
             Pen::Down => Share::Draw,
         };
-        let asked2 = self.shares.get().map_or(feed2, |shares| shares.of(share, feed2, &self.limits));
+        let asked2 = self.shares.get().map_or(feed2, |shares| shares.of(share, feed2, limits));
         let cruise2 = least(asked2, most2);
         let mut block = Block::path(shape, to, length_mm, run.pen, self.power, feed2);
         block.cruise2 = cruise2;
@@ -474,7 +483,7 @@ impl<M: Modes> Front<M> {
         }
         if let Some(before) = run.exit {
             let shorter_mm = least(before.length_mm, length_mm);
-            let corner2 = corner_speed2(before.direction, entry, shorter_mm, &self.limits);
+            let corner2 = corner_speed2(before.direction, entry, shorter_mm, limits);
             block.corner2 = least(corner2, most_entry2);
             block.max_entry2 = least(block.corner2, least(before.cruise2, cruise2));
         }

@@ -7,7 +7,7 @@ use super::ring::{least, narrow};
 /// are rounded down, so that no limit is exceeded by the rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
-    pub(super) accel: f64,
+    pub(super) settings: PlannerSettings,
     /// 1/a and 1/2a.
     pub(super) per_accel: f64,
     pub(super) per_twice_accel: f64,
@@ -25,7 +25,7 @@ impl Limits {
     pub(super) fn of(settings: &PlannerSettings) -> Self {
         let PlannerSettings { speed_mm_s, travel_speed_mm_s, accel_mm_s2: accel, .. } = *settings;
         Self {
-            accel,
+            settings: *settings,
             per_accel: 1.0 / accel,
             per_twice_accel: 0.5 / accel,
             accel_single: narrow(accel),
@@ -36,6 +36,10 @@ impl Limits {
             junction_deviation_mm: narrow(settings.junction_deviation_mm),
             resolution_mm: narrow(settings.resolution_mm),
         }
+    }
+
+    pub(super) const fn accel(&self) -> f64 {
+        self.settings.accel_mm_s2
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::block::Kind;
 use super::front::Front;
-use super::limits::{Shares, Wish};
+use super::limits::{Limits, Shares, Wish};
 use super::modes::{AllModes, Keep as _, Modes};
 use super::ramps::Ramps;
 use super::ring::{Ring, narrow};
@@ -45,7 +45,7 @@ const MOST_SHARE: f64 = 100.0;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planner<const N: usize, M: Modes = AllModes> {
-    settings: PlannerSettings,
+    limits: Limits,
     front: Front<M>,
     ring: Ring<N>,
     /// Whether blocks have come since the ring was planned.
@@ -91,8 +91,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         () = Self::ENOUGH;
         settings.check::<M>()?;
         Ok(Self {
-            settings,
-            front: Front::new(&settings),
+            limits: Limits::of(&settings),
+            front: Front::new(),
             ring: Ring::new(),
             stale: false,
             ramps: Ramps::OVER,
@@ -105,13 +105,13 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// The limits.
     #[must_use]
     pub const fn settings(&self) -> &PlannerSettings {
-        &self.settings
+        &self.limits.settings
     }
 
     /// Whether [`Planner::push`] takes another operation now.
     #[must_use]
     pub const fn has_room(&self) -> bool {
-        self.ring.room() >= Front::<M>::most_blocks(&self.settings)
+        self.ring.room() >= Front::<M>::most_blocks(&self.limits.settings)
     }
 
     /// Whether nothing is left to be taken, also after a feed hold. Operations that were put off come after [`Planner::finish`].
@@ -136,7 +136,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             return Err(PlanError::Full);
         }
         self.stale = true;
-        self.front.push(op, &self.settings, &mut self.ring)
+        self.front.push(op, &self.limits, &mut self.ring)
     }
 
     /// Takes a travel at this speed, mm/s, or at that of travels if it is less; [`Planner::override_speeds`] does not change it.
@@ -149,7 +149,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             return Err(PlanError::Full);
         }
         self.stale = true;
-        self.front.jog(to, speed_mm_s, &self.settings, &mut self.ring)
+        self.front.jog(to, speed_mm_s, &self.limits, &mut self.ring)
     }
 
     /// From here on the speeds that operations ask for are multiplied by these shares, with the pen down and up: a person at the
@@ -182,10 +182,10 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             narrow(share * share)
         };
         let shares = Shares { draw2: square(draw_share), travel2: square(travel_share) };
-        let limits = self.front.limits;
+        let limits = self.limits;
         let under_way2 = under_way.cruise2(&shares, &limits);
-        if self.settings.jerk_of::<M>().is_some() {
-            self.front.rescale(shares, f32::INFINITY, 0.0, &mut self.ring);
+        if self.limits.settings.jerk_of::<M>().is_some() {
+            self.front.rescale(shares, f32::INFINITY, 0.0, &limits, &mut self.ring);
             if let Some(s_curve) = self.s_curve.get_mut() {
                 s_curve.choose_anew();
             }
@@ -194,11 +194,11 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         let rest_mm = self.ramps.rest_mm();
         let next2 = self.ring.get(0).map_or(0.0, |head| head.entry2);
         let forced2 = if rest_mm > 0.0 {
-            (self.ramps.speed2() - 2.0 * limits.accel * rest_mm).max(0.0)
+            (self.ramps.speed2() - 2.0 * limits.accel() * rest_mm).max(0.0)
         } else {
             f64::from(next2)
         };
-        self.front.rescale(shares, under_way2, forced2, &mut self.ring);
+        self.front.rescale(shares, under_way2, forced2, &limits, &mut self.ring);
         if rest_mm <= 0.0 {
             self.ring.enter_with(next2, limits.twice_accel);
             return;
@@ -208,7 +208,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             self.brake();
             return;
         }
-        let most2 = self.ramps.speed2() + 2.0 * limits.accel * rest_mm;
+        let most2 = self.ramps.speed2() + 2.0 * limits.accel() * rest_mm;
         let exit2 = self.ring.enter_at_most(most2, limits.twice_accel);
         self.ramps.plan(exit2, &limits);
     }
@@ -224,7 +224,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             return Err(PlanError::Full);
         }
         self.stale = true;
-        self.front.end_run(&self.settings, &mut self.ring);
+        self.front.end_run(&self.limits, &mut self.ring);
         Ok(())
     }
 
@@ -257,16 +257,16 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if !core::mem::take(&mut self.hold) || self.jerk_mm_s3().is_some() {
             return;
         }
-        let (limits, rest_mm) = (self.front.limits, self.ramps.rest_mm());
+        let (limits, rest_mm) = (self.limits, self.ramps.rest_mm());
         if rest_mm > 0.0 {
-            let most2 = self.ramps.speed2() + 2.0 * limits.accel * rest_mm;
+            let most2 = self.ramps.speed2() + 2.0 * limits.accel() * rest_mm;
             let exit2 = self.ring.enter_at_most(most2, limits.twice_accel);
             self.ramps.plan(exit2, &limits);
         }
     }
 
     const fn jerk_mm_s3(&self) -> Option<f64> {
-        self.settings.jerk_of::<M>()
+        self.limits.settings.jerk_of::<M>()
     }
 
     /// Whether the machine is at rest after what has been taken.
@@ -283,22 +283,22 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// Brakes on what is left of the course, and with what speed is left on the next.
     fn brake(&mut self) {
         if self.jerk_mm_s3().is_none() && self.ramps.rest_mm() > 0.0 {
-            let exit2 = self.ramps.brake(&self.front.limits);
-            self.ring.enter_at_most(exit2, self.front.limits.twice_accel);
+            let exit2 = self.ramps.brake(&self.limits);
+            self.ring.enter_at_most(exit2, self.limits.twice_accel);
         }
     }
 
     /// The next thing for the motors to do; `None` when nothing is known, or the machine is held.
     pub fn next_action(&mut self) -> Option<Action> {
         if core::mem::take(&mut self.stale) && self.jerk_mm_s3().is_none() {
-            self.ring.plan(self.front.limits.twice_accel);
+            self.ring.plan(self.limits.twice_accel);
         }
         if let Some(phase) = self.ramps.next() {
             return Some(Action::Phase(phase));
         }
         if let (Some(jerk_mm_s3), Some(s_curve)) = (self.jerk_mm_s3(), self.s_curve.get_mut())
             && let Some(phase) =
-                s_curve.next_phase(&mut self.ring, self.settings.accel_mm_s2, jerk_mm_s3, self.hold)
+                s_curve.next_phase(&mut self.ring, self.limits.settings.accel_mm_s2, jerk_mm_s3, self.hold)
         {
             return Some(Action::Phase(phase));
         }
@@ -321,9 +321,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             s_curve.begin();
         } else {
             if let Some(under_way) = self.under_way.get_mut() {
-                *under_way = head.wish(&self.front.limits);
+                *under_way = head.wish(&self.limits);
             }
-            self.ramps.begin(head, self.ring.next_entry2(), &self.front.limits);
+            self.ramps.begin(head, self.ring.next_entry2(), &self.limits);
             self.ring.pop();
             if self.hold {
                 self.brake();
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn sixteen_blocks_take_less_than_1700_bytes() {
-        assert!(size_of::<Planner<16>>() < 1700, "{}", size_of::<Planner<16>>());
+    fn sixteen_blocks_take_less_than_1600_bytes() {
+        assert!(size_of::<Planner<16>>() < 1600, "{}", size_of::<Planner<16>>());
     }
 }

@@ -1,17 +1,17 @@
 //! [`Merger`]: leaves out vertices that a tolerance does not need.
 
+use super::block::single;
 use crate::{Point, Segment};
 
 /// Most vertices that one segment stands for.
 const MOST: usize = 8;
 
-/// A straight segment that stands for one or more of the path.
+/// A straight segment that stands for one or more of the path. It begins where the one before it ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Merged {
-    pub(super) from: Point,
     pub(super) to: Point,
-    /// Farthest that a vertex left out is from it, mm.
-    pub(super) deviation_mm: f64,
+    /// Farthest that a vertex left out is from it, mm; rounded up.
+    pub(super) deviation_mm: f32,
     /// Square of the greatest speed, mm²/s².
     pub(super) cruise2: f32,
 }
@@ -20,59 +20,62 @@ pub(super) struct Merged {
 /// simplification (W. E. Reumann, A. P. M. Witkam 1974; here with the distance from the segment itself), with a bounded memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Merger {
-    from: Point,
-    to: Point,
     /// The vertices from the start on, to the one where the segment ends: ways from the start, mm, which single precision says far
     /// better than any tolerance.
     points: [(f32, f32); MOST],
-    count: usize,
-    deviation_mm: f64,
+    count: u8,
+    deviation_mm: f32,
     cruise2: f32,
 }
 
 impl Merger {
-    /// Takes the line from where the path is, `from`, to `to`. Gives the segment that ends at `from`, if it does.
-    pub(super) fn push(&mut self, from: Point, to: Point, cruise2: f32, tolerance_mm: f64) -> Option<Merged> {
+    /// Takes the line from where the path is, `at`, to `to`. Gives the segment that ends at `at`, if it does. What is in progress
+    /// has begun at `start`; the line itself begins what comes next if nothing was in progress or it ends.
+    pub(super) fn push(
+        &mut self,
+        start: Point,
+        at: Point,
+        to: Point,
+        cruise2: f32,
+        tolerance_mm: f64,
+    ) -> Option<Merged> {
         if self.count > 0
-            && self.count < MOST
+            && usize::from(self.count) < MOST
             && self.cruise2.total_cmp(&cruise2).is_eq()
-            && let Some(deviation_mm) = self.deviation(to, tolerance_mm)
+            && let Some(deviation_mm) = self.deviation(start, to, tolerance_mm)
         {
             self.deviation_mm = deviation_mm;
-            self.add(to);
+            self.add(start, to);
             return None;
         }
-        let ended = self.end();
-        *self = Self { from, cruise2, ..Self::default() };
-        self.add(to);
+        let ended = self.end(at);
+        *self = Self { cruise2, ..Self::default() };
+        self.add(at, to);
         ended
     }
 
-    /// Ends the segment in progress.
-    pub(super) fn end(&mut self) -> Option<Merged> {
-        let Self { from, to, deviation_mm, cruise2, .. } = *self;
+    /// Ends the segment in progress, where the path is.
+    pub(super) fn end(&mut self, at: Point) -> Option<Merged> {
+        let Self { deviation_mm, cruise2, .. } = *self;
         if core::mem::take(&mut self.count) == 0 {
             return None;
         }
-        Some(Merged { from, to, deviation_mm, cruise2 })
+        Some(Merged { to: at, deviation_mm, cruise2 })
     }
 
-    fn add(&mut self, point: Point) {
-        let way = point - self.from;
-        if let Some(slot) = self.points.get_mut(self.count) {
-            #[expect(clippy::cast_possible_truncation, reason = "rounded, as the field says")]
-            let rounded = (way.x as f32, way.y as f32);
-            *slot = rounded;
+    fn add(&mut self, start: Point, point: Point) {
+        let way = point - start;
+        if let Some(slot) = self.points.get_mut(usize::from(self.count)) {
+            *slot = (single(way.x), single(way.y));
             self.count += 1;
-            self.to = point;
         }
     }
 
     /// How far the vertices are from a segment that ends at `to`; `None` for farther than the tolerance.
-    fn deviation(&self, to: Point, tolerance_mm: f64) -> Option<f64> {
-        let segment = Segment::new(Point::ORIGIN, Point::ORIGIN + (to - self.from));
+    fn deviation(&self, start: Point, to: Point, tolerance_mm: f64) -> Option<f32> {
+        let segment = Segment::new(Point::ORIGIN, Point::ORIGIN + (to - start));
         let mut most2 = 0.0_f64;
-        for &(x, y) in self.points.get(..self.count)? {
+        for &(x, y) in self.points.get(..usize::from(self.count))? {
             let point = Point::new(f64::from(x), f64::from(y));
             let away = point - segment.nearest(point);
             most2 = most2.max(away.length_squared());
@@ -80,7 +83,9 @@ impl Merger {
                 return None;
             }
         }
-        Some(libm::sqrt(most2))
+        let deviation_mm = libm::sqrt(most2);
+        let rounded = single(deviation_mm);
+        Some(if f64::from(rounded) < deviation_mm { rounded.next_up() } else { rounded })
     }
 }
 
@@ -91,21 +96,22 @@ mod tests {
     #[test]
     fn a_shallow_bend_is_left_out_and_a_deep_one_stays() {
         let mut merger = Merger::default();
-        let at = |x, y| Point::new(x, y);
-        assert_eq!(merger.push(at(0.0, 0.0), at(1.0, 0.01), 1.0, 0.02), None);
-        assert_eq!(merger.push(at(1.0, 0.01), at(2.0, 0.0), 1.0, 0.02), None);
-        let merged = merger.push(at(2.0, 0.0), at(2.0, 1.0), 1.0, 0.02).unwrap();
-        assert_eq!((merged.from, merged.to), (at(0.0, 0.0), at(2.0, 0.0)));
+        let (start, at) = (Point::ORIGIN, |x, y| Point::new(x, y));
+        assert_eq!(merger.push(start, start, at(1.0, 0.01), 1.0, 0.02), None);
+        assert_eq!(merger.push(start, at(1.0, 0.01), at(2.0, 0.0), 1.0, 0.02), None);
+        let merged = merger.push(start, at(2.0, 0.0), at(2.0, 1.0), 1.0, 0.02).unwrap();
+        assert_eq!(merged.to, at(2.0, 0.0));
         /// What single precision leaves of 0.01.
-        const ROUNDING_MM: f64 = 1e-9;
+        const ROUNDING_MM: f32 = 1e-9;
         assert!((merged.deviation_mm - 0.01).abs() < ROUNDING_MM);
+        assert_eq!(merger.end(at(2.0, 1.0)).map(|merged| merged.to), Some(at(2.0, 1.0)));
     }
 
     #[test]
     fn another_speed_ends_the_segment() {
         let mut merger = Merger::default();
         let at = |x| Point::new(x, 0.0);
-        merger.push(at(0.0), at(1.0), 1.0, 0.1);
-        assert!(merger.push(at(1.0), at(2.0), 4.0, 0.1).is_some());
+        merger.push(at(0.0), at(0.0), at(1.0), 1.0, 0.1);
+        assert!(merger.push(at(0.0), at(1.0), at(2.0), 4.0, 0.1).is_some());
     }
 }

@@ -95,7 +95,7 @@ impl Ramps {
             return self.put(Ramp { duration_s, accel, end_mm: self.length_mm, speed: exit });
         }
         let cruise2 = f64::from(self.cruise2);
-        let peak2 = if cruises { cruise2 } else { 0.5 * (entry2 + exit2) + limits.accel * rest_mm };
+        let peak2 = if cruises { cruise2 } else { 0.5 * (entry2 + exit2) + limits.accel() * rest_mm };
         if peak2 >= cruise2 {
             let down_begin_mm = self.length_mm - (cruise2 - exit2) * limits.per_twice_accel;
             let up_mm = (cruise2 - entry2) * limits.per_twice_accel;
@@ -159,7 +159,7 @@ impl Ramps {
     fn put_ramp(&mut self, way_mm: f64, end_mm: f64, (from, speed): (f64, f64), limits: &Limits) {
         if self.counts(way_mm) {
             let change = speed - from;
-            let accel = limits.accel.copysign(change);
+            let accel = limits.accel().copysign(change);
             let duration_s = change.abs() * limits.per_accel;
             self.put(Ramp { duration_s, accel, end_mm, speed });
         }
@@ -174,7 +174,7 @@ impl Ramps {
 
     /// Plans to stop as soon as can be. Gives the square of the speed at the end of the block: above 0 when it is too short.
     pub(super) fn brake(&mut self, limits: &Limits) -> f64 {
-        let exit2 = (self.speed2() - 2.0 * limits.accel * self.rest_mm()).max(0.0);
+        let exit2 = (self.speed2() - 2.0 * limits.accel() * self.rest_mm()).max(0.0);
         let way_mm = (self.speed2() * limits.per_twice_accel).min(self.rest_mm());
         let stands_mm = (self.done_mm + way_mm).min(self.length_mm);
         let (end_mm, exit) = (if exit2 > 0.0 { self.length_mm } else { stands_mm }, libm::sqrt(exit2));

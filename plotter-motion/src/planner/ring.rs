@@ -111,7 +111,7 @@ impl<const N: usize> Ring<N> {
                 // What can no longer be avoided was allowed before, and is no corner's business.
                 block.max_entry2 = if block.corner2 > 0.0 { most2.max(single(forced2)) } else { 0.0 };
                 before2 = block.cruise2;
-                forced2 = (forced2 - 2.0 * limits.accel * block.length()).max(0.0);
+                forced2 = (forced2 - 2.0 * limits.accel() * block.length()).max(0.0);
             } else {
                 forced2 = 0.0;
             }

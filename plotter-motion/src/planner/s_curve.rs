@@ -193,7 +193,7 @@ pub(super) struct SCurveState {
     state: State,
     /// The phases that have been chosen, and how many of them have been taken.
     chosen: Chosen,
-    taken: usize,
+    taken: u8,
     /// How much of the next of them has been taken, s: a long one is given out in pieces.
     taken_s: f64,
 }
@@ -209,8 +209,12 @@ enum Chosen {
     },
     /// To the end of the block, and the speed there.
     Braking(Braking, f64),
-    /// To the end of the block, from standstill to standstill.
-    RestToRest(SCurve),
+    /// To the end of the block, from standstill to standstill: see [`SCurve::phases_s`].
+    RestToRest {
+        jerk_s: f64,
+        steady_s: f64,
+        cruise_s: f64,
+    },
 }
 
 impl Chosen {
@@ -222,10 +226,17 @@ impl Chosen {
             Self::Braking(Braking { in_s, steady_s, out_s }, _) => {
                 [(-jerk, in_s), (0.0, steady_s), (jerk, out_s)].get(taken).copied()
             }
-            Self::RestToRest(motion) => {
-                let jerks = [jerk, 0.0, -jerk, 0.0, -jerk, 0.0, jerk];
-                jerks.get(taken).copied().zip(motion.phases_s().get(taken).copied())
-            }
+            Self::RestToRest { jerk_s, steady_s, cruise_s } => [
+                (jerk, jerk_s),
+                (0.0, steady_s),
+                (-jerk, jerk_s),
+                (0.0, cruise_s),
+                (-jerk, jerk_s),
+                (0.0, steady_s),
+                (jerk, jerk_s),
+            ]
+            .get(taken)
+            .copied(),
         }
     }
 
@@ -234,7 +245,7 @@ impl Chosen {
         match *self {
             Self::None | Self::One { .. } => None,
             Self::Braking(_, exit) => Some(exit),
-            Self::RestToRest(_) => Some(0.0),
+            Self::RestToRest { .. } => Some(0.0),
         }
     }
 }
@@ -274,7 +285,7 @@ impl SCurveState {
                 // What has not been taken of what was chosen is not wanted any more.
                 self.choose_next(Chosen::None);
             }
-            if let Some((jerk, time_s)) = self.chosen.phase(self.taken, limits.jerk) {
+            if let Some((jerk, time_s)) = self.chosen.phase(usize::from(self.taken), limits.jerk) {
                 let rest_s = time_s - self.taken_s;
                 if rest_s > LONGEST_S {
                     self.taken_s += LONGEST_S;
@@ -510,5 +521,8 @@ impl SCurveState {
 /// The quickest motion from standstill to standstill, in closed form.
 fn rest_to_rest(way_mm: f64, cruise: f64, limits: Limits) -> Chosen {
     let limits = MotionLimits { speed_mm_s: cruise, accel_mm_s2: limits.accel, jerk_mm_s3: limits.jerk };
-    SCurve::plan(way_mm, limits).map_or(Chosen::None, Chosen::RestToRest)
+    SCurve::plan(way_mm, limits).map_or(Chosen::None, |motion| {
+        let [jerk_s, steady_s, _, cruise_s, ..] = motion.phases_s();
+        Chosen::RestToRest { jerk_s, steady_s, cruise_s }
+    })
 }

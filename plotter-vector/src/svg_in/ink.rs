@@ -1,9 +1,10 @@
 //! [`Ink`]: the parser's tree as strokes, each with its pen.
 
+use super::arc::bulge;
 use super::curve::Cubic;
 use super::dash::Dashes;
 use super::{MAX_PX, MM_PER_PX, SvgError, SvgLeftOut, SvgOptions, SvgPens};
-use crate::{Drawing, MAX_PENS, PalettePen, PxPoint, Rgb};
+use crate::{Curve, Drawing, MAX_PENS, PalettePen, PxPoint, Rgb};
 use usvg::tiny_skia_path::{PathSegment, Point};
 
 /// A drawing in the making.
@@ -99,58 +100,68 @@ impl<'a> Ink<'a> {
             _ => None,
         };
         let tolerance_px = self.options.tolerance_mm / MM_PER_PX;
-        let mut stroke: Vec<PxPoint> = Vec::new();
+        // Dashes are cut out of chords.
+        let arcs = self.options.arcs && dashes.is_none();
+        let mut stroke = Curve::default();
         let mut pen = None;
-        let mut draw = |ink: &mut Self, stroke: &mut Vec<PxPoint>, closed: bool| -> Result<(), SvgError> {
-            ready(stroke, way, closed);
-            if !stroke.is_empty() {
+        let mut draw = |ink: &mut Self, stroke: &mut Curve, closed: bool| -> Result<(), SvgError> {
+            let mut stroke = core::mem::take(stroke);
+            ready(&mut stroke, way, closed);
+            if !stroke.vertices.is_empty() {
                 // Only what is drawn takes a pen.
                 let pen = *pen.get_or_insert_with(|| ink.pen(colour, layer));
                 match &dashes {
-                    Some(dashes) => dashes.draw(stroke, own_length, |dash| ink.push(pen, dash))?,
+                    Some(dashes) => dashes
+                        .draw(&stroke.vertices, own_length, |dash| ink.push(pen, dash.to_vec().into()))?,
                     None => ink.push(pen, stroke)?,
                 }
             }
-            stroke.clear();
             Ok(())
         };
         for segment in path.data().segments() {
-            let last = stroke.last().copied();
+            let last = stroke.vertices.last().copied();
             match (segment, last) {
                 (PathSegment::MoveTo(to), _) => {
                     draw(self, &mut stroke, false)?;
-                    stroke.push(place(to)?);
+                    stroke.vertices.push(place(to)?);
                 }
-                (PathSegment::LineTo(to), _) => stroke.push(place(to)?),
+                (PathSegment::LineTo(to), _) => stroke.vertices.push(place(to)?),
                 (PathSegment::QuadTo(handle, to), Some(from)) => {
                     let curve = Cubic::from_quadratic([from, place(handle)?, place(to)?]);
-                    self.curve(&mut stroke, curve, tolerance_px)?;
+                    self.curve(&mut stroke, curve, tolerance_px, arcs)?;
                 }
                 (PathSegment::CubicTo(first, second, to), Some(from)) => {
                     let curve = Cubic([from, place(first)?, place(second)?, place(to)?]);
-                    self.curve(&mut stroke, curve, tolerance_px)?;
+                    self.curve(&mut stroke, curve, tolerance_px, arcs)?;
                 }
                 (PathSegment::Close, _) => draw(self, &mut stroke, true)?,
                 (PathSegment::QuadTo(_, to) | PathSegment::CubicTo(_, _, to), None) => {
-                    stroke.push(place(to)?)
+                    stroke.vertices.push(place(to)?);
                 }
             }
-            self.check_vertices(stroke.len())?;
+            self.check_vertices(stroke.vertices.len())?;
         }
         draw(self, &mut stroke, false)
     }
 
-    fn curve(&self, stroke: &mut Vec<PxPoint>, curve: Cubic, tolerance_px: f64) -> Result<(), SvgError> {
+    fn curve(&self, stroke: &mut Curve, curve: Cubic, tolerance_px: f64, arcs: bool) -> Result<(), SvgError> {
+        if let Some(bulge) = arcs.then(|| bulge(curve, tolerance_px)).flatten() {
+            // That of the piece which begins at the last vertex.
+            stroke.bulges.resize(stroke.vertices.len().saturating_sub(1), 0.0);
+            stroke.bulges.push(bulge);
+            stroke.vertices.push(curve.0[3]);
+            return Ok(());
+        }
         for at in curve.chords(tolerance_px) {
-            stroke.push(at);
-            self.check_vertices(stroke.len())?;
+            stroke.vertices.push(at);
+            self.check_vertices(stroke.vertices.len())?;
         }
         Ok(())
     }
 
-    fn push(&mut self, pen: u8, stroke: &[PxPoint]) -> Result<(), SvgError> {
-        self.check_vertices(stroke.len())?;
-        self.drawing.push_with_pen(pen, stroke.iter().copied());
+    fn push(&mut self, pen: u8, stroke: Curve) -> Result<(), SvgError> {
+        self.check_vertices(stroke.vertices.len())?;
+        self.drawing.push_curve(pen, stroke);
         Ok(())
     }
 
@@ -203,7 +214,9 @@ impl<'a> Ink<'a> {
 }
 
 /// Brings the places of a part of a shape into the form in which they are drawn; none when nothing is.
-fn ready(stroke: &mut Vec<PxPoint>, way: Way<'_>, closed: bool) {
+fn ready(stroke: &mut Curve, way: Way<'_>, closed: bool) {
+    let is_straight = stroke.bulges.is_empty();
+    let stroke = &mut stroke.vertices;
     let Some(first) = stroke.first().copied() else { return };
     let dot = stroke.iter().all(|at| *at == first);
     match way {
@@ -213,7 +226,7 @@ fn ready(stroke: &mut Vec<PxPoint>, way: Way<'_>, closed: bool) {
                 .truncate(usize::from((stroke.len() > 1 || closed) && line.linecap() != usvg::LineCap::Butt));
         }
         // Fewer than three places have nothing between them.
-        Way::Border if stroke.len() < 3 => stroke.clear(),
+        Way::Border if stroke.len() < 3 && is_straight => stroke.clear(),
         _ if (closed || matches!(way, Way::Border)) && stroke.last() != Some(&first) => stroke.push(first),
         _ => {}
     }

@@ -3,6 +3,7 @@
 //! `usvg` resolves what the format allows (styles, units, `use`, shapes, arcs) into paths with one matrix each; here
 //! they become strokes: curves are cut into chords, dashes into strokes, and colours or layers become pens.
 
+mod arc;
 mod curve;
 mod dash;
 mod ink;
@@ -44,6 +45,9 @@ pub enum SvgPens {
 pub struct SvgOptions {
     /// Greatest distance of a curve from its chords, both ways, mm; 0.001 to 10.
     pub tolerance_mm: f64,
+    /// Curves that are arcs of a circle, within the tolerance or what a file's own arcs are parsed to, stay arcs instead of
+    /// chords; not in dashes.
+    pub arcs: bool,
     /// Which strokes are of one pen.
     pub pens: SvgPens,
     /// What has this colour leaves no ink: a background, say. `None` draws all.
@@ -56,6 +60,7 @@ impl Default for SvgOptions {
     fn default() -> Self {
         Self {
             tolerance_mm: 0.025,
+            arcs: false,
             pens: SvgPens::ByColour,
             paper: Some(Rgb::WHITE),
             max_vertices: 10_000_000,
@@ -68,8 +73,12 @@ impl Default for SvgOptions {
 pub struct SvgLeftOut {
     /// Texts: they have no outlines without fonts. Make them paths in the editor.
     pub texts: usize,
+    /// Line of the first of them in the file, from 1.
+    pub text_line: Option<u32>,
     /// Pictures: [`Vectorizer`](crate::Vectorizer) traces them.
     pub images: usize,
+    /// Line of the first of them in the file, from 1.
+    pub image_line: Option<u32>,
     /// Clip paths: what they would cut off is drawn. Those of nested `svg` and `symbol` elements count too.
     pub clip_paths: usize,
     /// Masks: what they would hide is drawn.
@@ -242,12 +251,12 @@ impl core::error::Error for SvgError {}
 
 /// Reads a drawing from the text of an SVG file.
 ///
-/// Shapes, paths, `use`, groups, nested `svg`, style sheets, transforms, `viewBox` and units (mm, in, pt, px at 96 an
-/// inch) are resolved as the format says. A shape is drawn along its stroke, however wide; one without a stroke along
-/// the border of its fill, once. Curves become chords, dashes strokes, markers shapes; a line of no length with round
-/// or square caps is a dot. What is hidden (`display`, `visibility`, opacity 0, no paint) is not drawn, nor is what has the
-/// colour of the paper. The colour of a gradient is that of its first visible stop, of a pattern black. What no pen
-/// draws is counted in [`SvgLeftOut`]. Other files are never opened.
+/// Shapes, paths, `use`, groups, nested `svg`, style sheets, transforms, `viewBox` and units (mm, in, pt, px at 96 an inch) are
+/// resolved as the format says. A shape is drawn along its stroke, however wide; one without a stroke along the border of its
+/// fill, once. Curves become chords, or arcs where [`SvgOptions::arcs`] asks for them, dashes strokes, markers shapes; a line of
+/// no length with round or square caps is a dot. What is hidden (`display`, `visibility`, opacity 0, no paint) is not drawn, nor
+/// is what has the colour of the paper. The colour of a gradient is that of its first visible stop, of a pattern black. What no
+/// pen draws is counted in [`SvgLeftOut`]. Other files are never opened.
 ///
 /// Coordinates are parsed in single precision: to 0.001 px or 0.0003 mm up to 4 m from the origin. Arcs are first
 /// made into cubic curves that are 0.03 % of the radius off at most, and no more than 0.1 of the file's units; that
@@ -316,7 +325,13 @@ fn parse(text: &str, options: SvgOptions) -> Result<SvgDrawing, SvgError> {
         Scale::new(drawing.height_px(), MM_PER_PX, Point::new(0.0, below_mm)).map_err(|_| too_large)?;
     let mut ink = Ink::new(drawing, options, &survey.layers);
     ink.group(tree.root(), "")?;
-    let left_out = SvgLeftOut { texts: survey.texts, images: survey.images, ..ink.left_out };
+    let left_out = SvgLeftOut {
+        texts: survey.texts,
+        text_line: survey.text_line,
+        images: survey.images,
+        image_line: survey.image_line,
+        ..ink.left_out
+    };
     Ok(SvgDrawing { drawing: ink.drawing, scale, width_mm, height_mm, pens: ink.pens, left_out })
 }
 

@@ -42,8 +42,12 @@ const TEMPLATES: [&str; 6] = ["defs", "symbol", "clipPath", "mask", "pattern", "
 pub(super) struct Survey {
     /// Texts that are not empty.
     pub(super) texts: usize,
+    /// Line of the first of them.
+    pub(super) text_line: Option<u32>,
     /// Pictures.
     pub(super) images: usize,
+    /// Line of the first of them.
+    pub(super) image_line: Option<u32>,
     /// Id and name of each group at the top.
     pub(super) layers: Vec<(String, String)>,
 }
@@ -77,9 +81,12 @@ impl Survey {
             let label = node.attributes().find(|attribute| attribute.name() == "label");
             Some((id.to_owned(), label.map_or(id, |label| label.value()).to_owned()))
         };
+        let line = |node: &Node<'_, '_>| document.text_pos_at(node.range().start).row;
         Ok(Self {
             texts: texts.iter().filter(written).count(),
+            text_line: texts.iter().find(written).map(line),
             images: images.len(),
+            image_line: images.first().map(line),
             layers: root.children().filter(|node| node.tag_name().name() == "g").filter_map(layer).collect(),
         })
     }

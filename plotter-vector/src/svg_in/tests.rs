@@ -192,6 +192,24 @@ fn each_layer_has_a_pen_with_its_name() {
 }
 
 #[test]
+fn arcs_stay_arcs_where_they_are_wanted() {
+    let body = "<circle cx='50' cy='50' r='40' fill='none' stroke='#000'/>\
+                <path d='M0 0H10A5 5 0 0 1 10 10H0' fill='none' stroke='#000'/>\
+                <path d='M0 0A5 5 0 0 1 10 0' stroke='#000' fill='none' stroke-dasharray='1'/>";
+    let read = read_with(body, SvgOptions { arcs: true, ..SvgOptions::default() });
+    let bulges = |index: usize| -> Vec<f64> {
+        read.drawing.bulges(index).iter().map(|bulge| libm::round(bulge * 1000.0) / 1000.0).collect()
+    };
+    // Quarters of a turn: tan(90° / 4).
+    assert_eq!(bulges(0), [0.414, 0.414, 0.414, 0.414, 0.0]);
+    assert_eq!(bulges(1), [0.0, 0.414, 0.414, 0.0, 0.0]);
+    // Half a circle of 15.7 px makes 8 dashes, which are cut out of chords.
+    assert_eq!(read.drawing.strokes().len(), 10);
+    assert!((2..10).all(|dash| bulges(dash).iter().all(|bulge| *bulge == 0.0)));
+    assert!(!read_with(body, SvgOptions::default()).drawing.has_arcs());
+}
+
+#[test]
 fn what_no_pen_draws_is_counted() {
     let read = read(
         "<clipPath id='c'><rect width='5' height='5'/></clipPath><mask id='m'><rect width='5' height='5'/></mask>\
@@ -201,7 +219,15 @@ fn what_no_pen_draws_is_counted() {
     );
     assert_eq!(
         read.left_out,
-        SvgLeftOut { texts: 1, images: 2, clip_paths: 1, masks: 1, ..SvgLeftOut::default() }
+        SvgLeftOut {
+            texts: 1,
+            text_line: Some(1),
+            images: 2,
+            image_line: Some(1),
+            clip_paths: 1,
+            masks: 1,
+            ..SvgLeftOut::default()
+        }
     );
     assert_eq!(read.drawing.strokes().len(), 2);
 }

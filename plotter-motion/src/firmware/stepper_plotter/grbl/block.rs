@@ -107,6 +107,9 @@ impl Grbl {
             }
         }
         let modes = self.interpreter.modes();
+        if modes.offset != before.offset {
+            self.reports_to_offset = 0; // the next report tells it
+        }
         let moves = ops.iter().flatten().any(|op| op.target().is_some());
         let has_axis = block.words().iter().any(|word| matches!(word.letter, b'X' | b'Y'));
         if moves && has_axis && (1..=3).contains(&modes.motion) && modes.feed_mm_s.is_none() {

@@ -53,11 +53,16 @@ impl Listing {
                 _ => return false,
             },
             Self::Offsets => match index {
-                0..=5 => out.line(format_args!("[G{}:0.000,0.000,0.000]", Whole(54 + u64::from(index)))),
+                0 => {
+                    let (x, y) = (coordinate(modes.origin.x), coordinate(modes.origin.y));
+                    out.line(format_args!("[G54:{x},{y},0.000]"));
+                }
+                1..=5 => out.line(format_args!("[G{}:0.000,0.000,0.000]", Whole(54 + u64::from(index)))),
                 6 => out.line(format_args!("[G28:0.000,0.000,0.000]")),
                 7 => out.line(format_args!("[G30:0.000,0.000,0.000]")),
                 8 => {
-                    let (x, y) = (coordinate(modes.offset.x), coordinate(modes.offset.y));
+                    let own = modes.offset + -modes.origin;
+                    let (x, y) = (coordinate(own.x), coordinate(own.y));
                     out.line(format_args!("[G92:{x},{y},0.000]"));
                 }
                 9 => out.line(format_args!("[TLO:0.000]")),

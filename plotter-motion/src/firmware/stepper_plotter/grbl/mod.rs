@@ -226,8 +226,9 @@ impl Grbl {
             }
             Report::Stopped { at, why } => {
                 self.jogs = false;
-                self.interpreter = LineInterpreter::new();
+                self.interpreter.reset();
                 self.interpreter.stand_at(at);
+                self.reports_to_offset = 0;
                 self.stopped = true;
                 match why {
                     Stop::Emergency => self.alarm(Alarm::EMERGENCY),
