@@ -19,7 +19,7 @@ pub(super) struct LastCounts {
     still_us: u32,
     /// Duty that grows while the shaft stands.
     leaning: f32,
-    /// The last push's, at the first of a line 0.
+    /// How far the last push had to go, counts; 0 before the first one of a line.
     pushed: f32,
     /// How many times a push went back where the one before it came from.
     turns: u16,
