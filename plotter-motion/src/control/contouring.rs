@@ -307,9 +307,6 @@ impl ContouredAxis {
         self.last.wait(period_us);
         let rests = may_rest && self.last.rests(self.estimator.motion(), target, tolerance_counts);
         if rests {
-            if self.last.stands() {
-                self.estimator.rests();
-            }
             self.duty.stop();
         }
         rests

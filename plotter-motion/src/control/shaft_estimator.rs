@@ -130,12 +130,6 @@ impl ShaftEstimator {
         self.motion.stands();
     }
 
-    /// Takes the shaft for one that stands at the resting place of its count, or with an x1 encoder in A's high half at least:
-    /// there it was led, and no model is so good that it would know better.
-    pub fn rests(&mut self) {
-        self.motion.rests();
-    }
-
     /// Takes note that it took `voltage_v` to break the shaft loose: that is friction, unless it is more than friction can be.
     pub fn broke_loose(&mut self, voltage_v: f32) {
         let beyond = self.model.accel_per_volt * voltage_v.abs() - self.model.dry_friction;
