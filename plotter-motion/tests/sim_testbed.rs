@@ -82,10 +82,10 @@ fn with_x1_encoders_and_a_wrong_description_ours_has_less_than_a_hundredth() {
         let ranking = ranking(
             Decoding::X1,
             share,
-            &["published", "planned-pid", "feed-forward", "cross-coupled", "learning"],
+            &["published", "contouring", "planned-pid", "feed-forward", "cross-coupled", "learning"],
         );
         let published = score(&ranking, "published").total().rms_mm();
-        for name in ["planned-pid", "feed-forward", "cross-coupled", "learning"] {
+        for name in ["contouring", "planned-pid", "feed-forward", "cross-coupled", "learning"] {
             // the trial's 3.0 um rms; its 15 um at most are a share of what its published controller had
             let most = 15.0 / TRIAL_PUBLISHED_UM.1 * um(score(&ranking, "published").total().max_mm);
             assert_within(&ranking, name, 3.0, most);
@@ -97,12 +97,13 @@ fn with_x1_encoders_and_a_wrong_description_ours_has_less_than_a_hundredth() {
 #[test]
 fn with_x4_encoders_ours_has_less_than_a_three_hundredth_and_with_learning_an_eight_hundredth() {
     for share in [0.25, -0.25] {
-        let names = ["published", "planned-pid", "feed-forward", "cross-coupled", "learning"];
+        let names = ["published", "contouring", "planned-pid", "feed-forward", "cross-coupled", "learning"];
         let ranking = ranking(Decoding::X4, share, &names);
         let published = score(&ranking, "published").total().rms_mm();
         // the trial's figures for each
         for (name, rms_um, max_um, times) in [
             ("planned-pid", 2.8, 12.0, 300.0),
+            ("contouring", 1.1, 6.4, 300.0),
             ("feed-forward", 1.1, 6.4, 300.0),
             ("cross-coupled", 0.84, 4.8, 300.0),
             ("learning", 0.49, 2.7, 800.0),

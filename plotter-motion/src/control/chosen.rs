@@ -16,6 +16,7 @@ use core::time::Duration;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[expect(clippy::large_enum_variant, reason = "a machine has one, and no heap to put it on")]
 pub enum ChosenController {
     /// As published for motors that each move an axis.
     LineTracking(LineTracking),

@@ -1,9 +1,9 @@
 //! Contouring control: a planned speed along the line, and the errors along and across it led to zero.
 
+use super::last_counts::LastCounts;
+use super::rounded_duty::RoundedDuty;
 use super::{LineController, ShaftEstimator, ShaftModel};
-use crate::{
-    Axis, AxisConfig, Decoding, Demand, Direction, Drive, Duty, Machine, MotionLimits, SCurve, StepPoint,
-};
+use crate::{Axis, AxisConfig, Decoding, Demand, Direction, Drive, Machine, MotionLimits, SCurve, StepPoint};
 use core::f64::consts::TAU;
 use core::time::Duration;
 
@@ -25,6 +25,10 @@ use core::time::Duration;
 ///
 /// The pen arrives when both shafts have stood within the arrival tolerance of the middle of the target's
 /// counts for the settling time; resting there, no trembling can reach an edge.
+///
+/// Every line ends, on motors far from their description too. A shaft that stands while the reference waits for it is pushed harder and
+/// harder until it moves; and with the plan over, one that has not come to rest goes the last counts one by one. Only a shaft that
+/// the whole supply does not move is waited for, for as long as something holds it.
 ///
 /// Source of the split into along and across: Y. Koren, "Cross-Coupled Biaxial Computer Control for
 /// Manufacturing Systems" (1980).
@@ -54,6 +58,8 @@ pub struct Contouring {
     /// Time along the plan, s; it stands still while the reference waits.
     plan_s: f64,
     estimated_at: Duration,
+    /// How long the plan has been over, us.
+    over_us: u32,
     /// How long both shafts have rested at the target; `None` while they do not.
     settled_for: Option<Duration>,
 }
@@ -179,14 +185,9 @@ impl ShaftSettings {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct ContouredAxis {
     estimator: ShaftEstimator,
-    pwm_steps: u16,
     applied_v: f32,
-    /// What rounding to the timer's steps left over last time, as a duty.
-    rounding: f32,
-    duty: Duty,
-    resting: bool,
-    /// Push that has grown while a shaft stuck beside its target, counts/s^2.
-    leaning: f32,
+    duty: RoundedDuty,
+    last: LastCounts,
 }
 
 impl Contouring {
@@ -201,12 +202,9 @@ impl Contouring {
     pub fn with_settings(settings: ContouringSettings) -> Self {
         let axis = |ShaftSettings { model, decoding, observer_rad_s, pwm_steps }| ContouredAxis {
             estimator: ShaftEstimator::with_model(model, decoding, observer_rad_s),
-            pwm_steps,
             applied_v: 0.0,
-            rounding: 0.0,
-            duty: Duty::ZERO,
-            resting: false,
-            leaning: 0.0,
+            duty: RoundedDuty::none(pwm_steps),
+            last: LastCounts::AT_REST,
         };
         Self {
             settings,
@@ -218,6 +216,7 @@ impl Contouring {
             plan: SCurve::default(),
             plan_s: 0.0,
             estimated_at: Duration::ZERO,
+            over_us: 0,
             settled_for: None,
         }
     }
@@ -232,13 +231,13 @@ impl Contouring {
     }
 
     fn demand(&self) -> Demand {
-        Demand { x: self.x.duty, y: self.y.duty }
+        Demand { x: self.x.duty.get(), y: self.y.duty.get() }
     }
 
     /// One run of the control law.
     fn control(&mut self) {
         let ContouringSettings { along, across, wait_from_counts, wait_counts, .. } = self.settings;
-        let period = self.settings.period();
+        let (period, period_us) = (self.settings.period(), self.settings.period_us);
         let [ux, uy] = self.direction;
         let point = self.plan.at(self.plan_s);
 
@@ -267,16 +266,28 @@ impl Contouring {
 
         self.plan_s = (self.plan_s + period.as_secs_f64() * f64::from(rate)).min(self.plan.duration_s());
         let finished = self.plan_s >= self.plan.duration_s();
+        self.over_us = if finished { self.over_us.saturating_add(period_us) } else { 0 };
         let tolerance = self.settings.tolerance_counts;
         let (rest_x, rest_y) = (
-            (finished || ux == 0.0) && self.x.rests(self.target.x, ex, tolerance),
-            (finished || uy == 0.0) && self.y.rests(self.target.y, ey, tolerance),
+            self.x.rests(finished || ux == 0.0, self.target.x, tolerance, period_us),
+            self.y.rests(finished || uy == 0.0, self.target.y, tolerance, period_us),
         );
-        for (axis, error) in [(&mut self.x, ex), (&mut self.y, ey)] {
-            axis.lean(finished, error, period.as_secs_f32());
+        let (target, over_us, waits) = (self.target, self.over_us, rate < 1.0);
+        for (axis, target, rests, accel, speed, error) in [
+            (&mut self.x, target.x, rest_x, a_along * ux - a_across * uy, speed * ux, ex),
+            (&mut self.y, target.y, rest_y, a_along * uy + a_across * ux, speed * uy, ey),
+        ] {
+            if rests {
+                continue;
+            }
+            if finished && axis.last.is_near(axis.estimator.motion(), target, over_us) {
+                axis.inch(target, period_us);
+            } else {
+                // A whole count behind while the reference waits for it: it is stuck.
+                let leaning = axis.last.lean(waits && error.abs() >= 1.0, error, period_us);
+                axis.drive(accel, speed, error, leaning);
+            }
         }
-        self.x.drive((!rest_x).then_some(a_along * ux - a_across * uy), speed * ux, ex);
-        self.y.drive((!rest_y).then_some(a_along * uy + a_across * ux), speed * uy, ey);
         let settled_for = self.settled_for.unwrap_or_default().saturating_add(period);
         self.settled_for = (finished && rest_x && rest_y).then_some(settled_for);
     }
@@ -284,48 +295,38 @@ impl Contouring {
 
 impl ContouredAxis {
     fn edge(&mut self, direction: Direction) {
+        if self.last.is_leaning() {
+            self.estimator.broke_loose(self.applied_v);
+        }
         self.estimator.edge(direction);
-        self.leaning = 0.0;
+        self.last.edge();
     }
 
-    /// Whether the shaft may be left alone at `target`: it stands in the target's count, near its middle.
-    /// Once left alone it stays so until it is clearly elsewhere.
-    fn rests(&mut self, target: i32, error: f32, tolerance: f32) -> bool {
-        let allowed = if self.resting { 2.0 * tolerance } else { tolerance };
-        self.resting = self.estimator.count() == target && error.abs() <= allowed;
-        self.resting
+    /// Whether the shaft is left alone where it stands, with its motor short-circuited.
+    fn rests(&mut self, may_rest: bool, target: i32, tolerance_counts: f32, period_us: u32) -> bool {
+        self.last.wait(period_us);
+        let rests = may_rest && self.last.rests(self.estimator.motion(), target, tolerance_counts);
+        if rests {
+            self.duty.stop();
+        }
+        rests
     }
 
-    /// A shaft that sticks beside the target at the end of a line, in friction that is greater than known, is
-    /// pushed harder and harder until it moves.
-    fn lean(&mut self, finished: bool, error: f32, dt_s: f32) {
-        const SUPPLIES_PER_S: f32 = 1.0; // friction is a few hundredths of the supply: tens of milliseconds
-        let model = self.estimator.model();
-        let supply = model.accel_per_volt * model.supply_v;
-        let grown = self.leaning + libm::copysignf(SUPPLIES_PER_S * dt_s, error) * supply;
-        // There is no more than the whole supply to push with, however long something holds the shaft.
-        self.leaning = if finished && !self.resting { grown.clamp(-supply, supply) } else { 0.0 };
+    /// Goes towards the target count by count.
+    fn inch(&mut self, target: i32, period_us: u32) {
+        if self.last.stands() {
+            self.estimator.stands();
+        }
+        self.duty.set(self.last.inch(self.estimator.distance_from(target), period_us));
     }
 
-    /// Chooses the duty that gives the acceleration `accel` at the planned `speed`; none leaves the shaft
-    /// alone, with its motor short-circuited.
-    fn drive(&mut self, accel: Option<f32>, speed: f32, error: f32) {
-        let Some(accel) = accel else {
-            self.rounding = 0.0;
-            self.duty = Duty::ZERO;
-            return;
-        };
+    /// Chooses the duty that gives the acceleration `accel` at the planned `speed`, and `leaning` beyond it.
+    fn drive(&mut self, accel: f32, speed: f32, error: f32, leaning: f32) {
         let model = self.estimator.model();
         let sense = if speed != 0.0 { speed } else { error };
         let friction = libm::copysignf(self.estimator.friction_counts_s2().max(0.0), sense);
-        let push = accel + model.damping_per_s * speed + friction + self.leaning;
-        let wanted = push / (model.accel_per_volt * model.supply_v);
-        // What rounding to whole timer steps took or gave is made up for in the next run.
-        let steps = f32::from(self.pwm_steps);
-        let duty =
-            Duty::saturating(libm::roundf(Duty::saturating(wanted + self.rounding).value() * steps) / steps);
-        self.rounding = (wanted + self.rounding - duty.value()).clamp(-1.0 / steps, 1.0 / steps);
-        self.duty = duty;
+        let push = accel + model.damping_per_s * speed + friction;
+        self.duty.set(push / (model.accel_per_volt * model.supply_v) + leaning);
     }
 }
 
@@ -353,7 +354,11 @@ impl LineController for Contouring {
         }
         self.plan = SCurve::plan(length, self.settings.limits).unwrap_or_default();
         self.plan_s = 0.0;
+        self.over_us = 0;
         self.settled_for = None;
+        for axis in [&mut self.x, &mut self.y] {
+            axis.last.start();
+        }
         self.demand()
     }
 

@@ -1,10 +1,12 @@
 //! [`PlannedLine`]: a reference that moves along the line as planned, and a controller that follows it.
 
+use super::last_counts::LastCounts;
+use super::rounded_duty::RoundedDuty;
 use super::{
     AxisState, ContourController, ContourState, ContouringSettings, LineController, ShaftObserver,
     ShaftSettings,
 };
-use crate::{Axis, Decoding, Demand, Direction, Drive, Duty, Machine, SCurve, StepPoint};
+use crate::{Axis, Demand, Direction, Drive, Duty, Machine, SCurve, StepPoint};
 use core::time::Duration;
 
 /// Makes a [`LineController`] of a [`ContourController`]: everything but the control law.
@@ -50,30 +52,18 @@ pub struct PlannedLine<C> {
     run_plan_s: f64,
     rate: f32,
     estimated_at: Duration,
-    /// How long the plan has been over.
-    over_for: Duration,
+    /// How long the plan has been over, us.
+    over_us: u32,
     /// How long both shafts have rested at the target; `None` while they do not.
     settled_for: Option<Duration>,
 }
 
-/// A shaft without an edge for so long, at the end of a line, stands.
-const STANDS: Duration = Duration::from_millis(5);
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PlannedAxis {
     observer: ShaftObserver,
-    pwm_steps: u16,
     applied_v: f32,
-    /// What rounding to the timer's steps left over last time, as a duty.
-    rounding: f32,
-    duty: Duty,
-    resting: bool,
-    /// How long there has been no edge.
-    still_for: Duration,
-    /// How far from the middle of its count it may rest if it stands.
-    not_far_counts: f32,
-    /// Duty that grows while the shaft stands beside its target.
-    leaning: f32,
+    duty: RoundedDuty,
+    last: LastCounts,
     /// How far it was behind at the last edge since the last run, counts.
     edge_error: Option<f32>,
 }
@@ -101,18 +91,9 @@ impl<C: ContourController> PlannedLine<C> {
     pub fn with_settings(settings: ContouringSettings, controller: C) -> Self {
         let axis = |ShaftSettings { model, decoding, observer_rad_s, pwm_steps }| PlannedAxis {
             observer: ShaftObserver::new(model, decoding, observer_rad_s),
-            pwm_steps,
             applied_v: 0.0,
-            rounding: 0.0,
-            duty: Duty::ZERO,
-            resting: false,
-            still_for: Duration::ZERO,
-            not_far_counts: match decoding {
-                // Farther from the middle it may be outside A's high half, and be counted wrongly when it leaves.
-                Decoding::X1 => 0.4,
-                Decoding::X2 | Decoding::X4 => 0.6, // the whole count
-            },
-            leaning: 0.0,
+            duty: RoundedDuty::none(pwm_steps),
+            last: LastCounts::AT_REST,
             edge_error: None,
         };
         Self {
@@ -129,7 +110,7 @@ impl<C: ContourController> PlannedLine<C> {
             run_plan_s: 0.0,
             rate: 1.0,
             estimated_at: Duration::ZERO,
-            over_for: Duration::ZERO,
+            over_us: 0,
             settled_for: None,
         }
     }
@@ -149,7 +130,7 @@ impl<C: ContourController> PlannedLine<C> {
     }
 
     fn demand(&self) -> Demand {
-        Demand { x: self.x.duty, y: self.y.duty }
+        Demand { x: self.x.duty.get(), y: self.y.duty.get() }
     }
 
     /// What the control law is told. Speed and acceleration of the reference are smaller while it waits.
@@ -198,7 +179,7 @@ impl<C: ContourController> PlannedLine<C> {
     /// One run of the loop.
     fn run(&mut self) {
         let ContouringSettings { wait_from_counts, wait_counts, tolerance_counts, .. } = self.settings;
-        let period = self.settings.period();
+        let (period, period_us) = (self.settings.period(), self.settings.period_us);
         let [ux, uy] = self.direction;
         let state = self.state(1.0);
         let (ex, ey) = (state.x.error(), state.y.error());
@@ -213,18 +194,18 @@ impl<C: ContourController> PlannedLine<C> {
         (self.run_plan_s, self.rate) = (self.plan_s, rate);
         self.plan_s = (self.plan_s + period.as_secs_f64() * f64::from(rate)).min(self.plan.duration_s());
         let finished = self.plan_s >= self.plan.duration_s();
+        self.over_us = if finished { self.over_us.saturating_add(period_us) } else { 0 };
         for axis in [&mut self.x, &mut self.y] {
-            axis.still_for = axis.still_for.saturating_add(period);
+            axis.last.wait(period_us);
         }
         let rest_x = (finished || ux == 0.0) && self.x.rests(self.target.x, tolerance_counts);
         let rest_y = (finished || uy == 0.0) && self.y.rests(self.target.y, tolerance_counts);
-        self.over_for = if finished { self.over_for.saturating_add(period) } else { Duration::ZERO };
-        let (target, over_for) = (self.target, self.over_for);
+        let (target, over_us) = (self.target, self.over_us);
         for (axis, target, rests, duty) in
             [(&mut self.x, target.x, rest_x, demand.x), (&mut self.y, target.y, rest_y, demand.y)]
         {
-            let duty =
-                if finished && axis.is_near(target, over_for) { axis.inch(target, period) } else { duty };
+            let is_near = finished && axis.last.is_near(axis.observer.motion(), target, over_us);
+            let duty = if is_near { axis.inch(target, period_us) } else { duty };
             axis.drive((!rests).then_some(duty));
         }
         let settled_for = self.settled_for.unwrap_or_default().saturating_add(period);
@@ -236,62 +217,34 @@ impl PlannedAxis {
     /// Takes an edge while the reference is `reference` counts beyond `start`.
     fn edge(&mut self, direction: Direction, start: i32, reference: f64, planned: Option<Direction>) {
         let place = self.observer.edge(direction, planned);
-        self.still_for = Duration::ZERO;
+        self.last.edge();
         let counted = self.observer.count().saturating_sub(start);
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let error = (reference - f64::from(counted)) as f32 - place;
         self.edge_error = Some(error);
     }
 
-    /// Whether the shaft may be left alone at `target`: it stands in the target's count, near its middle, or not far from it and
-    /// without any edge for a while. Once left alone it stays so until it leaves the count.
-    fn rests(&mut self, target: i32, tolerance: f32) -> bool {
-        let distance = self.observer.distance_from(target).abs();
-        let may_rest = self.resting
-            || distance <= tolerance
-            || (distance <= self.not_far_counts.max(tolerance) && self.still_for >= STANDS);
-        self.resting = self.observer.count() == target && may_rest;
-        self.resting
+    fn rests(&mut self, target: i32, tolerance_counts: f32) -> bool {
+        self.last.rests(self.observer.motion(), target, tolerance_counts)
     }
 
-    /// Whether, with the plan over for so long, the last counts are better gone one by one than by the control law, which may hunt
-    /// about them for ever: its integral breaks a shaft loose and carries it past the target, again and again.
-    fn is_near(&self, target: i32, over_for: Duration) -> bool {
-        const NEAR_COUNTS: u32 = 4;
-        const LATE: Duration = Duration::from_millis(100);
-        over_for >= LATE || (over_for >= STANDS && self.observer.count().abs_diff(target) <= NEAR_COUNTS)
-    }
-
-    /// Pushes a shaft that stands harder and harder towards its target, and lets it go at the first edge.
-    fn inch(&mut self, target: i32, period: Duration) -> Duty {
-        const SUPPLIES_PER_S: f32 = 0.5; // friction is a few hundredths of the supply: tens of milliseconds
-        if self.still_for < STANDS {
-            self.leaning = 0.0;
-            return Duty::ZERO;
+    fn inch(&mut self, target: i32, period_us: u32) -> Duty {
+        if self.last.stands() {
+            self.observer.stands();
         }
-        self.observer.stands();
-        let away = self.observer.distance_from(target);
-        let sense = if self.leaning == 0.0 { -away } else { self.leaning };
-        self.leaning += libm::copysignf(SUPPLIES_PER_S * period.as_secs_f32(), sense);
-        self.leaning = self.leaning.clamp(-1.0, 1.0);
-        Duty::saturating(self.leaning)
+        Duty::saturating(self.last.inch(self.observer.distance_from(target), period_us))
     }
 
-    /// Rounds a duty to the timer's steps; none leaves the shaft alone, with its motor short-circuited.
+    /// Drives the shaft, or leaves it alone.
     fn drive(&mut self, wanted: Option<Duty>) {
-        let Some(wanted) = wanted else {
-            if self.still_for >= STANDS {
-                self.observer.rests();
-            }
-            (self.rounding, self.leaning) = (0.0, 0.0);
-            self.duty = Duty::ZERO;
+        if let Some(wanted) = wanted {
+            self.duty.set(wanted.value());
             return;
-        };
-        let steps = f32::from(self.pwm_steps);
-        let owed = Duty::saturating(wanted.value() + self.rounding).value();
-        let duty = Duty::saturating(libm::roundf(owed * steps) / steps);
-        self.rounding = (wanted.value() + self.rounding - duty.value()).clamp(-1.0 / steps, 1.0 / steps);
-        self.duty = duty;
+        }
+        if self.last.stands() {
+            self.observer.rests();
+        }
+        self.duty.stop();
     }
 }
 
@@ -320,10 +273,10 @@ impl<C: ContourController> LineController for PlannedLine<C> {
         self.plan = SCurve::plan(length, self.settings.limits).unwrap_or_default();
         (self.plan_s, self.run_plan_s, self.run_at) = (0.0, 0.0, now);
         self.settled_for = None;
-        self.over_for = Duration::ZERO;
+        self.over_us = 0;
         for axis in [&mut self.x, &mut self.y] {
             axis.observer.forget();
-            axis.leaning = 0.0;
+            axis.last.start();
         }
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         self.controller.start(self.plan.duration_s() as f32);

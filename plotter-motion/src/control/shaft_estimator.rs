@@ -89,6 +89,10 @@ impl ShaftEstimator {
         }
     }
 
+    pub(super) const fn motion(&self) -> &ShaftMotion {
+        &self.motion
+    }
+
     /// The model it reckons with.
     #[must_use]
     pub const fn model(&self) -> &ShaftModel {
@@ -120,6 +124,20 @@ impl ShaftEstimator {
         self.model.dry_friction + self.drag
     }
 
+    /// Takes the shaft for one that stands where it is thought to be; where it was thought to be on the way there says nothing of
+    /// the edges to come.
+    pub const fn stands(&mut self) {
+        self.motion.stands();
+    }
+
+    /// Takes note that it took `voltage_v` to break the shaft loose: that is friction, unless it is more than friction can be.
+    pub fn broke_loose(&mut self, voltage_v: f32) {
+        let beyond = self.model.accel_per_volt * voltage_v.abs() - self.model.dry_friction;
+        if beyond <= self.drag_limit {
+            self.drag = self.drag.max(beyond);
+        }
+    }
+
     /// Moves the estimate on by `dt_s` under `voltage_v`; nothing happens unless the time is above 0 and both are
     /// finite.
     pub fn predict(&mut self, dt_s: f32, voltage_v: f32) {
@@ -129,7 +147,8 @@ impl ShaftEstimator {
         self.motion.wait(dt_s);
         let ShaftModel { accel_per_volt, damping_per_s, .. } = self.model;
         let push = accel_per_volt * voltage_v;
-        let friction = self.friction_counts_s2();
+        // A motor that runs more easily than described moves more under the same push; without a push it does not.
+        let friction = self.friction_counts_s2().max(-push.abs());
         let speed = self.motion.speed;
         if speed == 0.0 && push.abs() <= friction.max(0.0) {
             return;
@@ -162,5 +181,48 @@ impl ShaftEstimator {
             self.motion.offset = inside;
             self.motion.stands_at(inside);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DT_S: f32 = 1e-4;
+
+    /// An estimator that was taught, by a shaft that goes on under full braking, that friction is less than nothing.
+    fn taught_less_than_nothing() -> ShaftEstimator {
+        let mut estimator = ShaftEstimator::new(&AxisConfig::default(), 150.0);
+        for _ in 0..200 {
+            for _ in 0..4 {
+                estimator.predict(DT_S, -1.0);
+                estimator.no_edge();
+            }
+            estimator.edge(Direction::Plus);
+        }
+        assert!(estimator.friction_counts_s2() < 0.0);
+        estimator
+    }
+
+    #[test]
+    fn no_friction_however_learned_moves_a_shaft_by_itself() {
+        let mut estimator = taught_less_than_nothing();
+        let mut speed = estimator.speed_counts_s().abs();
+        for _ in 0..1000 {
+            estimator.predict(DT_S, 0.0);
+            assert!(estimator.speed_counts_s().abs() <= speed);
+            speed = estimator.speed_counts_s().abs();
+        }
+    }
+
+    #[test]
+    fn what_it_takes_to_break_loose_is_friction_unless_it_is_far_too_much() {
+        let mut estimator = ShaftEstimator::new(&AxisConfig::default(), 150.0);
+        let (described, accel_per_volt) = (estimator.friction_counts_s2(), estimator.model().accel_per_volt);
+        estimator.broke_loose(-1.0); // of 12 V
+        assert!((estimator.friction_counts_s2() / accel_per_volt - 1.0).abs() < 1e-3);
+        estimator.broke_loose(6.0); // a hand
+        assert!((estimator.friction_counts_s2() / accel_per_volt - 1.0).abs() < 1e-3);
+        assert!(described < estimator.friction_counts_s2());
     }
 }

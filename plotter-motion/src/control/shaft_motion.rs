@@ -100,6 +100,20 @@ impl ShaftMotion {
         (self.least, self.most) = (place, place);
     }
 
+    /// From here on it stands where it is thought to be.
+    pub(super) const fn stands(&mut self) {
+        self.speed = 0.0;
+        self.stands_at(self.offset);
+    }
+
+    /// The same, in A's high half if its encoder is an x1.
+    pub(super) fn rests(&mut self) {
+        if self.decoding == Decoding::X1 {
+            self.offset = self.offset.clamp(0.0, 0.5);
+        }
+        self.stands();
+    }
+
     /// The count after an edge, and the edge's place relative to it.
     fn edge_place(&self, direction: Direction) -> (i32, f32) {
         // How far beyond an edge the estimate must have been for it to be met a second time.

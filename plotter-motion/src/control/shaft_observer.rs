@@ -26,6 +26,10 @@ impl ShaftObserver {
         Self { model, motion: ShaftMotion::at_rest(decoding, observer_rad_s), disturbance: 0.0 }
     }
 
+    pub(super) const fn motion(&self) -> &ShaftMotion {
+        &self.motion
+    }
+
     /// The model it reckons with.
     #[must_use]
     pub const fn model(&self) -> &ShaftModel {
@@ -64,17 +68,15 @@ impl ShaftObserver {
     /// Takes the shaft for one that stands where it is thought to be; where it was thought to be on the way there says nothing of
     /// the edges to come.
     pub const fn stands(&mut self) {
-        (self.motion.speed, self.disturbance) = (0.0, 0.0);
-        self.motion.stands_at(self.motion.offset);
+        self.motion.stands();
+        self.disturbance = 0.0;
     }
 
     /// Takes the shaft for one that stands at the resting place of its count, or with an x1 encoder in A's high half at least:
     /// there it was led, and no model is so good that it would know better.
     pub fn rests(&mut self) {
-        if self.motion.decoding == Decoding::X1 {
-            self.motion.offset = self.motion.offset.clamp(0.0, 0.5);
-        }
-        self.stands();
+        self.motion.rests();
+        self.disturbance = 0.0;
     }
 
     /// Moves the estimate on by `dt_s` under `voltage_v`; nothing happens unless the time is above 0 and both are
