@@ -16,26 +16,20 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    Diagnostic, Diagnostics, DrawingFile, Happening, Language, Reading, Severity, SpeedChart, SteppedFigures,
-    SteppedPlot, SteppedPreview, at, print, read_file, run, write_file,
+    Diagnostic, Diagnostics, DrawingFile, DrawnExtent, Happening, Language, Reading, Severity, SpeedChart,
+    StepFile, SteppedFigures, SteppedPlot, SteppedPreview, SteppedReport, at, print, read_file, run,
+    write_file,
 };
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{
-    AreaConfig, DriveChoice, Machine, MachineConfig, PathMode, Pen, PlannerSettings, PlotOp, Point,
-    StepGenSettings,
+    DriveChoice, Machine, MachineConfig, PathMode, Pen, PlannerSettings, PlotOp, Point, StepGenSettings,
 };
-use serde::Serialize;
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Greatest side of a machine's area, mm: beyond it nothing is planned.
 const FARTHEST_MM: f64 = 100_000.0;
-
-/// A point may lie this far outside of the area, mm: what rounding makes of its border.
-const BORDER_MM: f64 = 0.02;
 
 /// Plots a drawing on a simulated plotter with stepper motors: how long it takes, and how fast the pen goes where.
 ///
@@ -172,7 +166,7 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
         steps: arguments.steps.as_deref().map(StepFile::create).transpose()?,
         pen: Pen::Up,
     };
-    let mut read = Read::new(config.area);
+    let mut read = DrawnExtent::new(config.area);
     let (figures, colours) = walk(arguments, &drawing, plot, &mut read, &mut said, &mut writers)?;
     if read.drawn == 0 {
         let why = said.first_error().map_or_else(String::new, |first| format!("; {first}"));
@@ -197,7 +191,7 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
     if let Some(steps) = writers.steps {
         steps.finish()?;
     }
-    let report = Report::new(&drawing, &machine, &settings, motors, &figures, &read, &said);
+    let report = SteppedReport::new(&drawing, &machine, &settings, motors, &figures, &read, &said);
     if let Some(path) = &arguments.report {
         let text = serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?;
         write_file(path, text + "\n")?;
@@ -263,7 +257,7 @@ fn walk(
     arguments: &Arguments,
     drawing: &DrawingFile,
     mut plot: SteppedPlot,
-    read: &mut Read,
+    read: &mut DrawnExtent,
     said: &mut Diagnostics,
     writers: &mut Writers,
 ) -> Result<(SteppedFigures, Vec<[u8; 3]>), String> {
@@ -348,105 +342,6 @@ fn push(
     Ok(true)
 }
 
-/// What has been read, and how it lies in the machine's area.
-struct Read {
-    area: AreaConfig,
-    segments: u64,
-    drawn: u64,
-    least: Option<Point>,
-    most: Option<Point>,
-    outside: u64,
-    first_outside: Option<(Point, Option<u32>)>,
-    line: Option<u32>,
-    position: Point,
-}
-
-impl Read {
-    fn new(area: AreaConfig) -> Self {
-        Self {
-            area,
-            segments: 0,
-            drawn: 0,
-            least: None,
-            most: None,
-            outside: 0,
-            first_outside: None,
-            line: None,
-            position: Point::ORIGIN,
-        }
-    }
-
-    /// Counts an operation; gives it as it is to be planned.
-    fn take(&mut self, mut op: PlotOp, line: Option<u32>, ignore_feed: bool) -> PlotOp {
-        self.line = line;
-        self.segments += u64::from(op.target().is_some());
-        if let (true, PlotOp::Draw { feed_mm_s, .. } | PlotOp::DrawArc { feed_mm_s, .. }) =
-            (ignore_feed, &mut op)
-        {
-            *feed_mm_s = None;
-        }
-        op
-    }
-
-    /// Whether an operation leaves the area. What is drawn counts for the size of the drawing.
-    fn outside(&mut self, op: PlotOp) -> bool {
-        let Some(to) = op.target() else { return false };
-        let from = std::mem::replace(&mut self.position, to);
-        let mut extremes = vec![to];
-        match op {
-            PlotOp::Draw { .. } => extremes.push(from),
-            PlotOp::DrawArc { .. } => {
-                extremes.push(from);
-                let arc = [PlotOp::Travel { to: from }, op];
-                extremes.extend(plotter_motion::chords(arc, BORDER_MM).filter_map(PlotOp::target));
-            }
-            _ => {}
-        }
-        if !matches!(op, PlotOp::Travel { .. }) {
-            for place in &extremes {
-                let least = self.least.unwrap_or(*place);
-                let most = self.most.unwrap_or(*place);
-                self.least = Some(Point::new(least.x.min(place.x), least.y.min(place.y)));
-                self.most = Some(Point::new(most.x.max(place.x), most.y.max(place.y)));
-            }
-        }
-        let AreaConfig { width_mm, height_mm } = self.area;
-        let is_inside = |place: &Point| {
-            (-BORDER_MM..=width_mm + BORDER_MM).contains(&place.x)
-                && (-BORDER_MM..=height_mm + BORDER_MM).contains(&place.y)
-        };
-        let Some(place) = extremes.iter().find(|place| !is_inside(place)) else { return false };
-        self.outside += 1;
-        self.first_outside = self.first_outside.or(Some((*place, self.line)));
-        true
-    }
-
-    fn complaint(&self) -> Diagnostic {
-        let AreaConfig { width_mm, height_mm } = self.area;
-        let (Point { x, y }, line) = self.first_outside.unwrap_or_default();
-        let text = format!(
-            "the point ({x:.3}, {y:.3}) mm lies outside of the machine's area, 0..={width_mm} and 0..={height_mm} mm: move or \
-             shrink the drawing"
-        );
-        Diagnostic { line, ..Diagnostic::new(Severity::Warning, text) }
-    }
-
-    fn warn(&self, said: &mut Diagnostics) {
-        if self.outside == 0 {
-            return;
-        }
-        let mut complaint = self.complaint();
-        if let (Some(least), Some(most)) = (self.least, self.most) {
-            let _ = write!(
-                complaint.text,
-                "; it spans {:.1}..={:.1} and {:.1}..={:.1} mm, {} of its {} movements leave the area",
-                least.x, most.x, least.y, most.y, self.outside, self.segments
-            );
-        }
-        said.push(complaint);
-    }
-}
-
 /// Who looks at the steps.
 struct Writers {
     preview: Option<SteppedPreview>,
@@ -474,174 +369,6 @@ impl Writers {
         if let Some(steps) = &mut self.steps {
             steps.take(happening, self.pen);
         }
-    }
-}
-
-/// The steps as text.
-struct StepFile {
-    path: PathBuf,
-    out: BufWriter<File>,
-    failure: Option<String>,
-}
-
-impl StepFile {
-    fn create(path: &Path) -> Result<Self, String> {
-        let file = File::create(path).map_err(|error| at(path, &format!("cannot be written: {error}")))?;
-        let mut steps = Self { path: path.to_owned(), out: BufWriter::new(file), failure: None };
-        steps.line(format_args!("# tick of 1 us, dx, dy, pen\n"));
-        Ok(steps)
-    }
-
-    fn take(&mut self, happening: Happening, pen: Pen) {
-        match happening {
-            Happening::Step(tick, dx, dy, _) => {
-                self.line(format_args!("{tick} {dx} {dy} {}\n", u8::from(pen == Pen::Down)));
-            }
-            Happening::SelectPen(pen) => self.line(format_args!("# pen {pen}\n")),
-            Happening::NewPage => self.line(format_args!("# new sheet\n")),
-            _ => {}
-        }
-    }
-
-    fn line(&mut self, text: std::fmt::Arguments<'_>) {
-        if let Err(error) = self.out.write_fmt(text) {
-            self.failure.get_or_insert(at(&self.path, &format!("cannot be written: {error}")));
-        }
-    }
-
-    fn finish(mut self) -> Result<(), String> {
-        if let Err(error) = self.out.flush() {
-            self.failure.get_or_insert(at(&self.path, &format!("cannot be written: {error}")));
-        }
-        self.failure.map_or(Ok(()), Err)
-    }
-}
-
-#[derive(Serialize)]
-struct Report {
-    file: String,
-    language: Language,
-    machine: String,
-    mode: &'static str,
-    tolerance_mm: Option<f64>,
-    s_curve: bool,
-    limits: Limits,
-    steps_per_mm: [f64; 2],
-    time_s: f64,
-    time_with_pen_s: f64,
-    dwell_s: f64,
-    draw_mm: f64,
-    travel_mm: f64,
-    segments: u64,
-    courses: u64,
-    steps: u64,
-    strokes: u64,
-    pen_lifts: u64,
-    max_speed_mm_s: f64,
-    max_accel_mm_s2: f64,
-    max_accel_across_mm_s2: f64,
-    accel_window_ms: usize,
-    max_deviation_mm: f64,
-    max_steps_from_drawing_mm: f64,
-    max_drawing_from_steps_mm: f64,
-    bounds_mm: Option<[f64; 4]>,
-    outside: u64,
-    errors: usize,
-    warnings: usize,
-    notices: usize,
-    diagnostics: Vec<Diagnostic>,
-}
-
-#[derive(Serialize)]
-struct Limits {
-    speed_mm_s: f64,
-    travel_speed_mm_s: f64,
-    accel_mm_s2: f64,
-    jerk_mm_s3: Option<f64>,
-    junction_deviation_mm: f64,
-}
-
-impl Report {
-    fn new(
-        drawing: &DrawingFile,
-        machine: &Machine,
-        settings: &PlannerSettings,
-        motors: [MotorScale; 2],
-        figures: &SteppedFigures,
-        read: &Read,
-        said: &Diagnostics,
-    ) -> Self {
-        let tolerance_mm = match settings.path {
-            PathMode::Tolerance { path_tolerance_mm } => Some(path_tolerance_mm),
-            PathMode::Exact => None,
-        };
-        let Diagnostics { kept, errors, warnings, notices } = said.clone();
-        Self {
-            file: drawing.name().to_owned(),
-            language: drawing.language(),
-            machine: machine.config().name.as_str().to_owned(),
-            mode: if tolerance_mm.is_some() { "tolerance" } else { "exact" },
-            tolerance_mm,
-            s_curve: settings.jerk_mm_s3.is_some(),
-            limits: Limits {
-                speed_mm_s: settings.speed_mm_s,
-                travel_speed_mm_s: settings.travel_speed_mm_s,
-                accel_mm_s2: settings.accel_mm_s2,
-                jerk_mm_s3: settings.jerk_mm_s3,
-                junction_deviation_mm: settings.junction_deviation_mm,
-            },
-            steps_per_mm: motors.map(|motor| motor.steps_per_mm),
-            time_s: figures.motion_s,
-            time_with_pen_s: figures.total_s,
-            dwell_s: figures.dwell_s,
-            draw_mm: figures.draw_mm,
-            travel_mm: figures.travel_mm,
-            segments: read.segments,
-            courses: figures.courses,
-            steps: figures.steps,
-            strokes: figures.strokes,
-            pen_lifts: figures.pen_lifts,
-            max_speed_mm_s: figures.max_speed_mm_s,
-            max_accel_mm_s2: figures.max_accel_mm_s2,
-            max_accel_across_mm_s2: figures.max_accel_across_mm_s2,
-            accel_window_ms: figures.accel_window_ms,
-            max_deviation_mm: figures.from_drawing_mm.max(figures.from_steps_mm),
-            max_steps_from_drawing_mm: figures.from_drawing_mm,
-            max_drawing_from_steps_mm: figures.from_steps_mm,
-            bounds_mm: read.least.zip(read.most).map(|(least, most)| [least.x, least.y, most.x, most.y]),
-            outside: read.outside,
-            errors,
-            warnings,
-            notices,
-            diagnostics: kept,
-        }
-    }
-
-    fn table(&self) -> String {
-        let mut out = format!("{} ({}), {}, {}", self.file, self.language.name(), self.machine, self.mode);
-        if let Some(tolerance_mm) = self.tolerance_mm {
-            let _ = write!(out, " {tolerance_mm} mm");
-        }
-        out.push_str(if self.s_curve { ", s-curve\n" } else { "\n" });
-        let rows = [
-            ("time in motion", format!("{:.1}", self.time_s), "s"),
-            ("with pen and pauses", format!("{:.1}", self.time_with_pen_s), "s"),
-            ("pen down", format!("{:.1}", self.draw_mm), "mm"),
-            ("pen up", format!("{:.1}", self.travel_mm), "mm"),
-            ("strokes", self.strokes.to_string(), ""),
-            ("lines and arcs", self.segments.to_string(), "read"),
-            ("", self.courses.to_string(), "planned"),
-            ("steps", self.steps.to_string(), ""),
-            ("greatest speed", format!("{:.1}", self.max_speed_mm_s), "mm/s"),
-            ("acceleration along", format!("{:.0}", self.max_accel_mm_s2), "mm/s²"),
-            ("across, in curves", format!("{:.0}", self.max_accel_across_mm_s2), "mm/s²"),
-            ("from the drawing", format!("{:.4}", self.max_deviation_mm), "mm"),
-        ];
-        for (name, value, unit) in rows {
-            out.push_str(format!("  {name:20} {value:>12} {unit}").trim_end());
-            out.push('\n');
-        }
-        out
     }
 }
 

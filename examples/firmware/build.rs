@@ -4,6 +4,7 @@
 use plotter_motion::control::{ContouringSettings, LineTrackingSettings};
 use plotter_motion::firmware::GantrySettings;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
+use plotter_motion::gcode::PenConvention;
 use plotter_motion::kinematics::Backlash;
 use plotter_motion::{AxisConfig, ControllerChoice, Machine, PathMode, PlannerSettings};
 use std::error::Error;
@@ -105,7 +106,7 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
     writeln!(text, "use core::time::Duration;")?;
     writeln!(
         text,
-        "use plotter_motion::firmware::stepper_plotter::{{Dialect, StepperPlotterSettings, StoredSettings}};"
+        "use plotter_motion::firmware::stepper_plotter::{{AnyPen, Dialect, Grbl, SpindlePen, StepperPlotterSettings, StoredSettings}};"
     )?;
     writeln!(text, "use plotter_motion::gcode::{{LaserCommand, PenConvention, ServoCommand}};")?;
     writeln!(text, "use plotter_motion::kinematics::Backlash;")?;
@@ -134,10 +135,12 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
     let is_plain =
         path == PathMode::Exact && jerk_mm_s3.is_none() && settings.backlash == Backlash::default();
     let modes = if is_plain { "ExactOnly" } else { "AllModes" };
+    let pens =
+        if settings.pen == PenConvention::Spindle && !settings.laser { "SpindlePen" } else { "AnyPen" };
     writeln!(
         text,
         "/// The stepper plotter's controller, with what its settings need.\npub type StepperPlotter = \
-         plotter_motion::firmware::StepperPlotter<plotter_motion::firmware::stepper_plotter::Grbl, plotter_motion::{modes}>;"
+         plotter_motion::firmware::StepperPlotter<Grbl<{pens}>, plotter_motion::{modes}>;"
     )?;
     Ok(())
 }

@@ -224,10 +224,29 @@ fn told(name: &str, head: &[u8], language: Option<Language>) -> Result<Language,
     if head.starts_with(&[0x1f, 0x8b]) {
         return Err(format!("{name}: the file is compressed: unpack it first (gunzip)"));
     }
-    language.or_else(|| Language::of_contents(head)).ok_or_else(|| {
+    if let Some(language) = language {
+        return Ok(language);
+    }
+    let language = Language::of_contents(head).ok_or_else(|| {
         format!(
             "{name}: this looks like none of HPGL, G-code, SVG and the thesis' text; if it is one, say which"
         )
+    })?;
+    if let Some(line) = (language == Language::Gcode).then(|| first_extrusion(head)).flatten() {
+        return Err(format!(
+            "{name}: line {line}: this is a file for a 3D printer: it feeds plastic (E) as it moves, and a pen cannot draw its \
+             layers; export the drawing for a pen plotter, or say that it is G-code to read it all the same"
+        ));
+    }
+    Ok(language)
+}
+
+/// The first line that moves in the plane and feeds plastic, which no plotter's file does.
+fn first_extrusion(head: &[u8]) -> Option<u32> {
+    let mut reader = gcode::Reader::new();
+    head.iter().filter_map(|byte| reader.push(*byte)?.ok()).find_map(|block| {
+        let moves = block.number(b'X').or(block.number(b'Y')).is_some();
+        (moves && block.number(b'E')? > 0.0).then(|| block.position().line)
     })
 }
 
@@ -403,6 +422,19 @@ mod tests {
             assert!(places[0].distance(Point::new(10.0, 0.0)) < 1e-5, "{text}");
             assert!(places[1].distance(Point::new(20.0, 10.0)) < 1e-5, "{text}");
         }
+    }
+
+    #[test]
+    fn a_file_for_a_3d_printer_is_refused_unless_it_is_wanted() {
+        // As slicers write: heat, a retraction, which moves nothing in the plane, and then the first line of plastic.
+        let text =
+            "; sliced\nM104 S215\nG28\nM83\nG1 E-0.8 F2100\nG1 Z.2\nG1 X10 Y10 F9000\nG1 X20 Y10 E.52\n";
+        let refused = DrawingFile::held("cube.gcode", text.into(), None).unwrap_err();
+        assert!(refused.starts_with("cube.gcode: line 8: this is a file for a 3D printer"), "{refused}");
+        assert!(DrawingFile::held("cube.gcode", text.into(), Some(Language::Gcode)).is_ok());
+        // A pen on such a printer feeds nothing.
+        let pen = "M104 S0\nG92 E0\nG0 Z2\nG0 X10 Y10\nG0 Z0\nG1 X20 Y10 E0\n";
+        assert!(DrawingFile::held("pen.gcode", pen.into(), None).is_ok());
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! [`chords`]: the arcs of a tool path as straight lines, for machines that know no others.
 
+use crate::extremes::{greater, smaller};
+use crate::turn::atan;
 use crate::{PlotOp, Point, Vec2};
 
 /// Most chords of one arc.
@@ -82,12 +84,16 @@ pub fn chords<I: IntoIterator<Item = PlotOp>>(
 /// Into how many chords an arc is divided so that none is farther than `tolerance_mm` from it: 1 to 65,536; 1 for what is no
 /// arc.
 pub(crate) fn chord_count(radius_mm: f64, sweep_rad: f64, tolerance_mm: f64) -> u32 {
-    let flattest = (tolerance_mm / radius_mm).clamp(0.0, 1.0);
+    let flattest = tolerance_mm / radius_mm;
+    if flattest.is_nan() {
+        return 1;
+    }
+    let flattest = greater(smaller(flattest, 1.0), 0.0);
     // The tangent of a quarter of the angle, whose square is (1 − cos) / (1 + cos) of its half.
-    let finest_rad = 4.0 * libm::atan(libm::sqrt(flattest / (2.0 - flattest)));
+    let finest_rad = 4.0 * atan(libm::sqrt(flattest / (2.0 - flattest)));
     let count = libm::ceil(libm::fabs(sweep_rad) / finest_rad);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number, clamped")]
-    let count = if count.is_nan() { 1 } else { count.clamp(1.0, MOST_CHORDS) as u32 };
+    let count = if count.is_nan() { 1 } else { greater(smaller(count, MOST_CHORDS), 1.0) as u32 };
     count
 }
 

@@ -3,11 +3,8 @@
 /// Digits kept. An `f64` holds 15 to 17, and 18 fit into a `u64`.
 const MAX_DIGITS: u8 = 18;
 
-/// Powers of ten that an `f64` holds exactly; places after the point beyond them are not looked at.
-const POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
-    1e19, 1e20, 1e21, 1e22,
-];
+/// Most places behind the point. 10 to this power is the greatest that is a float without rounding, as are all before it.
+const MOST_PLACES: u8 = 22;
 
 /// A decimal number in progress: sign, digits, point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,7 +39,7 @@ impl Decimal {
 
     fn digit(&mut self, digit: u8) {
         self.any_digit = true;
-        if self.digits < MAX_DIGITS && usize::from(self.places) + 1 < POWERS.len() {
+        if self.digits < MAX_DIGITS && self.places < MOST_PLACES {
             self.mantissa = self.mantissa * 10 + u64::from(digit);
             self.digits += u8::from(self.mantissa > 0);
             self.places += u8::from(self.point);
@@ -56,7 +53,8 @@ impl Decimal {
         if !self.any_digit {
             return None;
         }
-        let scale = POWERS.get(usize::from(self.places)).copied().unwrap_or(1.0);
+        // A table of them would be 184 bytes.
+        let scale = (0..self.places).fold(1.0, |scale, _| scale * 10.0);
         #[expect(clippy::cast_precision_loss, reason = "digits beyond the 15th are rounded")]
         let magnitude = if self.huge { f64::INFINITY } else { self.mantissa as f64 / scale };
         Some(if self.negative { -magnitude } else { magnitude })

@@ -15,6 +15,8 @@
 //! axis is known to be longer, and slow after that, as in the source (spec 5.3).
 
 use crate::decimal_text::{Plain, Whole};
+use crate::extremes::smaller;
+use crate::whole::whole;
 use crate::{Axis, Direction, LimitSwitches, Machine, StepperConfig};
 use core::fmt;
 
@@ -529,10 +531,11 @@ impl HomingProgress {
             let from_hz = f64::from(from_hz);
             libm::sqrt(from_hz * from_hz + 2.0 * f64::from(settings.accel_hz_s) * steps.max(0) as f64)
         };
-        let rate_hz =
-            reached(start_hz, before).min(reached(slowly, ahead - 1)).min(f64::from(settings.fast_hz));
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
-        let rate_hz = rate_hz as u32;
+        let rate_hz = smaller(
+            smaller(reached(start_hz, before), reached(slowly, ahead - 1)),
+            f64::from(settings.fast_hz),
+        );
+        let rate_hz = u32::try_from(whole(rate_hz)).unwrap_or(u32::MAX);
         rate_hz.max(1)
     }
 }

@@ -16,6 +16,7 @@ pub mod control;
 mod decimal;
 mod decimal_text;
 mod encoder;
+mod extremes;
 pub mod firmware;
 pub mod gcode;
 mod geom;
@@ -38,6 +39,7 @@ mod targets;
 pub mod testbed;
 mod toolpath;
 mod turn;
+mod whole;
 
 pub use axis::{Axis, Direction};
 pub use bresenham::{Bresenham, StepPair};

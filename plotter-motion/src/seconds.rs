@@ -1,9 +1,41 @@
 //! Seconds as a [`Duration`].
 
+use crate::whole::{float, nearest_even, whole};
 use core::time::Duration;
 
-/// As [`Duration::try_from_secs_f64`], which takes 0.4 KB of a microcontroller's flash wherever it is written.
+/// Longest one, s: what a whole number of 63 bits holds.
+const MOST_S: f64 = 9e18;
+
+/// The nearest nanosecond; none for what is below zero, too long or no number. [`Duration::try_from_secs_f64`] takes 0.4 KB of a
+/// microcontroller's flash, and differs by the last nanosecond where a number lies half way between two of them.
 #[inline(never)]
 pub(crate) fn duration(seconds: f64) -> Option<Duration> {
-    Duration::try_from_secs_f64(seconds).ok()
+    if !(0.0..=MOST_S).contains(&seconds) {
+        return None;
+    }
+    let before = whole(seconds);
+    let nanos = nearest_even((seconds - float(before)) * 1e9);
+    Some(
+        Duration::from_secs(before.unsigned_abs()).saturating_add(Duration::from_nanos(nanos.unsigned_abs())),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_are_what_the_standard_library_makes_of_them() {
+        for number in 0..200_000_u32 {
+            for unit in [1e-6, 1e-4, 1e-3, 0.5, 7.0] {
+                let seconds = f64::from(number) * unit;
+                assert_eq!(duration(seconds), Duration::try_from_secs_f64(seconds).ok(), "{seconds}");
+            }
+        }
+        assert_eq!(duration(0.999_999_999_9), Some(Duration::from_secs(1)));
+        for odd in [-1.0, -1e-12, f64::NAN, f64::INFINITY, 1e300] {
+            assert_eq!(duration(odd), None, "{odd}");
+        }
+        assert_eq!(duration(-0.0), Some(Duration::ZERO));
+    }
 }

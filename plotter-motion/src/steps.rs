@@ -8,6 +8,8 @@
 //! let wrong: Point = StepPoint { x: 40, y: 0 };
 //! ```
 
+use crate::whole::nearest;
+
 /// Position of both motors, in microsteps or encoder counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -36,9 +38,8 @@ impl StepPoint {
 /// ```
 #[must_use]
 pub fn from_mm(mm: f64, steps_per_mm: f64) -> i32 {
-    #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates, which is what is promised")]
-    let steps = libm::round(mm * steps_per_mm) as i32;
-    steps
+    let steps = nearest(mm * steps_per_mm);
+    i32::try_from(steps).unwrap_or(if steps < 0 { i32::MIN } else { i32::MAX })
 }
 
 #[cfg(test)]

@@ -5,7 +5,9 @@ mod stepper_bench;
 
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
-use plotter_motion::firmware::stepper_plotter::{Activity, Dialect, Grbl, StepperPlotterSettings};
+use plotter_motion::firmware::stepper_plotter::{
+    Activity, Dialect, Grbl, SpindlePen, StepperPlotterSettings,
+};
 use plotter_motion::kinematics::Backlash;
 use plotter_motion::{ExactOnly, Point, StepPoint, from_mm};
 use stepper_bench::Bench;
@@ -374,7 +376,7 @@ fn a_stop_within_the_play_loses_no_place() {
 
 #[test]
 fn a_small_controller_overrides_the_laser_alone_and_tells_so() {
-    let mut small = StepperPlotter::<Grbl, ExactOnly>::with_modes(settings())
+    let mut small = StepperPlotter::<Grbl<SpindlePen>, ExactOnly>::with_modes(settings())
         .unwrap_or_else(|error| unreachable!("{error}"));
     for byte in [FEED_LESS_10, LASER_LESS_10, b'?', b'?'] {
         small.receive(Duration::ZERO, byte);
@@ -385,9 +387,17 @@ fn a_small_controller_overrides_the_laser_alone_and_tells_so() {
 }
 
 #[test]
+fn a_small_controller_has_no_laser_and_says_so() {
+    let machine = StepperPlotterSettings { laser: true, ..settings() };
+    let small = StepperPlotter::<Grbl<SpindlePen>, ExactOnly>::with_modes(machine);
+    let error = small.err().map(|error| error.to_string()).unwrap_or_default();
+    assert!(error.starts_with("the pen is lifted by Laser") && error.ends_with("Grbl<AnyPen>"), "{error}");
+}
+
+#[test]
 fn a_small_controller_has_no_play_and_says_so() {
     let machine = StepperPlotterSettings { backlash: PLAY, ..settings() };
-    let small = StepperPlotter::<Grbl, ExactOnly>::with_modes(machine);
+    let small = StepperPlotter::<Grbl<SpindlePen>, ExactOnly>::with_modes(machine);
     let error = small.err().map(|error| error.to_string()).unwrap_or_default();
     assert!(error.starts_with("backlash"), "{error}");
 }

@@ -1,6 +1,6 @@
 //! The interpreter of HPGL: command by command, in plotter units.
 
-use plotter_motion::hpgl::{Interpreter, Reader, UNITS_PER_MM, Undrained, plot_ops};
+use plotter_motion::hpgl::{Error, Interpreter, Reader, UNITS_PER_MM, Undrained, plot_ops};
 use plotter_motion::{PlotOp, Point};
 
 /// Operations in short, in plotter units: `U` travel, `D` draw, `S` pen, `N` page; errors in `<>`.
@@ -121,6 +121,17 @@ fn an_arc_goes_from_where_the_pen_stands_and_leaves_it_at_its_end() {
         "<line 1, column 1 (byte 0): AA lacks the centre's x and y and an angle and is left out> \
          <line 1, column 13 (byte 12): AA with 400 is left out: it takes an angle of at most 360 degrees> \
          <line 1, column 25 (byte 24): AA with 200 is left out: it takes a chord angle of at most 180 degrees>"
+    );
+}
+
+#[test]
+fn what_a_cutter_is_told_is_a_notice() {
+    let text = b"TB26,0,3000,2000;IN;FC18,1,1;FD90;PU1,1;PD2,2;PU;PG;@@";
+    let said: Vec<_> = plot_ops(text).filter_map(Result::err).collect();
+    assert!(said.len() == 3 && said.iter().all(Error::is_notice), "{said:?}");
+    assert_eq!(
+        said[1].to_string(),
+        "line 1, column 21 (byte 20): FC (blade offset of a cutter) is not supported and is left out"
     );
 }
 

@@ -110,6 +110,7 @@ fn garbage_between_commands_is_reported_once() {
 fn what_editors_and_cutters_add_is_passed_over() {
     assert_eq!(events(b"\xEF\xBB\xBFPU;"), "PU.");
     assert_eq!(events(b"!ST1;PU;!FS80\nPD1,2;!PG;"), "PU. PD 1 2.");
+    assert_eq!(events(b"PD1,2;PG;@@@\n@"), "PD 1 2. PG.");
 }
 
 #[test]

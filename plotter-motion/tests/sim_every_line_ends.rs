@@ -9,9 +9,11 @@
 )]
 
 mod closed_loop;
+mod loaded_gantry;
 
 use closed_loop::Loop;
 use core::time::Duration;
+use loaded_gantry::{decoded, loaded_gantry};
 use plotter_motion::{AxisConfig, Decoding, Duty, MachineConfig, StepPoint};
 
 /// Numbers by chance, the same on every machine (xorshift64*).
@@ -31,25 +33,9 @@ impl Chance {
     }
 }
 
-/// The semi-virtual gantry or the loaded one, whose loop is four times as fast, with encoders decoded as said.
+/// The semi-virtual gantry or the loaded one, with encoders decoded as said.
 fn described(is_loaded: bool, decoding: Decoding) -> MachineConfig {
-    let mut config = MachineConfig::default();
-    let contouring = &mut config.control.contouring;
-    if is_loaded {
-        (contouring.jerk_mm_s3, contouring.loop_hz) = (2.0e6, 10_000.0);
-        (contouring.bandwidth_hz, contouring.observer_hz) = (60.0, 250.0);
-    }
-    for axis in [&mut config.x, &mut config.y] {
-        if is_loaded {
-            axis.load.inertia_kg_m2 = 5.0e-6;
-            (axis.load.coulomb_n_m, axis.load.static_n_m) = (2.2e-3, 2.6e-3);
-        }
-        axis.encoder.decoding = decoding;
-        if decoding == Decoding::X4 {
-            axis.counts_per_mm = 160.0;
-        }
-    }
-    config
+    if is_loaded { loaded_gantry(decoding) } else { decoded(MachineConfig::default(), decoding) }
 }
 
 /// The axis as it is: every figure of motor and load off by up to `off`, and rest up to 1.8 times as hard to leave as motion.

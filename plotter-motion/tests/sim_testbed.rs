@@ -7,34 +7,27 @@
 #![allow(clippy::print_stdout, reason = "the tables are for a person to read")]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+mod loaded_gantry;
+
+use loaded_gantry::loaded_gantry;
 use plotter_motion::testbed::{Drawing, Entry, Ranking, Score, TestBed, TestBedSettings};
 use plotter_motion::{Decoding, Machine, MachineConfig, MachineName};
 
-/// The machine of examples/machines/loaded-gantry.toml, and of loaded-gantry-x4.toml.
-fn loaded_gantry(decoding: Decoding) -> MachineConfig {
-    let mut config =
-        MachineConfig { name: MachineName::new("loaded-gantry").unwrap(), ..MachineConfig::default() };
-    let contouring = &mut config.control.contouring;
-    (contouring.jerk_mm_s3, contouring.loop_hz) = (2.0e6, 10_000.0);
-    (contouring.bandwidth_hz, contouring.observer_hz) = (60.0, 250.0);
+/// The machine of examples/machines/loaded-gantry.toml, or of loaded-gantry-x4.toml.
+fn described(decoding: Decoding) -> MachineConfig {
+    let mut config = loaded_gantry(decoding);
+    config.name = MachineName::new("loaded-gantry").unwrap();
     if decoding == Decoding::X4 {
         config.name = MachineName::new("loaded-gantry-x4").unwrap();
+        let contouring = &mut config.control.contouring;
         (contouring.bandwidth_hz, contouring.observer_hz) = (100.0, 500.0);
-    }
-    for axis in [&mut config.x, &mut config.y] {
-        axis.load.inertia_kg_m2 = 5.0e-6;
-        (axis.load.coulomb_n_m, axis.load.static_n_m) = (2.2e-3, 2.6e-3);
-        axis.encoder.decoding = decoding;
-        if decoding == Decoding::X4 {
-            axis.counts_per_mm = 160.0;
-        }
     }
     config
 }
 
 /// The ranking of the entries with these names on the eight lines, with descriptions that are wrong by `share`.
 fn ranking(decoding: Decoding, share: f64, names: &[&str]) -> Ranking {
-    let machine = Machine::new(loaded_gantry(decoding)).unwrap();
+    let machine = Machine::new(described(decoding)).unwrap();
     let settings = TestBedSettings { wrong_share: share, ..TestBedSettings::default() };
     let bed = TestBed::new(&machine, settings).unwrap();
     let mut entries = Entry::standard();
@@ -118,7 +111,7 @@ fn with_x4_encoders_ours_has_less_than_a_three_hundredth_and_with_learning_an_ei
 #[test]
 fn the_files_describe_the_plants_of_these_tests() {
     for decoding in [Decoding::X1, Decoding::X4] {
-        let config = loaded_gantry(decoding);
+        let config = described(decoding);
         let file = format!("{}/../examples/machines/{}.toml", env!("CARGO_MANIFEST_DIR"), config.name);
         let Ok(text) = std::fs::read_to_string(&file) else {
             eprintln!("{file} is not here: nothing to compare");

@@ -15,6 +15,7 @@
     reason = "a test that fails says so by a panic"
 )]
 
+mod house;
 mod linked_session;
 
 use linked_session::LinkedSession;
@@ -161,7 +162,7 @@ fn every_preset_replays_its_golden_logs() {
 #[test]
 fn the_gantry_behind_the_link_replays_its_golden_log() {
     let path = directory("tests/golden/semi-virtual-gantry.linked.plog");
-    let machine = linked_session::machine(ControllerChoice::Contouring);
+    let machine = house::machine(ControllerChoice::Contouring);
     if golden::Mode::from_env() == golden::Mode::Renew {
         let header = Header::new()
             .with_number("baud", u64::from(machine.config().serial.baud))

@@ -185,6 +185,8 @@ fn a_session_with_a_simulated_machine_is_run_again_to_the_same_bytes() {
         until("it moves", || telemetry.lock().unwrap().duty != [0, 0]);
         session.command(Command::Stop);
         until("it is stopped", || session.state() == State::Stopped);
+        // On a busy computer the machine may learn of the stop later than the session.
+        until("the motors are off", || telemetry.lock().unwrap().duty == [0, 0]);
         session.command(Command::Resume);
         assert_eq!(session.wait(Duration::from_secs(20)), State::Done);
         assert_eq!(session.recording(), "complete");

@@ -212,7 +212,7 @@ fn logs_are_compared_to_the_byte() {
         tolerant.out
     );
     let nowhere = run(&["compare", "a.plog", "nowhere.plog"], here);
-    assert_eq!((nowhere.status, nowhere.err.lines().count()), (2, 1));
+    assert_eq!((nowhere.status, nowhere.out.as_str(), nowhere.err.lines().count()), (2, "", 1));
 }
 
 #[test]

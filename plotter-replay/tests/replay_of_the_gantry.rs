@@ -6,8 +6,11 @@
     reason = "a test that fails says so by a panic"
 )]
 
+mod house;
+
+use house::{house, machine};
 use plotter_motion::plant::{Bench, BenchSettings};
-use plotter_motion::{Axis, ControllerChoice, Machine, MachineConfig, Pen, PenMove, StepPoint};
+use plotter_motion::{Axis, ControllerChoice, Machine, Pen, PenMove, StepPoint};
 use plotter_replay::log::{Event, Header, Reader, Record, SwitchName, Writer};
 use plotter_replay::{
     Answer, BenchRecorder, Canvas, Chart, EdgeSource, Layer, MachineController, Outcome, Player,
@@ -15,30 +18,13 @@ use plotter_replay::{
 };
 use std::time::Duration;
 
-/// A house, 10 mm wide, and a dot; in encoder counts of 1/40 mm.
+/// The house, and a dot in it.
 fn moves() -> impl Iterator<Item = PenMove> {
-    let (up, down) = (Pen::Up, Pen::Down);
-    [
-        (up, 100, 100),
-        (down, 500, 100),
-        (down, 500, 400),
-        (down, 300, 560),
-        (down, 100, 400),
-        (down, 100, 100),
-        (up, 300, 300),
-        (down, 300, 300), // a dot
-        (up, 0, 0),
-    ]
-    .into_iter()
-    .map(|(pen, x, y)| PenMove { pen, target: StepPoint::new(x, y) })
-}
-
-fn machine(controller: ControllerChoice) -> Machine {
-    let mut config = MachineConfig::default();
-    config.control.controller = controller;
-    // The published pause of 10 ms after each byte makes a test long, and changes nothing else.
-    config.serial.byte_gap_ms = 1.0;
-    Machine::new(config).unwrap()
+    let inside = StepPoint::new(300, 300);
+    let dot = [Pen::Up, Pen::Down].map(|pen| PenMove { pen, target: inside });
+    let mut moves = house();
+    moves.splice(moves.len() - 1..moves.len() - 1, dot);
+    moves.into_iter()
 }
 
 fn session(machine: &Machine) -> Vec<u8> {

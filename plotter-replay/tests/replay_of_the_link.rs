@@ -2,9 +2,11 @@
 //! line and a bad one; and the same answers where the recorder knew nothing of its motors.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that fails says so by a panic")]
 
+mod house;
 mod linked_session;
 
-use linked_session::{BOOT, LinkedSession, house, machine};
+use house::{house, machine};
+use linked_session::{BOOT, LinkedSession};
 use plotter_motion::protocol::Order;
 use plotter_motion::{AreaConfig, ControllerChoice, Machine};
 use plotter_replay::log::{Event, Header, Reader, Record, Writer};

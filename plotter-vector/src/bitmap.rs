@@ -277,6 +277,13 @@ impl Bitmap {
     pub(crate) fn clear_run(&mut self, y: u32, columns: core::ops::Range<u32>) {
         let (first, last) = (columns.start / BITS, columns.end.saturating_sub(1) / BITS);
         let row = self.row_mut(y);
+        if first == last {
+            if let Some(bits) = row.get_mut(first as usize) {
+                *bits &=
+                    !(u64::MAX << (columns.start % BITS) & u64::MAX >> (BITS - 1 - (columns.end - 1) % BITS));
+            }
+            return;
+        }
         for (word, bits) in (first..=last).zip(row.iter_mut().skip(first as usize)) {
             let low = if word == first { u64::MAX << (columns.start % BITS) } else { u64::MAX };
             let high =
@@ -285,14 +292,63 @@ impl Bitmap {
         }
     }
 
+    /// How many ink pixels follow each other to the left and to the right of a pixel, at most `most`.
+    pub(crate) fn run_level(&self, at: Pixel, most: u32) -> (u32, u32) {
+        let row = self.row(at.y);
+        let ((word, _), bit) = (place(at.x), at.x % BITS);
+        let here = row.get(word).copied().unwrap_or(0);
+        let (mut left, mut right) =
+            ((here << (BITS - 1 - bit) << 1).leading_ones(), (here >> bit >> 1).trailing_ones());
+        if left == bit {
+            for bits in row.get(..word).unwrap_or(&[]).iter().rev() {
+                left += bits.leading_ones();
+                if *bits != u64::MAX || left >= most {
+                    break;
+                }
+            }
+        }
+        if right == BITS - 1 - bit {
+            for bits in row.get(word + 1..).unwrap_or(&[]) {
+                right += bits.trailing_ones();
+                if *bits != u64::MAX || right >= most {
+                    break;
+                }
+            }
+        }
+        (left.min(most), right.min(most))
+    }
+
+    /// How many ink pixels follow each other above and below a pixel, at most `most`.
+    pub(crate) fn run_upright(&self, at: Pixel, most: u32) -> (u32, u32) {
+        let (word, mask) = place(at.x);
+        let is_ink = |index: usize| self.words.get(index).is_some_and(|bits| bits & mask != 0);
+        let here = at.y as usize * self.words_per_row + word;
+        let (mut up, mut down) = (0, 0);
+        let mut index = here;
+        while let Some(above) =
+            index.checked_sub(self.words_per_row).filter(|above| up < most && is_ink(*above))
+        {
+            (index, up) = (above, up + 1);
+        }
+        index = here + self.words_per_row;
+        while down < most && is_ink(index) {
+            (index, down) = (index + self.words_per_row, down + 1);
+        }
+        (up, down)
+    }
+
     /// The eight neighbours of a pixel, a bit each: right, lower right, below, lower left, left, upper left, above,
     /// upper right, from the lowest bit on.
     pub(crate) fn around(&self, at: Pixel) -> u8 {
+        let ((word, _), bit) = (place(at.x), at.x % BITS);
+        let inner = word < self.words_per_row && (1..BITS - 1).contains(&bit);
         // Three pixels of a row, the left one in the lowest bit.
         let three = |y: u32| -> u8 {
+            if inner {
+                let bits = self.words.get(y as usize * self.words_per_row + word).copied().unwrap_or(0);
+                return u8::try_from(bits >> (bit - 1) & 0b111).unwrap_or(0);
+            }
             let row = self.row(y);
-            let (word, _) = place(at.x);
-            let bit = at.x % BITS;
             let here = row.get(word).copied().unwrap_or(0);
             let window = if bit == 0 {
                 let left = word.checked_sub(1).and_then(|word| row.get(word)).map_or(0, |bits| bits >> 63);
@@ -376,6 +432,26 @@ mod tests {
         (0..2).for_each(|y| (60..70).for_each(|x| bar.set(Pixel::new(x, y), true)));
         assert_eq!(bar.blocks(), 9);
         assert_eq!(Bitmap::from_picture("##.\n.##\n..#\n").unwrap().blocks(), 0);
+    }
+
+    #[test]
+    fn runs_are_measured_across_words() {
+        let mut cross = Bitmap::new(400, 9).unwrap();
+        (50..300).for_each(|x| cross.set(Pixel::new(x, 4), true));
+        (1..9).for_each(|y| cross.set(Pixel::new(130, y), true));
+        for x in [50, 63, 64, 127, 128, 191, 192, 298, 299] {
+            assert_eq!(cross.run_level(Pixel::new(x, 4), 999), (x - 50, 299 - x));
+            assert_eq!(cross.run_level(Pixel::new(x, 4), 20), ((x - 50).min(20), (299 - x).min(20)));
+        }
+        // Beside a run, in the open, and beside the border.
+        assert_eq!(cross.run_level(Pixel::new(49, 4), 999), (0, 250));
+        assert_eq!(cross.run_level(Pixel::new(300, 4), 999), (250, 0));
+        assert_eq!(cross.run_level(Pixel::new(0, 0), 9), (0, 0));
+        assert_eq!(cross.run_level(Pixel::new(399, 8), 9), (0, 0));
+        assert_eq!(cross.run_upright(Pixel::new(130, 4), 99), (3, 4));
+        assert_eq!(cross.run_upright(Pixel::new(130, 4), 2), (2, 2));
+        assert_eq!(cross.run_upright(Pixel::new(60, 3), 99), (0, 1));
+        assert_eq!(cross.run_upright(Pixel::new(0, 0), 99), (0, 0));
     }
 
     #[test]

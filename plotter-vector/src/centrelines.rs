@@ -72,11 +72,13 @@ impl Centring {
         let context = self.rows_of_context();
         let first_row = rows.start.saturating_sub(context);
         let band = ink.band(first_row..rows.end.saturating_add(context).min(ink.height()));
+        let thinned = rows.start.saturating_sub(CONTEXT_ROWS).saturating_sub(first_row)
+            ..(rows.end.saturating_add(CONTEXT_ROWS).min(ink.height()) - first_row);
         let grey = grey.map(|(levels, ink_is_dark)| Rims { levels, ink_is_dark, first_row: 0 });
         let mut skeleton = band.clone();
         // Lines that are wider than expected stay so in places: their middle is found all the same.
-        let _ = self.thinning.thin_in_place(&mut skeleton);
-        let stretch = Stretch { picture: &skeleton, rows: 0..skeleton.height() };
+        let _ = self.thinning.thin_rows(&mut skeleton, thinned.clone());
+        let stretch = Stretch { picture: &skeleton, rows: thinned };
         fragments(Scan { ink: &band, first_row, grey }, &stretch, first_row, rows, &mut Vec::new())
     }
 

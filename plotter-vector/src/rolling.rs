@@ -25,6 +25,12 @@ impl<T: Copy + Default> Rolling<T> {
         Self { width, per_row, first: 0, end: 0, items: Vec::new() }
     }
 
+    /// With room for so many rows: what grows leaves holes in the memory.
+    pub(crate) fn with_room(mut self, rows: u32) -> Self {
+        self.items.reserve_exact(self.per_row * rows as usize);
+        self
+    }
+
     /// One past the last row that came.
     pub(crate) fn end(&self) -> u32 {
         self.end

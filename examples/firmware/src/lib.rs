@@ -1,6 +1,8 @@
 //! What the firmwares share: the machine's numbers and the board.
 #![no_std]
 
+use small_runtime as _;
+
 pub mod board;
 pub mod machine;
 

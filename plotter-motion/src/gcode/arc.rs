@@ -1,6 +1,8 @@
 //! The circle of a `G2` or `G3`.
 
 use super::Problem;
+use crate::extremes::{greater, smaller};
+use crate::turn::atan2;
 use crate::{Point, Vec2};
 use core::f64::consts::TAU;
 
@@ -25,10 +27,10 @@ pub(super) fn sweep_rad(from: Point, to: Point, centre: Point, left: bool) -> Re
     if off_mm > MOST_MM || (off_mm > LEAST_MM && off_mm > MOST_SHARE * start_mm) || start_mm == 0.0 {
         return Err(Problem::ArcRadii { start_mm, end_mm });
     }
-    let angle = libm::atan2(out.cross(end), out.dot(end));
+    let angle = atan2(out.cross(end), out.dot(end));
     Ok(match left {
-        true if angle <= NO_SWEEP_RAD => (angle + TAU).min(TAU),
-        false if angle >= -NO_SWEEP_RAD => (angle - TAU).max(-TAU),
+        true if angle <= NO_SWEEP_RAD => smaller(angle + TAU, TAU),
+        false if angle >= -NO_SWEEP_RAD => greater(angle - TAU, -TAU),
         _ => angle,
     })
 }
@@ -46,7 +48,7 @@ pub(super) fn centre(from: Point, to: Point, radius_mm: f64, left: bool) -> Resu
     }
     // (r - h)(r + h) loses no digits where the arc is nearly a half circle.
     let squared = (radius_mm.abs() - half_mm) * (radius_mm.abs() + half_mm);
-    let height_mm = libm::sqrt(squared.max(0.0));
+    let height_mm = libm::sqrt(greater(squared, 0.0));
     let height_mm = if left == (radius_mm > 0.0) { height_mm } else { -height_mm };
     let across = Vec2::new(-chord.y, chord.x) * (height_mm / length_mm);
     Ok(from + chord * 0.5 + across)

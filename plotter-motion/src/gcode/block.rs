@@ -1,6 +1,7 @@
 //! [`Block`]: the words of one line.
 
 use super::Position;
+use crate::whole::nearest;
 use core::fmt;
 
 /// Most words of one line.
@@ -27,8 +28,7 @@ impl Word {
     #[must_use]
     pub fn tenths(self) -> Option<u16> {
         let tenths = self.number? * 10.0;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked right after")]
-        let whole = libm::round(tenths) as u16;
+        let whole = u16::try_from(nearest(tenths)).ok()?;
         ((tenths - f64::from(whole)).abs() < 1e-6).then_some(whole)
     }
 }
@@ -73,14 +73,18 @@ pub struct Block {
 }
 
 impl Block {
-    pub(super) const EMPTY: Self = Self {
-        at: Position::START,
-        words: [Word::NONE; MOST_WORDS],
-        count: 0,
-        deleted: false,
-        checked: false,
-        remark: None,
-    };
+    // As a constant it is 400 bytes of program memory.
+    #[inline(never)]
+    pub(super) fn empty() -> Self {
+        Self {
+            at: Position::START,
+            words: core::array::from_fn(|_| Word::NONE),
+            count: 0,
+            deleted: false,
+            checked: false,
+            remark: None,
+        }
+    }
 
     /// Takes one more word, the first of which stands at `at`; `false` if there is no room.
     pub(super) fn push(&mut self, word: Word, at: Position) -> bool {
@@ -149,4 +153,13 @@ impl Block {
     pub fn remark(&self) -> Option<Remark> {
         self.remark
     }
+}
+
+/// Whether `letter` is one of a few.
+#[expect(
+    clippy::manual_contains,
+    reason = "the search that `contains` calls is made for long texts and takes 240 bytes of flash"
+)]
+pub(super) fn is_among(letter: u8, letters: &[u8]) -> bool {
+    letters.iter().any(|one| *one == letter)
 }

@@ -1,5 +1,6 @@
 //! [`Line`]: the commands of one line, once it is known that they go together.
 
+use super::block::is_among;
 use super::code::{Action, Code, Motion, Spindle, Stop};
 use super::{Block, Error, Problem, Word};
 
@@ -61,10 +62,12 @@ impl<'b> Line<'b> {
             owned: false,
             notice: None,
         };
-        let mut groups: [Option<Word>; 11] = [None; 11];
+        // Of each group the word that it has had: one more than where it stands.
+        let mut groups = [0_u8; 11];
+        let word_at = |place: u8| block.words().get(usize::from(place).wrapping_sub(1)).copied();
         let mut letters = 0_u32;
-        let mut words = block.words().iter().copied().peekable();
-        while let Some(word) = words.next() {
+        let mut words = block.words().iter().copied().zip(1..).peekable();
+        while let Some((word, place)) = words.next() {
             if !matches!(word.letter, b'G' | b'M') {
                 let bit = 1 << (word.letter & 31);
                 if word.letter == Word::BARE {
@@ -76,17 +79,17 @@ impl<'b> Line<'b> {
                 letters |= bit;
                 continue;
             }
-            let bare = words.next_if(|next| word.letter == b'M' && next.letter == Word::BARE);
-            let code = line.command(word, bare.and_then(|bare| bare.number))?;
+            let bare = words.next_if(|(next, _)| word.letter == b'M' && next.letter == Word::BARE);
+            let code = line.command(word, bare.and_then(|(bare, _)| bare.number))?;
             if let Some(first) = code.group().and_then(|group| groups.get_mut(group))
-                && let Some(first) = first.replace(word)
+                && let Some(first) = word_at(core::mem::replace(first, place))
             {
                 return Err(Problem::TwoCommands { first, second: word }.at(block.place(word)));
             }
         }
         line.check_numbers()?;
         let [motion, action, ..] = groups;
-        if let (Some(motion), Some(action)) = (motion, action)
+        if let (Some(motion), Some(action)) = (word_at(motion), word_at(action))
             && !matches!(line.motion, Some(Motion::None))
             && line.action != Some(Action::Dwell)
             && b"XYZ".iter().any(|letter| letters & (1 << (letter & 31)) != 0)
@@ -122,7 +125,7 @@ impl<'b> Line<'b> {
             _ => return Err(Problem::NoLetter.at(at)),
         }
         // mDraw keeps the angles and the sheet of its machine by M2 and M5.
-        let has = |letters: &[u8]| self.block.words().iter().any(|word| letters.contains(&word.letter));
+        let has = |letters: &[u8]| self.block.words().iter().any(|word| is_among(word.letter, letters));
         if word.letter == b'M' && ((tenths == 20 && has(b"UD")) || (tenths == 50 && has(b"ABHW"))) {
             code = Code::QuietWithWords;
         }
@@ -200,7 +203,7 @@ impl<'b> Line<'b> {
             return None;
         }
         let used: &[u8] = if is_arc { b"IJR" } else { b"" };
-        let is_unused = |word: &&Word| NOTEWORTHY.contains(&word.letter) && !used.contains(&word.letter);
+        let is_unused = |word: &&Word| is_among(word.letter, NOTEWORTHY) && !is_among(word.letter, used);
         let word = *self.block.words().iter().find(is_unused)?;
         Some(Problem::Unused { word }.at(self.block.place(word)))
     }

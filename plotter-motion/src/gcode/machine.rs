@@ -7,6 +7,7 @@ use super::line::{Line, Told};
 use super::pen_convention::{LaserCommand, PenConvention, ServoCommand};
 use super::{DwellUnit, Error, Modes, Problem, ReadOptions, Remark, Word};
 use crate::seconds::duration;
+use crate::whole::{is_whole, whole};
 use crate::{PlotOp, Point, Vec2};
 
 const MM_PER_INCH: f64 = 25.4;
@@ -176,14 +177,9 @@ impl Machine {
             self.feed_mm_s = (!self.inverse_time).then_some(feed * self.unit_mm / 60.0);
         }
         if let Some(word) = line.word(b'T').filter(|_| !line.owned) {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "checked right after"
-            )]
-            let pen = word.number.map(|number| (number as u8, number));
-            let pen = pen.filter(|(pen, number)| f64::from(*pen) == *number);
-            let (pen, _) = pen.ok_or_else(|| refused(word, "a pen is a whole number from 0 to 255"))?;
+            let pen = word.number.filter(|number| is_whole(*number));
+            let pen = pen.and_then(|number| u8::try_from(whole(number)).ok());
+            let pen = pen.ok_or_else(|| refused(word, "a pen is a whole number from 0 to 255"))?;
             self.tool = Some(pen);
         }
         Ok(())

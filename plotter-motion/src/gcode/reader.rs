@@ -1,5 +1,6 @@
 //! [`Reader`]: bytes in, lines of words out.
 
+use super::block::is_among;
 use super::remark::RemarkReader;
 use super::{Block, Error, Position, Problem, Remark, Word};
 use crate::decimal::Decimal;
@@ -104,7 +105,7 @@ impl Reader {
     /// ```
     #[must_use]
     pub fn with_spacing(spacing: Spacing) -> Self {
-        Self { state: START, spacing, at: Position::START, block: Block::EMPTY, sum: 0 }
+        Self { state: START, spacing, at: Position::START, block: Block::empty(), sum: 0 }
     }
 
     /// The place of the byte to come.
@@ -115,15 +116,28 @@ impl Reader {
 
     /// Takes the next byte; gives the line that it ends, or what is wrong with it.
     pub fn push(&mut self, byte: u8) -> Option<Result<Block, Error>> {
+        match self.spacing {
+            Spacing::Free => self.push_by(byte, Self::free),
+            Spacing::Required => self.push_by(byte, Self::spaced),
+        }
+    }
+
+    /// As [`Reader::push`] for a reader of [`Spacing::Free`]: a program that has no other does without the way to read it.
+    pub(crate) fn push_free(&mut self, byte: u8) -> Option<Result<Block, Error>> {
+        self.push_by(byte, Self::free)
+    }
+
+    fn push_by(
+        &mut self,
+        byte: u8,
+        read: impl FnOnce(&mut Self, u8, Position) -> Result<(), Error>,
+    ) -> Option<Result<Block, Error>> {
         let at = self.at;
         self.at = at.after(byte);
         if byte == b'\n' || byte == b'\r' {
             return self.end_line();
         }
-        let taken = match self.spacing {
-            Spacing::Free => self.free(byte, at),
-            Spacing::Required => self.spaced(byte, at),
-        };
+        let taken = read(self, byte, at);
         self.sum ^= byte;
         taken.err().map(|error| {
             self.state = State::Skip;
@@ -208,7 +222,7 @@ impl Reader {
                 let letter = byte.to_ascii_uppercase();
                 let before = self.block.words().last();
                 if let Some(number) = before.filter(|word| word.letter == b'O')
-                    && CONTROL_WORDS.contains(&letter)
+                    && is_among(letter, CONTROL_WORDS)
                 {
                     return Err(Problem::Control { number: *number }.at(self.block.place(*number)));
                 }
@@ -307,7 +321,7 @@ impl Reader {
     fn end_line(&mut self) -> Option<Result<Block, Error>> {
         let ended = match self.state {
             State::Skip => {
-                self.block = Block::EMPTY;
+                self.block = Block::empty();
                 Ok(())
             }
             State::Letter { letter, at } => self.word(letter, at, None),
@@ -321,12 +335,12 @@ impl Reader {
         };
         (self.state, self.sum) = (START, 0);
         if let Err(error) = ended {
-            self.block = Block::EMPTY;
+            self.block = Block::empty();
             return Some(Err(error));
         }
         // A pen's number counts without words too.
         let is_empty = self.block.words().is_empty() && !matches!(self.block.remark, Some(Remark::Pen(_)));
-        let block = core::mem::replace(&mut self.block, Block::EMPTY);
+        let block = core::mem::replace(&mut self.block, Block::empty());
         (!is_empty).then_some(Ok(block))
     }
 }

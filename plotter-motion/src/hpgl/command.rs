@@ -51,7 +51,7 @@ impl Mnemonic {
         &self.0
     }
 
-    /// What the command does, in a few words; `None` for one that neither HPGL nor HP-GL/2 knows.
+    /// What the command does, in a few words; `None` for one that neither HPGL nor HP-GL/2 knows, nor a cutter.
     ///
     /// ```
     /// # use plotter_motion::hpgl::Mnemonic;
@@ -89,8 +89,9 @@ impl fmt::Debug for Mnemonic {
 
 use Syntax::{Comment, Encoded, Label, Numbers, Quoted, Symbol, Terminator};
 
-/// Every command of HPGL (pen plotters of the 1980s) and HP-GL/2, in alphabetical order. Only the reading
-/// depends on it: what a command *does* is the interpreter's business.
+/// Every command of HPGL (pen plotters of the 1980s) and HP-GL/2, in alphabetical order, and `FC`, `FD` and `TB`, which
+/// programs take over into HPGL from GP-GL, the other language of Graphtec's cutters. Only the reading depends on it: what a
+/// command *does* is the interpreter's business.
 const TABLE: &[(&[u8; 2], Syntax, &str)] = &[
     (b"AA", Numbers, "arc about an absolute centre"),
     (b"AC", Numbers, "anchor corner of the fill"),
@@ -131,6 +132,8 @@ const TABLE: &[(&[u8; 2], Syntax, &str)] = &[
     (b"ER", Numbers, "edge of a rectangle, relative"),
     (b"ES", Numbers, "extra space of labels"),
     (b"EW", Numbers, "edge of a wedge"),
+    (b"FC", Numbers, "blade offset of a cutter"),
+    (b"FD", Numbers, "blade rotation of a cutter"),
     (b"FI", Numbers, "select the primary font"),
     (b"FN", Numbers, "select the secondary font"),
     (b"FP", Numbers, "fill the polygon"),
@@ -204,6 +207,7 @@ const TABLE: &[(&[u8; 2], Syntax, &str)] = &[
     (b"SS", Numbers, "select the standard font"),
     (b"ST", Numbers, "sort"),
     (b"SV", Numbers, "screened vectors"),
+    (b"TB", Numbers, "registration marks of a cutter"),
     (b"TD", Numbers, "transparent data"),
     (b"TL", Numbers, "tick length"),
     (b"TR", Numbers, "transparency mode"),

@@ -87,9 +87,9 @@
 //! What means nothing to a machine with one pen that draws what it is told is passed over without a word: colours and their order
 //! (`PC` `NP` `CR` `TR` `MC` …), ends and joins of thick lines (`LA`), the looks of fonts (`FI` `CF` …), forces, accelerations,
 //! and motion without stops (`CV`), which is the planner's business, questions to the plotter (`OE` `OP` `OS` …), its display and
-//! cutter (also what begins with `!`), comments. What would be seen and is not done is said, as [`Error::Unsupported`]: `RP`
+//! cutter (also what begins with `!`, and a lone `@`), comments. What would be seen and is not done is said, as [`Error::Unsupported`]: `RP`
 //! (replot: whoever has the text can read it again; a reader in constant memory has not kept it), `NR` (wait), `SV` (screened
-//! lines), `PP`, `TD`, digitizing.
+//! lines), `PP`, `TD`, digitizing; of a cutter its blade (`FC`, `FD`) and registration marks (`TB`).
 //!
 //! # Bad input
 //!

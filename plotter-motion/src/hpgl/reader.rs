@@ -8,6 +8,9 @@ use crate::decimal::Decimal;
 const MAX_NUMBER: f64 = 1_073_741_824.0;
 /// What some editors put before a text.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
+/// What programs for cutters write behind the last command, once or many times: it lets go of a plotter in DM/PL, Houston
+/// Instrument's language, which the same cutters speak.
+const CUTTER_ENDS: u8 = b'@';
 /// Ends a label unless `DT` says otherwise: the control character ETX.
 const ETX: u8 = 3;
 
@@ -103,7 +106,8 @@ enum Comma {
 /// It owns no buffer: a `PD` with a hundred thousand coordinates is a hundred thousand events. It takes
 /// - either case, a missing `;`, and a lone `;` anywhere;
 /// - numbers with sign and point, separated by commas, blanks or line ends, or by nothing before a sign;
-/// - what begins with `!` up to its `;` (a Roland's own settings, as `!ST1;`), which gives nothing;
+/// - what begins with `!` up to its `;` (a Roland's own settings, as `!ST1;`), and `@` between commands (with which cutters are let go),
+///   which give nothing;
 /// - labels up to their terminator, which `DT` sets and `IN` and `DF` set back, so that a label is never read as
 ///   commands; strings, comments, and encoded data likewise;
 /// - escape sequences: device control (`ESC .`) between any two bytes, and the change of a printer's language
@@ -276,7 +280,7 @@ impl Reader {
     fn idle(&mut self, byte: u8, at: Position) -> Result<Option<Event>, Error> {
         if byte.is_ascii_alphabetic() {
             self.state = State::Letter { letter: byte, at };
-        } else if byte == b';' || is_blank(byte) || is_mark(byte, at) {
+        } else if byte == b';' || byte == CUTTER_ENDS || is_blank(byte) || is_mark(byte, at) {
             self.state = State::Idle;
         } else if byte == b'!' {
             self.state = State::Cutter;

@@ -4,6 +4,7 @@ use super::blend::GROWTH;
 use super::limits::{Limits, Share, Wish};
 use super::ring::narrow;
 use super::{Course, Shape};
+use crate::extremes::{greater, smaller};
 use crate::{Pen, Point};
 use core::time::Duration;
 
@@ -114,7 +115,7 @@ impl Block {
         // The length is the angle times the mean of both radii.
         let end_mm = self.to.distance(self.centre);
         let other_mm = 2.0 * self.length() / f64::from(self.sweep_rad.abs()) - end_mm;
-        narrow(limits.accel() * end_mm.min(other_mm).max(0.0) * (1.0 - ROUNDING))
+        narrow(limits.accel() * greater(smaller(end_mm, other_mm), 0.0) * (1.0 - ROUNDING))
     }
 
     pub(super) fn course(&self) -> Course {

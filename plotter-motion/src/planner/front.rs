@@ -8,6 +8,8 @@ use super::merge::{Merged, Merger};
 use super::modes::{Keep as _, Modes};
 use super::ring::{Ring, least, narrow};
 use super::{PathMode, PlanError, PlannerSettings, Shape};
+use crate::extremes::{greater, smaller};
+use crate::whole::nearest;
 use crate::{Pen, PlotOp, Point, Vec2};
 use core::f64::consts::TAU;
 
@@ -136,7 +138,7 @@ impl<M: Modes> Front<M> {
         let feed2 = |feed_mm_s: Option<f64>| match feed_mm_s {
             None => Ok(limits.speed2),
             Some(feed) if feed > 0.0 && feed.is_finite() => {
-                let feed = feed.min(limits.settings.speed_mm_s);
+                let feed = smaller(feed, limits.settings.speed_mm_s);
                 Ok(narrow(feed * feed))
             }
             Some(feed_mm_s) => Err(PlanError::Feed { feed_mm_s }),
@@ -153,14 +155,13 @@ impl<M: Modes> Front<M> {
                 if sweep_rad.is_nan() || sweep_rad.abs() > TAU + TURN_SLACK_RAD {
                     return Err(PlanError::Sweep { sweep_rad });
                 }
-                self.arc(centre, sweep_rad.clamp(-TAU, TAU), to, feed2, limits, ring);
+                self.arc(centre, greater(smaller(sweep_rad, TAU), -TAU), to, feed2, limits, ring);
             }
             PlotOp::LaserPower { share } => {
                 if !(0.0..=1.0).contains(&share) {
                     return Err(PlanError::Power { share });
                 }
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 65535")]
-                let power = libm::round(share * f64::from(u16::MAX)) as u16;
+                let power = u16::try_from(nearest(share * f64::from(u16::MAX))).unwrap_or(u16::MAX);
                 // What was put off is still of the old power.
                 self.flush(limits, ring);
                 self.power = power;
@@ -296,8 +297,8 @@ impl<M: Modes> Front<M> {
         ring: &mut Ring<N>,
     ) {
         let (out, end) = (self.position - centre, to - centre);
-        let (near_mm, far_mm) =
-            (out.length_near().min(end.length_near()), out.length_near().max(end.length_near()));
+        let (out_mm, end_mm) = (out.length_near(), end.length_near());
+        let (near_mm, far_mm) = (smaller(out_mm, end_mm), greater(out_mm, end_mm));
         let length_mm = 0.5 * (near_mm + far_mm) * sweep_rad.abs();
         if length_mm <= limits.settings.resolution_mm || near_mm <= limits.settings.resolution_mm {
             return self.line(to, Pen::Down, cruise2, limits, ring);

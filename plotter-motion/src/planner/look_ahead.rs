@@ -8,6 +8,7 @@ use super::ramps::Ramps;
 use super::ring::{Ring, narrow};
 use super::s_curve::SCurveState;
 use super::{Action, PlanError, PlannerSettings};
+use crate::extremes::{greater, smaller};
 use crate::seconds::duration;
 use crate::{PlotOp, Point};
 
@@ -178,7 +179,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     pub fn override_speeds(&mut self, draw_share: f64, travel_share: f64) {
         let Some(under_way) = self.under_way.get() else { return };
         let square = |share: f64| {
-            let share = if share > LEAST_SHARE { share.min(MOST_SHARE) } else { LEAST_SHARE };
+            let share = if share > LEAST_SHARE { smaller(share, MOST_SHARE) } else { LEAST_SHARE };
             narrow(share * share)
         };
         let shares = Shares { draw2: square(draw_share), travel2: square(travel_share) };
@@ -194,7 +195,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         let rest_mm = self.ramps.rest_mm();
         let next2 = self.ring.get(0).map_or(0.0, |head| head.entry2);
         let forced2 = if rest_mm > 0.0 {
-            (self.ramps.speed2() - 2.0 * limits.accel() * rest_mm).max(0.0)
+            greater(self.ramps.speed2() - 2.0 * limits.accel() * rest_mm, 0.0)
         } else {
             f64::from(next2)
         };

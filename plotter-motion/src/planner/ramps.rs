@@ -3,6 +3,7 @@
 use super::Phase;
 use super::block::{Block, single};
 use super::limits::Limits;
+use crate::extremes::{greater, smaller};
 
 /// Longest phase, s: a feed hold begins to act after that time at the latest.
 pub(super) const LONGEST_S: f64 = 0.05;
@@ -126,7 +127,7 @@ impl Ramps {
         let rest_mm = self.rest_mm();
         let cruise2 = f64::from(self.cruise2);
         let first_end_mm = self.done_mm + (entry2 - cruise2) * limits.per_twice_accel;
-        let last_begin_mm = self.length_mm - (cruise2 - exit2).max(0.0) * limits.per_twice_accel;
+        let last_begin_mm = self.length_mm - greater(cruise2 - exit2, 0.0) * limits.per_twice_accel;
         let cruise_mm = last_begin_mm - first_end_mm;
         if exit2 > cruise2 * (1.0 + f64::from(ALIKE)) || !self.counts(cruise_mm) {
             let duration_s = 2.0 * rest_mm / (self.speed + exit);
@@ -174,9 +175,9 @@ impl Ramps {
 
     /// Plans to stop as soon as can be. Gives the square of the speed at the end of the block: above 0 when it is too short.
     pub(super) fn brake(&mut self, limits: &Limits) -> f64 {
-        let exit2 = (self.speed2() - 2.0 * limits.accel() * self.rest_mm()).max(0.0);
-        let way_mm = (self.speed2() * limits.per_twice_accel).min(self.rest_mm());
-        let stands_mm = (self.done_mm + way_mm).min(self.length_mm);
+        let exit2 = greater(self.speed2() - 2.0 * limits.accel() * self.rest_mm(), 0.0);
+        let way_mm = smaller(self.speed2() * limits.per_twice_accel, self.rest_mm());
+        let stands_mm = smaller(self.done_mm + way_mm, self.length_mm);
         let (end_mm, exit) = (if exit2 > 0.0 { self.length_mm } else { stands_mm }, libm::sqrt(exit2));
         self.next = self.ramps.len();
         self.exit2 = single(exit2);

@@ -2,6 +2,7 @@
 
 use super::block::{Block, single};
 use super::limits::{Limits, Shares};
+use crate::extremes::{greater, smaller};
 
 /// The blocks that are known ahead.
 ///
@@ -111,7 +112,7 @@ impl<const N: usize> Ring<N> {
                 // What can no longer be avoided was allowed before, and is no corner's business.
                 block.max_entry2 = if block.corner2 > 0.0 { most2.max(single(forced2)) } else { 0.0 };
                 before2 = block.cruise2;
-                forced2 = (forced2 - 2.0 * limits.accel() * block.length()).max(0.0);
+                forced2 = greater(forced2 - 2.0 * limits.accel() * block.length(), 0.0);
             } else {
                 forced2 = 0.0;
             }
@@ -170,6 +171,6 @@ fn sum_down(a: f32, b: f32) -> f32 {
 /// A square of a speed as a block keeps it: rounded down, so that no limit is exceeded by the rounding.
 pub(super) fn narrow(value: f64) -> f32 {
     #[expect(clippy::cast_possible_truncation, reason = "rounded down below")]
-    let rounded = value.min(f64::from(f32::MAX)) as f32;
+    let rounded = smaller(value, f64::from(f32::MAX)) as f32;
     if f64::from(rounded) > value { rounded.next_down().max(0.0) } else { rounded }
 }

@@ -2,6 +2,7 @@
 
 use super::slice::{FRACTION_BITS, fixed};
 use crate::chords::chord_count;
+use crate::extremes::greater;
 use crate::kinematics::Kinematics;
 use crate::planner::Modes;
 use crate::turn::sin_cos;
@@ -31,7 +32,7 @@ impl Chords {
             // A planner with such modes gives none.
             Shape::Spiral { .. } if !M::ALL => 1,
             Shape::Arc { centre, sweep_rad } => {
-                let radius_mm = (from - centre).length_near().max((course.to - centre).length_near());
+                let radius_mm = greater((from - centre).length_near(), (course.to - centre).length_near());
                 chord_count(radius_mm, sweep_rad, tolerance_mm)
             }
             Shape::Spiral { pole, sweep_rad, growth } => {

@@ -1,6 +1,8 @@
 //! [`Slice`]: a short time of a phase in whole numbers.
 
 use crate::Phase;
+use crate::extremes::{greater, smaller};
+use crate::whole::{float, nearest_even, whole};
 
 /// Bits of the fraction of a distance in mm.
 pub(super) const FRACTION_BITS: u32 = 32;
@@ -47,17 +49,15 @@ impl Slice {
         time_ticks: f64,
     ) -> (Self, f64) {
         let duration_ticks = phase.duration_s * clock_hz;
-        let rest_ticks = (duration_ticks - time_ticks).max(0.0);
+        let rest_ticks = greater(duration_ticks - time_ticks, 0.0);
         // The slice's first tick is the last one that is not after its begin.
         let begin = offset_ticks + time_ticks;
-        let whole = libm::floor(begin);
-        let lasts_ticks = rest_ticks.min(fixed_to_f64(LONGEST_TICKS) - 1.0);
-        let at = phase.at((whole - offset_ticks) / clock_hz);
+        let first = whole(begin);
+        let lasts_ticks = smaller(rest_ticks, float(LONGEST_TICKS) - 1.0);
+        let at = phase.at((float(first) - offset_ticks) / clock_hz);
         let per_tick = 1.0 / clock_hz;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates")]
-        let base = phase_base.saturating_add(whole as u64);
-        #[expect(clippy::cast_possible_truncation, reason = "at most the longest slice")]
-        let last = libm::floor(begin - whole + lasts_ticks) as i64;
+        let base = phase_base.saturating_add_signed(first);
+        let last = whole(begin - float(first) + lasts_ticks);
         let slice = Self {
             base,
             last,
@@ -87,7 +87,7 @@ impl Slice {
     /// which it has not been reached, `guess` one near to where it may be.
     pub(super) fn tick_of(&self, target: i64, from: i64, guess: i64) -> Option<i64> {
         // Most guesses are good: the steps before say when the next is due.
-        let mut at = guess.clamp(from, self.last);
+        let mut at = guess.min(self.last).max(from);
         for _ in 0..3 {
             let speed = self.speed(at);
             if speed < TRUSTED_SPEED {
@@ -98,7 +98,7 @@ impl Slice {
                 break;
             }
             // In quarters of a tick, then to nearest.
-            let quarters = (ahead << 22) / speed;
+            let quarters = (ahead << 22).checked_div(speed).unwrap_or_default();
             let next = at + ((quarters + 2) >> 2);
             if (next - at).abs() <= NEAR_TICKS {
                 return (next <= self.last).then_some(next.max(from));
@@ -142,9 +142,7 @@ fn product(number: i64, ticks: i64, bits: u32) -> i64 {
 
 /// To the nearest with so many bits of fraction; saturates.
 pub(super) fn fixed(value: f64, bits: u32) -> i64 {
-    #[expect(clippy::cast_possible_truncation, reason = "a cast saturates")]
-    let fixed = libm::rint(value * power_of_two(bits)) as i64;
-    fixed
+    nearest_even(value * power_of_two(bits))
 }
 
 /// 2^bits, exactly.
@@ -156,12 +154,6 @@ const fn power_of_two(bits: u32) -> f64 {
 /// A speed in mm a tick as a slice has it.
 pub(super) fn speed_fixed(mm_per_tick: f64) -> i64 {
     fixed(mm_per_tick, SPEED_BITS)
-}
-
-fn fixed_to_f64(value: i64) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "2^20")]
-    let value = value as f64;
-    value
 }
 
 #[cfg(test)]
@@ -192,8 +184,8 @@ mod tests {
         for step in 1..100_i64 {
             // every 0.01 mm: every 333.33 us
             let tick = slice.tick_of(fixed(0.01, FRACTION_BITS) * step, 0, 333 * step).unwrap();
-            let meant = fixed_to_f64(step) * 1e4 / 30.0 + 0.25;
-            assert!((fixed_to_f64(tick) - meant).abs() <= 0.51, "step {step}: {tick} for {meant}");
+            let meant = float(step) * 1e4 / 30.0 + 0.25;
+            assert!((float(tick) - meant).abs() <= 0.51, "step {step}: {tick} for {meant}");
         }
     }
 }

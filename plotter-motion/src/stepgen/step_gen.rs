@@ -2,8 +2,10 @@
 
 use super::chord::Chords;
 use super::slice::{Slice, speed_fixed};
+use crate::extremes::{greater, smaller};
 use crate::kinematics::Kinematics;
 use crate::planner::{AllModes, Modes};
+use crate::whole::{float, whole};
 use crate::{Action, Bresenham, Course, Machine, Pen, Phase, Point, StepPair, StepPoint};
 use core::fmt;
 use core::marker::PhantomData;
@@ -13,6 +15,8 @@ use core::time::Duration;
 const CHORD_STEPS: f64 = 0.25;
 /// A phase that ends nearer than this to the end of its course ends there, mm.
 const LATE_MM: f64 = 2e-6;
+/// Longest pause: 2^62 ticks, some hundred thousand years.
+const MOST_TICKS: f64 = (1_u64 << 62) as f64;
 /// What ends slower ends at rest, mm/s.
 const STANDSTILL_MM_S: f64 = 1e-3;
 
@@ -211,10 +215,11 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     pub fn with_modes(kinematics: K, settings: StepGenSettings) -> Self {
         let scale = |x, y| {
             let motors = kinematics.motors_at(Point::new(x, y));
-            libm::fabs(motors.x).max(libm::fabs(motors.y))
+            greater(libm::fabs(motors.x), libm::fabs(motors.y))
         };
-        let steps_per_mm = scale(1.0, 0.0).max(scale(0.0, 1.0));
-        let clock_hz = if settings.clock_hz.is_finite() { settings.clock_hz.clamp(1e3, 1e9) } else { 1e6 };
+        let steps_per_mm = greater(scale(1.0, 0.0), scale(0.0, 1.0));
+        let clock_hz =
+            if settings.clock_hz.is_finite() { greater(smaller(settings.clock_hz, 1e9), 1e3) } else { 1e6 };
         let steps = kinematics.steps_at(Point::ORIGIN);
         Self {
             modes: PhantomData,
@@ -412,11 +417,10 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
 
     /// The time is so many ticks after a tick.
     fn pass(&mut self, from: u64, ticks: f64) {
-        let whole = libm::floor(ticks);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates")]
-        let whole_ticks = whole as u64;
-        self.tick = from.saturating_add(whole_ticks);
-        self.fraction = ticks - whole;
+        let ticks = smaller(ticks, MOST_TICKS);
+        let whole_ticks = whole(ticks);
+        self.tick = from.saturating_add_signed(whole_ticks);
+        self.fraction = ticks - float(whole_ticks);
     }
 
     fn wait(&mut self, duration: Duration) {

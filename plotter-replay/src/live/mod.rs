@@ -11,6 +11,7 @@
 //! session's own loop: whoever presses it writes it on the line at once ([`plotter_motion::protocol::Order::Stop`]).
 
 mod commands;
+mod engine;
 mod line;
 mod machine_log;
 mod page;
@@ -18,6 +19,7 @@ mod progress;
 mod sender;
 mod server;
 mod session;
+mod session_settings;
 mod simulated;
 pub mod terminal;
 mod view;
@@ -28,5 +30,6 @@ pub use machine_log::{MachineLog, Recording};
 pub use page::LivePage;
 pub use progress::Plan;
 pub use server::{Server, ServerError};
-pub use session::{LinkChoice, Session, SessionSettings};
+pub use session::Session;
+pub use session_settings::{LinkChoice, SessionSettings};
 pub use simulated::{SimulatedMachine, Telemetry};

@@ -1,6 +1,7 @@
 //! [`Sender`]: the host of a session, by either protocol.
 
-use super::session::{LinkChoice, Moves, SessionSettings};
+use super::session::Moves;
+use super::{LinkChoice, SessionSettings};
 use core::time::Duration;
 use plotter_motion::protocol::{
     Host, HostEvent, HostNotice, LinkHost, LinkSettings, LinkState, Order, Resume, Wire,

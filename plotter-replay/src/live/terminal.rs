@@ -22,9 +22,9 @@ const CHART_S: f64 = 20.0;
 /// What stands above the numbers and never changes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Heading {
-    /// Which machine, and whether it is simulated.
+    /// Which machine: shown behind `SIMULATED` or `REAL MACHINE`.
     pub machine: String,
-    /// Whether it is simulated: shown as such.
+    /// Whether it is simulated.
     pub is_simulated: bool,
     /// Lower left and upper right of the drawing or the machine's area, mm.
     pub area_mm: [f64; 4],
@@ -269,6 +269,16 @@ mod tests {
         let view = view();
         terminal.draw(|frame| draw(frame, &view, &heading)).unwrap();
         insta::assert_snapshot!(terminal.backend());
+    }
+
+    #[test]
+    fn the_pen_is_up_before_the_start() {
+        let mut terminal = Terminal::new(TestBackend::new(110, 36)).unwrap();
+        let view = View::new(PlotterSettings::default(), State::Ready, None);
+        terminal.draw(|frame| draw(frame, &view, &Heading::default())).unwrap();
+        let shown = terminal.backend().to_string();
+        let pen = shown.lines().find_map(|line| line.split_once("pen ")).unwrap().1;
+        assert!(pen.trim_start().starts_with("up "), "{pen}");
     }
 
     #[test]

@@ -67,7 +67,11 @@ pub(super) struct Cursor {
 impl View {
     pub(super) fn new(settings: PlotterSettings, state: State, plan: Option<Plan>) -> Self {
         let tolerance_mm = 0.5 * settings.x_mm_per_pulse.max(settings.y_mm_per_pulse);
-        let plotter = VirtualPlotter::new(settings);
+        let mut plotter = VirtualPlotter::new(settings);
+        if state == State::Ready {
+            // A log is drawn with the pen down until it says otherwise; a drawing that waits for its start is not.
+            plotter.push(&Record::at_us(0, Event::Pen(Pen::Up)));
+        }
         Self {
             from: plotter.position(),
             state,

@@ -5,7 +5,7 @@
 use plotter_motion::firmware::{Gantry, LinkedGantry};
 use plotter_motion::plant::{Bench, BenchEvent, BenchSettings, SimulatedLine};
 use plotter_motion::protocol::{HostSettings, LinkHost, LinkSettings, Order};
-use plotter_motion::{ControllerChoice, Machine, MachineConfig, Pen, PenMove, StepPoint};
+use plotter_motion::{Machine, PenMove};
 use plotter_replay::log::Event;
 use plotter_replay::transport::{FaultInjector, Faults};
 use std::collections::VecDeque;
@@ -13,28 +13,6 @@ use std::time::Duration;
 
 /// The machine's number since it was switched on.
 pub(crate) const BOOT: u32 = 4_711;
-
-/// The gantry with one of its controllers.
-pub(crate) fn machine(controller: ControllerChoice) -> Machine {
-    let mut config = MachineConfig::default();
-    config.control.controller = controller;
-    Machine::new(config).unwrap()
-}
-
-/// A house, 10 mm wide; in encoder counts of 1/40 mm.
-pub(crate) fn house() -> Vec<PenMove> {
-    let (up, down) = (Pen::Up, Pen::Down);
-    let corners = [
-        (up, 100, 100),
-        (down, 500, 100),
-        (down, 500, 400),
-        (down, 300, 560),
-        (down, 100, 400),
-        (down, 100, 100),
-        (up, 0, 0),
-    ];
-    corners.map(|(pen, x, y)| PenMove { pen, target: StepPoint::new(x, y) }).to_vec()
-}
 
 type Host = LinkHost<std::vec::IntoIter<PenMove>, 8, 128>;
 

@@ -70,13 +70,13 @@ fn centre(flat: &Flat, places: &mut [PxPoint], beside: &[bool], width_px: f64) {
         }
     }
     bridge(places, &is_sound, width_px);
-    turn(places, &in_turn, width_px);
+    turn(flat, places, &in_turn, width_px);
     square(flat, places, width_px);
     sharpen(flat, places, width_px);
 }
 
 /// The places that are in sharp turns.
-fn turns(places: &[PxPoint], width_px: f64) -> Vec<bool> {
+pub(super) fn turns(places: &[PxPoint], width_px: f64) -> Vec<bool> {
     let mut found: Vec<bool> = (0..places.len()).map(|i| is_in_turn(places, i, width_px)).collect();
     // From the tip itself both arms go off straight.
     let mut last = None;

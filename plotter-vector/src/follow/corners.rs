@@ -8,16 +8,22 @@ use crate::PxPoint;
 pub(super) const CORNER_COS: f64 = 0.82;
 
 /// The arms of sharper tips meet at too small an angle for their crossing: cosine of a turn by 145 degrees.
-const SHARP_COS: f64 = -0.82;
+pub(super) const SHARP_COS: f64 = -0.82;
 
 /// Places of a straight line that a curve of a few widths has not.
 pub(super) const LONG: usize = 6;
 
+/// Places at the end of an arm that a turn draws to its inside.
+const DRAWN: usize = 2;
+
 /// The corner of a square turn is as dark as the line, but for blur; beside a round one it is about 0.7 as dark.
 const SQUARE_DARK: f32 = 0.84;
 
+/// How far behind a sharp tip its ink ends, but for half of the pen's width: blur takes as much of a round end, px.
+pub(super) const BLURRED_END_PX: f64 = 0.5;
+
 /// The arms of a sharp turn go on straight from where they are apart to where they meet.
-pub(super) fn turn(places: &mut [PxPoint], in_turn: &[bool], width_px: f64) {
+pub(super) fn turn(flat: &Flat, places: &mut [PxPoint], in_turn: &[bool], width_px: f64) {
     let is_in = |i: usize| in_turn.get(i).copied().unwrap_or(false);
     let mut i = 0;
     while i < places.len() {
@@ -26,7 +32,7 @@ pub(super) fn turn(places: &mut [PxPoint], in_turn: &[bool], width_px: f64) {
             continue;
         }
         let end = (i..places.len()).find(|k| !is_in(*k)).unwrap_or(places.len());
-        if let Some((corner, met)) = meeting(places, i, end, width_px) {
+        if let Some((corner, met)) = meeting(flat, places, i, end, width_px) {
             let (from, to) = (places.get(i - 1).copied(), places.get(end).copied());
             for (k, place) in places.iter_mut().enumerate().take(end).skip(i) {
                 let (other, parts) = if k < corner { (from, corner + 1 - i) } else { (to, end - corner) };
@@ -39,7 +45,13 @@ pub(super) fn turn(places: &mut [PxPoint], in_turn: &[bool], width_px: f64) {
 }
 
 /// Where the arms before place `first` and from place `end` on meet, and the place between them that is nearest to it.
-fn meeting(places: &[PxPoint], first: usize, end: usize, width_px: f64) -> Option<(usize, PxPoint)> {
+fn meeting(
+    flat: &Flat,
+    places: &[PxPoint],
+    first: usize,
+    end: usize,
+    width_px: f64,
+) -> Option<(usize, PxPoint)> {
     let run = places.get(first..end)?;
     // As much of each arm as must be gone on for.
     let fit = run.len().max(8);
@@ -47,21 +59,45 @@ fn meeting(places: &[PxPoint], first: usize, end: usize, width_px: f64) -> Optio
     let behind = places.get(end..(end + fit).min(places.len()))?;
     let (one, other) = (straight(before, 4, 0.35)?, straight(behind, 4, 0.35)?);
     let cross = one.1.0 * other.1.1 - one.1.1 * other.1.0;
-    if cross.abs() < 0.05 || cosine(one.1, other.1) > CORNER_COS {
+    let turn_cos = cosine(one.1, other.1);
+    if cross.abs() < 0.05 || turn_cos > CORNER_COS {
         return None;
     }
     let mut met = crossing(one, other);
-    if cosine(one.1, other.1) < SHARP_COS {
+    if turn_cos < SHARP_COS {
         // Where along the middle of the arms they meet is better told by the end of their ink.
-        let ends = [places.get(first.checked_sub(1)?)?, places.get(end)?];
-        let far = |at: &PxPoint| at.distance(*ends[0]) + at.distance(*ends[1]);
-        let tip = run.iter().max_by(|a, b| far(a).total_cmp(&far(b)))?;
-        let (x, y) = (one.1.0 - other.1.0, one.1.1 - other.1.1);
-        let off = tip.minus(met);
-        met = met.along((x, y), (off.0 * x + off.1 * y) / (x * x + y * y));
+        let way = (one.1.0 - other.1.0, one.1.1 - other.1.1);
+        let length = libm::hypot(way.0, way.1);
+        let way = (way.0 / length, way.1 / length);
+        if let Some(end_px) = ink_end_px(flat, met, way, width_px) {
+            met = met.along(way, end_px - 0.5 * width_px + BLURRED_END_PX);
+        }
     }
+    let cut_px = cut_px(flat, (met, one.0), turn_cos, width_px);
     let nearest = run.iter().enumerate().min_by(|(_, a), (_, b)| a.distance(met).total_cmp(&b.distance(met)));
-    nearest.filter(|(_, at)| at.distance(met) < 0.6 * width_px + 1.0).map(|(k, _)| (first + k, met))
+    nearest.filter(|(_, at)| at.distance(met) < cut_px + 1.0).map(|(k, _)| (first + k, met))
+}
+
+/// How much of a corner thinning may have cut off, px: a little, or, where there is as much ink as on the line, all as far as where
+/// the middles of both arms' ink meet.
+fn cut_px(flat: &Flat, (corner, on_line): (PxPoint, PxPoint), turn_cos: f64, width_px: f64) -> f64 {
+    let half_sin = libm::sqrt(0.5 * (1.0 + turn_cos)).max(0.1);
+    let is_ink = flat.at(corner) >= SQUARE_DARK * flat.at(on_line);
+    f64::max(0.6 * width_px, if is_ink { 0.5 * width_px / half_sin + 0.5 } else { 0.0 })
+}
+
+/// How far from a place in ink, along a direction of length 1, the ink ends: where it is half as dark as at its darkest.
+pub(super) fn ink_end_px(flat: &Flat, at: PxPoint, way: (f64, f64), width_px: f64) -> Option<f64> {
+    let steps = 2 * super::whole::count(4.0 * width_px + 8.0);
+    let first_px = -2.0 * width_px - 4.0;
+    let dark: Vec<f32> = (0..=steps)
+        .map(|step| flat.at(at.along(way, first_px + 0.5 * super::lines::count_f64(step))))
+        .collect();
+    let half = 0.5 * dark.iter().copied().fold(0.0, f32::max);
+    let first = dark.iter().position(|dark| *dark >= half)?;
+    let last = first + dark.get(first..)?.iter().position(|dark| *dark < half)?;
+    let (inner, outer) = (*dark.get(last - 1)?, *dark.get(last)?);
+    Some(first_px + 0.5 * (super::lines::count_f64(last) - f64::from((half - outer) / (inner - outer))))
 }
 
 /// Square turns from one line to the next beside it have their two corners, which thinning cuts off; round ones stay.
@@ -74,14 +110,15 @@ pub(super) fn square(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
             i += 1;
             continue;
         };
-        let (Some(from), Some(to)) = (places.get(i).copied(), places.get(j).copied()) else { break };
+        let (begins, ends) = (i - DRAWN, (j + DRAWN).min(places.len() - 1));
+        let (Some(from), Some(to)) = (places.get(begins).copied(), places.get(ends).copied()) else { break };
         let way = [from.distance(one), one.distance(other), other.distance(to)];
-        let parts = super::lines::count_f64(j - i) / (way[0] + way[1] + way[2]);
+        let parts = super::lines::count_f64(ends - begins) / (way[0] + way[1] + way[2]);
         // As many places as before, a corner at the nearest of each.
-        let first = (i + super::whole::count(way[0] * parts + 0.5)).clamp(i + 1, j - 2);
-        let second = (j - super::whole::count(way[2] * parts + 0.5).min(j)).clamp(first + 1, j - 1);
+        let first = (begins + super::whole::count(way[0] * parts + 0.5)).clamp(begins + 1, ends - 2);
+        let second = (ends - super::whole::count(way[2] * parts + 0.5).min(ends)).clamp(first + 1, ends - 1);
         for ([a, b], [begin, end]) in
-            [([from, one], [i, first]), ([one, other], [first, second]), ([other, to], [second, j])]
+            [([from, one], [begins, first]), ([one, other], [first, second]), ([other, to], [second, ends])]
         {
             let count = super::lines::count_f64(end - begin);
             for (k, place) in places.iter_mut().enumerate().take(end + 1).skip(begin) {
@@ -99,6 +136,10 @@ fn corners(flat: &Flat, places: &[PxPoint], i: usize, j: usize, width_px: f64) -
     }
     let before = straight(places.get(i - LONG..=i)?, LONG, 0.3)?;
     let behind = straight(places.get(j..=j + LONG)?, LONG, 0.3)?;
+    // A turn draws the last places of its arms a little.
+    let clear = |part: Option<&[PxPoint]>| part.and_then(|part| straight(part, LONG, 0.3));
+    let before = clear(places.get((i - LONG).saturating_sub(DRAWN)..=i - DRAWN)).unwrap_or(before);
+    let behind = clear(places.get(j + DRAWN..=j + DRAWN + LONG)).unwrap_or(behind);
     let ((at, along), (other, back)) = (before, behind);
     let (x, y) = other.minus(at);
     let apart_px = (x * along.1 - y * along.0).abs();
@@ -116,8 +157,16 @@ fn corners(flat: &Flat, places: &[PxPoint], i: usize, j: usize, width_px: f64) -
     };
     let top = run.iter().max_by(|a, b| far(a).total_cmp(&far(b)))?;
     let out = (along.0 - back.0, along.1 - back.1);
+    // The third side, by what thinning leaves between the arms; near them it is rounded, and noise moves single places.
+    let beside = |place: &PxPoint| {
+        let (x, y) = place.minus(at);
+        (x * along.1 - y * along.0).abs() / apart_px
+    };
+    let between = run.iter().filter(|place| (0.25..0.75).contains(&beside(place)));
+    let (sum, count) = between.fold((0.0, 0.0), |(sum, count), place| (sum + far(place), count + 1.0));
+    let side = if count > 0.0 { top.along(along, sum / count - far(top)) } else { *top };
     let meet = |(from, way): (PxPoint, (f64, f64))| {
-        let (x, y) = top.minus(from);
+        let (x, y) = side.minus(from);
         from.along(way, (x * out.0 + y * out.1) / (way.0 * out.0 + way.1 * out.1))
     };
     let corners = [meet(before), meet(behind)];
@@ -158,7 +207,7 @@ pub(super) fn sharpen(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
                 continue;
             }
             let turn = cosine(one.1, other.1);
-            if !(-0.7..CORNER_COS).contains(&turn) {
+            if !(SHARP_COS..CORNER_COS).contains(&turn) {
                 continue;
             }
             let met = crossing(one, other);
@@ -173,7 +222,8 @@ pub(super) fn sharpen(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
                 .skip(i - skip)
                 .take(2 * skip + 1)
                 .min_by(|(_, a), (_, b)| a.distance(met).total_cmp(&b.distance(met)));
-            if nearest.is_none_or(|(k, _)| k != i) || at.distance(met) > 0.6 * width_px {
+            let cut_px = cut_px(flat, (met, one.0), turn, width_px);
+            if nearest.is_none_or(|(k, _)| k != i) || at.distance(met) > cut_px {
                 continue;
             }
             for (k, place) in places.iter_mut().enumerate().skip(i - skip).take(2 * skip + 1) {

@@ -171,6 +171,14 @@ impl LineMap {
         let at = self.at(id);
         let hops = super::whole::count(libm::ceil(TURN_FACTOR * reach_px / super::lines::SPACING_PX)) + 1;
         let own = self.around(id, hops);
+        // Where another line touches, the ink beside is its.
+        let touching = |(node, hops): &(u32, usize)| {
+            super::lines::SPACING_PX * super::lines::count_f64(*hops) <= reach_px
+                && self.links_of(*node).any(|(_, link, _)| link.contact)
+        };
+        if own.iter().any(touching) {
+            return true;
+        }
         self.near(at, reach_px).into_iter().any(|other| {
             let hops = own.iter().find(|(node, _)| *node == other).map(|(_, hops)| *hops);
             let turned = |hops: usize| {

@@ -1,6 +1,7 @@
 //! [`Lines`]: the middle of each line that a window shows.
 
-use super::centred::centred;
+use super::centred::{centred, turns};
+use super::ends::straight_ends;
 use super::flat::Flat;
 use super::tips::sharpened;
 use crate::{Bitmap, Bounded, Gray, Pixel, PxPoint, Vectorizer, despeckle, pen_width_px, split_by_width};
@@ -18,6 +19,10 @@ pub(super) const SPACING_PX: f64 = 2.0;
 /// a share of the window's side.
 const MARGIN_WIDTHS: f64 = 9.0;
 const MARGIN_SHARE: f64 = 0.15;
+
+/// The same for sharp turns, whose arms are one piece of ink for a while.
+const TURN_MARGIN_WIDTHS: f64 = 16.0;
+const TURN_MARGIN_SHARE: f64 = 0.27;
 
 /// A turn by more than this is a corner, which stays: cosine of 25 degrees.
 const CORNER_COS: f64 = 0.906;
@@ -143,19 +148,63 @@ impl Lines {
         };
         let strokes = vectorizer.centring(max_line_px).strokes(&ink, Some((&grey, true)));
         let (width, height) = (f64::from(ink.width()), f64::from(ink.height()));
-        let trusted = |at: &PxPoint| {
-            at.x >= margin_px && at.y >= margin_px && at.x <= width - margin_px && at.y <= height - margin_px
+        let window = Window {
+            width,
+            height,
+            margin_px,
+            turn_px: (TURN_MARGIN_WIDTHS * width_px).min(TURN_MARGIN_SHARE * side_px),
         };
         let fine: Vec<_> = strokes.iter().map(|stroke| resampled(&stroke.vertices, 1.0)).collect();
         let mut middles: Vec<Vec<PxPoint>> =
-            sharpened(fine, width_px).iter().map(|stroke| resampled(stroke, SPACING_PX)).collect();
+            sharpened(flat, fine, width_px).iter().map(|stroke| resampled(stroke, SPACING_PX)).collect();
         centred(flat, &mut middles, width_px);
+        straight_ends(flat, &mut middles, width_px);
         let pieces = middles
             .iter()
-            .flat_map(|places| clipped(places, trusted))
+            .flat_map(|places| clipped(places, &window.trusted(places, &turns(places, width_px))))
             .filter(|piece| is_dark(flat, &piece.places))
             .collect();
         Self { pieces, width_px, margin_px, area, has_ink: true }
+    }
+}
+
+/// The trusted part of a window.
+struct Window {
+    width: f64,
+    height: f64,
+    margin_px: f64,
+    turn_px: f64,
+}
+
+impl Window {
+    fn holds(&self, at: &PxPoint, margin_px: f64) -> bool {
+        at.x >= margin_px
+            && at.y >= margin_px
+            && at.x <= self.width - margin_px
+            && at.y <= self.height - margin_px
+    }
+
+    /// Which places are trusted: a sharp turn wholly or not at all, for from one arm alone the other one's ink is taken for its own.
+    fn trusted(&self, places: &[PxPoint], in_turn: &[bool]) -> Vec<bool> {
+        let mut trusted: Vec<bool> = places.iter().map(|at| self.holds(at, self.margin_px)).collect();
+        let is_in = |i: usize| in_turn.get(i).copied().unwrap_or(false);
+        let mut i = 0;
+        while i < places.len() {
+            if !is_in(i) {
+                i += 1;
+                continue;
+            }
+            let end = (i..places.len()).find(|k| !is_in(*k)).unwrap_or(places.len());
+            let turn = places.get(i..end).unwrap_or(&[]);
+            // One that is too long for the window is followed piece by piece.
+            let length_px = 0.5 * SPACING_PX * count_f64(turn.len());
+            let is_long = length_px > self.width.min(self.height) - 2.0 * self.turn_px;
+            if !is_long && !turn.iter().all(|at| self.holds(at, self.turn_px)) {
+                trusted.iter_mut().take(end).skip(i).for_each(|trusted| *trusted = false);
+            }
+            i = end;
+        }
+        trusted
     }
 }
 
@@ -224,11 +273,11 @@ pub(super) fn count_f64(count: usize) -> f64 {
 }
 
 /// The parts of a line inside of the trusted part of the window.
-fn clipped(places: &[PxPoint], trusted: impl Fn(&PxPoint) -> bool) -> Vec<Piece> {
+fn clipped(places: &[PxPoint], is_trusted: &[bool]) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = Vec::new();
     let mut inside = false;
-    for (i, place) in places.iter().enumerate() {
-        if !trusted(place) {
+    for (i, (place, trusted)) in places.iter().zip(is_trusted).enumerate() {
+        if !trusted {
             if inside && let Some(piece) = pieces.last_mut() {
                 piece.open[1] = true;
             }
@@ -244,12 +293,12 @@ fn clipped(places: &[PxPoint], trusted: impl Fn(&PxPoint) -> bool) -> Vec<Piece>
         }
     }
     let is_loop = places.len() > 3 && places.first() == places.last();
-    if is_loop && places.iter().all(&trusted) {
+    if is_loop && is_trusted.iter().all(|trusted| *trusted) {
         if let Some(piece) = pieces.first_mut() {
             piece.places.pop();
             piece.closed = true;
         }
-    } else if is_loop && places.first().is_some_and(&trusted) && pieces.len() > 1 {
+    } else if is_loop && is_trusted.first() == Some(&true) && pieces.len() > 1 {
         // The piece over the seam of the loop is one.
         if let Some(last) = pieces.pop()
             && let Some(first) = pieces.first_mut()
@@ -302,13 +351,13 @@ mod tests {
     #[test]
     fn tips_and_corners_are_where_they_are() {
         for (degrees, most) in
-            [(12.0, 1.3), (18.0, 1.3), (26.0, 1.2), (35.0, 0.6), (50.0, 0.6), (90.0, 0.8), (120.0, 0.3)]
+            [(12.0, 0.4), (18.0, 0.4), (26.0, 0.4), (35.0, 0.4), (50.0, 0.5), (90.0, 0.8), (120.0, 0.2)]
         {
             let half = 0.5 * f64::to_radians(degrees);
             let off = off(5.0, &|turn, at| {
                 vec![vec![at_angle(at, turn + half, 120.0), at, at_angle(at, turn - half, 120.0)]]
             });
-            assert!(off[0] < most && off[1] < 0.4 && off[2] < 2.3, "{degrees}: {off:?}");
+            assert!(off[0] < most && off[1] < 0.3 && off[2] < 1.8, "{degrees}: {off:?}");
         }
     }
 
@@ -321,8 +370,35 @@ mod tests {
             assert!(crossing[0] < 0.3 && crossing[2] < 0.3, "{degrees}: {crossing:?}");
             let tee =
                 off(5.0, &|turn, at| vec![across(turn, at), vec![at, at_angle(at, turn + angle, 120.0)]]);
-            assert!(tee[0] < 1.5 && tee[1] < 0.3 && tee[2] < 1.6, "{degrees}: {tee:?}");
+            assert!(tee[0] < 0.7 && tee[1] < 0.3 && tee[2] < 1.0, "{degrees}: {tee:?}");
         }
+    }
+
+    #[test]
+    fn a_line_that_ends_a_little_behind_another_is_straight() {
+        for degrees in [45.0, 70.0, 90.0] {
+            let off = off(5.0, &|turn, at| {
+                let way = turn + f64::to_radians(degrees);
+                let across = vec![at_angle(at, turn, 120.0), at_angle(at, turn, -120.0)];
+                vec![across, vec![at_angle(at, way, -3.4), at_angle(at, way, 120.0)]]
+            });
+            assert!(off[0] < 0.4 && off[2] < 2.6, "{degrees}: {off:?}");
+        }
+    }
+
+    #[test]
+    fn a_sharp_turn_is_trusted_wholly_or_not_at_all() {
+        let window = Window { width: 300.0, height: 300.0, margin_px: 45.0, turn_px: 80.0 };
+        let places: Vec<PxPoint> = (0..60).map(|i| PxPoint::new(20.0 + 2.0 * f64::from(i), 150.0)).collect();
+        // A turn whose first place is 70 px from the border.
+        let in_turn: Vec<bool> = (0..60).map(|i| (25..40).contains(&i)).collect();
+        let trusted = window.trusted(&places, &in_turn);
+        assert_eq!(trusted.iter().position(|trusted| *trusted), Some(13));
+        assert_eq!(trusted.iter().skip(13).position(|trusted| !trusted), Some(12));
+        assert_eq!(trusted.iter().filter(|trusted| **trusted).count(), 12 + 20);
+        // All of it is 80 px and more from the border.
+        let in_turn: Vec<bool> = (0..60).map(|i| (30..45).contains(&i)).collect();
+        assert_eq!(window.trusted(&places, &in_turn).iter().filter(|trusted| **trusted).count(), 47);
     }
 
     #[test]

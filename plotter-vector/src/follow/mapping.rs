@@ -22,6 +22,9 @@ const OFF_PX: f64 = 0.45;
 /// The tool is lowered when it is as near, px.
 const ARRIVED_PX: f64 = 0.35;
 
+/// Places of two lines that are as near are one on the way, px.
+const TOUCHING_PX: f64 = 1.0;
+
 /// How the play of an axis is felt: to and fro twice, in moves so small that no other line is taken for this one, px.
 const FEELING_PX: [f64; 16] =
     [2.0, 4.0, 6.0, 8.0, 6.0, 4.0, 2.0, 0.0, 2.0, 4.0, 6.0, 8.0, 6.0, 4.0, 2.0, 0.0];
@@ -510,7 +513,10 @@ impl MappingFollower {
                 None => {
                     let Some((id, near, far)) = trail::next(&self.map, node, heading) else { break };
                     if near != node {
-                        path.push(self.map.at(near));
+                        // Places of two lines that touch are hardly ever one; to go from one to the other would turn the axes round.
+                        if self.map.at(node).distance(self.map.at(near)) > TOUCHING_PX {
+                            path.push(self.map.at(near));
+                        }
                         node = near;
                     }
                     (id, far)

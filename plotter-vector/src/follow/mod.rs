@@ -28,6 +28,7 @@ mod centred;
 mod circle;
 mod corners;
 mod crowd;
+mod ends;
 mod exits;
 mod flat;
 mod judge;

@@ -9,7 +9,10 @@
 //!     |   stub               V   the tip
 //! ```
 
+use super::corners::{BLURRED_END_PX, SHARP_COS, ink_end_px};
+use super::flat::Flat;
 use super::lines::cosine;
+use super::paper::nearest;
 use crate::PxPoint;
 
 /// A straight arm deviates by less, px.
@@ -28,20 +31,21 @@ struct Arm {
 }
 
 /// Joins the arms of sharp tips in lines of some width; places along the strokes are about a pixel from each other.
-pub(super) fn sharpened(mut strokes: Vec<Vec<PxPoint>>, width_px: f64) -> Vec<Vec<PxPoint>> {
+pub(super) fn sharpened(flat: &Flat, mut strokes: Vec<Vec<PxPoint>>, width_px: f64) -> Vec<Vec<PxPoint>> {
     without_crumbs(&mut strokes, width_px);
     part_ends(&mut strokes, width_px);
     let longest = 9.0 * width_px + 6.0;
     // Each tip takes its stub away: there are no more than stubs.
     for _ in 0..strokes.len() {
-        let Some((stub, one, other, at)) = lonely(&strokes, longest, width_px) else { break };
+        let Some((stub, one, other, at)) = lonely(flat, &strokes, longest, width_px) else { break };
         join(&mut strokes, stub, &one, &other, at);
     }
     for _ in 0..strokes.len() {
-        let Some((split, stub, one, other, at)) = grown_on(&strokes, longest, width_px) else { break };
+        let Some((split, stub, one, other, at)) = grown_on(flat, &strokes, longest, width_px) else { break };
         strokes = split;
         join(&mut strokes, stub, &one, &other, at);
     }
+    without_crumbs(&mut strokes, width_px);
     strokes
 }
 
@@ -53,9 +57,10 @@ fn without_crumbs(strokes: &mut Vec<Vec<PxPoint>>, width_px: f64) {
             length(stroke) < 1.5 * width_px + 2.0
                 && stroke.iter().all(|at| {
                     let others = strokes.iter().enumerate().filter(|(k, _)| *k != i);
-                    others
-                        .flat_map(|(_, other)| other)
-                        .any(|other| other.distance(*at) < 0.6 * width_px + 0.8)
+                    others.flat_map(|(_, other)| other.windows(2)).any(|pair| {
+                        let [a, b] = pair else { return false };
+                        nearest(*at, *a, *b).distance(*at) < 0.6 * width_px + 0.8
+                    })
                 })
         });
         if is_crumb {
@@ -97,12 +102,17 @@ fn part_ends(strokes: &mut [Vec<PxPoint>], width_px: f64) {
 }
 
 /// A stub that is a stroke of its own, with its arms and its tip.
-fn lonely(strokes: &[Vec<PxPoint>], longest: f64, width_px: f64) -> Option<(usize, Arm, Arm, PxPoint)> {
+fn lonely(
+    flat: &Flat,
+    strokes: &[Vec<PxPoint>],
+    longest: f64,
+    width_px: f64,
+) -> Option<(usize, Arm, Arm, PxPoint)> {
     strokes.iter().enumerate().filter(|(_, places)| places.len() > 1 && length(places) < longest).find_map(
         |(stub, places)| {
             let backward: Vec<PxPoint> = places.iter().rev().copied().collect();
-            let found =
-                tip(strokes, stub, places, width_px).or_else(|| tip(strokes, stub, &backward, width_px));
+            let found = tip(flat, strokes, stub, places, width_px)
+                .or_else(|| tip(flat, strokes, stub, &backward, width_px));
             found.map(|(one, other, at)| (stub, one, other, at))
         },
     )
@@ -112,7 +122,7 @@ fn lonely(strokes: &[Vec<PxPoint>], longest: f64, width_px: f64) -> Option<(usiz
 type Cut = (Vec<Vec<PxPoint>>, usize, Arm, Arm, PxPoint);
 
 /// A stub that one arm goes on into, and where the other arm ends: the strokes with the stub cut off.
-fn grown_on(strokes: &[Vec<PxPoint>], longest: f64, width_px: f64) -> Option<Cut> {
+fn grown_on(flat: &Flat, strokes: &[Vec<PxPoint>], longest: f64, width_px: f64) -> Option<Cut> {
     let reach = 0.8 * width_px + 2.0;
     for (index, stroke) in strokes.iter().enumerate() {
         for (other, end) in strokes.iter().enumerate().flat_map(|(other, ends)| {
@@ -141,7 +151,7 @@ fn grown_on(strokes: &[Vec<PxPoint>], longest: f64, width_px: f64) -> Option<Cut
                 }
                 split.push(places.clone());
                 let last = split.len() - 1;
-                if let Some((one, other, tip)) = tip(&split, last, &places, width_px) {
+                if let Some((one, other, tip)) = tip(flat, &split, last, &places, width_px) {
                     return Some((split, last, one, other, tip));
                 }
             }
@@ -170,6 +180,7 @@ fn length(places: &[PxPoint]) -> f64 {
 
 /// Both arms and the tip, if a stroke is the stub of one, with its foot first.
 fn tip(
+    flat: &Flat,
     strokes: &[Vec<PxPoint>],
     stub: usize,
     places: &[PxPoint],
@@ -223,7 +234,18 @@ fn tip(
     let met = one.middle.along(one.direction, along);
     // The ink ends about half a width behind the tip, the more the sharper it is.
     let sound = cross.abs() > 0.03 && met.distance(free) < 1.5 * width_px + 0.4 * foot.distance(free) + 2.0;
-    Some((one, other, if sound { met } else { free }))
+    let mut at = if sound { met } else { free };
+    if between > -SHARP_COS {
+        // Arms that meet at a small angle hardly tell where; the end of their ink does.
+        let length = libm::hypot(mean.0, mean.1);
+        let way = (-mean.0 / length, -mean.1 / length);
+        let off = free.minus(at);
+        let from = at.along(way, off.0 * way.0 + off.1 * way.1);
+        if let Some(end_px) = ink_end_px(flat, from, way, width_px) {
+            at = from.along(way, end_px - 0.5 * width_px + BLURRED_END_PX);
+        }
+    }
+    Some((one, other, at))
 }
 
 /// The straight line through an arm's places, over as long a part of it as is straight.
@@ -267,19 +289,25 @@ pub(super) fn fitted(places: &[PxPoint]) -> Option<(PxPoint, (f64, f64))> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::follow::{CameraSettings, Paper, SimulatedCamera};
 
     #[test]
     fn a_stub_with_two_arms_becomes_a_tip() {
-        // A tip at (0, 0) of about 23 degrees; the arms part at 20 px from it.
-        let arm = |side: f64| -> Vec<PxPoint> {
-            (20..80).map(|i| PxPoint::new(f64::from(i), side * 0.2 * f64::from(i))).collect()
+        // A tip of about 23 degrees; the arms part at 20 px from it.
+        let tip = PxPoint::new(40.0, 60.0);
+        let arm = |side: f64, from: u8| -> Vec<PxPoint> {
+            (from..80).map(|i| tip.along((1.0, side * 0.2), f64::from(i))).collect()
         };
+        let paper = Paper::drawn(160, 120, &[(arm(1.0, 0), 5.0), (arm(-1.0, 0), 5.0)]).unwrap();
+        let settings = CameraSettings { width_px: 160, height_px: 120, ..CameraSettings::default() };
+        let flat =
+            Flat::of(&SimulatedCamera::new(&paper, settings).window(PxPoint::new(80.0, 60.0)), None, None);
         let one: Vec<PxPoint> =
-            arm(1.0).into_iter().rev().chain([PxPoint::new(18.0, 0.0)]).chain(arm(-1.0)).collect();
-        let stub: Vec<PxPoint> = (-2..=18).rev().map(|i| PxPoint::new(f64::from(i), 0.0)).collect();
-        let strokes = sharpened(vec![one, stub], 5.0);
+            arm(1.0, 20).into_iter().rev().chain([PxPoint::new(58.0, 60.0)]).chain(arm(-1.0, 20)).collect();
+        let stub: Vec<PxPoint> = (38..=58).rev().map(|x| PxPoint::new(f64::from(x), 60.0)).collect();
+        let strokes = sharpened(&flat, vec![one, stub], 5.0);
         assert_eq!(strokes.len(), 1);
-        let tip = strokes[0].iter().map(|at| at.x.hypot(at.y)).fold(f64::MAX, f64::min);
-        assert!(tip < 1e-6, "{tip}");
+        let off = strokes[0].iter().map(|at| at.distance(tip)).fold(f64::MAX, f64::min);
+        assert!(off < 0.3, "{off}");
     }
 }

@@ -86,15 +86,22 @@ pub(super) fn width_px(places: &[Place]) -> f64 {
 /// so.
 fn is_dot(places: &[Place], width_px: f64) -> bool {
     let longest_px = (0.5 * width_px).min((0.25 * width_px).max(2.0));
-    let length_px: f64 = places.iter().zip(places.iter().skip(1)).map(|(a, b)| a.at().distance(b.at())).sum();
-    length_px <= longest_px
+    let mut length_px = 0.0;
+    places.iter().zip(places.iter().skip(1)).all(|(a, b)| {
+        length_px += a.at().distance(b.at());
+        length_px <= longest_px
+    })
 }
 
 /// Adds places where two are more than about a pixel apart.
 pub(super) fn fill_gaps(places: &mut Vec<Place>, closed: bool) {
     const WIDEST_PX: f64 = 1.7;
     let next = || places.iter().skip(1).chain(places.first().filter(|_| closed));
-    if places.iter().zip(next()).all(|(from, to)| from.at().distance(to.at()) <= WIDEST_PX) {
+    let is_near = |(from, to): (&Place, &Place)| {
+        let (x, y) = to.at().minus(from.at());
+        x * x + y * y <= WIDEST_PX * WIDEST_PX
+    };
+    if places.iter().zip(next()).all(is_near) {
         return;
     }
     let mut dense = Vec::with_capacity(places.len() * 5 / 4);

@@ -11,6 +11,7 @@
 
 use super::junction::{Connection, Junctions, THIN_PX};
 use super::site::{Role, Scan, Site};
+use super::sites::Sites;
 use super::{End, Graph};
 use crate::PxPoint;
 use core::ops::Range;
@@ -71,12 +72,13 @@ impl<'a> Corners<'a> {
         Self { graph, junctions, scan, onward }
     }
 
-    /// Sharpens the corners of the undisturbed sites of all edges: the site in the middle of one moves there, those beside
+    /// Sharpens the corners of the undisturbed sites of all lines: the site in the middle of one moves there, those beside
     /// it go.
-    pub(super) fn sharpen(&self, sites: &mut [Vec<Site>]) {
+    pub(super) fn sharpen(&self, sites: &mut Sites<'_>) {
         // All are found before the first one is sharpened: a line goes on in other edges.
-        let found: Vec<Vec<Corner>> = (0..sites.len()).map(|edge| self.of_edge(edge, sites)).collect();
-        for (edge, corners) in found.into_iter().enumerate().filter(|(_, corners)| !corners.is_empty()) {
+        let of_edge = |edge: &usize| (*edge, self.of_edge(*edge, sites));
+        let found: Vec<(usize, Vec<Corner>)> = self.junctions.lines.iter().map(of_edge).collect();
+        for (edge, corners) in found.into_iter().filter(|(_, corners)| !corners.is_empty()) {
             let closed = self.is_closed(edge);
             let Some(sites) = sites.get_mut(edge) else { continue };
             // The last site of a loop is the first one again.
@@ -101,8 +103,8 @@ impl<'a> Corners<'a> {
     }
 
     /// The corners of an edge that do not overlap.
-    fn of_edge(&self, edge: usize, sites: &[Vec<Site>]) -> Vec<Corner> {
-        let own = sites.get(edge).map_or(&[][..], Vec::as_slice);
+    fn of_edge(&self, edge: usize, sites: &Sites<'_>) -> Vec<Corner> {
+        let own = sites.get(edge).unwrap_or(&[]);
         if self.is_closed(edge) {
             let own = own.get(..own.len().saturating_sub(1)).unwrap_or(&[]);
             return Line { sites: own, closed: true }.sharpest(&(0..own.len()), self.scan);
@@ -125,7 +127,7 @@ impl<'a> Corners<'a> {
     }
 
     /// How a line goes on at an edge's end: through the junction, and as far beyond as a corner's sides are looked at.
-    fn beyond(&self, end: End, sites: &[Vec<Site>]) -> Vec<Site> {
+    fn beyond(&self, end: End, sites: &Sites<'_>) -> Vec<Site> {
         /// Sites beyond a junction: more show nothing of a corner before it.
         const LOOK: usize = 24;
         let Some((connection, to)) = self.onward.get(&end) else { return Vec::new() };
@@ -218,6 +220,8 @@ impl Line<'_> {
     fn corners(&self, own: &Range<usize>, scan: Scan<'_>) -> Vec<Corner> {
         /// Sites to either side whose chords give a first look at the turn.
         const LOOK: usize = 6;
+        /// Square of the cosine of a turn that is none, a little above that of [`TURN_COS`]: seen without a root.
+        const STRAIGHT_COS2: f64 = 0.83;
         let count = self.sites.len();
         if count <= 2 * LOOK {
             return Vec::new();
@@ -225,6 +229,11 @@ impl Line<'_> {
         let turn = |index: usize| {
             let (before, at, after) =
                 (self.place(index, 0, LOOK)?, self.place(index, 0, 0)?, self.place(index, LOOK, 0)?);
+            let ((x, y), (u, v)) = (at.minus(before), after.minus(at));
+            let dot = x * u + y * v;
+            if dot > 0.0 && dot * dot > STRAIGHT_COS2 * (x * x + y * y) * (u * u + v * v) {
+                return None;
+            }
             Some(cos(direction(before, at)?, direction(at, after)?))
         };
         let turns: Vec<f64> = (0..count).map(|index| turn(index).unwrap_or(1.0)).collect();

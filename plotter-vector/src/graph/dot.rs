@@ -20,16 +20,20 @@ const LONGER_PX: f64 = 1.0;
 /// Narrower marks are the raster's own, px: every pixel is a place of them.
 const NARROWEST_PX: f64 = 2.0;
 
-/// Makes one node without edges of each dot. The edges that go with them.
-pub(super) fn dots(graph: &mut Graph, scan: Scan<'_>) -> Vec<usize> {
-    let mut gone = Vec::new();
+/// Makes one node without edges of each dot. Of each edge whether it goes with them.
+pub(super) fn dots(graph: &mut Graph, scan: Scan<'_>) -> Vec<bool> {
+    let mut gone = vec![false; graph.edges.len()];
     for start in 0..graph.nodes.len() {
         let Some((middle, edges)) = dot(graph, start, scan) else { continue };
         if let Some(node) = graph.nodes.get_mut(start) {
             node.at = middle;
             node.ends.clear();
         }
-        gone.extend(edges);
+        for edge in edges {
+            if let Some(gone) = gone.get_mut(edge) {
+                *gone = true;
+            }
+        }
     }
     gone
 }

@@ -6,6 +6,7 @@
 
 use super::junction::Junctions;
 use super::site::{Role, Scan, Site};
+use super::sites::Sites;
 use super::{Edge, End, Graph, Place};
 use crate::{Pixel, PxPoint};
 use core::ops::Range;
@@ -41,25 +42,18 @@ fn cut(one: Pixel, other: Pixel) -> Joint {
 /// The fragments in the rows `core`, which are a band's own.
 pub(crate) fn fragments(
     graph: &Graph,
-    sites: &[Vec<Site>],
+    sites: &Sites<'_>,
     junctions: &Junctions,
-    gone: &[bool],
     scan: Scan<'_>,
     core: &Range<u32>,
 ) -> Vec<Fragment> {
     let mut found = Vec::new();
-    let is_line = |edge: usize| {
-        !gone.get(edge).copied().unwrap_or(true) && !junctions.inner.get(edge).copied().unwrap_or(true)
-    };
-    for (index, (edge, sites)) in graph.edges.iter().zip(sites).enumerate() {
-        if is_line(index) {
+    for index in junctions.lines.iter().copied() {
+        if let (Some(edge), Some(sites)) = (graph.edges.get(index), sites.get(index)) {
             pieces(index, edge, sites, junctions, core, &mut found);
         }
     }
-    for connection in &junctions.connections {
-        if !core.contains(&connection.owner.y) || !is_line(connection.from.edge) {
-            continue;
-        }
+    for connection in junctions.of_lines().filter(|one| core.contains(&one.owner.y)) {
         let joint = |end: End| arm_joint(graph, end);
         let Some(start) = joint(connection.from) else { continue };
         let end = match connection.to {

@@ -7,10 +7,16 @@
 use super::arm::{Arm, LONG, SHORT};
 use super::corner::{TURN_COS, direction};
 use super::meeting::{Heart, partners};
+use super::near::Near;
 use super::site::{Scan, Site};
+use super::sites::Sites;
+use super::spur::Spurs;
 use super::trial::{GOOD_PX2, Trial, better_than};
 use super::{End, Graph};
 use crate::{Pixel, PxPoint};
+use core::cell::{OnceCell, RefCell};
+use std::borrow::Cow;
+use std::collections::HashMap;
 
 /// Lines up to this width keep their pixels: the raster itself is their centreline.
 pub(crate) const THIN_PX: f64 = 1.5;
@@ -50,6 +56,8 @@ pub(crate) struct Junctions {
     pub(crate) connections: Vec<Connection>,
     /// Edges that are inside a junction, no line of their own.
     pub(crate) inner: Vec<bool>,
+    /// The edges that come near, but for those that are no lines of their own.
+    pub(crate) lines: Vec<usize>,
 }
 
 impl Junctions {
@@ -64,6 +72,11 @@ impl Junctions {
         {
             *place = skip;
         }
+    }
+
+    /// What replaces the ends of edges that are lines of their own.
+    pub(super) fn of_lines(&self) -> impl Iterator<Item = &Connection> {
+        self.connections.iter().filter(|one| self.inner.get(one.from.edge) == Some(&false))
     }
 
     /// A line ends, at others or, at its `tip`, nowhere.
@@ -105,33 +118,29 @@ impl Junctions {
         }
     }
 
-    /// Takes all junctions and line ends of a graph apart; `gone` are its spurs, `sites` those of every edge.
-    pub(crate) fn of(graph: &Graph, sites: &[Vec<Site>], gone: &[bool], scan: Scan<'_>) -> Self {
+    /// Takes the junctions and line ends apart of all lines of a graph that come near.
+    pub(super) fn of(
+        graph: &Graph,
+        sites: &Sites<'_>,
+        gone: &Spurs<'_>,
+        scan: Scan<'_>,
+        near: &Near,
+    ) -> Self {
         let mut found = Self {
             skips: vec![[0; 2]; graph.edges.len()],
             connections: Vec::new(),
             inner: vec![false; graph.edges.len()],
+            lines: near.edges(graph),
         };
-        let lines = Lines { graph, sites, gone, scan };
-        let radii: Vec<f64> = lines.radii();
-        let mut groups = Groups::new(graph.nodes.len());
-        for edge in 0..graph.edges.len() {
-            if let Some((a, b)) = lines.overlapping(edge, &radii).or_else(|| lines.run_together(edge)) {
-                groups.join(a, b);
-                if let Some(inner) = found.inner.get_mut(edge) {
-                    *inner = true;
-                }
-            }
+        found.lines.retain(|edge| !gone.has(*edge));
+        let radii = vec![OnceCell::new(); graph.nodes.len()];
+        let arms = RefCell::default();
+        let lines = Lines { graph, sites, gone, scan, radii: &radii, arms: &arms };
+        for group in lines.groups(&mut found) {
+            lines.resolve(&group, &mut found);
         }
-        let mut members: Vec<Vec<usize>> = vec![Vec::new(); graph.nodes.len()];
-        for node in 0..graph.nodes.len() {
-            if let Some(group) = members.get_mut(groups.root(node)) {
-                group.push(node);
-            }
-        }
-        for group in members.into_iter().filter(|group| !group.is_empty()) {
-            lines.resolve(&group, &radii, &mut found);
-        }
+        let Self { inner, lines, .. } = &mut found;
+        lines.retain(|edge| inner.get(*edge) == Some(&false));
         found
     }
 }
@@ -143,9 +152,13 @@ const LOOK: usize = 256;
 #[derive(Clone, Copy)]
 struct Lines<'a> {
     graph: &'a Graph,
-    sites: &'a [Vec<Site>],
-    gone: &'a [bool],
+    sites: &'a Sites<'a>,
+    gone: &'a Spurs<'a>,
     scan: Scan<'a>,
+    /// Radius of the ink around each node, once it is measured.
+    radii: &'a [OnceCell<f64>],
+    /// The long arms that were asked for.
+    arms: &'a RefCell<HashMap<End, Option<Arm>>>,
 }
 
 /// An arm of a junction and which edge end it is.
@@ -169,30 +182,57 @@ impl ArmOf {
 }
 
 impl Lines<'_> {
-    fn is_gone(&self, edge: usize) -> bool {
-        self.gone.get(edge).copied().unwrap_or(true)
+    /// The nodes of each junction that a line comes to which is near, and which edges lie within them.
+    fn groups(&self, found: &mut Junctions) -> Vec<Vec<usize>> {
+        let nodes_of = |edge: usize| self.graph.edges.get(edge).and_then(|edge| edge.nodes);
+        let mut wanted = vec![false; self.graph.nodes.len()];
+        let mut tried = vec![false; self.graph.edges.len()];
+        let mut nodes: Vec<usize> =
+            found.lines.iter().filter_map(|edge| nodes_of(*edge)).flat_map(|(a, b)| [a, b]).collect();
+        let mut groups = Groups::new(self.graph.nodes.len());
+        while let Some(node) = nodes.pop() {
+            let Some(wanted) = wanted.get_mut(node).filter(|wanted| !**wanted) else { continue };
+            *wanted = true;
+            for end in self.ends(node) {
+                let Some(tried) = tried.get_mut(end.edge).filter(|tried| !**tried) else { continue };
+                *tried = true;
+                if let Some((a, b)) = self.overlapping(end.edge).or_else(|| self.run_together(end.edge)) {
+                    groups.join(a, b);
+                    nodes.extend([a, b]);
+                    if let Some(inner) = found.inner.get_mut(end.edge) {
+                        *inner = true;
+                    }
+                }
+            }
+        }
+        let mut members: Vec<Vec<usize>> = vec![Vec::new(); self.graph.nodes.len()];
+        for (node, _) in wanted.iter().enumerate().filter(|(_, wanted)| **wanted) {
+            if let Some(group) = members.get_mut(groups.root(node)) {
+                group.push(node);
+            }
+        }
+        members.retain(|group| !group.is_empty());
+        members
     }
 
     /// The ends of the lines that are left at a node.
     fn ends(&self, node: usize) -> impl Iterator<Item = End> + '_ {
         let ends = self.graph.nodes.get(node).map_or(&[][..], |node| &node.ends);
-        ends.iter().copied().filter(|end| !self.is_gone(end.edge))
+        ends.iter().copied().filter(|end| !self.gone.has(end.edge))
     }
 
-    /// Radius of the ink around each node where lines meet; 0 elsewhere.
-    fn radii(&self) -> Vec<f64> {
-        (0..)
-            .zip(&self.graph.nodes)
-            .map(|(index, node)| {
-                if self.ends(index).count() > 1 { self.scan.radius_px(node.at.into(), f64::MAX) } else { 0.0 }
-            })
-            .collect()
+    /// Radius of the ink around a node where lines meet; 0 elsewhere.
+    fn radius_px(&self, node: usize) -> f64 {
+        let measure = || {
+            if self.ends(node).count() > 1 { self.scan.radius_px(self.place(node), f64::MAX) } else { 0.0 }
+        };
+        self.radii.get(node).map_or(0.0, |radius| *radius.get_or_init(measure))
     }
 
     /// The two nodes of an edge that is left between two junctions.
     fn between(&self, edge: usize) -> Option<(usize, usize)> {
         let (a, b) = self.graph.edges.get(edge)?.nodes?;
-        let joins = a != b && !self.is_gone(edge) && self.ends(a).count() > 1 && self.ends(b).count() > 1;
+        let joins = a != b && !self.gone.has(edge) && self.ends(a).count() > 1 && self.ends(b).count() > 1;
         joins.then_some((a, b))
     }
 
@@ -201,9 +241,9 @@ impl Lines<'_> {
     }
 
     /// The nodes of an edge whose discs of ink overlap.
-    fn overlapping(&self, edge: usize, radii: &[f64]) -> Option<(usize, usize)> {
+    fn overlapping(&self, edge: usize) -> Option<(usize, usize)> {
         let (a, b) = self.between(edge)?;
-        let reach = radii.get(a)? + radii.get(b)?;
+        let reach = self.radius_px(a) + self.radius_px(b);
         let pixels = self.graph.edges.get(edge)?.pixels.len();
         #[expect(clippy::cast_precision_loss, reason = "a count of pixels, far below 2^53")]
         let short = pixels as f64 <= 1.5 * reach + 2.0;
@@ -221,7 +261,7 @@ impl Lines<'_> {
             if ends.next().is_some() || first.edge == second.edge {
                 return None;
             }
-            Some([self.arm(first, LONG)?, self.arm(second, LONG)?])
+            Some([self.long_arm(first)?, self.long_arm(second)?])
         };
         let sites = self.sites.get(edge)?;
         #[expect(clippy::cast_precision_loss, reason = "a count of pixels, far below 2^53")]
@@ -243,13 +283,23 @@ impl Lines<'_> {
     }
 
     /// The sites of an edge from one of its ends on.
-    fn sites_from(&self, end: End) -> Vec<Site> {
-        let sites = self.sites.get(end.edge).map_or(&[][..], Vec::as_slice);
+    fn sites_from(&self, end: End) -> Cow<'_, [Site]> {
+        let sites = self.sites.get(end.edge).unwrap_or(&[]);
         if end.at_last {
             sites.iter().rev().take(LOOK).copied().collect()
         } else {
-            sites.iter().take(LOOK).copied().collect()
+            sites.get(..LOOK).unwrap_or(sites).into()
         }
+    }
+
+    /// The arm at an edge's end by all that is seen of it.
+    fn long_arm(&self, end: End) -> Option<Arm> {
+        let known = self.arms.borrow().get(&end).copied();
+        known.unwrap_or_else(|| {
+            let arm = self.arm(end, LONG);
+            self.arms.borrow_mut().insert(end, arm);
+            arm
+        })
     }
 
     fn arm(&self, end: End, longest: usize) -> Option<Arm> {
@@ -274,7 +324,7 @@ impl Lines<'_> {
     }
 
     /// The tails of all lines at the nodes of one junction, dot or line end.
-    fn resolve(&self, group: &[usize], radii: &[f64], found: &mut Junctions) {
+    fn resolve(&self, group: &[usize], found: &mut Junctions) {
         let is_inner = |edge: usize| found.inner.get(edge).copied().unwrap_or(false);
         let mut ends: Vec<End> =
             group.iter().flat_map(|node| self.ends(*node)).filter(|end| !is_inner(end.edge)).collect();
@@ -282,7 +332,7 @@ impl Lines<'_> {
         ends.sort_by_key(|end| self.first_pixels(*end));
         let arms: Vec<ArmOf> = ends
             .iter()
-            .filter_map(|end| Some(ArmOf { end: *end, arm: self.arm(*end, LONG)?, tip: self.tip(*end) }))
+            .filter_map(|end| Some(ArmOf { end: *end, arm: self.long_arm(*end)?, tip: self.tip(*end) }))
             .collect();
         if arms.is_empty() {
             return;
@@ -297,7 +347,7 @@ impl Lines<'_> {
             found.end(owner, one, vec![self.line_end(&one.arm)], true);
         } else {
             let centre = centre(group.iter().map(|node| self.place(*node)));
-            let radius_px = group.iter().filter_map(|node| radii.get(*node)).fold(0.0_f64, |a, b| a.max(*b));
+            let radius_px = group.iter().map(|node| self.radius_px(*node)).fold(0.0, f64::max);
             let heart = Heart { owner, centre, radius_px, scan: self.scan };
             if !heart.resolve_point(&arms, found) {
                 let ways = self.best(group, &heart, &arms, found);
@@ -314,7 +364,7 @@ impl Lines<'_> {
         if arms.len() > MOST_ARMS {
             return straight;
         }
-        let sites: Vec<Vec<Site>> = arms.iter().map(|one| self.sites_from(one.end)).collect();
+        let sites: Vec<Cow<'_, [Site]>> = arms.iter().map(|one| self.sites_from(one.end)).collect();
         let Some(trial) = Trial::new(self.scan, heart.centre, arms, &sites) else { return straight };
         let cost = trial.cost(&straight, f64::INFINITY).unwrap_or(f64::INFINITY);
         let mut best = (cost, straight);

@@ -20,9 +20,11 @@ mod fragment;
 mod join;
 mod junction;
 mod meeting;
+mod near;
 mod place;
 mod raster_line;
 mod site;
+mod sites;
 mod smooth;
 mod spur;
 mod stroke;
@@ -33,8 +35,10 @@ pub(crate) use build::Stretch;
 use build::{Edge, End, Graph};
 pub(crate) use fragment::Fragment;
 pub(crate) use join::Joiner;
+use near::Near;
 use place::Place;
 pub(crate) use site::{Rims, Scan};
+use sites::Sites;
 pub(crate) use stroke::{Cuts, Stroke};
 
 use core::ops::Range;
@@ -57,19 +61,43 @@ pub(crate) fn fragments(
     let mut graph = Graph::of(skeleton, words);
     graph.move_down(first_row);
     raster_line::put_back(&mut graph, scan, skeleton, first_row);
-    let mut sites: Vec<_> =
-        graph.edges.iter().map(|edge| scan.sites(&edge.pixels, edge.nodes.is_none())).collect();
-    let mut gone = spur::spurs(&graph, &sites, scan);
-    for edge in dot::dots(&mut graph, scan) {
-        if let Some(gone) = gone.get_mut(edge) {
-            *gone = true;
-        }
+    let dots = dot::dots(&mut graph, scan);
+    let all = first_row.saturating_add(skeleton.rows.start)..first_row.saturating_add(skeleton.rows.end);
+    let near = Near::to(core, stub::BELOW_ROWS, &graph, scan, &all);
+    let work = Found { graph: &graph, dots: &dots, scan, all };
+    work.near(&near, core, words)
+        .or_else(|| work.near(&Near::all(&work.all), core, words))
+        .unwrap_or_default()
+}
+
+/// A graph, before its lines are known.
+struct Found<'a> {
+    graph: &'a Graph,
+    /// Of each edge whether it went into a dot.
+    dots: &'a [bool],
+    scan: Scan<'a>,
+    /// All rows of the picture that it has.
+    all: Range<u32>,
+}
+
+impl Found<'_> {
+    /// The pieces of centrelines in the rows `core`, from the lines that come near; none when these do not decide about all.
+    fn near(&self, near: &Near, core: &Range<u32>, words: &mut Vec<u64>) -> Option<Vec<Fragment>> {
+        let Self { graph, dots, scan, all } = self;
+        let mut sites = Sites::new(graph, *scan);
+        let junctions = junction::Junctions::of(
+            graph,
+            &sites,
+            &spur::Spurs::new(graph, &sites, *scan, dots),
+            *scan,
+            near,
+        );
+        corner::Corners::new(graph, &junctions, *scan).sharpen(&mut sites);
+        let lines =
+            stub::Lines { graph, sites: &sites, junctions: &junctions, scan: *scan, near, all: all.clone() };
+        let stubs = stub::stubs(&lines, core, words)?;
+        let mut found = fragment::fragments(graph, &sites, &junctions, *scan, core);
+        found.extend(stubs);
+        Some(found)
     }
-    let junctions = junction::Junctions::of(&graph, &sites, &gone, scan);
-    corner::Corners::new(&graph, &junctions, scan).sharpen(&mut sites);
-    let lines = stub::Lines { graph: &graph, sites: &sites, junctions: &junctions, gone: &gone, scan };
-    let stubs = stub::stubs(&lines, core, words);
-    let mut found = fragment::fragments(&graph, &sites, &junctions, &gone, scan, core);
-    found.extend(stubs);
-    found
 }

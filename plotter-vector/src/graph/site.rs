@@ -86,20 +86,26 @@ impl Scan<'_> {
             .map(|(index, pixel)| self.site(*pixel, neighbour(index, true).minus(neighbour(index, false))))
             .collect();
         // Around a corner a cut may run along the line instead of across: there the skeleton itself is nearer.
+        let is_wide = |site: &Site, calm_px: f64| site.width_px > 1.6 * calm_px + 1.0;
         let widths: Vec<f64> = sites.iter().map(|site| site.width_px).collect();
+        let least_px = widths.iter().copied().fold(f64::INFINITY, f64::min);
         for (index, (site, pixel)) in sites.iter_mut().zip(pixels).enumerate() {
+            if !is_wide(site, least_px) {
+                continue;
+            }
             let calm_px = least_around(count, index, CALM_PX, closed, |at| widths.get(at).copied());
-            if site.width_px > 1.6 * calm_px + 1.0 {
+            if is_wide(site, calm_px) {
                 site.centre = (*pixel).into();
             }
         }
         sites
     }
 
-    /// The site at a pixel of a line that runs in a direction.
+    /// The site at a pixel of a line that runs in a direction, in whole px.
     pub(crate) fn site(&self, at: Pixel, (dx, dy): (f64, f64)) -> Site {
         let sideways = dx.abs() >= dy.abs();
-        let length = libm::hypot(dx, dy);
+        // Of whole numbers the squares are exact.
+        let length = libm::sqrt(dx * dx + dy * dy);
         // Across a single pixel there is no direction: its own column will do.
         let cosine = if length > 0.0 { dx.abs().max(dy.abs()) / length } else { 1.0 };
         let (low, high) = self.run(at, sideways);
@@ -116,14 +122,13 @@ impl Scan<'_> {
         let (here, first, side) =
             if down { (at.y, self.first_row, end_row) } else { (at.x, 0, self.ink.width()) };
         let pixel = |along: u32| if down { Pixel::new(at.x, along) } else { Pixel::new(along, at.y) };
-        let mut low = here;
-        while low > first && here - low < MAX_RUN_PX && self.is_ink_at(pixel(low - 1)) {
-            low -= 1;
-        }
-        let mut high = here;
-        while high + 1 < side && high - here < MAX_RUN_PX && self.is_ink_at(pixel(high + 1)) {
-            high += 1;
-        }
+        let inside = Pixel::new(at.x, at.y.saturating_sub(self.first_row));
+        let (before, behind) = if down {
+            self.ink.run_upright(inside, MAX_RUN_PX)
+        } else {
+            self.ink.run_level(inside, MAX_RUN_PX)
+        };
+        let (low, high) = (here - before, here + behind);
         let (start, end) = (f64::from(low), f64::from(high) + 1.0);
         let Some(Rims { levels, ink_is_dark, first_row }) = self.grey else { return (start, end) };
         let level = |along: Option<u32>| {
@@ -158,23 +163,35 @@ impl Scan<'_> {
     pub(crate) fn radius_px(&self, at: PxPoint, limit_px: f64) -> f64 {
         let limit = limit_px.clamp(1.0, f64::from(MAX_RUN_PX));
         let (left, top) = (libm::floor(at.x), libm::floor(at.y));
-        let mut nearest = limit + 0.5;
-        let mut ring = 0.0;
-        // Pixels of ring k have their centres at least k - 0.5 away.
-        while ring - 0.5 < nearest {
-            let mut step = -ring;
-            while step <= ring {
-                for (dx, dy) in [(step, -ring), (step, ring), (-ring, step), (ring, step)] {
-                    let (x, y) = (left + dx, top + dy);
-                    if !self.is_ink(x, y) {
-                        nearest = nearest.min(libm::hypot(x + 0.5 - at.x, y + 0.5 - at.y));
+        let squared = |(x, y): (f64, f64)| x * x + y * y;
+        let mut nearest = (limit + 0.5, 0.0);
+        let mut far = 0.0;
+        // Rows so far up and down have their pixels' centres at least half a pixel less away.
+        while far < 0.5 || (far - 0.5) * (far - 0.5) < squared(nearest) {
+            for row in [top - far, top + far] {
+                let (before, behind) = self.level_run(left, row);
+                for x in [left - before, left + behind] {
+                    let way = (x + 0.5 - at.x, row + 0.5 - at.y);
+                    if squared(way) < squared(nearest) {
+                        nearest = way;
                     }
                 }
-                step += 1.0;
             }
-            ring += 1.0;
+            far += 1.0;
         }
-        (nearest - 0.5).max(0.0)
+        (libm::hypot(nearest.0, nearest.1) - 0.5).max(0.0)
+    }
+
+    /// How many columns to the left and to the right the nearest paper in a row is, whole numbers; 0 when the pixel there is
+    /// paper.
+    fn level_run(&self, x: f64, y: f64) -> (f64, f64) {
+        if !self.is_ink(x, y) {
+            return (0.0, 0.0);
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers of ink")]
+        let at = Pixel::new(x as u32, y as u32 - self.first_row);
+        let (before, behind) = self.ink.run_level(at, MAX_RUN_PX);
+        (f64::from(before) + 1.0, f64::from(behind) + 1.0)
     }
 
     /// How far a ray of ink goes on from a place, px, at most `limit_px`: in quarters of a pixel.
@@ -234,5 +251,39 @@ pub(super) fn least_around(
             (first..count.min(index + reach + 1)).filter_map(value).fold(f64::INFINITY, least)
         }
         _ => (0..=2 * reach).filter_map(at).filter_map(value).fold(f64::INFINITY, least),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_radius_is_that_to_the_nearest_paper() {
+        // A slanted bar with a hole in it, seen as rows 1000 and after.
+        let mut ink = Bitmap::new(90, 60).unwrap();
+        for (x, y) in (0..90).flat_map(|x| (0..60).map(move |y| (x, y))) {
+            let off = i64::from(y) - i64::from(x) / 3 - 18;
+            ink.set(Pixel::new(x, y), off.abs() < 11 && (x, y) != (40, 31));
+        }
+        let scan = Scan { ink: &ink, first_row: 1000, grey: None };
+        let is_paper = |x: i32, y: i32| {
+            let inside = u32::try_from(x).ok().zip(u32::try_from(y - 1000).ok());
+            inside.is_none_or(|(x, y)| !ink.get(Pixel::new(x, y)))
+        };
+        for step in 0..400_i32 {
+            let at = PxPoint::new(
+                f64::from(step * 37 % 951) / 10.0 - 2.0,
+                998.0 + f64::from(step * 53 % 640) / 10.0,
+            );
+            let around = (-30..120).flat_map(|x| (970..1090).map(move |y| (x, y)));
+            let nearest = around
+                .filter(|(x, y)| is_paper(*x, *y))
+                .map(|(x, y)| libm::hypot(f64::from(x) + 0.5 - at.x, f64::from(y) + 0.5 - at.y))
+                .fold(f64::INFINITY, f64::min);
+            let limited = |limit: f64| (nearest.min(limit + 0.5) - 0.5).max(0.0);
+            assert!((scan.radius_px(at, f64::MAX) - limited(96.0)).abs() < 1e-12, "{at:?}");
+            assert!((scan.radius_px(at, 4.0) - limited(4.0)).abs() < 1e-12, "{at:?}");
+        }
     }
 }

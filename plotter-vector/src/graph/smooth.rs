@@ -77,14 +77,15 @@ fn weights(half: usize) -> Vec<f64> {
 /// The weighted mean of the places around one, beyond the end of a closed line from its start.
 fn average(places: &[PxPoint], index: usize, weights: &[f64]) -> PxPoint {
     let (count, half) = (places.len(), weights.len() / 2);
-    let sum = |places: &mut dyn Iterator<Item = &PxPoint>| {
-        places.zip(weights).fold(PxPoint::default(), |sum, (place, weight)| {
-            PxPoint::new(sum.x + weight * place.x, sum.y + weight * place.y)
-        })
+    let add = |sum: PxPoint, (place, weight): (&PxPoint, &f64)| {
+        PxPoint::new(sum.x + weight * place.x, sum.y + weight * place.y)
     };
     match index.checked_sub(half).and_then(|first| places.get(first..=index + half)) {
-        Some(window) => sum(&mut window.iter()),
-        None => sum(&mut places.iter().cycle().skip((index + count - half % count.max(1)) % count.max(1))),
+        Some(window) => window.iter().zip(weights).fold(PxPoint::default(), add),
+        None => {
+            let around = places.iter().cycle().skip((index + count - half % count.max(1)) % count.max(1));
+            around.zip(weights).fold(PxPoint::default(), add)
+        }
     }
 }
 

@@ -6,7 +6,9 @@
 
 use super::fragment::{Fragment, Joint};
 use super::junction::Junctions;
+use super::near::Near;
 use super::site::{Scan, Site, least_around};
+use super::sites::Sites;
 use super::{End, Graph, Place};
 use crate::{Bitmap, Pixel, PxPoint};
 use core::ops::Range;
@@ -27,36 +29,42 @@ const CALM_SITES: usize = 8;
 /// What a stub is found in.
 pub(super) struct Lines<'a> {
     pub(super) graph: &'a Graph,
-    pub(super) sites: &'a [Vec<Site>],
+    pub(super) sites: &'a Sites<'a>,
     pub(super) junctions: &'a Junctions,
-    pub(super) gone: &'a [bool],
     pub(super) scan: Scan<'a>,
+    pub(super) near: &'a Near,
+    /// All rows that there are.
+    pub(super) all: Range<u32>,
 }
 
 /// Rows below a band's own in which a patch that begins in it mostly ends.
-const BELOW_ROWS: u32 = 64;
+pub(super) const BELOW_ROWS: u32 = 16;
 
-/// Half the widest line, px, and a margin: places farther from some rows wipe nothing in them.
-const WIDEST_WIPE_PX: f64 = 100.0;
+/// Width of the widest line, px.
+const WIDEST_PX: f64 = 192.0;
 
 /// How far up and down the line is looked for that a patch belongs to, px.
 const REACH_PX: f64 = 64.0;
 
-/// The stubs of a band, as strokes of their own from the middle of their line. Works in `words`, whatever they are.
-pub(super) fn stubs(lines: &Lines<'_>, core: &Range<u32>, words: &mut Vec<u64>) -> Vec<Fragment> {
-    let (top, end) = (lines.scan.first_row, lines.scan.first_row.saturating_add(lines.scan.ink.height()));
+/// The stubs of a band, as strokes of their own from the middle of their line; none when what is near does not decide about
+/// all of them. Works in `words`, whatever they are.
+pub(super) fn stubs(lines: &Lines<'_>, core: &Range<u32>, words: &mut Vec<u64>) -> Option<Vec<Fragment>> {
+    let all = &lines.all;
     // With a row above: what reaches it begins above, and is none of this band's.
-    let start = core.start.saturating_sub(1).max(top);
-    let few = lines.patches(start..core.end.saturating_add(BELOW_ROWS).min(end), core, words);
-    let patches = few.or_else(|| lines.patches(start..end, core, words)).unwrap_or_default();
+    let start = core.start.saturating_sub(1).max(all.start);
+    let below = if lines.near.places == *all { u32::MAX } else { BELOW_ROWS };
+    let patches = lines.patches(start..core.end.saturating_add(below).min(all.end), core, words)?;
     let mut found = Vec::new();
     for (patch, root) in patches.iter().zip(lines.roots(&patches)) {
+        if !lines.is_sure(patch, root) {
+            return None;
+        }
         if let Some(stub) = root.and_then(|root| stub(&patch.pixels, patch.centre, root)) {
             let places = stub.map(|at| Place::new(at, -1.0, false)).to_vec();
             found.push(Fragment { places, joints: Some([Joint::Free; 2]) });
         }
     }
-    found
+    Some(found)
 }
 
 /// A place that the drawn lines leave bare.
@@ -68,12 +76,12 @@ struct Patch {
 impl Lines<'_> {
     /// The patches that begin in the rows `core`, of the ink in some rows; none when one of them may go on below.
     fn patches(&self, rows: Range<u32>, core: &Range<u32>, words: &mut Vec<u64>) -> Option<Vec<Patch>> {
-        let (top, height) = (self.scan.first_row, self.scan.ink.height());
+        let top = self.scan.first_row;
         let inside = rows.start.saturating_sub(top)..rows.end.saturating_sub(top);
         let mut bare = self.scan.ink.band_in(inside, words);
-        let goes_on = rows.end < top.saturating_add(height);
+        let goes_on = rows.end < self.all.end;
         let mut wiper = Wiper { bare: &mut bare, first_row: rows.start, drawn: None };
-        self.each_place(&rows, |at, width_px| wiper.add(at, 0.5 * width_px + MARGIN_PX));
+        self.each_place(&rows, 0.0, |at, width_px| wiper.add(at, 0.5 * width_px + MARGIN_PX));
         wiper.wipe();
         let mut patches = Vec::new();
         for y in 0..bare.height() {
@@ -108,7 +116,7 @@ impl Lines<'_> {
         let (Some((first, _)), Some((last, _))) = (by_row.first(), by_row.last()) else { return roots };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows of a picture")]
         let rows = *first as u32..(*last as u32).saturating_add(1);
-        self.each_place(&rows, |at, width_px| {
+        self.each_place(&rows, REACH_PX, |at, width_px| {
             let from = by_row.partition_point(|(y, _)| at.y > y + REACH_PX);
             for (y, index) in by_row.get(from..).unwrap_or(&[]) {
                 if at.y < y - REACH_PX {
@@ -123,6 +131,15 @@ impl Lines<'_> {
             }
         });
         roots
+    }
+
+    /// Whether no place in rows that are not known can be nearer to a patch than its root.
+    fn is_sure(&self, patch: &Patch, root: Option<(PxPoint, f64)>) -> bool {
+        let places = &self.near.places;
+        let above = (places.start > self.all.start).then(|| patch.centre.y - f64::from(places.start));
+        let below = (places.end < self.all.end).then(|| f64::from(places.end) - patch.centre.y);
+        let known_px = above.into_iter().chain(below).fold(REACH_PX, f64::min);
+        known_px >= REACH_PX || root.is_some_and(|(at, _)| at.distance(patch.centre) < known_px)
     }
 }
 
@@ -143,26 +160,28 @@ fn is_nearer(centre: PxPoint, at: PxPoint, root: Option<(PxPoint, f64)>) -> bool
 }
 
 impl Lines<'_> {
-    /// Every place of the lines that may matter to some rows, about a pixel apart, and the line's width there.
-    fn each_place(&self, rows: &Range<u32>, mut visit: impl FnMut(PxPoint, f64)) {
-        let low = f64::from(rows.start) - WIDEST_WIPE_PX;
-        let high = f64::from(rows.end) + WIDEST_WIPE_PX;
-        let near = |at: PxPoint| at.y >= low && at.y <= high;
-        let is_line = |edge: usize| {
-            !self.gone.get(edge).copied().unwrap_or(true)
-                && !self.junctions.inner.get(edge).copied().unwrap_or(true)
-        };
-        for (edge, sites) in self.sites.iter().enumerate().filter(|(edge, _)| is_line(*edge)) {
+    /// Every place of the lines whose pen comes to some rows, or that lies at most `reach_px` from them: about a pixel
+    /// apart, and the line's width there.
+    fn each_place(&self, rows: &Range<u32>, reach_px: f64, mut visit: impl FnMut(PxPoint, f64)) {
+        let (low, high) = (f64::from(rows.start), f64::from(rows.end));
+        let off_px = |at: PxPoint| (low - at.y).max(at.y - high);
+        let near = |at: PxPoint, width_px: f64| off_px(at) <= reach_px.max(0.5 * width_px + MARGIN_PX);
+        for edge in self.junctions.lines.iter().copied() {
+            let Some(sites) = self.sites.get(edge) else { continue };
             let skip = |at_last| self.junctions.skip(End { edge, at_last });
             let last = sites.len().saturating_sub(skip(true));
             let closed = self.graph.edges.get(edge).is_some_and(|edge| edge.nodes.is_none());
             for (index, site) in sites.iter().enumerate().take(last).skip(skip(false)) {
-                if near(site.centre) {
-                    visit(site.centre, calm_px(sites, index, closed));
+                // Calm it is no wider.
+                if near(site.centre, site.width_px) {
+                    let width_px = calm_px(sites, index, closed);
+                    if near(site.centre, width_px) {
+                        visit(site.centre, width_px);
+                    }
                 }
             }
         }
-        for connection in self.junctions.connections.iter().filter(|one| is_line(one.from.edge)) {
+        for connection in self.junctions.of_lines() {
             let root = |end: End| {
                 let sites = self.sites.get(end.edge)?;
                 let skip = self.junctions.skip(end);
@@ -181,7 +200,7 @@ impl Lines<'_> {
                     let t = step / steps;
                     let at =
                         PxPoint::new(before.x + (next.x - before.x) * t, before.y + (next.y - before.y) * t);
-                    if near(at) {
+                    if near(at, width_px) {
                         visit(at, width_px);
                     }
                     step += 1.0;
@@ -191,7 +210,7 @@ impl Lines<'_> {
         }
         for node in self.graph.nodes.iter().filter(|node| node.ends.is_empty()) {
             let at = PxPoint::from(node.at);
-            if near(at) {
+            if near(at, WIDEST_PX) {
                 visit(at, 2.0 * self.scan.radius_px(at, f64::MAX) + 1.0);
             }
         }
@@ -201,7 +220,7 @@ impl Lines<'_> {
 /// The line's own width at a site: the least one near it.
 fn calm_px(sites: &[Site], index: usize, closed: bool) -> f64 {
     let width_px = |at: usize| sites.get(at).map(|site| site.width_px);
-    least_around(sites.len(), index, CALM_SITES, closed, width_px).min(192.0)
+    least_around(sites.len(), index, CALM_SITES, closed, width_px).min(WIDEST_PX)
 }
 
 /// Draws discs in paper on a band of a picture that begins with row `first_row`.

@@ -10,6 +10,8 @@
 use super::junction::{ArmOf, Way};
 use super::site::{Scan, Site};
 use crate::{Pixel, PxPoint};
+use core::cell::RefCell;
+use std::borrow::Cow;
 
 /// Cost that the raster alone explains, px².
 pub(super) const GOOD_PX2: f64 = 0.5;
@@ -64,6 +66,8 @@ pub(super) struct Trial<'a> {
     drawn: Vec<u32>,
     /// These parts.
     courses: Vec<Capsule>,
+    /// What was last drawn: memory for the next.
+    cells: RefCell<Vec<u32>>,
 }
 
 /// What a pen covers that goes straight on: all within half its width.
@@ -166,9 +170,9 @@ impl<'a> Trial<'a> {
         scan: Scan<'_>,
         centre: PxPoint,
         arms: &'a [ArmOf],
-        sites: &[Vec<Site>],
+        sites: &[Cow<'_, [Site]>],
     ) -> Option<Self> {
-        let far = |(one, sites): (&ArmOf, &Vec<Site>)| {
+        let far = |(one, sites): (&ArmOf, &Cow<'_, [Site]>)| {
             let first = sites.get(one.arm.skip).or(sites.last())?;
             Some(first.centre.distance(centre) + 0.5 * one.arm.width_px + 2.0)
         };
@@ -189,6 +193,7 @@ impl<'a> Trial<'a> {
             asked: asked(scan, centre, radius_px, (corner, side, stride)),
             drawn: vec![0; side * stride],
             courses: Vec::new(),
+            cells: RefCell::default(),
         };
         for (one, sites) in arms.iter().zip(sites) {
             // The sites of the undisturbed part that lie around the junction, from the inside out.
@@ -223,7 +228,8 @@ impl<'a> Trial<'a> {
             let way = from.into_iter().chain(inner).chain(to);
             capsules(way.map(|(at, width_px)| (from_corner(at, self.corner), 0.5 * width_px)), &mut pens);
         }
-        let mut cells = self.drawn.clone();
+        let mut cells = self.cells.borrow_mut();
+        cells.clone_from(&self.drawn);
         pens.iter().for_each(|pen| pen.draw(&mut cells, self.stride));
         let mut cost = 0.0;
         let rows = cells.chunks_exact(self.stride).zip(self.asked.chunks_exact(self.stride)).zip(&COLUMNS);

@@ -35,6 +35,12 @@ impl Step {
         Self { lead: if self.bands > 1 { context } else { 0 }, ..self }
     }
 
+    /// Most rows that it waits for at a time, with those around them.
+    pub(super) fn most_rows(&self) -> u32 {
+        let own = self.bands.saturating_mul(self.band_rows).saturating_add(self.lead);
+        own.saturating_add(self.context.saturating_mul(2)).min(self.height)
+    }
+
     /// The bands that can be worked on when the rows before `end` are there: as many as are worked on at a time, or those
     /// that are left at the end of the sheet.
     pub(super) fn ready(&mut self, end: u32) -> Option<Vec<Range<u32>>> {

@@ -14,7 +14,9 @@ use core::ops::Range;
 
 /// Own rows of a band, bytes at 1 bit a pixel, and the fewest rows: less, and the context costs more than the band; more,
 /// and the memory grows.
-const BAND_BYTES: usize = 3 << 18;
+const BAND_BYTES: usize = 1 << 20;
+/// The same with grey levels, which take eight times as much.
+const GREY_BAND_BYTES: usize = 3 << 18;
 const FEWEST_ROWS: u32 = 384;
 
 /// The strokes of a sheet that is on its way.
@@ -54,26 +56,31 @@ impl<'a> Work<'a> {
         let centring = settings.centring(max_line_px);
         let max_line_px = (settings.mode != Mode::Outline).then_some(max_line_px);
         let row_bytes = row_bytes(width);
-        let rows = u32::try_from(BAND_BYTES / row_bytes).unwrap_or(u32::MAX).max(FEWEST_ROWS);
+        let grey = threshold.has_greys() && max_line_px.is_some();
+        let band_bytes = if grey { GREY_BAND_BYTES } else { BAND_BYTES };
+        let rows = u32::try_from(band_bytes / row_bytes).unwrap_or(u32::MAX).max(FEWEST_ROWS);
         let band_rows = rows.min(settings.band_rows).max(1);
         let step = |context: u32| Step::new(row_bytes, height, band_rows, context);
         let cleaning = context_rows(smallest_px).saturating_add(max_line_px.map_or(0, rows_of_width_context));
         let thinning = centring.thinning.rows_of_context();
-        let grey = threshold.has_greys() && max_line_px.is_some();
+        let clean = step(cleaning).ahead_of(thinning.saturating_add(CONTEXT_ROWS));
+        let (thin, follow) = (step(thinning).ahead_of(CONTEXT_ROWS), step(CONTEXT_ROWS));
+        // What is thinned waits to be followed.
+        let waiting = thin.most_rows().saturating_add(follow.most_rows()).min(height);
         Self {
             settings,
             threshold,
             smallest_px,
             max_line_px,
             width,
-            ink: Rolling::of_ink(width),
+            ink: Rolling::of_ink(width).with_room(clean.most_rows()),
             levels: grey.then(|| Rolling::of_levels(width)),
-            lines: Rolling::of_ink(width),
-            skeleton: Rolling::of_ink(width),
+            lines: Rolling::of_ink(width).with_room(waiting),
+            skeleton: Rolling::of_ink(width).with_room(waiting),
             words: Vec::new(),
-            clean: step(cleaning).ahead_of(thinning.saturating_add(CONTEXT_ROWS)),
-            thin: step(thinning).ahead_of(CONTEXT_ROWS),
-            follow: step(CONTEXT_ROWS),
+            clean,
+            thin,
+            follow,
             centring,
             islands: Islands::new(width),
             joiner: Joiner::default(),
@@ -161,9 +168,10 @@ impl<'a> Work<'a> {
         let thinned = each(bands, |(own, words)| {
             let rows = step.around(&own);
             let mut band = lines.band(&rows, words);
+            let own = own.start - rows.start..own.end - rows.start;
             // Lines that are wider than expected stay so in places: their middle is found all the same.
-            let _ = thinning.thin_in_place(&mut band);
-            (own.start - rows.start..own.end - rows.start, band)
+            let _ = thinning.thin_rows(&mut band, own.clone());
+            (own, band)
         });
         for (own, band) in thinned {
             own.for_each(|y| self.skeleton.push(band.row(y)));

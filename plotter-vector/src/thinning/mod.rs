@@ -5,6 +5,7 @@ mod sweep;
 mod tips;
 
 use crate::Bitmap;
+use core::ops::Range;
 use sweep::{Step, Sweeper};
 
 /// Which published algorithm peels the ink.
@@ -158,6 +159,17 @@ impl Thinning {
     /// As [`Thinning::thin`], where the picture lies, with a thirty-second of its memory besides. Several threads can thin
     /// bands of one picture at the same time, see [`Thinning::rows_of_context`].
     pub fn thin_in_place(&self, ink: &mut Bitmap) -> ThinningProgress {
+        let rows = 0..ink.height();
+        self.thin_rows(ink, rows)
+    }
+
+    /// As [`Thinning::thin_in_place`], of some rows: what comes of those beside them is anything.
+    pub(crate) fn thin_rows(&self, ink: &mut Bitmap, rows: Range<u32>) -> ThinningProgress {
+        let height = ink.height();
+        // The rows that decide about these in steps that reach so far.
+        let within =
+            |reach: u32| rows.start.saturating_sub(reach)..rows.end.saturating_add(reach).min(height);
+        let of_pass = self.reach_of_pass();
         let mut sweeper = Sweeper::new(ink);
         let turns = self.turns();
         let all_turns = if turns[0] == turns[1] { 1 } else { 2 };
@@ -166,14 +178,19 @@ impl Thinning {
             if quiet == all_turns || passes == self.max_passes {
                 break;
             }
-            quiet = if sweeper.pass(ink, steps) { 0 } else { quiet + 1 };
             passes += 1;
+            let to_come = of_pass
+                .saturating_mul(self.max_passes - passes)
+                .saturating_add(reach(CLEAN_UP) * CLEAN_UP_ROUNDS);
+            quiet = if sweeper.pass(ink, within(to_come), steps) { 0 } else { quiet + 1 };
         }
         let peeled = quiet == all_turns;
         // Nothing changed in the last pass of each turn, so more of them would change nothing: leaving early is as good
         // as max_passes of them, which locality asks for. So it is with the rounds of cleaning up.
         sweeper.look_everywhere(ink);
-        let clean = (0..CLEAN_UP_ROUNDS).any(|_| !sweeper.pass(ink, CLEAN_UP));
+        let clean = (0..CLEAN_UP_ROUNDS)
+            .rev()
+            .any(|rounds| !sweeper.pass(ink, within(reach(CLEAN_UP) * rounds), CLEAN_UP));
         ThinningProgress { passes, converged: peeled && clean }
     }
 
@@ -188,8 +205,11 @@ impl Thinning {
     /// ```
     #[must_use]
     pub fn rows_of_context(&self) -> u32 {
-        let pass = self.turns().into_iter().map(reach).max().unwrap_or(0);
-        pass.saturating_mul(self.max_passes).saturating_add(reach(CLEAN_UP) * CLEAN_UP_ROUNDS)
+        self.reach_of_pass().saturating_mul(self.max_passes).saturating_add(reach(CLEAN_UP) * CLEAN_UP_ROUNDS)
+    }
+
+    fn reach_of_pass(&self) -> u32 {
+        self.turns().into_iter().map(reach).max().unwrap_or(0)
     }
 
     const fn turns(&self) -> [&'static [Step]; 2] {
@@ -271,6 +291,31 @@ mod tests {
         let knot = "#..#\n.##.\n.##.\n#..#\n";
         for method in METHODS {
             assert_eq!(thin(knot, method), knot);
+        }
+    }
+
+    #[test]
+    fn some_rows_come_out_as_of_the_whole() {
+        let mut ink = Bitmap::new(150, 400).unwrap();
+        for y in 0..400_u32 {
+            for x in 0..150_u32 {
+                let slanted = (x + y / 3) % 50 < 9;
+                let level = y % 70 < 6 && x % 97 > 8;
+                ink.set(crate::Pixel::new(x, y), (slanted || level) && x * y % 101 != 0);
+            }
+        }
+        for method in METHODS {
+            let thinning = Thinning { method, max_passes: 8 };
+            let whole = thinning.thin(&ink).skeleton;
+            let context = thinning.rows_of_context();
+            for rows in [0..40_u32, 170..230, 215..216, 399..400] {
+                let first = rows.start.saturating_sub(context);
+                let mut band = ink.band(first..rows.end + context);
+                let _ = thinning.thin_rows(&mut band, rows.start - first..rows.end - first);
+                for y in rows {
+                    assert_eq!(band.row(y - first), whole.row(y), "{y}");
+                }
+            }
         }
     }
 

@@ -3,6 +3,7 @@
 use super::deletion::Neighbours;
 use super::tips;
 use crate::Bitmap;
+use core::ops::Range;
 
 /// One parallel step: all pixels that fulfil its condition go at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +40,8 @@ impl Step {
 pub(super) struct Sweeper {
     /// Words of marks a row.
     per_row: usize,
+    /// Rows that the steps are done in.
+    rows: Range<u32>,
     /// Words to look at in this pass, a bit each: pixels have gone there in the last one or this.
     now: Vec<u64>,
     /// What `now` was in the end of the last pass, for the steps that are done in every other pass.
@@ -65,6 +68,7 @@ impl Sweeper {
         let marks = per_row * ink.height() as usize;
         let mut sweeper = Self {
             per_row,
+            rows: 0..ink.height(),
             now: vec![0; marks],
             before: vec![0; marks],
             next: vec![0; marks],
@@ -88,8 +92,9 @@ impl Sweeper {
         self.before.copy_from_slice(&self.now);
     }
 
-    /// Does the steps one after the other; whether anything has gone.
-    pub(super) fn pass(&mut self, ink: &mut Bitmap, steps: &[Step]) -> bool {
+    /// Does the steps one after the other in some rows; whether anything has gone.
+    pub(super) fn pass(&mut self, ink: &mut Bitmap, rows: Range<u32>, steps: &[Step]) -> bool {
+        self.rows = rows;
         let mut changed = false;
         for step in steps {
             // A closure each, so that each step is a loop of its own.
@@ -135,7 +140,7 @@ impl Sweeper {
         confirm: impl Fn([&[u64]; 7], usize, u64) -> u64,
     ) -> bool {
         let mut changed = false;
-        for y in 0..ink.height() {
+        for y in self.rows.clone() {
             let [mut current, above, higher] = core::mem::take(&mut self.gone);
             self.judge_row(ink, (y, is_alternate), &rule, &confirm, &mut current);
             changed |= !current.is_empty();
@@ -144,8 +149,8 @@ impl Sweeper {
             self.gone = [done, current, above];
         }
         let [empty, above, higher] = core::mem::take(&mut self.gone);
-        let higher = self.delete(ink, ink.height().wrapping_sub(2), higher);
-        let above = self.delete(ink, ink.height().wrapping_sub(1), above);
+        let higher = self.delete(ink, self.rows.end.wrapping_sub(2), higher);
+        let above = self.delete(ink, self.rows.end.wrapping_sub(1), above);
         self.gone = [empty, above, higher];
         changed
     }
@@ -345,7 +350,7 @@ mod tests {
             let mut expected = ink.clone();
             let mut sweeper = Sweeper::new(&ink);
             for _ in 0..4 {
-                let changed = sweeper.pass(&mut ink, &ALL);
+                let changed = sweeper.pass(&mut ink, 0..40, &ALL);
                 let before = expected.clone();
                 expected = ALL.iter().fold(expected, |ink, step| one_by_one(&ink, *step));
                 assert_eq!(ink, expected, "{width} px wide");
@@ -365,7 +370,7 @@ mod tests {
             let mut expected = ink.clone();
             let mut sweeper = Sweeper::new(&ink);
             for steps in TURNS.into_iter().cycle().take(12) {
-                sweeper.pass(&mut ink, steps);
+                sweeper.pass(&mut ink, 0..30, steps);
                 expected = steps.iter().fold(expected, |ink, step| one_by_one(&ink, *step));
                 assert_eq!(ink, expected, "{seed}");
             }
@@ -378,7 +383,7 @@ mod tests {
             for share in [60, 128, 200, 235] {
                 let mut ink = noise(70, 50, share, share);
                 let expected = one_by_one(&ink, step);
-                Sweeper::new(&ink).pass(&mut ink, &[step]);
+                Sweeper::new(&ink).pass(&mut ink, 0..50, &[step]);
                 assert_eq!(ink, expected, "{step:?}");
             }
         }

@@ -67,13 +67,13 @@ fn main() -> ! {
     let mut failed = motors.start(began).is_err();
     let mut free = false;
     let mut now = began;
-    while now < began + BUTTONS_KNOWN {
+    while now < began.saturating_add(BUTTONS_KNOWN) {
         failed |= limits.tick(now).is_err();
         match button.tick(now) {
             Ok(change) => free |= change == Some(EstopChange::FreeSinceStart),
             Err(_) => failed = true,
         }
-        (now, _) = board.wait(Some(now + LOOK));
+        (now, _) = board.wait(Some(now.saturating_add(LOOK)));
     }
     let Some(plotter) = controller() else { board::halt() };
     if was_bitten {
@@ -131,7 +131,7 @@ fn main() -> ! {
         }
         failed |= motors.tick(now).is_err() | servo.tick(now).is_err() | laser.tick(now).is_err();
         if now >= look {
-            look = now + LOOK;
+            look = now.saturating_add(LOOK);
             board.feed_watchdog();
             let before = limits.limits();
             failed |= limits.tick(now).is_err();

@@ -1,5 +1,7 @@
 //! Whether a movement stays within the area.
 
+use crate::extremes::greater;
+use crate::turn::atan2;
 use crate::{PlotOp, Point};
 use core::f64::consts::FRAC_PI_2;
 
@@ -19,8 +21,8 @@ pub(super) fn contains(most: Point, from: Point, op: PlotOp) -> bool {
     }
     let PlotOp::DrawArc { centre, sweep_rad, .. } = op else { return true };
     let out = from - centre;
-    let radius_mm = out.length_near().max((to - centre).length_near());
-    let begin = libm::atan2(out.y, out.x);
+    let radius_mm = greater(out.length_near(), (to - centre).length_near());
+    let begin = atan2(out.y, out.x);
     let (low, high) = if sweep_rad < 0.0 { (begin + sweep_rad, begin) } else { (begin, begin + sweep_rad) };
     // A begin of -π to π and a sweep of a turn at most: from -3π to 3π, in quarters.
     (-6_i8..=6).map(|quarter| (quarter, f64::from(quarter) * FRAC_PI_2)).all(|(quarter, angle)| {

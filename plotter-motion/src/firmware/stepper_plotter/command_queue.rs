@@ -1,6 +1,7 @@
 //! [`CommandQueue`]: commands on their way to the motion side, each in as little room as it needs.
 
 use super::{Command, Setting};
+use crate::whole::whole;
 use crate::{PlotOp, Point};
 use core::time::Duration;
 
@@ -203,8 +204,10 @@ impl Packed {
             1 => Command::Plot(PlotOp::Draw { to, feed_mm_s }),
             2 => Command::Plot(PlotOp::DrawArc { centre: Point::new(d, e), sweep_rad: f, to, feed_mm_s }),
             3 => Command::Plot(PlotOp::LaserPower { share: a }),
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below a second")]
-            4 => Command::Plot(PlotOp::Dwell { duration: Duration::new(a.to_bits(), b as u32) }),
+            4 => Command::Plot(PlotOp::Dwell {
+                duration: Duration::from_secs(a.to_bits())
+                    .saturating_add(Duration::from_nanos(whole(b).unsigned_abs())),
+            }),
             5 => Command::Plot(PlotOp::SelectPen { pen: low }),
             6 => Command::Plot(PlotOp::NewPage),
             7 => Command::Servo(low),

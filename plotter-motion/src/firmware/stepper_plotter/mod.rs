@@ -143,7 +143,7 @@ mod status;
 
 pub use command::{Command, Report, Signal, Stop};
 pub use command_queue::{COMMANDS, CommandQueue};
-pub use grbl::Grbl;
+pub use grbl::{AnyPen, Grbl, Pens, SpindlePen};
 pub use link::{Link, REPORTS};
 pub use mdraw::MDraw;
 pub use motion::{Motion, Step};

@@ -8,6 +8,7 @@ use super::{
     Activity, Command, Dialect, Link, Percents, Report, SettingsError, Signal, Status,
     StepperPlotterSettings, Stop, StoredSettings,
 };
+use crate::extremes::greater;
 use crate::kinematics::{Backlash, Cartesian, Kinematics};
 use crate::planner::{AllModes, Keep as _, Modes};
 use crate::{
@@ -304,7 +305,7 @@ impl<M: Modes> Motion<M> {
         };
         let speed_mm_s = self.phase.map_or(0.0, |(began, phase)| {
             let time_s = now.saturating_sub(began).as_secs_f64();
-            if time_s > phase.duration_s { 0.0 } else { phase.at(time_s).speed_mm_s.max(0.0) }
+            if time_s > phase.duration_s { 0.0 } else { greater(phase.at(time_s).speed_mm_s, 0.0) }
         });
         Status {
             activity,

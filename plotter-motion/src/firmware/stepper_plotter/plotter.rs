@@ -52,9 +52,7 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     ///
     /// [`SettingsError`] for a language or a mode that is not among them, and as [`StepperPlotter::new`].
     pub fn with_modes(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
-        if !H::speaks(settings.dialect) {
-            return Err(SettingsError::Dialect(settings.dialect));
-        }
+        H::check(&settings)?;
         Ok(Self { receive: H::new(settings), motion: Motion::with_modes(settings)?, link: Link::default() })
     }
 

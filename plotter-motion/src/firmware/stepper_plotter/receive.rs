@@ -1,8 +1,8 @@
 //! [`Host`]: the task that talks to the host; [`Receive`]: that of either dialect.
 
-use super::grbl::Grbl;
+use super::grbl::{Grbl, Pens};
 use super::mdraw::MDraw;
-use super::{Dialect, Link, Signal, Status, StepperPlotterSettings, StoredSettings};
+use super::{Dialect, Link, SettingsError, Signal, Status, StepperPlotterSettings, StoredSettings};
 use crate::Point;
 
 /// A receive side: bytes from the host in, commands for the motion side out, and answers.
@@ -12,8 +12,12 @@ pub trait Host: Clone + core::fmt::Debug + PartialEq + Sized {
     /// The receive side of a machine that has just been switched on.
     fn new(settings: StepperPlotterSettings) -> Self;
 
-    /// Whether it is for hosts that speak this.
-    fn speaks(dialect: Dialect) -> bool;
+    /// Whether it is built for what these settings ask of it.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError::Dialect`], [`SettingsError::Pen`].
+    fn check(settings: &StepperPlotterSettings) -> Result<(), SettingsError>;
 
     /// Takes a byte from the host; gives what the motion side must know at once.
     fn receive(&mut self, byte: u8) -> Option<Signal>;
@@ -93,14 +97,18 @@ impl Receive {
 
 /// All of them call the type's own, which are there without the trait.
 macro_rules! host {
-    ($host:ty, $speaks:pat) => {
-        impl Host for $host {
+    ($host:ty, $speaks:pat, $fits:expr $(, $pens:ident)?) => {
+        impl$(<$pens: Pens>)? Host for $host {
             fn new(settings: StepperPlotterSettings) -> Self {
                 Self::new(settings)
             }
 
-            fn speaks(dialect: Dialect) -> bool {
-                matches!(dialect, $speaks)
+            fn check(settings: &StepperPlotterSettings) -> Result<(), SettingsError> {
+                if !matches!(settings.dialect, $speaks) {
+                    return Err(SettingsError::Dialect(settings.dialect));
+                }
+                let fits: fn(&StepperPlotterSettings) -> bool = $fits;
+                if fits(settings) { Ok(()) } else { Err(SettingsError::Pen(settings.convention())) }
             }
 
             fn receive(&mut self, byte: u8) -> Option<Signal> {
@@ -126,6 +134,6 @@ macro_rules! host {
     };
 }
 
-host!(Receive, _);
-host!(MDraw, Dialect::MDraw);
-host!(Grbl, Dialect::Grbl);
+host!(Receive, _, |_| true);
+host!(MDraw, Dialect::MDraw, |_| true);
+host!(Grbl<P>, Dialect::Grbl, P::fit, P);

@@ -2,6 +2,8 @@
 
 use super::StepperPlotterSettings;
 use crate::HomingAxis;
+use crate::extremes::greater;
+use crate::whole::{is_whole, nearest, whole};
 use core::ops::RangeInclusive;
 
 /// Greatest rate of a motor, pulses/s: ten ticks of the clock a step.
@@ -78,14 +80,14 @@ impl Setting {
         if value < 0.0 {
             return Err(SettingProblem::Negative);
         }
-        if !range.contains(&value) || (number == 3 && libm::floor(value) != value) {
+        if !range.contains(&value) || (number == 3 && !is_whole(value)) {
             return Err(SettingProblem::OutOfRange);
         }
         let settings = self.applied(*settings);
         let StepperPlotterSettings { x_steps_per_mm, y_steps_per_mm, planner, home_x, home_y, .. } = settings;
-        let speed_mm_s = planner.speed_mm_s.max(planner.travel_speed_mm_s);
+        let speed_mm_s = greater(planner.speed_mm_s, planner.travel_speed_mm_s);
         let homing_hz = home_x.fast_hz.max(home_y.fast_hz).max(home_x.slow_hz).max(home_y.slow_hz);
-        if (speed_mm_s * x_steps_per_mm.max(y_steps_per_mm)).max(homing_hz.into()) > MOST_HZ {
+        if greater(speed_mm_s * greater(x_steps_per_mm, y_steps_per_mm), homing_hz.into()) > MOST_HZ {
             return Err(SettingProblem::StepRate);
         }
         Ok(settings)
@@ -93,8 +95,8 @@ impl Setting {
 
     /// The settings with this one changed, which has been checked.
     pub(super) fn applied(self, mut settings: StepperPlotterSettings) -> StepperPlotterSettings {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
-        let whole = |value: f64| value as u32;
+        let near = |value: f64| u32::try_from(nearest(value)).unwrap_or(u32::MAX);
+        let whole = |value: f64| u32::try_from(whole(value)).unwrap_or(u32::MAX);
         let Self { number, value } = self;
         let scales = [settings.x_steps_per_mm, settings.y_steps_per_mm];
         let mut homing = |change: &dyn Fn(&mut HomingAxis, f64)| {
@@ -109,9 +111,9 @@ impl Setting {
                 settings.stored.y_direction = u8::from(mask & 2 != 0);
             }
             11 => settings.planner.junction_deviation_mm = value,
-            24 => homing(&|axis, scale| axis.slow_hz = whole(libm::round(value / 60.0 * scale)).max(1)),
-            25 => homing(&|axis, scale| axis.fast_hz = whole(libm::round(value / 60.0 * scale)).max(1)),
-            27 => homing(&|axis, scale| axis.pull_off_steps = whole(libm::round(value * scale)).max(1)),
+            24 => homing(&|axis, scale| axis.slow_hz = near(value / 60.0 * scale).max(1)),
+            25 => homing(&|axis, scale| axis.fast_hz = near(value / 60.0 * scale).max(1)),
+            27 => homing(&|axis, scale| axis.pull_off_steps = near(value * scale).max(1)),
             100 => settings.x_steps_per_mm = value,
             101 => settings.y_steps_per_mm = value,
             110 | 111 => {

@@ -1,5 +1,6 @@
 //! [`StepperPlotterSettings`]: what the controller has to know of its machine.
 
+use crate::extremes::{greater, smaller};
 use crate::gcode::PenConvention;
 use crate::kinematics::{Backlash, Cartesian, MotorScale, ScaleError};
 use crate::{Axis, HomingAxis, Machine, PlanError, PlannerSettings, StepGenSettings};
@@ -173,10 +174,10 @@ impl StepperPlotterSettings {
     /// Speeds with the pen down and up, mm/s. mDraw's user chooses a greatest rate.
     pub(super) fn speeds_mm_s(&self) -> (f64, f64) {
         let most_mm_s = match self.dialect {
-            Dialect::MDraw => self.stored.speed_hz() / self.x_steps_per_mm.max(self.y_steps_per_mm),
+            Dialect::MDraw => self.stored.speed_hz() / greater(self.x_steps_per_mm, self.y_steps_per_mm),
             Dialect::Grbl => f64::INFINITY,
         };
-        (self.planner.speed_mm_s.min(most_mm_s), self.planner.travel_speed_mm_s.min(most_mm_s))
+        (smaller(self.planner.speed_mm_s, most_mm_s), smaller(self.planner.travel_speed_mm_s, most_mm_s))
     }
 
     /// The limits that are planned with.
@@ -185,7 +186,7 @@ impl StepperPlotterSettings {
         match self.dialect {
             // There each move is told its speed: only the receive side knows what the servo means.
             Dialect::MDraw => {
-                let speed_mm_s = draw_mm_s.max(travel_mm_s);
+                let speed_mm_s = greater(draw_mm_s, travel_mm_s);
                 PlannerSettings { speed_mm_s, travel_speed_mm_s: speed_mm_s, ..self.planner }
             }
             Dialect::Grbl => self.planner,
@@ -208,6 +209,8 @@ pub enum SettingsError {
     Planner(PlanError),
     /// The host's language is another one than the controller is built for.
     Dialect(Dialect),
+    /// The pen is lifted by other words than the controller is built for.
+    Pen(PenConvention),
 }
 
 impl fmt::Display for SettingsError {
@@ -219,6 +222,9 @@ impl fmt::Display for SettingsError {
                 f,
                 "the dialect is {dialect:?}: build the controller with a host that speaks it, or with Receive"
             ),
+            Self::Pen(pen) => {
+                write!(f, "the pen is lifted by {pen:?}: build the controller with Grbl<AnyPen>")
+            }
         }
     }
 }

@@ -23,6 +23,10 @@ pub(crate) struct Compare {
 
 impl Compare {
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
+        // What cannot be compared is refused before anything is said of the first.
+        for log in [&self.first, &self.second] {
+            open(log)?;
+        }
         let mut verdict = Verdict::Clean;
         let mut header = None;
         for log in [&self.first, &self.second] {

@@ -150,8 +150,6 @@ impl Live {
             connected.telemetry.clone(),
             settings,
         );
-        let heading =
-            terminal::Heading { machine: page.about.clone(), is_simulated: self.port.is_none(), area_mm };
         let begin = || {
             if self.start {
                 session.command(Command::Start);
@@ -159,13 +157,15 @@ impl Live {
         };
         let state = if self.terminal {
             begin();
+            let heading = self.heading(config.name.as_str(), &connected.name, area_mm);
             let quit = terminal::run(&session, &heading).map_err(|error| format!("terminal: {error}"))?;
             if quit { session.state() } else { session.wait(LAST_LOOK) }
         } else {
+            let about = page.about.clone();
             let server =
                 Server::open(session.clone(), self.http_port, |sources| page.finish(area_mm, sources))
                     .map_err(|error| error.to_string())?;
-            say(out, &heading.machine);
+            say(out, &about);
             say(out, &format!("look at {}", server.address()));
             let _ = out.flush(); // who closed it has seen enough: the machine goes on
             begin(); // only now: nothing moves that cannot be watched and stopped
@@ -266,6 +266,16 @@ impl Live {
         let header = if mark.moves > 0 { mark.written_to(header) } else { header };
         let header = resume.map_or(header.clone(), |point| point.written_to(header));
         log::create(&self.output, &header).map_err(|error| format!("{}: {error}", self.output.display()))
+    }
+
+    fn heading(&self, machine: &str, port: &str, area_mm: [f64; 4]) -> terminal::Heading {
+        let is_simulated = self.port.is_none();
+        let machine = if is_simulated {
+            format!("{machine}: no motor turns, at {} times its time", self.speed)
+        } else {
+            format!("on {port}, taken for a {machine}")
+        };
+        terminal::Heading { machine, is_simulated, area_mm }
     }
 
     fn describe(&self, page: &mut LivePage, machine: &Machine, port: &str) {

@@ -3,15 +3,16 @@
 use super::super::{Command, Link, Setting, SettingProblem, StoredSettings, area};
 use super::codes::{Alarm, Code};
 use super::listing::is_listed;
-use super::{Grbl, Wait, read_options, send};
+use super::{Grbl, Pens, Wait, send};
 use crate::decimal::Decimal;
+use crate::extremes::greater;
 use crate::gcode::{Block, Outcomes, Problem, Reader, Word};
 use crate::{PlotOp, Point};
 
 /// Slower is not slower, mm/s: a step of 0.01 mm takes ten seconds.
 const LEAST_FEED_MM_S: f64 = 1e-3;
 
-impl Grbl {
+impl<P: Pens> Grbl<P> {
     /// Carries a line out as a whole, or not at all.
     #[inline(never)] // its memory on the stack is for its own time only, as that of a jog
     pub(super) fn block(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
@@ -43,8 +44,9 @@ impl Grbl {
         let travel = read(b"G0M5")?.into_iter().chain([block]);
         let mut to = None;
         for block in travel {
-            let mut outcomes = Outcomes::NONE;
-            interpreter.carry_out(&block, &read_options(&self.settings), &mut outcomes).map_err(Code::of)?;
+            let mut outcomes = Outcomes::none();
+            P::read(&self.settings, |options| interpreter.carry_out(&block, options, &mut outcomes))
+                .map_err(Code::of)?;
             while let Some(op) = outcomes.take() {
                 to = op.map_err(Code::of)?.target().or(to);
             }
@@ -55,7 +57,7 @@ impl Grbl {
         }
         self.interpreter.stand_at(to);
         let speed_mm_s =
-            interpreter.modes().feed_mm_s.map_or(LEAST_FEED_MM_S, |feed| feed.max(LEAST_FEED_MM_S));
+            interpreter.modes().feed_mm_s.map_or(LEAST_FEED_MM_S, |feed| greater(feed, LEAST_FEED_MM_S));
         self.command(link, Command::Jog { to, speed_mm_s });
         Ok(())
     }
@@ -85,8 +87,9 @@ impl Grbl {
 
     fn carry_out(&mut self, block: &Block, link: &mut Link) -> Result<(), Code> {
         let before = self.interpreter.modes();
-        let mut outcomes = Outcomes::NONE;
-        self.interpreter.carry_out(block, &read_options(&self.settings), &mut outcomes).map_err(Code::of)?;
+        let mut outcomes = Outcomes::none();
+        P::read(&self.settings, |options| self.interpreter.carry_out(block, options, &mut outcomes))
+            .map_err(Code::of)?;
         let mut ops = [None; super::MOST_COMMANDS];
         let mut slots = ops.iter_mut();
         let mut pauses = false;
@@ -96,7 +99,7 @@ impl Grbl {
                     if let PlotOp::Draw { feed_mm_s: Some(feed), .. }
                     | PlotOp::DrawArc { feed_mm_s: Some(feed), .. } = &mut op
                     {
-                        *feed = feed.max(LEAST_FEED_MM_S);
+                        *feed = greater(*feed, LEAST_FEED_MM_S);
                     }
                     if let Some(slot) = slots.next() {
                         *slot = Some(op);
@@ -164,7 +167,7 @@ fn read(text: &[u8]) -> Result<Option<Block>, Code> {
     let mut reader = Reader::new();
     for &byte in text {
         // Only an error comes before the end of the line.
-        if let Some(Err(error)) = reader.push(byte) {
+        if let Some(Err(error)) = reader.push_free(byte) {
             return Err(Code::of(error));
         }
     }

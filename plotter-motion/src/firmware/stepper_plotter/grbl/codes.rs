@@ -4,6 +4,7 @@
 
 use crate::decimal_text::Decimals;
 use crate::gcode::{Error, Problem, Word};
+use crate::whole::{float, is_whole, nearest};
 use crate::{HomingError, Point};
 
 /// What stands after `error:`.
@@ -97,7 +98,7 @@ fn moves(command: Word) -> bool {
 }
 
 fn is_fraction(word: Word) -> bool {
-    word.number.is_some_and(|number| libm::floor(number) != number)
+    word.number.is_some_and(|number| !is_whole(number))
 }
 
 /// What stands after `ALARM:`.
@@ -127,7 +128,7 @@ impl Alarm {
 
 /// Rounded to thousandths.
 pub(super) fn rounded(value: f64) -> f64 {
-    libm::round(value * 1e3) / 1e3 + 0.0
+    float(nearest(value * 1e3)) / 1e3
 }
 
 /// As [`Point`], rounded to micrometres: no `-0.000` is told.

@@ -7,6 +7,7 @@ use super::codes::coordinate;
 use super::rx_buffer::RX_BYTES;
 use super::{MOST_COMMANDS, OUTPUT};
 use crate::decimal_text::{Decimals, Whole};
+use crate::extremes::greater;
 use crate::gcode::Modes;
 
 /// What is being listed.
@@ -80,7 +81,7 @@ fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, boo
     let whole = |number: u8, value: u32| (number, f64::from(value), true);
     let direction_mask = u32::from(stored.x_direction & 1) | u32::from(stored.y_direction & 1) << 1;
     let pulses_mm_min = |rate_hz: u32| f64::from(rate_hz) / settings.x_steps_per_mm * 60.0;
-    let travel_mm_min = planner.travel_speed_mm_s.max(planner.speed_mm_s) * 60.0;
+    let travel_mm_min = greater(planner.travel_speed_mm_s, planner.speed_mm_s) * 60.0;
     let pull_off_mm = f64::from(home_x.pull_off_steps) / settings.x_steps_per_mm;
     Some(match index {
         0 => whole(0, 10),

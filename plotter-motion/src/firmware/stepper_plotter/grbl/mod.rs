@@ -5,6 +5,7 @@ mod codes;
 mod line_buffer;
 mod listing;
 mod overrides;
+mod pens;
 mod rx_buffer;
 mod status_report;
 
@@ -13,11 +14,13 @@ use super::output::Output;
 use super::{Activity, Command, Link, Report, Signal, Status, StepperPlotterSettings, Stop, StoredSettings};
 use crate::Point;
 use crate::decimal_text::{Plain, Trimmed, Whole};
-use crate::gcode::{BlockDelete, LineInterpreter, ReadOptions};
+use crate::gcode::LineInterpreter;
 use codes::{Alarm, Code, rounded};
+use core::marker::PhantomData;
 use line_buffer::LineBuffer;
 use listing::Listing;
 use overrides::Overrides;
+pub use pens::{AnyPen, Pens, SpindlePen};
 use rx_buffer::RxBuffer;
 
 /// Most bytes that are written at one time: an alarm with its message, and the line's answer.
@@ -40,7 +43,8 @@ enum Wait {
 
 /// The receive side for programs that stream to Grbl. Each line is answered by one `ok` or `error`, in their order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grbl {
+pub struct Grbl<P: Pens = AnyPen> {
+    pens: PhantomData<P>,
     settings: StepperPlotterSettings,
     rx: RxBuffer,
     line: LineBuffer,
@@ -60,9 +64,10 @@ pub struct Grbl {
     out: Output<OUTPUT>,
 }
 
-impl Grbl {
+impl<P: Pens> Grbl<P> {
     pub(super) fn new(settings: StepperPlotterSettings) -> Self {
         Self {
+            pens: PhantomData,
             settings,
             rx: RxBuffer::new(),
             line: LineBuffer::new(),
@@ -319,11 +324,6 @@ impl Grbl {
             Trimmed(rounded(modes.power)),
         ));
     }
-}
-
-/// How lines are read.
-fn read_options(settings: &StepperPlotterSettings) -> ReadOptions {
-    ReadOptions { pen: settings.convention(), block_delete: BlockDelete::CarryOut, ..ReadOptions::default() }
 }
 
 fn send(link: &mut Link, command: Command) {

@@ -3,11 +3,11 @@
 use super::super::{Activity, Link, Percents, Status, settings::FULL_POWER};
 use super::codes::{coordinate, coordinates};
 use super::listing::BLOCKS;
-use super::{Grbl, MOST_COMMANDS, REPORTS_WITHOUT_OFFSET};
+use super::{Grbl, MOST_COMMANDS, Pens, REPORTS_WITHOUT_OFFSET};
 use crate::decimal_text::{Decimals, Plain, Whole};
 use core::fmt;
 
-impl Grbl {
+impl<P: Pens> Grbl<P> {
     pub(super) fn tell_status(&mut self, status: &Status, link: &Link) {
         let state = Plain(match status.activity {
             _ if self.alarm.is_some() => "Alarm",

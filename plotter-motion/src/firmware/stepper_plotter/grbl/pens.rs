@@ -1,0 +1,61 @@
+//! [`Pens`]: by which words hosts may lift the pen.
+
+use super::super::StepperPlotterSettings;
+use crate::gcode::{BlockDelete, DwellUnit, PenConvention, ReadOptions};
+use core::time::Duration;
+
+/// By which words hosts may lift the pen: [`AnyPen`], or [`SpindlePen`] for a small program. What both understand they carry out alike.
+///
+/// Nobody else implements it.
+pub trait Pens: sealed::Sealed {
+    /// Whether these settings ask for no other words.
+    #[doc(hidden)]
+    fn fit(settings: &StepperPlotterSettings) -> bool;
+
+    /// Reads with the options that these settings ask for.
+    #[doc(hidden)]
+    fn read<R>(settings: &StepperPlotterSettings, read: impl FnOnce(&ReadOptions) -> R) -> R;
+}
+
+/// All words, and a laser: [`StepperPlotterSettings`] choose.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct AnyPen;
+
+/// `M3` and `M5` ([`PenConvention::Spindle`]), no laser. The firmware of the stepper plotter takes 1.3 KB less program memory with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct SpindlePen;
+
+mod sealed {
+    pub trait Sealed: Clone + core::fmt::Debug + PartialEq {}
+    impl Sealed for super::AnyPen {}
+    impl Sealed for super::SpindlePen {}
+}
+
+/// As Grbl reads: seconds, and `/` at the begin of a line means nothing. In one place, so that the compiler sees that no others are read
+/// with.
+static OPTIONS: ReadOptions = ReadOptions {
+    pen: PenConvention::Spindle,
+    dwell_unit: DwellUnit::Seconds,
+    settle: Duration::from_millis(500),
+    block_delete: BlockDelete::CarryOut,
+};
+
+impl Pens for AnyPen {
+    fn fit(_: &StepperPlotterSettings) -> bool {
+        true
+    }
+
+    fn read<R>(settings: &StepperPlotterSettings, read: impl FnOnce(&ReadOptions) -> R) -> R {
+        read(&ReadOptions { pen: settings.convention(), ..OPTIONS })
+    }
+}
+
+impl Pens for SpindlePen {
+    fn fit(settings: &StepperPlotterSettings) -> bool {
+        settings.convention() == PenConvention::Spindle
+    }
+
+    fn read<R>(_: &StepperPlotterSettings, read: impl FnOnce(&ReadOptions) -> R) -> R {
+        read(&OPTIONS)
+    }
+}

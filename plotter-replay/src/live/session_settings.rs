@@ -1,0 +1,61 @@
+//! [`SessionSettings`]: how a session goes.
+
+use super::progress::Plan;
+use crate::PlotterSettings;
+use core::time::Duration;
+use plotter_motion::protocol::{HostSettings, Resume};
+
+/// What is spoken with the machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LinkChoice {
+    /// Frames, if the machine knows them, else digits. It is called when the drawing begins, at the origin.
+    #[default]
+    Auto,
+    /// Ten digits a target, as published. The machine is not called.
+    Digits,
+    /// Frames; a machine that does not know them is refused.
+    Frames,
+}
+
+/// How a session goes.
+#[derive(Clone, Debug)]
+pub struct SessionSettings {
+    /// Scale and origin of the machine.
+    pub plotter: PlotterSettings,
+    /// Pause after each byte, 10 ms as published.
+    pub byte_gap: Duration,
+    /// Patience with the machine.
+    pub host: HostSettings,
+    /// How much the drawing is, if there is one.
+    pub plan: Option<Plan>,
+    /// How many seconds of the machine pass in one of ours; 1 for any that is real.
+    pub speed: f64,
+    /// Duty steps that are the whole supply, of both motors.
+    pub pwm_steps: [u32; 2],
+    /// What is spoken.
+    pub link: LinkChoice,
+    /// Number of a session of frames: one that the last host is not likely to have taken, such as the low bits of a clock.
+    pub nonce: u16,
+    /// Bits a second of the line.
+    pub baud: u32,
+    /// Where another host has left the drawing; its moves are all of them, from the first.
+    pub resume: Option<Resume>,
+}
+
+impl Default for SessionSettings {
+    /// The semi-virtual gantry as published, in its own time, nothing to draw.
+    fn default() -> Self {
+        Self {
+            plotter: PlotterSettings::default(),
+            byte_gap: Duration::from_millis(10),
+            host: HostSettings::default(),
+            plan: None,
+            speed: 1.0,
+            pwm_steps: [255; 2],
+            link: LinkChoice::Auto,
+            nonce: 1,
+            baud: 256_000,
+            resume: None,
+        }
+    }
+}

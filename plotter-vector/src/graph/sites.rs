@@ -1,0 +1,34 @@
+//! [`Sites`]: the sites of a graph's edges, measured when they are first asked for.
+//!
+//! A band looks at the edges that matter to its own rows; of most of its context's nobody asks.
+
+use super::Graph;
+use super::site::{Scan, Site};
+use core::cell::OnceCell;
+
+/// The sites of all edges of a graph.
+pub(super) struct Sites<'a> {
+    graph: &'a Graph,
+    scan: Scan<'a>,
+    measured: Vec<OnceCell<Vec<Site>>>,
+}
+
+impl<'a> Sites<'a> {
+    /// None measured yet.
+    pub(super) fn new(graph: &'a Graph, scan: Scan<'a>) -> Self {
+        Self { graph, scan, measured: vec![OnceCell::new(); graph.edges.len()] }
+    }
+
+    /// The sites of an edge, one for each of its pixels; none when there is no such edge.
+    pub(super) fn get(&self, edge: usize) -> Option<&[Site]> {
+        let pixels = self.graph.edges.get(edge)?;
+        let measure = || self.scan.sites(&pixels.pixels, pixels.nodes.is_none());
+        Some(self.measured.get(edge)?.get_or_init(measure))
+    }
+
+    /// As [`Sites::get`], to be changed.
+    pub(super) fn get_mut(&mut self, edge: usize) -> Option<&mut [Site]> {
+        self.get(edge)?;
+        self.measured.get_mut(edge)?.get_mut().map(Vec::as_mut_slice)
+    }
+}
