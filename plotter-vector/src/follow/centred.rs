@@ -3,7 +3,7 @@
 //! Thinning rounds corners, is drawn into the foot of a tee, and cuts the inside of narrow turns. Where a cut across shows one line,
 //! its middle counts; what lies between two such parts is straight if they are on one line, and a corner if their lines meet here.
 
-use super::corners::{CORNER_COS, LONG, crossing, sharpen, square, straight, turn};
+use super::corners::{CORNER_COS, LONG, crossing, is_bent, sharpen, square, straight, turn};
 use super::crowd::Crowd;
 use super::flat::Flat;
 use super::lines::cosine;
@@ -21,6 +21,13 @@ const STRAIGHT_COS: f64 = 0.978;
 
 /// Lines that turn by more have a bend: cosine of 5 degrees.
 const BENT_COS: f64 = 0.9962;
+
+/// As straight are the parts of a line that meet in a corner, and as straight those by which a curve is told, px.
+const STRAIGHT_OFF_PX: f64 = 0.3;
+const CURVED_OFF_PX: f64 = 0.5;
+
+/// A curve turns by less to either side of the straight way over it: cosine of 35 degrees.
+const CURVE_COS: f64 = 0.82;
 
 /// Where a line turns back, its arms are one piece of ink as far as they are nearer to each other than its width and this, px.
 const ONE_INK_PX: f64 = 2.5;
@@ -105,21 +112,39 @@ fn is_in_turn(places: &[PxPoint], i: usize, width_px: f64) -> bool {
     before.chain(behind).any(|(k, other)| turns_back(other, k + 1))
 }
 
-/// Where a line bends between two places, if it does: where its straight parts before and behind them meet.
-fn bend(places: &[PxPoint], first: usize, last: usize) -> Option<PxPoint> {
-    let (one, other) = (
-        straight(places.get(first.checked_sub(LONG)?..=first)?, LONG, 0.3)?,
-        straight(places.get(last..=last + LONG)?, LONG, 0.3)?,
-    );
-    if cosine(one.1, other.1) > BENT_COS {
-        return None;
+/// How a line goes on between two parts of it.
+enum Between {
+    Straight,
+    /// Around the place where both parts, which are straight, meet.
+    Corner(PxPoint),
+    /// With the curvature that it has before and behind, 1/px.
+    Curve(f64),
+}
+
+/// How a line goes on between two places of it, by the parts before and behind them.
+fn between(places: &[PxPoint], first: usize, last: usize) -> Between {
+    let arm = |from: Option<usize>, to: usize| from.and_then(|from| places.get(from..=to)).unwrap_or(&[]);
+    let (before, behind) = (arm(first.checked_sub(LONG), first), arm(Some(last), last + LONG));
+    let (Some(one), Some(other)) =
+        (straight(before, LONG, CURVED_OFF_PX), straight(behind, LONG, CURVED_OFF_PX))
+    else {
+        return Between::Straight;
+    };
+    let turn_cos = cosine(one.1, other.1);
+    if turn_cos > BENT_COS {
+        return Between::Straight;
     }
+    if is_bent([before, behind], [one, other], turn_cos) {
+        let side = libm::copysign(1.0, one.1.0 * other.1.1 - one.1.1 * other.1.0);
+        return Between::Curve(side * libm::acos(turn_cos.clamp(-1.0, 1.0)) / one.0.distance(other.0));
+    }
+    let are_straight = [before, behind].iter().all(|arm| straight(arm, LONG, STRAIGHT_OFF_PX).is_some());
     let met = crossing(one, other);
-    let (from, to) = (places.get(first)?, places.get(last)?);
+    let (Some(from), Some(to)) = (places.get(first), places.get(last)) else { return Between::Straight };
     let way = to.minus(*from);
     let off = met.minus(*from);
     let share = (off.0 * way.0 + off.1 * way.1) / (way.0 * way.0 + way.1 * way.1);
-    (0.1..0.9).contains(&share).then_some(met)
+    if are_straight && (0.1..0.9).contains(&share) { Between::Corner(met) } else { Between::Straight }
 }
 
 /// Runs of places that are no line of their own, over a crossing or the foot of a tee, go straight on.
@@ -140,20 +165,30 @@ fn bridge(places: &mut [PxPoint], is_sound: &[bool], width_px: f64) {
             places.get(last).copied(),
             places.get(last + 3).copied(),
         ) {
-            let way = to.minus(from);
-            let agree = cosine(from.minus(before), way) > STRAIGHT_COS
-                && cosine(behind.minus(to), way) > STRAIGHT_COS;
-            if agree && from.distance(to) < 8.0 * width_px + 20.0 {
-                let bend = bend(places, first, last).unwrap_or_else(|| from.along(way, 0.5));
+            let (way, length) = (to.minus(from), from.distance(to));
+            let course = between(places, first, last);
+            let least_cos = if let Between::Curve(_) = course { CURVE_COS } else { STRAIGHT_COS };
+            let agree =
+                cosine(from.minus(before), way) > least_cos && cosine(behind.minus(to), way) > least_cos;
+            if agree && length < 8.0 * width_px + 20.0 {
+                let bend = if let Between::Corner(met) = course { met } else { from.along(way, 0.5) };
                 let parts = [from.distance(bend), bend.distance(to)];
+                // The middle of a curve is off the straight way by an eighth of its length squared and its curvature.
+                let beside = match course {
+                    Between::Curve(curvature) => {
+                        (0.5 * curvature * length * way.1, -0.5 * curvature * length * way.0)
+                    }
+                    _ => (0.0, 0.0),
+                };
                 for (k, place) in places.iter_mut().enumerate().take(last).skip(first + 1) {
-                    let gone = super::lines::count_f64(k - first) / super::lines::count_f64(last - first)
-                        * (parts[0] + parts[1]);
-                    *place = if gone < parts[0] {
+                    let share = super::lines::count_f64(k - first) / super::lines::count_f64(last - first);
+                    let gone = share * (parts[0] + parts[1]);
+                    let at = if gone < parts[0] {
                         from.along(bend.minus(from), gone / parts[0])
                     } else {
                         bend.along(to.minus(bend), (gone - parts[0]) / parts[1].max(1e-9))
                     };
+                    *place = at.along(beside, share * (1.0 - share));
                 }
             }
         }

@@ -16,6 +16,9 @@ pub(super) const LONG: usize = 6;
 /// Places at the end of an arm that a turn draws to its inside.
 const DRAWN: usize = 2;
 
+/// A turn is a curve's if the bend of its arms tells of so much of it.
+const CURVE_SHARE: f64 = 0.5;
+
 /// The corner of a square turn is as dark as the line, but for blur; beside a round one it is about 0.7 as dark.
 const SQUARE_DARK: f32 = 0.84;
 
@@ -207,7 +210,7 @@ pub(super) fn sharpen(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
                 continue;
             }
             let turn = cosine(one.1, other.1);
-            if !(SHARP_COS..CORNER_COS).contains(&turn) {
+            if !(SHARP_COS..CORNER_COS).contains(&turn) || is_bent([before, behind], [one, other], turn) {
                 continue;
             }
             let met = crossing(one, other);
@@ -238,6 +241,33 @@ pub(super) fn sharpen(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
             return;
         }
     }
+}
+
+/// Whether a turn is that of a curve, whose arms are bent as well: their bends go on over as much of it.
+pub(super) fn is_bent(arms: [&[PxPoint]; 2], lines: [(PxPoint, (f64, f64)); 2], turn_cos: f64) -> bool {
+    let [(at, way), (other, other_way)] = lines;
+    let side = libm::copysign(1.0, way.0 * other_way.1 - way.1 * other_way.0);
+    let [one_curve, other_curve] = [curvature(arms[0], at, way), curvature(arms[1], other, other_way)];
+    let bent = 0.5 * (one_curve + other_curve) * side * at.distance(other);
+    bent > CURVE_SHARE * libm::acos(turn_cos.clamp(-1.0, 1.0))
+}
+
+/// The curvature of the parabola that is nearest to places along a direction, 1/px.
+fn curvature(places: &[PxPoint], middle: PxPoint, along: (f64, f64)) -> f64 {
+    let local = |at: &PxPoint| {
+        let (x, y) = at.minus(middle);
+        (x * along.0 + y * along.1, y * along.0 - x * along.1)
+    };
+    let sum = |power: fn(f64) -> f64| places.iter().map(|at| power(local(at).0)).sum::<f64>();
+    let (squares, cubes) = (sum(|s| s * s), sum(|s| s * s * s));
+    let count = super::lines::count_f64(places.len());
+    // The square of the way, less what a straight line has of it.
+    let square = |s: f64| s * s - squares / count - s * cubes / squares;
+    let (off, own) = places
+        .iter()
+        .map(local)
+        .fold((0.0, 0.0), |(off, own), (s, o)| (off + square(s) * o, own + square(s) * square(s)));
+    if own > 0.0 { 2.0 * off / own } else { 0.0 }
 }
 
 /// Where two lines cross that are not parallel, each a place and its direction of length 1.

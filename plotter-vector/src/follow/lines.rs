@@ -440,6 +440,22 @@ mod tests {
     }
 
     #[test]
+    fn a_curve_goes_on_round_where_a_line_crosses_it() {
+        for radius in [25.0, 40.0, 70.0, 110.0] {
+            let off = off(4.0, &|turn, at| {
+                let middle = at_angle(at, turn, radius);
+                let arc = (-30..=30_i8)
+                    .map(|k| {
+                        at_angle(middle, turn + core::f64::consts::PI * (1.0 + f64::from(k) / 40.0), radius)
+                    })
+                    .collect();
+                vec![arc, vec![at_angle(at, turn, -60.0), at_angle(at, turn, 0.9 * radius)]]
+            });
+            assert!(off[0] < 0.45 && off[1] < 0.35, "{radius}: {off:?}");
+        }
+    }
+
+    #[test]
     fn corners_stay_and_the_rest_is_even() {
         let corner = [(0.0, 0.0), (5.0, 0.0), (5.0, 2.0)].map(|(x, y)| PxPoint::new(x, y));
         let places = resampled(&corner, 2.0);

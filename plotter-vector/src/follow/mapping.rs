@@ -4,13 +4,14 @@ use super::align::aligned;
 use super::flat::Flat;
 use super::keyframe::Keyframes;
 use super::line_map::{LineMap, State};
-use super::lines::Lines;
+use super::lines::{Lines, cosine};
 use super::paper::nearest;
 use super::play::Play;
 use super::prior::{Information, Prior};
 use super::registration::{View, registered, sure};
 use super::search::Search;
-use super::{End, FollowReport, LineFollower, Lost, MappingSettings, Step, Tool, trail};
+use super::trail::{self, Start};
+use super::{End, FollowReport, LineFollower, Lost, MappingSettings, Step, Tool};
 use crate::{Gray, PxPoint};
 
 /// Half of the side of what a glance looks at, px.
@@ -24,6 +25,12 @@ const ARRIVED_PX: f64 = 0.35;
 
 /// Places of two lines that are as near are one on the way, px.
 const TOUCHING_PX: f64 = 1.0;
+
+/// A line goes straight on whose pieces' directions have this cosine at least.
+const STRAIGHT_ON: f64 = 0.9;
+
+/// An axis that goes back by more has to cross its play, px.
+const TURN_PX: f64 = 0.3;
 
 /// How the play of an axis is felt: to and fro twice, in moves so small that no other line is taken for this one, px.
 const FEELING_PX: [f64; 16] =
@@ -133,6 +140,8 @@ pub struct MappingFollower {
     fixes: u32,
     idle: u32,
     felt: u32,
+    /// The last node that was gone to for what is behind it, and how often.
+    looked_behind: Option<(u32, u32)>,
     last_seen: Lost,
     report: FollowReport,
     ended: Option<End>,
@@ -163,6 +172,7 @@ impl MappingFollower {
             fixes: 0,
             idle: 0,
             felt: 0,
+            looked_behind: None,
             last_seen: Lost::OneColour,
             report: FollowReport::default(),
             ended: None,
@@ -354,21 +364,33 @@ impl MappingFollower {
         }
     }
 
-    /// The commands that lead through places, inside of the machine's area.
+    /// The commands that lead through places, inside of the machine's area. An axis that turns round crosses its play before the
+    /// other one moves, or the tool would leave the line on the side of the other.
     fn commands(&mut self, path: &[PxPoint]) -> Vec<PxPoint> {
         let area = self.settings.area;
-        let [x, y] = &mut self.play;
-        path.iter()
-            .map(|to| {
-                let command = PxPoint::new(x.command(to.x), y.command(to.y));
-                area.map_or(command, |[from, to]| {
-                    PxPoint::new(
-                        command.x.clamp(from.x, to.x.max(from.x)),
-                        command.y.clamp(from.y, to.y.max(from.y)),
-                    )
-                })
+        let inside = |command: PxPoint| {
+            area.map_or(command, |[from, to]| {
+                PxPoint::new(
+                    command.x.clamp(from.x, to.x.max(from.x)),
+                    command.y.clamp(from.y, to.y.max(from.y)),
+                )
             })
-            .collect()
+        };
+        let [x, y] = &mut self.play;
+        let mut commands = Vec::with_capacity(path.len());
+        for to in path {
+            let sent = [x.sent_px(), y.sent_px()];
+            let ([begins_x, end_x], [begins_y, end_y]) = (x.command(to.x), y.command(to.y));
+            let across = [(begins_x, end_x, sent[0]), (begins_y, end_y, sent[1])]
+                .map(|(begins, end, sent)| if begins == end { (sent, false) } else { (begins, true) });
+            if let [(x, crosses_x), (y, crosses_y)] = across
+                && (crosses_x || crosses_y)
+            {
+                commands.push(inside(PxPoint::new(x, y)));
+            }
+            commands.push(inside(PxPoint::new(end_x, end_y)));
+        }
+        commands
     }
 
     fn go(&mut self, path: &[PxPoint], tool: Tool) -> Step {
@@ -393,12 +415,28 @@ impl MappingFollower {
         self.go(&[next], Tool::Up)
     }
 
+    /// How often a node was gone to for what is behind it.
+    fn looks_behind(&mut self, node: u32) -> u32 {
+        let looks = self.looked_behind.filter(|(known, _)| *known == node).map_or(0, |(_, looks)| looks + 1);
+        self.looked_behind = Some((node, looks));
+        looks
+    }
+
     /// What to do when the tool is on no line.
     fn choose(&mut self, at: PxPoint) -> Step {
         self.fixes = 0;
-        if let Some(node) = trail::start(&mut self.map, self.place) {
-            self.doing = Doing::Going(node);
-            return self.travel(self.map.at(node));
+        match trail::start(&mut self.map, self.place) {
+            // One that shows nothing more is not gone to again.
+            Some(Start::Unseen(node, _)) if self.looks_behind(node) < MOST_FIXES => {
+                let to = self.map.at(node);
+                self.doing = Doing::Searching(to);
+                return self.travel(to);
+            }
+            Some(Start::At(node) | Start::Unseen(_, node)) => {
+                self.doing = Doing::Going(node);
+                return self.travel(self.map.at(node));
+            }
+            None => {}
         }
         let next = if self.settings.search { self.search.as_mut().and_then(Search::next) } else { None };
         if let Some(to) = next {
@@ -486,6 +524,26 @@ impl MappingFollower {
         }
     }
 
+    /// The nearest place of the line at a node that was reached: before or behind it where the line goes straight on.
+    fn on_line(&self, node: u32, heading: (f64, f64)) -> PxPoint {
+        let here = self.map.at(node);
+        let next = trail::next(&self.map, node, heading).filter(|(_, near, _)| *near == node);
+        let Some((_, _, far)) = next else { return here };
+        let there = self.map.at(far);
+        if cosine(heading, there.minus(here)) < STRAIGHT_ON {
+            return here;
+        }
+        let places = [nearest(self.place, here.along(heading, -1.0), here), nearest(self.place, here, there)];
+        let distance = |at: &PxPoint| self.place.distance(*at);
+        places.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(here)
+    }
+
+    /// Whether an axis goes back on the way from one place to another.
+    fn turns(&self, from: PxPoint, to: PxPoint) -> bool {
+        let (dx, dy) = to.minus(from);
+        [(dx, &self.play[0]), (dy, &self.play[1])].iter().any(|(way, play)| way * play.side() < -TURN_PX)
+    }
+
     fn follow(
         &mut self,
         at: PxPoint,
@@ -495,10 +553,10 @@ impl MappingFollower {
         looked: bool,
     ) -> Option<Step> {
         // Back to the line first, if the table went off it.
-        let on_line = link.map_or_else(
-            || self.map.at(node),
-            |(_, far)| nearest(self.place, self.map.at(node), self.map.at(far)),
-        );
+        let on_line = match link {
+            Some((_, far)) => nearest(self.place, self.map.at(node), self.map.at(far)),
+            None => self.on_line(node, heading),
+        };
         if self.tool == Tool::Down && self.place.distance(on_line) > OFF_PX && self.fixes < MOST_FIXES {
             self.fixes += 1;
             return Some(self.go(&[on_line], Tool::Down));
@@ -513,16 +571,30 @@ impl MappingFollower {
                 None => {
                     let Some((id, near, far)) = trail::next(&self.map, node, heading) else { break };
                     if near != node {
-                        // Places of two lines that touch are hardly ever one; to go from one to the other would turn the axes round.
-                        if self.map.at(node).distance(self.map.at(near)) > TOUCHING_PX {
-                            path.push(self.map.at(near));
-                        }
+                        // Places of two lines that touch are hardly ever one. The tool goes over where the other line passes.
+                        let (here, there) = (self.map.at(node), self.map.at(near));
+                        let over = nearest(here, there, self.map.at(far));
+                        let is_passed = over.distance(there) > TOUCHING_PX;
+                        let over = if is_passed { there } else { over };
                         node = near;
+                        if is_passed || here.distance(over) > TOUCHING_PX {
+                            if !path.is_empty() && self.turns(from, over) {
+                                link = Some((id, far));
+                                break;
+                            }
+                            path.push(over);
+                            from = over;
+                        }
                     }
                     (id, far)
                 }
             };
             let to = self.map.at(far);
+            // Where an axis turns round its play may do something else than is known: a look before.
+            if !path.is_empty() && self.turns(from, to) {
+                link = Some((id, far));
+                break;
+            }
             let share = self.play[0].share(from.x, to.x).min(self.play[1].share(from.y, to.y));
             if share < 1.0 && self.fixes < MOST_FIXES {
                 // The play is not known yet: a small move, and a look.

@@ -33,6 +33,7 @@ mod exits;
 mod flat;
 mod judge;
 mod keyframe;
+mod lag;
 mod lens;
 mod line_map;
 mod lines;

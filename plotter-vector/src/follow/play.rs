@@ -1,13 +1,10 @@
 //! [`Play`]: what each axis of the table loses where it turns round, learned on the way.
 //!
-//! ```text
-//!   pushed   stays where it is while the command is within half of the play, and is pushed along beyond
-//!   place  = pushed + offset
-//!   command  that pushes it to a place = place − offset ± half of the play        + upwards, − downwards
-//! ```
-//!
 //! An axis that moved in the pictures is pushed in this direction at the end of the move, so that its place less its command is
-//! the offset less (upwards) or more (downwards) half of the play: once seen in both directions, the play is known.
+//! an offset less (upwards) or more (downwards) half of the play: once seen in both directions, the play is known. From then on
+//! [`Lag`] tells where in the play it may be after moves that did not cross it.
+
+use super::lag::Lag;
 
 /// Moves shorter than this are not made, px: the axis waits.
 const NO_MOVE_PX: f64 = 0.12;
@@ -24,6 +21,14 @@ const MEMORY_PX: f64 = 60.0;
 /// Most play, px.
 const MOST_PX: f64 = 30.0;
 
+/// Standard deviation of the way between two pictures that this axis did not go by its play: of the places that they show, and of
+/// the table's error, which grows with the square root of the way, px.
+const SEEN_PX: f64 = 0.15;
+const TABLE_PX: f64 = 0.1;
+
+/// How much the play may change from turn to turn, px: it is not the same everywhere on a table.
+const CHANGE_PX: f64 = 0.03;
+
 /// An axis that was seen pushed.
 #[derive(Clone, Copy, Debug)]
 struct Pushed {
@@ -38,9 +43,11 @@ struct Pushed {
 pub(super) struct Play {
     /// Estimated play, px.
     pub(super) play_px: f64,
-    /// True place less that of what is pushed.
-    offset_px: f64,
-    pushed_px: f64,
+    /// Where it was in the last picture, and the command then.
+    place_px: f64,
+    seen_at_px: f64,
+    /// Where in the play it may be.
+    lag: Lag,
     /// The last command, and all the way commanded.
     sent_px: f64,
     way_px: f64,
@@ -53,34 +60,44 @@ pub(super) struct Play {
     seen: [Option<Pushed>; 2],
     /// Whether the play of this turn is learned.
     is_learned: bool,
-    /// How often the play was learned, and what the last turns showed.
+    /// How often the play was learned, and the variance of what is known of it, px².
     learned: u32,
-    shown_px: [f64; 9],
-    /// Command and true place when last looked.
+    variance: f64,
+    /// Command and true place of the last picture, if it showed it well.
     last: Option<(f64, f64)>,
+    /// All the way that was commanded till then.
+    last_way_px: f64,
 }
 
 impl Play {
-    /// What is pushed at a command.
-    fn pushed(&self, command: f64) -> f64 {
-        let half = 0.5 * self.play_px;
-        self.pushed_px.clamp(command - half, command + half)
+    fn half_px(&self) -> f64 {
+        0.5 * self.play_px
     }
 
-    /// The true place that belongs to a command.
+    /// The lag after a command.
+    fn lag_at(&self, command: f64) -> Lag {
+        let mut lag = self.lag;
+        lag.go(command - self.seen_at_px, self.half_px());
+        lag
+    }
+
+    /// The true place that belongs to a command, in the mean.
     pub(super) fn place(&self, command: f64) -> f64 {
-        self.pushed(command) + self.offset_px
+        self.place_px + self.lag_at(command).moved(self.half_px()).0
     }
 
-    /// The command that leads to a place.
-    pub(super) fn command(&mut self, wanted: f64) -> f64 {
-        let target = wanted - self.offset_px;
-        let way = target - self.pushed_px;
+    /// The commands that lead to a place: that at which the axis begins to move, and the last one. They are the same where it moves
+    /// at once, or not at all.
+    pub(super) fn command(&mut self, wanted: f64) -> [f64; 2] {
+        let half_px = self.half_px();
+        let way = wanted - self.place_px - self.lag.moved(half_px).0;
         if way.abs() < NO_MOVE_PX {
-            return self.sent_px;
+            return [self.sent_px; 2];
         }
-        let command = target + libm::copysign(0.5 * self.play_px, way);
+        let command = self.seen_at_px + self.lag.command(wanted - self.place_px, half_px);
         let moved = command - self.sent_px;
+        let lost = moved - way;
+        let begins = if lost * way > 0.0 && lost.abs() > NO_MOVE_PX { self.sent_px + lost } else { command };
         if moved != 0.0 {
             let side = libm::copysign(1.0, moved);
             if side != self.side {
@@ -90,8 +107,9 @@ impl Play {
             self.since_turn_px += moved.abs();
             self.way_px += moved.abs();
         }
-        (self.sent_px, self.pushed_px) = (command, target);
-        command
+        self.sent_px = command;
+        self.lag.go(command - self.seen_at_px, half_px);
+        [begins, command]
     }
 
     /// How far the axis may go on to `wanted` in one move, as a share: a turn whose play is not known well is gone in
@@ -102,6 +120,16 @@ impl Play {
         if turns && self.is_unknown() && way.abs() > 0.4 { 0.4 / way.abs() } else { 1.0 }
     }
 
+    /// The last command.
+    pub(super) const fn sent_px(&self) -> f64 {
+        self.sent_px
+    }
+
+    /// The direction of its last command, 1 or −1; 0 before the first.
+    pub(super) const fn side(&self) -> f64 {
+        self.side
+    }
+
     /// Whether the play is not known well yet.
     pub(super) const fn is_unknown(&self) -> bool {
         self.learned < 2
@@ -110,16 +138,19 @@ impl Play {
     /// Standard deviation of what the play may hide in the next picture, px, after the axis was sent to `command`.
     pub(super) fn doubt_px(&self, command: f64) -> f64 {
         if !self.is_unknown() {
-            return if self.has_turned { 0.3 } else { 0.0 };
+            let (_, sd) = self.lag_at(command).moved(self.half_px());
+            return sd.max(if self.has_turned { 0.3 } else { 0.0 });
         }
         self.last.map_or(0.0, |(last, _)| 0.5 * (command - last).abs().min(TURNING_PX))
     }
 
     /// Takes the true place that a picture shows, if it shows it well.
     pub(super) fn measure(&mut self, command: f64, place: f64, is_sure: bool) {
-        self.pushed_px = self.pushed(command);
-        self.sent_px = command;
-        self.offset_px = place - self.pushed_px;
+        let way_px = self.way_px - core::mem::replace(&mut self.last_way_px, self.way_px);
+        let sd = libm::hypot(SEEN_PX, TABLE_PX * libm::sqrt(way_px.max(0.0)));
+        let moved = (is_sure && self.last.is_some()).then_some((place - self.place_px, sd));
+        self.lag.see(moved, command - self.seen_at_px, self.half_px());
+        (self.place_px, self.seen_at_px, self.sent_px) = (place, command, command);
         let has_turned = core::mem::take(&mut self.has_turned);
         if !is_sure {
             self.last = None;
@@ -139,33 +170,32 @@ impl Play {
         let other = other.filter(|other| seen.way_px - other.way_px < MEMORY_PX);
         if let (Some(other), false) = (other, self.is_learned) {
             self.is_learned = true;
-            self.learn((other.off_px - seen.off_px) * self.side);
+            self.learn((other.off_px - seen.off_px) * self.side, seen.way_px - other.way_px);
+            self.lag = Lag::behind(self.side);
         }
-        self.pushed_px = command - 0.5 * self.play_px * self.side;
-        self.offset_px = place - self.pushed_px;
     }
 
-    /// The mean of the middle half of what the last turns showed: a single one may be far off.
-    fn learn(&mut self, play_px: f64) {
-        let slot = usize::try_from(self.learned).unwrap_or(0) % self.shown_px.len();
-        if let Some(shown) = self.shown_px.get_mut(slot) {
-            *shown = play_px.clamp(0.0, MOST_PX);
-        }
+    /// Weighs what a turn showed of the play, after `way_px` of commands, by how well it shows it.
+    fn learn(&mut self, shown_px: f64, way_px: f64) {
+        let shown_px = shown_px.clamp(0.0, MOST_PX);
+        let noise = 2.0 * SEEN_PX * SEEN_PX + TABLE_PX * TABLE_PX * way_px.max(0.0);
         self.learned = self.learned.saturating_add(1);
-        let known = usize::try_from(self.learned).unwrap_or(usize::MAX).min(self.shown_px.len());
-        let mut sorted = self.shown_px;
-        if let Some(known) = sorted.get_mut(..known) {
-            known.sort_by(f64::total_cmp);
-            let middle = known.get(known.len() / 4..known.len() - known.len() / 4).unwrap_or(&[]);
-            self.play_px =
-                middle.iter().sum::<f64>() / f64::from(u32::try_from(middle.len().max(1)).unwrap_or(1));
+        if self.learned == 1 {
+            (self.play_px, self.variance) = (shown_px, noise);
+            return;
         }
+        let (known, off) = (self.variance + CHANGE_PX * CHANGE_PX, shown_px - self.play_px);
+        // What is too far off to be its noise was perhaps no turn of this play: it counts less the farther it is.
+        let surprise = off * off / (9.0 * (known + noise));
+        let gain = known / (known + noise * surprise.max(1.0));
+        self.play_px += gain * off;
+        self.variance = known * (1.0 - gain);
     }
 
     /// Begins at a place.
     pub(super) fn forget(&mut self, place: f64) {
-        (self.pushed_px, self.sent_px, self.offset_px) = (place, place, 0.0);
-        (self.last, self.seen) = (None, [None; 2]);
+        (self.place_px, self.seen_at_px, self.sent_px) = (place, place, place);
+        (self.last, self.seen, self.lag) = (None, [None; 2], Lag::default());
     }
 }
 
@@ -178,7 +208,7 @@ mod tests {
     fn the_play_is_known_after_two_turns() {
         let (mut play, mut command, mut pushed) = (Play::default(), 0.0_f64, 0.0_f64);
         let mut go = |play: &mut Play, wanted: f64| -> f64 {
-            command = play.command(wanted);
+            [_, command] = play.command(wanted);
             pushed = pushed.clamp(command - 1.5, command + 1.5);
             play.measure(command, pushed, true);
             (pushed - wanted).abs()

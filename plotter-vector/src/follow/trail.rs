@@ -88,25 +88,35 @@ pub(super) fn next(map: &LineMap, node: u32, heading: (f64, f64)) -> Option<(u32
     ways.into_iter().max_by(|a, b| straight(a).total_cmp(&straight(b)).then(b.0.cmp(&a.0)))
 }
 
+/// Where to go to begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Start {
+    /// To a node that is to be begun at.
+    At(u32),
+    /// To a node that no end is known before, to see how the line goes on; or to begin at the other one.
+    Unseen(u32, u32),
+}
+
 /// Where to begin: of the lines nearest to a place an end that is one (or another odd node), so that no piece is left behind;
-/// of a loop the nearest place.
-pub(super) fn start(map: &mut LineMap, from: PxPoint) -> Option<u32> {
+/// of a loop the nearest place. Where a line leaves what was seen it must be looked at first.
+pub(super) fn start(map: &mut LineMap, from: PxPoint) -> Option<Start> {
     let all: Vec<u32> = map.ahead().collect();
     let distance = |id: &u32| map.at(*id).distance(from);
     let nearest = all.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)))?;
     let mut seen: HashSet<u32> = HashSet::from([nearest]);
     let mut open = std::collections::VecDeque::from([nearest]);
-    let mut best: Option<(f64, u32)> = None;
+    // The nearest odd node, and the nearest that no end is known before.
+    let mut found: [Option<(f64, u32)>; 2] = [None; 2];
     while let Some(id) = open.pop_front() {
         let here = cluster(map, id);
         let arms: usize =
             here.iter().map(|id| map.links_of(*id).filter(|(_, link, _)| is_ahead(link)).count()).sum();
         let is_unknown = map.node(id).is_some_and(|node| node.open);
         let own = map.links_of(id).any(|(_, link, _)| is_ahead(link));
-        if own && arms % 2 == 1 && !is_unknown {
-            let near = distance(&id);
-            if best.is_none_or(|(least, _)| near < least) {
-                best = Some((near, id));
+        let near = map.at(id).distance(from);
+        for (found, fits) in found.iter_mut().zip([arms % 2 == 1 && !is_unknown, is_unknown]) {
+            if own && fits && found.is_none_or(|(least, _)| near < least) {
+                *found = Some((near, id));
             }
         }
         if seen.len() > MOST_VISITED {
@@ -118,5 +128,9 @@ pub(super) fn start(map: &mut LineMap, from: PxPoint) -> Option<u32> {
             }
         }
     }
-    Some(best.map_or(nearest, |(_, id)| id))
+    Some(match found {
+        [Some((_, id)), _] => Start::At(id),
+        [None, Some((_, id))] => Start::Unseen(id, nearest),
+        [None, None] => Start::At(nearest),
+    })
 }
