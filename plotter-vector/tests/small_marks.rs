@@ -63,7 +63,7 @@ fn ink_of(strokes: &[Vec<PxPoint>]) -> Bitmap {
 }
 
 /// Share of the length of some strokes that lies within 1 px of others.
-fn share<'a>(of: &[&[PxPoint]], near: &[&'a [PxPoint]]) -> f64 {
+fn share(of: &[&[PxPoint]], near: &[&[PxPoint]]) -> f64 {
     let (mut all, mut within) = (0.0, 0.0);
     for pair in of.iter().flat_map(|stroke| stroke.windows(2)) {
         let (from, to) = (pair[0], pair[1]);
