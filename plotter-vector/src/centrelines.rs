@@ -19,6 +19,8 @@ pub(crate) struct Centring {
     pub(crate) bounded: Bounded,
     /// What they are made of.
     pub(crate) pieces: Pieces,
+    /// Whether small marks are drawn again as a whole.
+    pub(crate) redraw: bool,
     /// Own rows of a band.
     pub(crate) band_rows: u32,
 }
@@ -27,7 +29,7 @@ impl Centring {
     /// For lines up to `max_line_px` wide.
     pub(crate) fn new(method: ThinningMethod, max_line_px: u32, bounded: Bounded, band_rows: u32) -> Self {
         let thinning = Thinning { method, max_passes: max_line_px / 2 + 3 };
-        Self { thinning, bounded, pieces: Pieces::Lines, band_rows: band_rows.max(1) }
+        Self { thinning, bounded, pieces: Pieces::Lines, redraw: false, band_rows: band_rows.max(1) }
     }
 
     /// Rows that a band needs above and below its own.
@@ -41,6 +43,11 @@ impl Centring {
             Pieces::Lines => Cuts::default(),
             Pieces::Arcs | Pieces::Curves => Cuts { least: usize::MAX, ..Cuts::default() },
         }
+    }
+
+    /// What is made of small marks' lines before they are drawn again; with arcs and curves they are not.
+    pub(crate) fn marks(&self) -> Option<Bounded> {
+        (self.redraw && self.pieces == Pieces::Lines).then_some(self.bounded)
     }
 
     /// The strokes of a picture in memory, in reading order of where they begin; `grey`, with whether dark is ink, makes
@@ -79,7 +86,14 @@ impl Centring {
         // Lines that are wider than expected stay so in places: their middle is found all the same.
         let _ = self.thinning.thin_rows(&mut skeleton, thinned.clone());
         let stretch = Stretch { picture: &skeleton, rows: thinned };
-        fragments(Scan { ink: &band, first_row, grey }, &stretch, first_row, rows, &mut Vec::new())
+        fragments(
+            Scan { ink: &band, first_row, grey },
+            &stretch,
+            first_row,
+            rows,
+            self.marks(),
+            &mut Vec::new(),
+        )
     }
 
     /// Strokes simplified.

@@ -52,7 +52,7 @@ fn unit((x, y): (f64, f64)) -> (f64, f64) {
 }
 
 /// The eight pixels round one, in the order of the tracking's numbers.
-fn neighbours(at: Pixel) -> impl Iterator<Item = Pixel> {
+pub(crate) fn neighbours(at: Pixel) -> impl Iterator<Item = Pixel> {
     const ROUND: [(i32, i32); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
     ROUND.into_iter().filter_map(move |(dx, dy)| {
         Some(Pixel::new(at.x.checked_add_signed(dx)?, at.y.checked_add_signed(dy)?))

@@ -61,7 +61,8 @@ pub struct Vectorizer {
     /// The published simplification.
     pub published: DynamicThreshold,
     /// Ours: its tolerance is the promise that nothing lies farther from the segment that replaced it: of lines one
-    /// pixel wide each pixel, of wider ones each point of the line down their middle.
+    /// pixel wide each pixel, of wider ones each point of the line down their middle. Marks up to 32 px wide and high
+    /// (lettering) are then drawn again as a whole, their vertices where a pen leaves the ink that is there.
     pub ours: Bounded,
     /// Ours: whether curves become circular arcs and circles where that saves vertices, with the same promise.
     pub arcs: bool,
@@ -267,7 +268,8 @@ impl Vectorizer {
         };
         let mut strokes = Vec::new();
         if let Some(lines) = lines {
-            strokes = self.centring(max_line_px).strokes(lines, grey);
+            let centring = Centring { redraw: true, ..self.centring(max_line_px) };
+            strokes = centring.strokes(lines, grey);
         }
         let mut islands = Islands::new(areas.width());
         for y in 0..areas.height() {

@@ -4,7 +4,8 @@
 //! below comes to the same decisions as its neighbours; it hands out what lies in its own rows, and what it cuts at
 //! their border fits the neighbour's piece.
 
-use super::junction::Junctions;
+use super::junction::{Connection, Junctions};
+use super::mark::Marks;
 use super::site::{Role, Scan, Site};
 use super::sites::Sites;
 use super::{Edge, End, Graph, Place};
@@ -44,16 +45,18 @@ pub(crate) fn fragments(
     graph: &Graph,
     sites: &Sites<'_>,
     junctions: &Junctions,
+    marks: &Marks,
     scan: Scan<'_>,
     core: &Range<u32>,
 ) -> Vec<Fragment> {
     let mut found = Vec::new();
-    for index in junctions.lines.iter().copied() {
+    for index in junctions.lines.iter().copied().filter(|edge| !marks.has_edge(*edge)) {
         if let (Some(edge), Some(sites)) = (graph.edges.get(index), sites.get(index)) {
             pieces(index, edge, sites, junctions, core, &mut found);
         }
     }
-    for connection in junctions.of_lines().filter(|one| core.contains(&one.owner.y)) {
+    let own = |one: &&Connection| core.contains(&one.owner.y) && !marks.has_edge(one.from.edge);
+    for connection in junctions.of_lines().filter(own) {
         let joint = |end: End| arm_joint(graph, end);
         let Some(start) = joint(connection.from) else { continue };
         let end = match connection.to {

@@ -9,7 +9,8 @@
 //! 2. [`sites`](site) gives each of an edge's pixels the middle between both edges of the ink, and the width there;
 //! 3. [`spurs`](spur) that stick out no farther than the edge's roughness go, and [`dots`](dot) become one node each;
 //! 4. [`junctions`](junction): the arms of a crossing are extrapolated from where they are undisturbed, and meet;
-//! 5. [`corners`](corner) of a single line are sharpened in the same way.
+//! 5. [`corners`](corner) of a single line are sharpened in the same way;
+//! 6. small [`marks`](mark), in which no line is undisturbed, are drawn again as a whole.
 
 mod arm;
 mod build;
@@ -19,10 +20,12 @@ mod dot;
 mod fragment;
 mod join;
 mod junction;
+mod mark;
 mod meeting;
 mod near;
 mod place;
 mod raster_line;
+mod redraw;
 mod site;
 mod sites;
 mod smooth;
@@ -35,12 +38,14 @@ pub(crate) use build::Stretch;
 use build::{Edge, End, Graph};
 pub(crate) use fragment::Fragment;
 pub(crate) use join::Joiner;
+use mark::Marks;
 use near::Near;
 use place::Place;
 pub(crate) use site::{Rims, Scan};
 use sites::Sites;
 pub(crate) use stroke::{Cuts, Stroke};
 
+use crate::Bounded;
 use core::ops::Range;
 
 /// Rows of context that a band needs beside what its thinning needs: how far a junction looks along its arms.
@@ -50,24 +55,31 @@ pub(crate) const CONTEXT_ROWS: u32 = 288;
 /// on either side; the skeleton's first row is row `first_row` of the picture. The scan has these rows, and may have
 /// more. Works in `words`, whatever they are.
 ///
+/// Small marks are drawn again as a whole from what `marks` makes of their lines, if anything.
+///
 /// All coordinates are those of the whole picture, so that sums and roots round alike whatever the band.
 pub(crate) fn fragments(
     scan: Scan<'_>,
     skeleton: &Stretch<'_>,
     first_row: u32,
     core: &Range<u32>,
+    marks: Option<Bounded>,
     words: &mut Vec<u64>,
 ) -> Vec<Fragment> {
     let mut graph = Graph::of(skeleton, words);
     graph.move_down(first_row);
     raster_line::put_back(&mut graph, scan, skeleton, first_row);
+    let marks = marks.map(|bounded| Marks::of(&graph, scan, core, bounded)).unwrap_or_default();
     let dots = dot::dots(&mut graph, scan);
     let all = first_row.saturating_add(skeleton.rows.start)..first_row.saturating_add(skeleton.rows.end);
     let near = Near::to(core, stub::BELOW_ROWS, &graph, scan, &all);
-    let work = Found { graph: &graph, dots: &dots, scan, all };
-    work.near(&near, core, words)
+    let work = Found { graph: &graph, dots: &dots, marks: &marks, scan, all };
+    let mut found = work
+        .near(&near, core, words)
         .or_else(|| work.near(&Near::all(&work.all), core, words))
-        .unwrap_or_default()
+        .unwrap_or_default();
+    found.extend(marks.strokes);
+    found
 }
 
 /// A graph, before its lines are known.
@@ -75,6 +87,8 @@ struct Found<'a> {
     graph: &'a Graph,
     /// Of each edge whether it went into a dot.
     dots: &'a [bool],
+    /// What is drawn by itself.
+    marks: &'a Marks,
     scan: Scan<'a>,
     /// All rows of the picture that it has.
     all: Range<u32>,
@@ -83,7 +97,7 @@ struct Found<'a> {
 impl Found<'_> {
     /// The pieces of centrelines in the rows `core`, from the lines that come near; none when these do not decide about all.
     fn near(&self, near: &Near, core: &Range<u32>, words: &mut Vec<u64>) -> Option<Vec<Fragment>> {
-        let Self { graph, dots, scan, all } = self;
+        let Self { graph, dots, marks, scan, all } = self;
         let mut sites = Sites::new(graph, *scan);
         let junctions = junction::Junctions::of(
             graph,
@@ -93,10 +107,17 @@ impl Found<'_> {
             near,
         );
         corner::Corners::new(graph, &junctions, *scan).sharpen(&mut sites);
-        let lines =
-            stub::Lines { graph, sites: &sites, junctions: &junctions, scan: *scan, near, all: all.clone() };
+        let lines = stub::Lines {
+            graph,
+            sites: &sites,
+            junctions: &junctions,
+            marks,
+            scan: *scan,
+            near,
+            all: all.clone(),
+        };
         let stubs = stub::stubs(&lines, core, words)?;
-        let mut found = fragment::fragments(graph, &sites, &junctions, *scan, core);
+        let mut found = fragment::fragments(graph, &sites, &junctions, marks, *scan, core);
         found.extend(stubs);
         Some(found)
     }

@@ -6,6 +6,7 @@
 
 use super::fragment::{Fragment, Joint};
 use super::junction::Junctions;
+use super::mark::Marks;
 use super::near::Near;
 use super::site::{Scan, Site, least_around};
 use super::sites::Sites;
@@ -31,6 +32,7 @@ pub(super) struct Lines<'a> {
     pub(super) graph: &'a Graph,
     pub(super) sites: &'a Sites<'a>,
     pub(super) junctions: &'a Junctions,
+    pub(super) marks: &'a Marks,
     pub(super) scan: Scan<'a>,
     pub(super) near: &'a Near,
     /// All rows that there are.
@@ -56,6 +58,10 @@ pub(super) fn stubs(lines: &Lines<'_>, core: &Range<u32>, words: &mut Vec<u64>) 
     let patches = lines.patches(start..core.end.saturating_add(below).min(all.end), core, words)?;
     let mut found = Vec::new();
     for (patch, root) in patches.iter().zip(lines.roots(&patches)) {
+        // Of what is drawn by itself nothing is left bare.
+        if patch.pixels.first().is_some_and(|at| lines.marks.has_ink(*at)) {
+            continue;
+        }
         if !lines.is_sure(patch, root) {
             return None;
         }

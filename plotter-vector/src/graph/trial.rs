@@ -22,7 +22,7 @@ pub(super) fn better_than(cost: f64) -> f64 {
 }
 
 /// Nothing costs more than a pixel as far as this from where it should be, px.
-const FARTHEST_PX: f32 = 2.0;
+pub(super) const FARTHEST_PX: f32 = 2.0;
 
 /// Largest junction that is drawn again, px from its middle.
 const MOST_PX: f64 = 48.0;
@@ -72,7 +72,7 @@ pub(super) struct Trial<'a> {
 
 /// What a pen covers that goes straight on: all within half its width.
 #[derive(Clone, Copy)]
-struct Capsule {
+pub(super) struct Capsule {
     from: (f32, f32),
     way: (f32, f32),
     /// 1 / length²; 0 for a disc.
@@ -83,7 +83,7 @@ struct Capsule {
 impl Capsule {
     /// From one place to another.
     #[expect(clippy::cast_possible_truncation, reason = "a place in a square of 98 px is as good to 1e-5 px")]
-    fn new(from: PxPoint, to: PxPoint, half_px: f64) -> Self {
+    pub(super) fn new(from: PxPoint, to: PxPoint, half_px: f64) -> Self {
         let (x, y) = to.minus(from);
         let square = x * x + y * y;
         let per_square = if square > 0.0 { (1.0 / square) as f32 } else { 0.0 };
@@ -97,7 +97,7 @@ impl Capsule {
 
     /// Squared distance of a place from the pen's way, px².
     #[inline]
-    fn squared(&self, x: f32, y: f32) -> f32 {
+    pub(super) fn squared(&self, x: f32, y: f32) -> f32 {
         let (x, y) = (x - self.from.0, y - self.from.1);
         let t = (x * self.way.0 + y * self.way.1) * self.per_square;
         let t = if t > 0.0 { t } else { 0.0 };

@@ -53,7 +53,7 @@ impl<'a> Work<'a> {
     ) -> Self {
         let smallest_px = settings.smallest_mark_px(pen_px);
         let max_line_px = settings.max_line_px(pen_px);
-        let centring = settings.centring(max_line_px);
+        let centring = Centring { redraw: true, ..settings.centring(max_line_px) };
         let max_line_px = (settings.mode != Mode::Outline).then_some(max_line_px);
         let row_bytes = row_bytes(width);
         let grey = threshold.has_greys() && max_line_px.is_some();
@@ -185,6 +185,7 @@ impl<'a> Work<'a> {
         let bands = self.with_words(bands);
         let (step, lines, skeleton) = (self.follow, &mut self.lines, &mut self.skeleton);
         let ink_is_dark = self.threshold.ink_is_dark();
+        let marks = self.centring.marks();
         let follow = |levels: Option<(&Gray, u32)>| {
             let grey = levels.map(|(levels, first_row)| Rims { levels, ink_is_dark, first_row });
             lines.lend(|ink, first_row| {
@@ -194,7 +195,7 @@ impl<'a> Work<'a> {
                         let rows = step.around(&own);
                         let rows = rows.start - first_row..rows.end - first_row;
                         let stretch = Stretch { picture, rows };
-                        (fragments(scan, &stretch, first_row, &own, &mut words), words)
+                        (fragments(scan, &stretch, first_row, &own, marks, &mut words), words)
                     })
                 })
             })
