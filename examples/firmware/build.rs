@@ -129,12 +129,21 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
     }
     writeln!(
         text,
-        "/// The stepper plotter's settings.\npub const PLOTTER: StepperPlotterSettings = {literal};"
+        "/// The stepper plotter's settings.\npub static PLOTTER: StepperPlotterSettings = {literal};"
+    )?;
+    writeln!(
+        text,
+        "/// Whether a laser takes the place of its pen.\npub const LASER: bool = {};",
+        settings.laser
     )?;
     let PlannerSettings { path, jerk_mm_s3, .. } = settings.planner;
     let is_plain =
         path == PathMode::Exact && jerk_mm_s3.is_none() && settings.backlash == Backlash::default();
-    let modes = if is_plain { "ExactOnly" } else { "AllModes" };
+    let modes = match (is_plain, settings.laser) {
+        (true, false) => "ExactPen",
+        (true, true) => "ExactOnly",
+        (false, _) => "AllModes",
+    };
     let pens =
         if settings.pen == PenConvention::Spindle && !settings.laser { "SpindlePen" } else { "AnyPen" };
     writeln!(

@@ -108,6 +108,7 @@ enum Level {
 impl<Step: OutputPin, Dir> A4988<Step, Dir, NoPin<Step::Error>, NoPin<Step::Error>> {
     /// The motor of `axis`, on a board that has ENABLE and SLEEP wired so that the chip is always on. Leaves the pins
     /// as they are.
+    #[inline(always)] // so that a chip's times become whole numbers while the program is compiled
     pub const fn new(axis: Axis, step: Step, dir: Dir, timing: Timing) -> Self {
         Self {
             axis,

@@ -60,8 +60,8 @@ pub(crate) use homing::HomingProgress;
 pub use homing::{Homed, Homing, HomingAxis, HomingError, HomingStatus, HomingStep};
 pub use pid::{Pid, PidState, SumPid, SumPidState};
 pub use planner::{
-    Action, AllModes, Course, ExactOnly, Modes, PathMode, Phase, PlanError, Planner, PlannerSettings, Shape,
-    junction_speed,
+    Action, AllModes, Course, ExactOnly, ExactPen, Modes, PathMode, Phase, PlanError, Planner,
+    PlannerSettings, Shape, junction_speed,
 };
 pub use profile::{MotionLimits, ProfileError, ProfilePoint, Ramp, SCurve, Trapezoid, TrapezoidMove};
 pub use pulse_counter::PulseCounter;

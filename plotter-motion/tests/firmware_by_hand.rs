@@ -6,10 +6,10 @@ mod stepper_bench;
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{
-    Activity, Dialect, Grbl, SpindlePen, StepperPlotterSettings,
+    Activity, Dialect, Grbl, Host, SpindlePen, Step, StepperPlotterSettings,
 };
 use plotter_motion::kinematics::Backlash;
-use plotter_motion::{ExactOnly, Point, StepPoint, from_mm};
+use plotter_motion::{ExactOnly, ExactPen, Modes, Point, StepPoint, from_mm};
 use stepper_bench::Bench;
 
 const STEPS_PER_MM: f64 = 87.58;
@@ -400,4 +400,50 @@ fn a_small_controller_has_no_play_and_says_so() {
     let small = StepperPlotter::<Grbl<SpindlePen>, ExactOnly>::with_modes(machine);
     let error = small.err().map(|error| error.to_string()).unwrap_or_default();
     assert!(error.starts_with("backlash"), "{error}");
+}
+
+#[test]
+fn a_controller_of_exact_pens_has_no_laser_whatever_its_words_and_says_so() {
+    let machine = StepperPlotterSettings { laser: true, ..settings() };
+    let small = StepperPlotter::<Grbl, ExactPen>::with_modes(machine);
+    let error = small.err().map(|error| error.to_string()).unwrap_or_default();
+    assert!(error.starts_with("laser") && error.contains("AllModes"), "{error}");
+    assert!(StepperPlotter::<Grbl, ExactOnly>::with_modes(machine).is_ok());
+}
+
+/// All steps of a text, with a hold after so many of them.
+fn steps_of<H: Host, M: Modes>(text: &str, hold_after: usize) -> Vec<Step> {
+    let mut plotter =
+        StepperPlotter::<H, M>::with_modes(settings()).unwrap_or_else(|error| unreachable!("{error}"));
+    let (mut now, mut made) = (Duration::ZERO, Vec::new());
+    for byte in text.bytes() {
+        plotter.receive(now, byte);
+        while plotter.transmit(now).is_some() {}
+    }
+    loop {
+        while let Some(step) = plotter.poll(now) {
+            made.push(step);
+            if made.len() == hold_after {
+                plotter.receive(now, b'!');
+            }
+        }
+        while plotter.transmit(now).is_some() {}
+        match plotter.due() {
+            Some(due) => now = due,
+            None if matches!(plotter.status(now).activity, Activity::Hold { .. }) => {
+                plotter.receive(now, b'~')
+            }
+            None => return made,
+        }
+    }
+}
+
+#[test]
+fn a_small_controller_makes_the_steps_of_a_great_one() {
+    let text = "M3\nG1X20F3000\nG2X30Y10I0J10\nX20Y0R10\nM5\nG0X0Y5\nM3\nG1X1\nX2Y6\nX40\nM5\n";
+    for hold_after in [0, 500, 1_700, 3_000] {
+        let small = steps_of::<Grbl<SpindlePen>, ExactPen>(text, hold_after);
+        assert!(small.len() > 5_000, "{}", small.len());
+        assert_eq!(small, steps_of::<Grbl, plotter_motion::AllModes>(text, hold_after), "{hold_after}");
+    }
 }

@@ -81,6 +81,7 @@ impl Timing {
     }
 
     /// The same in nanoseconds, for the interrupt; 4.29 s at most.
+    #[inline(always)]
     pub(super) const fn in_ns(&self) -> TimingNs {
         let (high, hold) = (ns(self.high), ns(self.hold));
         TimingNs {
@@ -109,6 +110,7 @@ impl TimingNs {
     }
 }
 
+#[inline(always)]
 const fn ns(time: Duration) -> u32 {
     let ns = time.as_nanos();
     #[expect(clippy::cast_possible_truncation, reason = "checked")]

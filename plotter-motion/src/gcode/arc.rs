@@ -1,6 +1,7 @@
 //! The circle of a `G2` or `G3`.
 
-use super::Problem;
+use super::error::Complaint;
+use super::{Position, Problem};
 use crate::extremes::{greater, smaller};
 use crate::turn::atan2;
 use crate::{Point, Vec2};
@@ -20,12 +21,18 @@ const ROUNDED_MM: f64 = 0.005;
 /// How far round an arc goes, rad, above 0 to the `left`. One that ends where it begins is a whole circle.
 ///
 /// The limits are GRBL's (`gcode.c`, version 1.1).
-pub(super) fn sweep_rad(from: Point, to: Point, centre: Point, left: bool) -> Result<f64, Problem> {
+pub(super) fn sweep_rad<C: Complaint>(
+    from: Point,
+    to: Point,
+    centre: Point,
+    left: bool,
+    at: Position,
+) -> Result<f64, C> {
     let (out, end) = (from - centre, to - centre);
     let (start_mm, end_mm) = (out.length_near(), end.length_near());
     let off_mm = (end_mm - start_mm).abs();
     if off_mm > MOST_MM || (off_mm > LEAST_MM && off_mm > MOST_SHARE * start_mm) || start_mm == 0.0 {
-        return Err(Problem::ArcRadii { start_mm, end_mm });
+        return Err(Problem::ArcRadii { start_mm, end_mm }.at(at));
     }
     let angle = atan2(out.cross(end), out.dot(end));
     Ok(match left {
@@ -36,15 +43,21 @@ pub(super) fn sweep_rad(from: Point, to: Point, centre: Point, left: bool) -> Re
 }
 
 /// The centre of an arc with this radius, mm: the one of less than half a turn, or with a negative radius of more.
-pub(super) fn centre(from: Point, to: Point, radius_mm: f64, left: bool) -> Result<Point, Problem> {
+pub(super) fn centre<C: Complaint>(
+    from: Point,
+    to: Point,
+    radius_mm: f64,
+    left: bool,
+    at: Position,
+) -> Result<Point, C> {
     let chord = to - from;
     let length_mm = chord.length_near();
     if length_mm == 0.0 {
-        return Err(Problem::ArcWithoutEnd);
+        return Err(Problem::ArcWithoutEnd.at(at));
     }
     let half_mm = 0.5 * length_mm;
     if radius_mm.abs() + ROUNDED_MM < half_mm || radius_mm == 0.0 {
-        return Err(Problem::ArcRadius { radius_mm, least_mm: half_mm });
+        return Err(Problem::ArcRadius { radius_mm, least_mm: half_mm }.at(at));
     }
     // (r - h)(r + h) loses no digits where the arc is nearly a half circle.
     let squared = (radius_mm.abs() - half_mm) * (radius_mm.abs() + half_mm);
@@ -57,10 +70,19 @@ pub(super) fn centre(from: Point, to: Point, radius_mm: f64, left: bool) -> Resu
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gcode::Error;
     use core::f64::consts::PI;
 
     /// What the last digits of coordinates near 10 mm are worth, mm or rad.
     const EXACT: f64 = 1e-12;
+
+    fn sweep_rad(from: Point, to: Point, centre: Point, left: bool) -> Result<f64, Problem> {
+        super::sweep_rad(from, to, centre, left, Position::START).map_err(|error: Error| error.problem)
+    }
+
+    fn centre(from: Point, to: Point, radius_mm: f64, left: bool) -> Result<Point, Problem> {
+        super::centre(from, to, radius_mm, left, Position::START).map_err(|error: Error| error.problem)
+    }
 
     #[test]
     fn a_quarter_a_half_and_three_quarters() {

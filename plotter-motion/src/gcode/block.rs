@@ -75,7 +75,7 @@ pub struct Block {
 impl Block {
     // As a constant it is 400 bytes of program memory.
     #[inline(never)]
-    pub(super) fn empty() -> Self {
+    pub(crate) fn empty() -> Self {
         Self {
             at: Position::START,
             words: core::array::from_fn(|_| Word::NONE),
@@ -87,7 +87,7 @@ impl Block {
     }
 
     /// Takes one more word, the first of which stands at `at`; `false` if there is no room.
-    pub(super) fn push(&mut self, word: Word, at: Position) -> bool {
+    pub(crate) fn push(&mut self, word: Word, at: Position) -> bool {
         let Some(slot) = self.words.get_mut(usize::from(self.count)) else { return false };
         if self.count == 0 {
             self.at = at;

@@ -1,204 +1,254 @@
 //! [`Code`]: what `G` and `M` words ask for.
 
-/// A way of moving. It holds until another one is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Motion {
-    Rapid,
-    Line,
-    /// `left` is counter-clockwise.
-    Arc {
-        left: bool,
-    },
-    /// What is not carried out, as drilling; or nothing, after `G80`.
-    None,
-}
+use super::Word;
 
-/// What is done once with the words of the line.
+/// What a `G` or `M` word asks for. The upper half is its group: of each of the first [`EXCLUSIVE`] groups a line has one word at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Action {
-    Dwell,
+#[repr(u8)]
+pub(super) enum Code {
+    Rapid = 0x00,
+    Straight,
+    Clockwise,
+    CounterClockwise,
+    /// What is not carried out, as drilling; or nothing, after `G80`.
+    NoMotion,
+    Dwell = 0x10,
     Home,
     Offset,
     NoOffset,
-    /// `G10`: where the origin of the work lies (`L2`), or what the coordinates here are (`L20`).
-    Origin {
-        here: bool,
-    },
+    /// `G10 L2`: where the origin of the work lies.
+    Origin,
+    /// `G10 L20`: what the coordinates here are.
+    OriginHere,
     /// What is not carried out, and takes the words of the line.
     Other,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Spindle {
-    Off,
+    Inches = 0x20,
+    Millimetres,
+    Relative = 0x30,
+    Absolute,
+    AbsoluteCentres = 0x40,
+    RelativeCentres,
+    Sheet = 0x50,
+    OtherPlane,
+    InverseTime = 0x60,
+    FeedPerMinute,
+    SpindleOff = 0x70,
     /// `M3`: also while the machine stands.
     Constant,
     /// `M4`: in proportion to the speed.
     Dynamic,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Stop {
     /// `M0`, `M1`.
-    Pause,
+    Pause = 0x80,
     /// `M2`, `M30`.
     End,
+    FanOn = 0x90,
+    FanOff,
+    /// `M300 S…`.
+    Beep,
+    /// `M280 S…`.
+    ServoAngle,
+    /// mDraw's `M1 …`.
+    Degrees,
+    /// mDraw's `M4 …`.
+    LaserPower,
+    ToolChange = 0xA0,
+    MachineCoordinates = 0xB0,
+    /// Nothing for a pen plotter to do; the other words of the line belong to it.
+    QuietWithWords = 0xC0,
+    /// Nothing for a pen plotter to do.
+    Quiet = 0xD0,
 }
 
-/// What a `G` or `M` word asks for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Code {
-    Motion(Motion),
-    Action(Action),
-    MachineCoordinates,
-    Inches(bool),
-    Relative(bool),
-    AbsoluteCentres(bool),
-    Sheet(bool),
-    InverseTime(bool),
-    Spindle(Spindle),
-    Fan(bool),
-    Beep,
-    ServoAngle,
-    ToolChange,
-    Stop(Stop),
-    /// Nothing for a pen plotter to do.
-    Quiet,
-    /// Nothing for a pen plotter to do; the other words of the line belong to it.
-    QuietWithWords,
-    Unknown,
+/// The groups that a line is asked for as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum Group {
+    /// A way of moving. It holds until another one is asked for.
+    Motion,
+    /// What is done once with the words of the line.
+    Action,
+    Spindle = 7,
+    Stop = 8,
+    /// A servo or a laser that is told a number.
+    Told = 9,
 }
+
+/// How many groups there are, and how many of them allow one word only.
+pub(super) const GROUPS: usize = Code::Quiet.group() + 1;
+pub(super) const EXCLUSIVE: usize = Code::ToolChange.group() + 1;
+
+/// Words whose numbers lie from `first` to `last`, and the digits behind the point within `tenths`.
+#[derive(Clone, Copy, Debug)]
+struct Words {
+    first: u16,
+    last: u16,
+    /// The first digit, and how many more.
+    tenths: (u8, u8),
+    code: Code,
+}
+
+const fn words(first: u16, last: u16, code: Code) -> Words {
+    Words { first, last, tenths: (0, 0), code }
+}
+
+const fn one(number: u16, code: Code) -> Words {
+    words(number, number, code)
+}
+
+const fn tenths(number: u16, first: u8, more: u8, code: Code) -> Words {
+    Words { first: number, last: number, tenths: (first, more), code }
+}
+
+/// `G` words: what is done.
+static GENERAL: &[Words] = &[
+    one(0, Code::Rapid),
+    one(1, Code::Straight),
+    one(2, Code::Clockwise),
+    one(3, Code::CounterClockwise),
+    one(80, Code::NoMotion),
+    one(4, Code::Dwell),
+    one(28, Code::Home),
+    one(30, Code::Home),
+    one(92, Code::Offset),
+    tenths(92, 1, 1, Code::NoOffset),
+    one(53, Code::MachineCoordinates),
+    one(17, Code::Sheet),
+    one(20, Code::Inches),
+    one(21, Code::Millimetres),
+    one(90, Code::Absolute),
+    one(91, Code::Relative),
+    tenths(90, 1, 0, Code::AbsoluteCentres),
+    tenths(91, 1, 0, Code::RelativeCentres),
+    one(94, Code::FeedPerMinute),
+    // Cancelling what was never on; work coordinates; path control; what machines and lathes differ in.
+    one(15, Code::Quiet),
+    one(40, Code::Quiet),
+    words(49, 50, Code::Quiet),
+    words(54, 58, Code::Quiet),
+    tenths(59, 0, 3, Code::Quiet),
+    tenths(61, 0, 1, Code::Quiet),
+    one(64, Code::Quiet),
+    one(69, Code::Quiet),
+    words(97, 99, Code::Quiet),
+];
+
+/// `G` words that are known, and not carried out; [`meaning`] says what they are.
+static GENERAL_UNDONE: &[Words] = &[
+    tenths(5, 0, 3, Code::NoMotion),
+    tenths(33, 0, 1, Code::NoMotion),
+    tenths(38, 2, 3, Code::NoMotion),
+    one(73, Code::NoMotion),
+    one(76, Code::NoMotion),
+    words(81, 89, Code::NoMotion),
+    one(10, Code::Other),
+    tenths(28, 1, 0, Code::Other),
+    tenths(30, 1, 0, Code::Other),
+    one(29, Code::Other),
+    tenths(92, 3, 0, Code::Other),
+    words(18, 19, Code::OtherPlane),
+    one(93, Code::InverseTime),
+    one(95, Code::InverseTime),
+    words(41, 43, Code::Quiet),
+    tenths(43, 1, 0, Code::Other),
+    one(51, Code::Other),
+    one(68, Code::Other),
+];
+
+/// `M` words: what is done.
+static MISCELLANEOUS: &[Words] = &[
+    words(0, 1, Code::Pause),
+    one(2, Code::End),
+    one(30, Code::End),
+    one(3, Code::Constant),
+    one(4, Code::Dynamic),
+    one(5, Code::SpindleOff),
+    one(6, Code::ToolChange),
+    one(106, Code::FanOn),
+    one(107, Code::FanOff),
+    one(280, Code::ServoAngle),
+    one(300, Code::Beep),
+    // Coolant, mDraw's questions, drives, overrides.
+    words(7, 11, Code::Quiet),
+    words(17, 18, Code::Quiet),
+    words(48, 49, Code::Quiet),
+    // What printers are told and asked about themselves.
+    one(23, Code::QuietWithWords),
+    words(82, 85, Code::QuietWithWords),
+    one(92, Code::QuietWithWords),
+    one(105, Code::QuietWithWords),
+    words(110, 111, Code::QuietWithWords),
+    words(114, 115, Code::QuietWithWords),
+    words(117, 119, Code::QuietWithWords),
+    words(201, 206, Code::QuietWithWords),
+    one(211, Code::QuietWithWords),
+    words(220, 221, Code::QuietWithWords),
+    one(400, Code::QuietWithWords),
+    words(500, 503, Code::QuietWithWords),
+];
+
+/// `M` words that are known, and not carried out.
+static MISCELLANEOUS_UNDONE: &[Words] = &[
+    one(19, Code::Quiet),
+    one(42, Code::QuietWithWords),
+    words(62, 68, Code::QuietWithWords),
+    words(98, 99, Code::QuietWithWords),
+    one(104, Code::QuietWithWords),
+    one(109, Code::QuietWithWords),
+    one(140, Code::QuietWithWords),
+    one(190, Code::QuietWithWords),
+    one(226, Code::QuietWithWords),
+];
 
 impl Code {
-    /// What the `G` word with this number, times ten, asks for, and what that is called where it is not done.
-    pub(super) fn general(tenths: u16) -> (Self, Option<&'static str>) {
-        let done = match tenths {
-            0 => Self::Motion(Motion::Rapid),
-            10 => Self::Motion(Motion::Line),
-            20 => Self::Motion(Motion::Arc { left: false }),
-            30 => Self::Motion(Motion::Arc { left: true }),
-            800 => Self::Motion(Motion::None),
-            40 => Self::Action(Action::Dwell),
-            280 | 300 => Self::Action(Action::Home),
-            920 => Self::Action(Action::Offset),
-            921 | 922 => Self::Action(Action::NoOffset),
-            530 => Self::MachineCoordinates,
-            170 => Self::Sheet(true),
-            200 => Self::Inches(true),
-            210 => Self::Inches(false),
-            900 => Self::Relative(false),
-            910 => Self::Relative(true),
-            901 => Self::AbsoluteCentres(true),
-            911 => Self::AbsoluteCentres(false),
-            940 => Self::InverseTime(false),
-            // Cancelling what was never on; work coordinates; path control; what machines and lathes differ in.
-            150
-            | 400
-            | 490
-            | 500
-            | 540
-            | 550
-            | 560
-            | 570
-            | 580
-            | 590..=593
-            | 610
-            | 611
-            | 640
-            | 690
-            | 970
-            | 980
-            | 990 => Self::Quiet,
-            _ => return Self::general_undone(tenths),
+    /// What a `G` or `M` word with this number, times ten, asks for, and whether that is done. As tables: for a small processor they are
+    /// a third of the decisions.
+    pub(super) fn of(letter: u8, tenths: u16) -> Option<(Self, bool)> {
+        let (done, undone) =
+            if letter == b'G' { (GENERAL, GENERAL_UNDONE) } else { (MISCELLANEOUS, MISCELLANEOUS_UNDONE) };
+        let (number, tenth) = (tenths / 10, tenths % 10);
+        let fits = |words: &&Words| {
+            let (first, more) = words.tenths;
+            (words.first..=words.last).contains(&number)
+                && u8::try_from(tenth).is_ok_and(|tenth| tenth.wrapping_sub(first) <= more)
         };
-        (done, None)
+        let undone = || undone.iter().find(fits).map(|words| (words.code, false));
+        done.iter().find(fits).map(|words| (words.code, true)).or_else(undone)
     }
 
-    fn general_undone(tenths: u16) -> (Self, Option<&'static str>) {
-        let (code, meaning) = match tenths {
-            50..=53 => (Self::Motion(Motion::None), "spline"),
-            330 | 331 => (Self::Motion(Motion::None), "synchronized motion"),
-            382..=385 => (Self::Motion(Motion::None), "probe"),
-            730 | 760 | 810 | 820 | 830 | 840 | 850 | 860 | 870 | 880 | 890 => {
-                (Self::Motion(Motion::None), "canned cycle")
-            }
-            100 => (Self::Action(Action::Other), "another coordinate system"),
-            281 | 301 => (Self::Action(Action::Other), "set the place of homing"),
-            290 => (Self::Action(Action::Other), "bed levelling"),
-            923 => (Self::Action(Action::Other), "restore the offset"),
-            180 => (Self::Sheet(false), "plane XZ"),
-            190 => (Self::Sheet(false), "plane YZ"),
-            930 => (Self::InverseTime(true), "inverse time feed rate"),
-            950 => (Self::InverseTime(true), "feed rate per revolution"),
-            410 | 420 => (Self::Quiet, "cutter compensation"),
-            430 => (Self::Quiet, "tool length"),
-            431 => (Self::Action(Action::Other), "tool length"),
-            510 => (Self::Action(Action::Other), "scaling"),
-            680 => (Self::Action(Action::Other), "rotation"),
-            _ => return (Self::Unknown, None),
-        };
-        (code, Some(meaning))
+    /// Its group, a number below [`GROUPS`].
+    pub(super) const fn group(self) -> usize {
+        (self as u8 >> 4) as usize
     }
+}
 
-    /// What the `M` word with this number, times ten, asks for, and what that is called where it is not done.
-    pub(super) fn miscellaneous(tenths: u16) -> (Self, Option<&'static str>) {
-        if !tenths.is_multiple_of(10) {
-            return (Self::Unknown, None);
-        }
-        let done = match tenths / 10 {
-            0 | 1 => Self::Stop(Stop::Pause),
-            2 | 30 => Self::Stop(Stop::End),
-            3 => Self::Spindle(Spindle::Constant),
-            4 => Self::Spindle(Spindle::Dynamic),
-            5 => Self::Spindle(Spindle::Off),
-            6 => Self::ToolChange,
-            106 => Self::Fan(true),
-            107 => Self::Fan(false),
-            280 => Self::ServoAngle,
-            300 => Self::Beep,
-            // Coolant, mDraw's questions, drives, overrides.
-            7..=11 | 17 | 18 | 48 | 49 => Self::Quiet,
-            // What printers are told and asked about themselves.
-            23
-            | 82..=85
-            | 92
-            | 105
-            | 110
-            | 111
-            | 114
-            | 115
-            | 117..=119
-            | 201..=206
-            | 211
-            | 220
-            | 221
-            | 400
-            | 500..=503 => Self::QuietWithWords,
-            19 => return (Self::Quiet, Some("spindle orientation")),
-            42 | 62..=68 => return (Self::QuietWithWords, Some("output pin")),
-            98 | 99 => return (Self::QuietWithWords, Some("subprogram")),
-            104 | 109 | 140 | 190 => return (Self::QuietWithWords, Some("temperature")),
-            226 => return (Self::QuietWithWords, Some("pause")),
-            _ => Self::Unknown,
+/// What a word asks for that is not carried out.
+pub(super) fn meaning(command: Word) -> &'static str {
+    let tenths = command.tenths().unwrap_or_default();
+    if command.letter == b'M' {
+        return match tenths / 10 {
+            0 | 1 | 226 => "pause",
+            19 => "spindle orientation",
+            42 | 62..=68 => "output pin",
+            98 | 99 => "subprogram",
+            _ => "temperature",
         };
-        (done, None)
     }
-
-    /// Commands of one number exclude each other within a line.
-    pub(super) fn group(self) -> Option<usize> {
-        match self {
-            Self::Motion(_) => Some(0),
-            Self::Action(_) => Some(1),
-            Self::Inches(_) => Some(2),
-            Self::Relative(_) => Some(3),
-            Self::AbsoluteCentres(_) => Some(4),
-            Self::Sheet(_) => Some(5),
-            Self::InverseTime(_) => Some(6),
-            Self::Spindle(_) => Some(7),
-            Self::Stop(_) => Some(8),
-            Self::Fan(_) | Self::Beep | Self::ServoAngle => Some(9),
-            Self::ToolChange => Some(10),
-            Self::MachineCoordinates | Self::Quiet | Self::QuietWithWords | Self::Unknown => None,
-        }
+    match tenths {
+        50..=53 => "spline",
+        330 | 331 => "synchronized motion",
+        382..=385 => "probe",
+        100 => "another coordinate system",
+        281 | 301 => "set the place of homing",
+        290 => "bed levelling",
+        923 => "restore the offset",
+        180 => "plane XZ",
+        190 => "plane YZ",
+        930 => "inverse time feed rate",
+        950 => "feed rate per revolution",
+        410 | 420 => "cutter compensation",
+        430 | 431 => "tool length",
+        510 => "scaling",
+        680 => "rotation",
+        _ => "canned cycle",
     }
 }

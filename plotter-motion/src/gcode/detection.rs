@@ -1,8 +1,8 @@
 //! [`Detection`]: by which words a text lifts its pen, found out from the text.
 
-use super::code::{Action, Motion, Spindle};
-use super::line::{Line, Told};
-use super::{Block, DwellUnit, LaserCommand, PenConvention, ReadOptions, Reader, ServoCommand};
+use super::code::{Code, Group};
+use super::line::Line;
+use super::{Block, DwellUnit, Error, LaserCommand, PenConvention, ReadOptions, Reader, ServoCommand};
 
 /// Greatest angle of a servo, degrees: what is more is a tone, or switches the servo off.
 const MOST_DEG: f64 = 180.0;
@@ -95,7 +95,7 @@ impl Places {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detection {
-    motion: Motion,
+    motion: Code,
     unit_mm: f64,
     relative: bool,
     beeps: Places,
@@ -133,7 +133,7 @@ impl Detection {
     pub fn new() -> Self {
         let none = Places::default();
         Self {
-            motion: Motion::Rapid,
+            motion: Code::Rapid,
             unit_mm: 1.0,
             relative: false,
             beeps: none,
@@ -174,31 +174,29 @@ impl Detection {
 
     /// Takes the next line.
     pub fn push(&mut self, block: &Block) {
-        let Ok(line) = Line::read(block) else { return };
+        let Ok(line) = Line::read::<Error>(block) else { return };
         if block.is_deleted() {
             return;
         }
-        self.motion = line.motion.unwrap_or(self.motion);
-        self.relative = line.relative.unwrap_or(self.relative);
-        if let Some(inches) = line.inches {
-            self.unit_mm = if inches { 25.4 } else { 1.0 };
-        }
-        let may_move = line.may_move() && self.motion != Motion::None;
+        self.motion = line.of(Group::Motion).unwrap_or(self.motion);
+        self.relative = line.chooses(Code::Relative, self.relative);
+        self.unit_mm = if line.chooses(Code::Inches, self.unit_mm != 1.0) { 25.4 } else { 1.0 };
+        let may_move = line.may_move() && self.motion != Code::NoMotion;
         let moves = may_move && line.has(b"XY");
         self.take_told(&line);
-        if let (true, Some(z)) = (may_move && !line.machine_coordinates, line.number(b'Z')) {
+        if let (true, Some(z)) = (may_move && !line.is(Code::MachineCoordinates), line.number(b'Z')) {
             let z = z * self.unit_mm;
             self.z.put(if self.relative { self.z.now.unwrap_or_default() + z } else { z });
         }
         self.take_spindle(&line, moves);
-        if line.action == Some(Action::Dwell)
+        if line.is(Code::Dwell)
             && let Some(time) = line.number(b'P').filter(|time| *time > 0.0)
         {
             self.dwells = true;
             self.short_dwells |= time < LEAST_MILLIS || libm::trunc(time) != time;
         }
         if moves {
-            let is_rapid = self.motion == Motion::Rapid;
+            let is_rapid = self.motion == Code::Rapid;
             for places in
                 [&mut self.beeps, &mut self.servo, &mut self.degrees, &mut self.z, &mut self.spindle]
             {
@@ -209,26 +207,27 @@ impl Detection {
 
     fn take_told(&mut self, line: &Line<'_>) {
         let angle = line.number(b'S').filter(|angle| (0.0..=MOST_DEG).contains(angle));
-        match (line.told, angle) {
-            (Some(Told::Beep), Some(angle)) => self.beeps.put(angle),
-            (Some(Told::ServoAngle), Some(angle)) => self.servo.put(angle),
-            (Some(Told::Degrees(degrees)), _) => self.degrees.put(degrees),
-            (Some(Told::LaserPower(power)), _) => self.laser = self.laser.max(power),
-            (Some(Told::Fan(on)), _) => self.fan |= on,
+        match (line.of(Group::Told), angle) {
+            (Some(Code::Beep), Some(angle)) => self.beeps.put(angle),
+            (Some(Code::ServoAngle), Some(angle)) => self.servo.put(angle),
+            (Some(Code::Degrees), _) => self.degrees.put(line.bare),
+            (Some(Code::LaserPower), _) => self.laser = self.laser.max(line.bare),
+            (Some(Code::FanOn), _) => self.fan = true,
             _ => {}
         }
     }
 
     fn take_spindle(&mut self, line: &Line<'_>, moves: bool) {
-        if let Some(spindle) = line.spindle {
-            self.spindle_changes =
-                self.spindle_changes.saturating_add(u32::from(self.spindle_on != (spindle != Spindle::Off)));
-            self.spindle_on = spindle != Spindle::Off;
-            self.dynamic |= spindle == Spindle::Dynamic;
-            self.constant |= spindle == Spindle::Constant;
-            self.offs = self.offs.saturating_add(u32::from(spindle == Spindle::Off));
+        if let Some(spindle) = line.of(Group::Spindle) {
+            self.spindle_changes = self
+                .spindle_changes
+                .saturating_add(u32::from(self.spindle_on != (spindle != Code::SpindleOff)));
+            self.spindle_on = spindle != Code::SpindleOff;
+            self.dynamic |= spindle == Code::Dynamic;
+            self.constant |= spindle == Code::Constant;
+            self.offs = self.offs.saturating_add(u32::from(spindle == Code::SpindleOff));
         }
-        let is_mine = line.told.is_none() && line.action != Some(Action::Dwell) && !line.owned;
+        let is_mine = line.of(Group::Told).is_none() && !line.is(Code::Dwell) && !line.owned();
         let Some(power) = line.number(b'S').filter(|_| is_mine) else { return };
         self.power_in_move |= moves;
         self.most_power = self.most_power.max(power);

@@ -1,5 +1,6 @@
 //! [`Error`]: what is wrong with a text, where, and what would be right.
 
+use super::code::meaning;
 use super::{Position, Word};
 use core::fmt;
 
@@ -127,10 +128,30 @@ pub enum Problem {
     },
 }
 
+/// What becomes of a complaint: an [`Error`] for people; for a small program no more than it tells.
+pub(crate) trait Complaint: Copy + fmt::Debug + PartialEq {
+    /// A problem and where it is.
+    fn of(problem: Problem, at: Position) -> Self;
+
+    /// A command that is known and not carried out.
+    fn undone(command: Word, at: Position) -> Self;
+}
+
+impl Complaint for Error {
+    fn of(problem: Problem, at: Position) -> Self {
+        Self { at, problem }
+    }
+
+    fn undone(command: Word, at: Position) -> Self {
+        Self::of(Problem::Unsupported { command, meaning: meaning(command) }, at)
+    }
+}
+
 impl Problem {
     /// The same, with its place.
-    pub(super) fn at(self, at: Position) -> Error {
-        Error { at, problem: self }
+    #[inline(always)] // so that a complaint that is no more than a number is never put together
+    pub(super) fn at<C: Complaint>(self, at: Position) -> C {
+        C::of(self, at)
     }
 }
 

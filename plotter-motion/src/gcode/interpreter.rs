@@ -1,5 +1,6 @@
 //! [`Interpreter`]: lines in, plot operations out; [`LineInterpreter`]: the same without a memory for what a line has given.
 
+use super::error::Complaint;
 use super::line::Line;
 use super::machine::Machine;
 use super::{Block, BlockDelete, Error, Modes, ReadOptions, Undrained};
@@ -8,17 +9,15 @@ use crate::{PlotOp, Point};
 /// Most that one line gives.
 const MOST_OUTCOMES: usize = 10;
 
-type Outcome = Result<PlotOp, Error>;
-
 /// What a line has given, in its order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Outcomes {
-    slots: [Option<Outcome>; MOST_OUTCOMES],
+pub(crate) struct Outcomes<C> {
+    slots: [Option<Result<PlotOp, C>>; MOST_OUTCOMES],
     count: u8,
     taken: u8,
 }
 
-impl Outcomes {
+impl<C: Complaint> Outcomes<C> {
     // By itself, and written slot by slot: as a constant it is there as often as it is used, 648 bytes each.
     #[inline(never)]
     pub(crate) fn none() -> Self {
@@ -26,7 +25,7 @@ impl Outcomes {
     }
 
     #[inline(never)] // for the sake of small processors
-    pub(super) fn give(&mut self, outcome: Outcome) {
+    pub(super) fn give(&mut self, outcome: Result<PlotOp, C>) {
         match self.slots.get_mut(usize::from(self.count)) {
             Some(slot) => {
                 *slot = Some(outcome);
@@ -36,7 +35,12 @@ impl Outcomes {
         }
     }
 
-    pub(crate) fn take(&mut self) -> Option<Outcome> {
+    /// What has not been taken, in its order.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Result<PlotOp, C>> {
+        self.slots.iter().take(self.count.into()).flatten()
+    }
+
+    pub(crate) fn take(&mut self) -> Option<Result<PlotOp, C>> {
         if self.taken == self.count {
             (self.count, self.taken) = (0, 0);
             return None;
@@ -82,7 +86,7 @@ impl Outcomes {
 pub struct Interpreter {
     options: ReadOptions,
     line: LineInterpreter,
-    outcomes: Outcomes,
+    outcomes: Outcomes<Error>,
 }
 
 /// What of an [`Interpreter`] holds from one line to the next.
@@ -118,9 +122,11 @@ impl Interpreter {
     /// [`Undrained`] when [`Interpreter::next_op`] still has something to give; the line is not taken.
     pub fn push(&mut self, block: Result<Block, Error>) -> Result<(), Undrained> {
         self.drained()?;
+        let before = self.line;
         if let Err(error) =
             block.and_then(|block| self.line.carry_out(&block, &self.options, &mut self.outcomes))
         {
+            self.line = before;
             self.outcomes = Outcomes::none();
             self.outcomes.give(Err(error));
         }
@@ -139,7 +145,7 @@ impl Interpreter {
     }
 
     /// The next operation, or what could not be carried out; `None` when the next line is wanted.
-    pub fn next_op(&mut self) -> Option<Outcome> {
+    pub fn next_op(&mut self) -> Option<Result<PlotOp, Error>> {
         self.outcomes.take()
     }
 
@@ -181,22 +187,24 @@ impl LineInterpreter {
         self.machine.stand_at(point);
     }
 
-    /// Carries a line out as a whole, or not at all: what `out` has after an error is none of it.
-    pub(crate) fn carry_out(
+    /// Where a line would have the pen travel, if it names a place, and its speed in mm/s: what a movement by hand is told. Nothing of it
+    /// holds afterwards.
+    pub(crate) fn travel<C: Complaint>(mut self, block: &Block) -> Result<(Option<Point>, Option<f64>), C> {
+        let to = self.machine.travel(&Line::read(block)?)?;
+        Ok((to, self.machine.modes().feed_mm_s))
+    }
+
+    /// Carries a line out. After an error neither the interpreter nor `out` is to be used: the line is left out as a whole.
+    pub(crate) fn carry_out<C: Complaint>(
         &mut self,
         block: &Block,
         options: &ReadOptions,
-        out: &mut Outcomes,
-    ) -> Result<(), Error> {
+        out: &mut Outcomes<C>,
+    ) -> Result<(), C> {
         if block.is_deleted() && options.block_delete == BlockDelete::LeaveOut {
             return Ok(());
         }
         (out.count, out.taken) = (0, 0);
-        let line = Line::read(block)?;
-        // What an error leaves half done is forgotten.
-        let mut machine = self.machine;
-        machine.carry_out(&line, options, out)?;
-        self.machine = machine;
-        Ok(())
+        self.machine.carry_out(&Line::read(block)?, options, out)
     }
 }

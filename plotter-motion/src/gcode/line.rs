@@ -1,76 +1,40 @@
 //! [`Line`]: the commands of one line, once it is known that they go together.
 
 use super::block::is_among;
-use super::code::{Action, Code, Motion, Spindle, Stop};
-use super::{Block, Error, Problem, Word};
+use super::code::{Code, EXCLUSIVE, GROUPS, Group};
+use super::error::Complaint;
+use super::{Block, Problem, Word};
 
 /// Letters whose words are worth a notice where no command uses them.
 const NOTEWORTHY: &[u8] = b"ABCEIJKRUVW";
-
-/// A servo or a laser that is told a number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Told {
-    /// `M300 S…`.
-    Beep,
-    /// `M280 S…`.
-    ServoAngle,
-    /// `M106 S…`, `M107`.
-    Fan(bool),
-    /// mDraw's `M1 …`.
-    Degrees(f64),
-    /// mDraw's `M4 …`.
-    LaserPower(f64),
-}
 
 /// What the words of one line ask for together.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line<'b> {
     pub(super) block: &'b Block,
-    pub(super) motion: Option<Motion>,
-    pub(super) action: Option<Action>,
-    pub(super) inches: Option<bool>,
-    pub(super) relative: Option<bool>,
-    pub(super) absolute_centres: Option<bool>,
-    pub(super) sheet: Option<bool>,
-    pub(super) inverse_time: Option<bool>,
-    pub(super) spindle: Option<Spindle>,
-    pub(super) stop: Option<Stop>,
-    pub(super) told: Option<Told>,
-    pub(super) tool_change: Option<Word>,
-    pub(super) machine_coordinates: bool,
-    /// The words belong to a command that means nothing to a plotter.
-    pub(super) owned: bool,
-    pub(super) notice: Option<Error>,
+    /// Of each group what it was asked for, and by which word: one more than where that stands.
+    codes: [Option<Code>; GROUPS],
+    places: [u8; GROUPS],
+    /// mDraw's number without a letter.
+    pub(super) bare: f64,
+    /// The last word that is known and not carried out.
+    pub(super) undone: Option<Word>,
 }
 
 impl<'b> Line<'b> {
-    pub(super) fn read(block: &'b Block) -> Result<Self, Error> {
-        let mut line = Self {
-            block,
-            motion: None,
-            action: None,
-            inches: None,
-            relative: None,
-            absolute_centres: None,
-            sheet: None,
-            inverse_time: None,
-            spindle: None,
-            stop: None,
-            told: None,
-            tool_change: None,
-            machine_coordinates: false,
-            owned: false,
-            notice: None,
-        };
-        // Of each group the word that it has had: one more than where it stands.
-        let mut groups = [0_u8; 11];
-        let word_at = |place: u8| block.words().get(usize::from(place).wrapping_sub(1)).copied();
+    pub(super) fn read<C: Complaint>(block: &'b Block) -> Result<Self, C> {
+        let mut line = Self { block, codes: [None; GROUPS], places: [0; GROUPS], bare: 0.0, undone: None };
         let mut letters = 0_u32;
-        let mut words = block.words().iter().copied().zip(1..).peekable();
-        while let Some((word, place)) = words.next() {
+        // The letter before, and whatever no line begins with.
+        let mut before = 0;
+        for (&word, place) in block.words().iter().zip(1_u8..) {
+            let after = core::mem::replace(&mut before, word.letter);
             if !matches!(word.letter, b'G' | b'M') {
                 let bit = 1 << (word.letter & 31);
                 if word.letter == Word::BARE {
+                    if after == b'M' {
+                        continue;
+                    }
                     return Err(Problem::NoLetter.at(block.place(word)));
                 }
                 if letters & bit != 0 {
@@ -79,20 +43,26 @@ impl<'b> Line<'b> {
                 letters |= bit;
                 continue;
             }
-            let bare = words.next_if(|(next, _)| word.letter == b'M' && next.letter == Word::BARE);
-            let code = line.command(word, bare.and_then(|(bare, _)| bare.number))?;
-            if let Some(first) = code.group().and_then(|group| groups.get_mut(group))
-                && let Some(first) = word_at(core::mem::replace(first, place))
+            let next = block.words().get(usize::from(place)).filter(|_| word.letter == b'M');
+            let bare = next.filter(|next| next.letter == Word::BARE);
+            let code = line.command(word, bare.and_then(|bare| bare.number))?;
+            let group = code.group();
+            if group < EXCLUSIVE
+                && let Some(first) = line.word_of(group)
             {
                 return Err(Problem::TwoCommands { first, second: word }.at(block.place(word)));
             }
+            if let (Some(slot), Some(at)) = (line.codes.get_mut(group), line.places.get_mut(group)) {
+                (*slot, *at) = (Some(code), place);
+            }
         }
         line.check_numbers()?;
-        let [motion, action, ..] = groups;
-        if let (Some(motion), Some(action)) = (word_at(motion), word_at(action))
-            && !matches!(line.motion, Some(Motion::None))
-            && line.action != Some(Action::Dwell)
-            && b"XYZ".iter().any(|letter| letters & (1 << (letter & 31)) != 0)
+        let has_axis = || b"XYZ".iter().any(|letter| letters & (1 << (letter & 31)) != 0);
+        if let (Some(motion), Some(action)) =
+            (line.word_of(Group::Motion as usize), line.word_of(Group::Action as usize))
+            && !line.is(Code::NoMotion)
+            && !line.is(Code::Dwell)
+            && has_axis()
         {
             let (first, second) =
                 if motion.column < action.column { (motion, action) } else { (action, motion) };
@@ -102,74 +72,82 @@ impl<'b> Line<'b> {
     }
 
     /// One `G` or `M` word, and mDraw's number after it.
-    fn command(&mut self, word: Word, bare: Option<f64>) -> Result<Code, Error> {
+    fn command<C: Complaint>(&mut self, word: Word, bare: Option<f64>) -> Result<Code, C> {
         let at = self.block.place(word);
         if word.number.is_none() {
             return Err(Problem::NoNumber { letter: word.letter }.at(at));
         }
-        let unknown = || Problem::Unknown { command: word }.at(at);
-        let tenths = word.tenths().ok_or_else(unknown)?;
-        let (mut code, mut meaning) =
-            if word.letter == b'G' { Code::general(tenths) } else { Code::miscellaneous(tenths) };
-        match (tenths, bare) {
-            (_, None) => {}
-            (10, Some(degrees)) => {
-                self.told = Some(Told::Degrees(degrees));
-                return Ok(Code::ServoAngle);
-            }
-            (40, Some(power)) => {
-                self.told = Some(Told::LaserPower(power));
-                return Ok(Code::Fan(true));
-            }
-            (30, Some(_)) => code = Code::Quiet, // slower steps
-            _ => return Err(Problem::NoLetter.at(at)),
+        let tenths = word.tenths();
+        if let (Some(tenths), Some(bare)) = (tenths, bare) {
+            self.bare = bare;
+            return match tenths {
+                10 => Ok(Code::Degrees),
+                40 => Ok(Code::LaserPower),
+                30 => Ok(Code::Quiet), // slower steps
+                _ => Err(Problem::NoLetter.at(at)),
+            };
         }
+        let known = tenths.and_then(|tenths| Code::of(word.letter, tenths));
+        let (Some(tenths), Some((code, is_done))) = (tenths, known) else {
+            return Err(Problem::Unknown { command: word }.at(at));
+        };
         // mDraw keeps the angles and the sheet of its machine by M2 and M5.
         let has = |letters: &[u8]| self.block.words().iter().any(|word| is_among(word.letter, letters));
         if word.letter == b'M' && ((tenths == 20 && has(b"UD")) || (tenths == 50 && has(b"ABHW"))) {
-            code = Code::QuietWithWords;
+            return Ok(Code::QuietWithWords);
         }
         // There is one coordinate system: that of G54, which is the first, and the one in force, which is 0.
         if (word.letter, tenths) == (b'G', 100)
             && let (Some(0.0 | 1.0), Some(form @ (2.0 | 20.0))) =
                 (self.block.number(b'P'), self.block.number(b'L'))
         {
-            (code, meaning) = (Code::Action(Action::Origin { here: form > 2.0 }), None);
+            return Ok(if form > 2.0 { Code::OriginHere } else { Code::Origin });
         }
-        match code {
-            Code::Motion(motion) => self.motion = Some(motion),
-            Code::Action(action) => self.action = Some(action),
-            Code::MachineCoordinates => self.machine_coordinates = true,
-            Code::Inches(inches) => self.inches = Some(inches),
-            Code::Relative(relative) => self.relative = Some(relative),
-            Code::AbsoluteCentres(absolute) => self.absolute_centres = Some(absolute),
-            Code::Sheet(sheet) => self.sheet = Some(sheet),
-            Code::InverseTime(inverse) => self.inverse_time = Some(inverse),
-            Code::Spindle(spindle) => self.spindle = Some(spindle),
-            Code::Fan(on) => self.told = Some(Told::Fan(on)),
-            Code::Beep => self.told = Some(Told::Beep),
-            Code::ServoAngle => self.told = Some(Told::ServoAngle),
-            Code::ToolChange => self.tool_change = Some(word),
-            Code::Stop(stop) => self.stop = Some(stop),
-            Code::Quiet => {}
-            Code::QuietWithWords => self.owned = true,
-            Code::Unknown => return Err(unknown()),
-        }
-        if let Some(meaning) = meaning {
-            self.notice = Some(Problem::Unsupported { command: word, meaning }.at(at));
+        if !is_done {
+            self.undone = Some(word);
         }
         Ok(code)
     }
 
     /// Whether every word has its number where it needs one.
-    fn check_numbers(&self) -> Result<(), Error> {
-        if self.owned || matches!(self.action, Some(Action::Home | Action::Other)) {
+    fn check_numbers<C: Complaint>(&self) -> Result<(), C> {
+        if self.owned() || self.is(Code::Home) || self.is(Code::Other) {
             return Ok(());
         }
         match self.block.words().iter().find(|word| word.number.is_none()) {
             Some(word) => Err(Problem::NoNumber { letter: word.letter }.at(self.block.place(*word))),
             None => Ok(()),
         }
+    }
+
+    /// What is asked for of a group.
+    pub(super) fn of(&self, group: Group) -> Option<Code> {
+        self.codes.get(group as usize).copied().flatten()
+    }
+
+    /// Whether this is asked for.
+    pub(super) fn is(&self, code: Code) -> bool {
+        self.codes.get(code.group()).copied().flatten() == Some(code)
+    }
+
+    /// Whether this holds from here on, as it did before where nothing of its group is asked for.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(super) fn chooses(&self, code: Code, before: bool) -> bool {
+        match self.codes.get(code.group()).copied().flatten() {
+            Some(chosen) => chosen == code,
+            None => before,
+        }
+    }
+
+    /// The word that asks for something of a group.
+    pub(super) fn word_of(&self, group: usize) -> Option<Word> {
+        let place = self.places.get(group).copied().unwrap_or_default();
+        self.block.words().get(usize::from(place).wrapping_sub(1)).copied()
+    }
+
+    /// Whether the words belong to a command that means nothing to a plotter.
+    pub(super) fn owned(&self) -> bool {
+        self.is(Code::QuietWithWords)
     }
 
     pub(super) fn word(&self, letter: u8) -> Option<Word> {
@@ -180,31 +158,28 @@ impl<'b> Line<'b> {
         self.word(letter)?.number
     }
 
+    /// Whether a letter stands there with its number.
+    pub(super) fn gives(&self, letter: u8) -> bool {
+        self.number(letter).is_some()
+    }
+
     pub(super) fn has(&self, letters: &[u8]) -> bool {
         letters.iter().any(|letter| self.word(*letter).is_some())
     }
 
     /// Whether the words of the line are there for its motion.
     pub(super) fn may_move(&self) -> bool {
-        match self.motion {
-            Some(_) => true,
-            None => !self.owned && matches!(self.action, None | Some(Action::Dwell)),
-        }
+        self.of(Group::Motion).is_some()
+            || (!self.owned() && matches!(self.of(Group::Action), None | Some(Code::Dwell)))
     }
 
     /// The first word that nothing in this line uses, of those that are worth a notice.
-    pub(super) fn unused(&self, is_arc: bool) -> Option<Error> {
-        if self.owned
-            || matches!(
-                self.action,
-                Some(Action::Home | Action::Offset | Action::Origin { .. } | Action::Other)
-            )
-        {
+    pub(super) fn unused(&self, is_arc: bool) -> Option<Word> {
+        if self.owned() || !matches!(self.of(Group::Action), None | Some(Code::Dwell | Code::NoOffset)) {
             return None;
         }
         let used: &[u8] = if is_arc { b"IJR" } else { b"" };
         let is_unused = |word: &&Word| is_among(word.letter, NOTEWORTHY) && !is_among(word.letter, used);
-        let word = *self.block.words().iter().find(is_unused)?;
-        Some(Problem::Unused { word }.at(self.block.place(word)))
+        self.block.words().iter().find(is_unused).copied()
     }
 }

@@ -1,11 +1,12 @@
 //! [`Machine`]: what holds from one line to the next, and what a line makes of it.
 
 use super::arc;
-use super::code::{Action, Motion, Spindle, Stop};
+use super::code::{Code, Group};
+use super::error::Complaint;
 use super::interpreter::Outcomes;
-use super::line::{Line, Told};
+use super::line::Line;
 use super::pen_convention::{LaserCommand, PenConvention, ServoCommand};
-use super::{DwellUnit, Error, Modes, Problem, ReadOptions, Remark, Word};
+use super::{DwellUnit, Modes, Problem, ReadOptions, Remark, Word};
 use crate::seconds::duration;
 use crate::whole::{is_whole, whole};
 use crate::{PlotOp, Point, Vec2};
@@ -27,9 +28,9 @@ pub(super) struct Machine {
     absolute_centres: bool,
     sheet: bool,
     inverse_time: bool,
-    motion: Motion,
+    motion: Code,
     feed_mm_s: Option<f64>,
-    spindle: Spindle,
+    spindle: Code,
     /// The number after `S`.
     power: f64,
     tool: Option<u8>,
@@ -55,9 +56,9 @@ impl Machine {
             absolute_centres: false,
             sheet: true,
             inverse_time: false,
-            motion: Motion::Rapid,
+            motion: Code::Rapid,
             feed_mm_s: None,
-            spindle: Spindle::Off,
+            spindle: Code::SpindleOff,
             power: 0.0,
             tool: None,
             pen_down: false,
@@ -76,17 +77,17 @@ impl Machine {
             inches: self.unit_mm != 1.0,
             relative: self.relative,
             motion: match self.motion {
-                Motion::Rapid => 0,
-                Motion::Line => 1,
-                Motion::Arc { left: false } => 2,
-                Motion::Arc { left: true } => 3,
-                Motion::None => 80,
+                Code::Rapid => 0,
+                Code::Straight => 1,
+                Code::Clockwise => 2,
+                Code::CounterClockwise => 3,
+                _ => 80,
             },
             feed_mm_s: self.feed_mm_s,
             spindle: match self.spindle {
-                Spindle::Off => 5,
-                Spindle::Constant => 3,
-                Spindle::Dynamic => 4,
+                Code::Constant => 3,
+                Code::Dynamic => 4,
+                _ => 5,
             },
             power: self.power,
             tool: self.tool.unwrap_or(0),
@@ -105,40 +106,39 @@ impl Machine {
         (self.dot_owed, self.settling) = (false, false);
     }
 
-    pub(super) fn carry_out(
+    pub(super) fn carry_out<C: Complaint>(
         &mut self,
         line: &Line<'_>,
         options: &ReadOptions,
-        out: &mut Outcomes,
-    ) -> Result<(), Error> {
+        out: &mut Outcomes<C>,
+    ) -> Result<(), C> {
         self.set_modes(line)?;
         if let ([], Some(Remark::Pen(pen))) = (line.block.words(), line.block.remark()) {
             self.leave_dot(options, out);
             out.give(Ok(PlotOp::SelectPen { pen }));
         }
-        if line.tool_change.is_some() {
+        if line.is(Code::ToolChange) {
             let expected = "M6 needs a T before it: which pen";
             let pen = self.tool.ok_or_else(|| Problem::Missing { expected }.at(line.block.position()))?;
             self.leave_dot(options, out);
             out.give(Ok(PlotOp::SelectPen { pen }));
         }
         self.put_pen(line, options, out);
-        match line.action {
-            Some(Action::Dwell) => self.dwell(line, options, out)?,
-            Some(Action::Home) => self.home(line, options, out),
-            Some(Action::Offset) => self.set_offset(line),
-            Some(Action::NoOffset) => self.offset = self.origin,
-            Some(Action::Origin { here }) => self.set_origin(line, here),
-            Some(Action::Other) | None => {}
+        match line.of(Group::Action) {
+            Some(Code::Dwell) => self.dwell(line, options, out)?,
+            Some(Code::Home) => self.home(line, options, out),
+            Some(Code::Offset) => self.set_offset(line),
+            Some(Code::NoOffset) => self.offset = self.origin,
+            Some(Code::Origin) => self.set_origin(line, false),
+            Some(Code::OriginHere) => self.set_origin(line, true),
+            _ => {}
         }
-        if let Some(motion) = line.motion {
-            self.motion = motion;
-        }
+        self.motion = line.of(Group::Motion).unwrap_or(self.motion);
         let moved = line.may_move() && self.go(line, options, out)?;
         self.switch_laser(moved, options, out);
-        match line.stop {
-            Some(Stop::Pause) => self.pause(line, options, out),
-            Some(Stop::End) => self.end(options, out),
+        match line.of(Group::Stop) {
+            Some(Code::Pause) => self.pause(line, options, out),
+            Some(_) => self.end(options, out),
             None => {}
         }
         let is_mdraw = matches!(
@@ -146,37 +146,35 @@ impl Machine {
             PenConvention::Servo { command: ServoCommand::M1, .. }
                 | PenConvention::Laser { command: LaserCommand::M4, .. }
         );
-        let is_arc = matches!(self.motion, Motion::Arc { .. });
+        if let Some(command) = line.undone {
+            out.give(Err(C::undone(command, line.block.place(command))));
         // mDraw slows its steps down by A.
-        let unused = line.unused(is_arc).filter(
-            |error| !matches!(error.problem, Problem::Unused { word } if is_mdraw && word.letter == b'A'),
-        );
-        if let Some(notice) = line.notice.or(unused) {
-            out.give(Err(notice));
+        } else if let Some(word) =
+            line.unused(self.is_arc()).filter(|word| !(is_mdraw && word.letter == b'A'))
+        {
+            out.give(Err(Problem::Unused { word }.at(line.block.place(word))));
         }
         Ok(())
     }
 
-    fn set_modes(&mut self, line: &Line<'_>) -> Result<(), Error> {
-        if let Some(inches) = line.inches {
-            self.unit_mm = if inches { MM_PER_INCH } else { 1.0 };
-        }
-        self.relative = line.relative.unwrap_or(self.relative);
-        self.absolute_centres = line.absolute_centres.unwrap_or(self.absolute_centres);
-        self.sheet = line.sheet.unwrap_or(self.sheet);
-        if let Some(inverse_time) = line.inverse_time
-            && inverse_time != self.inverse_time
-        {
+    fn set_modes<C: Complaint>(&mut self, line: &Line<'_>) -> Result<(), C> {
+        let inches = line.chooses(Code::Inches, self.unit_mm != 1.0);
+        self.unit_mm = if inches { MM_PER_INCH } else { 1.0 };
+        self.relative = line.chooses(Code::Relative, self.relative);
+        self.absolute_centres = line.chooses(Code::AbsoluteCentres, self.absolute_centres);
+        self.sheet = line.chooses(Code::Sheet, self.sheet);
+        let inverse_time = line.chooses(Code::InverseTime, self.inverse_time);
+        if inverse_time != self.inverse_time {
             (self.inverse_time, self.feed_mm_s) = (inverse_time, None);
         }
         let refused =
             |word: Word, expected| Problem::BadParameter { word, expected }.at(line.block.place(word));
-        if let Some(word) = line.word(b'F').filter(|_| !line.owned) {
+        if let Some(word) = line.word(b'F').filter(|_| !line.owned()) {
             let feed = word.number.filter(|feed| *feed > 0.0);
             let feed = feed.ok_or_else(|| refused(word, "a speed is above 0"))?;
             self.feed_mm_s = (!self.inverse_time).then_some(feed * self.unit_mm / 60.0);
         }
-        if let Some(word) = line.word(b'T').filter(|_| !line.owned) {
+        if let Some(word) = line.word(b'T').filter(|_| !line.owned()) {
             let pen = word.number.filter(|number| is_whole(*number));
             let pen = pen.and_then(|number| u8::try_from(whole(number)).ok());
             let pen = pen.ok_or_else(|| refused(word, "a pen is a whole number from 0 to 255"))?;
@@ -186,40 +184,41 @@ impl Machine {
     }
 
     /// The words by which this text lifts its pen or switches its laser.
-    fn put_pen(&mut self, line: &Line<'_>, options: &ReadOptions, out: &mut Outcomes) {
-        let asks_s = matches!(line.told, Some(Told::Beep | Told::ServoAngle | Told::Fan(_)))
-            || (line.action == Some(Action::Dwell) && !line.has(b"P"));
-        let spindle_s = line.number(b'S').filter(|_| !asks_s && !line.owned);
+    fn put_pen<C: Complaint>(&mut self, line: &Line<'_>, options: &ReadOptions, out: &mut Outcomes<C>) {
+        let told = line.of(Group::Told);
+        let asks_s = matches!(told, Some(Code::Beep | Code::ServoAngle | Code::FanOn | Code::FanOff))
+            || (line.is(Code::Dwell) && !line.has(b"P"));
+        let spindle_s = line.number(b'S').filter(|_| !asks_s && !line.owned());
         match options.pen {
             PenConvention::Spindle => {
-                if let Some(spindle) = line.spindle {
-                    self.set_pen(spindle != Spindle::Off, options, out);
+                if let Some(spindle) = line.of(Group::Spindle) {
+                    self.set_pen(spindle != Code::SpindleOff, options, out);
                 }
             }
             PenConvention::Servo { command, up, down } => {
-                let place = match (command, line.told) {
-                    (ServoCommand::M300, Some(Told::Beep)) | (ServoCommand::M280, Some(Told::ServoAngle)) => {
+                let place = match (command, told) {
+                    (ServoCommand::M300, Some(Code::Beep)) | (ServoCommand::M280, Some(Code::ServoAngle)) => {
                         line.number(b'S')
                     }
-                    (ServoCommand::M1, Some(Told::Degrees(degrees))) => Some(degrees),
-                    (ServoCommand::M3, _) if line.spindle != Some(Spindle::Off) => spindle_s,
+                    (ServoCommand::M1, Some(Code::Degrees)) => Some(line.bare),
+                    (ServoCommand::M3, _) if !line.is(Code::SpindleOff) => spindle_s,
                     _ => None,
                 };
                 if let Some(place) = place {
                     self.set_pen(is_nearer(place, down, up), options, out);
                 }
             }
-            PenConvention::Laser { command, full } => match (command, line.told) {
+            PenConvention::Laser { command, full } => match (command, told) {
                 (LaserCommand::Spindle, _) => {
                     self.power = spindle_s.unwrap_or(self.power);
-                    self.spindle = line.spindle.unwrap_or(self.spindle);
+                    self.spindle = line.of(Group::Spindle).unwrap_or(self.spindle);
                 }
-                (LaserCommand::Fan, Some(Told::Fan(on))) => {
+                (LaserCommand::Fan, Some(told @ (Code::FanOn | Code::FanOff))) => {
                     self.power = line.number(b'S').unwrap_or(full);
-                    self.spindle = if on { Spindle::Constant } else { Spindle::Off };
+                    self.spindle = if told == Code::FanOn { Code::Constant } else { Code::SpindleOff };
                 }
-                (LaserCommand::M4, Some(Told::LaserPower(power))) => {
-                    (self.power, self.spindle) = (power, Spindle::Constant);
+                (LaserCommand::M4, Some(Code::LaserPower)) => {
+                    (self.power, self.spindle) = (line.bare, Code::Constant);
                 }
                 _ => {}
             },
@@ -227,7 +226,7 @@ impl Machine {
         }
     }
 
-    fn set_pen(&mut self, down: bool, options: &ReadOptions, out: &mut Outcomes) {
+    fn set_pen<C: Complaint>(&mut self, down: bool, options: &ReadOptions, out: &mut Outcomes<C>) {
         if down == self.pen_down {
             return;
         }
@@ -240,8 +239,8 @@ impl Machine {
     /// Share of its power with which the laser burns while it moves as it does now.
     fn share(&self, options: &ReadOptions) -> f64 {
         let PenConvention::Laser { command, full } = options.pen else { return 0.0 };
-        let is_dark = command == LaserCommand::Spindle && matches!(self.motion, Motion::Rapid | Motion::None);
-        if self.spindle == Spindle::Off || is_dark {
+        let is_dark = command == LaserCommand::Spindle && matches!(self.motion, Code::Rapid | Code::NoMotion);
+        if self.spindle == Code::SpindleOff || is_dark {
             return 0.0;
         }
         let share = self.power / full;
@@ -249,34 +248,39 @@ impl Machine {
     }
 
     /// What becomes of a laser at the end of a line: switched on and off without a movement between it leaves a dot.
-    fn switch_laser(&mut self, moved: bool, options: &ReadOptions, out: &mut Outcomes) {
+    fn switch_laser<C: Complaint>(&mut self, moved: bool, options: &ReadOptions, out: &mut Outcomes<C>) {
         let share = self.share(options);
         if !moved && self.beam != share {
             // What it has burnt while it stood, it has burnt with the power that it had.
             self.leave_dot(options, out);
             let begins = self.beam == 0.0;
-            self.dot_owed = begins && self.spindle == Spindle::Constant;
+            self.dot_owed = begins && self.spindle == Code::Constant;
             // A laser needs no time to go out.
             self.settling = begins;
         }
         self.beam = share;
     }
 
-    pub(super) fn leave_dot(&mut self, options: &ReadOptions, out: &mut Outcomes) {
+    pub(super) fn leave_dot<C: Complaint>(&mut self, options: &ReadOptions, out: &mut Outcomes<C>) {
         if core::mem::take(&mut self.dot_owed) {
             self.tell_share(self.beam, options, out);
             out.give(Ok(PlotOp::Draw { to: self.at, feed_mm_s: self.feed_mm_s }));
         }
     }
 
-    fn tell_share(&mut self, share: f64, options: &ReadOptions, out: &mut Outcomes) {
+    fn tell_share<C: Complaint>(&mut self, share: f64, options: &ReadOptions, out: &mut Outcomes<C>) {
         if matches!(options.pen, PenConvention::Laser { .. }) && self.told_share != Some(share) {
             self.told_share = Some(share);
             out.give(Ok(PlotOp::LaserPower { share }));
         }
     }
 
-    fn dwell(&mut self, line: &Line<'_>, options: &ReadOptions, out: &mut Outcomes) -> Result<(), Error> {
+    fn dwell<C: Complaint>(
+        &mut self,
+        line: &Line<'_>,
+        options: &ReadOptions,
+        out: &mut Outcomes<C>,
+    ) -> Result<(), C> {
         let unit_s = if options.dwell_unit == DwellUnit::Seconds { 1.0 } else { 1e-3 };
         let Some((word, unit_s)) =
             line.word(b'P').map(|word| (word, unit_s)).or(line.word(b'S').map(|word| (word, 1.0)))
@@ -295,7 +299,7 @@ impl Machine {
         Ok(())
     }
 
-    fn home(&mut self, line: &Line<'_>, options: &ReadOptions, out: &mut Outcomes) {
+    fn home<C: Complaint>(&mut self, line: &Line<'_>, options: &ReadOptions, out: &mut Outcomes<C>) {
         let all = !line.has(b"XYZ");
         let lifts = match options.pen {
             PenConvention::Height { .. } | PenConvention::Servo { command: ServoCommand::Z, .. } => {
@@ -318,43 +322,46 @@ impl Machine {
 
     fn set_offset(&mut self, line: &Line<'_>) {
         let all = !line.has(b"XYZEABC");
-        let word = |letter| line.number(letter).or(all.then_some(0.0));
-        if let Some(x) = word(b'X') {
-            self.offset.x = self.at.x - x * self.unit_mm;
+        if all || line.gives(b'X') {
+            self.offset.x = self.at.x - self.along(line, b'X', 0.0, 0.0);
         }
-        if let Some(y) = word(b'Y') {
-            self.offset.y = self.at.y - y * self.unit_mm;
+        if all || line.gives(b'Y') {
+            self.offset.y = self.at.y - self.along(line, b'Y', 0.0, 0.0);
         }
-        self.z = word(b'Z').unwrap_or(self.z);
+        if all || line.gives(b'Z') {
+            self.z = line.number(b'Z').unwrap_or_default();
+        }
     }
 
     fn set_origin(&mut self, line: &Line<'_>, here: bool) {
         // The offset of G92 stays on top of it.
         let own = self.offset + -self.origin;
-        let number = |letter| line.number(letter).map(|number| number * self.unit_mm);
-        if let Some(x) = number(b'X') {
+        if line.gives(b'X') {
+            let x = self.along(line, b'X', 0.0, 0.0);
             self.origin.x = if here { self.at.x - x - own.x } else { x };
         }
-        if let Some(y) = number(b'Y') {
+        if line.gives(b'Y') {
+            let y = self.along(line, b'Y', 0.0, 0.0);
             self.origin.y = if here { self.at.y - y - own.y } else { y };
         }
         self.offset = self.origin + own;
     }
 
     /// The movement of a line, if it has one.
-    fn go(&mut self, line: &Line<'_>, options: &ReadOptions, out: &mut Outcomes) -> Result<bool, Error> {
+    fn go<C: Complaint>(
+        &mut self,
+        line: &Line<'_>,
+        options: &ReadOptions,
+        out: &mut Outcomes<C>,
+    ) -> Result<bool, C> {
         let at = line.block.position();
-        let is_arc = matches!(self.motion, Motion::Arc { .. });
-        let moves = line.has(b"XY") || (is_arc && line.has(b"IJR"));
+        let moves = line.has(b"XY") || (self.is_arc() && line.has(b"IJR"));
         if !moves && !line.has(b"Z") {
             return Ok(false);
         }
-        let to = Point::new(
-            self.coordinate(line, b'X', self.at.x, self.offset.x),
-            self.coordinate(line, b'Y', self.at.y, self.offset.y),
-        );
-        if self.motion == Motion::None {
-            if line.notice.is_none() {
+        let to = self.place(line);
+        if self.motion == Code::NoMotion {
+            if line.undone.is_none() {
                 return Err(Problem::NoMotion.at(at));
             }
             // A spline and its like have been reported: what follows it is to begin where it would have ended.
@@ -365,12 +372,7 @@ impl Machine {
             }
             return Ok(false);
         }
-        let arc = match self.motion {
-            Motion::Arc { left } if moves => {
-                Some(self.arc(line, to, left).map_err(|problem| problem.at(at))?)
-            }
-            _ => None,
-        };
+        let arc = if moves && self.is_arc() { Some(self.arc(line, to)?) } else { None };
         // A pen that goes up on the way does so before, one that goes down after it: it marks from end to end or not at all.
         let height = self.height(line, options);
         if height == Some(false) {
@@ -385,18 +387,38 @@ impl Machine {
         Ok(moves)
     }
 
-    fn coordinate(&self, line: &Line<'_>, letter: u8, here: f64, offset: f64) -> f64 {
-        match line.number(letter) {
-            None => here,
-            Some(number) if line.machine_coordinates => number * self.unit_mm,
-            Some(number) if self.relative => here + number * self.unit_mm,
-            Some(number) => number * self.unit_mm + offset,
-        }
+    /// As [`LineInterpreter::travel`](super::LineInterpreter::travel).
+    pub(super) fn travel<C: Complaint>(&mut self, line: &Line<'_>) -> Result<Option<Point>, C> {
+        self.set_modes(line)?;
+        Ok(line.has(b"XY").then(|| self.place(line)))
+    }
+
+    /// The place that the coordinates of a line name.
+    fn place(&self, line: &Line<'_>) -> Point {
+        let origin = if line.is(Code::MachineCoordinates) {
+            Point::ORIGIN
+        } else if self.relative {
+            self.at
+        } else {
+            Point::ORIGIN + self.offset
+        };
+        self.named(line, origin, [b'X', b'Y'])
+    }
+
+    /// The place that two letters name, from an origin; it is that of the pen where they are not there.
+    fn named(&self, line: &Line<'_>, origin: Point, [x, y]: [u8; 2]) -> Point {
+        Point::new(self.along(line, x, self.at.x, origin.x), self.along(line, y, self.at.y, origin.y))
+    }
+
+    /// The number after a letter in mm, from an origin, or what it is without.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn along(&self, line: &Line<'_>, letter: u8, without: f64, origin: f64) -> f64 {
+        line.number(letter).map_or(without, |number| number * self.unit_mm + origin)
     }
 
     /// Whether the Z of a line puts the pen down.
     fn height(&mut self, line: &Line<'_>, options: &ReadOptions) -> Option<bool> {
-        if line.machine_coordinates && line.has(b"Z") {
+        if line.is(Code::MachineCoordinates) && line.has(b"Z") {
             // Zero is the top there.
             return Some(false);
         }
@@ -411,28 +433,35 @@ impl Machine {
     }
 
     /// Centre and sweep of an arc to `to`.
-    fn arc(&self, line: &Line<'_>, to: Point, left: bool) -> Result<(Point, f64), Problem> {
+    fn arc<C: Complaint>(&self, line: &Line<'_>, to: Point) -> Result<(Point, f64), C> {
+        let (at, left) = (line.block.position(), self.motion == Code::CounterClockwise);
         if !self.sheet {
-            return Err(Problem::Plane);
+            return Err(Problem::Plane.at(at));
         }
-        let number = |letter| line.number(letter).map(|number| number * self.unit_mm);
-        let centre = match (number(b'R'), line.has(b"IJ")) {
-            (Some(radius_mm), false) => arc::centre(self.at, to, radius_mm, left)?,
-            (None, true) if self.absolute_centres => Point::new(
-                number(b'I').map_or(self.at.x, |x| x + self.offset.x),
-                number(b'J').map_or(self.at.y, |y| y + self.offset.y),
-            ),
-            (None, true) => {
-                self.at + Vec2::new(number(b'I').unwrap_or_default(), number(b'J').unwrap_or_default())
+        let centre = match (line.gives(b'R'), line.has(b"IJ")) {
+            (true, false) => arc::centre(self.at, to, self.along(line, b'R', 0.0, 0.0), left, at)?,
+            (false, true) => {
+                let origin = if self.absolute_centres { Point::ORIGIN + self.offset } else { self.at };
+                self.named(line, origin, [b'I', b'J'])
             }
-            _ => return Err(Problem::ArcForm),
+            _ => return Err(Problem::ArcForm.at(at)),
         };
-        Ok((centre, arc::sweep_rad(self.at, to, centre, left)?))
+        Ok((centre, arc::sweep_rad(self.at, to, centre, left, at)?))
     }
 
-    fn mark(&mut self, to: Point, arc: Option<(Point, f64)>, options: &ReadOptions, out: &mut Outcomes) {
+    fn is_arc(&self) -> bool {
+        matches!(self.motion, Code::Clockwise | Code::CounterClockwise)
+    }
+
+    fn mark<C: Complaint>(
+        &mut self,
+        to: Point,
+        arc: Option<(Point, f64)>,
+        options: &ReadOptions,
+        out: &mut Outcomes<C>,
+    ) {
         let share = self.share(options);
-        let is_rapid = self.motion == Motion::Rapid;
+        let is_rapid = self.motion == Code::Rapid;
         let marks = match options.pen {
             PenConvention::Laser { .. } => share > 0.0,
             PenConvention::Motion => !is_rapid,
@@ -454,16 +483,14 @@ impl Machine {
     }
 
     /// `M0`: the machine waits for a person, who changes the sheet or the pen if the comment says so.
-    fn pause(&mut self, line: &Line<'_>, options: &ReadOptions, out: &mut Outcomes) {
+    fn pause<C: Complaint>(&mut self, line: &Line<'_>, options: &ReadOptions, out: &mut Outcomes<C>) {
         self.settling = false;
         let op = match line.block.remark() {
             Some(Remark::NewSheet) => PlotOp::NewPage,
             Some(Remark::Pen(pen)) => PlotOp::SelectPen { pen },
             None => {
-                let is_stop = |word: &&Word| word.letter == b'M' && matches!(word.tenths(), Some(0 | 10));
-                if let Some(command) = line.block.words().iter().find(is_stop).copied() {
-                    let pause = Problem::Unsupported { command, meaning: "pause" };
-                    out.give(Err(pause.at(line.block.place(command))));
+                if let Some(command) = line.word_of(Group::Stop as usize) {
+                    out.give(Err(C::undone(command, line.block.place(command))));
                 }
                 return;
             }
@@ -473,10 +500,10 @@ impl Machine {
     }
 
     /// `M2`, `M30`: pen up, and what GRBL sets back then.
-    fn end(&mut self, options: &ReadOptions, out: &mut Outcomes) {
+    fn end<C: Complaint>(&mut self, options: &ReadOptions, out: &mut Outcomes<C>) {
         self.leave_dot(options, out);
-        (self.pen_down, self.spindle, self.beam, self.settling) = (false, Spindle::Off, 0.0, false);
-        (self.motion, self.relative, self.sheet, self.inverse_time) = (Motion::Line, false, true, false);
+        (self.pen_down, self.spindle, self.beam, self.settling) = (false, Code::SpindleOff, 0.0, false);
+        (self.motion, self.relative, self.sheet, self.inverse_time) = (Code::Straight, false, true, false);
     }
 }
 

@@ -6,7 +6,7 @@ use super::{Block, Error, Position, Problem, Remark, Word};
 use crate::decimal::Decimal;
 
 /// Greatest magnitude of a number: what [`Writer`](super::Writer) writes at most.
-const MOST: f64 = 1e9;
+pub(crate) const MOST: f64 = 1e9;
 
 /// Commands whose words are a text for people, or the name of a file.
 const TEXT_COMMANDS: [f64; 3] = [23.0, 117.0, 118.0];
@@ -116,28 +116,15 @@ impl Reader {
 
     /// Takes the next byte; gives the line that it ends, or what is wrong with it.
     pub fn push(&mut self, byte: u8) -> Option<Result<Block, Error>> {
-        match self.spacing {
-            Spacing::Free => self.push_by(byte, Self::free),
-            Spacing::Required => self.push_by(byte, Self::spaced),
-        }
-    }
-
-    /// As [`Reader::push`] for a reader of [`Spacing::Free`]: a program that has no other does without the way to read it.
-    pub(crate) fn push_free(&mut self, byte: u8) -> Option<Result<Block, Error>> {
-        self.push_by(byte, Self::free)
-    }
-
-    fn push_by(
-        &mut self,
-        byte: u8,
-        read: impl FnOnce(&mut Self, u8, Position) -> Result<(), Error>,
-    ) -> Option<Result<Block, Error>> {
         let at = self.at;
         self.at = at.after(byte);
         if byte == b'\n' || byte == b'\r' {
             return self.end_line();
         }
-        let taken = read(self, byte, at);
+        let taken = match self.spacing {
+            Spacing::Free => self.free(byte, at),
+            Spacing::Required => self.spaced(byte, at),
+        };
         self.sum ^= byte;
         taken.err().map(|error| {
             self.state = State::Skip;
@@ -220,10 +207,7 @@ impl Reader {
         match byte {
             b'A'..=b'Z' | b'a'..=b'z' => {
                 let letter = byte.to_ascii_uppercase();
-                let before = self.block.words().last();
-                if let Some(number) = before.filter(|word| word.letter == b'O')
-                    && is_among(letter, CONTROL_WORDS)
-                {
+                if let Some(number) = self.block.words().last().filter(|word| is_control(word, letter)) {
                     return Err(Problem::Control { number: *number }.at(self.block.place(*number)));
                 }
                 self.state = State::Letter { letter, at };
@@ -304,8 +288,7 @@ impl Reader {
         if !self.block.push(Word { letter, number, column: at.column }, at) {
             return Err(Problem::TooManyWords.at(at));
         }
-        let is_text = letter == b'M' && number.is_some_and(|number| TEXT_COMMANDS.contains(&number));
-        self.state = if is_text { State::Text } else { START };
+        self.state = if is_text(letter, number) { State::Text } else { START };
         Ok(())
     }
 
@@ -343,6 +326,16 @@ impl Reader {
         let block = core::mem::replace(&mut self.block, Block::empty());
         (!is_empty).then_some(Ok(block))
     }
+}
+
+/// Whether a letter after this word begins a loop or a subprogram.
+pub(crate) fn is_control(before: &Word, letter: u8) -> bool {
+    before.letter == b'O' && is_among(letter, CONTROL_WORDS)
+}
+
+/// Whether what follows this word up to the end of its line is a text for people, or the name of a file.
+pub(crate) fn is_text(letter: u8, number: Option<f64>) -> bool {
+    letter == b'M' && number.is_some_and(|number| TEXT_COMMANDS.contains(&number))
 }
 
 /// Space, or a control character such as the padding and end marks of old files.

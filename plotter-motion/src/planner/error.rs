@@ -66,8 +66,8 @@ impl fmt::Display for PlanError {
             Self::Unknown => f.write_str("an operation that is not known here"),
             Self::Mode { quantity } => write!(
                 f,
-                "{quantity} asks for what is not built in: build with AllModes, or leave the path exact, the jerk without a limit \
-                 and the axes without play"
+                "{quantity} asks for what is not built in: build with AllModes, or leave the path exact, the jerk without a limit, \
+                 the axes without play and the laser away"
             ),
             Self::Setting { quantity, value, least, most } => {
                 write!(f, "{quantity} is {value}: it must lie in {least}..={most}")

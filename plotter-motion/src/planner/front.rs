@@ -135,6 +135,9 @@ impl<M: Modes> Front<M> {
         if core::mem::take(&mut self.jogs) {
             self.end_run(limits, ring);
         }
+        if let Some(to) = op.target() {
+            check(to)?;
+        }
         let feed2 = |feed_mm_s: Option<f64>| match feed_mm_s {
             None => Ok(limits.speed2),
             Some(feed) if feed > 0.0 && feed.is_finite() => {
@@ -145,18 +148,20 @@ impl<M: Modes> Front<M> {
         };
         match op {
             PlotOp::Travel { to } => {
-                self.line(place(to)?, Pen::Up, limits.travel2, limits, ring);
+                self.line(to, Pen::Up, limits.travel2, limits, ring);
             }
             PlotOp::Draw { to, feed_mm_s } => {
-                self.line(place(to)?, Pen::Down, feed2(feed_mm_s)?, limits, ring);
+                self.line(to, Pen::Down, feed2(feed_mm_s)?, limits, ring);
             }
             PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } => {
-                let (centre, to, feed2) = (place(centre)?, place(to)?, feed2(feed_mm_s)?);
+                check(centre)?;
+                let feed2 = feed2(feed_mm_s)?;
                 if sweep_rad.is_nan() || sweep_rad.abs() > TAU + TURN_SLACK_RAD {
                     return Err(PlanError::Sweep { sweep_rad });
                 }
                 self.arc(centre, greater(smaller(sweep_rad, TAU), -TAU), to, feed2, limits, ring);
             }
+            PlotOp::LaserPower { .. } if !M::LASER => {}
             PlotOp::LaserPower { share } => {
                 if !(0.0..=1.0).contains(&share) {
                     return Err(PlanError::Power { share });
@@ -181,7 +186,7 @@ impl<M: Modes> Front<M> {
         limits: &Limits,
         ring: &mut Ring<N>,
     ) -> Result<(), PlanError> {
-        let to = place(to)?;
+        check(to)?;
         if !(speed_mm_s > 0.0 && speed_mm_s.is_finite()) {
             return Err(PlanError::Feed { feed_mm_s: speed_mm_s });
         }
@@ -309,12 +314,11 @@ impl<M: Modes> Front<M> {
         self.position = to;
         // A quarter turn ahead of the radius, or behind it.
         let ahead = |radius: Vec2| {
-            let along = if sweep_rad > 0.0 { radius.perpendicular() } else { -radius.perpendicular() };
-            along * (1.0 / radius.length_near())
+            Way::new(if sweep_rad > 0.0 { radius.perpendicular() } else { -radius.perpendicular() }).direction
         };
         let shape = Shape::Arc { centre, sweep_rad };
         let most2 = narrow(limits.accel() * near_mm);
-        let (entry, exit) = (direction(ahead(out)), direction(ahead(end)));
+        let (entry, exit) = (ahead(out), ahead(end));
         let length_mm = single(length_mm);
         let stretch =
             Stretch { shape, to, length_mm, entry, exit, feed2: cruise2, most2, most_entry2: most2 };
@@ -494,10 +498,11 @@ impl<M: Modes> Front<M> {
     }
 }
 
-/// A place that is near enough.
-fn place(place: Point) -> Result<Point, PlanError> {
+/// Whether a place is near enough.
+#[cfg_attr(target_os = "none", inline(never))]
+fn check(place: Point) -> Result<(), PlanError> {
     let near = place.x.abs() <= FARTHEST_MM && place.y.abs() <= FARTHEST_MM;
-    if near { Ok(place) } else { Err(PlanError::Place { place }) }
+    if near { Ok(()) } else { Err(PlanError::Place { place }) }
 }
 
 /// A straight way as the look-ahead reckons with it.

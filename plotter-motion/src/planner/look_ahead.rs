@@ -211,7 +211,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         }
         let most2 = self.ramps.speed2() + 2.0 * limits.accel() * rest_mm;
         let exit2 = self.ring.enter_at_most(most2, limits.twice_accel);
-        self.ramps.plan(exit2, &limits);
+        self.ramps.plan::<M>(exit2, &limits);
     }
 
     /// No operation comes for now: what has been put off to see what follows is planned, and the machine stops at its end. More
@@ -262,7 +262,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if rest_mm > 0.0 {
             let most2 = self.ramps.speed2() + 2.0 * limits.accel() * rest_mm;
             let exit2 = self.ring.enter_at_most(most2, limits.twice_accel);
-            self.ramps.plan(exit2, &limits);
+            self.ramps.plan::<M>(exit2, &limits);
         }
     }
 
@@ -324,7 +324,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             if let Some(under_way) = self.under_way.get_mut() {
                 *under_way = head.wish(&self.limits);
             }
-            self.ramps.begin(head, self.ring.next_entry2(), &self.limits);
+            self.ramps.begin::<M>(head, self.ring.next_entry2(), &self.limits);
             self.ring.pop();
             if self.hold {
                 self.brake();

@@ -29,6 +29,6 @@ pub use error::PlanError;
 pub use junction::junction_speed;
 pub use look_ahead::Planner;
 pub(crate) use modes::Keep;
-pub use modes::{AllModes, ExactOnly, Modes};
+pub use modes::{AllModes, ExactOnly, ExactPen, Modes};
 pub use phase::{Action, Course, Phase, Shape};
 pub use settings::{PathMode, PlannerSettings};

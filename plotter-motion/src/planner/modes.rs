@@ -4,14 +4,17 @@ use super::{PathMode, PlannerSettings};
 use core::fmt::Debug;
 use core::marker::PhantomData;
 
-/// Which ways of planning a program is built with: [`AllModes`], or [`ExactOnly`] for a small one. What both can do they do alike, to
-/// the last bit.
+/// Which ways of planning a program is built with: [`AllModes`], or [`ExactOnly`] or [`ExactPen`] for a small one. What they can do they
+/// do alike, to the last bit.
 ///
 /// Nobody else implements it.
 pub trait Modes: sealed::Sealed {
     /// Whether curves within a tolerance and S-curves are there.
     #[doc(hidden)]
     const ALL: bool;
+    /// Whether a laser is there.
+    #[doc(hidden)]
+    const LASER: bool;
     /// Memory that only those need.
     #[doc(hidden)]
     type Kept<T: Part>: Keep<T>;
@@ -26,13 +29,25 @@ pub struct AllModes;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ExactOnly;
 
+/// [`ExactOnly`], of a machine without a laser. The firmware of the stepper plotter takes another kilobyte less with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct ExactPen;
+
 impl Modes for AllModes {
     const ALL: bool = true;
+    const LASER: bool = true;
     type Kept<T: Part> = Here<T>;
 }
 
 impl Modes for ExactOnly {
     const ALL: bool = false;
+    const LASER: bool = true;
+    type Kept<T: Part> = Nowhere<T>;
+}
+
+impl Modes for ExactPen {
+    const ALL: bool = false;
+    const LASER: bool = false;
     type Kept<T: Part> = Nowhere<T>;
 }
 
@@ -40,6 +55,7 @@ mod sealed {
     pub trait Sealed: Clone + core::fmt::Debug + PartialEq {}
     impl Sealed for super::AllModes {}
     impl Sealed for super::ExactOnly {}
+    impl Sealed for super::ExactPen {}
 }
 
 /// What can be kept.

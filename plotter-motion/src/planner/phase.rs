@@ -1,5 +1,6 @@
 //! What a planner gives out: [`Action`], [`Course`], [`Phase`].
 
+use super::Modes;
 use crate::{Pen, Point};
 use core::time::Duration;
 
@@ -72,8 +73,20 @@ impl Phase {
     /// ```
     #[must_use]
     pub fn at(&self, time_s: f64) -> crate::ProfilePoint {
+        self.at_with::<super::AllModes>(time_s)
+    }
+
+    /// The same, of a planner with these modes: without S-curves there is no jerk.
+    pub(crate) fn at_with<M: Modes>(&self, time_s: f64) -> crate::ProfilePoint {
         let Self { from_mm, speed_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j, .. } = *self;
         let t = time_s;
+        if !M::ALL {
+            return crate::ProfilePoint {
+                distance_mm: from_mm + t * (v + t * (a / 2.0)),
+                speed_mm_s: v + t * a,
+                accel_mm_s2: a,
+            };
+        }
         crate::ProfilePoint {
             distance_mm: from_mm + t * (v + t * (a / 2.0 + t * j / 6.0)),
             speed_mm_s: v + t * (a + t * j / 2.0),

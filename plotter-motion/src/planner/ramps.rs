@@ -3,6 +3,7 @@
 use super::Phase;
 use super::block::{Block, single};
 use super::limits::Limits;
+use super::modes::Modes;
 use crate::extremes::{greater, smaller};
 
 /// Longest phase, s: a feed hold begins to act after that time at the latest.
@@ -52,7 +53,7 @@ impl Ramps {
     };
 
     /// Begins the next block: the quickest way along it that leaves it with the given square of a speed.
-    pub(super) fn begin(&mut self, block: &Block, exit2: f32, limits: &Limits) {
+    pub(super) fn begin<M: Modes>(&mut self, block: &Block, exit2: f32, limits: &Limits) {
         if !(block.is_path() && block.length_single() > 0.0 && block.cruise2 > 0.0) {
             *self = Self::OVER;
             return;
@@ -67,21 +68,21 @@ impl Ramps {
         (self.length_mm, self.done_mm) = (block.length(), 0.0);
         let exit = if exit2 == self.cruise2 { self.cruise } else { root(exit2) };
         self.exit2 = exit2;
-        self.plan_from(f64::from(block.entry2), (f64::from(exit2), exit), limits);
+        self.plan_from::<M>(f64::from(block.entry2), (f64::from(exit2), exit), limits);
     }
 
     /// Plans what is left of the block.
-    pub(super) fn plan(&mut self, exit2: f64, limits: &Limits) {
+    pub(super) fn plan<M: Modes>(&mut self, exit2: f64, limits: &Limits) {
         self.exit2 = single(exit2);
-        self.plan_from(self.speed2(), (exit2, libm::sqrt(exit2)), limits);
+        self.plan_from::<M>(self.speed2(), (exit2, libm::sqrt(exit2)), limits);
     }
 
     /// From a square of a speed to another speed, of which both the square and the root are given.
-    fn plan_from(&mut self, entry2: f64, (exit2, exit): (f64, f64), limits: &Limits) {
+    fn plan_from<M: Modes>(&mut self, entry2: f64, (exit2, exit): (f64, f64), limits: &Limits) {
         let rest_mm = self.rest_mm();
         self.next = self.ramps.len();
-        // The greatest speed has become less meanwhile: that comes first.
-        if entry2 > f64::from(self.cruise2) * (1.0 + f64::from(ALIKE)) {
+        // The greatest speed has become less meanwhile, by another share of it: that comes first.
+        if M::ALL && entry2 > f64::from(self.cruise2) * (1.0 + f64::from(ALIKE)) {
             return self.plan_down(entry2, (exit2, exit), limits);
         }
         // Where speeding up and braking meet: first as `f32`, to see what there is to reckon.

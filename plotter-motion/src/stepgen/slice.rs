@@ -2,6 +2,7 @@
 
 use crate::Phase;
 use crate::extremes::{greater, smaller};
+use crate::planner::Modes;
 use crate::whole::{float, nearest_even, whole};
 
 /// Bits of the fraction of a distance in mm.
@@ -41,7 +42,7 @@ pub(super) struct Slice {
 impl Slice {
     /// The slice of `phase` from `time_ticks` after its start on. The phase starts `offset_ticks` (0 to 1) after the tick
     /// `phase_base`. Gives the ticks that the slice lasts, too.
-    pub(super) fn new(
+    pub(super) fn new<M: Modes>(
         phase: &Phase,
         clock_hz: f64,
         phase_base: u64,
@@ -54,7 +55,7 @@ impl Slice {
         let begin = offset_ticks + time_ticks;
         let first = whole(begin);
         let lasts_ticks = smaller(rest_ticks, float(LONGEST_TICKS) - 1.0);
-        let at = phase.at((float(first) - offset_ticks) / clock_hz);
+        let at = phase.at_with::<M>((float(first) - offset_ticks) / clock_hz);
         let per_tick = 1.0 / clock_hz;
         let base = phase_base.saturating_add_signed(first);
         let last = whole(begin - float(first) + lasts_ticks);
@@ -64,36 +65,48 @@ impl Slice {
             start: fixed(at.distance_mm, FRACTION_BITS),
             speed: fixed(at.speed_mm_s * per_tick, SPEED_BITS),
             half_accel: fixed(at.accel_mm_s2 * per_tick * per_tick / 2.0, ACCEL_BITS),
-            sixth_jerk: fixed(phase.jerk_mm_s3 * per_tick * per_tick * per_tick / 6.0, JERK_BITS),
+            sixth_jerk: if M::ALL {
+                fixed(phase.jerk_mm_s3 * per_tick * per_tick * per_tick / 6.0, JERK_BITS)
+            } else {
+                0
+            },
         };
         (slice, lasts_ticks)
     }
 
     /// Distance along the course at a tick, 32 bits of fraction.
-    pub(super) fn distance(&self, t: i64) -> i64 {
-        let accel = product(self.sixth_jerk, t, JERK_BITS - ACCEL_BITS).saturating_add(self.half_accel);
+    pub(super) fn distance<M: Modes>(&self, t: i64) -> i64 {
+        let accel = if M::ALL {
+            product(self.sixth_jerk, t, JERK_BITS - ACCEL_BITS).saturating_add(self.half_accel)
+        } else {
+            self.half_accel
+        };
         let speed = product(accel, t, ACCEL_BITS - SPEED_BITS).saturating_add(self.speed);
         product(speed, t, SPEED_BITS - FRACTION_BITS).saturating_add(self.start)
     }
 
     /// Speed at a tick, mm a tick, 52 bits of fraction.
-    pub(super) fn speed(&self, t: i64) -> i64 {
-        let accel = product(self.sixth_jerk.saturating_mul(3), t, JERK_BITS - ACCEL_BITS)
-            .saturating_add(self.half_accel.saturating_mul(2));
+    pub(super) fn speed<M: Modes>(&self, t: i64) -> i64 {
+        let twice = self.half_accel.saturating_mul(2);
+        let accel = if M::ALL {
+            product(self.sixth_jerk.saturating_mul(3), t, JERK_BITS - ACCEL_BITS).saturating_add(twice)
+        } else {
+            twice
+        };
         product(accel, t, ACCEL_BITS - SPEED_BITS).saturating_add(self.speed)
     }
 
     /// The tick nearest to the time at which the distance is `target`; `None` if that is after the slice. `from` is a tick at
     /// which it has not been reached, `guess` one near to where it may be.
-    pub(super) fn tick_of(&self, target: i64, from: i64, guess: i64) -> Option<i64> {
+    pub(super) fn tick_of<M: Modes>(&self, target: i64, from: i64, guess: i64) -> Option<i64> {
         // Most guesses are good: the steps before say when the next is due.
         let mut at = guess.min(self.last).max(from);
         for _ in 0..3 {
-            let speed = self.speed(at);
+            let speed = self.speed::<M>(at);
             if speed < TRUSTED_SPEED {
                 break;
             }
-            let ahead = target.saturating_sub(self.distance(at));
+            let ahead = target.saturating_sub(self.distance::<M>(at));
             if ahead.unsigned_abs() >= 1 << 34 {
                 break;
             }
@@ -108,12 +121,12 @@ impl Slice {
             }
             at = next;
         }
-        self.halve(target, from)
+        self.halve::<M>(target, from)
     }
 
     /// As [`Slice::tick_of`], by halving the time.
-    fn halve(&self, target: i64, from: i64) -> Option<i64> {
-        if self.distance(self.last) < target {
+    fn halve<M: Modes>(&self, target: i64, from: i64) -> Option<i64> {
+        if self.distance::<M>(self.last) < target {
             return None;
         }
         let (mut before, mut after) = (from, self.last);
@@ -122,13 +135,13 @@ impl Slice {
                 break;
             }
             let middle = before + (after - before) / 2;
-            if self.distance(middle) >= target {
+            if self.distance::<M>(middle) >= target {
                 after = middle;
             } else {
                 before = middle;
             }
         }
-        let early = target - self.distance(before) < self.distance(after) - target;
+        let early = target - self.distance::<M>(before) < self.distance::<M>(after) - target;
         Some(if early { before } else { after })
     }
 }
@@ -159,11 +172,12 @@ pub(super) fn speed_fixed(mm_per_tick: f64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::planner::AllModes;
 
     const CLOCK_HZ: f64 = 1e6;
 
     fn start(phase: Phase) -> Slice {
-        Slice::new(&phase, CLOCK_HZ, 1000, 0.25, 0.0).0
+        Slice::new::<AllModes>(&phase, CLOCK_HZ, 1000, 0.25, 0.0).0
     }
 
     #[test]
@@ -172,9 +186,9 @@ mod tests {
         let phase = Phase { duration_s: 0.1, accel_mm_s2: 1000.0, ..Phase::default() };
         let slice = start(phase);
         let millimetre = 1 << FRACTION_BITS;
-        assert_eq!(slice.tick_of(millimetre, 0, 0), Some(44_722));
-        assert_eq!(slice.tick_of(millimetre, 0, 44_700), Some(44_722));
-        assert_eq!(slice.tick_of(6 * millimetre, 0, 0), None); // it goes only 5 mm
+        assert_eq!(slice.tick_of::<AllModes>(millimetre, 0, 0), Some(44_722));
+        assert_eq!(slice.tick_of::<AllModes>(millimetre, 0, 44_700), Some(44_722));
+        assert_eq!(slice.tick_of::<AllModes>(6 * millimetre, 0, 0), None); // it goes only 5 mm
     }
 
     #[test]
@@ -183,7 +197,7 @@ mod tests {
         let slice = start(phase);
         for step in 1..100_i64 {
             // every 0.01 mm: every 333.33 us
-            let tick = slice.tick_of(fixed(0.01, FRACTION_BITS) * step, 0, 333 * step).unwrap();
+            let tick = slice.tick_of::<AllModes>(fixed(0.01, FRACTION_BITS) * step, 0, 333 * step).unwrap();
             let meant = float(step) * 1e4 / 30.0 + 0.25;
             assert!((float(tick) - meant).abs() <= 0.51, "step {step}: {tick} for {meant}");
         }

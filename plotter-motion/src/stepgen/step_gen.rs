@@ -211,7 +211,7 @@ impl<K: Kinematics> StepGen<K> {
 }
 
 impl<K: Kinematics, M: Modes> StepGen<K, M> {
-    /// As [`StepGen::new`], for a planner with the modes of its type.
+    /// As [`StepGen::new`], for a planner with the modes of its type; without a laser among them there is none.
     pub fn with_modes(kinematics: K, settings: StepGenSettings) -> Self {
         let scale = |x, y| {
             let motors = kinematics.motors_at(Point::new(x, y));
@@ -323,20 +323,20 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         loop {
             let running = self.running.as_mut()?;
             let Some(due) = self.due else { return self.end_phase() };
-            if let Some(at) = running.slice.tick_of(due.at, running.at.max(0), running.guess()) {
+            if let Some(at) = running.slice.tick_of::<M>(due.at, running.at.max(0), running.guess()) {
                 running.step_at(at);
                 let tick = running.slice.base.saturating_add_signed(at);
-                let speed = if self.settings.laser { running.slice.speed(at) } else { 0 };
+                let speed = if self.settings.laser && M::LASER { running.slice.speed::<M>(at) } else { 0 };
                 let power = self.power(speed);
                 let step = self.step(tick)?;
-                if power == self.laser {
+                if !M::LASER || power == self.laser {
                     return Some(step);
                 }
                 self.laser = power;
                 self.waiting = [Some(step), None];
                 return Some(TimedEvent { tick, event: MotorEvent::Laser(power) });
             }
-            if !running.next_slice(self.settings.clock_hz) {
+            if !running.next_slice::<M>(self.settings.clock_hz) {
                 return self.end_phase();
             }
         }
@@ -369,7 +369,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     /// up.
     fn power(&self, speed: i64) -> u16 {
         let dark = self.course.pen == Pen::Up || self.course.laser_power == 0;
-        if !self.settings.laser || dark || self.course_speed <= 0 {
+        if !M::LASER || !self.settings.laser || dark || self.course_speed <= 0 {
             return 0;
         }
         let (speed, full) = (speed.max(0).unsigned_abs(), self.course_speed.unsigned_abs());
@@ -384,12 +384,12 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     /// The phase is over.
     fn end_phase(&mut self) -> Option<TimedEvent> {
         let running = self.running.take()?;
-        let end = running.phase.at(running.phase.duration_s);
+        let end = running.phase.at_with::<M>(running.phase.duration_s);
         let ticks = running.offset_ticks + running.phase.duration_s * self.settings.clock_hz;
         self.pass(running.base, ticks);
         self.last_step = running.slice.base.saturating_add_signed(running.at);
         self.interval = running.interval;
-        if self.laser != 0 && end.speed_mm_s < STANDSTILL_MM_S {
+        if M::LASER && self.laser != 0 && end.speed_mm_s < STANDSTILL_MM_S {
             self.laser = 0;
             self.give(MotorEvent::Laser(0));
         }
@@ -428,7 +428,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     }
 
     fn put(&mut self, pen: Pen) {
-        if self.pen != pen && !self.settings.laser {
+        if self.pen != pen && !(M::LASER && self.settings.laser) {
             self.give(MotorEvent::Pen(pen));
             self.wait(self.settings.pen_settle);
         }
@@ -438,7 +438,9 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     fn begin(&mut self, course: Course) {
         self.put(course.pen);
         self.chords = Chords::new::<M>(&course, self.at, self.chord_tolerance_mm);
-        self.course_speed = speed_fixed(course.feed_mm_s / self.settings.clock_hz);
+        if M::LASER {
+            self.course_speed = speed_fixed(course.feed_mm_s / self.settings.clock_hz);
+        }
         self.course = course;
         self.at = course.to;
         self.chord_from = 0;
@@ -448,7 +450,8 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     }
 
     fn run(&mut self, phase: Phase) {
-        let (slice, sliced_ticks) = Slice::new(&phase, self.settings.clock_hz, self.tick, self.fraction, 0.0);
+        let (slice, sliced_ticks) =
+            Slice::new::<M>(&phase, self.settings.clock_hz, self.tick, self.fraction, 0.0);
         let at = i64::try_from(self.tick.saturating_sub(self.last_step)).map_or(0, |since| -since);
         self.running = Some(Running {
             phase,
@@ -477,13 +480,13 @@ impl Running {
     }
 
     /// Goes on with the next slice of the phase; says whether there is one.
-    fn next_slice(&mut self, clock_hz: f64) -> bool {
+    fn next_slice<M: Modes>(&mut self, clock_hz: f64) -> bool {
         if self.sliced_ticks >= self.phase.duration_s * clock_hz {
             return false;
         }
         let before = self.slice.base;
         let (slice, ticks) =
-            Slice::new(&self.phase, clock_hz, self.base, self.offset_ticks, self.sliced_ticks);
+            Slice::new::<M>(&self.phase, clock_hz, self.base, self.offset_ticks, self.sliced_ticks);
         self.slice = slice;
         self.sliced_ticks += ticks;
         self.at -= i64::try_from(slice.base.saturating_sub(before)).unwrap_or(i64::MAX);

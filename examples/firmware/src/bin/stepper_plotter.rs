@@ -7,8 +7,8 @@
 use core::time::Duration;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
-use plotter_firmware::board::{self, Event, Notice};
-use plotter_firmware::machine::{PLOTTER, StepperPlotter};
+use plotter_firmware::board::{self, Event, Notice, Wire};
+use plotter_firmware::machine::{LASER, PLOTTER, StepperPlotter};
 use plotter_hal::a4988::Timing;
 use plotter_hal::{
     A4988, EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo, PenServoSettings,
@@ -45,13 +45,16 @@ fn controller() -> Option<&'static mut StepperPlotter> {
 fn main() -> ! {
     let Some(parts) = board::plotter::take() else { board::halt() };
     let inverted = [PLOTTER.stored.x_direction != 0, PLOTTER.stored.y_direction != 0];
-    let x = A4988::new(Axis::X, parts.x.step, parts.x.dir, Timing::A4988).with_enable(parts.enable);
+    let x = A4988::new(Axis::X, parts.x.step, parts.x.dir, Timing::A4988);
     let y = A4988::new(Axis::Y, parts.y.step, parts.y.dir, Timing::A4988);
+    let [x_enable, y_enable] = [Some(parts.enable), None].map(Wire);
+    let (x, y) = (x.with_enable(x_enable), y.with_enable(y_enable));
     let [x_inverted, y_inverted] = inverted;
     let mut motors = StepperAxes::new(
         if x_inverted { x.with_inverted_direction() } else { x },
         if y_inverted { y.with_inverted_direction() } else { y },
     );
+    // Off from here on, also where there is none.
     let mut laser = Laser::new(parts.laser, STANDSTILL);
     let pen = PenServoSettings { settle: PLOTTER.pen_settle, ..PenServoSettings::default() };
     let Ok(mut servo) = PenServo::new(parts.servo, pen) else { board::halt() };
@@ -95,10 +98,11 @@ fn main() -> ! {
     loop {
         if asked {
             while let Some(step) = plotter.poll(now) {
-                failed |= motors.step(step.pulse, now).is_err() | laser.moved(now).is_err();
+                failed |= motors.step(step.pulse, now).is_err();
+                failed |= LASER && laser.moved(now).is_err();
                 board.stepped(step);
             }
-            failed |= laser.shine(now, plotter.beam()).is_err();
+            failed |= LASER && laser.shine(now, plotter.beam()).is_err();
             if pen_deg.replace(plotter.pen_deg()) != Some(plotter.pen_deg()) {
                 failed |= servo.turn_to(now, f32::from(plotter.pen_deg())).is_err();
             }
@@ -115,10 +119,13 @@ fn main() -> ! {
             board.notify(Notice::PinFailed);
             board::halt();
         }
-        let due =
-            [plotter.due(), motors.due(), servo.due(), laser.due(), Some(look)].into_iter().flatten().min();
+        let mut due = look;
+        let of_laser = if LASER { laser.due() } else { None };
+        for other in [plotter.due(), motors.due(), servo.due(), of_laser] {
+            due = other.map_or(due, |other| due.min(other));
+        }
         let event;
-        (now, event) = board.wait(due);
+        (now, event) = board.wait(Some(due));
         asked = true;
         match event {
             Event::Byte(byte) => plotter.receive(now, byte),
@@ -129,7 +136,8 @@ fn main() -> ! {
             Event::Due | Event::Edge(..) => asked = plotter.due().is_some_and(|due| due <= now),
             Event::EncoderFault => failed = true,
         }
-        failed |= motors.tick(now).is_err() | servo.tick(now).is_err() | laser.tick(now).is_err();
+        failed |= motors.tick(now).is_err() | servo.tick(now).is_err();
+        failed |= LASER && laser.tick(now).is_err();
         if now >= look {
             look = now.saturating_add(LOOK);
             board.feed_watchdog();

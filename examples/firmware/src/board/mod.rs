@@ -11,6 +11,7 @@ mod stm32f411;
 pub use stm32f411::*;
 
 use core::fmt;
+use embedded_hal::digital::{ErrorType, OutputPin};
 use plotter_motion::firmware;
 use plotter_motion::{Axis, Direction};
 
@@ -47,6 +48,24 @@ pub struct StepperPins<Step, Dir> {
     pub step: Step,
     /// High to turn to larger coordinates.
     pub dir: Dir,
+}
+
+/// A pin that the drivers of both motors are wired to, and one of them has: so both are of one type, and what drives them is there once.
+#[derive(Debug)]
+pub struct Wire<Pin>(pub Option<Pin>);
+
+impl<Pin: ErrorType> ErrorType for Wire<Pin> {
+    type Error = Pin::Error;
+}
+
+impl<Pin: OutputPin> OutputPin for Wire<Pin> {
+    fn set_low(&mut self) -> Result<(), Pin::Error> {
+        self.0.as_mut().map_or(Ok(()), OutputPin::set_low)
+    }
+
+    fn set_high(&mut self) -> Result<(), Pin::Error> {
+        self.0.as_mut().map_or(Ok(()), OutputPin::set_high)
+    }
 }
 
 /// What a person at the machine should know.

@@ -95,6 +95,9 @@ impl<M: Modes> Motion<M> {
     /// [`SettingsError`] for limits that no motion can be planned with, and for a mode that is not among them.
     pub fn with_modes(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
         let cartesian = settings.cartesian().map_err(SettingsError::Scale)?;
+        if settings.laser && !M::LASER {
+            return Err(SettingsError::Planner(PlanError::Mode { quantity: "laser" }));
+        }
         let mut planner = Planner::with_modes(settings.limits()).map_err(SettingsError::Planner)?;
         darken(&mut planner);
         let steps = step_gen(cartesian, &settings);
@@ -145,14 +148,11 @@ impl<M: Modes> Motion<M> {
                         self.gate.reset();
                         self.state = State::Ready;
                     }
-                    Some(Command::Set(setting)) => {
-                        self.set(setting);
-                        let _ = link.reports.push(Report::Set { at: self.position_mm() });
-                    }
+                    Some(command @ Command::Set(_)) => self.stand(command, now, link),
                     Some(command) => self.leave_out(command),
                 },
-                State::Homing(run) => {
-                    let step = self.home(run, now, link);
+                State::Homing(_) => {
+                    let step = self.home(now, link);
                     if step.is_some() || matches!(self.state, State::Homing(_)) {
                         return step;
                     }
@@ -305,7 +305,7 @@ impl<M: Modes> Motion<M> {
         };
         let speed_mm_s = self.phase.map_or(0.0, |(began, phase)| {
             let time_s = now.saturating_sub(began).as_secs_f64();
-            if time_s > phase.duration_s { 0.0 } else { greater(phase.at(time_s).speed_mm_s, 0.0) }
+            if time_s > phase.duration_s { 0.0 } else { greater(phase.at_with::<M>(time_s).speed_mm_s, 0.0) }
         });
         Status {
             activity,
@@ -326,6 +326,9 @@ impl<M: Modes> Motion<M> {
 
     /// Gives the laser its share of the power.
     fn shine(&mut self) {
+        if !M::LASER {
+            return;
+        }
         let power = u32::from(self.laser) * u32::from(self.percents.laser) / 100;
         let power = u16::try_from(power).unwrap_or(u16::MAX);
         self.beam = self.gate.pass_laser(if self.dark { 0 } else { power });
@@ -609,18 +612,16 @@ impl<M: Modes> Motion<M> {
     }
 
     /// One turn of homing.
-    fn home(&mut self, mut run: HomingRun, now: Duration, link: &mut Link) -> Option<Step> {
+    fn home(&mut self, now: Duration, link: &mut Link) -> Option<Step> {
+        let State::Homing(run) = &mut self.state else { return None };
         let result = match run.next(&self.settings, self.gate.limits()) {
             Ok((at, _)) if at > now => {
                 self.due = Some(at);
-                self.state = State::Homing(run);
                 return None;
             }
             Ok((at, step)) => {
-                let pulse = self.pass(step, link)?;
                 run.made(at);
-                self.state = State::Homing(run);
-                return Some(Step { at, pulse });
+                return self.pass(step, link).map(|pulse| Step { at, pulse });
             }
             Err(result) => result,
         };
@@ -649,6 +650,9 @@ fn step_gen<M: Modes>(cartesian: Cartesian, settings: &StepperPlotterSettings) -
 
 /// The laser has no power until it is told one.
 fn darken<M: Modes>(planner: &mut Planner<BLOCKS, M>) {
+    if !M::LASER {
+        return;
+    }
     let pushed = planner.push(PlotOp::LaserPower { share: 0.0 });
     debug_assert!(pushed.is_ok(), "it is empty");
 }

@@ -1,7 +1,6 @@
 //! [`Setting`]: one number of a machine's settings, as Grbl numbers them.
 
 use super::StepperPlotterSettings;
-use crate::HomingAxis;
 use crate::extremes::greater;
 use crate::whole::{is_whole, nearest, whole};
 use core::ops::RangeInclusive;
@@ -98,11 +97,6 @@ impl Setting {
         let near = |value: f64| u32::try_from(nearest(value)).unwrap_or(u32::MAX);
         let whole = |value: f64| u32::try_from(whole(value)).unwrap_or(u32::MAX);
         let Self { number, value } = self;
-        let scales = [settings.x_steps_per_mm, settings.y_steps_per_mm];
-        let mut homing = |change: &dyn Fn(&mut HomingAxis, f64)| {
-            change(&mut settings.home_x, scales[0]);
-            change(&mut settings.home_y, scales[1]);
-        };
         let side_mm = || u16::try_from(whole(value)).unwrap_or(u16::MAX);
         match number {
             3 => {
@@ -111,9 +105,19 @@ impl Setting {
                 settings.stored.y_direction = u8::from(mask & 2 != 0);
             }
             11 => settings.planner.junction_deviation_mm = value,
-            24 => homing(&|axis, scale| axis.slow_hz = near(value / 60.0 * scale).max(1)),
-            25 => homing(&|axis, scale| axis.fast_hz = near(value / 60.0 * scale).max(1)),
-            27 => homing(&|axis, scale| axis.pull_off_steps = near(value * scale).max(1)),
+            24 | 25 | 27 => {
+                let StepperPlotterSettings { home_x, home_y, x_steps_per_mm, y_steps_per_mm, .. } =
+                    &mut settings;
+                let each = if number == 27 { value } else { value / 60.0 };
+                for (axis, scale) in [(home_x, *x_steps_per_mm), (home_y, *y_steps_per_mm)] {
+                    let field = match number {
+                        24 => &mut axis.slow_hz,
+                        25 => &mut axis.fast_hz,
+                        _ => &mut axis.pull_off_steps,
+                    };
+                    *field = near(each * scale).max(1);
+                }
+            }
             100 => settings.x_steps_per_mm = value,
             101 => settings.y_steps_per_mm = value,
             110 | 111 => {

@@ -3,10 +3,11 @@
 use super::super::{Command, Link, Setting, SettingProblem, StoredSettings, area};
 use super::codes::{Alarm, Code};
 use super::listing::is_listed;
+use super::words::{read, whole};
 use super::{Grbl, Pens, Wait, send};
 use crate::decimal::Decimal;
 use crate::extremes::greater;
-use crate::gcode::{Block, Outcomes, Problem, Reader, Word};
+use crate::gcode::{Block, Outcomes, Word};
 use crate::{PlotOp, Point};
 
 /// Slower is not slower, mm/s: a step of 0.01 mm takes ten seconds.
@@ -40,24 +41,13 @@ impl<P: Pens> Grbl<P> {
         if block.number(b'F').is_none() {
             return Err(Code::NO_FEED);
         }
-        let mut interpreter = self.interpreter;
-        let travel = read(b"G0M5")?.into_iter().chain([block]);
-        let mut to = None;
-        for block in travel {
-            let mut outcomes = Outcomes::none();
-            P::read(&self.settings, |options| interpreter.carry_out(&block, options, &mut outcomes))
-                .map_err(Code::of)?;
-            while let Some(op) = outcomes.take() {
-                to = op.map_err(Code::of)?.target().or(to);
-            }
-        }
+        let (to, feed_mm_s) = self.interpreter.travel(&block)?;
         let Some(to) = to else { return Ok(()) };
         if !area::contains(self.most(), to, PlotOp::Travel { to }) {
             return Err(Code::JOG_TARGET);
         }
         self.interpreter.stand_at(to);
-        let speed_mm_s =
-            interpreter.modes().feed_mm_s.map_or(LEAST_FEED_MM_S, |feed| greater(feed, LEAST_FEED_MM_S));
+        let speed_mm_s = feed_mm_s.map_or(LEAST_FEED_MM_S, |feed| greater(feed, LEAST_FEED_MM_S));
         self.command(link, Command::Jog { to, speed_mm_s });
         Ok(())
     }
@@ -88,39 +78,27 @@ impl<P: Pens> Grbl<P> {
     fn carry_out(&mut self, block: &Block, link: &mut Link) -> Result<(), Code> {
         let before = self.interpreter.modes();
         let mut outcomes = Outcomes::none();
-        P::read(&self.settings, |options| self.interpreter.carry_out(block, options, &mut outcomes))
-            .map_err(Code::of)?;
-        let mut ops = [None; super::MOST_COMMANDS];
-        let mut slots = ops.iter_mut();
+        P::read(&self.settings, |options| self.interpreter.carry_out(block, options, &mut outcomes))?;
         let mut pauses = false;
-        while let Some(op) = outcomes.take() {
+        for op in outcomes.iter() {
             match op {
-                Ok(mut op) => {
-                    if let PlotOp::Draw { feed_mm_s: Some(feed), .. }
-                    | PlotOp::DrawArc { feed_mm_s: Some(feed), .. } = &mut op
-                    {
-                        *feed = greater(*feed, LEAST_FEED_MM_S);
-                    }
-                    if let Some(slot) = slots.next() {
-                        *slot = Some(op);
-                    }
-                }
-                Err(error) if is_pause(error.problem) => pauses = true,
-                Err(error) => return Err(Code::of(error)),
+                Ok(_) => {}
+                Err(Code::PAUSE) => pauses = true,
+                Err(code) => return Err(*code),
             }
         }
         let modes = self.interpreter.modes();
         if modes.offset != before.offset {
             self.reports_to_offset = 0; // the next report tells it
         }
-        let moves = ops.iter().flatten().any(|op| op.target().is_some());
+        let moves = outcomes.iter().flatten().any(|op| op.target().is_some());
         let has_axis = block.words().iter().any(|word| matches!(word.letter, b'X' | b'Y'));
         if moves && has_axis && (1..=3).contains(&modes.motion) && modes.feed_mm_s.is_none() {
             return Err(Code::NO_FEED);
         }
         let most = self.most();
         let mut at = before.position;
-        for op in ops.iter().flatten() {
+        for op in outcomes.iter().flatten() {
             if !area::contains(most, at, *op) {
                 // What has been answered by ok is still drawn, then the pen goes up.
                 self.command(link, Command::Plot(PlotOp::Travel { to: before.position }));
@@ -129,7 +107,13 @@ impl<P: Pens> Grbl<P> {
             }
             at = op.target().unwrap_or(at);
         }
-        for op in ops.into_iter().flatten() {
+        while let Some(op) = outcomes.take() {
+            let Ok(mut op) = op else { continue };
+            if let PlotOp::Draw { feed_mm_s: Some(feed), .. }
+            | PlotOp::DrawArc { feed_mm_s: Some(feed), .. } = &mut op
+            {
+                *feed = greater(*feed, LEAST_FEED_MM_S);
+            }
             self.command(link, Command::Plot(op));
         }
         if before.pen_down && !modes.pen_down {
@@ -148,11 +132,7 @@ impl<P: Pens> Grbl<P> {
 fn setting(text: &[u8]) -> Result<Setting, Code> {
     let mut parts = text.splitn(2, |byte| *byte == b'=');
     let (number, value) = (parts.next().unwrap_or(&[]), parts.next().ok_or(Code::BAD_STATEMENT)?);
-    let number = number.iter().try_fold(0_u8, |number, byte| {
-        let digit = char::from(*byte).to_digit(10).and_then(|digit| u8::try_from(digit).ok())?;
-        number.checked_mul(10)?.checked_add(digit)
-    });
-    let number = number.ok_or(Code::BAD_STATEMENT)?;
+    let number = whole(number).ok_or(Code::BAD_STATEMENT)?;
     let (first, rest) = value.split_first().ok_or(Code::BAD_NUMBER)?;
     let mut decimal = Decimal::begin(*first).ok_or(Code::BAD_NUMBER)?;
     if !rest.iter().all(|byte| decimal.push(*byte)) {
@@ -160,21 +140,4 @@ fn setting(text: &[u8]) -> Result<Setting, Code> {
     }
     let value = decimal.value().filter(|value| value.is_finite()).ok_or(Code::BAD_NUMBER)?;
     Ok(Setting { number, value })
-}
-
-/// The words of a line; none if it has no words.
-fn read(text: &[u8]) -> Result<Option<Block>, Code> {
-    let mut reader = Reader::new();
-    for &byte in text {
-        // Only an error comes before the end of the line.
-        if let Some(Err(error)) = reader.push_free(byte) {
-            return Err(Code::of(error));
-        }
-    }
-    reader.finish().transpose().map_err(Code::of)
-}
-
-/// `M0`: Grbl waits too, and passes `M1` by.
-fn is_pause(problem: Problem) -> bool {
-    matches!(problem, Problem::Unsupported { command, .. } if command.letter == b'M' && command.tenths() == Some(0))
 }

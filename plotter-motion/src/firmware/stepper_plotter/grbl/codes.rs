@@ -3,7 +3,7 @@
 //! Source: the Grbl project's wiki, "Grbl v1.1 Interface", and its tables of errors and alarms (`doc/csv`).
 
 use crate::decimal_text::Decimals;
-use crate::gcode::{Error, Problem, Word};
+use crate::gcode::{Complaint, Position, Problem, Word};
 use crate::whole::{float, is_whole, nearest};
 use crate::{HomingError, Point};
 
@@ -58,10 +58,15 @@ impl Code {
     pub(super) const UNUSED: Self = Self(36);
     /// The value of a setting is out of its range. Grbl 1.1 has no number for it; this is that of its successor grblHAL.
     pub(super) const SETTING_RANGE: Self = Self(52);
+    /// `M0`, which is carried out: the interpreter leaves it to who is in charge of the machine.
+    pub(super) const PAUSE: Self = Self(0);
+}
 
-    /// The number that fits best to what the reader complains of.
-    pub(super) fn of(error: Error) -> Self {
-        match error.problem {
+impl Complaint for Code {
+    /// The number that fits best to what is complained of.
+    #[inline(always)] // what is complained of is known where that happens, so that one number is left of all this
+    fn of(problem: Problem, _: Position) -> Self {
+        match problem {
             Problem::UnexpectedByte { .. } | Problem::NoLetter | Problem::BadChecksum { .. } => {
                 Self::NO_LETTER
             }
@@ -89,6 +94,10 @@ impl Code {
             Problem::ArcRadius { .. } => Self::RADIUS,
             _ => Self::UNSUPPORTED,
         }
+    }
+
+    fn undone(command: Word, _: Position) -> Self {
+        if command.letter == b'M' && command.tenths() == Some(0) { Self::PAUSE } else { Self::UNSUPPORTED }
     }
 }
 

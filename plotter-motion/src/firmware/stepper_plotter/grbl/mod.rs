@@ -8,6 +8,7 @@ mod overrides;
 mod pens;
 mod rx_buffer;
 mod status_report;
+mod words;
 
 use super::command_queue::COMMANDS_OF_A_LINE as MOST_COMMANDS;
 use super::output::Output;
