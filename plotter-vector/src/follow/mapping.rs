@@ -1,6 +1,6 @@
 //! [`MappingFollower`]: a map of the lines, and each of them followed once.
 
-use super::align::aligned;
+use super::align::{self, aligned};
 use super::flat::Flat;
 use super::keyframe::Keyframes;
 use super::line_map::{LineMap, State};
@@ -25,6 +25,10 @@ const ARRIVED_PX: f64 = 0.35;
 
 /// Places of two lines that are as near are one on the way, px.
 const TOUCHING_PX: f64 = 1.0;
+
+/// The camera goes so much of its window at once to where no window has been: what tells places along a line, its corners and what
+/// crosses it, is then in both.
+const NEW_SHARE: f64 = 0.25;
 
 /// A line goes straight on whose pieces' directions have this cosine at least.
 const STRAIGHT_ON: f64 = 0.9;
@@ -303,6 +307,7 @@ impl MappingFollower {
         }
         let (known, first_link) = (self.map.nodes.len(), self.map.links.len());
         aligned(&mut self.map, flat, &pieces, middle, place, self.margin_px);
+        align::corners(&mut self.map, &pieces, place);
         let dark_at = |at: PxPoint| flat.at(middle.along(at.minus(place), 1.0));
         let mut darks: Vec<f32> =
             pieces.iter().flat_map(|piece| &piece.places).step_by(7).map(|at| dark_at(*at)).collect();
@@ -408,9 +413,14 @@ impl MappingFollower {
 
     /// Some of the way to a place, with the tool lifted.
     fn travel(&mut self, to: PxPoint) -> Step {
-        let middle = self.window_px.map_or(100.0, |(width, height)| 0.5 * f64::from(width.min(height)));
+        self.travel_by(to, 0.5)
+    }
+
+    /// Some of the way to a place, with the tool lifted: a share of the window at most.
+    fn travel_by(&mut self, to: PxPoint, share: f64) -> Step {
+        let most = self.window_px.map_or(100.0, |(width, height)| share * f64::from(width.min(height)));
         let way = self.place.distance(to);
-        let part = if way > middle { middle / way } else { 1.0 };
+        let part = if way > most { most / way } else { 1.0 };
         let next = self.place.along(to.minus(self.place), part);
         self.go(&[next], Tool::Up)
     }
@@ -430,7 +440,7 @@ impl MappingFollower {
             Some(Start::Unseen(node, _)) if self.looks_behind(node) < MOST_FIXES => {
                 let to = self.map.at(node);
                 self.doing = Doing::Searching(to);
-                return self.travel(to);
+                return self.travel_by(to, NEW_SHARE);
             }
             Some(Start::At(node) | Start::Unseen(_, node)) => {
                 self.doing = Doing::Going(node);
