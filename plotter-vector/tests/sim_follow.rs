@@ -82,6 +82,22 @@ fn dense_lines_are_followed_one_by_one() {
     assert!(run.judged.repeated < 0.01 && run.report.lifts == 4, "{:?} {:?}", run.judged, run.report);
 }
 
+/// 1 px between lines is nothing under 1.5 px of blur, and no window shows where they end: no look for that goes on for ever.
+#[test]
+fn lines_that_are_one_under_the_blur_come_to_an_end() {
+    let rows: Vec<_> = (0..6)
+        .map(|i| 120.3 + 5.0 * f64::from(i))
+        .map(|y| polyline(&[(110.2, y), (350.7, y + 18.0)]))
+        .collect();
+    let figure = Figure { name: "one", width: 460, height: 340, lines: rows, pen_px: 4.0 };
+    for (seed, error) in [(1, TableError::default()), (2, table(2))] {
+        let camera = CameraSettings { width_px: 240, height_px: 240, seed, ..CameraSettings::default() };
+        let run = ours(&figure, figure.lines[0][0], camera, error, settings(&figure));
+        println!("{:?} {:?} {:?}", run.end, run.report, run.judged);
+        assert!(run.report.windows < 4000, "{:?} {:?}", run.end, run.report);
+    }
+}
+
 #[test]
 #[ignore = "three laps of each figure, a minute in release: .ci/run runs it"]
 fn every_figure_is_covered_without_a_wrong_choice() {

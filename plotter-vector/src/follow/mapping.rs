@@ -30,6 +30,10 @@ const TOUCHING_PX: f64 = 1.0;
 /// crosses it, is then in both.
 const NEW_SHARE: f64 = 0.25;
 
+/// Where a line leaves what was seen is gone to once within this, px, and in so many places.
+const BEHIND_PX: f64 = 20.0;
+const MOST_LOOKED_BEHIND: usize = 1000;
+
 /// A line goes straight on whose pieces' directions have this cosine at least.
 const STRAIGHT_ON: f64 = 0.9;
 
@@ -144,8 +148,9 @@ pub struct MappingFollower {
     fixes: u32,
     idle: u32,
     felt: u32,
-    /// The last node that was gone to for what is behind it, and how often.
-    looked_behind: Option<(u32, u32)>,
+    /// Where it was gone to for what is behind, and the moves towards the next such place.
+    looked_behind: Vec<PxPoint>,
+    looks: u32,
     last_seen: Lost,
     report: FollowReport,
     ended: Option<End>,
@@ -176,7 +181,8 @@ impl MappingFollower {
             fixes: 0,
             idle: 0,
             felt: 0,
-            looked_behind: None,
+            looked_behind: Vec::new(),
+            looks: 0,
             last_seen: Lost::OneColour,
             report: FollowReport::default(),
             ended: None,
@@ -227,11 +233,14 @@ impl MappingFollower {
         self.tries += 1;
         self.last_seen = why;
         if self.tries > self.settings.max_tries {
-            // Where nothing can be made out on the way of the search, it goes on elsewhere: what is followed is done.
-            let searches =
-                matches!(self.doing, Doing::Searching(_)) && self.map.length_of(State::Followed) > 0.0;
-            if searches && why != Lost::WindowSize {
+            // Where nothing can be made out on the way of the search, it goes on elsewhere: what is followed is done, and what
+            // was seen can be begun.
+            if let Doing::Searching(to) = self.doing
+                && why != Lost::WindowSize
+                && [State::Followed, State::Ahead].iter().any(|state| self.map.length_of(*state) > 0.0)
+            {
                 self.tries = 0;
+                self.looked_behind.push(to);
                 return self.choose(at);
             }
             return self.end(End::NoLine { at, why });
@@ -425,19 +434,25 @@ impl MappingFollower {
         self.go(&[next], Tool::Up)
     }
 
-    /// How often a node was gone to for what is behind it.
-    fn looks_behind(&mut self, node: u32) -> u32 {
-        let looks = self.looked_behind.filter(|(known, _)| *known == node).map_or(0, |(_, looks)| looks + 1);
-        self.looked_behind = Some((node, looks));
-        looks
+    /// Whether a place is gone to for what is behind it: not where one was that showed nothing more, so that this ends.
+    fn looks_behind(&mut self, to: PxPoint) -> bool {
+        let is_known = self.looked_behind.iter().any(|known| known.distance(to) < BEHIND_PX);
+        if is_known || self.looked_behind.len() >= MOST_LOOKED_BEHIND {
+            return false;
+        }
+        self.looks += 1;
+        if self.place.distance(to) < BEHIND_PX || self.looks > MOST_FIXES {
+            self.looks = 0;
+            self.looked_behind.push(to);
+        }
+        true
     }
 
     /// What to do when the tool is on no line.
     fn choose(&mut self, at: PxPoint) -> Step {
         self.fixes = 0;
         match trail::start(&mut self.map, self.place) {
-            // One that shows nothing more is not gone to again.
-            Some(Start::Unseen(node, _)) if self.looks_behind(node) < MOST_FIXES => {
+            Some(Start::Unseen(node, _)) if self.looks_behind(self.map.at(node)) => {
                 let to = self.map.at(node);
                 self.doing = Doing::Searching(to);
                 return self.travel_by(to, NEW_SHARE);
