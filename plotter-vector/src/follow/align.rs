@@ -1,4 +1,4 @@
-//! [`aligned`]: lines of the map that the window shows beside their place are moved to where they are.
+//! [`aligned`], [`corners_aligned`]: what a window shows beside its place in the map is moved to where it is.
 //!
 //! Along a straight line nothing tells how far the camera went; so where a loop closes, a line may be seen some pixels beside where
 //! the map has it. There is no ink at the map's place then, and a line beside it that the map does not have: it is the same one.
@@ -27,7 +27,7 @@ const VACANT: f32 = 0.45;
 
 /// Corners of lines that are not followed yet go to where a window shows them in its middle: they were put into the map when they came
 /// into view, at its border, where light and lens are worst.
-pub(super) fn corners(map: &mut LineMap, pieces: &[Piece], camera: PxPoint) {
+pub(super) fn corners_aligned(map: &mut LineMap, pieces: &[Piece], camera: PxPoint) {
     for three in pieces.iter().flat_map(|piece| piece.places.windows(3)) {
         let &[before, at, behind] = three else { continue };
         let turns = cosine(at.minus(before), behind.minus(at)) < CORNER_COS;

@@ -3,6 +3,7 @@
 use super::flat::Flat;
 use super::lines::cosine;
 use crate::PxPoint;
+use core::ops::Range;
 
 /// A corner turns by more: cosine of 35 degrees.
 pub(super) const CORNER_COS: f64 = 0.82;
@@ -25,25 +26,28 @@ const SQUARE_DARK: f32 = 0.84;
 /// How far behind a sharp tip its ink ends, but for half of the pen's width: blur takes as much of a round end, px.
 pub(super) const BLURRED_END_PX: f64 = 0.5;
 
+/// The runs of places that are in a sharp turn, each from its first place to that behind its last one.
+pub(super) fn runs(in_turn: &[bool]) -> impl Iterator<Item = Range<usize>> + '_ {
+    let mut end = 0;
+    in_turn.chunk_by(PartialEq::eq).filter_map(move |run| {
+        let first = end;
+        end += run.len();
+        (run.first() == Some(&true)).then_some(first..end)
+    })
+}
+
 /// The arms of a sharp turn go on straight from where they are apart to where they meet.
 pub(super) fn turn(flat: &Flat, places: &mut [PxPoint], in_turn: &[bool], width_px: f64) {
-    let is_in = |i: usize| in_turn.get(i).copied().unwrap_or(false);
-    let mut i = 0;
-    while i < places.len() {
-        if !is_in(i) {
-            i += 1;
-            continue;
+    for run in runs(in_turn) {
+        let Some((corner, met)) = meeting(flat, places, run.start, run.end, width_px) else { continue };
+        let from = run.start.checked_sub(1).and_then(|before| places.get(before)).copied();
+        let to = places.get(run.end).copied();
+        for (k, place) in places.iter_mut().enumerate().take(run.end).skip(run.start) {
+            let (other, parts) =
+                if k < corner { (from, corner + 1 - run.start) } else { (to, run.end - corner) };
+            let share = super::lines::count_f64(k.abs_diff(corner)) / super::lines::count_f64(parts);
+            *place = met.along(other.unwrap_or(met).minus(met), share);
         }
-        let end = (i..places.len()).find(|k| !is_in(*k)).unwrap_or(places.len());
-        if let Some((corner, met)) = meeting(flat, places, i, end, width_px) {
-            let (from, to) = (places.get(i - 1).copied(), places.get(end).copied());
-            for (k, place) in places.iter_mut().enumerate().take(end).skip(i) {
-                let (other, parts) = if k < corner { (from, corner + 1 - i) } else { (to, end - corner) };
-                let share = super::lines::count_f64(k.abs_diff(corner)) / super::lines::count_f64(parts);
-                *place = met.along(other.unwrap_or(met).minus(met), share);
-            }
-        }
-        i = end;
     }
 }
 

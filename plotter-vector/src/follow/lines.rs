@@ -1,6 +1,7 @@
 //! [`Lines`]: the middle of each line that a window shows.
 
 use super::centred::{centred, turns};
+use super::corners::runs;
 use super::ends::straight_ends;
 use super::flat::Flat;
 use super::tips::sharpened;
@@ -187,22 +188,14 @@ impl Window {
     /// Which places are trusted: a sharp turn wholly or not at all, for from one arm alone the other one's ink is taken for its own.
     fn trusted(&self, places: &[PxPoint], in_turn: &[bool]) -> Vec<bool> {
         let mut trusted: Vec<bool> = places.iter().map(|at| self.holds(at, self.margin_px)).collect();
-        let is_in = |i: usize| in_turn.get(i).copied().unwrap_or(false);
-        let mut i = 0;
-        while i < places.len() {
-            if !is_in(i) {
-                i += 1;
-                continue;
-            }
-            let end = (i..places.len()).find(|k| !is_in(*k)).unwrap_or(places.len());
-            let turn = places.get(i..end).unwrap_or(&[]);
+        for run in runs(in_turn) {
+            let turn = places.get(run.clone()).unwrap_or(&[]);
             // One that is too long for the window is followed piece by piece.
             let length_px = 0.5 * SPACING_PX * count_f64(turn.len());
             let is_long = length_px > self.width.min(self.height) - 2.0 * self.turn_px;
             if !is_long && !turn.iter().all(|at| self.holds(at, self.turn_px)) {
-                trusted.iter_mut().take(end).skip(i).for_each(|trusted| *trusted = false);
+                trusted.iter_mut().take(run.end).skip(run.start).for_each(|trusted| *trusted = false);
             }
-            i = end;
         }
         trusted
     }

@@ -1,12 +1,13 @@
 //! [`MappingFollower`]: a map of the lines, and each of them followed once.
 
-use super::align::{self, aligned};
+use super::align::{aligned, corners_aligned};
+use super::axes::Axes;
+use super::explored::Explored;
 use super::flat::Flat;
 use super::keyframe::Keyframes;
 use super::line_map::{LineMap, State};
 use super::lines::{Lines, cosine};
 use super::paper::nearest;
-use super::play::Play;
 use super::prior::{Information, Prior};
 use super::registration::{View, registered, sure};
 use super::search::Search;
@@ -30,15 +31,8 @@ const TOUCHING_PX: f64 = 1.0;
 /// crosses it, is then in both.
 const NEW_SHARE: f64 = 0.25;
 
-/// Where a line leaves what was seen is gone to once within this, px, and in so many places.
-const BEHIND_PX: f64 = 20.0;
-const MOST_LOOKED_BEHIND: usize = 1000;
-
 /// A line goes straight on whose pieces' directions have this cosine at least.
 const STRAIGHT_ON: f64 = 0.9;
-
-/// An axis that goes back by more has to cross its play, px.
-const TURN_PX: f64 = 0.3;
 
 /// How the play of an axis is felt: to and fro twice, in moves so small that no other line is taken for this one, px.
 const FEELING_PX: [f64; 16] =
@@ -127,7 +121,7 @@ enum Doing {
 pub struct MappingFollower {
     settings: MappingSettings,
     map: LineMap,
-    play: [Play; 2],
+    axes: Axes,
     doing: Doing,
     search: Option<Search>,
     /// Where the camera truly is.
@@ -148,9 +142,7 @@ pub struct MappingFollower {
     fixes: u32,
     idle: u32,
     felt: u32,
-    /// Where it was gone to for what is behind, and the moves towards the next such place.
-    looked_behind: Vec<PxPoint>,
-    looks: u32,
+    explored: Explored,
     last_seen: Lost,
     report: FollowReport,
     ended: Option<End>,
@@ -163,7 +155,7 @@ impl MappingFollower {
         Self {
             settings,
             map: LineMap::default(),
-            play: [Play::default(); 2],
+            axes: Axes::default(),
             doing: Doing::Starting,
             search: None,
             place: PxPoint::default(),
@@ -181,8 +173,7 @@ impl MappingFollower {
             fixes: 0,
             idle: 0,
             felt: 0,
-            looked_behind: Vec::new(),
-            looks: 0,
+            explored: Explored::default(),
             last_seen: Lost::OneColour,
             report: FollowReport::default(),
             ended: None,
@@ -201,7 +192,7 @@ impl MappingFollower {
             given_up_px: self.map.length_of(State::GivenUp),
             outside_px: self.map.length_of(State::Outside),
             line_width_px: self.width_px,
-            play_px: self.play.map(|axis| axis.play_px),
+            play_px: self.axes.play_px(),
             ..self.report.clone()
         }
     }
@@ -240,7 +231,7 @@ impl MappingFollower {
                 && [State::Followed, State::Ahead].iter().any(|state| self.map.length_of(*state) > 0.0)
             {
                 self.tries = 0;
-                self.looked_behind.push(to);
+                self.explored.give_up(to);
                 return self.choose(at);
             }
             return self.end(End::NoLine { at, why });
@@ -255,11 +246,10 @@ impl MappingFollower {
 
     /// Where the camera should be by what is known of the table, with the last move's errors.
     fn prior(&self, pose: PxPoint) -> Prior {
-        let [x, y] = &self.play;
         let way = self.last_pose.map_or(0.0, |last| last.distance(pose));
         let random = TABLE_BASE_PX + TABLE_PX * libm::sqrt(way);
-        let place = PxPoint::new(x.place(pose.x), y.place(pose.y));
-        let sd = [x.doubt_px(pose.x), y.doubt_px(pose.y)].map(|doubt| libm::hypot(random, doubt));
+        let (place, doubt_px) = self.axes.place(pose);
+        let sd = doubt_px.map(|doubt| libm::hypot(random, doubt));
         Prior { place, information: self.known.after(sd) }
     }
 
@@ -316,7 +306,7 @@ impl MappingFollower {
         }
         let (known, first_link) = (self.map.nodes.len(), self.map.links.len());
         aligned(&mut self.map, flat, &pieces, middle, place, self.margin_px);
-        align::corners(&mut self.map, &pieces, place);
+        corners_aligned(&mut self.map, &pieces, place);
         let dark_at = |at: PxPoint| flat.at(middle.along(at.minus(place), 1.0));
         let mut darks: Vec<f32> =
             pieces.iter().flat_map(|piece| &piece.places).step_by(7).map(|at| dark_at(*at)).collect();
@@ -378,35 +368,6 @@ impl MappingFollower {
         }
     }
 
-    /// The commands that lead through places, inside of the machine's area. An axis that turns round crosses its play before the
-    /// other one moves, or the tool would leave the line on the side of the other.
-    fn commands(&mut self, path: &[PxPoint]) -> Vec<PxPoint> {
-        let area = self.settings.area;
-        let inside = |command: PxPoint| {
-            area.map_or(command, |[from, to]| {
-                PxPoint::new(
-                    command.x.clamp(from.x, to.x.max(from.x)),
-                    command.y.clamp(from.y, to.y.max(from.y)),
-                )
-            })
-        };
-        let [x, y] = &mut self.play;
-        let mut commands = Vec::with_capacity(path.len());
-        for to in path {
-            let sent = [x.sent_px(), y.sent_px()];
-            let ([begins_x, end_x], [begins_y, end_y]) = (x.command(to.x), y.command(to.y));
-            let across = [(begins_x, end_x, sent[0]), (begins_y, end_y, sent[1])]
-                .map(|(begins, end, sent)| if begins == end { (sent, false) } else { (begins, true) });
-            if let [(x, crosses_x), (y, crosses_y)] = across
-                && (crosses_x || crosses_y)
-            {
-                commands.push(inside(PxPoint::new(x, y)));
-            }
-            commands.push(inside(PxPoint::new(end_x, end_y)));
-        }
-        commands
-    }
-
     fn go(&mut self, path: &[PxPoint], tool: Tool) -> Step {
         if tool == Tool::Down && self.tool == Tool::Up && self.report.followed_px > 0.0 {
             self.report.lifts += 1;
@@ -417,7 +378,7 @@ impl MappingFollower {
         }
         self.tool = tool;
         self.report.moves += 1;
-        Step::Move { path: self.commands(path), tool }
+        Step::Move { path: self.axes.commands(path, self.settings.area), tool }
     }
 
     /// Some of the way to a place, with the tool lifted.
@@ -434,25 +395,11 @@ impl MappingFollower {
         self.go(&[next], Tool::Up)
     }
 
-    /// Whether a place is gone to for what is behind it: not where one was that showed nothing more, so that this ends.
-    fn looks_behind(&mut self, to: PxPoint) -> bool {
-        let is_known = self.looked_behind.iter().any(|known| known.distance(to) < BEHIND_PX);
-        if is_known || self.looked_behind.len() >= MOST_LOOKED_BEHIND {
-            return false;
-        }
-        self.looks += 1;
-        if self.place.distance(to) < BEHIND_PX || self.looks > MOST_FIXES {
-            self.looks = 0;
-            self.looked_behind.push(to);
-        }
-        true
-    }
-
     /// What to do when the tool is on no line.
     fn choose(&mut self, at: PxPoint) -> Step {
         self.fixes = 0;
         match trail::start(&mut self.map, self.place) {
-            Some(Start::Unseen(node, _)) if self.looks_behind(self.map.at(node)) => {
+            Some(Start::Unseen(node, _)) if self.explored.goes(self.place, self.map.at(node)) => {
                 let to = self.map.at(node);
                 self.doing = Doing::Searching(to);
                 return self.travel_by(to, NEW_SHARE);
@@ -520,8 +467,7 @@ impl MappingFollower {
                         return Some(self.choose(at));
                     }
                     self.fixes = 0;
-                    let unknown = self.play.iter().any(Play::is_unknown);
-                    if unknown && self.felt < MOST_FELT {
+                    if self.axes.is_unknown() && self.felt < MOST_FELT {
                         self.felt += 1;
                         self.doing = Doing::Feeling { node, turn: 0 };
                         return self.decide(at, looked);
@@ -563,12 +509,6 @@ impl MappingFollower {
         places.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(here)
     }
 
-    /// Whether an axis goes back on the way from one place to another.
-    fn turns(&self, from: PxPoint, to: PxPoint) -> bool {
-        let (dx, dy) = to.minus(from);
-        [(dx, &self.play[0]), (dy, &self.play[1])].iter().any(|(way, play)| way * play.side() < -TURN_PX)
-    }
-
     fn follow(
         &mut self,
         at: PxPoint,
@@ -603,7 +543,7 @@ impl MappingFollower {
                         let over = if is_passed { there } else { over };
                         node = near;
                         if is_passed || here.distance(over) > TOUCHING_PX {
-                            if !path.is_empty() && self.turns(from, over) {
+                            if !path.is_empty() && self.axes.turns(from, over) {
                                 link = Some((id, far));
                                 break;
                             }
@@ -616,11 +556,11 @@ impl MappingFollower {
             };
             let to = self.map.at(far);
             // Where an axis turns round its play may do something else than is known: a look before.
-            if !path.is_empty() && self.turns(from, to) {
+            if !path.is_empty() && self.axes.turns(from, to) {
                 link = Some((id, far));
                 break;
             }
-            let share = self.play[0].share(from.x, to.x).min(self.play[1].share(from.y, to.y));
+            let share = self.axes.share(from, to);
             if share < 1.0 && self.fixes < MOST_FIXES {
                 // The play is not known yet: a small move, and a look.
                 if path.is_empty() {
@@ -669,8 +609,7 @@ impl LineFollower for MappingFollower {
             self.search = Some(Search::new(area, width.min(height) - 2.0 * self.margin_px));
         }
         if let Doing::Starting = self.doing {
-            self.play[0].forget(pose.x);
-            self.play[1].forget(pose.y);
+            self.axes.forget(pose);
         }
         let prior = self.prior(pose);
         let far_from_look =
@@ -695,9 +634,7 @@ impl LineFollower for MappingFollower {
             return self.lost(pose, why);
         }
         let Seen { place, told, known, .. } = seen;
-        let is_sure = sure(told);
-        self.play[0].measure(pose.x, place.x, is_sure[0]);
-        self.play[1].measure(pose.y, place.y, is_sure[1]);
+        self.axes.measure(pose, place, sure(told));
         (self.place, self.known, self.told) = (place, known, told);
         self.last_pose = Some(pose);
         if !self.map.nodes.is_empty() {

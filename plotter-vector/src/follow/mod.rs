@@ -22,6 +22,7 @@
 //! ([`SimulatedCamera`]) and of the table ([`SimulatedTable`]) belong to it, and [`judge`] says how well a line was followed.
 
 mod align;
+mod axes;
 mod calibration;
 mod camera;
 mod centred;
@@ -30,6 +31,7 @@ mod corners;
 mod crowd;
 mod ends;
 mod exits;
+mod explored;
 mod flat;
 mod judge;
 mod keyframe;

@@ -38,7 +38,16 @@ struct Pushed {
     way_px: f64,
 }
 
-/// Play and offset of an axis.
+/// A command to an axis, px.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Command {
+    /// Where it begins to move, if it has to cross some of its play first.
+    pub(super) crosses_to_px: Option<f64>,
+    /// The whole way.
+    pub(super) end_px: f64,
+}
+
+/// Play of an axis, and where it is in it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Play {
     /// Estimated play, px.
@@ -86,18 +95,18 @@ impl Play {
         self.place_px + self.lag_at(command).moved(self.half_px()).0
     }
 
-    /// The commands that lead to a place: that at which the axis begins to move, and the last one. They are the same where it moves
-    /// at once, or not at all.
-    pub(super) fn command(&mut self, wanted: f64) -> [f64; 2] {
+    /// The command that leads to a place.
+    pub(super) fn command(&mut self, wanted: f64) -> Command {
         let half_px = self.half_px();
         let way = wanted - self.place_px - self.lag.moved(half_px).0;
         if way.abs() < NO_MOVE_PX {
-            return [self.sent_px; 2];
+            return Command { crosses_to_px: None, end_px: self.sent_px };
         }
         let command = self.seen_at_px + self.lag.command(wanted - self.place_px, half_px);
         let moved = command - self.sent_px;
         let lost = moved - way;
-        let begins = if lost * way > 0.0 && lost.abs() > NO_MOVE_PX { self.sent_px + lost } else { command };
+        let crosses = lost * way > 0.0 && lost.abs() > NO_MOVE_PX;
+        let crosses_to_px = crosses.then_some(self.sent_px + lost);
         if moved != 0.0 {
             let side = libm::copysign(1.0, moved);
             if side != self.side {
@@ -109,7 +118,7 @@ impl Play {
         }
         self.sent_px = command;
         self.lag.go(command - self.seen_at_px, half_px);
-        [begins, command]
+        Command { crosses_to_px, end_px: command }
     }
 
     /// How far the axis may go on to `wanted` in one move, as a share: a turn whose play is not known well is gone in
@@ -208,7 +217,7 @@ mod tests {
     fn the_play_is_known_after_two_turns() {
         let (mut play, mut command, mut pushed) = (Play::default(), 0.0_f64, 0.0_f64);
         let mut go = |play: &mut Play, wanted: f64| -> f64 {
-            [_, command] = play.command(wanted);
+            command = play.command(wanted).end_px;
             pushed = pushed.clamp(command - 1.5, command + 1.5);
             play.measure(command, pushed, true);
             (pushed - wanted).abs()
