@@ -1,9 +1,8 @@
-//! [`aligned`], [`corners_aligned`]: what a window shows beside its place in the map is moved to where it is.
+//! [`aligned`]: a line that a window shows beside its place in the map is moved to where it is.
 //!
 //! Along a straight line nothing tells how far the camera went; so where a loop closes, a line may be seen some pixels beside where
 //! the map has it. There is no ink at the map's place then, and a line beside it that the map does not have: it is the same one.
 
-use super::corners::CORNER_COS;
 use super::flat::Flat;
 use super::line_map::{LineMap, State};
 use super::lines::{Piece, cosine};
@@ -16,39 +15,8 @@ const FARTHEST_PX: f64 = 7.0;
 /// Lines whose directions differ by more are not the same: cosine of 30 degrees.
 const SAME_COS: f64 = 0.866;
 
-/// What is seen as near to the middle of a window is seen well, px.
-const MIDDLE_PX: f64 = 50.0;
-
-/// A corner farther from its place is another one, px.
-const CORNER_PX: f64 = 2.5;
-
 /// Less than this share of a line's darkness is no line.
 const VACANT: f32 = 0.45;
-
-/// Corners of lines that are not followed yet go to where a window shows them in its middle: they were put into the map when they came
-/// into view, at its border, where light and lens are worst.
-pub(super) fn corners_aligned(map: &mut LineMap, pieces: &[Piece], camera: PxPoint) {
-    for three in pieces.iter().flat_map(|piece| piece.places.windows(3)) {
-        let &[before, at, behind] = three else { continue };
-        let turns = cosine(at.minus(before), behind.minus(at)) < CORNER_COS;
-        if !turns || at.distance(camera) > MIDDLE_PX {
-            continue;
-        }
-        let is_on = |id: &u32| {
-            let mut links = map.links_of(*id).filter(|(_, link, _)| !link.contact).peekable();
-            links.peek().is_some()
-                && links.all(|(_, link, other)| {
-                    let way = map.at(other).minus(map.at(*id));
-                    let along = [before, behind].iter().any(|to| cosine(to.minus(at), way) > SAME_COS);
-                    link.state == State::Ahead && along
-                })
-        };
-        let near = map.near(at, CORNER_PX).into_iter().filter(is_on);
-        if let Some(id) = near.min_by(|a, b| map.at(*a).distance(at).total_cmp(&map.at(*b).distance(at))) {
-            map.shift(id, at);
-        }
-    }
-}
 
 /// Moves nodes without ink to the pieces beside them that have no nodes; all places are on the paper but for those of the window,
 /// whose middle is at `camera`.

@@ -53,25 +53,17 @@ impl Axes {
     /// The commands that lead through places, inside of the machine's area. An axis that turns round crosses its play before the
     /// other one moves, or the tool would leave the line on the side of the other.
     pub(super) fn commands(&mut self, path: &[PxPoint], area: Option<[PxPoint; 2]>) -> Vec<PxPoint> {
-        let inside = |command: PxPoint| {
-            area.map_or(command, |[from, to]| {
-                PxPoint::new(
-                    command.x.clamp(from.x, to.x.max(from.x)),
-                    command.y.clamp(from.y, to.y.max(from.y)),
-                )
-            })
-        };
+        let limits = [area.map(|[from, to]| [from.x, to.x]), area.map(|[from, to]| [from.y, to.y])];
         let [x, y] = &mut self.0;
         let mut commands = Vec::with_capacity(path.len());
         for to in path {
             let sent = PxPoint::new(x.sent_px(), y.sent_px());
-            let (x, y) = (x.command(to.x), y.command(to.y));
+            let (x, y) = (x.command(to.x, limits[0]), y.command(to.y, limits[1]));
             if x.crosses_to_px.is_some() || y.crosses_to_px.is_some() {
-                let across =
-                    PxPoint::new(x.crosses_to_px.unwrap_or(sent.x), y.crosses_to_px.unwrap_or(sent.y));
-                commands.push(inside(across));
+                let (across, down) = (x.crosses_to_px.unwrap_or(sent.x), y.crosses_to_px.unwrap_or(sent.y));
+                commands.push(PxPoint::new(across, down));
             }
-            commands.push(inside(PxPoint::new(x.end_px, y.end_px)));
+            commands.push(PxPoint::new(x.end_px, y.end_px));
         }
         commands
     }

@@ -1,6 +1,6 @@
 //! [`MappingFollower`]: a map of the lines, and each of them followed once.
 
-use super::align::{aligned, corners_aligned};
+use super::align::aligned;
 use super::axes::Axes;
 use super::explored::Explored;
 use super::flat::Flat;
@@ -11,6 +11,7 @@ use super::paper::nearest;
 use super::prior::{Information, Prior};
 use super::registration::{View, registered, sure};
 use super::search::Search;
+use super::seated::corners_seated;
 use super::trail::{self, Start};
 use super::{End, FollowReport, LineFollower, Lost, MappingSettings, Step, Tool};
 use crate::{Gray, PxPoint};
@@ -306,7 +307,7 @@ impl MappingFollower {
         }
         let (known, first_link) = (self.map.nodes.len(), self.map.links.len());
         aligned(&mut self.map, flat, &pieces, middle, place, self.margin_px);
-        corners_aligned(&mut self.map, &pieces, place);
+        corners_seated(&mut self.map, &pieces, place);
         let dark_at = |at: PxPoint| flat.at(middle.along(at.minus(place), 1.0));
         let mut darks: Vec<f32> =
             pieces.iter().flat_map(|piece| &piece.places).step_by(7).map(|at| dark_at(*at)).collect();

@@ -49,6 +49,7 @@ mod published;
 mod random;
 mod registration;
 mod search;
+mod seated;
 mod table;
 mod tips;
 mod trail;

@@ -95,18 +95,19 @@ impl Play {
         self.place_px + self.lag_at(command).moved(self.half_px()).0
     }
 
-    /// The command that leads to a place.
-    pub(super) fn command(&mut self, wanted: f64) -> Command {
+    /// The command that leads to a place, or as far towards it as the machine's limits let the axis go.
+    pub(super) fn command(&mut self, wanted: f64, limits: Option<[f64; 2]>) -> Command {
         let half_px = self.half_px();
+        let inside = |command: f64| limits.map_or(command, |[from, to]| command.max(from).min(to.max(from)));
         let way = wanted - self.place_px - self.lag.moved(half_px).0;
         if way.abs() < NO_MOVE_PX {
-            return Command { crosses_to_px: None, end_px: self.sent_px };
+            return Command { crosses_to_px: None, end_px: inside(self.sent_px) };
         }
-        let command = self.seen_at_px + self.lag.command(wanted - self.place_px, half_px);
+        let command = inside(self.seen_at_px + self.lag.command(wanted - self.place_px, half_px));
         let moved = command - self.sent_px;
         let lost = moved - way;
         let crosses = lost * way > 0.0 && lost.abs() > NO_MOVE_PX;
-        let crosses_to_px = crosses.then_some(self.sent_px + lost);
+        let crosses_to_px = crosses.then_some(inside(self.sent_px + lost));
         if moved != 0.0 {
             let side = libm::copysign(1.0, moved);
             if side != self.side {
@@ -212,12 +213,26 @@ impl Play {
 mod tests {
     use super::*;
 
+    #[test]
+    fn at_a_limit_an_axis_knows_what_was_sent() {
+        let lag = Lag::behind(1.0);
+        let mut play = Play { play_px: 3.0, place_px: -1.5, side: 1.0, lag, learned: 2, ..Play::default() };
+        // Upwards it hangs 1.5 px behind: the command for 9.5 would be 11.
+        let limits = Some([0.0, 10.0]);
+        let command = play.command(9.5, limits).end_px;
+        assert_eq!(command, 10.0);
+        assert!((play.place(command) - 8.5).abs() < 1e-9, "{}", play.place(command));
+        // And it goes no farther, nor back.
+        assert_eq!(play.command(9.5, limits).end_px, 10.0);
+        assert!((play.place(10.0) - 8.5).abs() < 1e-9);
+    }
+
     /// An axis that loses 3 px at each turn, seen exactly after each move.
     #[test]
     fn the_play_is_known_after_two_turns() {
         let (mut play, mut command, mut pushed) = (Play::default(), 0.0_f64, 0.0_f64);
         let mut go = |play: &mut Play, wanted: f64| -> f64 {
-            command = play.command(wanted).end_px;
+            command = play.command(wanted, None).end_px;
             pushed = pushed.clamp(command - 1.5, command + 1.5);
             play.measure(command, pushed, true);
             (pushed - wanted).abs()
