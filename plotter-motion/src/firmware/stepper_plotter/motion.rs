@@ -439,6 +439,7 @@ impl<M: Modes> Motion<M> {
     }
 
     /// Gets the next event, or does what is to be done at rest; says whether there may be more.
+    #[cfg_attr(target_os = "none", inline(never))]
     fn go_on(&mut self, now: Duration, link: &mut Link) -> bool {
         if let Some(event) = self.next_event() {
             self.next = Some(event);
