@@ -388,6 +388,7 @@ impl HomingProgress {
     }
 
     /// The direction of the step that the phase wants; none where it is over.
+    #[cfg_attr(target_os = "none", inline(never))]
     fn look(
         &mut self,
         settings: HomingAxis,
