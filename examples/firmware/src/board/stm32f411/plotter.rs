@@ -4,7 +4,7 @@ use super::clock::Clock;
 use super::line::Line;
 use super::pins::{PinA, PinB};
 use super::start;
-use crate::board::{Event, Notice, StepperPins};
+use crate::board::{Event, Notice, StepperPins, has_come};
 use crate::machine;
 use core::convert::Infallible;
 use core::time::Duration;
@@ -155,7 +155,7 @@ impl Board {
             self.line.pump();
             let now = self.now();
             // A step that is due is not kept waiting by bytes.
-            if due.is_some_and(|due| now >= due) {
+            if due.is_some_and(|due| has_come(due, now)) {
                 return (now, Event::Due);
             }
             if let Some(came) = self.line.receive() {
