@@ -15,13 +15,25 @@ pub(crate) fn root(square: f64) -> f64 {
     let mantissa = bits & ((1 << MANTISSA_BITS) - 1) | 1 << MANTISSA_BITS;
     // An even power of two is taken out, and the mantissa has its first bit in one of the first two places.
     let number = mantissa << (11 - (exponent & 1));
-    let high = u64::from(whole_root(number));
-    // The other digits by a division, and at most one too many.
-    //
-    // Source: P. Zimmermann, "Karatsuba square root", INRIA research report 3805 (1999).
-    let (rest, twice) = (number - high * high, high << 1 | 1 << 32);
-    let (more, left) = ((rest << MORE_BITS) / twice, (rest << MORE_BITS) % twice);
-    let found = (high << MORE_BITS) + more - u64::from(left << MORE_BITS < more * more);
+    let (high, inverse) = whole_root(number);
+    let high = u64::from(high);
+    let rest = number - high * high;
+    // The other digits are rest / 2·high, and what is left says whether they are a few too many or too few.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "23 bits")]
+    #[expect(clippy::cast_sign_loss, reason = "above 0")]
+    let more = u64::from(((rest >> 10) as u32 as f32 * inverse * 32_768.0) as u32);
+    let mut found = (high << MORE_BITS) + more;
+    let mut left = (((rest << MORE_BITS).wrapping_sub(more * high << 1)) << MORE_BITS)
+        .wrapping_sub(more * more)
+        .cast_signed();
+    while left < 0 {
+        found -= 1;
+        left += (found << 1 | 1).cast_signed();
+    }
+    while left > (found << 1).cast_signed() {
+        left -= (found << 1 | 1).cast_signed();
+        found += 1;
+    }
     // One bit more than there is room for: no root lies just between two numbers.
     f64::from_bits((u64::from(exponent.div_ceil(2) + 510) << MANTISSA_BITS) + ((found + 1) >> 1))
 }
@@ -36,13 +48,13 @@ pub(crate) fn root_single(square: f32) -> f32 {
         return if exponent & 0xff == 0 { 0.0 } else { f32::NAN };
     }
     let mantissa = bits & ((1 << MANTISSA_BITS) - 1) | 1 << MANTISSA_BITS;
-    let found = whole_root(u64::from(mantissa) << (40 - (exponent & 1)));
+    let (found, _) = whole_root(u64::from(mantissa) << (40 - (exponent & 1)));
     f32::from_bits(((exponent.div_ceil(2) + 62) << MANTISSA_BITS) + (found >> 8) + (found >> 7 & 1))
 }
 
-/// The whole part of the root of a number from 2⁶² on.
+/// The whole part of the root of a number from 2⁶² on, and about 2¹⁶ / root.
 #[cfg_attr(target_os = "none", inline(never))]
-fn whole_root(number: u64) -> u32 {
+fn whole_root(number: u64) -> (u32, f32) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "a first guess")]
     let high = (number >> 32) as u32 as f32;
     // 1/√high: the bits of a float are nearly its logarithm, half of which is that of the root; then Newton's method.
@@ -63,7 +75,7 @@ fn whole_root(number: u64) -> u32 {
     while rest(root) > i64::from(root) << 1 {
         root += 1;
     }
-    root
+    (root, inverse)
 }
 
 #[cfg(test)]
@@ -113,7 +125,7 @@ mod tests {
 
         #[test]
         fn whole_roots_are_right(number in 1_u64 << 62..u64::MAX) {
-            let root = u64::from(whole_root(number));
+            let root = u64::from(whole_root(number).0);
             prop_assert!(root * root <= number && number - root * root <= 2 * root);
         }
     }

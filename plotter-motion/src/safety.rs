@@ -211,7 +211,6 @@ pub struct LimitSwitches {
 impl LimitSwitches {
     /// Whether the switch at the end that `direction` leads to is pressed.
     #[must_use]
-    #[cfg_attr(target_os = "none", inline(never))]
     pub const fn blocks(self, axis: Axis, direction: Direction) -> bool {
         match (axis, direction) {
             (Axis::X, Direction::Plus) => self.x_max,
