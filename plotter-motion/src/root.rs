@@ -7,7 +7,6 @@ pub(crate) fn root(square: f64) -> f64 {
     /// Digits that are missing after the first 32.
     const MORE_BITS: u32 = 22;
     let bits = square.to_bits();
-    #[expect(clippy::cast_possible_truncation, reason = "twelve bits")]
     let exponent = (bits >> MANTISSA_BITS) as u32;
     if exponent.wrapping_sub(1) >= 0x7fe {
         return if exponent & 0x7ff == 0 { 0.0 } else { f64::NAN };
@@ -23,7 +22,7 @@ pub(crate) fn root(square: f64) -> f64 {
     #[expect(clippy::cast_sign_loss, reason = "above 0")]
     let more = u64::from(((rest >> 10) as u32 as f32 * inverse * 32_768.0) as u32);
     let mut found = (high << MORE_BITS) + more;
-    let mut left = (((rest << MORE_BITS).wrapping_sub(more * high << 1)) << MORE_BITS)
+    let mut left = (((rest << MORE_BITS).wrapping_sub((more * high) << 1)) << MORE_BITS)
         .wrapping_sub(more * more)
         .cast_signed();
     while left < 0 {
@@ -55,7 +54,7 @@ pub(crate) fn root_single(square: f32) -> f32 {
 /// The whole part of the root of a number from 2⁶² on, and about 2¹⁶ / root.
 #[cfg_attr(target_os = "none", inline(never))]
 fn whole_root(number: u64) -> (u32, f32) {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "a first guess")]
+    #[expect(clippy::cast_precision_loss, reason = "a first guess")]
     let high = (number >> 32) as u32 as f32;
     // 1/√high: the bits of a float are nearly its logarithm, half of which is that of the root; then Newton's method.
     let mut inverse = f32::from_bits(0x5f37_59df - (high.to_bits() >> 1));
