@@ -128,7 +128,7 @@ impl Debounce {
             return self.pressed;
         }
         let since = *self.differs_since.get_or_insert(now);
-        if now.saturating_sub(since) >= self.needed() {
+        if has_come(self.needed(), now.saturating_sub(since)) {
             self.pressed = shows_press;
             self.differs_since = None;
         }
@@ -150,6 +150,13 @@ impl Debounce {
     const fn needed(&self) -> Duration {
         if self.pressed { self.settings.release_after } else { self.settings.press_after }
     }
+}
+
+/// Whether that time has come, or passed. On a small processor each comparison of two [`Duration`]s is 44 bytes wherever it stands, and
+/// half of that where it is called.
+#[cfg_attr(target_os = "none", inline(never))]
+pub(crate) fn has_come(at: Duration, now: Duration) -> bool {
+    at <= now
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@
 //! motors', "or dots get tails" (spec 5.4). Which width turns a servo to which angle differs from one to the next: it is
 //! measured at two angles ([`ServoPoint`]), and a straight line goes through both.
 
+use crate::debounce::has_come;
 use core::fmt;
 use core::time::Duration;
 use embedded_hal::delay::DelayNs;
@@ -305,13 +306,13 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
             State::Moving(_) if !self.is_slow() => self.set(now, self.target_deg),
             State::Moving(since) => {
                 let passed = now.saturating_sub(since);
-                if passed < self.frame() {
+                if !has_come(self.frame(), passed) {
                     return Ok(());
                 }
                 self.set(now, self.lowered_deg(passed))
             }
             State::Settling(until) => {
-                if now >= until {
+                if has_come(until, now) {
                     self.state = State::Settled;
                 }
                 Ok(())

@@ -1,4 +1,4 @@
-//! Seconds as a [`Duration`].
+//! Seconds as a [`Duration`], and whether one has passed.
 
 use crate::whole::{float, nearest_even, whole};
 use core::time::Duration;
@@ -18,6 +18,13 @@ pub(crate) fn duration(seconds: f64) -> Option<Duration> {
     Some(
         Duration::from_secs(before.unsigned_abs()).saturating_add(Duration::from_nanos(nanos.unsigned_abs())),
     )
+}
+
+/// Whether that time has come. On a small processor each comparison of two [`Duration`]s is 44 bytes wherever it stands, and half of
+/// that where it is called.
+#[cfg_attr(target_os = "none", inline(never))]
+pub(crate) fn has_come(at: Duration, now: Duration) -> bool {
+    at <= now
 }
 
 #[cfg(test)]

@@ -65,6 +65,7 @@ impl PenMove {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
+#[repr(u32)] // a tag of the width of a float costs small processors a second comparison everywhere
 pub enum PlotOp {
     /// Lifts the pen and moves, without a mark.
     Travel {

@@ -73,6 +73,7 @@ where
     }
 
     /// When [`tick`](Self::tick) is to be called; later does no harm. `None` while there is nothing to do.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn due(&self) -> Option<Duration> {
         let falls = sooner(self.x.falls_at(), self.y.falls_at());
         // A step of both waits for the later one.

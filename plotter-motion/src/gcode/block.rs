@@ -105,6 +105,7 @@ impl Block {
 
     /// All words.
     #[must_use]
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn words(&self) -> &[Word] {
         self.words.get(..usize::from(self.count)).unwrap_or_default()
     }

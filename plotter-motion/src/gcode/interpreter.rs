@@ -195,6 +195,7 @@ impl LineInterpreter {
     }
 
     /// Carries a line out. After an error neither the interpreter nor `out` is to be used: the line is left out as a whole.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn carry_out<C: Complaint>(
         &mut self,
         block: &Block,

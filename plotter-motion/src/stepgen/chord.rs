@@ -45,6 +45,7 @@ impl Chords {
     }
 
     /// The next chord of the same course.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn next<M: Modes>(&mut self, course: &Course, kinematics: &impl Kinematics) -> Option<Chord> {
         if self.next >= self.count {
             return None;

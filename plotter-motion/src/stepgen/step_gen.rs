@@ -435,6 +435,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         self.pen = pen;
     }
 
+    #[cfg_attr(target_os = "none", inline(never))]
     fn begin(&mut self, course: Course) {
         self.put(course.pen);
         self.chords = Chords::new::<M>(&course, self.at, self.chord_tolerance_mm);

@@ -70,7 +70,7 @@ fn main() -> ! {
     let mut failed = motors.start(began).is_err();
     let mut free = false;
     let mut now = began;
-    while now < began.saturating_add(BUTTONS_KNOWN) {
+    while !board::has_come(began.saturating_add(BUTTONS_KNOWN), now) {
         failed |= limits.tick(now).is_err();
         match button.tick(now) {
             Ok(change) => free |= change == Some(EstopChange::FreeSinceStart),
@@ -122,7 +122,7 @@ fn main() -> ! {
         let mut due = look;
         let of_laser = if LASER { laser.due() } else { None };
         for other in [plotter.due(), motors.due(), servo.due(), of_laser] {
-            due = other.map_or(due, |other| due.min(other));
+            due = other.map_or(due, |other| if board::has_come(other, due) { other } else { due });
         }
         let event;
         (now, event) = board.wait(Some(due));
@@ -133,12 +133,14 @@ fn main() -> ! {
                 board.notify(Notice::LineFault);
                 plotter.receive(now, SUBSTITUTE);
             }
-            Event::Due | Event::Edge(..) => asked = plotter.due().is_some_and(|due| due <= now),
+            Event::Due | Event::Edge(..) => {
+                asked = plotter.due().is_some_and(|due| board::has_come(due, now))
+            }
             Event::EncoderFault => failed = true,
         }
         failed |= motors.tick(now).is_err() | servo.tick(now).is_err();
         failed |= LASER && laser.tick(now).is_err();
-        if now >= look {
+        if board::has_come(look, now) {
             look = now.saturating_add(LOOK);
             board.feed_watchdog();
             let before = limits.limits();

@@ -11,6 +11,7 @@ mod stm32f411;
 pub use stm32f411::*;
 
 use core::fmt;
+use core::time::Duration;
 use embedded_hal::digital::{ErrorType, OutputPin};
 use plotter_motion::firmware;
 use plotter_motion::{Axis, Direction};
@@ -95,6 +96,13 @@ impl fmt::Display for Notice {
             Self::PinFailed => f.write_str("firmware: a pin failed; the motors are stopped"),
         }
     }
+}
+
+/// Whether that time has come: a comparison that is there once.
+#[inline(never)]
+#[must_use]
+pub fn has_come(at: Duration, now: Duration) -> bool {
+    at <= now
 }
 
 /// Stands still for good, with the pins as they are: only after the motors have been stopped.

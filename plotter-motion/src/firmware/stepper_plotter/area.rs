@@ -10,10 +10,7 @@ const SLACK_MM: f64 = 1e-6;
 
 /// Whether the way of `op` from `from` stays between (0, 0) and `most`, mm. An arc may go farther than its ends.
 pub(super) fn contains(most: Point, from: Point, op: PlotOp) -> bool {
-    let inside = |place: Point| {
-        let within = |value: f64, most: f64| value >= -SLACK_MM && value <= most + SLACK_MM;
-        within(place.x, most.x) && within(place.y, most.y)
-    };
+    let inside = |place: Point| is_within(place.x, most.x) && is_within(place.y, most.y);
     // A pen that stands outside may come back.
     let Some(to) = op.target() else { return true };
     if !inside(to) {
@@ -25,18 +22,20 @@ pub(super) fn contains(most: Point, from: Point, op: PlotOp) -> bool {
     let begin = atan2(out.y, out.x);
     let (low, high) = if sweep_rad < 0.0 { (begin + sweep_rad, begin) } else { (begin, begin + sweep_rad) };
     // A begin of -π to π and a sweep of a turn at most: from -3π to 3π, in quarters.
-    (-6_i8..=6).map(|quarter| (quarter, f64::from(quarter) * FRAC_PI_2)).all(|(quarter, angle)| {
-        if angle < low || angle > high {
-            return true;
+    let (mut across, mut along) = (-radius_mm, 0.0);
+    for quarter in -6_i8..=6 {
+        let angle = f64::from(quarter) * FRAC_PI_2;
+        if angle >= low && angle <= high && !inside(Point::new(centre.x + across, centre.y + along)) {
+            return false;
         }
-        let (x, y) = match quarter.rem_euclid(4) {
-            0 => (radius_mm, 0.0),
-            1 => (0.0, radius_mm),
-            2 => (-radius_mm, 0.0),
-            _ => (0.0, -radius_mm),
-        };
-        inside(Point::new(centre.x + x, centre.y + y))
-    })
+        (across, along) = (-along, across);
+    }
+    true
+}
+
+#[cfg_attr(target_os = "none", inline(never))]
+fn is_within(value_mm: f64, most_mm: f64) -> bool {
+    value_mm >= -SLACK_MM && value_mm <= most_mm + SLACK_MM
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use core::fmt;
 
 /// What the receive side asks of the motion side, one after the other: through the queue.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(u32)] // a tag of the width of a float costs small processors a second comparison everywhere
 pub enum Command {
     /// Plans and does this. What follows closely is planned together with it.
     Plot(PlotOp),

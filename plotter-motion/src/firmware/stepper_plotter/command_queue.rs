@@ -1,7 +1,6 @@
 //! [`CommandQueue`]: commands on their way to the motion side, each in as little room as it needs.
 
 use super::{Command, Setting};
-use crate::whole::whole;
 use crate::{PlotOp, Point};
 use core::time::Duration;
 
@@ -56,22 +55,53 @@ impl CommandQueue {
     ///
     /// `command` itself when there is no room for it.
     pub fn push(&mut self, command: Command) -> Result<(), Command> {
-        let Packed { head, numbers } = Packed::of(command);
-        let [_, count, ..] = head;
-        if self.len == COMMANDS || WORDS - self.used < words(count) {
-            return Err(command);
-        }
-        self.put(u32::from_le_bytes(head));
-        for number in numbers.iter().take(count.into()) {
-            let [a, b, c, d, e, f, g, h] = number.to_le_bytes();
-            self.put(u32::from_le_bytes([a, b, c, d]));
-            self.put(u32::from_le_bytes([e, f, g, h]));
-        }
-        self.len += 1;
-        Ok(())
+        let speed = |feed_mm_s: Option<f64>| feed_mm_s.unwrap_or(f64::NAN);
+        let is_taken = match command {
+            Command::Plot(PlotOp::Travel { to }) => self.put(0, [0; 2], &[to.x, to.y]),
+            Command::Plot(PlotOp::Draw { to, feed_mm_s }) => {
+                self.put(1, [0; 2], &[to.x, to.y, speed(feed_mm_s)])
+            }
+            Command::Plot(PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s }) => {
+                self.put(2, [0; 2], &[to.x, to.y, speed(feed_mm_s), centre.x, centre.y, sweep_rad])
+            }
+            Command::Plot(PlotOp::LaserPower { share }) => self.put(3, [0; 2], &[share]),
+            Command::Plot(PlotOp::Dwell { duration }) => {
+                let (whole_s, nanos) = (duration.as_secs(), duration.subsec_nanos());
+                self.put(4, [0; 2], &[f64::from_bits(whole_s), f64::from_bits(nanos.into())])
+            }
+            Command::Plot(PlotOp::SelectPen { pen }) => self.put(5, [pen, 0], &[]),
+            Command::Plot(PlotOp::NewPage) => self.put(6, [0; 2], &[]),
+            Command::Servo(deg) => self.put(7, [deg, 0], &[]),
+            Command::PenAngles { up_deg, down_deg } => self.put(8, [up_deg, down_deg], &[]),
+            Command::Home => self.put(9, [0; 2], &[]),
+            Command::Pause => self.put(10, [0; 2], &[]),
+            Command::Finish => self.put(11, [0; 2], &[]),
+            Command::GoOn => self.put(12, [0; 2], &[]),
+            Command::Unlock => self.put(13, [0; 2], &[]),
+            Command::Jog { to, speed_mm_s } => self.put(14, [0; 2], &[to.x, to.y, speed_mm_s]),
+            Command::Set(Setting { number, value }) => self.put(15, [number, 0], &[value]),
+        };
+        if is_taken { Ok(()) } else { Err(command) }
     }
 
-    fn put(&mut self, word: u32) {
+    /// Appends what a command is, two small numbers and its others, if there is room for all.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn put(&mut self, kind: u8, [low, high]: [u8; 2], numbers: &[f64]) -> bool {
+        let count = u8::try_from(numbers.len()).unwrap_or(u8::MAX);
+        if self.len == COMMANDS || WORDS - self.used < words(count) {
+            return false;
+        }
+        self.put_word(u32::from_le_bytes([kind, count, low, high]));
+        for number in numbers {
+            let [a, b, c, d, e, f, g, h] = number.to_le_bytes();
+            self.put_word(u32::from_le_bytes([a, b, c, d]));
+            self.put_word(u32::from_le_bytes([e, f, g, h]));
+        }
+        self.len += 1;
+        true
+    }
+
+    fn put_word(&mut self, word: u32) {
         if let Some(slot) = self.words.get_mut((self.first + self.used) % WORDS) {
             *slot = word;
             self.used += 1;
@@ -142,59 +172,6 @@ struct Packed {
 }
 
 impl Packed {
-    fn of(command: Command) -> Self {
-        let head = match command {
-            Command::Plot(op) => return Self::of_op(op),
-            Command::Jog { to, speed_mm_s } => {
-                return Self { head: [14, 3, 0, 0], numbers: [to.x, to.y, speed_mm_s, 0.0, 0.0, 0.0] };
-            }
-            Command::Set(Setting { number, value }) => {
-                return Self { head: [15, 1, number, 0], numbers: [value, 0.0, 0.0, 0.0, 0.0, 0.0] };
-            }
-            Command::Servo(deg) => [7, 0, deg, 0],
-            Command::PenAngles { up_deg, down_deg } => [8, 0, up_deg, down_deg],
-            Command::Home => [9, 0, 0, 0],
-            Command::Pause => [10, 0, 0, 0],
-            Command::Finish => [11, 0, 0, 0],
-            Command::GoOn => [12, 0, 0, 0],
-            Command::Unlock => [13, 0, 0, 0],
-        };
-        Self { head, numbers: [0.0; MOST_NUMBERS] }
-    }
-
-    fn of_op(op: PlotOp) -> Self {
-        let mut numbers = [0.0; MOST_NUMBERS];
-        let [a, b, c, d, e, f] = &mut numbers;
-        // A speed that is left to the machine is no number.
-        let speed = |feed_mm_s: Option<f64>| feed_mm_s.unwrap_or(f64::NAN);
-        let head = match op {
-            PlotOp::Travel { to } => {
-                (*a, *b) = (to.x, to.y);
-                [0, 2, 0, 0]
-            }
-            PlotOp::Draw { to, feed_mm_s } => {
-                (*a, *b, *c) = (to.x, to.y, speed(feed_mm_s));
-                [1, 3, 0, 0]
-            }
-            PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } => {
-                (*a, *b, *c) = (to.x, to.y, speed(feed_mm_s));
-                (*d, *e, *f) = (centre.x, centre.y, sweep_rad);
-                [2, 6, 0, 0]
-            }
-            PlotOp::LaserPower { share } => {
-                *a = share;
-                [3, 1, 0, 0]
-            }
-            PlotOp::Dwell { duration } => {
-                (*a, *b) = (f64::from_bits(duration.as_secs()), duration.subsec_nanos().into());
-                [4, 2, 0, 0]
-            }
-            PlotOp::SelectPen { pen } => [5, 0, pen, 0],
-            PlotOp::NewPage => [6, 0, 0, 0],
-        };
-        Self { head, numbers }
-    }
-
     fn command(self) -> Command {
         let Self { head: [kind, _, low, high], numbers: [a, b, c, d, e, f] } = self;
         let to = Point::new(a, b);
@@ -205,8 +182,7 @@ impl Packed {
             2 => Command::Plot(PlotOp::DrawArc { centre: Point::new(d, e), sweep_rad: f, to, feed_mm_s }),
             3 => Command::Plot(PlotOp::LaserPower { share: a }),
             4 => Command::Plot(PlotOp::Dwell {
-                duration: Duration::from_secs(a.to_bits())
-                    .saturating_add(Duration::from_nanos(whole(b).unsigned_abs())),
+                duration: Duration::from_secs(a.to_bits()).saturating_add(Duration::from_nanos(b.to_bits())),
             }),
             5 => Command::Plot(PlotOp::SelectPen { pen: low }),
             6 => Command::Plot(PlotOp::NewPage),

@@ -18,6 +18,7 @@ impl HomingRun {
     }
 
     /// The next step with its time; or what came of it all.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn next(
         &mut self,
         settings: &StepperPlotterSettings,

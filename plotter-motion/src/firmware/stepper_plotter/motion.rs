@@ -11,6 +11,7 @@ use super::{
 use crate::extremes::greater;
 use crate::kinematics::{Backlash, Cartesian, Kinematics};
 use crate::planner::{AllModes, Keep as _, Modes};
+use crate::seconds::has_come;
 use crate::{
     Action, Axis, Beam, Blocked, Direction, LimitSwitches, MotorEvent, Pen, Phase, PlanError, Planner,
     PlotOp, Point, Pulse, SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, TimedEvent,
@@ -158,7 +159,7 @@ impl<M: Modes> Motion<M> {
                     }
                 }
                 State::Ready => match self.next.map(|event| (event, self.time_of(event.tick))) {
-                    Some((_, at)) if at > now => {
+                    Some((_, at)) if !has_come(at, now) => {
                         self.due = Some(at);
                         return None;
                     }
@@ -336,7 +337,7 @@ impl<M: Modes> Motion<M> {
 
     /// Whether something is on its way: steps, or a pause that is not over.
     fn moves(&self, now: Duration) -> bool {
-        self.next.is_some() || !self.at_rest || self.time_of(self.steps.tick()) > now
+        self.next.is_some() || !self.at_rest || !has_come(self.time_of(self.steps.tick()), now)
     }
 
     fn time_of(&self, tick: u64) -> Duration {
@@ -439,6 +440,7 @@ impl<M: Modes> Motion<M> {
     }
 
     /// Gets the next event, or does what is to be done at rest; says whether there may be more.
+    #[cfg_attr(target_os = "none", inline(never))]
     fn go_on(&mut self, now: Duration, link: &mut Link) -> bool {
         if let Some(event) = self.next_event() {
             self.next = Some(event);
@@ -446,7 +448,7 @@ impl<M: Modes> Motion<M> {
         }
         self.fill(now, link);
         if self.at_rest
-            && let Some(start_at) = self.start_at.filter(|&at| at > now)
+            && let Some(start_at) = self.start_at.filter(|&at| !has_come(at, now))
             && self.planner.has_room()
             && link.commands.is_empty()
         {
@@ -483,7 +485,7 @@ impl<M: Modes> Motion<M> {
         (self.at_rest, self.start_at) = (true, None);
         // The last phase may last beyond its last step, and a pause has no step.
         let end = self.time_of(self.steps.tick());
-        if end > now {
+        if !has_come(end, now) {
             self.due = Some(end);
             return false;
         }
@@ -615,7 +617,7 @@ impl<M: Modes> Motion<M> {
     fn home(&mut self, now: Duration, link: &mut Link) -> Option<Step> {
         let State::Homing(run) = &mut self.state else { return None };
         let result = match run.next(&self.settings, self.gate.limits()) {
-            Ok((at, _)) if at > now => {
+            Ok((at, _)) if !has_come(at, now) => {
                 self.due = Some(at);
                 return None;
             }

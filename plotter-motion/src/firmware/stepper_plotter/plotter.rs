@@ -65,6 +65,7 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     }
 
     /// The next step that is due by `now`, if there is one.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn poll(&mut self, now: Duration) -> Option<Step> {
         loop {
             let step = self.motion.poll(now, &mut self.link);

@@ -75,8 +75,10 @@ pub fn take() -> Option<Parts> {
 
     let mut clock = peripherals.TIM2.counter_us(&mut rcc);
     clock.start(u32::MAX.micros()).ok()?;
+    let clock = clock.release().release();
     let config = serial::Config::default().baudrate(machine::BAUD.bps());
-    let (tx, rx) = serial::Serial::new(peripherals.USART2, (a.pa2, a.pa3), config, &mut rcc).ok()?.split();
+    let (port, _) =
+        serial::Serial::<_, u8>::new(peripherals.USART2, (a.pa2, a.pa3), config, &mut rcc).ok()?.release();
 
     // Both edges of both phases of both encoders: lines 6 to 9, which share an interrupt.
     let mut syscfg = peripherals.SYSCFG.constrain(&mut rcc);
@@ -109,7 +111,7 @@ pub fn take() -> Option<Parts> {
         stop: a.pa10.into_pull_up_input().erase(),
         rest: Rest {
             clock: Clock::new(clock),
-            line: Line::new(tx, rx),
+            line: Line::new(port),
             lamp: a.pa5.into_push_pull_output().erase(),
             watchdog: IndependentWatchdog::new(peripherals.IWDG),
             exti: peripherals.EXTI,

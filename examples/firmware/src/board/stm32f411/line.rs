@@ -4,48 +4,45 @@ use core::cell::RefCell;
 use critical_section::Mutex;
 use heapless::spsc::Queue;
 use stm32f4xx_hal::pac::{USART2, interrupt};
-use stm32f4xx_hal::prelude::*;
-use stm32f4xx_hal::serial::{Rx, Tx};
 
 /// Bytes that came and were not fetched: the loop takes less time than the line for these, a planned block included.
 const COME: usize = 32;
 /// Bytes that wait to be sent.
 const TO_SEND: usize = 128;
 
-static RECEIVER: Mutex<RefCell<Option<Rx<USART2>>>> = Mutex::new(RefCell::new(None));
 /// What came; `None` for a byte that was lost or damaged.
 static CAME: Mutex<RefCell<Queue<Option<u8>, COME>>> = Mutex::new(RefCell::new(Queue::new()));
 
 #[interrupt]
+#[allow(unsafe_code, reason = "the line's own half of the port is in the loop's hands")]
 fn USART2() {
-    critical_section::with(|cs| {
-        if let Some(rx) = RECEIVER.borrow_ref_mut(cs).as_mut() {
-            let came = match rx.read() {
-                Err(nb::Error::WouldBlock) => return,
-                Ok(byte) => Some(byte),
-                Err(nb::Error::Other(_)) => None,
-            };
-            // A full queue is a loop that stands still: its watchdog bites.
-            let _ = CAME.borrow_ref_mut(cs).enqueue(came);
-        }
-    });
+    // SAFETY: the interrupt reads what came, the loop writes what goes, and neither changes how the port is set up.
+    let port = unsafe { USART2::steal() };
+    // The status first: it is cleared by reading the byte after it.
+    let status = port.sr().read();
+    let byte = port.dr().read().bits().to_le_bytes()[0];
+    let is_bad = status.pe().bit() || status.fe().bit() || status.nf().bit() || status.ore().bit();
+    let came = match (is_bad, status.rxne().bit()) {
+        (true, _) => None,
+        (false, true) => Some(byte),
+        (false, false) => return,
+    };
+    // A full queue is a loop that stands still: its watchdog bites.
+    let _ = critical_section::with(|cs| CAME.borrow_ref_mut(cs).enqueue(came));
 }
 
 /// The serial line.
 pub struct Line {
-    tx: Tx<USART2>,
+    port: USART2,
     to_send: heapless::Deque<u8, TO_SEND>,
 }
 
 impl Line {
-    /// Listens.
-    pub fn new(tx: Tx<USART2>, mut rx: Rx<USART2>) -> Self {
-        rx.listen();
-        critical_section::with(|cs| {
-            RECEIVER.borrow_ref_mut(cs).replace(rx);
-        });
+    /// Listens on a port that has been set up.
+    pub fn new(port: USART2) -> Self {
+        port.cr1().modify(|_, w| w.rxneie().set_bit());
         super::gantry::unmask(stm32f4xx_hal::pac::Interrupt::USART2);
-        Self { tx, to_send: heapless::Deque::new() }
+        Self { port, to_send: heapless::Deque::new() }
     }
 
     /// What came, if anything: a byte, or `Some(None)` for one that was lost.
@@ -68,8 +65,9 @@ impl Line {
     /// Hands the transmitter what it takes.
     pub fn pump(&mut self) {
         while let Some(&byte) = self.to_send.front()
-            && self.tx.write(byte).is_ok()
+            && self.port.sr().read().txe().bit()
         {
+            self.port.dr().write(|w| w.dr().set(byte.into()));
             self.to_send.pop_front();
         }
     }

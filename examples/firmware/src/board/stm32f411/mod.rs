@@ -18,7 +18,9 @@
 mod clock;
 pub mod gantry;
 mod line;
+mod pins;
 pub mod plotter;
+mod start;
 
 use stm32f4xx_hal::pac;
 

@@ -2,27 +2,26 @@
 
 use super::clock::Clock;
 use super::line::Line;
-use crate::board::{Event, Notice, StepperPins};
+use super::pins::{PinA, PinB};
+use super::start;
+use crate::board::{Event, Notice, StepperPins, has_come};
 use crate::machine;
+use core::convert::Infallible;
 use core::time::Duration;
+use embedded_hal::digital::OutputPin as _;
+use embedded_hal::pwm::{ErrorType, SetDutyCycle};
 use plotter_motion::firmware::stepper_plotter::Step;
-use stm32f4xx_hal::gpio::{ErasedPin, Input, Output};
-use stm32f4xx_hal::pac::{self, TIM1, TIM3};
-use stm32f4xx_hal::prelude::*;
-use stm32f4xx_hal::rcc::Config;
-use stm32f4xx_hal::serial;
-use stm32f4xx_hal::timer::ErasedChannel;
-use stm32f4xx_hal::watchdog::IndependentWatchdog;
+use stm32f4xx_hal::pac::{self, IWDG, TIM1, TIM3};
 
-/// The servo's frame: 20 ms, in steps of a microsecond.
-const SERVO_FRAME_MS: u32 = 20;
-/// The laser's PWM: 1 kHz, in steps of a microsecond.
-const LASER_PERIOD_US: u32 = 1_000;
-/// A loop that does not come round in this time is reset.
-const WATCHDOG_MS: u32 = 100;
+/// The servo's frame: 20 ms.
+const SERVO_FRAME_US: u16 = 20_000;
+/// The laser's PWM: 1 kHz.
+const LASER_PERIOD_US: u16 = 1_000;
+/// A loop that does not come round in 100 ms is reset: this many of the watchdog's eighths of a millisecond.
+const WATCHDOG_EIGHTHS: u16 = 800;
 
 /// Pins of a motor's driver.
-pub type Motor = StepperPins<ErasedPin<Output>, ErasedPin<Output>>;
+pub type Motor = StepperPins<PinB, PinB>;
 
 /// All that the stepper plotter's firmware gets of its board.
 pub struct Parts {
@@ -31,17 +30,53 @@ pub struct Parts {
     /// The motor up.
     pub y: Motor,
     /// ENABLE of both drivers.
-    pub enable: ErasedPin<Output>,
+    pub enable: PinB,
     /// Servo of the pen, 50 Hz.
-    pub servo: ErasedChannel<TIM1>,
+    pub servo: Servo,
     /// Laser.
-    pub laser: ErasedChannel<TIM3>,
+    pub laser: Laser,
     /// Limit switches, normally closed to ground: x lower, x upper, y lower, y upper.
-    pub limits: [ErasedPin<Input>; 4],
+    pub limits: [PinB; 4],
     /// The emergency stop button: normally closed to ground, so high is pressed.
-    pub stop: ErasedPin<Input>,
+    pub stop: PinA,
     /// The rest.
     pub rest: Rest,
+}
+
+/// The servo's pulses, in steps of a microsecond.
+pub struct Servo(TIM1);
+
+impl ErrorType for Servo {
+    type Error = Infallible;
+}
+
+impl SetDutyCycle for Servo {
+    fn max_duty_cycle(&self) -> u16 {
+        SERVO_FRAME_US
+    }
+
+    fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
+        self.0.ccr1().write(|w| w.ccr().set(duty));
+        Ok(())
+    }
+}
+
+/// The laser's pulses, in steps of a microsecond.
+pub struct Laser(TIM3);
+
+impl ErrorType for Laser {
+    type Error = Infallible;
+}
+
+impl SetDutyCycle for Laser {
+    fn max_duty_cycle(&self) -> u16 {
+        LASER_PERIOD_US
+    }
+
+    fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
+        self.0.ccr3().write(|w| w.ccr().set(duty));
+        Ok(())
+    }
 }
 
 /// What becomes the [`Board`].
@@ -52,45 +87,29 @@ pub struct Rest {
 
 /// Takes the board; `None` the second time.
 pub fn take() -> Option<Parts> {
-    let peripherals = pac::Peripherals::take()?;
-    let was_bitten = peripherals.RCC.csr().read().wdgrstf().bit_is_set();
-    peripherals.RCC.csr().modify(|_, w| w.rmvf().set_bit());
-    let mut rcc = peripherals.RCC.freeze(Config::hsi().sysclk(84.MHz()));
-    let a = peripherals.GPIOA.split(&mut rcc);
-    let b = peripherals.GPIOB.split(&mut rcc);
-
-    let (_, (servo, ..)) = peripherals.TIM1.pwm_us((SERVO_FRAME_MS * 1_000).micros(), &mut rcc);
-    let (_, (_, _, laser, ..)) = peripherals.TIM3.pwm_us(LASER_PERIOD_US.micros(), &mut rcc);
-    let (mut servo, mut laser) = (servo.with(a.pa8), laser.with(b.pb0));
-    servo.enable();
-    laser.enable();
-
-    let mut clock = peripherals.TIM2.counter_us(&mut rcc);
-    clock.start(u32::MAX.micros()).ok()?;
-    let config = serial::Config::default().baudrate(machine::PLOTTER_BAUD.bps());
-    let (tx, rx) = serial::Serial::new(peripherals.USART2, (a.pa2, a.pa3), config, &mut rcc).ok()?.split();
-    let mut enable = b.pb10.into_push_pull_output();
-    enable.set_high();
-    let motor = |step, dir| StepperPins { step, dir };
+    let pac::Peripherals { RCC, FLASH, GPIOA, GPIOB, TIM1, TIM2, TIM3, USART2, IWDG, .. } =
+        pac::Peripherals::take()?;
+    let was_bitten = RCC.csr().read().wdgrstf().bit_is_set();
+    RCC.csr().modify(|_, w| w.rmvf().set_bit());
+    start::clocks(&FLASH, &RCC);
+    start::pins(&GPIOA, &GPIOB);
+    start::timers(&TIM1, &TIM3, &TIM2, SERVO_FRAME_US, LASER_PERIOD_US);
+    start::serial::<{ machine::PLOTTER_BAUD }>(&USART2);
+    let motor = |step, dir| StepperPins { step: PinB::new(step), dir: PinB::new(dir) };
     Some(Parts {
-        x: motor(b.pb12.into_push_pull_output().erase(), b.pb13.into_push_pull_output().erase()),
-        y: motor(b.pb14.into_push_pull_output().erase(), b.pb15.into_push_pull_output().erase()),
-        enable: enable.erase(),
-        servo: servo.erase(),
-        laser: laser.erase(),
-        limits: [
-            b.pb6.into_pull_up_input().erase(),
-            b.pb7.into_pull_up_input().erase(),
-            b.pb8.into_pull_up_input().erase(),
-            b.pb9.into_pull_up_input().erase(),
-        ],
-        stop: a.pa10.into_pull_up_input().erase(),
+        x: motor(12, 13),
+        y: motor(14, 15),
+        enable: PinB::new(10),
+        servo: Servo(TIM1),
+        laser: Laser(TIM3),
+        limits: [6, 7, 8, 9].map(PinB::new),
+        stop: PinA::new(10),
         rest: Rest {
             board: Board {
-                clock: Clock::new(clock),
-                line: Line::new(tx, rx),
-                lamp: a.pa5.into_push_pull_output().erase(),
-                watchdog: IndependentWatchdog::new(peripherals.IWDG),
+                clock: Clock::new(TIM2),
+                line: Line::new(USART2),
+                lamp: PinA::new(5),
+                watchdog: IWDG,
             },
             was_bitten,
         },
@@ -101,8 +120,8 @@ pub fn take() -> Option<Parts> {
 pub struct Board {
     clock: Clock,
     line: Line,
-    lamp: ErasedPin<Output>,
-    watchdog: IndependentWatchdog,
+    lamp: PinA,
+    watchdog: IWDG,
 }
 
 impl Rest {
@@ -112,8 +131,14 @@ impl Rest {
     }
 
     /// Starts the watchdog.
-    pub fn start(mut self) -> Board {
-        self.board.watchdog.start(WATCHDOG_MS.millis());
+    pub fn start(self) -> Board {
+        let watchdog = &self.board.watchdog;
+        // It starts its own oscillator of 32 kHz, of which it takes a quarter.
+        watchdog.kr().write(|w| w.key().start());
+        watchdog.kr().write(|w| w.key().unlock());
+        watchdog.pr().write(|w| w.pr().divide_by4());
+        watchdog.rlr().write(|w| w.rl().set(WATCHDOG_EIGHTHS));
+        watchdog.kr().write(|w| w.key().feed());
         self.board
     }
 }
@@ -130,7 +155,7 @@ impl Board {
             self.line.pump();
             let now = self.now();
             // A step that is due is not kept waiting by bytes.
-            if due.is_some_and(|due| now >= due) {
+            if due.is_some_and(|due| has_come(due, now)) {
                 return (now, Event::Due);
             }
             if let Some(came) = self.line.receive() {
@@ -154,11 +179,12 @@ impl Board {
 
     /// Tells a person: the lamp is on until the machine is switched off.
     pub fn notify(&mut self, _notice: Notice) {
-        self.lamp.set_high();
+        // It cannot fail.
+        let _ = self.lamp.set_high();
     }
 
     /// Keeps the watchdog from biting.
     pub fn feed_watchdog(&mut self) {
-        self.watchdog.feed();
+        self.watchdog.kr().write(|w| w.key().feed());
     }
 }

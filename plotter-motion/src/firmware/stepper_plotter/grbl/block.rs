@@ -75,6 +75,7 @@ impl<P: Pens> Grbl<P> {
         Point::new(f64::from(width_mm), f64::from(height_mm))
     }
 
+    #[cfg_attr(target_os = "none", inline(never))]
     fn carry_out(&mut self, block: &Block, link: &mut Link) -> Result<(), Code> {
         let before = self.interpreter.modes();
         let mut outcomes = Outcomes::none();

@@ -75,51 +75,70 @@ impl Listing {
     }
 }
 
-/// The settings as Grbl numbers them; those that this machine has no use for are what Grbl comes with.
+/// The numbers of Grbl's settings, and the values of those that this machine has no use for, as Grbl comes with them; 0 for the others.
+static NUMBERS: [(u8, u8); 34] = [
+    (0, 10),
+    (1, 255), // the motors hold
+    (2, 0),
+    (3, 0),
+    (4, 0),
+    (5, 0),
+    (6, 0),
+    (10, 3), // MPos and Bf
+    (11, 0),
+    (12, 0),
+    (13, 0),
+    (20, 1),
+    (21, 1),
+    (22, 1),
+    (23, 3), // towards smaller coordinates
+    (24, 0),
+    (25, 0),
+    (26, 0),
+    (27, 0),
+    (30, 0),
+    (31, 0),
+    (32, 0),
+    (100, 0),
+    (101, 0),
+    (102, 1),
+    (110, 0),
+    (111, 0),
+    (112, 1),
+    (120, 0),
+    (121, 0),
+    (122, 1),
+    (130, 0),
+    (131, 0),
+    (132, 1),
+];
+
+/// A setting with its number, and whether it is told as a whole number.
 fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, bool)> {
     let StepperPlotterSettings { planner, stored, home_x, .. } = settings;
-    let whole = |number: u8, value: u32| (number, f64::from(value), true);
-    let direction_mask = u32::from(stored.x_direction & 1) | u32::from(stored.y_direction & 1) << 1;
-    let pulses_mm_min = |rate_hz: u32| f64::from(rate_hz) / settings.x_steps_per_mm * 60.0;
-    let travel_mm_min = greater(planner.travel_speed_mm_s, planner.speed_mm_s) * 60.0;
-    let pull_off_mm = f64::from(home_x.pull_off_steps) / settings.x_steps_per_mm;
-    Some(match index {
-        0 => whole(0, 10),
-        1 => whole(1, 255), // the motors hold
-        2 => whole(2, 0),
-        3 => whole(3, direction_mask),
-        4 => whole(4, 0),
-        5 => whole(5, 0),
-        6 => whole(6, 0),
-        7 => whole(10, 3), // MPos and Bf
-        8 => (11, planner.junction_deviation_mm, false),
-        9 => (12, 0.002, false),
-        10 => whole(13, 0),
-        11 => whole(20, 1),
-        12 => whole(21, 1),
-        13 => whole(22, 1),
-        14 => whole(23, 3), // towards smaller coordinates
-        15 => (24, pulses_mm_min(home_x.slow_hz), false),
-        16 => (25, pulses_mm_min(home_x.fast_hz), false),
-        17 => whole(26, 0),
-        18 => (27, pull_off_mm, false),
-        19 => (30, FULL_POWER, true),
-        20 => whole(31, 0),
-        21 => whole(32, settings.laser.into()),
-        22 => (100, settings.x_steps_per_mm, false),
-        23 => (101, settings.y_steps_per_mm, false),
-        24 => (102, 1.0, false),
-        25 => (110, travel_mm_min, false),
-        26 => (111, travel_mm_min, false),
-        27 => (112, 1.0, false),
-        28 => (120, planner.accel_mm_s2, false),
-        29 => (121, planner.accel_mm_s2, false),
-        30 => (122, 1.0, false),
-        31 => (130, f64::from(stored.width_mm), false),
-        32 => (131, f64::from(stored.height_mm), false),
-        33 => (132, 1.0, false),
-        _ => return None,
-    })
+    let &(number, fixed) = NUMBERS.get(usize::from(index))?;
+    let per_step = |count: u32, of_one: f64| f64::from(count) / settings.x_steps_per_mm * of_one;
+    let whole = match number {
+        3 => u16::from(stored.x_direction & 1) | u16::from(stored.y_direction & 1) << 1,
+        32 => settings.laser.into(),
+        130 => stored.width_mm,
+        131 => stored.height_mm,
+        _ => fixed.into(),
+    };
+    let value = match number {
+        11 => planner.junction_deviation_mm,
+        12 => 0.002,
+        24 => per_step(home_x.slow_hz, 60.0),
+        25 => per_step(home_x.fast_hz, 60.0),
+        27 => per_step(home_x.pull_off_steps, 1.0),
+        30 => FULL_POWER,
+        100 => settings.x_steps_per_mm,
+        101 => settings.y_steps_per_mm,
+        110 | 111 => greater(planner.travel_speed_mm_s, planner.speed_mm_s) * 60.0,
+        120 | 121 => planner.accel_mm_s2,
+        _ => f64::from(whole),
+    };
+    Some((number, value, !matches!(number, 11 | 12 | 24 | 25 | 27 | 100..)))
 }
 
 /// Whether this is what the settings already say.
