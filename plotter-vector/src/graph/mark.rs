@@ -10,6 +10,7 @@ use super::junction::THIN_PX;
 use super::redraw::Redrawn;
 use super::site::{Rims, Scan};
 use super::{Cuts, Graph, Place, Stretch, Stroke, fragments};
+use crate::centrelines::each;
 use crate::continuity::neighbours;
 use crate::order::forest::Forest;
 use crate::simplify::Pieces;
@@ -52,24 +53,26 @@ impl Marks {
     /// their lines.
     pub(super) fn of(graph: &Graph, scan: Scan<'_>, core: &Range<u32>, bounded: Bounded) -> Self {
         let mut marks = Self { edges: vec![false; graph.edges.len()], ..Self::default() };
-        for edges in components(graph, core) {
+        let found = each(components(graph, core), |edges| {
             let pixels =
                 || edges.iter().filter_map(|edge| graph.edges.get(*edge)).flat_map(|edge| &edge.pixels);
-            let Some(picture) = Picture::of(pixels().copied(), scan) else { continue };
+            let picture = Picture::of(pixels().copied(), scan)?;
             let top = picture.top.wrapping_add(PAPER_PX);
             let rows = top..top.saturating_add(picture.ink.height().saturating_sub(2 * PAPER_PX));
             if rows.end <= core.start || rows.start >= core.end {
-                continue;
+                return None;
             }
-            let Some(mut strokes) = picture.redrawn(pixels().copied(), scan, bounded) else { continue };
+            let strokes = picture.redrawn(pixels().copied(), scan, bounded)?;
+            let begins = core.contains(&rows.start);
+            Some((edges, if begins { strokes } else { Vec::new() }, picture))
+        });
+        for (edges, mut strokes, picture) in found.into_iter().flatten() {
             for edge in edges {
                 if let Some(mark) = marks.edges.get_mut(edge) {
                     *mark = true;
                 }
             }
-            if core.contains(&rows.start) {
-                marks.strokes.append(&mut strokes);
-            }
+            marks.strokes.append(&mut strokes);
             marks.ink.extend(picture.pixels());
         }
         marks.ink.sort_unstable();

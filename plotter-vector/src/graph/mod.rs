@@ -33,6 +33,7 @@ mod spur;
 mod stroke;
 mod stub;
 mod trial;
+mod wiper;
 
 pub(crate) use build::Stretch;
 use build::{Edge, End, Graph};

@@ -2,6 +2,7 @@
 
 use super::point_tree::PointTree;
 use crate::PxPoint;
+use crate::centrelines::each;
 
 /// Nearest things that each place knows: with more the search finds little more (D. S. Johnson and L. A. McGeoch,
 /// "The traveling salesman problem: a case study in local optimization", 1997, section 3.3).
@@ -10,6 +11,9 @@ pub(crate) const NEIGHBOURS: usize = 8;
 /// Most places of a ring that the search considers, and of all rings; of very many rings each has two.
 pub(crate) const RING_PLACES: usize = 12;
 const ALL_RING_PLACES: usize = 240_000;
+
+/// Places whose neighbours are looked for in one go.
+const PLACES_TOGETHER: usize = 1024;
 
 /// No place.
 const NONE: u32 = u32::MAX;
@@ -140,7 +144,10 @@ impl Sites {
             });
             found.map(|(_, place)| place)
         };
-        self.places.iter().zip(&self.owners).map(near).collect()
+        let places: Vec<(&PxPoint, &u32)> = self.places.iter().zip(&self.owners).collect();
+        let some = places.chunks(PLACES_TOGETHER).collect();
+        each(some, |places: &[(&PxPoint, &u32)]| places.iter().copied().map(near).collect::<Vec<_>>())
+            .concat()
     }
 }
 
