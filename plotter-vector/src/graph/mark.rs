@@ -24,6 +24,9 @@ const MOST_PX: u32 = 32;
 /// Paper around a mark's own picture, px: what a level beyond a rim is asked for.
 const PAPER_PX: u32 = 3;
 
+/// Marks that are redrawn in one go.
+const MARKS_TOGETHER: usize = 16;
+
 /// Fewest widths of its pen that a mark is long or high: less is a dot, or a dash, and its junctions say all.
 const LEAST_WIDTHS: f64 = 2.5;
 
@@ -53,7 +56,7 @@ impl Marks {
     /// their lines.
     pub(super) fn of(graph: &Graph, scan: Scan<'_>, core: &Range<u32>, bounded: Bounded) -> Self {
         let mut marks = Self { edges: vec![false; graph.edges.len()], ..Self::default() };
-        let found = each(components(graph, core), |edges| {
+        let redrawn = |edges: &Vec<usize>| {
             let pixels =
                 || edges.iter().filter_map(|edge| graph.edges.get(*edge)).flat_map(|edge| &edge.pixels);
             let picture = Picture::of(pixels().copied(), scan)?;
@@ -64,8 +67,11 @@ impl Marks {
             }
             let strokes = picture.redrawn(pixels().copied(), scan, bounded)?;
             let begins = core.contains(&rows.start);
-            Some((edges, if begins { strokes } else { Vec::new() }, picture))
-        });
+            Some((edges.clone(), if begins { strokes } else { Vec::new() }, picture))
+        };
+        let components = components(graph, core);
+        let some = components.chunks(MARKS_TOGETHER).collect();
+        let found = each(some, |some: &[Vec<usize>]| some.iter().filter_map(redrawn).collect::<Vec<_>>());
         for (edges, mut strokes, picture) in found.into_iter().flatten() {
             for edge in edges {
                 if let Some(mark) = marks.edges.get_mut(edge) {

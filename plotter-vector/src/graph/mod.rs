@@ -20,6 +20,7 @@ mod dot;
 mod fragment;
 mod join;
 mod junction;
+mod leave_out;
 mod mark;
 mod meeting;
 mod near;
