@@ -97,23 +97,22 @@ impl Redrawn<'_> {
 
     /// Joins two strokes that end in one place: of several the two that go on the straightest. False without such.
     fn join_ends(&mut self) -> bool {
-        let mut best: Option<(f64, (usize, bool), (usize, bool))> = None;
         let ends: Vec<(usize, bool)> =
             (0..self.strokes.len()).flat_map(|index| [(index, false), (index, true)]).collect();
-        for (nth, one) in ends.iter().enumerate() {
-            for other in ends.iter().skip(nth + 1).filter(|other| other.0 != one.0) {
-                let place = self.end(one.0, one.1);
-                if place.is_none() || place != self.end(other.0, other.1) {
-                    continue;
-                }
-                let (a, b) = (self.outward(*one), self.outward(*other));
-                let hairpin = a.0 * b.0 + a.1 * b.1;
-                if best.is_none_or(|(least, ..)| hairpin < least) {
-                    best = Some((hairpin, *one, *other));
-                }
-            }
-        }
-        let Some((_, one, other)) = best else { return false };
+        let pairs = ends
+            .iter()
+            .enumerate()
+            .flat_map(|(nth, one)| ends.iter().skip(nth + 1).map(move |other| (*one, *other)));
+        let meet = |(one, other): &((usize, bool), (usize, bool))| {
+            let place = self.end(one.0, one.1);
+            one.0 != other.0 && place.is_some() && place == self.end(other.0, other.1)
+        };
+        let hairpin = |(one, other): &((usize, bool), (usize, bool))| {
+            let (a, b) = (self.outward(*one), self.outward(*other));
+            a.0 * b.0 + a.1 * b.1
+        };
+        let straightest = pairs.filter(meet).min_by(|a, b| hairpin(a).total_cmp(&hairpin(b)));
+        let Some((one, other)) = straightest else { return false };
         // The later one first: then the earlier one keeps its number.
         let (Some(mut tail), Some(head)) = (self.take(other.0), self.strokes.get_mut(one.0)) else {
             return false;

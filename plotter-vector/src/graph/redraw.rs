@@ -27,7 +27,7 @@ const WIDER_PX: f64 = 0.25;
 const SLACK_PX: f64 = 2.5;
 
 /// What the ink may be met worse for a vertex less, px².
-pub(super) const DROPPED_PX2: f64 = 0.25;
+pub(super) const DROPPED_PX2: f64 = 0.3;
 
 /// What a stroke more must gain, px².
 const STROKE_PX2: f64 = 1.5;

@@ -52,7 +52,7 @@ const WIDEST_PX: f64 = 192.0;
 const REACH_PX: f64 = 64.0;
 
 /// Rows in which the stubs are found in one go.
-const SLICE_ROWS: u32 = 320;
+const SLICE_ROWS: u32 = 200;
 
 /// The stubs of a band, as strokes of their own from the middle of their line; none when what is near does not decide about
 /// all of them. Works in `words`, whatever they are.

@@ -144,10 +144,14 @@ impl Sites {
             });
             found.map(|(_, place)| place)
         };
-        let places: Vec<(&PxPoint, &u32)> = self.places.iter().zip(&self.owners).collect();
-        let some = places.chunks(PLACES_TOGETHER).collect();
-        each(some, |places: &[(&PxPoint, &u32)]| places.iter().copied().map(near).collect::<Vec<_>>())
-            .concat()
+        let mut all = vec![[NONE; NEIGHBOURS]; self.places.len()];
+        let places = self.places.chunks(PLACES_TOGETHER).zip(self.owners.chunks(PLACES_TOGETHER));
+        each(places.zip(all.chunks_mut(PLACES_TOGETHER)).collect(), |((places, owners), found)| {
+            for (own, found) in places.iter().zip(owners).zip(found) {
+                *found = near(own);
+            }
+        });
+        all
     }
 }
 
