@@ -292,6 +292,18 @@ impl Bitmap {
         }
     }
 
+    /// Makes the pixels of a row paper that have a bit in a word whose lowest one is a column; its columns are inside the picture.
+    pub(crate) fn clear_bits(&mut self, y: u32, column: u32, bits: u64) {
+        let (word, shift) = ((column / BITS) as usize, column % BITS);
+        let row = self.row_mut(y);
+        if let Some(here) = row.get_mut(word) {
+            *here &= !(bits << shift);
+        }
+        if let Some(next) = row.get_mut(word + 1) {
+            *next &= !(bits >> 1 >> (BITS - 1 - shift));
+        }
+    }
+
     /// How many ink pixels follow each other to the left and to the right of a pixel, at most `most`.
     pub(crate) fn run_level(&self, at: Pixel, most: u32) -> (u32, u32) {
         let row = self.row(at.y);

@@ -1,7 +1,6 @@
 //! [`LineWidth`]: how wide the pen was, from the ink alone.
 
 use crate::Bitmap;
-use crate::runs::ink_runs;
 
 /// Widest pen that is told from a filled area, px.
 const WIDEST_PX: u32 = 64;
@@ -17,16 +16,29 @@ const WIDEST_PX: u32 = 64;
 /// does not count; of a sheet of nothing but noise, 1 or 2 px come out.
 #[derive(Clone, Debug)]
 pub struct LineWidth {
-    /// The last row without its lonely pixels.
+    /// The row above the last one without its lonely pixels.
     settled: Vec<u64>,
     /// The last two rows as they came; of the lower one it is not yet known which pixels have neighbours.
     above: Vec<u64>,
     last: Vec<u64>,
+    /// Memory for the next row.
+    next: Vec<u64>,
     /// Row in which the run of a column began.
     since: Vec<u32>,
     y: u32,
-    /// Number of runs by length; the last counts all that are longer.
-    runs: Vec<u64>,
+    runs: Runs,
+}
+
+/// Number of runs by length; the last counts all that are longer.
+#[derive(Clone, Debug)]
+struct Runs([u64; WIDEST_PX as usize + 2]);
+
+impl Runs {
+    fn count(&mut self, length: u32) {
+        if let Some(n) = self.0.get_mut(length.min(WIDEST_PX + 1) as usize) {
+            *n += 1;
+        }
+    }
 }
 
 impl LineWidth {
@@ -34,23 +46,27 @@ impl LineWidth {
     #[must_use]
     pub fn new(width: u32) -> Self {
         let words = width.div_ceil(64) as usize;
+        let row = || vec![0; words];
         Self {
-            settled: vec![0; words],
-            above: vec![0; words],
-            last: vec![0; words],
+            settled: row(),
+            above: row(),
+            last: row(),
+            next: row(),
             since: vec![0; words * 64],
             y: 0,
-            runs: vec![0; WIDEST_PX as usize + 2],
+            runs: Runs([0; WIDEST_PX as usize + 2]),
         }
     }
 
     /// The next row, in words as of [`Bitmap::row`]; a longer row is cut, a shorter one ends with paper.
     pub fn push(&mut self, row: &[u64]) {
-        let mut next: Vec<u64> = row.iter().copied().take(self.last.len()).collect();
-        next.resize(self.last.len(), 0);
-        let lonely_gone = with_neighbours(&self.above, &self.last, &next);
-        self.settle(lonely_gone);
-        self.above = core::mem::replace(&mut self.last, next);
+        let given = row.len().min(self.next.len());
+        let (words, rest) = self.next.split_at_mut(given);
+        words.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
+        rest.fill(0);
+        self.settle();
+        core::mem::swap(&mut self.above, &mut self.last);
+        core::mem::swap(&mut self.last, &mut self.next);
     }
 
     /// Width of the pen, px; `None` without ink, or when most of it is wider than 64 px.
@@ -59,63 +75,62 @@ impl LineWidth {
         // One row of paper settles the last row, another ends its runs.
         self.push(&[]);
         self.push(&[]);
-        let total: u64 = self.runs.iter().sum();
+        let total: u64 = self.runs.0.iter().sum();
         let mut below = 0;
-        let third = self.runs.iter().position(|n| {
+        let third = self.runs.0.iter().position(|n| {
             below += n;
             below > 0 && 3 * below >= total
         })?;
         u32::try_from(third).ok().filter(|width| *width <= WIDEST_PX)
     }
 
-    /// Counts the runs of a row that end in it, and those of columns that ended above it.
-    fn settle(&mut self, row: Vec<u64>) {
-        for run in ink_runs(&row) {
-            count(&mut self.runs, run.end - run.start);
-        }
-        let columns = self.since.chunks_mut(64);
-        for ((now, before), columns) in row.iter().zip(&self.settled).zip(columns) {
-            let mut changed = now ^ before;
+    /// Takes the lonely pixels out of the last row; counts its runs, and those of columns that ended above it.
+    fn settle(&mut self) {
+        let Self { settled, above, last, next, since, y, runs } = self;
+        let at = |row: &[u64], index: usize| row.get(index).copied().unwrap_or(0);
+        // The word to the left: of the last row and those beside it, and what is kept of it.
+        let (mut left, mut left_kept) = (0, 0);
+        let mut run_from = 0;
+        for ((index, before), columns) in (0..).zip(settled.iter_mut()).zip(since.chunks_mut(64)) {
+            let (here, beside) = (at(last, index), at(above, index) | at(next, index));
+            let all = here | beside;
+            // Most of a sheet is paper.
+            if here | *before | left_kept == 0 {
+                left = all;
+                continue;
+            }
+            let right = at(above, index + 1) | at(last, index + 1) | at(next, index + 1);
+            let kept = here & (beside | all << 1 | left >> 63 | all >> 1 | right << 63);
+            let first = u32::try_from(index * 64).unwrap_or(u32::MAX);
+            let mut ends = kept ^ (kept << 1 | left_kept >> 63);
+            while ends != 0 {
+                let bit = ends.trailing_zeros();
+                ends &= ends - 1;
+                if kept >> bit & 1 == 1 {
+                    run_from = first + bit;
+                } else {
+                    runs.count(first + bit - run_from);
+                }
+            }
+            let mut changed = kept ^ *before;
             while changed != 0 {
                 let bit = changed.trailing_zeros();
                 changed &= changed - 1;
                 if let Some(since) = columns.get_mut(bit as usize) {
-                    if before >> bit & 1 == 1 {
-                        count(&mut self.runs, self.y - *since);
+                    if kept >> bit & 1 == 1 {
+                        *since = *y;
                     } else {
-                        *since = self.y;
+                        runs.count(*y - *since);
                     }
                 }
             }
+            (*before, left, left_kept) = (kept, all, kept);
         }
-        self.settled = row;
-        self.y += 1;
+        if left_kept >> 63 == 1 {
+            runs.count(u32::try_from(settled.len() * 64).unwrap_or(u32::MAX) - run_from);
+        }
+        *y += 1;
     }
-}
-
-fn count(runs: &mut [u64], length: u32) {
-    if let Some(n) = runs.get_mut(length.min(WIDEST_PX + 1) as usize) {
-        *n += 1;
-    }
-}
-
-/// The pixels of the middle row that have one of eight neighbours.
-fn with_neighbours(above: &[u64], row: &[u64], below: &[u64]) -> Vec<u64> {
-    let mut kept = row.to_vec();
-    let all = |i: usize| {
-        let at = |row: &[u64]| row.get(i).copied().unwrap_or(0);
-        (at(above) | at(below), at(row))
-    };
-    for (i, kept) in kept.iter_mut().enumerate().filter(|(_, row)| **row != 0) {
-        let (others, here) = all(i);
-        let (left_others, left) = i.checked_sub(1).map_or((0, 0), all);
-        let (right_others, right) = all(i + 1);
-        let beside = others | here;
-        let from_left = beside << 1 | (left_others | left) >> 63;
-        let from_right = beside >> 1 | (right_others | right) << 63;
-        *kept &= others | from_left | from_right;
-    }
-    kept
 }
 
 /// Width of the pen that drew a picture, px: [`LineWidth`] of all its rows.
@@ -188,6 +203,41 @@ mod tests {
         assert_eq!(pen_width_px(&picture(|_, _| false)), None);
         assert_eq!(pen_width_px(&picture(|x, y| x % 5 == 0 && y % 5 == 0)), None);
         assert_eq!(pen_width_px(&Bitmap::new(0, 5).unwrap()), None);
+    }
+
+    /// The runs of 8-connected ink of two pixels and more, one by one.
+    fn plain_runs(ink: &Bitmap) -> [u64; WIDEST_PX as usize + 2] {
+        let kept = |x: u32, y: u32| {
+            let at = Pixel::new(x, y);
+            ink.get(at) && crate::continuity::neighbours(at).into_iter().any(|beside| ink.get(beside))
+        };
+        let mut runs = [0; WIDEST_PX as usize + 2];
+        let mut along = |pixels: Vec<bool>| {
+            for run in pixels.split(|kept| !kept).filter(|run| !run.is_empty()) {
+                runs[run.len().min(WIDEST_PX as usize + 1)] += 1;
+            }
+        };
+        (0..ink.height()).for_each(|y| along((0..ink.width()).map(|x| kept(x, y)).collect()));
+        (0..ink.width()).for_each(|x| along((0..ink.height()).map(|y| kept(x, y)).collect()));
+        runs
+    }
+
+    #[test]
+    fn every_run_is_counted_once() {
+        // Noise between words of ink and words of paper, and a run that ends with its row.
+        for (percent, width) in [(3, 200), (25, 192), (50, 191), (80, 129), (97, 65)] {
+            let mut ink = Bitmap::new(width, 90).unwrap();
+            for (x, y) in (0..90).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                let calm = (x / 40 + y / 30) % 3;
+                let noisy = noise(x.cast_signed(), y.cast_signed()) < 10 * percent;
+                ink.set(Pixel::new(x, y), calm == 1 || calm == 2 && noisy);
+            }
+            let mut found = LineWidth::new(width);
+            (0..90).for_each(|y| found.push(ink.row(y)));
+            found.push(&[]);
+            found.push(&[]);
+            assert_eq!(found.runs.0, plain_runs(&ink), "{percent}");
+        }
     }
 
     #[test]

@@ -133,6 +133,7 @@ impl Junctions {
             lines: near.edges(graph),
         };
         found.lines.retain(|edge| !gone.has(*edge));
+        sites.measure(&found.lines);
         let radii = vec![OnceCell::new(); graph.nodes.len()];
         let arms = RefCell::default();
         let lines = Lines { graph, sites, gone, scan, radii: &radii, arms: &arms };

@@ -10,6 +10,7 @@ use super::junction::THIN_PX;
 use super::redraw::Redrawn;
 use super::site::{Rims, Scan};
 use super::{Cuts, Graph, Place, Stretch, Stroke, fragments};
+use crate::centrelines::each;
 use crate::continuity::neighbours;
 use crate::order::forest::Forest;
 use crate::simplify::Pieces;
@@ -22,6 +23,9 @@ const MOST_PX: u32 = 32;
 
 /// Paper around a mark's own picture, px: what a level beyond a rim is asked for.
 const PAPER_PX: u32 = 3;
+
+/// Marks that are redrawn in one go.
+const MARKS_TOGETHER: usize = 16;
 
 /// Fewest widths of its pen that a mark is long or high: less is a dot, or a dash, and its junctions say all.
 const LEAST_WIDTHS: f64 = 2.5;
@@ -52,24 +56,29 @@ impl Marks {
     /// their lines.
     pub(super) fn of(graph: &Graph, scan: Scan<'_>, core: &Range<u32>, bounded: Bounded) -> Self {
         let mut marks = Self { edges: vec![false; graph.edges.len()], ..Self::default() };
-        for edges in components(graph, core) {
+        let redrawn = |edges: &Vec<usize>| {
             let pixels =
                 || edges.iter().filter_map(|edge| graph.edges.get(*edge)).flat_map(|edge| &edge.pixels);
-            let Some(picture) = Picture::of(pixels().copied(), scan) else { continue };
+            let picture = Picture::of(pixels().copied(), scan)?;
             let top = picture.top.wrapping_add(PAPER_PX);
             let rows = top..top.saturating_add(picture.ink.height().saturating_sub(2 * PAPER_PX));
             if rows.end <= core.start || rows.start >= core.end {
-                continue;
+                return None;
             }
-            let Some(mut strokes) = picture.redrawn(pixels().copied(), scan, bounded) else { continue };
+            let strokes = picture.redrawn(pixels().copied(), scan, bounded)?;
+            let begins = core.contains(&rows.start);
+            Some((edges.clone(), if begins { strokes } else { Vec::new() }, picture))
+        };
+        let components = components(graph, core);
+        let some = components.chunks(MARKS_TOGETHER).collect();
+        let found = each(some, |some: &[Vec<usize>]| some.iter().filter_map(redrawn).collect::<Vec<_>>());
+        for (edges, mut strokes, picture) in found.into_iter().flatten() {
             for edge in edges {
                 if let Some(mark) = marks.edges.get_mut(edge) {
                     *mark = true;
                 }
             }
-            if core.contains(&rows.start) {
-                marks.strokes.append(&mut strokes);
-            }
+            marks.strokes.append(&mut strokes);
             marks.ink.extend(picture.pixels());
         }
         marks.ink.sort_unstable();

@@ -20,6 +20,7 @@ mod dot;
 mod fragment;
 mod join;
 mod junction;
+mod leave_out;
 mod mark;
 mod meeting;
 mod near;
@@ -33,6 +34,7 @@ mod spur;
 mod stroke;
 mod stub;
 mod trial;
+mod wiper;
 
 pub(crate) use build::Stretch;
 use build::{Edge, End, Graph};

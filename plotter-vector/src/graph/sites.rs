@@ -4,19 +4,32 @@
 
 use super::Graph;
 use super::site::{Scan, Site};
-use core::cell::OnceCell;
+use crate::centrelines::each;
+use std::sync::OnceLock;
+
+/// Edges that are measured in one go.
+const EDGES_TOGETHER: usize = 64;
 
 /// The sites of all edges of a graph.
 pub(super) struct Sites<'a> {
     graph: &'a Graph,
     scan: Scan<'a>,
-    measured: Vec<OnceCell<Vec<Site>>>,
+    measured: Vec<OnceLock<Vec<Site>>>,
 }
 
 impl<'a> Sites<'a> {
     /// None measured yet.
     pub(super) fn new(graph: &'a Graph, scan: Scan<'a>) -> Self {
-        Self { graph, scan, measured: vec![OnceCell::new(); graph.edges.len()] }
+        Self { graph, scan, measured: vec![OnceLock::new(); graph.edges.len()] }
+    }
+
+    /// Measures the sites of some edges, on all cores.
+    pub(super) fn measure(&self, edges: &[usize]) {
+        each(edges.chunks(EDGES_TOGETHER).collect(), |some: &[usize]| {
+            for edge in some {
+                self.get(*edge);
+            }
+        });
     }
 
     /// The sites of an edge, one for each of its pixels; none when there is no such edge.

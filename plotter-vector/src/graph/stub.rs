@@ -10,9 +10,12 @@ use super::mark::Marks;
 use super::near::Near;
 use super::site::{Scan, Site, least_around};
 use super::sites::Sites;
+use super::wiper::Wiper;
 use super::{End, Graph, Place};
+use crate::centrelines::each;
 use crate::{Bitmap, Pixel, PxPoint};
 use core::ops::Range;
+use std::sync::Mutex;
 
 /// What a drawn line may leave bare at its edges, px.
 const MARGIN_PX: f64 = 1.0;
@@ -48,29 +51,29 @@ const WIDEST_PX: f64 = 192.0;
 /// How far up and down the line is looked for that a patch belongs to, px.
 const REACH_PX: f64 = 64.0;
 
+/// Rows in which the stubs are found in one go.
+const SLICE_ROWS: u32 = 200;
+
 /// The stubs of a band, as strokes of their own from the middle of their line; none when what is near does not decide about
 /// all of them. Works in `words`, whatever they are.
 pub(super) fn stubs(lines: &Lines<'_>, core: &Range<u32>, words: &mut Vec<u64>) -> Option<Vec<Fragment>> {
-    let all = &lines.all;
-    // With a row above: what reaches it begins above, and is none of this band's.
-    let start = core.start.saturating_sub(1).max(all.start);
-    let below = if lines.near.places == *all { u32::MAX } else { BELOW_ROWS };
-    let patches = lines.patches(start..core.end.saturating_add(below).min(all.end), core, words)?;
-    let mut found = Vec::new();
-    for (patch, root) in patches.iter().zip(lines.roots(&patches)) {
-        // Of what is drawn by itself nothing is left bare.
-        if patch.pixels.first().is_some_and(|at| lines.marks.has_ink(*at)) {
-            continue;
+    let slice = |start: u32| start..start.saturating_add(SLICE_ROWS).min(core.end);
+    let slices = core.clone().step_by(SLICE_ROWS as usize).map(slice).collect();
+    // The first to come takes the memory that is there, and leaves it to the next.
+    let memory = Mutex::new(core::mem::take(words));
+    let found = each(slices, |slice| {
+        let mut own = memory.lock().map_or_else(|_| Vec::new(), |mut words| core::mem::take(&mut *words));
+        let found = lines.stubs(&slice, core, &mut own);
+        if let Ok(mut words) = memory.lock()
+            && words.capacity() < own.capacity()
+        {
+            *words = own;
         }
-        if !lines.is_sure(patch, root) {
-            return None;
-        }
-        if let Some(stub) = root.and_then(|root| stub(&patch.pixels, patch.centre, root)) {
-            let places = stub.map(|at| Place::new(at, -1.0, false)).to_vec();
-            found.push(Fragment { places, joints: Some([Joint::Free; 2]) });
-        }
-    }
-    Some(found)
+        found
+    });
+    *words = memory.into_inner().unwrap_or_default();
+    let found: Option<Vec<_>> = found.into_iter().collect();
+    found.map(|found| found.into_iter().flatten().collect())
 }
 
 /// A place that the drawn lines leave bare.
@@ -80,22 +83,52 @@ struct Patch {
 }
 
 impl Lines<'_> {
-    /// The patches that begin in the rows `core`, of the ink in some rows; none when one of them may go on below.
-    fn patches(&self, rows: Range<u32>, core: &Range<u32>, words: &mut Vec<u64>) -> Option<Vec<Patch>> {
+    /// The stubs that begin in some rows of the band `core`; none when what is near does not decide about all of them.
+    fn stubs(&self, slice: &Range<u32>, core: &Range<u32>, words: &mut Vec<u64>) -> Option<Vec<Fragment>> {
+        let all = &self.all;
+        // With a row above: what reaches it begins above, and is none of this slice's.
+        let start = slice.start.saturating_sub(1).max(all.start);
+        let to = |end: u32, below: u32| start..end.saturating_add(below).min(all.end);
+        let most = if self.near.places == *all { u32::MAX } else { BELOW_ROWS };
+        let patches = self
+            .patches(to(slice.end, BELOW_ROWS), slice, words)
+            .or_else(|| self.patches(to(core.end, most), slice, words))?;
+        let mut found = Vec::new();
+        for (patch, root) in patches.iter().zip(self.roots(&patches)) {
+            // Of what is drawn by itself nothing is left bare.
+            if patch.pixels.first().is_some_and(|at| self.marks.has_ink(*at)) {
+                continue;
+            }
+            if !self.is_sure(patch, root) {
+                return None;
+            }
+            if let Some(stub) = root.and_then(|root| stub(&patch.pixels, patch.centre, root)) {
+                let places = stub.map(|at| Place::new(at, -1.0, false)).to_vec();
+                found.push(Fragment { places, joints: Some([Joint::Free; 2]) });
+            }
+        }
+        Some(found)
+    }
+
+    /// The patches that begin in the rows `own`, of the ink in some rows; none when one of them may go on below.
+    fn patches(&self, rows: Range<u32>, own: &Range<u32>, words: &mut Vec<u64>) -> Option<Vec<Patch>> {
         let top = self.scan.first_row;
         let inside = rows.start.saturating_sub(top)..rows.end.saturating_sub(top);
         let mut bare = self.scan.ink.band_in(inside, words);
         let goes_on = rows.end < self.all.end;
-        let mut wiper = Wiper { bare: &mut bare, first_row: rows.start, drawn: None };
+        let mut wiper = Wiper::new(&mut bare, rows.start);
         self.each_place(&rows, 0.0, |at, width_px| wiper.add(at, 0.5 * width_px + MARGIN_PX));
         wiper.wipe();
         let mut patches = Vec::new();
         for y in 0..bare.height() {
+            if bare.row(y).iter().all(|bits| *bits == 0) {
+                continue;
+            }
             for word in 0..bare.row(y).len() {
                 while let Some(first) = bare.first_of_word(y, word) {
                     let mut pixels = take(&mut bare, first);
                     pixels.iter_mut().for_each(|at| at.y = at.y.saturating_add(rows.start));
-                    if !core.contains(&first.y.saturating_add(rows.start)) {
+                    if !own.contains(&first.y.saturating_add(rows.start)) {
                         continue;
                     }
                     if goes_on && pixels.iter().any(|at| at.y + 1 == rows.end) {
@@ -177,10 +210,11 @@ impl Lines<'_> {
             let skip = |at_last| self.junctions.skip(End { edge, at_last });
             let last = sites.len().saturating_sub(skip(true));
             let closed = self.graph.edges.get(edge).is_some_and(|edge| edge.nodes.is_none());
+            let mut calm = Calm { sites, closed, known: None };
             for (index, site) in sites.iter().enumerate().take(last).skip(skip(false)) {
                 // Calm it is no wider.
                 if near(site.centre, site.width_px) {
-                    let width_px = calm_px(sites, index, closed);
+                    let width_px = calm.px(index);
                     if near(site.centre, width_px) {
                         visit(site.centre, width_px);
                     }
@@ -223,70 +257,34 @@ impl Lines<'_> {
     }
 }
 
+/// The line's own width at one site after the other.
+struct Calm<'a> {
+    sites: &'a [Site],
+    closed: bool,
+    /// The site that was asked for last, and its line's width.
+    known: Option<(usize, f64)>,
+}
+
+impl Calm<'_> {
+    /// The line's own width at a site: of the site before it only what comes and what goes has to be looked at.
+    fn px(&mut self, index: usize) -> f64 {
+        let width_px = |at: Option<usize>| Some(self.sites.get(at?)?.width_px.min(WIDEST_PX));
+        let inside = !self.closed || index > CALM_SITES && index + CALM_SITES + 1 < self.sites.len();
+        let slid = self.known.filter(|(before, _)| before + 1 == index && inside).and_then(|(_, calm_px)| {
+            let next = width_px(index.checked_add(CALM_SITES)).unwrap_or(f64::INFINITY);
+            let gone = width_px(index.checked_sub(CALM_SITES + 1)).unwrap_or(f64::INFINITY);
+            if next <= calm_px { Some(next) } else { (gone > calm_px).then_some(calm_px) }
+        });
+        let calm_px = slid.unwrap_or_else(|| calm_px(self.sites, index, self.closed));
+        self.known = Some((index, calm_px));
+        calm_px
+    }
+}
+
 /// The line's own width at a site: the least one near it.
 fn calm_px(sites: &[Site], index: usize, closed: bool) -> f64 {
     let width_px = |at: usize| sites.get(at).map(|site| site.width_px);
     least_around(sites.len(), index, CALM_SITES, closed, width_px).min(WIDEST_PX)
-}
-
-/// Draws discs in paper on a band of a picture that begins with row `first_row`.
-struct Wiper<'a> {
-    bare: &'a mut Bitmap,
-    first_row: u32,
-    /// Discs in a row or column of pixels that are not drawn yet: the first one, the last one, their radius.
-    drawn: Option<(PxPoint, PxPoint, f64)>,
-}
-
-impl Wiper<'_> {
-    /// A disc more.
-    fn add(&mut self, at: PxPoint, radius_px: f64) {
-        if let Some((first, last, radius)) = &mut self.drawn
-            && radius.to_bits() == radius_px.to_bits()
-            && (goes_on(first.x, last.x, at.x) && is_same(first.y, last.y, at.y)
-                || goes_on(first.y, last.y, at.y) && is_same(first.x, last.x, at.x))
-        {
-            *last = at;
-            return;
-        }
-        self.wipe();
-        self.drawn = Some((at, at, radius_px));
-    }
-
-    /// Draws what is not drawn yet: in each row of pixels the discs are one run.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the picture")]
-    fn wipe(&mut self) {
-        let Some((first, last, radius_px)) = self.drawn.take() else { return };
-        let (left, right) = (first.x.min(last.x), first.x.max(last.x));
-        let (upper, lower) = (first.y.min(last.y), first.y.max(last.y));
-        let (width, top) = (f64::from(self.bare.width()), f64::from(self.first_row));
-        let bottom = top + f64::from(self.bare.height());
-        let mut y = libm::ceil((upper - radius_px - 0.5).max(top));
-        while y + 0.5 <= lower + radius_px && y < bottom {
-            let centre = y + 0.5;
-            let dy = if centre < upper { centre - upper } else { (centre - lower).max(0.0) };
-            let half = libm::sqrt((radius_px * radius_px - dy * dy).max(0.0));
-            let (from, to) = ((left - half - 0.5).max(0.0), (right + half - 0.5).min(width - 1.0));
-            if to >= 0.0 {
-                // Rounded up, and down.
-                let (whole, to) = (from as u32, to as u32);
-                let from = whole + u32::from(f64::from(whole) < from);
-                if from <= to {
-                    self.bare.clear_run((y - top) as u32, from..to + 1);
-                }
-            }
-            y += 1.0;
-        }
-    }
-}
-
-/// Whether a coordinate goes on from pixel to pixel in one direction, at their centres.
-fn goes_on(first: f64, last: f64, next: f64) -> bool {
-    let step = next - last;
-    (step == 1.0 && last >= first || step == -1.0 && last <= first) && last - libm::floor(last) == 0.5
-}
-
-fn is_same(first: f64, last: f64, next: f64) -> bool {
-    first.to_bits() == last.to_bits() && last.to_bits() == next.to_bits()
 }
 
 /// Takes the 8-connected ink around a pixel out of a picture.

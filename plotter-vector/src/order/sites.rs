@@ -2,6 +2,7 @@
 
 use super::point_tree::PointTree;
 use crate::PxPoint;
+use crate::centrelines::each;
 
 /// Nearest things that each place knows: with more the search finds little more (D. S. Johnson and L. A. McGeoch,
 /// "The traveling salesman problem: a case study in local optimization", 1997, section 3.3).
@@ -10,6 +11,9 @@ pub(crate) const NEIGHBOURS: usize = 8;
 /// Most places of a ring that the search considers, and of all rings; of very many rings each has two.
 pub(crate) const RING_PLACES: usize = 12;
 const ALL_RING_PLACES: usize = 240_000;
+
+/// Places whose neighbours are looked for in one go.
+const PLACES_TOGETHER: usize = 1024;
 
 /// No place.
 const NONE: u32 = u32::MAX;
@@ -140,7 +144,14 @@ impl Sites {
             });
             found.map(|(_, place)| place)
         };
-        self.places.iter().zip(&self.owners).map(near).collect()
+        let mut all = vec![[NONE; NEIGHBOURS]; self.places.len()];
+        let places = self.places.chunks(PLACES_TOGETHER).zip(self.owners.chunks(PLACES_TOGETHER));
+        each(places.zip(all.chunks_mut(PLACES_TOGETHER)).collect(), |((places, owners), found)| {
+            for (own, found) in places.iter().zip(owners).zip(found) {
+                *found = near(own);
+            }
+        });
+        all
     }
 }
 

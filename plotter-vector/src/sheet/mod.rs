@@ -297,7 +297,8 @@ impl Pen {
         self.ink_pixels += ink.iter().map(|bits| u64::from(bits.count_ones())).sum::<u64>();
         self.blocks += blocks_between(&self.above, ink);
         self.width.push(ink);
-        self.above.iter_mut().zip(ink).for_each(|(to, from)| *to = *from);
+        self.above.clear();
+        self.above.extend_from_slice(ink);
     }
 
     fn finish(self) -> (Option<u32>, u64) {
