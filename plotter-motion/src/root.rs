@@ -1,6 +1,6 @@
 //! Square roots, to the last bit. `libm`'s and their table take 1 KB of a microcontroller's flash, these less than half, and are as quick.
 
-/// The square root, rounded to nearest; NaN below 0 and of what is not finite. Numbers below 2·10⁻³⁰⁸ are taken for 0.
+/// The square root, rounded to nearest; NaN below 0. Numbers below 2·10⁻³⁰⁸ are taken for 0.
 #[cfg_attr(target_os = "none", inline(never))]
 pub(crate) fn root(square: f64) -> f64 {
     const MANTISSA_BITS: u32 = 52;
@@ -9,7 +9,14 @@ pub(crate) fn root(square: f64) -> f64 {
     let bits = square.to_bits();
     let exponent = (bits >> MANTISSA_BITS) as u32;
     if exponent.wrapping_sub(1) >= 0x7fe {
-        return if exponent & 0x7ff == 0 { 0.0 } else { f64::NAN };
+        let is_infinite = bits == f64::INFINITY.to_bits();
+        return if exponent & 0x7ff == 0 {
+            0.0
+        } else if is_infinite {
+            square
+        } else {
+            f64::NAN
+        };
     }
     let mantissa = bits & ((1 << MANTISSA_BITS) - 1) | 1 << MANTISSA_BITS;
     // An even power of two is taken out, and the mantissa has its first bit in one of the first two places.
@@ -44,7 +51,14 @@ pub(crate) fn root_single(square: f32) -> f32 {
     let bits = square.to_bits();
     let exponent = bits >> MANTISSA_BITS;
     if exponent.wrapping_sub(1) >= 0xfe {
-        return if exponent & 0xff == 0 { 0.0 } else { f32::NAN };
+        let is_infinite = bits == f32::INFINITY.to_bits();
+        return if exponent & 0xff == 0 {
+            0.0
+        } else if is_infinite {
+            square
+        } else {
+            f32::NAN
+        };
     }
     let mantissa = bits & ((1 << MANTISSA_BITS) - 1) | 1 << MANTISSA_BITS;
     let (found, _) = whole_root(u64::from(mantissa) << (40 - (exponent & 1)));
@@ -90,12 +104,9 @@ mod tests {
         for square in [0.0, 1.0, 4.0, f32::MAX, f32::MIN_POSITIVE, 1.0_f32.next_down(), 2.0, 3.0] {
             assert_eq!(root_single(square).to_bits(), libm::sqrtf(square).to_bits(), "{square:e}");
         }
-        assert!(root(-1.0).is_nan() && root(f64::NAN).is_nan() && root(f64::INFINITY).is_nan());
-        assert!(
-            root_single(-1.0).is_nan()
-                && root_single(f32::NAN).is_nan()
-                && root_single(f32::INFINITY).is_nan()
-        );
+        assert!(root(-1.0).is_nan() && root(f64::NAN).is_nan() && root_single(f32::NAN).is_nan());
+        assert!(root_single(-1.0).is_nan() && root(f64::NEG_INFINITY).is_nan());
+        assert_eq!((root(f64::INFINITY), root_single(f32::INFINITY)), (f64::INFINITY, f32::INFINITY));
         assert_eq!((root(-0.0), root(5e-324), root_single(1e-45)), (0.0, 0.0, 0.0));
     }
 

@@ -5,6 +5,7 @@
 //! them.
 
 use super::lines::{Piece, cosine};
+use super::paper::nearest;
 use crate::PxPoint;
 use std::collections::HashMap;
 
@@ -381,6 +382,10 @@ impl LineMap {
             all.windows(2).map(|pair| if let [a, b] = pair { a.distance(*b) } else { 0.0 }).sum();
         let is_end = |id: u32| self.arms(id) <= 1;
         let is_open = |id: u32| self.node(id).is_some_and(|node| node.open);
+        let goes_on = before.into_iter().chain(behind).any(|id| is_end(id) || is_open(id));
+        if !goes_on && run.iter().all(|at| self.is_in_ink(*at, 0.5 * width_px + 1.0, known)) {
+            return false;
+        }
         match (before, behind) {
             (None, None) => {
                 let beside = |at: &PxPoint| {
@@ -403,6 +408,17 @@ impl LineMap {
                     || !self.connected(a, b, 4 + super::whole::count(length))
             }
         }
+    }
+
+    /// Whether a place is nearer to a line between the first `known` nodes than `reach_px`.
+    fn is_in_ink(&self, at: PxPoint, reach_px: f64, known: usize) -> bool {
+        let is_known = |id: u32| (id as usize) < known;
+        self.near(at, reach_px + super::lines::SPACING_PX).into_iter().filter(|id| is_known(*id)).any(|id| {
+            self.links_of(id).any(|(_, link, other)| {
+                let is_line = !link.contact && link.state != State::Ghost && is_known(other);
+                is_line && nearest(at, self.at(id), self.at(other)).distance(at) < reach_px
+            })
+        })
     }
 
     fn add_run(
