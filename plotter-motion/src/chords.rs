@@ -90,7 +90,7 @@ pub(crate) fn chord_count(radius_mm: f64, sweep_rad: f64, tolerance_mm: f64) -> 
     }
     let flattest = greater(smaller(flattest, 1.0), 0.0);
     // The tangent of a quarter of the angle, whose square is (1 − cos) / (1 + cos) of its half.
-    let finest_rad = 4.0 * atan(crate::root::root(flattest / (2.0 - flattest)));
+    let finest_rad = 4.0 * atan(libm::sqrt(flattest / (2.0 - flattest)));
     let count = libm::ceil(libm::fabs(sweep_rad) / finest_rad);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number, clamped")]
     let count = if count.is_nan() { 1 } else { greater(smaller(count, MOST_CHORDS), 1.0) as u32 };

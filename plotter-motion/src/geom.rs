@@ -78,7 +78,7 @@ impl Vec2 {
 
     /// The length of a way of 10⁻¹⁵⁰ to 10¹⁵⁰ mm: without the scaling of `hypot`, which costs more than all the rest.
     pub(crate) fn length_near(self) -> f64 {
-        crate::root::root(self.length_squared())
+        libm::sqrt(self.length_squared())
     }
 
     /// Square of the length; cheaper than [`Vec2::length`] where only the order matters.

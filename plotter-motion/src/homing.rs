@@ -530,7 +530,7 @@ impl HomingProgress {
         #[expect(clippy::cast_precision_loss, reason = "steps of 32 bits")]
         let reached = |from_hz: u32, steps: i64| {
             let from_hz = f64::from(from_hz);
-            crate::root::root(from_hz * from_hz + 2.0 * f64::from(settings.accel_hz_s) * steps.max(0) as f64)
+            libm::sqrt(from_hz * from_hz + 2.0 * f64::from(settings.accel_hz_s) * steps.max(0) as f64)
         };
         let rate_hz = smaller(
             smaller(reached(start_hz, before), reached(slowly, ahead - 1)),

@@ -29,7 +29,6 @@ pub mod plant;
 mod profile;
 pub mod protocol;
 mod pulse_counter;
-mod root;
 mod safety;
 mod seconds;
 mod shapes;

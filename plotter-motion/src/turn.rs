@@ -37,7 +37,7 @@ fn series(first: f64, square: f64) -> f64 {
 /// The angle of the direction (x, y), -π to π, good to some last bits.
 pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     // tan(φ/2) = y / (r + x), of the angle to the x axis on whichever side is nearer.
-    let r = crate::root::root(x * x + y * y);
+    let r = libm::sqrt(x * x + y * y);
     let angle_rad = if y == 0.0 { y } else { 2.0 * atan(y / (r + x.abs())) };
     if x == 0.0 && y != 0.0 {
         // A quarter is one to the last bit.
@@ -51,7 +51,7 @@ pub(crate) fn atan(tangent: f64) -> f64 {
     // tan(φ/2) = t / (1 + √(1 + t²)), twice: then it is below 0.2, and twelve terms of t - t³/3 + t⁵/5 - … are enough.
     let mut t = tangent;
     for _ in 0..2 {
-        t /= 1.0 + crate::root::root(1.0 + t * t);
+        t /= 1.0 + libm::sqrt(1.0 + t * t);
     }
     let square = t * t;
     let (mut sum, mut n) = (0.0, 25.0);

@@ -61,7 +61,7 @@ pub(super) fn centre<C: Complaint>(
     }
     // (r - h)(r + h) loses no digits where the arc is nearly a half circle.
     let squared = (radius_mm.abs() - half_mm) * (radius_mm.abs() + half_mm);
-    let height_mm = crate::root::root(greater(squared, 0.0));
+    let height_mm = libm::sqrt(greater(squared, 0.0));
     let height_mm = if left == (radius_mm > 0.0) { height_mm } else { -height_mm };
     let across = Vec2::new(-chord.y, chord.x) * (height_mm / length_mm);
     Ok(from + chord * 0.5 + across)

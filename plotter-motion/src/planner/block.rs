@@ -5,7 +5,6 @@ use super::limits::{Limits, Share, Wish};
 use super::ring::narrow;
 use super::{Course, Shape};
 use crate::extremes::{greater, smaller};
-use crate::root::root_single;
 use crate::{Pen, Point};
 use core::time::Duration;
 
@@ -61,7 +60,7 @@ impl Block {
             Shape::Spiral { pole, sweep_rad, growth } if growth < 0.0 => (Kind::Narrowing, pole, sweep_rad),
             Shape::Spiral { pole, sweep_rad, .. } => (Kind::Widening, pole, sweep_rad),
         };
-        let (feed_mm_s, sweep_rad) = (root_single(feed2), single(sweep_rad));
+        let (feed_mm_s, sweep_rad) = (libm::sqrtf(feed2), single(sweep_rad));
         Self { to, centre, length: length_mm, feed_mm_s, sweep_rad, kind, pen, power, ..Self::default() }
     }
 

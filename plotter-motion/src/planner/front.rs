@@ -9,7 +9,6 @@ use super::modes::{Keep as _, Modes};
 use super::ring::{Ring, least, narrow};
 use super::{PathMode, PlanError, PlannerSettings, Shape};
 use crate::extremes::{greater, smaller};
-use crate::root::root_single;
 use crate::whole::nearest;
 use crate::{Pen, PlotOp, Point, Vec2};
 use core::f64::consts::TAU;
@@ -520,7 +519,7 @@ impl Way {
         let (x, y) = (single(way.x), single(way.y));
         let square = x * x + y * y;
         if square >= LEAST_SQUARE {
-            let length_mm = root_single(square);
+            let length_mm = libm::sqrtf(square);
             let share = 1.0 / length_mm;
             return Self { length_mm, direction: [x * share, y * share] };
         }

@@ -10,7 +10,6 @@
 
 use super::limits::Limits;
 use super::ring::least;
-use crate::root::root_single;
 
 /// Greatest speed, mm/s, at which a corner may be taken.
 ///
@@ -89,7 +88,7 @@ pub(super) fn corner_speed2(before: [f32; 2], after: [f32; 2], shorter_mm: f32, 
         return f32::INFINITY;
     }
     // The angle θ between the segments and the turn make half a turn together.
-    let major = root_single(0.5 * (1.0 + cos_turn.abs()));
+    let major = libm::sqrtf(0.5 * (1.0 + cos_turn.abs()));
     let minor = 0.5 * sin_turn / major;
     let (sin_half, cos_half) = if cos_turn > 0.0 { (major, minor) } else { (minor, major) };
     let (sin_half, cos_half) = (sin_half * (1.0 - LEAST_TURN), cos_half + LEAST_TURN);

@@ -74,7 +74,7 @@ impl Ramps {
     /// Plans what is left of the block.
     pub(super) fn plan<M: Modes>(&mut self, exit2: f64, limits: &Limits) {
         self.exit2 = single(exit2);
-        self.plan_from::<M>(self.speed2(), (exit2, crate::root::root(exit2)), limits);
+        self.plan_from::<M>(self.speed2(), (exit2, libm::sqrt(exit2)), limits);
     }
 
     /// From a square of a speed to another speed, of which both the square and the root are given.
@@ -110,7 +110,7 @@ impl Ramps {
             }
             self.put_ramp(up_mm, up_end_mm, (self.speed, self.cruise), limits);
         } else {
-            let peak = crate::root::root(peak2);
+            let peak = libm::sqrt(peak2);
             let up_mm = (peak2 - entry2) * limits.per_twice_accel;
             self.put_ramp(rest_mm - up_mm, self.length_mm, (peak, exit), limits);
             self.put_ramp(up_mm, self.done_mm + up_mm, (self.speed, peak), limits);
@@ -179,7 +179,7 @@ impl Ramps {
         let exit2 = greater(self.speed2() - 2.0 * limits.accel() * self.rest_mm(), 0.0);
         let way_mm = smaller(self.speed2() * limits.per_twice_accel, self.rest_mm());
         let stands_mm = smaller(self.done_mm + way_mm, self.length_mm);
-        let (end_mm, exit) = (if exit2 > 0.0 { self.length_mm } else { stands_mm }, crate::root::root(exit2));
+        let (end_mm, exit) = (if exit2 > 0.0 { self.length_mm } else { stands_mm }, libm::sqrt(exit2));
         self.next = self.ramps.len();
         self.exit2 = single(exit2);
         self.put_ramp(way_mm, end_mm, (self.speed, exit), limits);
@@ -233,5 +233,5 @@ impl Ramps {
 
 /// The speed of which this is the square.
 fn root(speed2: f32) -> f64 {
-    if speed2 > 0.0 { crate::root::root(f64::from(speed2)) } else { 0.0 }
+    if speed2 > 0.0 { libm::sqrt(f64::from(speed2)) } else { 0.0 }
 }
