@@ -39,6 +39,12 @@ impl Axes {
         self.0[1].measure(command.y, place.y, is_sure[1]);
     }
 
+    /// All places of the map are found to be so much farther, x first, px.
+    pub(super) fn shift(&mut self, (x, y): (f64, f64)) {
+        self.0[0].shift(x);
+        self.0[1].shift(y);
+    }
+
     /// How far both may go on in one move, as a share of the way.
     pub(super) fn share(&self, from: PxPoint, to: PxPoint) -> f64 {
         self.0[0].share(from.x, to.x).min(self.0[1].share(from.y, to.y))

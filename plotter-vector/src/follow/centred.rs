@@ -3,11 +3,12 @@
 //! Thinning rounds corners, is drawn into the foot of a tee, and cuts the inside of narrow turns. Where a cut across shows one line,
 //! its middle counts; what lies between two such parts is straight if they are on one line, and a corner if their lines meet here.
 
-use super::corners::{CORNER_COS, LONG, crossing, is_bent, sharpen, square, straight, turn};
+use super::corners::{CORNER_COS, LONG, crossing, is_bent, is_curve, sharpen, square, straight, turn};
 use super::crowd::Crowd;
 use super::flat::Flat;
 use super::lines::cosine;
 use super::profile::across;
+use super::tips::fitted;
 use crate::PxPoint;
 
 /// A place that moves farther than this, as a share of the line's width, is on another line.
@@ -123,20 +124,26 @@ enum Between {
 
 /// How a line goes on between two places of it, by the parts before and behind them.
 fn between(places: &[PxPoint], first: usize, last: usize) -> Between {
-    let arm = |from: Option<usize>, to: usize| from.and_then(|from| places.get(from..=to)).unwrap_or(&[]);
-    let (before, behind) = (arm(first.checked_sub(LONG), first), arm(Some(last), last + LONG));
+    let arms = |long: usize| {
+        let arm = |from: Option<usize>, to: usize| from.and_then(|from| places.get(from..=to)).unwrap_or(&[]);
+        [arm(first.checked_sub(long), first), arm(Some(last), last + long)]
+    };
+    let [before, behind] = arms(LONG);
     let (Some(one), Some(other)) =
         (straight(before, LONG, CURVED_OFF_PX), straight(behind, LONG, CURVED_OFF_PX))
     else {
         return Between::Straight;
     };
-    let turn_cos = cosine(one.1, other.1);
-    if turn_cos > BENT_COS {
-        return Between::Straight;
+    // The longer the arms, the better they tell whether they are bent.
+    let are_curves = |arms: &[&[PxPoint]; 2]| {
+        arms.iter().all(|arm| arm.len() > LONG && (arm.len() == LONG + 1 || is_curve(arm)))
+    };
+    let longest = [3 * LONG, 2 * LONG, LONG].into_iter().map(arms).find(are_curves);
+    if let Some(curvature) = longest.and_then(curvature_between) {
+        return Between::Curve(curvature);
     }
-    if is_bent([before, behind], [one, other], turn_cos) {
-        let side = libm::copysign(1.0, one.1.0 * other.1.1 - one.1.1 * other.1.0);
-        return Between::Curve(side * libm::acos(turn_cos.clamp(-1.0, 1.0)) / one.0.distance(other.0));
+    if cosine(one.1, other.1) > BENT_COS {
+        return Between::Straight;
     }
     let are_straight = [before, behind].iter().all(|arm| straight(arm, LONG, STRAIGHT_OFF_PX).is_some());
     let met = crossing(one, other);
@@ -145,6 +152,17 @@ fn between(places: &[PxPoint], first: usize, last: usize) -> Between {
     let off = met.minus(*from);
     let share = (off.0 * way.0 + off.1 * way.1) / (way.0 * way.0 + way.1 * way.1);
     if are_straight && (0.1..0.9).contains(&share) { Between::Corner(met) } else { Between::Straight }
+}
+
+/// The curvature of a line between two arms of it, 1/px; none if they are not bent as much.
+fn curvature_between(arms: [&[PxPoint]; 2]) -> Option<f64> {
+    let (one, other) = (fitted(arms[0])?, fitted(arms[1])?);
+    let turn_cos = cosine(one.1, other.1);
+    if turn_cos > BENT_COS || !is_bent(arms, [one, other], turn_cos) {
+        return None;
+    }
+    let side = libm::copysign(1.0, one.1.0 * other.1.1 - one.1.1 * other.1.0);
+    Some(side * libm::acos(turn_cos.clamp(-1.0, 1.0)) / one.0.distance(other.0))
 }
 
 /// Runs of places that are no line of their own, over a crossing or the foot of a tee, go straight on.

@@ -17,6 +17,13 @@ pub(super) const LONG: usize = 6;
 /// Places at the end of an arm that a turn draws to its inside.
 const DRAWN: usize = 2;
 
+/// A curve is nowhere farther from a parabola, px, and its arms nowhere farther from a straight line.
+const CURVED_PX: f64 = 0.3;
+const BOWED_PX: f64 = 0.8;
+
+/// Blur takes a little off a corner's rim: of what a curve would be short of it less than this share.
+const BLURRED_SHARE: f64 = 0.65;
+
 /// A turn is a curve's if the bend of its arms tells of so much of it.
 const CURVE_SHARE: f64 = 0.5;
 
@@ -76,13 +83,22 @@ fn meeting(
         let way = (one.1.0 - other.1.0, one.1.1 - other.1.1);
         let length = libm::hypot(way.0, way.1);
         let way = (way.0 / length, way.1 / length);
-        if let Some(end_px) = ink_end_px(flat, met, way, width_px) {
-            met = met.along(way, end_px - 0.5 * width_px + BLURRED_END_PX);
+        // From beside the tip that thinning left: arms of a narrow curve meet far behind it.
+        let along = |at: &PxPoint| at.minus(met).0 * way.0 + at.minus(met).1 * way.1;
+        let tip_px =
+            run.iter().map(along).max_by(f64::total_cmp).filter(|tip_px| tip_px.abs() < 2.0 * width_px)?;
+        let from = met.along(way, tip_px);
+        if let Some(end_px) = ink_end_px(flat, from, way, width_px) {
+            met = from.along(way, end_px - 0.5 * width_px + BLURRED_END_PX);
         }
     }
     let cut_px = cut_px(flat, (met, one.0), turn_cos, width_px);
     let nearest = run.iter().enumerate().min_by(|(_, a), (_, b)| a.distance(met).total_cmp(&b.distance(met)));
-    nearest.filter(|(_, at)| at.distance(met) < cut_px + 1.0).map(|(k, _)| (first + k, met))
+    let is_corner = |at: &PxPoint| {
+        at.distance(met) < cut_px + 1.0
+            && (turn_cos < SHARP_COS || reaches(flat, *at, met, [one, other], width_px))
+    };
+    nearest.filter(|(_, at)| is_corner(at)).map(|(k, _)| (first + k, met))
 }
 
 /// How much of a corner thinning may have cut off, px: a little, or, where there is as much ink as on the line, all as far as where
@@ -91,6 +107,42 @@ fn cut_px(flat: &Flat, (corner, on_line): (PxPoint, PxPoint), turn_cos: f64, wid
     let half_sin = libm::sqrt(0.5 * (1.0 + turn_cos)).max(0.1);
     let is_ink = flat.at(corner) >= SQUARE_DARK * flat.at(on_line);
     f64::max(0.6 * width_px, if is_ink { 0.5 * width_px / half_sin + 0.5 } else { 0.0 })
+}
+
+/// Whether the ink goes around the place where two arms meet as far as it goes beside them, and not only around the curve that
+/// thinning left.
+fn reaches(
+    flat: &Flat,
+    curve: PxPoint,
+    met: PxPoint,
+    arms: [(PxPoint, (f64, f64)); 2],
+    width_px: f64,
+) -> bool {
+    let cut_px = curve.distance(met);
+    if cut_px < f64::min(0.2 * width_px, 1.0) {
+        return true;
+    }
+    let [(one, (x, y)), (other, (u, v))] = arms;
+    let out = (x - u, y - v);
+    let length = libm::hypot(out.0, out.1);
+    let side = libm::copysign(1.0, y * u - x * v);
+    let half = 0.25 * (flat.at(one) + flat.at(other));
+    let rim = |at: PxPoint, way: (f64, f64)| rim_px(flat, at, way, half, 2.0 * width_px);
+    let beside = [rim(one, (-side * y, side * x)), rim(other, (-side * v, side * u))];
+    let (Some(around), [Some(one_px), Some(other_px)]) = (rim(met, (out.0 / length, out.1 / length)), beside)
+    else {
+        return true;
+    };
+    around > 0.5 * (one_px + other_px) - BLURRED_SHARE * cut_px
+}
+
+/// From a place to the rim of its ink, as dark as `half`, along a direction of length 1, px; none farther than `most_px`.
+pub(super) fn rim_px(flat: &Flat, at: PxPoint, way: (f64, f64), half: f32, most_px: f64) -> Option<f64> {
+    let steps = super::whole::count(2.0 * most_px);
+    let dark = |step: usize| flat.at(at.along(way, 0.5 * super::lines::count_f64(step)));
+    let Some(step) = (0..=steps).find(|step| dark(*step) < half)?.checked_sub(1) else { return Some(0.0) };
+    let (inner, outer) = (dark(step), dark(step + 1));
+    Some(0.5 * (super::lines::count_f64(step) + f64::from((inner - half) / (inner - outer))))
 }
 
 /// How far from a place in ink, along a direction of length 1, the ink ends: where it is half as dark as at its darkest.
@@ -164,23 +216,56 @@ fn corners(flat: &Flat, places: &[PxPoint], i: usize, j: usize, width_px: f64) -
     };
     let top = run.iter().max_by(|a, b| far(a).total_cmp(&far(b)))?;
     let out = (along.0 - back.0, along.1 - back.1);
-    // The third side, by what thinning leaves between the arms; near them it is rounded, and noise moves single places.
-    let beside = |place: &PxPoint| {
-        let (x, y) = place.minus(at);
-        (x * along.1 - y * along.0).abs() / apart_px
-    };
-    let between = run.iter().filter(|place| (0.25..0.75).contains(&beside(place)));
-    let (sum, count) = between.fold((0.0, 0.0), |(sum, count), place| (sum + far(place), count + 1.0));
-    let side = if count > 0.0 { top.along(along, sum / count - far(top)) } else { *top };
+    let side = top.along(along, third_side(flat, *top, [before, behind], width_px)? - far(top));
     let meet = |(from, way): (PxPoint, (f64, f64))| {
         let (x, y) = side.minus(from);
         from.along(way, (x * out.0 + y * out.1) / (way.0 * out.0 + way.1 * out.1))
     };
     let corners = [meet(before), meet(behind)];
-    // In a round turn the ink is lighter there.
-    let is_square = corners.iter().all(|corner| flat.at(*corner) > SQUARE_DARK * flat.at(*top));
     let is_near = corners.iter().all(|corner| run.iter().any(|at| at.distance(*corner) < width_px));
-    (is_square && is_near).then_some(corners)
+    // In a round turn it does not reach as far.
+    let third = (side, corners[1].minus(corners[0]));
+    let length = libm::hypot(third.1.0, third.1.1).max(1e-9);
+    let third = (third.0, (third.1.0 / length, third.1.1 / length));
+    let all_reach = corners.iter().zip([[before, third], [third, behind]]).all(|(corner, arms)| {
+        let cut = run.iter().min_by(|a, b| a.distance(*corner).total_cmp(&b.distance(*corner)));
+        cut.is_some_and(|cut| reaches(flat, *cut, *corner, arms, width_px))
+    });
+    (is_near && all_reach).then_some(corners)
+}
+
+/// How far along its first arm the third side of a square turn is: as far from the rim of its ink as the arms are from theirs.
+fn third_side(
+    flat: &Flat,
+    top: PxPoint,
+    [(at, along), (other, back)]: [(PxPoint, (f64, f64)); 2],
+    width_px: f64,
+) -> Option<f64> {
+    let (x, y) = other.minus(at);
+    let apart_px = x * -along.1 + y * along.0;
+    // To the side of the other arm.
+    let over = (-along.1, along.0);
+    let outer = libm::copysign(1.0, apart_px);
+    let rim_of = |at: PxPoint, way| rim_px(flat, at, way, 0.5 * flat.at(at), 2.0 * width_px);
+    let rim = |at: PxPoint, (u, v): (f64, f64)| rim_of(at, (u * outer, v * outer));
+    let beside_px = 0.5 * (rim(at, (along.1, -along.0))? + rim(other, (back.1, -back.0))?);
+    let far = |place: PxPoint| {
+        let (x, y) = place.minus(at);
+        x * along.0 + y * along.1
+    };
+    let across = |place: PxPoint| {
+        let (x, y) = place.minus(at);
+        x * over.0 + y * over.1
+    };
+    let mut rims = 0.0;
+    for share in [0.3, 0.5, 0.7] {
+        let level = top.along(over, share * apart_px - across(top));
+        // From the darkest place there outwards.
+        let steps = (-4..=4).map(|k| level.along(along, 0.25 * f64::from(k) * width_px));
+        let ink = steps.max_by(|a, b| flat.at(*a).total_cmp(&flat.at(*b)))?;
+        rims += (far(ink) + rim_of(ink, along)?) / 3.0;
+    }
+    Some(rims - beside_px)
 }
 
 /// Corners are where the straight parts on both sides meet.
@@ -230,7 +315,8 @@ pub(super) fn sharpen(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
                 .take(2 * skip + 1)
                 .min_by(|(_, a), (_, b)| a.distance(met).total_cmp(&b.distance(met)));
             let cut_px = cut_px(flat, (met, one.0), turn, width_px);
-            if nearest.is_none_or(|(k, _)| k != i) || at.distance(met) > cut_px {
+            let is_far = at.distance(met) > cut_px || !reaches(flat, *at, met, [one, other], width_px);
+            if nearest.is_none_or(|(k, _)| k != i) || is_far {
                 continue;
             }
             for (k, place) in places.iter_mut().enumerate().skip(i - skip).take(2 * skip + 1) {
@@ -256,22 +342,57 @@ pub(super) fn is_bent(arms: [&[PxPoint]; 2], lines: [(PxPoint, (f64, f64)); 2], 
     bent > CURVE_SHARE * libm::acos(turn_cos.clamp(-1.0, 1.0))
 }
 
+/// Whether places are on a curve without corners: nowhere far from the parabola that is nearest to them.
+pub(super) fn is_curve(places: &[PxPoint]) -> bool {
+    let Some((middle, along)) = straight(places, 1, BOWED_PX) else { return false };
+    let bend = Parabola::of(places, middle, along);
+    places
+        .iter()
+        .all(|at| (local(*at, middle, along).1 - bend.at(local(*at, middle, along).0)).abs() < CURVED_PX)
+}
+
 /// The curvature of the parabola that is nearest to places along a direction, 1/px.
 fn curvature(places: &[PxPoint], middle: PxPoint, along: (f64, f64)) -> f64 {
-    let local = |at: &PxPoint| {
-        let (x, y) = at.minus(middle);
-        (x * along.0 + y * along.1, y * along.0 - x * along.1)
-    };
-    let sum = |power: fn(f64) -> f64| places.iter().map(|at| power(local(at).0)).sum::<f64>();
-    let (squares, cubes) = (sum(|s| s * s), sum(|s| s * s * s));
-    let count = super::lines::count_f64(places.len());
-    // The square of the way, less what a straight line has of it.
-    let square = |s: f64| s * s - squares / count - s * cubes / squares;
-    let (off, own) = places
-        .iter()
-        .map(local)
-        .fold((0.0, 0.0), |(off, own), (s, o)| (off + square(s) * o, own + square(s) * square(s)));
-    if own > 0.0 { 2.0 * off / own } else { 0.0 }
+    2.0 * Parabola::of(places, middle, along).bend
+}
+
+/// A place along a direction and beside it.
+fn local(at: PxPoint, middle: PxPoint, along: (f64, f64)) -> (f64, f64) {
+    let (x, y) = at.minus(middle);
+    (x * along.0 + y * along.1, y * along.0 - x * along.1)
+}
+
+/// The parabola that is nearest to places whose nearest straight line is known.
+struct Parabola {
+    bend: f64,
+    /// Mean of the squares of the ways along the line, and what of them grows with the way.
+    mean: f64,
+    slope: f64,
+}
+
+impl Parabola {
+    fn of(places: &[PxPoint], middle: PxPoint, along: (f64, f64)) -> Self {
+        let sum =
+            |power: fn(f64) -> f64| places.iter().map(|at| power(local(*at, middle, along).0)).sum::<f64>();
+        let (squares, cubes) = (sum(|s| s * s), sum(|s| s * s * s));
+        let mut parabola = Self {
+            bend: 1.0,
+            mean: squares / super::lines::count_f64(places.len()),
+            slope: if squares > 0.0 { cubes / squares } else { 0.0 },
+        };
+        let (off, own) =
+            places.iter().map(|at| local(*at, middle, along)).fold((0.0, 0.0), |(off, own), (s, o)| {
+                let square = parabola.at(s);
+                (off + square * o, own + square * square)
+            });
+        parabola.bend = if own > 0.0 { off / own } else { 0.0 };
+        parabola
+    }
+
+    /// How far it is beside the line: the square of the way, less what a straight line has of it.
+    fn at(&self, s: f64) -> f64 {
+        self.bend * (s * s - self.mean - s * self.slope)
+    }
 }
 
 /// Where two lines cross that are not parallel, each a place and its direction of length 1.

@@ -2,7 +2,7 @@
 //!
 //! Thinning draws the last piece of such a line to where the ink of both has one middle.
 
-use super::corners::{crossing, straight};
+use super::corners::{crossing, rim_px, straight};
 use super::crowd::Crowd;
 use super::flat::Flat;
 use super::lines::{SPACING_PX, cosine};
@@ -19,6 +19,9 @@ const ALONG_COS: f64 = 0.906;
 
 /// The end that was found counts when it is farther behind the other line's middle, px.
 const BEHIND_PX: f64 = 1.5;
+
+/// And the ink behind the other line is so much farther from its middle than that line's own rim, px.
+const STICKS_PX: f64 = 1.0;
 
 /// Puts the ends of lines, whose places are about 2 px from each other, straight.
 pub(super) fn straight_ends(flat: &Flat, lines: &mut [Vec<PxPoint>], width_px: f64) {
@@ -37,7 +40,7 @@ pub(super) fn straight_ends(flat: &Flat, lines: &mut [Vec<PxPoint>], width_px: f
             if touching == 0 || SPACING_PX * super::lines::count_f64(touching) > 4.0 * width_px + 4.0 {
                 continue;
             }
-            if let Some(mut tail) = tail(lines, line, &places, touching, width_px) {
+            if let Some(mut tail) = tail(flat, lines, line, &places, touching, width_px) {
                 tail.extend(places.drain(touching..));
                 if is_last {
                     tail.reverse();
@@ -50,8 +53,20 @@ pub(super) fn straight_ends(flat: &Flat, lines: &mut [Vec<PxPoint>], width_px: f
     }
 }
 
+/// Whether there is ink behind the line along `way` that one meets at a place, farther than that line's own.
+fn sticks_out(flat: &Flat, met: PxPoint, way: (f64, f64), back: (f64, f64), width_px: f64) -> bool {
+    let half = 0.5 * flat.at(met);
+    let rim = |at: PxPoint| rim_px(flat, at, back, half, 3.0 * width_px + 4.0);
+    let beside = [-1.0, 1.0].map(|side| rim(met.along(way, side * (1.5 * width_px + 3.0))));
+    match (rim(met), beside) {
+        (Some(behind_px), [Some(one_px), Some(other_px)]) => behind_px > one_px.max(other_px) + STICKS_PX,
+        _ => true,
+    }
+}
+
 /// The first places of a line that begins at another one, instead of the `touching` ones.
 fn tail(
+    flat: &Flat,
     lines: &[Vec<PxPoint>],
     line: usize,
     places: &[PxPoint],
@@ -68,7 +83,7 @@ fn tail(
     };
     // The other line: the piece that is met first.
     let others = lines.iter().enumerate().filter(|(other, _)| *other != line);
-    let met = others
+    let (met, way) = others
         .flat_map(|(_, other)| other.windows(3))
         .filter_map(|three| {
             let [a, b, c] = three else { return None };
@@ -80,13 +95,20 @@ fn tail(
             if length < 1e-9 || cosine(way, back).abs() > ALONG_COS {
                 return None;
             }
-            let met = crossing(own, (*b, (way.0 / length, way.1 / length)));
-            (met.distance(*b) < SPACING_PX && along(met) > along(foot)).then_some(met)
+            let way = (way.0 / length, way.1 / length);
+            let met = crossing(own, (*b, way));
+            (met.distance(*b) < SPACING_PX && along(met) > along(foot)).then_some((met, way))
         })
-        .min_by(|a, b| along(*a).total_cmp(&along(*b)))?;
-    let end_px = if along(end) > along(met) + BEHIND_PX { along(end) } else { along(met) };
+        .min_by(|a, b| along(a.0).total_cmp(&along(b.0)))?;
+    let is_behind = along(end) > along(met) + BEHIND_PX && sticks_out(flat, met, way, back, width_px);
+    let end_px = if is_behind { along(end) } else { along(met) };
     let foot = own.0.along(back, along(foot));
     let tip = own.0.along(back, end_px);
+    // It ends before the other line where paper is between them.
+    let is_ink = |part: f64| flat.at(end.along(tip.minus(end), part)) > 0.5 * flat.at(own.0);
+    if end_px > along(end) && ![0.2, 0.4, 0.6, 0.8].into_iter().all(is_ink) {
+        return None;
+    }
     let parts = super::whole::count(libm::ceil(foot.distance(tip) / SPACING_PX)).max(1);
     let part = |k: usize| super::lines::count_f64(k) / super::lines::count_f64(parts);
     Some((0..parts).map(|k| tip.along(foot.minus(tip), part(k))).collect())

@@ -194,6 +194,9 @@ const LOST_PX: f64 = 2.0;
 const MOST_TRIED: usize = 4;
 const FARTHEST_PX: f64 = 160.0;
 
+/// A window that tells both directions to this corrects a new keyframe, px.
+const TOLD_PX: f64 = 0.3;
+
 /// Windows to compare others with, one about every [`NEAR_PX`]: coming back to one the camera's place is that of before.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Keyframes {
@@ -232,6 +235,26 @@ impl Keyframes {
         self.kept.get(self.active?)?.place(flat, middle, prior, sound_px)
     }
 
+    /// Where the camera is by the first window that showed what this one shows, if it is farther away: coming along a line to where
+    /// others end or turn that were seen long before, a new keyframe would have them where the way along the line puts them.
+    fn closed(
+        &self,
+        flat: &Flat,
+        middle: PxPoint,
+        camera: PxPoint,
+        told: Information,
+        across_px: f64,
+    ) -> PxPoint {
+        let prior = Prior { place: camera, information: told.astray(across_px, ASTRAY_PX) };
+        let around = self.kept.iter().filter(|frame| frame.camera.distance(camera) < FARTHEST_PX);
+        let found = around.take(MOST_TRIED).find_map(|frame| {
+            let found = frame.place(flat, middle, &prior, 0.0)?;
+            let [(_, one_sd_px), (_, other_sd_px)] = found.information.known();
+            (f64::max(one_sd_px, other_sd_px) < TOLD_PX).then_some(found.place)
+        });
+        found.unwrap_or(camera)
+    }
+
     /// Chooses the keyframe near a place, or makes one of the window; gives the camera's place by it. `told` is what the window
     /// tells, and `across_px` the standard deviation in the direction told best: across lines nobody goes astray, that would be the next one.
     pub(super) fn choose(
@@ -254,6 +277,7 @@ impl Keyframes {
                 return found.place;
             }
         }
+        let camera = self.closed(flat, middle, camera, told, across_px);
         if self.kept.len() == MOST_KEYFRAMES {
             // The oldest ones are the farthest, most likely.
             self.kept.drain(..MOST_KEYFRAMES / 2);

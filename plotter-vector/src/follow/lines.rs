@@ -4,7 +4,7 @@ use super::centred::{centred, turns};
 use super::corners::runs;
 use super::ends::straight_ends;
 use super::flat::Flat;
-use super::tips::sharpened;
+use super::tips::{sharpened, without_crumbs};
 use crate::{Bitmap, Bounded, Gray, Pixel, PxPoint, Vectorizer, despeckle, pen_width_px, split_by_width};
 
 /// Side of the blocks in which the darkest and the lightest place are found, px.
@@ -160,6 +160,7 @@ impl Lines {
             sharpened(flat, fine, width_px).iter().map(|stroke| resampled(stroke, SPACING_PX)).collect();
         centred(flat, &mut middles, width_px);
         straight_ends(flat, &mut middles, width_px);
+        without_crumbs(&mut middles, width_px);
         let pieces = middles
             .iter()
             .flat_map(|places| clipped(places, &window.trusted(places, &turns(places, width_px))))
@@ -421,6 +422,82 @@ mod tests {
             let round = off(4.0, &|angle, at| turn(angle, at, true));
             assert!(square[0] < 0.8 && square[2] < 0.8, "{pitch_px}: {square:?}");
             assert!(round[0] < 1.6 && round[1] < 1.0, "{pitch_px}: {round:?}");
+        }
+    }
+
+    #[test]
+    fn two_corners_after_each_other_are_where_they_are() {
+        for pitch_px in [28.0, 40.0] {
+            let off = off(5.0, &|turn, at| {
+                let next = at_angle(at, turn + core::f64::consts::FRAC_PI_2, pitch_px);
+                vec![vec![at_angle(at, turn, 100.0), at, next, at_angle(next, turn, 100.0)]]
+            });
+            assert!(off[0] < 0.5 && off[2] < 0.9, "{pitch_px}: {off:?}");
+        }
+    }
+
+    #[test]
+    fn thick_rings_cross_without_corners() {
+        // They meet at 56 degrees, and their ink is one for 17 px.
+        let off = off(8.0, &|turn, at| {
+            let ring = |side: f64| -> Vec<PxPoint> {
+                let middle = at_angle(at, turn + side * 1.08, 150.0);
+                let part =
+                    (-25..=25_i8).map(|k| turn + side * 1.08 + core::f64::consts::PI + 0.02 * f64::from(k));
+                part.map(|angle| at_angle(middle, angle, 150.0)).collect()
+            };
+            vec![ring(1.0), ring(-1.0)]
+        });
+        assert!(off[0] < 0.5, "{off:?}");
+    }
+
+    #[test]
+    fn a_narrow_curve_of_a_thick_line_has_no_corners() {
+        let off = off(10.0, &|turn, at| {
+            let arm = |side: f64| {
+                at_angle(at_angle(at, turn + side, 24.0), turn + side + 1.571 * side.signum(), 80.0)
+            };
+            let round = (-12..=12_i8).map(|k| at_angle(at, turn + 0.1 * f64::from(k), 24.0));
+            vec![[arm(-1.2)].into_iter().chain(round).chain([arm(1.2)]).collect()]
+        });
+        assert!(off[0] < 0.8, "{off:?}");
+    }
+
+    #[test]
+    fn a_line_ends_in_the_middle_of_a_wider_one() {
+        for k in 0..12_u8 {
+            let (at, turn) = (PxPoint::new(150.3, 149.7), 0.37 + 0.523 * f64::from(k));
+            let wall = vec![at_angle(at, turn, 120.0), at_angle(at, turn, -120.0)];
+            let line = vec![at, at_angle(at, turn + core::f64::consts::FRAC_PI_2, 120.0)];
+            let paper = Paper::drawn(300, 300, &[(wall.clone(), 10.0), (line.clone(), 7.0)]).unwrap();
+            let settings = CameraSettings { seed: u64::from(k), ..CameraSettings::default() };
+            let window = SimulatedCamera::new(&paper, settings).window(PxPoint::new(150.0, 150.0));
+            let pieces = Lines::of(&Flat::of(&window, None, None), 40).pieces;
+            let route = Route::of(&[wall, line]);
+            let places =
+                pieces.iter().flat_map(|piece| &piece.places).filter(|place| place.distance(at) < 60.0);
+            let off = places.map(|place| route.nearest(*place, 50.0).map_or(50.0, |found| found.0));
+            let off = off.fold(0.0, f64::max);
+            assert!(off < 1.0, "{k}: {off}");
+        }
+    }
+
+    #[test]
+    fn a_line_that_ends_before_another_ends_there() {
+        for k in 0..12_u8 {
+            let (at, turn) = (PxPoint::new(150.3, 149.7), 0.37 + 0.523 * f64::from(k));
+            let across = vec![at_angle(at, turn, 120.0), at_angle(at, turn, -120.0)];
+            // Their ink is 4 px apart.
+            let end = at_angle(at, turn + 1.2, 9.6);
+            let line = vec![end, at_angle(end, turn + 1.2, 100.0)];
+            let paper = Paper::drawn(300, 300, &[(across, 5.0), (line, 5.0)]).unwrap();
+            let settings = CameraSettings { seed: u64::from(k), ..CameraSettings::default() };
+            let window = SimulatedCamera::new(&paper, settings).window(PxPoint::new(150.0, 150.0));
+            let pieces = Lines::of(&Flat::of(&window, None, None), 40).pieces;
+            let middle = at_angle(at, turn + 1.2, 5.0);
+            let places = pieces.iter().flat_map(|piece| &piece.places);
+            let nearest = places.map(|place| place.distance(middle)).fold(f64::MAX, f64::min);
+            assert!(nearest > 2.5, "{k}: {nearest}");
         }
     }
 

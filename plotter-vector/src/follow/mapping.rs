@@ -278,8 +278,9 @@ impl MappingFollower {
 
     /// Puts all that a window shows into the map.
     fn look(&mut self, flat: &Flat, middle: PxPoint) -> usize {
-        self.place = self.keyframes.choose(flat, middle, self.place, self.told, 0.1 * self.width_px);
-        let place = self.place;
+        let place = self.keyframes.choose(flat, middle, self.place, self.told, 0.1 * self.width_px);
+        self.axes.shift(place.minus(self.place));
+        self.place = place;
         let lines = Lines::of(flat, self.settings.max_line_px);
         self.looked_at = Some(place);
         // A crumb of a line at the window's rim does not tell how wide lines are.

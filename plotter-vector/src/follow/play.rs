@@ -202,6 +202,15 @@ impl Play {
         self.variance = known * (1.0 - gain);
     }
 
+    /// All places of the map are found to be `by` px farther: the axis did not move.
+    pub(super) fn shift(&mut self, by: f64) {
+        self.place_px += by;
+        if let Some((_, place)) = &mut self.last {
+            *place += by;
+        }
+        self.seen.iter_mut().flatten().for_each(|pushed| pushed.off_px += by);
+    }
+
     /// Begins at a place.
     pub(super) fn forget(&mut self, place: f64) {
         (self.place_px, self.seen_at_px, self.sent_px) = (place, place, place);
@@ -225,6 +234,23 @@ mod tests {
         // And it goes no farther, nor back.
         assert_eq!(play.command(9.5, limits).end_px, 10.0);
         assert!((play.place(10.0) - 8.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_place_that_is_corrected_is_no_move() {
+        let lag = Lag::behind(1.0);
+        let mut play = Play { play_px: 3.0, place_px: -1.5, side: 1.0, lag, learned: 2, ..Play::default() };
+        let turned = |mut play: Play| {
+            let from = play.place_px;
+            let command = play.command(from - 2.0, None);
+            (command.crosses_to_px, command.end_px)
+        };
+        let before = turned(play);
+        play.shift(4.0);
+        play.measure(0.0, 2.5, true);
+        let crosses = [turned(play), before].map(|(crosses, _)| crosses.unwrap_or(0.0));
+        assert!((crosses[0] - crosses[1]).abs() < 0.05 && crosses[1] < -2.9, "{crosses:?}");
+        assert!((turned(play).1 + 5.0).abs() < 0.05, "{:?}", turned(play));
     }
 
     /// An axis that loses 3 px at each turn, seen exactly after each move.

@@ -18,6 +18,9 @@ use crate::PxPoint;
 /// A straight arm deviates by less, px.
 const STRAIGHT_PX: f64 = 0.5;
 
+/// Fewer places tell no direction.
+const SHORT: usize = 8;
+
 /// An arm at the foot of a stub.
 #[derive(Clone, Debug)]
 struct Arm {
@@ -50,7 +53,7 @@ pub(super) fn sharpened(flat: &Flat, mut strokes: Vec<Vec<PxPoint>>, width_px: f
 }
 
 /// Takes away what thinning leaves in corners: short strokes wholly inside of the ink of others.
-fn without_crumbs(strokes: &mut Vec<Vec<PxPoint>>, width_px: f64) {
+pub(super) fn without_crumbs(strokes: &mut Vec<Vec<PxPoint>>, width_px: f64) {
     let mut i = 0;
     while i < strokes.len() {
         let is_crumb = strokes.get(i).is_some_and(|stroke| {
@@ -258,13 +261,20 @@ fn arm(own: &[PxPoint], width_px: f64) -> Option<(PxPoint, (f64, f64))> {
     };
     // Next to the foot blur draws the arms together.
     let clear = own.get(super::whole::count(width_px)..).filter(|clear| clear.len() > 24).unwrap_or(own);
+    let part = |length_px: f64| clear.get(..super::whole::count(length_px).min(clear.len())).unwrap_or(clear);
     for widths in [16.0, 10.0] {
-        let part = clear.get(..super::whole::count(widths * width_px).min(clear.len())).unwrap_or(clear);
+        let part = part(widths * width_px);
         if let Some(line) = fitted(part).filter(|line| is_straight(part, *line)) {
             return Some(line);
         }
     }
-    fitted(own.get(..super::whole::count(5.0 * width_px + 8.0).min(own.len())).unwrap_or(own))
+    // A line may turn soon: then as much counts as is straight.
+    let (most, least) = (super::whole::count(5.0 * width_px + 8.0), super::whole::count(2.0 * width_px));
+    let short = (least.max(SHORT)..most.min(own.len())).rev().find_map(|count| {
+        let part = own.get(..count)?;
+        fitted(part).filter(|line| is_straight(part, *line))
+    });
+    short.or_else(|| fitted(own.get(..most.min(own.len())).unwrap_or(own)))
 }
 
 /// The straight line through places, by least squares across it: its middle, and its direction from the first on.
