@@ -33,6 +33,11 @@ const CURVE_COS: f64 = 0.82;
 /// Where a line turns back, its arms are one piece of ink as far as they are nearer to each other than its width and this, px.
 const ONE_INK_PX: f64 = 2.5;
 
+/// A line has a width of its own when it differs by more than this share of the others' width, and this, px; and by how many cuts.
+const OTHER_SHARE: f64 = 0.25;
+const OTHER_PX: f64 = 0.5;
+const LEAST_CUTS: usize = 6;
+
 /// A line turns back where the way along it is longer than the straight one by this factor.
 const TURN_FACTOR: f64 = 1.3;
 
@@ -40,12 +45,33 @@ const TURN_FACTOR: f64 = 1.3;
 const TURN_PLACES: usize = 40;
 
 /// Puts the places of lines, about 2 px from each other, into their middles; the first and the last of each stay.
-pub(super) fn centred(flat: &Flat, lines: &mut [Vec<PxPoint>], width_px: f64) {
-    let crowd = Crowd::of(lines, flat.size(), width_px + ONE_INK_PX);
-    for (line, places) in lines.iter_mut().enumerate() {
+pub(super) fn centred(flat: &Flat, lines: &mut [Vec<PxPoint>], widths_px: &[f64]) {
+    let crowd = Crowd::of(lines, widths_px, flat.size(), ONE_INK_PX);
+    for (line, (places, width_px)) in lines.iter_mut().zip(widths_px).enumerate() {
         let beside: Vec<bool> = places.iter().map(|at| crowd.is_near(line, *at)).collect();
-        centre(flat, places, &beside, width_px);
+        centre(flat, places, &beside, *width_px);
     }
+}
+
+/// The width of each line, px: that of most, but where a line is clearly thinner or thicker.
+pub(super) fn widths_px(flat: &Flat, lines: &[Vec<PxPoint>], most_px: f64) -> Vec<f64> {
+    let width_px = |places: &Vec<PxPoint>| {
+        let mut cuts: Vec<f64> =
+            places.windows(3).filter_map(|three| width_at(flat, three, most_px)).collect();
+        cuts.sort_by(f64::total_cmp);
+        let own_px = cuts.get(cuts.len() / 2).copied().filter(|_| cuts.len() >= LEAST_CUTS);
+        own_px.filter(|own_px| (own_px - most_px).abs() > OTHER_SHARE * most_px + OTHER_PX).unwrap_or(most_px)
+    };
+    lines.iter().map(width_px).collect()
+}
+
+/// The width of the ink across the middle one of three places, px, if it is one line.
+fn width_at(flat: &Flat, three: &[PxPoint], most_px: f64) -> Option<f64> {
+    let &[a, at, b] = three else { return None };
+    let (x, y) = b.minus(a);
+    let length = libm::hypot(x, y);
+    let cut = across(flat, at, (-y / length.max(1e-9), x / length.max(1e-9)), most_px)?;
+    (!cut.is_lopsided).then_some(cut.width_px)
 }
 
 /// Puts the places of a line into its middle, but those with another line `beside` them.
@@ -230,7 +256,7 @@ mod tests {
         let rounded =
             [(20.0, 60.5), (78.5, 60.5), (79.5, 62.0), (79.5, 120.0)].map(|(x, y)| PxPoint::new(x, y));
         let mut lines = [super::super::lines::resampled(&rounded, 2.0)];
-        centred(&flat, &mut lines, 5.0);
+        centred(&flat, &mut lines, &[5.0]);
         let [places] = lines;
         let nearest = places.iter().map(|at| at.distance(corner[1])).fold(f64::MAX, f64::min);
         assert!(nearest < 0.25, "{nearest}");

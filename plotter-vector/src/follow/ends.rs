@@ -17,15 +17,19 @@ const MOST_OFF_PX: f64 = 0.35;
 /// Lines that meet at a smaller angle have one ink for too long: cosine of 25 degrees.
 const ALONG_COS: f64 = 0.906;
 
+/// Lines whose rims are nearer to each other than this, and a tenth of a width, have one ink, px.
+const CLEAR_PX: f64 = 1.5;
+
 /// The end that was found counts when it is farther behind the other line's middle, px.
 const BEHIND_PX: f64 = 1.5;
 
 /// And the ink behind the other line is so much farther from its middle than that line's own rim, px.
 const STICKS_PX: f64 = 1.0;
 
-/// Puts the ends of lines, whose places are about 2 px from each other, straight.
-pub(super) fn straight_ends(flat: &Flat, lines: &mut [Vec<PxPoint>], width_px: f64) {
-    let crowd = Crowd::of(lines, flat.size(), 1.1 * width_px + 1.5);
+/// Puts the ends of lines, whose places are about 2 px from each other and most of which are `most_px` wide, straight.
+pub(super) fn straight_ends(flat: &Flat, lines: &mut [Vec<PxPoint>], widths_px: &[f64], most_px: f64) {
+    let crowd = Crowd::of(lines, widths_px, flat.size(), 0.1 * most_px + CLEAR_PX);
+    let thickest_px = widths_px.iter().copied().fold(0.0, f64::max);
     for line in 0..lines.len() {
         for is_last in [false, true] {
             let Some(mut places) = lines.get(line).cloned() else { continue };
@@ -37,10 +41,10 @@ pub(super) fn straight_ends(flat: &Flat, lines: &mut [Vec<PxPoint>], width_px: f
             }
             // As far as the other line's ink draws it.
             let touching = places.iter().take_while(|at| crowd.is_near(line, **at)).count();
-            if touching == 0 || SPACING_PX * super::lines::count_f64(touching) > 4.0 * width_px + 4.0 {
+            if touching == 0 || SPACING_PX * super::lines::count_f64(touching) > 4.0 * thickest_px + 4.0 {
                 continue;
             }
-            if let Some(mut tail) = tail(flat, lines, line, &places, touching, width_px) {
+            if let Some(mut tail) = tail(flat, lines, line, &places, touching, widths_px) {
                 tail.extend(places.drain(touching..));
                 if is_last {
                     tail.reverse();
@@ -71,7 +75,7 @@ fn tail(
     line: usize,
     places: &[PxPoint],
     touching: usize,
-    width_px: f64,
+    widths_px: &[f64],
 ) -> Option<Vec<PxPoint>> {
     let arm = places.get(touching..(touching + ARM).min(places.len()))?;
     let own = straight(arm, 4, MOST_OFF_PX)?;
@@ -83,9 +87,13 @@ fn tail(
     };
     // The other line: the piece that is met first.
     let others = lines.iter().enumerate().filter(|(other, _)| *other != line);
-    let (met, way) = others
-        .flat_map(|(_, other)| other.windows(3))
-        .filter_map(|three| {
+    let width_of = |line: usize| widths_px.get(line).copied().unwrap_or(0.0);
+    let (met, way, width_px) = others
+        .flat_map(|(other, places)| {
+            let width_px = width_of(line).max(width_of(other));
+            places.windows(3).map(move |three| (three, width_px))
+        })
+        .filter_map(|(three, width_px)| {
             let [a, b, c] = three else { return None };
             if b.distance(end) > 1.5 * width_px + 2.0 {
                 return None;
@@ -97,7 +105,7 @@ fn tail(
             }
             let way = (way.0 / length, way.1 / length);
             let met = crossing(own, (*b, way));
-            (met.distance(*b) < SPACING_PX && along(met) > along(foot)).then_some((met, way))
+            (met.distance(*b) < SPACING_PX && along(met) > along(foot)).then_some((met, way, width_px))
         })
         .min_by(|a, b| along(a.0).total_cmp(&along(b.0)))?;
     let is_behind = along(end) > along(met) + BEHIND_PX && sticks_out(flat, met, way, back, width_px);

@@ -1,6 +1,6 @@
 //! [`Lines`]: the middle of each line that a window shows.
 
-use super::centred::{centred, turns};
+use super::centred::{centred, turns, widths_px};
 use super::corners::runs;
 use super::ends::straight_ends;
 use super::flat::Flat;
@@ -158,9 +158,10 @@ impl Lines {
         let fine: Vec<_> = strokes.iter().map(|stroke| resampled(&stroke.vertices, 1.0)).collect();
         let mut middles: Vec<Vec<PxPoint>> =
             sharpened(flat, fine, width_px).iter().map(|stroke| resampled(stroke, SPACING_PX)).collect();
-        centred(flat, &mut middles, width_px);
-        straight_ends(flat, &mut middles, width_px);
-        without_crumbs(&mut middles, width_px);
+        let widths_px = widths_px(flat, &middles, width_px);
+        centred(flat, &mut middles, &widths_px);
+        straight_ends(flat, &mut middles, &widths_px, width_px);
+        without_crumbs(&mut middles, &widths_px, width_px);
         let pieces = middles
             .iter()
             .flat_map(|places| clipped(places, &window.trusted(places, &turns(places, width_px))))
@@ -319,11 +320,16 @@ mod tests {
     /// How far places that are found lie beside the lines drawn, in twelve positions within 90 px: at most, and the mean of the
     /// positions' greatest distances; and how far a drawn place is from all that are found, at most.
     fn off(pen_px: f64, drawn: &dyn Fn(f64, PxPoint) -> Vec<Vec<PxPoint>>) -> [f64; 3] {
+        off_of(&|turn, at| drawn(turn, at).into_iter().map(|line| (line, pen_px)).collect())
+    }
+
+    /// The same of lines with the width of each, px.
+    fn off_of(drawn: &dyn Fn(f64, PxPoint) -> Vec<(Vec<PxPoint>, f64)>) -> [f64; 3] {
         let (mut worst, mut sum, mut missed) = (0.0_f64, 0.0, 0.0_f64);
         for k in 0..12_u8 {
             let at = PxPoint::new(150.3 + 0.13 * f64::from(k), 149.7 + 0.31 * f64::from(k));
-            let lines = drawn(0.37 + 0.523 * f64::from(k), at);
-            let strokes: Vec<_> = lines.iter().map(|line| (line.clone(), pen_px)).collect();
+            let strokes = drawn(0.37 + 0.523 * f64::from(k), at);
+            let lines: Vec<_> = strokes.iter().map(|(line, _)| line.clone()).collect();
             let paper = Paper::drawn(300, 300, &strokes).unwrap();
             let settings = CameraSettings { seed: u64::from(k), ..CameraSettings::default() };
             let window = SimulatedCamera::new(&paper, settings).window(PxPoint::new(150.0, 150.0));
@@ -365,6 +371,22 @@ mod tests {
             let tee =
                 off(5.0, &|turn, at| vec![across(turn, at), vec![at, at_angle(at, turn + angle, 120.0)]]);
             assert!(tee[0] < 0.7 && tee[1] < 0.3 && tee[2] < 1.0, "{degrees}: {tee:?}");
+        }
+    }
+
+    #[test]
+    fn a_thick_curve_stays_round_where_thin_lines_cross_it() {
+        for (thick_px, most_mean_px) in [(10.0, 0.5), (12.0, 0.9)] {
+            let off = off_of(&|turn, at| {
+                let middle = at_angle(at, turn, 150.0);
+                let on_arc =
+                    |angle: f64, radius: f64| at_angle(middle, turn + core::f64::consts::PI + angle, radius);
+                let arc = (-32..=32_i8).map(|k| on_arc(0.025 * f64::from(k), 150.0)).collect();
+                let thin =
+                    [-0.4, 0.0, 0.4].map(|angle| (vec![on_arc(angle, 75.0), on_arc(angle, 225.0)], 4.0));
+                [(arc, thick_px)].into_iter().chain(thin).collect()
+            });
+            assert!(off[0] < 2.2 && off[1] < most_mean_px, "{thick_px}: {off:?}");
         }
     }
 

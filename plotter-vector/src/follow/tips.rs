@@ -35,7 +35,7 @@ struct Arm {
 
 /// Joins the arms of sharp tips in lines of some width; places along the strokes are about a pixel from each other.
 pub(super) fn sharpened(flat: &Flat, mut strokes: Vec<Vec<PxPoint>>, width_px: f64) -> Vec<Vec<PxPoint>> {
-    without_crumbs(&mut strokes, width_px);
+    without_crumbs(&mut strokes, &[], width_px);
     part_ends(&mut strokes, width_px);
     let longest = 9.0 * width_px + 6.0;
     // Each tip takes its stub away: there are no more than stubs.
@@ -48,30 +48,32 @@ pub(super) fn sharpened(flat: &Flat, mut strokes: Vec<Vec<PxPoint>>, width_px: f
         strokes = split;
         join(&mut strokes, stub, &one, &other, at);
     }
-    without_crumbs(&mut strokes, width_px);
+    without_crumbs(&mut strokes, &[], width_px);
     strokes
 }
 
-/// Takes away what thinning leaves in corners: short strokes wholly inside of the ink of others.
-pub(super) fn without_crumbs(strokes: &mut Vec<Vec<PxPoint>>, width_px: f64) {
-    let mut i = 0;
-    while i < strokes.len() {
+/// Takes away what thinning leaves in corners: short strokes wholly inside of the ink of others. Strokes without a width of their own
+/// are as wide as most.
+pub(super) fn without_crumbs(strokes: &mut Vec<Vec<PxPoint>>, widths_px: &[f64], most_px: f64) {
+    let width_of = |stroke: usize| widths_px.get(stroke).copied().unwrap_or(most_px);
+    for i in 0..strokes.len() {
         let is_crumb = strokes.get(i).is_some_and(|stroke| {
-            length(stroke) < 1.5 * width_px + 2.0
+            length(stroke) < 1.5 * most_px + 2.0
                 && stroke.iter().all(|at| {
                     let others = strokes.iter().enumerate().filter(|(k, _)| *k != i);
-                    others.flat_map(|(_, other)| other.windows(2)).any(|pair| {
-                        let [a, b] = pair else { return false };
-                        nearest(*at, *a, *b).distance(*at) < 0.6 * width_px + 0.8
-                    })
+                    others.flat_map(|(k, other)| other.windows(2).map(move |pair| (k, pair))).any(
+                        |(k, pair)| {
+                            let [a, b] = pair else { return false };
+                            nearest(*at, *a, *b).distance(*at) < 0.6 * width_of(k) + 0.8
+                        },
+                    )
                 })
         });
-        if is_crumb {
-            strokes.remove(i);
-        } else {
-            i += 1;
+        if is_crumb && let Some(stroke) = strokes.get_mut(i) {
+            stroke.clear();
         }
     }
+    strokes.retain(|stroke| !stroke.is_empty());
 }
 
 /// Two strokes that end together have a stub twice: it stays with one of them, on which the other ends.
@@ -92,7 +94,9 @@ fn part_ends(strokes: &mut [Vec<PxPoint>], width_px: f64) {
                 from_end.take_while(|at| beside(at, other)).count()
             };
             let others = strokes.iter().enumerate().filter(|(k, other)| *k != i && meets(other));
-            let tail = others.map(|(_, other)| tail(other)).max().unwrap_or(0);
+            // A crumb beside the stub is no second arm.
+            let tails = others.map(|(_, other)| (tail(other), other.len()));
+            let tail = tails.filter(|(tail, len)| tail + 4 < *len).map(|(tail, _)| tail).max().unwrap_or(0);
             if tail > 3 && tail + 4 < own.len() {
                 let rest = if is_last { own.get(..own.len() - tail) } else { own.get(tail..) };
                 let rest = rest.unwrap_or(&[]).to_vec();
@@ -193,8 +197,12 @@ fn tip(
     let reach = 0.8 * width_px + 2.0;
     let mut arms: Vec<Arm> = Vec::new();
     for (index, stroke) in strokes.iter().enumerate().filter(|(index, _)| *index != stub) {
-        // Another line near the free end: no tip.
         let long = foot.distance(free);
+        // What thinning leaves beside the stub is shorter than that.
+        if length(stroke) < long {
+            continue;
+        }
+        // Another line near the free end: no tip.
         let least = reach.min(0.5 * long + f64::min(0.4 * long, 1.0));
         if stroke.iter().any(|at| at.distance(free) < least) {
             return None;
@@ -319,5 +327,26 @@ mod tests {
         assert_eq!(strokes.len(), 1);
         let off = strokes[0].iter().map(|at| at.distance(tip)).fold(f64::MAX, f64::min);
         assert!(off < 0.3, "{off}");
+    }
+
+    #[test]
+    fn a_crumb_beside_a_stub_hides_no_tip() {
+        // A tip of 37 degrees; both arms have the stub, of 7 px, for their last piece, and thinning left a crumb beside it.
+        let tip = PxPoint::new(40.0, 60.0);
+        let arm = |side: f64, from: u8| -> Vec<PxPoint> {
+            (from..80).map(|i| tip.along((0.95, side * 0.316), f64::from(i))).collect()
+        };
+        let paper = Paper::drawn(160, 120, &[(arm(1.0, 0), 6.0), (arm(-1.0, 0), 6.0)]).unwrap();
+        let settings = CameraSettings { width_px: 160, height_px: 120, ..CameraSettings::default() };
+        let flat =
+            Flat::of(&SimulatedCamera::new(&paper, settings).window(PxPoint::new(80.0, 60.0)), None, None);
+        let stub = (1..=7).map(|x| PxPoint::new(40.0 + f64::from(x), 60.0));
+        let whole = |side: f64| stub.clone().chain(arm(side, 10)).collect::<Vec<_>>();
+        let crumb: Vec<PxPoint> =
+            (0..4).map(|i| PxPoint::new(42.5 + f64::from(i), 58.3 - 0.6 * f64::from(i))).collect();
+        let strokes = sharpened(&flat, vec![whole(1.0), crumb, whole(-1.0)], 6.0);
+        assert_eq!(strokes.len(), 1);
+        let off = strokes[0].iter().map(|at| at.distance(tip)).fold(f64::MAX, f64::min);
+        assert!(off < 0.5, "{off}");
     }
 }
