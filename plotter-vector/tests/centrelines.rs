@@ -111,6 +111,23 @@ fn a_branch_meets_the_line_where_it_leaves_it() {
 }
 
 #[test]
+fn what_sticks_out_of_a_wide_pens_end_is_no_stroke() {
+    // The round end of the wide line shows between the narrow ones that begin in it.
+    for (first, second, third) in [(20.0, 288.0, 163.0), (345.0, 198.0, 83.0), (230.0, 85.0, 43.0)] {
+        let (wide, narrow) = ([ray(first, 80.0)], [ray(second, 80.0), ray(third, 80.0)]);
+        let mut both = ink(&narrow, 3.0);
+        let thick = ink(&wide, 10.0);
+        for at in (0..200).flat_map(|y| (0..200).map(move |x| Pixel::new(x, y))) {
+            both.set(at, both.get(at) || thick.get(at));
+        }
+        let found = Vectorizer::default().trace(&both).unwrap().drawing;
+        let off_px = hausdorff(&[&wide[..], &narrow[..]].concat(), &found);
+        assert_eq!(found.strokes().len(), 2, "{first}, {second} and {third} degrees");
+        assert!(off_px <= 1.5 * NEAR_PX, "{first}, {second} and {third} degrees: {off_px} px");
+    }
+}
+
+#[test]
 fn a_corner_is_sharp_and_one_vertex() {
     for (angle, turn) in [(0.0, 90.0), (20.0, 90.0), (47.0, 60.0), (80.0, 120.0)] {
         let corner: Stroke =

@@ -129,6 +129,12 @@ pub(crate) fn typical_width_px(sites: &[Site]) -> f64 {
     if widths.is_empty() { 1.0 } else { *widths.select_nth_unstable_by(rank, f64::total_cmp).1 }
 }
 
+/// Whether lines differ so much in width that one pen cannot have drawn both, however its width was measured in a figure that
+/// is nowhere undisturbed.
+pub(crate) fn are_of_two_pens(one_px: f64, other_px: f64) -> bool {
+    one_px.max(other_px) > 1.3 * one_px.min(other_px) + 1.5
+}
+
 /// A small positive number, rounded up.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "widths are below 200 px")]
 fn to_whole(number: f64) -> usize {

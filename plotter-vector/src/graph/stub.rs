@@ -4,6 +4,7 @@
 //! the lines that were found are drawn as a pen of their width draws them: ink that the pen would leave bare, and that
 //! reaches away from the line, is a stroke of its own.
 
+use super::arm::are_of_two_pens;
 use super::fragment::{Fragment, Joint};
 use super::junction::Junctions;
 use super::mark::Marks;
@@ -230,10 +231,14 @@ impl Lines<'_> {
             };
             let Some((from, width_px)) = root(connection.from) else { continue };
             let to = connection.to.and_then(root);
-            let width_px = to.map_or(width_px, |(_, theirs)| width_px.min(theirs));
-            let to = to.map(|(to, _)| to);
+            let theirs_px = to.map_or(width_px, |(_, theirs)| theirs);
+            // Lines of two pens that meet in a point come to it as wide as they are.
+            let meet = connection.points.len() == 1 && are_of_two_pens(width_px, theirs_px);
+            let narrow_px = if meet { width_px } else { width_px.min(theirs_px) };
+            let inner = connection.points.iter().map(|at| (*at, narrow_px));
+            let last_px = if meet { theirs_px } else { narrow_px };
             let mut before = from;
-            for next in connection.points.iter().copied().chain(to) {
+            for (next, width_px) in inner.chain(to.map(|(to, _)| (to, last_px))) {
                 let steps = libm::ceil(before.distance(next)).clamp(1.0, 400.0);
                 let mut step = 1.0;
                 while step <= steps {

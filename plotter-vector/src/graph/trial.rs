@@ -7,6 +7,7 @@
 //! first by squares alone. How far a pixel that contradicts them lies off is found for it alone, as long as the plan can
 //! still win.
 
+use super::arm::are_of_two_pens;
 use super::junction::{ArmOf, Way};
 use super::site::{Scan, Site};
 use crate::{Pixel, PxPoint};
@@ -217,11 +218,14 @@ impl<'a> Trial<'a> {
             let width_px = one.arm.width_px;
             let theirs = other.map_or(width_px, |other| other.arm.width_px);
             let count = points.len().max(1);
-            let inner = points.iter().enumerate().map(|(index, at)| {
-                // From one line's width to the other's.
+            // Lines of two pens that meet in a point come to it as wide as they are.
+            let meet = count == 1 && are_of_two_pens(width_px, theirs);
+            let inner = points.iter().enumerate().flat_map(|(index, at)| {
+                // Else from one line's width to the other's.
                 #[expect(clippy::cast_precision_loss, reason = "a few points")]
                 let t = (index as f64 + 0.5) / count as f64;
-                (*at, width_px + (theirs - width_px) * t)
+                let one_px = if meet { width_px } else { width_px + (theirs - width_px) * t };
+                [Some((*at, one_px)), meet.then_some((*at, theirs))].into_iter().flatten()
             });
             let from = self.root(one).map(|at| (at, width_px));
             let to = other.and_then(|other| self.root(&other)).map(|at| (at, theirs));
