@@ -1,7 +1,7 @@
 //! Strokes that a round pen draws, found again: junctions where they are, straight lines straight through.
 #![allow(clippy::unwrap_used, reason = "a failure shows")]
 
-use plotter_vector::{Bitmap, Drawing, Pixel, PxPoint, Vectorizer, coverage};
+use plotter_vector::{Bitmap, Drawing, Gray, GrayRows, Pixel, Progress, PxPoint, Vectorizer, coverage};
 
 /// Distance of what is found from what was drawn that a raster of one bit explains: half a pixel, and half a pixel of
 /// tolerance.
@@ -125,6 +125,28 @@ fn what_sticks_out_of_a_wide_pens_end_is_no_stroke() {
         assert_eq!(found.strokes().len(), 2, "{first}, {second} and {third} degrees");
         assert!(off_px <= 1.5 * NEAR_PX, "{first}, {second} and {third} degrees: {off_px} px");
     }
+}
+
+#[test]
+fn a_line_of_one_pixel_with_grey_rims_is_one_stroke() {
+    // A level for each sixteenth of a pixel that the pen covers: where the line passes between two rows, both are ink.
+    let lines = [through(33.0, 80.0), through(93.0, 80.0), through(160.0, 80.0)];
+    let covered = |x: u32, y: u32| {
+        let inside = |step: u32| {
+            let part = |v: u32, of: u32| f64::from(v) + (f64::from(of) + 0.5) / 4.0;
+            let at = PxPoint::new(part(x, step % 4), part(y, step / 4));
+            distance(at, lines.iter().map(Vec::as_slice)) <= 0.5
+        };
+        (0..16).filter(|step| inside(*step)).count()
+    };
+    let level = |at: u32| u8::try_from(255 - 15 * covered(at % 200, at / 200)).unwrap();
+    let gray = Gray::new(200, 200, (0..200 * 200).map(level).collect()).unwrap();
+    let found = Vectorizer::default().vectorize(&gray).unwrap().drawing;
+    let off_px = hausdorff(&lines, &found);
+    assert!(off_px <= 1.5 * NEAR_PX, "{off_px} px");
+    assert!(found.strokes().len() <= 5 && found.vertices() <= 24, "{found:?}");
+    let by_rows = Vectorizer::default().vectorize_rows(&mut GrayRows::new(gray), &mut Progress::silent());
+    assert_eq!(by_rows.unwrap().drawing, found);
 }
 
 #[test]

@@ -17,7 +17,7 @@ use crate::bitmap::blocks_between;
 use crate::pipeline::is_raster_lines;
 use crate::row_threshold::RowThreshold;
 use crate::{
-    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, MAX_PIXELS, Mode, Progress, Row,
+    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, MAX_PIXELS, Progress, Row,
     RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer, coverage, worst_pixel,
 };
 use core::fmt;
@@ -165,18 +165,20 @@ impl Vectorizer {
         let (survey, pen) = survey(self, source, &mut progress.part(0.1))?;
         let Some(threshold) = survey.finish() else { return Ok(empty) };
         // Of 1 bit a pixel black is nearly always the ink: then all is known already.
-        let (pen_px, ink_pixels) = match source.depth() {
-            Depth::Bits1 if threshold.black_is_ink() => pen.finish(),
-            _ => pen_of_ink(source, &threshold, &mut progress.part(0.2))?.finish(),
+        let pen = match source.depth() {
+            Depth::Bits1 if threshold.black_is_ink() => pen,
+            _ => pen_of_ink(source, &threshold, &mut progress.part(0.2))?,
         };
+        let (ink_pixels, raster_lines) = (pen.ink_pixels, pen.is_raster_lines());
+        let pen_px = pen.finish();
         let found = TracedSheet { split: Some(threshold.split(ink_pixels)), ink_pixels, pen_px, ..empty };
         if ink_pixels == 0 {
             return Ok(found);
         }
         let mut strokes_part = progress.part(if with_errors { 0.7 } else { 1.0 });
         let fits = u64::from(width) * u64::from(height) <= MAX_PIXELS;
-        let tracked = pen_px.unwrap_or(1) <= 1 && self.mode != Mode::Outline && fits;
-        if tracked || self.algorithm == Algorithm::Published {
+        let keeps_pixels = self.keeps_pixels(pen_px.unwrap_or(1), raster_lines, threshold.has_greys());
+        if keeps_pixels && fits || self.algorithm == Algorithm::Published {
             let mut ink = Bitmap::new(width, height).map_err(SheetError::Size)?;
             let mut rows = ink.rows_mut();
             for_each_row(source, &mut strokes_part, |y, row| {
@@ -301,9 +303,13 @@ impl Pen {
         self.above.extend_from_slice(ink);
     }
 
-    fn finish(self) -> (Option<u32>, u64) {
-        let raster_lines = is_raster_lines(self.blocks, self.ink_pixels);
-        (self.width.finish().map(|pen_px| if raster_lines { 1 } else { pen_px }), self.ink_pixels)
+    fn is_raster_lines(&self) -> bool {
+        is_raster_lines(self.blocks, self.ink_pixels)
+    }
+
+    fn finish(self) -> Option<u32> {
+        let raster_lines = self.is_raster_lines();
+        self.width.finish().map(|pen_px| if raster_lines { 1 } else { pen_px })
     }
 }
 
