@@ -106,7 +106,7 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
     writeln!(text, "use core::time::Duration;")?;
     writeln!(
         text,
-        "use plotter_motion::firmware::stepper_plotter::{{AnyPen, Dialect, Grbl, SpindlePen, StepperPlotterSettings, StoredSettings}};"
+        "use plotter_motion::firmware::stepper_plotter::{{AnyPen, CheckedSettings, Dialect, Grbl, SpindlePen, StepperPlotterSettings, StoredSettings}};"
     )?;
     writeln!(text, "use plotter_motion::gcode::{{LaserCommand, PenConvention, ServoCommand}};")?;
     writeln!(text, "use plotter_motion::kinematics::Backlash;")?;
@@ -129,7 +129,7 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
     }
     writeln!(
         text,
-        "/// The stepper plotter's settings.\npub static PLOTTER: StepperPlotterSettings = {literal};"
+        "/// The stepper plotter's settings.\npub const PLOTTER: StepperPlotterSettings = {literal};"
     )?;
     writeln!(
         text,
@@ -150,6 +150,11 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
         text,
         "/// The stepper plotter's controller, with what its settings need.\npub type StepperPlotter = \
          plotter_motion::firmware::StepperPlotter<Grbl<{pens}>, plotter_motion::{modes}>;"
+    )?;
+    writeln!(
+        text,
+        "/// The same, looked at by the compiler.\npub static CHECKED_PLOTTER: CheckedSettings<plotter_motion::{modes}> = \
+         match PLOTTER.checked() {{ Ok(checked) => checked, Err(_) => panic!(\"no machine can be driven with them\") }};"
     )?;
     Ok(())
 }

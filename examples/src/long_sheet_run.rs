@@ -290,7 +290,7 @@ impl<M: JoinFrames> LongSheetRun<M> {
         let drain = |planner: &mut Planner<BLOCKS>, figures: &mut FrameFigures| {
             while let Some(action) = planner.next_action() {
                 if let Action::Phase(phase) = action {
-                    figures.motion_s += phase.duration_s;
+                    figures.motion_s += f64::from(phase.duration_s);
                 }
             }
         };

@@ -98,7 +98,7 @@ impl SteppedPlot {
             plotter_motion::PathMode::Exact => 0.0,
         };
         let coarsest = motors[0].steps_per_mm.min(motors[1].steps_per_mm);
-        let timing = StepGenSettings { clock_hz: 1e6, ..timing };
+        let timing = StepGenSettings { clock_hz: 1_000_000, ..timing };
         Ok(Self {
             planner,
             kinematics,
@@ -193,8 +193,8 @@ impl SteppedPlot {
             Action::Course(course) => {
                 figures.courses += 1;
                 match course.pen {
-                    Pen::Up => figures.travel_mm += course.length_mm,
-                    Pen::Down => figures.draw_mm += course.length_mm,
+                    Pen::Up => figures.travel_mm += f64::from(course.length_mm),
+                    Pen::Down => figures.draw_mm += f64::from(course.length_mm),
                 }
                 self.put(course.pen, each);
                 false

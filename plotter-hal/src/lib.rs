@@ -25,7 +25,7 @@ pub use h_bridge::HBridge;
 pub use laser::{Laser, power_at_speed};
 pub use limit_switch::{LimitSwitch, LimitSwitchGroup};
 pub use no_pin::NoPin;
-pub use pen_servo::{PenServo, PenServoSettings, ServoPoint};
+pub use pen_servo::{CheckedPenServo, PenServo, PenServoSettings, ServoPoint};
 pub use pulse_counter::{CounterDelta, PulseInput};
 pub use quadrature::Quadrature;
 pub use serial_line::SerialLine;

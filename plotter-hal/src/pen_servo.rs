@@ -63,35 +63,34 @@ pub struct PenServoSettings {
 }
 
 impl Default for PenServoSettings {
-    /// 1 to 2 ms for 0 to 180 degrees every 20 ms (spec 5.1); up at 160 and down at 90 degrees, as mDraw's machine has
-    /// it; lowered at once; 200 ms (spec 5.4).
     fn default() -> Self {
-        Self {
-            calibration: [
-                ServoPoint { deg: 0.0, pulse_us: 1000.0 },
-                ServoPoint { deg: 180.0, pulse_us: 2000.0 },
-            ],
-            frame_us: 20_000,
-            up_deg: 160.0,
-            down_deg: 90.0,
-            lowering_deg_s: f32::INFINITY,
-            settle: Duration::from_millis(200),
-        }
+        Self::DEFAULT
     }
 }
 
 /// Widths of pulses that some servo understands, us.
-const PULSES_US: core::ops::RangeInclusive<f32> = 400.0..=2600.0;
+const PULSES_US: (f32, f32) = (400.0, 2600.0);
 /// The least distance of two angles that a line through them is worth something, degrees.
 const LEAST_APART_DEG: f32 = 10.0;
 /// Frames that a servo follows, us: 300 to 25 Hz.
-const FRAMES_US: core::ops::RangeInclusive<u32> = 3_333..=40_000;
+const FRAMES_US: (u32, u32) = (3_333, 40_000);
 /// Slower than this a pen that is lowered has been forgotten, degrees/s.
 const SLOWEST_DEG_S: f32 = 1.0;
 /// The least number of the PWM's steps from up to down.
 const LEAST_STEPS: u16 = 4;
 
 impl PenServoSettings {
+    /// 1 to 2 ms for 0 to 180 degrees every 20 ms (spec 5.1); up at 160 and down at 90 degrees, as mDraw's machine has
+    /// it; lowered at once; 200 ms (spec 5.4).
+    pub const DEFAULT: Self = Self {
+        calibration: [ServoPoint { deg: 0.0, pulse_us: 1000.0 }, ServoPoint { deg: 180.0, pulse_us: 2000.0 }],
+        frame_us: 20_000,
+        up_deg: 160.0,
+        down_deg: 90.0,
+        lowering_deg_s: f32::INFINITY,
+        settle: Duration::from_millis(200),
+    };
+
     /// What a checked machine says of its pen, `[pen]` in its file; the rest as by default.
     ///
     /// ```
@@ -114,50 +113,85 @@ impl PenServoSettings {
         }
     }
 
+    /// Looks at them for a PWM of so many steps in a frame: a program whose settings are constants has the compiler do that.
+    ///
+    /// ```
+    /// # use plotter_hal::PenServoSettings;
+    /// assert!(PenServoSettings::DEFAULT.checked(20_000).is_ok());
+    /// assert!(PenServoSettings::DEFAULT.checked(100).is_err()); // two steps from up to down
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] for a servo that cannot be right, with what would be.
+    pub const fn checked(self, pwm_steps: u16) -> Result<CheckedPenServo, SettingsError> {
+        match self.check(pwm_steps) {
+            Ok(()) => Ok(CheckedPenServo { settings: self, pwm_steps }),
+            Err(error) => Err(error),
+        }
+    }
+
     /// Pulse at an angle, us.
-    fn pulse_us(&self, deg: f32) -> f32 {
+    const fn pulse_us(&self, deg: f32) -> f32 {
         let [a, b] = self.calibration;
         a.pulse_us + (deg - a.deg) / (b.deg - a.deg) * (b.pulse_us - a.pulse_us)
     }
 
     /// The nearest step of a PWM with `full` steps to the pulse at an angle.
-    fn steps(&self, deg: f32, full: u16) -> u16 {
+    const fn steps(&self, deg: f32, full: u16) -> u16 {
         // In whole ns, so that nothing is lost before the one rounding.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 2600 us")]
-        let pulse_ns = libm::roundf(self.pulse_us(deg) * 1e3) as u64;
-        let frame_ns = u64::from(self.frame_us) * 1_000;
-        let steps = (pulse_ns * u64::from(full) + frame_ns / 2).checked_div(frame_ns).unwrap_or(0);
-        u16::try_from(steps).unwrap_or(full).min(full)
+        let pulse_ns = (self.pulse_us(deg) * 1e3 + 0.5) as u32;
+        let frame_ns = self.frame_us as u64 * 1_000;
+        let Some(steps) = (pulse_ns as u64 * full as u64 + frame_ns / 2).checked_div(frame_ns) else {
+            return 0;
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "it is less than the full")]
+        let steps = if steps < full as u64 { steps as u16 } else { full };
+        steps
     }
 
     /// The angle between those of the calibration that is nearest to `deg`; up for one that is no number.
-    fn within(&self, deg: f32) -> f32 {
+    const fn within(&self, deg: f32) -> f32 {
         let [a, b] = self.calibration;
         if deg.is_nan() { self.up_deg } else { deg.max(a.deg.min(b.deg)).min(a.deg.max(b.deg)) }
     }
 
-    fn check(&self, full: u16) -> Result<(), SettingsError> {
+    const fn check_pulse(point: ServoPoint) -> Result<(), SettingsError> {
+        let (least, most) = PULSES_US;
+        if point.pulse_us >= least && point.pulse_us <= most {
+            Ok(())
+        } else {
+            Err(SettingsError::Pulse { pulse_us: point.pulse_us })
+        }
+    }
+
+    const fn check_angle(&self, deg: f32) -> Result<(), SettingsError> {
         let [a, b] = self.calibration;
-        for point in [a, b] {
-            if !PULSES_US.contains(&point.pulse_us) {
-                return Err(SettingsError::Pulse { pulse_us: point.pulse_us });
-            }
+        if self.within(deg) == deg {
+            Ok(())
+        } else {
+            Err(SettingsError::Angle { deg, least_deg: a.deg.min(b.deg), most_deg: a.deg.max(b.deg) })
+        }
+    }
+
+    const fn check(&self, full: u16) -> Result<(), SettingsError> {
+        let [a, b] = self.calibration;
+        if let (Err(error), _) | (_, Err(error)) = (Self::check_pulse(a), Self::check_pulse(b)) {
+            return Err(error);
         }
         let apart_deg = (b.deg - a.deg).abs();
-        if !(LEAST_APART_DEG..=360.0).contains(&apart_deg) || a.pulse_us == b.pulse_us {
+        if !(apart_deg >= LEAST_APART_DEG && apart_deg <= 360.0) || a.pulse_us == b.pulse_us {
             return Err(SettingsError::Calibration { apart_deg, apart_us: (b.pulse_us - a.pulse_us).abs() });
         }
-        if !FRAMES_US.contains(&self.frame_us) {
+        let (least_us, most_us) = FRAMES_US;
+        if self.frame_us < least_us || self.frame_us > most_us {
             return Err(SettingsError::Frame { frame_us: self.frame_us });
         }
-        for deg in [self.up_deg, self.down_deg] {
-            if self.within(deg) != deg {
-                return Err(SettingsError::Angle {
-                    deg,
-                    least_deg: a.deg.min(b.deg),
-                    most_deg: a.deg.max(b.deg),
-                });
-            }
+        if let (Err(error), _) | (_, Err(error)) =
+            (self.check_angle(self.up_deg), self.check_angle(self.down_deg))
+        {
+            return Err(error);
         }
         if self.lowering_deg_s.is_nan() || self.lowering_deg_s < SLOWEST_DEG_S {
             return Err(SettingsError::Lowering { deg_s: self.lowering_deg_s });
@@ -168,6 +202,13 @@ impl PenServoSettings {
         }
         Ok(())
     }
+}
+
+/// Settings that a servo on a certain PWM can be driven with: what [`PenServoSettings::checked`] gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CheckedPenServo {
+    settings: PenServoSettings,
+    pwm_steps: u16,
 }
 
 /// The pen. Nothing is known of it when it is switched on: the first thing it does is to go up.
@@ -229,11 +270,24 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
     ///
     /// [`SettingsError`] for a servo that cannot be right, with what would be; the PWM comes back with it.
     pub fn new(pwm: Pwm, settings: PenServoSettings) -> Result<Self, (SettingsError, Pwm)> {
-        if let Err(refused) = settings.check(pwm.max_duty_cycle()) {
-            return Err((refused, pwm));
+        match settings.checked(pwm.max_duty_cycle()) {
+            Ok(checked) => Ok(Self::with(pwm, checked)),
+            Err(refused) => Err((refused, pwm)),
         }
+    }
+
+    /// The same, with settings that have been looked at.
+    ///
+    /// # Errors
+    ///
+    /// The PWM, if it has another number of steps than they were looked at for.
+    pub fn of(pwm: Pwm, checked: CheckedPenServo) -> Result<Self, Pwm> {
+        if pwm.max_duty_cycle() == checked.pwm_steps { Ok(Self::with(pwm, checked)) } else { Err(pwm) }
+    }
+
+    fn with(pwm: Pwm, CheckedPenServo { settings, .. }: CheckedPenServo) -> Self {
         let up_deg = settings.up_deg;
-        Ok(Self { pwm, settings, target_deg: up_deg, at_deg: up_deg, state: State::Unset })
+        Self { pwm, settings, target_deg: up_deg, at_deg: up_deg, state: State::Unset }
     }
 
     /// What one step of the PWM turns the servo by, degrees: angles are rounded to the nearest.

@@ -1,11 +1,12 @@
 //! [`chords`]: the arcs of a tool path as straight lines, for machines that know no others.
 
-use crate::extremes::{greater, smaller};
+use crate::geom::single;
+use crate::root::root;
 use crate::turn::atan;
 use crate::{PlotOp, Point, Vec2};
 
 /// Most chords of one arc.
-const MOST_CHORDS: f64 = 65_536.0;
+const MOST_CHORDS: u32 = 65_536;
 
 /// An arc that is being divided.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,7 +73,7 @@ pub fn chords<I: IntoIterator<Item = PlotOp>>(
         let out = from - centre;
         let radius_mm = out.length();
         let growth = if radius_mm > 0.0 { (to - centre).length() / radius_mm - 1.0 } else { 0.0 };
-        let count = chord_count(radius_mm, sweep_rad, tolerance_mm);
+        let count = chord_count(single(radius_mm), single(sweep_rad), single(tolerance_mm));
         let divided = Arc { centre, out, sweep_rad, growth, to, feed_mm_s, chords: count, next: 1 };
         if count > 1 {
             arc = Some(divided);
@@ -83,18 +84,25 @@ pub fn chords<I: IntoIterator<Item = PlotOp>>(
 
 /// Into how many chords an arc is divided so that none is farther than `tolerance_mm` from it: 1 to 65,536; 1 for what is no
 /// arc.
-pub(crate) fn chord_count(radius_mm: f64, sweep_rad: f64, tolerance_mm: f64) -> u32 {
-    let flattest = tolerance_mm / radius_mm;
-    if flattest.is_nan() {
+pub(crate) fn chord_count(radius_mm: f32, sweep_rad: f32, tolerance_mm: f32) -> u32 {
+    let share = tolerance_mm / radius_mm;
+    if share.is_nan() {
         return 1;
     }
-    let flattest = greater(smaller(flattest, 1.0), 0.0);
+    let flattest = if share < 1.0 { share } else { 1.0 };
+    let flattest = if flattest > 0.0 { flattest } else { 0.0 };
     // The tangent of a quarter of the angle, whose square is (1 − cos) / (1 + cos) of its half.
-    let finest_rad = 4.0 * atan(libm::sqrt(flattest / (2.0 - flattest)));
-    let count = libm::ceil(libm::fabs(sweep_rad) / finest_rad);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number, clamped")]
-    let count = if count.is_nan() { 1 } else { greater(smaller(count, MOST_CHORDS), 1.0) as u32 };
-    count
+    let finest_rad = 4.0 * atan(root(flattest / (2.0 - flattest)));
+    let count = sweep_rad.abs() / finest_rad;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a cast saturates, and a NaN is 0"
+    )]
+    let whole = (count as u32).min(MOST_CHORDS);
+    #[expect(clippy::cast_precision_loss, reason = "17 bits")]
+    let is_more = count > whole as f32;
+    (whole + u32::from(is_more)).clamp(1, MOST_CHORDS)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 //! let nonsense = Point::new(1.0, 2.0) + Point::new(3.0, 4.0);
 //! ```
 
+use crate::root::root;
 use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 
 /// A place on the sheet, in mm.
@@ -54,6 +55,19 @@ impl Point {
     #[must_use]
     pub fn lerp(self, other: Self, t: f64) -> Self {
         self + (other - self) * t
+    }
+
+    /// The way to another place, rounded: a metre is right to 60 nm. By reference: to move four `f64` takes a small processor eight
+    /// instructions.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn way_to(&self, other: &Self) -> Vec2Single {
+        Vec2Single { x: single(other.x - self.x), y: single(other.y - self.y) }
+    }
+
+    /// The place at the end of a way.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn after(&self, way: Vec2Single) -> Self {
+        Self::new(self.x + f64::from(way.x), self.y + f64::from(way.y))
     }
 
     /// Whether both coordinates are finite numbers.
@@ -124,6 +138,52 @@ impl Vec2 {
         let (sin, cos) = (libm::sin(angle_rad), libm::cos(angle_rad));
         Self::new(self.x * cos - self.y * sin, self.x * sin + self.y * cos)
     }
+}
+
+/// A displacement in `f32`, which small processors reckon with in hardware: enough for the length and the direction of a way, where
+/// only its end has to be exact. mm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Vec2Single {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+}
+
+impl Vec2Single {
+    /// The length of a way of 10⁻¹⁵ to 10¹⁵ mm.
+    pub(crate) fn length_near(self) -> f32 {
+        root(self.dot(self))
+    }
+
+    pub(crate) fn dot(self, other: Self) -> f32 {
+        self.x * other.x + self.y * other.y
+    }
+
+    pub(crate) fn cross(self, other: Self) -> f32 {
+        self.x * other.y - self.y * other.x
+    }
+
+    /// A quarter turn counter-clockwise.
+    pub(crate) fn perpendicular(self) -> Self {
+        Self { x: -self.y, y: self.x }
+    }
+
+    /// One way after the other.
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y }
+    }
+
+    /// So many times the way.
+    pub(crate) fn times(self, factor: f32) -> Self {
+        Self { x: self.x * factor, y: self.y * factor }
+    }
+}
+
+/// The nearest `f32`.
+#[cfg_attr(target_os = "none", inline(never))]
+pub(crate) fn single(value: f64) -> f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "rounded, as it says")]
+    let rounded = value as f32;
+    rounded
 }
 
 impl Sub for Point {

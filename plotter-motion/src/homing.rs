@@ -15,8 +15,6 @@
 //! axis is known to be longer, and slow after that, as in the source (spec 5.3).
 
 use crate::decimal_text::{Plain, Whole};
-use crate::extremes::smaller;
-use crate::whole::whole;
 use crate::{Axis, Direction, LimitSwitches, Machine, StepperConfig};
 use core::fmt;
 
@@ -527,18 +525,22 @@ impl HomingProgress {
         let before = i64::from(self.taken);
         let ahead = known - before;
         let slowly = if known > 0 { slow_hz } else { start_hz };
-        #[expect(clippy::cast_precision_loss, reason = "steps of 32 bits")]
         let reached = |from_hz: u32, steps: i64| {
-            let from_hz = f64::from(from_hz);
-            libm::sqrt(from_hz * from_hz + 2.0 * f64::from(settings.accel_hz_s) * steps.max(0) as f64)
+            let from_hz = u64::from(from_hz);
+            let gained = u64::from(settings.accel_hz_s).saturating_mul(steps.max(0).unsigned_abs());
+            root((from_hz * from_hz).saturating_add(gained.saturating_mul(2)))
         };
-        let rate_hz = smaller(
-            smaller(reached(start_hz, before), reached(slowly, ahead - 1)),
-            f64::from(settings.fast_hz),
-        );
-        let rate_hz = u32::try_from(whole(rate_hz)).unwrap_or(u32::MAX);
-        rate_hz.max(1)
+        reached(start_hz, before).min(reached(slowly, ahead - 1)).min(settings.fast_hz).max(1)
     }
+}
+
+/// The square root, rounded down: bit by bit, which takes the least program memory.
+#[cfg_attr(target_os = "none", inline(never))]
+fn root(square: u64) -> u32 {
+    (0..u32::BITS).rev().fold(0, |root, bit| {
+        let next = root | 1 << bit;
+        if u64::from(next) * u64::from(next) <= square { next } else { root }
+    })
 }
 
 fn opposite(end: Direction) -> Direction {

@@ -29,6 +29,7 @@ pub mod plant;
 mod profile;
 pub mod protocol;
 mod pulse_counter;
+mod root;
 mod safety;
 mod seconds;
 mod shapes;

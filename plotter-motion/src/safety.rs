@@ -211,7 +211,14 @@ pub struct LimitSwitches {
 impl LimitSwitches {
     /// Whether the switch at the end that `direction` leads to is pressed.
     #[must_use]
+    #[cfg_attr(target_os = "none", inline(never))]
     pub const fn blocks(self, axis: Axis, direction: Direction) -> bool {
+        self.blocks_inline(axis, direction)
+    }
+
+    /// The same where it has to be quick: for every step and every edge of an encoder.
+    #[inline(always)]
+    const fn blocks_inline(self, axis: Axis, direction: Direction) -> bool {
         match (axis, direction) {
             (Axis::X, Direction::Plus) => self.x_max,
             (Axis::X, Direction::Minus) => self.x_min,
@@ -354,7 +361,7 @@ impl SafetyGate {
         // what a turn of each motor does to both axes: 1 or -1
         let (first, second) = (signs.twice_axes(1.0, 0.0), signs.twice_axes(0.0, 1.0));
         for (axis, first, second) in [(Axis::X, first.0, second.0), (Axis::Y, first.1, second.1)] {
-            let ends = [Direction::Plus, Direction::Minus].map(|end| self.limits.blocks(axis, end));
+            let ends = [Direction::Plus, Direction::Minus].map(|end| self.limits.blocks_inline(axis, end));
             let towards = match ends {
                 [false, false] => continue,
                 [true, true] => return Drive::default(),
@@ -413,7 +420,8 @@ impl SafetyGate {
     }
 
     fn pass_axis(&self, axis: Axis, duty: Duty) -> Duty {
-        let into_switch = duty.direction().is_some_and(|direction| self.limits.blocks(axis, direction));
+        let into_switch =
+            duty.direction().is_some_and(|direction| self.limits.blocks_inline(axis, direction));
         if self.latched || into_switch { Duty::ZERO } else { duty }
     }
 }

@@ -1,10 +1,10 @@
 //! Seconds as a [`Duration`], and whether one has passed.
 
-use crate::whole::{float, nearest_even, whole};
+use crate::whole::nearest;
 use core::time::Duration;
 
-/// Longest one, s: what a whole number of 63 bits holds.
-const MOST_S: f64 = 9e18;
+/// Longest one, s: what a whole number of 63 bits holds in nanoseconds, 285 years.
+const MOST_S: f64 = 9e9;
 
 /// The nearest nanosecond; none for what is below zero, too long or no number. [`Duration::try_from_secs_f64`] takes 0.4 KB of a
 /// microcontroller's flash, and differs by the last nanosecond where a number lies half way between two of them.
@@ -13,11 +13,7 @@ pub(crate) fn duration(seconds: f64) -> Option<Duration> {
     if !(0.0..=MOST_S).contains(&seconds) {
         return None;
     }
-    let before = whole(seconds);
-    let nanos = nearest_even((seconds - float(before)) * 1e9);
-    Some(
-        Duration::from_secs(before.unsigned_abs()).saturating_add(Duration::from_nanos(nanos.unsigned_abs())),
-    )
+    Some(Duration::from_nanos(nearest(seconds * 1e9).unsigned_abs()))
 }
 
 /// Whether that time has come. On a small processor each comparison of two [`Duration`]s is 44 bytes wherever it stands, and half of

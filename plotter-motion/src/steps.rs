@@ -38,7 +38,13 @@ impl StepPoint {
 /// ```
 #[must_use]
 pub fn from_mm(mm: f64, steps_per_mm: f64) -> i32 {
-    let steps = nearest(mm * steps_per_mm);
+    whole_steps(mm * steps_per_mm)
+}
+
+/// The nearest whole number of steps, as [`from_mm`] rounds.
+#[cfg_attr(target_os = "none", inline(never))]
+pub(crate) fn whole_steps(steps: f64) -> i32 {
+    let steps = nearest(steps);
     i32::try_from(steps).unwrap_or(if steps < 0 { i32::MIN } else { i32::MAX })
 }
 

@@ -1,49 +1,56 @@
-//! Floats as whole numbers, in one place: on a small processor, which has no `f64`, each cast with its ends is 80 bytes.
+//! Floats as whole numbers, in one place: a small processor has no `f64`, and reckons with its bits.
+
+/// The magnitude: the whole number, and the 2^64ths that are left, never none of them where something is left. What does not fit becomes
+/// the greatest; a NaN 0.
+#[cfg_attr(target_os = "none", inline(never))]
+fn parts(value: f64) -> (u64, u64) {
+    const MANTISSA_BITS: u64 = 52;
+    /// The exponent of a whole mantissa, with its offset.
+    const WHOLE: u64 = 1075;
+    let bits = value.abs().to_bits();
+    let (exponent, mantissa) = (bits >> MANTISSA_BITS, bits & ((1 << MANTISSA_BITS) - 1));
+    let (exponent, mantissa) =
+        if exponent == 0 { (1, mantissa) } else { (exponent, mantissa | 1 << MANTISSA_BITS) };
+    if value.is_nan() {
+        (0, 0)
+    } else if exponent >= WHOLE {
+        let up = exponent - WHOLE;
+        (if up > 10 { u64::MAX } else { mantissa << up }, 0)
+    } else {
+        match WHOLE - exponent {
+            down @ 0..64 => (mantissa >> down, mantissa << (64 - down)),
+            // Less than a thousandth.
+            _ => (0, u64::from(mantissa > 0)),
+        }
+    }
+}
+
+/// With the sign of `value`.
+fn signed(magnitude: u64, value: f64) -> i64 {
+    let magnitude = i64::try_from(magnitude).unwrap_or(i64::MAX);
+    match (value.is_sign_negative(), magnitude) {
+        (false, _) => magnitude,
+        (true, i64::MAX) => i64::MIN,
+        (true, _) => -magnitude,
+    }
+}
 
 /// Towards zero; what does not fit becomes the nearest end, a NaN 0.
 #[cfg_attr(target_os = "none", inline(never))]
 pub(crate) fn whole(value: f64) -> i64 {
-    #[expect(clippy::cast_possible_truncation, reason = "a cast saturates")]
-    let whole = value as i64;
-    whole
+    signed(parts(value).0, value)
 }
 
 /// To nearest, halves away from zero; else as [`whole`].
 #[cfg_attr(target_os = "none", inline(never))]
 pub(crate) fn nearest(value: f64) -> i64 {
-    let whole = whole(value);
-    let rest = value - float(whole);
-    if rest >= 0.5 {
-        whole.saturating_add(1)
-    } else if rest <= -0.5 {
-        whole.saturating_sub(1)
-    } else {
-        whole
-    }
-}
-
-/// To nearest, halves to the even one; else as [`whole`].
-#[cfg_attr(target_os = "none", inline(never))]
-pub(crate) fn nearest_even(value: f64) -> i64 {
-    let nearest = nearest(value);
-    // Away from zero was the odd one.
-    if nearest & 1 == 1 && libm::fabs(value - float(nearest)) == 0.5 {
-        nearest - nearest.signum()
-    } else {
-        nearest
-    }
+    let (whole, rest) = parts(value);
+    signed(whole.saturating_add(rest >> 63), value)
 }
 
 /// Whether nothing stands behind the point, of numbers below 2^63.
 pub(crate) fn is_whole(value: f64) -> bool {
-    float(whole(value)) == value
-}
-
-/// The nearest float.
-pub(crate) fn float(value: i64) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "numbers beyond 53 bits are rounded")]
-    let float = value as f64;
-    float
+    parts(value).1 == 0
 }
 
 #[cfg(test)]
@@ -53,7 +60,6 @@ mod tests {
 
     fn same(value: f64) {
         assert_eq!(nearest(value), whole(libm::round(value)), "{value}");
-        assert_eq!(nearest_even(value), whole(libm::rint(value)), "{value}");
         assert_eq!(is_whole(value), libm::floor(value) == value, "{value}");
     }
 
@@ -70,7 +76,7 @@ mod tests {
         }
         for (value, end) in [(1e300, i64::MAX), (-1e300, i64::MIN), (f64::NAN, 0), (f64::INFINITY, i64::MAX)]
         {
-            assert_eq!([whole(value), nearest(value), nearest_even(value)], [end; 3], "{value}");
+            assert_eq!([whole(value), nearest(value)], [end; 2], "{value}");
         }
     }
 

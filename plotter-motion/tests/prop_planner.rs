@@ -5,7 +5,7 @@ use core::time::Duration;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::{
     Action, Course, MotorEvent, PathMode, Pen, Phase, PlanError, Planner, PlannerSettings, PlotOp, Point,
-    Shape, StepGen, StepGenSettings, StepPoint, from_mm, junction_speed,
+    ProfilePoint, Shape, StepGen, StepGenSettings, StepPoint, from_mm, junction_speed,
 };
 use proptest::prelude::*;
 
@@ -135,6 +135,10 @@ fn actions(settings: PlannerSettings, ops: &[PlotOp]) -> Vec<Action> {
     actions_told(settings, ops, &[], |_, _| {})
 }
 
+fn end_of(phase: Phase) -> ProfilePoint {
+    phase.at(phase.duration_s.into())
+}
+
 fn check(settings: PlannerSettings, ops: &[PlotOp], touches: &[(usize, Touch)]) -> Result<(), TestCaseError> {
     let motor = MotorScale { steps_per_mm: STEPS_PER_MM, inverted: false };
     let step_settings =
@@ -155,13 +159,14 @@ fn check(settings: PlannerSettings, ops: &[PlotOp], touches: &[(usize, Touch)]) 
     for (action, shares) in actions.into_iter().zip(all_shares) {
         match action {
             Action::Course(course) => {
+                let (course_mm, feed_mm_s) = (f64::from(course.length_mm), f64::from(course.feed_mm_s));
                 prop_assert!(length_mm - done_mm < 10.0 * GAP_MM, "{done_mm} of {length_mm} mm");
                 let straight = at.distance(course.to);
-                prop_assert!(straight <= course.length_mm * (1.0 + 1e-5) + GAP_MM, "{course:?} from {at:?}");
+                prop_assert!(straight <= course_mm * (1.0 + 1e-5) + GAP_MM, "{course:?} from {at:?}");
                 if course.shape == Shape::Line {
-                    prop_assert!((straight - course.length_mm).abs() <= 1e-5 * straight + GAP_MM);
+                    prop_assert!((straight - course_mm).abs() <= 1e-5 * straight + GAP_MM);
                 }
-                let speed = last.map_or(0.0, |last| last.at(last.duration_s).speed_mm_s);
+                let speed = last.map_or(0.0, |last| end_of(last).speed_mm_s);
                 if let Some((before, from)) = before_course.filter(|(before, _)| {
                     settings.path == PathMode::Exact
                         && before.shape == Shape::Line
@@ -177,7 +182,7 @@ fn check(settings: PlannerSettings, ops: &[PlotOp], touches: &[(usize, Touch)]) 
                 }
                 before_course = Some((course, at));
                 at = course.to;
-                (done_mm, length_mm, cruise) = (0.0, course.length_mm, course.feed_mm_s);
+                (done_mm, length_mm, cruise) = (0.0, course_mm, feed_mm_s);
                 let (share, most) = match course.pen {
                     Pen::Down => (shares.0, settings.speed_mm_s),
                     Pen::Up => (shares.1, settings.travel_speed_mm_s),
@@ -190,23 +195,27 @@ fn check(settings: PlannerSettings, ops: &[PlotOp], touches: &[(usize, Touch)]) 
             Action::Phase(phase) => {
                 // A feed hold waits for no more than a phase.
                 prop_assert!(phase.duration_s > 0.0 && phase.duration_s <= 0.05, "{phase:?}");
-                prop_assert!((phase.from_mm - done_mm).abs() < 10.0 * GAP_MM, "{phase:?} after {done_mm}");
-                let end = phase.at(phase.duration_s);
+                let (duration_s, begin) = (f64::from(phase.duration_s), phase.at(0.0));
+                prop_assert!(
+                    (begin.distance_mm - done_mm).abs() < 10.0 * GAP_MM,
+                    "{phase:?} after {done_mm}"
+                );
+                let end = phase.at(duration_s);
                 done_mm = end.distance_mm;
                 if let Some((course, _)) = before_course {
                     let (share, most) = match course.pen {
                         Pen::Down => (shares.0, settings.speed_mm_s),
                         Pen::Up => (shares.1, settings.travel_speed_mm_s),
                     };
-                    wanted = (course.feed_mm_s * share).min(most);
+                    wanted = (f64::from(course.feed_mm_s) * share).min(most);
                 }
                 // Faster than is wanted is only a machine that brakes as hard as it may.
                 if settings.jerk_mm_s3.is_none() && end.speed_mm_s > wanted * (1.0 + 1e-4) + GAP_MM_S {
                     let least = -settings.accel_mm_s2 * (1.0 - 1e-2) + 0.1;
-                    let is_short = phase.duration_s < GAP_S;
-                    prop_assert!(is_short || phase.accel_mm_s2 <= least, "{phase:?}, {wanted} mm/s wanted");
+                    let is_short = duration_s < GAP_S;
+                    prop_assert!(is_short || begin.accel_mm_s2 <= least, "{phase:?}, {wanted} mm/s wanted");
                 }
-                for place in [phase.at(0.0), phase.at(0.5 * phase.duration_s), end] {
+                for place in [phase.at(0.0), phase.at(0.5 * duration_s), end] {
                     let speed = place.speed_mm_s;
                     prop_assert!(
                         (-GAP_MM_S..=cruise * (1.0 + ROUNDING) + GAP_MM_S).contains(&speed),
@@ -214,21 +223,24 @@ fn check(settings: PlannerSettings, ops: &[PlotOp], touches: &[(usize, Touch)]) 
                     );
                     prop_assert!(place.accel_mm_s2.abs() <= settings.accel_mm_s2 * (1.0 + 1e-3), "{phase:?}");
                 }
-                prop_assert!(phase.jerk_mm_s3.abs() <= settings.jerk_mm_s3.unwrap_or(0.0) * (1.0 + ROUNDING));
+                prop_assert!(
+                    f64::from(phase.jerk_mm_s3).abs()
+                        <= settings.jerk_mm_s3.unwrap_or(0.0) * (1.0 + ROUNDING)
+                );
                 let before = last.map_or((0.0, 0.0), |last| {
-                    let end = last.at(last.duration_s);
+                    let end = end_of(last);
                     (end.speed_mm_s, end.accel_mm_s2)
                 });
-                prop_assert!((before.0 - phase.speed_mm_s).abs() < GAP_MM_S, "{before:?} then {phase:?}");
+                prop_assert!((before.0 - begin.speed_mm_s).abs() < GAP_MM_S, "{before:?} then {phase:?}");
                 if let Some(jerk_mm_s3) = settings.jerk_mm_s3 {
-                    let gap = (before.1 - phase.accel_mm_s2).abs();
+                    let gap = (before.1 - begin.accel_mm_s2).abs();
                     let most = GAP_MM_S2 + 1e-3 * settings.accel_mm_s2 + GAP_S * jerk_mm_s3;
                     prop_assert!(gap < most, "{before:?} then {phase:?}");
                 }
                 last = Some(phase);
             }
             _ => {
-                let rest = last.map_or(0.0, |last| last.at(last.duration_s).speed_mm_s);
+                let rest = last.map_or(0.0, |last| end_of(last).speed_mm_s);
                 prop_assert!(rest < GAP_MM_S, "stands at {rest} mm/s for {action:?}");
             }
         }
@@ -242,7 +254,7 @@ fn check(settings: PlannerSettings, ops: &[PlotOp], touches: &[(usize, Touch)]) 
         }
         prop_assert_eq!(motors, steps.steps());
     }
-    let rest = last.map_or(0.0, |last| last.at(last.duration_s).speed_mm_s);
+    let rest = last.map_or(0.0, |last| end_of(last).speed_mm_s);
     prop_assert!(rest < GAP_MM_S, "ends at {} mm/s", rest);
     let end = ops.iter().rev().find_map(|op| op.target()).unwrap_or_default();
     prop_assert_eq!(motors, StepPoint::new(from_mm(end.x, STEPS_PER_MM), from_mm(end.y, STEPS_PER_MM)));
@@ -291,7 +303,7 @@ proptest! {
     ) {
         let settings = PlannerSettings { jerk_mm_s3: None, ..settings };
         let time_s = |actions: Vec<Action>| -> f64 {
-            actions.iter().map(|action| if let Action::Phase(phase) = action { phase.duration_s } else { 0.0 }).sum()
+            actions.iter().map(|action| if let Action::Phase(phase) = action { f64::from(phase.duration_s) } else { 0.0 }).sum()
         };
         let mut planner = Planner::<512>::new(settings).unwrap();
         for op in path(&parts) {

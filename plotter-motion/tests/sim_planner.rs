@@ -110,13 +110,14 @@ fn whole_drawings_lose_no_step() {
                 |_, _| {},
                 |tick, event| {
                     let MotorEvent::Step { x, y } = event else { return };
-                    let at_s = tick as f64 / clock.clock_hz;
+                    let at_s = tick as f64 / f64::from(clock.clock_hz);
                     for (axis, step) in [(Axis::X, x), (Axis::Y, y)] {
                         if step != 0 {
                             let direction = if step > 0 { Direction::Plus } else { Direction::Minus };
                             plant.pulse(Duration::from_secs_f64(at_s), axis, direction);
                             let last = &mut last[axis as usize];
-                            fastest_hz = fastest_hz.max(clock.clock_hz / (tick - *last).max(1) as f64);
+                            fastest_hz =
+                                fastest_hz.max(f64::from(clock.clock_hz) / (tick - *last).max(1) as f64);
                             *last = tick;
                         }
                     }

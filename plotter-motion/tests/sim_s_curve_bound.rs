@@ -54,11 +54,12 @@ fn runs(settings: PlannerSettings, drawing: &Drawing) -> Vec<Vec<Stretch>> {
             Some(Action::Course(course)) => begun_mm = Some(course.length_mm),
             Some(Action::Phase(phase)) => {
                 let Some(length_mm) = begun_mm.take() else { continue };
-                let stretch = Stretch { length_mm, exit: 0.0 };
-                match runs.last_mut().filter(|_| phase.speed_mm_s > STANDSTILL_MM_S) {
+                let stretch = Stretch { length_mm: f64::from(length_mm), exit: 0.0 };
+                let speed_mm_s = f64::from(phase.speed_mm_s);
+                match runs.last_mut().filter(|_| speed_mm_s > STANDSTILL_MM_S) {
                     Some(run) => {
                         if let Some(before) = run.last_mut() {
-                            before.exit = phase.speed_mm_s;
+                            before.exit = speed_mm_s;
                         }
                         run.push(stretch);
                     }

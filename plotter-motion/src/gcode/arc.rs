@@ -2,23 +2,25 @@
 
 use super::error::Complaint;
 use super::{Position, Problem};
-use crate::extremes::{greater, smaller};
+use crate::Point;
+use crate::extremes::{greatest, least};
+use crate::geom::single;
+use crate::root::root;
 use crate::turn::atan2;
-use crate::{Point, Vec2};
-use core::f64::consts::TAU;
 
 /// How much farther from the centre one end may be than the other, mm: always, and where it is a thousandth of the radius.
-const LEAST_MM: f64 = 0.005;
-const MOST_MM: f64 = 0.5;
-const MOST_SHARE: f64 = 0.001;
+const LEAST_MM: f32 = 0.005;
+const MOST_MM: f32 = 0.5;
+const MOST_SHARE: f32 = 0.001;
 
 /// A sweep below this is a whole turn, rad.
-const NO_SWEEP_RAD: f64 = 5e-7;
+const NO_SWEEP_RAD: f32 = 5e-7;
 
 /// What a chord may be longer than the diameter and still be taken for it, mm: both are rounded to thousandths.
-const ROUNDED_MM: f64 = 0.005;
+const ROUNDED_MM: f32 = 0.005;
 
-/// How far round an arc goes, rad, above 0 to the `left`. One that ends where it begins is a whole circle.
+/// How far round an arc goes, rad, above 0 to the `left`; right to 2·10⁻⁷ of itself, and quarters of a turn to the last bit. One that ends
+/// where it begins is a whole circle.
 ///
 /// The limits are GRBL's (`gcode.c`, version 1.1).
 pub(super) fn sweep_rad<C: Complaint>(
@@ -28,18 +30,36 @@ pub(super) fn sweep_rad<C: Complaint>(
     left: bool,
     at: Position,
 ) -> Result<f64, C> {
-    let (out, end) = (from - centre, to - centre);
+    let (out, end, chord) = (centre.way_to(&from), centre.way_to(&to), from.way_to(&to));
     let (start_mm, end_mm) = (out.length_near(), end.length_near());
-    let off_mm = (end_mm - start_mm).abs();
+    // The difference of both, however great they are: b² − a² = (b − a)(b + a).
+    let off_mm = chord.dot(out.plus(end)).abs() / (start_mm + end_mm);
     if off_mm > MOST_MM || (off_mm > LEAST_MM && off_mm > MOST_SHARE * start_mm) || start_mm == 0.0 {
-        return Err(Problem::ArcRadii { start_mm, end_mm }.at(at));
+        return Err(Problem::ArcRadii { start_mm: start_mm.into(), end_mm: end_mm.into() }.at(at));
     }
-    let angle = atan2(out.cross(end), out.dot(end));
-    Ok(match left {
-        true if angle <= NO_SWEEP_RAD => smaller(angle + TAU, TAU),
-        false if angle >= -NO_SWEEP_RAD => greater(angle - TAU, -TAU),
-        _ => angle,
-    })
+    // With the chord instead of the other radius a small angle is as right as a great one.
+    let angle = atan2(out.cross(chord), start_mm * start_mm + out.dot(chord));
+    let (mut quarters, mut rest) = quarters(angle);
+    if left && angle <= NO_SWEEP_RAD {
+        (quarters, rest) = (quarters + 4, if quarters == 0 { least(rest, 0.0) } else { rest });
+    } else if !left && angle >= -NO_SWEEP_RAD {
+        (quarters, rest) = (quarters - 4, if quarters == 0 { greatest(rest, 0.0) } else { rest });
+    }
+    Ok(f64::from(quarters) * core::f64::consts::FRAC_PI_2 + f64::from(rest))
+}
+
+/// An angle of half a turn at most as quarters of a turn and the rest, rad.
+fn quarters(angle: f32) -> (i8, f32) {
+    use core::f32::consts::FRAC_PI_2;
+    let quarters = if angle.abs() < 0.5 * FRAC_PI_2 {
+        0
+    } else if angle.abs() < 1.5 * FRAC_PI_2 {
+        1
+    } else {
+        2
+    };
+    let quarters = if angle < 0.0 { -quarters } else { quarters };
+    (quarters, angle - f32::from(quarters) * FRAC_PI_2)
 }
 
 /// The centre of an arc with this radius, mm: the one of less than half a turn, or with a negative radius of more.
@@ -50,31 +70,30 @@ pub(super) fn centre<C: Complaint>(
     left: bool,
     at: Position,
 ) -> Result<Point, C> {
-    let chord = to - from;
+    let chord = from.way_to(&to);
     let length_mm = chord.length_near();
     if length_mm == 0.0 {
         return Err(Problem::ArcWithoutEnd.at(at));
     }
-    let half_mm = 0.5 * length_mm;
-    if radius_mm.abs() + ROUNDED_MM < half_mm || radius_mm == 0.0 {
-        return Err(Problem::ArcRadius { radius_mm, least_mm: half_mm }.at(at));
+    let (half_mm, signed_mm) = (0.5 * length_mm, single(radius_mm));
+    let radius = signed_mm.abs();
+    if radius + ROUNDED_MM < half_mm || radius == 0.0 {
+        return Err(Problem::ArcRadius { radius_mm, least_mm: half_mm.into() }.at(at));
     }
     // (r - h)(r + h) loses no digits where the arc is nearly a half circle.
-    let squared = (radius_mm.abs() - half_mm) * (radius_mm.abs() + half_mm);
-    let height_mm = libm::sqrt(greater(squared, 0.0));
-    let height_mm = if left == (radius_mm > 0.0) { height_mm } else { -height_mm };
-    let across = Vec2::new(-chord.y, chord.x) * (height_mm / length_mm);
-    Ok(from + chord * 0.5 + across)
+    let height_mm = root(greatest((radius - half_mm) * (radius + half_mm), 0.0));
+    let height_mm = if left == (signed_mm > 0.0) { height_mm } else { -height_mm };
+    Ok(from.after(chord.times(0.5).plus(chord.perpendicular().times(height_mm / length_mm))))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::gcode::Error;
-    use core::f64::consts::PI;
+    use core::f64::consts::{PI, TAU};
 
-    /// What the last digits of coordinates near 10 mm are worth, mm or rad.
-    const EXACT: f64 = 1e-12;
+    /// What the last digits of `f32` near 10 mm are worth, mm or rad.
+    const EXACT: f64 = 1e-6;
 
     fn sweep_rad(from: Point, to: Point, centre: Point, left: bool) -> Result<f64, Problem> {
         super::sweep_rad(from, to, centre, left, Position::START).map_err(|error: Error| error.problem)

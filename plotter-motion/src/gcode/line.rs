@@ -150,8 +150,8 @@ impl<'b> Line<'b> {
         self.is(Code::QuietWithWords)
     }
 
-    pub(super) fn word(&self, letter: u8) -> Option<Word> {
-        self.block.words().iter().copied().find(|word| word.letter == letter)
+    pub(super) fn word(&self, letter: u8) -> Option<&'b Word> {
+        self.block.words().iter().find(|word| word.letter == letter)
     }
 
     pub(super) fn number(&self, letter: u8) -> Option<f64> {

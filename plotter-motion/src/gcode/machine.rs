@@ -167,17 +167,22 @@ impl Machine {
         if inverse_time != self.inverse_time {
             (self.inverse_time, self.feed_mm_s) = (inverse_time, None);
         }
-        let refused =
-            |word: Word, expected| Problem::BadParameter { word, expected }.at(line.block.place(word));
+        let refused = |word: &Word| {
+            let expected = match word.letter {
+                b'F' => "a speed is above 0",
+                _ => "a pen is a whole number from 0 to 255",
+            };
+            Problem::BadParameter { word: *word, expected }.at(line.block.place(*word))
+        };
         if let Some(word) = line.word(b'F').filter(|_| !line.owned()) {
             let feed = word.number.filter(|feed| *feed > 0.0);
-            let feed = feed.ok_or_else(|| refused(word, "a speed is above 0"))?;
+            let feed = feed.ok_or_else(|| refused(word))?;
             self.feed_mm_s = (!self.inverse_time).then_some(feed * self.unit_mm / 60.0);
         }
         if let Some(word) = line.word(b'T').filter(|_| !line.owned()) {
             let pen = word.number.filter(|number| is_whole(*number));
             let pen = pen.and_then(|number| u8::try_from(whole(number)).ok());
-            let pen = pen.ok_or_else(|| refused(word, "a pen is a whole number from 0 to 255"))?;
+            let pen = pen.ok_or_else(|| refused(word))?;
             self.tool = Some(pen);
         }
         Ok(())
@@ -290,7 +295,7 @@ impl Machine {
         let seconds = word.number.unwrap_or_default() * unit_s;
         let expected = "a time is not below 0";
         let duration = duration(seconds)
-            .ok_or_else(|| Problem::BadParameter { word, expected }.at(line.block.place(word)))?;
+            .ok_or_else(|| Problem::BadParameter { word: *word, expected }.at(line.block.place(*word)))?;
         let settles = core::mem::take(&mut self.settling) && duration <= options.settle;
         if !settles && !duration.is_zero() {
             self.leave_dot(options, out);
@@ -322,11 +327,13 @@ impl Machine {
 
     fn set_offset(&mut self, line: &Line<'_>) {
         let all = !line.has(b"XYZEABC");
-        if all || line.gives(b'X') {
-            self.offset.x = self.at.x - self.along(line, b'X', 0.0, 0.0);
-        }
-        if all || line.gives(b'Y') {
-            self.offset.y = self.at.y - self.along(line, b'Y', 0.0, 0.0);
+        let unit_mm = self.unit_mm;
+        for (letter, at, offset) in
+            [(b'X', self.at.x, &mut self.offset.x), (b'Y', self.at.y, &mut self.offset.y)]
+        {
+            if all || line.gives(letter) {
+                *offset = at - line.number(letter).unwrap_or_default() * unit_mm;
+            }
         }
         if all || line.gives(b'Z') {
             self.z = line.number(b'Z').unwrap_or_default();
@@ -335,16 +342,15 @@ impl Machine {
 
     fn set_origin(&mut self, line: &Line<'_>, here: bool) {
         // The offset of G92 stays on top of it.
-        let own = self.offset + -self.origin;
-        if line.gives(b'X') {
-            let x = self.along(line, b'X', 0.0, 0.0);
-            self.origin.x = if here { self.at.x - x - own.x } else { x };
+        for (letter, at, offset, origin) in [
+            (b'X', self.at.x, &mut self.offset.x, &mut self.origin.x),
+            (b'Y', self.at.y, &mut self.offset.y, &mut self.origin.y),
+        ] {
+            let Some(number) = line.number(letter) else { continue };
+            let (own, place) = (*offset - *origin, number * self.unit_mm);
+            *origin = if here { at - place - own } else { place };
+            *offset = *origin + own;
         }
-        if line.gives(b'Y') {
-            let y = self.along(line, b'Y', 0.0, 0.0);
-            self.origin.y = if here { self.at.y - y - own.y } else { y };
-        }
-        self.offset = self.origin + own;
     }
 
     /// The movement of a line, if it has one.
@@ -400,20 +406,25 @@ impl Machine {
         } else if self.relative {
             self.at
         } else {
-            Point::ORIGIN + self.offset
+            self.work_origin()
         };
-        self.named(line, origin, [b'X', b'Y'])
+        self.named(line, &origin, [b'X', b'Y'])
+    }
+
+    fn work_origin(&self) -> Point {
+        Point::new(self.offset.x, self.offset.y)
     }
 
     /// The place that two letters name, from an origin; it is that of the pen where they are not there.
-    fn named(&self, line: &Line<'_>, origin: Point, [x, y]: [u8; 2]) -> Point {
-        Point::new(self.along(line, x, self.at.x, origin.x), self.along(line, y, self.at.y, origin.y))
-    }
-
-    /// The number after a letter in mm, from an origin, or what it is without.
     #[cfg_attr(target_os = "none", inline(never))]
-    fn along(&self, line: &Line<'_>, letter: u8, without: f64, origin: f64) -> f64 {
-        line.number(letter).map_or(without, |number| number * self.unit_mm + origin)
+    fn named(&self, line: &Line<'_>, origin: &Point, [x, y]: [u8; 2]) -> Point {
+        let mut place = self.at;
+        for (letter, place, origin) in [(x, &mut place.x, origin.x), (y, &mut place.y, origin.y)] {
+            if let Some(number) = line.number(letter) {
+                *place = number * self.unit_mm + origin;
+            }
+        }
+        place
     }
 
     /// Whether the Z of a line puts the pen down.
@@ -438,11 +449,11 @@ impl Machine {
         if !self.sheet {
             return Err(Problem::Plane.at(at));
         }
-        let centre = match (line.gives(b'R'), line.has(b"IJ")) {
-            (true, false) => arc::centre(self.at, to, self.along(line, b'R', 0.0, 0.0), left, at)?,
-            (false, true) => {
-                let origin = if self.absolute_centres { Point::ORIGIN + self.offset } else { self.at };
-                self.named(line, origin, [b'I', b'J'])
+        let centre = match (line.number(b'R'), line.has(b"IJ")) {
+            (Some(radius), false) => arc::centre(self.at, to, radius * self.unit_mm, left, at)?,
+            (None, true) => {
+                let origin = if self.absolute_centres { self.work_origin() } else { self.at };
+                self.named(line, &origin, [b'I', b'J'])
             }
             _ => return Err(Problem::ArcForm.at(at)),
         };

@@ -20,6 +20,18 @@ impl Default for MotorScale {
     }
 }
 
+impl MotorScale {
+    /// Steps to the millimetre with the sign of the direction.
+    const fn check(self, axis: Axis) -> Result<f64, ScaleError> {
+        let Self { steps_per_mm, inverted } = self;
+        if steps_per_mm >= LEAST_STEPS_PER_MM && steps_per_mm <= MOST_STEPS_PER_MM {
+            Ok(if inverted { -steps_per_mm } else { steps_per_mm })
+        } else {
+            Err(ScaleError { axis, steps_per_mm })
+        }
+    }
+}
+
 /// Steps per millimetre that no motor has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaleError {
@@ -75,15 +87,16 @@ impl Cartesian {
     /// # Errors
     ///
     /// [`ScaleError`] for steps per millimetre outside 1e-9 to 1e9; NaN lies outside.
-    pub fn new(x: MotorScale, y: MotorScale) -> Result<Self, ScaleError> {
-        let signed = |axis, MotorScale { steps_per_mm, inverted }: MotorScale| {
-            if (LEAST_STEPS_PER_MM..=MOST_STEPS_PER_MM).contains(&steps_per_mm) {
-                Ok(if inverted { -steps_per_mm } else { steps_per_mm })
-            } else {
-                Err(ScaleError { axis, steps_per_mm })
-            }
-        };
-        Ok(Self { x: signed(Axis::X, x)?, y: signed(Axis::Y, y)? })
+    pub const fn new(x: MotorScale, y: MotorScale) -> Result<Self, ScaleError> {
+        match (x.check(Axis::X), y.check(Axis::Y)) {
+            (Ok(x), Ok(y)) => Ok(Self { x, y }),
+            (Err(error), _) | (_, Err(error)) => Err(error),
+        }
+    }
+
+    /// The same, of motors that have been checked and go forwards.
+    pub(crate) const fn of_checked(x_steps_per_mm: f64, y_steps_per_mm: f64) -> Self {
+        Self { x: x_steps_per_mm, y: y_steps_per_mm }
     }
 
     /// The stepper motors of a checked machine.

@@ -13,7 +13,8 @@ pub use backlash::{Backlash, BacklashState, Takeup};
 pub use cartesian::{Cartesian, MotorScale, ScaleError};
 pub use corexy::{BeltSigns, CoreXy};
 
-use crate::{Point, StepPoint, from_mm};
+use crate::steps::whole_steps;
+use crate::{Point, StepPoint};
 
 /// Position of both motors in steps, with fraction: what is planned with before it is rounded.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,10 +26,10 @@ pub struct MotorPoint {
 }
 
 impl MotorPoint {
-    /// The nearest whole steps, halves away from zero, saturating; a NaN gives 0, as in [`from_mm`].
+    /// The nearest whole steps, halves away from zero, saturating; a NaN gives 0, as in [`from_mm`](crate::from_mm).
     #[must_use]
     pub fn rounded(self) -> StepPoint {
-        StepPoint::new(from_mm(self.x, 1.0), from_mm(self.y, 1.0))
+        StepPoint::new(whole_steps(self.x), whole_steps(self.y))
     }
 }
 

@@ -2,9 +2,10 @@
 
 use super::blend::GROWTH;
 use super::limits::{Limits, Share, Wish};
-use super::ring::narrow;
 use super::{Course, Shape};
-use crate::extremes::{greater, smaller};
+use crate::extremes::{greatest, least};
+use crate::geom::single;
+use crate::root::root;
 use crate::{Pen, Point};
 use core::time::Duration;
 
@@ -60,12 +61,12 @@ impl Block {
             Shape::Spiral { pole, sweep_rad, growth } if growth < 0.0 => (Kind::Narrowing, pole, sweep_rad),
             Shape::Spiral { pole, sweep_rad, .. } => (Kind::Widening, pole, sweep_rad),
         };
-        let (feed_mm_s, sweep_rad) = (libm::sqrtf(feed2), single(sweep_rad));
+        let (feed_mm_s, sweep_rad) = (root(feed2), sweep_rad);
         Self { to, centre, length: length_mm, feed_mm_s, sweep_rad, kind, pen, power, ..Self::default() }
     }
 
     pub(super) fn dwell(duration: Duration) -> Self {
-        Self { kind: Kind::Dwell, length: single(duration.as_secs_f64()), ..Self::default() }
+        Self { kind: Kind::Dwell, length: duration.as_secs_f32(), ..Self::default() }
     }
 
     pub(super) fn select_pen(pen: u8) -> Self {
@@ -77,12 +78,7 @@ impl Block {
     }
 
     /// mm; seconds of a dwell.
-    pub(super) fn length(&self) -> f64 {
-        f64::from(self.length)
-    }
-
-    /// The same as it is kept.
-    pub(super) const fn length_single(&self) -> f32 {
+    pub(super) const fn length(&self) -> f32 {
         self.length
     }
 
@@ -108,40 +104,33 @@ impl Block {
     /// Square of the greatest speed that its form allows: on an arc that of its lesser radius.
     fn form2(&self, limits: &Limits) -> f32 {
         /// What the length and the angle may have been rounded by.
-        const ROUNDING: f64 = 1e-6;
+        const ROUNDING: f32 = 1e-6;
         if self.kind != Kind::Arc {
             return f32::INFINITY;
         }
         // The length is the angle times the mean of both radii.
-        let end_mm = self.to.distance(self.centre);
-        let other_mm = 2.0 * self.length() / f64::from(self.sweep_rad.abs()) - end_mm;
-        narrow(limits.accel() * greater(smaller(end_mm, other_mm), 0.0) * (1.0 - ROUNDING))
+        let end_mm = self.to.way_to(&self.centre).length_near();
+        let other_mm = 2.0 * self.length / self.sweep_rad.abs() - end_mm;
+        limits.accel * greatest(least(end_mm, other_mm), 0.0) * (1.0 - ROUNDING)
     }
 
     pub(super) fn course(&self) -> Course {
-        let (centre, sweep_rad) = (self.centre, f64::from(self.sweep_rad));
+        let (centre, sweep_rad) = (self.centre, self.sweep_rad);
         let shape = match self.kind {
             Kind::Arc => Shape::Arc { centre, sweep_rad },
-            Kind::Narrowing => Shape::Spiral { pole: centre, sweep_rad, growth: -GROWTH },
-            Kind::Widening => Shape::Spiral { pole: centre, sweep_rad, growth: GROWTH },
+            Kind::Narrowing => Shape::Spiral { pole: centre, sweep_rad, growth: single(-GROWTH) },
+            Kind::Widening => Shape::Spiral { pole: centre, sweep_rad, growth: single(GROWTH) },
             _ => Shape::Line,
         };
         Course {
             shape,
             to: self.to,
-            length_mm: self.length(),
-            feed_mm_s: f64::from(self.feed_mm_s),
+            length_mm: self.length,
+            feed_mm_s: self.feed_mm_s,
             pen: self.pen,
             laser_power: self.power,
         }
     }
-}
-
-/// As a block keeps it.
-pub(super) fn single(value: f64) -> f32 {
-    #[expect(clippy::cast_possible_truncation, reason = "rounded, as the fields say")]
-    let rounded = value as f32;
-    rounded
 }
 
 #[cfg(test)]

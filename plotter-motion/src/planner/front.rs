@@ -1,26 +1,28 @@
 //! [`Front`]: plot operations in, blocks out. Finds the corners, and in tolerance mode rounds them.
 
 use super::blend::{Blend, GROWTH, Room, to_pole};
-use super::block::{Block, Kind, single};
+use super::block::{Block, Kind};
 use super::junction::{Corner, corner_speed2};
 use super::limits::{Limits, Share, Shares};
 use super::merge::{Merged, Merger};
 use super::modes::{Keep as _, Modes};
-use super::ring::{Ring, least, narrow};
+use super::ring::{Ring, narrow};
 use super::{PathMode, PlanError, PlannerSettings, Shape};
-use crate::extremes::{greater, smaller};
+use crate::extremes::least;
+use crate::geom::{Vec2Single, single};
+use crate::root::root;
 use crate::whole::nearest;
 use crate::{Pen, PlotOp, Point, Vec2};
-use core::f64::consts::TAU;
+use core::f32::consts::TAU;
 
 /// Farthest place, mm.
-const FARTHEST_MM: f64 = 1e7;
+const FARTHEST_MM: f32 = 1e7;
 /// Share of the path tolerance that vertices may be left out for; corners are rounded within the rest.
 const MERGED_SHARE: f64 = 0.5;
+/// What the radius of an arc, and the product with it, may have been rounded by, as a share.
+const RADIUS_ROUNDING: f32 = 5e-7;
 /// A line that is shorter is left out between two curves, mm.
 const SHORTEST_MM: f64 = 1e-9;
-/// Slack of the check that an arc is no more than a turn, rad.
-const TURN_SLACK_RAD: f64 = 1e-9;
 
 /// The end of the last block of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,30 +138,28 @@ impl<M: Modes> Front<M> {
             self.end_run(limits, ring);
         }
         if let Some(to) = op.target() {
-            check(to)?;
+            check(&to)?;
         }
         let feed2 = |feed_mm_s: Option<f64>| match feed_mm_s {
             None => Ok(limits.speed2),
-            Some(feed) if feed > 0.0 && feed.is_finite() => {
-                let feed = smaller(feed, limits.settings.speed_mm_s);
-                Ok(narrow(feed * feed))
-            }
-            Some(feed_mm_s) => Err(PlanError::Feed { feed_mm_s }),
+            Some(feed_mm_s) => Limits::speed2(feed_mm_s, limits.speed2).ok_or(PlanError::Feed { feed_mm_s }),
         };
         match op {
             PlotOp::Travel { to } => {
-                self.line(to, Pen::Up, limits.travel2, limits, ring);
+                self.line(&to, Pen::Up, limits.travel2, limits, ring);
             }
             PlotOp::Draw { to, feed_mm_s } => {
-                self.line(to, Pen::Down, feed2(feed_mm_s)?, limits, ring);
+                self.line(&to, Pen::Down, feed2(feed_mm_s)?, limits, ring);
             }
             PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } => {
-                check(centre)?;
+                check(&centre)?;
                 let feed2 = feed2(feed_mm_s)?;
-                if sweep_rad.is_nan() || sweep_rad.abs() > TAU + TURN_SLACK_RAD {
+                let sweep_single = single(sweep_rad);
+                // A whole turn is one by its last bit, 5·10⁻⁷.
+                if !(-TAU..=TAU).contains(&sweep_single) {
                     return Err(PlanError::Sweep { sweep_rad });
                 }
-                self.arc(centre, greater(smaller(sweep_rad, TAU), -TAU), to, feed2, limits, ring);
+                self.arc(&centre, sweep_single, &to, feed2, limits, ring);
             }
             PlotOp::LaserPower { .. } if !M::LASER => {}
             PlotOp::LaserPower { share } => {
@@ -181,20 +181,18 @@ impl<M: Modes> Front<M> {
     /// A travel at this speed, or at that of travels if it is less, whatever the shares of the speeds are.
     pub(super) fn jog<const N: usize>(
         &mut self,
-        to: Point,
+        to: &Point,
         speed_mm_s: f64,
         limits: &Limits,
         ring: &mut Ring<N>,
     ) -> Result<(), PlanError> {
         check(to)?;
-        if !(speed_mm_s > 0.0 && speed_mm_s.is_finite()) {
-            return Err(PlanError::Feed { feed_mm_s: speed_mm_s });
-        }
+        let speed2 = Limits::speed2(speed_mm_s, limits.travel2);
+        let speed2 = speed2.ok_or(PlanError::Feed { feed_mm_s: speed_mm_s })?;
         if !self.jogs {
             self.end_run(limits, ring);
             self.jogs = true;
         }
-        let speed2 = least(narrow(speed_mm_s * speed_mm_s), limits.travel2);
         self.line(to, Pen::Up, speed2, limits, ring);
         Ok(())
     }
@@ -205,7 +203,7 @@ impl<M: Modes> Front<M> {
         &mut self,
         shares: Shares,
         under_way2: f32,
-        forced2: f64,
+        forced2: f32,
         limits: &Limits,
         ring: &mut Ring<N>,
     ) {
@@ -247,14 +245,14 @@ impl<M: Modes> Front<M> {
 
     fn line<const N: usize>(
         &mut self,
-        to: Point,
+        to: &Point,
         pen: Pen,
         cruise2: f32,
         limits: &Limits,
         ring: &mut Ring<N>,
     ) {
         let from = self.position;
-        if to == from {
+        if *to == from {
             if pen != self.pen {
                 self.put_pen(pen, limits, ring);
             }
@@ -262,10 +260,10 @@ impl<M: Modes> Front<M> {
         }
         let run = self.run(pen, limits, ring);
         self.pen = pen;
-        self.position = to;
+        self.position = *to;
         match limits.settings.path_of::<M>() {
             PathMode::Exact => {
-                let way = Way::new(to - run.at);
+                let way = Way::new(run.at.way_to(to));
                 if way.length_mm < limits.resolution_mm {
                     self.short_cruise2 = Some(cruise2);
                 } else {
@@ -277,7 +275,7 @@ impl<M: Modes> Front<M> {
                 let Some(rounding) = self.rounding.get_mut() else { return };
                 let start = rounding.held.map_or(run.at, |held| held.to);
                 let within_mm = MERGED_SHARE * path_tolerance_mm;
-                let merged = rounding.merger.push(start, from, to, cruise2, within_mm);
+                let merged = rounding.merger.push(start, from, *to, cruise2, within_mm);
                 if let Some(merged) = merged {
                     self.blend(merged, path_tolerance_mm, limits, ring);
                 }
@@ -294,41 +292,41 @@ impl<M: Modes> Front<M> {
 
     fn arc<const N: usize>(
         &mut self,
-        centre: Point,
-        sweep_rad: f64,
-        to: Point,
+        centre: &Point,
+        sweep_rad: f32,
+        to: &Point,
         cruise2: f32,
         limits: &Limits,
         ring: &mut Ring<N>,
     ) {
-        let (out, end) = (self.position - centre, to - centre);
+        let (out, end) = (centre.way_to(&self.position), centre.way_to(to));
         let (out_mm, end_mm) = (out.length_near(), end.length_near());
-        let (near_mm, far_mm) = (smaller(out_mm, end_mm), greater(out_mm, end_mm));
-        let length_mm = 0.5 * (near_mm + far_mm) * sweep_rad.abs();
-        if length_mm <= limits.settings.resolution_mm || near_mm <= limits.settings.resolution_mm {
+        let near_mm = least(out_mm, end_mm);
+        let length_mm = 0.5 * (out_mm + end_mm) * sweep_rad.abs();
+        if least(length_mm, near_mm) <= limits.resolution_mm {
             return self.line(to, Pen::Down, cruise2, limits, ring);
         }
         self.run(Pen::Down, limits, ring);
         self.flush(limits, ring);
         self.pen = Pen::Down;
-        self.position = to;
+        self.position = *to;
         // A quarter turn ahead of the radius, or behind it.
-        let ahead = |radius: Vec2| {
-            Way::new(if sweep_rad > 0.0 { radius.perpendicular() } else { -radius.perpendicular() }).direction
-        };
-        let shape = Shape::Arc { centre, sweep_rad };
-        let most2 = narrow(limits.accel() * near_mm);
+        let side = if sweep_rad > 0.0 { 1.0 } else { -1.0 };
+        let ahead = |radius: Vec2Single| Way::new(radius.perpendicular().times(side)).direction;
+        let shape = Shape::Arc { centre: *centre, sweep_rad };
+        // Less what the radius may have been rounded by.
+        let most2 = limits.accel * near_mm * (1.0 - RADIUS_ROUNDING);
         let (entry, exit) = (ahead(out), ahead(end));
-        let length_mm = single(length_mm);
         let stretch =
-            Stretch { shape, to, length_mm, entry, exit, feed2: cruise2, most2, most_entry2: most2 };
+            Stretch { shape, to: *to, length_mm, entry, exit, feed2: cruise2, most2, most_entry2: most2 };
         self.emit(stretch, limits, ring);
     }
 
     /// Gives out what has been put off. The run goes on.
     fn flush<const N: usize>(&mut self, limits: &Limits, ring: &mut Ring<N>) {
         if let Some(cruise2) = self.short_cruise2.take() {
-            self.emit_line(self.position, cruise2, limits, ring);
+            let at = self.position;
+            self.emit_line(&at, cruise2, limits, ring);
         }
         if let PathMode::Tolerance { path_tolerance_mm } = limits.settings.path_of::<M>() {
             let at = self.position;
@@ -336,7 +334,7 @@ impl<M: Modes> Front<M> {
                 self.blend(merged, path_tolerance_mm, limits, ring);
             }
             if let Some(held) = self.rounding.get_mut().and_then(|rounding| rounding.held.take()) {
-                self.emit_line(held.to, held.cruise2, limits, ring);
+                self.emit_line(&held.to, held.cruise2, limits, ring);
             }
         }
     }
@@ -363,7 +361,7 @@ impl<M: Modes> Front<M> {
                 // The next corner is left its half of the segment between.
                 tangent_mm: in_mm.min(0.5 * out_mm),
                 cruise2: f64::from(least(held.cruise2, next.cruise2)),
-                accel_mm_s2: limits.accel(),
+                accel_mm_s2: limits.settings.accel_mm_s2,
             };
             let blend = Blend::choose(corner, turn_rad.abs(), room);
             let tangent_mm = blend.tangent_mm(corner, turn_rad.abs());
@@ -371,14 +369,14 @@ impl<M: Modes> Front<M> {
             if tangent_mm.is_finite() && blend_mm > limits.settings.resolution_mm {
                 // However short: a curve that begins elsewhere is another curve.
                 if in_mm - tangent_mm > SHORTEST_MM {
-                    self.emit_line(held.to - along * tangent_mm, held.cruise2, limits, ring);
+                    self.emit_line(&(held.to - along * tangent_mm), held.cruise2, limits, ring);
                 }
                 let turn = Turn { vertex: held.to, along, after, turn_rad, tangent_mm, length_mm: blend_mm };
                 self.emit_blend(blend, turn, least(held.cruise2, next.cruise2), limits, ring);
                 return;
             }
         }
-        self.emit_line(held.to, held.cruise2, limits, ring);
+        self.emit_line(&held.to, held.cruise2, limits, ring);
     }
 
     fn emit_blend<const N: usize>(
@@ -395,8 +393,9 @@ impl<M: Modes> Front<M> {
         let (begin, end) = (vertex - along * tangent_mm, vertex + after * tangent_mm);
         match blend {
             Blend::Arc { radius_mm } => {
-                let shape = Shape::Arc { centre: begin + inwards(along) * radius_mm, sweep_rad: turn_rad };
-                let most2 = narrow(limits.accel() * radius_mm);
+                let shape =
+                    Shape::Arc { centre: begin + inwards(along) * radius_mm, sweep_rad: single(turn_rad) };
+                let most2 = narrow(limits.settings.accel_mm_s2 * radius_mm);
                 let (entry, exit, feed2) = (direction(along), direction(after), cruise2);
                 let length_mm = single(length_mm);
                 let arc =
@@ -406,10 +405,10 @@ impl<M: Modes> Front<M> {
             Blend::Spirals { radius_mm, deviation_mm } => {
                 let grown_mm = radius_mm * libm::exp(GROWTH * 0.5 * turn_rad.abs());
                 let middle = along.rotated(0.5 * turn_rad);
-                let (sweep_rad, half_mm) = (0.5 * turn_rad, 0.5 * length_mm);
+                let (sweep_rad, half_mm) = (single(0.5 * turn_rad), 0.5 * length_mm);
                 let apex = vertex + inwards(middle) * deviation_mm;
                 let pole = begin + to_pole(along, inwards(along), grown_mm, -GROWTH);
-                let narrowing = Shape::Spiral { pole, sweep_rad, growth: -GROWTH };
+                let narrowing = Shape::Spiral { pole, sweep_rad, growth: single(-GROWTH) };
                 let narrowing = Stretch {
                     shape: narrowing,
                     to: apex,
@@ -423,8 +422,8 @@ impl<M: Modes> Front<M> {
                 };
                 self.emit(narrowing, limits, ring);
                 let pole = apex + to_pole(middle, inwards(middle), radius_mm, GROWTH);
-                let widening = Shape::Spiral { pole, sweep_rad, growth: GROWTH };
-                let apex2 = narrow(limits.accel() * radius_mm);
+                let widening = Shape::Spiral { pole, sweep_rad, growth: single(GROWTH) };
+                let apex2 = narrow(limits.settings.accel_mm_s2 * radius_mm);
                 let widening = Stretch {
                     shape: widening,
                     to: end,
@@ -438,16 +437,16 @@ impl<M: Modes> Front<M> {
         }
     }
 
-    fn emit_line<const N: usize>(&mut self, to: Point, cruise2: f32, limits: &Limits, ring: &mut Ring<N>) {
+    fn emit_line<const N: usize>(&mut self, to: &Point, cruise2: f32, limits: &Limits, ring: &mut Ring<N>) {
         if let Some(run) = self.run {
-            self.emit_way(to, Way::new(to - run.at), cruise2, limits, ring);
+            self.emit_way(to, Way::new(run.at.way_to(to)), cruise2, limits, ring);
         }
     }
 
     /// Gives out a line, if it has a length.
     fn emit_way<const N: usize>(
         &mut self,
-        to: Point,
+        to: &Point,
         way: Way,
         cruise2: f32,
         limits: &Limits,
@@ -458,7 +457,7 @@ impl<M: Modes> Front<M> {
             let most = f32::INFINITY;
             let line = Stretch {
                 shape: Shape::Line,
-                to,
+                to: *to,
                 length_mm,
                 entry: direction,
                 exit: direction,
@@ -500,9 +499,9 @@ impl<M: Modes> Front<M> {
 
 /// Whether a place is near enough.
 #[cfg_attr(target_os = "none", inline(never))]
-fn check(place: Point) -> Result<(), PlanError> {
-    let near = place.x.abs() <= FARTHEST_MM && place.y.abs() <= FARTHEST_MM;
-    if near { Ok(()) } else { Err(PlanError::Place { place }) }
+fn check(place: &Point) -> Result<(), PlanError> {
+    let near = single(place.x).abs() <= FARTHEST_MM && single(place.y).abs() <= FARTHEST_MM;
+    if near { Ok(()) } else { Err(PlanError::Place { place: *place }) }
 }
 
 /// A straight way as the look-ahead reckons with it.
@@ -513,19 +512,21 @@ struct Way {
 }
 
 impl Way {
-    fn new(way: Vec2) -> Self {
+    fn new(way: Vec2Single) -> Self {
         /// Shorter ways have squares with few bits, mm².
         const LEAST_SQUARE: f32 = 1e-24;
-        let (x, y) = (single(way.x), single(way.y));
-        let square = x * x + y * y;
+        /// By how much they are longer for it.
+        const LONGER: f32 = 1e15;
+        let square = way.dot(way);
         if square >= LEAST_SQUARE {
-            let length_mm = libm::sqrtf(square);
+            let length_mm = root(square);
             let share = 1.0 / length_mm;
-            return Self { length_mm, direction: [x * share, y * share] };
+            return Self { length_mm, direction: [way.x * share, way.y * share] };
         }
-        let length_mm = way.length_near();
-        let direction = if length_mm > 0.0 { direction(way * (1.0 / length_mm)) } else { [0.0; 2] };
-        Self { length_mm: single(length_mm), direction }
+        let longer = way.times(LONGER);
+        let length = longer.length_near();
+        let share = if length > 0.0 { 1.0 / length } else { 0.0 };
+        Self { length_mm: length / LONGER, direction: [longer.x * share, longer.y * share] }
     }
 }
 

@@ -9,7 +9,8 @@
 //! ```
 
 use super::limits::Limits;
-use super::ring::least;
+use crate::extremes::least;
+use crate::root::root;
 
 /// Greatest speed, mm/s, at which a corner may be taken.
 ///
@@ -88,19 +89,19 @@ pub(super) fn corner_speed2(before: [f32; 2], after: [f32; 2], shorter_mm: f32, 
         return f32::INFINITY;
     }
     // The angle θ between the segments and the turn make half a turn together.
-    let major = libm::sqrtf(0.5 * (1.0 + cos_turn.abs()));
+    let major = root(0.5 * (1.0 + cos_turn.abs()));
     let minor = 0.5 * sin_turn / major;
     let (sin_half, cos_half) = if cos_turn > 0.0 { (major, minor) } else { (minor, major) };
     let (sin_half, cos_half) = (sin_half * (1.0 - LEAST_TURN), cos_half + LEAST_TURN);
     let of_deviation = limits.junction_deviation_mm * (1.0 + sin_half) / cos_half;
-    limits.accel_single * sin_half / cos_half * least(of_deviation, 0.5 * shorter_mm)
+    limits.accel * sin_half / cos_half * least(of_deviation, 0.5 * shorter_mm)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::PlannerSettings;
-    use crate::planner::block::single;
+    use crate::geom::single;
 
     #[test]
     fn straight_on_is_unlimited_and_straight_back_is_a_stop() {

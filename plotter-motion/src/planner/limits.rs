@@ -1,7 +1,9 @@
 //! [`Limits`]: a planner's settings as it reckons with them for every block.
 
 use super::PlannerSettings;
-use super::ring::{least, narrow};
+use super::ring::narrow;
+use crate::extremes::least;
+use crate::geom::single;
 
 /// What is the same for every block, computed once. Small numbers are `f32`, which small processors reckon with in hardware; they
 /// are rounded down, so that no limit is exceeded by the rounding.
@@ -9,10 +11,10 @@ use super::ring::{least, narrow};
 pub(super) struct Limits {
     pub(super) settings: PlannerSettings,
     /// 1/a and 1/2a.
-    pub(super) per_accel: f64,
-    pub(super) per_twice_accel: f64,
+    pub(super) per_accel: f32,
+    pub(super) per_twice_accel: f32,
     /// a and 2a.
-    pub(super) accel_single: f32,
+    pub(super) accel: f32,
     pub(super) twice_accel: f32,
     /// Squares of the speeds with the pen down and up.
     pub(super) speed2: f32,
@@ -23,14 +25,15 @@ pub(super) struct Limits {
 
 impl Limits {
     pub(super) fn of(settings: &PlannerSettings) -> Self {
-        let PlannerSettings { speed_mm_s, travel_speed_mm_s, accel_mm_s2: accel, .. } = *settings;
+        let PlannerSettings { speed_mm_s, travel_speed_mm_s, accel_mm_s2, .. } = *settings;
+        let accel = narrow(accel_mm_s2);
         Self {
             settings: *settings,
             per_accel: 1.0 / accel,
             per_twice_accel: 0.5 / accel,
-            accel_single: narrow(accel),
+            accel,
             // so much less that no product with a length is rounded above the true one
-            twice_accel: narrow(2.0 * accel * (1.0 - f64::from(f32::EPSILON))),
+            twice_accel: 2.0 * accel * (1.0 - f32::EPSILON),
             speed2: narrow(speed_mm_s * speed_mm_s),
             travel2: narrow(travel_speed_mm_s * travel_speed_mm_s),
             junction_deviation_mm: narrow(settings.junction_deviation_mm),
@@ -38,8 +41,10 @@ impl Limits {
         }
     }
 
-    pub(super) const fn accel(&self) -> f64 {
-        self.settings.accel_mm_s2
+    /// Square of a speed that is asked for, no more than this one; none if it is not above 0 and finite.
+    pub(super) fn speed2(speed_mm_s: f64, most2: f32) -> Option<f32> {
+        let speed = single(speed_mm_s);
+        (speed > 0.0 && speed < f32::INFINITY).then(|| least(speed * speed, most2))
     }
 }
 

@@ -8,7 +8,7 @@ use super::ramps::Ramps;
 use super::ring::{Ring, narrow};
 use super::s_curve::SCurveState;
 use super::{Action, PlanError, PlannerSettings};
-use crate::extremes::{greater, smaller};
+use crate::extremes::smaller;
 use crate::seconds::duration;
 use crate::{PlotOp, Point};
 
@@ -89,10 +89,16 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     ///
     /// [`PlanError::Mode`] for a mode that is not among them, and as [`Planner::new`].
     pub fn with_modes(settings: PlannerSettings) -> Result<Self, PlanError> {
-        () = Self::ENOUGH;
         settings.check::<M>()?;
-        Ok(Self {
-            limits: Limits::of(&settings),
+        Ok(Self::of_checked(&settings))
+    }
+
+    /// The same, with settings that have been checked.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn of_checked(settings: &PlannerSettings) -> Self {
+        () = Self::ENOUGH;
+        Self {
+            limits: Limits::of(settings),
             front: Front::new(),
             ring: Ring::new(),
             stale: false,
@@ -100,7 +106,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             hold: false,
             s_curve: M::Kept::default(),
             under_way: M::Kept::default(),
-        })
+        }
     }
 
     /// The limits.
@@ -150,7 +156,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             return Err(PlanError::Full);
         }
         self.stale = true;
-        self.front.jog(to, speed_mm_s, &self.limits, &mut self.ring)
+        self.front.jog(&to, speed_mm_s, &self.limits, &mut self.ring)
     }
 
     /// From here on the speeds that operations ask for are multiplied by these shares, with the pen down and up: a person at the
@@ -194,11 +200,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         }
         let rest_mm = self.ramps.rest_mm();
         let next2 = self.ring.get(0).map_or(0.0, |head| head.entry2);
-        let forced2 = if rest_mm > 0.0 {
-            greater(self.ramps.speed2() - 2.0 * limits.accel() * rest_mm, 0.0)
-        } else {
-            f64::from(next2)
-        };
+        let forced2 = if rest_mm > 0.0 { self.ramps.forced2(&limits) } else { next2 };
         self.front.rescale(shares, under_way2, forced2, &limits, &mut self.ring);
         if rest_mm <= 0.0 {
             self.ring.enter_with(next2, limits.twice_accel);
@@ -209,7 +211,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             self.brake();
             return;
         }
-        let most2 = self.ramps.speed2() + 2.0 * limits.accel() * rest_mm;
+        let most2 = self.ramps.speed2() + 2.0 * limits.accel * rest_mm;
         let exit2 = self.ring.enter_at_most(most2, limits.twice_accel);
         self.ramps.plan::<M>(exit2, &limits);
     }
@@ -260,7 +262,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         }
         let (limits, rest_mm) = (self.limits, self.ramps.rest_mm());
         if rest_mm > 0.0 {
-            let most2 = self.ramps.speed2() + 2.0 * limits.accel() * rest_mm;
+            let most2 = self.ramps.speed2() + 2.0 * limits.accel * rest_mm;
             let exit2 = self.ring.enter_at_most(most2, limits.twice_accel);
             self.ramps.plan::<M>(exit2, &limits);
         }
@@ -284,8 +286,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// Brakes on what is left of the course, and with what speed is left on the next.
     fn brake(&mut self) {
         if self.jerk_mm_s3().is_none() && self.ramps.rest_mm() > 0.0 {
-            let exit2 = self.ramps.brake(&self.limits);
-            self.ring.enter_at_most(exit2, self.limits.twice_accel);
+            let forced2 = self.ramps.forced2(&self.limits);
+            let exit2 = self.ring.enter_at_most(forced2, self.limits.twice_accel);
+            self.ramps.brake(exit2, &self.limits);
         }
     }
 
@@ -311,7 +314,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             Kind::Line | Kind::Jog | Kind::Arc | Kind::Narrowing | Kind::Widening => {
                 Action::Course(head.course())
             }
-            Kind::Dwell => Action::Dwell(duration(head.length()).unwrap_or_default()),
+            Kind::Dwell => Action::Dwell(duration(f64::from(head.length())).unwrap_or_default()),
             Kind::SelectPen => Action::SelectPen(head.number()),
             Kind::NewPage => Action::NewPage,
         };

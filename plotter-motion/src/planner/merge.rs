@@ -1,6 +1,6 @@
 //! [`Merger`]: leaves out vertices that a tolerance does not need.
 
-use super::block::single;
+use crate::geom::single;
 use crate::{Point, Segment};
 
 /// Most vertices that one segment stands for.

@@ -15,20 +15,23 @@ pub enum Shape {
         /// The centre, mm.
         centre: Point,
         /// How far round, rad; counter-clockwise above 0.
-        sweep_rad: f64,
+        sweep_rad: f32,
     },
     /// A logarithmic spiral about a pole: turned by an angle θ about it, the distance from it has changed by e^(growth |θ|).
     Spiral {
         /// The pole, mm.
         pole: Point,
         /// How far round, rad; counter-clockwise above 0.
-        sweep_rad: f64,
+        sweep_rad: f32,
         /// Above 0 it widens.
-        growth: f64,
+        growth: f32,
     },
 }
 
 /// A stretch of path, from where the one before ended.
+///
+/// Places are `f64`, whatever the sheet's size; all else is `f32`, which says it to 6·10⁻⁸ of itself: the length of 10 m to half a
+/// micrometre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Course {
     /// Line or arc.
@@ -36,11 +39,11 @@ pub struct Course {
     /// Where it ends, mm.
     pub to: Point,
     /// How long it is, mm; 0 for a dot.
-    pub length_mm: f64,
+    pub length_mm: f32,
     /// The pen on it.
     pub pen: Pen,
     /// Speed that was asked for, mm/s; corners and curves make it slower.
-    pub feed_mm_s: f64,
+    pub feed_mm_s: f32,
     /// Power of the laser at that speed, in 65535ths.
     pub laser_power: u16,
 }
@@ -51,15 +54,15 @@ pub struct Course {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Phase {
     /// How long it lasts, s.
-    pub duration_s: f64,
+    pub duration_s: f32,
     /// Where on the course it begins, mm from its start.
-    pub from_mm: f64,
+    pub from_mm: f32,
     /// Speed at its start, mm/s.
-    pub speed_mm_s: f64,
+    pub speed_mm_s: f32,
     /// Acceleration at its start, mm/s².
-    pub accel_mm_s2: f64,
+    pub accel_mm_s2: f32,
     /// Jerk, mm/s³.
-    pub jerk_mm_s3: f64,
+    pub jerk_mm_s3: f32,
 }
 
 impl Phase {
@@ -73,25 +76,27 @@ impl Phase {
     /// ```
     #[must_use]
     pub fn at(&self, time_s: f64) -> crate::ProfilePoint {
-        self.at_with::<super::AllModes>(time_s)
-    }
-
-    /// The same, of a planner with these modes: without S-curves there is no jerk.
-    pub(crate) fn at_with<M: Modes>(&self, time_s: f64) -> crate::ProfilePoint {
-        let Self { from_mm, speed_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j, .. } = *self;
+        let [from_mm, v, a, j] =
+            [self.from_mm, self.speed_mm_s, self.accel_mm_s2, self.jerk_mm_s3].map(f64::from);
         let t = time_s;
-        if !M::ALL {
-            return crate::ProfilePoint {
-                distance_mm: from_mm + t * (v + t * (a / 2.0)),
-                speed_mm_s: v + t * a,
-                accel_mm_s2: a,
-            };
-        }
         crate::ProfilePoint {
             distance_mm: from_mm + t * (v + t * (a / 2.0 + t * j / 6.0)),
             speed_mm_s: v + t * (a + t * j / 2.0),
             accel_mm_s2: a + t * j,
         }
+    }
+
+    /// How far it has come after `time_s`, mm, of a planner with these modes: without S-curves there is no jerk.
+    pub(crate) fn way_mm<M: Modes>(&self, time_s: f32) -> f32 {
+        let Self { speed_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j, .. } = *self;
+        let t = time_s;
+        t * (v + t * (0.5 * a + if M::ALL { t * j / 6.0 } else { 0.0 }))
+    }
+
+    /// The speed then, mm/s.
+    pub(crate) fn speed_at<M: Modes>(&self, time_s: f32) -> f32 {
+        let Self { speed_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j, .. } = *self;
+        v + time_s * (a + if M::ALL { 0.5 * time_s * j } else { 0.0 })
     }
 }
 

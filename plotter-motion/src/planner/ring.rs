@@ -1,8 +1,9 @@
 //! [`Ring`]: the blocks that are known ahead, and the speeds between them.
 
-use super::block::{Block, single};
+use super::block::Block;
 use super::limits::{Limits, Shares};
-use crate::extremes::{greater, smaller};
+use crate::extremes::{greatest, least};
+use crate::geom::single;
 
 /// The blocks that are known ahead.
 ///
@@ -102,7 +103,7 @@ impl<const N: usize> Ring<N> {
     /// Other shares of the speeds that were asked for hold. `before2` is the square of the greatest speed on what comes before
     /// the head, `forced2` that with which the head is entered however hard the machine brakes from now on. Gives the
     /// square of the greatest speed on the last block.
-    pub(super) fn rescale(&mut self, shares: &Shares, limits: &Limits, before2: f32, forced2: f64) -> f32 {
+    pub(super) fn rescale(&mut self, shares: &Shares, limits: &Limits, before2: f32, forced2: f32) -> f32 {
         let (mut before2, mut forced2) = (before2, forced2);
         for index in 0..self.len {
             let Some(block) = self.get_mut(index) else { continue };
@@ -110,9 +111,9 @@ impl<const N: usize> Ring<N> {
                 block.cruise2 = block.wish(limits).cruise2(shares, limits);
                 let most2 = least(block.corner2, least(before2, block.cruise2));
                 // What can no longer be avoided was allowed before, and is no corner's business.
-                block.max_entry2 = if block.corner2 > 0.0 { most2.max(single(forced2)) } else { 0.0 };
+                block.max_entry2 = if block.corner2 > 0.0 { greatest(most2, forced2) } else { 0.0 };
                 before2 = block.cruise2;
-                forced2 = greater(forced2 - 2.0 * limits.accel() * block.length(), 0.0);
+                forced2 = greatest(forced2 - 2.0 * limits.accel * block.length(), 0.0);
             } else {
                 forced2 = 0.0;
             }
@@ -131,31 +132,26 @@ impl<const N: usize> Ring<N> {
     }
 
     /// Plans anew with a head that is entered with no more than this square of a speed; gives the one with which it is.
-    pub(super) fn enter_at_most(&mut self, most2: f64, twice_accel: f32) -> f64 {
+    pub(super) fn enter_at_most(&mut self, most2: f32, twice_accel: f32) -> f32 {
         // What can be braked from within the blocks known, backwards.
         let mut entry2 = 0.0_f32;
         for index in (0..self.len).rev() {
             let Some(block) = self.get(index) else { continue };
             entry2 = least(block.max_entry2, sum_down(entry2, reach2(block, twice_accel)));
         }
-        let entry2 = least(entry2, narrow(most2));
+        let entry2 = least(entry2, most2);
         if let Some(head) = self.get_mut(0) {
             head.entry2 = entry2;
         }
         self.planned = 0;
         self.plan(twice_accel);
-        self.get(0).map_or(0.0, |head| f64::from(head.entry2))
+        self.get(0).map_or(0.0, |head| head.entry2)
     }
 }
 
 /// How much the square of the speed can change along a block.
 fn reach2(block: &Block, twice_accel: f32) -> f32 {
-    if block.is_path() { twice_accel * block.length_single() } else { 0.0 }
-}
-
-/// The smaller of two numbers that are none of them NaN: in hardware, where `f32::min` is a call.
-pub(super) fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
+    if block.is_path() { twice_accel * block.length() } else { 0.0 }
 }
 
 /// The sum of two squares of speeds, rounded down: what the rounding added is found without error.
@@ -168,9 +164,8 @@ fn sum_down(a: f32, b: f32) -> f32 {
     if error < 0.0 { sum.next_down() } else { sum }
 }
 
-/// A square of a speed as a block keeps it: rounded down, so that no limit is exceeded by the rounding.
+/// A limit as the look-ahead keeps it: rounded down, so that no limit is exceeded by the rounding.
 pub(super) fn narrow(value: f64) -> f32 {
-    #[expect(clippy::cast_possible_truncation, reason = "rounded down below")]
-    let rounded = smaller(value, f64::from(f32::MAX)) as f32;
-    if f64::from(rounded) > value { rounded.next_down().max(0.0) } else { rounded }
+    let rounded = single(value);
+    if f64::from(rounded) > value { greatest(rounded.next_down(), 0.0) } else { rounded }
 }

@@ -6,10 +6,12 @@
 //! late as it must, whatever the lengths of the blocks.
 
 use super::Phase;
-use super::ramps::LONGEST_S;
 use super::ring::Ring;
+use crate::geom::single;
 use crate::{MotionLimits, SCurve};
 
+/// Longest phase, s.
+const LONGEST_S: f64 = 3.0 / 64.0;
 /// Parts of the time from no acceleration to the greatest, for each of which a jerk is chosen.
 const PARTS: f64 = 32.0;
 /// Shortest part, s: with great jerks the motion is nearly a trapezoid, and finer parts would only be more.
@@ -160,7 +162,7 @@ impl<const N: usize> Ahead<N> {
                 *place = (way_mm, most);
                 ahead.count += 1;
             }
-            way_mm += next.map_or(0.0, |block| block.length());
+            way_mm += next.map_or(0.0, |block| f64::from(block.length()));
             if most <= 0.0 || way_mm > farthest_mm + rest_mm {
                 break;
             }
@@ -279,7 +281,7 @@ impl SCurveState {
             return None;
         }
         let limits = Limits { accel: accel_mm_s2, jerk: jerk_mm_s3 };
-        let length_mm = ring.get(0).map_or(0.0, |head| head.length());
+        let length_mm = ring.get(0).map_or(0.0, |head| f64::from(head.length()));
         loop {
             if hold && (self.taken > 0 || self.taken_s > 0.0) {
                 // What has not been taken of what was chosen is not wanted any more.
@@ -350,11 +352,11 @@ impl SCurveState {
 
     fn take(&mut self, jerk: f64, time_s: f64) -> Phase {
         let phase = Phase {
-            duration_s: time_s,
-            from_mm: self.done_mm,
-            speed_mm_s: self.state.speed,
-            accel_mm_s2: self.state.accel,
-            jerk_mm_s3: jerk,
+            duration_s: single(time_s),
+            from_mm: single(self.done_mm),
+            speed_mm_s: single(self.state.speed),
+            accel_mm_s2: single(self.state.accel),
+            jerk_mm_s3: single(jerk),
         };
         let (state, way_mm) = self.state.after(jerk, time_s);
         self.state = State { speed: state.speed.max(0.0), ..state };

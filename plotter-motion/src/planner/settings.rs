@@ -60,7 +60,8 @@ impl Default for PlannerSettings {
 const LIMITS: (f64, f64) = (1e-3, 1e7);
 /// Greatest jerk, mm/s³.
 const MOST_JERK: f64 = 1e12;
-/// Greatest tolerance, mm.
+/// Least and greatest tolerance, mm.
+const LEAST_TOLERANCE_MM: f64 = 1e-6;
 const MOST_TOLERANCE_MM: f64 = 1e3;
 
 impl PlannerSettings {
@@ -94,32 +95,35 @@ impl PlannerSettings {
     }
 
     /// Checks every number by itself, and whether these modes are built in.
-    pub(super) fn check<M: Modes>(&self) -> Result<(), PlanError> {
-        if self.path != self.path_of::<M>() {
+    pub(crate) const fn check<M: Modes>(&self) -> Result<(), PlanError> {
+        if !M::ALL && matches!(self.path, PathMode::Tolerance { .. }) {
             return Err(PlanError::Mode { quantity: "path" });
         }
-        if self.jerk_mm_s3 != self.jerk_of::<M>() {
+        if !M::ALL && self.jerk_mm_s3.is_some() {
             return Err(PlanError::Mode { quantity: "jerk_mm_s3" });
         }
         let (least, most) = LIMITS;
+        let jerk_mm_s3 = if let Some(jerk_mm_s3) = self.jerk_mm_s3 { jerk_mm_s3 } else { least };
+        let path_tolerance_mm = match self.path {
+            PathMode::Exact => LEAST_TOLERANCE_MM,
+            PathMode::Tolerance { path_tolerance_mm } => path_tolerance_mm,
+        };
         let checks = [
             ("speed_mm_s", self.speed_mm_s, least, most),
             ("travel_speed_mm_s", self.travel_speed_mm_s, least, most),
             ("accel_mm_s2", self.accel_mm_s2, least, most),
-            ("jerk_mm_s3", self.jerk_mm_s3.unwrap_or(least), least, MOST_JERK),
+            ("jerk_mm_s3", jerk_mm_s3, least, MOST_JERK),
             ("junction_deviation_mm", self.junction_deviation_mm, 0.0, MOST_TOLERANCE_MM),
             ("resolution_mm", self.resolution_mm, 0.0, MOST_TOLERANCE_MM),
+            ("path_tolerance_mm", path_tolerance_mm, LEAST_TOLERANCE_MM, MOST_TOLERANCE_MM),
         ];
-        let tolerance = match self.path {
-            PathMode::Exact => None,
-            PathMode::Tolerance { path_tolerance_mm } => {
-                Some(("path_tolerance_mm", path_tolerance_mm, 1e-6, MOST_TOLERANCE_MM))
-            }
-        };
-        for (quantity, value, least, most) in checks.into_iter().chain(tolerance) {
-            if !(least..=most).contains(&value) {
+        let mut rest = checks.as_slice();
+        while let [(quantity, value, least, most), after @ ..] = rest {
+            let (value, least, most) = (*value, *least, *most);
+            if !(value >= least && value <= most) {
                 return Err(PlanError::Setting { quantity, value, least, most });
             }
+            rest = after;
         }
         Ok(())
     }

@@ -2,9 +2,11 @@
 
 use super::slice::{FRACTION_BITS, fixed};
 use crate::chords::chord_count;
-use crate::extremes::greater;
+use crate::extremes::greatest;
+use crate::geom::single;
 use crate::kinematics::Kinematics;
 use crate::planner::Modes;
+use crate::root::root;
 use crate::turn::sin_cos;
 use crate::{Course, Point, Shape, StepPoint, Vec2};
 
@@ -26,22 +28,23 @@ pub(super) struct Chords {
 
 impl Chords {
     /// `tolerance_mm`: how far a chord may be from the course.
-    pub(super) fn new<M: Modes>(course: &Course, from: Point, tolerance_mm: f64) -> Self {
+    pub(super) fn new<M: Modes>(course: &Course, from: &Point, tolerance_mm: f32) -> Self {
         let count = match course.shape {
             Shape::Line => 1,
             // A planner with such modes gives none.
             Shape::Spiral { .. } if !M::ALL => 1,
             Shape::Arc { centre, sweep_rad } => {
-                let radius_mm = greater((from - centre).length_near(), (course.to - centre).length_near());
+                let radius_mm =
+                    greatest(centre.way_to(from).length_near(), centre.way_to(&course.to).length_near());
                 chord_count(radius_mm, sweep_rad, tolerance_mm)
             }
             Shape::Spiral { pole, sweep_rad, growth } => {
                 // Its radius of curvature is greater than the distance from the pole.
-                let farther_mm = (from - pole).length().max((course.to - pole).length());
-                chord_count(farther_mm * libm::sqrt(1.0 + growth * growth), sweep_rad, tolerance_mm)
+                let farther_mm = pole.way_to(from).length_near().max(pole.way_to(&course.to).length_near());
+                chord_count(farther_mm * root(1.0 + growth * growth), sweep_rad, tolerance_mm)
             }
         };
-        Self { from, count, next: 0 }
+        Self { from: *from, count, next: 0 }
     }
 
     /// The next chord of the same course.
@@ -54,32 +57,85 @@ impl Chords {
         let (place, way_mm) = if self.next == self.count {
             (course.to, course.length_mm)
         } else {
-            self.place::<M>(course, f64::from(self.next) / f64::from(self.count))
+            self.place::<M>(course, share(self.next, self.count))
         };
         Some(Chord { to: kinematics.steps_at(place), end: fixed(way_mm, FRACTION_BITS) })
     }
 
     /// The place at a share of the angle, and how far along it is.
-    fn place<M: Modes>(&self, course: &Course, share: f64) -> (Point, f64) {
+    fn place<M: Modes>(&self, course: &Course, share: f32) -> (Point, f32) {
         let Course { shape, to, length_mm, .. } = *course;
         match shape {
             Shape::Spiral { .. } if !M::ALL => (to, length_mm),
-            Shape::Line => (self.from.lerp(to, share), length_mm * share),
+            // It is one chord.
+            Shape::Line => (to, length_mm),
             Shape::Arc { centre, sweep_rad } => {
-                let out = self.from - centre;
-                let (begin_mm, end_mm) = (out.length_near(), (to - centre).length_near());
-                let growth = if begin_mm > 0.0 { end_mm / begin_mm - 1.0 } else { 0.0 };
-                let radius = 1.0 + growth * share;
-                let (sin, cos) = sin_cos(sweep_rad * share);
-                let turned = Vec2::new(out.x * cos - out.y * sin, out.x * sin + out.y * cos);
-                (centre + turned * radius, length_mm * share)
+                // All from where it begins, so that what rounding leaves is small against the way, not against the radius:
+                // cos φ − 1 = −2 sin²(φ/2), sin φ = 2 sin(φ/2) cos(φ/2); and of two radii b − a = (b² − a²) / (b + a).
+                let (out, end) = (centre.way_to(&self.from), centre.way_to(&to));
+                let (begin_mm, end_mm) = (out.length_near(), end.length_near());
+                let growth = if begin_mm > 0.0 {
+                    self.from.way_to(&to).dot(out.plus(end)) / (begin_mm * (begin_mm + end_mm))
+                } else {
+                    0.0
+                };
+                let (sin, cos) = sin_cos(0.5 * sweep_rad * share);
+                let wider = growth * share;
+                let (along, across) =
+                    (wider - 2.0 * sin * sin * (1.0 + wider), 2.0 * sin * cos * (1.0 + wider));
+                let way = out.times(along).plus(out.perpendicular().times(across));
+                (self.from.after(way), length_mm * share)
             }
             Shape::Spiral { pole, sweep_rad, growth } => {
                 let out: Vec2 = self.from - pole;
+                let [sweep_rad, growth, share] = [sweep_rad, growth, share].map(f64::from);
                 let angle_rad = sweep_rad * share;
                 let grown = libm::exp(growth * angle_rad.abs());
                 let all = libm::exp(growth * sweep_rad.abs());
-                (pole + out.rotated(angle_rad) * grown, length_mm * (grown - 1.0) / (all - 1.0))
+                let way = single((grown - 1.0) / (all - 1.0));
+                (pole + out.rotated(angle_rad) * grown, length_mm * way)
+            }
+        }
+    }
+}
+
+/// So many of so many, as a share.
+#[expect(clippy::cast_precision_loss, reason = "numbers of 17 bits")]
+fn share(part: u32, whole: u32) -> f32 {
+    part as f32 / whole as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::{Cartesian, MotorScale};
+    use crate::planner::AllModes;
+
+    #[test]
+    fn chords_are_as_near_to_a_flat_arc_as_to_a_round_one() {
+        /// Half of a step of 400 steps/mm.
+        const NEAR_MM: f64 = 1.25e-3;
+        let motor = MotorScale { steps_per_mm: 1e6, inverted: false };
+        let machine = Cartesian::new(motor, motor).unwrap();
+        for (radius_mm, way_mm) in [(10.0, 50.0), (1e3, 900.0), (1e5, 900.0), (1e7, 900.0)] {
+            let centre = Point::new(200.0, 100.0 - radius_mm);
+            let sweep_rad: f64 = way_mm / radius_mm;
+            let from = Point::new(200.0, 100.0);
+            let at = |share: f64| {
+                let (sin, cos) = ((sweep_rad * share).sin(), (0.5 * sweep_rad * share).sin());
+                // As above, but for the last bits.
+                from + Vec2::new(-radius_mm * sin, -2.0 * radius_mm * cos * cos)
+            };
+            let to = at(1.0);
+            let shape = Shape::Arc { centre, sweep_rad: single(sweep_rad) };
+            let course = Course { shape, to, length_mm: single(way_mm), ..Course::default() };
+            let mut chords = Chords::new::<AllModes>(&course, &from, 1e-3);
+            let count = f64::from(chords.count);
+            for index in 1..=chords.count {
+                let chord = chords.next::<AllModes>(&course, &machine).unwrap();
+                let place = Point::new(f64::from(chord.to.x) / 1e6, f64::from(chord.to.y) / 1e6);
+                let off_mm = place.distance(at(f64::from(index) / count));
+                assert!(off_mm < 0.2 * NEAR_MM, "radius {radius_mm}: {off_mm} mm");
             }
         }
     }

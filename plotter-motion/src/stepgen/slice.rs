@@ -1,9 +1,7 @@
 //! [`Slice`]: a short time of a phase in whole numbers.
 
 use crate::Phase;
-use crate::extremes::{greater, smaller};
 use crate::planner::Modes;
-use crate::whole::{float, nearest_even, whole};
 
 /// Bits of the fraction of a distance in mm.
 pub(super) const FRACTION_BITS: u32 = 32;
@@ -11,8 +9,11 @@ pub(super) const FRACTION_BITS: u32 = 32;
 const SPEED_BITS: u32 = 52;
 const ACCEL_BITS: u32 = 72;
 const JERK_BITS: u32 = 84;
+/// Parts of a tick, and their bits.
+const PARTS: f32 = 4_294_967_296.0;
+pub(super) const PART_BITS: u32 = 32;
 /// Longest slice, ticks: with it no product leaves 128 bits, and what the roundings make stays below 10⁻⁹ mm.
-const LONGEST_TICKS: i64 = 1 << 20;
+const LONGEST_TICKS: i64 = (1 << 20) - 1;
 /// A guess that is farther off than this is refined, ticks.
 const NEAR_TICKS: i64 = 4;
 /// Slowest speed at which Newton's method is trusted without a bracket: 0.1 mm/s at a clock of 1 MHz.
@@ -40,38 +41,44 @@ pub(super) struct Slice {
 }
 
 impl Slice {
-    /// The slice of `phase` from `time_ticks` after its start on. The phase starts `offset_ticks` (0 to 1) after the tick
-    /// `phase_base`. Gives the ticks that the slice lasts, too.
+    /// The first slice of `phase`, which starts a part of a tick after `tick`, in 2^32ths, and ends in the tick `ticks` after that.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn new<M: Modes>(
         phase: &Phase,
-        clock_hz: f64,
-        phase_base: u64,
-        offset_ticks: f64,
-        time_ticks: f64,
-    ) -> (Self, f64) {
-        let duration_ticks = phase.duration_s * clock_hz;
-        let rest_ticks = greater(duration_ticks - time_ticks, 0.0);
-        // The slice's first tick is the last one that is not after its begin.
-        let begin = offset_ticks + time_ticks;
-        let first = whole(begin);
-        let lasts_ticks = smaller(rest_ticks, float(LONGEST_TICKS) - 1.0);
-        let at = phase.at_with::<M>((float(first) - offset_ticks) / clock_hz);
-        let per_tick = 1.0 / clock_hz;
-        let base = phase_base.saturating_add_signed(first);
-        let last = whole(begin - float(first) + lasts_ticks);
-        let slice = Self {
-            base,
-            last,
-            start: fixed(at.distance_mm, FRACTION_BITS),
-            speed: fixed(at.speed_mm_s * per_tick, SPEED_BITS),
-            half_accel: fixed(at.accel_mm_s2 * per_tick * per_tick / 2.0, ACCEL_BITS),
-            sixth_jerk: if M::ALL {
-                fixed(phase.jerk_mm_s3 * per_tick * per_tick * per_tick / 6.0, JERK_BITS)
-            } else {
-                0
-            },
+        seconds_per_tick: f32,
+        (tick, part): (u64, u32),
+        ticks: i64,
+    ) -> Self {
+        let dt = seconds_per_tick;
+        #[expect(clippy::cast_precision_loss, reason = "a 2^24th of a tick is enough")]
+        let t = -(part as f32 / PARTS) * dt;
+        let accel = phase.accel_mm_s2 + if M::ALL { t * phase.jerk_mm_s3 } else { 0.0 };
+        Self {
+            base: tick,
+            last: ticks.min(LONGEST_TICKS),
+            start: fixed(phase.from_mm, FRACTION_BITS)
+                .saturating_add(fixed(phase.way_mm::<M>(t), FRACTION_BITS)),
+            speed: fixed(phase.speed_at::<M>(t) * dt, SPEED_BITS),
+            half_accel: fixed(accel * dt * dt * 0.5, ACCEL_BITS),
+            sixth_jerk: if M::ALL { fixed(phase.jerk_mm_s3 * dt * dt * dt / 6.0, JERK_BITS) } else { 0 },
+        }
+    }
+
+    /// The slice after this one, of a phase that goes on for so many ticks from here.
+    pub(super) fn following<M: Modes>(&self, ticks: i64) -> Self {
+        let thrice = if M::ALL {
+            product(self.sixth_jerk.saturating_mul(3), self.last, JERK_BITS - ACCEL_BITS)
+        } else {
+            0
         };
-        (slice, lasts_ticks)
+        Self {
+            base: self.base.saturating_add_signed(self.last),
+            last: ticks.min(LONGEST_TICKS),
+            start: self.distance::<M>(self.last),
+            speed: self.speed::<M>(self.last),
+            half_accel: self.half_accel.saturating_add(thrice),
+            ..*self
+        }
     }
 
     /// Distance along the course at a tick, 32 bits of fraction.
@@ -153,19 +160,40 @@ fn product(number: i64, ticks: i64, bits: u32) -> i64 {
     shifted
 }
 
-/// To the nearest with so many bits of fraction; saturates.
-pub(super) fn fixed(value: f64, bits: u32) -> i64 {
-    nearest_even(value * power_of_two(bits))
+/// A time in 2^32ths of a tick, which is cut off at 2^31 ticks: half an hour of microseconds.
+pub(super) fn parts_of(duration_s: f32, clock_hz: u32) -> i64 {
+    times(duration_s, clock_hz, PART_BITS)
 }
 
-/// 2^bits, exactly.
-const fn power_of_two(bits: u32) -> f64 {
-    const BIAS: u64 = 1023;
-    f64::from_bits((BIAS + bits as u64) << 52)
+/// As a whole number with so many bits of fraction, from 0 to 90: cut off below the last of them, saturating.
+pub(super) fn fixed(value: f32, bits: u32) -> i64 {
+    times(value, 1, bits)
+}
+
+/// So many times the value, as [`fixed`].
+#[cfg_attr(target_os = "none", inline(never))]
+fn times(value: f32, factor: u32, bits: u32) -> i64 {
+    /// Exponent of the last bit of the least number, with its sign.
+    const LEAST: u32 = 149;
+    const MANTISSA: u32 = 0x7f_ffff;
+    let raw = value.to_bits();
+    let (exponent, mantissa) = (raw >> 23 & 0xff, raw & MANTISSA);
+    let (exponent, mantissa) =
+        if exponent == 0 { (1, mantissa) } else { (exponent, mantissa | (MANTISSA + 1)) };
+    // It is product · 2^(exponent − 1 − LEAST).
+    let product = u64::from(mantissa) * u64::from(factor);
+    let up = exponent + bits;
+    let magnitude = match up.checked_sub(LEAST + 1) {
+        Some(up) if up < product.leading_zeros() => product << up,
+        Some(_) => u64::MAX,
+        None => product.checked_shr(LEAST + 1 - up).unwrap_or(0),
+    };
+    let magnitude = i64::try_from(magnitude).unwrap_or(i64::MAX);
+    if value < 0.0 { -magnitude } else { magnitude }
 }
 
 /// A speed in mm a tick as a slice has it.
-pub(super) fn speed_fixed(mm_per_tick: f64) -> i64 {
+pub(super) fn speed_fixed(mm_per_tick: f32) -> i64 {
     fixed(mm_per_tick, SPEED_BITS)
 }
 
@@ -174,17 +202,18 @@ mod tests {
     use super::*;
     use crate::planner::AllModes;
 
-    const CLOCK_HZ: f64 = 1e6;
+    const SECONDS_PER_TICK: f32 = 1e-6;
 
-    fn start(phase: Phase) -> Slice {
-        Slice::new::<AllModes>(&phase, CLOCK_HZ, 1000, 0.25, 0.0).0
+    fn start(phase: Phase, ticks: i64) -> Slice {
+        // A quarter of a tick later than the clock's.
+        Slice::new::<AllModes>(&phase, SECONDS_PER_TICK, (1000, 1 << 30), ticks)
     }
 
     #[test]
     fn speeding_up_from_rest_reaches_a_millimetre_when_it_should() {
         // t = sqrt(2 s / a) = sqrt(2 / 1000) s = 44721.36 us, and a quarter of a tick later by the clock
         let phase = Phase { duration_s: 0.1, accel_mm_s2: 1000.0, ..Phase::default() };
-        let slice = start(phase);
+        let slice = start(phase, 100_000);
         let millimetre = 1 << FRACTION_BITS;
         assert_eq!(slice.tick_of::<AllModes>(millimetre, 0, 0), Some(44_722));
         assert_eq!(slice.tick_of::<AllModes>(millimetre, 0, 44_700), Some(44_722));
@@ -194,12 +223,42 @@ mod tests {
     #[test]
     fn a_steady_speed_steps_at_the_nearest_tick() {
         let phase = Phase { duration_s: 1.0, speed_mm_s: 30.0, ..Phase::default() };
-        let slice = start(phase);
+        let slice = start(phase, 1_000_000);
         for step in 1..100_i64 {
             // every 0.01 mm: every 333.33 us
             let tick = slice.tick_of::<AllModes>(fixed(0.01, FRACTION_BITS) * step, 0, 333 * step).unwrap();
-            let meant = float(step) * 1e4 / 30.0 + 0.25;
-            assert!((float(tick) - meant).abs() <= 0.51, "step {step}: {tick} for {meant}");
+            let meant = step as f64 * 1e4 / 30.0 + 0.25;
+            assert!((tick as f64 - meant).abs() <= 0.51, "step {step}: {tick} for {meant}");
         }
+    }
+
+    #[test]
+    fn a_float_becomes_the_whole_number_that_it_is() {
+        for value in [0.0, 1.0, -1.0, 0.1, 123.456, -1e-3, 3e-5, 1e6, f32::MIN_POSITIVE, 1e-42] {
+            for bits in [0, 32, 40, 52, 72, 84] {
+                let exact = f64::from(value) * 2.0_f64.powi(i32::try_from(bits).unwrap());
+                assert_eq!(
+                    fixed(value, bits),
+                    crate::whole::whole(exact).max(-i64::MAX),
+                    "{value} with {bits} bits"
+                );
+            }
+        }
+        for (value, end) in [(f32::INFINITY, i64::MAX), (f32::NEG_INFINITY, -i64::MAX), (1e30, i64::MAX)] {
+            assert_eq!(fixed(value, 32), end);
+        }
+    }
+
+    #[test]
+    fn slices_follow_one_another_without_a_gap() {
+        let phase =
+            Phase { duration_s: 5.0, speed_mm_s: 1.0, accel_mm_s2: 2.0, jerk_mm_s3: 3.0, ..Phase::default() };
+        let first = start(phase, 5_000_000);
+        let second = first.following::<AllModes>(5_000_000 - first.last);
+        assert_eq!(second.base, 1000 + u64::try_from(first.last).unwrap());
+        assert_eq!(second.distance::<AllModes>(0), first.distance::<AllModes>(first.last));
+        // 3 s: 3 + 9 + 13.5 mm, a quarter of a tick earlier
+        let at = second.distance::<AllModes>(3_000_000 - first.last);
+        assert!((at as f64 / 2.0_f64.powi(32) - 25.5).abs() < 1e-5);
     }
 }

@@ -1,30 +1,34 @@
 //! [`StepGen`]: actions in, timed events out.
 
 use super::chord::Chords;
-use super::slice::{Slice, speed_fixed};
-use crate::extremes::{greater, smaller};
+use super::slice::{PART_BITS, Slice, parts_of, speed_fixed};
+use crate::extremes::greatest;
+use crate::geom::single;
 use crate::kinematics::Kinematics;
 use crate::planner::{AllModes, Modes};
-use crate::whole::{float, whole};
 use crate::{Action, Bresenham, Course, Machine, Pen, Phase, Point, StepPair, StepPoint};
 use core::fmt;
 use core::marker::PhantomData;
 use core::time::Duration;
 
 /// Farthest that a chord may be from its course, steps.
-const CHORD_STEPS: f64 = 0.25;
+const CHORD_STEPS: f32 = 0.25;
 /// A phase that ends nearer than this to the end of its course ends there, mm.
-const LATE_MM: f64 = 2e-6;
-/// Longest pause: 2^62 ticks, some hundred thousand years.
-const MOST_TICKS: f64 = (1_u64 << 62) as f64;
+const LATE_MM: f32 = 2e-6;
+/// The same as a share of the course, which is what rounding makes of a long one.
+const LATE_SHARE: f32 = 2.5e-7;
+/// Nanoseconds in a second.
+const NANOS: u64 = 1_000_000_000;
+/// 2^32 / 10⁹, with 31 bits of fraction.
+const PARTS_PER_NANO: u64 = 9_223_372_037;
 /// What ends slower ends at rest, mm/s.
-const STANDSTILL_MM_S: f64 = 1e-3;
+const STANDSTILL_MM_S: f32 = 1e-3;
 
 /// How steps are timed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepGenSettings {
     /// Ticks of the clock in a second: 1000 to 10⁹. The default is a microsecond.
-    pub clock_hz: f64,
+    pub clock_hz: u32,
     /// How long the machine stands after the pen has been lowered or lifted.
     pub pen_settle: Duration,
     /// Whether a laser takes the place of the pen: it is on while it moves, and its power follows the speed.
@@ -34,7 +38,7 @@ pub struct StepGenSettings {
 impl Default for StepGenSettings {
     /// Microseconds, and the 200 ms that the documented machine's pen needs: with less, dots get tails.
     fn default() -> Self {
-        Self { clock_hz: 1e6, pen_settle: Duration::from_millis(200), laser: false }
+        Self { clock_hz: 1_000_000, pen_settle: Duration::from_millis(200), laser: false }
     }
 }
 
@@ -97,11 +101,10 @@ impl core::error::Error for Busy {}
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Running {
     phase: Phase,
-    /// The tick before its start, and how much later it starts, 0 to 1.
-    base: u64,
-    offset_ticks: f64,
-    /// How much of it the slices up to now span, ticks.
-    sliced_ticks: f64,
+    /// The tick in which it ends, and the part of that, in 2^32ths.
+    end: (u64, u32),
+    /// Ticks to its end from the start of the slice.
+    left: i64,
     slice: Slice,
     /// Ticks of the slice at which the last step was, and until the next one is guessed to be due, and by how much that changes.
     at: i64,
@@ -138,10 +141,11 @@ pub struct StepGen<K, M: Modes = AllModes> {
     modes: PhantomData<M>,
     kinematics: K,
     settings: StepGenSettings,
-    chord_tolerance_mm: f64,
-    /// The end of the action pushed last: whole ticks, and the fraction of one.
+    chord_tolerance_mm: f32,
+    seconds_per_tick: f32,
+    /// The end of the action pushed last: whole ticks, and the part of one, in 2^32ths.
     tick: u64,
-    fraction: f64,
+    part: u32,
     /// Where the path and the motors are.
     at: Point,
     pen: Pen,
@@ -185,10 +189,12 @@ impl Due {
         if count == 0 {
             return None;
         }
-        let way = to.saturating_sub(from).max(0);
+        // Neither is below 0.
+        let way = (to - from).max(0);
         let (space, space_rest) = (way / count, way % count);
-        let (half, half_rest) = (way / (2 * count), way % (2 * count));
-        Some(Self { at: from + half, rest: half_rest / 2, space, space_rest, steps: count, left: steps })
+        // Half a space is half of it and half of what an odd one leaves.
+        let (half, half_rest) = (space >> 1, (space & 1) * count + space_rest);
+        Some(Self { at: from + half, rest: half_rest >> 1, space, space_rest, steps: count, left: steps })
     }
 
     fn advance(&mut self) -> bool {
@@ -215,19 +221,20 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     pub fn with_modes(kinematics: K, settings: StepGenSettings) -> Self {
         let scale = |x, y| {
             let motors = kinematics.motors_at(Point::new(x, y));
-            greater(libm::fabs(motors.x), libm::fabs(motors.y))
+            greatest(single(motors.x).abs(), single(motors.y).abs())
         };
-        let steps_per_mm = greater(scale(1.0, 0.0), scale(0.0, 1.0));
-        let clock_hz =
-            if settings.clock_hz.is_finite() { greater(smaller(settings.clock_hz, 1e9), 1e3) } else { 1e6 };
+        let steps_per_mm = greatest(scale(1.0, 0.0), scale(0.0, 1.0));
+        let clock_hz = settings.clock_hz.clamp(1_000, 1_000_000_000);
         let steps = kinematics.steps_at(Point::ORIGIN);
         Self {
             modes: PhantomData,
             kinematics,
             settings: StepGenSettings { clock_hz, ..settings },
             chord_tolerance_mm: CHORD_STEPS / steps_per_mm,
+            #[expect(clippy::cast_precision_loss, reason = "to the last bit")]
+            seconds_per_tick: 1.0 / clock_hz as f32,
             tick: 0,
-            fraction: 0.0,
+            part: 0,
             at: Point::ORIGIN,
             pen: Pen::Up,
             course: Course::default(),
@@ -336,7 +343,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
                 self.waiting = [Some(step), None];
                 return Some(TimedEvent { tick, event: MotorEvent::Laser(power) });
             }
-            if !running.next_slice::<M>(self.settings.clock_hz) {
+            if !running.next_slice::<M>() {
                 return self.end_phase();
             }
         }
@@ -384,17 +391,17 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     /// The phase is over.
     fn end_phase(&mut self) -> Option<TimedEvent> {
         let running = self.running.take()?;
-        let end = running.phase.at_with::<M>(running.phase.duration_s);
-        let ticks = running.offset_ticks + running.phase.duration_s * self.settings.clock_hz;
-        self.pass(running.base, ticks);
+        let Phase { duration_s, from_mm, .. } = running.phase;
+        (self.tick, self.part) = running.end;
         self.last_step = running.slice.base.saturating_add_signed(running.at);
         self.interval = running.interval;
-        if M::LASER && self.laser != 0 && end.speed_mm_s < STANDSTILL_MM_S {
+        if M::LASER && self.laser != 0 && running.phase.speed_at::<M>(duration_s) < STANDSTILL_MM_S {
             self.laser = 0;
             self.give(MotorEvent::Laser(0));
         }
         // What rounding has left of the course comes at its end.
-        self.late = end.distance_mm >= self.course.length_mm - LATE_MM;
+        let left_mm = self.course.length_mm - (from_mm + running.phase.way_mm::<M>(duration_s));
+        self.late = left_mm <= LATE_MM + LATE_SHARE * self.course.length_mm;
         self.next_event()
     }
 
@@ -415,16 +422,15 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         }
     }
 
-    /// The time is so many ticks after a tick.
-    fn pass(&mut self, from: u64, ticks: f64) {
-        let ticks = smaller(ticks, MOST_TICKS);
-        let whole_ticks = whole(ticks);
-        self.tick = from.saturating_add_signed(whole_ticks);
-        self.fraction = ticks - float(whole_ticks);
-    }
-
     fn wait(&mut self, duration: Duration) {
-        self.pass(self.tick, self.fraction + duration.as_secs_f64() * self.settings.clock_hz);
+        let clock_hz = u64::from(self.settings.clock_hz);
+        let nanos = u64::from(duration.subsec_nanos()) * clock_hz;
+        let (ticks, rest) = (nanos / NANOS, nanos % NANOS);
+        // rest · 2^32 / 10⁹
+        let parts = u64::from(self.part) + ((rest * PARTS_PER_NANO) >> 31);
+        let seconds = u64::from(u32::try_from(duration.as_secs()).unwrap_or(u32::MAX));
+        self.tick = self.tick.saturating_add(seconds * clock_hz + ticks + (parts >> PART_BITS));
+        self.part = low(parts);
     }
 
     fn put(&mut self, pen: Pen) {
@@ -438,9 +444,9 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     #[cfg_attr(target_os = "none", inline(never))]
     fn begin(&mut self, course: Course) {
         self.put(course.pen);
-        self.chords = Chords::new::<M>(&course, self.at, self.chord_tolerance_mm);
+        self.chords = Chords::new::<M>(&course, &self.at, self.chord_tolerance_mm);
         if M::LASER {
-            self.course_speed = speed_fixed(course.feed_mm_s / self.settings.clock_hz);
+            self.course_speed = speed_fixed(course.feed_mm_s * self.seconds_per_tick);
         }
         self.course = course;
         self.at = course.to;
@@ -451,14 +457,15 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     }
 
     fn run(&mut self, phase: Phase) {
-        let (slice, sliced_ticks) =
-            Slice::new::<M>(&phase, self.settings.clock_hz, self.tick, self.fraction, 0.0);
+        // To the end, from the tick in which it begins.
+        let parts = parts_of(phase.duration_s, self.settings.clock_hz).saturating_add(self.part.into());
+        let left = parts >> PART_BITS;
+        let slice = Slice::new::<M>(&phase, self.seconds_per_tick, (self.tick, self.part), left);
         let at = i64::try_from(self.tick.saturating_sub(self.last_step)).map_or(0, |since| -since);
         self.running = Some(Running {
             phase,
-            base: self.tick,
-            offset_ticks: self.fraction,
-            sliced_ticks,
+            end: (self.tick.saturating_add_signed(left), low(parts.cast_unsigned())),
+            left,
             slice,
             at,
             interval: self.interval,
@@ -481,16 +488,21 @@ impl Running {
     }
 
     /// Goes on with the next slice of the phase; says whether there is one.
-    fn next_slice<M: Modes>(&mut self, clock_hz: f64) -> bool {
-        if self.sliced_ticks >= self.phase.duration_s * clock_hz {
+    fn next_slice<M: Modes>(&mut self) -> bool {
+        let left = self.left - self.slice.last;
+        if left <= 0 {
             return false;
         }
-        let before = self.slice.base;
-        let (slice, ticks) =
-            Slice::new::<M>(&self.phase, clock_hz, self.base, self.offset_ticks, self.sliced_ticks);
-        self.slice = slice;
-        self.sliced_ticks += ticks;
-        self.at -= i64::try_from(slice.base.saturating_sub(before)).unwrap_or(i64::MAX);
+        self.left = left;
+        self.at -= self.slice.last;
+        self.slice = self.slice.following::<M>(self.left);
         true
     }
+}
+
+/// The lower half: what is less than a tick.
+fn low(parts: u64) -> u32 {
+    #[expect(clippy::cast_possible_truncation, reason = "that is meant")]
+    let low = parts as u32;
+    low
 }

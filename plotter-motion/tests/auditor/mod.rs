@@ -108,7 +108,7 @@ pub(crate) fn planned<const N: usize>(settings: PlannerSettings, ops: &[PlotOp])
             }
         }
         match planner.next_action() {
-            Some(Action::Phase(phase)) => time_s += phase.duration_s,
+            Some(Action::Phase(phase)) => time_s += f64::from(phase.duration_s),
             Some(Action::Course(_)) => courses += 1,
             Some(_) => {}
             None => return (time_s, courses),
@@ -198,7 +198,7 @@ impl Stretch {
 
     /// Length of way of a step, mm; on a line all are alike.
     fn step_mm(&self) -> f64 {
-        self.course.length_mm / f64::from(self.steps)
+        f64::from(self.course.length_mm) / f64::from(self.steps)
     }
 
     /// Speeds between the first two steps and between the last two, mm/s, if there are three.
@@ -230,9 +230,11 @@ impl Stretch {
         match self.course.shape {
             Shape::Line => (self.course.to - self.from, self.course.to - self.from),
             Shape::Arc { centre, sweep_rad } => {
+                let sweep_rad = f64::from(sweep_rad);
                 (along(self.from - centre, sweep_rad, 0.0), along(self.course.to - centre, sweep_rad, 0.0))
             }
             Shape::Spiral { pole, sweep_rad, growth } => {
+                let [sweep_rad, growth] = [sweep_rad, growth].map(f64::from);
                 (along(self.from - pole, sweep_rad, growth), along(self.course.to - pole, sweep_rad, growth))
             }
         }
@@ -251,7 +253,7 @@ fn allowed2(turn_rad: f64, shorter_mm: f64, settings: &PlannerSettings) -> f64 {
 pub(crate) fn audit<const N: usize>(settings: PlannerSettings, lens: Lens, ops: &[PlotOp]) -> Audit {
     let settle_s = lens.bin_s * (4 * lens.wide_window) as f64;
     let step_settings = StepGenSettings {
-        clock_hz: lens.clock_hz,
+        clock_hz: lens.clock_hz as u32,
         pen_settle: Duration::from_secs_f64(settle_s),
         laser: false,
     };
@@ -267,7 +269,7 @@ pub(crate) fn audit<const N: usize>(settings: PlannerSettings, lens: Lens, ops: 
         lens.steps_per_mm,
         ops,
         |action, _| match action {
-            Action::Phase(phase) => planned_s.set(planned_s.get() + phase.duration_s),
+            Action::Phase(phase) => planned_s.set(planned_s.get() + f64::from(phase.duration_s)),
             Action::Course(course) => {
                 let mut stretches = stretches.borrow_mut();
                 let from = stretches.last().map_or(Point::ORIGIN, |before| before.course.to);
@@ -314,7 +316,7 @@ fn curves(stretches: &[Stretch], settings: PlannerSettings, lens: Lens, seen: &m
         let (centre, factor) = match stretch.course.shape {
             Shape::Line => continue,
             Shape::Arc { centre, .. } => (centre, 1.0),
-            Shape::Spiral { pole, growth, .. } => (pole, libm::sqrt(1.0 + growth * growth)),
+            Shape::Spiral { pole, growth, .. } => (pole, libm::sqrt(1.0 + f64::from(growth * growth))),
         };
         let Some(speeds) = stretch.curve_speeds(lens) else { continue };
         for (place, (speed, way_mm)) in [stretch.from, stretch.course.to].into_iter().zip(speeds) {
@@ -356,7 +358,7 @@ fn corners(stretches: &[Stretch], settings: PlannerSettings, lens: Lens, seen: &
             bins.push((step.0 as f64 / lens.clock_hz / lens.bin_s) as usize);
         }
         let shorter_mm = before.course.length_mm.min(after.course.length_mm);
-        let allowed2 = allowed2(turn_rad, shorter_mm, &settings);
+        let allowed2 = allowed2(turn_rad, f64::from(shorter_mm), &settings);
         for at_corner2 in
             [before.corner2(1, settings, lens), after.corner2(0, settings, lens)].into_iter().flatten()
         {

@@ -7,11 +7,12 @@
 use core::time::Duration;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
+use plotter_firmware::board::plotter::SERVO_STEPS;
 use plotter_firmware::board::{self, Event, Notice, Wire};
-use plotter_firmware::machine::{LASER, PLOTTER, StepperPlotter};
+use plotter_firmware::machine::{CHECKED_PLOTTER, LASER, PLOTTER, StepperPlotter};
 use plotter_hal::a4988::Timing;
 use plotter_hal::{
-    A4988, EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo, PenServoSettings,
+    A4988, CheckedPenServo, EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo, PenServoSettings,
     StepperAxes, SwitchSettings,
 };
 use plotter_motion::firmware::stepper_plotter::SettingsError;
@@ -24,6 +25,13 @@ const LOOK: Duration = Duration::from_millis(1);
 const STANDSTILL: Duration = Duration::from_millis(20);
 /// By then the switches have shown what they are.
 const BUTTONS_KNOWN: Duration = Duration::from_millis(25);
+
+/// The servo of the pen, looked at by the compiler: one that cannot be right does not get this far.
+const PEN: CheckedPenServo =
+    match (PenServoSettings { settle: PLOTTER.pen_settle, ..PenServoSettings::DEFAULT }).checked(SERVO_STEPS) {
+        Ok(checked) => checked,
+        Err(_) => panic!("no servo can be driven with them"),
+    };
 
 /// Where the limit switches are.
 const ENDS: [(Axis, Direction); 4] = [
@@ -38,7 +46,7 @@ type Controller = Result<StepperPlotter, SettingsError>;
 /// The controller, where it stays. By itself, so that the stack is free again of what it takes to put it there.
 #[inline(never)]
 fn controller() -> Option<&'static mut StepperPlotter> {
-    singleton!(CELL: Controller = StepperPlotter::with_modes(PLOTTER))?.as_mut().ok()
+    singleton!(CELL: Controller = StepperPlotter::of(&CHECKED_PLOTTER))?.as_mut().ok()
 }
 
 #[entry]
@@ -56,8 +64,7 @@ fn main() -> ! {
     );
     // Off from here on, also where there is none.
     let mut laser = Laser::new(parts.laser, STANDSTILL);
-    let pen = PenServoSettings { settle: PLOTTER.pen_settle, ..PenServoSettings::default() };
-    let Ok(mut servo) = PenServo::new(parts.servo, pen) else { board::halt() };
+    let Ok(mut servo) = PenServo::of(parts.servo, PEN) else { board::halt() };
     let switch = SwitchSettings::default();
     let [x_min, x_max, y_min, y_max] = parts.limits.map(|pin| LimitSwitch::new(pin, switch));
     let mut limits = LimitSwitchGroup { x_min, x_max, y_min, y_max };

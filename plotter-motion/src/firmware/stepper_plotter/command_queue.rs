@@ -182,7 +182,7 @@ impl Packed {
             2 => Command::Plot(PlotOp::DrawArc { centre: Point::new(d, e), sweep_rad: f, to, feed_mm_s }),
             3 => Command::Plot(PlotOp::LaserPower { share: a }),
             4 => Command::Plot(PlotOp::Dwell {
-                duration: Duration::from_secs(a.to_bits()).saturating_add(Duration::from_nanos(b.to_bits())),
+                duration: Duration::new(a.to_bits(), u32::try_from(b.to_bits()).unwrap_or_default()),
             }),
             5 => Command::Plot(PlotOp::SelectPen { pen: low }),
             6 => Command::Plot(PlotOp::NewPage),

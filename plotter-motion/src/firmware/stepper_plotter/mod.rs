@@ -151,5 +151,5 @@ pub use plotter::StepperPlotter;
 pub use queue::Queue;
 pub use receive::{Host, Receive};
 pub use setting::{Setting, SettingProblem};
-pub use settings::{Dialect, SettingsError, StepperPlotterSettings, StoredSettings};
+pub use settings::{CheckedSettings, Dialect, SettingsError, StepperPlotterSettings, StoredSettings};
 pub use status::{Activity, Percents, Status};

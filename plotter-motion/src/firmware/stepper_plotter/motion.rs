@@ -5,16 +5,16 @@ mod by_hand;
 use super::homing_run::HomingRun;
 use super::play::{CLOCK_HZ, Play};
 use super::{
-    Activity, Command, Dialect, Link, Percents, Report, SettingsError, Signal, Status,
+    Activity, CheckedSettings, Command, Dialect, Link, Percents, Report, SettingsError, Signal, Status,
     StepperPlotterSettings, Stop, StoredSettings,
 };
-use crate::extremes::greater;
-use crate::kinematics::{Backlash, Cartesian, Kinematics};
+use crate::extremes::greatest;
+use crate::kinematics::{Cartesian, Kinematics};
 use crate::planner::{AllModes, Keep as _, Modes};
 use crate::seconds::has_come;
 use crate::{
-    Action, Axis, Beam, Blocked, Direction, LimitSwitches, MotorEvent, Pen, Phase, PlanError, Planner,
-    PlotOp, Point, Pulse, SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, TimedEvent,
+    Action, Axis, Beam, Blocked, Direction, LimitSwitches, MotorEvent, Pen, Phase, Planner, PlotOp, Point,
+    Pulse, SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, TimedEvent,
 };
 use core::time::Duration;
 
@@ -95,23 +95,22 @@ impl<M: Modes> Motion<M> {
     ///
     /// [`SettingsError`] for limits that no motion can be planned with, and for a mode that is not among them.
     pub fn with_modes(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
-        let cartesian = settings.cartesian().map_err(SettingsError::Scale)?;
-        if settings.laser && !M::LASER {
-            return Err(SettingsError::Planner(PlanError::Mode { quantity: "laser" }));
-        }
-        let mut planner = Planner::with_modes(settings.limits()).map_err(SettingsError::Planner)?;
+        Ok(Self::of(&settings.checked()?))
+    }
+
+    /// The same, with settings that have been looked at.
+    #[must_use]
+    pub fn of(checked: &CheckedSettings<M>) -> Self {
+        let settings = checked.settings();
+        let mut planner = Planner::of_checked(&checked.limits);
         darken(&mut planner);
-        let steps = step_gen(cartesian, &settings);
+        let steps = step_gen(settings);
         let mut play = M::Kept::<Play>::default();
-        match play.get_mut() {
-            Some(play) => *play = Play::new(&settings),
-            None if settings.backlash != Backlash::default() => {
-                return Err(SettingsError::Planner(PlanError::Mode { quantity: "backlash" }));
-            }
-            None => {}
+        if let Some(play) = play.get_mut() {
+            *play = Play::new(settings);
         }
-        Ok(Self {
-            settings,
+        Self {
+            settings: *settings,
             planner,
             steps,
             play,
@@ -133,7 +132,7 @@ impl<M: Modes> Motion<M> {
             pen_deg: settings.stored.pen_up_deg,
             beam: Beam::OFF,
             due: None,
-        })
+        }
     }
 
     /// The next step that is due by `now`, if there is one.
@@ -305,8 +304,8 @@ impl<M: Modes> Motion<M> {
             State::Ready => Activity::Idle,
         };
         let speed_mm_s = self.phase.map_or(0.0, |(began, phase)| {
-            let time_s = now.saturating_sub(began).as_secs_f64();
-            if time_s > phase.duration_s { 0.0 } else { greater(phase.at_with::<M>(time_s).speed_mm_s, 0.0) }
+            let time_s = now.saturating_sub(began).as_secs_f32();
+            if time_s > phase.duration_s { 0.0 } else { greatest(phase.speed_at::<M>(time_s), 0.0) }
         });
         Status {
             activity,
@@ -641,13 +640,14 @@ impl<M: Modes> Motion<M> {
 }
 
 /// What makes the steps of a machine.
-fn step_gen<M: Modes>(cartesian: Cartesian, settings: &StepperPlotterSettings) -> StepGen<Cartesian, M> {
+fn step_gen<M: Modes>(settings: &StepperPlotterSettings) -> StepGen<Cartesian, M> {
     // mDraw moves the servo itself, and the motion waits for that.
     let pen_settle = match settings.dialect {
         Dialect::MDraw => Duration::ZERO,
         Dialect::Grbl => settings.pen_settle,
     };
-    StepGen::with_modes(cartesian, StepGenSettings { clock_hz: CLOCK_HZ, pen_settle, laser: settings.laser })
+    let timing = StepGenSettings { clock_hz: CLOCK_HZ, pen_settle, laser: settings.laser };
+    StepGen::with_modes(settings.cartesian(), timing)
 }
 
 /// The laser has no power until it is told one.

@@ -5,7 +5,7 @@ use crate::kinematics::Backlash;
 use crate::{BacklashSteps, Pulse, StepPoint, TimedEvent};
 
 /// Ticks of the step generator in a second.
-pub(super) const CLOCK_HZ: f64 = 1e6;
+pub(super) const CLOCK_HZ: u32 = 1_000_000;
 
 /// Takes up the play of the axes, and knows at every step which flank of its gap a motor drives: so the place of the carriage is
 /// right also after a stop in the middle of a gap.
@@ -22,8 +22,7 @@ impl Play {
     pub(super) fn new(settings: &StepperPlotterSettings) -> Self {
         let most = settings.backlash;
         let start_hz = settings.home_x.start_hz.min(settings.home_y.start_hz).max(1);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates")]
-        let interval_ticks = libm::ceil(CLOCK_HZ / f64::from(start_hz)) as u64;
+        let interval_ticks = CLOCK_HZ.div_ceil(start_hz).into();
         let has_play = most != Backlash::default();
         Self { steps: has_play.then(|| BacklashSteps::new(most, interval_ticks)), most, gap: [0; 2] }
     }

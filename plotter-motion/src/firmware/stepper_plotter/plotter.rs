@@ -1,7 +1,8 @@
 //! [`StepperPlotter`]: both sides in one.
 
 use super::{
-    Host, Link, Motion, Receive, SettingsError, Status, Step, StepperPlotterSettings, StoredSettings,
+    CheckedSettings, Host, Link, Motion, Receive, SettingsError, Status, Step, StepperPlotterSettings,
+    StoredSettings,
 };
 use crate::planner::{AllModes, Modes};
 use crate::{Axis, Beam, Direction, Point, StepPoint};
@@ -52,8 +53,17 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     ///
     /// [`SettingsError`] for a language or a mode that is not among them, and as [`StepperPlotter::new`].
     pub fn with_modes(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
-        H::check(&settings)?;
-        Ok(Self { receive: H::new(settings), motion: Motion::with_modes(settings)?, link: Link::default() })
+        Self::of(&settings.checked()?)
+    }
+
+    /// The same, with settings that have been looked at.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] for a language that is not among them.
+    pub fn of(checked: &CheckedSettings<M>) -> Result<Self, SettingsError> {
+        H::check(checked.settings())?;
+        Ok(Self { receive: H::new(*checked.settings()), motion: Motion::of(checked), link: Link::default() })
     }
 
     /// Takes a byte from the host.

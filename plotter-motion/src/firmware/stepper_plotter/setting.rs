@@ -1,12 +1,13 @@
 //! [`Setting`]: one number of a machine's settings, as Grbl numbers them.
 
 use super::StepperPlotterSettings;
-use crate::extremes::greater;
+use crate::extremes::greatest;
+use crate::geom::single;
 use crate::whole::{is_whole, nearest, whole};
 use core::ops::RangeInclusive;
 
 /// Greatest rate of a motor, pulses/s: ten ticks of the clock a step.
-const MOST_HZ: f64 = 1e5;
+const MOST_HZ: f32 = 1e5;
 /// Sides of the area, mm: as they are kept.
 const SIDES_MM: RangeInclusive<f64> = 1.0..=65_535.0;
 
@@ -84,16 +85,17 @@ impl Setting {
         }
         let settings = self.applied(*settings);
         let StepperPlotterSettings { x_steps_per_mm, y_steps_per_mm, planner, home_x, home_y, .. } = settings;
-        let speed_mm_s = greater(planner.speed_mm_s, planner.travel_speed_mm_s);
+        let speed_mm_s = greatest(single(planner.speed_mm_s), single(planner.travel_speed_mm_s));
+        let steps_per_mm = greatest(single(x_steps_per_mm), single(y_steps_per_mm));
         let homing_hz = home_x.fast_hz.max(home_y.fast_hz).max(home_x.slow_hz).max(home_y.slow_hz);
-        if greater(speed_mm_s * greater(x_steps_per_mm, y_steps_per_mm), homing_hz.into()) > MOST_HZ {
+        if speed_mm_s * steps_per_mm > MOST_HZ || homing_hz > 100_000 {
             return Err(SettingProblem::StepRate);
         }
         Ok(settings)
     }
 
     /// The settings with this one changed, which has been checked.
-    pub(super) fn applied(self, mut settings: StepperPlotterSettings) -> StepperPlotterSettings {
+    fn applied(self, mut settings: StepperPlotterSettings) -> StepperPlotterSettings {
         let near = |value: f64| u32::try_from(nearest(value)).unwrap_or(u32::MAX);
         let whole = |value: f64| u32::try_from(whole(value)).unwrap_or(u32::MAX);
         let Self { number, value } = self;

@@ -1,14 +1,15 @@
 //! [`StepperPlotterSettings`]: what the controller has to know of its machine.
 
-use crate::extremes::{greater, smaller};
 use crate::gcode::PenConvention;
 use crate::kinematics::{Backlash, Cartesian, MotorScale, ScaleError};
+use crate::planner::{AllModes, Modes};
 use crate::{Axis, HomingAxis, Machine, PlanError, PlannerSettings, StepGenSettings};
 use core::fmt;
+use core::marker::PhantomData;
 use core::time::Duration;
 
 /// The number of a laser's full power, the same as [`PenConvention::GRBL_LASER`] has it.
-pub(super) const FULL_POWER: f64 = 1000.0;
+pub(super) const FULL_POWER: u16 = 1000;
 
 /// Which language the host speaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -63,8 +64,9 @@ impl StoredSettings {
     /// assert_eq!(StoredSettings::default().speed_hz(), 5000.0); // 80 %: 200 us a step
     /// ```
     #[must_use]
-    pub fn speed_hz(&self) -> f64 {
-        1e5 / f64::from(100 - self.speed_percent.min(99))
+    pub const fn speed_hz(&self) -> f64 {
+        let percent = if self.speed_percent < 99 { self.speed_percent } else { 99 };
+        1e5 / (100 - percent) as f64
     }
 }
 
@@ -126,9 +128,44 @@ impl Default for StepperPlotterSettings {
 }
 
 impl StepperPlotterSettings {
-    pub(super) fn cartesian(&self) -> Result<Cartesian, ScaleError> {
-        let scale = |steps_per_mm| MotorScale { steps_per_mm, inverted: false };
-        Cartesian::new(scale(self.x_steps_per_mm), scale(self.y_steps_per_mm))
+    /// The motors, once they have been checked.
+    pub(super) const fn cartesian(&self) -> Cartesian {
+        Cartesian::of_checked(self.x_steps_per_mm, self.y_steps_per_mm)
+    }
+
+    /// Looks at them once, at the latest when the controller is made: a program whose settings are constants has them looked at by the
+    /// compiler, and needs no memory for it.
+    ///
+    /// ```
+    /// # use plotter_motion::ExactOnly;
+    /// # use plotter_motion::firmware::stepper_plotter::{Motion, SettingsError, StepperPlotterSettings};
+    /// let checked = StepperPlotterSettings::default().checked::<ExactOnly>()?;
+    /// assert_eq!(Motion::of(&checked).settings().x_steps_per_mm, 87.58);
+    /// let wrong = StepperPlotterSettings { x_steps_per_mm: 0.0, ..StepperPlotterSettings::default() };
+    /// assert!(wrong.checked::<ExactOnly>().is_err());
+    /// # Ok::<(), SettingsError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] for limits that no motion can be planned with, and for a mode that is not among these.
+    pub const fn checked<M: Modes>(self) -> Result<CheckedSettings<M>, SettingsError> {
+        let x = MotorScale { steps_per_mm: self.x_steps_per_mm, inverted: false };
+        let y = MotorScale { steps_per_mm: self.y_steps_per_mm, inverted: false };
+        if let Err(error) = Cartesian::new(x, y) {
+            return Err(SettingsError::Scale(error));
+        }
+        if self.laser && !M::LASER {
+            return Err(SettingsError::Planner(PlanError::Mode { quantity: "laser" }));
+        }
+        if !M::ALL && (self.backlash.x_steps != 0 || self.backlash.y_steps != 0) {
+            return Err(SettingsError::Planner(PlanError::Mode { quantity: "backlash" }));
+        }
+        let limits = self.limits();
+        if let Err(error) = limits.check::<M>() {
+            return Err(SettingsError::Planner(error));
+        }
+        Ok(CheckedSettings { settings: self, limits, modes: PhantomData })
     }
 
     /// What a checked machine with stepper motors says of itself. Sides and angles are rounded to whole ones.
@@ -172,21 +209,21 @@ impl StepperPlotterSettings {
     }
 
     /// Speeds with the pen down and up, mm/s. mDraw's user chooses a greatest rate.
-    pub(super) fn speeds_mm_s(&self) -> (f64, f64) {
+    pub(super) const fn speeds_mm_s(&self) -> (f64, f64) {
         let most_mm_s = match self.dialect {
-            Dialect::MDraw => self.stored.speed_hz() / greater(self.x_steps_per_mm, self.y_steps_per_mm),
+            Dialect::MDraw => self.stored.speed_hz() / self.x_steps_per_mm.max(self.y_steps_per_mm),
             Dialect::Grbl => f64::INFINITY,
         };
-        (smaller(self.planner.speed_mm_s, most_mm_s), smaller(self.planner.travel_speed_mm_s, most_mm_s))
+        (self.planner.speed_mm_s.min(most_mm_s), self.planner.travel_speed_mm_s.min(most_mm_s))
     }
 
     /// The limits that are planned with.
-    pub(super) fn limits(&self) -> PlannerSettings {
+    pub(super) const fn limits(&self) -> PlannerSettings {
         let (draw_mm_s, travel_mm_s) = self.speeds_mm_s();
         match self.dialect {
             // There each move is told its speed: only the receive side knows what the servo means.
             Dialect::MDraw => {
-                let speed_mm_s = greater(draw_mm_s, travel_mm_s);
+                let speed_mm_s = draw_mm_s.max(travel_mm_s);
                 PlannerSettings { speed_mm_s, travel_speed_mm_s: speed_mm_s, ..self.planner }
             }
             Dialect::Grbl => self.planner,
@@ -196,6 +233,23 @@ impl StepperPlotterSettings {
     /// By which words a G-code text lifts the pen.
     pub(super) fn convention(&self) -> PenConvention {
         if self.laser { PenConvention::GRBL_LASER } else { self.pen }
+    }
+}
+
+/// Settings that a machine can be driven with, by a controller with these modes: what [`StepperPlotterSettings::checked`] gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CheckedSettings<M: Modes = AllModes> {
+    settings: StepperPlotterSettings,
+    /// Those that are planned with.
+    pub(super) limits: PlannerSettings,
+    modes: PhantomData<M>,
+}
+
+impl<M: Modes> CheckedSettings<M> {
+    /// The settings.
+    #[must_use]
+    pub const fn settings(&self) -> &StepperPlotterSettings {
+        &self.settings
     }
 }
 

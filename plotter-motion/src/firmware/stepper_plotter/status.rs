@@ -48,7 +48,7 @@ pub struct Status {
     /// Where the pen is by the steps really made, mm.
     pub at: Point,
     /// How fast it moves, mm/s.
-    pub speed_mm_s: f64,
+    pub speed_mm_s: f32,
     /// Power of the laser, in 65535ths.
     pub laser: u16,
     /// The overrides in force.

@@ -13,6 +13,9 @@ use plotter_motion::firmware::stepper_plotter::Step;
 
 static STEPS_CRC: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
 
+/// Steps of the servo's PWM in a frame.
+pub const SERVO_STEPS: u16 = 20_000;
+
 /// Pins of a motor's driver.
 pub type Motor = StepperPins<StepPin, Output>;
 
@@ -82,7 +85,7 @@ pub fn take() -> Option<Parts> {
         x,
         y,
         enable: Output(&cells.enable),
-        servo: Pwm { steps: &cells.servo, full: 20_000 },
+        servo: Pwm { steps: &cells.servo, full: SERVO_STEPS },
         laser: Pwm { steps: &cells.laser, full: 1_000 },
         limits: [0, 1, 2, 3].map(|end| Input(&cells.limits[end])),
         stop: Input(&cells.stop),

@@ -13,8 +13,8 @@ use embedded_hal::pwm::{ErrorType, SetDutyCycle};
 use plotter_motion::firmware::stepper_plotter::Step;
 use stm32f4xx_hal::pac::{self, IWDG, TIM1, TIM3};
 
-/// The servo's frame: 20 ms.
-const SERVO_FRAME_US: u16 = 20_000;
+/// The servo's frame of 20 ms, in steps of a microsecond.
+pub const SERVO_STEPS: u16 = 20_000;
 /// The laser's PWM: 1 kHz.
 const LASER_PERIOD_US: u16 = 1_000;
 /// A loop that does not come round in 100 ms is reset: this many of the watchdog's eighths of a millisecond.
@@ -52,7 +52,7 @@ impl ErrorType for Servo {
 
 impl SetDutyCycle for Servo {
     fn max_duty_cycle(&self) -> u16 {
-        SERVO_FRAME_US
+        SERVO_STEPS
     }
 
     fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
@@ -93,7 +93,7 @@ pub fn take() -> Option<Parts> {
     RCC.csr().modify(|_, w| w.rmvf().set_bit());
     start::clocks(&FLASH, &RCC);
     start::pins(&GPIOA, &GPIOB);
-    start::timers(&TIM1, &TIM3, &TIM2, SERVO_FRAME_US, LASER_PERIOD_US);
+    start::timers(&TIM1, &TIM3, &TIM2, SERVO_STEPS, LASER_PERIOD_US);
     start::serial::<{ machine::PLOTTER_BAUD }>(&USART2);
     let motor = |step, dir| StepperPins { step: PinB::new(step), dir: PinB::new(dir) };
     Some(Parts {

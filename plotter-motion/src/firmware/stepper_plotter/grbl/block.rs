@@ -5,13 +5,17 @@ use super::codes::{Alarm, Code};
 use super::listing::is_listed;
 use super::words::{read, whole};
 use super::{Grbl, Pens, Wait, send};
+use crate::PlotOp;
 use crate::decimal::Decimal;
-use crate::extremes::greater;
 use crate::gcode::{Block, Outcomes, Word};
-use crate::{PlotOp, Point};
+use crate::geom::Vec2Single;
 
 /// Slower is not slower, mm/s: a step of 0.01 mm takes ten seconds.
 const LEAST_FEED_MM_S: f64 = 1e-3;
+
+fn no_slower(feed_mm_s: f64) -> f64 {
+    if feed_mm_s > LEAST_FEED_MM_S { feed_mm_s } else { LEAST_FEED_MM_S }
+}
 
 impl<P: Pens> Grbl<P> {
     /// Carries a line out as a whole, or not at all.
@@ -43,11 +47,11 @@ impl<P: Pens> Grbl<P> {
         }
         let (to, feed_mm_s) = self.interpreter.travel(&block)?;
         let Some(to) = to else { return Ok(()) };
-        if !area::contains(self.most(), to, PlotOp::Travel { to }) {
+        if !area::contains(self.most(), &to, &PlotOp::Travel { to }) {
             return Err(Code::JOG_TARGET);
         }
         self.interpreter.stand_at(to);
-        let speed_mm_s = feed_mm_s.map_or(LEAST_FEED_MM_S, |feed| greater(feed, LEAST_FEED_MM_S));
+        let speed_mm_s = no_slower(feed_mm_s.unwrap_or(0.0));
         self.command(link, Command::Jog { to, speed_mm_s });
         Ok(())
     }
@@ -70,9 +74,9 @@ impl<P: Pens> Grbl<P> {
     }
 
     /// The far corner of the area.
-    fn most(&self) -> Point {
+    fn most(&self) -> Vec2Single {
         let StoredSettings { width_mm, height_mm, .. } = self.settings.stored;
-        Point::new(f64::from(width_mm), f64::from(height_mm))
+        Vec2Single { x: f32::from(width_mm), y: f32::from(height_mm) }
     }
 
     #[cfg_attr(target_os = "none", inline(never))]
@@ -100,7 +104,7 @@ impl<P: Pens> Grbl<P> {
         let most = self.most();
         let mut at = before.position;
         for op in outcomes.iter().flatten() {
-            if !area::contains(most, at, *op) {
+            if !area::contains(most, &at, op) {
                 // What has been answered by ok is still drawn, then the pen goes up.
                 self.command(link, Command::Plot(PlotOp::Travel { to: before.position }));
                 self.alarm(Alarm::SOFT_LIMIT);
@@ -113,7 +117,7 @@ impl<P: Pens> Grbl<P> {
             if let PlotOp::Draw { feed_mm_s: Some(feed), .. }
             | PlotOp::DrawArc { feed_mm_s: Some(feed), .. } = &mut op
             {
-                *feed = greater(*feed, LEAST_FEED_MM_S);
+                *feed = no_slower(*feed);
             }
             self.command(link, Command::Plot(op));
         }

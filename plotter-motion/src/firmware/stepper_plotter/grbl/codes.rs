@@ -2,10 +2,10 @@
 //!
 //! Source: the Grbl project's wiki, "Grbl v1.1 Interface", and its tables of errors and alarms (`doc/csv`).
 
-use crate::decimal_text::Decimals;
+use crate::HomingError;
+use crate::decimal_text::Thousandths;
 use crate::gcode::{Complaint, Position, Problem, Word};
-use crate::whole::{float, is_whole, nearest};
-use crate::{HomingError, Point};
+use crate::whole::is_whole;
 
 /// What stands after `error:`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,17 +135,7 @@ impl Alarm {
     }
 }
 
-/// Rounded to thousandths.
-pub(super) fn rounded(value: f64) -> f64 {
-    float(nearest(value * 1e3)) / 1e3
-}
-
-/// As [`Point`], rounded to micrometres: no `-0.000` is told.
-pub(super) fn coordinate(mm: f64) -> Decimals<3> {
-    Decimals(rounded(mm))
-}
-
-/// Both coordinates of a place.
-pub(super) fn coordinates(at: Point) -> (Decimals<3>, Decimals<3>) {
-    (coordinate(at.x), coordinate(at.y))
+/// Both coordinates of a place or a way, mm.
+pub(super) fn coordinates(x: f64, y: f64) -> (Thousandths, Thousandths) {
+    (Thousandths::of(x), Thousandths::of(y))
 }

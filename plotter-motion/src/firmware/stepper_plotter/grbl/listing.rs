@@ -3,10 +3,10 @@
 use super::super::output::Output;
 use super::super::settings::FULL_POWER;
 use super::super::{COMMANDS, Setting, StepperPlotterSettings};
-use super::codes::coordinate;
+use super::codes::coordinates;
 use super::rx_buffer::RX_BYTES;
 use super::{MOST_COMMANDS, OUTPUT};
-use crate::decimal_text::{Decimals, Whole};
+use crate::decimal_text::{Thousandths, Whole};
 use crate::extremes::greater;
 use crate::gcode::Modes;
 
@@ -38,10 +38,11 @@ impl Listing {
         match self {
             Self::Settings => {
                 let Some((number, value, is_whole)) = setting(index, settings) else { return false };
+                let (number, value) = (Whole(number.into()), Thousandths::of(value));
                 if is_whole {
-                    out.line(format_args!("${}={}", Whole(number.into()), Decimals::<0>(value)));
+                    out.line(format_args!("${number}={}", value.trimmed()));
                 } else {
-                    out.line(format_args!("${}={}", Whole(number.into()), Decimals::<3>(value)));
+                    out.line(format_args!("${number}={value}"));
                 }
             }
             Self::Build => match index {
@@ -55,7 +56,7 @@ impl Listing {
             },
             Self::Offsets => match index {
                 0 => {
-                    let (x, y) = (coordinate(modes.origin.x), coordinate(modes.origin.y));
+                    let (x, y) = coordinates(modes.origin.x, modes.origin.y);
                     out.line(format_args!("[G54:{x},{y},0.000]"));
                 }
                 1..=5 => out.line(format_args!("[G{}:0.000,0.000,0.000]", Whole(54 + u64::from(index)))),
@@ -63,7 +64,7 @@ impl Listing {
                 7 => out.line(format_args!("[G30:0.000,0.000,0.000]")),
                 8 => {
                     let own = modes.offset + -modes.origin;
-                    let (x, y) = (coordinate(own.x), coordinate(own.y));
+                    let (x, y) = coordinates(own.x, own.y);
                     out.line(format_args!("[G92:{x},{y},0.000]"));
                 }
                 9 => out.line(format_args!("[TLO:0.000]")),
@@ -120,6 +121,7 @@ fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, boo
     let per_step = |count: u32, of_one: f64| f64::from(count) / settings.x_steps_per_mm * of_one;
     let whole = match number {
         3 => u16::from(stored.x_direction & 1) | u16::from(stored.y_direction & 1) << 1,
+        30 => FULL_POWER,
         32 => settings.laser.into(),
         130 => stored.width_mm,
         131 => stored.height_mm,
@@ -131,7 +133,6 @@ fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, boo
         24 => per_step(home_x.slow_hz, 60.0),
         25 => per_step(home_x.fast_hz, 60.0),
         27 => per_step(home_x.pull_off_steps, 1.0),
-        30 => FULL_POWER,
         100 => settings.x_steps_per_mm,
         101 => settings.y_steps_per_mm,
         110 | 111 => greater(planner.travel_speed_mm_s, planner.speed_mm_s) * 60.0,

@@ -14,9 +14,9 @@ use super::command_queue::COMMANDS_OF_A_LINE as MOST_COMMANDS;
 use super::output::Output;
 use super::{Activity, Command, Link, Report, Signal, Status, StepperPlotterSettings, Stop, StoredSettings};
 use crate::Point;
-use crate::decimal_text::{Plain, Trimmed, Whole};
+use crate::decimal_text::{Plain, Thousandths, Whole};
 use crate::gcode::LineInterpreter;
-use codes::{Alarm, Code, rounded};
+use codes::{Alarm, Code};
 use core::marker::PhantomData;
 use line_buffer::LineBuffer;
 use listing::Listing;
@@ -321,8 +321,8 @@ impl<P: Pens> Grbl<P> {
             Plain(if modes.relative { "91" } else { "90" }),
             Whole(modes.spindle.into()),
             Whole(modes.tool.into()),
-            Trimmed(rounded(feed)),
-            Trimmed(rounded(modes.power)),
+            Thousandths::of(feed).trimmed(),
+            Thousandths::of(modes.power).trimmed(),
         ));
     }
 }

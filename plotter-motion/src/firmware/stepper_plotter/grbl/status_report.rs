@@ -1,10 +1,10 @@
 //! The answer to `?`.
 
 use super::super::{Activity, Link, Percents, Status, settings::FULL_POWER};
-use super::codes::{coordinate, coordinates};
+use super::codes::coordinates;
 use super::listing::BLOCKS;
 use super::{Grbl, MOST_COMMANDS, Pens, REPORTS_WITHOUT_OFFSET};
-use crate::decimal_text::{Decimals, Plain, Whole};
+use crate::decimal_text::{Plain, Thousandths, Whole};
 use core::fmt;
 
 impl<P: Pens> Grbl<P> {
@@ -20,11 +20,14 @@ impl<P: Pens> Grbl<P> {
             Activity::Hold { stands: false } => "Hold:1",
             Activity::Home => "Home",
         });
-        let (x, y) = coordinates(status.at);
+        let (x, y) = coordinates(status.at.x, status.at.y);
         let blocks = Whole(link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS) as u64);
         let bytes = Whole(self.rx.room() as u64);
-        let feed_mm_min = Decimals::<0>(status.speed_mm_s * 60.0);
-        let power = Decimals::<0>(f64::from(status.laser) / f64::from(u16::MAX) * FULL_POWER);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates")]
+        let feed_mm_min = Whole(u64::from((status.speed_mm_s * 60.0 + 0.5) as u32));
+        let power =
+            (u32::from(status.laser) * u32::from(FULL_POWER) + u32::from(u16::MAX / 2)) / u32::from(u16::MAX);
+        let power = Whole(power.into());
         let pins = Pins {
             x: status.limits.x_min || status.limits.x_max,
             y: status.limits.y_min || status.limits.y_max,
@@ -54,7 +57,7 @@ impl<P: Pens> Grbl<P> {
         }
         self.reports_to_offset = REPORTS_WITHOUT_OFFSET;
         let offset = self.interpreter.modes().offset;
-        Offset(Some((coordinate(offset.x), coordinate(offset.y))))
+        Offset(Some(coordinates(offset.x, offset.y)))
     }
 }
 
@@ -88,7 +91,7 @@ impl fmt::Display for Pins {
 }
 
 /// `|WCO:`.
-struct Offset(Option<(Decimals<3>, Decimals<3>)>);
+struct Offset(Option<(Thousandths, Thousandths)>);
 
 impl fmt::Display for Offset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,6 +1,6 @@
 //! What a person does on the way: jogs that are cancelled, other shares of the speeds, other settings.
 
-use super::super::{Command, Link, Percents, Report, Setting};
+use super::super::{Command, Dialect, Link, Percents, Report, Setting};
 use super::{Motion, State, darken, step_gen};
 use crate::Planner;
 use crate::planner::{Keep as _, Modes};
@@ -38,15 +38,15 @@ impl<M: Modes> Motion<M> {
 
     /// The machine is another one from here on; its motors stay where they are.
     pub(super) fn set(&mut self, setting: Setting) {
-        let settings = setting.applied(self.settings);
-        let (Ok(cartesian), Ok(planner)) = (settings.cartesian(), Planner::with_modes(settings.limits()))
-        else {
+        let Ok(settings) = setting.checked(&self.settings) else {
             debug_assert!(false, "the receive side has looked at {setting:?}");
             return;
         };
-        (self.settings, self.planner) = (settings, planner);
+        self.settings = settings;
+        debug_assert!(settings.dialect == Dialect::Grbl, "in which the limits are those of the planner");
+        self.planner = Planner::of_checked(&settings.planner);
         self.base = self.time_of(self.steps.tick());
-        self.steps = step_gen(cartesian, &settings);
+        self.steps = step_gen(&settings);
         self.steps.clear(self.carriage());
         if let Some(play) = self.play.get_mut() {
             play.begin_anew(&settings);
