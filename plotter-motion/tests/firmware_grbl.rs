@@ -3,7 +3,7 @@
 mod stepper_bench;
 
 use core::time::Duration;
-use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
+use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings, StoredSettings};
 use plotter_motion::{Axis, Direction, Point, StepPoint};
 use stepper_bench::Bench;
 
@@ -104,6 +104,27 @@ fn soft_limits_are_an_alarm_and_what_was_accepted_is_drawn() {
     );
     assert_eq!(bench.plotter.pen_deg(), 160);
     insta::assert_snapshot!(text);
+}
+
+#[test]
+fn flat_arcs_leave_the_area_where_they_do() {
+    let stored = |width_mm, height_mm| StoredSettings { width_mm, height_mm, ..StoredSettings::default() };
+    let small = stored(300, 200);
+    // The area, where the arc begins, the arc, and whether it stays within.
+    for (stored, begin, arc, stays) in [
+        (small, "M3\nG1 X0 Y199.996 F60000\n", "G2 X296.394 Y199.996 I148.1970 J-416660.671\n", false), // 0.022 mm
+        (small, "M3\nG1 X0 Y199.968 F60000\n", "G2 X286.118 Y199.968 I143.0590 J-532655.666\n", true), // 0.013 mm
+        (small, "M3\nG1 X299.996 Y0 F60000\n", "G3 X299.996 Y196 I-416660.671 J98\n", false), // 0.008 mm
+        (small, "M3\nG1 X0.02 Y0 F60000\n", "G2 X0.02 Y196 I416660.671 J98\n", true),         // 0.008 mm
+    ] {
+        let mut bench = Bench::new(StepperPlotterSettings { stored, ..settings() });
+        bench.ask("");
+        bench.send(begin);
+        bench.run_out();
+        assert_eq!(bench.take_answers(), "ok\r\n".repeat(2));
+        let answer = bench.ask(arc);
+        assert_eq!(answer, if stays { "ok\r\n" } else { "ALARM:2\r\nerror:33\r\n" }, "{arc}");
+    }
 }
 
 #[test]

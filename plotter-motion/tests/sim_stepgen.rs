@@ -86,8 +86,8 @@ fn every_step_comes_within_a_tick_of_its_place() {
 
 #[test]
 fn a_roll_of_ten_metres_is_stepped_to_the_last_step_and_in_time() {
-    /// Two fifths of a step: what `f32` leaves of places along ten metres.
-    const PLACES_MM: f64 = 1e-3;
+    /// Four fifths of a step, two last bits of ten metres: what `f32` leaves of places along them.
+    const PLACES_MM: f64 = 2e-3;
     /// What it leaves of times and speeds, as a share.
     const TIMES: f64 = 2e-7;
     const STEPS_PER_MM: f64 = 400.0;

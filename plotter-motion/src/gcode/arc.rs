@@ -19,8 +19,8 @@ const NO_SWEEP_RAD: f32 = 5e-7;
 /// What a chord may be longer than the diameter and still be taken for it, mm: both are rounded to thousandths.
 const ROUNDED_MM: f32 = 0.005;
 
-/// How far round an arc goes, rad, above 0 to the `left`; right to 2·10⁻⁷ of itself, and quarters of a turn to the last bit. One that ends
-/// where it begins is a whole circle.
+/// How far round an arc goes, rad, above 0 to the `left`; right to 5·10⁻⁷ of itself. One that ends where it begins is a whole
+/// circle, exactly.
 ///
 /// The limits are GRBL's (`gcode.c`, version 1.1).
 pub(super) fn sweep_rad<C: Complaint>(
@@ -113,6 +113,30 @@ mod tests {
         assert!((sweep_rad(from, across, Point::ORIGIN, false).unwrap() + PI).abs() < EXACT);
         assert_eq!(sweep_rad(from, from, Point::ORIGIN, true), Ok(TAU));
         assert_eq!(sweep_rad(from, from, Point::ORIGIN, false), Ok(-TAU));
+    }
+
+    #[test]
+    fn sweeps_are_right_to_half_a_millionth_of_themselves() {
+        const SHARE: f64 = 5e-7;
+        let mut radius_mm = 0.718;
+        while radius_mm < 1e4 {
+            for thousandth in 1..=400 {
+                // Up to a turn; of a small one as much as of a great one.
+                let begin_rad = 0.618 * f64::from(thousandth);
+                let asked_rad =
+                    TAU * (f64::from(thousandth) / 401.0) * if thousandth % 2 == 0 { 1.0 } else { 0.1 };
+                let centre = Point::new(123.456, -65.4);
+                let at = |angle_rad: f64| centre + crate::Vec2::new(radius_mm, 0.0).rotated(angle_rad);
+                let (from, to) = (at(begin_rad), at(begin_rad + asked_rad));
+                let sweep = sweep_rad(from, to, centre, true).unwrap();
+                assert!((sweep / asked_rad - 1.0).abs() <= SHARE, "{radius_mm} mm, {asked_rad}: {sweep}");
+                let back = sweep_rad(to, from, centre, false).unwrap();
+                assert!((back / asked_rad + 1.0).abs() <= SHARE, "{radius_mm} mm, {asked_rad}: {back}");
+                assert_eq!(sweep_rad(from, from, centre, true), Ok(TAU));
+                assert_eq!(sweep_rad(from, from, centre, false), Ok(-TAU));
+            }
+            radius_mm *= 1.37;
+        }
     }
 
     #[test]

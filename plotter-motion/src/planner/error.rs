@@ -14,7 +14,7 @@ pub enum PlanError {
         /// The place, mm.
         place: Point,
     },
-    /// A speed that is not above 0, or not finite.
+    /// A speed below 10⁻¹⁶ mm/s, or one that is not finite as an `f32`: of 3.4·10³⁸ mm/s and more.
     Feed {
         /// The speed, mm/s.
         feed_mm_s: f64,

@@ -5,8 +5,8 @@ use super::ring::narrow;
 use crate::extremes::least;
 use crate::geom::single;
 
-/// What is the same for every block, computed once. Small numbers are `f32`, which small processors reckon with in hardware; they
-/// are rounded down, so that no limit is exceeded by the rounding.
+/// What is the same for every block, computed once. Small numbers are `f32`, which small processors reckon with in hardware. Limits
+/// and their squares are rounded down; a speed made of them may be 2·10⁻⁷ of itself too much.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
     pub(super) settings: PlannerSettings,
@@ -41,10 +41,12 @@ impl Limits {
         }
     }
 
-    /// Square of a speed that is asked for, no more than this one; none if it is not above 0 and finite.
+    /// Square of a speed that is asked for, no more than this one; none if it is so slow that the square, or a share of it, were no number
+    /// with all its bits, or not finite.
     pub(super) fn speed2(speed_mm_s: f64, most2: f32) -> Option<f32> {
+        const LEAST_MM_S: f32 = 1e-16;
         let speed = single(speed_mm_s);
-        (speed > 0.0 && speed < f32::INFINITY).then(|| least(speed * speed, most2))
+        (LEAST_MM_S..f32::INFINITY).contains(&speed).then(|| least(speed * speed, most2))
     }
 }
 

@@ -161,7 +161,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
 
     /// From here on the speeds that operations ask for are multiplied by these shares, with the pen down and up: a person at the
     /// machine has it go slower or faster. It changes its speed within its limits, along the path, from the end of the phase taken
-    /// last (50 ms at the most); no share makes it faster than the limits of [`PlannerSettings`]. Shares are taken as 0.01 to 100.
+    /// last (47 ms at the most); no share makes it faster than the limits of [`PlannerSettings`]. Shares are taken as 0.01 to 100.
     ///
     /// Without [`AllModes`] nothing changes.
     ///
@@ -243,7 +243,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// Feed hold: the machine brakes within its limits, along the path, and stands as soon as it can. Actions go on to come until
     /// it stands; then there are none until [`Planner::resume`]. More may be pushed meanwhile.
     ///
-    /// What has been taken is still carried out; a phase lasts 50 ms at the most.
+    /// What has been taken is still carried out; a phase lasts 47 ms at the most, on a line that takes six years a little more.
     pub fn hold(&mut self) {
         self.hold = true;
         self.brake();
@@ -374,6 +374,32 @@ mod tests {
             matches!(course, Some(Action::Course(course)) if course.pen == crate::Pen::Down),
             "{course:?}"
         );
+    }
+
+    #[test]
+    fn no_speed_is_too_slow_or_too_fast_for_its_square() {
+        let length_mm = 1e-3;
+        for feed_mm_s in [0.0, 1e-30, 1e-23, 9e-17, 1e39, f64::INFINITY, f64::NAN, -1.0] {
+            let refused = planner(None)
+                .push(PlotOp::Draw { to: Point::new(length_mm, 0.0), feed_mm_s: Some(feed_mm_s) });
+            assert!(matches!(refused, Err(PlanError::Feed { .. })), "{feed_mm_s}");
+        }
+        for (feed_mm_s, share) in [(1.1e-16, 1.0), (1.1e-16, 0.01), (1e38, 1.0)] {
+            let mut planner = planner(None);
+            planner.override_speeds(share, 1.0);
+            let to = Point::new(1.0, 0.0);
+            planner.push(PlotOp::Draw { to, feed_mm_s: Some(feed_mm_s) }).unwrap();
+            planner.finish().unwrap();
+            let mut fastest = 0.0_f64;
+            for action in core::iter::from_fn(|| planner.next_action()).take(100) {
+                if let Action::Phase(phase) = action {
+                    fastest = fastest.max(phase.speed_mm_s.into());
+                }
+            }
+            // 1 mm at 1000 mm/s²: up to the root of 1000 mm/s.
+            let most = (feed_mm_s * share).min(libm::sqrt(1000.0));
+            assert!((fastest / most - 1.0).abs() < 1e-5, "{feed_mm_s}, {share}: {fastest}");
+        }
     }
 
     #[test]

@@ -110,8 +110,9 @@ impl<const N: usize> Ring<N> {
             if block.is_path() {
                 block.cruise2 = block.wish(limits).cruise2(shares, limits);
                 let most2 = least(block.corner2, least(before2, block.cruise2));
-                // What can no longer be avoided was allowed before, and is no corner's business.
-                block.max_entry2 = if block.corner2 > 0.0 { greatest(most2, forced2) } else { 0.0 };
+                // What can no longer be avoided was planned before, however it has been rounded since.
+                forced2 = least(forced2, block.entry2);
+                block.max_entry2 = greatest(most2, forced2);
                 before2 = block.cruise2;
                 forced2 = greatest(forced2 - 2.0 * limits.accel * block.length(), 0.0);
             } else {
