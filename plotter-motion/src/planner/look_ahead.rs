@@ -173,10 +173,10 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// planner.push(PlotOp::Draw { to: Point::new(100.0, 0.0), feed_mm_s: Some(10.0) })?;
     /// planner.finish()?;
     /// planner.override_speeds(2.0, 1.0);
-    /// let mut time_s = 0.0;
+    /// let mut time_s = 0.0_f64;
     /// while let Some(action) = planner.next_action() {
     ///     if let Action::Phase(phase) = action {
-    ///         time_s += phase.duration_s;
+    ///         time_s += f64::from(phase.duration_s);
     ///     }
     /// }
     /// assert!((time_s - 5.2).abs() < 1e-6); // 20 mm/s: 0.2 s and 2 mm up, 4.8 s for 96 mm, 0.2 s down
