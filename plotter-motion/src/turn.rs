@@ -1,5 +1,5 @@
-//! Sine and cosine of an angle within a few turns, and the angle of a direction, in `f32`, which small processors reckon with in hardware.
-//! `libm`'s, for any angle, take ten times the program memory.
+//! Sine and cosine of an angle within a few turns, and the angle of a direction, in `f32`, which small processors reckon with in hardware;
+//! `libm`'s are for any angle, and longer.
 
 use crate::root::root;
 use core::f32::consts::{FRAC_2_PI, FRAC_PI_2, PI};

@@ -57,7 +57,7 @@ impl fmt::Display for PlanError {
                 write!(f, "({x}, {y}) mm is no place: coordinates must be finite and within ±1e7 mm")
             }
             Self::Feed { feed_mm_s } => {
-                write!(f, "a speed of {feed_mm_s} mm/s: it must be above 0 and finite")
+                write!(f, "a speed of {feed_mm_s} mm/s: it must lie within 1e-16 to 3.4e38")
             }
             Self::Sweep { sweep_rad } => {
                 write!(f, "an arc of {sweep_rad} rad: it must lie within one turn, ±6.2832")

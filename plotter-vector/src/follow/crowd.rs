@@ -12,7 +12,7 @@ pub(super) struct Crowd<'a> {
 }
 
 impl<'a> Crowd<'a> {
-    /// Lines of these widths; between their rims less than `clear_px` is no paper.
+    /// Lines of these widths, px; two of them are one piece of ink where their rims are nearer to each other than `clear_px`.
     pub(super) fn of(
         lines: &[Vec<PxPoint>],
         widths_px: &'a [f64],

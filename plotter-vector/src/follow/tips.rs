@@ -306,47 +306,58 @@ pub(super) fn fitted(places: &[PxPoint]) -> Option<(PxPoint, (f64, f64))> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::lines::resampled;
     use super::*;
     use crate::follow::{CameraSettings, Paper, SimulatedCamera};
+
+    const TIP: PxPoint = PxPoint { x: 40.0, y: 60.0 };
+
+    /// An arm of the tip along this way: its places, a pixel apart, from one of them on.
+    fn arm((x, y): (f64, f64), from: u8) -> Vec<PxPoint> {
+        (from..80).map(|i| TIP.along((x, y), f64::from(i))).collect()
+    }
+
+    /// What a camera shows of the tip with arms along these ways.
+    fn picture(ways: [(f64, f64); 2], width_px: f64) -> Flat {
+        let paper = Paper::drawn(160, 160, &ways.map(|way| (arm(way, 0), width_px))).unwrap();
+        let settings = CameraSettings { width_px: 160, height_px: 160, ..CameraSettings::default() };
+        Flat::of(&SimulatedCamera::new(&paper, settings).window(PxPoint::new(80.0, 80.0)), None, None)
+    }
+
+    /// How far a stroke passes the tip.
+    fn off_px(stroke: &[PxPoint]) -> f64 {
+        stroke.iter().map(|at| at.distance(TIP)).fold(f64::MAX, f64::min)
+    }
 
     #[test]
     fn a_stub_with_two_arms_becomes_a_tip() {
         // A tip of about 23 degrees; the arms part at 20 px from it.
-        let tip = PxPoint::new(40.0, 60.0);
-        let arm = |side: f64, from: u8| -> Vec<PxPoint> {
-            (from..80).map(|i| tip.along((1.0, side * 0.2), f64::from(i))).collect()
-        };
-        let paper = Paper::drawn(160, 120, &[(arm(1.0, 0), 5.0), (arm(-1.0, 0), 5.0)]).unwrap();
-        let settings = CameraSettings { width_px: 160, height_px: 120, ..CameraSettings::default() };
-        let flat =
-            Flat::of(&SimulatedCamera::new(&paper, settings).window(PxPoint::new(80.0, 60.0)), None, None);
-        let one: Vec<PxPoint> =
-            arm(1.0, 20).into_iter().rev().chain([PxPoint::new(58.0, 60.0)]).chain(arm(-1.0, 20)).collect();
+        let ways = [(1.0, 0.2), (1.0, -0.2)];
+        let mut one = arm(ways[0], 20);
+        one.reverse();
+        one.push(PxPoint::new(58.0, 60.0));
+        one.extend(arm(ways[1], 20));
         let stub: Vec<PxPoint> = (38..=58).rev().map(|x| PxPoint::new(f64::from(x), 60.0)).collect();
-        let strokes = sharpened(&flat, vec![one, stub], 5.0);
+        let strokes = sharpened(&picture(ways, 5.0), vec![one, stub], 5.0);
         assert_eq!(strokes.len(), 1);
-        let off = strokes[0].iter().map(|at| at.distance(tip)).fold(f64::MAX, f64::min);
-        assert!(off < 0.3, "{off}");
+        assert!(off_px(&strokes[0]) < 0.3, "{}", off_px(&strokes[0]));
     }
 
     #[test]
     fn a_crumb_beside_a_stub_hides_no_tip() {
-        // A tip of 37 degrees; both arms have the stub, of 7 px, for their last piece, and thinning left a crumb beside it.
-        let tip = PxPoint::new(40.0, 60.0);
-        let arm = |side: f64, from: u8| -> Vec<PxPoint> {
-            (from..80).map(|i| tip.along((0.95, side * 0.316), f64::from(i))).collect()
+        // A tip of 40 degrees as thinning left it: both arms have the stub for their last piece, and a crumb lies beside it.
+        let ways = [(0.868, 0.496), (0.351, 0.936)];
+        let from_tip = |(x, y): (f64, f64)| PxPoint::new(TIP.x + x, TIP.y + y);
+        let whole = |stub: [(f64, f64); 3], way: (f64, f64)| {
+            let mut places: Vec<PxPoint> = stub.map(from_tip).into();
+            places.extend(arm(way, 15));
+            resampled(&places, 1.0)
         };
-        let paper = Paper::drawn(160, 120, &[(arm(1.0, 0), 6.0), (arm(-1.0, 0), 6.0)]).unwrap();
-        let settings = CameraSettings { width_px: 160, height_px: 120, ..CameraSettings::default() };
-        let flat =
-            Flat::of(&SimulatedCamera::new(&paper, settings).window(PxPoint::new(80.0, 60.0)), None, None);
-        let stub = (1..=7).map(|x| PxPoint::new(40.0 + f64::from(x), 60.0));
-        let whole = |side: f64| stub.clone().chain(arm(side, 10)).collect::<Vec<_>>();
-        let crumb: Vec<PxPoint> =
-            (0..4).map(|i| PxPoint::new(42.5 + f64::from(i), 58.3 - 0.6 * f64::from(i))).collect();
-        let strokes = sharpened(&flat, vec![whole(1.0), crumb, whole(-1.0)], 6.0);
+        let one = whole([(0.7, 0.4), (4.0, 5.0), (9.0, 5.5)], ways[0]);
+        let other = whole([(0.5, 1.3), (3.5, 4.7), (4.9, 12.6)], ways[1]);
+        let crumb = resampled(&[(6.5, 0.6), (2.3, 2.8)].map(from_tip), 1.0);
+        let strokes = sharpened(&picture(ways, 5.0), vec![one, crumb, other], 6.0);
         assert_eq!(strokes.len(), 1);
-        let off = strokes[0].iter().map(|at| at.distance(tip)).fold(f64::MAX, f64::min);
-        assert!(off < 0.5, "{off}");
+        assert!(off_px(&strokes[0]) < 0.5, "{}", off_px(&strokes[0]));
     }
 }
