@@ -19,7 +19,7 @@ impl Axes {
 
     /// Estimated play of each, px.
     pub(super) fn play_px(&self) -> [f64; 2] {
-        [self.0[0].play_px, self.0[1].play_px]
+        [self.0[0].play_px(), self.0[1].play_px()]
     }
 
     /// Whether the play of one is not known well yet.
@@ -45,9 +45,9 @@ impl Axes {
         self.0[1].shift(y);
     }
 
-    /// How far both may go on in one move, as a share of the way.
-    pub(super) fn share(&self, from: PxPoint, to: PxPoint) -> f64 {
-        self.0[0].share(from.x, to.x).min(self.0[1].share(from.y, to.y))
+    /// How much of the way to a place both may go in one move, as a share.
+    pub(super) fn share(&self, to: PxPoint) -> f64 {
+        self.0[0].share(to.x).min(self.0[1].share(to.y))
     }
 
     /// Whether an axis goes back on the way from one place to another.

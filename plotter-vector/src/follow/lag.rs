@@ -46,6 +46,7 @@ fn pushed(at: f64, command: f64, half_px: f64) -> f64 {
 
 impl Lag {
     /// Pushed upwards (1) or downwards (−1): it hangs behind by half of the play.
+    #[cfg(test)]
     pub(super) fn behind(side: f64) -> Self {
         let mut likely = [0.0; PLACES];
         let end = if side > 0.0 { likely.first_mut() } else { likely.last_mut() };
@@ -71,37 +72,14 @@ impl Lag {
         self.pushes = self.pushes.map(|at| pushed(at, command, half_px));
     }
 
-    /// How far the path has moved it: mean and standard deviation.
-    pub(super) fn moved(&self, half_px: f64) -> (f64, f64) {
-        let (mut mean, mut square) = (0.0, 0.0);
-        for (at, likely) in self.places(half_px) {
-            let way = self.after(at) - at;
-            mean += likely * way;
-            square += likely * way * way;
-        }
-        (mean, libm::sqrt((square - mean * mean).max(0.0)))
-    }
-
-    /// The command that ends the path so far from where it began, in the mean.
-    pub(super) fn command(&self, way: f64, half_px: f64) -> f64 {
-        let began: f64 = self.places(half_px).map(|(at, likely)| likely * at).sum();
-        let end = began + way;
-        // With these two all places end at or below, and at or above, the one that is wanted.
-        let (mut low, mut high) = (end - half_px, end + half_px);
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            let ends: f64 = self
-                .places(half_px)
-                .map(|(at, likely)| likely * pushed(self.after(at), middle, half_px))
-                .sum();
-            if ends < end { low = middle } else { high = middle }
-        }
-        0.5 * (low + high)
+    /// The places with how likely they are, and how far the path and then a command move each of them.
+    pub(super) fn moves(&self, command: f64, half_px: f64) -> impl Iterator<Item = (f64, f64)> {
+        self.places(half_px).map(move |(at, likely)| (likely, pushed(self.after(at), command, half_px) - at))
     }
 
     /// Takes a picture at a command: how far it moved since the last one, and how well that is known, or nothing if the picture does not
-    /// tell.
-    pub(super) fn see(&mut self, moved: Option<(f64, f64)>, command: f64, half_px: f64) {
+    /// tell. Returns how well that fits, 1 at most.
+    pub(super) fn see(&mut self, moved: Option<(f64, f64)>, command: f64, half_px: f64) -> f64 {
         self.go(command, half_px);
         let mut likely = [0.0; PLACES];
         let mut sum = 0.0;
@@ -135,6 +113,7 @@ impl Lag {
         } else {
             *self = Self::default();
         }
+        sum / ((1.0 + ANYWHERE) * (1.0 + UNFIT))
     }
 }
 
@@ -142,17 +121,21 @@ impl Lag {
 mod tests {
     use super::*;
 
+    /// How far a command moves it in the mean.
+    fn mean(lag: &Lag, command: f64, half_px: f64) -> f64 {
+        lag.moves(command, half_px).map(|(likely, moved)| likely * moved).sum()
+    }
+
     #[test]
     fn a_turn_costs_what_is_left_of_the_play() {
         // 3 px of play, pushed upwards to a command of 0: it hangs behind by 1.5 px.
         let mut lag = Lag::behind(1.0);
-        assert!((lag.command(2.0, 1.5) - 2.0).abs() < 1e-9);
-        assert!((lag.command(-2.0, 1.5) + 5.0).abs() < 1e-9);
+        assert!((mean(&lag, 2.0, 1.5) - 2.0).abs() < 1e-9);
+        assert!((mean(&lag, -5.0, 1.5) + 2.0).abs() < 1e-9 && mean(&lag, -3.0, 1.5).abs() < 1e-9);
         // Down by 2 px, seen well: then it is 0.5 px above the command, which has to go 2 px up before it is pushed.
         lag.see(Some((0.0, 0.1)), -2.0, 1.5);
-        let (moved, sd) = lag.moved(1.5);
-        assert!(moved.abs() < 1e-9 && sd < 1e-9, "{moved} {sd}");
-        assert!((lag.command(-1.0, 1.5) + 2.0).abs() < 0.05 && (lag.command(1.0, 1.5) - 3.0).abs() < 0.05);
+        assert!((mean(&lag, -2.0, 1.5) + 1.0).abs() < 0.05, "{}", mean(&lag, -2.0, 1.5));
+        assert!((mean(&lag, 3.0, 1.5) - 1.0).abs() < 0.05, "{}", mean(&lag, 3.0, 1.5));
     }
 
     #[test]
@@ -160,11 +143,17 @@ mod tests {
         // Anywhere in 4 px of play; a command of 3 px moved it by 1: it was 2 px short of being pushed.
         let mut lag = Lag::default();
         lag.see(Some((1.0, 0.1)), 3.0, 2.0);
-        assert!((lag.command(1.0, 2.0) - 1.0).abs() < 0.05);
+        assert!((mean(&lag, 1.0, 2.0) - 1.0).abs() < 0.05);
         // Two moves, of 1 and of 3 px downwards, are all of the play.
         let mut lag = Lag::behind(1.0);
         lag.go(-1.0, 2.0);
-        lag.go(-4.0, 2.0);
-        assert!(lag.moved(2.0).0.abs() < 1e-9);
+        assert!(mean(&lag, -4.0, 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_play_that_is_too_small_fits_worse() {
+        // Pushed upwards, then 2 px down, and it stood still: there are 3 px of play, not one.
+        let fit = |half_px: f64| Lag::behind(1.0).see(Some((0.0, 0.1)), -2.0, half_px);
+        assert!(fit(1.5) > 0.9 && fit(0.5) < 0.02, "{} {}", fit(1.5), fit(0.5));
     }
 }

@@ -526,7 +526,9 @@ impl MappingFollower {
         };
         if self.tool == Tool::Down && self.place.distance(on_line) > OFF_PX && self.fixes < MOST_FIXES {
             self.fixes += 1;
-            return Some(self.go(&[on_line], Tool::Down));
+            let share = self.axes.share(on_line);
+            let part = self.place.along(on_line.minus(self.place), share);
+            return Some(self.go(&[part], Tool::Down));
         }
         let (mut node, mut link, mut heading) = (node, link, heading);
         let mut path: Vec<PxPoint> = Vec::new();
@@ -562,7 +564,7 @@ impl MappingFollower {
                 link = Some((id, far));
                 break;
             }
-            let share = self.axes.share(from, to);
+            let share = self.axes.share(to);
             if share < 1.0 && self.fixes < MOST_FIXES {
                 // The play is not known yet: a small move, and a look.
                 if path.is_empty() {

@@ -1,42 +1,46 @@
 //! [`Play`]: what each axis of the table loses where it turns round, learned on the way.
 //!
-//! An axis that moved in the pictures is pushed in this direction at the end of the move, so that its place less its command is
-//! an offset less (upwards) or more (downwards) half of the play: once seen in both directions, the play is known. From then on
-//! [`Lag`] tells where in the play it may be after moves that did not cross it.
+//! Each play that an axis may have goes with a [`Lag`], where in it the pushed piece may be. What a picture shows of the last move makes some
+//! of them likelier than others (Bayes' rule), and a command leads where they do in the mean. So a turn that a picture showed badly
+//! does no harm, and what is not known is as large as it is.
 
 use super::lag::Lag;
 
-/// Moves shorter than this are not made, px: the axis waits.
+/// Moves shorter than this are not made, px: the axis waits. Nor does it turn round for less than the second: what comes out behind the play
+/// is not known better.
 const NO_MOVE_PX: f64 = 0.12;
+const NO_TURN_PX: f64 = 0.25;
 
-/// An axis that moved so far in the pictures is pushed, px.
-const PUSHED_PX: f64 = 0.3;
+/// A move whose standard deviation is greater is made in parts, px, each at least such a share of it.
+const CAREFUL_PX: f64 = 0.45;
+const LEAST_SHARE: f64 = 0.2;
 
-/// After so much way in one direction it is pushed, or the lines here do not show it, px.
-const TURNING_PX: f64 = 5.0;
-
-/// A way beyond which an old turn tells nothing about the play, px: the random error grows with it.
-const MEMORY_PX: f64 = 60.0;
+/// Plays that are told apart: from one to the next, px, and as a share of itself.
+const STEP_PX: f64 = 0.2;
+const STEP_SHARE: f64 = 0.06;
 
 /// Most play, px.
 const MOST_PX: f64 = 30.0;
+
+/// Before anything is known a play is the less likely the larger it is: its mean, px.
+const USUAL_PX: f64 = 4.0;
+
+/// What is less likely does not count.
+const UNLIKELY: f64 = 1e-4;
+
+/// How likely each play stays that all pictures speak against, as a share of how likely it was at first: it is not the same everywhere on a table.
+const STAYS: f64 = 1e-6;
+
+/// How likely it is that a picture shows something else than the table did: what speaks against a play counts no more.
+const ODD: f64 = 0.02;
+
+/// A play with a greater standard deviation is not known yet, px.
+const UNKNOWN_PX: f64 = 0.4;
 
 /// Standard deviation of the way between two pictures that this axis did not go by its play: of the places that they show, and of
 /// the table's error, which grows with the square root of the way, px.
 const SEEN_PX: f64 = 0.15;
 const TABLE_PX: f64 = 0.1;
-
-/// How much the play may change from turn to turn, px: it is not the same everywhere on a table.
-const CHANGE_PX: f64 = 0.03;
-
-/// An axis that was seen pushed.
-#[derive(Clone, Copy, Debug)]
-struct Pushed {
-    /// Place less command, px.
-    off_px: f64,
-    /// All the way that was commanded till then, px.
-    way_px: f64,
-}
 
 /// A command to an axis, px.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,63 +51,119 @@ pub(super) struct Command {
     pub(super) end_px: f64,
 }
 
+/// A play that the axis may have.
+#[derive(Clone, Copy, Debug)]
+struct Guess {
+    half_px: f64,
+    /// How likely it was before anything was known, and is now: the sum of all is 1.
+    first: f64,
+    likely: f64,
+    /// Where in the play it may be.
+    lag: Lag,
+}
+
+impl Guess {
+    /// How far the path and then a command move the piece, with how likely it is.
+    fn moves(&self, command: f64) -> impl Iterator<Item = (f64, f64)> {
+        self.lag.moves(command, self.half_px).map(|(share, moved)| (self.likely * share, moved))
+    }
+}
+
 /// Play of an axis, and where it is in it.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Play {
-    /// Estimated play, px.
-    pub(super) play_px: f64,
+    guesses: Vec<Guess>,
     /// Where it was in the last picture, and the command then.
     place_px: f64,
     seen_at_px: f64,
-    /// Where in the play it may be.
-    lag: Lag,
     /// The last command, and all the way commanded.
     sent_px: f64,
     way_px: f64,
-    /// The direction of the last command, 1 up, −1 down, 0 not yet known, and the way since it turned.
+    /// The direction of the last command, 1 up, −1 down, 0 not yet known.
     side: f64,
-    since_turn_px: f64,
     /// Whether it turned since the last picture.
     has_turned: bool,
-    /// When it was seen pushed last, downwards and upwards.
-    seen: [Option<Pushed>; 2],
-    /// Whether the play of this turn is learned.
-    is_learned: bool,
-    /// How often the play was learned, and the variance of what is known of it, px².
-    learned: u32,
-    variance: f64,
-    /// Command and true place of the last picture, if it showed it well.
-    last: Option<(f64, f64)>,
-    /// All the way that was commanded till then.
+    /// Whether the last picture showed it well, and all the way that was commanded till then.
+    is_seen: bool,
     last_way_px: f64,
 }
 
+/// Plays that an axis may have, px, each with how likely it is before anything is known; their sum is 1.
+fn plays() -> impl Iterator<Item = (f64, f64)> {
+    let next = |play: &f64| Some(play + STEP_PX.max(STEP_SHARE * play)).filter(|next| *next <= MOST_PX);
+    let all = move || {
+        let plays = core::iter::successors(Some(0.0), next);
+        plays.map(|play: f64| (play, STEP_PX.max(STEP_SHARE * play) * libm::exp(-play / USUAL_PX)))
+    };
+    let sum: f64 = all().map(|(_, likely)| likely).sum();
+    all().map(move |(play, likely)| (play, likely / sum))
+}
+
+impl Default for Play {
+    /// Of any play, at 0.
+    fn default() -> Self {
+        let guess =
+            |(play, likely)| Guess { half_px: 0.5 * play, first: likely, likely, lag: Lag::default() };
+        Self {
+            guesses: plays().map(guess).collect(),
+            place_px: 0.0,
+            seen_at_px: 0.0,
+            sent_px: 0.0,
+            way_px: 0.0,
+            side: 0.0,
+            has_turned: false,
+            is_seen: false,
+            last_way_px: 0.0,
+        }
+    }
+}
+
 impl Play {
-    fn half_px(&self) -> f64 {
-        0.5 * self.play_px
+    fn likely(&self) -> impl Iterator<Item = &Guess> {
+        self.guesses.iter().filter(|guess| guess.likely > UNLIKELY)
     }
 
-    /// The lag after a command.
-    fn lag_at(&self, command: f64) -> Lag {
-        let mut lag = self.lag;
-        lag.go(command - self.seen_at_px, self.half_px());
-        lag
+    /// Mean and standard deviation of the play, px.
+    fn known(&self) -> (f64, f64) {
+        moments(self.likely().map(|guess| (guess.likely, 2.0 * guess.half_px)))
+    }
+
+    /// Estimated play, px.
+    pub(super) fn play_px(&self) -> f64 {
+        self.known().0
+    }
+
+    /// How far it is moved since the last picture if it is sent to `command`: mean and standard deviation, px.
+    fn moved(&self, command: f64) -> (f64, f64) {
+        let command = command - self.seen_at_px;
+        moments(self.likely().flat_map(|guess| guess.moves(command)))
     }
 
     /// The true place that belongs to a command, in the mean.
     pub(super) fn place(&self, command: f64) -> f64 {
-        self.place_px + self.lag_at(command).moved(self.half_px()).0
+        self.place_px + self.moved(command).0
+    }
+
+    /// The command that leads to a place in the mean.
+    fn command_to(&self, wanted: f64) -> f64 {
+        let most = self.likely().map(|guess| 2.0 * guess.half_px).fold(0.0, f64::max) + 1.0;
+        let way = self.seen_at_px + wanted - self.place_px;
+        let (mut low, mut high) = (way - most, way + most);
+        for _ in 0..32 {
+            let middle = 0.5 * (low + high);
+            if self.place(middle) < wanted { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
     }
 
     /// The command that leads to a place, or as far towards it as the machine's limits let the axis go.
     pub(super) fn command(&mut self, wanted: f64, limits: Option<[f64; 2]>) -> Command {
-        let half_px = self.half_px();
         let inside = |command: f64| limits.map_or(command, |[from, to]| command.max(from).min(to.max(from)));
-        let way = wanted - self.place_px - self.lag.moved(half_px).0;
-        if way.abs() < NO_MOVE_PX {
+        let way = wanted - self.place(self.sent_px);
+        if self.waits(way) {
             return Command { crosses_to_px: None, end_px: inside(self.sent_px) };
         }
-        let command = inside(self.seen_at_px + self.lag.command(wanted - self.place_px, half_px));
+        let command = inside(self.command_to(wanted));
         let moved = command - self.sent_px;
         let lost = moved - way;
         let crosses = lost * way > 0.0 && lost.abs() > NO_MOVE_PX;
@@ -111,23 +171,34 @@ impl Play {
         if moved != 0.0 {
             let side = libm::copysign(1.0, moved);
             if side != self.side {
-                (self.side, self.since_turn_px, self.is_learned) = (side, 0.0, false);
-                self.has_turned = true;
+                (self.side, self.has_turned) = (side, true);
             }
-            self.since_turn_px += moved.abs();
             self.way_px += moved.abs();
         }
-        self.sent_px = command;
-        self.lag.go(command - self.seen_at_px, half_px);
+        self.send(command);
         Command { crosses_to_px, end_px: command }
     }
 
-    /// How far the axis may go on to `wanted` in one move, as a share: a turn whose play is not known well is gone in
-    /// small moves, with a look after each.
-    pub(super) fn share(&self, from: f64, wanted: f64) -> f64 {
-        let way = wanted - from;
-        let turns = way * self.side <= 0.0 || (!self.is_learned && self.since_turn_px < TURNING_PX);
-        if turns && self.is_unknown() && way.abs() > 0.4 { 0.4 / way.abs() } else { 1.0 }
+    fn send(&mut self, command: f64) {
+        self.sent_px = command;
+        for guess in &mut self.guesses {
+            guess.lag.go(command - self.seen_at_px, guess.half_px);
+        }
+    }
+
+    /// Whether it is not worth while to go so far.
+    fn waits(&self, way: f64) -> bool {
+        way.abs() < if way * self.side < 0.0 { NO_TURN_PX } else { NO_MOVE_PX }
+    }
+
+    /// How much of the way to `wanted` the axis may go in one move, as a share: where it is not known well how far a command moves it, less, with
+    /// a look after it.
+    pub(super) fn share(&self, wanted: f64) -> f64 {
+        if self.waits(wanted - self.place(self.sent_px)) {
+            return 1.0;
+        }
+        let (_, sd) = self.moved(self.command_to(wanted));
+        if sd > 0.0 { (CAREFUL_PX / sd).clamp(LEAST_SHARE, 1.0) } else { 1.0 }
     }
 
     /// The last command.
@@ -141,91 +212,72 @@ impl Play {
     }
 
     /// Whether the play is not known well yet.
-    pub(super) const fn is_unknown(&self) -> bool {
-        self.learned < 2
+    pub(super) fn is_unknown(&self) -> bool {
+        self.known().1 > UNKNOWN_PX
     }
 
     /// Standard deviation of what the play may hide in the next picture, px, after the axis was sent to `command`.
     pub(super) fn doubt_px(&self, command: f64) -> f64 {
-        if !self.is_unknown() {
-            let (_, sd) = self.lag_at(command).moved(self.half_px());
-            return sd.max(if self.has_turned { 0.3 } else { 0.0 });
-        }
-        self.last.map_or(0.0, |(last, _)| 0.5 * (command - last).abs().min(TURNING_PX))
+        self.moved(command).1.max(if self.has_turned { 0.3 } else { 0.0 })
     }
 
     /// Takes the true place that a picture shows, if it shows it well.
     pub(super) fn measure(&mut self, command: f64, place: f64, is_sure: bool) {
         let way_px = self.way_px - core::mem::replace(&mut self.last_way_px, self.way_px);
         let sd = libm::hypot(SEEN_PX, TABLE_PX * libm::sqrt(way_px.max(0.0)));
-        let moved = (is_sure && self.last.is_some()).then_some((place - self.place_px, sd));
-        self.lag.see(moved, command - self.seen_at_px, self.half_px());
+        let moved = (is_sure && self.is_seen).then_some((place - self.place_px, sd));
+        let mut sum = 0.0;
+        for guess in &mut self.guesses {
+            let fit = guess.lag.see(moved, command - self.seen_at_px, guess.half_px);
+            guess.likely = guess.likely * (fit + ODD) + STAYS * guess.first;
+            sum += guess.likely;
+        }
+        if sum > 0.0 {
+            self.guesses.iter_mut().for_each(|guess| guess.likely /= sum);
+        }
         (self.place_px, self.seen_at_px, self.sent_px) = (place, command, command);
-        let has_turned = core::mem::take(&mut self.has_turned);
-        if !is_sure {
-            self.last = None;
-            return;
-        }
-        let Some((last_command, last_place)) = self.last.replace((command, place)) else { return };
-        let (commanded, moved) = ((command - last_command) * self.side, (place - last_place) * self.side);
-        // A move that went to and fro tells nothing; nor does one that ended before it began to push.
-        let to_and_fro = has_turned && self.since_turn_px > commanded + NO_MOVE_PX;
-        if commanded <= 0.0 || moved < PUSHED_PX || moved > commanded + 1.0 || to_and_fro {
-            return;
-        }
-        let seen = Pushed { off_px: place - command, way_px: self.way_px };
-        let [down, up] = &mut self.seen;
-        let (own, other) = if self.side > 0.0 { (up, down) } else { (down, up) };
-        *own = Some(seen);
-        let other = other.filter(|other| seen.way_px - other.way_px < MEMORY_PX);
-        if let (Some(other), false) = (other, self.is_learned) {
-            self.is_learned = true;
-            self.learn((other.off_px - seen.off_px) * self.side, seen.way_px - other.way_px);
-            self.lag = Lag::behind(self.side);
-        }
-    }
-
-    /// Weighs what a turn showed of the play, after `way_px` of commands, by how well it shows it.
-    fn learn(&mut self, shown_px: f64, way_px: f64) {
-        let shown_px = shown_px.clamp(0.0, MOST_PX);
-        let noise = 2.0 * SEEN_PX * SEEN_PX + TABLE_PX * TABLE_PX * way_px.max(0.0);
-        self.learned = self.learned.saturating_add(1);
-        if self.learned == 1 {
-            (self.play_px, self.variance) = (shown_px, noise);
-            return;
-        }
-        let (known, off) = (self.variance + CHANGE_PX * CHANGE_PX, shown_px - self.play_px);
-        // What is too far off to be its noise was perhaps no turn of this play: it counts less the farther it is.
-        let surprise = off * off / (9.0 * (known + noise));
-        let gain = known / (known + noise * surprise.max(1.0));
-        self.play_px += gain * off;
-        self.variance = known * (1.0 - gain);
+        (self.has_turned, self.is_seen) = (false, is_sure);
     }
 
     /// All places of the map are found to be `by` px farther: the axis did not move.
     pub(super) fn shift(&mut self, by: f64) {
         self.place_px += by;
-        if let Some((_, place)) = &mut self.last {
-            *place += by;
-        }
-        self.seen.iter_mut().flatten().for_each(|pushed| pushed.off_px += by);
     }
 
     /// Begins at a place.
     pub(super) fn forget(&mut self, place: f64) {
-        (self.place_px, self.seen_at_px, self.sent_px) = (place, place, place);
-        (self.last, self.seen, self.lag) = (None, [None; 2], Lag::default());
+        *self = Self { place_px: place, seen_at_px: place, sent_px: place, ..Self::default() };
     }
+}
+
+/// Mean and standard deviation of values with how likely they are.
+fn moments(values: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    let (mut sum, mut mean, mut square) = (0.0, 0.0, 0.0);
+    for (likely, value) in values {
+        sum += likely;
+        mean += likely * value;
+        square += likely * value * value;
+    }
+    if sum <= 0.0 {
+        return (0.0, 0.0);
+    }
+    let mean = mean / sum;
+    (mean, libm::sqrt((square / sum - mean * mean).max(0.0)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// An axis of 3 px of play that was pushed upwards to a command of 0.
+    fn pushed_up() -> Play {
+        let guesses = vec![Guess { half_px: 1.5, first: 1.0, likely: 1.0, lag: Lag::behind(1.0) }];
+        Play { guesses, place_px: -1.5, side: 1.0, ..Play::default() }
+    }
+
     #[test]
     fn at_a_limit_an_axis_knows_what_was_sent() {
-        let lag = Lag::behind(1.0);
-        let mut play = Play { play_px: 3.0, place_px: -1.5, side: 1.0, lag, learned: 2, ..Play::default() };
+        let mut play = pushed_up();
         // Upwards it hangs 1.5 px behind: the command for 9.5 would be 11.
         let limits = Some([0.0, 10.0]);
         let command = play.command(9.5, limits).end_px;
@@ -238,19 +290,18 @@ mod tests {
 
     #[test]
     fn a_place_that_is_corrected_is_no_move() {
-        let lag = Lag::behind(1.0);
-        let mut play = Play { play_px: 3.0, place_px: -1.5, side: 1.0, lag, learned: 2, ..Play::default() };
+        let mut play = pushed_up();
         let turned = |mut play: Play| {
             let from = play.place_px;
             let command = play.command(from - 2.0, None);
             (command.crosses_to_px, command.end_px)
         };
-        let before = turned(play);
+        let before = turned(play.clone());
         play.shift(4.0);
         play.measure(0.0, 2.5, true);
-        let crosses = [turned(play), before].map(|(crosses, _)| crosses.unwrap_or(0.0));
+        let crosses = [turned(play.clone()), before].map(|(crosses, _)| crosses.unwrap_or(0.0));
         assert!((crosses[0] - crosses[1]).abs() < 0.05 && crosses[1] < -2.9, "{crosses:?}");
-        assert!((turned(play).1 + 5.0).abs() < 0.05, "{:?}", turned(play));
+        assert!((turned(play.clone()).1 + 5.0).abs() < 0.05, "{:?}", turned(play.clone()));
     }
 
     /// An axis that loses 3 px at each turn, seen exactly after each move.
@@ -266,8 +317,52 @@ mod tests {
         let wave = |i: i32| 20.0 * (f64::from(i) * 0.05).sin();
         let first = (0..400).map(|i| go(&mut play, wave(i))).fold(0.0, f64::max);
         assert!(first < 3.1, "never farther off than the play: {first}");
-        assert!((play.play_px - 3.0).abs() < 0.5, "{play:?}");
+        assert!((play.play_px() - 3.0).abs() < 0.5, "{play:?}");
         let worst = (400..800).map(|i| go(&mut play, wave(i))).fold(0.0, f64::max);
         assert!(worst < 0.5, "{worst}");
+    }
+
+    #[test]
+    fn an_axis_turns_for_what_is_worth_its_play() {
+        let to = |by: f64| pushed_up().command(by - 1.5, None).end_px;
+        assert!((to(0.2) - 0.2).abs() < 1e-6 && to(0.1) == 0.0, "{} {}", to(0.2), to(0.1));
+        assert!(to(-0.2) == 0.0 && (to(-0.3) + 3.3).abs() < 1e-6, "{} {}", to(-0.2), to(-0.3));
+    }
+
+    #[test]
+    fn what_is_not_known_is_gone_in_parts() {
+        // Pushed upwards it goes on by what is commanded, whatever its play.
+        assert_eq!(pushed_up().share(5.0), 1.0);
+        // Anywhere in 3 px of play: standard deviation 3 / sqrt(12) = 0.87 px.
+        let anywhere = Guess { half_px: 1.5, first: 1.0, likely: 1.0, lag: Lag::default() };
+        let play = Play { guesses: vec![anywhere], ..Play::default() };
+        assert!((play.share(9.0) - CAREFUL_PX / 0.87).abs() < 0.02, "{}", play.share(9.0));
+    }
+
+    #[test]
+    fn moves_that_pictures_showed_badly_do_no_harm() {
+        // To and fro by 0.3 px within 3 px of play, and each picture shows it moved by that, as noise may have it.
+        let mut play = Play::default();
+        let mut command = 0.0;
+        for i in 0..6_u8 {
+            command += if i % 2 == 0 { 0.3 } else { -0.3 };
+            play.measure(command, command, true);
+        }
+        let mut pushed = command;
+        for i in 0..60_u8 {
+            command = 12.0 * (f64::from(i) * 0.2).sin();
+            pushed = f64::max(pushed, command - 1.5).min(command + 1.5);
+            play.measure(command, pushed, true);
+        }
+        assert!((play.play_px() - 3.0).abs() < 0.2, "{}", play.play_px());
+    }
+
+    #[test]
+    fn one_picture_is_not_believed() {
+        // Of 8.1 px 5.2 were lost: a play of 5.2 px, or a place that was found wrongly.
+        let mut play = Play::default();
+        play.measure(0.0, 0.0, true);
+        play.measure(8.1, 2.9, true);
+        assert!(play.is_unknown(), "{:?}", play.known());
     }
 }
