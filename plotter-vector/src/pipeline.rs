@@ -20,8 +20,8 @@ pub enum Algorithm {
     /// Ordered tracking, pre-elimination and [`DynamicThreshold`], drawn in tracking order: as published.
     Published,
     /// The middle of each line, its crossings and corners where they are, [`Bounded`], strokes ordered for little
-    /// travel. Drawings of lines one pixel wide are tracked pixel by pixel: there the raster is the line. With grey rims
-    /// that make them two pixels wide here and there they are centred as wider ones are.
+    /// travel. Drawings of lines one pixel wide are tracked pixel by pixel: there the raster is the line. Where grey levels
+    /// tell how far their pixels are covered they are centred as wider ones are.
     #[default]
     Ours,
 }
@@ -175,7 +175,7 @@ impl Vectorizer {
     /// [`VectorizeError`].
     pub fn vectorize(&self, gray: &Gray) -> Result<Vectorized, VectorizeError> {
         let (ink, split) = self.threshold.apply(gray);
-        // Of black and white alone the ink says all: its rims are no more exact, and dirt that was taken out is no rim.
+        // Of two levels the ink says all: its rims are no more exact, and dirt that was taken out is no rim.
         let grey = split.filter(|split| split.has_greys).map(|split| (gray, split.ink_is_dark));
         Ok(Vectorized { split, ..self.trace_ink(ink, grey)? })
     }
@@ -224,8 +224,8 @@ impl Vectorizer {
             return Ok((traced.drawing, Some(traced.error)));
         }
         self.check()?;
-        let (pen_px, raster_lines) = self.clean(ink);
-        if self.keeps_pixels(pen_px, raster_lines, grey.is_some()) {
+        let pen_px = self.clean(ink);
+        if self.keeps_pixels(pen_px, grey.is_some()) {
             let traced = self.tracked(ink)?;
             // Of what is not straight the errors are not known from the figures.
             let error = traced.drawing.is_straight().then_some(traced.error);
@@ -239,18 +239,18 @@ impl Vectorizer {
         Ok((drawing, None))
     }
 
-    /// Takes the dirt out of ink; the width of its lines, px, and whether they are the raster's own.
-    fn clean(&self, ink: &mut Bitmap) -> (u32, bool) {
-        let raster_lines = is_raster_lines(ink.blocks(), ink.count());
-        let pen_px = if raster_lines { 1 } else { pen_width_px(ink).unwrap_or(1) };
+    /// Takes the dirt out of ink; the width of its lines, px.
+    fn clean(&self, ink: &mut Bitmap) -> u32 {
+        let pen_px =
+            if is_raster_lines(ink.blocks(), ink.count()) { 1 } else { pen_width_px(ink).unwrap_or(1) };
         despeckle(ink, self.smallest_mark_px(pen_px));
-        (pen_px, raster_lines)
+        pen_px
     }
 
-    /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Those that a grey rim makes two pixels
-    /// wide here and there are better known by their grey levels.
-    pub(crate) fn keeps_pixels(&self, pen_px: u32, raster_lines: bool, has_greys: bool) -> bool {
-        pen_px <= 1 && (raster_lines || !has_greys) && self.mode != Mode::Outline
+    /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Grey levels tell better where these
+    /// are.
+    pub(crate) fn keeps_pixels(&self, pen_px: u32, has_greys: bool) -> bool {
+        pen_px <= 1 && !has_greys && self.mode != Mode::Outline
     }
 
     /// Pixels of the smallest mark of ours that is no dirt.

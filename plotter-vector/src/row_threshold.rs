@@ -30,8 +30,7 @@ pub struct Survey {
     /// Rows of a row of tiles that is not yet complete.
     levels: Vec<u8>,
     measured: Vec<TileRow>,
-    /// Whether there is any level besides black and white.
-    has_greys: bool,
+    seen: Seen,
 }
 
 /// The second pass: ink of one row after another, in any order.
@@ -68,7 +67,7 @@ impl Survey {
             tiles: Tiles::new(width, height, window_px, polarity, min_contrast),
             levels: Vec::new(),
             measured: Vec::new(),
-            has_greys: false,
+            seen: Seen::default(),
         }
     }
 
@@ -82,7 +81,7 @@ impl Survey {
         let levels = levels.get(..self.width).unwrap_or(levels);
         let missing = self.width - levels.len();
         let last = levels.last().copied().unwrap_or(u8::MAX);
-        self.has_greys = self.has_greys || has_greys(levels);
+        self.seen.push(levels);
         match self.threshold.method {
             ThresholdMethod::Otsu | ThresholdMethod::Level(_) => {
                 self.histogram.push(levels);
@@ -118,7 +117,7 @@ impl Survey {
 
     /// All rows at once, instead of [`Survey::push`].
     pub(crate) fn push_all(&mut self, levels: &[u8]) {
-        self.has_greys = has_greys(levels);
+        self.seen.push(levels);
         match self.threshold.method {
             ThresholdMethod::Otsu | ThresholdMethod::Level(_) => self.histogram = whole_histogram(levels),
             ThresholdMethod::Adaptive => {
@@ -148,7 +147,7 @@ impl Survey {
                 }
                 let light = self.tiles.finish(self.measured)?;
                 let (level, ink_is_dark) = (light.level, light.ink_is_dark);
-                let has_greys = self.has_greys;
+                let has_greys = self.seen.has_greys;
                 return Some(RowThreshold { level, ink_is_dark, light: Some(light), has_greys });
             }
         };
@@ -159,7 +158,7 @@ impl Survey {
             Polarity::DarkInk => true,
             Polarity::LightInk => false,
         };
-        Some(RowThreshold { level, ink_is_dark, light: None, has_greys: self.has_greys })
+        Some(RowThreshold { level, ink_is_dark, light: None, has_greys: self.seen.has_greys })
     }
 }
 
@@ -224,11 +223,32 @@ impl RowThreshold {
     }
 }
 
-/// Whether there is any level besides black and white.
-fn has_greys(levels: &[u8]) -> bool {
-    let is_grey = |level: &u8| level.wrapping_add(1) > 1;
-    // Most scans say so at once; of the others parts of 64 are looked at together.
-    levels.chunks(64).any(|levels| levels.iter().fold(false, |any, level| any | is_grey(level)))
+/// The levels that were seen.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seen {
+    /// The first two of them; twice the same as long as there is but one.
+    first: Option<[u8; 2]>,
+    /// Whether there are more than two.
+    has_greys: bool,
+}
+
+impl Seen {
+    fn push(&mut self, levels: &[u8]) {
+        // Most scans have many at once; of the others parts of 64 are looked at together.
+        let mut parts = levels.chunks(64);
+        while !self.has_greys
+            && let Some(part) = parts.next()
+        {
+            let [one, other] = *self.first.get_or_insert([part.first().copied().unwrap_or_default(); 2]);
+            let is_new = |level: &u8| *level != one && *level != other;
+            if part.iter().fold(false, |any, level| any | is_new(level)) {
+                let mut new = part.iter().copied().filter(is_new);
+                let second = if one == other { new.next() } else { None };
+                self.has_greys = new.any(|level| Some(level) != second);
+                self.first = Some([one, second.unwrap_or(other)]);
+            }
+        }
+    }
 }
 
 /// The levels of a row of bits: a set one is black.

@@ -9,7 +9,7 @@
 //!
 //! A tight bend is told from a corner by the ink: a pen that went to P has left ink around P, half its width far.
 
-use super::junction::{Connection, Junctions, THIN_PX};
+use super::junction::{Connection, Junctions};
 use super::site::{Role, Scan, Site};
 use super::sites::Sites;
 use super::{End, Graph};
@@ -254,7 +254,7 @@ impl Line<'_> {
     /// The corner at a place, if the parts beside it are straight and meet where the pen has been.
     fn corner(&self, scan: Scan<'_>, index: usize) -> Option<Corner> {
         let width_px = self.width_px(index);
-        if width_px <= THIN_PX {
+        if width_px <= scan.thin_px() {
             return None;
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a width below 200 px")]
