@@ -281,8 +281,7 @@ impl Line<'_> {
             return None;
         }
         let half_px = 0.5 * width_px;
-        let pen_was_at =
-            |at: &PxPoint| scan.radius_px(*at, half_px + 1.0) >= half_px - (0.1 * width_px).max(0.45);
+        let pen_was_at = |at: &PxPoint| scan.pen_was_at(*at, half_px - (0.1 * width_px).max(0.45));
         // Of a sharp corner the raster shows the tip a little too far out.
         let most_px = if cos < SHARP_COS { 0.5 } else { 0.0 };
         let inwards = direction(at, inside).unwrap_or((0.0, 0.0));

@@ -274,7 +274,13 @@ impl Picture {
     fn fragment(&self, stroke: &[PxPoint], width_px: f64) -> Fragment {
         let from_corner = |v: u32| f64::from(v.wrapping_add(PAPER_PX)) - f64::from(PAPER_PX);
         let (left, top) = (from_corner(self.left), from_corner(self.top));
-        let place = |at: &PxPoint| Place::new(PxPoint::new(at.x + left, at.y + top), width_px, true);
+        // No pen was beyond the mark's ink, however little of it the pen covers that its vertices were moved for.
+        let within =
+            |v: f64, side: u32| v.clamp(f64::from(PAPER_PX), f64::from(side.max(2 * PAPER_PX) - PAPER_PX));
+        let place = |at: &PxPoint| {
+            let (x, y) = (within(at.x, self.ink.width()), within(at.y, self.ink.height()));
+            Place::new(PxPoint::new(x + left, y + top), width_px, true)
+        };
         let closed = stroke.len() > 3 && stroke.first() == stroke.last();
         let own = stroke.get(..stroke.len() - usize::from(closed)).unwrap_or(stroke);
         Fragment { places: own.iter().map(place).collect(), joints: (!closed).then_some([Joint::Free; 2]) }

@@ -233,6 +233,16 @@ impl Scan<'_> {
         inside && self.ink.get(Pixel::new(x as u32, row as u32))
     }
 
+    /// Whether a pen that leaves at least a disc of a radius, px, may have been at a place: of a thin one, of which no disc
+    /// is sure, there is ink within half a pixel.
+    pub(super) fn pen_was_at(&self, at: PxPoint, least_px: f64) -> bool {
+        if least_px > 0.0 {
+            return self.radius_px(at, least_px + 1.0) >= least_px;
+        }
+        let beside = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
+        beside.into_iter().any(|(x, y)| self.is_ink(libm::floor(at.x + x), libm::floor(at.y + y)))
+    }
+
     /// Whether a pixel is ink.
     pub(crate) fn is_ink_at(&self, at: Pixel) -> bool {
         at.y.checked_sub(self.first_row).is_some_and(|row| self.ink.get(Pixel::new(at.x, row)))
