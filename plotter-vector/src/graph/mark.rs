@@ -274,11 +274,11 @@ impl Picture {
     fn fragment(&self, stroke: &[PxPoint], width_px: f64) -> Fragment {
         let from_corner = |v: u32| f64::from(v.wrapping_add(PAPER_PX)) - f64::from(PAPER_PX);
         let (left, top) = (from_corner(self.left), from_corner(self.top));
-        // No pen was beyond the mark's ink, however little of it the pen covers that its vertices were moved for.
-        let within =
-            |v: f64, side: u32| v.clamp(f64::from(PAPER_PX), f64::from(side.max(2 * PAPER_PX) - PAPER_PX));
+        // A vertex of a thin pen may have gone out of the ink to reach its last pixels, where no pen was.
+        let inside =
+            |v: f64, side: u32| v.clamp(PAPER_PX.into(), side.saturating_sub(PAPER_PX).max(PAPER_PX).into());
         let place = |at: &PxPoint| {
-            let (x, y) = (within(at.x, self.ink.width()), within(at.y, self.ink.height()));
+            let (x, y) = (inside(at.x, self.ink.width()), inside(at.y, self.ink.height()));
             Place::new(PxPoint::new(x + left, y + top), width_px, true)
         };
         let closed = stroke.len() > 3 && stroke.first() == stroke.last();
