@@ -5,6 +5,7 @@ use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
 use crate::coverage::coverage;
 use crate::raster_corner::take_in;
+use crate::row_threshold::has_rims;
 use crate::simplify::Pieces;
 use crate::{
     AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Curve, Drawing, DynamicThreshold, ErrorReport,
@@ -224,8 +225,9 @@ impl Vectorizer {
             return Ok((traced.drawing, Some(traced.error)));
         }
         self.check()?;
+        let ink_pixels = ink.count();
         let pen_px = self.clean(ink);
-        if self.keeps_pixels(pen_px, grey.is_some()) {
+        if self.keeps_pixels(pen_px, || grey.is_some_and(|(gray, _)| has_rims(gray, ink_pixels))) {
             let traced = self.tracked(ink)?;
             // Of what is not straight the errors are not known from the figures.
             let error = traced.drawing.is_straight().then_some(traced.error);
@@ -247,10 +249,10 @@ impl Vectorizer {
         pen_px
     }
 
-    /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Grey levels tell better where these
-    /// are.
-    pub(crate) fn keeps_pixels(&self, pen_px: u32, has_greys: bool) -> bool {
-        pen_px <= 1 && !has_greys && self.mode != Mode::Outline
+    /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Where these are is better known of grey
+    /// rims.
+    pub(crate) fn keeps_pixels(&self, pen_px: u32, has_rims: impl Fn() -> bool) -> bool {
+        pen_px <= 1 && self.mode != Mode::Outline && !has_rims()
     }
 
     /// Pixels of the smallest mark of ours that is no dirt.

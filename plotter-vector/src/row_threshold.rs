@@ -1,7 +1,8 @@
 //! [`Survey`] and [`RowThreshold`]: a threshold for pictures that come row by row.
 
+use crate::histogram::half_covered;
 use crate::light::{Light, TileRow, Tiles};
-use crate::{Histogram, MAX_SIDE_PX, Polarity, Row, SizeError, Split, Threshold, ThresholdMethod};
+use crate::{Gray, Histogram, MAX_SIDE_PX, Polarity, Row, SizeError, Split, Threshold, ThresholdMethod};
 
 /// The first pass over a picture, row by row from the top: what must be known of all of it before the first pixel
 /// can be told.
@@ -42,7 +43,12 @@ pub struct RowThreshold {
     ink_is_dark: bool,
     light: Option<Light>,
     has_greys: bool,
+    half_covered: u64,
 }
+
+/// Half covered pixels are rims where they are more than one in so many of the ink: not where noise, or a stain, is all
+/// that a drawing of black and white has of grey.
+const RIM_OF_INK: u64 = 20;
 
 impl Survey {
     /// Before the first row of a picture of `width` × `height` px, however many pixels that are.
@@ -82,18 +88,14 @@ impl Survey {
         let missing = self.width - levels.len();
         let last = levels.last().copied().unwrap_or(u8::MAX);
         self.seen.push(levels);
-        match self.threshold.method {
-            ThresholdMethod::Otsu | ThresholdMethod::Level(_) => {
-                self.histogram.push(levels);
-                self.histogram.add(last, missing as u64);
-            }
-            ThresholdMethod::Adaptive => {
-                self.levels.extend_from_slice(levels);
-                self.levels.resize(self.levels.len() + missing, last);
-                if self.tiles.levels_of_row(self.measured.len()) == Some(self.levels.len()) {
-                    self.measured.push(self.tiles.measure(&self.levels));
-                    self.levels.clear();
-                }
+        self.histogram.push(levels);
+        self.histogram.add(last, missing as u64);
+        if self.threshold.method == ThresholdMethod::Adaptive {
+            self.levels.extend_from_slice(levels);
+            self.levels.resize(self.levels.len() + missing, last);
+            if self.tiles.levels_of_row(self.measured.len()) == Some(self.levels.len()) {
+                self.measured.push(self.tiles.measure(&self.levels));
+                self.levels.clear();
             }
         }
     }
@@ -118,17 +120,15 @@ impl Survey {
     /// All rows at once, instead of [`Survey::push`].
     pub(crate) fn push_all(&mut self, levels: &[u8]) {
         self.seen.push(levels);
-        match self.threshold.method {
-            ThresholdMethod::Otsu | ThresholdMethod::Level(_) => self.histogram = whole_histogram(levels),
-            ThresholdMethod::Adaptive => {
-                let mut rest = levels;
-                let rows = (0..).map_while(|row| {
-                    let (these, below) = rest.split_at_checked(self.tiles.levels_of_row(row)?)?;
-                    rest = below;
-                    Some(these)
-                });
-                self.measured = measure_all(self.tiles, rows.collect());
-            }
+        self.histogram = whole_histogram(levels);
+        if self.threshold.method == ThresholdMethod::Adaptive {
+            let mut rest = levels;
+            let rows = (0..).map_while(|row| {
+                let (these, below) = rest.split_at_checked(self.tiles.levels_of_row(row)?)?;
+                rest = below;
+                Some(these)
+            });
+            self.measured = measure_all(self.tiles, rows.collect());
         }
         self.rows_left = 0;
     }
@@ -138,6 +138,8 @@ impl Survey {
     #[must_use]
     pub fn finish(mut self) -> Option<RowThreshold> {
         let Threshold { polarity, method, min_contrast, .. } = self.threshold;
+        let has_greys = self.seen.has_greys;
+        let half_covered = half_covered(&self.histogram.counts());
         let level = match method {
             ThresholdMethod::Otsu => self.histogram.otsu(min_contrast)?,
             ThresholdMethod::Level(level) => level,
@@ -147,8 +149,13 @@ impl Survey {
                 }
                 let light = self.tiles.finish(self.measured)?;
                 let (level, ink_is_dark) = (light.level, light.ink_is_dark);
-                let has_greys = self.seen.has_greys;
-                return Some(RowThreshold { level, ink_is_dark, light: Some(light), has_greys });
+                return Some(RowThreshold {
+                    level,
+                    ink_is_dark,
+                    light: Some(light),
+                    has_greys,
+                    half_covered,
+                });
             }
         };
         let counts = self.histogram.counts();
@@ -158,7 +165,7 @@ impl Survey {
             Polarity::DarkInk => true,
             Polarity::LightInk => false,
         };
-        Some(RowThreshold { level, ink_is_dark, light: None, has_greys: self.seen.has_greys })
+        Some(RowThreshold { level, ink_is_dark, light: None, has_greys, half_covered })
     }
 }
 
@@ -185,6 +192,11 @@ impl RowThreshold {
     /// As [`Split::has_greys`].
     pub(crate) const fn has_greys(&self) -> bool {
         self.has_greys
+    }
+
+    /// Whether many a pixel of the ink's rims is about half covered: the lines are drawn with grey levels, or scanned.
+    pub(crate) const fn has_rims(&self, ink_pixels: u64) -> bool {
+        self.half_covered * RIM_OF_INK > ink_pixels
     }
 
     /// Whether the ink of a picture of 1 bit a pixel is its black everywhere.
@@ -221,6 +233,11 @@ impl RowThreshold {
             (Some(light), dark) => pack_by(levels, &light.ink_levels(y), if dark { 0 } else { u8::MAX }, ink),
         }
     }
+}
+
+/// As [`RowThreshold::has_rims`], of a picture in memory.
+pub(crate) fn has_rims(gray: &Gray, ink_pixels: u64) -> bool {
+    half_covered(&whole_histogram(gray.pixels()).counts()) * RIM_OF_INK > ink_pixels
 }
 
 /// The levels that were seen.

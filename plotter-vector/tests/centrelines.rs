@@ -189,16 +189,29 @@ fn a_corner_of_one_pixel_with_grey_rims_is_sharp() {
 }
 
 #[test]
-fn one_pixel_of_two_levels_is_followed_pixel_by_pixel() {
-    // Whatever the two levels: they tell no more than black and white.
-    let stairs = |level: [u8; 2]| {
-        let at = |at: u32| level[usize::from((at % 60) / 7 == at / 60)];
+fn lines_of_one_pixel_in_black_and_white_are_followed_whatever_their_levels() {
+    // Two other levels, a little noise and a stain tell no more of where a line is.
+    let stairs = |level: &dyn Fn(u32, bool) -> u8| {
+        let at = |at: u32| level(at, at % 60 / 7 == at / 60);
         Gray::new(60, 60, (0..60 * 60).map(at).collect()).unwrap()
     };
-    let [found, expected] =
-        [[240, 20], [255, 0]].map(|level| Vectorizer::default().vectorize(&stairs(level)).unwrap());
-    assert!(!found.split.unwrap().has_greys);
-    assert_eq!((found.drawing, found.error), (expected.drawing, expected.error));
+    let noise = |at: u32| u8::try_from(at * 37 % 7).unwrap();
+    let traced = |gray: &Gray| {
+        let by_rows = Vectorizer::default()
+            .vectorize_rows(&mut GrayRows::new(gray.clone()), &mut Progress::silent())
+            .unwrap();
+        let whole = Vectorizer::default().vectorize(gray).unwrap();
+        assert_eq!(by_rows.drawing, whole.drawing);
+        whole
+    };
+    let expected = traced(&stairs(&|_, is_ink| if is_ink { 0 } else { 255 }));
+    let two = traced(&stairs(&|_, is_ink| if is_ink { 20 } else { 240 }));
+    let noisy = traced(&stairs(&|at, is_ink| noise(at) + if is_ink { 20 } else { 240 }));
+    let stained = traced(&stairs(&|at, is_ink| if at == 3500 { 190 } else { 255 * u8::from(!is_ink) }));
+    assert_eq!([&two, &noisy, &stained].map(|traced| traced.split.unwrap().has_greys), [false, true, true]);
+    for found in [two, noisy, stained] {
+        assert_eq!((&found.drawing, &found.error), (&expected.drawing, &expected.error));
+    }
 }
 
 #[test]

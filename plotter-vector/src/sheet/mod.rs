@@ -175,7 +175,7 @@ impl Vectorizer {
         }
         let mut strokes_part = progress.part(if with_errors { 0.7 } else { 1.0 });
         let fits = u64::from(width) * u64::from(height) <= MAX_PIXELS;
-        let keeps_pixels = self.keeps_pixels(pen_px.unwrap_or(1), threshold.has_greys());
+        let keeps_pixels = self.keeps_pixels(pen_px.unwrap_or(1), || threshold.has_rims(ink_pixels));
         if keeps_pixels && fits || self.algorithm == Algorithm::Published {
             let mut ink = Bitmap::new(width, height).map_err(SheetError::Size)?;
             let mut rows = ink.rows_mut();
