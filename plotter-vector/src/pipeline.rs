@@ -21,8 +21,8 @@ pub enum Algorithm {
     /// Ordered tracking, pre-elimination and [`DynamicThreshold`], drawn in tracking order: as published.
     Published,
     /// The middle of each line, its crossings and corners where they are, [`Bounded`], strokes ordered for little
-    /// travel. Drawings of lines one pixel wide are tracked pixel by pixel: there the raster is the line. Where grey levels
-    /// tell how far their pixels are covered they are centred as wider ones are.
+    /// travel. Drawings of lines one pixel wide are tracked pixel by pixel: there the raster is the line. Those with grey
+    /// rims are centred as wider ones are.
     #[default]
     Ours,
 }

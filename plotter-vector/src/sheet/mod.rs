@@ -99,7 +99,7 @@ impl Vectorizer {
     ///   8000 rows: where a stroke comes to every 4096th row of the sheet it is cut and simplified so far, if 2048 px or
     ///   more lie between two cuts. A cut on a straight line leaves no vertex;
     /// * of areas, the rows from one without any to the next, at most [`MAX_PIXELS`](crate::MAX_PIXELS), at 1 bit;
-    /// * the published algorithm needs the whole sheet, and so do lines one pixel wide of two levels as long as it is no
+    /// * the published algorithm needs the whole sheet, and so do lines one pixel wide without grey rims as long as it is no
     ///   larger than [`MAX_PIXELS`](crate::MAX_PIXELS). On a larger one they are followed as wider lines are: through every
     ///   pixel, but where pixels lie two by two.
     ///
