@@ -118,6 +118,21 @@ pub(crate) fn otsu(counts: &[u64; 256], min_contrast: u8) -> Option<u8> {
     (contrast >= f64::from(min_contrast)).then(|| first + (last - first) / 2)
 }
 
+/// Pixels of a level in the middle half between the mean of the dark ones and that of the light ones, as
+/// [`Histogram::otsu`] tells them: those that ink covers by about half.
+pub(crate) fn half_covered(counts: &[u64; 256]) -> u64 {
+    let Some(level) = otsu(counts, 0) else { return 0 };
+    let (dark, light) = counts.split_at(usize::from(level) + 1);
+    let mean = |counts: &[u64], first: u64| {
+        let sum: u64 = (first..).zip(counts).map(|(level, count)| level * count).sum();
+        sum / counts.iter().sum::<u64>().max(1)
+    };
+    let (dark, light) = (mean(dark, 0), mean(light, u64::from(level) + 1));
+    let quarter = light.saturating_sub(dark) / 4;
+    let middle = dark + quarter..=light.saturating_sub(quarter);
+    (0..).zip(counts).filter(|(level, _)| middle.contains(level)).map(|(_, count)| count).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

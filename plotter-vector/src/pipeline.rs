@@ -5,6 +5,7 @@ use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
 use crate::coverage::coverage;
 use crate::raster_corner::take_in;
+use crate::row_threshold::has_rims;
 use crate::simplify::Pieces;
 use crate::{
     AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Curve, Drawing, DynamicThreshold, ErrorReport,
@@ -20,8 +21,8 @@ pub enum Algorithm {
     /// Ordered tracking, pre-elimination and [`DynamicThreshold`], drawn in tracking order: as published.
     Published,
     /// The middle of each line, its crossings and corners where they are, [`Bounded`], strokes ordered for little
-    /// travel. Drawings of lines one pixel wide are tracked pixel by pixel: there the raster is the line. With grey rims
-    /// that make them two pixels wide here and there they are centred as wider ones are.
+    /// travel. Drawings of lines one pixel wide are tracked pixel by pixel: there the raster is the line. Those with grey
+    /// rims are centred as wider ones are.
     #[default]
     Ours,
 }
@@ -175,7 +176,7 @@ impl Vectorizer {
     /// [`VectorizeError`].
     pub fn vectorize(&self, gray: &Gray) -> Result<Vectorized, VectorizeError> {
         let (ink, split) = self.threshold.apply(gray);
-        // Of black and white alone the ink says all: its rims are no more exact, and dirt that was taken out is no rim.
+        // Of two levels the ink says all: its rims are no more exact, and dirt that was taken out is no rim.
         let grey = split.filter(|split| split.has_greys).map(|split| (gray, split.ink_is_dark));
         Ok(Vectorized { split, ..self.trace_ink(ink, grey)? })
     }
@@ -224,8 +225,9 @@ impl Vectorizer {
             return Ok((traced.drawing, Some(traced.error)));
         }
         self.check()?;
-        let (pen_px, raster_lines) = self.clean(ink);
-        if self.keeps_pixels(pen_px, raster_lines, grey.is_some()) {
+        let ink_pixels = ink.count();
+        let pen_px = self.clean(ink);
+        if self.keeps_pixels(pen_px, || grey.is_some_and(|(gray, _)| has_rims(gray, ink_pixels))) {
             let traced = self.tracked(ink)?;
             // Of what is not straight the errors are not known from the figures.
             let error = traced.drawing.is_straight().then_some(traced.error);
@@ -239,18 +241,18 @@ impl Vectorizer {
         Ok((drawing, None))
     }
 
-    /// Takes the dirt out of ink; the width of its lines, px, and whether they are the raster's own.
-    fn clean(&self, ink: &mut Bitmap) -> (u32, bool) {
-        let raster_lines = is_raster_lines(ink.blocks(), ink.count());
-        let pen_px = if raster_lines { 1 } else { pen_width_px(ink).unwrap_or(1) };
+    /// Takes the dirt out of ink; the width of its lines, px.
+    fn clean(&self, ink: &mut Bitmap) -> u32 {
+        let pen_px =
+            if is_raster_lines(ink.blocks(), ink.count()) { 1 } else { pen_width_px(ink).unwrap_or(1) };
         despeckle(ink, self.smallest_mark_px(pen_px));
-        (pen_px, raster_lines)
+        pen_px
     }
 
-    /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Those that a grey rim makes two pixels
-    /// wide here and there are better known by their grey levels.
-    pub(crate) fn keeps_pixels(&self, pen_px: u32, raster_lines: bool, has_greys: bool) -> bool {
-        pen_px <= 1 && (raster_lines || !has_greys) && self.mode != Mode::Outline
+    /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Where these are is better known of grey
+    /// rims.
+    pub(crate) fn keeps_pixels(&self, pen_px: u32, has_rims: impl Fn() -> bool) -> bool {
+        pen_px <= 1 && self.mode != Mode::Outline && !has_rims()
     }
 
     /// Pixels of the smallest mark of ours that is no dirt.

@@ -1,7 +1,8 @@
 //! [`Survey`] and [`RowThreshold`]: a threshold for pictures that come row by row.
 
+use crate::histogram::half_covered;
 use crate::light::{Light, TileRow, Tiles};
-use crate::{Histogram, MAX_SIDE_PX, Polarity, Row, SizeError, Split, Threshold, ThresholdMethod};
+use crate::{Gray, Histogram, MAX_SIDE_PX, Polarity, Row, SizeError, Split, Threshold, ThresholdMethod};
 
 /// The first pass over a picture, row by row from the top: what must be known of all of it before the first pixel
 /// can be told.
@@ -30,8 +31,7 @@ pub struct Survey {
     /// Rows of a row of tiles that is not yet complete.
     levels: Vec<u8>,
     measured: Vec<TileRow>,
-    /// Whether there is any level besides black and white.
-    has_greys: bool,
+    seen: Seen,
 }
 
 /// The second pass: ink of one row after another, in any order.
@@ -43,7 +43,12 @@ pub struct RowThreshold {
     ink_is_dark: bool,
     light: Option<Light>,
     has_greys: bool,
+    half_covered: u64,
 }
+
+/// Half covered pixels are rims where they are more than one in so many of the ink: not where noise, or a stain, is all
+/// that a drawing of black and white has of grey.
+const RIM_OF_INK: u64 = 20;
 
 impl Survey {
     /// Before the first row of a picture of `width` × `height` px, however many pixels that are.
@@ -68,7 +73,7 @@ impl Survey {
             tiles: Tiles::new(width, height, window_px, polarity, min_contrast),
             levels: Vec::new(),
             measured: Vec::new(),
-            has_greys: false,
+            seen: Seen::default(),
         }
     }
 
@@ -82,19 +87,15 @@ impl Survey {
         let levels = levels.get(..self.width).unwrap_or(levels);
         let missing = self.width - levels.len();
         let last = levels.last().copied().unwrap_or(u8::MAX);
-        self.has_greys = self.has_greys || has_greys(levels);
-        match self.threshold.method {
-            ThresholdMethod::Otsu | ThresholdMethod::Level(_) => {
-                self.histogram.push(levels);
-                self.histogram.add(last, missing as u64);
-            }
-            ThresholdMethod::Adaptive => {
-                self.levels.extend_from_slice(levels);
-                self.levels.resize(self.levels.len() + missing, last);
-                if self.tiles.levels_of_row(self.measured.len()) == Some(self.levels.len()) {
-                    self.measured.push(self.tiles.measure(&self.levels));
-                    self.levels.clear();
-                }
+        self.seen.push(levels);
+        self.histogram.push(levels);
+        self.histogram.add(last, missing as u64);
+        if self.threshold.method == ThresholdMethod::Adaptive {
+            self.levels.extend_from_slice(levels);
+            self.levels.resize(self.levels.len() + missing, last);
+            if self.tiles.levels_of_row(self.measured.len()) == Some(self.levels.len()) {
+                self.measured.push(self.tiles.measure(&self.levels));
+                self.levels.clear();
             }
         }
     }
@@ -118,18 +119,16 @@ impl Survey {
 
     /// All rows at once, instead of [`Survey::push`].
     pub(crate) fn push_all(&mut self, levels: &[u8]) {
-        self.has_greys = has_greys(levels);
-        match self.threshold.method {
-            ThresholdMethod::Otsu | ThresholdMethod::Level(_) => self.histogram = whole_histogram(levels),
-            ThresholdMethod::Adaptive => {
-                let mut rest = levels;
-                let rows = (0..).map_while(|row| {
-                    let (these, below) = rest.split_at_checked(self.tiles.levels_of_row(row)?)?;
-                    rest = below;
-                    Some(these)
-                });
-                self.measured = measure_all(self.tiles, rows.collect());
-            }
+        self.seen.push(levels);
+        self.histogram = whole_histogram(levels);
+        if self.threshold.method == ThresholdMethod::Adaptive {
+            let mut rest = levels;
+            let rows = (0..).map_while(|row| {
+                let (these, below) = rest.split_at_checked(self.tiles.levels_of_row(row)?)?;
+                rest = below;
+                Some(these)
+            });
+            self.measured = measure_all(self.tiles, rows.collect());
         }
         self.rows_left = 0;
     }
@@ -139,6 +138,8 @@ impl Survey {
     #[must_use]
     pub fn finish(mut self) -> Option<RowThreshold> {
         let Threshold { polarity, method, min_contrast, .. } = self.threshold;
+        let has_greys = self.seen.has_greys;
+        let half_covered = half_covered(&self.histogram.counts());
         let level = match method {
             ThresholdMethod::Otsu => self.histogram.otsu(min_contrast)?,
             ThresholdMethod::Level(level) => level,
@@ -148,8 +149,13 @@ impl Survey {
                 }
                 let light = self.tiles.finish(self.measured)?;
                 let (level, ink_is_dark) = (light.level, light.ink_is_dark);
-                let has_greys = self.has_greys;
-                return Some(RowThreshold { level, ink_is_dark, light: Some(light), has_greys });
+                return Some(RowThreshold {
+                    level,
+                    ink_is_dark,
+                    light: Some(light),
+                    has_greys,
+                    half_covered,
+                });
             }
         };
         let counts = self.histogram.counts();
@@ -159,7 +165,7 @@ impl Survey {
             Polarity::DarkInk => true,
             Polarity::LightInk => false,
         };
-        Some(RowThreshold { level, ink_is_dark, light: None, has_greys: self.has_greys })
+        Some(RowThreshold { level, ink_is_dark, light: None, has_greys, half_covered })
     }
 }
 
@@ -186,6 +192,11 @@ impl RowThreshold {
     /// As [`Split::has_greys`].
     pub(crate) const fn has_greys(&self) -> bool {
         self.has_greys
+    }
+
+    /// Whether many a pixel of the ink's rims is about half covered: the lines are drawn with grey levels, or scanned.
+    pub(crate) const fn has_rims(&self, ink_pixels: u64) -> bool {
+        self.half_covered * RIM_OF_INK > ink_pixels
     }
 
     /// Whether the ink of a picture of 1 bit a pixel is its black everywhere.
@@ -224,11 +235,37 @@ impl RowThreshold {
     }
 }
 
-/// Whether there is any level besides black and white.
-fn has_greys(levels: &[u8]) -> bool {
-    let is_grey = |level: &u8| level.wrapping_add(1) > 1;
-    // Most scans say so at once; of the others parts of 64 are looked at together.
-    levels.chunks(64).any(|levels| levels.iter().fold(false, |any, level| any | is_grey(level)))
+/// As [`RowThreshold::has_rims`], of a picture in memory.
+pub(crate) fn has_rims(gray: &Gray, ink_pixels: u64) -> bool {
+    half_covered(&whole_histogram(gray.pixels()).counts()) * RIM_OF_INK > ink_pixels
+}
+
+/// The levels that were seen.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seen {
+    /// The first two of them; twice the same as long as there is but one.
+    first: Option<[u8; 2]>,
+    /// Whether there are more than two.
+    has_greys: bool,
+}
+
+impl Seen {
+    fn push(&mut self, levels: &[u8]) {
+        // Most scans have many at once; of the others parts of 64 are looked at together.
+        let mut parts = levels.chunks(64);
+        while !self.has_greys
+            && let Some(part) = parts.next()
+        {
+            let [one, other] = *self.first.get_or_insert([part.first().copied().unwrap_or_default(); 2]);
+            let is_new = |level: &u8| *level != one && *level != other;
+            if part.iter().fold(false, |any, level| any | is_new(level)) {
+                let mut new = part.iter().copied().filter(is_new);
+                let second = if one == other { new.next() } else { None };
+                self.has_greys = new.any(|level| Some(level) != second);
+                self.first = Some([one, second.unwrap_or(other)]);
+            }
+        }
+    }
 }
 
 /// The levels of a row of bits: a set one is black.

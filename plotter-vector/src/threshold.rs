@@ -163,8 +163,7 @@ pub struct Split {
     pub level: u8,
     /// Whether the dark side is ink.
     pub ink_is_dark: bool,
-    /// Whether there are levels besides black (0) and white (255): then the rims of lines tell where these lie to a fraction
-    /// of a pixel.
+    /// Whether there are more than two levels: then the rims of lines tell where these lie to a fraction of a pixel.
     pub has_greys: bool,
     /// Number of ink pixels.
     pub ink_pixels: u64,

@@ -127,10 +127,9 @@ fn what_sticks_out_of_a_wide_pens_end_is_no_stroke() {
     }
 }
 
-#[test]
-fn a_line_of_one_pixel_with_grey_rims_is_one_stroke() {
-    // A level for each sixteenth of a pixel that the pen covers: where the line passes between two rows, both are ink.
-    let lines = [through(33.0, 80.0), through(93.0, 80.0), through(160.0, 80.0)];
+/// What is found of lines one pixel wide, on 200 x 200 px with a level for each sixteenth of a pixel that the pen covers:
+/// the same by rows as of the whole picture.
+fn traced_of_levels(lines: &[Stroke]) -> Drawing {
     let covered = |x: u32, y: u32| {
         let inside = |step: u32| {
             let part = |v: u32, of: u32| f64::from(v) + (f64::from(of) + 0.5) / 4.0;
@@ -142,11 +141,77 @@ fn a_line_of_one_pixel_with_grey_rims_is_one_stroke() {
     let level = |at: u32| u8::try_from(255 - 15 * covered(at % 200, at / 200)).unwrap();
     let gray = Gray::new(200, 200, (0..200 * 200).map(level).collect()).unwrap();
     let found = Vectorizer::default().vectorize(&gray).unwrap().drawing;
-    let off_px = hausdorff(&lines, &found);
-    assert!(off_px <= 1.5 * NEAR_PX, "{off_px} px");
-    assert!(found.strokes().len() <= 5 && found.vertices() <= 24, "{found:?}");
-    let by_rows = Vectorizer::default().vectorize_rows(&mut GrayRows::new(gray), &mut Progress::silent());
+    let by_rows = Vectorizer { band_rows: 37, ..Vectorizer::default() }
+        .vectorize_rows(&mut GrayRows::new(gray), &mut Progress::silent());
     assert_eq!(by_rows.unwrap().drawing, found);
+    found
+}
+
+#[test]
+fn a_line_of_one_pixel_with_grey_rims_is_one_stroke() {
+    // Where a line passes between two rows, both are ink.
+    let lines = [through(33.0, 80.0), through(93.0, 80.0), through(160.0, 80.0)];
+    let found = traced_of_levels(&lines);
+    let off_px = hausdorff(&lines, &found);
+    assert!(off_px <= NEAR_PX, "{off_px} px");
+    assert!(found.strokes().len() == 3 && found.vertices() <= 8, "{found:?}");
+}
+
+#[test]
+fn lines_of_one_pixel_with_grey_rims_cross_straight() {
+    for (first, between) in [(10.0, 90.0), (33.0, 60.0), (50.0, 80.0), (120.0, 75.0)] {
+        let cross = [through(first, 80.0), through(first + between, 80.0)];
+        let found = traced_of_levels(&cross);
+        let off_px = hausdorff(&cross, &found);
+        assert!(
+            found.strokes().len() == 2 && found.vertices() <= 6,
+            "{first} and {between} degrees: {found:?}"
+        );
+        assert!(off_px <= NEAR_PX, "{first} and {between} degrees: {off_px} px");
+    }
+}
+
+#[test]
+fn a_corner_of_one_pixel_with_grey_rims_is_sharp() {
+    for (angle, turn) in [(7.0, 90.0), (20.0, 90.0), (47.0, 60.0), (80.0, 120.0)] {
+        let corner: Stroke =
+            ray(angle, 70.0).into_iter().rev().chain(ray(angle + turn, 70.0).into_iter().skip(1)).collect();
+        let found = traced_of_levels(std::slice::from_ref(&corner));
+        let nearest =
+            found.strokes().flatten().map(|at| at.distance(corner[1])).fold(f64::INFINITY, f64::min);
+        assert_eq!(
+            (found.strokes().len(), found.vertices()),
+            (1, 3),
+            "{angle} and {turn} degrees: {found:?}"
+        );
+        assert!(nearest <= 0.3, "{angle} and {turn} degrees: {nearest} px");
+    }
+}
+
+#[test]
+fn lines_of_one_pixel_in_black_and_white_are_followed_whatever_their_levels() {
+    // Two other levels, a little noise and a stain tell no more of where a line is.
+    let stairs = |level: &dyn Fn(u32, bool) -> u8| {
+        let at = |at: u32| level(at, at % 60 / 7 == at / 60);
+        Gray::new(60, 60, (0..60 * 60).map(at).collect()).unwrap()
+    };
+    let noise = |at: u32| u8::try_from(at * 37 % 7).unwrap();
+    let traced = |gray: &Gray| {
+        let by_rows = Vectorizer::default()
+            .vectorize_rows(&mut GrayRows::new(gray.clone()), &mut Progress::silent())
+            .unwrap();
+        let whole = Vectorizer::default().vectorize(gray).unwrap();
+        assert_eq!(by_rows.drawing, whole.drawing);
+        whole
+    };
+    let expected = traced(&stairs(&|_, is_ink| if is_ink { 0 } else { 255 }));
+    let two = traced(&stairs(&|_, is_ink| if is_ink { 20 } else { 240 }));
+    let noisy = traced(&stairs(&|at, is_ink| noise(at) + if is_ink { 20 } else { 240 }));
+    let stained = traced(&stairs(&|at, is_ink| if at == 3500 { 190 } else { 255 * u8::from(!is_ink) }));
+    assert_eq!([&two, &noisy, &stained].map(|traced| traced.split.unwrap().has_greys), [false, true, true]);
+    for found in [two, noisy, stained] {
+        assert_eq!((&found.drawing, &found.error), (&expected.drawing, &expected.error));
+    }
 }
 
 #[test]

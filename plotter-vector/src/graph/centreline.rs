@@ -1,7 +1,7 @@
 //! [`Centreline`]: a whole stroke, in places about a pixel apart, ready to be simplified.
 
 use super::Place;
-use super::junction::THIN_PX;
+use super::site::THIN_PX;
 use super::smooth::smooth;
 use crate::simplify::Pieces;
 use crate::{Bounded, Curve, PxPoint};
@@ -61,14 +61,15 @@ impl Centreline {
                 ..Self::default()
             };
         }
-        if width_px > THIN_PX {
+        let keeps_pixels = keeps_pixels(&places, width_px);
+        if !keeps_pixels {
             fill_gaps(&mut places, whole.closed);
         }
         let corner = |(index, place): (usize, &Place)| place.is_corner().then_some(index);
         let corners: Vec<usize> = places.iter().enumerate().filter_map(corner).collect();
         let tips = [places.first(), places.last()].map(|place| place.is_some_and(|place| place.is_tip()));
         let mut places: Vec<PxPoint> = places.into_iter().map(Place::at).collect();
-        if width_px > THIN_PX {
+        if !keeps_pixels {
             places = smooth(&places, whole.closed, &corners);
         }
         Self { places, closed: whole.closed, corners, width_px, tips }
@@ -80,6 +81,12 @@ pub(super) fn width_px(places: &[Place]) -> f64 {
     let mut widths: Vec<f64> = places.iter().filter_map(|place| place.width_px()).collect();
     let middle = widths.len() / 2;
     if widths.is_empty() { 2.0 } else { *widths.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+/// Whether a line is the raster's own: thin, and its places are pixels or lie half way between two.
+pub(super) fn keeps_pixels(places: &[Place], width_px: f64) -> bool {
+    let measured = || places.iter().filter(|place| place.width_px().is_some());
+    width_px <= THIN_PX && 2 * measured().filter(|place| place.is_on_raster()).count() >= measured().count()
 }
 
 /// Whether an open line is the dot of a pen: far shorter than wide, and so short that the raster alone can have made it

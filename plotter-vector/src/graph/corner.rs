@@ -9,7 +9,7 @@
 //!
 //! A tight bend is told from a corner by the ink: a pen that went to P has left ink around P, half its width far.
 
-use super::junction::{Connection, Junctions, THIN_PX};
+use super::junction::{Connection, Junctions};
 use super::site::{Role, Scan, Site};
 use super::sites::Sites;
 use super::{End, Graph};
@@ -254,7 +254,7 @@ impl Line<'_> {
     /// The corner at a place, if the parts beside it are straight and meet where the pen has been.
     fn corner(&self, scan: Scan<'_>, index: usize) -> Option<Corner> {
         let width_px = self.width_px(index);
-        if width_px <= THIN_PX {
+        if width_px <= scan.thin_px() {
             return None;
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a width below 200 px")]
@@ -281,8 +281,7 @@ impl Line<'_> {
             return None;
         }
         let half_px = 0.5 * width_px;
-        let pen_was_at =
-            |at: &PxPoint| scan.radius_px(*at, half_px + 1.0) >= half_px - (0.1 * width_px).max(0.45);
+        let pen_was_at = |at: &PxPoint| scan.pen_was_at(*at, half_px - (0.1 * width_px).max(0.45));
         // Of a sharp corner the raster shows the tip a little too far out.
         let most_px = if cos < SHARP_COS { 0.5 } else { 0.0 };
         let inwards = direction(at, inside).unwrap_or((0.0, 0.0));

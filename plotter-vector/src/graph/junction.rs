@@ -18,9 +18,6 @@ use core::cell::{OnceCell, RefCell};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-/// Lines up to this width keep their pixels: the raster itself is their centreline.
-pub(crate) const THIN_PX: f64 = 1.5;
-
 /// What takes the place of the disturbed ends of one or two edges.
 #[derive(Clone, Debug)]
 pub(crate) struct Connection {
@@ -271,7 +268,7 @@ impl Lines<'_> {
         let arms = [mine[0], mine[1], theirs[0], theirs[1]];
         let width_px = arms.iter().map(|arm| arm.width_px).sum::<f64>() / 4.0;
         let sure = arms.iter().all(|arm| arm.support_px > 0.0);
-        if width_px <= THIN_PX || !sure || length > LONGEST_IN_WIDTHS * width_px {
+        if width_px <= self.scan.thin_px() || !sure || length > LONGEST_IN_WIDTHS * width_px {
             return None;
         }
         let wide = sites.iter().filter(|site| site.width_px > 1.15 * width_px).count();
@@ -342,7 +339,8 @@ impl Lines<'_> {
         let Some(owner) = first.min_by_key(|at| (at.y, at.x)) else { return };
         let thinnest_px = arms.iter().map(|one| one.arm.width_px).fold(f64::INFINITY, f64::min);
         let widest_px = arms.iter().map(|one| one.arm.width_px).fold(0.0, f64::max);
-        if thinnest_px <= THIN_PX && widest_px <= 2.0 * THIN_PX {
+        let thin_px = self.scan.thin_px();
+        if thinnest_px <= thin_px && widest_px <= 2.0 * thin_px {
             self.resolve_thin(group, owner, &arms, found);
         } else if let [one] = arms.as_slice() {
             found.end(owner, one, vec![self.line_end(&one.arm)], true);

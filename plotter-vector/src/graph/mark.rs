@@ -6,7 +6,6 @@
 
 use super::fragment::{Fragment, Joint};
 use super::join::Joiner;
-use super::junction::THIN_PX;
 use super::redraw::Redrawn;
 use super::site::{Rims, Scan};
 use super::{Cuts, Graph, Place, Stretch, Stroke, fragments};
@@ -261,7 +260,7 @@ impl Picture {
         }
         let width_px = *widths.select_nth_unstable_by(thin, f64::total_cmp).1;
         let side_px = f64::from(width.max(height) - 2 * PAPER_PX);
-        if width_px <= THIN_PX || side_px < LEAST_WIDTHS * width_px {
+        if width_px <= scan.thin_px() || side_px < LEAST_WIDTHS * width_px {
             return None;
         }
         let lines = strokes.into_iter().filter(|stroke| !stroke.is_empty());
@@ -275,7 +274,13 @@ impl Picture {
     fn fragment(&self, stroke: &[PxPoint], width_px: f64) -> Fragment {
         let from_corner = |v: u32| f64::from(v.wrapping_add(PAPER_PX)) - f64::from(PAPER_PX);
         let (left, top) = (from_corner(self.left), from_corner(self.top));
-        let place = |at: &PxPoint| Place::new(PxPoint::new(at.x + left, at.y + top), width_px, true);
+        // A vertex of a thin pen may have gone out of the ink to reach its last pixels, where no pen was.
+        let inside =
+            |v: f64, side: u32| v.clamp(PAPER_PX.into(), side.saturating_sub(PAPER_PX).max(PAPER_PX).into());
+        let place = |at: &PxPoint| {
+            let (x, y) = (inside(at.x, self.ink.width()), inside(at.y, self.ink.height()));
+            Place::new(PxPoint::new(x + left, y + top), width_px, true)
+        };
         let closed = stroke.len() > 3 && stroke.first() == stroke.last();
         let own = stroke.get(..stroke.len() - usize::from(closed)).unwrap_or(stroke);
         Fragment { places: own.iter().map(place).collect(), joints: (!closed).then_some([Joint::Free; 2]) }

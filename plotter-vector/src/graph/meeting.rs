@@ -136,7 +136,7 @@ impl Heart<'_> {
         let off_px = place.distance(self.centre);
         off_px <= 0.5 * self.radius_px + 0.5
             || off_px <= 6.0 * self.radius_px + 2.0
-                && self.scan.radius_px(place, half_px + 1.0) >= half_px - (0.2 * half_px).max(0.6)
+                && self.scan.pen_was_at(place, half_px - (0.2 * half_px).max(0.6))
     }
 }
 

@@ -53,6 +53,12 @@ impl Place {
         (self.width > 0).then(|| f64::from(self.width) / WIDTH_STEPS)
     }
 
+    /// Whether it is a pixel's middle, or half way between two: what 1 bit a pixel can tell.
+    pub(crate) fn is_on_raster(self) -> bool {
+        // Half of STEPS is 2 to the power of 12.
+        (self.x | self.y).trailing_zeros() >= 12
+    }
+
     /// Whether the line has a corner here.
     pub(crate) fn is_corner(self) -> bool {
         self.corner

@@ -16,6 +16,13 @@ const DIRECTION_PX: usize = 4;
 /// Pixels of the chain to either side among which the line's own width is found.
 const CALM_PX: usize = 8;
 
+/// Lines up to this width are the raster's own: nothing of them is rough, and no place of theirs is better known than
+/// their pixels.
+pub(crate) const THIN_PX: f64 = 1.5;
+
+/// The same where grey levels tell how far a pixel is covered: less is seen of no pen.
+const THIN_GREY_PX: f64 = 0.5;
+
 /// What a site is in its line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Role {
@@ -62,6 +69,11 @@ pub(crate) struct Rims<'a> {
 }
 
 impl Scan<'_> {
+    /// Width up to which lines keep their pixels, px.
+    pub(super) fn thin_px(&self) -> f64 {
+        if self.grey.is_some() { THIN_GREY_PX } else { THIN_PX }
+    }
+
     /// The sites of a chain of skeleton pixels, one for each.
     pub(crate) fn sites(&self, pixels: &[Pixel], closed: bool) -> Vec<Site> {
         let count = pixels.len();
@@ -219,6 +231,16 @@ impl Scan<'_> {
         let inside =
             x >= 0.0 && row >= 0.0 && x < f64::from(self.ink.width()) && row < f64::from(self.ink.height());
         inside && self.ink.get(Pixel::new(x as u32, row as u32))
+    }
+
+    /// Whether a pen that leaves at least a disc of a radius, px, may have been at a place: of a thin one, of which no disc
+    /// is sure, there is ink within half a pixel.
+    pub(super) fn pen_was_at(&self, at: PxPoint, least_px: f64) -> bool {
+        if least_px > 0.0 {
+            return self.radius_px(at, least_px + 1.0) >= least_px;
+        }
+        let beside = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
+        beside.into_iter().any(|(x, y)| self.is_ink(libm::floor(at.x + x), libm::floor(at.y + y)))
     }
 
     /// Whether a pixel is ink.

@@ -10,9 +10,6 @@ use core::cell::OnceCell;
 /// Rounds of pruning: a spur's own spur makes it look like a fork until it is gone.
 const ROUNDS: usize = 2;
 
-/// Lines up to this width are the raster's own: nothing of them is rough.
-const THIN_PX: f64 = 1.5;
-
 /// The edges that are spurs, found out when it is first asked.
 ///
 /// A branch is one when its tip sticks out of the line that it leaves by less than half that line's width. What
@@ -76,7 +73,7 @@ impl<'a> Spurs<'a> {
         };
         let root_px = self.scan.radius_px(at.into(), f64::MAX);
         let width_px = left.iter().map(|end| width_px(self.sites, *end)).fold(2.0 * root_px, f64::min);
-        if width_px <= THIN_PX {
+        if width_px <= self.scan.thin_px() {
             return Vec::new();
         }
         let mut short: Vec<(f64, usize)> = left

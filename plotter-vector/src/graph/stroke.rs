@@ -10,8 +10,7 @@
 //! again where the line is straight.
 
 use super::Place;
-use super::centreline::{Centreline, Whole, fill_gaps, width_px};
-use super::junction::THIN_PX;
+use super::centreline::{Centreline, Whole, fill_gaps, keeps_pixels, width_px};
 use super::smooth::smooth;
 use crate::simplify::Pieces;
 use crate::{Bounded, Curve, PxPoint};
@@ -356,7 +355,7 @@ impl Stretch {
             around.reverse();
         }
         let line = smoothed(around);
-        if place.is_corner() || line.width_px <= THIN_PX {
+        if place.is_corner() || line.keeps_pixels {
             return Some(place.at());
         }
         let straight = line.corners.is_empty().then(|| on_straight_line(place.at(), &line.places)).flatten();
@@ -405,21 +404,23 @@ struct Smoothed {
     course: Vec<PxPoint>,
     corners: Vec<usize>,
     width_px: f64,
+    keeps_pixels: bool,
 }
 
 fn smoothed(mut places: Vec<Place>) -> Smoothed {
     places.dedup_by_key(|place| place.at());
     let width_px = width_px(&places);
-    if width_px > THIN_PX {
+    let keeps_pixels = keeps_pixels(&places, width_px);
+    if !keeps_pixels {
         fill_gaps(&mut places, false);
     }
     let corner = |(index, place): (usize, &Place)| place.is_corner().then_some(index);
     let corners: Vec<usize> = places.iter().enumerate().filter_map(corner).collect();
     let mut course: Vec<PxPoint> = places.iter().map(|place| place.at()).collect();
-    if width_px > THIN_PX {
+    if !keeps_pixels {
         course = smooth(&course, false, &corners);
     }
-    Smoothed { places, course, corners, width_px }
+    Smoothed { places, course, corners, width_px, keeps_pixels }
 }
 
 /// Where a place comes to lie on the straight line through it and others, by least squares; none when they are not

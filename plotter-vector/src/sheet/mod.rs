@@ -99,9 +99,9 @@ impl Vectorizer {
     ///   8000 rows: where a stroke comes to every 4096th row of the sheet it is cut and simplified so far, if 2048 px or
     ///   more lie between two cuts. A cut on a straight line leaves no vertex;
     /// * of areas, the rows from one without any to the next, at most [`MAX_PIXELS`](crate::MAX_PIXELS), at 1 bit;
-    /// * the published algorithm needs the whole sheet, and so do lines one pixel wide as long as it is no larger than
-    ///   [`MAX_PIXELS`](crate::MAX_PIXELS). On a larger one they are followed as wider lines are: through every pixel, but
-    ///   where pixels lie two by two.
+    /// * the published algorithm needs the whole sheet, and so do lines one pixel wide without grey rims as long as it is no
+    ///   larger than [`MAX_PIXELS`](crate::MAX_PIXELS). On a larger one they are followed as wider lines are: through every
+    ///   pixel, but where pixels lie two by two.
     ///
     /// ```
     /// use plotter_vector::{Bitmap, BitmapRows, Progress, Vectorizer};
@@ -165,19 +165,17 @@ impl Vectorizer {
         let (survey, pen) = survey(self, source, &mut progress.part(0.1))?;
         let Some(threshold) = survey.finish() else { return Ok(empty) };
         // Of 1 bit a pixel black is nearly always the ink: then all is known already.
-        let pen = match source.depth() {
-            Depth::Bits1 if threshold.black_is_ink() => pen,
-            _ => pen_of_ink(source, &threshold, &mut progress.part(0.2))?,
+        let (pen_px, ink_pixels) = match source.depth() {
+            Depth::Bits1 if threshold.black_is_ink() => pen.finish(),
+            _ => pen_of_ink(source, &threshold, &mut progress.part(0.2))?.finish(),
         };
-        let (ink_pixels, raster_lines) = (pen.ink_pixels, pen.is_raster_lines());
-        let pen_px = pen.finish();
         let found = TracedSheet { split: Some(threshold.split(ink_pixels)), ink_pixels, pen_px, ..empty };
         if ink_pixels == 0 {
             return Ok(found);
         }
         let mut strokes_part = progress.part(if with_errors { 0.7 } else { 1.0 });
         let fits = u64::from(width) * u64::from(height) <= MAX_PIXELS;
-        let keeps_pixels = self.keeps_pixels(pen_px.unwrap_or(1), raster_lines, threshold.has_greys());
+        let keeps_pixels = self.keeps_pixels(pen_px.unwrap_or(1), || threshold.has_rims(ink_pixels));
         if keeps_pixels && fits || self.algorithm == Algorithm::Published {
             let mut ink = Bitmap::new(width, height).map_err(SheetError::Size)?;
             let mut rows = ink.rows_mut();
@@ -303,13 +301,9 @@ impl Pen {
         self.above.extend_from_slice(ink);
     }
 
-    fn is_raster_lines(&self) -> bool {
-        is_raster_lines(self.blocks, self.ink_pixels)
-    }
-
-    fn finish(self) -> Option<u32> {
-        let raster_lines = self.is_raster_lines();
-        self.width.finish().map(|pen_px| if raster_lines { 1 } else { pen_px })
+    fn finish(self) -> (Option<u32>, u64) {
+        let raster_lines = is_raster_lines(self.blocks, self.ink_pixels);
+        (self.width.finish().map(|pen_px| if raster_lines { 1 } else { pen_px }), self.ink_pixels)
     }
 }
 
