@@ -7,9 +7,10 @@
 )]
 
 use core::time::Duration;
+use plotter_motion::firmware::{Gantry, LinkedGantry};
 use plotter_motion::protocol::frame::{DecodeError, Decoder, Frame, Kind};
-use plotter_motion::protocol::{Hello, Link, LinkSettings, Message, MessageDecoder, Order};
-use plotter_motion::{Pen, StepPoint};
+use plotter_motion::protocol::{Hello, Link, LinkSettings, LinkState, Message, MessageDecoder, Order};
+use plotter_motion::{Machine, MachineConfig, Pen, StepPoint};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -169,4 +170,55 @@ proptest! {
         prop_assert!(sent.starts_with(&came) || came.starts_with(&sent));
         prop_assert_eq!(came, sent);
     }
+}
+
+/// What a host with payloads of `PAYLOAD` says to a machine until the session is open, and the machine after it.
+fn greeted<const PAYLOAD: usize>(host: &mut Link<8, PAYLOAD>) -> (Vec<u8>, LinkedGantry<4, 64>) {
+    let machine = Machine::new(MachineConfig::default()).unwrap();
+    let mut machine = LinkedGantry::<4, 64>::new(Gantry::new(&machine), 1, LinkSettings::default());
+    let (mut said, mut now) = (Vec::new(), Duration::ZERO);
+    for _ in 0..3 {
+        while let Some(byte) = host.transmit(now) {
+            machine.receive(now, byte);
+            said.push(byte);
+        }
+        now += Duration::from_millis(100);
+        machine.poll(now);
+        while let Some(byte) = machine.transmit(now) {
+            host.receive(now, byte);
+        }
+    }
+    (said, machine)
+}
+
+/// A machine without a session obeys the orders of the digits protocol: a greeting holds none, whatever its number.
+#[test]
+fn nobody_is_stopped_by_a_greeting() {
+    let settings = LinkSettings::default();
+    for nonce in 0..=u16::MAX {
+        let mut host = Link::<8, 128>::host(nonce, settings);
+        let call: Vec<u8> = std::iter::from_fn(|| host.transmit(Duration::ZERO)).collect();
+        assert!(call.iter().all(|&byte| byte == 0) && call.len() > 19, "{call:x?}");
+        // A machine without a session, and one whose last session had this host's number.
+        for session in [0, nonce] {
+            let mut host = host.clone();
+            let hello = Hello { version: 1, window: 4, payload: 64, session, capabilities: 0 };
+            let frame =
+                Frame { kind: Kind::Hello, sequence: 0, acknowledged: 0, limit: 4, payload: &hello.to_bytes() };
+            let (bytes, length) = frame.encode(0).unwrap();
+            bytes[..length].iter().for_each(|&byte| host.receive(Duration::ZERO, byte));
+            let greeting: Vec<u8> = std::iter::from_fn(|| host.transmit(Duration::ZERO)).collect();
+            assert!(greeting.len() > 12);
+            assert!(greeting.iter().all(|&byte| Order::from_byte(byte).is_none()), "{nonce:#x}: {greeting:x?}");
+        }
+    }
+    // The check of this one's greeting would hold 0x21, `!`; so would the payload's length of the other.
+    let mut host = Link::<8, 128>::host(0x34bb, settings);
+    let (_, machine) = greeted(&mut host);
+    assert_eq!((machine.state(), machine.link().session()), (Order::GoOn, host.session()));
+    assert_eq!(host.state(), LinkState::Open);
+    let mut host = Link::<8, 33>::host(1, settings);
+    let (said, machine) = greeted(&mut host);
+    assert!(said.len() > 30);
+    assert_eq!((machine.state(), host.state()), (Order::GoOn, LinkState::Open));
 }

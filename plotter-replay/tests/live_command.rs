@@ -234,6 +234,28 @@ fn what_was_recorded_of_frames_in_the_machine_beside_it_and_at_the_host_is_run_a
 }
 
 #[test]
+fn who_finds_a_stopped_machine_is_told() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    std::fs::write(here.join("machine.toml"), MACHINE).unwrap();
+    std::fs::write(here.join("line.hpgl"), "IN;PU0,0;PD200,0;").unwrap();
+    let (_machine, port) = simulated(&["--speed", "2"], here);
+    std::fs::write(&port, "!").unwrap();
+    let mut live = Command::new(env!("CARGO_BIN_EXE_plotter-replay"))
+        .args(["live", "--port", &port, "--machine", "machine.toml", "--start", "line.hpgl", "--link", "frames"])
+        .current_dir(here)
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let said = BufReader::new(live.stdout.take().unwrap());
+    let _live = Running(live);
+    // (it waits until somebody presses Resume; the test ends by what it says, or by the machine's end)
+    let said: Vec<String> =
+        said.lines().map_while(Result::ok).take_while(|line| !line.contains(" reached")).take(3).collect();
+    assert!(said.last().is_some_and(|line| line.contains("the machine is stopped")), "{said:?}");
+}
+
+#[test]
 fn a_machine_that_knows_digits_only_is_spoken_to_in_digits_or_refused() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();

@@ -166,10 +166,14 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
     }
 
     /// The host's end, which calls. `nonce` is the number of the session: one that a host started anew is not
-    /// likely to take again, such as the low bits of a clock (0 is taken as 1).
+    /// likely to take again, such as the low bits of a clock. The next one is taken if the greeting would hold an
+    /// [`Order`] by this one: a machine without a session obeys those as it would in the digits protocol.
     #[must_use]
     pub fn host(nonce: u16, settings: LinkSettings) -> Self {
-        Self::new(Role::Host { nonce: nonce.max(1), calls: 0, zeros_left: 0 }, LinkState::Calling, settings)
+        let mut host =
+            Self::new(Role::Host { nonce, calls: 0, zeros_left: 0 }, LinkState::Calling, settings);
+        host.role = Role::Host { nonce: host.number(nonce), calls: 0, zeros_left: 0 };
+        host
     }
 
     /// The machine's end, which answers.
@@ -358,7 +362,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
                 LinkState::Calling if self.session == nonce && hello.session == nonce => self.begin(),
                 LinkState::Calling => {
                     // It knows frames. Greet it, by a number that its last session did not have.
-                    let nonce = if hello.session == nonce { nonce.wrapping_add(1).max(1) } else { nonce };
+                    let nonce =
+                        if hello.session == nonce { self.number(nonce.wrapping_add(1)) } else { nonce };
                     self.role = Role::Host { nonce, calls: 0, zeros_left };
                     self.session = nonce;
                     self.greet = true;
@@ -437,14 +442,30 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
             }
         }
         (self.greet, self.greeted) = (false, Some(now));
-        let hello = Hello {
-            version: LINK_VERSION,
-            window: u8::try_from(WINDOW).unwrap_or(0),
-            payload: u8::try_from(PAYLOAD).unwrap_or(0),
-            session: self.session,
-            capabilities: self.settings.capabilities,
+        self.put(Kind::Hello, 0, &self.hello(self.session).to_bytes())
+    }
+
+    fn hello(&self, session: u16) -> Hello {
+        let mut payload = u8::try_from(PAYLOAD).unwrap_or(0);
+        if self.role != Role::Machine && Order::from_byte(payload).is_some() {
+            payload -= 1;
+        }
+        let window = u8::try_from(WINDOW).unwrap_or(0);
+        let capabilities = self.settings.capabilities;
+        Hello { version: LINK_VERSION, window, payload, session, capabilities }
+    }
+
+    /// The first number of a session, from `from` on, by which a host greets without a byte that is an order. (256 numbers in a
+    /// row have `!` as their high byte; all fail only if the capabilities hold such a byte.)
+    fn number(&self, from: u16) -> u16 {
+        let numbers = (0..1_024).map(|on| from.wrapping_add(on)).filter(|&number| number > 0);
+        let is_quiet = |&number: &u16| {
+            let hello = self.hello(number).to_bytes();
+            self.encoded(Kind::Hello, 0, &hello).is_some_and(|(bytes, length)| {
+                bytes.iter().take(length).all(|&byte| Order::from_byte(byte).is_none())
+            })
         };
-        self.put(Kind::Hello, 0, &hello.to_bytes())
+        numbers.clone().find(is_quiet).unwrap_or_else(|| from.max(1))
     }
 
     /// Puts an order on the line, if one is due; what is on its way there is cut short for one that was not sent yet.
@@ -501,19 +522,22 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         usize::from(self.incoming.limit().wrapping_sub(self.told_limit)) >= WINDOW.div_ceil(2)
     }
 
-    fn put(&mut self, kind: Kind, sequence: u8, payload: &[u8]) -> bool {
+    fn encoded(&self, kind: Kind, sequence: u8, payload: &[u8]) -> Option<([u8; MOST_BYTES], usize)> {
         let (acknowledged, limit) = (self.incoming.expected(), self.incoming.limit());
-        let hello = kind == Kind::Hello;
         let frame = Frame { kind, sequence, acknowledged, limit, payload };
-        let Some((mut bytes, mut length)) = frame.encode(if hello { 0 } else { self.session }) else {
+        frame.encode(if kind == Kind::Hello { 0 } else { self.session })
+    }
+
+    fn put(&mut self, kind: Kind, sequence: u8, payload: &[u8]) -> bool {
+        let Some((mut bytes, mut length)) = self.encoded(kind, sequence, payload) else {
             return false;
         };
-        if hello {
+        if kind == Kind::Hello {
             // What came over the line before is no part of it, whatever it was.
             bytes.rotate_right(1);
             length += 1;
         } else {
-            (self.told_limit, self.acknowledge) = (limit, false);
+            (self.told_limit, self.acknowledge) = (self.incoming.limit(), false);
         }
         let sequence = (kind == Kind::Data).then_some(sequence);
         self.line = OnTheLine { bytes, length, done: 0, sequence };

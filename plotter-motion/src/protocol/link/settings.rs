@@ -18,7 +18,8 @@ pub struct LinkSettings {
     pub keep_alive: Duration,
     /// Silence of the other side after which the link counts as interrupted, 1 s by default.
     pub interrupted_after: Duration,
-    /// What else this side can do; the link knows nothing of it.
+    /// What else this side can do; the link knows nothing of it. No byte of a host's may be an [`Order`](super::super::Order):
+    /// a machine without a session obeys it.
     pub capabilities: u32,
 }
 

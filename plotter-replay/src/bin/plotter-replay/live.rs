@@ -21,6 +21,9 @@ use std::time::{Duration, Instant};
 /// How long a page has for the last of it.
 const LAST_LOOK: Duration = Duration::from_millis(1_500);
 
+/// How often it is looked whether the machine is stopped.
+const LOOK_EVERY: Duration = Duration::from_millis(200);
+
 /// What is driven, and what with.
 #[derive(Debug, Args)]
 pub(crate) struct Live {
@@ -169,11 +172,18 @@ impl Live {
             say(out, &format!("look at {}", server.address()));
             let _ = out.flush(); // who closed it has seen enough: the machine goes on
             begin(); // only now: nothing moves that cannot be watched and stopped
+            let mut was_stopped = false;
             let state = loop {
-                let state = session.wait(Duration::from_secs(3_600));
+                let state = session.wait(LOOK_EVERY);
                 if state.is_final() {
                     break state;
                 }
+                let is_stopped = state == State::Stopped;
+                if is_stopped && !was_stopped {
+                    say(out, "the machine is stopped: it goes on when Resume is pressed on the page");
+                    let _ = out.flush();
+                }
+                was_stopped = is_stopped;
             };
             let until = Instant::now() + LAST_LOOK;
             while server.connections() > 0 && Instant::now() < until {
