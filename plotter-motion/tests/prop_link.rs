@@ -203,13 +203,21 @@ fn nobody_is_stopped_by_a_greeting() {
         for session in [0, nonce] {
             let mut host = host.clone();
             let hello = Hello { version: 1, window: 4, payload: 64, session, capabilities: 0 };
-            let frame =
-                Frame { kind: Kind::Hello, sequence: 0, acknowledged: 0, limit: 4, payload: &hello.to_bytes() };
+            let frame = Frame {
+                kind: Kind::Hello,
+                sequence: 0,
+                acknowledged: 0,
+                limit: 4,
+                payload: &hello.to_bytes(),
+            };
             let (bytes, length) = frame.encode(0).unwrap();
             bytes[..length].iter().for_each(|&byte| host.receive(Duration::ZERO, byte));
             let greeting: Vec<u8> = std::iter::from_fn(|| host.transmit(Duration::ZERO)).collect();
             assert!(greeting.len() > 12);
-            assert!(greeting.iter().all(|&byte| Order::from_byte(byte).is_none()), "{nonce:#x}: {greeting:x?}");
+            assert!(
+                greeting.iter().all(|&byte| Order::from_byte(byte).is_none()),
+                "{nonce:#x}: {greeting:x?}"
+            );
         }
     }
     // The check of this one's greeting would hold 0x21, `!`; so would the payload's length of the other.

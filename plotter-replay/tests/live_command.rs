@@ -242,7 +242,17 @@ fn who_finds_a_stopped_machine_is_told() {
     let (_machine, port) = simulated(&["--speed", "2"], here);
     std::fs::write(&port, "!").unwrap();
     let mut live = Command::new(env!("CARGO_BIN_EXE_plotter-replay"))
-        .args(["live", "--port", &port, "--machine", "machine.toml", "--start", "line.hpgl", "--link", "frames"])
+        .args([
+            "live",
+            "--port",
+            &port,
+            "--machine",
+            "machine.toml",
+            "--start",
+            "line.hpgl",
+            "--link",
+            "frames",
+        ])
         .current_dir(here)
         .stdout(Stdio::piped())
         .spawn()

@@ -56,6 +56,15 @@ impl Axes {
         [dx, dy].iter().zip(&self.0).any(|(way, play)| way * play.side() < -TURN_PX)
     }
 
+    /// The command that takes the axes which turn round on the way to a place across their play, if any does.
+    pub(super) fn crossing(&mut self, to: PxPoint, area: Option<[PxPoint; 2]>) -> Option<PxPoint> {
+        let [x, y] = &mut self.0;
+        let across = x.crossing(to.x, area.map(|[from, to]| [from.x, to.x]));
+        let down = y.crossing(to.y, area.map(|[from, to]| [from.y, to.y]));
+        let sent = PxPoint::new(x.sent_px(), y.sent_px());
+        (across.is_some() || down.is_some()).then_some(sent)
+    }
+
     /// The commands that lead through places, inside of the machine's area. An axis that turns round crosses its play before the
     /// other one moves, or the tool would leave the line on the side of the other.
     pub(super) fn commands(&mut self, path: &[PxPoint], area: Option<[PxPoint; 2]>) -> Vec<PxPoint> {
@@ -93,6 +102,22 @@ mod tests {
             axes.measure(table.commanded(), table.place(), [true; 2]);
         }
         (axes, table)
+    }
+
+    #[test]
+    fn a_crossing_moves_the_command_and_not_the_tool() {
+        let (mut axes, mut table) = learned();
+        let from = table.place();
+        let x = axes.0[0].side();
+        assert_eq!(axes.crossing(PxPoint::new(from.x + 4.0 * x, from.y), None), None);
+        let before = table.commanded();
+        let command = axes.crossing(PxPoint::new(from.x - 4.0 * x, from.y), None).unwrap();
+        assert!((command.x - before.x + 3.0 * x).abs() < 0.2 && command.y == before.y, "{command:?}");
+        table.go(command, Tool::Down);
+        assert!(table.place().distance(from) < 0.2);
+        // Then there is nothing left to cross.
+        axes.measure(command, table.place(), [true; 2]);
+        assert_eq!(axes.crossing(PxPoint::new(from.x - 4.0 * x, from.y), None), None);
     }
 
     #[test]

@@ -26,6 +26,11 @@ const LIGHTEST_TENTH: f32 = 1.28;
 /// Paper darker than this share of the lightest paper is none: a tile full of ink.
 const DARKEST_PAPER: f32 = 0.45;
 
+/// Tiles that may be full of lines one beside the other, and how much lighter their paper is at least and at most than it shows.
+const DENSE_TILES: usize = 6;
+const LEAST_RAISED: f32 = 1.05;
+const MOST_RAISED: f32 = 1.3;
+
 /// A part of a window, each pixel as the share of the paper's light that is missing there: 0 is paper, black ink nearly 1.
 /// Places are those of the window without distortion.
 #[derive(Clone, Debug, Default)]
@@ -149,6 +154,7 @@ impl Flat {
             return;
         }
         fill_dark(&mut paper, columns, rows, DARKEST_PAPER * lightest);
+        raise_dense(&mut paper, columns, rows);
         let across: Vec<(usize, f32)> = (0..self.width).map(|x| between(x, self.width, columns)).collect();
         let mut levels = vec![0.0; columns];
         for (y, row) in self.dark.chunks_mut(self.width.max(1)).enumerate() {
@@ -246,6 +252,43 @@ fn paper_level(bins: &[u16; 64]) -> f32 {
     level
 }
 
+/// Between lines that are close together blur leaves no place as light as paper: such tiles take what their neighbours on both sides
+/// have, in the mean. Light that falls off from its middle is never less than that.
+fn raise_dense(paper: &mut [f32], columns: usize, rows: usize) {
+    let before = paper.to_vec();
+    let at = |x: Option<usize>, y: Option<usize>| {
+        let (x, y) = (x.filter(|x| *x < columns)?, y?);
+        before.get(y * columns + x).copied()
+    };
+    for y in 0..rows {
+        for x in 0..columns {
+            let Some(own) = at(Some(x), Some(y)) else { continue };
+            let mut most = own;
+            for one in 1..=DENSE_TILES {
+                for other in 1..=DENSE_TILES {
+                    #[expect(clippy::cast_precision_loss, reason = "small numbers")]
+                    let share = one as f32 / (one + other) as f32;
+                    let pairs = [
+                        (at(x.checked_sub(one), Some(y)), at(x.checked_add(other), Some(y))),
+                        (at(Some(x), y.checked_sub(one)), at(Some(x), y.checked_add(other))),
+                    ];
+                    for (a, b) in pairs {
+                        if let (Some(a), Some(b)) = (a, b) {
+                            most = most.max(a + share * (b - a));
+                        }
+                    }
+                }
+            }
+            // (less is noise)
+            if most > LEAST_RAISED * own
+                && let Some(level) = paper.get_mut(y * columns + x)
+            {
+                *level = most.min(MOST_RAISED * own);
+            }
+        }
+    }
+}
+
 /// Tiles without paper take that of their neighbours.
 fn fill_dark(paper: &mut [f32], columns: usize, rows: usize, least: f32) {
     for _ in 0..columns + rows {
@@ -277,6 +320,7 @@ fn fill_dark(paper: &mut [f32], columns: usize, rows: usize, least: f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::follow::{CameraSettings, Paper, SimulatedCamera};
 
     #[test]
     fn a_line_is_as_dark_at_the_rim_as_in_the_middle() {
@@ -289,6 +333,24 @@ mod tests {
         for x in [3.0, 50.0, 100.0, 150.0, 197.0] {
             let (ink, paper) = (flat.at(PxPoint::new(x, 50.0)), flat.at(PxPoint::new(x, 20.0)));
             assert!((ink - 0.9).abs() < 0.03 && paper.abs() < 0.06, "{x}: {ink} {paper}");
+        }
+    }
+
+    #[test]
+    fn paper_between_dense_lines_is_no_lighter_than_it_is() {
+        // Lines of 4 px, 4 px apart, under 1.5 px of blur: the gaps are 0.2 dark, and are no paper.
+        let lines: Vec<_> = (0..14)
+            .map(|i| 100.0 + 8.0 * f64::from(i))
+            .map(|x| (vec![PxPoint::new(x, 60.0), PxPoint::new(x, 240.0)], 4.0))
+            .collect();
+        let paper = Paper::drawn(300, 300, &lines).unwrap();
+        let mut camera = SimulatedCamera::new(&paper, CameraSettings::default());
+        let flat = Flat::of(&camera.window(PxPoint::new(150.0, 150.0)), None, None);
+        let mean =
+            |x: f64| (0..120_u8).map(|y| flat.at(PxPoint::new(x, 90.0 + f64::from(y)))).sum::<f32>() / 120.0;
+        for x in [124.0, 148.0, 172.0, 196.0] {
+            let (line, gap) = (mean(x), mean(x + 4.0));
+            assert!((line - 0.77).abs() < 0.05 && (gap - 0.2).abs() < 0.05, "{x}: {line} {gap}");
         }
     }
 }

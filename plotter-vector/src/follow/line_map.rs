@@ -190,6 +190,13 @@ impl LineMap {
         })
     }
 
+    /// Whether a line that goes on where no window has looked does so within a distance.
+    pub(super) fn is_near_open_end(&self, id: u32, reach_px: f64) -> bool {
+        let hops = super::whole::count(libm::ceil(reach_px / super::lines::SPACING_PX));
+        let is_open = |id: u32| self.node(id).is_some_and(|node| node.open);
+        self.around(id, hops).iter().any(|(id, _)| is_open(*id))
+    }
+
     /// The nodes that are reached over so many links at most, and over how many.
     fn around(&self, from: u32, most_hops: usize) -> Vec<(u32, usize)> {
         let mut found = vec![(from, 0)];

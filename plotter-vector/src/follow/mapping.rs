@@ -524,7 +524,23 @@ impl MappingFollower {
             Some((_, far)) => nearest(self.place, self.map.at(node), self.map.at(far)),
             None => self.on_line(node, heading),
         };
-        if self.tool == Tool::Down && self.place.distance(on_line) > OFF_PX && self.fixes < MOST_FIXES {
+        let is_off = self.tool == Tool::Down && self.place.distance(on_line) > OFF_PX;
+        // An axis that has to cross its play does so by itself: what the table misses on that way is seen before the tool goes on.
+        let next = match link {
+            _ if is_off => Some(on_line),
+            Some((_, far)) => Some(self.map.at(far)),
+            None => trail::next(&self.map, node, heading)
+                .map(|(_, near, far)| self.map.at(if near == node { far } else { near })),
+        };
+        if self.tool == Tool::Down
+            && self.fixes < MOST_FIXES
+            && let Some(command) = next.and_then(|next| self.axes.crossing(next, self.settings.area))
+        {
+            self.fixes += 1;
+            self.report.moves += 1;
+            return Some(Step::Move { path: vec![command], tool: Tool::Down });
+        }
+        if is_off && self.fixes < MOST_FIXES {
             self.fixes += 1;
             let share = self.axes.share(on_line);
             let part = self.place.along(on_line.minus(self.place), share);

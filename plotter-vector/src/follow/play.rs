@@ -158,6 +158,19 @@ impl Play {
 
     /// The command that leads to a place, or as far towards it as the machine's limits let the axis go.
     pub(super) fn command(&mut self, wanted: f64, limits: Option<[f64; 2]>) -> Command {
+        let command = self.course(wanted, limits);
+        self.send(command.end_px);
+        command
+    }
+
+    /// The command that crosses the play and no more, if the axis has to cross some on the way to a place.
+    pub(super) fn crossing(&mut self, wanted: f64, limits: Option<[f64; 2]>) -> Option<f64> {
+        let crosses_to_px = self.course(wanted, limits).crosses_to_px?;
+        self.send(crosses_to_px);
+        Some(crosses_to_px)
+    }
+
+    fn course(&self, wanted: f64, limits: Option<[f64; 2]>) -> Command {
         let inside = |command: f64| limits.map_or(command, |[from, to]| command.max(from).min(to.max(from)));
         let way = wanted - self.place(self.sent_px);
         if self.waits(way) {
@@ -167,7 +180,11 @@ impl Play {
         let moved = command - self.sent_px;
         let lost = moved - way;
         let crosses = lost * way > 0.0 && lost.abs() > NO_MOVE_PX;
-        let crosses_to_px = crosses.then_some(inside(self.sent_px + lost));
+        Command { crosses_to_px: crosses.then_some(inside(self.sent_px + lost)), end_px: command }
+    }
+
+    fn send(&mut self, command: f64) {
+        let moved = command - self.sent_px;
         if moved != 0.0 {
             let side = libm::copysign(1.0, moved);
             if side != self.side {
@@ -175,11 +192,6 @@ impl Play {
             }
             self.way_px += moved.abs();
         }
-        self.send(command);
-        Command { crosses_to_px, end_px: command }
-    }
-
-    fn send(&mut self, command: f64) {
         self.sent_px = command;
         for guess in &mut self.guesses {
             guess.lag.go(command - self.seen_at_px, guess.half_px);

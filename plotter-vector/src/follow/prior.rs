@@ -65,6 +65,12 @@ impl Information {
         self.directions().map(|(way, known)| (way, 1.0 / libm::sqrt(known.max(1e-6))))
     }
 
+    /// The direction of which least is told, of length 1.
+    pub(super) fn least_told(self) -> (f64, f64) {
+        let [(one, most), (other, least)] = self.directions();
+        if most < least { one } else { other }
+    }
+
     /// What solves the normal equations; no shift where nothing is told.
     pub(super) fn solve(self, (bx, by): (f64, f64)) -> (f64, f64) {
         let determinant = self.xx * self.yy - self.xy * self.xy;

@@ -208,7 +208,8 @@ pub(super) fn sure(told: Information) -> [bool; 2] {
 fn refine(map: &mut LineMap, view: &View<'_>, node: u32, normal: (f64, f64), camera: PxPoint) {
     let Some((at, seen)) = map.node(node).map(|node| (node.at, node.seen)) else { return };
     let is_ahead = map.links_of(node).any(|(_, link, _)| link.state == super::line_map::State::Ahead);
-    if !is_ahead {
+    // What goes on from an end that no window has shown may turn there, and its ink is then beside this line's.
+    if !is_ahead || map.is_near_open_end(node, 1.2 * view.width_px + 1.0) {
         return;
     }
     let Some(cut) = across(view.flat, view.seen_at(camera, at), normal, view.width_px) else { return };
@@ -220,5 +221,34 @@ fn refine(map: &mut LineMap, view: &View<'_>, node: u32, normal: (f64, f64), cam
         map.shift(node, at.along(normal, NEAR_GAIN * cut.middle_px));
     } else if cut.width_px < 1.6 * view.width_px + 1.5 {
         map.shift(node, at.along(normal, cut.middle_px / f64::from(seen.min(8) + 1)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lines::Piece;
+    use super::*;
+    use crate::follow::{CameraSettings, Paper, SimulatedCamera};
+
+    #[test]
+    fn a_line_that_goes_on_unseen_stays_straight_up_to_there() {
+        // A tip of 40 degrees at (100, 100), of which windows have shown one arm up to 2 px before it.
+        let tip = PxPoint::new(100.0, 100.0);
+        let arm = |(x, y): (f64, f64)| (vec![tip, tip.along((x, y), 90.0)], 5.0);
+        let paper = Paper::drawn(200, 200, &[arm((-1.0, 0.0)), arm((-0.766, 0.643))]).unwrap();
+        let settings = CameraSettings { width_px: 200, height_px: 200, ..CameraSettings::default() };
+        let mut camera = SimulatedCamera::new(&paper, settings);
+        let places = (0..40).map(|i| PxPoint::new(20.0 + 2.0 * f64::from(i), 100.0)).collect();
+        let mut map = LineMap::default();
+        map.insert(&[Piece { places, closed: false, open: [false, true] }], 5.0, &|_| true);
+        let (at, middle) = (PxPoint::new(85.0, 95.0), PxPoint::new(100.0, 100.0));
+        for _ in 0..6 {
+            let flat = Flat::of(&camera.window(at), None, None);
+            let view = View { flat: &flat, middle, width_px: 5.0, reach_px: 92.0 };
+            let prior = Prior { place: at, information: Information::of_axes([0.1; 2]) };
+            registered(&mut map, &view, &prior, 0);
+        }
+        let off = map.nodes.iter().map(|node| (node.at.y - 100.0).abs()).fold(0.0, f64::max);
+        assert!(off < 0.3, "{off}");
     }
 }

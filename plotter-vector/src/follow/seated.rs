@@ -72,9 +72,10 @@ fn arms(map: &LineMap, id: u32, corner: PxPoint, ways: [PxPoint; 2]) -> Option<[
     if fits(one, other) { Some([one, other]) } else { fits(other, one).then_some([other, one]) }
 }
 
-/// The two nodes beside one on a line that is not followed yet.
+/// The two nodes beside one on a line that is not followed yet. Two lines whose ends touch are one: so a corner may come into the map.
 fn neighbours(map: &LineMap, id: u32) -> Option<[u32; 2]> {
-    let mut links = map.links_of(id).filter(|(_, link, _)| is_line(link));
+    let joins_ends = |link: &Link| link.contact && link.ends.iter().all(|end| map.arms(*end) == 1);
+    let mut links = map.links_of(id).filter(|(_, link, _)| is_line(link) || joins_ends(link));
     let (one, other) = (links.next()?, links.next()?);
     let are_ahead = [one, other].iter().all(|(_, link, _)| link.state == State::Ahead);
     (are_ahead && links.next().is_none()).then_some([one.2, other.2])
@@ -97,5 +98,35 @@ fn seat_arm(map: &mut LineMap, corner: u32, next: u32, places: &[PxPoint]) {
         map.shift(id, foot);
         let next = if beside[0] == before { beside[1] } else { beside[0] };
         (before, id) = (id, next);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn piece(places: &[(f64, f64)], open: [bool; 2]) -> Piece {
+        Piece { places: places.iter().map(|(x, y)| PxPoint::new(*x, *y)).collect(), closed: false, open }
+    }
+
+    #[test]
+    fn a_corner_of_two_lines_whose_ends_touch_goes_to_its_place() {
+        // The corner is at (50, 50). From a window's rim it came into the map rounded, as the ends of two lines.
+        let down: Vec<(f64, f64)> = (0..12).map(|i| (50.0, 54.0 + 2.0 * f64::from(i))).collect();
+        let mut right = vec![(50.3, 51.9), (52.2, 51.4), (54.2, 50.4)];
+        right.extend((0..12).map(|i| (56.2 + 2.0 * f64::from(i), 50.0)));
+        let mut map = LineMap::default();
+        map.insert(&[piece(&down, [false, true]), piece(&right, [false, true])], 5.0, &|_| true);
+        let seen: Vec<(f64, f64)> = (0..10)
+            .map(|i| (50.0, 70.0 - 2.0 * f64::from(i)))
+            .chain((0..10).map(|i| (50.0 + 2.0 * f64::from(i), 50.0)))
+            .collect();
+        corners_seated(&mut map, &[piece(&seen, [true, true])], PxPoint::new(60.0, 60.0));
+        let off = |at: PxPoint| {
+            let beside = f64::min((at.x - 50.0).abs(), (at.y - 50.0).abs());
+            beside.max(50.0 - at.x).max(50.0 - at.y)
+        };
+        assert!(map.nodes.iter().all(|node| off(node.at) < 0.05), "{:?}", map.nodes);
+        assert!(map.nodes.iter().any(|node| node.at.distance(PxPoint::new(50.0, 50.0)) < 0.05));
     }
 }

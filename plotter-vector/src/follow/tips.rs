@@ -18,6 +18,9 @@ use crate::PxPoint;
 /// A straight arm deviates by less, px.
 const STRAIGHT_PX: f64 = 0.5;
 
+/// A line turns back where the ways before and behind a place have this cosine at most.
+const BACK_COS: f64 = -0.8;
+
 /// Fewer places tell no direction.
 const SHORT: usize = 8;
 
@@ -35,6 +38,7 @@ struct Arm {
 
 /// Joins the arms of sharp tips in lines of some width; places along the strokes are about a pixel from each other.
 pub(super) fn sharpened(flat: &Flat, mut strokes: Vec<Vec<PxPoint>>, width_px: f64) -> Vec<Vec<PxPoint>> {
+    strokes.iter_mut().for_each(|stroke| unfold(stroke, width_px));
     without_crumbs(&mut strokes, &[], width_px);
     part_ends(&mut strokes, width_px);
     let longest = 9.0 * width_px + 6.0;
@@ -50,6 +54,29 @@ pub(super) fn sharpened(flat: &Flat, mut strokes: Vec<Vec<PxPoint>>, width_px: f
     }
     without_crumbs(&mut strokes, &[], width_px);
     strokes
+}
+
+/// A stub that a stroke goes along, back and along again is gone along once.
+fn unfold(stroke: &mut Vec<PxPoint>, width_px: f64) {
+    let longest = super::whole::count(1.5 * width_px) + 3;
+    let turns_back = |stroke: &[PxPoint], i: usize| {
+        let Some(&[before, _, at, _, behind]) = i.checked_sub(2).and_then(|i| stroke.get(i..i + 5)) else {
+            return false;
+        };
+        cosine(at.minus(before), behind.minus(at)) < BACK_COS
+    };
+    let mut i = 2;
+    while i + 2 < stroke.len() {
+        let turn = (i + 2..=i + longest).find(|j| turns_back(stroke, i) && turns_back(stroke, *j));
+        let Some((from, back)) = stroke.get(i).copied().zip(turn) else {
+            i += 1;
+            continue;
+        };
+        let again = stroke.iter().enumerate().skip(back + 1).take(longest);
+        let again = again.min_by(|(_, a), (_, b)| a.distance(from).total_cmp(&b.distance(from)));
+        stroke.drain(i + 1..again.map_or(back, |(k, _)| k));
+        i += 1;
+    }
 }
 
 /// Takes away what thinning leaves in corners: short strokes wholly inside of the ink of others. Strokes without a width of their own
@@ -341,6 +368,23 @@ mod tests {
         let strokes = sharpened(&picture(ways, 5.0), vec![one, stub], 5.0);
         assert_eq!(strokes.len(), 1);
         assert!(off_px(&strokes[0]) < 0.3, "{}", off_px(&strokes[0]));
+    }
+
+    #[test]
+    fn a_stub_that_is_folded_is_a_tip() {
+        // A tip of 18 degrees: one arm goes on to its end, the other as far, back and again to the end.
+        let ways = [(-0.152, -0.988), (0.152, -0.988)];
+        let one = [&[TIP.along((0.0, -2.0), 1.0)], &*arm(ways[0], 14)].concat();
+        let stub = [-3.1, -6.8, -1.9].map(|y| PxPoint::new(TIP.x, TIP.y + y));
+        let mut other = arm(ways[1], 9);
+        other.reverse();
+        other.extend(stub);
+        let strokes = [one, other].map(|stroke| resampled(&stroke, 1.0));
+        let strokes = sharpened(&picture(ways, 5.0), strokes.into(), 5.0);
+        assert_eq!(strokes.len(), 1);
+        assert!(off_px(&strokes[0]) < 0.5, "{}", off_px(&strokes[0]));
+        let back = strokes[0].windows(5).filter(|w| cosine(w[2].minus(w[0]), w[4].minus(w[2])) < BACK_COS);
+        assert!(back.count() <= 1);
     }
 
     #[test]

@@ -170,8 +170,7 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
     /// [`Order`] by this one: a machine without a session obeys those as it would in the digits protocol.
     #[must_use]
     pub fn host(nonce: u16, settings: LinkSettings) -> Self {
-        let mut host =
-            Self::new(Role::Host { nonce, calls: 0, zeros_left: 0 }, LinkState::Calling, settings);
+        let mut host = Self::new(Role::Host { nonce, calls: 0, zeros_left: 0 }, LinkState::Calling, settings);
         host.role = Role::Host { nonce: host.number(nonce), calls: 0, zeros_left: 0 };
         host
     }
