@@ -51,6 +51,7 @@ mod svg_in;
 mod thinning;
 mod threshold;
 mod tracking;
+mod within;
 
 pub use areas::{
     AreaError, AreaPath, AreaStyle, Areas, Hatch, MAX_LINE_PX, MIN_PITCH_PX, Outline, Outlines, WidthSplit,

@@ -7,6 +7,7 @@ use crate::coverage::coverage;
 use crate::raster_corner::take_in;
 use crate::row_threshold::has_rims;
 use crate::simplify::Pieces;
+use crate::within::within;
 use crate::{
     AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Curve, Drawing, DynamicThreshold, ErrorReport,
     ErrorTally, Figures, Gray, Lettering, Order, OrderedTracking, PensError, Pixel, PxPoint, Simplify, Split,
@@ -112,7 +113,7 @@ impl Default for Vectorizer {
 /// What the vectorization found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Vectorized {
-    /// The strokes.
+    /// The strokes, all of them within the picture.
     pub drawing: Drawing,
     /// How far the pixels lie from them.
     pub error: ErrorReport,
@@ -236,7 +237,7 @@ impl Vectorizer {
         let strokes = self.strokes(ink, grey, pen_px)?;
         let mut drawing = Drawing::new(ink.width(), ink.height());
         for stroke in strokes {
-            drawing.push_curve(1, stroke);
+            drawing.push_curve(1, within(stroke, ink.width(), ink.height()));
         }
         Ok((drawing, None))
     }
@@ -373,6 +374,7 @@ impl Vectorizer {
             let sites: Vec<PxPoint> = figure.iter().map(|pixel| PxPoint::from(*pixel)).collect();
             let closed = sites.len() > 3 && sites.first() == sites.last();
             let curve = self.ours.stroke(&sites, closed, self.pieces());
+            let curve = within(curve, straight.width_px(), straight.height_px());
             let pays = !curve.is_straight() && curve.vertices.len() < stroke.len();
             drawing.push_curve(1, if pays { curve } else { stroke.to_vec().into() });
         }

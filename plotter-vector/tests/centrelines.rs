@@ -1,5 +1,6 @@
 //! Strokes that a round pen draws, found again: junctions where they are, straight lines straight through.
 #![allow(clippy::unwrap_used, reason = "a failure shows")]
+#![allow(clippy::cast_precision_loss, reason = "a count of corners")]
 
 use plotter_vector::{Bitmap, Drawing, Gray, GrayRows, Pixel, Progress, PxPoint, Vectorizer, coverage};
 
@@ -127,14 +128,14 @@ fn what_sticks_out_of_a_wide_pens_end_is_no_stroke() {
     }
 }
 
-/// What is found of lines one pixel wide, on 200 x 200 px with a level for each sixteenth of a pixel that the pen covers:
-/// the same by rows as of the whole picture.
-fn traced_of_levels(lines: &[Stroke]) -> Drawing {
+/// What is found of lines that a pen `pen_px` wide drew, on 200 x 200 px with a level for each sixteenth of a pixel that it
+/// covers: the same by rows as of the whole picture.
+fn traced_of_levels(lines: &[Stroke], pen_px: f64) -> Drawing {
     let covered = |x: u32, y: u32| {
         let inside = |step: u32| {
             let part = |v: u32, of: u32| f64::from(v) + (f64::from(of) + 0.5) / 4.0;
             let at = PxPoint::new(part(x, step % 4), part(y, step / 4));
-            distance(at, lines.iter().map(Vec::as_slice)) <= 0.5
+            distance(at, lines.iter().map(Vec::as_slice)) <= 0.5 * pen_px
         };
         (0..16).filter(|step| inside(*step)).count()
     };
@@ -151,7 +152,7 @@ fn traced_of_levels(lines: &[Stroke]) -> Drawing {
 fn a_line_of_one_pixel_with_grey_rims_is_one_stroke() {
     // Where a line passes between two rows, both are ink.
     let lines = [through(33.0, 80.0), through(93.0, 80.0), through(160.0, 80.0)];
-    let found = traced_of_levels(&lines);
+    let found = traced_of_levels(&lines, 1.0);
     let off_px = hausdorff(&lines, &found);
     assert!(off_px <= NEAR_PX, "{off_px} px");
     assert!(found.strokes().len() == 3 && found.vertices() <= 8, "{found:?}");
@@ -161,7 +162,7 @@ fn a_line_of_one_pixel_with_grey_rims_is_one_stroke() {
 fn lines_of_one_pixel_with_grey_rims_cross_straight() {
     for (first, between) in [(10.0, 90.0), (33.0, 60.0), (50.0, 80.0), (120.0, 75.0)] {
         let cross = [through(first, 80.0), through(first + between, 80.0)];
-        let found = traced_of_levels(&cross);
+        let found = traced_of_levels(&cross, 1.0);
         let off_px = hausdorff(&cross, &found);
         assert!(
             found.strokes().len() == 2 && found.vertices() <= 6,
@@ -176,7 +177,7 @@ fn a_corner_of_one_pixel_with_grey_rims_is_sharp() {
     for (angle, turn) in [(7.0, 90.0), (20.0, 90.0), (47.0, 60.0), (80.0, 120.0)] {
         let corner: Stroke =
             ray(angle, 70.0).into_iter().rev().chain(ray(angle + turn, 70.0).into_iter().skip(1)).collect();
-        let found = traced_of_levels(std::slice::from_ref(&corner));
+        let found = traced_of_levels(std::slice::from_ref(&corner), 1.0);
         let nearest =
             found.strokes().flatten().map(|at| at.distance(corner[1])).fold(f64::INFINITY, f64::min);
         assert_eq!(
@@ -186,6 +187,48 @@ fn a_corner_of_one_pixel_with_grey_rims_is_sharp() {
         );
         assert!(nearest <= 0.3, "{angle} and {turn} degrees: {nearest} px");
     }
+}
+
+#[test]
+fn a_small_circle_of_one_pixel_with_grey_rims_has_no_corners() {
+    // The promised error twice, for the chords go from one side to the other.
+    const MOST_PX: f64 = 0.8;
+    for radius_px in [6.7, 8.3, 10.0, 11.7, 15.0, 20.0] {
+        let around = |step: u16| ray(f64::from(step) * 3.0, radius_px)[1];
+        let circle: Stroke = (0..=120).map(around).collect();
+        let found = traced_of_levels(std::slice::from_ref(&circle), 1.0);
+        let off_px = hausdorff(&[circle], &found);
+        assert!(off_px <= MOST_PX, "{radius_px} px in radius: {off_px} px");
+    }
+}
+
+#[test]
+fn the_corners_of_a_narrow_meander_with_grey_rims_are_kept() {
+    /// Share of the corners that are found within a pixel, and their mean distance, px.
+    const SHARE: f64 = 0.93;
+    const MEAN_PX: f64 = 0.45;
+    let mut off_px = Vec::new();
+    for (step_px, high_px) in [(5.3, 9.4), (7.1, 8.3), (6.2, 18.2), (9.4, 12.1)] {
+        for (pen_px, x_px) in [(1.0, 10.2), (1.5, 10.7), (1.5, 10.4)] {
+            let (mut x, mut meander) = (x_px, Stroke::new());
+            while x < 180.0 {
+                meander.extend([(x, 90.3), (x, 90.3 + high_px)].map(|(x, y)| PxPoint::new(x, y)));
+                x += step_px;
+                meander.extend([(x, 90.3 + high_px), (x, 90.3)].map(|(x, y)| PxPoint::new(x, y)));
+                x += step_px;
+            }
+            let found = traced_of_levels(std::slice::from_ref(&meander), pen_px);
+            let corners = &meander[1..meander.len() - 1];
+            let nearest = |corner: &PxPoint| {
+                found.strokes().flatten().map(|at| at.distance(*corner)).fold(f64::INFINITY, f64::min)
+            };
+            off_px.extend(corners.iter().map(nearest));
+        }
+    }
+    let count = off_px.len() as f64;
+    let share = off_px.iter().filter(|off_px| **off_px <= NEAR_PX).count() as f64 / count;
+    let mean_px = off_px.iter().sum::<f64>() / count;
+    assert!(share >= SHARE && mean_px <= MEAN_PX, "{share} of the corners, {mean_px} px");
 }
 
 #[test]

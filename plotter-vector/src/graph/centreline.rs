@@ -1,10 +1,13 @@
 //! [`Centreline`]: a whole stroke, in places about a pixel apart, ready to be simplified.
 
 use super::Place;
-use super::site::THIN_PX;
+use super::site::{EXACT_PX, THIN_PX};
 use super::smooth::smooth;
 use crate::simplify::Pieces;
 use crate::{Bounded, Curve, PxPoint};
+
+/// How exact the places of a line are that is thin and has grey rims, px.
+const EXACT_TO_PX: f64 = 0.15;
 
 /// A stroke whose ends are both known.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -62,6 +65,7 @@ impl Centreline {
             };
         }
         let keeps_pixels = keeps_pixels(&places, width_px);
+        let most_px = most_smoothed_px(&places, width_px);
         if !keeps_pixels {
             fill_gaps(&mut places, whole.closed);
         }
@@ -70,7 +74,7 @@ impl Centreline {
         let tips = [places.first(), places.last()].map(|place| place.is_some_and(|place| place.is_tip()));
         let mut places: Vec<PxPoint> = places.into_iter().map(Place::at).collect();
         if !keeps_pixels {
-            places = smooth(&places, whole.closed, &corners);
+            places = smooth(&places, whole.closed, &corners, most_px);
         }
         Self { places, closed: whole.closed, corners, width_px, tips }
     }
@@ -85,8 +89,18 @@ pub(super) fn width_px(places: &[Place]) -> f64 {
 
 /// Whether a line is the raster's own: thin, and its places are pixels or lie half way between two.
 pub(super) fn keeps_pixels(places: &[Place], width_px: f64) -> bool {
+    width_px <= THIN_PX && are_on_raster(places)
+}
+
+/// Whether most places of a line are all that 1 bit a pixel can tell.
+fn are_on_raster(places: &[Place]) -> bool {
     let measured = || places.iter().filter(|place| place.width_px().is_some());
-    width_px <= THIN_PX && 2 * measured().filter(|place| place.is_on_raster()).count() >= measured().count()
+    2 * measured().filter(|place| place.is_on_raster()).count() >= measured().count()
+}
+
+/// How far smoothing may move a place of a line, px: those of a thin one with grey rims are exact, in its bends too.
+pub(super) fn most_smoothed_px(places: &[Place], width_px: f64) -> f64 {
+    if width_px <= EXACT_PX && !are_on_raster(places) { EXACT_TO_PX } else { f64::INFINITY }
 }
 
 /// Whether an open line is the dot of a pen: far shorter than wide, and so short that the raster alone can have made it

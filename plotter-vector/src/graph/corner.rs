@@ -23,6 +23,9 @@ pub(super) const TURN_COS: f64 = 0.906_307_8;
 /// Greatest root mean square distance of the sites of a straight part, px.
 const STRAIGHT_PX: f64 = 0.4;
 
+/// Radius of the circles whose sites are no straight part of a thin line with grey rims, which shows them exactly, px.
+const ROUND_PX: f64 = 12.0;
+
 /// Sites that are looked at for the width of the line around one.
 const WIDTH_SITES: usize = 8;
 
@@ -260,11 +263,13 @@ impl Line<'_> {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a width below 200 px")]
         let (gap, support) =
             (libm::ceil(0.6 * width_px) as usize + 1, libm::ceil(1.2 * width_px) as usize + 5);
+        let is_exact = scan.is_exact(width_px);
         let ((a, u), (b, v)) = (FEWEST_SITES..=support).rev().step_by(2).find_map(|support| {
             let side = |ahead: bool| {
-                straight((gap..gap + support).map_while(|step| {
+                let places = (gap..gap + support).map_while(|step| {
                     if ahead { self.place(index, step, 0) } else { self.place(index, 0, step) }
-                }))
+                });
+                straight(places, if is_exact { round_px(support) } else { STRAIGHT_PX })
             };
             side(false).zip(side(true))
         })?;
@@ -291,9 +296,17 @@ impl Line<'_> {
     }
 }
 
-/// The line through places, none when they are not straight: their mean, and the direction from the first to the
-/// last.
-fn straight(places: impl Iterator<Item = PxPoint>) -> Option<(PxPoint, (f64, f64))> {
+/// Root mean square distance of so many sites, about a pixel apart, of a circle of [`ROUND_PX`] from a straight line: an arc
+/// of length s rises by s² / 8 r, and √(4/45) of that is the mean.
+fn round_px(sites: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "fewer than ten")]
+    let length_px = sites as f64;
+    0.298 * length_px * length_px / (8.0 * ROUND_PX)
+}
+
+/// The line through places, none when they are not straight, within a root mean square distance in px: their mean, and the
+/// direction from the first to the last.
+fn straight(places: impl Iterator<Item = PxPoint>, within_px: f64) -> Option<(PxPoint, (f64, f64))> {
     let (mut n, mut x, mut y, mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     let (mut first, mut last) = (None, None);
     for place in places {
@@ -315,7 +328,7 @@ fn straight(places: impl Iterator<Item = PxPoint>) -> Option<(PxPoint, (f64, f64
         (dx, dy) = (-dx, -dy);
     }
     let across = xx * dy * dy - 2.0 * xy * dx * dy + yy * dx * dx;
-    (across <= STRAIGHT_PX * STRAIGHT_PX).then_some((PxPoint::new(origin.x + x, origin.y + y), (dx, dy)))
+    (across <= within_px * within_px).then_some((PxPoint::new(origin.x + x, origin.y + y), (dx, dy)))
 }
 
 pub(super) fn direction(from: PxPoint, to: PxPoint) -> Option<(f64, f64)> {

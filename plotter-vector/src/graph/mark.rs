@@ -7,7 +7,7 @@
 use super::fragment::{Fragment, Joint};
 use super::join::Joiner;
 use super::redraw::Redrawn;
-use super::site::{Rims, Scan};
+use super::site::{Rims, Scan, THIN_PX};
 use super::{Cuts, Graph, Place, Stretch, Stroke, fragments};
 use crate::centrelines::each;
 use crate::continuity::neighbours;
@@ -260,7 +260,7 @@ impl Picture {
         }
         let width_px = *widths.select_nth_unstable_by(thin, f64::total_cmp).1;
         let side_px = f64::from(width.max(height) - 2 * PAPER_PX);
-        if width_px <= scan.thin_px() || side_px < LEAST_WIDTHS * width_px {
+        if width_px <= THIN_PX || side_px < LEAST_WIDTHS * width_px {
             return None;
         }
         let lines = strokes.into_iter().filter(|stroke| !stroke.is_empty());

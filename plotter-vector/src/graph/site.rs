@@ -23,6 +23,16 @@ pub(crate) const THIN_PX: f64 = 1.5;
 /// The same where grey levels tell how far a pixel is covered: less is seen of no pen.
 const THIN_GREY_PX: f64 = 0.5;
 
+/// Widest line of which grey rims make the sites exact in its bends too, px: those of a wider one cut corners.
+pub(super) const EXACT_PX: f64 = 1.75;
+
+/// Of a pen that is sure to leave no greater disc than this the raster may show none, px.
+const THIN_DISC_PX: f64 = 0.25;
+
+/// Share of full ink that a pen leaves, at least, where it was: between the middles of pixels a line one pixel wide has a
+/// half, a corner of it a little less.
+const LEAST_SHARE: f64 = 0.45;
+
 /// What a site is in its line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Role {
@@ -68,10 +78,31 @@ pub(crate) struct Rims<'a> {
     pub(crate) first_row: u32,
 }
 
+impl Rims<'_> {
+    /// How dark the pixel in column `x` and row `y` of the picture is, whole numbers: what lies beyond the levels is paper.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole numbers within the picture"
+    )]
+    fn darkness(&self, x: f64, y: f64) -> f64 {
+        let row = y - f64::from(self.first_row);
+        let level =
+            if x >= 0.0 && row >= 0.0 { self.levels.get(Pixel::new(x as u32, row as u32)) } else { None };
+        let darkness = |level: u8| f64::from(if self.ink_is_dark { 255 - level } else { level });
+        level.map_or(0.0, darkness)
+    }
+}
+
 impl Scan<'_> {
     /// Width up to which lines keep their pixels, px.
     pub(super) fn thin_px(&self) -> f64 {
         if self.grey.is_some() { THIN_GREY_PX } else { THIN_PX }
+    }
+
+    /// Whether the sites of lines of a width, px, are exact.
+    pub(super) fn is_exact(&self, width_px: f64) -> bool {
+        self.grey.is_some() && width_px <= EXACT_PX
     }
 
     /// The sites of a chain of skeleton pixels, one for each.
@@ -233,14 +264,40 @@ impl Scan<'_> {
         inside && self.ink.get(Pixel::new(x as u32, row as u32))
     }
 
-    /// Whether a pen that leaves at least a disc of a radius, px, may have been at a place: of a thin one, of which no disc
-    /// is sure, there is ink within half a pixel.
+    /// Whether a pen that leaves at least a disc of a radius, px, may have been at a place. A thin one leaves no disc that is
+    /// sure: where levels are known, it has made the place at least half as dark as its lines, else there is ink within
+    /// half a pixel.
     pub(super) fn pen_was_at(&self, at: PxPoint, least_px: f64) -> bool {
+        if least_px <= THIN_DISC_PX
+            && let Some(share) = self.share_of_ink(at)
+        {
+            return share >= LEAST_SHARE;
+        }
         if least_px > 0.0 {
             return self.radius_px(at, least_px + 1.0) >= least_px;
         }
         let beside = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
         beside.into_iter().any(|(x, y)| self.is_ink(libm::floor(at.x + x), libm::floor(at.y + y)))
+    }
+
+    /// How dark a place is, between the lightest (0) and the darkest (1) around it: between the middles of pixels in
+    /// proportion. None without grey levels.
+    fn share_of_ink(&self, at: PxPoint) -> Option<f64> {
+        let rims = self.grey?;
+        let (left, top) = (libm::floor(at.x - 0.5), libm::floor(at.y - 0.5));
+        let (right, below) = (at.x - 0.5 - left, at.y - 0.5 - top);
+        let (mut paper, mut full, mut here) = (f64::INFINITY, 0.0_f64, 0.0);
+        for (dy, dx) in (-2..=3_i32).flat_map(|dy| (-2..=3_i32).map(move |dx| (dy, dx))) {
+            let darkness = rims.darkness(left + f64::from(dx), top + f64::from(dy));
+            (paper, full) = (paper.min(darkness), full.max(darkness));
+            let weight = |step: i32, part: f64| match step {
+                0 => 1.0 - part,
+                1 => part,
+                _ => 0.0,
+            };
+            here += weight(dx, right) * weight(dy, below) * darkness;
+        }
+        (full > paper).then(|| (here - paper) / (full - paper))
     }
 
     /// Whether a pixel is ink.
@@ -307,5 +364,28 @@ mod tests {
             assert!((scan.radius_px(at, f64::MAX) - limited(96.0)).abs() < 1e-12, "{at:?}");
             assert!((scan.radius_px(at, 4.0) - limited(4.0)).abs() < 1e-12, "{at:?}");
         }
+    }
+
+    #[test]
+    fn a_thin_pen_was_where_it_left_ink_and_not_beside() {
+        // A pen 1 px wide went level at 10.3, whose ink is as dark as it covers the pixels.
+        let middle = 10.3;
+        let mut ink = Bitmap::new(40, 20).unwrap();
+        let covered = |y: u32| (1.0 - (f64::from(y) + 0.5 - middle).abs()).clamp(0.0, 1.0);
+        let level = |at: u32| libm::round(255.0 * (1.0 - covered(at / 40)));
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a level")]
+        let levels = Gray::new(40, 20, (0..40 * 20).map(|at| level(at) as u8).collect()).unwrap();
+        (0..40).for_each(|x| ink.set(Pixel::new(x, 10), true));
+        let grey = Some(Rims { levels: &levels, ink_is_dark: true, first_row: 1000 });
+        let scan = Scan { ink: &ink, first_row: 1000, grey };
+        for step in 0..40 {
+            let x = 15.0 + f64::from(step) / 8.0;
+            let at = |off_px: f64| scan.pen_was_at(PxPoint::new(x, 1000.0 + middle + off_px), 0.05);
+            assert_eq!([-0.9, 0.0, 0.9].map(at), [false, true, false], "{x}");
+        }
+        // At the corner of four pixels of paper there is room for a disc, but no ink.
+        let black_and_white = Scan { grey: None, ..scan };
+        assert!(black_and_white.pen_was_at(PxPoint::new(15.0, 1009.0), 0.05));
+        assert!(!scan.pen_was_at(PxPoint::new(15.0, 1009.0), 0.05));
     }
 }

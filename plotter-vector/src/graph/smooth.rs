@@ -8,16 +8,21 @@
 //! weights 3·(3m² + 3m − 1 − 5k²) / ((2m − 1)·(2m + 1)·(2m + 3)).
 
 use crate::PxPoint;
+use crate::curve::unit;
 
 /// Half widths of the windows, the narrowest last.
 const HALVES: [usize; 3] = [16, 8, 4];
+
+/// How far from a place the line through its neighbours on one side comes by, px: farther, and the place itself is off.
+const NEAR_PX: f64 = 0.25;
 
 /// How far a wide window's result may be from the narrow one's, px: more is the curve's own shape.
 const AGREE_PX: f64 = 0.35;
 
 /// Smooths the places of a line, which are about equally far apart. Those at `breaks` (rising), and both ends of an open
-/// line, stay where they are, and nothing is averaged across them.
-pub(crate) fn smooth(places: &[PxPoint], closed: bool, breaks: &[usize]) -> Vec<PxPoint> {
+/// line, stay where they are, and nothing is averaged across them. So do places that would move farther than `most_px`:
+/// of exact ones these are bends.
+pub(crate) fn smooth(places: &[PxPoint], closed: bool, breaks: &[usize], most_px: f64) -> Vec<PxPoint> {
     let count = places.len();
     let weights = HALVES.map(weights);
     let mut smoothed = Vec::with_capacity(count);
@@ -37,7 +42,14 @@ pub(crate) fn smooth(places: &[PxPoint], closed: bool, breaks: &[usize]) -> Vec<
         let room_after =
             last.map_or(count / 2, |last| if last >= index { last - index } else { last + count - index });
         let room = room_before.min(room_after).min(count.saturating_sub(1) / 2);
-        smoothed.push(smoothed_place(places, index, room, &weights).unwrap_or(at));
+        let moved = smoothed_place(places, index, room, &weights);
+        let is_bend = |moved: &PxPoint| {
+            let near = |place: PxPoint| place.distance(at) <= NEAR_PX;
+            moved.distance(at) > most_px
+                && sideways_px(places, closed, index, *moved) > most_px
+                && [-1, 1].into_iter().any(|way| continued(places, closed, index, way).is_some_and(near))
+        };
+        smoothed.push(moved.filter(|moved| !is_bend(moved)).unwrap_or(at));
     }
     smoothed
 }
@@ -58,6 +70,31 @@ fn smoothed_place(places: &[PxPoint], index: usize, room: usize, weights: &[Vec<
         }
     }
     Some(sure)
+}
+
+/// The place so many after one, or before it; of a closed line around its end.
+fn beside(places: &[PxPoint], closed: bool, index: usize, steps: isize) -> Option<PxPoint> {
+    let at = index.checked_add_signed(steps);
+    let around = |at: usize| at % places.len().max(1);
+    let at =
+        if closed { around(at.unwrap_or((index + places.len()).wrapping_add_signed(steps))) } else { at? };
+    places.get(at).copied()
+}
+
+/// How far a place moves across its line, px: how far it moves along it says nothing.
+fn sideways_px(places: &[PxPoint], closed: bool, index: usize, moved: PxPoint) -> f64 {
+    let [before, at, after] = [-2, 0, 2].map(|steps| beside(places, closed, index, steps));
+    let (Some(before), Some(at), Some(after)) = (before, at, after) else { return 0.0 };
+    let ((x, y), (u, v)) = (moved.minus(at), unit(before, after));
+    (x * v - y * u).abs()
+}
+
+/// Where the straight line through the three places before (−1) or after one (1) comes to it.
+fn continued(places: &[PxPoint], closed: bool, index: usize, way: isize) -> Option<PxPoint> {
+    let [a, b, c] = [1, 2, 3].map(|steps| beside(places, closed, index, way * steps));
+    let (a, b, c) = (a?, b?, c?);
+    let on = |a: f64, b: f64, c: f64| (4.0 * a + b - 2.0 * c) / 3.0;
+    Some(PxPoint::new(on(a.x, b.x, c.x), on(a.y, b.y, c.y)))
 }
 
 /// The weights of a window of 2·half + 1 places.
@@ -105,7 +142,7 @@ mod tests {
     fn stairs_become_a_slope() {
         let stairs: Vec<PxPoint> =
             (0..80).map(|x| PxPoint::new(f64::from(x), f64::from((x + 3) / 6))).collect();
-        let slope = smooth(&stairs, false, &[]);
+        let slope = smooth(&stairs, false, &[], f64::INFINITY);
         let off = |place: &PxPoint| (place.y - (place.x + 0.5) / 6.0).abs();
         let worst = slope.iter().skip(16).take(48).map(off).fold(0.0, f64::max);
         assert!(worst < 0.1, "{worst}");
@@ -118,7 +155,7 @@ mod tests {
             .map(|step| 2.0 * core::f64::consts::PI * f64::from(step) / 52.0)
             .map(|angle| PxPoint::new(8.3 * libm::cos(angle), 8.3 * libm::sin(angle)))
             .collect();
-        for place in smooth(&circle, true, &[]) {
+        for place in smooth(&circle, true, &[], f64::INFINITY) {
             assert!((libm::hypot(place.x, place.y) - 8.3).abs() < 0.3, "{place:?}");
         }
     }
@@ -127,8 +164,19 @@ mod tests {
     fn a_break_stays_and_is_not_averaged_across() {
         let corner: Vec<PxPoint> =
             (-20..=20).map(|x| PxPoint::new(f64::from(x), f64::from(x).abs())).collect();
-        for (place, smoothed) in corner.iter().zip(smooth(&corner, false, &[20])) {
+        for (place, smoothed) in corner.iter().zip(smooth(&corner, false, &[20], f64::INFINITY)) {
             assert!(place.distance(smoothed) < 1e-9);
         }
+    }
+
+    #[test]
+    fn of_exact_places_a_bend_stays_and_a_place_beside_its_line_goes() {
+        // A right angle, and before it a place half a pixel off.
+        let arm = (0..20).map(|x| PxPoint::new(f64::from(x), if x == 10 { 0.5 } else { 0.0 }));
+        let other = (0..20).map(|y| PxPoint::new(20.0, f64::from(y)));
+        let bent: Vec<PxPoint> = arm.chain(other).collect();
+        let at = |most_px: f64, index: usize| smooth(&bent, false, &[], most_px)[index].distance(bent[index]);
+        assert!(at(0.15, 20) < 1e-12 && at(f64::INFINITY, 20) > 0.4);
+        assert!(at(0.15, 10) > 0.3);
     }
 }

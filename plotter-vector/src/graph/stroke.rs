@@ -10,7 +10,7 @@
 //! again where the line is straight.
 
 use super::Place;
-use super::centreline::{Centreline, Whole, fill_gaps, keeps_pixels, width_px};
+use super::centreline::{Centreline, Whole, fill_gaps, keeps_pixels, most_smoothed_px, width_px};
 use super::smooth::smooth;
 use crate::simplify::Pieces;
 use crate::{Bounded, Curve, PxPoint};
@@ -411,6 +411,7 @@ fn smoothed(mut places: Vec<Place>) -> Smoothed {
     places.dedup_by_key(|place| place.at());
     let width_px = width_px(&places);
     let keeps_pixels = keeps_pixels(&places, width_px);
+    let most_px = most_smoothed_px(&places, width_px);
     if !keeps_pixels {
         fill_gaps(&mut places, false);
     }
@@ -418,7 +419,7 @@ fn smoothed(mut places: Vec<Place>) -> Smoothed {
     let corners: Vec<usize> = places.iter().enumerate().filter_map(corner).collect();
     let mut course: Vec<PxPoint> = places.iter().map(|place| place.at()).collect();
     if !keeps_pixels {
-        course = smooth(&course, false, &corners);
+        course = smooth(&course, false, &corners, most_px);
     }
     Smoothed { places, course, corners, width_px, keeps_pixels }
 }

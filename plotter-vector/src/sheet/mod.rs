@@ -16,6 +16,7 @@ mod work;
 use crate::bitmap::blocks_between;
 use crate::pipeline::is_raster_lines;
 use crate::row_threshold::RowThreshold;
+use crate::within::within;
 use crate::{
     Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, MAX_PIXELS, Progress, Row,
     RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer, coverage, worst_pixel,
@@ -28,7 +29,7 @@ use work::Work;
 /// What [`Vectorizer::vectorize_rows`] found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TracedSheet {
-    /// The strokes.
+    /// The strokes, all of them within the sheet.
     pub drawing: Drawing,
     /// How ink was told from paper; `None` for an empty sheet.
     pub split: Option<Split>,
@@ -195,7 +196,7 @@ impl Vectorizer {
         for_each_row(source, &mut strokes_part, |_, row| sheet.push(row))?;
         let strokes = sheet.finish()?;
         let mut drawing = found.drawing;
-        strokes.into_iter().for_each(|stroke| drawing.push_curve(1, stroke));
+        strokes.into_iter().for_each(|stroke| drawing.push_curve(1, within(stroke, width, height)));
         let drawing = self.order.apply(&drawing);
         let errors = if with_errors {
             let smallest_px = self.smallest_mark_px(pen_px);
