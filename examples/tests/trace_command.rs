@@ -226,6 +226,13 @@ fn the_mode_decides_whether_a_line_is_followed_or_outlined() {
 }
 
 #[test]
+fn outlines_lose_no_thin_line() {
+    let folder = Folder::new();
+    let report = folder.report(&data("flag.png"), &["--mode", "outline"]);
+    assert!(report["strokes"].as_u64().unwrap() > 0 && report["max_px"].as_f64().unwrap() < 1.5, "{report}");
+}
+
+#[test]
 fn a_level_by_hand_decides_what_is_ink() {
     let folder = Folder::new();
     let picture = folder.gray((60, 30), &[([10, 5, 40, 3], 20), ([10, 20, 40, 3], 180)]);

@@ -1,6 +1,6 @@
 //! [`Vectorizer`]: the whole way from grey levels to pen strokes.
 
-use crate::areas::Islands;
+use crate::areas::{Islands, Opening};
 use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
 use crate::coverage::coverage;
@@ -11,7 +11,7 @@ use crate::within::within;
 use crate::{
     AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Curve, Drawing, DynamicThreshold, ErrorReport,
     ErrorTally, Figures, Gray, Lettering, Order, OrderedTracking, PensError, Pixel, PxPoint, Simplify, Split,
-    ThinningMethod, Threshold, TooManyFigures, despeckle, pen_width_px, smallest_mark_px, split_by_width,
+    ThinningMethod, Threshold, TooManyFigures, despeckle, pen_width_px, smallest_mark_px,
 };
 use core::fmt;
 
@@ -35,7 +35,8 @@ pub enum Mode {
     /// A stroke down the middle of each line; what is far wider than the lines is outlined.
     #[default]
     Centreline,
-    /// The outlines of everything.
+    /// The outlines of everything. What a pen of [`Areas::pen_px`] cannot go around inside, as lines up to its width, is
+    /// drawn along its middle.
     Outline,
     /// As `Centreline`, and areas begin already at three times the width of the lines; they are drawn in
     /// [`Vectorizer::areas`]' style.
@@ -268,19 +269,10 @@ impl Vectorizer {
         grey: Option<(&Gray, bool)>,
         pen_px: u32,
     ) -> Result<Vec<Curve>, VectorizeError> {
-        let max_line_px = self.max_line_px(pen_px);
-        let split;
-        let (lines, areas) = if self.mode == Mode::Outline {
-            (None, ink)
-        } else {
-            split = split_by_width(ink, max_line_px);
-            (Some(&split.thin), &split.thick)
-        };
-        let mut strokes = Vec::new();
-        if let Some(lines) = lines {
-            let centring = Centring { redraw: true, ..self.centring(max_line_px) };
-            strokes = centring.strokes(lines, grey);
-        }
+        let split = self.opening(pen_px).split_of(ink);
+        let centring = Centring { redraw: true, ..self.centring(self.max_line_px(pen_px)) };
+        let mut strokes = centring.strokes(&split.thin, grey);
+        let areas = &split.thick;
         let mut islands = Islands::new(areas.width());
         for y in 0..areas.height() {
             if let Some((first_row, areas)) = islands.push(areas.row(y)) {
@@ -311,6 +303,14 @@ impl Vectorizer {
             Mode::Mixed => (3 * pen_px).max(6),
             Mode::Centreline | Mode::Outline => (6 * pen_px).max(12),
         })
+    }
+
+    /// What tells areas from lines.
+    pub(crate) fn opening(&self, pen_px: u32) -> Opening {
+        match self.mode {
+            Mode::Outline => Opening::of_pen(self.areas.pen_px),
+            Mode::Centreline | Mode::Mixed => Opening::of_lines(self.max_line_px(pen_px)),
+        }
     }
 
     /// How lines become strokes.

@@ -114,6 +114,11 @@ impl Disc {
         index(self.side / 2)
     }
 
+    /// Rows and columns of the box beyond its first.
+    pub(super) fn reach(&self) -> u32 {
+        index(self.side.saturating_sub(1))
+    }
+
     /// Words beyond a pixel's own that the box can reach.
     const fn pad(&self) -> usize {
         (self.side - 1) / BITS + 1

@@ -14,7 +14,8 @@ const TO_EDGE_PX: f64 = 0.5;
 /// A pen of width 2 · `inset_px` whose centre follows them inks the rim of the area and no centre of a paper pixel: every
 /// site is `inset_px` + ½ px away from the nearest one (to within ¼ px, by linear interpolation between pixels). Parts
 /// narrower than that pen have no such path and are left out;
-/// [`split_by_width`](crate::split_by_width()) with `max_line_px` of at least the pen's width keeps them apart. With 0
+/// [`split_by_width`](crate::split_by_width()) with `max_line_px` of at least the pen's width keeps them apart, and a
+/// [`Vectorizer`](crate::Vectorizer) draws them along their middle. With 0
 /// (or less, or NaN) the sites are the middles of the pixels' edges, and nothing is left out.
 ///
 /// Sources: erosion by a disc for the shape, then the distance to the nearest paper (P.-E. Danielsson, "Euclidean
@@ -29,7 +30,7 @@ const TO_EDGE_PX: f64 = 0.5;
 /// # Ok::<(), plotter_vector::SizeError>(())
 /// ```
 pub fn inset_outlines(ink: &Bitmap, inset_px: f64) -> impl Iterator<Item = Vec<PxPoint>> + '_ {
-    let radius = (inset_px > 0.0).then_some(inset_px.min(MAX_INSET_PX) + TO_EDGE_PX);
+    let radius = pen_radius_px(inset_px);
     let (inner, shift) = radius.map_or((Cow::Borrowed(ink), 0), |radius| {
         let disc = Disc::of_radius(radius);
         (Cow::Owned(disc.places(ink).corners), disc.half())
@@ -49,6 +50,11 @@ pub fn inset_outlines(ink: &Bitmap, inset_px: f64) -> impl Iterator<Item = Vec<P
         };
         path.sides().map(site).collect()
     })
+}
+
+/// Distance of a path inset by `inset_px` from the nearest centre of a paper pixel, px; `None` without an inset.
+pub(super) fn pen_radius_px(inset_px: f64) -> Option<f64> {
+    (inset_px > 0.0).then_some(inset_px.min(MAX_INSET_PX) + TO_EDGE_PX)
 }
 
 /// Greatest inset, px.

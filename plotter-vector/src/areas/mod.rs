@@ -5,12 +5,13 @@ mod hatch;
 mod inset;
 mod islands;
 mod outline;
-pub(crate) mod split;
+mod split;
 
 pub use hatch::{Hatch, MIN_PITCH_PX};
 pub use inset::inset_outlines;
 pub(crate) use islands::Islands;
 pub use outline::{Outline, Outlines};
+pub(crate) use split::Opening;
 pub use split::{MAX_LINE_PX, WidthSplit, rows_of_width_context, split_by_width};
 
 use crate::{Bitmap, PxPoint};

@@ -1,6 +1,7 @@
 //! [`split_by_width`]: areas and lines of one picture, told apart by their width.
 
 use super::disc::{Disc, empty_like, index};
+use super::inset::pen_radius_px;
 use crate::Bitmap;
 
 /// Widest line that can be asked for, px: 10.8 mm at 1200 dots per inch. Wider ones act as this one.
@@ -66,27 +67,60 @@ const fn absorbed_px(line_px: u32) -> u32 {
 /// ```
 #[must_use]
 pub fn split_by_width(ink: &Bitmap, max_line_px: u32) -> WidthSplit {
-    let (thin, thick) = split(ink.clone(), max_line_px);
-    WidthSplit { thick: thick.unwrap_or_else(|| empty_like(ink)), thin }
+    Opening::of_lines(max_line_px).split_of(ink)
 }
 
-/// As [`split_by_width`], where the picture lies: the lines, and the areas if there are any.
-pub(crate) fn split(ink: Bitmap, max_line_px: u32) -> (Bitmap, Option<Bitmap>) {
-    let line = max_line_px.min(MAX_LINE_PX);
-    let disc = Disc::wider_than_lines(line);
-    if !disc.fits(&ink) {
-        return (ink, None);
+/// What tells areas from lines: a disc that fits into areas only.
+#[derive(Clone, Debug)]
+pub(crate) struct Opening {
+    disc: Disc,
+    /// Longest leftover that an area keeps, px.
+    absorbed_px: u32,
+}
+
+impl Opening {
+    /// Areas are wider than lines of `max_line_px`, as [`split_by_width`] says.
+    pub(crate) fn of_lines(max_line_px: u32) -> Self {
+        let line = max_line_px.min(MAX_LINE_PX);
+        Self { disc: Disc::wider_than_lines(line), absorbed_px: absorbed_px(line) }
     }
-    let places = disc.places(&ink);
-    let thick = disc.cover(&ink, &places);
-    drop(places);
-    let mut thin = ink;
-    for y in 0..thin.height() {
-        thin.row_mut(y).iter_mut().zip(thick.row(y)).for_each(|(thin, thick)| *thin &= !thick);
+
+    /// Areas are what [`inset_outlines`](crate::inset_outlines()) goes around with half of `pen_px`, with leftovers up to
+    /// half a side of the disc; what it leaves out is lines.
+    pub(crate) fn of_pen(pen_px: f64) -> Self {
+        let disc = Disc::of_radius(pen_radius_px(pen_px / 2.0).unwrap_or(0.0));
+        let absorbed_px = disc.half();
+        Self { disc, absorbed_px }
     }
-    let mut split = WidthSplit { thick, thin };
-    split.give_leftovers_to_areas(absorbed_px(line));
-    (split.thin, Some(split.thick))
+
+    /// Rows above and below a band that decide about its own.
+    pub(crate) fn rows_of_context(&self) -> u32 {
+        self.disc.reach() + 4 * self.absorbed_px
+    }
+
+    /// Splits a picture where it lies: the lines, and the areas if there are any.
+    pub(crate) fn split(&self, ink: Bitmap) -> (Bitmap, Option<Bitmap>) {
+        let disc = &self.disc;
+        if !disc.fits(&ink) {
+            return (ink, None);
+        }
+        let places = disc.places(&ink);
+        let thick = disc.cover(&ink, &places);
+        drop(places);
+        let mut thin = ink;
+        for y in 0..thin.height() {
+            thin.row_mut(y).iter_mut().zip(thick.row(y)).for_each(|(thin, thick)| *thin &= !thick);
+        }
+        let mut split = WidthSplit { thick, thin };
+        split.give_leftovers_to_areas(self.absorbed_px);
+        (split.thin, Some(split.thick))
+    }
+
+    /// As [`Opening::split`], of a picture that is kept.
+    pub(crate) fn split_of(&self, ink: &Bitmap) -> WidthSplit {
+        let (thin, thick) = self.split(ink.clone());
+        WidthSplit { thick: thick.unwrap_or_else(|| empty_like(ink)), thin }
+    }
 }
 
 impl WidthSplit {

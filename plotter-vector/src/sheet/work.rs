@@ -2,14 +2,13 @@
 
 use super::step::Step;
 use super::{SheetError, row_bytes};
-use crate::areas::Islands;
-use crate::areas::split::split;
+use crate::areas::{Islands, Opening};
 use crate::centrelines::{CONTEXT_ROWS, Centring, each, sort};
 use crate::graph::{Joiner, Rims, Scan, Stretch, fragments};
 use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
 use crate::speckle::despeckle_here;
-use crate::{Bitmap, Curve, Gray, Mode, Row, Vectorizer, context_rows, rows_of_width_context};
+use crate::{Curve, Gray, Row, Vectorizer, context_rows};
 use core::ops::Range;
 
 /// Own rows of a band, bytes at 1 bit a pixel, and the fewest rows: less, and the context costs more than the band; more,
@@ -25,8 +24,7 @@ pub(super) struct Work<'a> {
     threshold: &'a RowThreshold,
     centring: Centring,
     smallest_px: u32,
-    /// Widest line, px; none when all ink is outlined.
-    max_line_px: Option<u32>,
+    opening: Opening,
     width: u32,
     ink: Rolling<u64>,
     levels: Option<Rolling<u8>>,
@@ -52,16 +50,15 @@ impl<'a> Work<'a> {
         threshold: &'a RowThreshold,
     ) -> Self {
         let smallest_px = settings.smallest_mark_px(pen_px);
-        let max_line_px = settings.max_line_px(pen_px);
-        let centring = Centring { redraw: true, ..settings.centring(max_line_px) };
-        let max_line_px = (settings.mode != Mode::Outline).then_some(max_line_px);
+        let centring = Centring { redraw: true, ..settings.centring(settings.max_line_px(pen_px)) };
+        let opening = settings.opening(pen_px);
         let row_bytes = row_bytes(width);
-        let grey = threshold.has_greys() && max_line_px.is_some();
+        let grey = threshold.has_greys();
         let band_bytes = if grey { GREY_BAND_BYTES } else { BAND_BYTES };
         let rows = u32::try_from(band_bytes / row_bytes).unwrap_or(u32::MAX).max(FEWEST_ROWS);
         let band_rows = rows.min(settings.band_rows).max(1);
         let step = |context: u32| Step::new(row_bytes, height, band_rows, context);
-        let cleaning = context_rows(smallest_px).saturating_add(max_line_px.map_or(0, rows_of_width_context));
+        let cleaning = context_rows(smallest_px).saturating_add(opening.rows_of_context());
         let thinning = centring.thinning.rows_of_context();
         let clean = step(cleaning).ahead_of(thinning.saturating_add(CONTEXT_ROWS));
         let (thin, follow) = (step(thinning).ahead_of(CONTEXT_ROWS), step(CONTEXT_ROWS));
@@ -71,7 +68,7 @@ impl<'a> Work<'a> {
             settings,
             threshold,
             smallest_px,
-            max_line_px,
+            opening,
             width,
             ink: Rolling::of_ink(width).with_room(clean.most_rows()),
             levels: grey.then(|| Rolling::of_levels(width)),
@@ -99,13 +96,11 @@ impl<'a> Work<'a> {
         while let Some(bands) = self.clean.ready(self.ink.end()) {
             self.clean(bands)?;
         }
-        if self.max_line_px.is_some() {
-            while let Some(bands) = self.thin.ready(self.lines.end()) {
-                self.thin(bands);
-            }
-            while let Some(bands) = self.follow.ready(self.skeleton.end().min(self.lines.end())) {
-                self.follow(bands);
-            }
+        while let Some(bands) = self.thin.ready(self.lines.end()) {
+            self.thin(bands);
+        }
+        while let Some(bands) = self.follow.ready(self.skeleton.end().min(self.lines.end())) {
+            self.follow(bands);
         }
         Ok(())
     }
@@ -130,32 +125,24 @@ impl<'a> Work<'a> {
     /// Removes speckles, and tells lines from areas.
     fn clean(&mut self, bands: Vec<Range<u32>>) -> Result<(), SheetError> {
         let bands = self.with_words(bands);
-        let (step, ink, max_line_px) = (self.clean, &self.ink, self.max_line_px);
+        let (step, ink, opening) = (self.clean, &self.ink, &self.opening);
         let smallest_px = self.smallest_px;
         let cleaned = each(bands, |(own, words)| {
             let rows = step.around(&own);
             let mut band = ink.band(&rows, words);
             despeckle_here(&mut band, smallest_px);
-            let (lines, areas) = match max_line_px {
-                Some(max_line_px) => {
-                    let (lines, areas) = split(band, max_line_px);
-                    (Some(lines), areas)
-                }
-                None => (None, Some(band)),
-            };
+            let (lines, areas) = opening.split(band);
             (own.start - rows.start..own.end - rows.start, lines, areas)
         });
         for (own, lines, areas) in cleaned {
             for y in own {
-                if let Some(lines) = &lines {
-                    self.lines.push(lines.row(y));
-                }
+                self.lines.push(lines.row(y));
                 let areas = areas.as_ref().map_or(&[][..], |areas| areas.row(y));
                 if let Some((first, areas)) = self.islands.push(areas) {
                     self.outlines.extend(self.settings.area_strokes(first, &areas)?);
                 }
             }
-            self.words.extend(lines.or(areas).map(Bitmap::into_words));
+            self.words.push(lines.into_words());
         }
         self.ink.forget_before(self.clean.needs());
         Ok(())
