@@ -9,6 +9,7 @@
 mod belt_check;
 mod belt_rules;
 mod error;
+mod file_name;
 mod kinematics;
 mod machine;
 mod machine_config;
@@ -26,6 +27,7 @@ mod transmission;
 mod vectorize;
 
 pub use error::{Bound, ConfigError};
+pub use file_name::FileName;
 pub use kinematics::{BeltConfig, KinematicsChoice, KinematicsConfig, KnownMotors, PointToPointConfig};
 pub use machine::Machine;
 pub use machine_config::{
@@ -40,4 +42,4 @@ pub use stepper::{
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};
 pub use transmission::TransmissionConfig;
-pub use vectorize::{StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};
+pub use vectorize::{PensChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};
