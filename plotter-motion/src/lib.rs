@@ -51,7 +51,7 @@ pub use config::{
     ControllerChoice, Decoding, DriveChoice, EncoderConfig, FileName, HomingConfig, KinematicsChoice,
     KinematicsConfig, KnownMotors, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName, MotorConfig,
     PathChoice, PenConfig, PensChoice, PlannerConfig, PointToPointConfig, PublishedConfig, SerialConfig,
-    SheetConfig, StepperConfig, StrokeOrder, SyncStopConfig, ThresholdChoice, TransmissionConfig,
+    SheetConfig, ShortText, StepperConfig, StrokeOrder, SyncStopConfig, ThresholdChoice, TransmissionConfig,
     VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]

@@ -9,7 +9,6 @@
 mod belt_check;
 mod belt_rules;
 mod error;
-mod file_name;
 mod kinematics;
 mod machine;
 mod machine_config;
@@ -27,14 +26,13 @@ mod transmission;
 mod vectorize;
 
 pub use error::{Bound, ConfigError};
-pub use file_name::FileName;
 pub use kinematics::{BeltConfig, KinematicsChoice, KinematicsConfig, KnownMotors, PointToPointConfig};
 pub use machine::Machine;
 pub use machine_config::{
     AreaConfig, AxisConfig, ContouringConfig, ControlConfig, ControllerChoice, Decoding, EncoderConfig,
     LoadConfig, MachineConfig, MotorConfig, PublishedConfig, SerialConfig, SyncStopConfig,
 };
-pub use name::MachineName;
+pub use name::{FileName, MachineName, ShortText};
 pub use sheet::SheetConfig;
 pub use stepper::{
     DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PlannerConfig, StepperConfig,
