@@ -24,7 +24,9 @@ use plotter_examples::{
     Overlay, at, overlay_png, overlay_step, print, read_file, run, vectorizer, write_file,
 };
 use plotter_motion::gcode::{PenControl, WriteOptions};
-use plotter_motion::{Machine, Point, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};
+use plotter_motion::{
+    Machine, PensChoice, Point, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode,
+};
 use plotter_vector::{
     Algorithm, Bin, Colour, DecodeError, Drawing, ErrorReport, MAX_PENS, Palette, Pens, Pixel, Progress, Row,
     RowSource as _, Scale, Scan, SheetErrors, ThresholdMethod, Vectorizer, decode_colour, error_chart, gcode,
@@ -35,7 +37,7 @@ use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{Cursor, Read, Seek};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -48,6 +50,12 @@ const MDRAW_CHORD_MM: f64 = 0.01;
 
 /// Steps of the progress bar.
 const STEPS: f64 = 1000.0;
+
+/// Greatest errors that may be asked for, px: those of the machine's file.
+const MAX_ERRORS_PX: RangeInclusive<f64> = 0.01..=100.0;
+
+/// Widest pen that may be asked for, mm: that of the machine's file.
+const MAX_PEN_MM: f64 = 100.0;
 
 /// Most threads that are started.
 const MAX_THREADS: usize = 1024;
@@ -90,6 +98,9 @@ struct Arguments {
     /// Hatches areas with lines this far apart, mm on the sheet (ours only)
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     hatch: Option<f64>,
+    /// Width of the pen that areas are outlined and hatched with, mm on the sheet: its ink ends at their edge (ours only) [default: a pixel]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pen_mm: Option<f64>,
     /// What is wider is an area, px (ours only) [default: found from the picture]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     max_line_px: Option<i64>,
@@ -128,7 +139,7 @@ struct Arguments {
     /// Leaves out how far the ink lies from the strokes: the file is read twice less
     #[arg(long, conflicts_with = "error_plot")]
     no_errors: bool,
-    /// Writes the strokes on the pale picture, with the pixel of the greatest error circled
+    /// Writes the strokes on the pale picture, with the pixel of the greatest error circled unless --no-errors is given
     #[arg(long, value_name = "F.png")]
     overlay: Option<PathBuf>,
 }
@@ -178,6 +189,7 @@ struct Settings {
     /// By colour; without, one pen draws all ink.
     pens: Option<Pens>,
     threads: Option<rayon::ThreadPool>,
+    overlay: Option<PathBuf>,
 }
 
 /// What the overlay shows below the strokes.
@@ -298,7 +310,7 @@ fn trace(arguments: &Arguments) -> Result<(), String> {
     };
     write_files(arguments, &traced, &report, &name)?;
     let mut worst = None;
-    if let (Some(path), Some(picture)) = (&arguments.overlay, &traced.picture) {
+    if let (Some(path), Some(picture)) = (&settings.overlay, &traced.picture) {
         worst = traced.errors.as_ref().and_then(|errors| errors.worst);
         let palette = settings.pens.as_ref().map(|_| &traced.palette);
         let overlay = Overlay { drawing, palette, worst: worst.map(|(pixel, _)| pixel) };
@@ -307,7 +319,14 @@ fn trace(arguments: &Arguments) -> Result<(), String> {
     let (width, height) = (drawing.width_px(), drawing.height_px());
     let empty = if drawing.strokes().len() == 0 { " (an empty sheet)" } else { "" };
     let megapixels = f64::from(width) * f64::from(height) / 1e6;
-    print_table(&format!("{name}: {width} x {height} px{empty}"), &report, megapixels, worst)
+    let circled = match worst {
+        Some((pixel, error_px)) => Some(format!("{error_px:.4} px at {}, {}", pixel.x, pixel.y)),
+        None if settings.overlay.is_some() && arguments.no_errors => {
+            Some("- no pixel: --no-errors leaves out which lies farthest".into())
+        }
+        None => None,
+    };
+    print_table(&format!("{name}: {width} x {height} px{empty}"), &report, megapixels, circled)
 }
 
 /// One pen, told by grey level: the file is read by rows, as often as it takes.
@@ -331,7 +350,7 @@ fn by_rows<R: Read + Seek>(settings: &Settings, file: R, arguments: &Arguments) 
     bar.finish_and_clear();
     let sheet = sheet.map_err(|error| error.to_string())?;
     let time = start.elapsed();
-    let picture = arguments.overlay.as_ref().map(|_| thumbnail(&mut scan)).transpose()?;
+    let picture = settings.overlay.as_ref().map(|_| thumbnail(&mut scan)).transpose()?;
     Ok(Traced {
         drawing: sheet.drawing,
         errors: sheet.errors,
@@ -395,10 +414,10 @@ fn in_colour(
         let each = own.filter_map(|(pen, ink)| worst_pixel(ink, &drawing.of_pen(pen.number)));
         each.max_by(|one, other| one.1.total_cmp(&other.1))
     };
-    let worst = if arguments.overlay.is_some() { worst() } else { None };
+    let worst = if settings.overlay.is_some() { worst() } else { None };
     let errors = SheetErrors { report: found.traced.error, worst };
     let errors = (!arguments.no_errors).then_some(errors);
-    let picture = arguments.overlay.is_some().then_some(Picture::Colour(colour));
+    let picture = settings.overlay.is_some().then_some(Picture::Colour(colour));
     Ok(Traced { errors, palette: found.palette, pen_px: None, picture, time, drawing })
 }
 
@@ -436,17 +455,27 @@ fn settings(arguments: &Arguments) -> Result<Settings, String> {
             ThresholdMethod::Level(level) => ThresholdChoice::Level(level),
         };
     }
-    let threads = arguments.threads.map(threads).transpose()?;
+    let in_file = Some(i64::from(config.threads)).filter(|number| *number > 0);
+    let threads = arguments.threads.or(in_file).map(threads).transpose()?;
+    let in_file =
+        Some(config.overlay).filter(|path| !path.is_none()).map(|path| PathBuf::from(path.as_str()));
+    let overlay = arguments.overlay.clone().or(in_file);
     if matches!(arguments.algorithm, Choice::Published) {
         refuse_ours(arguments)?;
         let threshold =
             vectorizer(&VectorizeConfig { threshold: config.threshold, ..Default::default() }, 1.0)?;
         let vectorizer = Vectorizer { algorithm: Algorithm::Published, ..threshold };
-        return Ok(Settings { vectorizer, pens: None, threads });
+        return Ok(Settings { vectorizer, pens: None, threads, overlay });
     }
     match arguments.max_error_px {
         Some(bad) if !(bad > 0.0 && bad.is_finite()) => {
             return Err(format!("--max-error-px: {bad} px is not a positive number; 0.5 is half a pixel"));
+        }
+        Some(bad) if !MAX_ERRORS_PX.contains(&bad) => {
+            let (least, most) = (MAX_ERRORS_PX.start(), MAX_ERRORS_PX.end());
+            return Err(format!(
+                "--max-error-px: {bad} px lies outside {least}..={most} px; 0.5 is half a pixel"
+            ));
         }
         given => config.max_error_px = given.unwrap_or(config.max_error_px),
     }
@@ -467,6 +496,14 @@ fn settings(arguments: &Arguments) -> Result<Settings, String> {
             }
         }
         None => {}
+    }
+    match arguments.pen_mm {
+        Some(bad) if !(0.0..=MAX_PEN_MM).contains(&bad) => {
+            return Err(format!(
+                "--pen-mm: {bad} mm lies outside 0..={MAX_PEN_MM} mm; a fineliner draws 0.3 to 0.8"
+            ));
+        }
+        given => config.pen_mm = given.unwrap_or(config.pen_mm),
     }
     match arguments.mode {
         Some(ModeChoice::Centreline) => config.mode = VectorizeMode::Centreline,
@@ -490,7 +527,7 @@ fn settings(arguments: &Arguments) -> Result<Settings, String> {
         })?;
     }
     let pens = pens(arguments, config.pens)?;
-    Ok(Settings { vectorizer: vectorizer(&config, mm_per_px)?, pens, threads })
+    Ok(Settings { vectorizer: vectorizer(&config, mm_per_px)?, pens, threads, overlay })
 }
 
 /// Refuses options that the published algorithm does not have.
@@ -503,6 +540,7 @@ fn refuse_ours(arguments: &Arguments) -> Result<(), String> {
         ("--pens", "draws with one pen", arguments.pens.is_some()),
         ("--order", "draws in the order of tracking", arguments.order.is_some()),
         ("--hatch", "has no areas", arguments.hatch.is_some()),
+        ("--pen-mm", "has no areas", arguments.pen_mm.is_some()),
         ("--max-line-px", "has no areas", arguments.max_line_px.is_some()),
     ];
     match given.iter().find(|(.., given)| *given) {
@@ -513,10 +551,17 @@ fn refuse_ours(arguments: &Arguments) -> Result<(), String> {
     }
 }
 
-/// The pens that the option names, else as many as the machine's file says; none: one pen, by grey level.
-fn pens(arguments: &Arguments, in_file: u32) -> Result<Option<Pens>, String> {
+/// The pens that the option names, else those that the machine's file says; none: one pen, by grey level.
+fn pens(arguments: &Arguments, in_file: PensChoice) -> Result<Option<Pens>, String> {
     let pens = match arguments.pens.as_deref() {
-        None => count(in_file as usize),
+        None => match in_file {
+            PensChoice::Count(number) => count(number as usize),
+            PensChoice::Auto => Some(Pens::Found),
+            PensChoice::Palette(path) => {
+                Some(Pens::Given(palette("vectorize.pens", Path::new(path.as_str()))?))
+            }
+            _ => None,
+        },
         Some("auto") => Some(Pens::Found),
         Some(text) => match text.parse::<i64>() {
             Ok(number) => match usize::try_from(number).ok().filter(|number| (1..=MAX_PENS).contains(number))
@@ -528,7 +573,7 @@ fn pens(arguments: &Arguments, in_file: u32) -> Result<Option<Pens>, String> {
                     ));
                 }
             },
-            Err(_) => Some(Pens::Given(palette(Path::new(text))?)),
+            Err(_) => Some(Pens::Given(palette("--pens", Path::new(text))?)),
         },
     };
     // What the machine's file says of the threshold rests when pens are asked for; the option would go unheard.
@@ -545,9 +590,9 @@ fn count(pens: usize) -> Option<Pens> {
     (pens > 1).then_some(Pens::Count(pens))
 }
 
-fn palette(path: &Path) -> Result<Palette, String> {
+fn palette(asked: &str, path: &Path) -> Result<Palette, String> {
     let bytes = read_file(path)
-        .map_err(|error| format!("--pens: {error}; give 1 to {MAX_PENS}, auto, or a palette's TOML file"))?;
+        .map_err(|error| format!("{asked}: {error}; give 1 to {MAX_PENS}, auto, or a palette's TOML file"))?;
     let text =
         String::from_utf8(bytes).map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
     Palette::from_toml(&text).map_err(|error| at(path, &error))
@@ -655,11 +700,11 @@ fn print_table(
     title: &str,
     report: &Report<'_>,
     megapixels: f64,
-    worst: Option<(Pixel, f64)>,
+    circled: Option<String>,
 ) -> Result<(), String> {
     let rss = report.peak_rss_mb.map_or("-".into(), |rss| format!("{rss:.1} MB"));
     let px = |error_px: Option<f64>| error_px.map(|error_px| format!("{error_px:.4} px"));
-    let mut rows = vec![
+    let rows = [
         ("line width", report.pen_px.map(|pen_px| format!("{pen_px} px"))),
         ("vertices", Some(report.vertices.to_string())),
         ("strokes", Some(report.strokes.to_string())),
@@ -672,10 +717,8 @@ fn print_table(
         // Of a small picture it would say nothing.
         ("", (megapixels >= 1.0).then(|| format!("{:.2} ms a megapixel", report.time_ms / megapixels))),
         ("memory", Some(rss)),
+        ("circled", circled),
     ];
-    if let Some((pixel, error_px)) = worst {
-        rows.push(("circled", Some(format!("{error_px:.4} px at {}, {}", pixel.x, pixel.y))));
-    }
     let mut out = format!("{title}\n");
     for (name, value) in rows.iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
         let (number, unit) = value.split_once(' ').unwrap_or((value, ""));

@@ -32,6 +32,9 @@ pub fn vectorizer(config: &VectorizeConfig, mm_per_px: f64) -> Result<Vectorizer
     }
     let usual = Vectorizer::default();
     let mut areas = usual.areas;
+    if config.pen_mm > 0.0 {
+        areas.pen_px = config.pen_mm / mm_per_px;
+    }
     if config.hatch_mm > 0.0 {
         let pitch_px = config.hatch_mm / mm_per_px;
         if !(pitch_px.is_finite() && pitch_px >= MIN_PITCH_PX) {

@@ -305,6 +305,27 @@ fn hatching_fills_an_area_that_is_outlined_otherwise() {
 }
 
 #[test]
+fn a_wide_pen_stays_inside_of_the_areas_it_hatches() {
+    let folder = Folder::new();
+    let blob = folder.gray((100, 100), &[([20, 20, 60, 60], 0)]);
+    let config = folder.write(
+        "pen.toml",
+        "schema = 1\n[vectorize]\npen_mm = 1.0\nhatch_mm = 0.8\nmax_line_px = 8\nmode = \"mixed\"\n",
+    );
+    let points = folder.file("points.txt");
+    for options in [&["--hatch", "0.8", "--pen-mm", "1", "--max-line-px", "8"][..], &["--config", &config]] {
+        folder.report(&blob, &[options, &["--points", &points]].concat());
+        let text = std::fs::read_to_string(&points).unwrap();
+        let places = text.split_whitespace().map(|number| number.parse::<f64>().unwrap());
+        let (least, most) =
+            places.fold((100.0_f64, 0.0_f64), |(least, most), at| (least.min(at), most.max(at)));
+        // Half of 10 px inside of 20 and 80.
+        assert!((least - 25.0).abs() < 0.6 && (most - 75.0).abs() < 0.6, "{least} {most}");
+    }
+    assert!(complaint("trace", &[&blob, "--pen-mm", "-1"]).contains("lies outside 0..=100 mm"));
+}
+
+#[test]
 fn the_overlay_is_a_picture_four_times_as_large_in_the_pens_colours() {
     let folder = Folder::new();
     let png = folder.file("overlay.png");
@@ -317,7 +338,10 @@ fn the_overlay_is_a_picture_four_times_as_large_in_the_pens_colours() {
     let (red, black) = (image.get_pixel(122, 60).0, image.get_pixel(60, 122).0);
     assert!(red[0] > 150 && red[1] < 90, "{red:?}");
     assert!(black.iter().all(|level| *level < 90), "{black:?}");
-    let output = run_example("trace", &[&folder.gray((60, 20), &[([10, 8, 40, 3], 0)]), "--overlay", &png]);
+    let bar = folder.gray((60, 20), &[([10, 8, 40, 3], 0)]);
+    let output = run_example("trace", &[&bar, "--overlay", &png, "--no-errors"]);
+    assert!(String::from_utf8(output.stdout).unwrap().contains("no pixel: --no-errors leaves out"));
+    let output = run_example("trace", &[&bar, "--overlay", &png]);
     assert!(output.status.success());
     assert_eq!(image::open(&png).unwrap().to_rgb8().dimensions(), (240, 80));
 }
@@ -340,6 +364,21 @@ fn the_machines_file_is_asked_and_an_option_wins_over_it() {
         report["pens"].as_array().unwrap().len()
     };
     assert_eq!((colours(&[]), colours(&["--pens", "1"])), (2, 1));
+    let found = folder.write("auto.toml", "schema = 1\nvectorize.pens = \"auto\"\n");
+    let named = |config: &str| folder.report(&folder.colour(), &["--config", config])["pens"].clone();
+    assert!(named(&found).as_array().unwrap().len() > 1);
+    let palette = folder
+        .write("palette.toml", "schema = 1\n[[pen]]\nnumber = 7\nname = \"fine\"\ncolour = \"#d01818\"\n");
+    let look = folder.file("look.png");
+    let text = format!("schema = 1\n[vectorize]\npens = {palette:?}\nthreads = 2\noverlay = {look:?}\n");
+    let given = folder.write("given.toml", text);
+    assert_eq!(named(&given)[0]["number"], 7);
+    assert!(std::fs::exists(&look).unwrap());
+    let missing = folder.write("missing.toml", "schema = 1\nvectorize.pens = \"no/such.toml\"\n");
+    let said = complaint("trace", &[&bar, "--config", &missing]);
+    assert!(said.contains("vectorize.pens: no/such.toml: cannot be read"), "{said}");
+    let said = complaint("trace", &[&bar, "--max-error-px", "1e9"]);
+    assert!(said.contains("lies outside 0.01..=100 px"), "{said}");
     let slip = folder.write("slip.toml", "schema = 1\n[vectorize]\nmode = \"outlines\"\n");
     let said = complaint("trace", &[&bar, "--config", &slip]);
     assert!(said.contains("slip.toml: line 3, column 8: vectorize.mode"), "{said}");

@@ -48,10 +48,11 @@ pub use budget::{Budget, BudgetError, BudgetLimits, BudgetPart};
 pub use chords::chords;
 pub use config::{
     AreaConfig, AxisConfig, BeltConfig, Bound, ConfigError, ContouringConfig, ControlConfig,
-    ControllerChoice, Decoding, DriveChoice, EncoderConfig, HomingConfig, KinematicsChoice, KinematicsConfig,
-    KnownMotors, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName, MotorConfig, PathChoice,
-    PenConfig, PlannerConfig, PointToPointConfig, PublishedConfig, SerialConfig, SheetConfig, StepperConfig,
-    StrokeOrder, SyncStopConfig, ThresholdChoice, TransmissionConfig, VectorizeConfig, VectorizeMode,
+    ControllerChoice, Decoding, DriveChoice, EncoderConfig, FileName, HomingConfig, KinematicsChoice,
+    KinematicsConfig, KnownMotors, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName, MotorConfig,
+    PathChoice, PenConfig, PensChoice, PlannerConfig, PointToPointConfig, PublishedConfig, SerialConfig,
+    SheetConfig, ShortText, StepperConfig, StrokeOrder, SyncStopConfig, ThresholdChoice, TransmissionConfig,
+    VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};

@@ -17,32 +17,32 @@ struct Preset {
 const GANTRY: Preset = Preset {
     file: "semi-virtual-gantry.toml",
     config: MachineConfig::default,
-    keys: (36, 19),
+    keys: (39, 19),
     repeats: "[y]",
 };
 const STEPPER_PLOTTER: Preset = Preset {
     file: "stepper-plotter.toml",
     config: MachineConfig::stepper_plotter,
-    keys: (44, 5),
+    keys: (47, 5),
     repeats: "[y.stepper]",
 };
 
 const MARKING_BOARD: Preset = Preset {
     file: "marking-board.toml",
     config: MachineConfig::marking_board,
-    keys: (53, 14),
+    keys: (56, 14),
     repeats: "[y]",
 };
 
 const TEXTILE_PLOTTER: Preset = Preset {
     file: "textile-plotter.toml",
     config: MachineConfig::textile_plotter,
-    keys: (50, 5),
+    keys: (53, 5),
     repeats: "[y.stepper]",
 };
 
 const PLASMA_FOLLOWER: Preset =
-    Preset { file: "plasma-follower.toml", config: plasma_follower, keys: (44, 5), repeats: "[y.stepper]" };
+    Preset { file: "plasma-follower.toml", config: plasma_follower, keys: (47, 5), repeats: "[y.stepper]" };
 
 /// The camera and the torch are chosen, not documented: the code has no such machine, so it is said here.
 fn plasma_follower() -> MachineConfig {

@@ -46,7 +46,7 @@ static_n_m = 1.3e-3
 "#;
 
 /// Numeric keys that the machine has once.
-const OF_THE_MACHINE: [&str; 58] = [
+const OF_THE_MACHINE: [&str; 60] = [
     "schema",
     "area.width_mm",
     "area.height_mm",
@@ -99,6 +99,8 @@ const OF_THE_MACHINE: [&str; 58] = [
     "vectorize.pens",
     "vectorize.hatch_mm",
     "vectorize.max_line_px",
+    "vectorize.pen_mm",
+    "vectorize.threads",
     "sheet.frame_mm",
     "sheet.begin_mm",
     "sheet.cut_window_mm",
@@ -162,7 +164,7 @@ const OF_AN_AXIS: [&str; 22] = [
 ];
 
 /// Keys whose number must be whole.
-const WHOLE: [&str; 10] = [
+const WHOLE: [&str; 11] = [
     "schema",
     "serial.baud",
     "control.latency_periods",
@@ -171,6 +173,7 @@ const WHOLE: [&str; 10] = [
     "stepper_motor.microsteps",
     "vectorize.pens",
     "vectorize.max_line_px",
+    "vectorize.threads",
     "encoder.lines_per_turn",
     "motor.pwm_steps",
 ];
@@ -279,4 +282,18 @@ proptest! {
         });
         prop_assert_eq!(by_config, by_file);
     }
+}
+
+#[test]
+fn pens_are_a_number_auto_or_a_palettes_file() {
+    use plotter_motion::{FileName, PensChoice};
+    let pens = |value: &str| with("vectorize.pens", value).map(|machine| machine.config().vectorize.pens);
+    assert_eq!(pens("3"), Ok(PensChoice::Count(3)));
+    assert_eq!(pens("\"auto\""), Ok(PensChoice::Auto));
+    assert_eq!(pens("\"pens.toml\""), Ok(PensChoice::Palette(FileName::new("pens.toml").unwrap())));
+    assert!(is_out_of_range(&with("vectorize.pens", "17")));
+    let said = pens("\"three\"").unwrap_err().to_string();
+    assert!(said.starts_with("line 2, column 18: vectorize.pens") && said.contains("\"auto\""), "{said}");
+    let long = format!("\"{}.toml\"", "x".repeat(FileName::MAX_BYTES));
+    assert!(pens(&long).is_err() && with("vectorize.overlay", &long).is_err());
 }

@@ -77,7 +77,8 @@ pub struct Vectorizer {
     /// Ours: smaller marks of ink are dirt, and smaller holes in it too, px; `None` for what a pen of the lines' width
     /// cannot have made.
     pub smallest_mark_px: Option<u32>,
-    /// Ours: what is wider is no line but an area, px; `None` for 6 times the lines' width, in mixed mode 3 times.
+    /// Ours: what is wider is no line but an area, px; `None` for 6 times the lines' width, in mixed mode 3 times. It is
+    /// at least what the pen of [`Vectorizer::areas`] needs to find its way inside.
     pub max_line_px: Option<u32>,
     /// Ours: how lines are thinned.
     pub thinning: ThinningMethod,
@@ -299,10 +300,11 @@ impl Vectorizer {
 
     /// Widest line, px.
     pub(crate) fn max_line_px(&self, pen_px: u32) -> u32 {
-        self.max_line_px.unwrap_or(match self.mode {
+        let lines = self.max_line_px.unwrap_or(match self.mode {
             Mode::Mixed => (3 * pen_px).max(6),
             Mode::Centreline | Mode::Outline => (6 * pen_px).max(12),
-        })
+        });
+        lines.max(self.areas.narrowest_px())
     }
 
     /// What tells areas from lines.

@@ -32,7 +32,7 @@ pub use machine_config::{
     AreaConfig, AxisConfig, ContouringConfig, ControlConfig, ControllerChoice, Decoding, EncoderConfig,
     LoadConfig, MachineConfig, MotorConfig, PublishedConfig, SerialConfig, SyncStopConfig,
 };
-pub use name::MachineName;
+pub use name::{FileName, MachineName, ShortText};
 pub use sheet::SheetConfig;
 pub use stepper::{
     DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PlannerConfig, StepperConfig,
@@ -40,4 +40,4 @@ pub use stepper::{
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};
 pub use transmission::TransmissionConfig;
-pub use vectorize::{StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};
+pub use vectorize::{PensChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode};

@@ -32,6 +32,8 @@ pub(super) enum Form {
     /// One of a few words, or a level from 0 to 255, as text or as a whole number.
     #[cfg_attr(not(feature = "toml"), expect(dead_code, reason = "only the reader of TOML files asks"))]
     ChoiceOrLevel(&'static [&'static str]),
+    /// A number without fraction, or text: `auto`, or the path of a TOML file.
+    CountOrToml(NumberRule),
     /// `true` or `false`.
     Switch,
 }
@@ -65,7 +67,9 @@ impl Rule {
     /// Refuses a description whose value behind this key is out of range.
     pub(super) fn check(&self, config: &MachineConfig) -> Result<(), ConfigError> {
         match self.form {
-            Form::Number(rule) | Form::Whole(rule) => rule.check(self.key, (rule.read)(config)),
+            Form::Number(rule) | Form::Whole(rule) | Form::CountOrToml(rule) => {
+                rule.check(self.key, (rule.read)(config))
+            }
             Form::Text(_) | Form::Choice(_) | Form::ChoiceOrLevel(_) | Form::Switch => Ok(()),
         }
     }
@@ -98,11 +102,18 @@ const SCHEMA: NumberRule = NumberRule {
     unit: "",
     remedy: "write `schema = 1`",
 };
+const PENS: NumberRule = NumberRule {
+    read: |c| f64::from(c.vectorize.pens.count()),
+    least: 1.0,
+    most: 16.0,
+    unit: "",
+    remedy: "1 draws all ink with one pen",
+};
 const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the sign";
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
-static MACHINE: [Rule; 62] = [
+static MACHINE: [Rule; 65] = [
     Rule { key: "schema", form: Form::Whole(SCHEMA) },
     Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
     Rule { key: "drive", form: Form::Choice(&["dc", "stepper"]) },
@@ -419,7 +430,7 @@ static MACHINE: [Rule; 62] = [
     Rule { key: "vectorize.arcs", form: Form::Switch },
     Rule { key: "vectorize.curves", form: Form::Switch },
     Rule { key: "vectorize.threshold", form: Form::ChoiceOrLevel(&["otsu", "adaptive"]) },
-    whole("vectorize.pens", |c| f64::from(c.vectorize.pens), (1.0, 16.0), "", "1 draws all ink with one pen"),
+    Rule { key: "vectorize.pens", form: Form::CountOrToml(PENS) },
     Rule { key: "vectorize.order", form: Form::Choice(&["none", "fast", "best"]) },
     number(
         "vectorize.hatch_mm",
@@ -428,6 +439,15 @@ static MACHINE: [Rule; 62] = [
         "mm",
         "the pen's width closes the hatching, 0 is none",
     ),
+    number(
+        "vectorize.pen_mm",
+        |c| c.vectorize.pen_mm,
+        (0.0, 100.0),
+        "mm",
+        "a fineliner draws 0.3 to 0.8, 0 is a pixel of the picture",
+    ),
+    whole("vectorize.threads", |c| f64::from(c.vectorize.threads), (0.0, 1_024.0), "", "0 takes one a core"),
+    Rule { key: "vectorize.overlay", form: Form::Text(super::FileName::MAX_BYTES) },
     whole(
         "vectorize.max_line_px",
         |c| f64::from(c.vectorize.max_line_px),

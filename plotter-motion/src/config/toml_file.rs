@@ -5,7 +5,7 @@
 
 use super::rules::{Form, NumberRule, Rule, rules};
 use super::spelling::{nearest, remedy};
-use super::{ConfigError, Machine, MachineConfig, TomlError, TomlPlace};
+use super::{ConfigError, Machine, MachineConfig, PensChoice, TomlError, TomlPlace};
 use alloc::{
     format,
     string::{String, ToString as _},
@@ -187,6 +187,24 @@ fn check_value(text: &str, rule: &'static Rule, value: &Spanned<DeValue<'_>>) ->
                 }
                 None => format!("write a number{}", in_unit(range.unit)),
             }),
+        },
+        Form::CountOrToml(_) if matches!(value.get_ref(), DeValue::String(text) if PensChoice::from_text(text).is_some()) => {
+            None
+        }
+        Form::CountOrToml(range) => match (whole(value.get_ref()), value.get_ref()) {
+            (Some(whole), _) if u32::try_from(whole).is_ok() => None,
+            (_, DeValue::Integer(_)) => {
+                let number = number(value.get_ref()).unwrap_or(f64::NAN);
+                out_of_range(text, rule.key, &range, number, value)
+            }
+            _ => {
+                let (least, most) = (range.least, range.most);
+                refused(format!(
+                    "write a whole number from {least} to {most}, \"auto\", or the path of a palette's file that ends \
+                     in .toml and has at most {} bytes",
+                    super::FileName::MAX_BYTES
+                ))
+            }
         },
         Form::Whole(range) => match (whole(value.get_ref()), value.get_ref()) {
             (Some(whole), _) if u32::try_from(whole).is_ok() => None,

@@ -2,6 +2,8 @@
 //!
 //! Only what the machine's file says: this crate knows no pictures. Who vectorizes makes settings of it.
 
+use super::FileName;
+
 /// How pictures become strokes: the table `[vectorize]` of a machine's file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
@@ -20,14 +22,21 @@ pub struct VectorizeConfig {
     pub curves: bool,
     /// How ink is told from paper.
     pub threshold: ThresholdChoice,
-    /// How many pens are told apart by their colours; 1 draws all ink with one, by its grey level.
-    pub pens: u32,
+    /// Which pens are told apart by their colours.
+    pub pens: PensChoice,
     /// How hard an order with little travel is searched for.
     pub order: StrokeOrder,
     /// From line to line of the hatching of areas, mm on the sheet; 0 for none.
     pub hatch_mm: f64,
+    /// Width of the pen that areas are outlined and hatched with, mm on the sheet: its ink ends at their edge. 0 for that of
+    /// a pixel.
+    pub pen_mm: f64,
     /// What is wider is an area, px of the picture; 0 finds it.
     pub max_line_px: u32,
+    /// Threads to work with; 0 for one a core. The strokes are the same with any number.
+    pub threads: u32,
+    /// Picture of the strokes on the pale original that is written, from where the program runs.
+    pub overlay: FileName,
 }
 
 impl Default for VectorizeConfig {
@@ -38,10 +47,13 @@ impl Default for VectorizeConfig {
             arcs: false,
             curves: false,
             threshold: ThresholdChoice::Otsu,
-            pens: 1,
+            pens: PensChoice::Count(1),
             order: StrokeOrder::Best,
             hatch_mm: 0.0,
+            pen_mm: 0.0,
             max_line_px: 0,
+            threads: 0,
+            overlay: FileName::NONE,
         }
     }
 }
@@ -58,6 +70,81 @@ pub enum VectorizeMode {
     Outline,
     /// The middle of lines, and areas in their own style.
     Mixed,
+}
+
+/// Which pens are told apart by their colours. In a file a number, `"auto"`, or the path of a palette's TOML file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum PensChoice {
+    /// So many; 1 draws all ink with one, by its grey level.
+    Count(u32),
+    /// As many as are found in the picture.
+    Auto,
+    /// Those of a palette's file, from where the program runs.
+    Palette(FileName),
+}
+
+impl PensChoice {
+    /// The choice that a text names: `"auto"`, or a path that ends in `.toml`; `None` for another.
+    ///
+    /// ```
+    /// # use plotter_motion::PensChoice;
+    /// assert_eq!(PensChoice::from_text("auto"), Some(PensChoice::Auto));
+    /// assert_eq!(PensChoice::from_text("three"), None);
+    /// ```
+    #[must_use]
+    pub fn from_text(text: &str) -> Option<Self> {
+        match text {
+            "auto" => Some(Self::Auto),
+            path if path.ends_with(".toml") => FileName::new(path).map(Self::Palette),
+            _ => None,
+        }
+    }
+
+    /// How many are asked for; 1 where the number is not known.
+    pub(super) const fn count(self) -> u32 {
+        match self {
+            Self::Count(pens) => pens,
+            Self::Auto | Self::Palette(_) => 1,
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for PensChoice {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Count(pens) => serializer.serialize_u32(*pens),
+            Self::Auto => serializer.serialize_str("auto"),
+            Self::Palette(path) => serializer.serialize_str(path.as_str()),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for PensChoice {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        use serde::de::{Error, Unexpected};
+        struct Visitor;
+        impl serde::de::Visitor<'_> for Visitor {
+            type Value = PensChoice;
+            fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                f.write_str("a number of pens, auto, or the path of a palette's TOML file")
+            }
+            fn visit_str<E: Error>(self, text: &str) -> Result<PensChoice, E> {
+                PensChoice::from_text(text).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
+            }
+            fn visit_u64<E: Error>(self, pens: u64) -> Result<PensChoice, E> {
+                let fits = u32::try_from(pens).map(PensChoice::Count);
+                fits.map_err(|_| E::invalid_value(Unexpected::Unsigned(pens), &self))
+            }
+            fn visit_i64<E: Error>(self, pens: i64) -> Result<PensChoice, E> {
+                let fits = u32::try_from(pens).map(PensChoice::Count);
+                fits.map_err(|_| E::invalid_value(Unexpected::Signed(pens), &self))
+            }
+        }
+        deserializer.deserialize_any(Visitor)
+    }
 }
 
 /// How hard an order of the strokes is searched for.

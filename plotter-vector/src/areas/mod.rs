@@ -112,6 +112,18 @@ impl fmt::Display for AreaError {
 impl core::error::Error for AreaError {}
 
 impl Areas {
+    /// Lines up to this width have to be split off so that the pen finds a path inside of all areas, px.
+    pub(crate) fn narrowest_px(&self) -> u32 {
+        if self.pen_px > 0.0 {
+            // Even, so that the disc that is wider than such lines and that around the pen have one centre.
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most MAX_PEN_PX")]
+            let half = libm::ceil((self.pen_px.min(MAX_PEN_PX) + 1.0) / 2.0) as u32;
+            2 * half
+        } else {
+            0
+        }
+    }
+
     /// The paths for all ink of a picture: its areas, as [`split_by_width`] finds them, or all of it.
     ///
     /// Outlines come first, one at a time as they are asked for; the hatching of all areas follows, in the order of its
@@ -174,6 +186,17 @@ mod tests {
         let text = error(hatched(Hatch { angle_rad: f64::NAN, ..Hatch::default() }));
         assert!(text.starts_with("hatching: an angle of NaN rad"), "{text}");
         assert!(Areas { pen_px: f64::NAN, ..Areas::default() }.paths(&dot).is_err());
+    }
+
+    #[test]
+    fn what_is_wider_than_the_narrowest_area_has_a_path_inside() {
+        for pen_px in [0.5, 1.0, 2.0, 2.5, 5.0, 8.0, 11.3] {
+            let areas = Areas { pen_px, ..Areas::default() };
+            let side = areas.narrowest_px() as usize + 1;
+            let square = Bitmap::from_picture(&("#".repeat(side) + "\n").repeat(side)).unwrap();
+            assert_eq!(split_by_width(&square, areas.narrowest_px()).thick, square);
+            assert_eq!(areas.paths(&square).unwrap().count(), 1, "{pen_px}");
+        }
     }
 
     #[test]
