@@ -2,21 +2,16 @@
 #![allow(clippy::unwrap_used, reason = "a failure shows")]
 #![allow(clippy::cast_precision_loss, reason = "a count of corners")]
 
+mod segment_distance;
+
 use plotter_vector::{Bitmap, Drawing, Gray, GrayRows, Pixel, Progress, PxPoint, Vectorizer, coverage};
+use segment_distance::segment_distance;
 
 /// Distance of what is found from what was drawn that a raster of one bit explains: half a pixel, and half a pixel of
 /// tolerance.
 const NEAR_PX: f64 = 1.0;
 
 type Stroke = Vec<PxPoint>;
-
-fn segment_distance(at: PxPoint, from: PxPoint, to: PxPoint) -> f64 {
-    let (x, y) = (to.x - from.x, to.y - from.y);
-    let squared = x * x + y * y;
-    let t = if squared > 0.0 { ((at.x - from.x) * x + (at.y - from.y) * y) / squared } else { 0.0 };
-    let t = t.clamp(0.0, 1.0);
-    at.distance(PxPoint::new(from.x + x * t, from.y + y * t))
-}
 
 fn distance<'a>(at: PxPoint, strokes: impl IntoIterator<Item = &'a [PxPoint]>) -> f64 {
     let each = |stroke: &'a [PxPoint]| {

@@ -2,23 +2,18 @@
 #![allow(clippy::unwrap_used, reason = "a failure shows")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small numbers")]
 
+mod segment_distance;
+
 use plotter_vector::{
     AreaStyle, Areas, Bitmap, BitmapRows, Drawing, Mode, Pixel, Progress, PxPoint, Vectorizer,
 };
+use segment_distance::segment_distance;
 
 /// Side of the field around each line, px.
 const CELL: u32 = 60;
 /// Directions of the lines.
 const TURNS: u32 = 10;
 const WIDTHS_PX: [f64; 6] = [1.0, 1.5, 2.0, 2.5, 3.0, 5.0];
-
-fn segment_distance(at: PxPoint, from: PxPoint, to: PxPoint) -> f64 {
-    let (x, y) = (to.x - from.x, to.y - from.y);
-    let squared = x * x + y * y;
-    let share = if squared > 0.0 { ((at.x - from.x) * x + (at.y - from.y) * y) / squared } else { 0.0 };
-    let share = share.clamp(0.0, 1.0);
-    at.distance(PxPoint::new(from.x + x * share, from.y + y * share))
-}
 
 fn pixels(width: u32, height: u32) -> impl Iterator<Item = Pixel> {
     (0..height).flat_map(move |y| (0..width).map(move |x| Pixel::new(x, y)))

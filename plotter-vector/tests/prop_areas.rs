@@ -6,11 +6,14 @@
     reason = "places on pictures of 200 px"
 )]
 
+mod segment_distance;
+
 use plotter_vector::{
     AreaPath, AreaStyle, Areas, Bitmap, Hatch, Outlines, Pixel, PxPoint, inset_outlines,
     rows_of_width_context, split_by_width,
 };
 use proptest::prelude::*;
+use segment_distance::segment_distance;
 
 /// What a disc must be wider by than a line to be an area wherever its centre lies, px.
 const DISC_MARGIN_PX: f64 = 3.0;
@@ -33,14 +36,6 @@ fn picture(width: u32, height: u32, is_ink: impl Fn(PxPoint) -> bool) -> Bitmap 
     let mut picture = Bitmap::new(width, height).unwrap();
     pixels(width, height).for_each(|pixel| picture.set(pixel, is_ink(pixel.into())));
     picture
-}
-
-fn segment_distance(at: PxPoint, from: PxPoint, to: PxPoint) -> f64 {
-    let (dx, dy) = (to.x - from.x, to.y - from.y);
-    let square = dx * dx + dy * dy;
-    let share = if square > 0.0 { ((at.x - from.x) * dx + (at.y - from.y) * dy) / square } else { 0.0 };
-    let share = share.clamp(0.0, 1.0);
-    at.distance(PxPoint::new(from.x + share * dx, from.y + share * dy))
 }
 
 /// A line of some width with round ends; a disc when both are the same.

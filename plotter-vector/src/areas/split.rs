@@ -25,8 +25,7 @@ pub struct WidthSplit {
 /// ```
 #[must_use]
 pub fn rows_of_width_context(max_line_px: u32) -> u32 {
-    let line = max_line_px.min(MAX_LINE_PX);
-    line + 4 * absorbed_px(line)
+    Opening::of_lines(max_line_px).rows_of_context()
 }
 
 /// Longest leftover that an area keeps, px: half a side of the disc, so that corners down to 60° stay whole.
