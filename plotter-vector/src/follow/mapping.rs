@@ -11,7 +11,7 @@ use super::paper::nearest;
 use super::prior::{Information, Prior};
 use super::registration::{View, registered, sure};
 use super::search::Search;
-use super::seated::corners_seated;
+use super::seated::{corners_seated, ends_seated};
 use super::trail::{self, Start};
 use super::{End, FollowReport, LineFollower, Lost, MappingSettings, Step, Tool};
 use crate::{Gray, PxPoint};
@@ -309,6 +309,7 @@ impl MappingFollower {
         let (known, first_link) = (self.map.nodes.len(), self.map.links.len());
         aligned(&mut self.map, flat, &pieces, middle, place, self.margin_px);
         corners_seated(&mut self.map, &pieces, place);
+        ends_seated(&mut self.map, &pieces, place, self.width_px);
         let dark_at = |at: PxPoint| flat.at(middle.along(at.minus(place), 1.0));
         let mut darks: Vec<f32> =
             pieces.iter().flat_map(|piece| &piece.places).step_by(7).map(|at| dark_at(*at)).collect();

@@ -24,13 +24,13 @@ pub struct MappingSettings {
 }
 
 impl Default for MappingSettings {
-    /// Anywhere, pictures 3 px apart (a web camera's 30 a second are then 90 px/s), lines up to 40 px wide, 8 tries, 2 million
+    /// Anywhere, pictures 2 px apart (a web camera's 30 a second are then 60 px/s), lines up to 40 px wide, 8 tries, 2 million
     /// windows, a lens without distortion.
     fn default() -> Self {
         Self {
             area: None,
             search: true,
-            step_px: 3.0,
+            step_px: 1.5,
             max_line_px: 40,
             max_tries: 8,
             max_windows: 2_000_000,
