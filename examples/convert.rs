@@ -10,12 +10,13 @@
 //! ```text
 //! cargo run --release --example convert -- drawing.plt drawing.gcode
 //! cargo run --release --example convert -- drawing.svg drawing.plt
+//! cargo run --release --example convert -- plan.svg plan.plt --font DejaVuSans.ttf
 //! cargo run --release --example convert -- drawing.svg - --to gcode --pen-up "M280 P0 S60" --pen-down "M280 P0 S30"
 //! ```
 
 use clap::{Parser, ValueEnum};
 use plotter_examples::{
-    Diagnostic, Diagnostics, DrawingFile, Language, Reading, Severity, SvgText, at, print, run,
+    Diagnostic, Diagnostics, DrawingFile, FontFiles, Language, Reading, Severity, SvgText, at, print, run,
 };
 use plotter_motion::gcode::{self, LaserCommand, PenControl, PenConvention, ServoCommand};
 use plotter_motion::hpgl::{self, thesis_text};
@@ -36,7 +37,8 @@ const SVG_MOST_MM: f64 = 100_000.0;
 ///
 /// Lines and arcs, pens, speeds and pauses are converted as far as the target knows them. Arcs stay arcs in HPGL (AA), G-code (G2,
 /// G3) and SVG (A). SVG is read in mm by width, height and viewBox, with the lower left corner as the origin: along strokes, and
-/// along the border of what is only filled; each colour is a pen, 1, 2, … in the order in which they come. In SVG written here each
+/// along the border of what is only filled; each colour is a pen, 1, 2, … in the order in which they come. Its texts are set in the
+/// fonts that --font gives, and never in others: so a file becomes the same strokes everywhere. In SVG written here each
 /// pen is a group, and is that pen when it is read again.
 #[derive(Debug, Parser)]
 #[command(
@@ -45,6 +47,7 @@ const SVG_MOST_MM: f64 = 100_000.0;
                   convert drawing.plt drawing.gcode\n  \
                   convert drawing.svg drawing.plt --tolerance-mm 0.02\n  \
                   convert drawing.gcode drawing.svg --convention unicorn\n  \
+                  convert plan.svg plan.plt --font DejaVuSans.ttf --font /usr/share/fonts\n  \
                   convert drawing.svg - --to gcode --pen-up \"M280 P0 S60\" --pen-down \"M280 P0 S30\"\n  \
                   cat drawing.plt | convert - drawing.svg\n\n\
                   Suffixes: .hpgl .plt .hpg for hpgl; .gcode .nc .ngc for gcode; .svg; .txt for thesis.\n\
@@ -79,6 +82,8 @@ struct Arguments {
     /// Encoder counts to the millimetre in the thesis' text
     #[arg(long, value_name = "N", default_value = "40", value_parser = positive, allow_negative_numbers = true)]
     counts_per_mm: f64,
+    #[command(flatten)]
+    fonts: FontFiles,
     /// Ends at the first error, with exit status 1; notices pass
     #[arg(long)]
     strict: bool,
@@ -145,7 +150,7 @@ fn is_same(input: &Path, output: &Path) -> bool {
 }
 
 fn convert(arguments: &Arguments, language: Language) -> Result<(), String> {
-    let drawing = DrawingFile::open(&arguments.input, arguments.from)?;
+    let drawing = DrawingFile::open(&arguments.input, arguments.from)?.with_fonts(&arguments.fonts)?;
     let how = Reading {
         tolerance_mm: arguments.tolerance_mm,
         counts_per_mm: arguments.counts_per_mm,

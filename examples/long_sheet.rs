@@ -21,9 +21,9 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    CrossingSet, Diagnostics, DrawingFile, JointFigures, Language, LongSheetMachine, LongSheetReport,
-    LongSheetRun, Reading, Severity, TextilePattern, at, long_sheet_svg, print, read_file, run, told_joints,
-    write_file,
+    CrossingSet, Diagnostics, DrawingFile, FontFiles, JointFigures, Language, LongSheetMachine,
+    LongSheetReport, LongSheetRun, Reading, Severity, TextilePattern, at, long_sheet_svg, print, read_file,
+    run, told_joints, write_file,
 };
 use plotter_motion::{Machine, MachineConfig, PlotOp};
 use plotter_stitch::{FramePasses, JoinFrames};
@@ -59,6 +59,8 @@ struct Arguments {
     /// What the file is written in [default: told by its contents]
     #[arg(long, value_enum)]
     language: Option<Language>,
+    #[command(flatten)]
+    fonts: FontFiles,
     /// The machine's TOML file [default: machines/textile-plotter.toml]
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
@@ -159,7 +161,7 @@ fn draw_sheet(arguments: &Arguments) -> Result<(), String> {
             draw(arguments, &sheet, &name, || pattern.ops())
         }
         Some(path) => {
-            let drawing = DrawingFile::open(path, arguments.language)?;
+            let drawing = DrawingFile::open(path, arguments.language)?.with_fonts(&arguments.fonts)?;
             let reading = Reading { counts_per_mm: 40.0, ..Reading::default() };
             let mut said = Diagnostics::default();
             // Nothing is drawn of a drawing with errors: read it once before.

@@ -16,9 +16,9 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    Diagnostic, Diagnostics, DrawingFile, DrawnExtent, Happening, Language, Reading, Severity, SpeedChart,
-    StepFile, SteppedFigures, SteppedPlot, SteppedPreview, SteppedReport, at, print, read_file, run,
-    write_file,
+    Diagnostic, Diagnostics, DrawingFile, DrawnExtent, FontFiles, Happening, Language, Reading, Severity,
+    SpeedChart, StepFile, SteppedFigures, SteppedPlot, SteppedPreview, SteppedReport, at, print, read_file,
+    run, write_file,
 };
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{
@@ -52,6 +52,8 @@ struct Arguments {
     /// What the file is written in [default: told by its contents]
     #[arg(long, value_enum)]
     language: Option<Language>,
+    #[command(flatten)]
+    fonts: FontFiles,
     /// The machine's TOML file [default: machines/stepper-plotter.toml]
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
@@ -144,7 +146,7 @@ fn main() -> ExitCode {
 
 fn plot(arguments: &Arguments) -> Result<(), String> {
     let drawing = match &arguments.file {
-        Some(path) => DrawingFile::open(path, arguments.language)?,
+        Some(path) => DrawingFile::open(path, arguments.language)?.with_fonts(&arguments.fonts)?,
         None => DrawingFile::held("the built-in drawing", built_in().into_bytes(), None)?,
     };
     let mut said = Diagnostics::default();

@@ -14,6 +14,7 @@
 //! cargo run --release --example trace -- scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt
 //! cargo run --release --example trace -- scan.png --arcs --svg scan.svg --gcode scan.gcode
 //! cargo run --release --example trace -- photo.jpg --pens 3 --svg pens.svg --overlay pens.png
+//! scanimage --format png | cargo run --release --example trace -- - --hpgl - > scan.plt
 //! cargo run --release --example draw_corpus -- --sheet a1 --dpi 600 a1.pbm
 //! cargo run --release --example trace -- a1.pbm --svg a1.svg
 //! ```
@@ -21,16 +22,18 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    Overlay, at, overlay_png, overlay_step, print, read_file, run, vectorizer, write_file,
+    Overlay, at, is_standard, overlay_png, overlay_step, print, read_file, read_input, run, vectorizer,
+    write_output,
 };
 use plotter_motion::gcode::{PenControl, WriteOptions};
+use plotter_motion::hpgl::UNITS_PER_MM;
 use plotter_motion::{
     Machine, PensChoice, Point, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode,
 };
 use plotter_vector::{
-    Algorithm, Bin, Colour, DecodeError, Drawing, ErrorReport, MAX_PENS, Palette, Pens, Pixel, Progress, Row,
-    RowSource as _, Scale, Scan, SheetErrors, ThresholdMethod, Vectorizer, decode_colour, error_chart, gcode,
-    hpgl, svg_in_colour, worst_pixel,
+    Algorithm, Bin, Colour, DecodeError, Drawing, ErrorReport, MAX_PENS, Palette, Pens, Pixel, Progress,
+    PxPoint, Row, RowSource as _, Scale, Scan, SheetErrors, ThresholdMethod, Vectorizer, decode_colour,
+    error_chart, gcode, hpgl, svg_in_colour, worst_pixel,
 };
 use serde::Serialize;
 use std::borrow::Cow;
@@ -57,6 +60,16 @@ const MAX_ERRORS_PX: RangeInclusive<f64> = 0.01..=100.0;
 /// Widest pen that may be asked for, mm: that of the machine's file.
 const MAX_PEN_MM: f64 = 100.0;
 
+/// What HPGL and G-code, as they are written here, tell apart, mm: a plotter unit, and the third decimal.
+const UNIT_MM: f64 = 1.0 / UNITS_PER_MM;
+const GCODE_MM: f64 = 0.001;
+
+/// Drawings up to this side are dots, px.
+const DOT_PX: f64 = 3.0;
+
+/// With more pixels to that step shapes fall together.
+const COARSE_PX: f64 = 4.0;
+
 /// Most threads that are started.
 const MAX_THREADS: usize = 1024;
 
@@ -66,10 +79,13 @@ const MAX_THREADS: usize = 1024;
     after_help = "Examples:\n  trace scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt --report scan.json\n  \
                   trace photo.jpg --threshold adaptive --mode mixed --hatch 0.5 --overlay look.png\n  \
                   trace drawing.png --pens 3 --svg pens.svg --hpgl pens.plt\n  \
-                  trace a0.tif --no-errors --svg a0.svg"
+                  scanimage --format png | trace - --hpgl - > scan.plt\n  \
+                  trace a0.tif --no-errors --svg a0.svg\n\n\
+                  One of the files that are written may be -, the standard output; the figures then go to the standard error."
 )]
 struct Arguments {
-    /// PNG, JPEG, TIFF, PBM, PGM or PPM picture of lines, of any size but for --pens [default: the flag that comes with the examples]
+    /// PNG, JPEG, TIFF, PBM, PGM or PPM picture of lines, of any size but for --pens; - is the standard input [default: the flag
+    /// that comes with the examples]
     image: Option<PathBuf>,
     /// Vectorization
     #[arg(long, value_enum, default_value = "ours")]
@@ -270,7 +286,11 @@ fn main() -> ExitCode {
 
 fn trace(arguments: &Arguments) -> Result<(), String> {
     let settings = settings(arguments)?;
-    let name = arguments.image.as_deref().unwrap_or(Path::new("flag.png")).display().to_string();
+    let prints_file = prints_file(arguments, &settings)?;
+    let name = match arguments.image.as_deref() {
+        Some(path) if is_standard(path) => "standard input".into(),
+        given => given.unwrap_or(Path::new("flag.png")).display().to_string(),
+    };
     let here = |error: &dyn std::fmt::Display| format!("{name}: {error}");
     let work = || match (&settings.pens, &arguments.image) {
         (Some(pens), path) => {
@@ -282,7 +302,7 @@ fn trace(arguments: &Arguments) -> Result<(), String> {
         }
         // What cannot be read twice, as a pipe, is kept.
         (None, Some(path)) => {
-            by_rows(&settings, Cursor::new(read_file(path)?), arguments).map_err(|error| here(&error))
+            by_rows(&settings, Cursor::new(picture_bytes(path)?), arguments).map_err(|error| here(&error))
         }
         (None, None) => by_rows(&settings, Cursor::new(FLAG), arguments).map_err(|error| here(&error)),
     };
@@ -308,13 +328,14 @@ fn trace(arguments: &Arguments) -> Result<(), String> {
         time_ms: traced.time.as_secs_f64() * 1e3,
         peak_rss_mb: peak_rss_mb(),
     };
+    check_size(arguments, drawing)?;
     write_files(arguments, &traced, &report, &name)?;
     let mut worst = None;
     if let (Some(path), Some(picture)) = (&settings.overlay, &traced.picture) {
         worst = traced.errors.as_ref().and_then(|errors| errors.worst);
         let palette = settings.pens.as_ref().map(|_| &traced.palette);
         let overlay = Overlay { drawing, palette, worst: worst.map(|(pixel, _)| pixel) };
-        write_file(path, overlay_png(overlay, |pixel| picture.level(pixel))?)?;
+        write_output(path, overlay_png(overlay, |pixel| picture.level(pixel))?)?;
     }
     let (width, height) = (drawing.width_px(), drawing.height_px());
     let empty = if drawing.strokes().len() == 0 { " (an empty sheet)" } else { "" };
@@ -326,17 +347,77 @@ fn trace(arguments: &Arguments) -> Result<(), String> {
         }
         None => None,
     };
-    print_table(&format!("{name}: {width} x {height} px{empty}"), &report, megapixels, circled)
+    let table = table(&format!("{name}: {width} x {height} px{empty}"), &report, megapixels, circled);
+    if prints_file {
+        eprint!("{table}");
+        return Ok(());
+    }
+    print(&table)
+}
+
+fn picture_bytes(path: &Path) -> Result<Vec<u8>, String> {
+    if is_standard(path) {
+        read_input().map_err(|error| format!("standard input: {error}"))
+    } else {
+        read_file(path)
+    }
+}
+
+/// Whether one of the files is the standard output; two would be mixed.
+fn prints_file(arguments: &Arguments, settings: &Settings) -> Result<bool, String> {
+    let files = [
+        ("--svg", &arguments.svg),
+        ("--hpgl", &arguments.hpgl),
+        ("--gcode", &arguments.gcode),
+        ("--points", &arguments.points),
+        ("--report", &arguments.report),
+        ("--error-plot", &arguments.error_plot),
+        ("--overlay", &settings.overlay),
+    ];
+    let mut printed = files.iter().filter(|(_, path)| path.as_deref().is_some_and(is_standard));
+    match (printed.next(), printed.next()) {
+        (Some((one, _)), Some((other, _))) => Err(format!(
+            "{one} and {other}: one file at most can go to the standard output (-); name a file for the other"
+        )),
+        (first, _) => Ok(first.is_some()),
+    }
+}
+
+/// Refuses a size of pixels with which a drawing becomes a point, and warns of one with which its shapes fall together.
+fn check_size(arguments: &Arguments, drawing: &Drawing) -> Result<(), String> {
+    let mm_per_px = arguments.mm_per_px;
+    let bounds = drawing.strokes().flatten().fold(None, |bounds: Option<(PxPoint, PxPoint)>, at| {
+        let (least, most) = bounds.unwrap_or((*at, *at));
+        let least = PxPoint::new(least.x.min(at.x), least.y.min(at.y));
+        Some((least, PxPoint::new(most.x.max(at.x), most.y.max(at.y))))
+    });
+    let side_px = bounds.map_or(0.0, |(least, most)| (most.x - least.x).max(most.y - least.y));
+    let steps =
+        [("--hpgl", arguments.hpgl.is_some(), UNIT_MM), ("--gcode", arguments.gcode.is_some(), GCODE_MM)];
+    for (option, _, step_mm) in steps.iter().filter(|(_, is_asked, _)| *is_asked) {
+        let step_px = step_mm / mm_per_px;
+        // What is smaller than that is a dot on any sheet.
+        if side_px >= DOT_PX && side_px < step_px {
+            return Err(format!(
+                "--mm-per-px: with {mm_per_px} mm the whole drawing is less than the {step_mm} mm that {option} tells apart; \
+                 0.1 gives 254 dots per inch"
+            ));
+        }
+        if side_px >= DOT_PX && step_px > COARSE_PX {
+            eprintln!(
+                "trace: warning: --mm-per-px: with {mm_per_px} mm the {step_mm} mm that {option} tells apart are {step_px:.0} px, \
+                 and small shapes fall together; 0.1 gives 254 dots per inch"
+            );
+        }
+    }
+    Ok(())
 }
 
 /// One pen, told by grey level: the file is read by rows, as often as it takes.
 fn by_rows<R: Read + Seek>(settings: &Settings, file: R, arguments: &Arguments) -> Result<Traced, String> {
     let start = Instant::now();
     let mut scan = Scan::new(file).map_err(|error| error.to_string())?;
-    let bar = ProgressBar::new(steps(1.0));
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent:>3} % {eta:>4}") {
-        bar.set_style(style);
-    }
+    let bar = progress_bar();
     let mut report = |done: f64| {
         bar.set_position(steps(done));
         ControlFlow::Continue(())
@@ -359,6 +440,14 @@ fn by_rows<R: Read + Seek>(settings: &Settings, file: R, arguments: &Arguments) 
         picture,
         time,
     })
+}
+
+fn progress_bar() -> ProgressBar {
+    let bar = ProgressBar::new(steps(1.0));
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent:>3} % {eta:>4}") {
+        bar.set_style(style);
+    }
+    bar
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a thousand steps")]
@@ -396,7 +485,7 @@ fn in_colour(
     path: Option<&Path>,
     arguments: &Arguments,
 ) -> Result<Traced, String> {
-    let read = path.map(read_file).transpose()?;
+    let read = path.map(picture_bytes).transpose()?;
     let colour = decode_colour(read.as_deref().unwrap_or(FLAG)).map_err(|error| match error {
         DecodeError::TooLarge(_) | DecodeError::TooMuchMemory { .. } => format!(
             "--pens: colours are told apart on the whole picture, but {error}; or take --pens 1, which is traced by \
@@ -406,7 +495,15 @@ fn in_colour(
     })?;
     drop(read);
     let start = Instant::now();
-    let found = settings.vectorizer.vectorize_colour(&colour, pens).map_err(|error| error.to_string())?;
+    let bar = progress_bar();
+    let mut report = |done: f64| {
+        bar.set_position(steps(done));
+        ControlFlow::Continue(())
+    };
+    let found =
+        settings.vectorizer.vectorize_colour_with_progress(&colour, pens, &mut Progress::new(&mut report));
+    bar.finish_and_clear();
+    let found = found.map_err(|error| error.to_string())?;
     let time = start.elapsed();
     let drawing = found.traced.drawing;
     let own = found.palette.pens().iter().zip(&found.inks);
@@ -618,18 +715,18 @@ fn write_files(
     if let Some(path) = &arguments.svg {
         let mut out = String::new();
         svg_in_colour(drawing, &traced.palette, 1.0, &mut out).map_err(text)?;
-        write_file(path, out)?;
+        write_output(path, out)?;
     }
     if let Some(path) = &arguments.hpgl {
         let mut out = String::new();
         hpgl(drawing, sheet(arguments, drawing)?, &mut out).map_err(|error| error.to_string())?;
-        write_file(path, out)?;
+        write_output(path, out)?;
     }
     if let Some(path) = &arguments.gcode {
-        write_file(path, gcode_text(drawing, sheet(arguments, drawing)?, arguments.gcode_pen)?)?;
+        write_output(path, gcode_text(drawing, sheet(arguments, drawing)?, arguments.gcode_pen)?)?;
     }
     if let Some(path) = &arguments.points {
-        write_file(path, points(drawing).map_err(text)?)?;
+        write_output(path, points(drawing).map_err(text)?)?;
     }
     if let (Some(path), Some(errors)) = (&arguments.error_plot, &traced.errors) {
         let mut out = String::new();
@@ -637,11 +734,11 @@ fn write_files(
         let file = Path::new(name).file_name().map_or(name.into(), |file| file.to_string_lossy());
         let title = format!("Error of the vectorization of {file}");
         error_chart(&errors.report, &title, &[], &mut out).map_err(text)?;
-        write_file(path, out)?;
+        write_output(path, out)?;
     }
     if let Some(path) = &arguments.report {
         let out = serde_json::to_string_pretty(report).map_err(|error| error.to_string())?;
-        write_file(path, out + "\n")?;
+        write_output(path, out + "\n")?;
     }
     Ok(())
 }
@@ -696,12 +793,7 @@ fn points(drawing: &Drawing) -> Result<String, std::fmt::Error> {
     Ok(out)
 }
 
-fn print_table(
-    title: &str,
-    report: &Report<'_>,
-    megapixels: f64,
-    circled: Option<String>,
-) -> Result<(), String> {
+fn table(title: &str, report: &Report<'_>, megapixels: f64, circled: Option<String>) -> String {
     let rss = report.peak_rss_mb.map_or("-".into(), |rss| format!("{rss:.1} MB"));
     let px = |error_px: Option<f64>| error_px.map(|error_px| format!("{error_px:.4} px"));
     let rows = [
@@ -730,7 +822,7 @@ fn print_table(
             let _ = writeln!(out, "  pen {:<6} {:>10} strokes, {}", pen.number, pen.strokes, pen.name);
         }
     }
-    print(&out)
+    out
 }
 
 /// Most memory the process has had, MB; known on Linux only.

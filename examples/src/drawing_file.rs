@@ -1,8 +1,9 @@
 //! [`DrawingFile`]: a drawing in any of the languages, read as plot operations and diagnostics.
 
-use crate::{Language, at, svg_drawing};
+use crate::{FontFiles, Language, at, svg_drawing};
 use plotter_motion::hpgl::thesis_text;
 use plotter_motion::{PlotOp, gcode, hpgl};
+use plotter_vector::SvgFonts;
 use serde::Serialize;
 use std::cell::{Cell, RefCell};
 use std::fmt;
@@ -91,6 +92,7 @@ pub struct DrawingFile {
     name: String,
     source: Source,
     language: Language,
+    fonts: SvgFonts,
 }
 
 #[derive(Debug)]
@@ -126,7 +128,7 @@ impl DrawingFile {
         file.take(HEAD_BYTES as u64).read_to_end(&mut head).map_err(failed)?;
         let name = path.display().to_string();
         let language = told(&name, &head, language)?;
-        Ok(Self { name, source: Source::File(path.to_owned()), language })
+        Ok(Self { name, source: Source::File(path.to_owned()), language, fonts: SvgFonts::default() })
     }
 
     /// A drawing in memory.
@@ -136,7 +138,19 @@ impl DrawingFile {
     /// That it is empty, or of no known language.
     pub fn held(name: &str, bytes: Vec<u8>, language: Option<Language>) -> Result<Self, String> {
         let language = told(name, bytes.get(..HEAD_BYTES).unwrap_or(&bytes), language)?;
-        Ok(Self { name: name.to_owned(), source: Source::Held(bytes), language })
+        Ok(Self { name: name.to_owned(), source: Source::Held(bytes), language, fonts: SvgFonts::default() })
+    }
+
+    /// Sets its texts in these fonts, if it is one of the pictures that have texts.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the files.
+    pub fn with_fonts(mut self, files: &FontFiles) -> Result<Self, String> {
+        if self.language == Language::Svg {
+            self.fonts = files.load()?;
+        }
+        Ok(self)
     }
 
     /// What it is called in messages.
@@ -197,7 +211,7 @@ impl DrawingFile {
                     Source::Held(bytes) => bytes.clone(),
                     Source::File(path) => crate::read_file(path)?,
                 };
-                let drawing = svg_drawing(&bytes, how.tolerance_mm)
+                let drawing = svg_drawing(&bytes, how.tolerance_mm, &self.fonts)
                     .map_err(|error| format!("{}: {error}", self.name))?;
                 colours = drawing.colours;
                 Box::new(drawing.diagnostics.into_iter().map(Err).chain(drawing.ops.into_iter().map(Ok)))

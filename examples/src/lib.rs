@@ -14,6 +14,7 @@ mod follow_moves;
 mod follow_outcome;
 mod follow_pictures;
 mod followed_path;
+mod font_files;
 mod json_place;
 mod language;
 mod long_sheet_report;
@@ -63,6 +64,7 @@ pub use follow_moves::MovesFile;
 pub use follow_outcome::FollowOutcome;
 pub use follow_pictures::{FollowFrame, follow_page, follow_svg};
 pub use followed_path::{FollowedPath, follow, predicted_s, rounding_mm, slowed};
+pub use font_files::FontFiles;
 pub use json_place::JsonPlace;
 pub use language::Language;
 pub use long_sheet_report::{JointRow, LongSheetReport};
@@ -99,7 +101,7 @@ pub use window_source::WindowSource;
 pub use wrong_choices::{WrongChoices, wrong_choices};
 
 use std::fmt::Display;
-use std::io::{Read as _, Write as _};
+use std::io::{Read, Write as _};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -124,12 +126,22 @@ pub fn run(name: &str, main: impl FnOnce() -> Result<(), String>) -> ExitCode {
 ///
 /// Any other failure.
 pub fn print(text: &str) -> Result<(), String> {
-    match std::io::stdout().write_all(text.as_bytes()) {
+    print_bytes(text.as_bytes())
+}
+
+fn print_bytes(bytes: &[u8]) -> Result<(), String> {
+    let mut out = std::io::stdout();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             Err(format!("standard output: {error}"))
         }
         _ => Ok(()),
     }
+}
+
+/// What stands for the standard input and output in place of a file.
+pub fn is_standard(path: &Path) -> bool {
+    path == Path::new("-")
 }
 
 /// Reads a file; an error names it.
@@ -138,23 +150,50 @@ pub fn print(text: &str) -> Result<(), String> {
 ///
 /// The file and why it could not be read, or that it is longer than 1 GiB.
 pub fn read_file(path: &Path) -> Result<Vec<u8>, String> {
-    let failed = |error: std::io::Error| at(path, &format!("cannot be read: {error}"));
-    let file = std::fs::File::open(path).map_err(failed)?;
+    let file = std::fs::File::open(path).map_err(|error| at(path, &format!("cannot be read: {error}")))?;
+    read_all(file).map_err(|error| at(path, &error))
+}
+
+/// Reads the standard input to its end.
+///
+/// # Errors
+///
+/// Why it could not be read, or that it is longer than 1 GiB.
+pub fn read_input() -> Result<Vec<u8>, String> {
+    read_all(std::io::stdin().lock())
+}
+
+fn read_all(reader: impl Read) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     // One byte more than allowed tells a file that is too long, even one without an end.
-    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
+    let read = reader.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
+    read.map_err(|error| format!("cannot be read: {error}"))?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(at(path, &format!("more than {} MiB; save it as PNG", MAX_FILE_BYTES >> 20)));
+        return Err(format!("more than {} MiB; save it as PNG", MAX_FILE_BYTES >> 20));
     }
     Ok(bytes)
+}
+
+/// Writes a file, or the standard output for `-`; an error names it.
+///
+/// # Errors
+///
+/// The file and why it could not be written.
+pub fn write_output(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), String> {
+    if is_standard(path) { print_bytes(contents.as_ref()) } else { write_file(path, contents) }
 }
 
 /// Writes a file; an error names it.
 ///
 /// # Errors
 ///
-/// The file and why it could not be written.
+/// The file and why it could not be written; `-`, which would be a file of that name.
 pub fn write_file(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), String> {
+    if is_standard(path) {
+        return Err(
+            "-: the standard output has the figures already; name a file, as ./- for one of that name".into(),
+        );
+    }
     std::fs::write(path, contents).map_err(|error| at(path, &format!("cannot be written: {error}")))
 }
 

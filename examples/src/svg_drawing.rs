@@ -1,11 +1,15 @@
 //! [`svg_drawing`]: what an SVG picture has to draw, as plot operations.
 
 use crate::{Diagnostic, Severity, usual_colour};
-use plotter_motion::PlotOp;
-use plotter_vector::{SvgLeftOut, SvgOptions, SvgPens, read_svg};
+use plotter_motion::{PlotOp, Point};
+use plotter_vector::{SvgDrawing, SvgFonts, SvgLeftOut, SvgOptions, SvgPens, read_svg_with_fonts};
+use std::borrow::Cow;
 
 /// Finest and coarsest that curves of an SVG are cut into chords, mm: single precision, in which they are parsed, says no more.
 const TOLERANCES_MM: (f64, f64) = (0.001, 10.0);
+
+/// Farthest beyond the sheet that nobody is told of, mm.
+const OUTSIDE_MM: f64 = 0.05;
 
 /// How the groups of pens are called in the SVG that [`SvgText`](crate::SvgText) writes.
 const PEN_GROUP: &str = "pen-";
@@ -21,7 +25,7 @@ pub struct SvgOps {
     pub colours: Vec<[u8; 3]>,
 }
 
-/// What an SVG picture has to draw; [`read_svg`] says what becomes of it. Arcs stay arcs.
+/// What an SVG picture has to draw; [`read_svg_with_fonts`] says what becomes of it. Arcs stay arcs.
 ///
 /// Each colour is a pen, in the order in which they come; in a picture that was written here, of which each pen is a group, the pens
 /// are those that they were.
@@ -29,7 +33,7 @@ pub struct SvgOps {
 /// # Errors
 ///
 /// What is wrong with the file, and where.
-pub fn svg_drawing(bytes: &[u8], tolerance_mm: f64) -> Result<SvgOps, String> {
+pub fn svg_drawing(bytes: &[u8], tolerance_mm: f64, fonts: &SvgFonts) -> Result<SvgOps, String> {
     let (least, most) = TOLERANCES_MM;
     let options =
         SvgOptions { tolerance_mm: tolerance_mm.clamp(least, most), arcs: true, ..SvgOptions::default() };
@@ -38,7 +42,7 @@ pub fn svg_drawing(bytes: &[u8], tolerance_mm: f64) -> Result<SvgOps, String> {
             let text = error.to_string();
             text.strip_prefix("svg: ").or(text.strip_prefix("svg, ")).unwrap_or(&text).to_owned()
         };
-        read_svg(bytes, &SvgOptions { pens, ..options }).map_err(error)
+        read_svg_with_fonts(bytes, &SvgOptions { pens, ..options }, fonts).map_err(error)
     };
     let may_name_pens = bytes.windows(PEN_GROUP.len()).any(|word| word == PEN_GROUP.as_bytes());
     let by_groups = if may_name_pens { Some(read(SvgPens::ByLayer)?) } else { None };
@@ -74,7 +78,8 @@ pub fn svg_drawing(bytes: &[u8], tolerance_mm: f64) -> Result<SvgOps, String> {
         PlotOp::SelectPen { pen } => PlotOp::SelectPen { pen: number_of(pen) },
         op => op,
     }));
-    Ok(SvgOps { ops, diagnostics: left_out(&svg.left_out), colours })
+    let diagnostics = left_out(&svg).into_iter().chain(beyond(&svg)).collect();
+    Ok(SvgOps { ops, diagnostics, colours })
 }
 
 /// The pen that a group is of, by its name.
@@ -82,15 +87,16 @@ fn pen_of_group(name: &str) -> Option<u8> {
     name.strip_prefix(PEN_GROUP)?.parse().ok().filter(|pen| *pen > 0)
 }
 
-fn left_out(left_out: &SvgLeftOut) -> Vec<Diagnostic> {
-    let SvgLeftOut { texts, text_line, images, image_line, clip_paths, masks, filters, paper } = *left_out;
+fn left_out(svg: &SvgDrawing) -> Vec<Diagnostic> {
+    let SvgLeftOut { texts, text_line, images, image_line, clip_paths, masks, filters, paper } = svg.left_out;
+    let remedy = |text| Cow::Borrowed(text);
     [
-        (texts, text_line, "text", "left out: convert it to paths"),
-        (images, image_line, "picture", "left out: trace it"),
-        (clip_paths, None, "clip path", "without effect: what it cuts off is drawn"),
-        (masks, None, "mask", "without effect: what it hides is drawn"),
-        (filters, None, "filter", "without effect"),
-        (paper, None, "white shape", "left out: it leaves no ink on white paper"),
+        (texts, text_line, "text", missing(svg)),
+        (images, image_line, "picture", remedy("left out: trace it")),
+        (clip_paths, None, "clip path", remedy("without effect: what it cuts off is drawn")),
+        (masks, None, "mask", remedy("without effect: what it hides is drawn")),
+        (filters, None, "filter", remedy("without effect")),
+        (paper, None, "white shape", remedy("left out: it leaves no ink on white paper")),
     ]
     .into_iter()
     .filter(|(count, ..)| *count > 0)
@@ -102,10 +108,55 @@ fn left_out(left_out: &SvgLeftOut) -> Vec<Diagnostic> {
     .collect()
 }
 
+/// What reaches beyond the sheet: shown by no viewer, and drawn all the same.
+fn beyond(svg: &SvgDrawing) -> Option<Diagnostic> {
+    let drawing = svg.drawing.chords(OUTSIDE_MM / svg.scale.mm_per_px());
+    let places = drawing.strokes().flatten().map(|at| svg.scale.to_sheet(*at));
+    let [mut left, mut right, mut below, mut above] = [0.0_f64; 4];
+    for Point { x, y } in places {
+        left = left.max(-x);
+        right = right.max(x - svg.width_mm);
+        below = below.max(-y);
+        above = above.max(y - svg.height_mm);
+    }
+    let sides = [(left, "to the left of"), (right, "to the right of"), (below, "below"), (above, "above")];
+    let told: Vec<String> = sides
+        .into_iter()
+        .filter(|(by_mm, _)| *by_mm > OUTSIDE_MM)
+        .map(|(by_mm, side)| format!("{by_mm:.1} mm {side}"))
+        .collect();
+    if told.is_empty() {
+        return None;
+    }
+    let text = format!(
+        "the drawing reaches {} its sheet of {:.1} x {:.1} mm, and is drawn there too: make the sheet larger, or move the drawing",
+        told.join(" and "),
+        svg.width_mm,
+        svg.height_mm
+    );
+    Some(Diagnostic::new(Severity::Warning, text))
+}
+
+/// What texts that are left out need.
+fn missing(svg: &SvgDrawing) -> Cow<'static, str> {
+    let needs = &svg.missing_fonts;
+    let families = needs.families.join(", ");
+    let mut wanted = Vec::new();
+    if !families.is_empty() {
+        wanted.push(format!("no font {families} is given"));
+    }
+    if !needs.letters.is_empty() {
+        wanted.push(format!("no font given has {}", needs.letters));
+    }
+    if wanted.is_empty() {
+        return "left out: give a font with --font FILE, or convert it to paths".into();
+    }
+    format!("left out: {}; give one with --font FILE, or convert it to paths", wanted.join(", and ")).into()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plotter_motion::Point;
     use std::f64::consts::TAU;
 
     /// What single precision leaves of a coordinate of some hundred pixels.
@@ -115,7 +166,7 @@ mod tests {
         let text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100mm\" height=\"5cm\" viewBox=\"0 0 200 100\">\n{body}\n</svg>"
         );
-        svg_drawing(text.as_bytes(), 0.01).unwrap()
+        svg_drawing(text.as_bytes(), 0.01, &SvgFonts::default()).unwrap()
     }
 
     fn pens(drawing: &SvgOps) -> Vec<u8> {
@@ -164,17 +215,34 @@ mod tests {
     }
 
     #[test]
+    fn what_reaches_beyond_the_sheet_is_said_and_drawn() {
+        // 88 x 51 mm on a sheet of 100 x 50.
+        let high = drawing("<path d='M6 -1V101H182' fill='none' stroke='red'/>");
+        let said: Vec<String> = high.diagnostics.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            said,
+            [
+                "the drawing reaches 0.5 mm below and 0.5 mm above its sheet of 100.0 x 50.0 mm, and is drawn there too: make \
+              the sheet larger, or move the drawing"
+            ]
+        );
+        assert_eq!(high.ops.iter().filter(|op| matches!(op, PlotOp::Draw { .. })).count(), 2);
+        let whole = drawing("<rect width='200' height='100' fill='none' stroke='red'/>");
+        assert_eq!(whole.diagnostics, []);
+    }
+
+    #[test]
     fn what_is_not_drawn_is_said() {
         let drawing = drawing("<text x='1' y='2'>a</text>\n<rect width='5' height='5' fill='white'/>");
         let said: Vec<String> = drawing.diagnostics.iter().map(ToString::to_string).collect();
         assert_eq!(
             said,
             [
-                "line 2: a text is left out: convert it to paths",
+                "line 2: a text is left out: give a font with --font FILE, or convert it to paths",
                 "a white shape is left out: it leaves no ink on white paper"
             ]
         );
         assert!(drawing.ops.is_empty());
-        assert!(svg_drawing(b"<svg", 0.01).is_err());
+        assert!(svg_drawing(b"<svg", 0.01, &SvgFonts::default()).is_err());
     }
 }

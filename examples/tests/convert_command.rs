@@ -2,8 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 mod built_example;
+#[path = "../../plotter-vector/tests/made_font/mod.rs"]
+mod made_font;
 
 use built_example::{Folder, complaint, data, run_example, run_with_input};
+use made_font::made_font;
 use plotter_examples::{DrawingFile, Reading};
 use plotter_motion::{PlotOp, Point, chords};
 use std::path::{Path, PathBuf};
@@ -200,7 +203,39 @@ fn what_svg_has_and_plotters_lack_is_said() {
     let (_, text, said) = folder.convert(&svg, "a.hpgl", &[]);
     assert!(text.starts_with("IN;\nSP1;\nPU0,0;\nPD1016,1016;\n"), "{text}");
     assert!(text.contains("SP2;\nPU1016,0;\n"), "{text}");
-    assert!(said.contains("a.svg: line 2: a text is left out"), "{said}");
+    assert!(said.contains("a.svg: line 2: a text is left out: give a font with --font FILE"), "{said}");
+}
+
+#[test]
+fn texts_of_svg_are_set_in_the_fonts_that_are_given() {
+    let folder = Folder::new();
+    let svg = folder.write(
+        "a.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='50mm' viewBox='0 0 100 50'>\n\
+         <text x='10' y='40' font-size='10' font-family='Boxes'>B</text>\n\
+         <text y='40' font-family='Other'>V☃</text></svg>",
+    );
+    std::fs::create_dir(folder.0.path().join("sub")).unwrap();
+    let font = folder.write("sub/boxes.ttf", made_font("Boxes"));
+    folder.write("sub/broken.otf", "no font");
+    let (_, text, said) = folder.convert(&svg, "a.plt", &["--font", &font]);
+    assert!(text.contains("PU400,400;\nPD400,680,600,680,600,400,400,400;"), "{text}");
+    assert!(
+        said.contains(
+            "line 3: a text is left out: no font Other is given, and no font given has ☃; give one with"
+        ),
+        "{said}"
+    );
+    // A folder is as good as its files.
+    let (_, by_folder, _) = folder.convert(&svg, "b.plt", &["--font", folder.0.path().to_str().unwrap()]);
+    assert_eq!(by_folder, text);
+    let out = folder.file("c.plt");
+    let said = |font: &str| complaint("convert", &[&svg, &out, "--font", font]);
+    assert!(said("no/such.ttf").contains("--font: no/such.ttf: cannot be read"));
+    assert!(said(&svg).contains("a.svg: this is no font with a name; give a TrueType or OpenType file"));
+    assert!(said(&folder.write("web.woff2", "wOF2\0\x01\0\0")).contains("this is a web font (WOFF)"));
+    std::fs::create_dir(folder.0.path().join("empty")).unwrap();
+    assert!(said(&folder.file("empty")).contains("this folder holds no font"));
 }
 
 #[test]

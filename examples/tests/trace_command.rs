@@ -156,7 +156,7 @@ fn bad_pictures_get_one_line_and_blank_ones_an_empty_drawing() {
     );
     assert!(
         complaint("trace", &[&file("cut.pgm", b"P5 90000 90000 255\n")])
-            .contains("cut off at row 1 of 90000: it ends here; the rows above are good")
+            .contains("cut off at row 1 of 90000: it ends here; no row of it is good")
     );
     let claims = "a picture of 1000000000 x 1000000000 px is too large: at most 131072 px a side; scan with";
     assert!(complaint("trace", &[&file("huge.pbm", b"P4 1000000000 1000000000\n")]).contains(claims));
@@ -555,4 +555,80 @@ fn a_pipe_is_read_as_a_file() {
     let output = run_with_input("trace", &["/dev/stdin"], pipe);
     assert!(cat.wait().unwrap().success());
     assert!(String::from_utf8(output.stdout).unwrap().starts_with("/dev/stdin: 1014 x 673 px\n"));
+}
+
+#[test]
+fn the_standard_input_is_read_and_the_standard_output_written() {
+    let folder = Folder::new();
+    let picture = folder.gray((60, 30), &[([10, 5, 40, 3], 20), ([10, 20, 40, 3], 180)]);
+    let piped = |options: &[&str]| {
+        let file = std::fs::File::open(&picture).unwrap();
+        let output = run_with_input("trace", &[&["-"], options].concat(), file);
+        let (out, said) = (output.stdout, String::from_utf8(output.stderr).unwrap());
+        assert!(output.status.success(), "{said}");
+        (String::from_utf8_lossy(&out).into_owned(), said)
+    };
+    assert!(piped(&[]).0.starts_with("standard input: 60 x 30 px\n"));
+    assert!(piped(&["--pens", "2"]).0.starts_with("standard input: 60 x 30 px\n"));
+    for (option, begins) in [
+        ("--svg", "<svg"),
+        ("--hpgl", "IN;\nSP1;"),
+        ("--gcode", "G21"),
+        ("--points", "1"),
+        ("--report", "{\n"),
+        ("--error-plot", "<svg"),
+        ("--overlay", "\u{fffd}PNG"),
+    ] {
+        let (out, said) = piped(&[option, "-"]);
+        assert!(out.starts_with(begins), "{option}: {out}");
+        // The figures go where they do not disturb.
+        assert!(
+            !out.contains("px\n  line width") && said.starts_with("standard input: 60 x 30 px\n"),
+            "{said}"
+        );
+        let path = folder.file("a.out");
+        assert!(run_example("trace", &[&picture, option, &path]).status.success());
+        let file = std::fs::read(&path).unwrap();
+        let same = String::from_utf8_lossy(&file) == out;
+        // Name and time are of that run.
+        assert!(same || ["--report", "--error-plot"].contains(&option), "{option}");
+    }
+    assert!(!std::path::Path::new("-").exists());
+    let said = complaint("trace", &[&picture, "--svg", "-", "--hpgl", "-"]);
+    assert!(said.contains("--svg and --hpgl: one file at most can go to the standard output"), "{said}");
+    let nothing = run_with_input("trace", &["-"], std::process::Stdio::null());
+    let said = String::from_utf8(nothing.stderr).unwrap();
+    assert!(said.starts_with("trace: standard input: the picture is empty (0 bytes)"), "{said}");
+}
+
+#[test]
+fn pixels_too_small_for_the_plotter_are_refused_or_told() {
+    let folder = Folder::new();
+    let picture = folder.gray((60, 30), &[([10, 5, 40, 3], 20)]);
+    let plt = folder.file("a.plt");
+    for option in ["--hpgl", "--gcode"] {
+        let said = complaint("trace", &[&picture, "--mm-per-px", "1e-30", option, &plt]);
+        assert!(
+            said.contains("--mm-per-px: with 0.000000000000000000000000000001 mm the whole drawing is"),
+            "{said}"
+        );
+        assert!(said.contains(&format!("that {option} tells apart; 0.1 gives")), "{said}");
+        assert!(!std::path::Path::new(&plt).exists());
+    }
+    let said = |options: &[&str]| {
+        let output = run_example("trace", &[&[picture.as_str()], options].concat());
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let coarse = said(&["--mm-per-px", "0.001", "--hpgl", &plt]);
+    assert!(
+        coarse.contains("warning: --mm-per-px: with 0.001 mm the 0.025 mm that --hpgl tells apart are 25 px"),
+        "{coarse}"
+    );
+    assert_eq!(said(&["--mm-per-px", "0.01", "--hpgl", &plt]), "");
+    // In pixels it does not matter, and a dot is one at any size.
+    assert_eq!(said(&["--mm-per-px", "1e-30", "--svg", &plt]), "");
+    let dot = folder.gray((20, 20), &[([9, 9, 2, 2], 0)]);
+    let output = run_example("trace", &[&dot, "--mm-per-px", "0.001", "--hpgl", &plt]);
+    assert!(output.status.success() && output.stderr.is_empty());
 }

@@ -88,6 +88,10 @@ impl fmt::Display for DecodeError {
             Self::Damaged { length, what } => {
                 write!(f, "the picture ({length} bytes) is damaged or cut off: {what}; scan or save it again")
             }
+            Self::DamagedRow { row: 0, rows, what } if *rows > 0 => write!(
+                f,
+                "the picture is damaged or cut off at row 1 of {rows}: {what}; no row of it is good, scan or save it again"
+            ),
             Self::DamagedRow { row, rows, what } if row < rows => write!(
                 f,
                 "the picture is damaged or cut off at row {} of {rows}: {what}; the rows above are good, scan or save \
@@ -114,7 +118,12 @@ mod tests {
         let error = DecodeError::DamagedRow { row: 0, rows: 7, what: "the file ends".into() };
         assert_eq!(
             error.to_string(),
-            "the picture is damaged or cut off at row 1 of 7: the file ends; the rows above are good, scan or save it \
+            "the picture is damaged or cut off at row 1 of 7: the file ends; no row of it is good, scan or save it again"
+        );
+        let error = DecodeError::DamagedRow { row: 1, rows: 7, what: "the file ends".into() };
+        assert_eq!(
+            error.to_string(),
+            "the picture is damaged or cut off at row 2 of 7: the file ends; the rows above are good, scan or save it \
              again for the others"
         );
         let error = DecodeError::DamagedRow { row: 7, rows: 7, what: "a wrong checksum".into() };

@@ -2,8 +2,15 @@
 
 use crate::coverage::add_coverage;
 use crate::{
-    Algorithm, Bitmap, Colour, Drawing, ErrorTally, Palette, Pens, VectorizeError, Vectorized, Vectorizer,
+    Algorithm, Bitmap, Colour, Drawing, ErrorTally, Palette, Pens, Progress, VectorizeError, Vectorized,
+    Vectorizer,
 };
+
+/// Where the work has come to when the pens are told apart, when they have their strokes, and when these are ordered, on a scan
+/// of three pens; the rest are the errors.
+const TOLD_APART: f64 = 0.3;
+const TRACED: f64 = 0.8;
+const ORDERED: f64 = 0.9;
 
 /// What the vectorization found on a picture in colour.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,10 +48,27 @@ impl Vectorizer {
         picture: &Colour,
         pens: &Pens,
     ) -> Result<VectorizedColour, VectorizeError> {
+        self.vectorize_colour_with_progress(picture, pens, &mut Progress::silent())
+    }
+
+    /// The same, told and stopped between its steps: the telling apart, each pen's strokes, the order, each pen's errors.
+    ///
+    /// # Errors
+    /// [`VectorizeError`].
+    pub fn vectorize_colour_with_progress(
+        &self,
+        picture: &Colour,
+        pens: &Pens,
+        progress: &mut Progress<'_>,
+    ) -> Result<VectorizedColour, VectorizeError> {
+        progress.at(0, 1)?;
         let layers = pens.separate(picture).map_err(VectorizeError::Pens)?;
+        progress.part(TOLD_APART).at(1, 1)?;
+        let of = layers.palette().pens().len() as u64;
         let mut drawing = Drawing::new(picture.width(), picture.height());
         let mut inks = Vec::with_capacity(layers.palette().pens().len());
-        for (index, (pen, own)) in layers.iter().enumerate() {
+        let mut tracing = progress.part(TRACED);
+        for (done, (index, (pen, own))) in (1..).zip(layers.iter().enumerate()) {
             let mut ink = layers.bridged(index).unwrap_or_else(|| own.clone());
             let grey = layers.coverage(index, &ink, picture);
             let (strokes, _) = self.unordered(&mut ink, grey.as_ref().map(|levels| (levels, true)))?;
@@ -52,13 +76,17 @@ impl Vectorizer {
                 drawing.push_curve(pen.number, strokes.curve(stroke));
             }
             inks.push(ink);
+            tracing.at(done, of)?;
         }
         if self.algorithm == Algorithm::Ours {
             drawing = self.order.apply(&drawing);
         }
+        progress.part(ORDERED).at(1, 1)?;
         let mut tally = ErrorTally::default();
-        for (pen, ink) in layers.palette().pens().iter().zip(&inks) {
+        let mut measuring = progress.part(1.0);
+        for (done, (pen, ink)) in (1..).zip(layers.palette().pens().iter().zip(&inks)) {
             add_coverage(ink, &drawing.of_pen(pen.number), &mut tally);
+            measuring.at(done, of)?;
         }
         let traced = Vectorized { drawing, error: tally.report(), split: None };
         Ok(VectorizedColour { traced, palette: layers.palette().clone(), inks })
@@ -91,6 +119,30 @@ mod tests {
         assert_eq!(found.traced.error.pixels, 300);
         // A round pen leaves the corners of square ends bare.
         assert!(found.traced.error.max_px < 0.75, "{}", found.traced.error.max_px);
+    }
+
+    #[test]
+    fn work_on_colours_is_told_and_stopped() {
+        use core::ops::ControlFlow;
+        let mut told = Vec::new();
+        let mut report = |done: f64| {
+            told.push(done);
+            ControlFlow::Continue(())
+        };
+        let vectorizer = Vectorizer::default();
+        let pens = Pens::Count(2);
+        let found = vectorizer
+            .vectorize_colour_with_progress(&cross(), &pens, &mut Progress::new(&mut report))
+            .unwrap();
+        assert_eq!(found, vectorizer.vectorize_colour(&cross(), &pens).unwrap());
+        assert!(told.windows(2).all(|pair| pair[0] < pair[1]), "{told:?}");
+        // Begun, told apart, two pens, ordered, two pens.
+        assert_eq!((told.len(), told.first(), told.last()), (7, Some(&0.0), Some(&1.0)));
+        let mut stop =
+            |done: f64| if done > 0.4 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        let stopped =
+            vectorizer.vectorize_colour_with_progress(&cross(), &pens, &mut Progress::new(&mut stop));
+        assert_eq!(stopped.unwrap_err().to_string(), "cancelled after 55 % of the work");
     }
 
     #[test]

@@ -9,9 +9,9 @@ use crate::row_threshold::has_rims;
 use crate::simplify::Pieces;
 use crate::within::within;
 use crate::{
-    AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Curve, Drawing, DynamicThreshold, ErrorReport,
-    ErrorTally, Figures, Gray, Lettering, Order, OrderedTracking, PensError, Pixel, PxPoint, Simplify, Split,
-    ThinningMethod, Threshold, TooManyFigures, despeckle, pen_width_px, smallest_mark_px,
+    AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Cancelled, Curve, Drawing, DynamicThreshold,
+    ErrorReport, ErrorTally, Figures, Gray, Lettering, Order, OrderedTracking, PensError, Pixel, PxPoint,
+    Simplify, Split, ThinningMethod, Threshold, TooManyFigures, despeckle, pen_width_px, smallest_mark_px,
 };
 use core::fmt;
 
@@ -149,6 +149,8 @@ pub enum VectorizeError {
     Areas(AreaError),
     /// There are no such pens.
     Pens(PensError),
+    /// The one who asked for it stopped it.
+    Cancelled(Cancelled),
 }
 
 impl fmt::Display for VectorizeError {
@@ -166,7 +168,14 @@ impl fmt::Display for VectorizeError {
             Self::ArcsAndCurves => f.write_str("arcs and curves: a stroke has one of them; leave one out"),
             Self::Areas(error) => error.fmt(f),
             Self::Pens(error) => error.fmt(f),
+            Self::Cancelled(error) => error.fmt(f),
         }
+    }
+}
+
+impl From<Cancelled> for VectorizeError {
+    fn from(error: Cancelled) -> Self {
+        Self::Cancelled(error)
     }
 }
 

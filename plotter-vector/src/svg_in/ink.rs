@@ -3,20 +3,25 @@
 use super::arc::bulge;
 use super::curve::Cubic;
 use super::dash::Dashes;
+use super::survey::without_spaces;
 use super::{MAX_PX, MM_PER_PX, SvgError, SvgLeftOut, SvgOptions, SvgPens};
 use crate::{Curve, Drawing, MAX_PENS, PalettePen, PxPoint, Rgb};
-use usvg::tiny_skia_path::{PathSegment, Point};
+use usvg::tiny_skia_path::{PathSegment, Point, Transform};
 
 /// A drawing in the making.
 pub(super) struct Ink<'a> {
     pub(super) drawing: Drawing,
     pub(super) pens: Vec<PalettePen>,
     pub(super) left_out: SvgLeftOut,
+    /// The letters of the first text that is left out, without spaces.
+    pub(super) text: Option<String>,
     options: SvgOptions,
     /// Id and name of each group at the top of the file.
     layers: &'a [(String, String)],
     /// The layer's id that each pen stands for; beside `pens`.
     pen_layers: Vec<String>,
+    /// Tells the texts of which all outlines are there.
+    draw_whole: Option<&'a dyn Fn(&usvg::Text) -> bool>,
 }
 
 /// What the pen follows on a shape.
@@ -29,9 +34,14 @@ enum Way<'a> {
 }
 
 impl<'a> Ink<'a> {
-    pub(super) fn new(drawing: Drawing, options: SvgOptions, layers: &'a [(String, String)]) -> Self {
+    pub(super) fn new(
+        drawing: Drawing,
+        options: SvgOptions,
+        layers: &'a [(String, String)],
+        draw_whole: Option<&'a dyn Fn(&usvg::Text) -> bool>,
+    ) -> Self {
         let (pens, pen_layers, left_out) = (Vec::new(), Vec::new(), SvgLeftOut::default());
-        Self { drawing, pens, left_out, options, layers, pen_layers }
+        Self { drawing, pens, left_out, text: None, options, layers, pen_layers, draw_whole }
     }
 
     /// Draws a group and all that is in it. As deep as the file is nested, which has been checked.
@@ -48,15 +58,39 @@ impl<'a> Ink<'a> {
         for child in group.children() {
             match child {
                 usvg::Node::Group(inner) => self.group(inner, layer)?,
-                usvg::Node::Path(path) => self.path(path, layer)?,
-                // Neither is made: see `SvgLeftOut`, which counts them in the file.
-                usvg::Node::Image(_) | usvg::Node::Text(_) => {}
+                usvg::Node::Path(path) => self.path(path, path.abs_transform(), layer)?,
+                usvg::Node::Text(text) => self.text(text, layer)?,
+                // None is made: `SvgLeftOut` counts them in the file.
+                usvg::Node::Image(_) => {}
             }
         }
         Ok(())
     }
 
-    fn path(&mut self, path: &usvg::Path, layer: &str) -> Result<(), SvgError> {
+    /// Draws the outlines of a text, or counts it.
+    fn text(&mut self, text: &usvg::Text, layer: &str) -> Result<(), SvgError> {
+        let Some(draw_whole) = self.draw_whole else { return Ok(()) };
+        if draw_whole(text) {
+            for part in text.flattened().children() {
+                if let usvg::Node::Path(path) = part {
+                    // That of the text: lines below and through letters have none of their own.
+                    self.path(path, text.abs_transform(), layer)?;
+                }
+            }
+            return Ok(());
+        }
+        let mut spans = text.chunks().iter().flat_map(usvg::TextChunk::spans);
+        let has_ink =
+            spans.any(|span| span.is_visible() && (span.fill().is_some() || span.stroke().is_some()));
+        let letters = without_spaces(text.chunks().iter().map(usvg::TextChunk::text));
+        if has_ink && !letters.is_empty() {
+            self.left_out.texts += 1;
+            self.text.get_or_insert(letters);
+        }
+        Ok(())
+    }
+
+    fn path(&mut self, path: &usvg::Path, matrix: Transform, layer: &str) -> Result<(), SvgError> {
         if !path.is_visible() {
             return Ok(());
         }
@@ -68,7 +102,7 @@ impl<'a> Ink<'a> {
         let seen = |(_, colour): &(Way<'_>, Rgb)| Some(*colour) != self.options.paper;
         let inked = line.filter(seen).or_else(|| border.filter(seen));
         match inked {
-            Some((way, colour)) => self.trace(path, way, colour, layer),
+            Some((way, colour)) => self.trace(path, matrix, way, colour, layer),
             None => {
                 self.left_out.paper += usize::from(line.is_some() || border.is_some());
                 Ok(())
@@ -77,8 +111,14 @@ impl<'a> Ink<'a> {
     }
 
     /// Draws the stroke of a shape, or the border of its fill.
-    fn trace(&mut self, path: &usvg::Path, way: Way<'_>, colour: Rgb, layer: &str) -> Result<(), SvgError> {
-        let matrix = path.abs_transform();
+    fn trace(
+        &mut self,
+        path: &usvg::Path,
+        matrix: Transform,
+        way: Way<'_>,
+        colour: Rgb,
+        layer: &str,
+    ) -> Result<(), SvgError> {
         let [a, b, c, d] = [matrix.sx, matrix.ky, matrix.kx, matrix.sy].map(f64::from);
         let [e, f] = [matrix.tx, matrix.ty].map(f64::from);
         let place = |at: Point| -> Result<PxPoint, SvgError> {

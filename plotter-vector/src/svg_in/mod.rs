@@ -6,11 +6,15 @@
 mod arc;
 mod curve;
 mod dash;
+#[cfg(feature = "svg-text")]
+mod fonts;
 mod ink;
 mod survey;
 
 use crate::{Drawing, PalettePen, Rgb, Scale};
 use core::fmt;
+#[cfg(feature = "svg-text")]
+pub use fonts::{SvgFontError, SvgFonts, read_svg_with_fonts};
 use ink::Ink;
 use plotter_motion::Point;
 use survey::Survey;
@@ -22,6 +26,9 @@ const MM_PER_PX: f64 = 25.4 / 96.0;
 const MAX_PX: f64 = 1_048_576.0;
 /// Chords finer or coarser than this are not for pens, mm.
 const TOLERANCES_MM: core::ops::RangeInclusive<f64> = 0.001..=10.0;
+/// Size of letters, and with it the length of an em, where the file gives none, px: `medium` of CSS Fonts Level 4, section 2.5, as
+/// browsers have it.
+const FONT_SIZE_PX: f32 = 16.0;
 /// Stack of the parser, which recurses into nested elements: reserved, used as far as it is needed.
 const STACK_BYTES: usize = 128 << 20;
 
@@ -71,9 +78,10 @@ impl Default for SvgOptions {
 /// What an SVG file holds and a pen does not draw, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct SvgLeftOut {
-    /// Texts: they have no outlines without fonts. Make them paths in the editor.
+    /// Texts: they have no outlines without their fonts. Give them (`read_svg_with_fonts`, feature `svg-text`), or make them paths
+    /// in the editor.
     pub texts: usize,
-    /// Line of the first of them in the file, from 1.
+    /// Line of the first of them in the file, from 1, where it can be told.
     pub text_line: Option<u32>,
     /// Pictures: [`Vectorizer`](crate::Vectorizer) traces them.
     pub images: usize,
@@ -87,6 +95,15 @@ pub struct SvgLeftOut {
     pub filters: usize,
     /// Shapes in the colour of the paper.
     pub paper: usize,
+}
+
+/// What the texts that are left out need. Without fonts, and without feature `svg-text`, it is not looked into which letters.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct SvgMissingFonts {
+    /// Families that are asked for, of each text the first of its list; up to 16.
+    pub families: Vec<String>,
+    /// Letters that no given font has; up to 16.
+    pub letters: String,
 }
 
 /// A drawing read from an SVG file.
@@ -107,6 +124,8 @@ pub struct SvgDrawing {
     pub pens: Vec<PalettePen>,
     /// What is not drawn.
     pub left_out: SvgLeftOut,
+    /// The fonts for the texts among it.
+    pub missing_fonts: SvgMissingFonts,
 }
 
 /// Why an SVG file cannot be read.
@@ -177,6 +196,8 @@ pub enum SvgError {
         /// Most elements.
         limit: usize,
     },
+    /// The texts are longer than can be set, references followed.
+    TooMuchText,
     /// More vertices than [`SvgOptions::max_vertices`].
     TooManyVertices {
         /// That limit.
@@ -236,6 +257,10 @@ impl fmt::Display for SvgError {
                     "svg: more than {limit} elements, references followed; unlink clones, or split the file"
                 )
             }
+            Self::TooMuchText => f.write_str(
+                "svg: the texts are too long to be set, references followed; split them or the file, unlink clones, or \
+                 convert texts to paths",
+            ),
             Self::TooManyVertices { limit } => write!(
                 f,
                 "svg: more than {limit} vertices; take a larger tolerance, simplify dashes, or raise `max_vertices`"
@@ -276,6 +301,15 @@ impl core::error::Error for SvgError {}
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_svg(bytes: &[u8], options: &SvgOptions) -> Result<SvgDrawing, SvgError> {
+    on_own_stack(bytes, options, |text| parse(text, *options, &parser_options(), None))
+}
+
+/// Reads the text of a file on a stack that is large enough.
+fn on_own_stack(
+    bytes: &[u8],
+    options: &SvgOptions,
+    parse: impl FnOnce(&str) -> Result<SvgDrawing, SvgError> + Send,
+) -> Result<SvgDrawing, SvgError> {
     if !TOLERANCES_MM.contains(&options.tolerance_mm) {
         return Err(SvgError::Tolerance { tolerance_mm: options.tolerance_mm });
     }
@@ -290,12 +324,18 @@ pub fn read_svg(bytes: &[u8], options: &SvgOptions) -> Result<SvgDrawing, SvgErr
     // The caller's stack may be short of what nested elements need.
     std::thread::scope(|scope| {
         let parser = std::thread::Builder::new().name("svg".to_owned()).stack_size(STACK_BYTES);
-        let parsed = parser.spawn_scoped(scope, || parse(text, *options)).map_err(|_| SvgError::Parser)?;
+        let parsed = parser.spawn_scoped(scope, || parse(text)).map_err(|_| SvgError::Parser)?;
         parsed.join().unwrap_or(Err(SvgError::Parser))
     })
 }
 
-fn parse(text: &str, options: SvgOptions) -> Result<SvgDrawing, SvgError> {
+/// `draw_whole` tells the texts that the parser has all outlines of; without it, it has none.
+fn parse(
+    text: &str,
+    options: SvgOptions,
+    parser: &usvg::Options<'_>,
+    draw_whole: Option<&dyn Fn(&usvg::Text) -> bool>,
+) -> Result<SvgDrawing, SvgError> {
     let limit = survey::MAX_ELEMENTS;
     // Document types are common: entities in them are resolved, within the limits of the XML parser, but not those
     // in other files.
@@ -305,8 +345,8 @@ fn parse(text: &str, options: SvgOptions) -> Result<SvgDrawing, SvgError> {
         roxmltree::Error::NodesLimitReached => SvgError::TooManyElements { limit },
         error => SvgError::Xml { reason: error.to_string() },
     })?;
-    let survey = Survey::new(&document)?;
-    let tree = usvg::Tree::from_xmltree(&document, &parser_options()).map_err(|error| match error {
+    let survey = Survey::new(&document, draw_whole.is_some())?;
+    let tree = usvg::Tree::from_xmltree(&document, parser).map_err(|error| match error {
         usvg::Error::InvalidSize => SvgError::NoSize,
         usvg::Error::ElementsLimitReached => SvgError::TooManyElements { limit },
         usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => {
@@ -323,21 +363,33 @@ fn parse(text: &str, options: SvgOptions) -> Result<SvgDrawing, SvgError> {
     let below_mm = height_mm - f64::from(drawing.height_px()) * MM_PER_PX;
     let scale =
         Scale::new(drawing.height_px(), MM_PER_PX, Point::new(0.0, below_mm)).map_err(|_| too_large)?;
-    let mut ink = Ink::new(drawing, options, &survey.layers);
+    let mut ink = Ink::new(drawing, options, &survey.layers, draw_whole);
     ink.group(tree.root(), "")?;
-    let left_out = SvgLeftOut {
-        texts: survey.texts,
-        text_line: survey.text_line,
-        images: survey.images,
-        image_line: survey.image_line,
-        ..ink.left_out
+    let (texts, text_line) = match draw_whole {
+        None => (survey.texts.len(), survey.texts.first().map(|(_, line)| *line)),
+        Some(_) => {
+            let same =
+                |(letters, line): &(String, u32)| (Some(letters) == ink.text.as_ref()).then_some(*line);
+            (ink.left_out.texts, survey.texts.iter().find_map(same))
+        }
     };
-    Ok(SvgDrawing { drawing: ink.drawing, scale, width_mm, height_mm, pens: ink.pens, left_out })
+    let left_out =
+        SvgLeftOut { texts, text_line, images: survey.images, image_line: survey.image_line, ..ink.left_out };
+    Ok(SvgDrawing {
+        drawing: ink.drawing,
+        scale,
+        width_mm,
+        height_mm,
+        pens: ink.pens,
+        left_out,
+        missing_fonts: SvgMissingFonts::default(),
+    })
 }
 
 /// No files, no pictures: neither from a path in the file, nor from data in it.
 fn parser_options() -> usvg::Options<'static> {
     usvg::Options {
+        font_size: FONT_SIZE_PX,
         image_href_resolver: usvg::ImageHrefResolver {
             resolve_data: Box::new(|_, _, _| None),
             resolve_string: Box::new(|_, _| None),

@@ -11,6 +11,8 @@ use usvg::roxmltree::{Document, Node, NodeId};
 pub(super) const MAX_ELEMENTS: usize = 2_000_000;
 /// Deepest nesting, when each reference is followed: what the parser and its stack are made for.
 pub(super) const MAX_DEPTH: usize = 1000;
+/// Most steps that setting the texts may take, when each reference is followed: some ten seconds.
+const MAX_TEXT_STEPS: usize = 20_000_000;
 /// Greatest number that an attribute may hold: single precision loses figures long before.
 const MAX_NUMBER: f64 = 1e12;
 
@@ -40,10 +42,8 @@ const TEMPLATES: [&str; 6] = ["defs", "symbol", "clipPath", "mask", "pattern", "
 /// What a file holds that the parser does not tell.
 #[derive(Debug)]
 pub(super) struct Survey {
-    /// Texts that are not empty.
-    pub(super) texts: usize,
-    /// Line of the first of them.
-    pub(super) text_line: Option<u32>,
+    /// Letters, without spaces, and line of each text that is not empty.
+    pub(super) texts: Vec<(String, u32)>,
     /// Pictures.
     pub(super) images: usize,
     /// Line of the first of them.
@@ -53,7 +53,8 @@ pub(super) struct Survey {
 }
 
 impl Survey {
-    pub(super) fn new(document: &Document<'_>) -> Result<Self, SvgError> {
+    /// `sets_texts` says whether texts are more than counted.
+    pub(super) fn new(document: &Document<'_>, sets_texts: bool) -> Result<Self, SvgError> {
         let root = document.root_element();
         if root.tag_name().name() != "svg" {
             return Err(SvgError::NotSvg { root: shortened(root.tag_name().name()) });
@@ -61,7 +62,7 @@ impl Survey {
         for node in document.descendants().filter(Node::is_element) {
             check_numbers(document, node)?;
         }
-        check_references(document)?;
+        check_references(document, sets_texts)?;
         let drawn = |name: &str| {
             let templates =
                 |node: &Node<'_, '_>| node.ancestors().any(|up| TEMPLATES.contains(&up.tag_name().name()));
@@ -72,19 +73,19 @@ impl Survey {
         };
         let texts: Vec<Node<'_, '_>> = drawn("text");
         let images: Vec<Node<'_, '_>> = drawn("image");
-        let written = |node: &&Node<'_, '_>| {
-            node.descendants()
-                .any(|part| part.is_text() && part.text().is_some_and(|text| !text.trim().is_empty()))
-        };
         let layer = |node: Node<'_, '_>| {
             let id = node.attribute("id")?;
             let label = node.attributes().find(|attribute| attribute.name() == "label");
             Some((id.to_owned(), label.map_or(id, |label| label.value()).to_owned()))
         };
         let line = |node: &Node<'_, '_>| document.text_pos_at(node.range().start).row;
+        let written = |node: &Node<'_, '_>| {
+            let letters =
+                without_spaces(node.descendants().filter(Node::is_text).filter_map(|part| part.text()));
+            (!letters.is_empty()).then(|| (letters, line(node)))
+        };
         Ok(Self {
-            texts: texts.iter().filter(written).count(),
-            text_line: texts.iter().find(written).map(line),
+            texts: texts.iter().filter_map(written).collect(),
             images: images.len(),
             image_line: images.first().map(line),
             layers: root.children().filter(|node| node.tag_name().name() == "g").filter_map(layer).collect(),
@@ -98,6 +99,11 @@ fn name_of<'a>(node: &Node<'a, '_>, name: &'a str) -> usvg::roxmltree::ExpandedN
         Some(namespace) => (namespace, name).into(),
         None => name.into(),
     }
+}
+
+/// A text by its letters alone: however it is laid out, it is known by them.
+pub(super) fn without_spaces<'a>(parts: impl Iterator<Item = &'a str>) -> String {
+    parts.flat_map(str::chars).filter(|letter| !letter.is_whitespace()).collect()
 }
 
 /// A piece of the file that fits into a message.
@@ -137,26 +143,32 @@ fn check_numbers(document: &Document<'_>, node: Node<'_, '_>) -> Result<(), SvgE
 struct Open {
     id: NodeId,
     next: Vec<NodeId>,
-    elements: usize,
-    depth: usize,
+    total: Total,
 }
 
-/// What an element comes to.
+/// What an element comes to, all that it refers to included.
+#[derive(Clone, Copy)]
+struct Total {
+    elements: usize,
+    depth: usize,
+    text_steps: usize,
+}
+
 #[derive(Clone, Copy)]
 enum Cost {
     Unknown,
     Open,
-    Known { elements: usize, depth: usize },
+    Known(Total),
 }
 
 /// Counts elements and nesting as if each reference were its target.
-fn check_references(document: &Document<'_>) -> Result<(), SvgError> {
+fn check_references(document: &Document<'_>, sets_texts: bool) -> Result<(), SvgError> {
     let mut ids: BTreeMap<&str, NodeId> = BTreeMap::new();
     let elements = || document.descendants().filter(Node::is_element);
     for (id, node) in elements().filter_map(|node| node.attribute("id").zip(Some(node.id()))) {
         ids.entry(id).or_insert(node);
     }
-    let links = Links { ids, rules: rules(document) };
+    let links = Links { ids, rules: rules(document), sets_texts };
     let mut costs = vec![Cost::Unknown; document.descendants().count()];
     let root = document.root_element().id();
     follow(document, root, &links, &mut costs)
@@ -170,12 +182,12 @@ fn follow(
     links: &Links<'_>,
     costs: &mut [Cost],
 ) -> Result<(), SvgError> {
-    let mut open = vec![Open { id: root, next: next(document, root, links), elements: 1, depth: 1 }];
+    let mut open = vec![Open::new(document, root, links)];
     while let Some(top) = open.last_mut() {
         let Some(id) = top.next.pop() else {
-            let done = (top.elements, top.depth);
+            let done = top.total;
             if let Some(cost) = costs.get_mut(top.id.get_usize()) {
-                *cost = Cost::Known { elements: done.0, depth: done.1 };
+                *cost = Cost::Known(done);
             }
             open.pop();
             if let Some(parent) = open.last_mut() {
@@ -184,7 +196,7 @@ fn follow(
             continue;
         };
         match costs.get(id.get_usize()).copied().unwrap_or(Cost::Unknown) {
-            Cost::Known { elements, depth } => top.add((elements, depth))?,
+            Cost::Known(total) => top.add(total)?,
             Cost::Open => {
                 let name = document.get_node(id).and_then(|node| node.attribute("id")).unwrap_or_default();
                 return Err(SvgError::Circular { id: shortened(name) });
@@ -196,7 +208,7 @@ fn follow(
                 if open.len() >= MAX_DEPTH {
                     return Err(SvgError::TooDeep { limit: MAX_DEPTH });
                 }
-                open.push(Open { id, next: next(document, id, links), elements: 1, depth: 1 });
+                open.push(Open::new(document, id, links));
             }
         }
     }
@@ -204,14 +216,59 @@ fn follow(
 }
 
 impl Open {
-    fn add(&mut self, (elements, depth): (usize, usize)) -> Result<(), SvgError> {
-        self.elements = self.elements.saturating_add(elements);
-        self.depth = self.depth.max(depth.saturating_add(1));
-        if self.elements > MAX_ELEMENTS {
+    fn new(document: &Document<'_>, id: NodeId, links: &Links<'_>) -> Self {
+        let text_steps = if links.sets_texts { text_steps(document, id, links) } else { 0 };
+        Self { id, next: next(document, id, links), total: Total { elements: 1, depth: 1, text_steps } }
+    }
+
+    fn add(&mut self, more: Total) -> Result<(), SvgError> {
+        let total = &mut self.total;
+        total.elements = total.elements.saturating_add(more.elements);
+        total.depth = total.depth.max(more.depth.saturating_add(1));
+        total.text_steps = total.text_steps.saturating_add(more.text_steps);
+        if total.elements > MAX_ELEMENTS {
             return Err(SvgError::TooManyElements { limit: MAX_ELEMENTS });
         }
-        if self.depth > MAX_DEPTH { Err(SvgError::TooDeep { limit: MAX_DEPTH }) } else { Ok(()) }
+        if total.text_steps > MAX_TEXT_STEPS {
+            return Err(SvgError::TooMuchText);
+        }
+        if total.depth > MAX_DEPTH { Err(SvgError::TooDeep { limit: MAX_DEPTH }) } else { Ok(()) }
     }
+}
+
+/// Steps that setting a text takes; none for other elements. Of letters that follow each other without a place of their own the
+/// parser shapes all for each piece, and searches from the first for each letter.
+fn text_steps(document: &Document<'_>, id: NodeId, links: &Links<'_>) -> usize {
+    /// Letters that are passed over in the time in which one is shaped.
+    const PASSED: usize = 256;
+    let Some(node) = document.get_node(id).filter(|node| node.tag_name().name() == "text") else { return 0 };
+    let count = |node: Node<'_, '_>| {
+        node.descendants()
+            .filter(Node::is_text)
+            .filter_map(|part| part.text())
+            .map(|text| text.chars().count())
+            .sum()
+    };
+    let (mut steps, mut letters, mut pieces) = (0_usize, 0_usize, 0_usize);
+    let row = |letters: usize, pieces: usize| letters.saturating_mul(pieces.saturating_add(letters / PASSED));
+    for part in node.descendants() {
+        let is_placed = ["x", "y"].iter().any(|name| part.has_attribute(*name));
+        if is_placed || part.tag_name().name() == "textPath" {
+            steps = steps.saturating_add(row(letters, pieces));
+            (letters, pieces) = (0, 0);
+        }
+        // The letters of another element.
+        let named = part.attributes().find(|attribute| attribute.name() == "href");
+        let named =
+            named.filter(|_| part.tag_name().name() == "tref").map(|attribute| attribute.value().trim());
+        let other = named.and_then(|link| document.get_node(*links.ids.get(link.strip_prefix('#')?)?));
+        let own: usize = if part.is_text() { count(part) } else { other.map_or(0, count) };
+        if own > 0 {
+            letters = letters.saturating_add(own);
+            pieces += 1;
+        }
+    }
+    steps.saturating_add(row(letters, pieces))
 }
 
 /// The elements in an element, and those that it refers to.
@@ -235,6 +292,7 @@ fn next(document: &Document<'_>, id: NodeId, links: &Links<'_>) -> Vec<NodeId> {
 struct Links<'a> {
     ids: BTreeMap<&'a str, NodeId>,
     rules: Vec<Rule<'a>>,
+    sets_texts: bool,
 }
 
 /// A rule of a style sheet that refers to something.

@@ -1,0 +1,82 @@
+//! [`FontFiles`]: the fonts that texts of SVG pictures are set in.
+
+use crate::{at, read_file};
+use plotter_vector::SvgFonts;
+use std::path::{Path, PathBuf};
+
+/// What fonts are called in folders.
+const SUFFIXES: [&str; 4] = ["ttf", "otf", "ttc", "otc"];
+
+/// Deepest folder in a folder that is looked into.
+const DEEPEST: usize = 16;
+
+/// Most that the fonts may come to together, bytes.
+const MOST_BYTES: usize = 1 << 30;
+
+/// The option `--font`.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub struct FontFiles {
+    /// Font for the texts of an SVG picture, which are left out without: a file (TrueType, OpenType), or a folder for all fonts in
+    /// it, as /usr/share/fonts; may be given several times
+    #[arg(long = "font", value_name = "FILE")]
+    files: Vec<PathBuf>,
+}
+
+impl FontFiles {
+    /// Those of the files, in the order in which they are named, and of a folder's files by their names.
+    ///
+    /// # Errors
+    ///
+    /// The file that cannot be read or is no font, or the folder that has none.
+    pub fn load(&self) -> Result<SvgFonts, String> {
+        let mut fonts = SvgFonts::default();
+        let mut room = MOST_BYTES;
+        for named in &self.files {
+            let failed = |error: &dyn std::fmt::Display| format!("--font: {}", at(named, &error.to_string()));
+            if !named.is_dir() {
+                let bytes = read_file(named).map_err(|error| format!("--font: {error}"))?;
+                fonts.add(bytes).map_err(|error| failed(&format!("this is {error}")))?;
+                continue;
+            }
+            let mut found = Vec::new();
+            collect(named, DEEPEST, &mut found).map_err(|error| failed(&error))?;
+            let mut added = 0;
+            for file in found {
+                let bytes = read_file(&file).map_err(|error| format!("--font: {error}"))?;
+                room = room.checked_sub(bytes.len()).ok_or_else(|| {
+                    failed(&format!(
+                        "more than {} MiB of fonts: name the files that are needed",
+                        MOST_BYTES >> 20
+                    ))
+                })?;
+                // A folder may hold what only looks like one.
+                added += usize::from(fonts.add(bytes).is_ok());
+            }
+            if added == 0 {
+                return Err(failed(&"this folder holds no font (.ttf, .otf, .ttc)"));
+            }
+        }
+        Ok(fonts)
+    }
+}
+
+/// The fonts in a folder and the folders in it, by their names: the system lists them in no order.
+fn collect(folder: &Path, deepest: usize, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    let mut entries = std::fs::read_dir(folder)?.collect::<Result<Vec<_>, _>>()?;
+    entries.sort_by_key(std::fs::DirEntry::file_name);
+    for entry in entries {
+        let path = entry.path();
+        // Folders by links may lead back.
+        if entry.file_type()?.is_dir() {
+            if deepest > 0 {
+                collect(&path, deepest - 1, found)?;
+            }
+            continue;
+        }
+        let suffix = path.extension().map(|suffix| suffix.to_string_lossy().to_lowercase());
+        if suffix.is_some_and(|suffix| SUFFIXES.contains(&suffix.as_str())) && path.is_file() {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
