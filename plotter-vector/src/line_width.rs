@@ -5,6 +5,10 @@ use crate::Bitmap;
 /// Widest pen that is told from a filled area, px.
 const WIDEST_PX: u32 = 64;
 
+/// Widest pen, px, where areas are most of the ink, so that six times its width, up to which ink is a line, is no wider than they
+/// are.
+pub(crate) const WIDEST_BESIDE_AREAS_PX: u32 = WIDEST_PX / 6;
+
 /// Finds the width of the pen from the ink of a picture, row by row from the top.
 ///
 /// A straight line of width w that makes the angle θ with the rows is crossed by its columns in runs of w / cos θ, and
@@ -39,6 +43,17 @@ impl Runs {
             *n += 1;
         }
     }
+
+    /// The length that a third of all runs do not exceed, px; that of a longer run than any that is told is 65.
+    fn shortest_third(&self) -> Option<u32> {
+        let total: u64 = self.0.iter().sum();
+        let mut below = 0;
+        let third = self.0.iter().position(|n| {
+            below += n;
+            below > 0 && 3 * below >= total
+        })?;
+        u32::try_from(third).ok()
+    }
 }
 
 impl LineWidth {
@@ -72,16 +87,26 @@ impl LineWidth {
     /// Width of the pen, px; `None` without ink, or when most of it is wider than 64 px.
     #[must_use]
     pub fn finish(mut self) -> Option<u32> {
-        // One row of paper settles the last row, another ends its runs.
+        self.end();
+        self.runs.shortest_third().filter(|width| *width <= WIDEST_PX)
+    }
+
+    /// Width of the pen, px, and where most of the ink is wider than 64 px that of what is not, at most 10 px; `None` without any of that.
+    #[must_use]
+    pub fn finish_beside_areas(mut self) -> Option<u32> {
+        self.end();
+        self.runs.shortest_third().filter(|width| *width <= WIDEST_PX).or_else(|| {
+            if let Some(longer) = self.runs.0.last_mut() {
+                *longer = 0;
+            }
+            self.runs.shortest_third().map(|width| width.min(WIDEST_BESIDE_AREAS_PX))
+        })
+    }
+
+    /// One row of paper settles the last row, another ends its runs.
+    fn end(&mut self) {
         self.push(&[]);
         self.push(&[]);
-        let total: u64 = self.runs.0.iter().sum();
-        let mut below = 0;
-        let third = self.runs.0.iter().position(|n| {
-            below += n;
-            below > 0 && 3 * below >= total
-        })?;
-        u32::try_from(third).ok().filter(|width| *width <= WIDEST_PX)
     }
 
     /// Takes the lonely pixels out of the last row; counts its runs, and those of columns that ended above it.
@@ -143,9 +168,14 @@ impl LineWidth {
 /// ```
 #[must_use]
 pub fn pen_width_px(ink: &Bitmap) -> Option<u32> {
+    line_width(ink).finish()
+}
+
+/// [`LineWidth`] of all rows of a picture.
+pub(crate) fn line_width(ink: &Bitmap) -> LineWidth {
     let mut width = LineWidth::new(ink.width());
     (0..ink.height()).for_each(|y| width.push(ink.row(y)));
-    width.finish()
+    width
 }
 
 #[cfg(test)]
@@ -196,6 +226,17 @@ mod tests {
         let area = |x: i32, y: i32| (x < 90 && y < 190) || (x % 30 < 4 && y < 150);
         assert_eq!(pen_width_px(&picture(area)), Some(4));
         assert_eq!(pen_width_px(&picture(|x, y| x < 90 && y < 190)), None);
+    }
+
+    #[test]
+    fn of_ink_that_is_mostly_areas_the_lines_beside_them_tell_the_pen() {
+        let beside = |is_ink: &dyn Fn(i32, i32) -> bool| line_width(&picture(is_ink)).finish_beside_areas();
+        assert_eq!(beside(&|x, y| (y < 100) || (x == 20 && y < 190) || (x == 21 && y < 190)), Some(2));
+        assert_eq!(beside(&|x, y| x < 90 && y < 190), None);
+        // The rim of a disc is no pen.
+        let disc = |x: i32, y: i32| (x - 100) * (x - 100) + (y - 100) * (y - 100) < 80 * 80;
+        assert_eq!(beside(&disc), Some(WIDEST_BESIDE_AREAS_PX));
+        assert_eq!(beside(&|x, y| x % 30 < 4 && y < 150), Some(4));
     }
 
     #[test]

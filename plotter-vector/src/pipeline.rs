@@ -4,6 +4,7 @@ use crate::areas::{Islands, Opening};
 use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
 use crate::coverage::coverage;
+use crate::line_width::{WIDEST_BESIDE_AREAS_PX, line_width};
 use crate::raster_corner::take_in;
 use crate::row_threshold::has_rims;
 use crate::simplify::Pieces;
@@ -11,7 +12,7 @@ use crate::within::within;
 use crate::{
     AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Cancelled, Curve, Drawing, DynamicThreshold,
     ErrorReport, ErrorTally, Figures, Gray, Lettering, Order, OrderedTracking, PensError, Pixel, PxPoint,
-    Simplify, Split, ThinningMethod, Threshold, TooManyFigures, despeckle, pen_width_px, smallest_mark_px,
+    Simplify, Split, ThinningMethod, Threshold, TooManyFigures, despeckle, smallest_mark_px,
 };
 use core::fmt;
 
@@ -255,8 +256,11 @@ impl Vectorizer {
 
     /// Takes the dirt out of ink; the width of its lines, px.
     fn clean(&self, ink: &mut Bitmap) -> u32 {
-        let pen_px =
-            if is_raster_lines(ink.blocks(), ink.count()) { 1 } else { pen_width_px(ink).unwrap_or(1) };
+        let pen_px = if is_raster_lines(ink.blocks(), ink.count()) {
+            1
+        } else {
+            line_width(ink).finish_beside_areas().unwrap_or(WIDEST_BESIDE_AREAS_PX)
+        };
         despeckle(ink, self.smallest_mark_px(pen_px));
         pen_px
     }
@@ -460,14 +464,29 @@ mod tests {
     }
 
     #[test]
-    fn a_large_black_area_is_refused_before_memory_is_taken() {
+    fn a_large_black_area_is_refused_before_memory_is_taken_by_who_follows_it_pixel_by_pixel() {
         let (width, height) = (8192, 4097);
         let mut black = Bitmap::new(width, height).unwrap();
         (0..height).for_each(|y| black.row_mut(y).fill(u64::MAX));
+        let published = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
         assert_eq!(
-            Vectorizer::default().trace(&black).unwrap_err(),
+            published.trace(&black).unwrap_err(),
             VectorizeError::TooMuchInk { ink_pixels: 8192 * 4097 }
         );
+    }
+
+    #[test]
+    fn beside_a_large_area_a_line_is_centred_and_the_area_outlined() {
+        let mut ink = Bitmap::new(400, 300).unwrap();
+        for (x, y) in (0..300).flat_map(|y| (0..400).map(move |x| (x, y))) {
+            let is_area = (50..250).contains(&x) && (40..260).contains(&y);
+            let is_line = (260..390).contains(&x) && (100..105).contains(&y);
+            ink.set(Pixel::new(x, y), is_area || is_line);
+        }
+        let traced = Vectorizer::default().trace(&ink).unwrap();
+        let mut vertices: Vec<usize> = traced.drawing.strokes().map(<[PxPoint]>::len).collect();
+        vertices.sort_unstable();
+        assert_eq!(vertices, [2, 5]);
     }
 
     #[test]

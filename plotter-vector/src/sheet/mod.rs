@@ -14,6 +14,7 @@ mod step;
 mod work;
 
 use crate::bitmap::blocks_between;
+use crate::line_width::WIDEST_BESIDE_AREAS_PX;
 use crate::pipeline::is_raster_lines;
 use crate::row_threshold::RowThreshold;
 use crate::within::within;
@@ -166,17 +167,18 @@ impl Vectorizer {
         let (survey, pen) = survey(self, source, &mut progress.part(0.1))?;
         let Some(threshold) = survey.finish() else { return Ok(empty) };
         // Of 1 bit a pixel black is nearly always the ink: then all is known already.
-        let (pen_px, ink_pixels) = match source.depth() {
+        let (found_px, pen_px, ink_pixels) = match source.depth() {
             Depth::Bits1 if threshold.black_is_ink() => pen.finish(),
             _ => pen_of_ink(source, &threshold, &mut progress.part(0.2))?.finish(),
         };
-        let found = TracedSheet { split: Some(threshold.split(ink_pixels)), ink_pixels, pen_px, ..empty };
+        let found =
+            TracedSheet { split: Some(threshold.split(ink_pixels)), ink_pixels, pen_px: found_px, ..empty };
         if ink_pixels == 0 {
             return Ok(found);
         }
         let mut strokes_part = progress.part(if with_errors { 0.7 } else { 1.0 });
         let fits = u64::from(width) * u64::from(height) <= MAX_PIXELS;
-        let keeps_pixels = self.keeps_pixels(pen_px.unwrap_or(1), || threshold.has_rims(ink_pixels));
+        let keeps_pixels = self.keeps_pixels(pen_px, || threshold.has_rims(ink_pixels));
         if keeps_pixels && fits || self.algorithm == Algorithm::Published {
             let mut ink = Bitmap::new(width, height).map_err(SheetError::Size)?;
             let mut rows = ink.rows_mut();
@@ -191,7 +193,6 @@ impl Vectorizer {
             progress.part(1.0).at(1, 1)?;
             return Ok(TracedSheet { drawing, errors, ..found });
         }
-        let pen_px = pen_px.unwrap_or(1);
         let mut sheet = Work::new(self, (width, height), pen_px, &threshold);
         for_each_row(source, &mut strokes_part, |_, row| sheet.push(row))?;
         let strokes = sheet.finish()?;
@@ -302,9 +303,14 @@ impl Pen {
         self.above.extend_from_slice(ink);
     }
 
-    fn finish(self) -> (Option<u32>, u64) {
-        let raster_lines = is_raster_lines(self.blocks, self.ink_pixels);
-        (self.width.finish().map(|pen_px| if raster_lines { 1 } else { pen_px }), self.ink_pixels)
+    /// The width of the pen where lines tell it, the width to reckon with, and the number of ink pixels.
+    fn finish(self) -> (Option<u32>, u32, u64) {
+        let found_px = self.width.finish_beside_areas();
+        if is_raster_lines(self.blocks, self.ink_pixels) {
+            (found_px.map(|_| 1), 1, self.ink_pixels)
+        } else {
+            (found_px, found_px.unwrap_or(WIDEST_BESIDE_AREAS_PX), self.ink_pixels)
+        }
     }
 }
 
