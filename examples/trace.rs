@@ -33,7 +33,7 @@ use plotter_motion::{
 use plotter_vector::{
     Algorithm, Bin, Colour, DecodeError, Drawing, ErrorReport, MAX_PENS, Palette, Pens, Pixel, Progress,
     PxPoint, Row, RowSource as _, Scale, Scan, SheetErrors, ThresholdMethod, Vectorizer, decode_colour,
-    error_chart, gcode, hpgl, svg_in_colour, worst_pixel,
+    error_chart, gcode, hpgl, svg_in_colour,
 };
 use serde::Serialize;
 use std::borrow::Cow;
@@ -506,13 +506,7 @@ fn in_colour(
     let found = found.map_err(|error| error.to_string())?;
     let time = start.elapsed();
     let drawing = found.traced.drawing;
-    let own = found.palette.pens().iter().zip(&found.inks);
-    let worst = || {
-        let each = own.filter_map(|(pen, ink)| worst_pixel(ink, &drawing.of_pen(pen.number)));
-        each.max_by(|one, other| one.1.total_cmp(&other.1))
-    };
-    let worst = if settings.overlay.is_some() { worst() } else { None };
-    let errors = SheetErrors { report: found.traced.error, worst };
+    let errors = SheetErrors { report: found.traced.error, worst: found.worst };
     let errors = (!arguments.no_errors).then_some(errors);
     let picture = settings.overlay.is_some().then_some(Picture::Colour(colour));
     Ok(Traced { errors, palette: found.palette, pen_px: None, picture, time, drawing })

@@ -1,5 +1,6 @@
 //! [`coverage`]: how far every pixel of the ink lies from the drawing.
 
+use crate::areas::Opening;
 use crate::curve::Piece;
 use crate::{Arc, Bitmap, Cubic, Drawing, ErrorReport, ErrorTally, Pixel, PxPoint};
 
@@ -15,7 +16,8 @@ const CUBIC_ERROR_PX: f64 = 0.005;
 /// Farthest that the ink's edges are looked for across a segment, px.
 const MAX_HALF_PX: f64 = 96.0;
 
-/// Errors of all pixels of the ink that a drawing stands for, whatever way it was made.
+/// Errors of all pixels of the ink that a drawing stands for, whatever way it was made; the inside of an area that is
+/// outlined counts, too, which [`Vectorized::error`](crate::Vectorized::error) leaves out.
 ///
 /// A line w px wide has its pixels' centres up to (w − 1) / 2 from its middle; the error of a pixel is what its distance
 /// from the nearest segment is more than that, and so 0 for all pixels of a line whose middle is drawn. On lines one pixel
@@ -34,17 +36,12 @@ const MAX_HALF_PX: f64 = 96.0;
 #[must_use]
 pub fn coverage(ink: &Bitmap, drawing: &Drawing) -> ErrorReport {
     let mut tally = ErrorTally::default();
-    add_coverage(ink, drawing, &mut tally);
+    add_coverage(ink, drawing, None, &mut tally);
     tally.report()
 }
 
-/// Adds the errors of [`coverage`] to others.
-pub(crate) fn add_coverage(ink: &Bitmap, drawing: &Drawing, tally: &mut ErrorTally) {
-    for_each_error(ink, drawing, |_, error_px| tally.add_error(error_px));
-}
-
 /// The pieces of a drawing of this ink with the ink's widths, to be looked up by place.
-pub(crate) fn with_widths(ink: &Bitmap, drawing: &Drawing) -> Index {
+pub(crate) fn with_widths(ink: &Bitmap, drawing: &Drawing, areas: Option<AreaPen<'_>>) -> Index {
     let mut segments = segments(drawing);
     let widths = segments.iter().map(|segment| {
         if segment.has_probes() {
@@ -54,7 +51,7 @@ pub(crate) fn with_widths(ink: &Bitmap, drawing: &Drawing) -> Index {
         }
     });
     let widths: Vec<_> = widths.collect();
-    set_widths(&mut segments, widths);
+    set_widths(&mut segments, widths, areas);
     Index::new(segments, ink.width(), ink.height())
 }
 
@@ -71,20 +68,41 @@ pub(crate) fn with_widths(ink: &Bitmap, drawing: &Drawing) -> Index {
 /// ```
 #[must_use]
 pub fn worst_pixel(ink: &Bitmap, drawing: &Drawing) -> Option<(Pixel, f64)> {
-    let mut worst: Option<(Pixel, f64)> = None;
-    for_each_error(ink, drawing, |at, error_px| {
-        if worst.is_none_or(|(_, most_px)| error_px > most_px) {
-            worst = Some((at, error_px));
-        }
-    });
+    add_coverage(ink, drawing, None, &mut ErrorTally::default())
+}
+
+/// What told areas from lines, and the pen that draws their outlines and hatching.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AreaPen<'a> {
+    pub(crate) opening: &'a Opening,
+    pub(crate) pen_px: f64,
+}
+
+/// Adds the errors of [`coverage`] to others, and finds the pixel of [`worst_pixel`]. Where areas are drawn as such, the ink inside
+/// of them does not count, only that at their edge, and their outline is as wide as its pen.
+pub(crate) fn add_coverage(
+    ink: &Bitmap,
+    drawing: &Drawing,
+    areas: Option<AreaPen<'_>>,
+    tally: &mut ErrorTally,
+) -> Option<(Pixel, f64)> {
+    let index = with_widths(ink, drawing, areas);
+    let counted = areas.map(|areas| areas.opening.without_insides(ink.clone()));
+    let mut covering = 0;
+    let mut worst = None;
+    for at in counted.as_ref().unwrap_or(ink).ink() {
+        let error_px = index.error_px(at.into(), &mut covering);
+        tally.add_error(error_px);
+        worst = worse(worst, Some((at, error_px)));
+    }
     worst
 }
 
-fn for_each_error(ink: &Bitmap, drawing: &Drawing, mut add: impl FnMut(Pixel, f64)) {
-    let index = with_widths(ink, drawing);
-    let mut covering = 0;
-    for at in ink.ink() {
-        add(at, index.error_px(at.into(), &mut covering));
+/// The one with the greater error, the first of two equal ones.
+pub(crate) fn worse(one: Option<(Pixel, f64)>, next: Option<(Pixel, f64)>) -> Option<(Pixel, f64)> {
+    match (one, next) {
+        (Some((_, most_px)), Some((_, error_px))) if error_px <= most_px => one,
+        (one, next) => next.or(one),
     }
 }
 
@@ -146,13 +164,25 @@ fn add_segments(piece: Piece, segments: &mut Vec<Segment>) {
 
 /// Takes as half of the ink's width beyond a pixel's own that of the median of the widths at each segment's probes, in
 /// steps.
-pub(crate) fn set_widths(segments: &mut [Segment], widths: Vec<[u16; PROBES.len()]>) {
+pub(crate) fn set_widths(
+    segments: &mut [Segment],
+    widths: Vec<[u16; PROBES.len()]>,
+    areas: Option<AreaPen<'_>>,
+) {
     let mut slack_px = 0.0;
+    // No width greater than that can be measured.
+    let widest_line_px =
+        areas.map_or(f64::INFINITY, |areas| areas.opening.widest_line_px().min(2.0 * MAX_HALF_PX - 1.0));
     for (segment, mut steps) in segments.iter_mut().zip(widths) {
         if segment.has_probes() {
             steps.sort_unstable();
             let [_, _, median, ..] = steps;
-            slack_px = (0.5 * STEP_PX * f64::from(median) - 0.5).max(0.0);
+            let ink_px = STEP_PX * f64::from(median);
+            let width_px = match areas {
+                Some(areas) if ink_px > widest_line_px => areas.pen_px,
+                _ => ink_px,
+            };
+            slack_px = (0.5 * width_px - 0.5).max(0.0);
         }
         segment.slack_px = slack_px;
     }

@@ -41,7 +41,7 @@ impl<'a> InkDistance<'a> {
     /// The lines of `ink`, with the widths that they have along `reference`.
     #[must_use]
     pub fn new(ink: &'a Bitmap, reference: &Drawing) -> Self {
-        Self { ink, reference: with_widths(ink, reference) }
+        Self { ink, reference: with_widths(ink, reference, None) }
     }
 
     /// How far the pixels of the ink lie from what was drawn, beyond half the width of their line.

@@ -1,9 +1,10 @@
 //! [`Vectorizer::vectorize_colour`]: the whole way from a picture in colour to the strokes of each pen.
 
-use crate::coverage::add_coverage;
+use crate::coverage::{add_coverage, worse};
+use crate::pipeline::Unordered;
 use crate::{
-    Algorithm, Bitmap, Colour, Drawing, ErrorTally, Palette, Pens, Progress, VectorizeError, Vectorized,
-    Vectorizer,
+    Algorithm, Bitmap, Colour, Drawing, ErrorTally, Palette, Pens, Pixel, Progress, VectorizeError,
+    Vectorized, Vectorizer,
 };
 
 /// Where the work has come to when the pens are told apart, when they have their strokes, and when these are ordered, on a scan
@@ -22,6 +23,8 @@ pub struct VectorizedColour {
     /// The ink of each pen as it was vectorized, in the order of the palette: whole where other pens have crossed it,
     /// and without dirt.
     pub inks: Vec<Bitmap>,
+    /// The pixel with the greatest error and its error, px; none without ink.
+    pub worst: Option<(Pixel, f64)>,
 }
 
 impl Vectorizer {
@@ -67,15 +70,18 @@ impl Vectorizer {
         let of = layers.palette().pens().len() as u64;
         let mut drawing = Drawing::new(picture.width(), picture.height());
         let mut inks = Vec::with_capacity(layers.palette().pens().len());
+        let mut openings = Vec::with_capacity(inks.capacity());
         let mut tracing = progress.part(TRACED);
         for (done, (index, (pen, own))) in (1..).zip(layers.iter().enumerate()) {
             let mut ink = layers.bridged(index).unwrap_or_else(|| own.clone());
             let grey = layers.coverage(index, &ink, picture);
-            let (strokes, _) = self.unordered(&mut ink, grey.as_ref().map(|levels| (levels, true)))?;
+            let Unordered { drawing: strokes, areas, .. } =
+                self.unordered(&mut ink, grey.as_ref().map(|levels| (levels, true)))?;
             for stroke in 0..strokes.strokes().len() {
                 drawing.push_curve(pen.number, strokes.curve(stroke));
             }
             inks.push(ink);
+            openings.push(areas);
             tracing.at(done, of)?;
         }
         if self.algorithm == Algorithm::Ours {
@@ -84,12 +90,16 @@ impl Vectorizer {
         progress.part(ORDERED).at(1, 1)?;
         let mut tally = ErrorTally::default();
         let mut measuring = progress.part(1.0);
-        for (done, (pen, ink)) in (1..).zip(layers.palette().pens().iter().zip(&inks)) {
-            add_coverage(ink, &drawing.of_pen(pen.number), &mut tally);
+        let mut worst = None;
+        for (done, (pen, (ink, areas))) in
+            (1..).zip(layers.palette().pens().iter().zip(inks.iter().zip(&openings)))
+        {
+            let areas = areas.as_ref().map(|areas| self.area_pen(areas));
+            worst = worse(worst, add_coverage(ink, &drawing.of_pen(pen.number), areas, &mut tally));
             measuring.at(done, of)?;
         }
         let traced = Vectorized { drawing, error: tally.report(), split: None };
-        Ok(VectorizedColour { traced, palette: layers.palette().clone(), inks })
+        Ok(VectorizedColour { traced, palette: layers.palette().clone(), inks, worst })
     }
 }
 

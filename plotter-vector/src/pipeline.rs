@@ -3,7 +3,7 @@
 use crate::areas::{Islands, Opening};
 use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
-use crate::coverage::coverage;
+use crate::coverage::{AreaPen, add_coverage};
 use crate::line_width::{WIDEST_BESIDE_AREAS_PX, line_width};
 use crate::raster_corner::take_in;
 use crate::row_threshold::has_rims;
@@ -12,7 +12,7 @@ use crate::within::within;
 use crate::{
     AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Cancelled, Curve, Drawing, DynamicThreshold,
     ErrorReport, ErrorTally, Figures, Gray, Lettering, Order, OrderedTracking, PensError, Pixel, PxPoint,
-    Simplify, Split, ThinningMethod, Threshold, TooManyFigures, despeckle, smallest_mark_px,
+    SheetErrors, Simplify, Split, ThinningMethod, Threshold, TooManyFigures, despeckle, smallest_mark_px,
 };
 use core::fmt;
 
@@ -118,7 +118,7 @@ impl Default for Vectorizer {
 pub struct Vectorized {
     /// The strokes, all of them within the picture.
     pub drawing: Drawing,
-    /// How far the pixels lie from them.
+    /// How far the pixels lie from them. Of areas, which are outlined or hatched, those at the edge count, and not what is inside.
     pub error: ErrorReport,
     /// How ink was told from paper; `None` for an empty sheet, or for a picture that came as a bitmap.
     pub split: Option<Split>,
@@ -221,21 +221,33 @@ impl Vectorizer {
     }
 
     fn trace_ink(&self, mut ink: Bitmap, grey: Option<(&Gray, bool)>) -> Result<Vectorized, VectorizeError> {
-        let (drawing, error) = self.unordered(&mut ink, grey)?;
+        let Unordered { drawing, error, areas } = self.unordered(&mut ink, grey)?;
         let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
-        let error = error.unwrap_or_else(|| coverage(&ink, &drawing));
+        let error = error.unwrap_or_else(|| self.errors(&ink, &drawing, areas.as_ref()).report);
         Ok(Vectorized { drawing, error, split: None })
     }
 
-    /// The strokes as they are found, and the errors where they are known from the figures; takes the dirt out of `ink`.
+    /// The errors of a drawing, with the areas that were told from lines.
+    pub(crate) fn errors(&self, ink: &Bitmap, drawing: &Drawing, areas: Option<&Opening>) -> SheetErrors {
+        let mut tally = ErrorTally::default();
+        let worst = add_coverage(ink, drawing, areas.map(|areas| self.area_pen(areas)), &mut tally);
+        SheetErrors { report: tally.report(), worst }
+    }
+
+    /// The pen that draws areas.
+    pub(crate) fn area_pen<'a>(&self, opening: &'a Opening) -> AreaPen<'a> {
+        AreaPen { opening, pen_px: self.areas.pen_px }
+    }
+
+    /// The strokes as they are found; takes the dirt out of `ink`.
     pub(crate) fn unordered(
         &self,
         ink: &mut Bitmap,
         grey: Option<(&Gray, bool)>,
-    ) -> Result<(Drawing, Option<ErrorReport>), VectorizeError> {
+    ) -> Result<Unordered, VectorizeError> {
         if self.algorithm == Algorithm::Published {
             let traced = self.published(ink)?;
-            return Ok((traced.drawing, Some(traced.error)));
+            return Ok(Unordered { drawing: traced.drawing, error: Some(traced.error), areas: None });
         }
         self.check()?;
         let ink_pixels = ink.count();
@@ -244,14 +256,14 @@ impl Vectorizer {
             let traced = self.tracked(ink)?;
             // Of what is not straight the errors are not known from the figures.
             let error = traced.drawing.is_straight().then_some(traced.error);
-            return Ok((traced.drawing, error));
+            return Ok(Unordered { drawing: traced.drawing, error, areas: None });
         }
         let strokes = self.strokes(ink, grey, pen_px)?;
         let mut drawing = Drawing::new(ink.width(), ink.height());
         for stroke in strokes {
             drawing.push_curve(1, within(stroke, ink.width(), ink.height()));
         }
-        Ok((drawing, None))
+        Ok(Unordered { drawing, error: None, areas: Some(self.opening(pen_px)) })
     }
 
     /// Takes the dirt out of ink; the width of its lines, px.
@@ -409,6 +421,15 @@ impl Vectorizer {
     }
 }
 
+/// The strokes of a picture as they are found.
+pub(crate) struct Unordered {
+    pub(crate) drawing: Drawing,
+    /// The errors, where they are known from the figures.
+    pub(crate) error: Option<ErrorReport>,
+    /// What told areas from lines, where something did.
+    pub(crate) areas: Option<Opening>,
+}
+
 /// Whether ink with so many blocks of two by two pixels is lines one pixel wide: a few places where lines touch make no
 /// wide line.
 pub(crate) fn is_raster_lines(blocks: u64, ink_pixels: u64) -> bool {
@@ -487,6 +508,10 @@ mod tests {
         let mut vertices: Vec<usize> = traced.drawing.strokes().map(<[PxPoint]>::len).collect();
         vertices.sort_unstable();
         assert_eq!(vertices, [2, 5]);
+        // All of the line, and of the area its edge, where the pen goes.
+        assert_eq!(traced.error.pixels, 130 * 5 + 2 * (200 + 218));
+        // A round pen leaves the corners of the line's square end bare.
+        assert!(traced.error.max_px < 1.1, "{:?}", traced.error);
     }
 
     #[test]

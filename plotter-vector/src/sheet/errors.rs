@@ -7,7 +7,7 @@
 use super::step::Step;
 use super::{SheetError, for_each_row, row_bytes};
 use crate::centrelines::each;
-use crate::coverage::{Index, PROBE_ROWS, PROBES, Segment, segments, set_widths};
+use crate::coverage::{AreaPen, Index, PROBE_ROWS, PROBES, Segment, segments, set_widths, worse};
 use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
 use crate::speckle::despeckle_here;
@@ -38,6 +38,9 @@ pub(super) struct Measure<'a> {
     pub(super) smallest_px: u32,
     /// Most rows of a band.
     pub(super) band_rows: u32,
+    pub(super) areas: AreaPen<'a>,
+    /// Rows with areas, from the top.
+    pub(super) area_rows: &'a [Range<u32>],
 }
 
 /// The errors of some rows.
@@ -74,15 +77,22 @@ impl Measure<'_> {
                 }
             },
         )?;
-        set_widths(&mut segments, widths);
+        set_widths(&mut segments, widths, Some(self.areas));
         let index = Index::new(segments, width, height);
+        let area_context = if self.area_rows.is_empty() { 0 } else { self.areas.opening.rows_of_context() };
         let mut tally = ErrorTally::default();
         let mut worst: Option<(Pixel, f64)> = None;
         self.for_each_band(
             source,
-            (ERROR_BAND_PIXELS, 0),
+            (ERROR_BAND_PIXELS, area_context),
             &mut progress.part(1.0),
-            |ink, first_row, own| band_errors(&index, ink, first_row, own),
+            |ink, first_row, own| {
+                if self.has_areas(own) {
+                    band_errors(&index, &self.areas.opening.without_insides(ink.clone()), first_row, own)
+                } else {
+                    band_errors(&index, ink, first_row, own)
+                }
+            },
             |band| {
                 tally.add_exact(band.exact);
                 band.errors.iter().for_each(|error_px| tally.add_error(*error_px));
@@ -90,6 +100,12 @@ impl Measure<'_> {
             },
         )?;
         Ok(SheetErrors { report: tally.report(), worst })
+    }
+
+    /// Whether there are areas in some rows.
+    fn has_areas(&self, rows: &Range<u32>) -> bool {
+        let next = self.area_rows.partition_point(|areas| areas.end <= rows.start);
+        self.area_rows.get(next).is_some_and(|areas| areas.start < rows.end)
     }
 
     /// Bands of so many pixels of the sheet's ink without its dirt, with `more_context` rows above and below their own: what `work` makes of
@@ -158,12 +174,4 @@ fn band_errors(index: &Index, ink: &Bitmap, first_row: u32, own: &Range<u32>) ->
         band.worst = worse(band.worst, Some((at, error_px)));
     }
     band
-}
-
-/// The one with the greater error, the first of two equal ones.
-fn worse(one: Option<(Pixel, f64)>, next: Option<(Pixel, f64)>) -> Option<(Pixel, f64)> {
-    match (one, next) {
-        (Some((_, most_px)), Some((_, error_px))) if error_px <= most_px => one,
-        (one, next) => next.or(one),
-    }
 }

@@ -15,12 +15,12 @@ mod work;
 
 use crate::bitmap::blocks_between;
 use crate::line_width::WIDEST_BESIDE_AREAS_PX;
-use crate::pipeline::is_raster_lines;
+use crate::pipeline::{Unordered, is_raster_lines};
 use crate::row_threshold::RowThreshold;
 use crate::within::within;
 use crate::{
     Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, MAX_PIXELS, Progress, Row,
-    RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer, coverage, worst_pixel,
+    RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer,
 };
 use core::fmt;
 use errors::Measure;
@@ -125,7 +125,7 @@ impl Vectorizer {
     }
 
     /// As [`Vectorizer::vectorize_rows`], and how far the ink lies from the strokes: what [`Vectorized::error`] and
-    /// [`worst_pixel`] say of the whole picture, to the last bit. The sheet is read twice more; the memory, when the bands
+    /// of drawings without areas [`worst_pixel`] say of the whole picture, to the last bit. The sheet is read twice more; the memory, when the bands
     /// are done, is 80 bytes a vertex and 1 bit for each 16 pixels.
     ///
     /// [`Vectorized::error`]: crate::Vectorized::error
@@ -195,13 +195,20 @@ impl Vectorizer {
         }
         let mut sheet = Work::new(self, (width, height), pen_px, &threshold);
         for_each_row(source, &mut strokes_part, |_, row| sheet.push(row))?;
-        let strokes = sheet.finish()?;
+        let (strokes, areas) = sheet.finish()?;
         let mut drawing = found.drawing;
         strokes.into_iter().for_each(|stroke| drawing.push_curve(1, within(stroke, width, height)));
         let drawing = self.order.apply(&drawing);
         let errors = if with_errors {
             let smallest_px = self.smallest_mark_px(pen_px);
-            let measure = Measure { threshold: &threshold, smallest_px, band_rows: self.band_rows };
+            let opening = self.opening(pen_px);
+            let measure = Measure {
+                threshold: &threshold,
+                smallest_px,
+                band_rows: self.band_rows,
+                areas: self.area_pen(&opening),
+                area_rows: &areas,
+            };
             Some(measure.errors(source, &drawing, &mut progress.part(1.0))?)
         } else {
             None
@@ -215,11 +222,11 @@ impl Vectorizer {
         mut ink: Bitmap,
         with_errors: bool,
     ) -> Result<(Drawing, Option<SheetErrors>), SheetError> {
-        let (drawing, report) = self.unordered(&mut ink, None)?;
+        let Unordered { drawing, error, areas } = self.unordered(&mut ink, None)?;
         let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
-        let errors = with_errors.then(|| SheetErrors {
-            report: report.unwrap_or_else(|| coverage(&ink, &drawing)),
-            worst: worst_pixel(&ink, &drawing),
+        let errors = with_errors.then(|| {
+            let found = self.errors(&ink, &drawing, areas.as_ref());
+            SheetErrors { report: error.unwrap_or(found.report), ..found }
         });
         Ok((drawing, errors))
     }

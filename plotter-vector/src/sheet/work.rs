@@ -39,6 +39,8 @@ pub(super) struct Work<'a> {
     joiner: Joiner,
     strokes: Vec<Curve>,
     outlines: Vec<Curve>,
+    /// Rows with areas.
+    area_rows: Vec<Range<u32>>,
 }
 
 impl<'a> Work<'a> {
@@ -83,6 +85,7 @@ impl<'a> Work<'a> {
             joiner: Joiner::default(),
             strokes: Vec::new(),
             outlines: Vec::new(),
+            area_rows: Vec::new(),
         }
     }
 
@@ -105,8 +108,8 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// All strokes, after the last row.
-    pub(super) fn finish(mut self) -> Result<Vec<Curve>, SheetError> {
+    /// All strokes, after the last row, and the rows with areas, from the top.
+    pub(super) fn finish(mut self) -> Result<(Vec<Curve>, Vec<Range<u32>>), SheetError> {
         if let Some((first, areas)) = self.islands.finish() {
             self.outlines.extend(self.settings.area_strokes(first, &areas)?);
         }
@@ -114,7 +117,7 @@ impl<'a> Work<'a> {
         self.strokes.extend(self.centring.simplified(open));
         sort(&mut self.strokes);
         self.strokes.append(&mut self.outlines);
-        Ok(self.strokes)
+        Ok((self.strokes, self.area_rows))
     }
 
     /// Bands with memory for each.
@@ -136,8 +139,15 @@ impl<'a> Work<'a> {
         });
         for (own, lines, areas) in cleaned {
             for y in own {
+                let row = self.lines.end();
                 self.lines.push(lines.row(y));
                 let areas = areas.as_ref().map_or(&[][..], |areas| areas.row(y));
+                if areas.iter().any(|bits| *bits != 0) {
+                    match self.area_rows.last_mut().filter(|last| last.end == row) {
+                        Some(last) => last.end += 1,
+                        None => self.area_rows.push(row..row + 1),
+                    }
+                }
                 if let Some((first, areas)) = self.islands.push(areas) {
                     self.outlines.extend(self.settings.area_strokes(first, &areas)?);
                 }
