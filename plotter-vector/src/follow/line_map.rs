@@ -22,6 +22,9 @@ const SAME_PX: [f64; 2] = [1.5, 3.0];
 /// Nearer than this a place is the same whatever its direction, px.
 const SAME_PLACE_PX: f64 = 0.5;
 
+/// As far beyond the last place that was seen of a line its next place is another one, px: it may turn there.
+const BEYOND_PX: f64 = 1.0;
+
 /// Lines whose directions differ by more are not the same: cosine of 45 degrees.
 const SAME_COS: f64 = 0.7;
 
@@ -277,9 +280,22 @@ impl LineMap {
             let mut links = self.links_of(id).peekable();
             links.peek().is_none() || links.any(|(_, link, _)| link.state != State::Ghost)
         };
-        let known = |id: &u32| (*id as usize) < known && alive(*id) && agrees(*id);
+        let known = |id: &u32| {
+            (*id as usize) < known && alive(*id) && agrees(*id) && self.beyond_open_px(*id, at) < BEYOND_PX
+        };
         let near = self.near(at, reach_px).into_iter().filter(known);
         near.min_by(|a, b| self.at(*a).distance(at).total_cmp(&self.at(*b).distance(at)).then(a.cmp(b)))
+    }
+
+    /// How far beyond a node a place is if the line goes on there unseen, px; 0 if it does not.
+    fn beyond_open_px(&self, id: u32, at: PxPoint) -> f64 {
+        let mut links = self.links_of(id).filter(|(_, link, _)| !link.contact);
+        let (Some((_, _, inside)), None) = (links.next(), links.next()) else { return 0.0 };
+        if self.node(id).is_none_or(|node| !node.open) {
+            return 0.0;
+        }
+        let ((x, y), (u, v)) = (at.minus(self.at(id)), self.at(id).minus(self.at(inside)));
+        (x * u + y * v) / libm::hypot(u, v).max(1e-9)
     }
 
     /// Puts the lines of a window into the map. What is there already stays; new lines are linked to what
@@ -557,4 +573,35 @@ fn cross(a: PxPoint, b: PxPoint, c: PxPoint, d: PxPoint) -> bool {
         one.0 * other.1 - one.1 * other.0
     };
     side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_that_turns_behind_its_last_seen_place_turns_where_it_does() {
+        let piece = |places: &[(f64, f64)]| {
+            let places = places.iter().map(|(x, y)| PxPoint::new(*x, *y)).collect();
+            Piece { places, closed: false, open: [true, true] }
+        };
+        let up = |from: f64| -> Vec<(f64, f64)> {
+            (0..10).map(|i| (50.0, from + 2.0 * f64::from(i))).rev().collect()
+        };
+        // A window ends 2.5 px before the corner at (50, 49.5); the next one shows it.
+        let mut map = LineMap::default();
+        map.insert(&[piece(&up(52.0))], 5.0, &|_| true);
+        let mut turned = up(51.4);
+        turned.extend((0..10).map(|i| (50.0 - 2.4 * f64::from(i), 49.5)));
+        map.insert(&[piece(&turned)], 5.0, &|_| true);
+        let corner = PxPoint::new(50.0, 49.5);
+        assert!(map.nodes.iter().any(|node| node.at.distance(corner) < 1e-9), "{:?}", map.nodes);
+        let on = |at: PxPoint| (at.x - 50.0).abs() < 1e-9 || (at.y - 49.5).abs() < 1e-9;
+        let shortcut = map.links.iter().find(|link| {
+            let [a, b] = link.ends.map(|end| map.at(end));
+            !on(a.along(b.minus(a), 0.5))
+        });
+        assert!(shortcut.is_none(), "{shortcut:?}");
+        assert!(map.links.iter().all(|link| !link.contact) && map.links.len() == map.nodes.len() - 1);
+    }
 }

@@ -11,7 +11,7 @@ use super::paper::nearest;
 use super::prior::{Information, Prior};
 use super::registration::{View, registered, sure};
 use super::search::Search;
-use super::seated::{corners_seated, ends_seated};
+use super::seated::Seats;
 use super::trail::{self, Start};
 use super::{End, FollowReport, LineFollower, Lost, MappingSettings, Step, Tool};
 use crate::{Gray, PxPoint};
@@ -47,6 +47,9 @@ const MOST_FIXES: u32 = 14;
 
 /// Most pictures without anything new.
 const MOST_IDLE: u32 = 120;
+
+/// Most windows in a row that are looked at wholly because one shows something elsewhere.
+const MOST_AGAIN: u32 = 3;
 
 /// How far from the middle a glance and a whole look compare places of the map, px.
 const GLANCE_REACH_PX: f64 = 92.0;
@@ -129,6 +132,9 @@ pub struct MappingFollower {
     place: PxPoint,
     /// Where all of a window was looked at last.
     looked_at: Option<PxPoint>,
+    seats: Seats,
+    /// Windows in a row that were looked at wholly since something was elsewhere.
+    looks_again: u32,
     keyframes: Keyframes,
     last_pose: Option<PxPoint>,
     /// How well it is known, and what of that the last window told.
@@ -161,6 +167,8 @@ impl MappingFollower {
             search: None,
             place: PxPoint::default(),
             looked_at: None,
+            seats: Seats::default(),
+            looks_again: 0,
             keyframes: Keyframes::default(),
             last_pose: None,
             known: Information::of_axes([0.5; 2]),
@@ -308,8 +316,11 @@ impl MappingFollower {
         }
         let (known, first_link) = (self.map.nodes.len(), self.map.links.len());
         aligned(&mut self.map, flat, &pieces, middle, place, self.margin_px);
-        corners_seated(&mut self.map, &pieces, place);
-        ends_seated(&mut self.map, &pieces, place, self.width_px);
+        if self.seats.seat(&mut self.map, &pieces, place, self.width_px) && self.looks_again < MOST_AGAIN {
+            (self.looked_at, self.looks_again) = (None, self.looks_again + 1);
+        } else {
+            self.looks_again = 0;
+        }
         let dark_at = |at: PxPoint| flat.at(middle.along(at.minus(place), 1.0));
         let mut darks: Vec<f32> =
             pieces.iter().flat_map(|piece| &piece.places).step_by(7).map(|at| dark_at(*at)).collect();

@@ -6,10 +6,11 @@
 
 use super::lag::Lag;
 
-/// Moves shorter than this are not made, px: the axis waits. Nor does it turn round for less than the second: what comes out behind the play
-/// is not known better.
+/// Moves shorter than this are not made, px: the axis waits.
 const NO_MOVE_PX: f64 = 0.12;
-const NO_TURN_PX: f64 = 0.25;
+
+/// An axis stays so much behind where it is sent, px: what it is short of it makes good without crossing its play, what it is beyond not.
+const BEHIND_PX: f64 = 0.12;
 
 /// A move whose standard deviation is greater is made in parts, px, each at least such a share of it.
 const CAREFUL_PX: f64 = 0.45;
@@ -176,11 +177,13 @@ impl Play {
         if self.waits(way) {
             return Command { crosses_to_px: None, end_px: inside(self.sent_px) };
         }
-        let command = inside(self.command_to(wanted));
-        let moved = command - self.sent_px;
-        let lost = moved - way;
+        let command = self.command_to(wanted);
+        let lost = inside(command) - self.sent_px - way;
         let crosses = lost * way > 0.0 && lost.abs() > NO_MOVE_PX;
-        Command { crosses_to_px: crosses.then_some(inside(self.sent_px + lost)), end_px: command }
+        Command {
+            crosses_to_px: crosses.then_some(inside(self.sent_px + lost)),
+            end_px: inside(command - libm::copysign(BEHIND_PX, way)),
+        }
     }
 
     fn send(&mut self, command: f64) {
@@ -200,7 +203,7 @@ impl Play {
 
     /// Whether it is not worth while to go so far.
     fn waits(&self, way: f64) -> bool {
-        way.abs() < if way * self.side < 0.0 { NO_TURN_PX } else { NO_MOVE_PX }
+        way.abs() < if way * self.side < 0.0 { NO_MOVE_PX } else { NO_MOVE_PX + BEHIND_PX }
     }
 
     /// How much of the way to `wanted` the axis may go in one move, as a share: where it is not known well how far a command moves it, less, with
@@ -313,7 +316,7 @@ mod tests {
         play.measure(0.0, 2.5, true);
         let crosses = [turned(play.clone()), before].map(|(crosses, _)| crosses.unwrap_or(0.0));
         assert!((crosses[0] - crosses[1]).abs() < 0.05 && crosses[1] < -2.9, "{crosses:?}");
-        assert!((turned(play.clone()).1 + 5.0).abs() < 0.05, "{:?}", turned(play.clone()));
+        assert!((turned(play.clone()).1 + 5.0 - BEHIND_PX).abs() < 0.05, "{:?}", turned(play.clone()));
     }
 
     /// An axis that loses 3 px at each turn, seen exactly after each move.
@@ -337,8 +340,9 @@ mod tests {
     #[test]
     fn an_axis_turns_for_what_is_worth_its_play() {
         let to = |by: f64| pushed_up().command(by - 1.5, None).end_px;
-        assert!((to(0.2) - 0.2).abs() < 1e-6 && to(0.1) == 0.0, "{} {}", to(0.2), to(0.1));
-        assert!(to(-0.2) == 0.0 && (to(-0.3) + 3.3).abs() < 1e-6, "{} {}", to(-0.2), to(-0.3));
+        // It stays 0.12 px behind: nearer than that to 0.12 px before its end it waits, and beyond it by as much it turns round.
+        assert!((to(0.3) - 0.18).abs() < 1e-6 && to(0.2) == 0.0, "{} {}", to(0.3), to(0.2));
+        assert!(to(-0.1) == 0.0 && (to(-0.3) + 3.18).abs() < 1e-6, "{} {}", to(-0.1), to(-0.3));
     }
 
     #[test]

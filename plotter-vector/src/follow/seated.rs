@@ -1,15 +1,28 @@
-//! [`corners_seated`], [`ends_seated`]: corners, and the ends of lines, go to where a window shows them in its middle.
+//! [`Seats`]: corners, and the ends of lines, go to where windows show them in their middle.
 //!
 //! They come into the map when they come into view, at a window's border, where light and lens are worst: a corner may be rounded there,
 //! or both corners of a square turn lie a pixel beside their place. Elsewhere a line is cut across each time it is seen; near a corner
 //! there is nothing to cut. Nor is there beyond a line's end: what came into the map from a place that was not well known along the line
 //! would be followed to its end.
+//!
+//! Now and then a single window of fifty shows a square turn rounded or a line that ends 3 px before its end, in its very middle; so what
+//! is elsewhere goes there only when a second window shows it there, too.
 
 use super::corners::CORNER_COS;
 use super::line_map::{LineMap, Link, State};
 use super::lines::{Piece, cosine};
 use super::paper::nearest;
 use crate::PxPoint;
+use std::collections::HashMap;
+
+/// What goes farther must be seen twice, as near to the first time, px.
+const ELSEWHERE_PX: f64 = 0.4;
+
+/// Along their line ends are not seen better than this, px.
+const END_PX: f64 = 1.0;
+
+/// Most nodes of which it is kept where they were seen once.
+const MOST_ONCE: usize = 4096;
 
 /// What is seen as near to the middle of a window is seen well, px.
 const MIDDLE_PX: f64 = 50.0;
@@ -42,35 +55,90 @@ const fn is_line(link: &Link) -> bool {
     !link.contact && !matches!(link.state, State::Ghost)
 }
 
-/// Moves the corners of lines that are not followed yet, as a window at `camera` shows them; all places are on the paper.
-pub(super) fn corners_seated(map: &mut LineMap, pieces: &[Piece], camera: PxPoint) {
-    for piece in pieces {
-        for (i, three) in piece.places.windows(3).enumerate() {
-            let &[before, at, behind] = three else { continue };
-            let turns = cosine(at.minus(before), behind.minus(at)) < CORNER_COS;
-            if !turns || at.distance(camera) > MIDDLE_PX {
-                continue;
-            }
-            let near = map.near(at, CORNER_PX).into_iter();
-            let fits = near.filter_map(|id| Some((id, arms(map, id, at, [before, behind])?)));
-            let distance = |id: u32| map.at(id).distance(at);
-            let Some((id, others)) = fits.min_by(|a, b| distance(a.0).total_cmp(&distance(b.0))) else {
-                continue;
-            };
-            map.shift(id, at);
-            let corner = i + 1;
-            let is_tip = cosine(before.minus(at), behind.minus(at)) > TIP_COS;
-            let most = if is_tip { TIP_HIDDEN } else { HIDDEN } + 2;
-            let back: Vec<PxPoint> = piece.places.iter().take(corner + 1).rev().take(most).copied().collect();
-            let on: Vec<PxPoint> = piece.places.iter().skip(corner).take(most).copied().collect();
-            if is_tip {
-                seat_tip(map, id, others, [&back, &on]);
-            } else {
-                seat_arm(map, id, others[0], &back);
-                seat_arm(map, id, others[1], &on);
+/// Where nodes should go.
+type Moves = Vec<(u32, PxPoint)>;
+
+/// Seats corners and ends.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seats {
+    /// Where windows have shown nodes elsewhere, once.
+    once: HashMap<u32, PxPoint>,
+}
+
+impl Seats {
+    /// Moves the corners and the ends of lines that are not followed yet, as a window at `camera` shows them; all places are on the
+    /// paper. Gives whether something is elsewhere that a second window has to show.
+    pub(super) fn seat(
+        &mut self,
+        map: &mut LineMap,
+        pieces: &[Piece],
+        camera: PxPoint,
+        width_px: f64,
+    ) -> bool {
+        let mut in_doubt = false;
+        for piece in pieces {
+            for i in 1..piece.places.len().saturating_sub(1) {
+                let moves = corner_moves(map, piece, i, camera);
+                in_doubt |= !self.go(map, &moves, ELSEWHERE_PX);
             }
         }
+        for moves in end_moves(map, pieces, camera, width_px) {
+            in_doubt |= !self.go(map, &moves, END_PX);
+        }
+        in_doubt
     }
+
+    /// Makes the moves if they are small or seen for the second time; whether it did.
+    fn go(&mut self, map: &mut LineMap, moves: &[(u32, PxPoint)], alike_px: f64) -> bool {
+        let is_seen = |(id, to): &(u32, PxPoint)| {
+            let is_there = |at: PxPoint| at.distance(*to) < alike_px;
+            is_there(map.at(*id)) || self.once.get(id).copied().is_some_and(is_there)
+        };
+        let are_seen = moves.iter().all(is_seen);
+        if self.once.len() > MOST_ONCE {
+            self.once.clear();
+        }
+        for (id, to) in moves {
+            if are_seen {
+                map.shift(*id, *to);
+                self.once.remove(id);
+            } else {
+                self.once.insert(*id, *to);
+            }
+        }
+        are_seen
+    }
+}
+
+/// Where a corner's node and those beside it should go, if the place `i` of a piece is a corner that the map has.
+fn corner_moves(map: &LineMap, piece: &Piece, i: usize, camera: PxPoint) -> Moves {
+    let Some(&[before, at, behind]) = piece.places.get(i - 1..i + 2) else { return Moves::new() };
+    if !turns([before, at, behind]) || at.distance(camera) > MIDDLE_PX {
+        return Moves::new();
+    }
+    let near = map.near(at, CORNER_PX).into_iter();
+    let fits = near.filter_map(|id| Some((id, arms(map, id, at, [before, behind])?)));
+    let distance = |id: u32| map.at(id).distance(at);
+    let Some((id, others)) = fits.min_by(|a, b| distance(a.0).total_cmp(&distance(b.0))) else {
+        return Moves::new();
+    };
+    let is_tip = cosine(before.minus(at), behind.minus(at)) > TIP_COS;
+    let most = if is_tip { TIP_HIDDEN + 2 } else { HIDDEN + 4 };
+    let back: Vec<PxPoint> = piece.places.iter().take(i + 1).rev().take(most).copied().collect();
+    let on: Vec<PxPoint> = piece.places.iter().skip(i).take(most).copied().collect();
+    let mut moves = vec![(id, at)];
+    if is_tip {
+        moves.extend(tip_moves(map, (id, at), others, [&back, &on]));
+    } else {
+        moves.extend(arm_moves(map, id, others[0], &back));
+        moves.extend(arm_moves(map, id, others[1], &on));
+    }
+    moves
+}
+
+/// Whether a line has a corner in the middle one of three places.
+fn turns([before, at, behind]: [PxPoint; 3]) -> bool {
+    cosine(at.minus(before), behind.minus(at)) < CORNER_COS
 }
 
 /// Both neighbours of a node if the lines that meet in a corner go over them, that to `ways[0]` first.
@@ -95,17 +163,52 @@ fn neighbours(map: &LineMap, id: u32) -> Option<[u32; 2]> {
     (are_ahead && links.next().is_none()).then_some([one.2, other.2])
 }
 
-/// Puts the nodes behind a corner's, from `next` on, on the line that a window shows there, from the corner on.
-fn seat_arm(map: &mut LineMap, corner: u32, next: u32, places: &[PxPoint]) {
+/// Where the nodes behind a corner's, from `next` on, are on the line that a window shows there, from the corner on; one of them is at each of
+/// that line's corners.
+fn arm_moves(map: &LineMap, corner: u32, next: u32, places: &[PxPoint]) -> Moves {
     let (mut before, mut id) = (corner, next);
+    let (mut moves, mut ways) = (Moves::new(), Vec::new());
     for _ in 0..HIDDEN {
-        let Some(beside) = neighbours(map, id) else { return };
-        let at = map.at(id);
-        let Some(to) = foot(at, places).filter(|to| to.distance(at) <= CORNER_PX) else { return };
-        map.shift(id, to);
+        let Some(beside) = neighbours(map, id) else { break };
+        let Some(to) = foot(map.at(id), places) else { break };
+        moves.push((id, to));
+        ways.push(way_px(places, to));
         let next = if beside[0] == before { beside[1] } else { beside[0] };
         (before, id) = (id, next);
     }
+    // What lies between nodes of the line is of it, too.
+    let is_on = |(id, to): &(u32, PxPoint)| map.at(*id).distance(*to) <= CORNER_PX;
+    let count = moves.iter().rposition(is_on).map_or(0, |last| last + 1);
+    moves.truncate(count);
+    ways.truncate(count);
+    // Where the map goes straight over a corner there is no node that is near to it.
+    for three in places.windows(3) {
+        let &[a, corner, b] = three else { continue };
+        let way = way_px(places, corner);
+        let off = |i: &usize| ways.get(*i).map_or(f64::INFINITY, |other| (other - way).abs());
+        let nearest = (0..ways.len()).min_by(|i, j| off(i).total_cmp(&off(j)));
+        if turns([a, corner, b])
+            && ways.last().is_some_and(|last| *last >= way)
+            && let Some((_, to)) = nearest.and_then(|i| moves.get_mut(i))
+        {
+            *to = corner;
+        }
+    }
+    moves
+}
+
+/// How far along a polyline one of its places is, px.
+fn way_px(places: &[PxPoint], at: PxPoint) -> f64 {
+    let (mut way, mut best) = (0.0, (f64::INFINITY, 0.0));
+    for pair in places.windows(2) {
+        let &[a, b] = pair else { continue };
+        let foot = nearest(at, a, b);
+        if foot.distance(at) < best.0 {
+            best = (foot.distance(at), way + a.distance(foot));
+        }
+        way += a.distance(b);
+    }
+    best.1
 }
 
 /// The place of a polyline that is nearest to one.
@@ -117,29 +220,28 @@ fn foot(at: PxPoint, places: &[PxPoint]) -> Option<PxPoint> {
     feet.min_by(|a, b| a.distance(at).total_cmp(&b.distance(at)))
 }
 
-/// Puts the nodes beside a tip on its arms, as far as the first one of each arm that was seen well: between these and the tip they are spread
-/// evenly, for the arms' ink is one there, and the nearest place may be on the other one.
-fn seat_tip(map: &mut LineMap, tip: u32, beside: [u32; 2], arms: [&[PxPoint]; 2]) {
+/// Where the nodes beside a tip are on its arms, as far as the first one of each arm that was seen well: between these and the tip they are
+/// spread evenly, for the arms' ink is one there, and the nearest place may be on the other one.
+fn tip_moves(map: &LineMap, tip: (u32, PxPoint), beside: [u32; 2], arms: [&[PxPoint]; 2]) -> Moves {
     let [one, other] = beside;
     for nodes in [[one, other], [other, one]] {
         let runs = [run_to_arm(map, tip, nodes[0], arms), run_to_arm(map, tip, nodes[1], [arms[1], arms[0]])];
         let [Some(back), Some(on)] = runs else { continue };
-        for (run, to) in [back, on] {
-            let from = map.at(tip);
+        let spread = |(run, to): (Vec<u32>, PxPoint)| {
             let parts = super::lines::count_f64(run.len() + 1);
-            for (i, id) in run.into_iter().enumerate() {
-                map.shift(id, from.along(to.minus(from), super::lines::count_f64(i + 1) / parts));
-            }
-        }
-        return;
+            let place = move |i: usize| tip.1.along(to.minus(tip.1), super::lines::count_f64(i + 1) / parts);
+            run.into_iter().enumerate().map(move |(i, id)| (id, place(i)))
+        };
+        return spread(back).chain(spread(on)).collect();
     }
+    Moves::new()
 }
 
 /// The nodes from a tip on, by way of `next`, before the first one that is clearly on the first one of two arms, and that one's place on it;
 /// none if there is no such node, or if the arm is not straight until there.
 fn run_to_arm(
     map: &LineMap,
-    tip: u32,
+    (tip, tip_at): (u32, PxPoint),
     next: u32,
     [own, other]: [&[PxPoint]; 2],
 ) -> Option<(Vec<u32>, PxPoint)> {
@@ -150,10 +252,10 @@ fn run_to_arm(
         let (own_foot, other_foot) = (foot(at, own)?, foot(at, other)?);
         let off_px = own_foot.distance(at);
         if off_px < ON_ARM_PX && other_foot.distance(at) > off_px + OTHER_ARM_PX {
-            let way_px = own_foot.distance(map.at(tip));
-            let mut until = own.iter().take_while(|place| place.distance(map.at(tip)) < way_px);
+            let way_px = own_foot.distance(tip_at);
+            let mut until = own.iter().take_while(|place| place.distance(tip_at) < way_px);
             let is_straight =
-                until.all(|place| nearest(*place, map.at(tip), own_foot).distance(*place) < ON_ARM_PX);
+                until.all(|place| nearest(*place, tip_at, own_foot).distance(*place) < ON_ARM_PX);
             return is_straight.then_some((run, own_foot));
         }
         let beside = neighbours(map, id)?;
@@ -164,8 +266,9 @@ fn run_to_arm(
     None
 }
 
-/// Takes back the ends of lines that are not followed yet to where a window at `camera` shows that they end; all places are on the paper.
-pub(super) fn ends_seated(map: &mut LineMap, pieces: &[Piece], camera: PxPoint, width_px: f64) {
+/// How the ends of lines that are not followed yet go back to where a window at `camera` shows that they end.
+fn end_moves(map: &LineMap, pieces: &[Piece], camera: PxPoint, width_px: f64) -> Vec<Moves> {
+    let mut all = Vec::new();
     for (i, piece) in pieces.iter().enumerate().filter(|(_, piece)| !piece.closed) {
         // The direction of the end is that of its last places.
         let from_first = [piece.places.first(), piece.places.get(HIDDEN)];
@@ -176,14 +279,15 @@ pub(super) fn ends_seated(map: &mut LineMap, pieces: &[Piece], camera: PxPoint, 
             let mut others = pieces.iter().enumerate().filter(|(other, _)| *other != i);
             let is_free = others.all(|(_, other)| other.places.iter().all(|at| at.distance(*end) > width_px));
             if !open && is_free && end.distance(camera) <= MIDDLE_PX {
-                seat_end(map, *end, end.minus(*inside));
+                all.push(beyond_end(map, *end, end.minus(*inside)));
             }
         }
     }
+    all
 }
 
-/// Puts what is beyond a line's end at its end; the line comes to it in the direction `way`.
-fn seat_end(map: &mut LineMap, end: PxPoint, way: (f64, f64)) {
+/// What is beyond a line's end goes to its end; the line comes to it in the direction `way`.
+fn beyond_end(map: &LineMap, end: PxPoint, way: (f64, f64)) -> Moves {
     let length = libm::hypot(way.0, way.1).max(1e-9);
     let beyond = |at: PxPoint| {
         let (x, y) = at.minus(end);
@@ -198,17 +302,18 @@ fn seat_end(map: &mut LineMap, end: PxPoint, way: (f64, f64)) {
     let far = |id: &u32| beyond(map.at(*id));
     let near = map.near(end, BEYOND_PX).into_iter().filter(is_end).filter(|id| far(id) > LEAST_BEYOND_PX);
     let mut next = near.max_by(|a, b| far(a).total_cmp(&far(b)));
-    let mut before = None;
+    let (mut moves, mut before) = (Moves::new(), None);
     for _ in 0..HIDDEN {
-        let Some(id) = next.filter(|id| beyond(map.at(*id)) > 0.0) else { return };
-        map.shift(id, end);
+        let Some(id) = next.filter(|id| beyond(map.at(*id)) > 0.0) else { break };
+        moves.push((id, end));
         let mut links = map.links_of(id).filter(|(_, _, other)| Some(*other) != before);
         next = links.next().filter(|(_, link, _)| link.state == State::Ahead).map(|found| found.2);
         if links.next().is_some() {
-            return;
+            break;
         }
         before = Some(id);
     }
+    moves
 }
 
 #[cfg(test)]
@@ -217,6 +322,60 @@ mod tests {
 
     fn piece(places: &[(f64, f64)], open: [bool; 2]) -> Piece {
         Piece { places: places.iter().map(|(x, y)| PxPoint::new(*x, *y)).collect(), closed: false, open }
+    }
+
+    /// Two windows that show the same; whether both said so.
+    fn seat_twice(map: &mut LineMap, pieces: &[Piece], camera: PxPoint) -> [bool; 2] {
+        let mut seats = Seats::default();
+        [0; 2].map(|_| seats.seat(map, pieces, camera, 4.0))
+    }
+
+    /// A line along y = 50 up to x = 90, down to y = 58, and back.
+    fn square_turn() -> Vec<(f64, f64)> {
+        let mut turn: Vec<(f64, f64)> = (0..20).map(|i| (50.0 + 2.0 * f64::from(i), 50.0)).collect();
+        turn.extend((0..4).map(|i| (90.0, 50.0 + 2.0 * f64::from(i))));
+        turn.extend((0..20).map(|i| (90.0 - 2.0 * f64::from(i), 58.0)));
+        turn
+    }
+
+    #[test]
+    fn what_a_single_window_shows_elsewhere_is_not_believed() {
+        let mut map = LineMap::default();
+        map.insert(&[piece(&square_turn(), [true, true])], 4.0, &|_| true);
+        let known: Vec<PxPoint> = map.nodes.iter().map(|node| node.at).collect();
+        let mut rounded: Vec<(f64, f64)> = (0..18).map(|i| (50.0 + 2.0 * f64::from(i), 50.0)).collect();
+        rounded.extend([(86.4, 50.0), (88.1, 51.1), (89.7, 52.2), (90.0, 54.0), (90.2, 55.6), (89.6, 56.8)]);
+        rounded.extend((0..20).map(|i| (89.0 - 2.0 * f64::from(i), 57.9)));
+        let (rounded, square) = (piece(&rounded, [true, true]), piece(&square_turn(), [true, true]));
+        let mut seats = Seats::default();
+        let camera = PxPoint::new(82.0, 58.0);
+        let doubts: Vec<bool> = [&rounded, &square, &rounded, &square]
+            .into_iter()
+            .map(|seen| seats.seat(&mut map, std::slice::from_ref(seen), camera, 4.0))
+            .collect();
+        assert_eq!(doubts, [true, false, true, false]);
+        let moved = map.nodes.iter().zip(&known).map(|(node, known)| node.at.distance(*known));
+        assert!(moved.fold(0.0, f64::max) < 0.05, "{:?}", map.nodes);
+    }
+
+    #[test]
+    fn a_square_turn_that_was_cut_short_gets_both_its_corners() {
+        // The first window showed one corner, and a straight line from there to the second arm.
+        let mut cut: Vec<(f64, f64)> = (0..20).map(|i| (50.0 + 2.0 * f64::from(i), 50.0)).collect();
+        cut.extend([(90.3, 49.7), (89.4, 51.3), (88.4, 52.9), (87.4, 54.5), (86.4, 56.1), (85.3, 58.0)]);
+        cut.extend((0..15).map(|i| (83.5 - 2.0 * f64::from(i), 58.0)));
+        let mut map = LineMap::default();
+        map.insert(&[piece(&cut, [true, true])], 4.0, &|_| true);
+        let seen = [piece(&square_turn(), [true, true])];
+        assert_eq!(seat_twice(&mut map, &seen, PxPoint::new(70.0, 58.0)), [true, false]);
+        let off = |at: PxPoint| foot(at, &seen[0].places).unwrap().distance(at);
+        let along = |link: &Link, part: f64| {
+            let [a, b] = link.ends.map(|end| map.at(end));
+            off(a.along(b.minus(a), part))
+        };
+        let parts = [0.0, 0.25, 0.5, 0.75];
+        let most = map.links.iter().flat_map(|link| parts.map(|part| along(link, part))).fold(0.0, f64::max);
+        assert!(most < 0.1, "{most} {:?}", map.nodes);
     }
 
     #[test]
@@ -231,7 +390,7 @@ mod tests {
             .map(|i| (50.0, 70.0 - 2.0 * f64::from(i)))
             .chain((0..10).map(|i| (50.0 + 2.0 * f64::from(i), 50.0)))
             .collect();
-        corners_seated(&mut map, &[piece(&seen, [true, true])], PxPoint::new(60.0, 60.0));
+        seat_twice(&mut map, &[piece(&seen, [true, true])], PxPoint::new(60.0, 60.0));
         let off = |at: PxPoint| {
             let beside = f64::min((at.x - 50.0).abs(), (at.y - 50.0).abs());
             beside.max(50.0 - at.x).max(50.0 - at.y)
@@ -251,15 +410,15 @@ mod tests {
         map.insert(&known, 4.0, &|_| true);
         let seen = piece(&line(50.2, 50.0), [false, true]);
         // Far from the window's middle it is not seen well, and an open end is the window's.
-        ends_seated(&mut map, std::slice::from_ref(&seen), PxPoint::new(50.0, 120.0), 4.0);
+        seat_twice(&mut map, std::slice::from_ref(&seen), PxPoint::new(50.0, 120.0));
         let open = piece(&line(50.2, 50.0), [true, true]);
-        ends_seated(&mut map, &[open], PxPoint::new(60.0, 60.0), 4.0);
+        seat_twice(&mut map, &[open], PxPoint::new(60.0, 60.0));
         let highest = |map: &LineMap, x: f64| {
             let on = map.nodes.iter().filter(|node| (node.at.x - x).abs() < 1.0);
             on.map(|node| node.at.y).fold(f64::INFINITY, f64::min)
         };
         assert_eq!((highest(&map, 50.0), highest(&map, 58.0)), (47.7, 48.0));
-        ends_seated(&mut map, &[seen], PxPoint::new(60.0, 60.0), 4.0);
+        seat_twice(&mut map, &[seen], PxPoint::new(60.0, 60.0));
         assert_eq!((highest(&map, 50.0), highest(&map, 58.0)), (50.0, 48.0));
     }
 
@@ -284,7 +443,7 @@ mod tests {
             lengths.fold(0.0, f64::max)
         };
         assert!(off(&map) > 1.0 && left == 20, "{}", off(&map));
-        corners_seated(&mut map, std::slice::from_ref(&seen), PxPoint::new(55.0, 70.0));
+        seat_twice(&mut map, std::slice::from_ref(&seen), PxPoint::new(55.0, 70.0));
         assert!(off(&map) < 0.05, "{} {:?}", off(&map), map.nodes);
         assert!(map.nodes.iter().any(|node| node.at.distance(PxPoint::new(50.0, 50.0)) < 0.05));
     }
