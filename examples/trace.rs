@@ -617,6 +617,10 @@ fn settings(arguments: &Arguments) -> Result<Settings, String> {
             )
         })?;
     }
+    // The file's own, for options exclude each other.
+    if let (Some(path), true) = (&arguments.config, config.arcs && config.curves && !arguments.arcs) {
+        return Err(at(path, &"[vectorize] arcs and curves: strokes have one of them; leave one out"));
+    }
     let pens = pens(arguments, config.pens)?;
     Ok(Settings { vectorizer: vectorizer(&config, mm_per_px)?, pens, threads, overlay })
 }

@@ -93,6 +93,8 @@ pub struct DrawingFile {
     source: Source,
     language: Language,
     fonts: SvgFonts,
+    /// What there is to say about the files of its fonts.
+    notices: Vec<String>,
 }
 
 #[derive(Debug)]
@@ -128,7 +130,7 @@ impl DrawingFile {
         file.take(HEAD_BYTES as u64).read_to_end(&mut head).map_err(failed)?;
         let name = path.display().to_string();
         let language = told(&name, &head, language)?;
-        Ok(Self { name, source: Source::File(path.to_owned()), language, fonts: SvgFonts::default() })
+        Ok(Self::of(name, Source::File(path.to_owned()), language))
     }
 
     /// A drawing in memory.
@@ -138,7 +140,11 @@ impl DrawingFile {
     /// That it is empty, or of no known language.
     pub fn held(name: &str, bytes: Vec<u8>, language: Option<Language>) -> Result<Self, String> {
         let language = told(name, bytes.get(..HEAD_BYTES).unwrap_or(&bytes), language)?;
-        Ok(Self { name: name.to_owned(), source: Source::Held(bytes), language, fonts: SvgFonts::default() })
+        Ok(Self::of(name.to_owned(), Source::Held(bytes), language))
+    }
+
+    fn of(name: String, source: Source, language: Language) -> Self {
+        Self { name, source, language, fonts: SvgFonts::default(), notices: Vec::new() }
     }
 
     /// Sets its texts in these fonts, if it is one of the pictures that have texts.
@@ -148,7 +154,7 @@ impl DrawingFile {
     /// What is wrong with the files.
     pub fn with_fonts(mut self, files: &FontFiles) -> Result<Self, String> {
         if self.language == Language::Svg {
-            self.fonts = files.load()?;
+            (self.fonts, self.notices) = files.load()?;
         }
         Ok(self)
     }
@@ -214,7 +220,9 @@ impl DrawingFile {
                 let drawing = svg_drawing(&bytes, how.tolerance_mm, &self.fonts)
                     .map_err(|error| format!("{}: {error}", self.name))?;
                 colours = drawing.colours;
-                Box::new(drawing.diagnostics.into_iter().map(Err).chain(drawing.ops.into_iter().map(Ok)))
+                let notices = self.notices.iter().map(|text| Diagnostic::new(Severity::Notice, text.clone()));
+                let diagnostics = notices.chain(drawing.diagnostics);
+                Box::new(diagnostics.map(Err).chain(drawing.ops.into_iter().map(Ok)))
             }
         };
         Ok(Ops { inner, place, colours, failed: false })

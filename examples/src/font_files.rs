@@ -23,13 +23,15 @@ pub struct FontFiles {
 }
 
 impl FontFiles {
-    /// Those of the files, in the order in which they are named, and of a folder's files by their names.
+    /// Those of the files, in the order in which they are named, and of a folder's files by their names; of each folder with files
+    /// that are called fonts and are none, what there is to say about these.
     ///
     /// # Errors
     ///
     /// The file that cannot be read or is no font, or the folder that has none.
-    pub fn load(&self) -> Result<SvgFonts, String> {
+    pub fn load(&self) -> Result<(SvgFonts, Vec<String>), String> {
         let mut fonts = SvgFonts::default();
+        let mut told = Vec::new();
         let mut room = MOST_BYTES;
         for named in &self.files {
             let failed = |error: &dyn std::fmt::Display| format!("--font: {}", at(named, &error.to_string()));
@@ -40,7 +42,7 @@ impl FontFiles {
             }
             let mut found = Vec::new();
             collect(named, DEEPEST, &mut found).map_err(|error| failed(&error))?;
-            let mut added = 0;
+            let (mut added, mut refused) = (0, Vec::new());
             for file in found {
                 let bytes = read_file(&file).map_err(|error| format!("--font: {error}"))?;
                 room = room.checked_sub(bytes.len()).ok_or_else(|| {
@@ -50,13 +52,23 @@ impl FontFiles {
                     ))
                 })?;
                 // A folder may hold what only looks like one.
-                added += usize::from(fonts.add(bytes).is_ok());
+                match fonts.add(bytes) {
+                    Ok(()) => added += 1,
+                    Err(error) => refused.push(at(&file, &format!("this is {error}"))),
+                }
             }
             if added == 0 {
-                return Err(failed(&"this folder holds no font (.ttf, .otf, .ttc)"));
+                let why = refused.first().map_or(String::new(), |first| format!("; {first}"));
+                return Err(failed(&format!("this folder holds no font (.ttf, .otf, .ttc){why}")));
+            }
+            if let Some(first) = refused.first() {
+                let count = refused.len();
+                let files =
+                    if count == 1 { "a file".into() } else { format!("{count} files, the first of them") };
+                told.push(format!("left out of the fonts: {files} {first}"));
             }
         }
-        Ok(fonts)
+        Ok((fonts, told))
     }
 }
 
@@ -79,4 +91,21 @@ fn collect(folder: &Path, deepest: usize, found: &mut Vec<PathBuf>) -> std::io::
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_without_a_font_says_what_its_files_are() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("web.ttf"), b"wOF2\0\x01\0\0").unwrap();
+        std::fs::write(folder.path().join("notes.txt"), b"no font, and not called so").unwrap();
+        let error = FontFiles { files: vec![folder.path().to_owned()] }.load().unwrap_err();
+        assert!(
+            error.contains("this folder holds no font") && error.contains("web.ttf: this is a web font"),
+            "{error}"
+        );
+    }
 }

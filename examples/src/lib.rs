@@ -150,6 +150,9 @@ pub fn is_standard(path: &Path) -> bool {
 ///
 /// The file and why it could not be read, or that it is longer than 1 GiB.
 pub fn read_file(path: &Path) -> Result<Vec<u8>, String> {
+    if path.is_dir() {
+        return Err(at(path, &"this is a folder: name a file in it"));
+    }
     let file = std::fs::File::open(path).map_err(|error| at(path, &format!("cannot be read: {error}")))?;
     read_all(file).map_err(|error| at(path, &error))
 }

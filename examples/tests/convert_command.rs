@@ -226,9 +226,13 @@ fn texts_of_svg_are_set_in_the_fonts_that_are_given() {
         ),
         "{said}"
     );
-    // A folder is as good as its files.
-    let (_, by_folder, _) = folder.convert(&svg, "b.plt", &["--font", folder.0.path().to_str().unwrap()]);
+    // A folder is as good as its files, and says which are none.
+    let (_, by_folder, said) = folder.convert(&svg, "b.plt", &["--font", folder.0.path().to_str().unwrap()]);
     assert_eq!(by_folder, text);
+    assert!(
+        said.contains("left out of the fonts: a file") && said.contains("broken.otf: this is no font"),
+        "{said}"
+    );
     let out = folder.file("c.plt");
     let said = |font: &str| complaint("convert", &[&svg, &out, "--font", font]);
     assert!(said("no/such.ttf").contains("--font: no/such.ttf: cannot be read"));

@@ -105,7 +105,10 @@ fn curves_reach_every_file() {
     let both = "arcs and curves: strokes have one of them; leave one out";
     assert!(complaint("trace", &[&picture, "--arcs", "--curves"]).contains(both));
     std::fs::write(&config, "schema = 1\n[vectorize]\narcs = true\ncurves = true\n").unwrap();
-    assert!(complaint("trace", &[&picture, "--config", &config]).contains(both));
+    assert!(
+        complaint("trace", &[&picture, "--config", &config])
+            .contains(&format!("{config}: [vectorize] {both}"))
+    );
 }
 
 #[test]
@@ -161,13 +164,61 @@ fn bad_pictures_get_one_line_and_blank_ones_an_empty_drawing() {
     let claims = "a picture of 1000000000 x 1000000000 px is too large: at most 131072 px a side; scan with";
     assert!(complaint("trace", &[&file("huge.pbm", b"P4 1000000000 1000000000\n")]).contains(claims));
     let folder = directory.path().to_str().unwrap();
-    assert!(complaint("trace", &[folder]).contains("cannot be read"));
+    assert!(complaint("trace", &[folder]).contains("this is a folder: name a file in it"));
     assert!(complaint("trace", &[&data("flag.png"), "--svg", folder]).contains("cannot be written"));
     assert!(complaint("trace", &[&file("text.png", b"hello")]).contains("is not PNG"));
     for (name, blank) in [("dot", "P1 1 1\n1"), ("white", "P1 3 2\n000000"), ("black", "P1 3 2\n111111")] {
         let output = run_example("trace", &[&file(name, blank.as_bytes())]);
         assert!(output.status.success(), "{name}");
         assert!(String::from_utf8(output.stdout).unwrap().contains("(an empty sheet)"), "{name}");
+    }
+}
+
+#[test]
+fn a_file_cut_anywhere_is_told_in_one_line_and_a_wrong_suffix_does_not_matter() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("scan.jpg");
+    let name = path.to_str().unwrap();
+    let whole = std::fs::read(data("flag.png")).unwrap();
+    for length in [1, 7, 8, 20, 33, whole.len() / 3, whole.len() - 20, whole.len() - 1] {
+        std::fs::write(&path, &whole[..length]).unwrap();
+        for pens in ["1", "2"] {
+            let output = run_example("trace", &[name, "--pens", pens]);
+            let said = String::from_utf8(output.stderr).unwrap();
+            // Of the last few bytes nothing hangs.
+            let is_told = output.status.code() == Some(1)
+                && said.contains("scan.jpg: the picture")
+                && said.lines().count() == 1;
+            assert!(is_told || output.status.success() && length + 12 >= whole.len(), "{length}: {said}");
+        }
+    }
+}
+
+#[test]
+fn a_few_bytes_that_claim_a_huge_sheet_take_little_memory() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("claims.pgm");
+    std::fs::write(&path, [b"P5 60000 60000 255\n".as_slice(), &[0; 60_000]].concat()).unwrap();
+    let name = path.to_str().unwrap();
+    assert!(complaint("trace", &[name]).contains("cut off at row 2 of 60000"));
+    assert!(
+        complaint("trace", &[name, "--pens", "2"])
+            .contains("take --pens 1, which is traced by rows at any size")
+    );
+}
+
+#[test]
+fn a_pipe_that_takes_no_more_is_an_error() {
+    let full = std::path::Path::new("/dev/full");
+    if full.exists() {
+        assert!(
+            complaint("trace", &[&data("flag.png"), "--svg", "/dev/full"])
+                .contains("/dev/full: cannot be written")
+        );
+        assert!(
+            complaint("trace", &[&data("flag.png"), "--overlay", "/dev/full"])
+                .contains("/dev/full: cannot be written")
+        );
     }
 }
 

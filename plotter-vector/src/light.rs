@@ -313,6 +313,19 @@ mod tests {
     }
 
     #[test]
+    fn the_level_runs_down_the_sheet_as_it_runs_across() {
+        let level = |across: usize, along: usize| {
+            let paper = if across < 10 { 100 } else { 200 };
+            if along == 5 { paper / 2 } else { paper }
+        };
+        let down: Vec<u8> = (0..20).flat_map(|y| (0..10).map(move |x| level(y, x))).collect();
+        let across: Vec<u8> = (0..10).flat_map(|y| (0..20).map(move |x| level(x, y))).collect();
+        let (down, across) = (light(10, 10, &down).unwrap(), light(20, 10, &across).unwrap());
+        let rows: Vec<u8> = (0..20).map(|y| down.ink_levels(y)[3]).collect();
+        assert_eq!(rows, across.ink_levels(3));
+    }
+
+    #[test]
     fn a_tile_full_of_ink_takes_its_paper_from_around() {
         let mut levels = vec![220; 50 * 50];
         for y in 20..30 {

@@ -189,6 +189,50 @@ fn a_mixture_is_no_pen_even_when_a_pen_of_its_colour_is_near() {
 }
 
 #[test]
+fn near_hues_are_two_pens_and_one_that_wavers_is_one() {
+    let found = |other: Rgb| {
+        let strokes: Vec<Stroke> = [BLUE, other, BLUE, other]
+            .into_iter()
+            .zip([20.0, 60.0, 100.0, 140.0])
+            .map(|(pen, y)| Stroke::new(pen, (20.0, y), (240.0, y + 30.0)))
+            .collect();
+        Pens::Found.separate(&picture(260, 200, &strokes)).unwrap().palette().pens().len()
+    };
+    assert_eq!((found(Rgb([90, 50, 200])), found(Rgb([60, 64, 200]))), (2, 1));
+}
+
+#[test]
+fn a_short_word_is_a_pen_and_a_blot_is_none() {
+    // 1600 px of black; the red is 1 and 0.25 per cent of it.
+    let mut strokes: Vec<Stroke> = (0..8)
+        .map(|row| {
+            Stroke::new(BLACK, (10.0, 10.0 + 20.0 * f64::from(row)), (245.0, 16.0 + 20.0 * f64::from(row)))
+        })
+        .collect();
+    let red = |from: f64, length: f64| Stroke::new(RED, (from, 180.0), (from + length, 180.0));
+    let found = |strokes: &[Stroke]| {
+        Pens::Found.separate(&picture(260, 190, strokes)).unwrap().palette().pens().len()
+    };
+    strokes.push(red(30.0, 18.0));
+    assert_eq!(found(&strokes), 2);
+    strokes.pop();
+    strokes.push(red(30.0, 2.0));
+    assert_eq!(found(&strokes), 1);
+}
+
+#[test]
+fn a_pen_of_the_colour_of_a_mixture_is_one_where_it_has_strokes_of_its_own() {
+    // Black over blue makes this dark blue; here it is drawn by itself.
+    let dark_blue = Rgb([12, 32, 100]);
+    let row = |pen, y| Stroke::new(pen, (20.0, y), (240.0, y + 12.0));
+    let strokes =
+        [row(BLACK, 20.0), row(BLUE, 60.0), row(dark_blue, 100.0), row(BLACK, 140.0), row(dark_blue, 180.0)];
+    let layers = Pens::Found.separate(&picture(260, 220, &strokes)).unwrap();
+    assert_eq!(layers.palette().pens().len(), 3);
+    assert!(share_on_its_pen(&layers, &strokes) > 0.99);
+}
+
+#[test]
 fn pale_paper_with_noise_is_paper() {
     let strokes = four_pens();
     let paper = Rgb([243, 234, 214]);

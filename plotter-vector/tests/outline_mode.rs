@@ -100,3 +100,36 @@ fn bands_change_nothing() {
         }
     }
 }
+
+/// A line of 4 px and a bar, one below the other.
+fn line_and_bar(bar_px: u32) -> Bitmap {
+    let mut ink = Bitmap::new(300, 120).unwrap();
+    for pixel in pixels(300, 120).filter(|pixel| (20..280).contains(&pixel.x)) {
+        ink.set(pixel, (20..24).contains(&pixel.y) || (50..50 + bar_px).contains(&pixel.y));
+    }
+    ink
+}
+
+#[test]
+fn a_bar_four_times_as_wide_as_the_lines_is_an_area_where_both_are_mixed() {
+    let closed = |mode, bar_px| {
+        let areas = Areas { style: AreaStyle::Outline, pen_px: 1.0 };
+        let traced =
+            Vectorizer { mode, areas, ..Vectorizer::default() }.trace(&line_and_bar(bar_px)).unwrap();
+        let drawing = traced.drawing;
+        assert_eq!(drawing.strokes().len(), 2);
+        drawing.strokes().filter(|stroke| stroke.first() == stroke.last()).count()
+    };
+    assert_eq!((closed(Mode::Centreline, 16), closed(Mode::Mixed, 16), closed(Mode::Outline, 16)), (0, 1, 2));
+    assert_eq!((closed(Mode::Mixed, 8), closed(Mode::Centreline, 40)), (0, 1));
+}
+
+#[test]
+fn what_is_too_narrow_for_a_wide_pen_is_followed() {
+    // Round a bar of 16 px a pen of 30 px finds no way inside; nothing of it is lost.
+    let areas = Areas { style: AreaStyle::Outline, pen_px: 30.0 };
+    let traced =
+        Vectorizer { mode: Mode::Mixed, areas, ..Vectorizer::default() }.trace(&line_and_bar(16)).unwrap();
+    let middle: Vec<f64> = traced.drawing.strokes().map(|stroke| stroke[0].y).collect();
+    assert!(middle.len() == 2 && middle.iter().any(|y| (y - 58.0).abs() < 0.5), "{middle:?}");
+}

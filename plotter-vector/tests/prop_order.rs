@@ -143,6 +143,28 @@ proptest! {
     }
 
     #[test]
+    fn the_next_line_is_the_nearest_one_left_from_either_end(strokes in strokes(40, 40)) {
+        let lines: Vec<_> = strokes.into_iter().filter(|stroke| stroke.first() != stroke.last()).collect();
+        let drawing = drawing_of(&lines, 1.0);
+        let unjoined = Order { effort: OrderEffort::Fast, one_stroke: false, ..exactly_meeting() };
+        let ordered = unjoined.apply(&drawing);
+        let ends: Vec<(PxPoint, PxPoint)> =
+            ordered.strokes().map(|line| (line[0], line[line.len() - 1])).collect();
+        let greedy = ends.iter().enumerate().skip(1).all(|(index, (from, _))| {
+            let pen = ends[index - 1].1;
+            ends[index..].iter().all(|(one, other)| pen.distance(*from) <= pen.distance(*one).min(pen.distance(*other)))
+        });
+        prop_assert!(greedy || ordered == drawing);
+    }
+
+    #[test]
+    fn without_a_budget_the_best_is_the_fast(strokes in strokes(40, 40)) {
+        let drawing = drawing_of(&strokes, 1.0);
+        let fast = Order { effort: OrderEffort::Fast, ..Order::default() }.apply(&drawing);
+        prop_assert_eq!(Order { budget: 0, ..Order::default() }.apply(&drawing), fast);
+    }
+
+    #[test]
     fn a_connected_drawing_takes_the_fewest_strokes(lines in proptest::collection::vec((0_usize..9, 0_usize..9), 1..20)) {
         // Lines between nine nodes of which no three are in one line: an end is met only by ends.
         let places: [Place; 9] = [(0, 0), (7, 1), (3, 9), (12, 5), (9, 14), (1, 17), (16, 11), (5, 4), (14, 2)];
@@ -307,8 +329,11 @@ fn many(count: u32, stroke: impl Fn(u32, u32) -> Vec<Place>) -> Drawing {
 #[test]
 fn two_hundred_thousand_strokes_are_ordered_within_the_budget() {
     let noise = many(200_000, |x, y| vec![(x, y), (x + 40, y + y % 40)]);
-    let ordered = Order { budget: 1_000_000, ..Order::default() }.apply(&noise);
+    let settings = Order { budget: 1_000_000, ..Order::default() };
+    let ordered = settings.apply(&noise);
     assert!(ordered.pen_up_px() < noise.pen_up_px() / 50.0);
+    // Counted, not timed.
+    assert!(settings.apply(&noise) == ordered, "another order the second time");
 }
 
 #[test]

@@ -125,6 +125,18 @@ fn an_em_is_16_px_where_the_file_says_nothing() {
     assert_eq!(px("<text y='50' font-size='4ex'>B</text>"), (16.0, 27.6));
     assert_eq!(px("<text y='50' font-size='medium'>B</text>"), (8.0, 38.8));
     assert_eq!(px("<g font-size='20'><text y='50' font-size='.5em'>B</text></g>"), (5.0, 43.0));
+    // Named sizes are their own, wherever they stand; only these two count from the size around them.
+    assert_eq!(px("<g font-size='20'><text y='50' font-size='x-small'>B</text></g>"), (6.0, 41.6));
+    assert_eq!(
+        px("<g font-size='20'><text y='50' style='fill:red;font-size: XX-Large'>B</text></g>"),
+        (16.0, 27.6)
+    );
+    assert_eq!(
+        px("<style>text {font-size: medium !important}</style><g font-size='20'><text y='50'>B</text></g>"),
+        (8.0, 38.8)
+    );
+    assert_eq!(px("<g font-size='20'><text y='50' font-size='larger'>B</text></g>"), (12.0, 33.2));
+    assert_eq!(px("<g font-size='24'><text y='50' font-size='smaller'>B</text></g>"), (10.0, 36.0));
     // The same without text and without fonts.
     let rect = "<svg xmlns='http://www.w3.org/2000/svg' width='10em' height='4em'><rect width='2em' height='2ex' stroke='red'/></svg>";
     let read = read_svg(rect.as_bytes(), &SvgOptions::default()).unwrap();

@@ -166,3 +166,16 @@ fn of_salt_and_pepper_only_what_touches_the_strokes_is_left() {
     let (missing, extra) = wrong(&ink);
     assert!(missing <= 0.005 && extra <= 0.005, "missing {missing}, extra {extra}");
 }
+
+#[test]
+fn the_tiles_say_how_large_an_area_may_be() {
+    // A black square of 100 px: more than two tiles of 32 px, less than two of 64.
+    let square = scan(|x, y| if (190..290).contains(&x) && (130..230).contains(&y) { 30.0 } else { 220.0 });
+    let middle = |window_px| {
+        Threshold { window_px, polarity: Polarity::DarkInk, ..ADAPTIVE }
+            .apply(&square)
+            .0
+            .get(Pixel::new(240, 180))
+    };
+    assert_eq!((middle(32), middle(64)), (false, true));
+}

@@ -200,6 +200,32 @@ mod tests {
     }
 
     #[test]
+    fn hatching_ends_half_a_pen_inside_of_what_goes_around_it() {
+        let square = Bitmap::from_picture(&("#".repeat(60) + "\n").repeat(60)).unwrap();
+        let hatch = Hatch { pitch_px: 12.0, angle_rad: 0.0, ..Hatch::default() };
+        let leftmost = |style| {
+            let paths: Vec<_> = Areas { style, pen_px: 8.0 }.paths(&square).unwrap().collect();
+            let left = |path: &AreaPath| path.sites.iter().map(|at| at.x).fold(60.0, f64::min);
+            paths.iter().map(left).collect::<Vec<_>>()
+        };
+        // The pen's centre, 8 px wide: at half its width, and at all of it where a border is drawn, too.
+        assert_eq!(leftmost(AreaStyle::Hatch(hatch)), [4.0]);
+        assert_eq!(leftmost(AreaStyle::OutlineAndHatch(hatch)), [4.0, 8.0]);
+    }
+
+    #[test]
+    fn a_positive_angle_turns_the_hatching_counter_clockwise() {
+        let square = Bitmap::from_picture(&("#".repeat(60) + "\n").repeat(60)).unwrap();
+        let hatch = Hatch { angle_rad: 0.5, max_join_px: 0.0, ..Hatch::default() };
+        let areas = Areas { style: AreaStyle::Hatch(hatch), pen_px: 2.0 };
+        for path in areas.paths(&square).unwrap().filter(|path| path.sites.len() == 2) {
+            let (x, y) = path.sites[1].minus(path.sites[0]);
+            // Up is where y falls.
+            assert!((libm::tan(0.5) * x + y).abs() < 1e-6, "{x} {y}");
+        }
+    }
+
+    #[test]
     fn the_edge_itself_is_drawn_by_a_pen_without_width() {
         let dot = Bitmap::from_picture("#").unwrap();
         let paths: Vec<_> = Areas { pen_px: 0.0, ..Areas::default() }.paths(&dot).unwrap().collect();

@@ -389,6 +389,57 @@ mod tests {
     }
 
     #[test]
+    fn slanted_letters_are_read_from_the_left_whichever_was_drawn_first() {
+        for degrees in [10.0, 30.0, 60.0, -20.0, -45.0, -75.0_f64] {
+            let mut forth = Drawing::new(300, 300);
+            write(&mut forth, "LOCL", (150.0, 150.0), degrees.to_radians());
+            let mut back = Drawing::new(300, 300);
+            (0..4).rev().for_each(|stroke| back.push(forth.stroke(stroke).iter().copied()));
+            assert_eq!(found(&back), [[[[3], [2], [1], [0]]]], "{degrees}");
+        }
+    }
+
+    #[test]
+    fn letters_of_two_pens_are_two_blocks() {
+        let mut one = Drawing::new(300, 300);
+        write(&mut one, "LOCO", (50.0, 100.0), 0.0);
+        let mut drawing = Drawing::new(300, 300);
+        for (stroke, pen) in one.strokes().zip([1, 2, 1, 2]) {
+            drawing.push_with_pen(pen, stroke.iter().copied());
+        }
+        assert_eq!(found(&drawing), [[[[0], [2]]], [[[1], [3]]]]);
+    }
+
+    #[test]
+    fn words_of_one_row_far_apart_are_two_lines() {
+        // A long word below is near to both: all three are one group.
+        let mut drawing = Drawing::new(300, 300);
+        write(&mut drawing, "LO    CL", (50.0, 100.0), 0.0);
+        write(&mut drawing, "OLOCLOCL", (50.0, 120.0), 0.0);
+        let lines: Vec<usize> = found(&drawing).iter().flatten().map(Vec::len).collect();
+        assert_eq!(lines.iter().filter(|letters| **letters == 2).count(), 2, "{lines:?}");
+    }
+
+    #[test]
+    fn a_row_of_wide_shapes_is_no_lettering() {
+        let mut drawing = Drawing::new(300, 300);
+        for x in [20.0, 55.0, 90.0, 125.0] {
+            drawing.push([(x, 100.0), (x + 20.0, 100.0), (x + 20.0, 112.0)].map(|(x, y)| PxPoint::new(x, y)));
+        }
+        assert_eq!(Lettering::default().find(&drawing), []);
+    }
+
+    #[test]
+    fn only_letters_of_the_heights_that_are_asked_for_are_found() {
+        let mut drawing = Drawing::new(300, 300);
+        write(&mut drawing, "LOCO", (50.0, 100.0), 0.0);
+        let with = |min_height_px, max_height_px| {
+            Lettering { min_height_px, max_height_px, ..Lettering::default() }.find(&drawing).len()
+        };
+        assert_eq!((with(6.0, 100.0), with(13.0, 100.0), with(2.0, 11.0)), (1, 0, 0));
+    }
+
+    #[test]
     fn lines_below_each_other_are_a_block_read_line_by_line() {
         let mut drawing = Drawing::new(300, 300);
         write(&mut drawing, "CC", (50.0, 120.0), 0.0);

@@ -339,6 +339,21 @@ mod tests {
     }
 
     #[test]
+    fn a_ring_of_many_vertices_begins_at_the_nearest_of_all() {
+        // The search looks at a dozen of them.
+        let mut drawing = Drawing::new(99, 99);
+        drawing.push(line(0.0, 10.0));
+        let vertex = |k: u32| {
+            let angle = f64::from(k % 100).to_radians() * 3.6;
+            PxPoint::new(40.0 - 20.0 * libm::sin(angle + 2.0), 20.0 * libm::cos(angle + 2.0))
+        };
+        drawing.push((0..=100).map(vertex));
+        let nearest =
+            (0..100).map(|k| vertex(k).distance(PxPoint::new(10.0, 0.0))).fold(f64::INFINITY, f64::min);
+        assert_eq!(order(&drawing).pen_up_px(), nearest);
+    }
+
+    #[test]
     fn of_equally_near_vertices_a_ring_begins_at_the_sharpest() {
         let ring = [(0.0, 0.0), (2.0, 0.0), (4.0, 0.0), (2.0, 9.0)].map(|(x, y)| PxPoint::new(x, y));
         let ring = Curve::from(ring.to_vec());

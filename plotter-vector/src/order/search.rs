@@ -43,17 +43,7 @@ pub(super) fn shorten(sites: &Sites, visits: &[Visit], from: Option<PxPoint>, bu
     if visits.len() != sites.len() || visits.len() < 2 {
         return visits.to_vec();
     }
-    let mut search = Search {
-        sites,
-        near: sites.neighbours(),
-        route: Route::new(sites, visits, from),
-        queue: VecDeque::new(),
-        queued: vec![false; visits.len() + 1],
-        looked: 0,
-        budget,
-        turned: TURNED_AT_FIRST,
-    };
-    visits.iter().for_each(|visit| search.enqueue(visit.site));
+    let mut search = Search::new(sites, visits, from, budget);
     search.settle();
     search.turned = TURNED_LATER;
     search.shake();
@@ -86,7 +76,23 @@ struct Search<'a> {
 /// The change that gains most so far, by what the way grows.
 type Best = Option<(f64, Reading, Change)>;
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    /// Before the first change; everything is queued.
+    fn new(sites: &'a Sites, visits: &[Visit], from: Option<PxPoint>, budget: u64) -> Self {
+        let mut search = Self {
+            sites,
+            near: sites.neighbours(),
+            route: Route::new(sites, visits, from),
+            queue: VecDeque::new(),
+            queued: vec![false; visits.len() + 1],
+            looked: 0,
+            budget,
+            turned: TURNED_AT_FIRST,
+        };
+        visits.iter().for_each(|visit| search.enqueue(visit.site));
+        search
+    }
+
     fn spent(&self) -> bool {
         self.looked + self.route.moved >= self.budget
     }
@@ -364,4 +370,96 @@ fn draw(state: &mut u64, limit: usize) -> usize {
     mixed ^= mixed >> 31;
     // The upper half of the product is evenly spread enough, and always below the limit.
     usize::try_from((u128::from(mixed) * limit as u128) >> 64).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: i32, y: i32) -> PxPoint {
+        PxPoint::new(x.into(), y.into())
+    }
+
+    /// Lines in the order in which they are drawn, each from its first place to its second one.
+    fn lines(ends: impl IntoIterator<Item = ((i32, i32), (i32, i32))>) -> (Sites, Vec<Visit>) {
+        let mut sites = Sites::default();
+        let mut visits = Vec::new();
+        for ((from, to), site) in ends.into_iter().zip(0..) {
+            sites.push(Site::Line(at(from.0, from.1), at(to.0, to.1)));
+            visits.push(Visit { site, entry: 2 * site, exit: 2 * site + 1 });
+        }
+        (sites, visits)
+    }
+
+    /// What is left when no small change gains any more, before anything is shaken: the things in order, negative less
+    /// one where drawn from their second place, and the way.
+    fn settled((sites, visits): &(Sites, Vec<Visit>)) -> (Vec<i64>, f64) {
+        let mut search = Search::new(sites, visits, None, u64::MAX);
+        search.settle();
+        let name = |visit: &Visit| {
+            let site = i64::from(visit.site);
+            if visit.entry > visit.exit { -site - 1 } else { site }
+        };
+        (search.route.visits().iter().map(name).collect(), search.route.length())
+    }
+
+    #[test]
+    fn a_long_stretch_drawn_from_its_far_end_is_turned_round() {
+        // Three columns of five lines, each drawn downwards: 2 x 208 px between them where 2 x 200 do. To move three
+        // lines or fewer elsewhere makes it longer.
+        let down = |x: i32| (0..5).rev().map(move |k| ((x, 12 * k + 10), (x, 12 * k)));
+        let (order, length) = settled(&lines([0, 200, 400].into_iter().flat_map(down)));
+        assert_eq!(length, 2.0 * 200.0 + 3.0 * 4.0 * 2.0, "{order:?}");
+    }
+
+    #[test]
+    fn lines_left_behind_are_drawn_on_the_way() {
+        // One, two or three lines beside the way are drawn last: all of them are moved, in their order or turned.
+        for left in 1..=3 {
+            for is_turned in [false, true] {
+                let mut beside: Vec<_> = (0..left).map(|k| ((200 + 4 * k, 6), (202 + 4 * k, 6))).collect();
+                if is_turned {
+                    beside = beside.into_iter().rev().map(|(from, to)| (to, from)).collect();
+                }
+                let row = (0..40).map(|k| ((10 * k, 0), (10 * k + 8, 0)));
+                let (order, length) = settled(&lines(row.chain(beside)));
+                // Before the last line of the row there is nothing but what was left.
+                assert!(order.iter().take(3).eq(&[0, 1, 2]), "{left}: {order:?}");
+                assert!(length < 39.0 * 2.0 + 20.0, "{left}, {is_turned}: {length} px by {order:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_ring_is_drawn_on_the_way_from_the_place_that_is_near() {
+        let mut sites = Sites::default();
+        let mut visits = Vec::new();
+        for (x, site) in (0..200).step_by(10).zip(0..) {
+            sites.push(Site::Line(at(x, 0), at(x + 8, 0)));
+            visits.push(Visit { site, entry: 2 * site, exit: 2 * site + 1 });
+        }
+        // A square beside the middle of the row, drawn last and from its far corner.
+        sites.push_ring(&[at(99, 61), at(69, 31), at(99, 1), at(129, 31)], 1);
+        visits.push(Visit { site: 20, entry: 40, exit: 40 });
+        let (order, length) = settled(&(sites, visits));
+        assert_eq!(order.iter().position(|site| *site == 20), Some(10), "{order:?}");
+        assert!(length < 18.0 * 2.0 + 3.0, "{length}");
+    }
+
+    #[test]
+    fn the_work_ends_with_the_budget() {
+        // What one thing at most takes beyond it: looking all round, and turning half of all.
+        const BEYOND: u64 = 300 + 1000;
+        let scattered = |k: i32| ((k * 7919 % 1000, k * 104_729 % 1000), (k * 31 % 1000, k * 977 % 1000));
+        let (sites, visits) = lines((0..2000).map(scattered));
+        for budget in [0, 1, 1000, 20_000, 500_000] {
+            let mut search = Search::new(&sites, &visits, None, budget);
+            let before = search.route.length();
+            search.settle();
+            search.shake();
+            let work = search.looked + search.route.moved;
+            assert!(work <= budget + BEYOND, "{work} of {budget}");
+            assert!(search.route.length() < before || budget < 1000);
+        }
+    }
 }

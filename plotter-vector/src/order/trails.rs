@@ -417,6 +417,52 @@ mod tests {
     }
 
     #[test]
+    fn of_several_ways_on_the_straightest_is_taken_and_of_equals_the_nearest() {
+        // The second stroke goes on more straight than the one before it.
+        let fork: [&[(f64, f64)]; 3] =
+            [&[(0.0, 10.0), (10.0, 10.0)], &[(10.0, 10.0), (20.0, 14.0)], &[(10.0, 10.0), (20.0, 10.5)]];
+        assert_eq!(joined(&drawing(&fork), 0.0, false), ["1 3", "2"]);
+        let gaps: [&[(f64, f64)]; 3] =
+            [&[(0.0, 10.0), (10.0, 10.0)], &[(10.45, 10.0), (20.45, 10.0)], &[(10.25, 10.0), (20.25, 10.0)]];
+        assert_eq!(joined(&drawing(&gaps), 0.5, false), ["1 3", "2"]);
+    }
+
+    #[test]
+    fn what_is_left_at_a_node_is_paired_with_as_few_sharp_turns_as_can_be() {
+        // Four rays to one side, 40 to 45 degrees apart: none goes straight on in another.
+        let ray = |degrees: f64| {
+            [
+                (50.0, 50.0),
+                (50.0 + 9.0 * libm::cos(degrees.to_radians()), 50.0 + 9.0 * libm::sin(degrees.to_radians())),
+            ]
+        };
+        let rays = [0.0, 40.0, 85.0, 130.0].map(ray);
+        let rays: Vec<&[(f64, f64)]> = rays.iter().map(|ray| &ray[..]).collect();
+        assert_eq!(joined(&drawing(&rays), 0.0, true), ["-1 4", "-2 3"]);
+    }
+
+    #[test]
+    fn strokes_of_two_letters_are_not_joined_whether_they_touch_or_nearly() {
+        for gap in [0.0, 0.3] {
+            let touching = drawing(&[&[(0.0, 0.0), (5.0, 0.0)], &[(5.0 + gap, 0.0), (9.0, 0.0)]]);
+            let mut strokes = strokes_of(&touching);
+            assert_eq!(trails(&strokes, 0.5, true).len(), 1);
+            (strokes[0].letter, strokes[1].letter) = (1, 2);
+            assert_eq!(trails(&strokes, 0.5, true).len(), 2, "{gap}");
+        }
+    }
+
+    #[test]
+    fn a_short_stroke_is_not_closed_over_the_gap_and_a_long_one_is() {
+        let hook = |size: f64| drawing(&[&[(0.0, 0.0), (size, 0.0), (size, size), (0.0, 0.4)]]);
+        assert_eq!(joined(&hook(1.0), 0.5, true), ["1"]);
+        let round = [(0.0, 0.0), (3.0, -3.0), (6.0, 0.0), (3.0, 3.0), (0.0, 0.4)];
+        assert_eq!(joined(&drawing(&[&round]), 0.5, true), ["1"]);
+        let nearly = [(0.4, 0.0), (9.0, 0.0), (9.0, 9.0), (-9.0, 9.0), (-9.0, 0.0), (0.0, 0.0)];
+        assert_eq!(joined(&drawing(&[&nearly]), 0.5, true), ["o 1"]);
+    }
+
+    #[test]
     fn four_sides_of_a_square_are_one_ring() {
         let square = drawing(&[
             &[(0.0, 0.0), (9.0, 0.0)],

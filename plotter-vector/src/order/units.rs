@@ -111,3 +111,21 @@ fn ways(strokes: &[Stroke<'_>], trail: &Trail) -> Vec<Way> {
     let starts = (0..places).map(|k| k * ring / places.max(1));
     starts.filter_map(|start| vertices.get(start).map(|at| way(*at, *at, start, false))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Drawing, Lettering, Order, PxPoint};
+
+    #[test]
+    fn each_letter_is_drawn_from_the_end_that_makes_the_travel_of_its_block_least() {
+        // Five L, 12 px high and 11 px apart, each drawn from the right end of its foot.
+        let mut drawing = Drawing::new(100, 50);
+        for x in [10.0, 21.0, 32.0, 43.0, 54.0] {
+            drawing.push([(x + 8.0, 32.0), (x, 32.0), (x, 20.0)].map(|(x, y)| PxPoint::new(x, y)));
+        }
+        let order = Order { lettering: Some(Lettering::default()), ..Order::default() };
+        let ordered = order.apply(&drawing);
+        // From top to top, and from foot to foot, in turn.
+        assert_eq!((ordered.strokes().len(), ordered.pen_up_px()), (5, 4.0 * 11.0));
+    }
+}

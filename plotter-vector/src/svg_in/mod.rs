@@ -6,6 +6,7 @@
 mod arc;
 mod curve;
 mod dash;
+mod font_size;
 #[cfg(feature = "svg-text")]
 mod fonts;
 mod ink;
@@ -337,14 +338,11 @@ fn parse(
     draw_whole: Option<&dyn Fn(&usvg::Text) -> bool>,
 ) -> Result<SvgDrawing, SvgError> {
     let limit = survey::MAX_ELEMENTS;
-    // Document types are common: entities in them are resolved, within the limits of the XML parser, but not those
-    // in other files.
-    let nodes_limit = u32::try_from(limit).unwrap_or(u32::MAX);
-    let xml = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit, ..Default::default() };
-    let document = roxmltree::Document::parse_with_options(text, xml).map_err(|error| match error {
-        roxmltree::Error::NodesLimitReached => SvgError::TooManyElements { limit },
-        error => SvgError::Xml { reason: error.to_string() },
-    })?;
+    let mut document = document_of(text)?;
+    let numbered = font_size::with_numbers(text, &document);
+    if let Some(text) = &numbered {
+        document = document_of(text)?;
+    }
     let survey = Survey::new(&document, draw_whole.is_some())?;
     let tree = usvg::Tree::from_xmltree(&document, parser).map_err(|error| match error {
         usvg::Error::InvalidSize => SvgError::NoSize,
@@ -383,6 +381,18 @@ fn parse(
         pens: ink.pens,
         left_out,
         missing_fonts: SvgMissingFonts::default(),
+    })
+}
+
+/// The elements of a file. Document types are common: entities in them are resolved, within the limits of the XML parser, but not
+/// those in other files.
+fn document_of(text: &str) -> Result<roxmltree::Document<'_>, SvgError> {
+    let limit = survey::MAX_ELEMENTS;
+    let nodes_limit = u32::try_from(limit).unwrap_or(u32::MAX);
+    let xml = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit, ..Default::default() };
+    roxmltree::Document::parse_with_options(text, xml).map_err(|error| match error {
+        roxmltree::Error::NodesLimitReached => SvgError::TooManyElements { limit },
+        error => SvgError::Xml { reason: error.to_string() },
     })
 }
 
