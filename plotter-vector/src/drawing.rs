@@ -305,7 +305,8 @@ impl Drawing {
     #[must_use]
     pub fn pen_up_px(&self) -> f64 {
         let travel = |(from, to): (&[PxPoint], &[PxPoint])| Some(from.last()?.distance(*to.first()?));
-        self.strokes().zip(self.strokes().skip(1)).filter_map(travel).sum()
+        // A sum of no numbers is -0, which would be shown.
+        self.strokes().zip(self.strokes().skip(1)).filter_map(travel).fold(0.0, |sum, px| sum + px)
     }
 
     /// What selects the pen of a stroke, where it is another one than before.
@@ -483,6 +484,13 @@ impl Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_single_stroke_has_no_travel_and_no_sign() {
+        let mut drawing = Drawing::new(2, 2);
+        drawing.push([PxPoint::new(0.5, 0.5), PxPoint::new(1.5, 0.5)]);
+        assert_eq!(format!("{:.1}", drawing.pen_up_px()), "0.0");
+    }
 
     #[test]
     fn a_dot_is_drawn_from_its_place_to_its_place() {

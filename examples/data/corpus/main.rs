@@ -1,8 +1,8 @@
 //! Draws pictures of which every line is known, so that a vectorization of them can be judged.
 //!
 //! Each `NAME.png` comes with a `NAME.json` that holds the strokes it was drawn from, their pen widths and the points
-//! where they cross or meet. Look at the pictures where tracers usually fail: lines that cross at small angles, tiny
-//! marks, lettering, grey edges, and the noise of a scan. The second form writes a technical sheet of any size row by
+//! where they cross or meet: `judge` compares with it. Look at the pictures where tracers usually fail: lines that cross at small
+//! angles, tiny marks, lettering, grey edges, and the noise of a scan. The second form writes a technical sheet of any size row by
 //! row, to measure time and memory:
 //!
 //! ```text
@@ -12,18 +12,8 @@
 //! cargo run --release --example draw_corpus -- --sheet a4 --dpi 600 --grey a4.pgm
 //! ```
 
-mod junctions;
-mod letters;
-mod marks;
-mod pictures;
-mod random;
-mod raster;
-mod sheet;
-mod strokes;
-mod technical;
-mod truth;
-
 use clap::Parser;
+use plotter_examples::corpus::{self, Sheet, Size, Truth};
 use std::fs::{File, create_dir_all};
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
@@ -36,7 +26,7 @@ struct Arguments {
     out: Option<PathBuf>,
     /// Draw one technical sheet of this size instead of the pictures
     #[arg(long, value_enum)]
-    sheet: Option<sheet::Size>,
+    sheet: Option<Size>,
     /// Pixels per inch of the sheet
     #[arg(long, default_value_t = 600, value_parser = clap::value_parser!(u32).range(50..=2400), requires = "sheet")]
     dpi: u32,
@@ -48,13 +38,13 @@ struct Arguments {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments = Arguments::parse();
     match arguments.sheet {
-        None => corpus(&arguments.out.unwrap_or_else(|| PathBuf::from("target/corpus"))),
+        None => pictures(&arguments.out.unwrap_or_else(|| PathBuf::from("target/corpus"))),
         Some(size) => {
             let out = arguments.out.unwrap_or_else(|| {
                 PathBuf::from(format!("target/sheet.{}", if arguments.grey { "pgm" } else { "pbm" }))
             });
             let mut file = BufWriter::with_capacity(1 << 20, File::create(out)?);
-            let sheet = sheet::Sheet::new(size, arguments.dpi);
+            let sheet = Sheet::new(size, arguments.dpi);
             if arguments.grey {
                 sheet.write_pgm(&mut file)?
             } else {
@@ -65,12 +55,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 }
 
-fn corpus(directory: &Path) -> Result<(), Box<dyn std::error::Error>> {
+fn pictures(directory: &Path) -> Result<(), Box<dyn std::error::Error>> {
     create_dir_all(directory)?;
-    for picture in pictures::all() {
+    for picture in corpus::all() {
         picture.draw().save(directory.join(format!("{}.png", picture.name)))?;
         let file = BufWriter::new(File::create(directory.join(format!("{}.json", picture.name)))?);
-        serde_json::to_writer(file, &truth::Truth::of(&picture))?;
+        serde_json::to_writer(file, &Truth::of(&picture))?;
     }
     Ok(())
 }

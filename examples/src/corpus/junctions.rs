@@ -1,6 +1,6 @@
 //! Where strokes cross or meet, from their geometry.
 
-use crate::strokes::{At, Stroke};
+use super::strokes::{At, Stroke};
 
 /// Points nearer to each other than this are one, px: ten times what rounding the points can move a crossing of
 /// lines that meet at 10 degrees.
@@ -92,7 +92,7 @@ fn meeting(a: &Piece, b: &Piece, meetings: &mut Vec<At>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strokes::{Look, Picture};
+    use crate::corpus::strokes::{Look, Picture};
 
     fn junctions(draw: impl Fn(&mut Picture)) -> Vec<(f64, f64, u32)> {
         let mut picture = Picture::new("test", (100, 100), Look::Ink, 3.0);

@@ -1,6 +1,6 @@
 //! Marks that a tracer is tempted to drop as dirt, and strokes without a middle of even width.
 
-use crate::strokes::{Look, Picture, arc, polar};
+use super::strokes::{Look, Picture, arc, polar};
 use core::f64::consts::PI;
 
 /// Dots, short dashes, crosses, tiny circles and commas of a 3 px pen.

@@ -1,6 +1,6 @@
 //! Single-line lettering on a grid 4 wide and 6 high, as with a stencil.
 
-use crate::strokes::At;
+use super::strokes::At;
 
 /// Height of a capital in units of the grid.
 pub(crate) const HEIGHT: f64 = 6.0;

@@ -1,6 +1,6 @@
 //! The strokes of a picture: lines, circles and curves as dense polylines.
 
-use crate::letters;
+use super::letters;
 use core::f64::consts::{PI, TAU};
 
 /// A point, px: x to the right, y down, whole numbers are pixel centres.
@@ -41,8 +41,9 @@ pub(crate) enum Look {
 
 /// A picture and all that is known about it.
 #[derive(Debug)]
-pub(crate) struct Picture {
-    pub(crate) name: &'static str,
+pub struct Picture {
+    /// Its name, and that of its files.
+    pub name: &'static str,
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(crate) look: Look,

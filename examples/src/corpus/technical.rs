@@ -1,7 +1,7 @@
 //! A cover plate in two views, with dimensions, centre lines, hatching, frame and title block.
 
-use crate::letters;
-use crate::strokes::{At, Look, Picture, arc, polar, turned};
+use super::letters;
+use super::strokes::{At, Look, Picture, arc, polar, turned};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Length and half the breadth of an open arrow head, px.
@@ -195,7 +195,7 @@ fn arrow(picture: &mut Picture, tip: At, angle_rad: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::junctions;
+    use crate::corpus::junctions;
 
     #[test]
     fn no_line_is_drawn_twice() {

@@ -1,13 +1,15 @@
 //! The pictures, by what they try.
 
-use crate::strokes::{At, BLACK, Look, Picture, arc, curve, polar, turned};
-use crate::{marks, technical};
+use super::strokes::{At, BLACK, Look, Picture, arc, curve, polar, turned};
+use super::{marks, technical};
 use core::f64::consts::{PI, TAU};
 
 const RED: [u8; 3] = [204, 26, 26];
 const BLUE: [u8; 3] = [26, 64, 204];
 
-pub(crate) fn all() -> Vec<Picture> {
+/// All of them.
+#[must_use]
+pub fn all() -> Vec<Picture> {
     vec![
         rectangle(),
         flag(),
@@ -237,7 +239,7 @@ fn colours() -> Picture {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::junctions;
+    use crate::corpus::junctions;
 
     #[test]
     fn every_picture_has_strokes_inside_its_sheet() {

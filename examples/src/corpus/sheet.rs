@@ -3,14 +3,15 @@
 //! Every row of pixels is made from the few lines and circles that cross it, so that two thousand million pixels need
 //! no more memory than one row. A line of a round pen is convex: it covers one run of pixels in a row.
 
-use crate::letters;
-use crate::random::Random;
+use super::letters;
+use super::random::Random;
 use clap::ValueEnum;
 use core::f64::consts::{FRAC_PI_4, TAU};
 use std::io::{self, Write};
 
+/// Size of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Size {
+pub enum Size {
     /// 210 x 297 mm
     A4,
     /// 594 x 841 mm
@@ -37,8 +38,9 @@ enum Shape {
     Ring { centre: (f64, f64), inner: f64, outer: f64 },
 }
 
+/// A technical sheet of any size.
 #[derive(Debug)]
-pub(crate) struct Sheet {
+pub struct Sheet {
     width: u32,
     height: u32,
     px_per_mm: f64,
@@ -104,7 +106,9 @@ impl Shape {
 }
 
 impl Sheet {
-    pub(crate) fn new(size: Size, dpi: u32) -> Self {
+    /// One of this size at so many pixels an inch.
+    #[must_use]
+    pub fn new(size: Size, dpi: u32) -> Self {
         let (width_mm, height_mm) = match size {
             Size::A4 => (210.0, 297.0),
             Size::A1 => (594.0, 841.0),
@@ -123,7 +127,7 @@ impl Sheet {
     }
 
     /// Black and white, 8 pixels a byte.
-    pub(crate) fn write_pbm(&self, out: &mut impl Write) -> io::Result<()> {
+    pub fn write_pbm(&self, out: &mut impl Write) -> io::Result<()> {
         write!(out, "P4\n{} {}\n", self.width, self.height)?;
         let mut row = vec![0_u8; usize::try_from(self.width.div_ceil(8)).unwrap_or(0)];
         let mut active = Active::default();
@@ -142,7 +146,7 @@ impl Sheet {
     }
 
     /// Grey with smooth edges and the noise of paper.
-    pub(crate) fn write_pgm(&self, out: &mut impl Write) -> io::Result<()> {
+    pub fn write_pgm(&self, out: &mut impl Write) -> io::Result<()> {
         /// Levels within one row on which the cover of its pixels is measured.
         const LEVELS: u32 = 4;
         write!(out, "P5\n{} {}\n255\n", self.width, self.height)?;

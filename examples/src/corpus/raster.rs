@@ -4,8 +4,8 @@
 //! points in each pixel, kept as the 64 bits of one word. A pen of 1 px draws one pixel per column where the line is
 //! flat and one per row where it is steep, as thinned line art looks.
 
-use crate::random::Random;
-use crate::strokes::{At, Look, Picture, Stroke};
+use super::random::Random;
+use super::strokes::{At, Look, Picture, Stroke};
 use image::{DynamicImage, GrayImage, Luma};
 use image::{Rgb, RgbImage};
 
@@ -20,7 +20,9 @@ const NOISE: f64 = 8.0;
 const SPECKLES: f64 = 0.005;
 
 impl Picture {
-    pub(crate) fn draw(&self) -> DynamicImage {
+    /// Its pixels.
+    #[must_use]
+    pub fn draw(&self) -> DynamicImage {
         match self.look {
             Look::Ink => {
                 let mut sheet = GrayImage::from_pixel(self.width, self.height, Luma([255]));
@@ -266,7 +268,7 @@ fn thin(points: &[At]) -> Vec<At> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strokes::arc;
+    use crate::corpus::strokes::arc;
     use core::f64::consts::TAU;
 
     fn text(picture: &Picture) -> String {

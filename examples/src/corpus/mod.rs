@@ -1,0 +1,17 @@
+//! Pictures of which every line is known, to judge a vectorization by: what `draw_corpus` draws.
+
+mod junctions;
+mod letters;
+mod marks;
+mod pictures;
+mod random;
+mod raster;
+mod sheet;
+mod strokes;
+mod technical;
+mod truth;
+
+pub use pictures::all;
+pub use sheet::{Sheet, Size};
+pub use strokes::Picture;
+pub use truth::{TrueLine, Truth};
