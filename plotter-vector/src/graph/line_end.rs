@@ -36,22 +36,27 @@ pub(super) fn tail(
     sites: &[Site],
     had_branches: bool,
 ) -> usize {
-    let width_px = typical_width_px(sites);
+    let mut pixels = pixels.peekable();
+    let Some(tip) = pixels.peek().copied() else { return 0 };
+    let is_cut = scan.rim_px(tip.into()) <= AT_RIM_PX;
+    // Of what the rim cuts at an acute angle much is narrower than the line.
+    let width_px = typical_width_px(sites.get(if is_cut { sites.len() / 2 } else { 0 }..).unwrap_or(&[]));
+    if width_px <= scan.thin_px() {
+        return 0;
+    }
     let half_px = 0.5 * width_px;
     let radius_px = |at: Pixel| scan.radius_px(at.into(), half_px + 1.0);
-    let mut pixels = pixels.peekable();
-    let Some(tip) = pixels.peek().copied().filter(|_| width_px > scan.thin_px()) else { return 0 };
     let is_round = radius_px(tip) >= 0.5 * half_px;
     if is_round && !had_branches {
         return 0;
     }
-    let radii = if scan.rim_px(tip.into()) <= AT_RIM_PX { MOST_CUT_RADII } else { MOST_RADII };
+    let radii = if is_cut { MOST_CUT_RADII } else { MOST_RADII };
     let least_px = half_px - (0.2 * half_px).max(0.75);
     let is_near = |at: &Pixel| PxPoint::from(*at).distance(tip.into()) <= radii * half_px + 1.0;
     let corner = || pixels.take_while(is_near).position(|at| radius_px(at) >= least_px);
     let Some(corner) = (if is_round { Some(0) } else { corner() }) else { return 0 };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "half a width below 200 px")]
-    let margin = libm::ceil(half_px) as usize;
+    let margin = libm::ceil((half_px - 2.0).max(0.0)) as usize;
     // A short line shows nothing better.
     if corner + margin + 8 <= sites.len() { corner + margin } else { 0 }
 }
@@ -62,15 +67,18 @@ pub(super) fn line_end(scan: Scan<'_>, arm: &Arm) -> (PxPoint, bool) {
     let back = (-dx, -dy);
     let longest_px = 3.0 * arm.width_px + 4.0 + start_px(arm);
     let rim_px = scan.to_rim_px(arm.origin, back);
-    if rim_px <= longest_px {
-        let rim = arm.origin.along(back, rim_px);
-        let reach_px = scan.reach_px(arm.origin, back, longest_px);
-        if reach_px + 1.0 >= rim_px && scan.is_cut_at(rim, back, LEAST_CUT * arm.width_px) {
-            return (rim, true);
-        }
+    let reach_px = scan.reach_px(arm.origin, back, longest_px);
+    let rim = arm.origin.along(back, rim_px);
+    if reach_px + 1.0 >= rim_px && scan.is_cut_at(rim, back, LEAST_CUT * arm.width_px) {
+        return (rim, true);
     }
-    let reach_px = scan.reach_along_px(longest_px, |t| arm.at(-t));
-    (arm.at(-(reach_px - 0.5 * arm.width_px).max(0.0)), false)
+    let end = |reach_px: f64| arm.at(-(reach_px - 0.5 * arm.width_px).max(0.0));
+    let straight = end(reach_px);
+    // A line that bends may leave the ink beside the straight way.
+    if scan.is_ink_around(straight) {
+        return (straight, false);
+    }
+    (end(scan.reach_along_px(longest_px, |t| arm.at(-t))), false)
 }
 
 /// How far the fitted part of an arm begins from its tip, px.

@@ -249,12 +249,17 @@ impl Scan<'_> {
         while reach + STEP_PX <= limit_px {
             let next = reach + STEP_PX;
             let at = way(next);
-            if !self.is_ink(libm::floor(at.x), libm::floor(at.y)) {
+            if !self.is_ink_around(at) {
                 break;
             }
             reach = next;
         }
         reach
+    }
+
+    /// Whether the pixel that a place lies in is ink.
+    pub(super) fn is_ink_around(&self, at: PxPoint) -> bool {
+        self.is_ink(libm::floor(at.x), libm::floor(at.y))
     }
 
     /// How far a place is from the rim of the picture, px; negative beyond it.

@@ -182,9 +182,7 @@ mod tests {
 
     #[test]
     fn a_branch_goes_that_sticks_out_less_than_half_its_lines_width() {
-        for (width, out, lines) in
-            [(13, 4, 2), (13, 5, 2), (13, 9, 3), (9, 3, 2), (9, 7, 3), (5, 2, 2), (5, 4, 3)]
-        {
+        for (width, out, lines) in [(13, 4, 2), (13, 9, 3), (9, 3, 2), (9, 7, 3), (5, 2, 2), (5, 4, 3)] {
             assert_eq!(left(width, out, true), lines, "{width} px wide, {out} px out");
         }
     }
