@@ -66,7 +66,7 @@ pub(super) fn line_end(scan: Scan<'_>, arm: &Arm) -> (PxPoint, bool) {
     let (dx, dy) = arm.direction;
     let back = (-dx, -dy);
     let longest_px = 3.0 * arm.width_px + 4.0 + start_px(arm);
-    let rim_px = scan.to_rim_px(arm.origin, back);
+    let rim_px = scan.rim_along_px(arm.origin, back);
     let reach_px = scan.reach_px(arm.origin, back, longest_px);
     let rim = arm.origin.along(back, rim_px);
     if reach_px + 1.0 >= rim_px && scan.is_cut_at(rim, back, LEAST_CUT * arm.width_px) {

@@ -274,7 +274,7 @@ impl Scan<'_> {
     }
 
     /// How far from a place the rim of the picture is in a direction, px.
-    pub(super) fn to_rim_px(&self, from: PxPoint, (dx, dy): (f64, f64)) -> f64 {
+    pub(super) fn rim_along_px(&self, from: PxPoint, (dx, dy): (f64, f64)) -> f64 {
         let [top, bottom] = self.rows().map(f64::from);
         let side = |at: f64, d: f64, low: f64, high: f64| {
             if d == 0.0 { f64::INFINITY } else { (if d > 0.0 { high } else { low } - at) / d }
