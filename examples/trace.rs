@@ -5,7 +5,8 @@
 //! wander off slow curves and leave a pixel open where lines meet; ours stay within the promised error and close.
 //!
 //! The picture is read by rows and never held whole, so a sheet may have any size: look at the last line of an A1 scan,
-//! whose memory is that of a small picture. Only `--pens` needs all of it at once.
+//! whose memory is that of a small picture. Only `--pens` needs all of it at once. Ctrl-C stops it between two bands, and
+//! nothing is written.
 //!
 //! Without a picture it traces the flag that comes with the examples:
 //!
@@ -22,8 +23,8 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    Overlay, at, is_standard, overlay_png, overlay_step, print, read_file, read_input, run, vectorizer,
-    write_output,
+    INTERRUPTED, Interrupt, Overlay, at, is_standard, overlay_png, overlay_step, print, read_file,
+    read_input, run, vectorizer, write_output,
 };
 use plotter_motion::gcode::{PenControl, WriteOptions};
 use plotter_motion::hpgl::UNITS_PER_MM;
@@ -281,11 +282,15 @@ struct PenReport<'a> {
 }
 
 fn main() -> ExitCode {
-    run("trace", || trace(&Arguments::parse()))
+    let mut stopped = false;
+    let code = run("trace", || trace(&Arguments::parse(), &mut stopped));
+    if stopped { INTERRUPTED.into() } else { code }
 }
 
-fn trace(arguments: &Arguments) -> Result<(), String> {
+/// Traces and writes; `stopped` says that Ctrl-C came before anything was written.
+fn trace(arguments: &Arguments, stopped: &mut bool) -> Result<(), String> {
     let settings = settings(arguments)?;
+    let interrupt = Interrupt::new()?;
     let prints_file = prints_file(arguments, &settings)?;
     let name = match arguments.image.as_deref() {
         Some(path) if is_standard(path) => "standard input".into(),
@@ -294,22 +299,30 @@ fn trace(arguments: &Arguments) -> Result<(), String> {
     let here = |error: &dyn std::fmt::Display| format!("{name}: {error}");
     let work = || match (&settings.pens, &arguments.image) {
         (Some(pens), path) => {
-            in_colour(&settings, pens, path.as_deref(), arguments).map_err(|error| here(&error))
+            in_colour(&settings, pens, path.as_deref(), arguments, interrupt).map_err(|error| here(&error))
         }
         (None, Some(path)) if path.is_file() => {
             let file = File::open(path).map_err(|error| at(path, &format!("cannot be read: {error}")))?;
-            by_rows(&settings, file, arguments).map_err(|error| here(&error))
+            by_rows(&settings, file, arguments, interrupt).map_err(|error| here(&error))
         }
         // What cannot be read twice, as a pipe, is kept.
         (None, Some(path)) => {
-            by_rows(&settings, Cursor::new(picture_bytes(path)?), arguments).map_err(|error| here(&error))
+            let bytes = Cursor::new(picture_bytes(path)?);
+            by_rows(&settings, bytes, arguments, interrupt).map_err(|error| here(&error))
         }
-        (None, None) => by_rows(&settings, Cursor::new(FLAG), arguments).map_err(|error| here(&error)),
+        (None, None) => {
+            by_rows(&settings, Cursor::new(FLAG), arguments, interrupt).map_err(|error| here(&error))
+        }
     };
     let traced = match &settings.threads {
         Some(pool) => pool.install(work),
         None => work(),
-    }?;
+    };
+    if !interrupt.may_write() {
+        *stopped = true;
+        return Err(format!("{name}: stopped; nothing is written"));
+    }
+    let traced = traced?;
     let drawing = &traced.drawing;
     let errors: Option<&ErrorReport> = traced.errors.as_ref().map(|errors| &errors.report);
     let ours = settings.vectorizer.algorithm == Algorithm::Ours;
@@ -414,13 +427,18 @@ fn check_size(arguments: &Arguments, drawing: &Drawing) -> Result<(), String> {
 }
 
 /// One pen, told by grey level: the file is read by rows, as often as it takes.
-fn by_rows<R: Read + Seek>(settings: &Settings, file: R, arguments: &Arguments) -> Result<Traced, String> {
+fn by_rows<R: Read + Seek>(
+    settings: &Settings,
+    file: R,
+    arguments: &Arguments,
+    interrupt: Interrupt,
+) -> Result<Traced, String> {
     let start = Instant::now();
     let mut scan = Scan::new(file).map_err(|error| error.to_string())?;
     let bar = progress_bar();
     let mut report = |done: f64| {
         bar.set_position(steps(done));
-        ControlFlow::Continue(())
+        go_on(interrupt)
     };
     let (vectorizer, mut progress) = (&settings.vectorizer, Progress::new(&mut report));
     let sheet = if arguments.no_errors {
@@ -440,6 +458,10 @@ fn by_rows<R: Read + Seek>(settings: &Settings, file: R, arguments: &Arguments) 
         picture,
         time,
     })
+}
+
+fn go_on(interrupt: Interrupt) -> ControlFlow<()> {
+    if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 fn progress_bar() -> ProgressBar {
@@ -484,6 +506,7 @@ fn in_colour(
     pens: &Pens,
     path: Option<&Path>,
     arguments: &Arguments,
+    interrupt: Interrupt,
 ) -> Result<Traced, String> {
     let read = path.map(picture_bytes).transpose()?;
     let colour = decode_colour(read.as_deref().unwrap_or(FLAG)).map_err(|error| match error {
@@ -498,7 +521,7 @@ fn in_colour(
     let bar = progress_bar();
     let mut report = |done: f64| {
         bar.set_position(steps(done));
-        ControlFlow::Continue(())
+        go_on(interrupt)
     };
     let found =
         settings.vectorizer.vectorize_colour_with_progress(&colour, pens, &mut Progress::new(&mut report));

@@ -161,7 +161,7 @@ fn bad_pictures_get_one_line_and_blank_ones_an_empty_drawing() {
         complaint("trace", &[&file("cut.pgm", b"P5 90000 90000 255\n")])
             .contains("cut off at row 1 of 90000: it ends here; no row of it is good")
     );
-    let claims = "a picture of 1000000000 x 1000000000 px is too large: at most 131072 px a side; scan with";
+    let claims = "a picture of 1000000000 x 1000000000 px is too large: at most 131072 px wide and ";
     assert!(complaint("trace", &[&file("huge.pbm", b"P4 1000000000 1000000000\n")]).contains(claims));
     let folder = directory.path().to_str().unwrap();
     assert!(complaint("trace", &[folder]).contains("this is a folder: name a file in it"));
@@ -682,4 +682,48 @@ fn pixels_too_small_for_the_plotter_are_refused_or_told() {
     let dot = folder.gray((20, 20), &[([9, 9, 2, 2], 0)]);
     let output = run_example("trace", &[&dot, "--mm-per-px", "0.001", "--hpgl", &plt]);
     assert!(output.status.success() && output.stderr.is_empty());
+}
+
+/// Ctrl-C comes while the picture is still on its way through a pipe, so that no clock decides what is met.
+#[cfg(target_os = "linux")]
+#[test]
+fn ctrl_c_stops_it_and_nothing_is_written() {
+    use std::io::{Read as _, Write as _};
+    use std::process::{Command, Stdio};
+    use std::time::Duration;
+    /// Of the signals in `/proc`'s mask: SIGINT is the second.
+    const SIGINT_BIT: u64 = 1 << 1;
+
+    let directory = tempfile::tempdir().unwrap();
+    let svg = directory.path().join("a.svg");
+    let test = std::env::current_exe().unwrap();
+    let built = test.parent().and_then(std::path::Path::parent).unwrap().join("examples/trace");
+    let mut child = Command::new(built)
+        .args(["-", "--svg", svg.to_str().unwrap()])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut input = child.stdin.take().unwrap();
+    input.write_all(b"P1 8 6\n00000000\n01111110\n").unwrap();
+    let status = format!("/proc/{}/status", child.id());
+    let waits = || {
+        let text = std::fs::read_to_string(&status).unwrap();
+        let mask = text.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap().trim().to_owned();
+        u64::from_str_radix(&mask, 16).unwrap() & SIGINT_BIT != 0
+    };
+    while !waits() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    // The handler has a thread of its own.
+    std::thread::sleep(Duration::from_millis(200));
+    input.write_all(b"01000010\n01000010\n01111110\n00000000\n").unwrap();
+    drop(input);
+    let mut said = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{said}");
+    assert!(said.contains("standard input: stopped; nothing is written"), "{said}");
+    assert!(!svg.exists());
 }

@@ -1,6 +1,6 @@
 //! [`DecodeError`]: why a file is not a picture that can be traced.
 
-use crate::{MAX_SIDE_PX, SizeError};
+use crate::{MAX_SHEET_ROWS, MAX_SIDE_PX, SizeError};
 use core::fmt;
 
 /// Why a file is not a picture that can be traced.
@@ -26,7 +26,7 @@ pub enum DecodeError {
     },
     /// Larger than a picture that is held whole may be.
     TooLarge(SizeError),
-    /// A side longer than [`MAX_SIDE_PX`], which holds for reading by rows too.
+    /// More than [`MAX_SIDE_PX`] columns or [`MAX_SHEET_ROWS`] rows, which holds for reading by rows too.
     TooLong {
         /// Width, px.
         width: u32,
@@ -76,8 +76,8 @@ impl fmt::Display for DecodeError {
             Self::TooLarge(error) => error.fmt(f),
             Self::TooLong { width, height } => write!(
                 f,
-                "a picture of {width} x {height} px is too large: at most {MAX_SIDE_PX} px a side; scan with fewer \
-                 dots per inch or cut it into sheets"
+                "a picture of {width} x {height} px is too large: at most {MAX_SIDE_PX} px wide and {MAX_SHEET_ROWS} px high; \
+                 turn a wide one by 90 degrees, scan with fewer dots per inch, or cut it into sheets"
             ),
             Self::TooMuchMemory { bytes } => write!(
                 f,

@@ -88,10 +88,10 @@ pub use pipeline::{Algorithm, MAX_INK_PIXELS, Mode, VectorizeError, Vectorized, 
 pub use pre_elimination::PreElimination;
 pub use progress::{Cancelled, Progress};
 pub use row_threshold::{RowThreshold, Survey};
-pub use rows::{BitmapRows, Depth, GrayRows, Row, RowSource};
+pub use rows::{BitmapRows, Depth, GrayRows, MAX_SHEET_ROWS, Row, RowSource};
 #[cfg(feature = "image")]
 pub use scan::Scan;
-pub use sheet::{SheetError, SheetErrors, TracedSheet};
+pub use sheet::{MAX_LINE_PIXELS, MAX_SHEET_STROKES, SheetError, SheetErrors, TracedSheet};
 pub use simplify::{Bounded, DynamicThreshold, MAX_REACH_PX, Simplify};
 pub use speckle::{Despeckled, context_rows, despeckle, smallest_mark_px};
 pub use svg::{svg, svg_in_colour};

@@ -16,19 +16,20 @@ pub(crate) struct Rolling<T> {
     first: u32,
     /// One past the last row.
     end: u32,
+    /// Items that room is taken for at once.
+    room: usize,
     items: Vec<T>,
 }
 
 impl<T: Copy + Default> Rolling<T> {
     /// Before the first row of a picture of `width` px.
     pub(crate) fn new(width: u32, per_row: usize) -> Self {
-        Self { width, per_row, first: 0, end: 0, items: Vec::new() }
+        Self { width, per_row, first: 0, end: 0, room: 0, items: Vec::new() }
     }
 
     /// With room for so many rows: what grows leaves holes in the memory.
-    pub(crate) fn with_room(mut self, rows: u32) -> Self {
-        self.items.reserve_exact(self.per_row * rows as usize);
-        self
+    pub(crate) fn with_room(self, rows: u32) -> Self {
+        Self { room: self.per_row * rows as usize, ..self }
     }
 
     /// One past the last row that came.
@@ -41,7 +42,8 @@ impl<T: Copy + Default> Rolling<T> {
         let start = self.items.len();
         if self.items.capacity() < start + self.per_row {
             // By an eighth, not to twice as much: a sheet has hundreds of rows on their way.
-            self.items.reserve_exact((self.per_row * ROWS_MORE).max(start / 8));
+            let more = (self.per_row * ROWS_MORE).max(start / 8);
+            self.items.reserve_exact(more.max(self.room.saturating_sub(start)));
         }
         self.items.resize(start + self.per_row, T::default());
         self.end += 1;
@@ -53,15 +55,18 @@ impl<T: Copy + Default> Rolling<T> {
         self.next_row().iter_mut().zip(row).for_each(|(to, from)| *to = *from);
     }
 
-    /// Forgets all rows above this one.
+    /// Forgets all rows above this one, and gives back their memory: other steps work before as many rows are here again.
     pub(crate) fn forget_before(&mut self, row: u32) {
         let row = row.clamp(self.first, self.end);
-        self.items.drain(..(row - self.first) as usize * self.per_row);
+        if row > self.first {
+            self.items.drain(..(row - self.first) as usize * self.per_row);
+            self.items.shrink_to_fit();
+        }
         self.first = row;
     }
 
     /// The items of some rows that are still here.
-    fn rows(&self, rows: &Range<u32>) -> &[T] {
+    pub(crate) fn rows(&self, rows: &Range<u32>) -> &[T] {
         let at = |row: u32| row.saturating_sub(self.first) as usize * self.per_row;
         self.items.get(at(rows.start)..at(rows.end)).unwrap_or(&[])
     }

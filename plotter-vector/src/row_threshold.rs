@@ -2,7 +2,9 @@
 
 use crate::histogram::half_covered;
 use crate::light::{Light, TileRow, Tiles};
-use crate::{Gray, Histogram, MAX_SIDE_PX, Polarity, Row, SizeError, Split, Threshold, ThresholdMethod};
+use crate::{
+    Gray, Histogram, MAX_SHEET_ROWS, MAX_SIDE_PX, Polarity, Row, SizeError, Split, Threshold, ThresholdMethod,
+};
 
 /// The first pass over a picture, row by row from the top: what must be known of all of it before the first pixel
 /// can be told.
@@ -54,9 +56,9 @@ impl Survey {
     /// Before the first row of a picture of `width` × `height` px, however many pixels that are.
     ///
     /// # Errors
-    /// [`SizeError`] above [`MAX_SIDE_PX`].
+    /// [`SizeError`] above [`MAX_SIDE_PX`] columns or [`MAX_SHEET_ROWS`] rows.
     pub fn new(threshold: Threshold, width: u32, height: u32) -> Result<Self, SizeError> {
-        if width > MAX_SIDE_PX || height > MAX_SIDE_PX {
+        if width > MAX_SIDE_PX || height > MAX_SHEET_ROWS {
             return Err(SizeError { width, height });
         }
         Ok(Self::checked(threshold, width, height))
@@ -396,8 +398,12 @@ mod tests {
     #[test]
     fn only_the_sides_of_a_stream_are_limited() {
         let new = |width, height| Survey::new(Threshold::default(), width, height);
-        assert!(new(MAX_SIDE_PX, MAX_SIDE_PX).is_ok());
-        assert_eq!(new(5, MAX_SIDE_PX + 1).err(), Some(SizeError { width: 5, height: MAX_SIDE_PX + 1 }));
+        assert!(new(MAX_SIDE_PX, MAX_SHEET_ROWS).is_ok());
+        assert_eq!(new(MAX_SIDE_PX + 1, 5).err(), Some(SizeError { width: MAX_SIDE_PX + 1, height: 5 }));
+        assert_eq!(
+            new(5, MAX_SHEET_ROWS + 1).err(),
+            Some(SizeError { width: 5, height: MAX_SHEET_ROWS + 1 })
+        );
     }
 
     #[test]

@@ -5,6 +5,10 @@
 
 use crate::{Bitmap, DecodeError, Gray};
 
+/// Most rows of a picture that comes row by row: 2²², or 177 m at 600 dots per inch. Down there a place is still known to a
+/// thousand millionth of a pixel.
+pub const MAX_SHEET_ROWS: u32 = 1 << 22;
+
 /// What the pixels of a row are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Depth {
@@ -49,7 +53,7 @@ pub trait RowSource {
     /// Number of columns, at most [`MAX_SIDE_PX`](crate::MAX_SIDE_PX).
     fn width(&self) -> u32;
 
-    /// Number of rows, at most [`MAX_SIDE_PX`](crate::MAX_SIDE_PX).
+    /// Number of rows, at most [`MAX_SHEET_ROWS`].
     fn height(&self) -> u32;
 
     /// What all rows are.

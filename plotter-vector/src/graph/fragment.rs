@@ -52,7 +52,8 @@ pub(crate) fn fragments(
     let mut found = Vec::new();
     for index in junctions.lines.iter().copied().filter(|edge| !marks.has_edge(*edge)) {
         if let (Some(edge), Some(sites)) = (graph.edges.get(index), sites.get(index)) {
-            pieces(index, edge, sites, junctions, core, &mut found);
+            let skip = |at_last| junctions.skip(End { edge: index, at_last });
+            pieces(edge, sites, [skip(false), skip(true)], core, &mut found);
         }
     }
     let own = |one: &&Connection| core.contains(&one.owner.y) && !marks.has_edge(one.from.edge);
@@ -79,7 +80,7 @@ pub(crate) fn fragments(
 }
 
 /// The joint of an edge's end: its node and the pixel beside it.
-fn arm_joint(graph: &Graph, end: End) -> Option<Joint> {
+pub(super) fn arm_joint(graph: &Graph, end: End) -> Option<Joint> {
     let pixels = &graph.edges.get(end.edge)?.pixels;
     let (at, next) = if end.at_last {
         (pixels.last()?, pixels.get(pixels.len().checked_sub(2)?)?)
@@ -89,17 +90,14 @@ fn arm_joint(graph: &Graph, end: End) -> Option<Joint> {
     Some(Joint::Arm(*at, *next))
 }
 
-/// What lies in the rows `core` of an edge.
-fn pieces(
-    index: usize,
+/// What lies in the rows `core` of an edge, but for so many sites at its start and its end.
+pub(super) fn pieces(
     edge: &Edge,
     sites: &[Site],
-    junctions: &Junctions,
+    [skip_first, skip_last]: [usize; 2],
     core: &Range<u32>,
     found: &mut Vec<Fragment>,
 ) {
-    let end = |at_last| End { edge: index, at_last };
-    let skip = |at_last| junctions.skip(end(at_last));
     let joint = |at_last: bool| {
         let (at, next) = if at_last {
             (edge.pixels.last(), edge.pixels.len().checked_sub(2).and_then(|index| edge.pixels.get(index)))
@@ -108,7 +106,7 @@ fn pieces(
         };
         at.zip(next).map_or(Joint::Free, |(at, next)| Joint::Arm(*at, *next))
     };
-    let (first, last) = (skip(false), sites.len().saturating_sub(skip(true)));
+    let (first, last) = (skip_first, sites.len().saturating_sub(skip_last));
     if edge.nodes.is_none() {
         cut_loop(edge, sites, core, found);
         return;

@@ -15,7 +15,7 @@ mod tiff_layout;
 mod tiff_rows;
 
 use crate::decode::decode_whole;
-use crate::{Colour, DecodeError, Depth, GrayRows, MAX_SIDE_PX, Row, RowSource, SizeError};
+use crate::{Colour, DecodeError, Depth, GrayRows, MAX_SHEET_ROWS, MAX_SIDE_PX, Row, RowSource, SizeError};
 use core::fmt;
 use file_view::FileView;
 use pixels::{Line, Pixels};
@@ -36,7 +36,8 @@ const BUFFER_BYTES: usize = 1 << 16;
 ///
 /// Levels and bits are those of [`decode`](crate::decode()): colours become luma, 16 bits become 8, what is
 /// transparent shows white paper. Pictures of two values, black and white, come as [`Row::Bits`], others as
-/// [`Row::Grey`]. At most [`MAX_SIDE_PX`] a side; how many pixels there are in all does not matter.
+/// [`Row::Grey`]. At most [`MAX_SIDE_PX`] columns and [`MAX_SHEET_ROWS`] rows; how many pixels there are in all does not
+/// matter.
 ///
 /// Of TIFF the first picture is read: strips and tiles; uncompressed, `PackBits`, LZW, Deflate and CCITT group 4;
 /// black and white, grey, palette and RGB. Memory is a few rows, whatever the file says, and 16 MiB at most for a
@@ -123,7 +124,7 @@ enum Refused {
 impl Refused {
     /// The size itself when it may be read by rows.
     fn check(width: u32, height: u32) -> Result<(), Self> {
-        if width > MAX_SIDE_PX || height > MAX_SIDE_PX {
+        if width > MAX_SIDE_PX || height > MAX_SHEET_ROWS {
             Err(Self::TooLong { width, height })
         } else {
             Ok(())

@@ -9,6 +9,7 @@
 //! no later step needs. Several bands of a step are worked on at a time, one a thread. A stroke is simplified as soon as
 //! it is whole, so that what stays is the drawing.
 
+mod crowd;
 mod errors;
 mod step;
 mod work;
@@ -19,10 +20,11 @@ use crate::pipeline::{Unordered, is_raster_lines};
 use crate::row_threshold::RowThreshold;
 use crate::within::within;
 use crate::{
-    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, MAX_PIXELS, Progress, Row,
-    RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer,
+    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, MAX_PIXELS, MAX_SHEET_ROWS,
+    MAX_SIDE_PX, Progress, Row, RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer,
 };
 use core::fmt;
+pub use crowd::{MAX_LINE_PIXELS, MAX_SHEET_STROKES};
 use errors::Measure;
 pub use errors::SheetErrors;
 use work::Work;
@@ -52,6 +54,16 @@ pub enum SheetError {
     Cancelled(Cancelled),
     /// The published algorithm is asked for: it needs the whole sheet at once, and there are too many pixels.
     Size(SizeError),
+    /// More than [`MAX_LINE_PIXELS`] px of lines, along their middles, in 256 rows: it is no drawing.
+    TooManyLines {
+        /// The first and the last of the rows, 0 is the uppermost.
+        rows: [u32; 2],
+    },
+    /// More than [`MAX_SHEET_STROKES`] strokes: it is no drawing.
+    TooManyStrokes {
+        /// The row down to which there are so many, 0 is the uppermost.
+        last_row: u32,
+    },
     /// As for a picture in memory.
     Vectorize(VectorizeError),
 }
@@ -62,6 +74,16 @@ impl fmt::Display for SheetError {
             Self::Source(error) => error.fmt(f),
             Self::Cancelled(error) => error.fmt(f),
             Self::Size(error) => write!(f, "the published algorithm needs the whole sheet: {error}"),
+            Self::TooManyLines { rows: [first, last] } => write!(
+                f,
+                "more than {MAX_LINE_PIXELS} px of lines in rows {first} to {last}: the picture is noise; set the threshold \
+                 level by hand, clean the scan, or scan with fewer dots per inch"
+            ),
+            Self::TooManyStrokes { last_row } => write!(
+                f,
+                "more than {MAX_SHEET_STROKES} strokes down to row {last_row}: the picture is noise; set the threshold level \
+                 by hand, clean the scan, or cut it into sheets"
+            ),
             Self::Vectorize(error) => error.fmt(f),
         }
     }
@@ -102,8 +124,11 @@ impl Vectorizer {
     ///   more lie between two cuts. A cut on a straight line leaves no vertex;
     /// * of areas, the rows from one without any to the next, at most [`MAX_PIXELS`](crate::MAX_PIXELS), at 1 bit;
     /// * the published algorithm needs the whole sheet, and so do lines one pixel wide without grey rims as long as it is no
-    ///   larger than [`MAX_PIXELS`](crate::MAX_PIXELS). On a larger one they are followed as wider lines are: through every
-    ///   pixel, but where pixels lie two by two.
+    ///   larger than [`MAX_PIXELS`](crate::MAX_PIXELS). On a larger one they are followed band after band: through every
+    ///   pixel with the same promise, but in other strokes than of the whole.
+    ///
+    /// A page of noise is refused ([`MAX_LINE_PIXELS`], [`MAX_SHEET_STROKES`]), so that no sheet takes much more than a
+    /// gigabyte.
     ///
     /// ```
     /// use plotter_vector::{Bitmap, BitmapRows, Progress, Vectorizer};
@@ -162,6 +187,9 @@ impl Vectorizer {
             self.check()?;
         }
         let (width, height) = (source.width(), source.height());
+        if width > MAX_SIDE_PX || height > MAX_SHEET_ROWS {
+            return Err(DecodeError::TooLong { width, height }.into());
+        }
         let errors = with_errors.then(SheetErrors::default);
         let empty = TracedSheet { drawing: Drawing::new(width, height), errors, ..TracedSheet::default() };
         let (survey, pen) = survey(self, source, &mut progress.part(0.1))?;
@@ -193,7 +221,7 @@ impl Vectorizer {
             progress.part(1.0).at(1, 1)?;
             return Ok(TracedSheet { drawing, errors, ..found });
         }
-        let mut sheet = Work::new(self, (width, height), pen_px, &threshold);
+        let mut sheet = Work::new(self, (width, height), (pen_px, keeps_pixels), &threshold);
         for_each_row(source, &mut strokes_part, |_, row| sheet.push(row))?;
         let (strokes, areas) = sheet.finish()?;
         let mut drawing = found.drawing;
@@ -256,11 +284,7 @@ fn survey(
     progress: &mut Progress<'_>,
 ) -> Result<(Survey, Pen), SheetError> {
     let (width, height) = (source.width(), source.height());
-    let mut survey = match source.depth() {
-        // Rows of bits are a count alone, however many there are.
-        Depth::Bits1 => Survey::checked(settings.threshold, width, height),
-        Depth::Grey8 => Survey::new(settings.threshold, width, height).map_err(SheetError::Size)?,
-    };
+    let mut survey = Survey::checked(settings.threshold, width, height);
     let mut pen = Pen::new(width);
     for_each_row(source, progress, |_, row| {
         survey.push_row(row);

@@ -13,8 +13,8 @@ pub(super) struct Step {
     /// Own rows of a band, and rows more that it needs above and below.
     band_rows: u32,
     context: u32,
-    /// Rows more that the first bands take in all: so many that the rows which are there are then just those that the next
-    /// step waits for, and no more of them lie about.
+    /// Rows that a first band takes by itself: so many that the rows which are there are ever after just those that the
+    /// next step waits for, and no more of them lie about.
     lead: u32,
     /// Bands that are worked on at a time.
     bands: u32,
@@ -29,22 +29,21 @@ impl Step {
         Self { next: 0, band_rows, context, lead: 0, bands: u32::try_from(bands).unwrap_or(1), height }
     }
 
-    /// The same with so many rows more in its first bands: the context of the steps after it. Not on a sheet so large that
-    /// one band is all there is room for.
+    /// The same with so many rows in a first band of its own: the context of the steps after it.
     pub(super) fn ahead_of(self, context: u32) -> Self {
-        Self { lead: if self.bands > 1 { context } else { 0 }, ..self }
+        Self { lead: context, ..self }
     }
 
     /// Most rows that it waits for at a time, with those around them.
     pub(super) fn most_rows(&self) -> u32 {
-        let own = self.bands.saturating_mul(self.band_rows).saturating_add(self.lead);
+        let own = self.bands.saturating_mul(self.band_rows).max(self.lead);
         own.saturating_add(self.context.saturating_mul(2)).min(self.height)
     }
 
     /// The bands that can be worked on when the rows before `end` are there: as many as are worked on at a time, or those
     /// that are left at the end of the sheet.
     pub(super) fn ready(&mut self, end: u32) -> Option<Vec<Range<u32>>> {
-        let rows = self.bands.saturating_mul(self.band_rows).saturating_add(self.lead);
+        let rows = if self.lead > 0 { self.lead } else { self.bands.saturating_mul(self.band_rows) };
         let own = self.next..self.next.saturating_add(rows).min(self.height);
         if own.is_empty() || end < own.end.saturating_add(self.context).min(self.height) {
             return None;

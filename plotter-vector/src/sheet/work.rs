@@ -1,10 +1,11 @@
 //! [`Work`]: a sheet that is on its way from rows to strokes.
 
+use super::crowd::{Crowd, ink_of, is_crowded};
 use super::step::Step;
 use super::{SheetError, row_bytes};
 use crate::areas::{Islands, Opening};
 use crate::centrelines::{CONTEXT_ROWS, Centring, each, sort};
-use crate::graph::{Joiner, Rims, Scan, Stretch, fragments};
+use crate::graph::{Fragment, Joiner, Rims, Scan, Stretch, fragments, pixel_fragments};
 use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
 use crate::speckle::despeckle_here;
@@ -25,7 +26,10 @@ pub(super) struct Work<'a> {
     centring: Centring,
     smallest_px: u32,
     opening: Opening,
+    /// Whether the lines are followed pixel by pixel.
+    keeps_pixels: bool,
     width: u32,
+    crowd: Crowd,
     ink: Rolling<u64>,
     levels: Option<Rolling<u8>>,
     lines: Rolling<u64>,
@@ -44,11 +48,11 @@ pub(super) struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    /// Before the first row.
+    /// Before the first row; `keeps_pixels` follows the lines pixel by pixel.
     pub(super) fn new(
         settings: &'a Vectorizer,
         (width, height): (u32, u32),
-        pen_px: u32,
+        (pen_px, keeps_pixels): (u32, bool),
         threshold: &'a RowThreshold,
     ) -> Self {
         let smallest_px = settings.smallest_mark_px(pen_px);
@@ -71,7 +75,9 @@ impl<'a> Work<'a> {
             threshold,
             smallest_px,
             opening,
+            keeps_pixels,
             width,
+            crowd: Crowd::default(),
             ink: Rolling::of_ink(width).with_room(clean.most_rows()),
             levels: grey.then(|| Rolling::of_levels(width)),
             lines: Rolling::of_ink(width).with_room(waiting),
@@ -100,24 +106,40 @@ impl<'a> Work<'a> {
             self.clean(bands)?;
         }
         while let Some(bands) = self.thin.ready(self.lines.end()) {
-            self.thin(bands);
+            self.thin(bands)?;
         }
         while let Some(bands) = self.follow.ready(self.skeleton.end().min(self.lines.end())) {
-            self.follow(bands);
+            self.follow(bands)?;
         }
         Ok(())
     }
 
     /// All strokes, after the last row, and the rows with areas, from the top.
-    pub(super) fn finish(mut self) -> Result<(Vec<Curve>, Vec<Range<u32>>), SheetError> {
-        if let Some((first, areas)) = self.islands.finish() {
-            self.outlines.extend(self.settings.area_strokes(first, &areas)?);
+    pub(super) fn finish(self) -> Result<(Vec<Curve>, Vec<Range<u32>>), SheetError> {
+        let Self {
+            settings,
+            centring,
+            mut crowd,
+            mut islands,
+            joiner,
+            mut strokes,
+            mut outlines,
+            area_rows,
+            ..
+        } = self;
+        // The bands' memory is free now.
+        if let Some((first, areas)) = islands.finish() {
+            let found = settings.area_strokes(first, &areas)?;
+            crowd.add(&found);
+            outlines.extend(found);
         }
-        let open = core::mem::take(&mut self.joiner).finish().collect();
-        self.strokes.extend(self.centring.simplified(open));
-        sort(&mut self.strokes);
-        self.strokes.append(&mut self.outlines);
-        Ok((self.strokes, self.area_rows))
+        let found = centring.simplified(joiner.finish().collect());
+        crowd.add(&found);
+        crowd.check(u32::MAX)?;
+        strokes.extend(found);
+        sort(&mut strokes);
+        strokes.append(&mut outlines);
+        Ok((strokes, area_rows))
     }
 
     /// Bands with memory for each.
@@ -149,7 +171,9 @@ impl<'a> Work<'a> {
                     }
                 }
                 if let Some((first, areas)) = self.islands.push(areas) {
-                    self.outlines.extend(self.settings.area_strokes(first, &areas)?);
+                    let found = self.settings.area_strokes(first, &areas)?;
+                    self.crowd.add(&found);
+                    self.outlines.extend(found);
                 }
             }
             self.words.push(lines.into_words());
@@ -158,30 +182,63 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Thins the lines.
-    fn thin(&mut self, bands: Vec<Range<u32>>) {
+    /// Thins the lines, but those that are followed pixel by pixel.
+    fn thin(&mut self, bands: Vec<Range<u32>>) -> Result<(), SheetError> {
         let bands = self.with_words(bands);
         let (step, lines, thinning) = (self.thin, &self.lines, self.centring.thinning);
+        let keeps_pixels = self.keeps_pixels;
         let thinned = each(bands, |(own, words)| {
             let rows = step.around(&own);
             let mut band = lines.band(&rows, words);
             let own = own.start - rows.start..own.end - rows.start;
-            // Lines that are wider than expected stay so in places: their middle is found all the same.
-            let _ = thinning.thin_rows(&mut band, own.clone());
+            if !keeps_pixels {
+                // Lines that are wider than expected stay so in places: their middle is found all the same.
+                let _ = thinning.thin_rows(&mut band, own.clone());
+            }
             (own, band)
         });
         for (own, band) in thinned {
-            own.for_each(|y| self.skeleton.push(band.row(y)));
+            for y in own {
+                self.crowd.push(self.skeleton.end(), band.row(y))?;
+                self.skeleton.push(band.row(y));
+            }
             self.words.push(band.into_words());
         }
         self.lines.forget_before(self.follow.needs().min(self.thin.needs()));
+        Ok(())
     }
 
-    /// Follows the skeleton, and simplifies the strokes that are whole now.
-    fn follow(&mut self, bands: Vec<Range<u32>>) {
+    /// Follows the skeleton, and simplifies the strokes that are whole now: bands with many lines one after the other.
+    fn follow(&mut self, bands: Vec<Range<u32>>) -> Result<(), SheetError> {
+        let end = bands.last().map_or(0, |own| own.end);
+        let pixels: u64 = bands.iter().map(|own| ink_of(self.skeleton.rows(&self.follow.around(own)))).sum();
+        let together = if is_crowded(pixels) { 1 } else { bands.len().max(1) };
+        for some in bands.chunks(together) {
+            let mut whole = Vec::new();
+            for (fragments, words) in self.fragments(some.to_vec()) {
+                self.words.push(words);
+                whole.extend(fragments.into_iter().filter_map(|fragment| self.joiner.push(fragment)));
+            }
+            let found = self.centring.simplified(whole);
+            self.crowd.add(&found);
+            self.strokes.extend(found);
+            self.joiner.cut(self.centring.cuts(), self.centring.bounded);
+        }
+        self.crowd.check(end)?;
+        let needs = self.follow.needs();
+        self.lines.forget_before(needs.min(self.thin.needs()));
+        self.skeleton.forget_before(needs);
+        if let Some(levels) = &mut self.levels {
+            levels.forget_before(needs);
+        }
+        Ok(())
+    }
+
+    /// The pieces of strokes in bands, each with the memory it worked in.
+    fn fragments(&mut self, bands: Vec<Range<u32>>) -> Vec<(Vec<Fragment>, Vec<u64>)> {
         let bands = self.with_words(bands);
         let (step, lines, skeleton) = (self.follow, &mut self.lines, &mut self.skeleton);
-        let ink_is_dark = self.threshold.ink_is_dark();
+        let (ink_is_dark, keeps_pixels) = (self.threshold.ink_is_dark(), self.keeps_pixels);
         let marks = self.centring.marks();
         let follow = |levels: Option<(&Gray, u32)>| {
             let grey = levels.map(|(levels, first_row)| Rims { levels, ink_is_dark, first_row });
@@ -192,27 +249,100 @@ impl<'a> Work<'a> {
                         let rows = step.around(&own);
                         let rows = rows.start - first_row..rows.end - first_row;
                         let stretch = Stretch { picture, rows };
-                        (fragments(scan, &stretch, first_row, &own, marks, &mut words), words)
+                        let found = if keeps_pixels {
+                            pixel_fragments(&stretch, first_row, &own, &mut words)
+                        } else {
+                            fragments(scan, &stretch, first_row, &own, marks, &mut words)
+                        };
+                        (found, words)
                     })
                 })
             })
         };
-        let found = match &mut self.levels {
+        match &mut self.levels {
             Some(levels) => levels.lend(|levels, first_row| follow(Some((levels, first_row)))),
             None => follow(None),
-        };
-        let mut whole = Vec::new();
-        for (fragments, words) in found {
-            self.words.push(words);
-            whole.extend(fragments.into_iter().filter_map(|fragment| self.joiner.push(fragment)));
         }
-        self.strokes.extend(self.centring.simplified(whole));
-        self.joiner.cut(self.centring.cuts(), self.centring.bounded);
-        let needs = self.follow.needs();
-        self.lines.forget_before(needs.min(self.thin.needs()));
-        self.skeleton.forget_before(needs);
-        if let Some(levels) = &mut self.levels {
-            levels.forget_before(needs);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Bitmap, Bounded, Pixel, PxPoint, Survey};
+
+    /// Rounding of what is promised exactly, px.
+    const ROUNDING_PX: f64 = 1e-6;
+
+    /// Lines one pixel wide in all directions, stairs, crossings, places where pixels lie two by two, dots.
+    fn hairlines(seed: u64) -> Bitmap {
+        let (width, height) = (150, 1300);
+        let mut ink = Bitmap::new(width, height).unwrap();
+        let mut random = seed;
+        let mut next = |most: u32| {
+            random ^= random << 13;
+            random ^= random >> 7;
+            random ^= random << 17;
+            u32::try_from((random >> 11) % u64::from(most)).unwrap()
+        };
+        for _ in 0..40 {
+            let (x, y) = (f64::from(next(width)), f64::from(next(height)));
+            let angle = f64::from(next(628)) / 100.0;
+            let turn = f64::from(next(3)) * 0.01;
+            for step in 0..next(300) {
+                let step = f64::from(step);
+                let (sin, cos) = libm::sincos(angle + turn * step / 2.0);
+                let (x, y) = (x + step * cos, y + step * sin);
+                if x >= 0.0 && y >= 0.0 {
+                    #[expect(
+                        clippy::cast_possible_truncation,
+                        clippy::cast_sign_loss,
+                        reason = "near the picture"
+                    )]
+                    ink.set(Pixel::new(x as u32, y as u32), true);
+                }
+            }
+        }
+        for _ in 0..30 {
+            ink.set(Pixel::new(next(width), next(height)), true);
+        }
+        ink
+    }
+
+    fn strokes(ink: &Bitmap, settings: &Vectorizer) -> Vec<Curve> {
+        let mut survey = Survey::checked(settings.threshold, ink.width(), ink.height());
+        (0..ink.height()).for_each(|y| survey.push_row(Row::Bits(ink.row(y))));
+        let threshold = survey.finish().unwrap();
+        let mut work = Work::new(settings, (ink.width(), ink.height()), (1, true), &threshold);
+        (0..ink.height()).for_each(|y| work.push(Row::Bits(ink.row(y))).unwrap());
+        work.finish().unwrap().0
+    }
+
+    fn distance_px(at: PxPoint, stroke: &[PxPoint]) -> f64 {
+        let to_link = |pair: &[PxPoint]| {
+            let ((x, y), (dx, dy)) = (at.minus(pair[0]), pair[1].minus(pair[0]));
+            let part = ((x * dx + y * dy) / (dx * dx + dy * dy).max(1e-9)).clamp(0.0, 1.0);
+            libm::hypot(x - part * dx, y - part * dy)
+        };
+        let dot = stroke.first().map_or(f64::INFINITY, |first| first.distance(at));
+        stroke.windows(2).map(to_link).fold(dot, f64::min)
+    }
+
+    #[test]
+    fn every_pixel_of_a_hairline_lies_within_the_tolerance_whatever_the_bands() {
+        for (seed, tolerance_px) in (1..).zip([0.5, 0.75, 1.0, 2.0, 0.5]) {
+            let ink = hairlines(seed * 0x9e37_79b9);
+            let settings = Vectorizer { ours: Bounded { tolerance_px }, ..Vectorizer::default() };
+            let found = strokes(&ink, &settings);
+            let far = |at: Pixel| {
+                let to_stroke = |stroke: &Curve| distance_px(at.into(), &stroke.vertices);
+                found.iter().map(to_stroke).fold(f64::INFINITY, f64::min)
+            };
+            let worst_px = ink.ink().map(far).fold(0.0, f64::max);
+            assert!(worst_px <= tolerance_px + ROUNDING_PX, "{tolerance_px}: {worst_px}");
+            for band_rows in [16, 130] {
+                assert!(strokes(&ink, &Vectorizer { band_rows, ..settings }) == found, "{band_rows}");
+            }
         }
     }
 }

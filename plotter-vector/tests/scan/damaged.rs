@@ -94,7 +94,7 @@ fn sizes_beyond_the_limit_are_refused_from_the_header() {
     let tiff = |width, height| Tiff::strips((width, height), 1, 1, 0, &[0; 64]).file();
     let huge = [
         png(131_073, 1),
-        png(1, 131_073),
+        png(1, 4_194_305),
         png(0x7fff_ffff, 0x7fff_ffff),
         tiff(131_073, 1),
         tiff(u32::MAX, u32::MAX),

@@ -1,0 +1,44 @@
+//! [`Interrupt`]: Ctrl-C asks a tool to stop; what it writes is whole or not there.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What a shell sees of a tool that was stopped by Ctrl-C: 128 and the number of the signal.
+pub const INTERRUPTED: u8 = 130;
+
+/// Whether the tool is to stop, and whether it may be ended on the spot.
+static ASKED: AtomicBool = AtomicBool::new(false);
+static WRITING: AtomicBool = AtomicBool::new(false);
+
+/// Ctrl-C, as a request that long work looks at. A second one ends the process at once, unless files are being written.
+#[derive(Clone, Copy, Debug)]
+pub struct Interrupt(());
+
+impl Interrupt {
+    /// Waits for Ctrl-C from now on; once a process.
+    ///
+    /// # Errors
+    ///
+    /// The system cannot, or it is waited for already.
+    pub fn new() -> Result<Self, String> {
+        let asked = || {
+            if ASKED.swap(true, Ordering::SeqCst) && !WRITING.load(Ordering::SeqCst) {
+                std::process::exit(INTERRUPTED.into());
+            }
+        };
+        ctrlc::set_handler(asked).map_err(|error| format!("Ctrl-C cannot be waited for: {error}"))?;
+        Ok(Self(()))
+    }
+
+    /// Whether the work is to stop.
+    #[must_use]
+    pub fn is_asked(self) -> bool {
+        ASKED.load(Ordering::SeqCst)
+    }
+
+    /// Whether files may be written, which nothing breaks off from now on; not after a request to stop.
+    #[must_use]
+    pub fn may_write(self) -> bool {
+        WRITING.store(true, Ordering::SeqCst);
+        !self.is_asked()
+    }
+}
