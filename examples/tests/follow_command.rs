@@ -140,9 +140,9 @@ fn a_correction_makes_a_bent_picture_straight() {
     });
     let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (camera, bent, straight) = (file("camera.json"), file("bent.json"), file("straight.json"));
-    let measured = run_example("calibrate_camera", &["--barrel", "0.1", "--correction", &camera]);
+    let measured = run_example("calibrate_camera", &["--barrel", "0.2", "--correction", &camera]);
     assert!(measured.status.success(), "{measured:?}");
-    let lens = ["--camera", "barrel=0.1"];
+    let lens = ["--camera", "barrel=0.2"];
     run_example("follow", &[&[image.as_str(), "--report", &bent], &lens[..]].concat());
     let with = [&[image.as_str(), "--report", &straight, "--correction", &camera], &lens[..]].concat();
     let output = run_example("follow", &with);
