@@ -412,6 +412,7 @@ impl MappingFollower {
     /// What to do when the tool is on no line.
     fn choose(&mut self, at: PxPoint) -> Step {
         self.fixes = 0;
+        trail::pass_drawn(&mut self.map, self.width_px);
         match trail::start(&mut self.map, self.place) {
             Some(Start::Unseen(node, _)) if self.explored.goes(self.place, self.map.at(node)) => {
                 let to = self.map.at(node);

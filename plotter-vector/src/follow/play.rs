@@ -9,8 +9,10 @@ use super::lag::Lag;
 /// Moves shorter than this are not made, px: the axis waits.
 const NO_MOVE_PX: f64 = 0.12;
 
-/// An axis stays so much behind where it is sent, px: what it is short of it makes good without crossing its play, what it is beyond not.
+/// An axis stays so much behind where it is sent, px, and no more than so great a share of its play: what it is short of it makes
+/// good without crossing its play, what it is beyond not.
 const BEHIND_PX: f64 = 0.12;
+const BEHIND_SHARE: f64 = 0.05;
 
 /// A move whose standard deviation is greater is made in parts, px, each at least such a share of it.
 const CAREFUL_PX: f64 = 0.45;
@@ -182,7 +184,7 @@ impl Play {
         let crosses = lost * way > 0.0 && lost.abs() > NO_MOVE_PX;
         Command {
             crosses_to_px: crosses.then_some(inside(self.sent_px + lost)),
-            end_px: inside(command - libm::copysign(BEHIND_PX, way)),
+            end_px: inside(command - libm::copysign(self.behind_px(), way)),
         }
     }
 
@@ -203,7 +205,12 @@ impl Play {
 
     /// Whether it is not worth while to go so far.
     fn waits(&self, way: f64) -> bool {
-        way.abs() < if way * self.side < 0.0 { NO_MOVE_PX } else { NO_MOVE_PX + BEHIND_PX }
+        way.abs() < if way * self.side < 0.0 { NO_MOVE_PX } else { NO_MOVE_PX + self.behind_px() }
+    }
+
+    /// How much it stays behind where it is sent, px.
+    fn behind_px(&self) -> f64 {
+        BEHIND_PX.min(BEHIND_SHARE * self.play_px())
     }
 
     /// How much of the way to `wanted` the axis may go in one move, as a share: where it is not known well how far a command moves it, less, with

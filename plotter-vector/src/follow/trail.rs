@@ -4,7 +4,8 @@
 //! those the one straight on. What no window has shown yet counts as joined to everything.
 
 use super::line_map::{LineMap, Link, State};
-use super::lines::cosine;
+use super::lines::{SPACING_PX, cosine};
+use super::paper::nearest;
 use crate::PxPoint;
 use std::collections::HashSet;
 
@@ -13,6 +14,9 @@ const MOST_VISITED: usize = 20_000;
 
 /// Nodes of a line that tell its direction.
 const AHEAD: usize = 4;
+
+/// Longer rests are lines, links.
+const MOST_DRAWN: usize = 16;
 
 const fn is_ahead(link: &Link) -> bool {
     !link.contact && matches!(link.state, State::Ahead)
@@ -88,6 +92,49 @@ pub(super) fn next(map: &LineMap, node: u32, heading: (f64, f64)) -> Option<(u32
     ways.into_iter().max_by(|a, b| straight(a).total_cmp(&straight(b)).then(b.0.cmp(&a.0)))
 }
 
+/// Takes for followed what the tool has drawn on its way: rests no longer than half a line's width that lie as near to lines that were
+/// followed. A tip that was put back to its place behind the tool leaves such ones.
+pub(super) fn pass_drawn(map: &mut LineMap, width_px: f64) {
+    let half_px = 0.5 * width_px;
+    let all: Vec<u32> = map.ahead().collect();
+    let mut seen: HashSet<u32> = HashSet::new();
+    for from in all {
+        if !seen.insert(from) {
+            continue;
+        }
+        let (mut nodes, mut links) = (vec![from], Vec::new());
+        let mut i = 0;
+        while let Some(id) = nodes.get(i).copied() {
+            for (link, _, other) in map.links_of(id).filter(|(_, found, _)| is_ahead(found)) {
+                if !links.contains(&link) && links.len() < MOST_DRAWN {
+                    links.push(link);
+                    if seen.insert(other) {
+                        nodes.push(other);
+                    }
+                }
+            }
+            i += 1;
+        }
+        let length_px: f64 =
+            links.iter().filter_map(|link| map.link(*link)).map(|link| map.length(link)).sum();
+        // Whatever goes on behind an open end there was in the middle of a window, and would be on the map.
+        let is_drawn = |id: &u32| is_near_followed(map, map.at(*id), half_px);
+        if links.len() < MOST_DRAWN && length_px <= half_px && nodes.iter().all(is_drawn) {
+            links.into_iter().for_each(|link| map.set_state(link, State::Followed));
+        }
+    }
+}
+
+/// Whether a followed line is nearer to a place.
+fn is_near_followed(map: &LineMap, at: PxPoint, reach_px: f64) -> bool {
+    map.near(at, reach_px + SPACING_PX).into_iter().any(|id| {
+        map.links_of(id).any(|(_, link, other)| {
+            let is_followed = !link.contact && link.state == State::Followed;
+            is_followed && nearest(at, map.at(id), map.at(other)).distance(at) <= reach_px
+        })
+    })
+}
+
 /// Where to go to begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Start {
@@ -133,4 +180,31 @@ pub(super) fn start(map: &mut LineMap, from: PxPoint) -> Option<Start> {
         [None, Some((_, id))] => Start::Unseen(id, nearest),
         [None, None] => Start::At(nearest),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lines::Piece;
+    use super::*;
+
+    #[test]
+    fn what_the_tool_has_drawn_beside_a_line_is_not_gone_for() {
+        let line = |from: f64, length: u32, y: f64| Piece {
+            places: (0..=length).map(|i| PxPoint::new(from + 2.0 * f64::from(i), y)).collect(),
+            closed: false,
+            open: [false, false],
+        };
+        let rest_px = |stub: Piece, width_px: f64| {
+            let mut map = LineMap::default();
+            map.insert(&[line(20.0, 30, 50.0), stub], width_px, &|_| false);
+            (0..30).for_each(|link| map.set_state(link, State::Followed));
+            assert!(map.length_of(State::Ahead) > 1.0 && map.length_of(State::Followed) > 59.0);
+            pass_drawn(&mut map, width_px);
+            map.length_of(State::Ahead)
+        };
+        // Beside the line's end, 1.6 px off: within half of 5 px.
+        let stub = |y: f64, length: u32| line(78.0, length, y);
+        let rests = [stub(51.6, 1), stub(54.0, 1), stub(51.6, 4)].map(|stub| rest_px(stub, 5.0));
+        assert!(rests[0] < 0.5 && rests[1] > 1.0 && rests[2] > 7.0, "{rests:?}");
+    }
 }
