@@ -127,8 +127,8 @@ impl Vectorizer {
     ///   larger than [`MAX_PIXELS`](crate::MAX_PIXELS). On a larger one they are followed band after band: through every
     ///   pixel with the same promise, but in other strokes than of the whole.
     ///
-    /// A page of noise is refused ([`MAX_LINE_PIXELS`], [`MAX_SHEET_STROKES`]), so that no sheet takes much more than a
-    /// gigabyte.
+    /// A page of noise is refused ([`MAX_LINE_PIXELS`], [`MAX_SHEET_STROKES`]), so that no sheet takes, by estimate, much
+    /// more than a gigabyte.
     ///
     /// ```
     /// use plotter_vector::{Bitmap, BitmapRows, Progress, Vectorizer};
@@ -149,10 +149,11 @@ impl Vectorizer {
         self.traced_rows(source, false, progress)
     }
 
-    /// As [`Vectorizer::vectorize_rows`], and how far the ink lies from the strokes: what [`Vectorized::error`] and
-    /// of drawings without areas [`worst_pixel`] say of the whole picture, to the last bit. The sheet is read twice more; the memory, when the bands
-    /// are done, is 80 bytes a vertex and 1 bit for each 16 pixels.
+    /// As [`Vectorizer::vectorize_rows`], and how far the ink lies from the strokes: what [`Vectorized::error`] and, of drawings
+    /// without areas, [`worst_pixel`] say of the whole picture, to the last bit. The sheet is read twice more; the memory, when the
+    /// bands are done, is 80 bytes a vertex and 1 bit for each 16 pixels.
     ///
+    /// [`worst_pixel`]: crate::worst_pixel
     /// [`Vectorized::error`]: crate::Vectorized::error
     ///
     /// ```
