@@ -21,7 +21,6 @@ mod fragment;
 mod join;
 mod junction;
 mod leave_out;
-mod line_end;
 mod mark;
 mod meeting;
 mod near;
