@@ -63,11 +63,12 @@ pub struct ErrorTally {
     max: f64,
     bin_px: f64,
     bins: Vec<u64>,
+    worst: Option<(Pixel, f64)>,
 }
 
 impl Default for ErrorTally {
     fn default() -> Self {
-        Self { pixels: 0, sum: 0.0, squares: 0.0, max: 0.0, bin_px: BIN_PX, bins: Vec::new() }
+        Self { pixels: 0, sum: 0.0, squares: 0.0, max: 0.0, bin_px: BIN_PX, bins: Vec::new(), worst: None }
     }
 }
 
@@ -78,15 +79,42 @@ impl ErrorTally {
         let own = usize::from(borrowed.0)..figure.len() - usize::from(borrowed.1).min(figure.len());
         for vertex in kept.iter().filter(|index| own.contains(index)) {
             debug_assert!(*vertex < figure.len(), "a vertex is a pixel of the figure");
-            self.add_error(0.0);
+            if let Some(pixel) = figure.get(*vertex) {
+                self.add_pixel(*pixel, 0.0);
+            }
         }
         for pair in kept.windows(2) {
             let [start, end] = pair else { continue };
             let (Some(from), Some(to)) = (figure.get(*start), figure.get(*end)) else { continue };
             for pixel in figure.get(start + 1..*end).unwrap_or(&[]) {
-                self.add_error(libm::sqrt(segment_distance_squared(*pixel, *from, *to)));
+                self.add_pixel(*pixel, libm::sqrt(segment_distance_squared(*pixel, *from, *to)));
             }
         }
+    }
+
+    fn add_pixel(&mut self, at: Pixel, error_px: f64) {
+        self.add_error(error_px);
+        let is_worse = |(most, most_px): (Pixel, f64)| {
+            error_px > most_px || error_px >= most_px && (at.y, at.x) < (most.y, most.x)
+        };
+        if self.worst.is_none_or(is_worse) {
+            self.worst = Some((at, error_px));
+        }
+    }
+
+    /// The pixel of a figure with the greatest error, the first of several in reading order, and its error, px; none
+    /// without figures.
+    ///
+    /// ```
+    /// # use plotter_vector::{ErrorTally, Pixel};
+    /// let roof = [Pixel::new(0, 3), Pixel::new(1, 2), Pixel::new(2, 1), Pixel::new(3, 2), Pixel::new(4, 3)];
+    /// let mut tally = ErrorTally::default();
+    /// tally.add(&roof, &[0, 4], (false, false)); // drawn as one level line
+    /// assert_eq!(tally.worst(), Some((Pixel::new(2, 1), 2.0)));
+    /// ```
+    #[must_use]
+    pub fn worst(&self) -> Option<(Pixel, f64)> {
+        self.worst
     }
 
     pub(crate) fn add_error(&mut self, error_px: f64) {

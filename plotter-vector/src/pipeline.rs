@@ -221,10 +221,10 @@ impl Vectorizer {
     }
 
     fn trace_ink(&self, mut ink: Bitmap, grey: Option<(&Gray, bool)>) -> Result<Vectorized, VectorizeError> {
-        let Unordered { drawing, error, areas } = self.unordered(&mut ink, grey)?;
+        let Unordered { drawing, errors, areas } = self.unordered(&mut ink, grey)?;
         let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
-        let error = error.unwrap_or_else(|| self.errors(&ink, &drawing, areas.as_ref()).report);
-        Ok(Vectorized { drawing, error, split: None })
+        let errors = errors.unwrap_or_else(|| self.errors(&ink, &drawing, areas.as_ref()));
+        Ok(Vectorized { drawing, error: errors.report, split: None })
     }
 
     /// The errors of a drawing, with the areas that were told from lines.
@@ -246,24 +246,24 @@ impl Vectorizer {
         grey: Option<(&Gray, bool)>,
     ) -> Result<Unordered, VectorizeError> {
         if self.algorithm == Algorithm::Published {
-            let traced = self.published(ink)?;
-            return Ok(Unordered { drawing: traced.drawing, error: Some(traced.error), areas: None });
+            let (drawing, errors) = self.published(ink)?;
+            return Ok(Unordered { drawing, errors: Some(errors), areas: None });
         }
         self.check()?;
         let ink_pixels = ink.count();
         let pen_px = self.clean(ink);
         if self.keeps_pixels(pen_px, || grey.is_some_and(|(gray, _)| has_rims(gray, ink_pixels))) {
-            let traced = self.tracked(ink)?;
+            let (drawing, errors) = self.tracked(ink)?;
             // Of what is not straight the errors are not known from the figures.
-            let error = traced.drawing.is_straight().then_some(traced.error);
-            return Ok(Unordered { drawing: traced.drawing, error, areas: None });
+            let errors = drawing.is_straight().then_some(errors);
+            return Ok(Unordered { drawing, errors, areas: None });
         }
         let strokes = self.strokes(ink, grey, pen_px)?;
         let mut drawing = Drawing::new(ink.width(), ink.height());
         for stroke in strokes {
             drawing.push_curve(1, within(stroke, ink.width(), ink.height()));
         }
-        Ok(Unordered { drawing, error: None, areas: Some(self.opening(pen_px)) })
+        Ok(Unordered { drawing, errors: None, areas: Some(self.opening(pen_px)) })
     }
 
     /// Takes the dirt out of ink; the width of its lines, px.
@@ -378,7 +378,7 @@ impl Vectorizer {
     }
 
     /// Ours for lines one pixel wide.
-    fn tracked(&self, ink: &Bitmap) -> Result<Vectorized, VectorizeError> {
+    fn tracked(&self, ink: &Bitmap) -> Result<(Drawing, SheetErrors), VectorizeError> {
         let figures = take_in(self.figures(ink)?, ink.width(), ink.height());
         // Of a sheet full of ink each step's figures are large: none outlives its use.
         let linked = link(&figures);
@@ -386,11 +386,12 @@ impl Vectorizer {
         let Joined { figures, borrowed } = join(&linked, ink);
         drop(linked);
         let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
-        let mut traced = simplify(ink, &figures, lent, &self.ours);
-        if self.pieces() != Pieces::Lines {
-            traced.drawing = self.bent(&figures, &traced.drawing);
-        }
-        Ok(traced)
+        let (straight, errors) = simplify(ink, &figures, lent, &self.ours);
+        let drawing = match self.pieces() {
+            Pieces::Lines => straight,
+            _ => self.bent(&figures, &straight),
+        };
+        Ok((drawing, errors))
     }
 
     /// The strokes of figures, with arcs or curves where they save vertices.
@@ -408,7 +409,7 @@ impl Vectorizer {
         drawing
     }
 
-    fn published(&self, ink: &Bitmap) -> Result<Vectorized, VectorizeError> {
+    fn published(&self, ink: &Bitmap) -> Result<(Drawing, SheetErrors), VectorizeError> {
         Ok(simplify(ink, &self.figures(ink)?, |_| (false, false), &self.published))
     }
 
@@ -425,7 +426,7 @@ impl Vectorizer {
 pub(crate) struct Unordered {
     pub(crate) drawing: Drawing,
     /// The errors, where they are known from the figures.
-    pub(crate) error: Option<ErrorReport>,
+    pub(crate) errors: Option<SheetErrors>,
     /// What told areas from lines, where something did.
     pub(crate) areas: Option<Opening>,
 }
@@ -442,7 +443,7 @@ fn simplify(
     figures: &Figures,
     borrowed: impl Fn(usize) -> (bool, bool),
     algorithm: &impl Simplify,
-) -> Vectorized {
+) -> (Drawing, SheetErrors) {
     let mut drawing = Drawing::new(ink.width(), ink.height());
     let mut tally = ErrorTally::default();
     for (index, figure) in figures.iter().enumerate() {
@@ -451,7 +452,7 @@ fn simplify(
         let vertex = |index: &usize| figure.get(*index).copied().map(|pixel: Pixel| PxPoint::from(pixel));
         drawing.push(kept.iter().filter_map(vertex));
     }
-    Vectorized { drawing, error: tally.report(), split: None }
+    (drawing, SheetErrors { report: tally.report(), worst: tally.worst() })
 }
 
 #[cfg(test)]

@@ -82,9 +82,8 @@ fn assert_as_whole(vectorizer: Vectorizer, whole: &Gray, source: &mut impl RowSo
         // Nothing of it is an area.
         assert_eq!(errors.worst, worst_pixel(&ink, drawing), "{vectorizer:?}");
     }
-    // Errors of figures are reckoned in another way, and differ in the last bit.
     let worst_px = errors.worst.map_or(0.0, |(_, error_px)| error_px);
-    assert!((worst_px - errors.report.max_px).abs() < 1e-12, "{worst_px} {:?}", errors.report);
+    assert_eq!(worst_px, errors.report.max_px, "{:?}", errors.report);
     let plain = vectorizer.vectorize_rows(source, &mut Progress::silent()).unwrap();
     assert_eq!((plain.errors, plain.drawing), (None, sheet.drawing));
 }
@@ -243,4 +242,16 @@ fn the_published_algorithm_reports_its_own_errors() {
     let black = ink_of(&drawn(120, 200, 1.0, &[((10, 12), (110, 60)), ((20, 180), (60, 15))]));
     let vectorizer = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
     assert_as_whole(vectorizer, &levels_of(&black), &mut BitmapRows::new(&black));
+}
+
+#[test]
+fn the_worst_place_of_a_thin_line_is_the_one_that_is_reported() {
+    let holes = [(67, 222), (75, 178), (42, 254), (143, 468), (134, 438), (197, 359), (18, 380)];
+    let mut black = ink_of(&drawn(200, 500, 1.0, &[((187, 208), (101, 265))]));
+    holes.iter().for_each(|&(x, y)| black.set(Pixel::new(x, y), (x + y) % 2 == 0));
+    let threshold = Threshold { polarity: Polarity::DarkInk, ..Threshold::default() };
+    let vectorizer = Vectorizer { threshold, band_rows: 64, ..Vectorizer::default() };
+    for black in [inverted(&black), black] {
+        assert_as_whole(vectorizer, &levels_of(&black), &mut BitmapRows::new(&black));
+    }
 }

@@ -26,7 +26,8 @@ pub struct SheetErrors {
     /// The errors of all pixels.
     pub report: ErrorReport,
     /// The pixel with the greatest error, the first of several in reading order, and its error, px, as
-    /// [`worst_pixel`](crate::worst_pixel) finds it; none without ink.
+    /// [`worst_pixel`](crate::worst_pixel) finds it, of lines one pixel wide as [`ErrorTally::worst`] does; none
+    /// without ink.
     pub worst: Option<(Pixel, f64)>,
 }
 

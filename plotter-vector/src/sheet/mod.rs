@@ -251,12 +251,10 @@ impl Vectorizer {
         mut ink: Bitmap,
         with_errors: bool,
     ) -> Result<(Drawing, Option<SheetErrors>), SheetError> {
-        let Unordered { drawing, error, areas } = self.unordered(&mut ink, None)?;
+        let Unordered { drawing, errors, areas } = self.unordered(&mut ink, None)?;
         let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
-        let errors = with_errors.then(|| {
-            let found = self.errors(&ink, &drawing, areas.as_ref());
-            SheetErrors { report: error.unwrap_or(found.report), ..found }
-        });
+        let measured = || self.errors(&ink, &drawing, areas.as_ref());
+        let errors = with_errors.then(|| errors.unwrap_or_else(measured));
         Ok((drawing, errors))
     }
 }
