@@ -238,17 +238,68 @@ impl Scan<'_> {
     }
 
     /// How far a ray of ink goes on from a place, px, at most `limit_px`: in quarters of a pixel.
-    pub(crate) fn reach_px(&self, from: PxPoint, (dx, dy): (f64, f64), limit_px: f64) -> f64 {
+    pub(crate) fn reach_px(&self, from: PxPoint, direction: (f64, f64), limit_px: f64) -> f64 {
+        self.reach_along_px(limit_px, |t| from.along(direction, t))
+    }
+
+    /// The same along any way, by the places that it comes to.
+    pub(super) fn reach_along_px(&self, limit_px: f64, way: impl Fn(f64) -> PxPoint) -> f64 {
         const STEP_PX: f64 = 0.25;
         let mut reach = 0.0;
         while reach + STEP_PX <= limit_px {
             let next = reach + STEP_PX;
-            if !self.is_ink(libm::floor(from.x + dx * next), libm::floor(from.y + dy * next)) {
+            let at = way(next);
+            if !self.is_ink_around(at) {
                 break;
             }
             reach = next;
         }
         reach
+    }
+
+    /// Whether the pixel that a place lies in is ink.
+    pub(super) fn is_ink_around(&self, at: PxPoint) -> bool {
+        self.is_ink(libm::floor(at.x), libm::floor(at.y))
+    }
+
+    /// How far a place is from the rim of the picture, px; negative beyond it.
+    pub(super) fn rim_px(&self, at: PxPoint) -> f64 {
+        let [top, bottom] = self.rows().map(f64::from);
+        at.x.min(f64::from(self.ink.width()) - at.x).min(at.y - top).min(bottom - at.y)
+    }
+
+    /// The first row of the picture, and the one after the last: those that are there.
+    fn rows(&self) -> [u32; 2] {
+        [self.first_row, self.first_row.saturating_add(self.ink.height())]
+    }
+
+    /// How far from a place the rim of the picture is in a direction, px.
+    pub(super) fn rim_along_px(&self, from: PxPoint, (dx, dy): (f64, f64)) -> f64 {
+        let [top, bottom] = self.rows().map(f64::from);
+        let side = |at: f64, d: f64, low: f64, high: f64| {
+            if d == 0.0 { f64::INFINITY } else { (if d > 0.0 { high } else { low } - at) / d }
+        };
+        side(from.x, dx, 0.0, self.ink.width().into()).min(side(from.y, dy, top, bottom)).max(0.0)
+    }
+
+    /// Whether the ink along the rim, at a place on it that a line comes to in a direction, is at least so wide across the
+    /// line, px.
+    pub(super) fn is_cut_at(&self, rim: PxPoint, (dx, dy): (f64, f64), least_px: f64) -> bool {
+        // The side of the picture: across it the nearer rim.
+        let across = rim.x.min(f64::from(self.ink.width()) - rim.x);
+        let [top, bottom] = self.rows().map(f64::from);
+        let upright = across <= (rim.y - top).min(bottom - rim.y);
+        let inside = PxPoint::new(
+            rim.x.clamp(0.5, f64::from(self.ink.width()) - 0.5),
+            rim.y.clamp(top + 0.5, bottom - 0.5),
+        );
+        let (x, y) = (libm::floor(inside.x), libm::floor(inside.y));
+        if !self.is_ink(x, y) {
+            return false;
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers of ink")]
+        let (low, high) = self.run(Pixel::new(x as u32, y as u32), upright);
+        (high - low) * if upright { dx.abs() } else { dy.abs() } >= least_px
     }
 
     /// Whether the pixel in column `x` and row `y`, whole numbers, is ink.
