@@ -12,7 +12,7 @@ use super::near::Near;
 use super::site::{Scan, Site};
 use super::sites::Sites;
 use super::spur::Spurs;
-use super::trial::{GOOD_PX2, Trial, better_than};
+use super::trial::{GOOD_PX2, Trial, better_than, plainly_better_than};
 use super::{End, Graph};
 use crate::{Pixel, PxPoint};
 use core::cell::{OnceCell, RefCell};
@@ -147,6 +147,9 @@ impl Junctions {
 /// Sites from a line's end on that are looked at: more than any arm needs, and fewer than the rows of a band's context.
 const LOOK: usize = 256;
 
+/// A line shows its course on so many times its width.
+const SURE_WIDTHS: f64 = 2.0;
+
 /// What junctions are found in.
 #[derive(Clone, Copy)]
 struct Lines<'a> {
@@ -172,7 +175,7 @@ pub(super) struct ArmOf {
 impl ArmOf {
     /// A line too short to show its own direction, from the junction's middle to where it ends.
     fn aimed(&self, centre: PxPoint) -> Option<Self> {
-        let tip = self.tip.filter(|_| self.arm.support_px < 2.0 * self.arm.width_px)?;
+        let tip = self.tip.filter(|_| self.arm.support_px < SURE_WIDTHS * self.arm.width_px)?;
         let direction = direction(centre, tip)?;
         let (x, y) = self.arm.origin.minus(centre);
         let origin = centre.along(direction, x * direction.0 + y * direction.1);
@@ -308,20 +311,29 @@ impl Lines<'_> {
         let (first, last) = edge.nodes?;
         let (near, far) = if end.at_last { (last, first) } else { (first, last) };
         // What ends beyond the look is not known in a band.
-        let reserved = if edge.pixels.len() <= LOOK && self.ends(far).count() > 1 { 2 } else { 0 };
-        let tail = if self.ends(near).count() > 1 {
+        let reserved = if edge.pixels.len() > LOOK {
             0
+        } else if self.ends(far).count() > 1 {
+            2
         } else {
-            let had_branches = self.graph.nodes.get(near).is_some_and(|node| node.ends.len() > 1);
-            let pixels = edge.pixels.iter().copied();
-            if end.at_last {
-                tail(self.scan, pixels.rev(), &sites, had_branches)
-            } else {
-                tail(self.scan, pixels, &sites, had_branches)
-            }
+            // Thinning follows the ink into a corner of the line's end.
+            self.tail_at(End { edge: end.edge, at_last: !end.at_last }, far)
         };
+        let tail = if self.ends(near).count() > 1 { 0 } else { self.tail_at(end, near) };
         let arm = Arm::of(sites.get(tail..)?, reserved, longest)?;
         Some(Arm { skip: arm.skip + tail, ..arm })
+    }
+
+    /// Sites at a line's free end, at a node, that lead into a corner of it.
+    fn tail_at(&self, end: End, node: usize) -> usize {
+        let sites = self.sites_from(end);
+        let had_branches = self.graph.nodes.get(node).is_some_and(|node| node.ends.len() > 1);
+        let pixels = self.graph.edges.get(end.edge).map_or(&[][..], |edge| &edge.pixels).iter().copied();
+        if end.at_last {
+            tail(self.scan, pixels.rev(), &sites, had_branches)
+        } else {
+            tail(self.scan, pixels, &sites, had_branches)
+        }
     }
 
     /// The pixel beside an edge's end and that at the end itself.
@@ -392,12 +404,17 @@ impl Lines<'_> {
             near.as_ref().map(|near| heart.plan(near, false)),
             self.along_skeleton(group, arms, heart, found),
         ];
+        let others = others.into_iter().flatten().map(|ways| (ways, better_than as fn(f64) -> f64));
+        // Where all lines show their course, they go on as they come.
+        let are_sure = arms.iter().all(|one| one.arm.support_px >= SURE_WIDTHS * one.arm.width_px);
+        let below = if are_sure { plainly_better_than } else { better_than };
         let curves = pairings(arms.len()).iter().map(|pairs| heart.curves(arms, pairs));
-        for ways in others.into_iter().flatten().chain(curves) {
+        let curves = curves.map(|ways| (ways, below as fn(f64) -> f64));
+        for (ways, below) in others.chain(curves) {
             if best.0 <= GOOD_PX2 {
                 break;
             }
-            if let Some(cost) = trial.cost(&ways, better_than(best.0)) {
+            if let Some(cost) = trial.cost(&ways, below(best.0)) {
                 best = (cost, ways);
             }
         }

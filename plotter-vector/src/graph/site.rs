@@ -94,6 +94,22 @@ impl Rims<'_> {
     }
 }
 
+/// A side of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Side {
+    Left,
+    Right,
+    Top,
+    Bottom,
+}
+
+impl Side {
+    /// Whether it is one of columns of pixels.
+    const fn upright(self) -> bool {
+        matches!(self, Self::Left | Self::Right)
+    }
+}
+
 impl Scan<'_> {
     /// Width up to which lines keep their pixels, px.
     pub(super) fn thin_px(&self) -> f64 {
@@ -285,21 +301,29 @@ impl Scan<'_> {
     /// Whether the ink along the rim, at a place on it that a line comes to in a direction, is at least so wide across the
     /// line, px.
     pub(super) fn is_cut_at(&self, rim: PxPoint, (dx, dy): (f64, f64), least_px: f64) -> bool {
-        // The side of the picture: across it the nearer rim.
-        let across = rim.x.min(f64::from(self.ink.width()) - rim.x);
+        let Some((side, low, high)) = self.rim_run(rim) else { return false };
+        (high - low) * if side.upright() { dx.abs() } else { dy.abs() } >= least_px
+    }
+
+    /// The side of the picture that is nearest to a place, and where the ink along its rim begins and ends that is next to the
+    /// place, px.
+    pub(super) fn rim_run(&self, at: PxPoint) -> Option<(Side, f64, f64)> {
         let [top, bottom] = self.rows().map(f64::from);
-        let upright = across <= (rim.y - top).min(bottom - rim.y);
-        let inside = PxPoint::new(
-            rim.x.clamp(0.5, f64::from(self.ink.width()) - 0.5),
-            rim.y.clamp(top + 0.5, bottom - 0.5),
-        );
-        let (x, y) = (libm::floor(inside.x), libm::floor(inside.y));
-        if !self.is_ink(x, y) {
-            return false;
+        let width = f64::from(self.ink.width());
+        let sides = [
+            (Side::Left, at.x, PxPoint::new(0.5, at.y)),
+            (Side::Right, width - at.x, PxPoint::new(width - 0.5, at.y)),
+            (Side::Top, at.y - top, PxPoint::new(at.x, top + 0.5)),
+            (Side::Bottom, bottom - at.y, PxPoint::new(at.x, bottom - 0.5)),
+        ];
+        let (side, _, on) = sides.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let (x, y) = (on.x.clamp(0.5, width - 0.5), on.y.clamp(top + 0.5, bottom - 0.5));
+        if !self.is_ink(libm::floor(x), libm::floor(y)) {
+            return None;
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers of ink")]
-        let (low, high) = self.run(Pixel::new(x as u32, y as u32), upright);
-        (high - low) * if upright { dx.abs() } else { dy.abs() } >= least_px
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a pixel of ink")]
+        let (low, high) = self.run(Pixel::new(x as u32, y as u32), side.upright());
+        Some((side, low, high))
     }
 
     /// Whether the pixel in column `x` and row `y`, whole numbers, is ink.

@@ -2,7 +2,7 @@
 
 use super::arm::{TYPICAL_SITES, typical_width_px};
 use super::line_end::{AT_RIM_PX, MOST_CUT_RADII};
-use super::site::Scan;
+use super::site::{Scan, Side};
 use super::sites::Sites;
 use super::{End, Graph};
 use crate::PxPoint;
@@ -21,8 +21,8 @@ struct Branch {
     out_px: f64,
     /// Whether it leads into a corner of the ink: the discs of ink along it get evenly smaller, up to a tip.
     tapers: bool,
-    /// Whether it leads to the picture's rim.
-    is_cut: bool,
+    /// Where it leads to at the picture's rim: the ink there.
+    cut: Option<(Side, f64, f64)>,
 }
 
 /// The edges that are spurs, found out when it is first asked.
@@ -100,9 +100,16 @@ impl<'a> Spurs<'a> {
         }
         // Into a corner of the ink the branch itself gets narrower, not its line.
         let line_px = narrowest_px(false);
+        // Both corners of a line that the rim cuts are at the ends of the same ink there.
+        let is_corner_of_cut = |branch: &Branch| {
+            let at_same = |(_, other): &&(End, Option<Branch>)| {
+                other.is_some_and(|other| branch.cut.is_some() && other.cut == branch.cut)
+            };
+            branches.iter().filter(at_same).count() > 1
+        };
         let is_short = |branch: &Branch| {
             branch.out_px < 0.5 * if branch.tapers { line_px } else { width_px } + 0.25
-                || branch.tapers && branch.is_cut
+                || branch.tapers && is_corner_of_cut(branch)
         };
         let mut short: Vec<(f64, usize, bool)> = branches
             .iter()
@@ -141,7 +148,8 @@ impl<'a> Spurs<'a> {
         let slack_px = (0.15 * root_px).max(0.75);
         let tapers =
             tip_px <= 0.3 * root_px + 0.5 && (middle_px() - f64::midpoint(root_px, tip_px)).abs() <= slack_px;
-        Some(Branch { out_px: length_px + tip_px - root_px, tapers, is_cut })
+        let cut = if is_cut && tapers { self.scan.rim_run(tip) } else { None };
+        Some(Branch { out_px: length_px + tip_px - root_px, tapers, cut })
     }
 }
 
