@@ -280,11 +280,32 @@ impl LineMap {
             let mut links = self.links_of(id).peekable();
             links.peek().is_none() || links.any(|(_, link, _)| link.state != State::Ghost)
         };
-        let known = |id: &u32| {
-            (*id as usize) < known && alive(*id) && agrees(*id) && self.beyond_open_px(*id, at) < BEYOND_PX
-        };
-        let near = self.near(at, reach_px).into_iter().filter(known);
-        near.min_by(|a, b| self.at(*a).distance(at).total_cmp(&self.at(*b).distance(at)).then(a.cmp(b)))
+        let near = self.near(at, reach_px);
+        // Nor is it a place of the line before its open end.
+        let open = near.iter().filter(|id| self.beyond_open_px(**id, at) >= BEYOND_PX);
+        let before: Vec<u32> = open.flat_map(|id| self.before_open(*id)).collect();
+        let known = |id: &u32| (*id as usize) < known && alive(*id) && agrees(*id) && !before.contains(id);
+        near.into_iter()
+            .filter(known)
+            .min_by(|a, b| self.at(*a).distance(at).total_cmp(&self.at(*b).distance(at)).then(a.cmp(b)))
+    }
+
+    /// An open end and the nodes of its line before it.
+    fn before_open(&self, end: u32) -> Vec<u32> {
+        let mut found = vec![end];
+        while let Some(id) = found.last().copied().filter(|_| found.len() <= DIRECTION_NODES) {
+            let mut links = self.links_of(id).filter(|(_, link, _)| !link.contact);
+            let Some((_, _, next)) = links.find(|(_, _, other)| !found.contains(other)) else { break };
+            found.push(next);
+        }
+        found
+    }
+
+    /// The open end near a node that the next place of its line is beyond: the line goes on from there, not from the node. Else the node.
+    fn to_open_end(&self, node: u32, next: Option<&PxPoint>) -> u32 {
+        let is_beyond = |id: &u32| next.is_some_and(|at| self.beyond_open_px(*id, *at) > 0.0);
+        let near = self.near(self.at(node), SAME_PX[1]).into_iter();
+        near.filter(is_beyond).find(|id| self.before_open(*id).contains(&node)).unwrap_or(node)
     }
 
     /// How far beyond a node a place is if the line goes on there unseen, px; 0 if it does not.
@@ -381,7 +402,9 @@ impl LineMap {
             let length = nodes.iter().skip(i).take_while(|node| node.is_none()).count();
             let run = places.get(i..i + length).unwrap_or(&[]);
             let before = i.checked_sub(1).and_then(|i| nodes.get(i).copied().flatten());
+            let before = before.map(|id| self.to_open_end(id, run.first()));
             let behind = nodes.get(i + length).copied().flatten();
+            let behind = behind.map(|id| self.to_open_end(id, run.last()));
             if is_new_loop || self.is_news(run, before, behind, width_px, known) {
                 let open = [before.is_none() && piece.open[0], behind.is_none() && piece.open[1]];
                 self.add_run(run, [before, behind], open, is_new_loop, ends);
@@ -603,5 +626,24 @@ mod tests {
         });
         assert!(shortcut.is_none(), "{shortcut:?}");
         assert!(map.links.iter().all(|link| !link.contact) && map.links.len() == map.nodes.len() - 1);
+    }
+
+    #[test]
+    fn a_line_that_goes_on_behind_a_place_seen_late_has_no_stub() {
+        let piece = |xs: &[f64], open| {
+            let places = xs.iter().map(|x| PxPoint::new(*x, 50.0)).collect();
+            Piece { places, closed: false, open }
+        };
+        let mut map = LineMap::default();
+        // The second window shows 1.4 px more; the third has a place before that, and the next one behind it.
+        map.insert(&[piece(&[20.0, 22.0, 24.0, 26.0, 28.0, 30.0], [true, true])], 5.0, &|_| true);
+        map.insert(&[piece(&[25.4, 27.4, 29.4, 31.4], [true, true])], 5.0, &|_| true);
+        map.insert(&[piece(&[26.5, 28.5, 30.5, 32.5, 34.5, 36.5], [true, true])], 5.0, &|_| true);
+        let arms = |id: u32| map.links.iter().filter(|link| link.ends.contains(&id)).count();
+        let count =
+            |fits: &dyn Fn(usize) -> bool| (0..).zip(&map.nodes).filter(|(id, _)| fits(arms(*id))).count();
+        let (ends, forks) = (count(&|arms| arms == 1), count(&|arms| arms > 2));
+        assert_eq!((ends, forks), (2, 0), "{:?} {:?}", map.nodes, map.links);
+        assert!((map.length_of(State::Ahead) - 16.5).abs() < 1e-9, "{}", map.length_of(State::Ahead));
     }
 }

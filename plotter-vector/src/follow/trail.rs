@@ -97,18 +97,15 @@ pub(super) fn next(map: &LineMap, node: u32, heading: (f64, f64)) -> Option<(u32
 pub(super) fn pass_drawn(map: &mut LineMap, width_px: f64) {
     let half_px = 0.5 * width_px;
     let all: Vec<u32> = map.ahead().collect();
-    let mut seen: HashSet<u32> = HashSet::new();
     for from in all {
-        if !seen.insert(from) {
-            continue;
-        }
+        // All of a rest, or more links than a rest has: never a part of a line.
         let (mut nodes, mut links) = (vec![from], Vec::new());
         let mut i = 0;
         while let Some(id) = nodes.get(i).copied() {
             for (link, _, other) in map.links_of(id).filter(|(_, found, _)| is_ahead(found)) {
                 if !links.contains(&link) && links.len() < MOST_DRAWN {
                     links.push(link);
-                    if seen.insert(other) {
+                    if !nodes.contains(&other) {
                         nodes.push(other);
                     }
                 }
@@ -206,5 +203,12 @@ mod tests {
         let stub = |y: f64, length: u32| line(78.0, length, y);
         let rests = [stub(51.6, 1), stub(54.0, 1), stub(51.6, 4)].map(|stub| rest_px(stub, 5.0));
         assert!(rests[0] < 0.5 && rests[1] > 1.0 && rests[2] > 7.0, "{rests:?}");
+        // A line that ends there is no rest, however long it is.
+        for links in 3..40 {
+            let mut long = stub(51.6, links);
+            long.places.reverse();
+            let length_px = 2.0 * f64::from(links);
+            assert!((rest_px(long, 5.0) - length_px).abs() < 1e-9, "{links} links");
+        }
     }
 }

@@ -6,12 +6,13 @@
 
 use super::arm::{Arm, LONG, SHORT};
 use super::corner::{TURN_COS, direction};
+use super::line_end::{line_end, tail};
 use super::meeting::{Heart, partners};
 use super::near::Near;
 use super::site::{Scan, Site};
 use super::sites::Sites;
 use super::spur::Spurs;
-use super::trial::{GOOD_PX2, Trial, better_than};
+use super::trial::{GOOD_PX2, Trial, better_than, plainly_better_than};
 use super::{End, Graph};
 use crate::{Pixel, PxPoint};
 use core::cell::{OnceCell, RefCell};
@@ -146,6 +147,9 @@ impl Junctions {
 /// Sites from a line's end on that are looked at: more than any arm needs, and fewer than the rows of a band's context.
 const LOOK: usize = 256;
 
+/// A line shows its course on so many times its width.
+const SURE_WIDTHS: f64 = 2.0;
+
 /// What junctions are found in.
 #[derive(Clone, Copy)]
 struct Lines<'a> {
@@ -171,7 +175,7 @@ pub(super) struct ArmOf {
 impl ArmOf {
     /// A line too short to show its own direction, from the junction's middle to where it ends.
     fn aimed(&self, centre: PxPoint) -> Option<Self> {
-        let tip = self.tip.filter(|_| self.arm.support_px < 2.0 * self.arm.width_px)?;
+        let tip = self.tip.filter(|_| self.arm.support_px < SURE_WIDTHS * self.arm.width_px)?;
         let direction = direction(centre, tip)?;
         let (x, y) = self.arm.origin.minus(centre);
         let origin = centre.along(direction, x * direction.0 + y * direction.1);
@@ -305,10 +309,31 @@ impl Lines<'_> {
         // Half of a line between two junctions is for each of them.
         let edge = self.graph.edges.get(end.edge)?;
         let (first, last) = edge.nodes?;
-        let far = if end.at_last { first } else { last };
+        let (near, far) = if end.at_last { (last, first) } else { (first, last) };
         // What ends beyond the look is not known in a band.
-        let reserved = if edge.pixels.len() <= LOOK && self.ends(far).count() > 1 { 2 } else { 0 };
-        Arm::of(&sites, reserved, longest)
+        let reserved = if edge.pixels.len() > LOOK {
+            0
+        } else if self.ends(far).count() > 1 {
+            2
+        } else {
+            // Thinning follows the ink into a corner of the line's end.
+            self.tail_at(End { edge: end.edge, at_last: !end.at_last }, far)
+        };
+        let tail = if self.ends(near).count() > 1 { 0 } else { self.tail_at(end, near) };
+        let arm = Arm::of(sites.get(tail..)?, reserved, longest)?;
+        Some(Arm { skip: arm.skip + tail, ..arm })
+    }
+
+    /// Sites at a line's free end, at a node, that lead into a corner of it.
+    fn tail_at(&self, end: End, node: usize) -> usize {
+        let sites = self.sites_from(end);
+        let had_branches = self.graph.nodes.get(node).is_some_and(|node| node.ends.len() > 1);
+        let pixels = self.graph.edges.get(end.edge).map_or(&[][..], |edge| &edge.pixels).iter().copied();
+        if end.at_last {
+            tail(self.scan, pixels.rev(), &sites, had_branches)
+        } else {
+            tail(self.scan, pixels, &sites, had_branches)
+        }
     }
 
     /// The pixel beside an edge's end and that at the end itself.
@@ -343,7 +368,8 @@ impl Lines<'_> {
         if thinnest_px <= thin_px && widest_px <= 2.0 * thin_px {
             self.resolve_thin(group, owner, &arms, found);
         } else if let [one] = arms.as_slice() {
-            found.end(owner, one, vec![self.line_end(&one.arm)], true);
+            let (end, is_cut) = line_end(self.scan, &one.arm);
+            found.end(owner, one, vec![end], !is_cut);
         } else {
             let centre = centre(group.iter().map(|node| self.place(*node)));
             let radius_px = group.iter().map(|node| self.radius_px(*node)).fold(0.0, f64::max);
@@ -378,12 +404,17 @@ impl Lines<'_> {
             near.as_ref().map(|near| heart.plan(near, false)),
             self.along_skeleton(group, arms, heart, found),
         ];
+        let others = others.into_iter().flatten().map(|ways| (ways, better_than as fn(f64) -> f64));
+        // Where all lines show their course, they go on as they come.
+        let are_sure = arms.iter().all(|one| one.arm.support_px >= SURE_WIDTHS * one.arm.width_px);
+        let below = if are_sure { plainly_better_than } else { better_than };
         let curves = pairings(arms.len()).iter().map(|pairs| heart.curves(arms, pairs));
-        for ways in others.into_iter().flatten().chain(curves) {
+        let curves = curves.map(|ways| (ways, below as fn(f64) -> f64));
+        for (ways, below) in others.chain(curves) {
             if best.0 <= GOOD_PX2 {
                 break;
             }
-            if let Some(cost) = trial.cost(&ways, better_than(best.0)) {
+            if let Some(cost) = trial.cost(&ways, below(best.0)) {
                 best = (cost, ways);
             }
         }
@@ -393,7 +424,7 @@ impl Lines<'_> {
             let aimed = one.aimed(heart.centre);
             let straight_on = aimed.map(|aimed| (aimed, Vec::new()));
             for (one, mut points) in [Some((one, points)), straight_on].into_iter().flatten() {
-                let end = self.line_end(&one.arm);
+                let (end, _) = line_end(self.scan, &one.arm);
                 let last = points.last().copied().unwrap_or(heart.centre);
                 if last.distance(end) > 1.5 * heart.radius_px + 3.0 {
                     continue;
@@ -464,15 +495,6 @@ impl Lines<'_> {
         let half_px = self.scan.radius_px(to, f64::MAX);
         let along = length_px + (out_px - half_px).max(0.0);
         Some(PxPoint::new(from.x + direction.0 * along, from.y + direction.1 * along))
-    }
-
-    /// Where a line ends: a pen's width has a round end, so half of it before the ink does.
-    fn line_end(&self, arm: &Arm) -> PxPoint {
-        let (dx, dy) = arm.direction;
-        let start = arm.origin;
-        let reach_px = self.scan.reach_px(start, (-dx, -dy), 3.0 * arm.width_px + 4.0 + start_px(arm));
-        let t = -(reach_px - 0.5 * arm.width_px).max(0.0);
-        arm.at(t)
     }
 
     /// Thin lines keep their pixels; only the partners are found. What lies between the nodes of a junction becomes
@@ -566,13 +588,6 @@ fn pairings(arms: usize) -> &'static [&'static [(usize, usize)]] {
         4 => &[&[(0, 1), (2, 3)], &[(0, 2), (1, 3)], &[(0, 3), (1, 2)]],
         _ => &[],
     }
-}
-
-/// How far the fitted part of an arm begins from its tip, px.
-fn start_px(arm: &Arm) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "a few sites")]
-    let skip = arm.skip as f64;
-    1.5 * skip
 }
 
 /// How much the way from one arm's origin to another's turns at its ends, rad: the greater of both angles.

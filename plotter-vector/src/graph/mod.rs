@@ -21,6 +21,7 @@ mod fragment;
 mod join;
 mod junction;
 mod leave_out;
+mod line_end;
 mod mark;
 mod meeting;
 mod near;

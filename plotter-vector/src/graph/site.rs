@@ -94,6 +94,22 @@ impl Rims<'_> {
     }
 }
 
+/// A side of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Side {
+    Left,
+    Right,
+    Top,
+    Bottom,
+}
+
+impl Side {
+    /// Whether it is one of columns of pixels.
+    const fn upright(self) -> bool {
+        matches!(self, Self::Left | Self::Right)
+    }
+}
+
 impl Scan<'_> {
     /// Width up to which lines keep their pixels, px.
     pub(super) fn thin_px(&self) -> f64 {
@@ -238,17 +254,76 @@ impl Scan<'_> {
     }
 
     /// How far a ray of ink goes on from a place, px, at most `limit_px`: in quarters of a pixel.
-    pub(crate) fn reach_px(&self, from: PxPoint, (dx, dy): (f64, f64), limit_px: f64) -> f64 {
+    pub(crate) fn reach_px(&self, from: PxPoint, direction: (f64, f64), limit_px: f64) -> f64 {
+        self.reach_along_px(limit_px, |t| from.along(direction, t))
+    }
+
+    /// The same along any way, by the places that it comes to.
+    pub(super) fn reach_along_px(&self, limit_px: f64, way: impl Fn(f64) -> PxPoint) -> f64 {
         const STEP_PX: f64 = 0.25;
         let mut reach = 0.0;
         while reach + STEP_PX <= limit_px {
             let next = reach + STEP_PX;
-            if !self.is_ink(libm::floor(from.x + dx * next), libm::floor(from.y + dy * next)) {
+            let at = way(next);
+            if !self.is_ink_around(at) {
                 break;
             }
             reach = next;
         }
         reach
+    }
+
+    /// Whether the pixel that a place lies in is ink.
+    pub(super) fn is_ink_around(&self, at: PxPoint) -> bool {
+        self.is_ink(libm::floor(at.x), libm::floor(at.y))
+    }
+
+    /// How far a place is from the rim of the picture, px; negative beyond it.
+    pub(super) fn rim_px(&self, at: PxPoint) -> f64 {
+        let [top, bottom] = self.rows().map(f64::from);
+        at.x.min(f64::from(self.ink.width()) - at.x).min(at.y - top).min(bottom - at.y)
+    }
+
+    /// The first row of the picture, and the one after the last: those that are there.
+    fn rows(&self) -> [u32; 2] {
+        [self.first_row, self.first_row.saturating_add(self.ink.height())]
+    }
+
+    /// How far from a place the rim of the picture is in a direction, px.
+    pub(super) fn rim_along_px(&self, from: PxPoint, (dx, dy): (f64, f64)) -> f64 {
+        let [top, bottom] = self.rows().map(f64::from);
+        let side = |at: f64, d: f64, low: f64, high: f64| {
+            if d == 0.0 { f64::INFINITY } else { (if d > 0.0 { high } else { low } - at) / d }
+        };
+        side(from.x, dx, 0.0, self.ink.width().into()).min(side(from.y, dy, top, bottom)).max(0.0)
+    }
+
+    /// Whether the ink along the rim, at a place on it that a line comes to in a direction, is at least so wide across the
+    /// line, px.
+    pub(super) fn is_cut_at(&self, rim: PxPoint, (dx, dy): (f64, f64), least_px: f64) -> bool {
+        let Some((side, low, high)) = self.rim_run(rim) else { return false };
+        (high - low) * if side.upright() { dx.abs() } else { dy.abs() } >= least_px
+    }
+
+    /// The side of the picture that is nearest to a place, and where the ink along its rim begins and ends that is next to the
+    /// place, px.
+    pub(super) fn rim_run(&self, at: PxPoint) -> Option<(Side, f64, f64)> {
+        let [top, bottom] = self.rows().map(f64::from);
+        let width = f64::from(self.ink.width());
+        let sides = [
+            (Side::Left, at.x, PxPoint::new(0.5, at.y)),
+            (Side::Right, width - at.x, PxPoint::new(width - 0.5, at.y)),
+            (Side::Top, at.y - top, PxPoint::new(at.x, top + 0.5)),
+            (Side::Bottom, bottom - at.y, PxPoint::new(at.x, bottom - 0.5)),
+        ];
+        let (side, _, on) = sides.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let (x, y) = (on.x.clamp(0.5, width - 0.5), on.y.clamp(top + 0.5, bottom - 0.5));
+        if !self.is_ink(libm::floor(x), libm::floor(y)) {
+            return None;
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a pixel of ink")]
+        let (low, high) = self.run(Pixel::new(x as u32, y as u32), side.upright());
+        Some((side, low, high))
     }
 
     /// Whether the pixel in column `x` and row `y`, whole numbers, is ink.

@@ -4,7 +4,7 @@
 //! the lines that were found are drawn as a pen of their width draws them: ink that the pen would leave bare, and that
 //! reaches away from the line, is a stroke of its own.
 
-use super::arm::are_of_two_pens;
+use super::arm::{TYPICAL_SITES, are_of_two_pens, typical_width_px};
 use super::fragment::{Fragment, Joint};
 use super::junction::Junctions;
 use super::mark::Marks;
@@ -27,6 +27,13 @@ const LEAST_OF_WIDTH: f64 = 0.25;
 
 /// Most pixels of a bare place; more is no stub but ink that is no line.
 const MOST_PIXELS: usize = 4096;
+
+/// How far beyond the rim of the picture a line is drawn that the rim cuts, in its widths: over all of its corner there at
+/// 10 degrees, 1 / tan 10° / 2.
+const BEYOND_WIDTHS: f64 = 3.0;
+
+/// How far from the rim of the picture a place on it may be, px: a rounding.
+const ON_RIM_PX: f64 = 1e-6;
 
 /// Sites to either side among which the width of a line is found.
 const CALM_SITES: usize = 8;
@@ -103,12 +110,21 @@ impl Lines<'_> {
             if !self.is_sure(patch, root) {
                 return None;
             }
-            if let Some(stub) = root.and_then(|root| stub(&patch.pixels, patch.centre, root)) {
+            let stub = root.and_then(|root| stub(&patch.pixels, patch.centre, root));
+            // A line that no ink leads to it from has nothing to do with it.
+            if let Some(stub) = stub.filter(|[from, to]| self.is_ink_between(*from, *to)) {
                 let places = stub.map(|at| Place::new(at, -1.0, false)).to_vec();
                 found.push(Fragment { places, joints: Some([Joint::Free; 2]) });
             }
         }
         Some(found)
+    }
+
+    /// Whether all that lies between two places is ink, but for what the raster rounds.
+    fn is_ink_between(&self, from: PxPoint, to: PxPoint) -> bool {
+        let length_px = from.distance(to);
+        let direction = ((to.x - from.x) / length_px, (to.y - from.y) / length_px);
+        length_px <= 0.0 || self.scan.reach_px(from, direction, length_px) + 1.0 >= length_px
     }
 
     /// The patches that begin in the rows `own`, of the ink in some rows; none when one of them may go on below.
@@ -200,6 +216,21 @@ fn is_nearer(centre: PxPoint, at: PxPoint, root: Option<(PxPoint, f64)>) -> bool
 }
 
 impl Lines<'_> {
+    /// The sites of an edge that no junction replaces, and no end of it: into a corner of the ink they get narrower.
+    fn calm_sites(&self, edge: usize) -> &[Site] {
+        let sites = self.sites.get(edge).unwrap_or(&[]);
+        let skip = |at_last| self.junctions.skip(End { edge, at_last });
+        sites.get(skip(false)..sites.len().saturating_sub(skip(true))).unwrap_or(&[])
+    }
+
+    /// Typical width of the line from an end on.
+    fn typical_px(&self, end: End) -> f64 {
+        let sites = self.calm_sites(end.edge);
+        let first = if end.at_last { sites.len().saturating_sub(TYPICAL_SITES) } else { 0 };
+        let some = sites.get(first..sites.len().min(first + TYPICAL_SITES)).unwrap_or(&[]);
+        if some.is_empty() { 0.0 } else { typical_width_px(some).min(WIDEST_PX) }
+    }
+
     /// Every place of the lines whose pen comes to some rows, or that lies at most `reach_px` from them: about a pixel
     /// apart, and the line's width there.
     fn each_place(&self, rows: &Range<u32>, reach_px: f64, mut visit: impl FnMut(PxPoint, f64)) {
@@ -207,12 +238,10 @@ impl Lines<'_> {
         let off_px = |at: PxPoint| (low - at.y).max(at.y - high);
         let near = |at: PxPoint, width_px: f64| off_px(at) <= reach_px.max(0.5 * width_px + MARGIN_PX);
         for edge in self.junctions.lines.iter().copied() {
-            let Some(sites) = self.sites.get(edge) else { continue };
-            let skip = |at_last| self.junctions.skip(End { edge, at_last });
-            let last = sites.len().saturating_sub(skip(true));
+            let sites = self.calm_sites(edge);
             let closed = self.graph.edges.get(edge).is_some_and(|edge| edge.nodes.is_none());
             let mut calm = Calm { sites, closed, known: None };
-            for (index, site) in sites.iter().enumerate().take(last).skip(skip(false)) {
+            for (index, site) in sites.iter().enumerate() {
                 // Calm it is no wider.
                 if near(site.centre, site.width_px) {
                     let width_px = calm.px(index);
@@ -229,13 +258,23 @@ impl Lines<'_> {
                 let index = if end.at_last { sites.len().checked_sub(skip + 1)? } else { skip };
                 Some((sites.get(index)?.centre, calm_px(sites, index, false)))
             };
-            let Some((from, width_px)) = root(connection.from) else { continue };
+            let Some((from, calm_px)) = root(connection.from) else { continue };
             let to = connection.to.and_then(root);
+            let cut = connection.points.last().filter(|at| self.scan.rim_px(**at) <= ON_RIM_PX);
+            // Near its end the cuts through a line may run out of that.
+            let is_end = connection.tip || cut.is_some();
+            let width_px = if is_end { self.typical_px(connection.from).max(calm_px) } else { calm_px };
+            // What the rim of the picture cuts goes on beyond it.
+            let beyond = cut.map(|at| {
+                let (x, y) = at.minus(from);
+                let length_px = libm::hypot(x, y).max(1.0);
+                at.along((x / length_px, y / length_px), BEYOND_WIDTHS * width_px)
+            });
             let theirs_px = to.map_or(width_px, |(_, theirs)| theirs);
             // Lines of two pens that meet in a point come to it as wide as they are.
             let meet = connection.points.len() == 1 && are_of_two_pens(width_px, theirs_px);
             let narrow_px = if meet { width_px } else { width_px.min(theirs_px) };
-            let inner = connection.points.iter().map(|at| (*at, narrow_px));
+            let inner = connection.points.iter().copied().chain(beyond).map(|at| (at, narrow_px));
             let last_px = if meet { theirs_px } else { narrow_px };
             let mut before = from;
             for (next, width_px) in inner.chain(to.map(|(to, _)| (to, last_px))) {

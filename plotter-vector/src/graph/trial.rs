@@ -22,6 +22,12 @@ pub(super) fn better_than(cost: f64) -> f64 {
     (0.8 * cost).max(cost - GOOD_PX2)
 }
 
+/// The same for ways that bend in a junction although the course of the lines outside does not. What a camera's blur or a pen's
+/// ink fills in the corners of a crossing looks like that, too; so these have to explain half of what is left.
+pub(super) fn plainly_better_than(cost: f64) -> f64 {
+    (0.5 * cost).min(cost - GOOD_PX2)
+}
+
 /// Nothing costs more than a pixel as far as this from where it should be, px.
 pub(super) const FARTHEST_PX: f32 = 2.0;
 

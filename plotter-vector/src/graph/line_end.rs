@@ -1,0 +1,89 @@
+//! Where a line ends that leads nowhere else.
+//!
+//! A pen's line has a round end, so its middle ends half the line's width before the ink does. An end of another shape is
+//! taken for a pen's all the same: of a square one the pen leaves the corners bare.
+//!
+//! ```text
+//!   ─────────╲          thinning follows the ink into a corner of it; the middle of the undisturbed part goes
+//!   ·  ·  ·  ·╳  E      straight on to E instead
+//!   ──────────╱
+//! ```
+//!
+//! What the rim of the picture cuts goes on beyond it: such a line ends on the rim, whatever the angle.
+
+use super::arm::{Arm, typical_width_px};
+use super::site::{Scan, Site};
+use crate::{Pixel, PxPoint};
+
+/// Longest way into a corner of a line's end, in radii of the line: 1 / sin 22.5°, where the pen was cut off at 45 degrees.
+/// What tapers longer is a point.
+const MOST_RADII: f64 = 2.7;
+
+/// The same where the picture's rim cuts it, at 10 degrees: 1 / sin 5°.
+pub(super) const MOST_CUT_RADII: f64 = 11.5;
+
+/// Farthest from the picture's rim that the tip of a skeleton lies which leads to it, px.
+pub(super) const AT_RIM_PX: f64 = 2.5;
+
+/// Least width of the ink along the rim, of the line's, where that cuts it: else it is the line's end.
+const LEAST_CUT: f64 = 0.6;
+
+/// Sites from a line's end on, whose pixels are given too, that lead into a corner of its ink or are disturbed by one: the
+/// discs of ink around them are smaller than those of the line. Whether branches into its corners have gone is known.
+pub(super) fn tail(
+    scan: Scan<'_>,
+    pixels: impl Iterator<Item = Pixel>,
+    sites: &[Site],
+    had_branches: bool,
+) -> usize {
+    let mut pixels = pixels.peekable();
+    let Some(tip) = pixels.peek().copied() else { return 0 };
+    let is_cut = scan.rim_px(tip.into()) <= AT_RIM_PX;
+    // Of what the rim cuts at an acute angle much is narrower than the line.
+    let width_px = typical_width_px(sites.get(if is_cut { sites.len() / 2 } else { 0 }..).unwrap_or(&[]));
+    if width_px <= scan.thin_px() {
+        return 0;
+    }
+    let half_px = 0.5 * width_px;
+    let radius_px = |at: Pixel| scan.radius_px(at.into(), half_px + 1.0);
+    let is_round = radius_px(tip) >= 0.5 * half_px;
+    if is_round && !had_branches {
+        return 0;
+    }
+    let radii = if is_cut { MOST_CUT_RADII } else { MOST_RADII };
+    let least_px = half_px - (0.2 * half_px).max(0.75);
+    let is_near = |at: &Pixel| PxPoint::from(*at).distance(tip.into()) <= radii * half_px + 1.0;
+    let corner = || pixels.take_while(is_near).position(|at| radius_px(at) >= least_px);
+    let Some(corner) = (if is_round { Some(0) } else { corner() }) else { return 0 };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "half a width below 200 px")]
+    let margin = libm::ceil((half_px - 2.0).max(0.0)) as usize;
+    // A short line shows nothing better.
+    if corner + margin + 8 <= sites.len() { corner + margin } else { 0 }
+}
+
+/// Where a line ends, from the course of its undisturbed part; and whether the picture's rim cuts it there.
+pub(super) fn line_end(scan: Scan<'_>, arm: &Arm) -> (PxPoint, bool) {
+    let (dx, dy) = arm.direction;
+    let back = (-dx, -dy);
+    let longest_px = 3.0 * arm.width_px + 4.0 + start_px(arm);
+    let rim_px = scan.rim_along_px(arm.origin, back);
+    let reach_px = scan.reach_px(arm.origin, back, longest_px);
+    let rim = arm.origin.along(back, rim_px);
+    if reach_px + 1.0 >= rim_px && scan.is_cut_at(rim, back, LEAST_CUT * arm.width_px) {
+        return (rim, true);
+    }
+    let end = |reach_px: f64| arm.at(-(reach_px - 0.5 * arm.width_px).max(0.0));
+    let straight = end(reach_px);
+    // A line that bends may leave the ink beside the straight way.
+    if scan.is_ink_around(straight) {
+        return (straight, false);
+    }
+    (end(scan.reach_along_px(longest_px, |t| arm.at(-t))), false)
+}
+
+/// How far the fitted part of an arm begins from its tip, px.
+fn start_px(arm: &Arm) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a few sites")]
+    let skip = arm.skip as f64;
+    1.5 * skip
+}
