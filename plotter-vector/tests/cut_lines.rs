@@ -8,11 +8,11 @@
     reason = "places on pictures of 340 px, and parts of 1"
 )]
 
-mod segment_distance;
+mod off_lines;
 
+use off_lines::off_px;
 use plotter_vector::follow::{CameraSettings, Paper, SimulatedCamera};
-use plotter_vector::{Bitmap, Drawing, Gray, Pixel, PxPoint, Vectorizer};
-use segment_distance::segment_distance;
+use plotter_vector::{Bitmap, Gray, Pixel, PxPoint, Vectorizer};
 
 const SIDE: f64 = 300.0;
 
@@ -122,22 +122,6 @@ fn drawing(random: &mut Random) -> Option<Vec<Line>> {
         }
     }
     lines.into_iter().map(cut).collect()
-}
-
-/// The greatest distance between the lines and what was found of them, px, either way.
-fn off_px(lines: &[Line], found: &Drawing) -> f64 {
-    let pieces: Vec<Line> = (0..found.strokes().len())
-        .flat_map(|i| found.stroke(i).windows(2).map(|pair| [pair[0], pair[1]]).collect::<Vec<_>>())
-        .collect();
-    let off = |at: PxPoint, all: &[Line]| {
-        all.iter().map(|[from, to]| segment_distance(at, *from, *to)).fold(f64::INFINITY, f64::min)
-    };
-    let places = |[from, to]: &Line| {
-        let (from, off, steps) = (*from, way(*from, *to), libm::ceil(from.distance(*to)).max(1.0) as u32);
-        (0..=steps).map(move |i| along(from, off, f64::from(i) / f64::from(steps)))
-    };
-    let missed = lines.iter().flat_map(places).map(|at| off(at, &pieces)).fold(0.0, f64::max);
-    pieces.iter().flat_map(places).map(|at| off(at, lines)).fold(missed, f64::max)
 }
 
 fn bits(gray: &Gray) -> Bitmap {

@@ -79,8 +79,11 @@ fn unfold(stroke: &mut Vec<PxPoint>, width_px: f64) {
     }
 }
 
-/// Takes away what thinning leaves in corners: short strokes wholly inside of the ink of others. Strokes without a width of their own
-/// are as wide as most.
+/// Blur fills acute angles to so much beyond the ink of both lines, px.
+const FILLED_PX: f64 = 1.3;
+
+/// Takes away what thinning leaves in corners: short strokes wholly inside of the ink of others, and of what blur fills between them.
+/// Strokes without a width of their own are as wide as most.
 pub(super) fn without_crumbs(strokes: &mut Vec<Vec<PxPoint>>, widths_px: &[f64], most_px: f64) {
     let width_of = |stroke: usize| widths_px.get(stroke).copied().unwrap_or(most_px);
     for i in 0..strokes.len() {
@@ -91,7 +94,7 @@ pub(super) fn without_crumbs(strokes: &mut Vec<Vec<PxPoint>>, widths_px: &[f64],
                     others.flat_map(|(k, other)| other.windows(2).map(move |pair| (k, pair))).any(
                         |(k, pair)| {
                             let [a, b] = pair else { return false };
-                            nearest(*at, *a, *b).distance(*at) < 0.6 * width_of(k) + 0.8
+                            nearest(*at, *a, *b).distance(*at) < 0.6 * width_of(k) + FILLED_PX
                         },
                     )
                 })
@@ -403,5 +406,19 @@ mod tests {
         let strokes = sharpened(&picture(ways, 5.0), vec![one, crumb, other], 6.0);
         assert_eq!(strokes.len(), 1);
         assert!(off_px(&strokes[0]) < 0.5, "{}", off_px(&strokes[0]));
+    }
+
+    #[test]
+    fn what_blur_fills_between_two_lines_is_a_crumb() {
+        let line = |places: &[(f64, f64)]| places.iter().map(|(x, y)| PxPoint::new(*x, *y)).collect();
+        let left = |crumb: &[(f64, f64)]| {
+            let (beam, roof) = ([(340.0, 250.6), (410.8, 250.6)], [(340.8, 189.2), (410.8, 250.6)]);
+            let mut strokes: Vec<Vec<PxPoint>> = vec![line(&beam), line(&roof), line(crumb)];
+            without_crumbs(&mut strokes, &[4.9, 4.9, 4.0], 4.9);
+            strokes.len()
+        };
+        assert_eq!(left(&[(400.8, 246.7), (401.1, 248.7), (401.3, 250.6)]), 2);
+        // Paper is between the lines there.
+        assert_eq!(left(&[(385.0, 238.0), (385.0, 242.0), (385.0, 246.0)]), 3);
     }
 }
