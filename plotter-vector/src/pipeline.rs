@@ -16,6 +16,7 @@ use crate::{
     SheetErrors, Simplify, Split, ThinningMethod, Threshold, TooManyFigures, despeckle, smallest_mark_px,
 };
 use core::fmt;
+use std::collections::BTreeSet;
 
 /// Which vectorization.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -389,7 +390,7 @@ impl Vectorizer {
         let Joined { figures, borrowed } = join(&linked, ink);
         drop(linked);
         let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
-        let (straight, errors) = simplify(ink, &figures, lent, shared, &self.ours);
+        let (straight, errors) = simplify(ink, &figures, lent, &shared, &self.ours);
         let drawing = match self.pieces() {
             Pieces::Lines => straight,
             _ => self.bent(&figures, &straight),
@@ -413,7 +414,7 @@ impl Vectorizer {
     }
 
     fn published(&self, ink: &Bitmap) -> Result<(Drawing, SheetErrors), VectorizeError> {
-        Ok(simplify(ink, &self.figures(ink)?, |_| (false, false), Bitmap::empty(), &self.published))
+        Ok(simplify(ink, &self.figures(ink)?, |_| (false, false), &Bitmap::empty(), &self.published))
     }
 
     fn figures(&self, ink: &Bitmap) -> Result<Figures, VectorizeError> {
@@ -445,19 +446,13 @@ fn simplify(
     ink: &Bitmap,
     figures: &Figures,
     borrowed: impl Fn(usize) -> (bool, bool),
-    shared: Bitmap,
+    shared: &Bitmap,
     algorithm: &impl Simplify,
 ) -> (Drawing, SheetErrors) {
     let mut drawing = Drawing::new(ink.width(), ink.height());
     let mut tally = ErrorTally::default();
-    let mut seen = shared.clone();
-    let mut counts = |at: Pixel| {
-        let is_first = !shared.get(at) || seen.get(at);
-        if is_first && shared.get(at) {
-            seen.set(at, false);
-        }
-        is_first
-    };
+    let mut seen = BTreeSet::new();
+    let mut counts = |at: Pixel| !shared.get(at) || seen.insert(at);
     for (index, figure) in figures.iter().enumerate() {
         let kept = algorithm.keep(figure);
         tally.add_those(figure, &kept, borrowed(index), &mut counts);
