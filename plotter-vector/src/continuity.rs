@@ -9,6 +9,7 @@
 //! ```
 
 use crate::{Bitmap, Figures, Pixel};
+use std::collections::BTreeMap;
 
 /// Fewest pixels of a figure that can enclose paper: a ring round one pixel.
 const MIN_CLOSED_PX: usize = 8;
@@ -89,7 +90,7 @@ pub fn link(figures: &Figures) -> Figures {
     for (_, a, b) in pairs {
         links.connect(a, b);
     }
-    links.assemble(figures)
+    links.assemble(figures, &BTreeMap::new())
 }
 
 /// Cosine between the directions in which two ends point: −1 when the line goes straight on, 1 for a hairpin.
@@ -100,15 +101,15 @@ fn hairpin(figures: &Figures, a: usize, b: usize) -> f64 {
     a.0 * b.0 + a.1 * b.1
 }
 
-/// Which end is linked with which; never a ring.
-struct Links {
+/// Which end is linked with which; never a ring. An end is twice its figure's index, and 1 more for its last pixel.
+pub(crate) struct Links {
     partners: Vec<Option<usize>>,
     /// A forest over the figures: those of one chain share a root.
     parents: Vec<usize>,
 }
 
 impl Links {
-    fn new(figures: usize) -> Self {
+    pub(crate) fn new(figures: usize) -> Self {
         Self { partners: vec![None; 2 * figures], parents: (0..figures).collect() }
     }
 
@@ -128,10 +129,11 @@ impl Links {
         figure
     }
 
-    fn connect(&mut self, a: usize, b: usize) {
+    /// Whether both ends were free, and of two chains.
+    pub(crate) fn connect(&mut self, a: usize, b: usize) -> bool {
         let (root_a, root_b) = (self.root(a / 2), self.root(b / 2));
         if root_a == root_b || self.partner(a).is_some() || self.partner(b).is_some() {
-            return;
+            return false;
         }
         for (end, other) in [(a, b), (b, a)] {
             if let Some(slot) = self.partners.get_mut(end) {
@@ -141,9 +143,11 @@ impl Links {
         if let Some(slot) = self.parents.get_mut(root_a.max(root_b)) {
             *slot = root_a.min(root_b);
         }
+        true
     }
 
-    fn assemble(&self, figures: &Figures) -> Figures {
+    /// The chains of linked figures; between two ends come the pixels of their gap, from the lesser end to the greater.
+    pub(crate) fn assemble(&self, figures: &Figures, gaps: &BTreeMap<(usize, usize), Vec<Pixel>>) -> Figures {
         let mut whole = Figures::default();
         let mut done = vec![false; figures.len()];
         for index in 0..figures.len() {
@@ -167,7 +171,12 @@ impl Links {
                 if let Some(flag) = done.get_mut(end / 2) {
                     *flag = true;
                 }
-                next = self.partner(end ^ 1);
+                let exit = end ^ 1;
+                next = self.partner(exit);
+                if let Some(entry) = next {
+                    let gap = gaps.get(&(exit.min(entry), exit.max(entry))).into_iter().flatten().copied();
+                    if exit < entry { pixels.extend(gap) } else { pixels.extend(gap.rev()) }
+                }
             }
             whole.push(pixels);
         }

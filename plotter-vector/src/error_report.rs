@@ -76,10 +76,23 @@ impl ErrorTally {
     /// Adds a figure and the indices of the pixels that became vertices, rising; `borrowed` says whether the first
     /// and the last pixel belong to another line and do not count.
     pub fn add(&mut self, figure: &[Pixel], kept: &[usize], borrowed: (bool, bool)) {
+        self.add_those(figure, kept, borrowed, |_| true);
+    }
+
+    /// The same of those pixels that count.
+    pub(crate) fn add_those(
+        &mut self,
+        figure: &[Pixel],
+        kept: &[usize],
+        borrowed: (bool, bool),
+        mut counts: impl FnMut(Pixel) -> bool,
+    ) {
         let own = usize::from(borrowed.0)..figure.len() - usize::from(borrowed.1).min(figure.len());
         for vertex in kept.iter().filter(|index| own.contains(index)) {
             debug_assert!(*vertex < figure.len(), "a vertex is a pixel of the figure");
-            if let Some(pixel) = figure.get(*vertex) {
+            if let Some(pixel) = figure.get(*vertex)
+                && counts(*pixel)
+            {
                 self.add_pixel(*pixel, 0.0);
             }
         }
@@ -87,7 +100,9 @@ impl ErrorTally {
             let [start, end] = pair else { continue };
             let (Some(from), Some(to)) = (figure.get(*start), figure.get(*end)) else { continue };
             for pixel in figure.get(start + 1..*end).unwrap_or(&[]) {
-                self.add_pixel(*pixel, libm::sqrt(segment_distance_squared(*pixel, *from, *to)));
+                if counts(*pixel) {
+                    self.add_pixel(*pixel, libm::sqrt(segment_distance_squared(*pixel, *from, *to)));
+                }
             }
         }
     }

@@ -44,6 +44,7 @@ mod scan;
 mod sheet;
 mod simplify;
 mod speckle;
+mod straight_on;
 mod stroke_op;
 mod svg;
 #[cfg(feature = "svg-in")]

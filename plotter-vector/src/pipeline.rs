@@ -8,6 +8,7 @@ use crate::line_width::{WIDEST_BESIDE_AREAS_PX, line_width};
 use crate::raster_corner::take_in;
 use crate::row_threshold::has_rims;
 use crate::simplify::Pieces;
+use crate::straight_on::{GoneOn, straight_on};
 use crate::within::within;
 use crate::{
     AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Cancelled, Curve, Drawing, DynamicThreshold,
@@ -15,6 +16,7 @@ use crate::{
     SheetErrors, Simplify, Split, ThinningMethod, Threshold, TooManyFigures, despeckle, smallest_mark_px,
 };
 use core::fmt;
+use std::collections::BTreeSet;
 
 /// Which vectorization.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -381,12 +383,14 @@ impl Vectorizer {
     fn tracked(&self, ink: &Bitmap) -> Result<(Drawing, SheetErrors), VectorizeError> {
         let figures = take_in(self.figures(ink)?, ink.width(), ink.height());
         // Of a sheet full of ink each step's figures are large: none outlives its use.
-        let linked = link(&figures);
+        let GoneOn { figures: straight, shared } = straight_on(&figures, ink);
         drop(figures);
+        let linked = link(&straight);
+        drop(straight);
         let Joined { figures, borrowed } = join(&linked, ink);
         drop(linked);
         let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
-        let (straight, errors) = simplify(ink, &figures, lent, &self.ours);
+        let (straight, errors) = simplify(ink, &figures, lent, &shared, &self.ours);
         let drawing = match self.pieces() {
             Pieces::Lines => straight,
             _ => self.bent(&figures, &straight),
@@ -410,7 +414,7 @@ impl Vectorizer {
     }
 
     fn published(&self, ink: &Bitmap) -> Result<(Drawing, SheetErrors), VectorizeError> {
-        Ok(simplify(ink, &self.figures(ink)?, |_| (false, false), &self.published))
+        Ok(simplify(ink, &self.figures(ink)?, |_| (false, false), &Bitmap::empty(), &self.published))
     }
 
     fn figures(&self, ink: &Bitmap) -> Result<Figures, VectorizeError> {
@@ -437,18 +441,21 @@ pub(crate) fn is_raster_lines(blocks: u64, ink_pixels: u64) -> bool {
     blocks * 20 <= ink_pixels
 }
 
-/// A stroke of each figure, and the errors.
+/// A stroke of each figure, and the errors; of pixels that figures share those of the first of them.
 fn simplify(
     ink: &Bitmap,
     figures: &Figures,
     borrowed: impl Fn(usize) -> (bool, bool),
+    shared: &Bitmap,
     algorithm: &impl Simplify,
 ) -> (Drawing, SheetErrors) {
     let mut drawing = Drawing::new(ink.width(), ink.height());
     let mut tally = ErrorTally::default();
+    let mut seen = BTreeSet::new();
+    let mut counts = |at: Pixel| !shared.get(at) || seen.insert(at);
     for (index, figure) in figures.iter().enumerate() {
         let kept = algorithm.keep(figure);
-        tally.add(figure, &kept, borrowed(index));
+        tally.add_those(figure, &kept, borrowed(index), &mut counts);
         let vertex = |index: &usize| figure.get(*index).copied().map(|pixel: Pixel| PxPoint::from(pixel));
         drawing.push(kept.iter().filter_map(vertex));
     }

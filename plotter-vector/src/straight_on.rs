@@ -1,0 +1,247 @@
+//! [`straight_on`]: a line that another one cuts goes straight on beyond it.
+//!
+//! ```text
+//!   tracked              gone on
+//!   a.....b              a.....b         the tracking went down b, and a and c end at it;
+//!   .a...b.              .a...b.         a and c lie in line, the pixel x of b is ink between
+//!   ...b...     ──►      ...x...         them, and becomes a part of both lines
+//!   .b...c.              .b...a.
+//!   b.....c              b.....a
+//! ```
+//!
+//! What it adds to a figure is ink, and the figure stays a chain of touching pixels: whatever is promised of figures holds
+//! of these too.
+
+use crate::continuity::{Links, is_closed, neighbours};
+use crate::{Bitmap, Figures, Pixel};
+use std::collections::BTreeMap;
+
+/// Pixels from which the direction of an end is taken, as many as lie in line.
+const TAILS_PX: [usize; 4] = [32, 20, 12, 8];
+
+/// How far the pixels of one straight line may lie beside it, px: rounded to the raster, and a little.
+const LINE_PX: f64 = 0.75;
+
+/// Longest way from end to end, px: lines that cross at some 3 degrees share as much.
+const REACH_PX: u32 = 20;
+
+/// Figures that go straight on over the ink of others.
+pub(crate) struct GoneOn {
+    pub(crate) figures: Figures,
+    /// The pixels that more than one figure may have.
+    pub(crate) shared: Bitmap,
+}
+
+/// Joins figures whose ends lie along one straight line with ink between them, the straightest pairs first. Linear in the
+/// pixels, and n·log n in the figures.
+pub(crate) fn straight_on(figures: &Figures, ink: &Bitmap) -> GoneOn {
+    let ends = Ends::of(figures, ink);
+    let mut pairs = Vec::new();
+    for (at, id) in &ends.sorted {
+        ends.add_pairs(*at, *id, &mut pairs);
+    }
+    pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut links = Links::new(figures.len());
+    let mut gaps = BTreeMap::new();
+    let mut shared = Bitmap::new(ink.width(), ink.height()).unwrap_or(Bitmap::empty());
+    for (_, a, b) in pairs {
+        if let Some(gap) = ends.gap(a, b)
+            && links.connect(a, b)
+        {
+            gap.iter().for_each(|at| shared.set(*at, true));
+            gaps.insert((a, b), gap);
+        }
+    }
+    GoneOn { figures: links.assemble(figures, &gaps), shared }
+}
+
+/// The ends of open figures that are straight there.
+struct Ends<'a> {
+    ink: &'a Bitmap,
+    figures: &'a Figures,
+    /// Pixel of each end, and twice its figure's index, and 1 more for the last pixel; sorted.
+    sorted: Vec<(Pixel, usize)>,
+    marked: Bitmap,
+}
+
+impl<'a> Ends<'a> {
+    fn of(figures: &'a Figures, ink: &'a Bitmap) -> Self {
+        let shortest = TAILS_PX.last().copied().unwrap_or(0);
+        let mut marked = Bitmap::new(ink.width(), ink.height()).unwrap_or(Bitmap::empty());
+        let mut sorted = Vec::new();
+        for (index, figure) in figures.iter().enumerate() {
+            if figure.len() < shortest || is_closed(figure) {
+                continue;
+            }
+            for id in [2 * index, 2 * index + 1] {
+                if let Some(tail) = tail(figure, id, shortest)
+                    && let Some(at) = tail.first()
+                    && beside_line_px(&tail, &[]) <= LINE_PX
+                {
+                    marked.set(*at, true);
+                    sorted.push((*at, id));
+                }
+            }
+        }
+        sorted.sort_unstable();
+        Self { ink, figures, sorted, marked }
+    }
+
+    fn tail(&self, id: usize, length: usize) -> Option<Vec<Pixel>> {
+        tail(self.figures.get(id / 2), id, length)
+    }
+
+    /// The longest part of an end that is straight.
+    fn straight_tail(&self, id: usize) -> Option<Vec<Pixel>> {
+        let tails = TAILS_PX.iter().filter_map(|length| self.tail(id, *length));
+        tails.into_iter().find(|tail| beside_line_px(tail, &[]) <= LINE_PX)
+    }
+
+    fn at(&self, at: Pixel) -> impl Iterator<Item = usize> + '_ {
+        let from = if self.marked.get(at) {
+            self.sorted.partition_point(|end| end.0 < at)
+        } else {
+            self.sorted.len()
+        };
+        let here = self.sorted.get(from..).unwrap_or(&[]).iter();
+        here.take_while(move |end| end.0 == at).map(|(_, id)| *id)
+    }
+
+    /// The ends that lie ahead of one, and how far from a line with it.
+    fn add_pairs(&self, start: Pixel, id: usize, pairs: &mut Vec<(f64, usize, usize)>) {
+        let Some(own) = self.straight_tail(id) else { return };
+        let Some(inner) = own.last() else { return };
+        let (dx, dy) = start.minus(*inner);
+        let most = dx.abs().max(dy.abs()).max(1.0);
+        let step = (dx / most, dy / most);
+        let mut seen: Vec<usize> = Vec::new();
+        for steps in 1..=REACH_PX {
+            let along = f64::from(steps);
+            let Some(at) = moved(start, along * step.0, along * step.1) else { return };
+            let near = || neighbours(at).chain([at]);
+            if !near().any(|at| self.ink.get(at)) {
+                return;
+            }
+            for other in near().flat_map(|at| self.at(at)) {
+                if id < other && id / 2 != other / 2 && !seen.contains(&other) {
+                    seen.push(other);
+                    if let Some(cost) = self.straight_tail(other).and_then(|other| bend(&own, &other)) {
+                        pairs.push((cost, id, other));
+                    }
+                }
+            }
+        }
+    }
+
+    /// The ink between two ends; `None` if it leaves their line.
+    fn gap(&self, a: usize, b: usize) -> Option<Vec<Pixel>> {
+        let (mut at, to) = (*self.tail(a, 1)?.first()?, *self.tail(b, 1)?.first()?);
+        let from = at;
+        let (dx, dy) = to.minus(from);
+        let away = |at: Pixel| {
+            let (x, y) = at.minus(from);
+            (x * dy - y * dx).abs()
+        };
+        let left = |at: Pixel| at.x.abs_diff(to.x).pow(2) + at.y.abs_diff(to.y).pow(2);
+        let mut gap = Vec::new();
+        while !at.touches(to) {
+            let ahead = neighbours(at).filter(|next| self.ink.get(*next) && left(*next) < left(at));
+            at = ahead.min_by(|a, b| away(*a).total_cmp(&away(*b)).then(left(*a).cmp(&left(*b))))?;
+            gap.push(at);
+        }
+        let length = libm::sqrt(dx * dx + dy * dy);
+        gap.iter().all(|at| away(*at) <= length).then_some(gap)
+    }
+}
+
+/// As many pixels of a figure's end, outermost first.
+fn tail(figure: &[Pixel], id: usize, length: usize) -> Option<Vec<Pixel>> {
+    if id.is_multiple_of(2) {
+        Some(figure.get(..length)?.to_vec())
+    } else {
+        Some(figure.get(figure.len().checked_sub(length)?..)?.iter().rev().copied().collect())
+    }
+}
+
+fn moved(at: Pixel, dx: f64, dy: f64) -> Option<Pixel> {
+    #[allow(clippy::cast_possible_truncation, reason = "at most the reach")]
+    let whole = |step: f64| libm::round(step) as i32;
+    Some(Pixel::new(at.x.checked_add_signed(whole(dx))?, at.y.checked_add_signed(whole(dy))?))
+}
+
+/// How far two tails lie from one line that they follow in opposite directions, px for each of the shorter one's pixels.
+fn bend(a: &[Pixel], b: &[Pixel]) -> Option<f64> {
+    let ahead = {
+        let ((ax, ay), (bx, by)) = (a.first()?.minus(*a.last()?), b.last()?.minus(*b.first()?));
+        let (gx, gy) = b.first()?.minus(*a.first()?);
+        ax * bx + ay * by > 0.0 && ax * gx + ay * gy > 0.0
+    };
+    for length in TAILS_PX {
+        let part = |tail: &'_ [Pixel]| tail.get(..length.min(tail.len())).map(<[Pixel]>::to_vec);
+        let (a, b) = (part(a)?, part(b)?);
+        let beside_px = beside_line_px(&a, &b);
+        if ahead && beside_px <= 1.0 {
+            let shorter = u32::try_from(a.len().min(b.len())).unwrap_or(u32::MAX);
+            return Some(beside_px / f64::from(shorter));
+        }
+    }
+    None
+}
+
+/// The greatest distance of pixels from the straight line with the least squared distances, px.
+fn beside_line_px(some: &[Pixel], others: &[Pixel]) -> f64 {
+    let Some(origin) = some.first() else { return 0.0 };
+    let places = || some.iter().chain(others).map(|at| at.minus(*origin));
+    let (mut n, mut x, mut y, mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for (dx, dy) in places() {
+        (n, x, y) = (n + 1.0, x + dx, y + dy);
+        (xx, xy, yy) = (xx + dx * dx, xy + dx * dy, yy + dy * dy);
+    }
+    let (x, y) = (x / n, y / n);
+    let (xx, xy, yy) = (xx / n - x * x, xy / n - x * y, yy / n - y * y);
+    let angle = 0.5 * libm::atan2(2.0 * xy, xx - yy);
+    let (dx, dy) = (libm::cos(angle), libm::sin(angle));
+    places().map(|(px, py)| ((px - x) * dy - (py - y) * dx).abs()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(y: u32) -> Vec<Pixel> {
+        (0..21).map(|x| Pixel::new(x, y)).collect()
+    }
+
+    fn column(rows: core::ops::Range<u32>) -> Vec<Pixel> {
+        rows.map(|y| Pixel::new(10, y)).collect()
+    }
+
+    fn gone_on(lines: &[Vec<Pixel>]) -> GoneOn {
+        let mut ink = Bitmap::new(21, 21).unwrap();
+        let mut figures = Figures::default();
+        for line in lines {
+            line.iter().for_each(|at| ink.set(*at, true));
+            figures.push(line.iter().copied());
+        }
+        straight_on(&figures, &ink)
+    }
+
+    #[test]
+    fn a_line_that_another_cuts_goes_straight_on_over_its_pixel() {
+        let gone_on = gone_on(&[row(10), column(0..10), column(11..21)]);
+        assert_eq!(gone_on.figures.len(), 2);
+        assert_eq!(gone_on.figures.get(0), row(10));
+        assert_eq!(gone_on.figures.get(1), column(0..21));
+        assert_eq!(gone_on.shared.ink().collect::<Vec<_>>(), [Pixel::new(10, 10)]);
+    }
+
+    #[test]
+    fn a_line_does_not_go_on_over_paper() {
+        assert_eq!(gone_on(&[column(0..9), column(12..21)]).figures.len(), 2);
+    }
+
+    #[test]
+    fn short_ends_have_no_direction() {
+        assert_eq!(gone_on(&[row(10), column(4..10), column(11..17)]).figures.len(), 3);
+    }
+}
