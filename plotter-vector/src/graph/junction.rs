@@ -147,8 +147,9 @@ impl Junctions {
 /// Sites from a line's end on that are looked at: more than any arm needs, and fewer than the rows of a band's context.
 const LOOK: usize = 256;
 
-/// A line shows its course on so many times its width.
+/// A line shows its course on so many times its width, and so many px at least: the raster's error is that of a pixel.
 const SURE_WIDTHS: f64 = 2.0;
+const SURE_PX: f64 = 12.0;
 
 /// What junctions are found in.
 #[derive(Clone, Copy)]
@@ -407,7 +408,8 @@ impl Lines<'_> {
         ];
         let others = others.into_iter().flatten().map(|ways| (ways, better_than as fn(f64) -> f64));
         // Where all lines show their course, they go on as they come.
-        let are_sure = arms.iter().all(|one| one.arm.support_px >= SURE_WIDTHS * one.arm.width_px);
+        let sure_px = |one: &ArmOf| (SURE_WIDTHS * one.arm.width_px).max(SURE_PX);
+        let are_sure = arms.iter().all(|one| one.arm.support_px >= sure_px(one));
         let below = if are_sure { plainly_better_than } else { better_than };
         let curves = pairings(arms.len()).iter().map(|pairs| heart.curves(arms, pairs));
         let curves = curves.map(|ways| (ways, below as fn(f64) -> f64));
