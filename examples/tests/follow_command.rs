@@ -305,6 +305,8 @@ fn a_run_without_a_line_still_writes_its_report() {
             );
             assert!(told.contains(says), "{method}: {told}");
             let value = report(path);
+            let text = value.to_string();
+            assert!(!text.contains("-0.0") && !text.contains("-0,"), "{text}");
             assert_eq!(
                 (&value["finished"], value["path_points"].as_array().unwrap().len()),
                 (&Value::Bool(false), 0)

@@ -297,7 +297,7 @@ impl Drawing {
     /// Length drawn, px.
     #[must_use]
     pub fn pen_down_px(&self) -> f64 {
-        (0..self.ends.len()).map(|index| self.course(index).length_px()).sum()
+        (0..self.ends.len()).map(|index| self.course(index).length_px()).fold(0.0, |sum, px| sum + px)
     }
 
     /// Length travelled with the pen up from each stroke's end to the next one's start, px. The ways from and to

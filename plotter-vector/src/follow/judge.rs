@@ -137,7 +137,8 @@ pub fn judge(truth: &[Vec<PxPoint>], path: &[Vec<PxPoint>], reach_px: f64) -> Ju
             .iter()
             .flat_map(|line| line.windows(2))
             .map(|pair| if let [a, b] = pair { a.distance(*b) } else { 0.0 })
-            .sum()
+            // From 0: the sum of nothing is -0.
+            .fold(0.0, |sum, px| sum + px)
     };
     (judged.true_px, judged.path_px) = (length(truth), length(path));
 

@@ -124,7 +124,8 @@ impl LineMap {
             .iter()
             .filter(|link| !link.contact && link.state == state)
             .map(|link| self.length(link))
-            .sum()
+            // From 0: the sum of nothing is -0.
+            .fold(0.0, |sum, px| sum + px)
     }
 
     /// The nodes within a distance.
