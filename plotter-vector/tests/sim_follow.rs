@@ -108,7 +108,7 @@ fn every_figure_is_covered_without_a_wrong_choice() {
             println!("{name}: {:?} {:?}", run.judged, run.report);
             assert_eq!((run.end, wrong_choices(figure, &run.strokes)), (End::Complete, (0, 0)), "{name}");
             assert!(run.judged.coverage > 0.995 && run.judged.rms_px < 0.25, "{name}: {:?}", run.judged);
-            assert!(run.judged.max_px < 1.6, "{name}: {:?}", run.judged);
+            assert!(run.judged.max_px < 1.0, "{name}: {:?}", run.judged);
             assert!(run.judged.repeated < 0.02, "{name}: {:?}", run.judged);
             assert!(run.report.lifts <= most_lifts, "{name}: {:?}", run.report);
         }
@@ -124,7 +124,7 @@ fn an_exact_table_leaves_what_the_picture_leaves() {
         println!("{name}: {:?} {:?}", run.judged, run.report);
         assert_eq!((run.end, run.lost), (End::Complete, 0), "{name}");
         assert!(run.judged.coverage > 0.995 && run.judged.rms_px < 0.12, "{name}: {:?}", run.judged);
-        assert!(run.judged.max_px < 1.6, "{name}: {:?}", run.judged);
+        assert!(run.judged.max_px < 1.0, "{name}: {:?}", run.judged);
         assert_eq!(wrong_choices(&figure, &run.strokes), (0, 0), "{name}");
     }
 }
