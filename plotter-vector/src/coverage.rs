@@ -68,7 +68,9 @@ pub(crate) fn with_widths(ink: &Bitmap, drawing: &Drawing, areas: Option<AreaPen
 /// ```
 #[must_use]
 pub fn worst_pixel(ink: &Bitmap, drawing: &Drawing) -> Option<(Pixel, f64)> {
-    add_coverage(ink, drawing, None, &mut ErrorTally::default())
+    let mut tally = ErrorTally::default();
+    add_coverage(ink, drawing, None, &mut tally);
+    tally.worst()
 }
 
 /// What told areas from lines, and the pen that draws their outlines and hatching.
@@ -78,31 +80,19 @@ pub(crate) struct AreaPen<'a> {
     pub(crate) pen_px: f64,
 }
 
-/// Adds the errors of [`coverage`] to others, and finds the pixel of [`worst_pixel`]. Where areas are drawn as such, the ink inside
+/// Adds the errors of [`coverage`] to others. Where areas are drawn as such, the ink inside
 /// of them does not count, only that at their edge, and their outline is as wide as its pen.
 pub(crate) fn add_coverage(
     ink: &Bitmap,
     drawing: &Drawing,
     areas: Option<AreaPen<'_>>,
     tally: &mut ErrorTally,
-) -> Option<(Pixel, f64)> {
+) {
     let index = with_widths(ink, drawing, areas);
     let counted = areas.map(|areas| areas.opening.without_insides(ink.clone()));
     let mut covering = 0;
-    let mut worst = None;
     for at in counted.as_ref().unwrap_or(ink).ink() {
-        let error_px = index.error_px(at.into(), &mut covering);
-        tally.add_error(error_px);
-        worst = worse(worst, Some((at, error_px)));
-    }
-    worst
-}
-
-/// The one with the greater error, the first of two equal ones.
-pub(crate) fn worse(one: Option<(Pixel, f64)>, next: Option<(Pixel, f64)>) -> Option<(Pixel, f64)> {
-    match (one, next) {
-        (Some((_, most_px)), Some((_, error_px))) if error_px <= most_px => one,
-        (one, next) => next.or(one),
+        tally.add_pixel(at, index.error_px(at.into(), &mut covering));
     }
 }
 

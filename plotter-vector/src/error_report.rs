@@ -107,8 +107,13 @@ impl ErrorTally {
         }
     }
 
-    fn add_pixel(&mut self, at: Pixel, error_px: f64) {
+    pub(crate) fn add_pixel(&mut self, at: Pixel, error_px: f64) {
         self.add_error(error_px);
+        self.note_worst(at, error_px);
+    }
+
+    /// A pixel whose error was added by itself may be the worst one.
+    pub(crate) fn note_worst(&mut self, at: Pixel, error_px: f64) {
         let is_worse = |(most, most_px): (Pixel, f64)| {
             error_px > most_px || error_px >= most_px && (at.y, at.x) < (most.y, most.x)
         };
@@ -117,8 +122,7 @@ impl ErrorTally {
         }
     }
 
-    /// The pixel of a figure with the greatest error, the first of several in reading order, and its error, px; none
-    /// without figures.
+    /// The pixel with the greatest error, the first of several in reading order, and its error, px; none without pixels.
     ///
     /// ```
     /// # use plotter_vector::{ErrorTally, Pixel};

@@ -1,6 +1,6 @@
 //! [`Vectorizer::vectorize_colour`]: the whole way from a picture in colour to the strokes of each pen.
 
-use crate::coverage::{add_coverage, worse};
+use crate::coverage::add_coverage;
 use crate::pipeline::Unordered;
 use crate::{
     Algorithm, Bitmap, Colour, Drawing, ErrorTally, Palette, Pens, Pixel, Progress, VectorizeError,
@@ -90,16 +90,15 @@ impl Vectorizer {
         progress.part(ORDERED).at(1, 1)?;
         let mut tally = ErrorTally::default();
         let mut measuring = progress.part(1.0);
-        let mut worst = None;
         for (done, (pen, (ink, areas))) in
             (1..).zip(layers.palette().pens().iter().zip(inks.iter().zip(&openings)))
         {
             let areas = areas.as_ref().map(|areas| self.area_pen(areas));
-            worst = worse(worst, add_coverage(ink, &drawing.of_pen(pen.number), areas, &mut tally));
+            add_coverage(ink, &drawing.of_pen(pen.number), areas, &mut tally);
             measuring.at(done, of)?;
         }
         let traced = Vectorized { drawing, error: tally.report(), split: None };
-        Ok(VectorizedColour { traced, palette: layers.palette().clone(), inks, worst })
+        Ok(VectorizedColour { traced, palette: layers.palette().clone(), inks, worst: tally.worst() })
     }
 }
 

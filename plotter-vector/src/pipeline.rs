@@ -232,8 +232,8 @@ impl Vectorizer {
     /// The errors of a drawing, with the areas that were told from lines.
     pub(crate) fn errors(&self, ink: &Bitmap, drawing: &Drawing, areas: Option<&Opening>) -> SheetErrors {
         let mut tally = ErrorTally::default();
-        let worst = add_coverage(ink, drawing, areas.map(|areas| self.area_pen(areas)), &mut tally);
-        SheetErrors { report: tally.report(), worst }
+        add_coverage(ink, drawing, areas.map(|areas| self.area_pen(areas)), &mut tally);
+        SheetErrors { report: tally.report(), worst: tally.worst() }
     }
 
     /// The pen that draws areas.

@@ -9,10 +9,12 @@
 )]
 
 mod off_lines;
+mod random;
 
 use off_lines::off_px;
 use plotter_vector::follow::{CameraSettings, Paper, SimulatedCamera};
 use plotter_vector::{Bitmap, Gray, Pixel, PxPoint, Vectorizer};
+use random::Random;
 
 const SIDE: f64 = 300.0;
 
@@ -22,18 +24,6 @@ const APART_PX: f64 = 30.0;
 
 /// Lines differ in direction by more, and meet the rim at more, rad.
 const LEAST_ANGLE: f64 = 0.45;
-
-struct Random(u64);
-
-impl Random {
-    /// Evenly from 0 to 1 (Marsaglia's xorshift).
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
 
 type Line = [PxPoint; 2];
 
@@ -84,15 +74,15 @@ fn meet([a, b]: Line, [c, d]: Line) -> Option<PxPoint> {
 
 /// Two or three lines across the picture and one that ends on the first one, if they can be told apart.
 fn drawing(random: &mut Random) -> Option<Vec<Line>> {
-    let turn = |random: &mut Random| core::f64::consts::TAU * random.next();
+    let turn = |random: &mut Random| core::f64::consts::TAU * random.unit();
     let across = |random: &mut Random| {
-        let middle = PxPoint::new(SIDE * random.next(), SIDE * random.next());
+        let middle = PxPoint::new(SIDE * random.unit(), SIDE * random.unit());
         let (y, x) = libm::sincos(turn(random));
         [-400.0, 400.0].map(|part| along(middle, (x, y), part))
     };
-    let mut lines: Vec<Line> = (0..if random.next() < 0.5 { 2 } else { 3 }).map(|_| across(random)).collect();
+    let mut lines: Vec<Line> = (0..if random.unit() < 0.5 { 2 } else { 3 }).map(|_| across(random)).collect();
     let first = cut(lines[0])?;
-    let foot = along(first[0], way(first[0], first[1]), 0.2 + 0.6 * random.next());
+    let foot = along(first[0], way(first[0], first[1]), 0.2 + 0.6 * random.unit());
     let (y, x) = libm::sincos(turn(random));
     lines.push([foot, along(foot, (x, y), 400.0)]);
     let mut ends: Vec<PxPoint> =
@@ -138,7 +128,7 @@ fn lines_go_straight_through_up_to_the_rim_that_cuts_them() {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let mut drawings = Vec::new();
     while drawings.len() < PICTURES as usize {
-        let pen_px = 3.0 + 5.0 * random.next();
+        let pen_px = 3.0 + 5.0 * random.unit();
         drawings.extend(drawing(&mut random).map(|lines| (pen_px, lines)));
     }
     let (mut split, mut off) = (Vec::new(), Vec::new());

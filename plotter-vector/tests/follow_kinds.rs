@@ -2,18 +2,17 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test prints its table")]
 
 mod follow_drawings;
+mod follow_figures;
 
 use follow_drawings::drawings;
+use follow_figures::over;
 use plotter_vector::PxPoint;
-use plotter_vector::follow::{
-    CameraSettings, LineFollower, MappingFollower, MappingSettings, Paper, SimulatedCamera, SimulatedTable,
-    Step, TableError, judge,
-};
+use plotter_vector::follow::{CameraSettings, MappingSettings, Paper, TableError};
 
 /// The table of `docs/results.md`. `TABLE` is the table's error in px, `DRAWING` a drawing's name; `INTO` a folder into which the drawings
 /// are written as pictures.
 #[test]
-#[ignore = "a minute in release: cargo test --release -p plotter-vector --test follow_kinds -- --ignored --nocapture"]
+#[ignore = "five minutes in release: cargo test --release -p plotter-vector --test follow_kinds -- --ignored --nocapture"]
 fn drawings_of_many_kinds() {
     let random_px: f64 = std::env::var("TABLE").map_or(0.0, |text| text.parse().unwrap());
     let only = std::env::var("DRAWING").unwrap_or_default();
@@ -33,32 +32,11 @@ fn drawings_of_many_kinds() {
             max_windows: 20_000,
             ..MappingSettings::default()
         };
-        let mut camera =
-            SimulatedCamera::new(&paper, CameraSettings { seed: 1, ..CameraSettings::default() });
+        let camera = CameraSettings { seed: 1, ..CameraSettings::default() };
         let error = TableError { random_px, play_px: 3.0 * random_px, seed: 1 };
-        let mut table = SimulatedTable::new(PxPoint::new(0.5 * far.x, 0.5 * far.y), error);
-        let mut follower = MappingFollower::new(settings);
-        let end = loop {
-            match follower.observe(&camera.window(table.place()), table.commanded()) {
-                Step::Move { path, tool } => path.into_iter().for_each(|to| table.go(to, tool)),
-                Step::LineLost { .. } => {}
-                Step::Done(end) => break end,
-            }
-        };
         let lines: Vec<_> = drawing.strokes.iter().map(|(line, _)| line.clone()).collect();
-        let judged = judge(&lines, table.strokes(), 2.0);
-        let report = follower.report();
-        println!(
-            "| {} | {:.4} | {:.4} | {:.3} | {:.2} at {:.0} {:.0} | {} | {} | {end:?} |",
-            drawing.name,
-            judged.coverage,
-            judged.repeated,
-            judged.rms_px,
-            judged.max_px,
-            judged.worst.x,
-            judged.worst.y,
-            report.lifts,
-            report.windows,
-        );
+        let start = PxPoint::new(0.5 * far.x, 0.5 * far.y);
+        let run = over(&paper, &lines, start, camera, error, settings);
+        println!("| {} | {}", drawing.name, run.cells());
     }
 }

@@ -153,19 +153,7 @@ fn laps_of_the_four_figures() {
         for seed in from.parse::<u64>().unwrap()..to.parse().unwrap() {
             let run = lap(figure, table(seed), seed);
             let (shortcuts, turns) = wrong_choices(figure, &run.strokes);
-            let Run { judged, report, end, .. } = run;
-            println!(
-                "| {} {seed} | {shortcuts}, {turns} | {:.4} | {:.4} | {:.3} | {:.2} at {:.0} {:.0} | {} | {} | {end:?} |",
-                figure.name,
-                judged.coverage,
-                judged.repeated,
-                judged.rms_px,
-                judged.max_px,
-                judged.worst.x,
-                judged.worst.y,
-                report.lifts,
-                report.windows,
-            );
+            println!("| {} {seed} | {shortcuts}, {turns} | {}", figure.name, run.cells());
         }
     }
 }

@@ -5,34 +5,27 @@
     reason = "a failure shows, and places are small"
 )]
 
+mod random;
+mod segment_distance;
+
 use plotter_vector::{Bitmap, Pixel, PxPoint, Vectorized, Vectorizer};
+use random::Random;
+use segment_distance::segment_distance;
 
 const SIDE_PX: u32 = 300;
 
 /// A straight line, from and to.
 type Line = [PxPoint; 2];
 
-/// A small generator of numbers from 0 to 1 (Marsaglia's xorshift, 2003).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn place(&mut self) -> PxPoint {
-        let side = f64::from(SIDE_PX) - 16.0;
-        PxPoint::new(8.0 + side * self.unit(), 8.0 + side * self.unit())
-    }
+fn place(random: &mut Random) -> PxPoint {
+    let side = f64::from(SIDE_PX) - 16.0;
+    PxPoint::new(8.0 + side * random.unit(), 8.0 + side * random.unit())
 }
 
 /// Forty straight lines of 100 px and more.
 fn lines() -> Vec<Line> {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
-    let line = std::iter::repeat_with(|| [random.place(), random.place()]);
+    let line = std::iter::repeat_with(|| [place(&mut random), place(&mut random)]);
     line.filter(|[from, to]| from.distance(*to) >= 100.0).take(40).collect()
 }
 
@@ -68,14 +61,6 @@ fn traced(ink: &Bitmap, tolerance_px: f64) -> Vectorized {
     vectorizer.trace(ink).unwrap()
 }
 
-fn to_segment(at: PxPoint, from: PxPoint, to: PxPoint) -> f64 {
-    let (x, y) = (to.x - from.x, to.y - from.y);
-    let squared = x * x + y * y;
-    let t = if squared > 0.0 { ((at.x - from.x) * x + (at.y - from.y) * y) / squared } else { 0.0 };
-    let t = t.clamp(0.0, 1.0);
-    at.distance(PxPoint::new(from.x + x * t, from.y + y * t))
-}
-
 #[test]
 fn lines_that_cross_are_mostly_one_stroke_each() {
     for (lines, strokes, vertices) in [(grid(), 20, 71), (lines(), 129, 739)] {
@@ -100,7 +85,7 @@ fn the_way_over_a_crossing_keeps_the_promise_both_ways() {
             let dots: Vec<PxPoint> =
                 drawing.strokes().filter(|stroke| stroke.len() == 1).map(|dot| dot[0]).collect();
             for at in ink.ink().map(PxPoint::from) {
-                let near = |[from, to]: &Line| to_segment(at, *from, *to) <= tolerance_px + 1e-9;
+                let near = |[from, to]: &Line| segment_distance(at, *from, *to) <= tolerance_px + 1e-9;
                 assert!(segments.iter().any(near) || dots.contains(&at), "{at:?} at {tolerance_px} px");
             }
             // Between the middles of two pixels of a diagonal a line is half a diagonal from both.

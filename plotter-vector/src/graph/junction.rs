@@ -7,7 +7,7 @@
 use super::arm::{Arm, LONG, SHORT};
 use super::corner::{TURN_COS, direction};
 use super::line_end::{line_end, tail};
-use super::meeting::{Heart, Point, partners};
+use super::meeting::{Heart, Meet, partners};
 use super::near::Near;
 use super::site::{Scan, Site};
 use super::sites::Sites;
@@ -384,7 +384,7 @@ impl Lines<'_> {
 
     /// Of several ways to connect the arms of a junction the one that, drawn by pens of their widths, gives the ink.
     fn best(&self, group: &[usize], heart: &Heart<'_>, arms: &[ArmOf], found: &Junctions) -> Vec<Way> {
-        let straight = heart.plan(arms, Point::OfPen);
+        let straight = heart.plan(arms, Meet::WherePenWas);
         /// More arms meet in noise only.
         const MOST_ARMS: usize = 8;
         if arms.len() > MOST_ARMS {
@@ -400,10 +400,10 @@ impl Lines<'_> {
         let near: Option<Vec<ArmOf>> =
             arms.iter().map(|one| Some(ArmOf { arm: self.arm(one.end, SHORT)?, ..*one })).collect();
         let others = [
-            Some(heart.plan(arms, Point::InInk)),
-            Some(heart.plan(arms, Point::None)),
-            near.as_ref().map(|near| heart.plan(near, Point::OfPen)),
-            near.as_ref().map(|near| heart.plan(near, Point::None)),
+            Some(heart.plan(arms, Meet::InInk)),
+            Some(heart.plan(arms, Meet::Apart)),
+            near.as_ref().map(|near| heart.plan(near, Meet::WherePenWas)),
+            near.as_ref().map(|near| heart.plan(near, Meet::Apart)),
             self.along_skeleton(group, arms, heart, found),
         ];
         let others = others.into_iter().flatten().map(|ways| (ways, better_than as fn(f64) -> f64));
@@ -462,7 +462,7 @@ impl Lines<'_> {
             };
             (0..one.arm.skip).rev().filter_map(at).collect()
         };
-        let plan = heart.plan(arms, Point::OfPen);
+        let plan = heart.plan(arms, Meet::WherePenWas);
         let paired = plan.iter().find_map(|way| way.other.is_some().then_some(way.one.end));
         let hub = paired.or(arms.first().map(|one| one.end))?;
         let mut ways = Vec::new();

@@ -12,12 +12,13 @@ use crate::{Pixel, PxPoint};
 /// Greatest angle between two arms' courses that make one stroke: cos 50°.
 const GOES_ON_COS: f64 = 0.642_787_6;
 
-/// Whether lines may go through one point.
+/// Where the lines of a junction may go through one point.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Point {
-    None,
+pub(super) enum Meet {
+    /// Nowhere.
+    Apart,
     /// Where the ink is as a pen leaves it.
-    OfPen,
+    WherePenWas,
     /// Where there is ink: blur takes some of it away from the outside of a corner.
     InInk,
 }
@@ -69,19 +70,19 @@ impl Heart<'_> {
 
     /// How lines that meet go on, from the course of each where it is undisturbed: through one point if they agree on
     /// it and may, else each pair on a smooth curve.
-    pub(super) fn plan(&self, arms: &[ArmOf], point: Point) -> Vec<Way> {
+    pub(super) fn plan(&self, arms: &[ArmOf], meet: Meet) -> Vec<Way> {
         let mut ways = Vec::new();
         let meeting = meeting_point(arms, self.centre);
         let along = |one: &ArmOf| one.arm.along(meeting).min(0.0);
         let tolerance_px =
             |one: &ArmOf| (0.12 * one.arm.width_px).max(0.8) + 2.0 * one.arm.error_px(along(one));
-        let near = if point == Point::InInk {
+        let near = if meet == Meet::InInk {
             let off_px = meeting.distance(self.centre);
             off_px <= 2.0 * self.radius_px && self.scan.is_ink_around(meeting)
         } else {
             self.pen_was_at(meeting, arms)
         };
-        let concurrent = point != Point::None
+        let concurrent = meet != Meet::Apart
             && near
             && arms.iter().all(|one| {
                 let off_px = one.arm.at(one.arm.along(meeting)).distance(meeting);

@@ -7,7 +7,7 @@
 use super::step::Step;
 use super::{SheetError, for_each_row, row_bytes};
 use crate::centrelines::each;
-use crate::coverage::{AreaPen, Index, PROBE_ROWS, PROBES, Segment, segments, set_widths, worse};
+use crate::coverage::{AreaPen, Index, PROBE_ROWS, PROBES, Segment, segments, set_widths};
 use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
 use crate::speckle::despeckle_here;
@@ -26,8 +26,7 @@ pub struct SheetErrors {
     /// The errors of all pixels.
     pub report: ErrorReport,
     /// The pixel with the greatest error, the first of several in reading order, and its error, px, as
-    /// [`worst_pixel`](crate::worst_pixel) finds it, of lines one pixel wide as [`ErrorTally::worst`] does; none
-    /// without ink.
+    /// [`worst_pixel`](crate::worst_pixel) finds it, of lines one pixel wide from their figures; none without ink.
     pub worst: Option<(Pixel, f64)>,
 }
 
@@ -82,7 +81,6 @@ impl Measure<'_> {
         let index = Index::new(segments, width, height);
         let area_context = if self.area_rows.is_empty() { 0 } else { self.areas.opening.rows_of_context() };
         let mut tally = ErrorTally::default();
-        let mut worst: Option<(Pixel, f64)> = None;
         self.for_each_band(
             source,
             (ERROR_BAND_PIXELS, area_context),
@@ -97,10 +95,12 @@ impl Measure<'_> {
             |band| {
                 tally.add_exact(band.exact);
                 band.errors.iter().for_each(|error_px| tally.add_error(*error_px));
-                worst = worse(worst, band.worst);
+                if let Some((at, error_px)) = band.worst {
+                    tally.note_worst(at, error_px);
+                }
             },
         )?;
-        Ok(SheetErrors { report: tally.report(), worst })
+        Ok(SheetErrors { report: tally.report(), worst: tally.worst() })
     }
 
     /// Whether there are areas in some rows.
@@ -172,7 +172,10 @@ fn band_errors(index: &Index, ink: &Bitmap, first_row: u32, own: &Range<u32>) ->
         } else {
             band.exact += 1;
         }
-        band.worst = worse(band.worst, Some((at, error_px)));
+        // The first of several in reading order.
+        if band.worst.is_none_or(|(_, most_px)| error_px > most_px) {
+            band.worst = Some((at, error_px));
+        }
     }
     band
 }

@@ -159,6 +159,24 @@ pub struct Run {
     pub lost: u32,
 }
 
+impl Run {
+    /// Coverage, followed twice, rms, greatest distance and its place, lifts, windows and end, as a table's cells.
+    pub fn cells(&self) -> String {
+        let Self { judged, report, end, .. } = self;
+        format!(
+            "{:.4} | {:.4} | {:.3} | {:.2} at {:.0} {:.0} | {} | {} | {end:?} |",
+            judged.coverage,
+            judged.repeated,
+            judged.rms_px,
+            judged.max_px,
+            judged.worst.x,
+            judged.worst.y,
+            report.lifts,
+            report.windows,
+        )
+    }
+}
+
 /// Lets ours follow a figure from a place.
 pub fn ours(
     figure: &Figure,
@@ -167,7 +185,19 @@ pub fn ours(
     table: TableError,
     settings: MappingSettings,
 ) -> Run {
-    let mut camera = SimulatedCamera::new(&figure.paper(), camera);
+    over(&figure.paper(), &figure.lines, start, camera, table, settings)
+}
+
+/// Lets ours follow the lines of a paper from a place.
+pub fn over(
+    paper: &Paper,
+    lines: &[Vec<PxPoint>],
+    start: PxPoint,
+    camera: CameraSettings,
+    table: TableError,
+    settings: MappingSettings,
+) -> Run {
+    let mut camera = SimulatedCamera::new(paper, camera);
     let mut table = SimulatedTable::new(start, table);
     let mut follower = MappingFollower::new(settings);
     let mut lost = 0;
@@ -179,7 +209,7 @@ pub fn ours(
             Step::Done(end) => break end,
         }
     };
-    let judged = judge(&figure.lines, table.strokes(), 2.0);
+    let judged = judge(lines, table.strokes(), 2.0);
     Run { end, report: follower.report(), judged, strokes: table.strokes().to_vec(), lost }
 }
 
