@@ -212,6 +212,13 @@ impl Budget {
             budget.vectorization_mm = (budget.vectorization_mm - 2.0 * over_mm).max(least.vectorization_mm);
             budget.blend_mm = (budget.blend_mm - 2.0 * over_mm).max(0.0);
         }
+        // Where the others are the least already it is the control's part that was rounded up.
+        for most_mm in [asked_mm, asked_mm.next_down()] {
+            if budget.promised_mm() > asked_mm {
+                let rest_mm = most_mm - budget.vectorization_mm - budget.blend_mm;
+                budget.control_mm = budget.control_mm.min(rest_mm).max(least.control_mm);
+            }
+        }
         budget.speed_share = Self::speed_share(budget.control_mm, limits);
         Ok(budget)
     }

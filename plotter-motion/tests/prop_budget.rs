@@ -89,3 +89,19 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_part_of_the_control_that_rounds_up_is_taken_back() {
+    let limits = BudgetLimits {
+        vectorization_least_mm: 279_323.079_333_718_8,
+        vectorization_most_mm: 279_323.079_333_718_8,
+        blend_most_mm: 0.0,
+        standing_mm: 0.230_485_683_912_383_86,
+        moving_mm: 739_129.464_566_839_2,
+        least_speed_share: 0.764_656_380_483_270_2,
+        vectorization_share: 0.0,
+    };
+    let asked_mm = 745_465.016_845_075_1;
+    let budget = Budget::split(asked_mm, &limits).unwrap_or_else(|error| panic!("{error}"));
+    assert!(budget.promised_mm() <= asked_mm && budget.promised_mm() > asked_mm - 1e-9, "{budget:?}");
+}
