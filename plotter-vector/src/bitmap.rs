@@ -107,17 +107,6 @@ fn place(x: u32) -> (usize, u64) {
     ((x / BITS) as usize, 1 << (x % BITS))
 }
 
-/// Blocks of two by two pixels of ink in two rows, see [`Bitmap::blocks`].
-pub(crate) fn blocks_between(above: &[u64], below: &[u64]) -> u64 {
-    let (mut count, mut before) = (0, 0);
-    for (above, below) in above.iter().zip(below) {
-        let both = above & below;
-        count += u64::from((both & (both << 1 | before >> 63)).count_ones());
-        before = both;
-    }
-    count
-}
-
 impl Bitmap {
     /// An empty picture.
     ///
@@ -260,11 +249,6 @@ impl Bitmap {
             }
         }
         self
-    }
-
-    /// Number of blocks of two by two pixels of ink, overlapping ones too: none on lines one pixel wide.
-    pub(crate) fn blocks(&self) -> u64 {
-        (1..self.height).map(|y| blocks_between(self.row(y - 1), self.row(y))).sum()
     }
 
     /// The leftmost ink pixel in a word of a row.
@@ -436,14 +420,6 @@ mod tests {
         assert_eq!(Bitmap::new(1 << 18, 1), Err(SizeError { width: 1 << 18, height: 1 }));
         let error = Bitmap::new(MAX_SIDE_PX, MAX_SIDE_PX).unwrap_err();
         assert!(error.to_string().starts_with("a picture of 131072 x 131072 px is too large"));
-    }
-
-    #[test]
-    fn blocks_are_counted_across_words() {
-        let mut bar = Bitmap::new(130, 3).unwrap();
-        (0..2).for_each(|y| (60..70).for_each(|x| bar.set(Pixel::new(x, y), true)));
-        assert_eq!(bar.blocks(), 9);
-        assert_eq!(Bitmap::from_picture("##.\n.##\n..#\n").unwrap().blocks(), 0);
     }
 
     #[test]

@@ -6,6 +6,7 @@
 
 pub(crate) use crate::graph::CONTEXT_ROWS;
 use crate::graph::{Cuts, Fragment, Joiner, Rims, Scan, Stretch, Stroke, fragments};
+use crate::hairlines::Hairlines;
 use crate::simplify::Pieces;
 use crate::{Bitmap, Bounded, Curve, Gray, PxPoint, Thinning, ThinningMethod};
 use core::ops::Range;
@@ -21,6 +22,8 @@ pub(crate) struct Centring {
     pub(crate) pieces: Pieces,
     /// Whether small marks are drawn again as a whole.
     pub(crate) redraw: bool,
+    /// What thin lines are.
+    pub(crate) hairlines: Hairlines,
     /// Own rows of a band.
     pub(crate) band_rows: u32,
 }
@@ -29,7 +32,14 @@ impl Centring {
     /// For lines up to `max_line_px` wide.
     pub(crate) fn new(method: ThinningMethod, max_line_px: u32, bounded: Bounded, band_rows: u32) -> Self {
         let thinning = Thinning { method, max_passes: max_line_px / 2 + 3 };
-        Self { thinning, bounded, pieces: Pieces::Lines, redraw: false, band_rows: band_rows.max(1) }
+        Self {
+            thinning,
+            bounded,
+            pieces: Pieces::Lines,
+            redraw: false,
+            hairlines: Hairlines::Raster,
+            band_rows: band_rows.max(1),
+        }
     }
 
     /// Rows that a band needs above and below its own.
@@ -87,7 +97,7 @@ impl Centring {
         let _ = self.thinning.thin_rows(&mut skeleton, thinned.clone());
         let stretch = Stretch { picture: &skeleton, rows: thinned };
         fragments(
-            Scan { ink: &band, first_row, grey },
+            Scan { ink: &band, first_row, grey, hairlines: self.hairlines },
             &stretch,
             first_row,
             rows,

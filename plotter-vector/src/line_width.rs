@@ -172,7 +172,7 @@ pub fn pen_width_px(ink: &Bitmap) -> Option<u32> {
 }
 
 /// [`LineWidth`] of all rows of a picture.
-pub(crate) fn line_width(ink: &Bitmap) -> LineWidth {
+fn line_width(ink: &Bitmap) -> LineWidth {
     let mut width = LineWidth::new(ink.width());
     (0..ink.height()).for_each(|y| width.push(ink.row(y)));
     width

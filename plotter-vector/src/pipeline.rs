@@ -4,7 +4,8 @@ use crate::areas::{Islands, Opening};
 use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
 use crate::coverage::{AreaPen, add_coverage};
-use crate::line_width::{WIDEST_BESIDE_AREAS_PX, line_width};
+use crate::hairlines::Hairlines;
+use crate::pen::Pen;
 use crate::raster_corner::take_in;
 use crate::row_threshold::has_rims;
 use crate::simplify::Pieces;
@@ -253,36 +254,33 @@ impl Vectorizer {
         }
         self.check()?;
         let ink_pixels = ink.count();
-        let pen_px = self.clean(ink);
-        if self.keeps_pixels(pen_px, || grey.is_some_and(|(gray, _)| has_rims(gray, ink_pixels))) {
+        let pen = self.clean(ink);
+        if self.keeps_pixels(pen, || grey.is_some_and(|(gray, _)| has_rims(gray, ink_pixels))) {
             let (drawing, errors) = self.tracked(ink)?;
             // Of what is not straight the errors are not known from the figures.
             let errors = drawing.is_straight().then_some(errors);
             return Ok(Unordered { drawing, errors, areas: None });
         }
-        let strokes = self.strokes(ink, grey, pen_px)?;
+        let strokes = self.strokes(ink, grey, pen)?;
         let mut drawing = Drawing::new(ink.width(), ink.height());
         for stroke in strokes {
             drawing.push_curve(1, within(stroke, ink.width(), ink.height()));
         }
-        Ok(Unordered { drawing, errors: None, areas: Some(self.opening(pen_px)) })
+        Ok(Unordered { drawing, errors: None, areas: Some(self.opening(pen.width_px)) })
     }
 
-    /// Takes the dirt out of ink; the width of its lines, px.
-    fn clean(&self, ink: &mut Bitmap) -> u32 {
-        let pen_px = if is_raster_lines(ink.blocks(), ink.count()) {
-            1
-        } else {
-            line_width(ink).finish_beside_areas().unwrap_or(WIDEST_BESIDE_AREAS_PX)
-        };
-        despeckle(ink, self.smallest_mark_px(pen_px));
-        pen_px
+    /// Takes the dirt out of ink; the pen that drew it.
+    fn clean(&self, ink: &mut Bitmap) -> Pen {
+        let pen = Pen::of(ink);
+        despeckle(ink, self.smallest_mark_px(pen.width_px));
+        pen
     }
 
     /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Where these are is better known of grey
     /// rims.
-    pub(crate) fn keeps_pixels(&self, pen_px: u32, has_rims: impl Fn() -> bool) -> bool {
-        pen_px <= 1 && self.mode != Mode::Outline && !has_rims()
+    pub(crate) fn keeps_pixels(&self, pen: Pen, has_rims: impl Fn() -> bool) -> bool {
+        let is_raster = pen.width_px <= 1 && pen.hairlines == Hairlines::Raster;
+        is_raster && self.mode != Mode::Outline && !has_rims()
     }
 
     /// Pixels of the smallest mark of ours that is no dirt.
@@ -295,10 +293,10 @@ impl Vectorizer {
         &self,
         ink: &Bitmap,
         grey: Option<(&Gray, bool)>,
-        pen_px: u32,
+        pen: Pen,
     ) -> Result<Vec<Curve>, VectorizeError> {
-        let split = self.opening(pen_px).split_of(ink);
-        let centring = Centring { redraw: true, ..self.centring(self.max_line_px(pen_px)) };
+        let split = self.opening(pen.width_px).split_of(ink);
+        let centring = self.centring_of(pen);
         let mut strokes = centring.strokes(&split.thin, grey);
         let areas = &split.thick;
         let mut islands = Islands::new(areas.width());
@@ -340,6 +338,12 @@ impl Vectorizer {
             Mode::Outline => Opening::of_pen(self.areas.pen_px),
             Mode::Centreline | Mode::Mixed => Opening::of_lines(self.max_line_px(pen_px)),
         }
+    }
+
+    /// How lines of a pen become strokes.
+    pub(crate) fn centring_of(&self, pen: Pen) -> Centring {
+        let centring = self.centring(self.max_line_px(pen.width_px));
+        Centring { redraw: true, hairlines: pen.hairlines, ..centring }
     }
 
     /// How lines become strokes.
@@ -433,12 +437,6 @@ pub(crate) struct Unordered {
     pub(crate) errors: Option<SheetErrors>,
     /// What told areas from lines, where something did.
     pub(crate) areas: Option<Opening>,
-}
-
-/// Whether ink with so many blocks of two by two pixels is lines one pixel wide: a few places where lines touch make no
-/// wide line.
-pub(crate) fn is_raster_lines(blocks: u64, ink_pixels: u64) -> bool {
-    blocks * 20 <= ink_pixels
 }
 
 /// A stroke of each figure, and the errors; of pixels that figures share those of the first of them.

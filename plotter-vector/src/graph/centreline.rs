@@ -9,6 +9,9 @@ use crate::{Bounded, Curve, PxPoint};
 /// How exact the places of a line are that is thin and has grey rims, px.
 const EXACT_TO_PX: f64 = 0.15;
 
+/// Places of a thin line for each that is twice or half as wide as most, at most, where a pen drew it: one of 1.05 px or more.
+const PLACES_PER_OTHER: usize = 20;
+
 /// A stroke whose ends are both known.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Whole {
@@ -89,7 +92,14 @@ pub(super) fn width_px(places: &[Place]) -> f64 {
 
 /// Whether a line is the raster's own: thin, and its places are pixels or lie half way between two.
 pub(super) fn keeps_pixels(places: &[Place], width_px: f64) -> bool {
-    width_px <= THIN_PX && are_on_raster(places)
+    width_px <= THIN_PX && are_on_raster(places) && !is_uneven(places, width_px)
+}
+
+/// Whether a line is one pixel wide here and two there, as a pen leaves it whose width is between both.
+fn is_uneven(places: &[Place], width_px: f64) -> bool {
+    let measured = || places.iter().filter_map(|place| place.width_px());
+    let is_other = |px: &f64| (1.5..2.5).contains(&(px / width_px)) || (1.5..2.5).contains(&(width_px / px));
+    measured().filter(is_other).count() * PLACES_PER_OTHER >= measured().count()
 }
 
 /// Whether most places of a line are all that 1 bit a pixel can tell.

@@ -521,10 +521,20 @@ impl Lines<'_> {
                 found.end(owner, one, Vec::new(), false);
             }
         }
-        for edge in group.iter().flat_map(|node| self.ends(*node)).map(|end| end.edge) {
-            if !used.contains(&edge)
-                && let Some(inner) = found.inner.get_mut(edge)
-            {
+        let is_passed = |node: usize| {
+            let is_inner = |edge: usize| found.inner.get(edge).copied().unwrap_or(false);
+            self.ends(node).any(|end| used.contains(&end.edge) || !is_inner(end.edge))
+        };
+        // Between two pixels that touch and are passed there is nothing to draw.
+        let is_drawn = |edge: &usize| {
+            self.graph.edges.get(*edge).is_some_and(|edge| {
+                edge.pixels.len() > 2 || !edge.nodes.is_some_and(|(a, b)| is_passed(a) && is_passed(b))
+            })
+        };
+        let inner = group.iter().flat_map(|node| self.ends(*node)).map(|end| end.edge);
+        let drawn: Vec<usize> = inner.filter(|edge| !used.contains(edge)).filter(is_drawn).collect();
+        for edge in drawn {
+            if let Some(inner) = found.inner.get_mut(edge) {
                 *inner = false;
             }
         }

@@ -241,7 +241,7 @@ impl Picture {
             ink_is_dark: *ink_is_dark,
             first_row: 0,
         });
-        let own = Scan { ink: &self.ink, first_row: 0, grey };
+        let own = Scan { ink: &self.ink, first_row: 0, grey, ..scan };
         let rows = 0..height;
         let mut joiner = Joiner::default();
         let mut strokes: Vec<Stroke> = Vec::new();

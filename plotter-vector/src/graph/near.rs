@@ -110,7 +110,13 @@ mod tests {
             let mut skeleton = Bitmap::new(300, 1000).unwrap();
             (0..1000).for_each(|y| skeleton.set(Pixel::new(100, y), true));
             let graph = Graph::of(&Stretch { picture: &skeleton, rows: 0..1000 }, &mut Vec::new());
-            Near::to(&(400..500), 16, &graph, Scan { ink: &ink, first_row: 0, grey: None }, &(0..1000))
+            Near::to(
+                &(400..500),
+                16,
+                &graph,
+                Scan { ink: &ink, first_row: 0, grey: None, hairlines: crate::hairlines::Hairlines::Raster },
+                &(0..1000),
+            )
         };
         // A radius of 3 px: 14 rows on either side, and 20 more.
         assert_eq!(near(2), Near { lines: 366..550, places: 386..530 });

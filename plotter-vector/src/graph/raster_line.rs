@@ -99,7 +99,12 @@ mod tests {
         let (ink, skeleton) = (Bitmap::from_picture(ink).unwrap(), Bitmap::from_picture(skeleton).unwrap());
         let skeleton = Stretch { picture: &skeleton, rows: 0..skeleton.height() };
         let mut graph = Graph::of(&skeleton, &mut Vec::new());
-        put_back(&mut graph, Scan { ink: &ink, first_row: 0, grey: None }, &skeleton, 0);
+        put_back(
+            &mut graph,
+            Scan { ink: &ink, first_row: 0, grey: None, hairlines: crate::hairlines::Hairlines::Raster },
+            &skeleton,
+            0,
+        );
         graph.edges[0].pixels.iter().map(|at| (at.x, at.y)).collect()
     }
 

@@ -5,6 +5,7 @@
 //! slope, and its length times the cosine of the slope is the line's width. On a picture with grey rims the edges
 //! are known to a fraction of a pixel: a rim pixel is covered as far as its level lies between paper and ink.
 
+use crate::hairlines::Hairlines;
 use crate::{Bitmap, Gray, Pixel, PxPoint};
 
 /// Longest run that is measured to either side of the skeleton, px. Beyond it the ink is no line.
@@ -20,8 +21,8 @@ const CALM_PX: usize = 8;
 /// their pixels.
 pub(crate) const THIN_PX: f64 = 1.5;
 
-/// The same where grey levels tell how far a pixel is covered: less is seen of no pen.
-const THIN_GREY_PX: f64 = 0.5;
+/// The same where grey levels or the steps of the lines tell that a pen drew them: less is seen of none.
+const THIN_PEN_PX: f64 = 0.5;
 
 /// Widest line of which grey rims make the sites exact in its bends too, px: those of a wider one cut corners.
 pub(super) const EXACT_PX: f64 = 1.75;
@@ -65,6 +66,8 @@ pub(crate) struct Scan<'a> {
     pub(crate) first_row: u32,
     /// The grey levels it was told from.
     pub(crate) grey: Option<Rims<'a>>,
+    /// What its thin lines are.
+    pub(crate) hairlines: Hairlines,
 }
 
 /// The grey levels, which tell how far a rim pixel is covered.
@@ -113,7 +116,7 @@ impl Side {
 impl Scan<'_> {
     /// Width up to which lines keep their pixels, px.
     pub(super) fn thin_px(&self) -> f64 {
-        if self.grey.is_some() { THIN_GREY_PX } else { THIN_PX }
+        if self.grey.is_some() || self.hairlines == Hairlines::Pen { THIN_PEN_PX } else { THIN_PX }
     }
 
     /// Whether the sites of lines of a width, px, are exact.
@@ -420,7 +423,7 @@ mod tests {
             let off = i64::from(y) - i64::from(x) / 3 - 18;
             ink.set(Pixel::new(x, y), off.abs() < 11 && (x, y) != (40, 31));
         }
-        let scan = Scan { ink: &ink, first_row: 1000, grey: None };
+        let scan = Scan { ink: &ink, first_row: 1000, grey: None, hairlines: Hairlines::Raster };
         let is_paper = |x: i32, y: i32| {
             let inside = u32::try_from(x).ok().zip(u32::try_from(y - 1000).ok());
             inside.is_none_or(|(x, y)| !ink.get(Pixel::new(x, y)))
@@ -452,7 +455,7 @@ mod tests {
         let levels = Gray::new(40, 20, (0..40 * 20).map(|at| level(at) as u8).collect()).unwrap();
         (0..40).for_each(|x| ink.set(Pixel::new(x, 10), true));
         let grey = Some(Rims { levels: &levels, ink_is_dark: true, first_row: 1000 });
-        let scan = Scan { ink: &ink, first_row: 1000, grey };
+        let scan = Scan { ink: &ink, first_row: 1000, grey, hairlines: Hairlines::Raster };
         for step in 0..40 {
             let x = 15.0 + f64::from(step) / 8.0;
             let at = |off_px: f64| scan.pen_was_at(PxPoint::new(x, 1000.0 + middle + off_px), 0.05);

@@ -179,7 +179,8 @@ mod tests {
         }
         (10..90).for_each(|x| skeleton.set(Pixel::new(x, middle), true));
         (top - out..middle).for_each(|y| skeleton.set(Pixel::new(column, y), true));
-        let scan = Scan { ink: &ink, first_row: 0, grey: None };
+        let scan =
+            Scan { ink: &ink, first_row: 0, grey: None, hairlines: crate::hairlines::Hairlines::Raster };
         let graph = Graph::of(&Stretch { picture: &skeleton, rows: 0..90 }, &mut Vec::new());
         let sites = Sites::new(&graph, scan);
         sites.measure(&(0..graph.edges.len()).collect::<Vec<_>>());

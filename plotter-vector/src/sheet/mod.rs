@@ -14,14 +14,13 @@ mod errors;
 mod step;
 mod work;
 
-use crate::bitmap::blocks_between;
-use crate::line_width::WIDEST_BESIDE_AREAS_PX;
-use crate::pipeline::{Unordered, is_raster_lines};
+use crate::pen::PenSurvey;
+use crate::pipeline::Unordered;
 use crate::row_threshold::RowThreshold;
 use crate::within::within;
 use crate::{
-    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, LineWidth, MAX_PIXELS, MAX_SHEET_ROWS,
-    MAX_SIDE_PX, Progress, Row, RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer,
+    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, MAX_PIXELS, MAX_SHEET_ROWS, MAX_SIDE_PX,
+    Progress, Row, RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer,
 };
 use core::fmt;
 pub use crowd::{MAX_LINE_PIXELS, MAX_SHEET_STROKES};
@@ -193,21 +192,25 @@ impl Vectorizer {
         }
         let errors = with_errors.then(SheetErrors::default);
         let empty = TracedSheet { drawing: Drawing::new(width, height), errors, ..TracedSheet::default() };
-        let (survey, pen) = survey(self, source, &mut progress.part(0.1))?;
+        let (survey, survey_of_black) = survey(self, source, &mut progress.part(0.1))?;
         let Some(threshold) = survey.finish() else { return Ok(empty) };
         // Of 1 bit a pixel black is nearly always the ink: then all is known already.
-        let (found_px, pen_px, ink_pixels) = match source.depth() {
-            Depth::Bits1 if threshold.black_is_ink() => pen.finish(),
+        let (pen, ink_pixels) = match source.depth() {
+            Depth::Bits1 if threshold.black_is_ink() => survey_of_black.finish(),
             _ => pen_of_ink(source, &threshold, &mut progress.part(0.2))?.finish(),
         };
-        let found =
-            TracedSheet { split: Some(threshold.split(ink_pixels)), ink_pixels, pen_px: found_px, ..empty };
+        let found = TracedSheet {
+            split: Some(threshold.split(ink_pixels)),
+            ink_pixels,
+            pen_px: pen.found_px,
+            ..empty
+        };
         if ink_pixels == 0 {
             return Ok(found);
         }
         let mut strokes_part = progress.part(if with_errors { 0.7 } else { 1.0 });
         let fits = u64::from(width) * u64::from(height) <= MAX_PIXELS;
-        let keeps_pixels = self.keeps_pixels(pen_px, || threshold.has_rims(ink_pixels));
+        let keeps_pixels = self.keeps_pixels(pen, || threshold.has_rims(ink_pixels));
         if keeps_pixels && fits || self.algorithm == Algorithm::Published {
             let mut ink = Bitmap::new(width, height).map_err(SheetError::Size)?;
             let mut rows = ink.rows_mut();
@@ -222,15 +225,15 @@ impl Vectorizer {
             progress.part(1.0).at(1, 1)?;
             return Ok(TracedSheet { drawing, errors, ..found });
         }
-        let mut sheet = Work::new(self, (width, height), (pen_px, keeps_pixels), &threshold);
+        let mut sheet = Work::new(self, (width, height), (pen, keeps_pixels), &threshold);
         for_each_row(source, &mut strokes_part, |_, row| sheet.push(row))?;
         let (strokes, areas) = sheet.finish()?;
         let mut drawing = found.drawing;
         strokes.into_iter().for_each(|stroke| drawing.push_curve(1, within(stroke, width, height)));
         let drawing = self.order.apply(&drawing);
         let errors = if with_errors {
-            let smallest_px = self.smallest_mark_px(pen_px);
-            let opening = self.opening(pen_px);
+            let smallest_px = self.smallest_mark_px(pen.width_px);
+            let opening = self.opening(pen.width_px);
             let measure = Measure {
                 threshold: &threshold,
                 smallest_px,
@@ -281,10 +284,10 @@ fn survey(
     settings: &Vectorizer,
     source: &mut impl RowSource,
     progress: &mut Progress<'_>,
-) -> Result<(Survey, Pen), SheetError> {
+) -> Result<(Survey, PenSurvey), SheetError> {
     let (width, height) = (source.width(), source.height());
     let mut survey = Survey::checked(settings.threshold, width, height);
-    let mut pen = Pen::new(width);
+    let mut pen = PenSurvey::new(width);
     for_each_row(source, progress, |_, row| {
         survey.push_row(row);
         if let Row::Bits(words) = row {
@@ -299,9 +302,9 @@ fn pen_of_ink(
     source: &mut impl RowSource,
     threshold: &RowThreshold,
     progress: &mut Progress<'_>,
-) -> Result<Pen, SheetError> {
+) -> Result<PenSurvey, SheetError> {
     let width = source.width();
-    let mut pen = Pen::new(width);
+    let mut pen = PenSurvey::new(width);
     let mut ink = vec![0; width.div_ceil(u64::BITS) as usize];
     for_each_row(source, progress, |y, row| {
         threshold.ink_of(y, row, width, &mut ink);
@@ -309,39 +312,6 @@ fn pen_of_ink(
         Ok(())
     })?;
     Ok(pen)
-}
-
-/// The width of the pen and the number of ink pixels, from rows of ink.
-struct Pen {
-    width: LineWidth,
-    ink_pixels: u64,
-    blocks: u64,
-    above: Vec<u64>,
-}
-
-impl Pen {
-    fn new(width: u32) -> Self {
-        let above = vec![0; width.div_ceil(u64::BITS) as usize];
-        Self { width: LineWidth::new(width), ink_pixels: 0, blocks: 0, above }
-    }
-
-    fn push(&mut self, ink: &[u64]) {
-        self.ink_pixels += ink.iter().map(|bits| u64::from(bits.count_ones())).sum::<u64>();
-        self.blocks += blocks_between(&self.above, ink);
-        self.width.push(ink);
-        self.above.clear();
-        self.above.extend_from_slice(ink);
-    }
-
-    /// The width of the pen where lines tell it, the width to reckon with, and the number of ink pixels.
-    fn finish(self) -> (Option<u32>, u32, u64) {
-        let found_px = self.width.finish_beside_areas();
-        if is_raster_lines(self.blocks, self.ink_pixels) {
-            (found_px.map(|_| 1), 1, self.ink_pixels)
-        } else {
-            (found_px, found_px.unwrap_or(WIDEST_BESIDE_AREAS_PX), self.ink_pixels)
-        }
-    }
 }
 
 /// Bytes of a row at 1 bit a pixel.

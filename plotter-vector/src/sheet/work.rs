@@ -6,6 +6,7 @@ use super::{SheetError, row_bytes};
 use crate::areas::{Islands, Opening};
 use crate::centrelines::{CONTEXT_ROWS, Centring, each, sort};
 use crate::graph::{Fragment, Joiner, Rims, Scan, Stretch, fragments, pixel_fragments};
+use crate::pen::Pen;
 use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
 use crate::speckle::despeckle_here;
@@ -52,12 +53,12 @@ impl<'a> Work<'a> {
     pub(super) fn new(
         settings: &'a Vectorizer,
         (width, height): (u32, u32),
-        (pen_px, keeps_pixels): (u32, bool),
+        (pen, keeps_pixels): (Pen, bool),
         threshold: &'a RowThreshold,
     ) -> Self {
-        let smallest_px = settings.smallest_mark_px(pen_px);
-        let centring = Centring { redraw: true, ..settings.centring(settings.max_line_px(pen_px)) };
-        let opening = settings.opening(pen_px);
+        let smallest_px = settings.smallest_mark_px(pen.width_px);
+        let centring = settings.centring_of(pen);
+        let opening = settings.opening(pen.width_px);
         let row_bytes = row_bytes(width);
         let grey = threshold.has_greys();
         let band_bytes = if grey { GREY_BAND_BYTES } else { BAND_BYTES };
@@ -239,11 +240,11 @@ impl<'a> Work<'a> {
         let bands = self.with_words(bands);
         let (step, lines, skeleton) = (self.follow, &mut self.lines, &mut self.skeleton);
         let (ink_is_dark, keeps_pixels) = (self.threshold.ink_is_dark(), self.keeps_pixels);
-        let marks = self.centring.marks();
+        let (marks, hairlines) = (self.centring.marks(), self.centring.hairlines);
         let follow = |levels: Option<(&Gray, u32)>| {
             let grey = levels.map(|(levels, first_row)| Rims { levels, ink_is_dark, first_row });
             lines.lend(|ink, first_row| {
-                let scan = Scan { ink, first_row, grey };
+                let scan = Scan { ink, first_row, grey, hairlines };
                 skeleton.lend(|picture, first_row| {
                     each(bands, |(own, mut words)| {
                         let rows = step.around(&own);
@@ -313,7 +314,7 @@ mod tests {
         let mut survey = Survey::checked(settings.threshold, ink.width(), ink.height());
         (0..ink.height()).for_each(|y| survey.push_row(Row::Bits(ink.row(y))));
         let threshold = survey.finish().unwrap();
-        let mut work = Work::new(settings, (ink.width(), ink.height()), (1, true), &threshold);
+        let mut work = Work::new(settings, (ink.width(), ink.height()), (Pen::of(ink), true), &threshold);
         (0..ink.height()).for_each(|y| work.push(Row::Bits(ink.row(y))).unwrap());
         work.finish().unwrap().0
     }

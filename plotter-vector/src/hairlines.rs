@@ -1,0 +1,242 @@
+//! [`Hairlines`]: whether thin lines are chains of pixels or what a pen wider than a pixel leaves of them.
+//!
+//! ```text
+//!   # # # . . . .      a bare step: the next pixel lies across the corner,
+//!   . . . # # # .      as in the raster of a line
+//!
+//!   # # # . . . .      a filled step: the corner has a pixel of its own, or more,
+//!   . . # # # # .      as under a pen that inks all pixels whose middle it comes over
+//! ```
+//!
+//! A pen of w px that goes in the direction θ, up to 45°, inks w / cos θ pixels in the mean of each column. A step comes once in
+//! 1 / tan θ columns, so the part (w / cos θ − 1) / tan θ of all steps is filled. That is tan(θ / 2), at most 0.414, for w = 1, and
+//! √(w² − 1) at least for a wider one: 0.458 for 1.1 px, whatever the direction. The raster of a line has none, but for the places
+//! where lines run into each other.
+
+/// Of sixteen steps so many are filled under a pen: one of 1.09 px or more.
+const FILLED_OF_16: u64 = 7;
+
+/// Pixels of ink for each filled step, at most: fewer of them are where lines touch.
+const INK_PER_STEP: u64 = 256;
+
+/// What the thin lines of a picture are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Hairlines {
+    /// Chains of pixels, each of which is the line.
+    #[default]
+    Raster,
+    /// What a pen wider than a pixel left: the line is the middle of it.
+    Pen,
+}
+
+/// Counts steps of thin lines, row by row from the top.
+#[derive(Clone, Debug)]
+pub(crate) struct Steps {
+    /// The last three rows, the lowest last.
+    rows: [Vec<u64>; 3],
+    found: Found,
+}
+
+/// What was counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Found {
+    /// Bare steps.
+    bare: u64,
+    /// Pixels in which a line turns along a step that one pixel fills.
+    turns: u64,
+    /// Steps that more pixels fill.
+    overlaps: u64,
+    /// Blocks of two by two pixels of ink.
+    pub(crate) blocks: u64,
+}
+
+impl Steps {
+    /// Before the first row of a picture of `width` px.
+    pub(crate) fn new(width: u32) -> Self {
+        let row = || vec![0; width.div_ceil(u64::BITS) as usize];
+        Self { rows: [row(), row(), row()], found: Found::default() }
+    }
+
+    /// The next row, in words as of [`Bitmap::row`](crate::Bitmap::row); a longer row is cut, a shorter one ends with paper.
+    pub(crate) fn push(&mut self, row: &[u64]) {
+        let Self { rows: [top, above, here], found } = self;
+        for index in 0..here.len() {
+            let word = |row: &[u64]| row.get(index).copied().unwrap_or(0);
+            // Most of a sheet is paper. What lies in the next word is seen from there, or has its own step.
+            if word(above) | word(here) == 0 {
+                continue;
+            }
+            let of = |row: &[u64], index: Option<usize>| {
+                index.and_then(|index| row.get(index)).copied().unwrap_or(0)
+            };
+            let window = [&*top, &*above, &*here].map(|row| Around::of(|index| of(row, index), index));
+            let mirrored = window.map(Around::mirrored);
+            // Blocks between two rows.
+            let blocks_of = |one: &[u64], other: &[u64], index: Option<usize>| {
+                let both = |index: Option<usize>| of(one, index) & of(other, index);
+                let next = both(index.and_then(|index| index.checked_add(1)));
+                both(index) & (both(index) >> 1 | next << 63)
+            };
+            let before = blocks_of(top, above, Some(index));
+            let own = Around::of(|index| blocks_of(above, here, index), index);
+            found.blocks += u64::from(own.at.count_ones());
+            found.bare += u64::from(bare_steps(window).count_ones());
+            found.turns += u64::from((turns(window) | turns(mirrored)).count_ones());
+            found.overlaps +=
+                u64::from(overlaps(before, own, blocks_of(here, row, Some(index))).count_ones());
+        }
+        core::mem::swap(top, above);
+        core::mem::swap(above, here);
+        let given = row.len().min(here.len());
+        let (words, rest) = here.split_at_mut(given);
+        words.copy_from_slice(row.get(..given).unwrap_or(&[]));
+        rest.fill(0);
+    }
+
+    /// What was found, after the last row.
+    pub(crate) fn finish(mut self) -> Found {
+        self.push(&[]);
+        self.push(&[]);
+        self.found
+    }
+}
+
+impl Found {
+    /// Filled steps: a line turns twice in each.
+    fn filled(self) -> u64 {
+        self.turns / 2 + self.overlaps
+    }
+
+    /// What the thin lines are, of a picture with so many pixels of ink.
+    pub(crate) fn hairlines(self, ink_pixels: u64) -> Hairlines {
+        let (bare, filled) = (self.bare, self.filled());
+        let are_many = filled > 0 && filled * INK_PER_STEP >= ink_pixels;
+        if are_many && 16 * filled >= FILLED_OF_16 * (bare + filled) {
+            Hairlines::Pen
+        } else {
+            Hairlines::Raster
+        }
+    }
+}
+
+/// The pixels of a word, and those to the left and to the right of each.
+#[derive(Clone, Copy)]
+struct Around {
+    left: u64,
+    at: u64,
+    right: u64,
+}
+
+impl Around {
+    /// Of the words of a row, whatever these are.
+    fn of(word: impl Fn(Option<usize>) -> u64, index: usize) -> Self {
+        let at = word(Some(index));
+        let (before, after) = (word(index.checked_sub(1)), word(index.checked_add(1)));
+        Self { left: at << 1 | before >> 63, at, right: at >> 1 | after << 63 }
+    }
+
+    /// The same seen in a mirror.
+    fn mirrored(self) -> Self {
+        Self { left: self.right, right: self.left, ..self }
+    }
+}
+
+/// Where a pixel of the second row touches one of the first across a corner only.
+fn bare_steps([_, above, here]: [Around; 3]) -> u64 {
+    here.at & !above.at & (above.left & !here.left | above.right & !here.right)
+}
+
+/// Pixels of the second row in which a line one pixel wide turns from along the row to along a column: two of a step that a pixel
+/// fills, but one where both its neighbours lie across a corner.
+fn turns([top, above, here]: [Around; 3]) -> u64 {
+    let to = |one: Around, other: Around| one.at & !one.left & !other.at;
+    let from_left = |row: Around, other: Around| above.left & !above.right & to(row, other);
+    above.at & (from_left(top, here) | from_left(here, top))
+}
+
+/// Where a row or a column of blocks of two by two pixels begins that is one block high or wide, by their upper left pixels; rows
+/// of blocks lie between two rows of ink.
+fn overlaps(above: u64, here: Around, below: u64) -> u64 {
+    here.at & !here.left & !above & !(here.right & below)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Bitmap, Pixel};
+
+    const SIDE_PX: u32 = 200;
+
+    fn steps(ink: &Bitmap) -> Found {
+        let mut steps = Steps::new(ink.width());
+        (0..ink.height()).for_each(|y| steps.push(ink.row(y)));
+        steps.finish()
+    }
+
+    fn counts(picture: &str) -> (u64, u64, u64) {
+        let found = steps(&Bitmap::from_picture(picture).unwrap());
+        (found.bare, found.filled(), found.blocks)
+    }
+
+    /// Lines 20 px apart that make an angle with the rows, each at another place between the pixels.
+    fn lines(angle_rad: f64, is_ink: impl Fn(f64, f64) -> bool) -> Bitmap {
+        let (sine, cosine) = libm::sincos(angle_rad);
+        let mut ink = Bitmap::new(SIDE_PX, SIDE_PX).unwrap();
+        for (x, y) in (0..SIDE_PX).flat_map(|y| (0..SIDE_PX).map(move |x| (x, y))) {
+            let across = f64::from(y) * cosine - f64::from(x) * sine;
+            let off_px = across - 20.37 * libm::round(across / 20.37);
+            ink.set(Pixel::new(x, y), is_ink(off_px, cosine));
+        }
+        ink
+    }
+
+    #[test]
+    fn a_step_is_bare_or_filled() {
+        assert_eq!(counts("###....\n...###.\n"), (1, 0, 0));
+        assert_eq!(counts("...###\n####..\n"), (0, 1, 0));
+        assert_eq!(counts("#.\n##\n.#\n"), (0, 1, 0));
+        // Filled by a row of two blocks, and by a column.
+        assert_eq!(counts("#####..\n..#####\n"), (0, 1, 2));
+        assert_eq!(counts("#.\n##\n##\n##\n.#\n"), (0, 1, 2));
+    }
+
+    #[test]
+    fn what_crosses_or_ends_on_a_line_is_no_step_and_an_area_neither() {
+        assert_eq!(counts("..#..\n..#..\n#####\n..#..\n"), (0, 0, 0));
+        assert_eq!(counts("#####\n..#..\n..#..\n"), (0, 0, 0));
+        assert_eq!(counts("####\n####\n####\n"), (0, 0, 6));
+    }
+
+    #[test]
+    fn steps_are_seen_across_words() {
+        for left in [58, 59, 60, 61, 62, 63] {
+            for (picture, expected) in
+                [("###..\n...##\n", (1, 0)), ("###..\n..###\n", (0, 1)), ("####.\n..###\n", (0, 1))]
+            {
+                let small = Bitmap::from_picture(picture).unwrap();
+                let mut ink = Bitmap::new(130, 2).unwrap();
+                small.ink().for_each(|at| ink.set(Pixel::new(at.x + left, at.y), true));
+                let found = steps(&ink);
+                assert_eq!((found.bare, found.filled()), expected, "{left}\n{picture}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_pen_is_told_from_a_raster_by_a_tenth_of_a_pixel_in_any_direction() {
+        for step in 1..32 {
+            let angle_rad = 0.05 * f64::from(step);
+            for (width_px, expected) in
+                [(1.0, Hairlines::Raster), (1.1, Hairlines::Pen), (1.5, Hairlines::Pen)]
+            {
+                let ink = lines(angle_rad, |off_px, _| off_px.abs() <= width_px / 2.0);
+                assert_eq!(steps(&ink).hairlines(ink.count()), expected, "{width_px} px at {angle_rad}");
+            }
+            let raster = |off_px: f64, cosine: f64| {
+                off_px.abs() <= 0.5 * cosine.max(libm::sqrt(1.0 - cosine * cosine))
+            };
+            let ink = lines(angle_rad, raster);
+            assert_eq!(steps(&ink).hairlines(ink.count()), Hairlines::Raster, "raster at {angle_rad}");
+        }
+    }
+}
