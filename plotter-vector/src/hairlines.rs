@@ -11,7 +11,7 @@
 //! A pen of w px that goes in the direction θ, up to 45°, inks w / cos θ pixels in the mean of each column. A step comes once in
 //! 1 / tan θ columns, so the part (w / cos θ − 1) / tan θ of all steps is filled. That is tan(θ / 2), at most 0.414, for w = 1, and
 //! √(w² − 1) at least for a wider one: 0.458 for 1.1 px, whatever the direction. The raster of a line has none, but for the places
-//! where lines run into each other.
+//! where lines run into each other: fewer than one in eight.
 
 /// Of sixteen steps so many are filled under a pen: one of 1.09 px or more.
 const FILLED_OF_16: u64 = 7;
@@ -25,15 +25,17 @@ pub(crate) enum Hairlines {
     /// Chains of pixels, each of which is the line.
     #[default]
     Raster,
-    /// What a pen wider than a pixel left: the line is the middle of it.
+    /// The same with pixels in the corners of their steps: what a pen of one pixel left.
+    Stairs,
+    /// What a wider pen left: the line is the middle of it.
     Pen,
 }
 
 /// Counts steps of thin lines, row by row from the top.
 #[derive(Clone, Debug)]
 pub(crate) struct Steps {
-    /// The last three rows, the lowest last.
-    rows: [Vec<u64>; 3],
+    /// The last four rows, the lowest last.
+    rows: [Vec<u64>; 4],
     found: Found,
 }
 
@@ -54,49 +56,49 @@ impl Steps {
     /// Before the first row of a picture of `width` px.
     pub(crate) fn new(width: u32) -> Self {
         let row = || vec![0; width.div_ceil(u64::BITS) as usize];
-        Self { rows: [row(), row(), row()], found: Found::default() }
+        Self { rows: [row(), row(), row(), row()], found: Found::default() }
     }
 
     /// The next row, in words as of [`Bitmap::row`](crate::Bitmap::row); a longer row is cut, a shorter one ends with paper.
     pub(crate) fn push(&mut self, row: &[u64]) {
-        let Self { rows: [top, above, here], found } = self;
+        let Self { rows: [first, above, here, below], found } = self;
         for index in 0..here.len() {
-            let word = |row: &[u64]| row.get(index).copied().unwrap_or(0);
-            // Most of a sheet is paper. What lies in the next word is seen from there, or has its own step.
-            if word(above) | word(here) == 0 {
-                continue;
-            }
             let of = |row: &[u64], index: Option<usize>| {
                 index.and_then(|index| row.get(index)).copied().unwrap_or(0)
             };
-            let window = [&*top, &*above, &*here].map(|row| Around::of(|index| of(row, index), index));
-            let mirrored = window.map(Around::mirrored);
+            // Most of a sheet is paper.
+            if of(here, Some(index)) | of(below, Some(index)) == 0 {
+                continue;
+            }
+            let window = [&*first, &*above, &*here, &*below, row];
+            let window = window.map(|row| Around::of(|index| of(row, index), index));
+            let turned = window.map(Around::mirrored);
             // Blocks between two rows.
             let blocks_of = |one: &[u64], other: &[u64], index: Option<usize>| {
                 let both = |index: Option<usize>| of(one, index) & of(other, index);
                 let next = both(index.and_then(|index| index.checked_add(1)));
                 both(index) & (both(index) >> 1 | next << 63)
             };
-            let before = blocks_of(top, above, Some(index));
-            let own = Around::of(|index| blocks_of(above, here, index), index);
+            let before = blocks_of(above, here, Some(index));
+            let own = Around::of(|index| blocks_of(here, below, index), index);
+            let overlaps = overlaps(before, own, blocks_of(below, row, Some(index)));
             found.blocks += u64::from(own.at.count_ones());
             found.bare += u64::from(bare_steps(window).count_ones());
-            found.turns += u64::from((turns(window) | turns(mirrored)).count_ones());
-            found.overlaps +=
-                u64::from(overlaps(before, own, blocks_of(here, row, Some(index))).count_ones());
+            found.turns += u64::from((turns(window) | turns(turned)).count_ones());
+            found.overlaps += u64::from(overlaps.count_ones());
         }
-        core::mem::swap(top, above);
+        core::mem::swap(first, above);
         core::mem::swap(above, here);
-        let given = row.len().min(here.len());
-        let (words, rest) = here.split_at_mut(given);
+        core::mem::swap(here, below);
+        let given = row.len().min(below.len());
+        let (words, rest) = below.split_at_mut(given);
         words.copy_from_slice(row.get(..given).unwrap_or(&[]));
         rest.fill(0);
     }
 
     /// What was found, after the last row.
     pub(crate) fn finish(mut self) -> Found {
-        self.push(&[]);
-        self.push(&[]);
+        (0..3).for_each(|_| self.push(&[]));
         self.found
     }
 }
@@ -109,22 +111,23 @@ impl Found {
 
     /// What the thin lines are, of a picture with so many pixels of ink.
     pub(crate) fn hairlines(self, ink_pixels: u64) -> Hairlines {
-        let (bare, filled) = (self.bare, self.filled());
-        let are_many = filled > 0 && filled * INK_PER_STEP >= ink_pixels;
-        if are_many && 16 * filled >= FILLED_OF_16 * (bare + filled) {
-            Hairlines::Pen
-        } else {
+        let (steps, filled) = (self.bare + self.filled(), self.filled());
+        if filled == 0 || filled * INK_PER_STEP < ink_pixels || 8 * filled < steps {
             Hairlines::Raster
+        } else if 16 * filled < FILLED_OF_16 * steps {
+            Hairlines::Stairs
+        } else {
+            Hairlines::Pen
         }
     }
 }
 
-/// The pixels of a word, and those to the left and to the right of each.
+/// The pixels of a word, and those one and two to the left and to the right of each.
 #[derive(Clone, Copy)]
 struct Around {
-    left: u64,
+    left: [u64; 2],
     at: u64,
-    right: u64,
+    right: [u64; 2],
 }
 
 impl Around {
@@ -132,7 +135,11 @@ impl Around {
     fn of(word: impl Fn(Option<usize>) -> u64, index: usize) -> Self {
         let at = word(Some(index));
         let (before, after) = (word(index.checked_sub(1)), word(index.checked_add(1)));
-        Self { left: at << 1 | before >> 63, at, right: at >> 1 | after << 63 }
+        Self {
+            left: [at << 1 | before >> 63, at << 2 | before >> 62],
+            at,
+            right: [at >> 1 | after << 63, at >> 2 | after << 62],
+        }
     }
 
     /// The same seen in a mirror.
@@ -141,23 +148,27 @@ impl Around {
     }
 }
 
-/// Where a pixel of the second row touches one of the first across a corner only.
-fn bare_steps([_, above, here]: [Around; 3]) -> u64 {
-    here.at & !above.at & (above.left & !here.left | above.right & !here.right)
+/// Where a pixel of the fourth of five rows touches one of the third across a corner only.
+fn bare_steps([_, _, here, below, _]: [Around; 5]) -> u64 {
+    below.at & !here.at & (here.left[0] & !below.left[0] | here.right[0] & !below.right[0])
 }
 
-/// Pixels of the second row in which a line one pixel wide turns from along the row to along a column: two of a step that a pixel
-/// fills, but one where both its neighbours lie across a corner.
-fn turns([top, above, here]: [Around; 3]) -> u64 {
-    let to = |one: Around, other: Around| one.at & !one.left & !other.at;
-    let from_left = |row: Around, other: Around| above.left & !above.right & to(row, other);
-    above.at & (from_left(top, here) | from_left(here, top))
+/// Pixels of the third of five rows in which a staircase one pixel wide turns from along the row to along a column: two of a step
+/// that a pixel fills, but one where both its neighbours lie across a corner. Beyond its neighbours it turns back; else the line has
+/// a corner of its own.
+fn turns([first, above, here, below, last]: [Around; 5]) -> u64 {
+    // From the left, on to the next row and the one after that.
+    let to = |[back, next, far]: [Around; 3]| {
+        let turns_back = next.right[0] | far.right[0] | back.left[0] | back.left[1];
+        here.left[0] & !here.right[0] & next.at & !next.left[0] & !back.at & turns_back
+    };
+    here.at & (to([above, below, last]) | to([below, above, first]))
 }
 
 /// Where a row or a column of blocks of two by two pixels begins that is one block high or wide, by their upper left pixels; rows
 /// of blocks lie between two rows of ink.
 fn overlaps(above: u64, here: Around, below: u64) -> u64 {
-    here.at & !here.left & !above & !(here.right & below)
+    here.at & !here.left[0] & !above & !(here.right[0] & below)
 }
 
 #[cfg(test)]
@@ -201,9 +212,10 @@ mod tests {
     }
 
     #[test]
-    fn what_crosses_or_ends_on_a_line_is_no_step_and_an_area_neither() {
+    fn crossings_ends_corners_and_areas_are_no_steps() {
         assert_eq!(counts("..#..\n..#..\n#####\n..#..\n"), (0, 0, 0));
         assert_eq!(counts("#####\n..#..\n..#..\n"), (0, 0, 0));
+        assert_eq!(counts("#####\n#...#\n#...#\n#####\n"), (0, 0, 0));
         assert_eq!(counts("####\n####\n####\n"), (0, 0, 6));
     }
 
@@ -226,11 +238,10 @@ mod tests {
     fn a_pen_is_told_from_a_raster_by_a_tenth_of_a_pixel_in_any_direction() {
         for step in 1..32 {
             let angle_rad = 0.05 * f64::from(step);
-            for (width_px, expected) in
-                [(1.0, Hairlines::Raster), (1.1, Hairlines::Pen), (1.5, Hairlines::Pen)]
-            {
+            for (width_px, is_pen) in [(1.0, false), (1.1, true), (1.5, true)] {
                 let ink = lines(angle_rad, |off_px, _| off_px.abs() <= width_px / 2.0);
-                assert_eq!(steps(&ink).hairlines(ink.count()), expected, "{width_px} px at {angle_rad}");
+                let found = steps(&ink).hairlines(ink.count());
+                assert_eq!(found == Hairlines::Pen, is_pen, "{width_px} px at {angle_rad}: {found:?}");
             }
             let raster = |off_px: f64, cosine: f64| {
                 off_px.abs() <= 0.5 * cosine.max(libm::sqrt(1.0 - cosine * cosine))

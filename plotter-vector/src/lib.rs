@@ -7,6 +7,7 @@ mod centrelines;
 mod colour;
 mod continuity;
 mod coverage;
+mod covered;
 mod cubic;
 mod curve;
 #[cfg(feature = "image")]
@@ -54,6 +55,7 @@ mod svg_in;
 mod thinning;
 mod threshold;
 mod tracking;
+mod turns;
 mod within;
 
 pub use areas::{

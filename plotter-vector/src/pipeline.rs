@@ -4,12 +4,14 @@ use crate::areas::{Islands, Opening};
 use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
 use crate::coverage::{AreaPen, add_coverage};
+use crate::covered::Covered;
 use crate::hairlines::Hairlines;
 use crate::pen::Pen;
-use crate::raster_corner::take_in;
+use crate::raster_corner::{put_back, take_out};
 use crate::row_threshold::has_rims;
 use crate::simplify::Pieces;
 use crate::straight_on::{GoneOn, straight_on};
+use crate::turns::cut_at_turns;
 use crate::within::within;
 use crate::{
     AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Cancelled, Curve, Drawing, DynamicThreshold,
@@ -256,7 +258,7 @@ impl Vectorizer {
         let ink_pixels = ink.count();
         let pen = self.clean(ink);
         if self.keeps_pixels(pen, || grey.is_some_and(|(gray, _)| has_rims(gray, ink_pixels))) {
-            let (drawing, errors) = self.tracked(ink)?;
+            let (drawing, errors) = self.tracked(ink, pen.hairlines)?;
             // Of what is not straight the errors are not known from the figures.
             let errors = drawing.is_straight().then_some(errors);
             return Ok(Unordered { drawing, errors, areas: None });
@@ -279,7 +281,7 @@ impl Vectorizer {
     /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Where these are is better known of grey
     /// rims.
     pub(crate) fn keeps_pixels(&self, pen: Pen, has_rims: impl Fn() -> bool) -> bool {
-        let is_raster = pen.width_px <= 1 && pen.hairlines == Hairlines::Raster;
+        let is_raster = pen.width_px <= 1 && pen.hairlines != Hairlines::Pen;
         is_raster && self.mode != Mode::Outline && !has_rims()
     }
 
@@ -384,8 +386,12 @@ impl Vectorizer {
     }
 
     /// Ours for lines one pixel wide.
-    fn tracked(&self, ink: &Bitmap) -> Result<(Drawing, SheetErrors), VectorizeError> {
-        let figures = take_in(self.figures(ink)?, ink.width(), ink.height());
+    fn tracked(&self, ink: &Bitmap, hairlines: Hairlines) -> Result<(Drawing, SheetErrors), VectorizeError> {
+        let mut bare = ink.clone();
+        let corners = if hairlines == Hairlines::Stairs { take_out(&mut bare) } else { Vec::new() };
+        let figures = put_back(&link(&self.figures(&bare)?), &corners, ink.width(), ink.height());
+        drop(bare);
+        let figures = cut_at_turns(&figures, ink);
         // Of a sheet full of ink each step's figures are large: none outlives its use.
         let GoneOn { figures: straight, shared } = straight_on(&figures, ink);
         drop(figures);
@@ -394,7 +400,9 @@ impl Vectorizer {
         let Joined { figures, borrowed } = join(&linked, ink);
         drop(linked);
         let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
-        let (straight, errors) = simplify(ink, &figures, lent, &shared, &self.ours);
+        // Arcs and curves do not pass where the straight pieces do.
+        let covered_px = (self.pieces() == Pieces::Lines).then_some(self.ours.tolerance_px);
+        let (straight, errors) = simplify(ink, &figures, lent, &shared, &self.ours, covered_px);
         let drawing = match self.pieces() {
             Pieces::Lines => straight,
             _ => self.bent(&figures, &straight),
@@ -418,7 +426,7 @@ impl Vectorizer {
     }
 
     fn published(&self, ink: &Bitmap) -> Result<(Drawing, SheetErrors), VectorizeError> {
-        Ok(simplify(ink, &self.figures(ink)?, |_| (false, false), &Bitmap::empty(), &self.published))
+        Ok(simplify(ink, &self.figures(ink)?, |_| (false, false), &Bitmap::empty(), &self.published, None))
     }
 
     fn figures(&self, ink: &Bitmap) -> Result<Figures, VectorizeError> {
@@ -439,23 +447,37 @@ pub(crate) struct Unordered {
     pub(crate) areas: Option<Opening>,
 }
 
-/// A stroke of each figure, and the errors; of pixels that figures share those of the first of them.
+/// A stroke of each figure, but for what others draw within `covered_px`, and the errors; of pixels that figures share those of the
+/// first of them.
 fn simplify(
     ink: &Bitmap,
     figures: &Figures,
     borrowed: impl Fn(usize) -> (bool, bool),
     shared: &Bitmap,
     algorithm: &impl Simplify,
+    covered_px: Option<f64>,
 ) -> (Drawing, SheetErrors) {
+    let kept: Vec<Vec<usize>> = figures.iter().map(|figure| algorithm.keep(figure)).collect();
+    let covered = covered_px.map(|tolerance_px| Covered::of(figures, &kept, ink, tolerance_px));
+    let is_covered = |index: usize| covered.as_ref().is_some_and(|covered| covered.has(index));
     let mut drawing = Drawing::new(ink.width(), ink.height());
     let mut tally = ErrorTally::default();
     let mut seen = BTreeSet::new();
     let mut counts = |at: Pixel| !shared.get(at) || seen.insert(at);
-    for (index, figure) in figures.iter().enumerate() {
-        let kept = algorithm.keep(figure);
-        tally.add_those(figure, &kept, borrowed(index), &mut counts);
+    for (index, (figure, kept)) in
+        figures.iter().zip(&kept).enumerate().filter(|(index, _)| !is_covered(*index))
+    {
+        tally.add_those(figure, kept, borrowed(index), &mut counts);
         let vertex = |index: &usize| figure.get(*index).copied().map(|pixel: Pixel| PxPoint::from(pixel));
         drawing.push(kept.iter().filter_map(vertex));
+    }
+    for (index, figure) in figures.iter().enumerate().filter(|(index, _)| is_covered(*index)) {
+        let (first, last) = borrowed(index);
+        let own = usize::from(first)..figure.len() - usize::from(last);
+        for at in figure.get(own).unwrap_or(&[]).iter().filter(|at| counts(**at)) {
+            let off_px = covered.as_ref().and_then(|covered| covered.off_px(*at));
+            tally.add_pixel(*at, off_px.unwrap_or_default());
+        }
     }
     (drawing, SheetErrors { report: tally.report(), worst: tally.worst() })
 }

@@ -22,6 +22,12 @@ const TAILS_PX: [usize; 4] = [32, 20, 12, 8];
 /// How far the pixels of one straight line may lie beside it, px: rounded to the raster, and a little.
 const LINE_PX: f64 = 0.75;
 
+/// Pixels at an end that may lie beside its line: where it comes to another one.
+const LOOSE_PX: usize = 3;
+
+/// What a pixel of the way from end to end counts: far less than a turn, but of two ends in line the nearer one is next.
+const COST_PER_PX: f64 = 0.003;
+
 /// Longest way from end to end, px: lines that cross at some 3 degrees share as much.
 const REACH_PX: u32 = 20;
 
@@ -74,10 +80,8 @@ impl<'a> Ends<'a> {
                 continue;
             }
             for id in [2 * index, 2 * index + 1] {
-                if let Some(tail) = tail(figure, id, shortest)
-                    && let Some(at) = tail.first()
-                    && beside_line_px(&tail, &[]) <= LINE_PX
-                {
+                let end = if id.is_multiple_of(2) { figure.first() } else { figure.last() };
+                if let Some(at) = end.filter(|_| straight_tail(figure, id).is_some()) {
                     marked.set(*at, true);
                     sorted.push((*at, id));
                 }
@@ -87,14 +91,13 @@ impl<'a> Ends<'a> {
         Self { ink, figures, sorted, marked }
     }
 
-    fn tail(&self, id: usize, length: usize) -> Option<Vec<Pixel>> {
-        tail(self.figures.get(id / 2), id, length)
+    fn end(&self, id: usize) -> Option<Pixel> {
+        let figure = self.figures.get(id / 2);
+        if id.is_multiple_of(2) { figure.first().copied() } else { figure.last().copied() }
     }
 
-    /// The longest part of an end that is straight.
     fn straight_tail(&self, id: usize) -> Option<Vec<Pixel>> {
-        let tails = TAILS_PX.iter().filter_map(|length| self.tail(id, *length));
-        tails.into_iter().find(|tail| beside_line_px(tail, &[]) <= LINE_PX)
+        straight_tail(self.figures.get(id / 2), id)
     }
 
     fn at(&self, at: Pixel) -> impl Iterator<Item = usize> + '_ {
@@ -126,7 +129,7 @@ impl<'a> Ends<'a> {
                 if id < other && id / 2 != other / 2 && !seen.contains(&other) {
                     seen.push(other);
                     if let Some(cost) = self.straight_tail(other).and_then(|other| bend(&own, &other)) {
-                        pairs.push((cost, id, other));
+                        pairs.push((cost + COST_PER_PX * along, id, other));
                     }
                 }
             }
@@ -135,7 +138,7 @@ impl<'a> Ends<'a> {
 
     /// The ink between two ends; `None` if it leaves their line.
     fn gap(&self, a: usize, b: usize) -> Option<Vec<Pixel>> {
-        let (mut at, to) = (*self.tail(a, 1)?.first()?, *self.tail(b, 1)?.first()?);
+        let (mut at, to) = (self.end(a)?, self.end(b)?);
         let from = at;
         let (dx, dy) = to.minus(from);
         let away = |at: Pixel| {
@@ -154,13 +157,18 @@ impl<'a> Ends<'a> {
     }
 }
 
-/// As many pixels of a figure's end, outermost first.
-fn tail(figure: &[Pixel], id: usize, length: usize) -> Option<Vec<Pixel>> {
-    if id.is_multiple_of(2) {
-        Some(figure.get(..length)?.to_vec())
-    } else {
-        Some(figure.get(figure.len().checked_sub(length)?..)?.iter().rev().copied().collect())
-    }
+/// The longest part of a figure's end that is straight, outermost first, but for the loose pixels before it.
+fn straight_tail(figure: &[Pixel], id: usize) -> Option<Vec<Pixel>> {
+    let tails = TAILS_PX.iter().flat_map(|length| (0..=LOOSE_PX).map(move |loose| (*length, loose)));
+    let tail = |(length, loose): (usize, usize)| -> Option<Vec<Pixel>> {
+        if id.is_multiple_of(2) {
+            Some(figure.get(loose..loose + length)?.to_vec())
+        } else {
+            let end = figure.len().checked_sub(loose)?;
+            Some(figure.get(end.checked_sub(length)?..end)?.iter().rev().copied().collect())
+        }
+    };
+    tails.filter_map(tail).find(|tail| beside_line_px(tail, &[]) <= LINE_PX)
 }
 
 fn moved(at: Pixel, dx: f64, dy: f64) -> Option<Pixel> {
@@ -189,7 +197,7 @@ fn bend(a: &[Pixel], b: &[Pixel]) -> Option<f64> {
 }
 
 /// The greatest distance of pixels from the straight line with the least squared distances, px.
-fn beside_line_px(some: &[Pixel], others: &[Pixel]) -> f64 {
+pub(crate) fn beside_line_px(some: &[Pixel], others: &[Pixel]) -> f64 {
     let Some(origin) = some.first() else { return 0.0 };
     let places = || some.iter().chain(others).map(|at| at.minus(*origin));
     let (mut n, mut x, mut y, mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
@@ -217,7 +225,7 @@ mod tests {
     }
 
     fn gone_on(lines: &[Vec<Pixel>]) -> GoneOn {
-        let mut ink = Bitmap::new(21, 21).unwrap();
+        let mut ink = Bitmap::new(30, 21).unwrap();
         let mut figures = Figures::default();
         for line in lines {
             line.iter().for_each(|at| ink.set(*at, true));
@@ -238,6 +246,25 @@ mod tests {
     #[test]
     fn a_line_does_not_go_on_over_paper() {
         assert_eq!(gone_on(&[column(0..9), column(12..21)]).figures.len(), 2);
+    }
+
+    #[test]
+    fn of_two_ends_in_line_the_nearer_one_is_next() {
+        let part = |columns: core::ops::Range<u32>| columns.map(|x| Pixel::new(x, 10)).collect::<Vec<_>>();
+        let [left, middle, right] = [part(0..8), part(9..18), part(19..30)];
+        let across = |x: u32| (5..15).map(move |y| Pixel::new(x, y)).collect::<Vec<_>>();
+        // The farther one comes first.
+        let gone_on = gone_on(&[left, right, middle, across(8), across(18)]);
+        assert_eq!(gone_on.figures.get(0), part(0..30));
+        assert_eq!(gone_on.figures.len(), 3);
+    }
+
+    #[test]
+    fn pixels_at_an_end_may_lie_beside_its_line() {
+        let mut above = column(0..9);
+        above.push(Pixel::new(11, 9));
+        let gone_on = gone_on(&[row(10), above, column(11..21)]);
+        assert_eq!(gone_on.figures.len(), 2);
     }
 
     #[test]

@@ -127,19 +127,21 @@ fn outcome(name: &str, lines: &[Line], width_px: f64) -> Outcome {
 #[test]
 fn a_line_of_a_turned_grid_is_a_stroke_at_any_width() {
     for turn_rad in [0.05, 0.2, 0.45, core::f64::consts::FRAC_PI_4] {
-        for width_px in WIDTHS_PX.into_iter().filter(|width_px| *width_px > 1.0) {
+        for width_px in WIDTHS_PX {
             let Outcome { strokes, mean_px, crossing_px } =
                 outcome(&format!("grid at {turn_rad:.2} rad"), &grid(turn_rad), width_px);
-            assert_eq!(strokes, 20, "{width_px} px at {turn_rad}");
+            // Of a pen of one pixel each pixel is kept, and the strokes weave between them.
+            let (most, most_crossing_px) = if width_px > 1.0 { (20, 0.5) } else { (21, 1.0) };
+            assert!((20..=most).contains(&strokes), "{strokes} strokes");
             assert!(mean_px <= 0.15, "{mean_px}");
-            assert!(crossing_px <= 0.5, "{crossing_px}");
+            assert!(crossing_px <= most_crossing_px, "{crossing_px}");
         }
     }
 }
 
 #[test]
 fn lines_that_cross_at_random_are_few_strokes_at_any_width() {
-    for width_px in WIDTHS_PX.into_iter().filter(|width_px| *width_px > 1.0) {
+    for width_px in WIDTHS_PX {
         let Outcome { strokes, mean_px, .. } = outcome("forty lines", &random_lines(), width_px);
         assert!(strokes <= 130, "{strokes}");
         assert!(mean_px <= 0.2, "{mean_px}");
