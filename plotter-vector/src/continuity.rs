@@ -73,9 +73,16 @@ pub fn link(figures: &Figures) -> Figures {
         }
     }
     ends.sort_unstable_by_key(|end| (end.at, end.id));
+    // Most ends have no other beside them.
+    let side = |of: fn(Pixel) -> u32| ends.iter().map(|end| of(end.at).saturating_add(1)).max().unwrap_or(0);
+    let mut marked = Bitmap::new(side(|at| at.x), side(|at| at.y)).ok();
+    if let Some(marked) = &mut marked {
+        ends.iter().for_each(|end| marked.set(end.at, true));
+    }
+    let is_end = |at: &Pixel| marked.as_ref().is_none_or(|marked| marked.get(*at));
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for end in &ends {
-        for at in neighbours(end.at) {
+        for at in neighbours(end.at).filter(is_end) {
             let from = ends.partition_point(|other| other.at < at);
             for other in ends.get(from..).unwrap_or(&[]).iter().take_while(|other| other.at == at) {
                 // Each pair is met from both sides; a figure is not linked with itself.

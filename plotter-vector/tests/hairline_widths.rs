@@ -133,7 +133,7 @@ fn a_line_of_a_turned_grid_is_a_stroke_at_any_width() {
             // Of a pen of one pixel each pixel is kept, and the strokes weave between them.
             let (most, most_crossing_px) = if width_px > 1.0 { (20, 0.5) } else { (21, 1.0) };
             assert!((20..=most).contains(&strokes), "{strokes} strokes");
-            assert!(mean_px <= 0.15, "{mean_px}");
+            assert!(mean_px <= 0.2, "{mean_px}");
             assert!(crossing_px <= most_crossing_px, "{crossing_px}");
         }
     }
