@@ -34,8 +34,8 @@ pub(crate) enum Hairlines {
 /// Counts steps of thin lines, row by row from the top.
 #[derive(Clone, Debug)]
 pub(crate) struct Steps {
-    /// The last four rows, the lowest last.
-    rows: [Vec<u64>; 4],
+    /// The last five rows, the lowest last, each with a word of paper before and after it.
+    rows: [Vec<u64>; 5],
     found: Found,
 }
 
@@ -55,55 +55,48 @@ pub(crate) struct Found {
 impl Steps {
     /// Before the first row of a picture of `width` px.
     pub(crate) fn new(width: u32) -> Self {
-        let row = || vec![0; width.div_ceil(u64::BITS) as usize];
-        Self { rows: [row(), row(), row(), row()], found: Found::default() }
+        let row = || vec![0; width.div_ceil(u64::BITS) as usize + 2];
+        Self { rows: [row(), row(), row(), row(), row()], found: Found::default() }
     }
 
     /// The next row, in words as of [`Bitmap::row`](crate::Bitmap::row); a longer row is cut, a shorter one ends with paper.
     pub(crate) fn push(&mut self, row: &[u64]) {
-        let Self { rows: [first, above, here, below], found } = self;
-        for index in 0..here.len() {
-            let of = |row: &[u64], index: Option<usize>| {
-                index.and_then(|index| row.get(index)).copied().unwrap_or(0)
-            };
-            // Most of a sheet is paper.
-            if of(here, Some(index)) | of(below, Some(index)) == 0 {
-                continue;
-            }
-            let window = [&*first, &*above, &*here, &*below, row];
-            let window = window.map(|row| Around::of(|index| of(row, index), index));
-            let turned = window.map(Around::mirrored);
-            // Blocks between two rows.
-            let blocks_of = |one: &[u64], other: &[u64], index: Option<usize>| {
-                let both = |index: Option<usize>| of(one, index) & of(other, index);
-                let next = both(index.and_then(|index| index.checked_add(1)));
-                both(index) & (both(index) >> 1 | next << 63)
-            };
-            let before = blocks_of(above, here, Some(index));
-            let own = Around::of(|index| blocks_of(here, below, index), index);
-            let overlaps = overlaps(before, own, blocks_of(below, row, Some(index)));
-            found.blocks += u64::from(own.at.count_ones());
-            found.bare += u64::from(bare_steps(window).count_ones());
-            found.turns += u64::from((turns(window) | turns(turned)).count_ones());
-            found.overlaps += u64::from(overlaps.count_ones());
-        }
-        core::mem::swap(first, above);
-        core::mem::swap(above, here);
-        core::mem::swap(here, below);
-        let given = row.len().min(below.len());
-        let (words, rest) = below.split_at_mut(given);
+        self.rows.rotate_left(1);
+        let [first, above, here, below, last] = &mut self.rows;
+        let end = last.len() - 1;
+        let words = last.get_mut(1..end).unwrap_or_default();
+        let given = row.len().min(words.len());
+        let (words, rest) = words.split_at_mut(given);
         words.copy_from_slice(row.get(..given).unwrap_or(&[]));
         rest.fill(0);
+        let pairs = here.iter().zip(below.iter()).skip(1).take(end - 1);
+        for (before, _) in pairs.enumerate().filter(|(_, (here, below))| **here | **below != 0) {
+            // Most of a sheet is paper.
+            let words = |row: &[u64]| row.get(before..before + 3).map(Around::of);
+            let window =
+                [&*first, &*above, &*here, &*below, &*last].map(|row| words(row).unwrap_or_default());
+            self.found.add(window);
+        }
     }
 
     /// What was found, after the last row.
     pub(crate) fn finish(mut self) -> Found {
-        (0..3).for_each(|_| self.push(&[]));
+        (0..2).for_each(|_| self.push(&[]));
         self.found
     }
 }
 
 impl Found {
+    /// Adds what the third of five rows has, and the fourth with it.
+    fn add(&mut self, window: [Around; 5]) {
+        let mirrored = window.map(Around::mirrored);
+        self.bare += u64::from(bare_steps(window).count_ones());
+        self.turns += u64::from((turns(window) | turns(mirrored)).count_ones());
+        let [_, above, here, below, last] = window;
+        self.blocks += u64::from(here.blocks(below)[1].count_ones());
+        self.overlaps += u64::from(overlaps([above, here, below, last]).count_ones());
+    }
+
     /// Filled steps: a line turns twice in each.
     fn filled(self) -> u64 {
         self.turns / 2 + self.overlaps
@@ -123,7 +116,7 @@ impl Found {
 }
 
 /// The pixels of a word, and those one and two to the left and to the right of each.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Around {
     left: [u64; 2],
     at: u64,
@@ -131,15 +124,23 @@ struct Around {
 }
 
 impl Around {
-    /// Of the words of a row, whatever these are.
-    fn of(word: impl Fn(Option<usize>) -> u64, index: usize) -> Self {
-        let at = word(Some(index));
-        let (before, after) = (word(index.checked_sub(1)), word(index.checked_add(1)));
+    /// Of a word between two others.
+    fn of(words: &[u64]) -> Self {
+        let &[before, at, after] = words else { return Self::default() };
         Self {
             left: [at << 1 | before >> 63, at << 2 | before >> 62],
             at,
             right: [at >> 1 | after << 63, at >> 2 | after << 62],
         }
+    }
+
+    /// Blocks of two by two pixels in this row and the next one: where one begins a pixel to the left, here, and a pixel to the
+    /// right.
+    fn blocks(self, next: Self) -> [u64; 3] {
+        let both = |one: u64, other: u64| one & other;
+        let [left, at] = [both(self.left[0], next.left[0]), both(self.at, next.at)];
+        let [right, far] = [both(self.right[0], next.right[0]), both(self.right[1], next.right[1])];
+        [left & at, at & right, right & far]
     }
 
     /// The same seen in a mirror.
@@ -165,10 +166,10 @@ fn turns([first, above, here, below, last]: [Around; 5]) -> u64 {
     here.at & (to([above, below, last]) | to([below, above, first]))
 }
 
-/// Where a row or a column of blocks of two by two pixels begins that is one block high or wide, by their upper left pixels; rows
-/// of blocks lie between two rows of ink.
-fn overlaps(above: u64, here: Around, below: u64) -> u64 {
-    here.at & !here.left[0] & !above & !(here.right[0] & below)
+/// Where a row or a column of blocks begins, between the second of four rows and the third, that is one block high or wide.
+fn overlaps([above, here, below, last]: [Around; 4]) -> u64 {
+    let [left, at, right] = here.blocks(below);
+    at & !left & !above.blocks(here)[1] & !(right & below.blocks(last)[1])
 }
 
 #[cfg(test)]
