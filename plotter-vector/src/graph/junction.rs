@@ -14,6 +14,7 @@ use super::sites::Sites;
 use super::spur::Spurs;
 use super::trial::{GOOD_PX2, Trial, better_than, plainly_better_than};
 use super::{End, Graph};
+use crate::hairlines::Hairlines;
 use crate::{Pixel, PxPoint};
 use core::cell::{OnceCell, RefCell};
 use std::borrow::Cow;
@@ -199,7 +200,8 @@ impl Lines<'_> {
             for end in self.ends(node) {
                 let Some(tried) = tried.get_mut(end.edge).filter(|tried| !**tried) else { continue };
                 *tried = true;
-                if let Some((a, b)) = self.overlapping(end.edge).or_else(|| self.run_together(end.edge)) {
+                let joined = self.overlapping(end.edge).or_else(|| self.run_together(end.edge));
+                if let Some((a, b)) = joined.or_else(|| self.shows_nothing(end.edge)) {
                     groups.join(a, b);
                     nodes.extend([a, b]);
                     if let Some(inner) = found.inner.get_mut(end.edge) {
@@ -251,6 +253,13 @@ impl Lines<'_> {
         #[expect(clippy::cast_precision_loss, reason = "a count of pixels, far below 2^53")]
         let short = pixels as f64 <= 1.5 * reach + 2.0;
         (short && self.place(a).distance(self.place(b)) <= reach.max(1.5)).then_some((a, b))
+    }
+
+    /// The nodes of an edge between thin lines that is too short to show where it comes from: they belong to one crossing of
+    /// several lines.
+    fn shows_nothing(&self, edge: usize) -> Option<(usize, usize)> {
+        let is_short = || self.graph.edges.get(edge).is_some_and(|edge| edge.pixels.len() <= SHORT);
+        if self.scan.hairlines == Hairlines::Pen && is_short() { self.between(edge) } else { None }
     }
 
     /// The nodes of an edge along which two lines run together that cross at an acute angle.
