@@ -391,10 +391,11 @@ impl Vectorizer {
         let corners = if hairlines == Hairlines::Stairs { take_out(&mut bare) } else { Vec::new() };
         let figures = put_back(&link(&self.figures(&bare)?), &corners, ink.width(), ink.height());
         drop(bare);
-        let figures = cut_at_turns(&figures, ink);
-        // Of a sheet full of ink each step's figures are large: none outlives its use.
-        let GoneOn { figures: straight, shared } = straight_on(&figures, ink);
+        let cut = cut_at_turns(&figures, ink);
         drop(figures);
+        // Of a sheet full of ink each step's figures are large: none outlives its use.
+        let GoneOn { figures: straight, shared } = straight_on(&cut, ink);
+        drop(cut);
         let linked = link(&straight);
         drop(straight);
         let Joined { figures, borrowed } = join(&linked, ink);

@@ -13,6 +13,7 @@
 //! of these too.
 
 use crate::continuity::{Links, is_closed, neighbours};
+use crate::turns::Cut;
 use crate::{Bitmap, Figures, Pixel};
 use std::collections::BTreeMap;
 
@@ -40,7 +41,7 @@ pub(crate) struct GoneOn {
 
 /// Joins figures whose ends lie along one straight line with ink between them, the straightest pairs first. Linear in the
 /// pixels, and n·log n in the figures.
-pub(crate) fn straight_on(figures: &Figures, ink: &Bitmap) -> GoneOn {
+pub(crate) fn straight_on(Cut { figures, ends: cut }: &Cut, ink: &Bitmap) -> GoneOn {
     let ends = Ends::of(figures, ink);
     let mut pairs = Vec::new();
     for (at, id) in &ends.sorted {
@@ -57,6 +58,10 @@ pub(crate) fn straight_on(figures: &Figures, ink: &Bitmap) -> GoneOn {
             gap.iter().for_each(|at| shared.set(*at, true));
             gaps.insert((a, b), gap);
         }
+    }
+    // What goes straight on nowhere turns as it did.
+    for (a, b) in cut {
+        links.connect(*a, *b);
     }
     GoneOn { figures: links.assemble(figures, &gaps), shared }
 }
@@ -231,7 +236,7 @@ mod tests {
             line.iter().for_each(|at| ink.set(*at, true));
             figures.push(line.iter().copied());
         }
-        straight_on(&figures, &ink)
+        straight_on(&Cut { figures, ends: Vec::new() }, &ink)
     }
 
     #[test]

@@ -20,17 +20,36 @@ const LINE_PX: f64 = 0.75;
 /// Cosine of the least turn: 15 degrees, three times what the raster makes of a straight line of 16 px.
 const TURN_COS: f64 = 0.966;
 
+/// Figures that were cut.
+#[derive(Default)]
+pub(crate) struct Cut {
+    pub(crate) figures: Figures,
+    /// Ends that were cut from each other: twice a figure's index, and 1 more for its last pixel.
+    pub(crate) ends: Vec<(usize, usize)>,
+}
+
+impl Cut {
+    /// The next piece of a figure.
+    fn push(&mut self, pixels: impl IntoIterator<Item = Pixel>, is_first: bool) {
+        let index = self.figures.len();
+        self.figures.push(pixels);
+        if !is_first && index > 0 {
+            self.ends.push((2 * index - 1, 2 * index));
+        }
+    }
+}
+
 /// Cuts figures where they turn and other ink touches them. All pixels stay, once.
-pub(crate) fn cut_at_turns(figures: &Figures, ink: &Bitmap) -> Figures {
-    let mut cut = Figures::default();
+pub(crate) fn cut_at_turns(figures: &Figures, ink: &Bitmap) -> Cut {
+    let mut cut = Cut::default();
     for figure in figures.iter() {
         let mut from = 0;
         if !is_closed(figure) {
             for at in turns(figure, ink) {
-                cut.push(figure.get(from..at).unwrap_or(&[]).iter().copied());
+                cut.push(figure.get(from..at).unwrap_or(&[]).iter().copied(), from == 0);
                 from = at;
             }
-            cut.push(figure.get(from..).unwrap_or(&[]).iter().copied());
+            cut.push(figure.get(from..).unwrap_or(&[]).iter().copied(), from == 0);
             continue;
         }
         // Round and round, so that a turn at the start shows, too.
@@ -40,12 +59,16 @@ pub(crate) fn cut_at_turns(figures: &Figures, ink: &Bitmap) -> Figures {
         at.sort_unstable();
         at.dedup();
         let Some(first) = at.first().copied().filter(|_| at.len() > 1) else {
-            cut.push(figure.iter().copied());
+            cut.push(figure.iter().copied(), true);
             continue;
         };
         let all = || figure.iter().cycle().copied();
         let next = at.iter().copied().skip(1).chain([first + count]);
-        at.iter().zip(next).for_each(|(from, to)| cut.push(all().skip(*from).take(to - from)));
+        let index = cut.figures.len();
+        for (from, to) in at.iter().copied().zip(next) {
+            cut.push(all().skip(from).take(to - from), from == first);
+        }
+        cut.ends.push((2 * index, 2 * cut.figures.len() - 1));
     }
     cut
 }
@@ -92,7 +115,7 @@ mod tests {
             figure.iter().for_each(|at| ink.set(*at, true));
             all.push(figure.iter().copied());
         }
-        cut_at_turns(&all, &ink).iter().map(<[Pixel]>::to_vec).collect()
+        cut_at_turns(&all, &ink).figures.iter().map(<[Pixel]>::to_vec).collect()
     }
 
     /// Along a row to the middle, and down from there.

@@ -12,7 +12,7 @@
 mod random;
 mod segment_distance;
 
-use plotter_vector::{Bitmap, Drawing, Pixel, PxPoint, Vectorized, Vectorizer};
+use plotter_vector::{Bitmap, BitmapRows, Drawing, Pixel, Progress, PxPoint, Vectorized, Vectorizer};
 use random::Random;
 use segment_distance::segment_distance;
 
@@ -59,24 +59,29 @@ fn random_lines() -> Vec<Line> {
     line.filter(|[from, to]| from.distance(*to) >= 100.0).take(40).collect()
 }
 
+/// A line through places, whose number is a step's greatest one.
+fn curve(steps: u32, at: impl Fn(f64) -> PxPoint) -> Vec<Line> {
+    (0..steps).map(|step| [at(f64::from(step)), at(f64::from(step + 1))]).collect()
+}
+
 /// The pieces of what was found.
 fn pieces(drawing: &Drawing) -> Vec<Line> {
     drawing.strokes().flat_map(|stroke| stroke.windows(2)).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-/// Mean distance of places along some lines from others, px.
-fn mean_off_px(lines: &[Line], others: &[Line]) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
+/// Mean and greatest distance of places along some lines from others, px.
+fn off_px(lines: &[Line], others: &[Line]) -> (f64, f64) {
+    let (mut sum, mut count, mut greatest) = (0.0, 0.0, 0.0_f64);
     for [from, to] in lines {
         let steps = from.distance(*to).ceil().max(1.0);
         for step in 0..=steps as u32 {
             let part = f64::from(step) / steps;
             let at = PxPoint::new(from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part);
-            sum += others.iter().map(|[a, b]| segment_distance(at, *a, *b)).fold(f64::INFINITY, f64::min);
-            count += 1.0;
+            let off = others.iter().map(|[a, b]| segment_distance(at, *a, *b)).fold(f64::INFINITY, f64::min);
+            (sum, count, greatest) = (sum + off, count + 1.0, greatest.max(off));
         }
     }
-    sum / count
+    (sum / count, greatest)
 }
 
 /// Where lines cross that make an angle of 20 degrees and more.
@@ -111,14 +116,15 @@ struct Outcome {
 fn outcome(name: &str, lines: &[Line], width_px: f64) -> Outcome {
     let Vectorized { drawing, error, .. } = Vectorizer::default().trace(&ink_of(lines, width_px)).unwrap();
     let found = pieces(&drawing);
-    let mean_px = mean_off_px(&found, lines).max(mean_off_px(lines, &found));
+    let ((drawn_px, greatest_px), (missed_px, _)) = (off_px(&found, lines), off_px(lines, &found));
+    let mean_px = drawn_px.max(missed_px);
     let places = crossings(&found);
-    let off_px = |at: PxPoint| places.iter().map(|place| place.distance(at)).fold(f64::INFINITY, f64::min);
-    let crossing_px = crossings(lines).into_iter().map(off_px).fold(0.0, f64::max);
+    let away_px = |at: PxPoint| places.iter().map(|place| place.distance(at)).fold(f64::INFINITY, f64::min);
+    let crossing_px = crossings(lines).into_iter().map(away_px).fold(0.0, f64::max);
     let (strokes, vertices) = (drawing.strokes().len(), drawing.vertices());
     println!(
-        "{name}, {width_px:.1} px: {strokes} strokes, {vertices} vertices, mean {mean_px:.2}, crossings {crossing_px:.2}, raster \
-         {:.2}",
+        "{name}, {width_px:.1} px: {strokes} strokes, {vertices} vertices, mean {mean_px:.2}, greatest \
+         {greatest_px:.2}, crossings {crossing_px:.2}, pixels {:.2}",
         error.max_px
     );
     Outcome { strokes, mean_px, crossing_px }
@@ -140,10 +146,42 @@ fn a_line_of_a_turned_grid_is_a_stroke_at_any_width() {
 }
 
 #[test]
+fn a_circle_and_a_wave_are_a_stroke_at_any_width() {
+    let circle = curve(400, |step| {
+        let (sine, cosine) = libm::sincos(step * core::f64::consts::TAU / 400.0);
+        PxPoint::new(150.2 + 110.3 * cosine, 149.7 + 110.3 * sine)
+    });
+    let wave = curve(559, |step| {
+        PxPoint::new(10.0 + 0.5 * step, 150.3 + 60.0 * libm::sin((10.0 + 0.5 * step) / 17.0))
+    });
+    for (name, lines) in [("circle", circle), ("wave", wave)] {
+        for width_px in WIDTHS_PX {
+            let Outcome { strokes, mean_px, .. } = outcome(name, &lines, width_px);
+            assert_eq!(strokes, 1);
+            assert!(mean_px <= 0.3, "{mean_px}");
+        }
+    }
+}
+
+#[test]
 fn lines_that_cross_at_random_are_few_strokes_at_any_width() {
     for width_px in WIDTHS_PX {
         let Outcome { strokes, mean_px, .. } = outcome("forty lines", &random_lines(), width_px);
         assert!(strokes <= if width_px > 1.0 { 72 } else { 107 }, "{strokes}");
         assert!(mean_px <= 0.2, "{mean_px}");
+    }
+}
+
+#[test]
+fn thin_lines_are_the_same_strokes_by_rows() {
+    for lines in [grid(0.2), random_lines()] {
+        let ink = ink_of(&lines, 1.4);
+        let whole = Vectorizer::default().trace(&ink).unwrap().drawing;
+        for band_rows in [40, 130] {
+            let vectorizer = Vectorizer { band_rows, ..Vectorizer::default() };
+            let sheet =
+                vectorizer.vectorize_rows(&mut BitmapRows::new(&ink), &mut Progress::silent()).unwrap();
+            assert_eq!(sheet.drawing, whole, "{band_rows}");
+        }
     }
 }
