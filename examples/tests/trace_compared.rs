@@ -66,11 +66,11 @@ fn the_flags_outline_is_closed_and_the_seam_ends_on_it() {
     let flag = trace(include_bytes!("../data/flag.png"), Algorithm::Ours).drawing;
     let outline = flag.strokes().find(|stroke| stroke.len() == 5).unwrap();
     assert_eq!(outline.first(), outline.last());
-    let (top, bottom) = (outline[0].y, outline[2].y);
     let seam = flag.strokes().find(|stroke| stroke.len() == 2).unwrap();
-    let mut ends = [seam[0].y, seam[1].y];
-    ends.sort_by(f64::total_cmp);
-    assert_eq!(ends, [top, bottom]);
+    // Whichever corner the outline begins with, and whichever end the seam.
+    let [mut sides, mut ends] = [[outline[0].y, outline[2].y], [seam[0].y, seam[1].y]];
+    [&mut sides, &mut ends].into_iter().for_each(|pair| pair.sort_by(f64::total_cmp));
+    assert_eq!(ends, sides);
 }
 
 /// Greatest distance of a pixel from the segment that replaced it, px.
