@@ -8,7 +8,8 @@ pub(super) struct Crowd<'a> {
     clear_px: f64,
     apart_px: f64,
     columns: usize,
-    cells: Vec<Vec<(usize, PxPoint)>>,
+    /// Of each place its line and its number in it.
+    cells: Vec<Vec<(usize, usize, PxPoint)>>,
 }
 
 impl<'a> Crowd<'a> {
@@ -25,10 +26,10 @@ impl<'a> Crowd<'a> {
         let mut crowd =
             Self { widths_px, clear_px, apart_px, columns, cells: vec![Vec::new(); columns * rows] };
         for (line, places) in lines.iter().enumerate() {
-            for at in places {
+            for (index, at) in places.iter().enumerate() {
                 let (column, row) = crowd.cell(*at);
                 if let Some(cell) = crowd.cells.get_mut(row * columns + column) {
-                    cell.push((line, *at));
+                    cell.push((line, index, *at));
                 }
             }
         }
@@ -42,17 +43,32 @@ impl<'a> Crowd<'a> {
 
     /// Whether another line is so near to a place that both are one piece of ink.
     pub(super) fn is_near(&self, line: usize, at: PxPoint) -> bool {
+        let own_px = 0.5 * self.width_px(line);
+        self.around(at).any(|(other, _, place)| {
+            other != line && place.distance(at) < own_px + 0.5 * self.width_px(other) + self.clear_px
+        })
+    }
+
+    /// How far a place is outside of the ink of all lines but those places, by line and number, that are its own; px, at most what
+    /// is clear.
+    pub(super) fn outside_px(&self, at: PxPoint, is_own: impl Fn(usize, usize) -> bool) -> f64 {
+        let others = self.around(at).filter(|(line, index, _)| !is_own(*line, *index));
+        others
+            .map(|(line, _, place)| place.distance(at) - 0.5 * self.width_px(line))
+            .fold(self.clear_px, f64::min)
+    }
+
+    fn width_px(&self, line: usize) -> f64 {
+        self.widths_px.get(line).copied().unwrap_or(0.0)
+    }
+
+    /// The places in the cells around one, with their lines and their numbers.
+    fn around(&self, at: PxPoint) -> impl Iterator<Item = (usize, usize, PxPoint)> + '_ {
         let (column, row) = self.cell(at);
-        let width_px = |line: usize| self.widths_px.get(line).copied().unwrap_or(0.0);
-        let are_near = |other: usize, place: &PxPoint| {
-            place.distance(at) < 0.5 * (width_px(line) + width_px(other)) + self.clear_px
-        };
-        (row.saturating_sub(1)..=row + 1).any(|row| {
-            (column.saturating_sub(1)..=(column + 1).min(self.columns - 1)).any(|column| {
-                self.cells.get(row * self.columns + column).is_some_and(|cell| {
-                    cell.iter().any(|(other, place)| *other != line && are_near(*other, place))
-                })
-            })
+        (row.saturating_sub(1)..=row + 1).flat_map(move |row| {
+            let columns = column.saturating_sub(1)..=(column + 1).min(self.columns - 1);
+            let cells = columns.filter_map(move |column| self.cells.get(row * self.columns + column));
+            cells.flatten().copied()
         })
     }
 }

@@ -13,6 +13,10 @@ const ARM: usize = 7;
 
 /// How far these may be off a straight line, px.
 const MOST_OFF_PX: f64 = 0.35;
+const LEAST_OFF_PX: f64 = 0.08;
+
+/// Places that tell whether the line is a curve: one of a radius of 70 px is 1 px off a straight line over them.
+const LONG_ARM: usize = 12;
 
 /// Lines that meet at a smaller angle have one ink for too long: cosine of 25 degrees.
 const ALONG_COS: f64 = 0.906;
@@ -26,8 +30,15 @@ const BEHIND_PX: f64 = 1.5;
 /// And the ink behind the other line is so much farther from its middle than that line's own rim, px.
 const STICKS_PX: f64 = 1.0;
 
-/// Puts the ends of lines, whose places are about 2 px from each other and most of which are `most_px` wide, straight.
-pub(super) fn straight_ends(flat: &Flat, lines: &mut [Vec<PxPoint>], widths_px: &[f64], most_px: f64) {
+/// Puts the ends of lines, whose places are about 2 px from each other and most of which are `most_px` wide, straight. Lines that
+/// are centred tell by a longer part whether they are straight: one that is a curve has been gone on as such.
+pub(super) fn straight_ends(
+    flat: &Flat,
+    lines: &mut [Vec<PxPoint>],
+    widths_px: &[f64],
+    most_px: f64,
+    is_centred: bool,
+) {
     let crowd = Crowd::of(lines, widths_px, flat.size(), 0.1 * most_px + CLEAR_PX);
     let thickest_px = widths_px.iter().copied().fold(0.0, f64::max);
     for line in 0..lines.len() {
@@ -44,7 +55,7 @@ pub(super) fn straight_ends(flat: &Flat, lines: &mut [Vec<PxPoint>], widths_px: 
             if touching == 0 || SPACING_PX * super::lines::count_f64(touching) > 4.0 * thickest_px + 4.0 {
                 continue;
             }
-            if let Some(mut tail) = tail(flat, lines, line, &places, touching, widths_px) {
+            if let Some(mut tail) = tail(flat, lines, line, &places, touching, widths_px, is_centred) {
                 tail.extend(places.drain(touching..));
                 if is_last {
                     tail.reverse();
@@ -76,9 +87,16 @@ fn tail(
     places: &[PxPoint],
     touching: usize,
     widths_px: &[f64],
+    is_centred: bool,
 ) -> Option<Vec<PxPoint>> {
     let arm = places.get(touching..(touching + ARM).min(places.len()))?;
     let own = straight(arm, 4, MOST_OFF_PX)?;
+    if is_centred {
+        // As straight as it must be to be gone on for so long; a short one all the more.
+        let long = places.get(touching..(touching + (2 * touching).max(LONG_ARM)).min(places.len()))?;
+        let share = (super::lines::count_f64(long.len()) / super::lines::count_f64(LONG_ARM)).min(1.0);
+        straight(long, 4, (MOST_OFF_PX * share * share).max(LEAST_OFF_PX))?;
+    }
     let (foot, end) = (*arm.first()?, *places.first()?);
     let back = (-own.1.0, -own.1.1);
     let along = |at: PxPoint| {

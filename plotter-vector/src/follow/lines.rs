@@ -4,6 +4,7 @@ use super::centred::{centred, turns, widths_px};
 use super::corners::runs;
 use super::ends::straight_ends;
 use super::flat::Flat;
+use super::ribbons::fitted;
 use super::tips::{sharpened, without_crumbs};
 use crate::{Bitmap, Bounded, Gray, Pixel, PxPoint, Vectorizer, despeckle, pen_width_px, split_by_width};
 
@@ -160,7 +161,12 @@ impl Lines {
             sharpened(flat, fine, width_px).iter().map(|stroke| resampled(stroke, SPACING_PX)).collect();
         let widths_px = widths_px(flat, &middles, width_px);
         centred(flat, &mut middles, &widths_px);
-        straight_ends(flat, &mut middles, &widths_px, width_px);
+        straight_ends(flat, &mut middles, &widths_px, width_px, false);
+        // Beside an area its ink would be taken for that of lines.
+        if area.is_none() {
+            fitted(flat, &mut middles, &widths_px);
+            straight_ends(flat, &mut middles, &widths_px, width_px, true);
+        }
         without_crumbs(&mut middles, &widths_px, width_px);
         let pieces = middles
             .iter()
@@ -388,6 +394,27 @@ mod tests {
             });
             assert!(off[0] < 2.2 && off[1] < most_mean_px, "{thick_px}: {off:?}");
         }
+    }
+
+    #[test]
+    fn curves_that_touch_stay_curves() {
+        // Two circles of 70 px, side by side, and one on a straight line.
+        let circle = |middle: PxPoint| -> Vec<PxPoint> {
+            (0..=120_u8)
+                .map(|k| at_angle(middle, core::f64::consts::TAU * f64::from(k) / 120.0, 70.0))
+                .collect()
+        };
+        let circles =
+            off(5.0, &|turn, at| vec![circle(at_angle(at, turn, 70.0)), circle(at_angle(at, turn, -70.0))]);
+        assert!(circles[0] < 0.7 && circles[1] < 0.3 && circles[2] < 1.8, "{circles:?}");
+        let on_line = off(5.0, &|turn, at| {
+            let along = turn + core::f64::consts::FRAC_PI_2;
+            vec![
+                circle(at_angle(at, turn, 70.0)),
+                vec![at_angle(at, along, 120.0), at_angle(at, along, -120.0)],
+            ]
+        });
+        assert!(on_line[0] < 0.7 && on_line[1] < 0.3 && on_line[2] < 1.8, "{on_line:?}");
     }
 
     #[test]

@@ -1,0 +1,219 @@
+//! [`fitted`]: lines lie where their ink, drawn together and blurred, is that of the window.
+//!
+//! A cut across shows the middle of a line only where paper is on both sides of it. Where two lines run into each other, at a small
+//! angle or side by side, one rim of each is left; where one lies on the other, none. So each line is a ribbon: the ink of all is
+//! drawn and blurred as the camera does it, and where the window is darker or lighter it moves the rims that no other line covers. A
+//! line follows its rims smoothly, and goes on with its curvature where it has none.
+//!
+//! After M. Kass, A. Witkin, D. Terzopoulos, "Snakes: active contour models" (1988), and, for ribbons, P. Fua and Y. G. Leclerc, "Model
+//! driven edge detection" (1990). How far a rim is off follows from the blur: a line of darkness d whose rim is moved by s changes the window
+//! by d·s times the blur's bell, the squares of which are 1/(2·√π·blur) in sum.
+
+use super::centred::turns;
+use super::crowd::Crowd;
+use super::flat::Flat;
+use super::ink_map::{BLUR_PX, InkMap};
+use super::lines::{SPACING_PX, cosine, count_f64};
+use crate::PxPoint;
+use std::f64::consts::{PI, SQRT_2};
+
+/// Rounds of drawing and moving; none follows one in which no place moved farther, px.
+const ROUNDS: usize = 8;
+const SETTLED_PX: f64 = 0.08;
+
+/// A place moves no farther in a round, and a line's half width changes by no more, px.
+const MOST_PX: f64 = 0.8;
+const MOST_WIDER_PX: f64 = 0.3;
+
+/// Half of the thinnest line, px.
+const THINNEST_PX: f64 = 0.2;
+
+/// Weights of a place of which no rim is seen, of each rim, and of a place in a sharp turn, which is told otherwise and stays.
+const BLIND: f64 = 1e-3;
+const RIM: f64 = 0.5;
+const STAYS: f64 = 3.0;
+
+/// A rim is seen if other lines' ink is so far away, px.
+const CLEAR_PX: f64 = 1.0;
+
+/// Beside another line's end, and so far from its ink, there may be ink that it leaves unexplained, px.
+const ENDS_PX: f64 = 1.0;
+
+/// A turn by more is a corner: cosine of 25 degrees.
+const CORNER_COS: f64 = 0.906;
+
+/// Places of a loop before its first and behind its last one that are looked at again.
+const AROUND: usize = 12;
+
+/// What a pen leaves along a line.
+#[derive(Clone, Copy, Debug)]
+struct Ribbon {
+    half_px: f64,
+    dark: f64,
+}
+
+/// The share of a line's darkness that blur leaves in its middle.
+fn left_in_middle(half_px: f64) -> f64 {
+    libm::erf(half_px / (SQRT_2 * BLUR_PX))
+}
+
+impl Ribbon {
+    /// Of a line, by the width that it shows at half of its darkness. Full ink has a darkness of `full`.
+    fn of(flat: &Flat, places: &[PxPoint], width_px: f64, full: f64) -> Self {
+        let dark = ranked(places.iter().map(|at| f64::from(flat.at(*at))), 0.5).unwrap_or(full);
+        if width_px > 3.0 * BLUR_PX {
+            return Self { half_px: 0.5 * width_px, dark: dark / left_in_middle(0.5 * width_px) };
+        }
+        // Of a thin line blur leaves the width, and takes the darkness.
+        let (mut thin, mut wide) = (THINNEST_PX, 2.0 * BLUR_PX);
+        for _ in 0..24 {
+            let middle = f64::midpoint(thin, wide);
+            if full * left_in_middle(middle) < dark { thin = middle } else { wide = middle }
+        }
+        Self { half_px: thin, dark: full }
+    }
+}
+
+/// The number that a share of all are below.
+fn ranked(numbers: impl Iterator<Item = f64>, share: f64) -> Option<f64> {
+    let mut sorted: Vec<f64> = numbers.collect();
+    sorted.sort_by(f64::total_cmp);
+    let rank = super::whole::count(share * count_f64(sorted.len().saturating_sub(1)));
+    sorted.get(rank).copied()
+}
+
+/// Puts lines, whose places are about 2 px from each other, where they explain the window best. Widths are those that they show, px.
+pub(super) fn fitted(flat: &Flat, lines: &mut Vec<Vec<PxPoint>>, widths_px: &[f64]) {
+    let darks = lines.iter().flatten().map(|at| f64::from(flat.at(*at)));
+    let full = ranked(darks, 0.98).unwrap_or(1.0).max(0.1);
+    let ribbon = |(places, width_px): (&Vec<PxPoint>, &f64)| Ribbon::of(flat, places, *width_px, full);
+    let mut ribbons: Vec<Ribbon> = lines.iter().zip(widths_px).map(ribbon).collect();
+    let (mut missing, mut left) = missing(flat, lines, &ribbons);
+    for _ in 0..ROUNDS {
+        missing.blur();
+        let widths_px: Vec<f64> = ribbons.iter().map(|ribbon| 2.0 * ribbon.half_px).collect();
+        let crowd = Crowd::of(lines, &widths_px, flat.size(), CLEAR_PX);
+        let work = Work { lines, ribbons: &ribbons, crowd: &crowd, missing: &missing };
+        let moved: Vec<(Vec<PxPoint>, Ribbon)> =
+            ribbons.iter().enumerate().map(|(line, ribbon)| work.moved(line, *ribbon)).collect();
+        let (next, next_ribbons): (Vec<_>, Vec<_>) = moved.into_iter().unzip();
+        let (next_missing, next_left) = self::missing(flat, &next, &next_ribbons);
+        if next_left >= left {
+            break;
+        }
+        let places = lines.iter().flatten().zip(next.iter().flatten());
+        let is_last = places.map(|(one, other)| one.distance(*other)).fold(0.0, f64::max) < SETTLED_PX;
+        (*lines, ribbons, missing, left) = (next, next_ribbons, next_missing, next_left);
+        if is_last {
+            break;
+        }
+    }
+}
+
+/// What the window shows more than the lines, and the sum of its squares.
+fn missing(flat: &Flat, lines: &[Vec<PxPoint>], ribbons: &[Ribbon]) -> (InkMap, f64) {
+    let mut map = InkMap::of(flat);
+    for (places, Ribbon { half_px, dark }) in lines.iter().zip(ribbons) {
+        for pair in places.windows(2) {
+            if let [from, to] = pair {
+                map.draw(*from, *to, *half_px, *dark);
+            }
+        }
+    }
+    map.blur();
+    let left = map.taken_from(flat);
+    (map, left)
+}
+
+/// What lines are moved by.
+struct Work<'a> {
+    lines: &'a [Vec<PxPoint>],
+    ribbons: &'a [Ribbon],
+    crowd: &'a Crowd<'a>,
+    missing: &'a InkMap,
+}
+
+impl Work<'_> {
+    /// A line after a round, and what its pen leaves.
+    fn moved(&self, line: usize, ribbon: Ribbon) -> (Vec<PxPoint>, Ribbon) {
+        let places = self.lines.get(line).map_or(&[][..], Vec::as_slice);
+        if places.len() < 4 {
+            return (places.to_vec(), ribbon);
+        }
+        // A loop is gone on around at both of its ends.
+        let is_loop = places.len() > 2 * AROUND && places.first() == places.last();
+        let (once, around) = if is_loop { (places.len() - 1, AROUND) } else { (places.len(), 0) };
+        let numbers: Vec<usize> =
+            (once - around..once).chain(0..once).chain(0..around).filter(|_| is_loop).collect();
+        let numbers = if is_loop { numbers } else { (0..once).collect() };
+        let all: Vec<PxPoint> = numbers.iter().filter_map(|i| places.get(*i)).copied().collect();
+
+        let norm = ribbon.dark / (2.0 * libm::sqrt(PI) * BLUR_PX);
+        let shared = libm::exp(-(ribbon.half_px * ribbon.half_px) / (BLUR_PX * BLUR_PX));
+        let in_turn = turns(&all, 2.0 * ribbon.half_px);
+        let (mut targets, mut weights) = (all.clone(), vec![BLIND; all.len()]);
+        let mut is_corner = vec![false; all.len()];
+        let (mut wider, mut known) = (0.0, 0.0);
+        for (k, number) in numbers.iter().enumerate() {
+            let before = all.get(k.saturating_sub(1)).copied();
+            let behind = all.get(k + 1).or(all.last()).copied();
+            let (Some(before), Some(at), Some(behind)) = (before, all.get(k).copied(), behind) else { break };
+            let turns =
+                before != at && at != behind && cosine(at.minus(before), behind.minus(at)) < CORNER_COS;
+            if let Some(corner) = is_corner.get_mut(k) {
+                *corner = turns;
+            }
+            let Some(weight) = weights.get_mut(k) else { break };
+            if in_turn.get(k) == Some(&true) {
+                *weight = STAYS;
+                continue;
+            }
+            let (x, y) = behind.minus(before);
+            let length = libm::hypot(x, y);
+            if turns || length < 1e-9 || self.is_at_an_end(at, line, ribbon) {
+                continue;
+            }
+            let normal = (-y / length, x / length);
+            let rims = [1.0, -1.0].map(|side| at.along(normal, side * ribbon.half_px));
+            let [one, other] = rims.map(|rim| self.seen(rim, line, *number, ribbon));
+            let [darker, other_darker] = rims.map(|rim| self.missing.at(rim));
+            let both = one * one + other * other;
+            let stiffness = norm * (both - 2.0 * one * other * shared);
+            if both < 0.05 || stiffness < 1e-3 {
+                continue;
+            }
+            wider += one * darker + other * other_darker;
+            known += norm * (both + 2.0 * one * other * shared);
+            let mean = (one * darker - other * other_darker) / stiffness;
+            let by = mean.clamp(-MOST_PX, MOST_PX);
+            *weight = BLIND + RIM * both;
+            if let Some(target) = targets.get_mut(k) {
+                *target = at.along(normal, by);
+            }
+        }
+        let found = super::stiff::stiff(&targets, &weights, &is_corner);
+        let mut found = found.get(around..around + once).unwrap_or(places).to_vec();
+        if is_loop {
+            found.extend(found.first().copied());
+        }
+        let wider = if known > 0.0 { (wider / known).clamp(-MOST_WIDER_PX, MOST_WIDER_PX) } else { 0.0 };
+        (found, Ribbon { half_px: (ribbon.half_px + wider).max(THINNEST_PX), ..ribbon })
+    }
+
+    /// Whether another line ends at a place of a line.
+    fn is_at_an_end(&self, at: PxPoint, line: usize, ribbon: Ribbon) -> bool {
+        let others = self.lines.iter().zip(self.ribbons).enumerate().filter(|(other, _)| *other != line);
+        others.filter(|(_, (places, _))| places.first() != places.last()).any(|(_, (places, other))| {
+            let reach_px = ribbon.half_px + other.half_px + ENDS_PX;
+            places.first().into_iter().chain(places.last()).any(|end| end.distance(at) < reach_px)
+        })
+    }
+
+    /// How much of the rim beside a place of a line is seen, from 0 to 1.
+    fn seen(&self, rim: PxPoint, line: usize, number: usize, ribbon: Ribbon) -> f64 {
+        let is_own = |other: usize, index: usize| {
+            other == line && SPACING_PX * count_f64(index.abs_diff(number)) < 6.0 * (ribbon.half_px + 1.0)
+        };
+        (self.crowd.outside_px(rim, is_own) / CLEAR_PX).max(0.0)
+    }
+}
