@@ -5,7 +5,7 @@ use super::corners::runs;
 use super::ends::straight_ends;
 use super::flat::Flat;
 use super::ribbons::fitted;
-use super::tips::{sharpened, without_crumbs};
+use super::tips::{sharpened, without_crumbs, without_rungs};
 use crate::{Bitmap, Bounded, Gray, Pixel, PxPoint, Vectorizer, despeckle, pen_width_px, split_by_width};
 
 /// Side of the blocks in which the darkest and the lightest place are found, px.
@@ -156,7 +156,8 @@ impl Lines {
             margin_px,
             turn_px: (TURN_MARGIN_WIDTHS * width_px).min(TURN_MARGIN_SHARE * side_px),
         };
-        let fine: Vec<_> = strokes.iter().map(|stroke| resampled(&stroke.vertices, 1.0)).collect();
+        let mut fine: Vec<_> = strokes.iter().map(|stroke| resampled(&stroke.vertices, 1.0)).collect();
+        without_rungs(flat, &mut fine, width_px);
         let mut middles: Vec<Vec<PxPoint>> =
             sharpened(flat, fine, width_px).iter().map(|stroke| resampled(stroke, SPACING_PX)).collect();
         let widths_px = widths_px(flat, &middles, width_px);

@@ -106,6 +106,20 @@ pub(super) fn without_crumbs(strokes: &mut Vec<Vec<PxPoint>>, widths_px: &[f64],
     strokes.retain(|stroke| !stroke.is_empty());
 }
 
+/// What blur fills between two lines is lighter than this share of both.
+const RUNG_DARK: f32 = 0.75;
+
+/// Takes away what thinning leaves between two lines side by side whose blur meets: short strokes from the one to the other that are
+/// lighter on their way than at both of their ends.
+pub(super) fn without_rungs(flat: &Flat, strokes: &mut Vec<Vec<PxPoint>>, most_px: f64) {
+    strokes.retain(|stroke| {
+        let (Some(first), Some(last)) = (stroke.first(), stroke.last()) else { return false };
+        let ends = flat.at(*first).min(flat.at(*last));
+        let on_the_way = stroke.iter().map(|at| flat.at(*at)).fold(ends, f32::min);
+        length(stroke) >= 1.5 * most_px + 2.0 || on_the_way > RUNG_DARK * ends
+    });
+}
+
 /// Two strokes that end together have a stub twice: it stays with one of them, on which the other ends.
 fn part_ends(strokes: &mut [Vec<PxPoint>], width_px: f64) {
     for i in 0..strokes.len() {
@@ -406,6 +420,27 @@ mod tests {
         let strokes = sharpened(&picture(ways, 5.0), vec![one, crumb, other], 6.0);
         assert_eq!(strokes.len(), 1);
         assert!(off_px(&strokes[0]) < 0.5, "{}", off_px(&strokes[0]));
+    }
+
+    #[test]
+    fn a_way_over_the_blur_between_two_lines_is_no_line() {
+        // Lines of 2 px with 4 px of paper between them; at 180 px one leads from the one to the other.
+        let at = |x: f64, y: f64| PxPoint::new(x, y);
+        let lines = vec![
+            vec![at(-50.0, 147.2), at(350.0, 147.2)],
+            vec![at(-50.0, 153.2), at(350.0, 153.2)],
+            vec![at(180.3, 147.2), at(180.3, 153.2)],
+        ];
+        let strokes: Vec<_> = lines.iter().map(|line| (line.clone(), 2.0)).collect();
+        let paper = Paper::drawn(300, 300, &strokes).unwrap();
+        let window =
+            SimulatedCamera::new(&paper, CameraSettings::default()).window(PxPoint::new(150.0, 150.0));
+        let rung = |x: f64| vec![at(x, 147.2), at(x, 149.2), at(x, 151.2), at(x, 153.2)];
+        let mut found: Vec<_> = lines.iter().take(2).map(|line| resampled(line, 1.0)).collect();
+        found.extend([rung(120.4), rung(180.3)]);
+        without_rungs(&Flat::of(&window, None, None), &mut found, 4.0);
+        let last: Vec<f64> = found.iter().filter_map(|stroke| stroke.first()).map(|at| at.x).collect();
+        assert_eq!(last, [-50.0, -50.0, 180.3]);
     }
 
     #[test]
