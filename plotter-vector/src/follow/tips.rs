@@ -426,7 +426,7 @@ mod tests {
     fn a_way_over_the_blur_between_two_lines_is_no_line() {
         // Lines of 2 px with 4 px of paper between them; at 180 px one leads from the one to the other.
         let at = |x: f64, y: f64| PxPoint::new(x, y);
-        let lines = vec![
+        let lines = [
             vec![at(-50.0, 147.2), at(350.0, 147.2)],
             vec![at(-50.0, 153.2), at(350.0, 153.2)],
             vec![at(180.3, 147.2), at(180.3, 153.2)],
