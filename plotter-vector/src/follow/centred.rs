@@ -42,7 +42,7 @@ const LEAST_CUTS: usize = 6;
 const TURN_FACTOR: f64 = 1.3;
 
 /// Places before and behind a turn that are looked at.
-const TURN_PLACES: usize = 40;
+pub(super) const TURN_PLACES: usize = 40;
 
 /// Puts the places of lines, about 2 px from each other, into their middles; the first and the last of each stay.
 pub(super) fn centred(flat: &Flat, lines: &mut [Vec<PxPoint>], widths_px: &[f64]) {

@@ -2,7 +2,7 @@
 
 use super::flat::Flat;
 use super::lines::count_f64;
-use super::paper::nearest;
+use super::paper::each_covered;
 use super::whole::{floor, inside};
 use crate::PxPoint;
 
@@ -39,21 +39,14 @@ impl InkMap {
 
     /// Draws a straight line: each pixel is as dark as its darkest line.
     pub(super) fn draw(&mut self, from: PxPoint, to: PxPoint, half_px: f64, dark: f64) {
-        let reach = half_px + 1.0;
-        let span =
-            |a: f64, b: f64, start: f64| floor(a.min(b) - reach - start)..=floor(a.max(b) + reach - start);
-        let (rows, columns) = (span(from.y, to.y, self.top), span(from.x, to.x, self.left));
-        for y in rows.filter_map(|y| inside(y, self.height)) {
-            for x in columns.clone().filter_map(|x| inside(x, self.width)) {
-                let at = PxPoint::new(count_f64(x) + 0.5 + self.left, count_f64(y) + 0.5 + self.top);
-                let share = (half_px - nearest(at, from, to).distance(at) + 0.5).clamp(0.0, 1.0);
-                #[expect(clippy::cast_possible_truncation, reason = "a share")]
-                let ink = (share.min(2.0 * half_px) * dark) as f32;
-                if let Some(cell) = self.cells.get_mut(y * self.width + x) {
-                    *cell = cell.max(ink);
-                }
+        let ends = [from, to].map(|at| PxPoint::new(at.x - self.left, at.y - self.top));
+        each_covered((self.width, self.height), ends, half_px, |index, covered| {
+            #[expect(clippy::cast_possible_truncation, reason = "a share")]
+            let ink = (covered.min(2.0 * half_px) * dark) as f32;
+            if let Some(cell) = self.cells.get_mut(index) {
+                *cell = cell.max(ink);
             }
-        }
+        });
     }
 
     /// Takes the map from a window: what that is darker stays, and the sum of its squares.

@@ -45,21 +45,13 @@ impl Paper {
     }
 
     fn draw(&mut self, from: PxPoint, to: PxPoint, radius_px: f64) {
-        let reach = radius_px + 1.0;
-        let rows = floor(from.y.min(to.y) - reach)..=floor(from.y.max(to.y) + reach);
-        let columns = floor(from.x.min(to.x) - reach)..=floor(from.x.max(to.x) + reach);
-        for y in rows.filter_map(|y| inside(y, self.height)) {
-            for x in columns.clone().filter_map(|x| inside(x, self.width)) {
-                #[expect(clippy::cast_precision_loss, reason = "a pixel's number is small")]
-                let at = PxPoint::new(x as f64 + 0.5, y as f64 + 0.5);
-                let covered = (radius_px - distance(at, from, to) + 0.5).clamp(0.0, 1.0);
-                #[expect(clippy::cast_possible_truncation, reason = "from 0 to 1")]
-                let left = 1.0 - covered as f32;
-                if let Some(share) = self.reflected.get_mut(y * self.width + x) {
-                    *share = share.min(left);
-                }
+        each_covered((self.width, self.height), [from, to], radius_px, |index, covered| {
+            #[expect(clippy::cast_possible_truncation, reason = "from 0 to 1")]
+            let left = 1.0 - covered as f32;
+            if let Some(share) = self.reflected.get_mut(index) {
+                *share = share.min(left);
             }
-        }
+        });
     }
 
     /// Size of the paper, px.
@@ -111,6 +103,26 @@ impl Paper {
         let above = share(left, top) * (1.0 - right_part) + share(right, top) * right_part;
         let below = share(left, low) * (1.0 - right_part) + share(right, low) * right_part;
         above * (1.0 - low_part) + below * low_part
+    }
+}
+
+/// The pixels around a straight line of a round pen: the index of each in a picture of this width and height, and how much of it the
+/// pen covers, from 0 to 1.
+pub(super) fn each_covered(
+    (width, height): (usize, usize),
+    [from, to]: [PxPoint; 2],
+    radius_px: f64,
+    mut found: impl FnMut(usize, f64),
+) {
+    let reach = radius_px + 1.0;
+    let rows = floor(from.y.min(to.y) - reach)..=floor(from.y.max(to.y) + reach);
+    let columns = floor(from.x.min(to.x) - reach)..=floor(from.x.max(to.x) + reach);
+    for y in rows.filter_map(|y| inside(y, height)) {
+        for x in columns.clone().filter_map(|x| inside(x, width)) {
+            #[expect(clippy::cast_precision_loss, reason = "a pixel's number is small")]
+            let at = PxPoint::new(x as f64 + 0.5, y as f64 + 0.5);
+            found(y * width + x, (radius_px - distance(at, from, to) + 0.5).clamp(0.0, 1.0));
+        }
     }
 }
 

@@ -9,7 +9,7 @@
 //! driven edge detection" (1990). How far a rim is off follows from the blur: a line of darkness d whose rim is moved by s changes the window
 //! by d·s times the blur's bell, the squares of which are 1/(2·√π·blur) in sum.
 
-use super::centred::turns;
+use super::centred::{TURN_PLACES, turns};
 use super::crowd::Crowd;
 use super::flat::Flat;
 use super::ink_map::{BLUR_PX, InkMap};
@@ -88,16 +88,18 @@ pub(super) fn fitted(flat: &Flat, lines: &mut Vec<Vec<PxPoint>>, widths_px: &[f6
     let full = ranked(darks, 0.98).unwrap_or(1.0).max(0.1);
     let ribbon = |(places, width_px): (&Vec<PxPoint>, &f64)| Ribbon::of(flat, places, *width_px, full);
     let mut ribbons: Vec<Ribbon> = lines.iter().zip(widths_px).map(ribbon).collect();
-    let (mut missing, mut left) = missing(flat, lines, &ribbons);
+    let (mut missing, mut left) = unexplained(flat, lines, &ribbons);
     for _ in 0..ROUNDS {
         missing.blur();
         let widths_px: Vec<f64> = ribbons.iter().map(|ribbon| 2.0 * ribbon.half_px).collect();
         let crowd = Crowd::of(lines, &widths_px, flat.size(), CLEAR_PX);
-        let work = Work { lines, ribbons: &ribbons, crowd: &crowd, missing: &missing };
+        let ends: Vec<Vec<PxPoint>> = lines.iter().map(|places| ends(places)).collect();
+        let ends = Crowd::of(&ends, &widths_px, flat.size(), ENDS_PX);
+        let work = Work { lines, crowd: &crowd, ends: &ends, missing: &missing };
         let moved: Vec<(Vec<PxPoint>, Ribbon)> =
             ribbons.iter().enumerate().map(|(line, ribbon)| work.moved(line, *ribbon)).collect();
         let (next, next_ribbons): (Vec<_>, Vec<_>) = moved.into_iter().unzip();
-        let (next_missing, next_left) = self::missing(flat, &next, &next_ribbons);
+        let (next_missing, next_left) = unexplained(flat, &next, &next_ribbons);
         if next_left >= left {
             break;
         }
@@ -110,8 +112,14 @@ pub(super) fn fitted(flat: &Flat, lines: &mut Vec<Vec<PxPoint>>, widths_px: &[f6
     }
 }
 
+/// The first and the last place of a line that is no loop.
+fn ends(places: &[PxPoint]) -> Vec<PxPoint> {
+    let ends = places.first().into_iter().chain(places.last());
+    ends.filter(|_| places.first() != places.last()).copied().collect()
+}
+
 /// What the window shows more than the lines, and the sum of its squares.
-fn missing(flat: &Flat, lines: &[Vec<PxPoint>], ribbons: &[Ribbon]) -> (InkMap, f64) {
+fn unexplained(flat: &Flat, lines: &[Vec<PxPoint>], ribbons: &[Ribbon]) -> (InkMap, f64) {
     let mut map = InkMap::of(flat);
     for (places, Ribbon { half_px, dark }) in lines.iter().zip(ribbons) {
         for pair in places.windows(2) {
@@ -128,8 +136,9 @@ fn missing(flat: &Flat, lines: &[Vec<PxPoint>], ribbons: &[Ribbon]) -> (InkMap, 
 /// What lines are moved by.
 struct Work<'a> {
     lines: &'a [Vec<PxPoint>],
-    ribbons: &'a [Ribbon],
     crowd: &'a Crowd<'a>,
+    /// The ends of those that are no loops.
+    ends: &'a Crowd<'a>,
     missing: &'a InkMap,
 }
 
@@ -141,16 +150,18 @@ impl Work<'_> {
             return (places.to_vec(), ribbon);
         }
         // A loop is gone on around at both of its ends.
-        let is_loop = places.len() > 2 * AROUND && places.first() == places.last();
-        let (once, around) = if is_loop { (places.len() - 1, AROUND) } else { (places.len(), 0) };
-        let numbers: Vec<usize> =
-            (once - around..once).chain(0..once).chain(0..around).filter(|_| is_loop).collect();
-        let numbers = if is_loop { numbers } else { (0..once).collect() };
+        let is_loop = places.first() == places.last();
+        let once = places.len() - usize::from(is_loop);
+        let around = if is_loop { AROUND.min(once) } else { 0 };
+        let numbers: Vec<usize> = (once - around..once).chain(0..once).chain(0..around).collect();
         let all: Vec<PxPoint> = numbers.iter().filter_map(|i| places.get(*i)).copied().collect();
 
         let norm = ribbon.dark / (2.0 * libm::sqrt(PI) * BLUR_PX);
         let shared = libm::exp(-(ribbon.half_px * ribbon.half_px) / (BLUR_PX * BLUR_PX));
-        let in_turn = turns(&all, 2.0 * ribbon.half_px);
+        // Of a short loop the other side is not behind a turn.
+        let is_short = is_loop && once <= 2 * TURN_PLACES;
+        let long = places.get(..once).filter(|_| !is_short).unwrap_or(&[]);
+        let in_turn = turns(long, 2.0 * ribbon.half_px);
         let (mut targets, mut weights) = (all.clone(), vec![BLIND; all.len()]);
         let mut is_corner = vec![false; all.len()];
         let (mut wider, mut known) = (0.0, 0.0);
@@ -164,18 +175,19 @@ impl Work<'_> {
                 *corner = turns;
             }
             let Some(weight) = weights.get_mut(k) else { break };
-            if in_turn.get(k) == Some(&true) {
+            if in_turn.get(*number) == Some(&true) {
                 *weight = STAYS;
                 continue;
             }
             let (x, y) = behind.minus(before);
             let length = libm::hypot(x, y);
-            if turns || length < 1e-9 || self.is_at_an_end(at, line, ribbon) {
+            if turns || length < 1e-9 || self.ends.is_near(line, at) {
                 continue;
             }
             let normal = (-y / length, x / length);
             let rims = [1.0, -1.0].map(|side| at.along(normal, side * ribbon.half_px));
-            let [one, other] = rims.map(|rim| self.seen(rim, line, *number, ribbon));
+            let [one, other] =
+                rims.map(|rim| self.seen(rim, (line, *number), ribbon, is_loop.then_some(once)));
             let [darker, other_darker] = rims.map(|rim| self.missing.at(rim));
             let both = one * one + other * other;
             let stiffness = norm * (both - 2.0 * one * other * shared);
@@ -184,8 +196,7 @@ impl Work<'_> {
             }
             wider += one * darker + other * other_darker;
             known += norm * (both + 2.0 * one * other * shared);
-            let mean = (one * darker - other * other_darker) / stiffness;
-            let by = mean.clamp(-MOST_PX, MOST_PX);
+            let by = ((one * darker - other * other_darker) / stiffness).clamp(-MOST_PX, MOST_PX);
             *weight = BLIND + RIM * both;
             if let Some(target) = targets.get_mut(k) {
                 *target = at.along(normal, by);
@@ -200,20 +211,47 @@ impl Work<'_> {
         (found, Ribbon { half_px: (ribbon.half_px + wider).max(THINNEST_PX), ..ribbon })
     }
 
-    /// Whether another line ends at a place of a line.
-    fn is_at_an_end(&self, at: PxPoint, line: usize, ribbon: Ribbon) -> bool {
-        let others = self.lines.iter().zip(self.ribbons).enumerate().filter(|(other, _)| *other != line);
-        others.filter(|(_, (places, _))| places.first() != places.last()).any(|(_, (places, other))| {
-            let reach_px = ribbon.half_px + other.half_px + ENDS_PX;
-            places.first().into_iter().chain(places.last()).any(|end| end.distance(at) < reach_px)
-        })
-    }
-
-    /// How much of the rim beside a place of a line is seen, from 0 to 1.
-    fn seen(&self, rim: PxPoint, line: usize, number: usize, ribbon: Ribbon) -> f64 {
+    /// How much of the rim beside a place of a line, by line and number, is seen, from 0 to 1. A loop has so many places around.
+    fn seen(
+        &self,
+        rim: PxPoint,
+        (line, number): (usize, usize),
+        ribbon: Ribbon,
+        around: Option<usize>,
+    ) -> f64 {
         let is_own = |other: usize, index: usize| {
-            other == line && SPACING_PX * count_f64(index.abs_diff(number)) < 6.0 * (ribbon.half_px + 1.0)
+            let apart = index.abs_diff(number);
+            let apart = around.map_or(apart, |around| apart.min(around.saturating_sub(apart)));
+            other == line && SPACING_PX * count_f64(apart) < 6.0 * (ribbon.half_px + 1.0)
         };
         (self.crowd.outside_px(rim, is_own) / CLEAR_PX).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::follow::lines::resampled;
+    use crate::follow::{CameraSettings, Paper, SimulatedCamera};
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn a_ring_is_put_in_its_place_and_stays_closed() {
+        for radius_px in [7.0, 40.0] {
+            let middle = PxPoint::new(150.2, 149.7);
+            let ring = |radius_px: f64| -> Vec<PxPoint> {
+                let on = |k: u8| TAU * f64::from(k % 120) / 120.0;
+                let at = |k| middle.along((libm::cos(on(k)), libm::sin(on(k))), radius_px);
+                (0..=120).map(at).collect()
+            };
+            let paper = Paper::drawn(300, 300, &[(ring(radius_px), 5.0)]).unwrap();
+            let window =
+                SimulatedCamera::new(&paper, CameraSettings::default()).window(PxPoint::new(150.0, 150.0));
+            let mut lines = vec![resampled(&ring(radius_px + 1.2), SPACING_PX)];
+            fitted(&Flat::of(&window, None, None), &mut lines, &[5.0]);
+            let off_px = |at: &PxPoint| (at.distance(middle) - radius_px).abs();
+            assert!(lines.iter().flatten().all(|at| off_px(at) < 0.3), "{radius_px}: {lines:?}");
+            assert_eq!(lines[0].first(), lines[0].last());
+        }
     }
 }
