@@ -12,7 +12,7 @@ use plotter_vector::follow::{CameraSettings, MappingSettings, Paper, TableError}
 /// The table of `docs/results.md`. `TABLE` is the table's error in px, `DRAWING` a drawing's name; `INTO` a folder into which the drawings
 /// are written as pictures.
 #[test]
-#[ignore = "five minutes in release: cargo test --release -p plotter-vector --test follow_kinds -- --ignored --nocapture"]
+#[ignore = "ten minutes in release: cargo test --release -p plotter-vector --test follow_kinds -- --ignored --nocapture"]
 fn drawings_of_many_kinds() {
     let random_px: f64 = std::env::var("TABLE").map_or(0.0, |text| text.parse().unwrap());
     let only = std::env::var("DRAWING").unwrap_or_default();
