@@ -1,11 +1,12 @@
 //! Windows a second of the line followers: a web camera gives 30.
 
-use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BatchSize, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use plotter_vector::PxPoint;
 use plotter_vector::follow::{
     CameraSettings, LineFollower, MappingFollower, MappingSettings, Paper, PublishedFollower,
     PublishedSettings, SimulatedCamera, Step,
 };
+use std::time::{Duration, Instant};
 
 /// A window full of lines: two that cross, a ring, and hatching.
 fn paper() -> Paper {
@@ -61,5 +62,33 @@ fn windows(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, windows);
+/// Follows the whole paper with a table that goes where it is sent: how many windows that takes, and how long the follower itself.
+fn followed() -> (u64, Duration) {
+    let mut camera = SimulatedCamera::new(&paper(), CameraSettings::default());
+    let mut follower = MappingFollower::new(MappingSettings::default());
+    let (mut windows, mut spent, mut pose) = (0, Duration::ZERO, PxPoint::new(300.0, 300.0));
+    loop {
+        let window = camera.window(pose);
+        let begun = Instant::now();
+        let step = follower.observe(&window, pose);
+        spent += begun.elapsed();
+        windows += 1;
+        match step {
+            Step::Move { path, .. } => pose = path.last().copied().unwrap_or(pose),
+            Step::LineLost { .. } => {}
+            Step::Done(_) => return (windows, spent),
+        }
+    }
+}
+
+fn drawing(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("a drawing of 600 x 600 px");
+    group.throughput(Throughput::Elements(followed().0)).sampling_mode(SamplingMode::Flat).sample_size(10);
+    group.bench_function("ours, camera and table left out", |bencher| {
+        bencher.iter_custom(|times| (0..times).map(|_| followed().1).sum());
+    });
+    group.finish();
+}
+
+criterion_group!(benches, windows, drawing);
 criterion_main!(benches);

@@ -130,9 +130,8 @@ pub(super) fn turns(places: &[PxPoint], width_px: f64) -> Vec<bool> {
 fn is_in_turn(places: &[PxPoint], i: usize, width_px: f64) -> bool {
     let Some(at) = places.get(i) else { return false };
     let turns_back = |other: &PxPoint, count: usize| {
-        let apart = at.distance(*other);
-        apart < width_px + ONE_INK_PX
-            && super::lines::count_f64(count) * super::lines::SPACING_PX > TURN_FACTOR * apart + 1.0
+        let way_px = super::lines::count_f64(count) * super::lines::SPACING_PX;
+        at.is_within((width_px + ONE_INK_PX).min((way_px - 1.0) / TURN_FACTOR), *other)
     };
     let before = places.get(..i).unwrap_or(&[]).iter().rev().take(TURN_PLACES).enumerate();
     let behind = places.get(i + 1..).unwrap_or(&[]).iter().take(TURN_PLACES).enumerate();

@@ -45,17 +45,21 @@ impl<'a> Crowd<'a> {
     pub(super) fn is_near(&self, line: usize, at: PxPoint) -> bool {
         let own_px = 0.5 * self.width_px(line);
         self.around(at).any(|(other, _, place)| {
-            other != line && place.distance(at) < own_px + 0.5 * self.width_px(other) + self.clear_px
+            other != line && place.is_within(own_px + 0.5 * self.width_px(other) + self.clear_px, at)
         })
     }
 
     /// How far a place is outside of the ink of all lines but those places, by line and number, that are its own; px, at most what
     /// is clear.
     pub(super) fn outside_px(&self, at: PxPoint, is_own: impl Fn(usize, usize) -> bool) -> f64 {
-        let others = self.around(at).filter(|(line, index, _)| !is_own(*line, *index));
-        others
-            .map(|(line, _, place)| place.distance(at) - 0.5 * self.width_px(line))
-            .fold(self.clear_px, f64::min)
+        self.around(at).fold(self.clear_px, |least, (line, index, place)| {
+            let half_px = 0.5 * self.width_px(line);
+            if place.is_within(half_px + least, at) && !is_own(line, index) {
+                least.min(place.distance(at) - half_px)
+            } else {
+                least
+            }
+        })
     }
 
     fn width_px(&self, line: usize) -> f64 {

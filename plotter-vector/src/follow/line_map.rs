@@ -136,7 +136,7 @@ impl LineMap {
         for y in top..=low {
             for x in left..=right {
                 let ids = self.cells.get(&(x, y)).map_or(&[] as &[u32], Vec::as_slice);
-                found.extend(ids.iter().copied().filter(|id| self.at(*id).distance(at) <= reach_px));
+                found.extend(ids.iter().copied().filter(|id| self.at(*id).is_within(reach_px, at)));
             }
         }
         found

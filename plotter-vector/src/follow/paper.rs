@@ -91,22 +91,44 @@ impl Paper {
     /// The share of the light that a place reflects, between four pixels.
     pub(super) fn at(&self, x: f32, y: f32) -> f32 {
         let (x, y) = (x - 0.5, y - 0.5);
-        let (left, top) = (x.floor(), y.floor());
-        let (right_part, low_part) = (x - left, y - top);
-        #[expect(clippy::cast_possible_truncation, reason = "saturates far outside of the paper")]
-        let (left, top) = (left as i32, top as i32);
+        let (left, top) = (below(x), below(y));
+        #[expect(clippy::cast_precision_loss, reason = "a paper has less than 2^24 px a side")]
+        let (right_part, low_part) = (x - left as f32, y - top as f32);
+        let mixed = |above: [f32; 2], low: [f32; 2]| {
+            let between = |[left, right]: [f32; 2]| left * (1.0 - right_part) + right * right_part;
+            between(above) * (1.0 - low_part) + between(low) * low_part
+        };
+        // Nearly all places are inside.
+        if let (Ok(column), Ok(row)) = (usize::try_from(left), usize::try_from(top))
+            && column + 1 < self.width
+        {
+            let i = row * self.width + column;
+            let pair = |i: usize| self.reflected.get(i..i + 2);
+            if let (Some([a, b]), Some([c, d])) = (pair(i), pair(i + self.width)) {
+                return mixed([*a, *b], [*c, *d]);
+            }
+        }
         let share = |x: i32, y: i32| match (inside(x, self.width), inside(y, self.height)) {
             (Some(x), Some(y)) => self.reflected.get(y * self.width + x).copied().unwrap_or(1.0),
             _ => 1.0,
         };
         let (right, low) = (left.saturating_add(1), top.saturating_add(1));
-        let above = share(left, top) * (1.0 - right_part) + share(right, top) * right_part;
-        let below = share(left, low) * (1.0 - right_part) + share(right, low) * right_part;
-        above * (1.0 - low_part) + below * low_part
+        mixed([share(left, top), share(right, top)], [share(left, low), share(right, low)])
     }
 }
 
-/// The pixels around a straight line of a round pen: the index of each in a picture of this width and height, and how much of it the
+/// The whole number at or below, saturating. (`f32::floor` is a call where the processor has no instruction for it.)
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "saturates far outside of a paper"
+)]
+fn below(at: f32) -> i32 {
+    let whole = at as i32;
+    if whole as f32 > at { whole.saturating_sub(1) } else { whole }
+}
+
+/// The pixels under a straight line of a round pen: the index of each in a picture of this width and height, and how much of it the
 /// pen covers, from 0 to 1.
 pub(super) fn each_covered(
     (width, height): (usize, usize),
@@ -114,6 +136,9 @@ pub(super) fn each_covered(
     radius_px: f64,
     mut found: impl FnMut(usize, f64),
 ) {
+    // The pen's rim, and a little more and less so that rounding decides nothing: only there a pixel is covered in part.
+    let square = |radius_px: f64| radius_px * radius_px.max(0.0);
+    let (outside, inner) = (square(radius_px + 0.5 + 1e-6), square(radius_px - 0.5 - 1e-6));
     let reach = radius_px + 1.0;
     let rows = floor(from.y.min(to.y) - reach)..=floor(from.y.max(to.y) + reach);
     let columns = floor(from.x.min(to.x) - reach)..=floor(from.x.max(to.x) + reach);
@@ -121,7 +146,14 @@ pub(super) fn each_covered(
         for x in columns.clone().filter_map(|x| inside(x, width)) {
             #[expect(clippy::cast_precision_loss, reason = "a pixel's number is small")]
             let at = PxPoint::new(x as f64 + 0.5, y as f64 + 0.5);
-            found(y * width + x, (radius_px - distance(at, from, to) + 0.5).clamp(0.0, 1.0));
+            let nearest = nearest(at, from, to);
+            let (dx, dy) = at.minus(nearest);
+            let off = dx * dx + dy * dy;
+            if off < inner {
+                found(y * width + x, 1.0);
+            } else if off < outside {
+                found(y * width + x, (radius_px - at.distance(nearest) + 0.5).clamp(0.0, 1.0));
+            }
         }
     }
 }
@@ -146,11 +178,6 @@ fn convolved(levels: &[f32], width: usize, kernel: &[f32]) -> Vec<f32> {
 pub(super) fn transposed(levels: &[f32], width: usize, height: usize) -> Vec<f32> {
     let at = |x: usize, y: usize| levels.get(y * width + x).copied().unwrap_or(1.0);
     (0..width).flat_map(|x| (0..height).map(move |y| (x, y))).map(|(x, y)| at(x, y)).collect()
-}
-
-/// Distance of a place from a piece of a straight line.
-pub(super) fn distance(at: PxPoint, from: PxPoint, to: PxPoint) -> f64 {
-    at.distance(nearest(at, from, to))
 }
 
 /// The point of a piece of a straight line that is nearest.
