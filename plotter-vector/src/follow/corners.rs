@@ -28,7 +28,7 @@ const BLURRED_SHARE: f64 = 0.65;
 const CURVE_SHARE: f64 = 0.5;
 
 /// The corner of a square turn is as dark as the line, but for blur; beside a round one it is about 0.7 as dark.
-const SQUARE_DARK: f32 = 0.84;
+pub(super) const SQUARE_DARK: f32 = 0.84;
 
 /// How far behind a sharp tip its ink ends, but for half of the pen's width: blur takes as much of a round end, px.
 pub(super) const BLURRED_END_PX: f64 = 0.5;
@@ -111,7 +111,7 @@ fn cut_px(flat: &Flat, (corner, on_line): (PxPoint, PxPoint), turn_cos: f64, wid
 
 /// Whether the ink goes around the place where two arms meet as far as it goes beside them, and not only around the curve that
 /// thinning left.
-fn reaches(
+pub(super) fn reaches(
     flat: &Flat,
     curve: PxPoint,
     met: PxPoint,

@@ -23,6 +23,7 @@
 
 mod align;
 mod axes;
+mod bends;
 mod calibration;
 mod camera;
 mod centred;

@@ -15,6 +15,7 @@ use super::flat::Flat;
 use super::ink_map::{BLUR_PX, InkMap};
 use super::lines::{SPACING_PX, cosine, count_f64};
 use crate::PxPoint;
+use core::ops::Range;
 use std::f64::consts::{PI, SQRT_2};
 
 /// Rounds of drawing and moving; none follows one in which no place moved farther, px.
@@ -25,6 +26,9 @@ const SETTLED_PX: f64 = 0.08;
 const MOST_PX: f64 = 0.8;
 const MOST_WIDER_PX: f64 = 0.3;
 
+/// How well a width must be known to be changed, in darknesses per px: a few places with both rims.
+const LEAST_KNOWN: f64 = 4.0;
+
 /// Half of the thinnest line, px.
 const THINNEST_PX: f64 = 0.2;
 
@@ -32,6 +36,9 @@ const THINNEST_PX: f64 = 0.2;
 const BLIND: f64 = 1e-3;
 const RIM: f64 = 0.5;
 const STAYS: f64 = 3.0;
+
+/// A place that weighs less is hidden under other lines.
+const HIDDEN: f64 = 0.05;
 
 /// A rim is seen if other lines' ink is so far away, px.
 const CLEAR_PX: f64 = 1.0;
@@ -46,9 +53,10 @@ const CORNER_COS: f64 = 0.906;
 const AROUND: usize = 12;
 
 /// What a pen leaves along a line.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Ribbon {
-    half_px: f64,
+    /// Half of its width at each place, px; the same from corner to corner.
+    halves_px: Vec<f64>,
     dark: f64,
 }
 
@@ -61,8 +69,9 @@ impl Ribbon {
     /// Of a line, by the width that it shows at half of its darkness. Full ink has a darkness of `full`.
     fn of(flat: &Flat, places: &[PxPoint], width_px: f64, full: f64) -> Self {
         let dark = ranked(places.iter().map(|at| f64::from(flat.at(*at))), 0.5).unwrap_or(full);
+        let ribbon = |half_px: f64, dark: f64| Self { halves_px: vec![half_px; places.len()], dark };
         if width_px > 3.0 * BLUR_PX {
-            return Self { half_px: 0.5 * width_px, dark: dark / left_in_middle(0.5 * width_px) };
+            return ribbon(0.5 * width_px, dark / left_in_middle(0.5 * width_px));
         }
         // Of a thin line blur leaves the width, and takes the darkness.
         let (mut thin, mut wide) = (THINNEST_PX, 2.0 * BLUR_PX);
@@ -70,7 +79,16 @@ impl Ribbon {
             let middle = f64::midpoint(thin, wide);
             if full * left_in_middle(middle) < dark { thin = middle } else { wide = middle }
         }
-        Self { half_px: thin, dark: full }
+        ribbon(thin, full)
+    }
+
+    fn half_px(&self, number: usize) -> f64 {
+        self.halves_px.get(number).copied().unwrap_or(THINNEST_PX)
+    }
+
+    /// Its width in the mean, px.
+    fn width_px(&self) -> f64 {
+        2.0 * self.halves_px.iter().sum::<f64>() / count_f64(self.halves_px.len().max(1))
     }
 }
 
@@ -91,13 +109,13 @@ pub(super) fn fitted(flat: &Flat, lines: &mut Vec<Vec<PxPoint>>, widths_px: &[f6
     let (mut missing, mut left) = unexplained(flat, lines, &ribbons);
     for _ in 0..ROUNDS {
         missing.blur();
-        let widths_px: Vec<f64> = ribbons.iter().map(|ribbon| 2.0 * ribbon.half_px).collect();
+        let widths_px: Vec<f64> = ribbons.iter().map(Ribbon::width_px).collect();
         let crowd = Crowd::of(lines, &widths_px, flat.size(), CLEAR_PX);
         let ends: Vec<Vec<PxPoint>> = lines.iter().map(|places| ends(places)).collect();
         let ends = Crowd::of(&ends, &widths_px, flat.size(), ENDS_PX);
-        let work = Work { lines, crowd: &crowd, ends: &ends, missing: &missing };
+        let work = Work { flat, lines, crowd: &crowd, ends: &ends, missing: &missing };
         let moved: Vec<(Vec<PxPoint>, Ribbon)> =
-            ribbons.iter().enumerate().map(|(line, ribbon)| work.moved(line, *ribbon)).collect();
+            ribbons.iter().enumerate().map(|(line, ribbon)| work.moved(line, ribbon)).collect();
         let (next, next_ribbons): (Vec<_>, Vec<_>) = moved.into_iter().unzip();
         let (next_missing, next_left) = unexplained(flat, &next, &next_ribbons);
         if next_left >= left {
@@ -118,13 +136,24 @@ fn ends(places: &[PxPoint]) -> Vec<PxPoint> {
     ends.filter(|_| places.first() != places.last()).copied().collect()
 }
 
+/// The stretches of a line from corner to corner, each with the corner that ends it.
+fn stretches(is_corner: &[bool]) -> impl Iterator<Item = Range<usize>> + '_ {
+    let mut end = 0;
+    is_corner.split_inclusive(|corner| *corner).map(move |stretch| {
+        let first = end;
+        end += stretch.len();
+        first..end
+    })
+}
+
 /// What the window shows more than the lines, and the sum of its squares.
 fn unexplained(flat: &Flat, lines: &[Vec<PxPoint>], ribbons: &[Ribbon]) -> (InkMap, f64) {
     let mut map = InkMap::of(flat);
-    for (places, Ribbon { half_px, dark }) in lines.iter().zip(ribbons) {
-        for pair in places.windows(2) {
+    for (places, ribbon) in lines.iter().zip(ribbons) {
+        for (number, pair) in places.windows(2).enumerate() {
             if let [from, to] = pair {
-                map.draw(*from, *to, *half_px, *dark);
+                let half_px = f64::midpoint(ribbon.half_px(number), ribbon.half_px(number + 1));
+                map.draw(*from, *to, half_px, ribbon.dark);
             }
         }
     }
@@ -135,6 +164,7 @@ fn unexplained(flat: &Flat, lines: &[Vec<PxPoint>], ribbons: &[Ribbon]) -> (InkM
 
 /// What lines are moved by.
 struct Work<'a> {
+    flat: &'a Flat,
     lines: &'a [Vec<PxPoint>],
     crowd: &'a Crowd<'a>,
     /// The ends of those that are no loops.
@@ -144,10 +174,10 @@ struct Work<'a> {
 
 impl Work<'_> {
     /// A line after a round, and what its pen leaves.
-    fn moved(&self, line: usize, ribbon: Ribbon) -> (Vec<PxPoint>, Ribbon) {
+    fn moved(&self, line: usize, ribbon: &Ribbon) -> (Vec<PxPoint>, Ribbon) {
         let places = self.lines.get(line).map_or(&[][..], Vec::as_slice);
         if places.len() < 4 {
-            return (places.to_vec(), ribbon);
+            return (places.to_vec(), ribbon.clone());
         }
         // A loop is gone on around at both of its ends.
         let is_loop = places.first() == places.last();
@@ -157,14 +187,14 @@ impl Work<'_> {
         let all: Vec<PxPoint> = numbers.iter().filter_map(|i| places.get(*i)).copied().collect();
 
         let norm = ribbon.dark / (2.0 * libm::sqrt(PI) * BLUR_PX);
-        let shared = libm::exp(-(ribbon.half_px * ribbon.half_px) / (BLUR_PX * BLUR_PX));
         // Of a short loop the other side is not behind a turn.
         let is_short = is_loop && once <= 2 * TURN_PLACES;
         let long = places.get(..once).filter(|_| !is_short).unwrap_or(&[]);
-        let in_turn = turns(long, 2.0 * ribbon.half_px);
+        let in_turn = turns(long, ribbon.width_px());
         let (mut targets, mut weights) = (all.clone(), vec![BLIND; all.len()]);
         let mut is_corner = vec![false; all.len()];
-        let (mut wider, mut known) = (0.0, 0.0);
+        // How much wider each place shows to be, and how well that is known.
+        let mut wider = vec![[0.0; 2]; all.len()];
         for (k, number) in numbers.iter().enumerate() {
             let before = all.get(k.saturating_sub(1)).copied();
             let behind = all.get(k + 1).or(all.last()).copied();
@@ -185,21 +215,32 @@ impl Work<'_> {
                 continue;
             }
             let normal = (-y / length, x / length);
-            let rims = [1.0, -1.0].map(|side| at.along(normal, side * ribbon.half_px));
+            let half_px = ribbon.half_px(*number);
+            let shared = libm::exp(-(half_px * half_px) / (BLUR_PX * BLUR_PX));
+            let rims = [1.0, -1.0].map(|side| at.along(normal, side * half_px));
             let [one, other] =
-                rims.map(|rim| self.seen(rim, (line, *number), ribbon, is_loop.then_some(once)));
+                rims.map(|rim| self.seen(rim, (line, *number), half_px, is_loop.then_some(once)));
             let [darker, other_darker] = rims.map(|rim| self.missing.at(rim));
             let both = one * one + other * other;
             let stiffness = norm * (both - 2.0 * one * other * shared);
             if both < 0.05 || stiffness < 1e-3 {
                 continue;
             }
-            wider += one * darker + other * other_darker;
-            known += norm * (both + 2.0 * one * other * shared);
+            if let Some(wider) = wider.get_mut(k) {
+                *wider = [one * darker + other * other_darker, norm * (both + 2.0 * one * other * shared)];
+            }
             let by = ((one * darker - other * other_darker) / stiffness).clamp(-MOST_PX, MOST_PX);
             *weight = BLIND + RIM * both;
             if let Some(target) = targets.get_mut(k) {
                 *target = at.along(normal, by);
+            }
+        }
+        let is_hidden: Vec<bool> = weights.iter().map(|weight| *weight < BLIND + HIDDEN).collect();
+        for (k, corner) in super::bends::bends(self.flat, &targets, &is_hidden, ribbon.width_px()) {
+            if let (Some(target), Some(weight), Some(turns)) =
+                (targets.get_mut(k), weights.get_mut(k), is_corner.get_mut(k))
+            {
+                (*target, *weight, *turns) = (corner, 2.0 * RIM, true);
             }
         }
         let found = super::stiff::stiff(&targets, &weights, &is_corner);
@@ -207,22 +248,33 @@ impl Work<'_> {
         if is_loop {
             found.extend(found.first().copied());
         }
-        let wider = if known > 0.0 { (wider / known).clamp(-MOST_WIDER_PX, MOST_WIDER_PX) } else { 0.0 };
-        (found, Ribbon { half_px: (ribbon.half_px + wider).max(THINNEST_PX), ..ribbon })
+        let mut halves_px = ribbon.halves_px.clone();
+        let sum =
+            |sums: &[[f64; 2]]| sums.iter().fold([0.0; 2], |sum, more| [sum[0] + more[0], sum[1] + more[1]]);
+        let all_wider = sum(&wider);
+        for stretch in stretches(&is_corner) {
+            let own = sum(wider.get(stretch.clone()).unwrap_or(&[]));
+            let [wider, known] = if own[1] > LEAST_KNOWN { own } else { all_wider };
+            let wider = if known > 0.0 { wider / known } else { 0.0 };
+            for number in numbers.get(stretch).unwrap_or(&[]) {
+                if let Some(half_px) = halves_px.get_mut(*number) {
+                    *half_px = (ribbon.half_px(*number) + wider.clamp(-MOST_WIDER_PX, MOST_WIDER_PX))
+                        .max(THINNEST_PX);
+                }
+            }
+        }
+        if is_loop && let (Some(first), Some(last)) = (halves_px.first().copied(), halves_px.last_mut()) {
+            *last = first;
+        }
+        (found, Ribbon { halves_px, dark: ribbon.dark })
     }
 
     /// How much of the rim beside a place of a line, by line and number, is seen, from 0 to 1. A loop has so many places around.
-    fn seen(
-        &self,
-        rim: PxPoint,
-        (line, number): (usize, usize),
-        ribbon: Ribbon,
-        around: Option<usize>,
-    ) -> f64 {
+    fn seen(&self, rim: PxPoint, (line, number): (usize, usize), half_px: f64, around: Option<usize>) -> f64 {
         let is_own = |other: usize, index: usize| {
             let apart = index.abs_diff(number);
             let apart = around.map_or(apart, |around| apart.min(around.saturating_sub(apart)));
-            other == line && SPACING_PX * count_f64(apart) < 6.0 * (ribbon.half_px + 1.0)
+            other == line && SPACING_PX * count_f64(apart) < 6.0 * (half_px + 1.0)
         };
         (self.crowd.outside_px(rim, is_own) / CLEAR_PX).max(0.0)
     }
