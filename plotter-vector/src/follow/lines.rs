@@ -4,6 +4,7 @@ use super::centred::{centred, turns, widths_px};
 use super::corners::runs;
 use super::ends::straight_ends;
 use super::flat::Flat;
+use super::loops::{begun_straight, joined};
 use super::ribbons::fitted;
 use super::tips::{sharpened, without_crumbs, without_rungs};
 use crate::{Bitmap, Bounded, Gray, Pixel, PxPoint, Vectorizer, despeckle, pen_width_px, split_by_width};
@@ -158,8 +159,9 @@ impl Lines {
         };
         let mut fine: Vec<_> = strokes.iter().map(|stroke| resampled(&stroke.vertices, 1.0)).collect();
         without_rungs(flat, &mut fine, width_px);
+        let places = |stroke: &Vec<PxPoint>| begun_straight(resampled(stroke, SPACING_PX));
         let mut middles: Vec<Vec<PxPoint>> =
-            sharpened(flat, fine, width_px).iter().map(|stroke| resampled(stroke, SPACING_PX)).collect();
+            joined(sharpened(flat, fine, width_px), width_px).iter().map(places).collect();
         let widths_px = widths_px(flat, &middles, width_px);
         centred(flat, &mut middles, &widths_px);
         straight_ends(flat, &mut middles, &widths_px, width_px, false);

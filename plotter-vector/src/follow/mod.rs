@@ -41,6 +41,7 @@ mod lag;
 mod lens;
 mod line_map;
 mod lines;
+mod loops;
 mod mapping;
 mod mapping_settings;
 mod paper;
