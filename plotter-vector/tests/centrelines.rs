@@ -107,6 +107,20 @@ fn a_branch_meets_the_line_where_it_leaves_it() {
 }
 
 #[test]
+fn an_arrow_head_comes_to_one_point() {
+    // The strokes of the head leave the tip at 17 degrees: at a pen of 2.5 px they are apart on half of their length.
+    for angle in [0.0, 20.0, 45.0, 75.0, 90.0] {
+        let head = [-17.0, 17.0].map(|side| ray(angle + side, 15.7));
+        let lines = [through(angle + 90.0, 12.0), ray(angle, 80.0)];
+        let drawn: Vec<Stroke> = lines.into_iter().chain(head).collect();
+        let found = traced(&drawn, 2.5);
+        let off_px = hausdorff(&drawn, &found);
+        assert!(off_px <= NEAR_PX, "at {angle} degrees: {off_px} px {found:?}");
+        assert!(found.strokes().len() <= drawn.len(), "at {angle} degrees: {found:?}");
+    }
+}
+
+#[test]
 fn what_sticks_out_of_a_wide_pens_end_is_no_stroke() {
     // The round end of the wide line shows between the narrow ones that begin in it.
     for (first, second, third) in [(20.0, 288.0, 163.0), (345.0, 198.0, 83.0), (230.0, 85.0, 43.0)] {

@@ -6,6 +6,7 @@
 
 use super::arm::{Arm, LONG, SHORT};
 use super::corner::{TURN_COS, direction};
+use super::fan::Fan;
 use super::line_end::{line_end, tail};
 use super::meeting::{Heart, Meet, partners};
 use super::near::Near;
@@ -136,8 +137,13 @@ impl Junctions {
         let radii = vec![OnceCell::new(); graph.nodes.len()];
         let arms = RefCell::default();
         let lines = Lines { graph, sites, gone, scan, radii: &radii, arms: &arms };
-        for group in lines.groups(&mut found) {
-            lines.resolve(&group, &mut found);
+        let (groups, fans) = lines.groups(&mut found);
+        let mut fans: HashMap<usize, Fan> = fans.into_iter().map(|fan| (fan.node, fan)).collect();
+        for group in groups {
+            match group.first().and_then(|node| fans.remove(node)) {
+                Some(fan) => found.take(fan.owner, fan.ways),
+                None => lines.resolve(&group, &mut found),
+            }
         }
         let Self { inner, lines, .. } = &mut found;
         lines.retain(|edge| inner.get(*edge) == Some(&false));
@@ -152,13 +158,16 @@ const LOOK: usize = 256;
 const SURE_WIDTHS: f64 = 2.0;
 const SURE_PX: f64 = 12.0;
 
+/// More arms meet in noise only.
+pub(super) const MOST_ARMS: usize = 8;
+
 /// What junctions are found in.
 #[derive(Clone, Copy)]
-struct Lines<'a> {
-    graph: &'a Graph,
-    sites: &'a Sites<'a>,
+pub(super) struct Lines<'a> {
+    pub(super) graph: &'a Graph,
+    pub(super) sites: &'a Sites<'a>,
     gone: &'a Spurs<'a>,
-    scan: Scan<'a>,
+    pub(super) scan: Scan<'a>,
     /// Radius of the ink around each node, once it is measured.
     radii: &'a [OnceCell<f64>],
     /// The long arms that were asked for.
@@ -187,13 +196,14 @@ impl ArmOf {
 
 impl Lines<'_> {
     /// The nodes of each junction that a line comes to which is near, and which edges lie within them.
-    fn groups(&self, found: &mut Junctions) -> Vec<Vec<usize>> {
+    fn groups(&self, found: &mut Junctions) -> (Vec<Vec<usize>>, Vec<Fan>) {
         let nodes_of = |edge: usize| self.graph.edges.get(edge).and_then(|edge| edge.nodes);
         let mut wanted = vec![false; self.graph.nodes.len()];
         let mut tried = vec![false; self.graph.edges.len()];
         let mut nodes: Vec<usize> =
             found.lines.iter().filter_map(|edge| nodes_of(*edge)).flat_map(|(a, b)| [a, b]).collect();
         let mut groups = Groups::new(self.graph.nodes.len());
+        let mut shared = Vec::new();
         while let Some(node) = nodes.pop() {
             let Some(wanted) = wanted.get_mut(node).filter(|wanted| !**wanted) else { continue };
             *wanted = true;
@@ -207,9 +217,13 @@ impl Lines<'_> {
                     if let Some(inner) = found.inner.get_mut(end.edge) {
                         *inner = true;
                     }
+                } else if let Some((a, b)) = self.shared(end.edge) {
+                    shared.push(end.edge);
+                    nodes.extend([a, b]);
                 }
             }
         }
+        let fans = self.join_fans(&shared, &mut groups, found);
         let mut members: Vec<Vec<usize>> = vec![Vec::new(); self.graph.nodes.len()];
         for (node, _) in wanted.iter().enumerate().filter(|(_, wanted)| **wanted) {
             if let Some(group) = members.get_mut(groups.root(node)) {
@@ -217,17 +231,17 @@ impl Lines<'_> {
             }
         }
         members.retain(|group| !group.is_empty());
-        members
+        (members, fans)
     }
 
     /// The ends of the lines that are left at a node.
-    fn ends(&self, node: usize) -> impl Iterator<Item = End> + '_ {
+    pub(super) fn ends(&self, node: usize) -> impl Iterator<Item = End> + '_ {
         let ends = self.graph.nodes.get(node).map_or(&[][..], |node| &node.ends);
         ends.iter().copied().filter(|end| !self.gone.has(end.edge))
     }
 
     /// Radius of the ink around a node where lines meet; 0 elsewhere.
-    fn radius_px(&self, node: usize) -> f64 {
+    pub(super) fn radius_px(&self, node: usize) -> f64 {
         let measure = || {
             if self.ends(node).count() > 1 { self.scan.radius_px(self.place(node), f64::MAX) } else { 0.0 }
         };
@@ -235,7 +249,7 @@ impl Lines<'_> {
     }
 
     /// The two nodes of an edge that is left between two junctions.
-    fn between(&self, edge: usize) -> Option<(usize, usize)> {
+    pub(super) fn between(&self, edge: usize) -> Option<(usize, usize)> {
         let (a, b) = self.graph.edges.get(edge)?.nodes?;
         let joins = a != b && !self.gone.has(edge) && self.ends(a).count() > 1 && self.ends(b).count() > 1;
         joins.then_some((a, b))
@@ -295,7 +309,7 @@ impl Lines<'_> {
     }
 
     /// The sites of an edge from one of its ends on.
-    fn sites_from(&self, end: End) -> Cow<'_, [Site]> {
+    pub(super) fn sites_from(&self, end: End) -> Cow<'_, [Site]> {
         let sites = self.sites.get(end.edge).unwrap_or(&[]);
         if end.at_last {
             sites.iter().rev().take(LOOK).copied().collect()
@@ -305,7 +319,7 @@ impl Lines<'_> {
     }
 
     /// The arm at an edge's end by all that is seen of it.
-    fn long_arm(&self, end: End) -> Option<Arm> {
+    pub(super) fn long_arm(&self, end: End) -> Option<Arm> {
         let known = self.arms.borrow().get(&end).copied();
         known.unwrap_or_else(|| {
             let arm = self.arm(end, LONG);
@@ -356,22 +370,38 @@ impl Lines<'_> {
         [at(1), at(0)]
     }
 
-    /// The tails of all lines at the nodes of one junction, dot or line end.
-    fn resolve(&self, group: &[usize], found: &mut Junctions) {
-        let is_inner = |edge: usize| found.inner.get(edge).copied().unwrap_or(false);
+    /// The arms of a junction: all lines that leave its nodes but for its inner edges.
+    pub(super) fn arms_of(&self, group: &[usize], is_inner: impl Fn(usize) -> bool) -> Vec<ArmOf> {
         let mut ends: Vec<End> =
             group.iter().flat_map(|node| self.ends(*node)).filter(|end| !is_inner(end.edge)).collect();
         // By where they begin, whichever way their edges were walked.
         ends.sort_by_key(|end| self.first_pixels(*end));
-        let arms: Vec<ArmOf> = ends
-            .iter()
+        ends.iter()
             .filter_map(|end| Some(ArmOf { end: *end, arm: self.long_arm(*end)?, tip: self.tip(*end) }))
-            .collect();
+            .collect()
+    }
+
+    /// The first node of a junction in reading order.
+    pub(super) fn owner(&self, group: &[usize]) -> Option<Pixel> {
+        let nodes = group.iter().filter_map(|node| self.graph.nodes.get(*node)).map(|node| node.at);
+        nodes.min_by_key(|at| (at.y, at.x))
+    }
+
+    /// The middle of a junction.
+    pub(super) fn heart(&self, group: &[usize], owner: Pixel) -> Heart<'_> {
+        let centre = centre(group.iter().map(|node| self.place(*node)));
+        let radius_px = group.iter().map(|node| self.radius_px(*node)).fold(0.0, f64::max);
+        Heart { owner, centre, radius_px, scan: self.scan }
+    }
+
+    /// The tails of all lines at the nodes of one junction, dot or line end.
+    fn resolve(&self, group: &[usize], found: &mut Junctions) {
+        let is_inner = |edge: usize| found.inner.get(edge).copied().unwrap_or(false);
+        let arms = self.arms_of(group, is_inner);
         if arms.is_empty() {
             return;
         }
-        let first = group.iter().filter_map(|node| self.graph.nodes.get(*node)).map(|node| node.at);
-        let Some(owner) = first.min_by_key(|at| (at.y, at.x)) else { return };
+        let Some(owner) = self.owner(group) else { return };
         let thinnest_px = arms.iter().map(|one| one.arm.width_px).fold(f64::INFINITY, f64::min);
         let widest_px = arms.iter().map(|one| one.arm.width_px).fold(0.0, f64::max);
         let thin_px = self.scan.thin_px();
@@ -381,9 +411,7 @@ impl Lines<'_> {
             let (end, is_cut) = line_end(self.scan, &one.arm);
             found.end(owner, one, vec![end], !is_cut);
         } else {
-            let centre = centre(group.iter().map(|node| self.place(*node)));
-            let radius_px = group.iter().map(|node| self.radius_px(*node)).fold(0.0, f64::max);
-            let heart = Heart { owner, centre, radius_px, scan: self.scan };
+            let heart = self.heart(group, owner);
             if !heart.resolve_point(&arms, found) {
                 let ways = self.best(group, &heart, &arms, found);
                 found.take(owner, ways);
@@ -394,8 +422,6 @@ impl Lines<'_> {
     /// Of several ways to connect the arms of a junction the one that, drawn by pens of their widths, gives the ink.
     fn best(&self, group: &[usize], heart: &Heart<'_>, arms: &[ArmOf], found: &Junctions) -> Vec<Way> {
         let straight = heart.plan(arms, Meet::WherePenWas);
-        /// More arms meet in noise only.
-        const MOST_ARMS: usize = 8;
         if arms.len() > MOST_ARMS {
             return straight;
         }
@@ -417,8 +443,7 @@ impl Lines<'_> {
         ];
         let others = others.into_iter().flatten().map(|ways| (ways, better_than as fn(f64) -> f64));
         // Where all lines show their course, they go on as they come.
-        let sure_px = |one: &ArmOf| (SURE_WIDTHS * one.arm.width_px).max(SURE_PX);
-        let are_sure = arms.iter().all(|one| one.arm.support_px >= sure_px(one));
+        let are_sure = arms.iter().all(is_sure);
         let below = if are_sure { plainly_better_than } else { better_than };
         let curves = pairings(arms.len()).iter().map(|pairs| heart.curves(arms, pairs));
         let curves = curves.map(|ways| (ways, below as fn(f64) -> f64));
@@ -602,6 +627,11 @@ impl Lines<'_> {
     }
 }
 
+/// Whether a line shows its course.
+pub(super) fn is_sure(one: &ArmOf) -> bool {
+    one.arm.support_px >= (SURE_WIDTHS * one.arm.width_px).max(SURE_PX)
+}
+
 /// Which of two to four arms may be one line.
 fn pairings(arms: usize) -> &'static [&'static [(usize, usize)]] {
     match arms {
@@ -626,16 +656,17 @@ fn centre(places: impl Iterator<Item = PxPoint>) -> PxPoint {
 }
 
 /// Nodes that belong together: a disjoint-set forest.
-struct Groups {
+#[derive(Clone)]
+pub(super) struct Groups {
     parents: Vec<usize>,
 }
 
 impl Groups {
-    fn new(count: usize) -> Self {
+    pub(super) fn new(count: usize) -> Self {
         Self { parents: (0..count).collect() }
     }
 
-    fn root(&mut self, mut node: usize) -> usize {
+    pub(super) fn root(&mut self, mut node: usize) -> usize {
         while let Some(parent) = self.parents.get(node).copied().filter(|parent| *parent != node) {
             let above = self.parents.get(parent).copied().unwrap_or(parent);
             if let Some(place) = self.parents.get_mut(node) {
@@ -646,7 +677,7 @@ impl Groups {
         node
     }
 
-    fn join(&mut self, a: usize, b: usize) {
+    pub(super) fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         if let Some(parent) = self.parents.get_mut(a.max(b)) {
             *parent = a.min(b);

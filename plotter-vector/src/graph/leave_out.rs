@@ -96,7 +96,7 @@ impl Redrawn<'_> {
     }
 
     /// Joins two strokes that end in one place: of several the two that go on the straightest. False without such.
-    fn join_ends(&mut self) -> bool {
+    pub(super) fn join_ends(&mut self) -> bool {
         let ends: Vec<(usize, bool)> =
             (0..self.strokes.len()).flat_map(|index| [(index, false), (index, true)]).collect();
         let pairs = ends

@@ -13,10 +13,12 @@
 //! 6. small [`marks`](mark), in which no line is undisturbed, are drawn again as a whole.
 
 mod arm;
+mod bend;
 mod build;
 mod centreline;
 mod corner;
 mod dot;
+mod fan;
 mod fragment;
 mod join;
 mod junction;

@@ -70,6 +70,7 @@ impl<'a> Redrawn<'a> {
             for step_px in STEPS_PX {
                 drawn.descend(step_px);
             }
+            drawn.bend_ends();
             drawn.add_strokes();
         }
         drawn.leave_out();
@@ -125,7 +126,7 @@ impl<'a> Redrawn<'a> {
     }
 
     /// Moves all vertices, those that share a place together, until no step of that length is better.
-    fn descend(&mut self, step_px: f64) {
+    pub(super) fn descend(&mut self, step_px: f64) {
         for _ in 0..MOST_ROUNDS {
             let before = self.cost;
             for vertex in self.vertices() {

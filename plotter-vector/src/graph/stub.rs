@@ -255,7 +255,9 @@ impl Lines<'_> {
             let root = |end: End| {
                 let sites = self.sites.get(end.edge)?;
                 let skip = self.junctions.skip(end);
-                let index = if end.at_last { sites.len().checked_sub(skip + 1)? } else { skip };
+                // Of a line that lies in junctions altogether, where it leads to.
+                let skip = skip.min(sites.len().checked_sub(1)?);
+                let index = if end.at_last { sites.len() - 1 - skip } else { skip };
                 Some((sites.get(index)?.centre, calm_px(sites, index, false)))
             };
             let Some((from, calm_px)) = root(connection.from) else { continue };

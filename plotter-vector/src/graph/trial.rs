@@ -62,7 +62,7 @@ static COLUMNS: [f32; 104] = {
 /// The ink around a junction. Places are px from the upper left corner of the square around it.
 pub(super) struct Trial<'a> {
     arms: &'a [ArmOf],
-    /// Where the undisturbed part of each arm begins.
+    /// Where the undisturbed part of each arm begins; of one without such a part its origin.
     roots: Vec<Option<PxPoint>>,
     corner: PxPoint,
     /// Pixels of a row, whole [`LANES`].
@@ -208,7 +208,8 @@ impl<'a> Trial<'a> {
             let reach_px = radius_px + half_px + 1.0;
             let places = sites.get(one.arm.skip..).unwrap_or(&[]).iter().map(|site| site.centre);
             let mut course = places.take_while(|at| at.distance(centre) <= reach_px).peekable();
-            trial.roots.push(course.peek().copied());
+            let all_disturbed = one.arm.skip >= sites.len();
+            trial.roots.push(course.peek().copied().or(all_disturbed.then_some(one.arm.origin)));
             capsules(course.map(|at| (from_corner(at, corner), half_px)), &mut trial.courses);
         }
         trial.courses.iter().for_each(|capsule| capsule.draw(&mut trial.drawn, stride));
