@@ -64,11 +64,11 @@ const BOUNDS: [Bounds; 16] = [
     },
     Bounds {
         picture: "grid_rot_w3",
-        vertices: 140,
+        vertices: 54,
         strokes: 26,
-        mean_px: 0.06,
-        greatest_px: 1.7,
-        junctions: (0.45, 0.98),
+        mean_px: 0.02,
+        greatest_px: 1.0,
+        junctions: (0.1, 1.0),
         ..ANY
     },
     Bounds {
@@ -79,7 +79,7 @@ const BOUNDS: [Bounds; 16] = [
         junctions: (0.5, 1.0),
         ..ANY
     },
-    Bounds { picture: "acute_w7", vertices: 40, mean_px: 0.07, junctions: (1.0, 0.75), ..ANY },
+    Bounds { picture: "acute_w7", vertices: 34, mean_px: 0.03, junctions: (0.1, 1.0), ..ANY },
     Bounds {
         picture: "handwriting_w4", // asked: a mean of 0.25
         vertices: 1000,

@@ -3,6 +3,7 @@
 use super::Place;
 use super::site::{EXACT_PX, THIN_PX};
 use super::smooth::smooth;
+use super::straight::Straightened;
 use crate::simplify::Pieces;
 use crate::{Bounded, Curve, PxPoint};
 
@@ -75,10 +76,16 @@ impl Centreline {
         let corner = |(index, place): (usize, &Place)| place.is_corner().then_some(index);
         let corners: Vec<usize> = places.iter().enumerate().filter_map(corner).collect();
         let tips = [places.first(), places.last()].map(|place| place.is_some_and(|place| place.is_tip()));
-        let mut places: Vec<PxPoint> = places.into_iter().map(Place::at).collect();
-        if !keeps_pixels {
-            places = smooth(&places, whole.closed, &corners, most_px);
-        }
+        let places = if keeps_pixels {
+            places.into_iter().map(Place::at).collect()
+        } else {
+            smooth(
+                &Straightened::of(&places, whole.closed, &corners, width_px),
+                whole.closed,
+                &corners,
+                most_px,
+            )
+        };
         Self { places, closed: whole.closed, corners, width_px, tips }
     }
 }

@@ -35,6 +35,8 @@ mod site;
 mod sites;
 mod smooth;
 mod spur;
+mod straight;
+mod strip;
 mod stroke;
 mod stub;
 mod trial;

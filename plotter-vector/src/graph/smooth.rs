@@ -7,6 +7,7 @@
 //! procedures" (1964): the value in the middle of a parabola fitted to 2m + 1 equidistant values is their sum with the
 //! weights 3·(3m² + 3m − 1 − 5k²) / ((2m − 1)·(2m + 1)·(2m + 3)).
 
+use super::straight::Straightened;
 use crate::PxPoint;
 use crate::curve::unit;
 
@@ -20,9 +21,10 @@ const NEAR_PX: f64 = 0.25;
 const AGREE_PX: f64 = 0.35;
 
 /// Smooths the places of a line, which are about equally far apart. Those at `breaks` (rising), and both ends of an open
-/// line, stay where they are, and nothing is averaged across them. So do places that would move farther than `most_px`:
+/// line, stay where they are, and nothing is averaged across them. So do places of straight stretches, and places that would move farther than `most_px`:
 /// of exact ones these are bends.
-pub(crate) fn smooth(places: &[PxPoint], closed: bool, breaks: &[usize], most_px: f64) -> Vec<PxPoint> {
+pub(super) fn smooth(line: &Straightened, closed: bool, breaks: &[usize], most_px: f64) -> Vec<PxPoint> {
+    let places = line.course.as_slice();
     let count = places.len();
     let weights = HALVES.map(weights);
     let mut smoothed = Vec::with_capacity(count);
@@ -32,6 +34,10 @@ pub(crate) fn smooth(places: &[PxPoint], closed: bool, breaks: &[usize], most_px
             before = next.next();
         }
         let at = places.get(index).copied().unwrap_or_default();
+        if line.is_straight.get(index) == Some(&true) {
+            smoothed.push(at);
+            continue;
+        }
         // How far the window may go to either side: to the breaks, and to the ends of an open line.
         let first = before.or(if closed { breaks.last().copied() } else { Some(0) });
         let last =
@@ -129,6 +135,12 @@ fn average(places: &[PxPoint], index: usize, weights: &[f64]) -> PxPoint {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Without straight stretches.
+    fn smooth(places: &[PxPoint], closed: bool, breaks: &[usize], most_px: f64) -> Vec<PxPoint> {
+        let line = Straightened { course: places.to_vec(), is_straight: vec![false; places.len()] };
+        super::smooth(&line, closed, breaks, most_px)
+    }
 
     #[test]
     fn weights_of_five_are_those_of_the_table() {

@@ -12,6 +12,7 @@
 use super::Place;
 use super::centreline::{Centreline, Whole, fill_gaps, keeps_pixels, most_smoothed_px, width_px};
 use super::smooth::smooth;
+use super::straight::Straightened;
 use crate::simplify::Pieces;
 use crate::{Bounded, Curve, PxPoint};
 use std::collections::VecDeque;
@@ -417,10 +418,11 @@ fn smoothed(mut places: Vec<Place>) -> Smoothed {
     }
     let corner = |(index, place): (usize, &Place)| place.is_corner().then_some(index);
     let corners: Vec<usize> = places.iter().enumerate().filter_map(corner).collect();
-    let mut course: Vec<PxPoint> = places.iter().map(|place| place.at()).collect();
-    if !keeps_pixels {
-        course = smooth(&course, false, &corners, most_px);
-    }
+    let course = if keeps_pixels {
+        places.iter().map(|place| place.at()).collect()
+    } else {
+        smooth(&Straightened::of(&places, false, &corners, width_px), false, &corners, most_px)
+    };
     Smoothed { places, course, corners, width_px, keeps_pixels }
 }
 

@@ -1,0 +1,244 @@
+//! [`Strip`]: the straight lines that pass near enough to some middles of a line's columns.
+//!
+//! Source: L. Dorst, A. W. M. Smeulders, "Discrete representation of straight lines" (1984): the domain of a digital
+//! straight segment, a polygon in the plane of slope and offset; here with the middles between both edges of the ink in
+//! place of pixels.
+
+use crate::PxPoint;
+
+/// How far a straight line passes from the middle of each column, px: less than half a pixel, by more than rounding.
+const HALF_PX: f64 = 0.4999;
+
+/// Rounding of a corner of the polygon, px: it is cut no finer.
+const ROUNDING_PX: f64 = 1e-7;
+
+/// Steepest slope against the axis that the lines mostly follow.
+const STEEPEST: f64 = 1.25;
+
+/// How far from its origin a line may pass, px.
+const FAR_PX: f64 = 4.0;
+
+/// Most corners of the polygon: of the raster of a straight line it has four.
+const MOST_CORNERS: usize = 16;
+
+/// A straight line: a place on it, and its direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    origin: PxPoint,
+    direction: (f64, f64),
+}
+
+impl Line {
+    /// How far along it the place is that is nearest to another, px.
+    pub(super) fn along_px(&self, at: PxPoint) -> f64 {
+        let ((x, y), (u, v)) = (at.minus(self.origin), self.direction);
+        x * u + y * v
+    }
+
+    /// The place so far along it.
+    pub(super) fn at(&self, along_px: f64) -> PxPoint {
+        self.origin.along(self.direction, along_px)
+    }
+
+    /// The place on it that is nearest to another.
+    pub(super) fn foot(&self, at: PxPoint) -> PxPoint {
+        self.at(self.along_px(at))
+    }
+
+    /// How far a place lies beside it, px.
+    pub(super) fn off_px(&self, at: PxPoint) -> f64 {
+        self.foot(at).distance(at)
+    }
+
+    /// Where two lines cross that do not run nearly the same way.
+    pub(super) fn crossing(&self, other: &Self) -> Option<PxPoint> {
+        const LEAST_SINE: f64 = 0.05;
+        let ((ux, uy), (vx, vy)) = (self.direction, other.direction);
+        let sine = ux * vy - uy * vx;
+        let (x, y) = other.origin.minus(self.origin);
+        (sine.abs() > LEAST_SINE).then(|| self.origin.along(self.direction, (x * vy - y * vx) / sine))
+    }
+}
+
+/// The straight lines that pass all places so far near enough: the corners of a convex polygon of slopes and offsets.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strip {
+    origin: PxPoint,
+    /// Whether the lines mostly run up and down.
+    upright: bool,
+    corners: [(f64, f64); MOST_CORNERS],
+    count: usize,
+    /// Of the places taken: their number, and the sums of u, v, u² and u·v, u along and v across.
+    sums: [f64; 5],
+}
+
+impl Strip {
+    /// All lines that pass a place somewhere near, and mostly run up and down or sideways.
+    pub(super) fn new(origin: PxPoint, upright: bool) -> Self {
+        let mut corners = [(0.0, 0.0); MOST_CORNERS];
+        let all = [(-STEEPEST, -FAR_PX), (STEEPEST, -FAR_PX), (STEEPEST, FAR_PX), (-STEEPEST, FAR_PX)];
+        corners.iter_mut().zip(all).for_each(|(corner, at)| *corner = at);
+        Self { origin, upright, corners, count: all.len(), sums: [0.0; 5] }
+    }
+
+    fn corners(&self) -> &[(f64, f64)] {
+        self.corners.get(..self.count).unwrap_or(&[])
+    }
+
+    /// How far along the axis from the origin a place lies, and how far across, px.
+    pub(super) fn along_across(&self, at: PxPoint) -> (f64, f64) {
+        let (x, y) = at.minus(self.origin);
+        if self.upright { (y, x) } else { (x, y) }
+    }
+
+    /// Keeps the lines that pass a place near enough; `false`, and no change, when there are none.
+    pub(super) fn take(&mut self, (along, across): (f64, f64)) -> bool {
+        let off = |(slope, offset): &(f64, f64)| slope * along + offset - across;
+        if !self.corners().iter().all(|corner| off(corner).abs() <= HALF_PX + ROUNDING_PX) {
+            let below = self.cut(|corner| HALF_PX - off(corner));
+            let Some(cut) = below.and_then(|below| below.cut(|corner| off(corner) + HALF_PX)) else {
+                return false;
+            };
+            *self = cut;
+        }
+        let add = [1.0, along, across, along * along, along * across];
+        self.sums.iter_mut().zip(add).for_each(|(sum, add)| *sum += add);
+        true
+    }
+
+    /// Whether all lines pass a place farther off than so much, px.
+    pub(super) fn is_beyond(&self, (along, across): (f64, f64), px: f64) -> bool {
+        let off = |(slope, offset): &(f64, f64)| slope * along + offset - across;
+        self.corners().iter().all(|corner| off(corner) > px)
+            || self.corners().iter().all(|corner| off(corner) < -px)
+    }
+
+    /// The part of the polygon where a linear function is not negative.
+    fn cut(&self, inside: impl Fn(&(f64, f64)) -> f64) -> Option<Self> {
+        let mut cut = Self { count: 0, ..*self };
+        let mut add = |corner: (f64, f64)| {
+            if let Some(slot) = cut.corners.get_mut(cut.count) {
+                *slot = corner;
+            }
+            cut.count += 1;
+        };
+        let mut before = *self.corners().last()?;
+        let mut before_by = inside(&before);
+        for corner in self.corners() {
+            let by = inside(corner);
+            // A corner on the line of the cut is where its side begins or ends.
+            if by.min(before_by) < -ROUNDING_PX && by.max(before_by) > ROUNDING_PX {
+                let t = before_by / (before_by - by);
+                add((before.0 + (corner.0 - before.0) * t, before.1 + (corner.1 - before.1) * t));
+            }
+            if by >= -ROUNDING_PX {
+                add(*corner);
+            }
+            (before, before_by) = (*corner, by);
+        }
+        (cut.count > 0 && cut.count <= MOST_CORNERS).then_some(cut)
+    }
+
+    /// The line of the least squared distances across from all places that were taken, or the nearest to it that passes them
+    /// near enough, on the way from the middle of all that do.
+    pub(super) fn best(&self) -> Line {
+        let [n, u, v, uu, uv] = self.sums;
+        let determinant = n * uu - u * u;
+        let middle = self.middle();
+        let (slope, offset) = if determinant > 0.0 {
+            self.nearest(middle, ((n * uv - u * v) / determinant, (v * uu - u * uv) / determinant))
+        } else {
+            middle
+        };
+        let (slope, offset) = (rounded(slope), rounded(offset));
+        let length = libm::sqrt(1.0 + slope * slope);
+        let turn = |(along, across): (f64, f64)| if self.upright { (across, along) } else { (along, across) };
+        Line {
+            origin: self.origin.along(turn((0.0, offset)), 1.0),
+            direction: turn((1.0 / length, slope / length)),
+        }
+    }
+
+    /// The mean of the polygon's corners.
+    fn middle(&self) -> (f64, f64) {
+        #[expect(clippy::cast_precision_loss, reason = "a few corners")]
+        let count = self.count.max(1) as f64;
+        let sum = |(a, b): (f64, f64), (slope, offset): &(f64, f64)| (a + slope, b + offset);
+        let (slope, offset) = self.corners().iter().fold((0.0, 0.0), sum);
+        (slope / count, offset / count)
+    }
+
+    /// The last place in the polygon on the way from its middle to another.
+    fn nearest(&self, middle: (f64, f64), (slope, offset): (f64, f64)) -> (f64, f64) {
+        let way = (slope - middle.0, offset - middle.1);
+        let next = self.corners().iter().skip(1).chain(self.corners().first());
+        let mut part = 1.0_f64;
+        for (from, to) in self.corners().iter().zip(next) {
+            let side = (to.0 - from.0, to.1 - from.1);
+            let here = side.0 * (middle.1 - from.1) - side.1 * (middle.0 - from.0);
+            let by = side.0 * way.1 - side.1 * way.0;
+            if by < 0.0 {
+                part = part.min((-here / by).max(0.0));
+            }
+        }
+        (middle.0 + way.0 * part, middle.1 + way.1 * part)
+    }
+}
+
+/// A slope or an offset without the last bits, which rounding has made: a level line is level.
+fn rounded(number: f64) -> f64 {
+    /// 2 to the power of 36: a line of 10⁵ px is as good to 10⁻⁶ px.
+    const STEPS: f64 = 68_719_476_736.0;
+    libm::round(number * STEPS) / STEPS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The middles of the columns of a line, rounded to whole pixels.
+    fn stairs(slope: f64, offset: f64, columns: u32) -> impl Iterator<Item = PxPoint> {
+        (0..columns).map(f64::from).map(move |x| PxPoint::new(x, libm::floor(slope * x + offset + 0.5)))
+    }
+
+    fn takes(strip: &mut Strip, at: PxPoint) -> bool {
+        strip.take(strip.along_across(at))
+    }
+
+    #[test]
+    fn the_raster_of_a_straight_line_is_near_one_and_the_middle_of_all_is_that() {
+        for (slope, offset) in
+            [(0.0, 0.1), (0.01, 0.3), (-0.01, 0.0), (0.05, -0.2), (0.377, 0.4), (0.983, 0.2)]
+        {
+            let mut strip = Strip::new(PxPoint::default(), false);
+            assert!(stairs(slope, offset, 400).all(|at| takes(&mut strip, at)), "{slope}");
+            let line = strip.best();
+            // Of a level line nothing is known but its row.
+            let within_px = if slope == 0.0 { 0.5 } else { 0.05 };
+            for x in [0.0, 200.0, 399.0] {
+                let off_px = line.off_px(PxPoint::new(x, slope * x + offset));
+                assert!(off_px <= within_px, "{slope}: {off_px} px at {x}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_level_line_is_level_to_the_last_bit() {
+        let mut strip = Strip::new(PxPoint::new(7.5, 3.5), false);
+        assert!((0..900).all(|x| takes(&mut strip, PxPoint::new(f64::from(x), 3.5))));
+        assert_eq!(strip.best().foot(PxPoint::new(100.0, 4.0)), PxPoint::new(100.0, 3.5));
+    }
+
+    #[test]
+    fn the_raster_of_an_arc_is_near_none_after_its_first_stairs() {
+        let radius_px = 200.0;
+        let mut strip = Strip::new(PxPoint::default(), false);
+        let arc = (0..200).map(f64::from).map(|x| PxPoint::new(x, libm::round(x * x / (2.0 * radius_px))));
+        let taken = arc.take_while(|at| takes(&mut strip, *at)).count();
+        assert!((20..=40).contains(&taken), "{taken}");
+        // What is not near any line changes nothing.
+        let before = strip.best().foot(PxPoint::new(10.0, 0.0));
+        assert!(!takes(&mut strip, PxPoint::new(60.0, 9.0)));
+        assert_eq!(strip.best().foot(PxPoint::new(10.0, 0.0)), before);
+    }
+}
