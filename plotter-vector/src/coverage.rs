@@ -247,19 +247,32 @@ impl Segment {
         steps(1.0) + steps(-1.0)
     }
 
-    fn distance(&self, at: PxPoint) -> f64 {
-        if let Bend::Arc(arc) = &self.bend {
-            return arc.distance(at);
-        }
+    /// The place of a straight segment that is nearest to another.
+    fn nearest(&self, at: PxPoint) -> PxPoint {
         let (x, y) = (self.to.x - self.from.x, self.to.y - self.from.y);
         let length_squared = x * x + y * y;
         let along = (at.x - self.from.x) * x + (at.y - self.from.y) * y;
         let t = if length_squared > 0.0 { (along / length_squared).clamp(0.0, 1.0) } else { 0.0 };
-        at.distance(PxPoint::new(self.from.x + x * t, self.from.y + y * t))
+        PxPoint::new(self.from.x + x * t, self.from.y + y * t)
     }
 
-    fn error_px(&self, at: PxPoint) -> f64 {
-        (self.distance(at) - self.slack_px).max(0.0)
+    /// How far a place lies outside of its ink, px; as much as `least` where that is not less.
+    fn error_px(&self, at: PxPoint, least: f64) -> f64 {
+        /// The root, which is slow, is needed only between these squares, whatever is rounded.
+        const ROUNDING: f64 = 1e-9;
+        if let Bend::Arc(arc) = &self.bend {
+            return (arc.distance(at) - self.slack_px).max(0.0).min(least);
+        }
+        let nearest = self.nearest(at);
+        let (x, y) = (at.x - nearest.x, at.y - nearest.y);
+        let (squared, far_px) = (x * x + y * y, self.slack_px + least);
+        if squared < self.slack_px * self.slack_px * (1.0 - ROUNDING) {
+            0.0
+        } else if squared > far_px * far_px * (1.0 + ROUNDING) {
+            least
+        } else {
+            (at.distance(nearest) - self.slack_px).max(0.0).min(least)
+        }
     }
 }
 
@@ -331,7 +344,8 @@ impl Index {
         if self.segments.is_empty() {
             return at.distance(PxPoint::default());
         }
-        if self.segments.get(*covering).is_some_and(|segment| segment.error_px(at) == 0.0) {
+        if self.segments.get(*covering).is_some_and(|segment| segment.error_px(at, f64::MIN_POSITIVE) == 0.0)
+        {
             return 0.0;
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
@@ -358,7 +372,7 @@ impl Index {
                         let near = if nearest_px < least + self.reach_px { self.square(x, y) } else { &[] };
                         for index in near {
                             let Some(segment) = self.segments.get(*index as usize) else { continue };
-                            let error_px = segment.error_px(at);
+                            let error_px = segment.error_px(at, least);
                             if error_px < least {
                                 (least, *covering) = (error_px, *index as usize);
                             }
