@@ -9,35 +9,18 @@
     reason = "a failure shows, and places are small"
 )]
 
+mod pen_ink;
 mod random;
 mod segment_distance;
 
-use plotter_vector::{Bitmap, BitmapRows, Drawing, Pixel, Progress, PxPoint, Vectorized, Vectorizer};
+use pen_ink::{Line, ink_of};
+use plotter_vector::{BitmapRows, Drawing, Progress, PxPoint, Vectorized, Vectorizer};
 use random::Random;
 use segment_distance::segment_distance;
 
 const SIDE_PX: u32 = 300;
 
 const WIDTHS_PX: [f64; 8] = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 2.0];
-
-/// A straight line, from and to.
-type Line = [PxPoint; 2];
-
-/// Ink is every pixel whose middle lies within half the width of a line.
-fn ink_of(lines: &[Line], width_px: f64) -> Bitmap {
-    let mut ink = Bitmap::new(SIDE_PX, SIDE_PX).unwrap();
-    for [from, to] in lines {
-        let columns = (from.x.min(to.x) - 2.0) as u32..=(from.x.max(to.x) + 2.0) as u32;
-        for y in (from.y.min(to.y) - 2.0) as u32..=(from.y.max(to.y) + 2.0) as u32 {
-            for at in columns.clone().map(|x| Pixel::new(x, y)) {
-                if segment_distance(at.into(), *from, *to) <= width_px / 2.0 {
-                    ink.set(at, true);
-                }
-            }
-        }
-    }
-    ink
-}
 
 /// Ten lines across ten, turned.
 fn grid(turn_rad: f64) -> Vec<Line> {
@@ -114,7 +97,8 @@ struct Outcome {
 }
 
 fn outcome(name: &str, lines: &[Line], width_px: f64) -> Outcome {
-    let Vectorized { drawing, error, .. } = Vectorizer::default().trace(&ink_of(lines, width_px)).unwrap();
+    let Vectorized { drawing, error, .. } =
+        Vectorizer::default().trace(&ink_of(SIDE_PX, lines, width_px)).unwrap();
     let found = pieces(&drawing);
     let ((drawn_px, greatest_px), (missed_px, _)) = (off_px(&found, lines), off_px(lines, &found));
     let mean_px = drawn_px.max(missed_px);
@@ -175,7 +159,7 @@ fn lines_that_cross_at_random_are_few_strokes_at_any_width() {
 #[test]
 fn thin_lines_are_the_same_strokes_by_rows() {
     for lines in [grid(0.2), random_lines()] {
-        let ink = ink_of(&lines, 1.4);
+        let ink = ink_of(SIDE_PX, &lines, 1.4);
         let whole = Vectorizer::default().trace(&ink).unwrap().drawing;
         for band_rows in [40, 130] {
             let vectorizer = Vectorizer { band_rows, ..Vectorizer::default() };

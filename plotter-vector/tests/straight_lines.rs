@@ -9,9 +9,11 @@
     reason = "a failure shows, and places are small"
 )]
 
+mod pen_ink;
 mod segment_distance;
 
-use plotter_vector::{Bitmap, Drawing, Pixel, PxPoint, Vectorizer};
+use pen_ink::{Line, ink_of};
+use plotter_vector::{Drawing, PxPoint, Vectorizer};
 use segment_distance::segment_distance;
 
 const SIDE_PX: u32 = 400;
@@ -28,25 +30,6 @@ const END_PX: f64 = 1.25;
 
 /// A corner of 20 degrees is three times as far from where it seems to be as its sides are beside theirs.
 const CORNER_PX: f64 = 3.0 * BESIDE_PX;
-
-/// A straight line, from and to.
-type Line = [PxPoint; 2];
-
-/// Ink is every pixel whose middle lies within half the width of a line.
-fn ink_of(lines: &[Line], width_px: f64) -> Bitmap {
-    let mut ink = Bitmap::new(SIDE_PX, SIDE_PX).unwrap();
-    for [from, to] in lines {
-        let range = |a: f64, b: f64| (a.min(b) - width_px) as u32..=(a.max(b) + width_px) as u32;
-        for y in range(from.y, to.y) {
-            for at in range(from.x, to.x).map(|x| Pixel::new(x, y)) {
-                if segment_distance(at.into(), *from, *to) <= width_px / 2.0 {
-                    ink.set(at, true);
-                }
-            }
-        }
-    }
-    ink
-}
 
 /// A place, turned about the middle of the picture.
 fn turned(angle_rad: f64, x: f64, y: f64) -> PxPoint {
@@ -76,7 +59,7 @@ fn grid(angle_rad: f64) -> Vec<Line> {
 }
 
 fn traced(lines: &[Line], width_px: f64) -> Drawing {
-    Vectorizer::default().trace(&ink_of(lines, width_px)).unwrap().drawing
+    Vectorizer::default().trace(&ink_of(SIDE_PX, lines, width_px)).unwrap().drawing
 }
 
 /// How far a drawing's vertices lie beside the lines, and the lines' ends from its vertices, px.
