@@ -113,7 +113,7 @@ fn a_straight_line_is_a_segment_at_any_width_and_angle() {
 
 #[test]
 fn a_polygon_of_straight_sides_has_its_corners_where_the_sides_meet() {
-    // Sides of 100 px, each turned by 20 degrees: too little for a corner, and no arc's.
+    // Sides of 70 px, each turned by 20 degrees: too little for a corner, and no arc's.
     for width_px in WIDTHS_PX {
         let mut places = vec![PxPoint::new(60.3, 320.2)];
         for side in 0..5 {

@@ -1,5 +1,6 @@
 //! [`bends`]: where lines have a corner under others.
 
+use super::centred::BENT_COS;
 use super::corners::{CORNER_COS, SHARP_COS, SQUARE_DARK, crossing, is_bent, reaches, runs, straight};
 use super::flat::Flat;
 use super::lines::cosine;
@@ -10,9 +11,6 @@ use core::ops::Range;
 const LEAST: usize = 6;
 const MOST: usize = 12;
 const STRAIGHT_OFF_PX: f64 = 0.3;
-
-/// Arms that turn by less are one straight line: cosine of 5 degrees.
-const BENT_COS: f64 = 0.9962;
 
 /// Corners that nothing shows, each with the place of the line that is nearest: where the straight parts of a line before and behind a
 /// part that is hidden meet within it. What is bent as much on both sides of it is a curve, and has none.

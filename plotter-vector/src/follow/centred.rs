@@ -21,7 +21,7 @@ const ONE_LINE: f64 = 1.2;
 const STRAIGHT_COS: f64 = 0.978;
 
 /// Lines that turn by more have a bend: cosine of 5 degrees.
-const BENT_COS: f64 = 0.9962;
+pub(super) const BENT_COS: f64 = 0.9962;
 
 /// As straight are the parts of a line that meet in a corner, and as straight those by which a curve is told, px.
 const STRAIGHT_OFF_PX: f64 = 0.3;

@@ -21,8 +21,8 @@ const NEAR_PX: f64 = 0.25;
 const AGREE_PX: f64 = 0.35;
 
 /// Smooths the places of a line, which are about equally far apart. Those at `breaks` (rising), and both ends of an open
-/// line, stay where they are, and nothing is averaged across them. So do places of straight stretches, and places that would move farther than `most_px`:
-/// of exact ones these are bends.
+/// line, stay where they are, and nothing is averaged across them. So do places of straight stretches, and places that would
+/// move farther than `most_px`: of exact ones these are bends.
 pub(super) fn smooth(line: &Straightened, closed: bool, breaks: &[usize], most_px: f64) -> Vec<PxPoint> {
     let places = line.course.as_slice();
     let count = places.len();
