@@ -180,12 +180,7 @@ impl Bitmap {
 
     /// The ink pixels, row by row from the top, in each row from the left. Empty words cost one comparison.
     pub fn ink(&self) -> impl Iterator<Item = Pixel> + '_ {
-        self.ink_in(0..self.height)
-    }
-
-    /// As [`Bitmap::ink`], of some rows.
-    pub(crate) fn ink_in(&self, rows: core::ops::Range<u32>) -> impl Iterator<Item = Pixel> + '_ {
-        rows.flat_map(move |y| {
+        (0..self.height).flat_map(move |y| {
             (0..).step_by(BITS as usize).zip(self.row(y)).flat_map(move |(x, bits)| {
                 let rest = core::iter::successors(Some(*bits), |bits| Some(bits & (bits.wrapping_sub(1))));
                 rest.take_while(|bits| *bits != 0).map(move |bits| Pixel::new(x + bits.trailing_zeros(), y))

@@ -2,7 +2,9 @@
 
 use crate::areas::Opening;
 use crate::curve::Piece;
+use crate::runs::ink_runs;
 use crate::{Arc, Bitmap, Cubic, Drawing, ErrorReport, ErrorTally, Pixel, PxPoint};
+use core::ops::Range;
 
 /// Side of the squares in which segments are looked up, px.
 const CELL_PX: u32 = 32;
@@ -12,6 +14,10 @@ const CHORD_ERROR_PX: f64 = 1.0;
 
 /// Farthest that the chords of a cubic curve, from which distances are measured, lie from it, px.
 const CUBIC_ERROR_PX: f64 = 0.005;
+
+/// Part of a square of a distance that is more than all roundings: the root, which is slow, is needed only this near to a
+/// border.
+const ROUNDING: f64 = 1e-9;
 
 /// Farthest that the ink's edges are looked for across a segment, px.
 const MAX_HALF_PX: f64 = 96.0;
@@ -90,9 +96,15 @@ pub(crate) fn add_coverage(
 ) {
     let index = with_widths(ink, drawing, areas);
     let counted = areas.map(|areas| areas.opening.without_insides(ink.clone()));
+    let ink = counted.as_ref().unwrap_or(ink);
     let mut covering = 0;
-    for at in counted.as_ref().unwrap_or(ink).ink() {
-        tally.add_pixel(at, index.error_px(at.into(), &mut covering));
+    for y in 0..ink.height() {
+        for run in ink_runs(ink.row(y)) {
+            // The first of several worst ones in reading order, if none has an error.
+            tally.note_worst(Pixel::new(run.start, y), 0.0);
+            let exact = index.run_errors(run, y, &mut covering, |at, error_px| tally.add_pixel(at, error_px));
+            tally.add_exact(exact);
+        }
     }
 }
 
@@ -209,7 +221,7 @@ impl Segment {
     }
 
     /// Whether its probes lie above or below these rows of a picture altogether; outside it the first and the last row reach on.
-    pub(crate) fn misses(&self, rows: &core::ops::Range<u32>, height: u32) -> bool {
+    pub(crate) fn misses(&self, rows: &Range<u32>, height: u32) -> bool {
         let (from, to) = (self.from.y, self.to.y);
         let (top, bottom) = match &self.bend {
             Bend::Straight | Bend::Chord => (from.min(to), from.max(to)),
@@ -256,10 +268,16 @@ impl Segment {
         PxPoint::new(self.from.x + x * t, self.from.y + y * t)
     }
 
+    /// Whether a place lies in its ink by more than is rounded; never on an arc.
+    fn covers(&self, at: PxPoint) -> bool {
+        let nearest = self.nearest(at);
+        let (x, y) = (at.x - nearest.x, at.y - nearest.y);
+        let inner = self.slack_px * self.slack_px * (1.0 - ROUNDING);
+        !matches!(self.bend, Bend::Arc(_)) && x * x + y * y < inner
+    }
+
     /// How far a place lies outside of its ink, px; as much as `least` where that is not less.
     fn error_px(&self, at: PxPoint, least: f64) -> f64 {
-        /// The root, which is slow, is needed only between these squares, whatever is rounded.
-        const ROUNDING: f64 = 1e-9;
         if let Bend::Arc(arc) = &self.bend {
             return (arc.distance(at) - self.slack_px).max(0.0).min(least);
         }
@@ -336,6 +354,55 @@ impl Index {
         let mut nearest = 0;
         self.error_px(at, &mut nearest);
         self.segments.get(nearest).map_or(0.0, |segment| segment.slack_px)
+    }
+
+    /// Tells the pixels of a run of ink in row `y` of the picture that have an error, from the left, and counts those that have
+    /// none. `covering` is as with [`Self::error_px`].
+    pub(crate) fn run_errors(
+        &self,
+        run: Range<u32>,
+        y: u32,
+        covering: &mut usize,
+        mut add: impl FnMut(Pixel, f64),
+    ) -> u64 {
+        let mut exact = 0;
+        let mut x = run.start;
+        while x < run.end {
+            let at = Pixel::new(x, y);
+            let error_px = self.error_px(at.into(), covering);
+            if error_px > 0.0 {
+                add(at, error_px);
+                x += 1;
+                continue;
+            }
+            let past = self.covered_to(x..run.end, y, *covering);
+            exact += u64::from(past - x);
+            x = past;
+        }
+        exact
+    }
+
+    /// One past the last pixel of a run whose first one has no error that a segment covers, too. What a straight segment covers is
+    /// convex: all pixels between two that lie inside by more than is rounded.
+    fn covered_to(&self, run: Range<u32>, y: u32, segment: usize) -> u32 {
+        let (mut covered, mut open) = (run.start, run.end);
+        let Some(segment) = self.segments.get(segment) else { return covered + 1 };
+        let covers = |x: u32| segment.covers(Pixel::new(x, y).into());
+        if !covers(covered) {
+            return covered + 1;
+        }
+        if covers(open - 1) {
+            return open;
+        }
+        while open - covered > 1 {
+            let middle = covered + (open - covered) / 2;
+            if covers(middle) {
+                covered = middle;
+            } else {
+                open = middle;
+            }
+        }
+        open
     }
 
     /// The least error of a place over all segments. `covering` is one that covered another place, mostly this one too:
@@ -505,6 +572,31 @@ mod tests {
         let (at, error_px) = worst_pixel(&ink, &drawing).unwrap();
         assert_eq!(at, Pixel::new(999, 999));
         assert!((error_px - libm::hypot(999.0, 969.0)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn runs_have_the_errors_of_their_pixels() {
+        // A slope, a level line in two pieces and an arc, 1 to 7 px wide, with ink beside them that nothing draws.
+        let mut ink = Bitmap::new(200, 60).unwrap();
+        for (x, y) in (0..60).flat_map(|y| (0..200).map(move |x| (x, y))) {
+            let slope = 5 * y > x + 20 && 5 * y < x + 55;
+            let level = (40..45).contains(&y) || y == 50 || (130..137).contains(&x);
+            ink.set(Pixel::new(x, y), slope || level || (x * 7 + y * 13) % 97 == 0);
+        }
+        let at = PxPoint::new;
+        let mut drawing = Drawing::new(200, 60);
+        drawing.push([at(0.5, 7.4), at(198.0, 47.1)]);
+        drawing.push([at(3.0, 42.5), at(90.0, 42.0), at(197.0, 43.1)]);
+        drawing.push([at(0.5, 50.5), at(199.5, 50.5)]);
+        let (vertices, bulges) = (vec![at(133.5, 0.5), at(133.5, 59.5)], vec![0.01]);
+        drawing.push_curve(1, crate::Curve { vertices, bulges, ..crate::Curve::default() });
+        let index = with_widths(&ink, &drawing, None);
+        let mut tally = ErrorTally::default();
+        ink.ink().for_each(|at| tally.add_pixel(at, index.error_px(at.into(), &mut 0)));
+        assert_eq!(coverage(&ink, &drawing), tally.report());
+        assert_eq!(worst_pixel(&ink, &drawing), tally.worst());
+        let exact = tally.report().histogram.first().map(|bin| bin.pixels);
+        assert!(tally.report().max_px > 1.0 && exact > Some(1000), "{:?}", tally.report());
     }
 
     #[test]

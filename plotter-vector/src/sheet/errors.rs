@@ -10,6 +10,7 @@ use crate::centrelines::each;
 use crate::coverage::{AreaPen, Index, PROBE_ROWS, PROBES, Segment, segments, set_widths};
 use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
+use crate::runs::ink_runs;
 use crate::speckle::despeckle_here;
 use crate::{Bitmap, Drawing, ErrorReport, ErrorTally, Pixel, Progress, RowSource, context_rows};
 use core::ops::Range;
@@ -164,17 +165,17 @@ fn probes(
 fn band_errors(index: &Index, ink: &Bitmap, first_row: u32, own: &Range<u32>) -> BandErrors {
     let mut band = BandErrors::default();
     let mut covering = 0;
-    for at in ink.ink_in(own.start - first_row..own.end - first_row) {
-        let at = Pixel::new(at.x, at.y + first_row);
-        let error_px = index.error_px(at.into(), &mut covering);
-        if error_px > 0.0 {
-            band.errors.push(error_px);
-        } else {
-            band.exact += 1;
-        }
-        // The first of several in reading order.
-        if band.worst.is_none_or(|(_, most_px)| error_px > most_px) {
-            band.worst = Some((at, error_px));
+    for y in own.clone() {
+        for run in ink_runs(ink.row(y - first_row)) {
+            let BandErrors { exact, errors, worst } = &mut band;
+            // The first of several in reading order, if none has an error.
+            worst.get_or_insert((Pixel::new(run.start, y), 0.0));
+            *exact += index.run_errors(run, y, &mut covering, |at, error_px| {
+                errors.push(error_px);
+                if worst.is_none_or(|(_, most_px)| error_px > most_px) {
+                    *worst = Some((at, error_px));
+                }
+            });
         }
     }
     band
