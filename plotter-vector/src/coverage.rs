@@ -588,7 +588,7 @@ mod tests {
         drawing.push([at(0.5, 7.4), at(198.0, 47.1)]);
         drawing.push([at(3.0, 42.5), at(90.0, 42.0), at(197.0, 43.1)]);
         drawing.push([at(0.5, 50.5), at(199.5, 50.5)]);
-        let (vertices, bulges) = (vec![at(133.5, 0.5), at(133.5, 59.5)], vec![0.01]);
+        let (vertices, bulges) = (vec![at(133.5, 0.5), at(133.5, 59.5)], vec![0.1]);
         drawing.push_curve(1, crate::Curve { vertices, bulges, ..crate::Curve::default() });
         let index = with_widths(&ink, &drawing, None);
         let mut tally = ErrorTally::default();
