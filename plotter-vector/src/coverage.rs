@@ -576,19 +576,21 @@ mod tests {
 
     #[test]
     fn runs_have_the_errors_of_their_pixels() {
-        // A slope, a level line in two pieces and an arc, 1 to 7 px wide, with ink beside them that nothing draws.
+        // A slope, level lines and half a ring with ink along its diameter, 1 to 7 px wide, and ink that nothing draws.
         let mut ink = Bitmap::new(200, 60).unwrap();
         for (x, y) in (0..60).flat_map(|y| (0..200).map(move |x| (x, y))) {
             let slope = 5 * y > x + 20 && 5 * y < x + 55;
-            let level = (40..45).contains(&y) || y == 50 || (130..137).contains(&x);
-            ink.set(Pixel::new(x, y), slope || level || (x * 7 + y * 13) % 97 == 0);
+            let level = (40..45).contains(&y) || y == 50;
+            let ring = (libm::hypot(f64::from(x) - 150.0, f64::from(y) - 20.0) - 15.0).abs() < 2.0;
+            let diameter = y == 20 && (135..165).contains(&x);
+            ink.set(Pixel::new(x, y), slope || level || ring || diameter || (x * 7 + y * 13) % 97 == 0);
         }
         let at = PxPoint::new;
         let mut drawing = Drawing::new(200, 60);
         drawing.push([at(0.5, 7.4), at(198.0, 47.1)]);
         drawing.push([at(3.0, 42.5), at(90.0, 42.0), at(197.0, 43.1)]);
         drawing.push([at(0.5, 50.5), at(199.5, 50.5)]);
-        let (vertices, bulges) = (vec![at(133.5, 0.5), at(133.5, 59.5)], vec![0.1]);
+        let (vertices, bulges) = (vec![at(135.5, 20.5), at(165.5, 20.5)], vec![1.0]);
         drawing.push_curve(1, crate::Curve { vertices, bulges, ..crate::Curve::default() });
         let index = with_widths(&ink, &drawing, None);
         let mut tally = ErrorTally::default();
