@@ -98,10 +98,13 @@ impl Seats {
         if self.once.len() > MOST_ONCE {
             self.once.clear();
         }
-        for (id, to) in moves {
+        for (i, (id, to)) in moves.iter().enumerate() {
             if are_seen {
                 map.shift(*id, *to);
-                self.once.remove(id);
+                // The next corner's arm goes over this one's nodes, too: what it tells of them takes back nothing of this one.
+                if i == 0 || self.once.get(id).is_some_and(|at| at.distance(*to) < alike_px) {
+                    self.once.remove(id);
+                }
             } else {
                 self.once.insert(*id, *to);
             }
@@ -376,6 +379,21 @@ mod tests {
         let parts = [0.0, 0.25, 0.5, 0.75];
         let most = map.links.iter().flat_map(|link| parts.map(|part| along(link, part))).fold(0.0, f64::max);
         assert!(most < 0.1, "{most} {:?}", map.nodes);
+    }
+
+    #[test]
+    fn a_corner_is_not_kept_from_its_place_by_the_next_one() {
+        // The first corner came into the map rounded; the second one's arm goes on to the node that should be in it.
+        let mut rounded: Vec<(f64, f64)> = (0..19).map(|i| (50.0 + 2.0 * f64::from(i), 50.0)).collect();
+        rounded.extend([(88.1, 50.9), (89.9, 51.4), (90.0, 53.0), (90.0, 54.6), (90.0, 56.4), (90.0, 58.0)]);
+        rounded.extend((1..20).map(|i| (90.0 - 2.0 * f64::from(i), 58.0)));
+        let mut map = LineMap::default();
+        map.insert(&[piece(&rounded, [true, true])], 4.0, &|_| true);
+        let seen = [piece(&square_turn(), [true, true])];
+        assert_eq!(seat_twice(&mut map, &seen, PxPoint::new(70.0, 58.0)), [true, false]);
+        assert!(map.nodes.iter().any(|node| node.at.distance(PxPoint::new(90.0, 50.0)) < 0.05));
+        let off = |at: PxPoint| foot(at, &seen[0].places).unwrap().distance(at);
+        assert!(map.nodes.iter().all(|node| off(node.at) < 0.05), "{:?}", map.nodes);
     }
 
     #[test]

@@ -21,6 +21,9 @@ const STRAIGHT_PX: f64 = 0.5;
 /// A line turns back where the ways before and behind a place have this cosine at most.
 const BACK_COS: f64 = -0.8;
 
+/// A stub is at most so many widths and some pixels long.
+const LONGEST_WIDTHS: f64 = 9.0;
+
 /// Fewer places tell no direction.
 const SHORT: usize = 8;
 
@@ -38,10 +41,13 @@ struct Arm {
 
 /// Joins the arms of sharp tips in lines of some width; places along the strokes are about a pixel from each other.
 pub(super) fn sharpened(flat: &Flat, mut strokes: Vec<Vec<PxPoint>>, width_px: f64) -> Vec<Vec<PxPoint>> {
-    strokes.iter_mut().for_each(|stroke| unfold(stroke, width_px));
+    for stroke in &mut strokes {
+        unfold(stroke, width_px);
+        unhook(stroke, width_px);
+    }
     without_crumbs(&mut strokes, &[], width_px);
     part_ends(&mut strokes, width_px);
-    let longest = 9.0 * width_px + 6.0;
+    let longest = LONGEST_WIDTHS * width_px + 6.0;
     // Each tip takes its stub away: there are no more than stubs.
     for _ in 0..strokes.len() {
         let Some((stub, one, other, at)) = lonely(flat, &strokes, longest, width_px) else { break };
@@ -58,24 +64,54 @@ pub(super) fn sharpened(flat: &Flat, mut strokes: Vec<Vec<PxPoint>>, width_px: f
 
 /// A stub that a stroke goes along, back and along again is gone along once.
 fn unfold(stroke: &mut Vec<PxPoint>, width_px: f64) {
-    let longest = super::whole::count(1.5 * width_px) + 3;
+    let short = super::whole::count(1.5 * width_px) + 3;
+    // Longer ones only where there is no paper between the ways.
+    let longest = super::whole::count(LONGEST_WIDTHS * width_px + 6.0);
     let turns_back = |stroke: &[PxPoint], i: usize| {
         let Some(&[before, _, at, _, behind]) = i.checked_sub(2).and_then(|i| stroke.get(i..i + 5)) else {
             return false;
         };
         cosine(at.minus(before), behind.minus(at)) < BACK_COS
     };
+    let is_one = |there: &[PxPoint], again: &[PxPoint]| {
+        there.iter().all(|at| again.iter().any(|place| place.distance(*at) < 0.5 * width_px))
+    };
     let mut i = 2;
     while i + 2 < stroke.len() {
-        let turn = (i + 2..=i + longest).find(|j| turns_back(stroke, i) && turns_back(stroke, *j));
-        let Some((from, back)) = stroke.get(i).copied().zip(turn) else {
+        let Some(from) = stroke.get(i).copied().filter(|_| turns_back(stroke, i)) else {
             i += 1;
             continue;
         };
-        let again = stroke.iter().enumerate().skip(back + 1).take(longest);
-        let again = again.min_by(|(_, a), (_, b)| a.distance(from).total_cmp(&b.distance(from)));
-        stroke.drain(i + 1..again.map_or(back, |(k, _)| k));
+        let fold = (i + 2..=i + longest).filter(|j| turns_back(stroke, *j)).find_map(|back| {
+            let again = stroke.iter().enumerate().skip(back + 1).take(longest);
+            let again = again.min_by(|(_, a), (_, b)| a.distance(from).total_cmp(&b.distance(from)));
+            let again = again.map_or(back, |(k, _)| k);
+            let ways = (stroke.get(i..=back)?, stroke.get(back..=again)?);
+            (back <= i + short || is_one(ways.0, ways.1)).then_some(again)
+        });
+        if let Some(again) = fold {
+            stroke.drain(i + 1..again);
+        }
         i += 1;
+    }
+}
+
+/// The last bit of a stroke that turns back within a line's width, as thinning leaves it between two arms, goes.
+fn unhook(stroke: &mut Vec<PxPoint>, width_px: f64) {
+    /// From a place to those that tell the ways before and behind it: steps.
+    const LOOK: usize = 2;
+    for _ in 0..2 {
+        stroke.reverse();
+        let Some(last) = stroke.len().checked_sub(1) else { return };
+        let turns = |i: &usize| {
+            let ways = (stroke.get(*i), stroke.get(i.saturating_sub(LOOK)), stroke.get((i + LOOK).min(last)));
+            let (Some(at), Some(before), Some(behind)) = ways else { return false };
+            cosine(at.minus(*before), behind.minus(*at)) < 0.0
+        };
+        let first = last.saturating_sub(super::whole::count(width_px) + 1).max(stroke.len() / 2).max(LOOK);
+        if let Some(turn) = (first..last).find(turns) {
+            stroke.truncate(turn + 1);
+        }
     }
 }
 
@@ -402,6 +438,49 @@ mod tests {
         assert!(off_px(&strokes[0]) < 0.5, "{}", off_px(&strokes[0]));
         let back = strokes[0].windows(5).filter(|w| cosine(w[2].minus(w[0]), w[4].minus(w[2])) < BACK_COS);
         assert!(back.count() <= 1);
+    }
+
+    #[test]
+    fn a_hook_at_an_end_goes() {
+        let place = |(x, y): (f64, f64)| PxPoint::new(x, y);
+        let line: Vec<PxPoint> = (0..=40).map(|y| PxPoint::new(50.0, f64::from(y))).collect();
+        // 1.7 px back and 1 px on again; a little round the corner.
+        for hook in [&[(49.6, 40.0), (49.3, 38.3), (49.5, 39.3)][..], &[(50.4, 39.4)]] {
+            let mut stroke = line.clone();
+            stroke.extend(hook.iter().copied().map(place));
+            unhook(&mut stroke, 5.0);
+            assert_eq!(stroke, line);
+            let mut stroke: Vec<PxPoint> =
+                hook.iter().rev().copied().map(place).chain(line.iter().rev().copied()).collect();
+            unhook(&mut stroke, 5.0);
+            assert!(stroke.iter().eq(line.iter().rev()), "{stroke:?}");
+        }
+        // What turns back farther from its end is an arm.
+        let mut tip = line.clone();
+        tip.extend((1..10).map(|y| place((50.0 + 0.4 * f64::from(y), 40.0 - f64::from(y)))));
+        let whole = tip.clone();
+        unhook(&mut tip, 5.0);
+        assert_eq!(tip, whole);
+    }
+
+    #[test]
+    fn a_long_stub_is_gone_along_once_but_arms_are_not() {
+        // From the tip 13 px to where the arms part, back, and along an arm that turns off by 7 degrees.
+        let at = |off: f64, y: i32| PxPoint::new(50.0 + off, f64::from(y));
+        let folded = |off: f64, px: i32| -> Vec<PxPoint> {
+            let slope = |y: i32| off * f64::from(y) / f64::from(px);
+            let there = (0..=px).map(|y| at(0.0, y)).chain((0..px).rev().map(|y| at(-0.2 * slope(y), y)));
+            there.chain((1..60).map(|y| at(slope(y), y))).collect()
+        };
+        let mut stub = folded(1.6, 13);
+        unfold(&mut stub, 5.0);
+        assert!(stub.windows(2).all(|pair| pair[1].y >= pair[0].y), "{stub:?}");
+        assert_eq!((stub[0].y, stub[stub.len() - 1].y), (0.0, 59.0));
+        // Three arms that are 10 px apart where they are farthest.
+        let arms = folded(10.0, 40);
+        let mut same = arms.clone();
+        unfold(&mut same, 5.0);
+        assert_eq!(same, arms);
     }
 
     #[test]
