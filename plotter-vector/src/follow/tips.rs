@@ -24,6 +24,9 @@ const BACK_COS: f64 = -0.8;
 /// A stub is at most so many widths and some pixels long.
 const LONGEST_WIDTHS: f64 = 9.0;
 
+/// Ink that goes on for more than this behind where straight arms would meet is that of bent ones, px.
+const BENT_PX: f64 = 3.0;
+
 /// Fewer places tell no direction.
 const SHORT: usize = 8;
 
@@ -326,14 +329,21 @@ fn tip(
     // The ink ends about half a width behind the tip, the more the sharper it is.
     let sound = cross.abs() > 0.03 && met.distance(free) < 1.5 * width_px + 0.4 * foot.distance(free) + 2.0;
     let mut at = if sound { met } else { free };
-    if between > -SHARP_COS {
-        // Arms that meet at a small angle hardly tell where; the end of their ink does.
-        let length = libm::hypot(mean.0, mean.1);
-        let way = (-mean.0 / length, -mean.1 / length);
-        let off = free.minus(at);
-        let from = at.along(way, off.0 * way.0 + off.1 * way.1);
-        if let Some(end_px) = ink_end_px(flat, from, way, width_px) {
-            at = from.along(way, end_px - 0.5 * width_px + BLURRED_END_PX);
+    let length = libm::hypot(mean.0, mean.1);
+    let way = (-mean.0 / length, -mean.1 / length);
+    let along = |to: PxPoint| {
+        let off = to.minus(at);
+        off.0 * way.0 + off.1 * way.1
+    };
+    let from_px = along(free);
+    if let Some(end_px) = ink_end_px(flat, at.along(way, from_px), way, width_px) {
+        let behind_px = end_px - 0.5 * width_px + BLURRED_END_PX;
+        if between > -SHARP_COS {
+            // Arms that meet at a small angle hardly tell where; the end of their ink does.
+            at = at.along(way, from_px + behind_px);
+        } else if from_px + behind_px > BENT_PX {
+            // Nor do those that are bent towards each other, as a cusp's.
+            at = free.along(way, behind_px);
         }
     }
     Some((one, other, at))
@@ -438,6 +448,29 @@ mod tests {
         assert!(off_px(&strokes[0]) < 0.5, "{}", off_px(&strokes[0]));
         let back = strokes[0].windows(5).filter(|w| cosine(w[2].minus(w[0]), w[4].minus(w[2])) < BACK_COS);
         assert!(back.count() <= 1);
+    }
+
+    #[test]
+    fn a_cusp_is_followed_to_its_end() {
+        // Two quarters of circles of 45 px that touch in the tip; what is straight of them would meet 11 px before it.
+        let arc = |side: f64| {
+            let at = |k: i32| {
+                let (sin, cos) = libm::sincos(f64::from(k) * 0.02);
+                PxPoint::new(TIP.x + 45.0 * sin, TIP.y + side * 45.0 * (1.0 - cos))
+            };
+            (0..=75).map(at).collect::<Vec<PxPoint>>()
+        };
+        let paper = Paper::drawn(200, 160, &[(arc(1.0), 4.0), (arc(-1.0), 4.0)]).unwrap();
+        let settings = CameraSettings { width_px: 300, height_px: 300, ..CameraSettings::default() };
+        let middle = PxPoint::new(60.0, 60.0);
+        let flat = Flat::of(&SimulatedCamera::new(&paper, settings).window(middle), None, None);
+        let lines = super::super::lines::Lines::of(&flat, 40);
+        let [piece] = lines.pieces.as_slice() else { panic!("{lines:?}") };
+        let tip = PxPoint::new(150.0, 150.0).along(TIP.minus(middle), 1.0);
+        let off = piece.places.iter().map(|at| at.distance(tip)).fold(f64::MAX, f64::min);
+        assert!(off < 1.5, "{off} {piece:?}");
+        let least_x = piece.places.iter().map(|at| at.x).fold(f64::MAX, f64::min);
+        assert!((least_x - tip.x).abs() < 1.0, "{least_x}");
     }
 
     #[test]
