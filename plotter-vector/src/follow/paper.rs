@@ -9,14 +9,37 @@ pub struct Paper {
     width: usize,
     height: usize,
     reflected: Vec<f32>,
+    /// What lies outside: beside each row to the left and to the right, above and below each column.
+    outside: [Vec<f32>; 4],
+}
+
+/// Along the rim of a picture the paper is as light as the lightest place so near, px: a line may reach the rim.
+const RIM_PX: usize = 32;
+
+/// Where all of the rim so near is darker than this share of the lightest place, it is ink.
+const RIM_INK: f32 = 0.5;
+
+/// The paper that goes on outside of a row or column of a picture whose lightest place is `lightest`.
+fn beside(rim: &[f32], lightest: f32) -> Vec<f32> {
+    let near = |i: usize| rim.get(i.saturating_sub(RIM_PX)..(i + RIM_PX + 1).min(rim.len())).unwrap_or(&[]);
+    let paper = |i: usize| near(i).iter().copied().fold(0.0, f32::max);
+    let levels = (0..rim.len()).map(paper);
+    levels.map(|level| if level < RIM_INK * lightest { lightest } else { level }).collect()
 }
 
 impl Paper {
-    /// The paper of a picture: 255 is white. Outside of the picture all is white.
+    /// The paper of a picture: 255 is white. Outside of the picture is no ink, and paper as light as at its rim.
     #[must_use]
     pub fn of(picture: &Gray) -> Self {
-        let reflected = picture.pixels().iter().map(|level| f32::from(*level) / 255.0).collect();
-        Self { width: picture.width() as usize, height: picture.height() as usize, reflected }
+        let reflected: Vec<f32> = picture.pixels().iter().map(|level| f32::from(*level) / 255.0).collect();
+        let (width, height) = (picture.width() as usize, picture.height() as usize);
+        let lightest = reflected.iter().copied().fold(0.0, f32::max);
+        let column = |x: usize| reflected.iter().skip(x).step_by(width.max(1)).copied().collect::<Vec<f32>>();
+        let row = |y: usize| reflected.get(y * width..(y + 1) * width).unwrap_or(&[]).to_vec();
+        let last = |side: usize| side.saturating_sub(1);
+        let outside =
+            [column(0), column(last(width)), row(0), row(last(height))].map(|rim| beside(&rim, lightest));
+        Self { width, height, reflected, outside }
     }
 
     /// Strokes of a round pen: polylines in pixels of the paper, each with the width of its pen in px. A pixel is as dark as the
@@ -82,10 +105,11 @@ impl Paper {
         let half: Vec<f32> = (0..=reach).map(weight).collect();
         let sum: f32 = half.iter().skip(1).sum::<f32>() * 2.0 + 1.0;
         let kernel: Vec<f32> = half.iter().skip(1).rev().chain(&half).map(|weight| weight / sum).collect();
-        let along = convolved(&self.reflected, self.width, &kernel);
+        let [left, right, above, below] = &self.outside;
+        let along = convolved(&self.reflected, self.width, [left, right], &kernel);
         let turned = transposed(&along, self.width, self.height);
-        let across = convolved(&turned, self.height, &kernel);
-        Self { reflected: transposed(&across, self.height, self.width), ..*self }
+        let across = convolved(&turned, self.height, [above, below], &kernel);
+        Self { reflected: transposed(&across, self.height, self.width), ..self.clone() }
     }
 
     /// The share of the light that a place reflects, between four pixels.
@@ -108,9 +132,18 @@ impl Paper {
                 return mixed([*a, *b], [*c, *d]);
             }
         }
-        let share = |x: i32, y: i32| match (inside(x, self.width), inside(y, self.height)) {
-            (Some(x), Some(y)) => self.reflected.get(y * self.width + x).copied().unwrap_or(1.0),
-            _ => 1.0,
+        let share = |x: i32, y: i32| {
+            let beside = |side: usize, at: usize| self.outside.get(side).and_then(|rim| rim.get(at)).copied();
+            let level = match (inside(x, self.width), inside(y, self.height)) {
+                (Some(x), Some(y)) => self.reflected.get(y * self.width + x).copied(),
+                (Some(x), None) => beside(if y < 0 { 2 } else { 3 }, x),
+                // Beyond a corner it is as beside the nearest row.
+                (None, row) => {
+                    let row = row.unwrap_or(if y < 0 { 0 } else { self.height.saturating_sub(1) });
+                    beside(usize::from(x >= 0), row)
+                }
+            };
+            level.unwrap_or(1.0)
         };
         let (right, low) = (left.saturating_add(1), top.saturating_add(1));
         mixed([share(left, top), share(right, top)], [share(left, low), share(right, low)])
@@ -158,14 +191,15 @@ pub(super) fn each_covered(
     }
 }
 
-/// Rows folded with a kernel; outside of them all is white.
-fn convolved(levels: &[f32], width: usize, kernel: &[f32]) -> Vec<f32> {
+/// Rows folded with a kernel, with what lies to the left and to the right of each.
+fn convolved(levels: &[f32], width: usize, [left, right]: [&Vec<f32>; 2], kernel: &[f32]) -> Vec<f32> {
     let reach = kernel.len() / 2;
     let mut folded = Vec::with_capacity(levels.len());
     let mut padded = vec![1.0; width + 2 * reach];
-    for row in levels.chunks(width.max(1)) {
-        if let Some(middle) = padded.get_mut(reach..reach + row.len()) {
-            middle.copy_from_slice(row);
+    for (row, (left, right)) in levels.chunks(width.max(1)).zip(left.iter().zip(right)) {
+        for (i, level) in padded.iter_mut().enumerate() {
+            let inner = i.checked_sub(reach);
+            *level = inner.map_or(*left, |i| row.get(i).copied().unwrap_or(*right));
         }
         folded.extend(
             padded.windows(kernel.len()).map(|near| near.iter().zip(kernel).map(|(a, b)| a * b).sum::<f32>()),
@@ -187,4 +221,29 @@ pub(super) fn nearest(at: PxPoint, from: PxPoint, to: PxPoint) -> PxPoint {
     let (px, py) = at.minus(from);
     let part = if length2 > 0.0 { ((px * dx + py * dy) / length2).clamp(0.0, 1.0) } else { 0.0 };
     from.along((dx, dy), part)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grey_paper_goes_on_outside_without_its_lines() {
+        // Lighter to the right, with a line from rim to rim and one along the bottom.
+        let level = |x: u8, y: u8| if (20..24).contains(&y) || y > 57 { 40 } else { 140 + x / 2 };
+        let levels = (0..60).flat_map(|y| (0..100).map(move |x| level(x, y))).collect();
+        let paper = Paper::of(&Gray::new(100, 60, levels).unwrap());
+        let level_at = |paper: &Paper, x: f32, y: f32| 255.0 * paper.at(x, y);
+        for paper in [&paper, &paper.blurred(1.5)] {
+            for (x, y, grey) in
+                [(-9.0, 22.0, 140.0), (108.0, 22.0, 189.0), (30.5, -20.0, 171.0), (-9.0, -9.0, 140.0)]
+            {
+                assert!((level_at(paper, x, y) - grey).abs() < 0.6, "{x} {y}: {}", level_at(paper, x, y));
+            }
+            // Under what is ink all along it is as light as the lightest place.
+            assert!((level_at(paper, 30.5, 70.0) - 189.0).abs() < 0.6);
+            // No step at the rim.
+            assert!((level_at(paper, 0.2, 40.5) - 140.0).abs() < 1.0, "{}", level_at(paper, 0.2, 40.5));
+        }
+    }
 }
