@@ -27,7 +27,7 @@ use plotter_vector::follow::{
     CameraSettings, Correction, End, Hand, Lens, LineFollower, MappingFollower, MappingSettings, Paper,
     PublishedFollower, PublishedSettings, SimulatedCamera, SimulatedTable, Step, TableError, Tool, judge,
 };
-use plotter_vector::{Gray, PxPoint, Vectorizer, decode};
+use plotter_vector::{Bounded, Gray, PxPoint, Vectorizer, decode};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -39,6 +39,9 @@ const PUBLISHED_WINDOWS: u64 = 400;
 
 /// Windows after which ours is stopped: a sheet of 10,000 x 5,000 px full of lines needs fewer.
 const WINDOWS: u64 = 2_000_000;
+
+/// Farther than this the true lines are not from the middle of the picture's lines, px: less than what the tool is off.
+const TRUTH_PX: f64 = 0.1;
 
 /// Follows the lines of a picture with a simulated camera on a simulated table, or what a real camera sees.
 #[derive(Debug, Parser)]
@@ -286,8 +289,7 @@ fn follow(arguments: &Arguments) -> Result<(), String> {
     let play_px = arguments.play.unwrap_or(3.0 * random_px);
     let mut table =
         SimulatedTable::new(machine.at(), TableError { random_px, play_px, seed: arguments.seed });
-    let [right, low] = machine.area_px();
-    let area = [PxPoint::new(0.0, 0.0), PxPoint::new(right, low)];
+    let area = machine.area();
     let corrected_px = correction.as_ref().map(Correction::size_px);
     let mut follower = Follower::new(arguments, area, correction);
     let mut moves_file = match (&arguments.moves, &eyes) {
@@ -371,7 +373,10 @@ fn follow(arguments: &Arguments) -> Result<(), String> {
         lifts: table.strokes().len().saturating_sub(1),
         finished: end == Ended::Said(End::Complete),
         said: end.told(windows),
-        judged: sheet.as_ref().map(|sheet| judge(&sheet.truth, table.strokes(), 2.0)),
+        judged: sheet
+            .as_ref()
+            .filter(|sheet| !sheet.truth.is_empty())
+            .map(|sheet| judge(&sheet.truth, table.strokes(), 2.0)),
         map: if let Follower::Ours(ours) = &follower { Some(ours.report()) } else { None },
         motion: machine.finish()?,
     };
@@ -420,7 +425,8 @@ fn sheet(arguments: &Arguments, name: &str) -> Result<Sheet, String> {
         Some(path) => decode(&read_file(path)?).map_err(|error| at(path, &error))?,
         None => built_in()?.picture().map_err(|error| error.to_string())?,
     };
-    let traced = Vectorizer::default().vectorize(&picture).map_err(|error| format!("{name}: {error}"))?;
+    let vectorizer = Vectorizer { ours: Bounded { tolerance_px: TRUTH_PX }, ..Vectorizer::default() };
+    let traced = vectorizer.vectorize(&picture).map_err(|error| format!("{name}: {error}"))?;
     let truth = traced.drawing.chords(0.05).strokes().map(<[PxPoint]>::to_vec).collect();
     Ok(Sheet { picture, truth })
 }

@@ -22,7 +22,7 @@ pub struct FollowOutcome<'a> {
     pub finished: bool,
     /// How it ended.
     pub said: String,
-    /// The tool's path beside the drawing's lines, where those are known.
+    /// The tool's path beside the drawing's lines, where those are known and there are any.
     pub judged: Option<Judged>,
     /// What ours knows.
     pub map: Option<FollowReport>,

@@ -100,6 +100,21 @@ fn bad_input_is_told_in_a_line() {
 }
 
 #[test]
+fn without_lines_nothing_is_covered() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("f.json").to_str().unwrap().to_owned();
+    let white = picture(&folder, "white.png", |_, _| false);
+    let output = run_example("follow", &[&white, "--report", &file]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let value = report(&file);
+    assert_eq!((&value["finished"], &value["coverage"]), (&Value::Bool(false), &Value::Null));
+    assert!(!said(&output).0.contains("covered"), "{output:?}");
+    // The last window shows none of the area.
+    let area = picture(&folder, "area.png", |x, y| (130..270).contains(&x) && (30..170).contains(&y));
+    assert!(complaint("follow", &[&area, "--camera", "size=160"]).contains("no line but an area"));
+}
+
+#[test]
 fn a_grid_calibrates_the_simulated_camera() {
     let output = run_example("calibrate_camera", &["--barrel", "0.05"]);
     let text = String::from_utf8(output.stdout).unwrap();

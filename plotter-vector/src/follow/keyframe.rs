@@ -26,6 +26,9 @@ const LEAST_GRADIENT_NOISES: f32 = 5.0;
 /// A rim belongs to the end of a line, or to another one, if the darkness rises by more than this share of what is usual along the line.
 const ACROSS_SHARE: f64 = 0.3;
 
+/// And by so many standard deviations of what noise makes of it: of all places along lines those where noise is greatest look like ends.
+const ACROSS_NOISES: f64 = 6.0;
+
 /// Distances from the border of a window that are not compared, px.
 const MARGIN_PX: f64 = 4.0;
 
@@ -102,9 +105,9 @@ impl Keyframe {
                 places.push(([dx as f32, dy as f32], mean, [gx, gy]));
             }
         }
-        let places = chosen(places);
         // Sum of the squares of Scharr's coefficients: 4 * (3 / 32)² + 2 * (10 / 32)².
-        Self { camera, places, noise: 0.23 * f64::from(noise) * f64::from(noise) }
+        let noise = 0.23 * f64::from(noise) * f64::from(noise);
+        Self { camera, places: chosen(places, ACROSS_NOISES * libm::sqrt(noise)), noise }
     }
 
     /// The camera's place by a new window, with what is known before; it may be off by `sound_px` whatever
@@ -173,11 +176,11 @@ impl Keyframe {
     }
 }
 
-/// At most [`MOST_PLACES`], half of them where the darkness rises in the direction that most places tell least of: so lines that are long
-/// do not hide their ends.
+/// At most [`MOST_PLACES`], half of them where the darkness rises, by more than `least` per px, in the direction that most places tell
+/// least of: so lines that are long do not hide their ends.
 ///
 /// After S. Rusinkiewicz, M. Levoy, "Efficient variants of the ICP algorithm" (2001), section 3.1.
-fn chosen(places: Vec<Place>) -> Vec<Place> {
+fn chosen(places: Vec<Place>, least: f64) -> Vec<Place> {
     if places.len() <= MOST_PLACES {
         return places;
     }
@@ -190,7 +193,7 @@ fn chosen(places: Vec<Place>) -> Vec<Place> {
     let mut rises: Vec<f64> = places.iter().map(|place| rise(place, (-v, u))).collect();
     let middle = rises.len() / 2;
     let (_, usual, _) = rises.select_nth_unstable_by(middle, f64::total_cmp);
-    let least = ACROSS_SHARE * *usual;
+    let least = f64::max(ACROSS_SHARE * *usual, least);
     let (ends, others): (Vec<Place>, Vec<Place>) =
         places.into_iter().partition(|place| rise(place, (u, v)) > least);
     let few = ends.len().min(MOST_PLACES / 2);
@@ -384,6 +387,26 @@ mod tests {
         let found = found(&[line((-50.0, 150.0), (400.0, 150.0))], (1.7, -1.2)).unwrap();
         assert!((found.place.y - 148.8).abs() < 0.1 && (found.place.x - 150.0).abs() < 0.1, "{found:?}");
         assert!(found.information.xx < 1.1 && found.information.yy > 100.0, "{found:?}");
+    }
+
+    #[test]
+    fn where_noise_is_greatest_there_is_no_end() {
+        // Rims along x, and noise across them: at 3 standard deviations it is 0.3 of the rims' gradient.
+        let sd = 0.008_f32;
+        let places: Vec<Place> = (0..20_000_u16)
+            .map(|i| {
+                let (i, turn) = (f32::from(i), 2.4 * f32::from(i));
+                // Normal, by Box and Muller.
+                let noise = sd * (-2.0 * ((i + 0.5) / 20_000.0).ln()).sqrt() * turn.cos();
+                ([i, 0.0], 0.5, [noise, 0.08])
+            })
+            .collect();
+        let square = |places: &[Place]| {
+            let sum: f32 = places.iter().map(|(_, _, [x, _])| x * x).sum();
+            sum / places.iter().map(|_| 1.0).sum::<f32>() / (sd * sd)
+        };
+        let [all, some] = [square(&places), square(&chosen(places, ACROSS_NOISES * f64::from(sd)))];
+        assert!((all - 1.0).abs() < 0.1 && (some - 1.0).abs() < 0.1, "{all} {some}");
     }
 
     #[test]

@@ -421,6 +421,21 @@ mod tests {
     }
 
     #[test]
+    fn curves_that_end_in_one_tip_reach_it() {
+        // Quarters of circles of 45 px, which touch where they end: straight lines along them meet 14 px before.
+        let tip = off(4.0, &|turn, at| {
+            let quarter = |side: f64| {
+                let middle = at_angle(at, turn + side * core::f64::consts::FRAC_PI_2, 45.0);
+                (0..=45_u8).map(move |k| {
+                    at_angle(middle, turn - side * (90.0 - 2.0 * f64::from(k)).to_radians(), 45.0)
+                })
+            };
+            vec![quarter(1.0).rev().chain(quarter(-1.0).skip(1)).collect()]
+        });
+        assert!(tip[0] < 1.6 && tip[1] < 1.1 && tip[2] < 2.0, "{tip:?}");
+    }
+
+    #[test]
     fn a_line_that_ends_a_little_behind_another_is_straight() {
         for degrees in [45.0, 70.0, 90.0] {
             let off = off(5.0, &|turn, at| {

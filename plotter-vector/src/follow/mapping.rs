@@ -435,7 +435,7 @@ impl MappingFollower {
         }
         // What is on the map for nothing to be followed was no line: the grain of the paper, the rim of a light.
         if [State::Followed, State::Outside].iter().all(|state| self.map.length_of(*state) == 0.0) {
-            let why = self.last_seen;
+            let why = if self.report.areas.is_empty() { self.last_seen } else { Lost::TooThick };
             if self.search.is_some() { self.end(End::NoLine { at, why }) } else { self.lost(at, why) }
         } else {
             self.end(End::Complete)

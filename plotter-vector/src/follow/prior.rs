@@ -87,6 +87,37 @@ impl Information {
         [(u, v), (-v, u)].map(|(u, v)| ((u, v), u * u * self.xx + 2.0 * u * v * self.xy + v * v * self.yy))
     }
 
+    /// What equations along unit vectors tell, the sum of whose weights is `sum`, and their right side, without what noise of those
+    /// vectors across themselves pretends to tell; `noise` is its variance.
+    pub(super) fn without_noise(self, (bx, by): (f64, f64), noise: f64, sum: f64) -> (Self, (f64, f64)) {
+        let (mut told, mut right) = (Self::default(), (0.0, 0.0));
+        for ((u, v), all) in self.directions() {
+            let share = (1.0 - noise * (sum - all) / all.max(1e-12)).max(0.0);
+            let (kept, along) = (share * all, share * (u * bx + v * by));
+            told = told.plus(Self { xx: kept * u * u, xy: kept * u * v, yy: kept * v * v });
+            right = (right.0 + along * u, right.1 + along * v);
+        }
+        (told, right)
+    }
+
+    /// The same with its directions turned to those of `told`, if that is of one direction only, and it differs from the one of which
+    /// most is known by no more than `most`, as a sine. Where two such directions that are nearly one do not agree, a place far along the
+    /// lines would be the only one that fits both.
+    pub(super) fn turned(self, told: Self, most: f64) -> Self {
+        let strongest_first =
+            |[one, other]: [((f64, f64), f64); 2]| if one.1 < other.1 { [other, one] } else { [one, other] };
+        let [((u, v), all), (_, least)] = strongest_first(told.directions());
+        let [((x, y), known), (_, weak)] = strongest_first(self.directions());
+        if all <= 0.0 || least > 1e-6 * all || (u * y - v * x).abs() > most {
+            return self;
+        }
+        Self {
+            xx: known * u * u + weak * v * v,
+            xy: (known - weak) * u * v,
+            yy: known * v * v + weak * u * u,
+        }
+    }
+
     /// The solution in the directions of which at least `least` is told, and the information it carries when its standard
     /// deviation is `sd_px` where much is told.
     pub(super) fn told(self, (bx, by): (f64, f64), least: f64, sd_px: f64) -> ((f64, f64), Self) {
@@ -154,6 +185,27 @@ mod tests {
         let both = one.fused(&other);
         assert!(both.place.distance(PxPoint::new(4.0, 1.0)) < 1e-9, "{both:?}");
         assert_eq!(both.information, Information { xx: 5.0, xy: 0.0, yy: 1.25 });
+    }
+
+    #[test]
+    fn lines_that_are_nearly_one_direction_tell_one_only() {
+        let line = |nx: f64| Information { xx: nx * nx, xy: nx, yy: 1.0 };
+        let (told, right) = line(0.0).plus(line(0.02)).without_noise((0.01, 0.5), 6e-4, 2.0);
+        assert!(told.xx < 3e-4 && (told.yy - 2.0).abs() < 1e-3 && right.0.abs() < 6e-3, "{told:?} {right:?}");
+        let (told, right) = line(0.0).plus(line(0.5)).without_noise((0.1, 0.5), 6e-4, 2.25);
+        assert!((told.xx - 0.25).abs() < 5e-3 && (right.0 - 0.1).abs() < 5e-3, "{told:?} {right:?}");
+    }
+
+    #[test]
+    fn what_tells_one_direction_is_turned_to_another_that_does() {
+        // Both tell y, one of them turned by 0.01.
+        let known = Information { xx: 0.01, xy: 0.0, yy: 100.0 };
+        let told = Information { xx: 0.01, xy: 1.0, yy: 100.0 };
+        let turned = known.turned(told, 0.1);
+        assert!((turned.xx - 0.02).abs() < 1e-3 && (turned.xy - 1.0).abs() < 1e-3, "{turned:?}");
+        // Not what tells both directions, nor another direction.
+        assert_eq!(known.turned(Information::of_axes([1.0, 0.5]), 0.1), known);
+        assert_eq!(known.turned(Information { xx: 9.0, xy: 3.0, yy: 1.0 }, 0.1), known);
     }
 
     #[test]

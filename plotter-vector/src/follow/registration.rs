@@ -23,6 +23,13 @@ const CUT_PX: f64 = 0.3;
 /// Lines next to each other are off together: more places than this tell no more.
 const INDEPENDENT: f64 = 8.0;
 
+/// Standard deviation of a line's direction in the map. A bend of the map that the line does not have, however small, would tell a
+/// place along it, the same one in each picture.
+const DIRECTION_SD: f64 = 0.025;
+
+/// What only tells one direction is told of the same one as before when both differ by less than this: sine.
+const MOST_TURNED: f64 = 4.0 * DIRECTION_SD;
+
 /// Nearer to the tool than this a place goes by so much of the way to where it is seen: the tool comes there next.
 const NEAR_TOOL_PX: f64 = 25.0;
 const NEAR_GAIN: f64 = 0.5;
@@ -192,9 +199,11 @@ fn solved(equations: &[Equation], camera: PxPoint, prior: &Prior) -> ((f64, f64)
             sum += weight;
         }
         let scale = (INDEPENDENT / f64::max(sum, 1e-9)).min(1.0) / (CUT_PX * CUT_PX);
+        (told, (bx, by)) = told.without_noise((bx, by), DIRECTION_SD * DIRECTION_SD, sum);
         told = told.scaled(scale);
-        let (px, py) = prior.information.times(off);
-        shift = told.plus(prior.information).solve((scale * bx + px, scale * by + py));
+        let before = prior.information.turned(told, MOST_TURNED);
+        let (px, py) = before.times(off);
+        shift = told.plus(before).solve((scale * bx + px, scale * by + py));
     }
     (shift, told)
 }
@@ -250,5 +259,31 @@ mod tests {
         }
         let off = map.nodes.iter().map(|node| (node.at.y - 100.0).abs()).fold(0.0, f64::max);
         assert!(off < 0.3, "{off}");
+    }
+
+    #[test]
+    fn a_bend_that_only_the_map_has_does_not_hold_the_camera() {
+        // A straight line, which the map has bent by a degree at 300 px.
+        let paper =
+            Paper::drawn(600, 200, &[(vec![PxPoint::new(-50.0, 100.0), PxPoint::new(700.0, 100.0)], 5.0)])
+                .unwrap();
+        let settings = CameraSettings { width_px: 200, height_px: 200, ..CameraSettings::default() };
+        let mut camera = SimulatedCamera::new(&paper, settings);
+        let place = |x: f64| PxPoint::new(x, 100.0 + 0.0175 * (x - 300.0).max(0.0));
+        let places = (0..200).map(|i| place(100.0 + 2.0 * f64::from(i))).collect();
+        let mut map = LineMap::default();
+        map.insert(&[Piece { places, closed: false, open: [true, true] }], 5.0, &|_| true);
+        let middle = PxPoint::new(100.0, 100.0);
+        let (mut off, mut greatest) = (0.0_f64, 0.0_f64);
+        for i in 0..40_u8 {
+            let at = PxPoint::new(260.0 + 2.0 * f64::from(i), 100.0);
+            let flat = Flat::of(&camera.window(at), None, None);
+            let view = View { flat: &flat, middle, width_px: 5.0, reach_px: 92.0 };
+            let prior =
+                Prior { place: at.along((off, 0.1), 1.0), information: Information::of_axes([1.8, 0.06]) };
+            off = registered(&mut map.clone(), &view, &prior, 0).unwrap().place.x - at.x;
+            greatest = greatest.max(off.abs());
+        }
+        assert!(greatest < 0.5, "{greatest}");
     }
 }

@@ -18,14 +18,18 @@ use crate::PxPoint;
 /// A straight arm deviates by less, px.
 const STRAIGHT_PX: f64 = 0.5;
 
+/// Ink goes on behind where straight arms meet by more than this, px: they are none.
+const BENT_PX: f64 = 1.5;
+
+/// A round end is so dark so many of its widths to either side of the pen's last place, as a share of there; a pointed one is not.
+const ROUND_DARK: f32 = 0.5;
+const ROUND_SHARE: f64 = 0.35;
+
 /// A line turns back where the ways before and behind a place have this cosine at most.
 const BACK_COS: f64 = -0.8;
 
 /// A stub is at most so many widths and some pixels long.
 const LONGEST_WIDTHS: f64 = 9.0;
-
-/// Ink that goes on for more than this behind where straight arms would meet is that of bent ones, px.
-const BENT_PX: f64 = 3.0;
 
 /// Fewer places tell no direction.
 const SHORT: usize = 8;
@@ -329,24 +333,27 @@ fn tip(
     // The ink ends about half a width behind the tip, the more the sharper it is.
     let sound = cross.abs() > 0.03 && met.distance(free) < 1.5 * width_px + 0.4 * foot.distance(free) + 2.0;
     let mut at = if sound { met } else { free };
+    // Arms that meet at a small angle hardly tell where, and those that are short or bent not at all; the end of their ink does.
     let length = libm::hypot(mean.0, mean.1);
     let way = (-mean.0 / length, -mean.1 / length);
-    let along = |to: PxPoint| {
-        let off = to.minus(at);
-        off.0 * way.0 + off.1 * way.1
-    };
-    let from_px = along(free);
-    if let Some(end_px) = ink_end_px(flat, at.along(way, from_px), way, width_px) {
-        let behind_px = end_px - 0.5 * width_px + BLURRED_END_PX;
-        if between > -SHARP_COS {
-            // Arms that meet at a small angle hardly tell where; the end of their ink does.
-            at = at.along(way, from_px + behind_px);
-        } else if from_px + behind_px > BENT_PX {
-            // Nor do those that are bent towards each other, as a cusp's.
-            at = free.along(way, behind_px);
+    let off = free.minus(at);
+    let ahead = off.0 * way.0 + off.1 * way.1;
+    let is_sharp = between > -SHARP_COS;
+    let from = if is_sharp { at.along(way, ahead) } else { free };
+    if let Some(end_px) = ink_end_px(flat, from, way, width_px) {
+        let end = from.along(way, end_px - 0.5 * width_px + BLURRED_END_PX);
+        let (x, y) = end.minus(at);
+        if is_sharp || (x * way.0 + y * way.1 > BENT_PX && is_round(flat, end, way, width_px)) {
+            at = end;
         }
     }
     Some((one, other, at))
+}
+
+/// Whether ink is as wide as the line at a place that a round pen would end at.
+fn is_round(flat: &Flat, end: PxPoint, (x, y): (f64, f64), width_px: f64) -> bool {
+    let beside = |side: f64| flat.at(end.along((-y, x), side * ROUND_SHARE * width_px));
+    beside(-1.0).min(beside(1.0)) > ROUND_DARK * flat.at(end)
 }
 
 /// The straight line through an arm's places, over as long a part of it as is straight.
