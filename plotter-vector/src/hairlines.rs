@@ -72,10 +72,9 @@ impl Steps {
         let pairs = here.iter().zip(below.iter()).skip(1).take(end - 1);
         for (before, _) in pairs.enumerate().filter(|(_, (here, below))| **here | **below != 0) {
             // Most of a sheet is paper.
-            let words = |row: &[u64]| row.get(before..before + 3).map(Around::of);
-            let window =
-                [&*first, &*above, &*here, &*below, &*last].map(|row| words(row).unwrap_or_default());
-            self.found.add(window);
+            // Written out: mapped, the five are not kept in registers.
+            let of = |row: &[u64]| row.get(before..before + 3).map_or_else(Around::default, Around::of);
+            self.found.add([of(first), of(above), of(here), of(below), of(last)]);
         }
     }
 
@@ -89,10 +88,11 @@ impl Steps {
 impl Found {
     /// Adds what the third of five rows has, and the fourth with it.
     fn add(&mut self, window: [Around; 5]) {
-        let mirrored = window.map(Around::mirrored);
+        let [first, above, here, below, last] = window;
+        let mirrored =
+            [first.mirrored(), above.mirrored(), here.mirrored(), below.mirrored(), last.mirrored()];
         self.bare += u64::from(bare_steps(window).count_ones());
         self.turns += u64::from((turns(window) | turns(mirrored)).count_ones());
-        let [_, above, here, below, last] = window;
         self.blocks += u64::from(here.blocks(below)[1].count_ones());
         self.overlaps += u64::from(overlaps([above, here, below, last]).count_ones());
     }

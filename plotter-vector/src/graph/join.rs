@@ -3,6 +3,7 @@
 use super::fragment::{Fragment, Joint};
 use super::{Cuts, Stroke};
 use crate::Bounded;
+use crate::centrelines::each;
 use std::collections::HashMap;
 
 /// A stroke that still has an end in what has not come yet.
@@ -62,9 +63,9 @@ impl Joiner {
 
     /// Simplifies what is long of the strokes that wait for their ends.
     pub(crate) fn cut(&mut self, cuts: Cuts, bounded: Bounded) {
-        for part in self.parts.iter_mut().flatten() {
-            part.stroke.cut(cuts, bounded);
-        }
+        let strokes = self.parts.iter_mut().flatten().map(|part| &mut part.stroke);
+        let long = strokes.filter(|stroke| stroke.is_long(cuts)).collect();
+        each(long, |stroke: &mut Stroke| stroke.cut(cuts, bounded));
     }
 
     /// What is left after the last band: strokes whose counterpart never came.

@@ -124,6 +124,7 @@ impl Found<'_> {
             scan: *scan,
             near,
             all: all.clone(),
+            extents: stub::Extent::of_lines(&sites, &junctions),
         };
         let stubs = stub::stubs(&lines, core, words)?;
         let mut found = fragment::fragments(graph, &sites, &junctions, marks, *scan, core);

@@ -378,6 +378,15 @@ impl Scan<'_> {
         (full > paper).then(|| (here - paper) / (full - paper))
     }
 
+    /// A pixel and the 127 to the right of it, a bit each from the lowest on, set where there is ink.
+    pub(super) fn ink_from(&self, at: Pixel) -> u128 {
+        let row = at.y.checked_sub(self.first_row).map_or(&[][..], |row| self.ink.row(row));
+        let (first, bit) = ((at.x / u64::BITS) as usize, at.x % u64::BITS);
+        let word = |index: usize| row.get(first + index).copied().map_or(0, u128::from);
+        let two = (word(0) | word(1) << u64::BITS) >> bit;
+        if bit == 0 { two } else { two | word(2) << (u128::BITS - bit) }
+    }
+
     /// Whether a pixel is ink.
     pub(crate) fn is_ink_at(&self, at: Pixel) -> bool {
         at.y.checked_sub(self.first_row).is_some_and(|row| self.ink.get(Pixel::new(at.x, row)))
@@ -441,6 +450,21 @@ mod tests {
             let limited = |limit: f64| (nearest.min(limit + 0.5) - 0.5).max(0.0);
             assert!((scan.radius_px(at, f64::MAX) - limited(96.0)).abs() < 1e-12, "{at:?}");
             assert!((scan.radius_px(at, 4.0) - limited(4.0)).abs() < 1e-12, "{at:?}");
+        }
+    }
+
+    #[test]
+    fn the_ink_to_the_right_is_that_of_its_pixels() {
+        let mut ink = Bitmap::new(300, 3).unwrap();
+        (0..300).filter(|x| x * x % 7 < 3).for_each(|x| ink.set(Pixel::new(x, 1), true));
+        let scan = Scan { ink: &ink, first_row: 1000, grey: None, hairlines: Hairlines::Raster };
+        for at in (999..1004).flat_map(|y| [0, 1, 63, 64, 100, 180, 250, 299, 400].map(|x| Pixel::new(x, y)))
+        {
+            let bits = scan.ink_from(at);
+            assert!(
+                (0..128).all(|x| (bits >> x & 1 == 1) == scan.is_ink_at(Pixel::new(at.x + x, at.y))),
+                "{at:?}"
+            );
         }
     }
 

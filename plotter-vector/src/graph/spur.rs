@@ -89,6 +89,9 @@ impl<'a> Spurs<'a> {
         let root_px = self.scan.radius_px(at.into(), f64::MAX);
         let branches: Vec<(End, Option<Branch>)> =
             left.iter().map(|end| (*end, self.branch(rounds, *end, at.into(), root_px))).collect();
+        if branches.iter().all(|(_, branch)| branch.is_none()) {
+            return Vec::new();
+        }
         let narrowest_px = |corners_too: bool| {
             let counts = |branch: &Option<Branch>| corners_too || branch.is_none_or(|branch| !branch.tapers);
             let ends = branches.iter().filter(|(_, branch)| counts(branch));

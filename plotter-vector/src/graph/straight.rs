@@ -212,8 +212,11 @@ impl Part<'_> {
 fn stretches(part: &Part<'_>) -> Vec<Stretch> {
     let Range { start, end } = part.range;
     let mut found = Vec::new();
+    let is_measured = |index: &usize| part.places.get(*index).is_some_and(|place| part.is_measured(place));
+    // Behind this place there are too few middles.
+    let Some(latest) = (start..end).rev().filter(is_measured).nth(LEAST - 1) else { return found };
     let (mut free, mut from) = (start, start);
-    while from + LEAST <= end {
+    while from <= latest {
         let mut ahead = Walk::new(part, from);
         while ahead.step(end, false) {}
         let last = ahead.last;

@@ -60,14 +60,64 @@ impl Line {
     }
 }
 
-/// The straight lines that pass all places so far near enough: the corners of a convex polygon of slopes and offsets.
+/// Slopes and offsets of straight lines: the corners of a convex polygon.
+#[derive(Clone, Copy, Debug)]
+struct Polygon {
+    corners: [(f64, f64); MOST_CORNERS],
+    count: usize,
+}
+
+impl Polygon {
+    const EMPTY: Self = Self { corners: [(0.0, 0.0); MOST_CORNERS], count: 0 };
+
+    fn corners(&self) -> &[(f64, f64)] {
+        self.corners.get(..self.count).unwrap_or(&[])
+    }
+
+    fn add(&mut self, corner: (f64, f64)) {
+        if let Some(slot) = self.corners.get_mut(self.count) {
+            *slot = corner;
+        }
+        self.count += 1;
+    }
+
+    /// Makes `cut` the part where a linear function is not negative; `false` when there is none.
+    fn cut(&self, inside: impl Fn(&(f64, f64)) -> f64, cut: &mut Self) -> bool {
+        cut.count = 0;
+        let Some(mut before) = self.corners().last().copied() else { return false };
+        let mut before_by = inside(&before);
+        for corner in self.corners() {
+            let by = inside(corner);
+            // A corner on the line of the cut is where its side begins or ends.
+            let crosses = |one: f64, other: f64| one < -ROUNDING_PX && other > ROUNDING_PX;
+            if crosses(by, before_by) || crosses(before_by, by) {
+                let t = before_by / (before_by - by);
+                cut.add((before.0 + (corner.0 - before.0) * t, before.1 + (corner.1 - before.1) * t));
+            }
+            if is_inside(by) {
+                cut.add(*corner);
+            }
+            (before, before_by) = (*corner, by);
+        }
+        (1..=MOST_CORNERS).contains(&cut.count)
+    }
+}
+
+/// Whether a corner is so far inside a cut that it stays, px.
+fn is_inside(by: f64) -> bool {
+    by >= -ROUNDING_PX
+}
+
+/// The straight lines that pass all places so far near enough.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strip {
     origin: PxPoint,
     /// Whether the lines mostly run up and down.
     upright: bool,
-    corners: [(f64, f64); MOST_CORNERS],
-    count: usize,
+    /// The lines, and memory for what is cut of them: by turns, so that nothing is copied.
+    polygons: [Polygon; 3],
+    /// Which of them the lines are.
+    now: usize,
     /// Of the places taken: their number, and the sums of u, v, u² and u·v, u along and v across.
     sums: [f64; 5],
 }
@@ -75,14 +125,25 @@ pub(super) struct Strip {
 impl Strip {
     /// All lines that pass a place somewhere near, and mostly run up and down or sideways.
     pub(super) fn new(origin: PxPoint, upright: bool) -> Self {
-        let mut corners = [(0.0, 0.0); MOST_CORNERS];
         let all = [(-STEEPEST, -FAR_PX), (STEEPEST, -FAR_PX), (STEEPEST, FAR_PX), (-STEEPEST, FAR_PX)];
-        corners.iter_mut().zip(all).for_each(|(corner, at)| *corner = at);
-        Self { origin, upright, corners, count: all.len(), sums: [0.0; 5] }
+        let mut polygons = [Polygon::EMPTY; 3];
+        all.into_iter().for_each(|corner| polygons[0].add(corner));
+        Self { origin, upright, polygons, now: 0, sums: [0.0; 5] }
     }
 
     fn corners(&self) -> &[(f64, f64)] {
-        self.corners.get(..self.count).unwrap_or(&[])
+        self.polygons.get(self.now).map_or(&[], Polygon::corners)
+    }
+
+    /// Which polygon is the part of one of them where a linear function is not negative.
+    fn cut(&mut self, from: usize, inside: impl Fn(&(f64, f64)) -> f64) -> Option<usize> {
+        let to = (from + 1) % self.polygons.len();
+        let [polygon, cut] = self.polygons.get_disjoint_mut([from, to]).ok()?;
+        // Most cuts leave it as it is.
+        if polygon.corners().iter().all(|corner| is_inside(inside(corner))) {
+            return Some(from);
+        }
+        polygon.cut(inside, cut).then_some(to)
     }
 
     /// How far along the axis from the origin a place lies, and how far across, px.
@@ -95,11 +156,11 @@ impl Strip {
     pub(super) fn take(&mut self, (along, across): (f64, f64)) -> bool {
         let off = |(slope, offset): &(f64, f64)| slope * along + offset - across;
         if !self.corners().iter().all(|corner| off(corner).abs() <= HALF_PX + ROUNDING_PX) {
-            let below = self.cut(|corner| HALF_PX - off(corner));
-            let Some(cut) = below.and_then(|below| below.cut(|corner| off(corner) + HALF_PX)) else {
+            let below = self.cut(self.now, |corner| HALF_PX - off(corner));
+            let Some(cut) = below.and_then(|below| self.cut(below, |corner| off(corner) + HALF_PX)) else {
                 return false;
             };
-            *self = cut;
+            self.now = cut;
         }
         let add = [1.0, along, across, along * along, along * across];
         self.sums.iter_mut().zip(add).for_each(|(sum, add)| *sum += add);
@@ -111,32 +172,6 @@ impl Strip {
         let off = |(slope, offset): &(f64, f64)| slope * along + offset - across;
         self.corners().iter().all(|corner| off(corner) > px)
             || self.corners().iter().all(|corner| off(corner) < -px)
-    }
-
-    /// The part of the polygon where a linear function is not negative.
-    fn cut(&self, inside: impl Fn(&(f64, f64)) -> f64) -> Option<Self> {
-        let mut cut = Self { count: 0, ..*self };
-        let mut add = |corner: (f64, f64)| {
-            if let Some(slot) = cut.corners.get_mut(cut.count) {
-                *slot = corner;
-            }
-            cut.count += 1;
-        };
-        let mut before = *self.corners().last()?;
-        let mut before_by = inside(&before);
-        for corner in self.corners() {
-            let by = inside(corner);
-            // A corner on the line of the cut is where its side begins or ends.
-            if by.min(before_by) < -ROUNDING_PX && by.max(before_by) > ROUNDING_PX {
-                let t = before_by / (before_by - by);
-                add((before.0 + (corner.0 - before.0) * t, before.1 + (corner.1 - before.1) * t));
-            }
-            if by >= -ROUNDING_PX {
-                add(*corner);
-            }
-            (before, before_by) = (*corner, by);
-        }
-        (cut.count > 0 && cut.count <= MOST_CORNERS).then_some(cut)
     }
 
     /// The line of the least squared distances across from all places that were taken, or the nearest to it that passes them
@@ -162,7 +197,7 @@ impl Strip {
     /// The mean of the polygon's corners.
     fn middle(&self) -> (f64, f64) {
         #[expect(clippy::cast_precision_loss, reason = "a few corners")]
-        let count = self.count.max(1) as f64;
+        let count = self.corners().len().max(1) as f64;
         let sum = |(a, b): (f64, f64), (slope, offset): &(f64, f64)| (a + slope, b + offset);
         let (slope, offset) = self.corners().iter().fold((0.0, 0.0), sum);
         (slope / count, offset / count)

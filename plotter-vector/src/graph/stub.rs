@@ -48,6 +48,43 @@ pub(super) struct Lines<'a> {
     pub(super) near: &'a Near,
     /// All rows that there are.
     pub(super) all: Range<u32>,
+    /// Where the calm sites of each line lie.
+    pub(super) extents: Vec<Vec<Extent>>,
+}
+
+/// Sites of a line in sequence that are looked at, or passed over, together.
+const TOGETHER: usize = 64;
+
+/// Where such sites lie: the least and the greatest y, and the greatest width, px.
+pub(super) struct Extent {
+    top: f64,
+    bottom: f64,
+    widest_px: f64,
+}
+
+impl Extent {
+    fn of(sites: &[Site]) -> Self {
+        let none = Self { top: f64::INFINITY, bottom: f64::NEG_INFINITY, widest_px: 0.0 };
+        sites.iter().fold(none, |all, Site { centre, width_px, .. }| Self {
+            top: all.top.min(centre.y),
+            bottom: all.bottom.max(centre.y),
+            widest_px: all.widest_px.max(*width_px),
+        })
+    }
+
+    /// Those of the calm sites of all lines.
+    pub(super) fn of_lines(sites: &Sites<'_>, junctions: &Junctions) -> Vec<Vec<Self>> {
+        let of_line =
+            |edge: &usize| calm_sites(sites, junctions, *edge).chunks(TOGETHER).map(Self::of).collect();
+        junctions.lines.iter().map(of_line).collect()
+    }
+}
+
+/// The sites of an edge that no junction replaces, and no end of it: into a corner of the ink they get narrower.
+fn calm_sites<'a>(sites: &'a Sites<'_>, junctions: &Junctions, edge: usize) -> &'a [Site] {
+    let sites = sites.get(edge).unwrap_or(&[]);
+    let skip = |at_last| junctions.skip(End { edge, at_last });
+    sites.get(skip(false)..sites.len().saturating_sub(skip(true))).unwrap_or(&[])
 }
 
 /// Rows below a band's own in which a patch that begins in it mostly ends.
@@ -216,16 +253,9 @@ fn is_nearer(centre: PxPoint, at: PxPoint, root: Option<(PxPoint, f64)>) -> bool
 }
 
 impl Lines<'_> {
-    /// The sites of an edge that no junction replaces, and no end of it: into a corner of the ink they get narrower.
-    fn calm_sites(&self, edge: usize) -> &[Site] {
-        let sites = self.sites.get(edge).unwrap_or(&[]);
-        let skip = |at_last| self.junctions.skip(End { edge, at_last });
-        sites.get(skip(false)..sites.len().saturating_sub(skip(true))).unwrap_or(&[])
-    }
-
     /// Typical width of the line from an end on.
     fn typical_px(&self, end: End) -> f64 {
-        let sites = self.calm_sites(end.edge);
+        let sites = calm_sites(self.sites, self.junctions, end.edge);
         let first = if end.at_last { sites.len().saturating_sub(TYPICAL_SITES) } else { 0 };
         let some = sites.get(first..sites.len().min(first + TYPICAL_SITES)).unwrap_or(&[]);
         if some.is_empty() { 0.0 } else { typical_width_px(some).min(WIDEST_PX) }
@@ -235,18 +265,22 @@ impl Lines<'_> {
     /// apart, and the line's width there.
     fn each_place(&self, rows: &Range<u32>, reach_px: f64, mut visit: impl FnMut(PxPoint, f64)) {
         let (low, high) = (f64::from(rows.start), f64::from(rows.end));
-        let off_px = |at: PxPoint| (low - at.y).max(at.y - high);
-        let near = |at: PxPoint, width_px: f64| off_px(at) <= reach_px.max(0.5 * width_px + MARGIN_PX);
-        for edge in self.junctions.lines.iter().copied() {
-            let sites = self.calm_sites(edge);
+        let within = |off_px: f64, width_px: f64| off_px <= reach_px.max(0.5 * width_px + MARGIN_PX);
+        let near = |at: PxPoint, width_px: f64| within((low - at.y).max(at.y - high), width_px);
+        let comes_near = |some: &Extent| within((low - some.bottom).max(some.top - high), some.widest_px);
+        for (edge, extents) in self.junctions.lines.iter().copied().zip(&self.extents) {
+            let sites = calm_sites(self.sites, self.junctions, edge);
             let closed = self.graph.edges.get(edge).is_some_and(|edge| edge.nodes.is_none());
             let mut calm = Calm { sites, closed, known: None };
-            for (index, site) in sites.iter().enumerate() {
-                // Calm it is no wider.
-                if near(site.centre, site.width_px) {
-                    let width_px = calm.px(index);
-                    if near(site.centre, width_px) {
-                        visit(site.centre, width_px);
+            let together = sites.chunks(TOGETHER).zip((0..).step_by(TOGETHER)).zip(extents);
+            for ((some, first), _) in together.filter(|(_, extent)| comes_near(extent)) {
+                for (index, site) in (first..).zip(some) {
+                    // Calm it is no wider.
+                    if near(site.centre, site.width_px) {
+                        let width_px = calm.px(index);
+                        if near(site.centre, width_px) {
+                            visit(site.centre, width_px);
+                        }
                     }
                 }
             }

@@ -72,7 +72,7 @@ pub(super) struct Trial<'a> {
     /// What the undisturbed parts of the arms, which all plans share, make of each pixel.
     drawn: Vec<u32>,
     /// These parts.
-    courses: Vec<Capsule>,
+    courses: Vec<Bundle>,
     /// What was last drawn: memory for the next.
     cells: RefCell<Vec<u32>>,
 }
@@ -149,6 +149,68 @@ impl Capsule {
     }
 }
 
+/// Capsules side by side, so that the distances of a place from all of them are found at once.
+struct Bundle {
+    from: ([f32; LANES], [f32; LANES]),
+    way: ([f32; LANES], [f32; LANES]),
+    per_square: [f32; LANES],
+    half_px: [f32; LANES],
+}
+
+impl Bundle {
+    /// Capsules in their order; the last bundle is filled up with what nothing is near to.
+    fn of(capsules: &[Capsule]) -> Vec<Self> {
+        let bundle = |some: &[Capsule]| {
+            let lanes = |of: fn(&Capsule) -> f32, none: f32| {
+                core::array::from_fn(|lane| some.get(lane).map_or(none, of))
+            };
+            Self {
+                from: (lanes(|one| one.from.0, 0.0), lanes(|one| one.from.1, 0.0)),
+                way: (lanes(|one| one.way.0, 0.0), lanes(|one| one.way.1, 0.0)),
+                per_square: lanes(|one| one.per_square, 0.0),
+                half_px: lanes(|one| one.half_px, f32::NEG_INFINITY),
+            }
+        };
+        capsules.chunks(LANES).map(bundle).collect()
+    }
+
+    /// The squared distances of a place as of [`Capsule::squared`], px².
+    #[inline(never)]
+    fn squared(&self, x: f32, y: f32, squared: &mut [f32; LANES]) {
+        let Self { from: (from_x, from_y), way: (way_x, way_y), per_square, half_px } = self;
+        let lanes =
+            from_x.iter().zip(from_y).zip(way_x.iter().zip(way_y)).zip(per_square.iter().zip(half_px));
+        for (squared, (((from_x, from_y), (way_x, way_y)), (per_square, half_px))) in
+            squared.iter_mut().zip(lanes)
+        {
+            let from = (*from_x, *from_y);
+            let way = (*way_x, *way_y);
+            let capsule = Capsule { from, way, per_square: *per_square, half_px: *half_px };
+            *squared = capsule.squared(x, y);
+        }
+    }
+
+    /// How far a place lies outside, px, where that is less than `least`.
+    fn outside_px(&self, x: f32, y: f32, mut least: f32) -> f32 {
+        let mut squared = [0.0; LANES];
+        self.squared(x, y, &mut squared);
+        let is_nearer = |squared: f32, half_px: f32, least: f32| {
+            let within = least + half_px;
+            within > 0.0 && squared < within * within
+        };
+        let lanes = || squared.iter().zip(&self.half_px);
+        // Mostly none is, which all at once show sooner.
+        if lanes().fold(false, |any, (squared, half_px)| any | is_nearer(*squared, *half_px, least)) {
+            for (squared, half_px) in lanes() {
+                if is_nearer(*squared, *half_px, least) {
+                    least = libm::sqrtf(*squared) - half_px;
+                }
+            }
+        }
+        least
+    }
+}
+
 /// A place as seen from a corner.
 fn from_corner(at: PxPoint, corner: PxPoint) -> PxPoint {
     let (x, y) = at.minus(corner);
@@ -192,6 +254,7 @@ impl<'a> Trial<'a> {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 98")]
         let side = libm::ceil(2.0 * radius_px + 1.0) as usize;
         let stride = side.next_multiple_of(LANES);
+        let mut courses = Vec::new();
         let mut trial = Self {
             arms,
             roots: Vec::new(),
@@ -210,9 +273,10 @@ impl<'a> Trial<'a> {
             let mut course = places.take_while(|at| at.distance(centre) <= reach_px).peekable();
             let all_disturbed = one.arm.skip >= sites.len();
             trial.roots.push(course.peek().copied().or(all_disturbed.then_some(one.arm.origin)));
-            capsules(course.map(|at| (from_corner(at, corner), half_px)), &mut trial.courses);
+            capsules(course.map(|at| (from_corner(at, corner), half_px)), &mut courses);
         }
-        trial.courses.iter().for_each(|capsule| capsule.draw(&mut trial.drawn, stride));
+        courses.iter().for_each(|capsule| capsule.draw(&mut trial.drawn, stride));
+        trial.courses = Bundle::of(&courses);
         Some(trial)
     }
 
@@ -239,6 +303,11 @@ impl<'a> Trial<'a> {
             let way = from.into_iter().chain(inner).chain(to);
             capsules(way.map(|(at, width_px)| (from_corner(at, self.corner), 0.5 * width_px)), &mut pens);
         }
+        let bundles = Bundle::of(&pens);
+        let outside_px = |x: f32, y: f32| {
+            let all = bundles.iter().chain(&self.courses);
+            all.fold(FARTHEST_PX, |least, bundle| bundle.outside_px(x, y, least))
+        };
         let mut cells = self.cells.borrow_mut();
         cells.clone_from(&self.drawn);
         pens.iter().for_each(|pen| pen.draw(&mut cells, self.stride));
@@ -252,8 +321,8 @@ impl<'a> Trial<'a> {
             for (pixel, x) in cells.iter().zip(asked).zip(&COLUMNS) {
                 let off_px = match wrong(pixel) {
                     0 => continue,
-                    INK => self.outside_px(&pens, *x, *y),
-                    _ => -self.outside_px(&pens, *x, *y),
+                    INK => outside_px(*x, *y),
+                    _ => -outside_px(*x, *y),
                 };
                 let off_px = f64::from(off_px).max(0.0);
                 cost += off_px * off_px;
@@ -263,19 +332,6 @@ impl<'a> Trial<'a> {
             }
         }
         (cost < limit).then_some(cost)
-    }
-
-    /// How far a place lies outside of all pens' edges, px.
-    fn outside_px(&self, pens: &[Capsule], x: f32, y: f32) -> f32 {
-        let mut least = FARTHEST_PX;
-        for pen in pens.iter().chain(&self.courses) {
-            let squared = pen.squared(x, y);
-            let within = least + pen.half_px;
-            if within > 0.0 && squared < within * within {
-                least = libm::sqrtf(squared) - pen.half_px;
-            }
-        }
-        least
     }
 
     /// Where an arm's undisturbed part begins.
@@ -344,11 +400,13 @@ fn asked(
     let mut asked = vec![0; side * stride];
     for ((row, line), at_y) in (top..).zip(asked.chunks_exact_mut(stride)).zip(&COLUMNS) {
         let dy = f64::from(*at_y) - y;
-        for ((column, ask), at_x) in (left..).zip(line).zip(&COLUMNS).take(side) {
+        let mut ink = scan.ink_from(Pixel::new(left, row));
+        for (ask, at_x) in line.iter_mut().zip(&COLUMNS).take(side) {
             let dx = f64::from(*at_x) - x;
             if dx * dx + dy * dy <= radius_px * radius_px {
-                *ask = if scan.is_ink_at(Pixel::new(column, row)) { INK } else { PAPER };
+                *ask = if ink & 1 == 1 { INK } else { PAPER };
             }
+            ink >>= 1;
         }
     }
     asked

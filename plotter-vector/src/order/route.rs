@@ -21,6 +21,7 @@ pub(crate) struct Route {
     /// Places from this one on are as near to everything as can be.
     anywhere: u32,
     one_way: Vec<u32>,
+    is_one_way: Vec<bool>,
     /// What was done since the last [`Route::keep`].
     log: Vec<Change>,
     /// Things touched by all changes: what the work has cost.
@@ -63,14 +64,16 @@ impl Route {
         }
         ports[home as usize] = [end, start];
         place[home as usize] = home;
-        let one_way = (0..home).filter(|site| matches!(sites.kind(*site), Site::OneWay(..))).collect();
+        let is_one_way: Vec<bool> =
+            (0..=home).map(|site| site < home && matches!(sites.kind(site), Site::OneWay(..))).collect();
         Self {
             order: visits.iter().map(|visit| visit.site).chain([home]).collect(),
             place,
             ports,
             places,
             anywhere: if from.is_some() { end } else { start },
-            one_way,
+            one_way: (0..home).filter(|site| is_one_way[*site as usize]).collect(),
+            is_one_way,
             log: Vec::new(),
             moved: 0,
         }
@@ -82,7 +85,8 @@ impl Route {
     }
 
     pub(crate) fn at(&self, standing: usize) -> u32 {
-        self.order[standing % self.order.len()]
+        let all = self.order.len();
+        self.order[if standing < all { standing } else { standing % all }]
     }
 
     /// The last thing: the ends of the way.
@@ -140,8 +144,7 @@ impl Route {
     /// Whether a thing may be turned as if its way were the same from both ends. Turning the last thing turns all
     /// others, so with one-way things among them it may not.
     pub(crate) fn may_turn(&self, site: u32) -> bool {
-        self.one_way.is_empty()
-            || (site as usize + 1 < self.order.len() && self.one_way.binary_search(&site).is_err())
+        self.one_way.is_empty() || (site as usize + 1 < self.order.len() && !self.is_one_way[site as usize])
     }
 
     /// Turns the things from `first` to `last`, as read, round. Returns by how much the way grows because one-way
@@ -194,18 +197,27 @@ impl Route {
             return 0.0;
         }
         let all = self.order.len();
-        let within = |standing: u32| (standing as usize + all - low) % all < count;
+        // Steps up from the first that was turned.
+        let steps = |site: u32| {
+            let standing = self.place[site as usize] as usize;
+            if standing >= low { standing - low } else { standing + all - low }
+        };
         // With the last thing among those turned, everything is read from the other side.
-        let turned = !within(self.place[all - 1]);
+        let turned = if steps(self.home()) < count { count..all } else { 0..count };
+        let mut found: Vec<u32> = if turned.len() < self.one_way.len() {
+            let at = |steps: usize| self.at(low + steps);
+            turned.map(at).filter(|site| self.is_one_way[*site as usize]).collect()
+        } else {
+            self.one_way.iter().copied().filter(|site| turned.contains(&steps(*site))).collect()
+        };
+        // The sum is the same wherever they stand.
+        found.sort_unstable();
         let mut growth = 0.0;
-        for index in 0..self.one_way.len() {
-            let site = self.one_way[index];
-            if within(self.place[site as usize]) == turned {
-                let ways = |route: &Self| route.way(Reading::Up, site) + route.way(Reading::Down, site);
-                growth -= ways(self);
-                self.ports[site as usize].swap(0, 1);
-                growth += ways(self);
-            }
+        for site in found {
+            let ways = |route: &Self| route.way(Reading::Up, site) + route.way(Reading::Down, site);
+            growth -= ways(self);
+            self.ports[site as usize].swap(0, 1);
+            growth += ways(self);
         }
         self.moved += self.one_way.len() as u64;
         growth

@@ -99,12 +99,17 @@ impl Neighbours {
         w & sw & s & !(n | ne | e)
     }
 
-    /// Tips: one neighbour, or two side by side.
-    pub(super) const fn tip(self) -> u64 {
+    /// Tips among the pixels `here`: one neighbour, or two side by side.
+    pub(super) const fn tip(self, here: u64) -> u64 {
         let Self { n, ne, e, se, s, sw, w, nw } = self;
+        // None has ink on two opposite sides, and in most words all ink has.
+        let here = here & !(n & s | e & w | ne & sw | nw & se);
+        if here == 0 {
+            return 0;
+        }
         let (ones, twos, threes) = at_least([n, ne, e, se, s, sw, w, nw]);
         let pair = n & ne | ne & e | e & se | se & s | s & sw | sw & w | w & nw | nw & n;
-        ones & !threes & (!twos | pair)
+        here & ones & !threes & (!twos | pair)
     }
 
     /// Clean-up: simple pixels with ink above and paper below, unless they are the last pixel of a line.
@@ -167,8 +172,8 @@ mod tests {
             ("bare above", |n| n.half_turn().bare_below()),
             ("bare to the left", |n| n.quarter_turn().bare_below()),
             ("bare to the right", |n| n.quarter_turn().half_turn().bare_below()),
-            ("tips", Neighbours::tip),
-            ("tips, turned", |n| n.quarter_turn().tip()),
+            ("tips", |n| n.tip(u64::MAX)),
+            ("tips, turned", |n| n.quarter_turn().tip(u64::MAX)),
             ("nothing", |_| 0),
         ]
     }

@@ -24,6 +24,9 @@ pub(super) enum Step {
     BareRight,
 }
 
+/// How many steps there are.
+const STEPS: usize = Step::BareRight as usize + 1;
+
 impl Step {
     /// How many rows away a pixel can lie that decides about another.
     pub(super) const fn reach(self) -> u32 {
@@ -31,23 +34,21 @@ impl Step {
     }
 }
 
-/// Does steps on one picture. Holds three bits of marks a word of the picture, and what goes of three rows.
+/// Does steps on one picture. Holds a bit of marks a word of the picture for each step, and what goes of three rows.
 ///
 /// Ink is only ever deleted. Whether a pixel goes in a step can therefore change only when one of its eight neighbours
-/// goes (thick ink near a tip, [`tips::shrinking`], can vanish but not appear): a word is looked at in the first pass,
-/// and then when a pixel in it or beside it has gone since the step was last done there, one or two passes before.
+/// goes (thick ink near a tip, [`tips::shrinking`], can vanish but not appear): a step looks at all words with ink when it
+/// is done first, and then at those where a pixel in or beside the word has gone since it was last done there.
 #[derive(Debug)]
 pub(super) struct Sweeper {
     /// Words of marks a row.
     per_row: usize,
     /// Rows that the steps are done in.
     rows: Range<u32>,
-    /// Words to look at in this pass, a bit each: pixels have gone there in the last one or this.
-    now: Vec<u64>,
-    /// What `now` was in the end of the last pass, for the steps that are done in every other pass.
-    before: Vec<u64>,
-    /// The same of the next pass.
-    next: Vec<u64>,
+    /// The words with ink, a bit each.
+    inked: Vec<u64>,
+    /// For each step those that it has to look at; none of a step that was not done yet.
+    open: [Vec<u64>; STEPS],
     /// Words of a row and beside that are to be looked at again.
     marks: Vec<u64>,
     /// What goes of the current row and of the two above it.
@@ -61,35 +62,27 @@ type Gone = Vec<(usize, u64)>;
 const OUTSIDE: &[u64] = &[];
 
 impl Sweeper {
-    /// For `ink`, with every word of it that is not empty to be looked at.
+    /// For `ink`, before the first step.
     pub(super) fn new(ink: &Bitmap) -> Self {
-        let words = ink.row(0).len();
-        let per_row = words.div_ceil(64);
-        let marks = per_row * ink.height() as usize;
-        let mut sweeper = Self {
+        let per_row = ink.row(0).len().div_ceil(64);
+        let mark = |words: &[u64]| words.iter().rev().fold(0, |mark, word| mark << 1 | u64::from(*word != 0));
+        Self {
             per_row,
             rows: 0..ink.height(),
-            now: vec![0; marks],
-            before: vec![0; marks],
-            next: vec![0; marks],
+            inked: (0..ink.height()).flat_map(|y| ink.row(y).chunks(64).map(mark)).collect(),
+            open: Default::default(),
             marks: vec![0; per_row],
             gone: Default::default(),
-        };
-        sweeper.look_everywhere(ink);
-        sweeper
+        }
     }
 
-    /// Has every word looked at that is not empty: before steps that have not been done yet.
-    pub(super) fn look_everywhere(&mut self, ink: &Bitmap) {
-        if self.per_row == 0 {
-            return;
-        }
-        for (y, marks) in (0..).zip(self.now.chunks_exact_mut(self.per_row)) {
-            for (mark, words) in marks.iter_mut().zip(ink.row(y).chunks(64)) {
-                *mark = words.iter().rev().fold(0, |mark, word| mark << 1 | u64::from(*word != 0));
+    /// Forgets what all but some steps have to look at: those are not done any more.
+    pub(super) fn keep_only(&mut self, steps: &[Step]) {
+        for (index, open) in self.open.iter_mut().enumerate() {
+            if steps.iter().all(|step| *step as usize != index) {
+                *open = Vec::new();
             }
         }
-        self.before.copy_from_slice(&self.now);
     }
 
     /// Does the steps one after the other in some rows; whether anything has gone.
@@ -99,35 +92,26 @@ impl Sweeper {
         for step in steps {
             // A closure each, so that each step is a loop of its own.
             changed |= match step {
-                Step::GuoHallFirst => self.sweep(ink, Neighbours::guo_hall),
-                Step::GuoHallSecond => self.sweep(ink, |n| n.half_turn().guo_hall()),
-                Step::ZhangSuenFirst => self.sweep(ink, Neighbours::zhang_suen),
-                Step::ZhangSuenSecond => self.sweep(ink, |n| n.half_turn().zhang_suen()),
-                Step::CornersRising => self.alternate(ink, |n| n.corner() | n.half_turn().corner()),
-                Step::CornersFalling => {
-                    self.alternate(ink, |n| n.quarter_turn().corner() | n.quarter_turn().half_turn().corner())
-                }
-                Step::Tips => self.sweep_rows(ink, false, Neighbours::tip, tips::shrinking),
-                Step::BareBelow => self.sweep(ink, Neighbours::bare_below),
-                Step::BareAbove => self.sweep(ink, |n| n.half_turn().bare_below()),
-                Step::BareLeft => self.sweep(ink, |n| n.quarter_turn().bare_below()),
-                Step::BareRight => self.sweep(ink, |n| n.quarter_turn().half_turn().bare_below()),
+                Step::GuoHallFirst => self.sweep(ink, *step, Neighbours::guo_hall),
+                Step::GuoHallSecond => self.sweep(ink, *step, |n| n.half_turn().guo_hall()),
+                Step::ZhangSuenFirst => self.sweep(ink, *step, Neighbours::zhang_suen),
+                Step::ZhangSuenSecond => self.sweep(ink, *step, |n| n.half_turn().zhang_suen()),
+                Step::CornersRising => self.sweep(ink, *step, |n| n.corner() | n.half_turn().corner()),
+                Step::CornersFalling => self
+                    .sweep(ink, *step, |n| n.quarter_turn().corner() | n.quarter_turn().half_turn().corner()),
+                Step::Tips => self.sweep_rows(ink, *step, |here, n| n.tip(here), tips::shrinking),
+                Step::BareBelow => self.sweep(ink, *step, Neighbours::bare_below),
+                Step::BareAbove => self.sweep(ink, *step, |n| n.half_turn().bare_below()),
+                Step::BareLeft => self.sweep(ink, *step, |n| n.quarter_turn().bare_below()),
+                Step::BareRight => self.sweep(ink, *step, |n| n.quarter_turn().half_turn().bare_below()),
             };
         }
-        core::mem::swap(&mut self.before, &mut self.now);
-        core::mem::swap(&mut self.now, &mut self.next);
-        self.next.fill(0);
         changed
     }
 
-    /// A step that is done in every pass.
-    fn sweep(&mut self, ink: &mut Bitmap, rule: impl Fn(Neighbours) -> u64) -> bool {
-        self.sweep_rows(ink, false, rule, |_, _, gone| gone)
-    }
-
-    /// A step that is done in every other pass.
-    fn alternate(&mut self, ink: &mut Bitmap, rule: impl Fn(Neighbours) -> u64) -> bool {
-        self.sweep_rows(ink, true, rule, |_, _, gone| gone)
+    /// A step that looks at the neighbours alone.
+    fn sweep(&mut self, ink: &mut Bitmap, step: Step, rule: impl Fn(Neighbours) -> u64) -> bool {
+        self.sweep_rows(ink, step, |here, n| here & rule(n), |_, _, gone| gone)
     }
 
     /// One step, row by row from the top: `rule` says which pixels of a word go, and `confirm` which of them really
@@ -135,14 +119,20 @@ impl Sweeper {
     fn sweep_rows(
         &mut self,
         ink: &mut Bitmap,
-        is_alternate: bool,
-        rule: impl Fn(Neighbours) -> u64,
+        step: Step,
+        rule: impl Fn(u64, Neighbours) -> u64,
         confirm: impl Fn([&[u64]; 7], usize, u64) -> u64,
     ) -> bool {
+        if let Some(open) = self.open.get_mut(step as usize).filter(|open| open.is_empty()) {
+            open.clone_from(&self.inked);
+        }
         let mut changed = false;
         for y in self.rows.clone() {
+            if self.open_words(step, y).iter().all(|mark| *mark == 0) && self.gone.iter().all(Vec::is_empty) {
+                continue;
+            }
             let [mut current, above, higher] = core::mem::take(&mut self.gone);
-            self.judge_row(ink, (y, is_alternate), &rule, &confirm, &mut current);
+            judge_row(ink, y, self.open_words(step, y), &rule, &confirm, &mut current);
             changed |= !current.is_empty();
             // The row two above is deleted from only now: until here it was to be seen as it was before the step.
             let done = self.delete(ink, y.wrapping_sub(2), higher);
@@ -155,47 +145,11 @@ impl Sweeper {
         changed
     }
 
-    /// What goes of row `y` in a step that is done in every pass, or in every other one.
-    fn judge_row<'a>(
-        &'a self,
-        ink: &Bitmap,
-        (y, is_alternate): (u32, bool),
-        rule: impl Fn(Neighbours) -> u64,
-        confirm: impl Fn([&[u64]; 7], usize, u64) -> u64,
-        gone: &mut Gone,
-    ) {
+    /// The words of row `y` that a step has to look at.
+    fn open_words(&mut self, step: Step, y: u32) -> &mut [u64] {
         let start = y as usize * self.per_row;
-        let of_row = |marks: &'a [u64]| marks.get(start..start + self.per_row).unwrap_or(OUTSIDE);
-        let now = of_row(&self.now);
-        let before = if is_alternate { of_row(&self.before) } else { OUTSIDE };
-        if now.iter().chain(before).all(|mark| *mark == 0) {
-            return;
-        }
-        let above = |up: u32| y.checked_sub(up).map_or(OUTSIDE, |y| ink.row(y));
-        let below = |down: u32| ink.row(y + down);
-        let rows = [above(3), above(2), above(1), below(0), below(1), below(2), below(3)];
-        let [_, _, north, middle, south, _, _] = rows;
-        let before = before.iter().chain(core::iter::repeat(&0));
-        for (base, (now, before)) in (0..).step_by(64).zip(now.iter().zip(before)) {
-            let mut rest = now | before;
-            while rest != 0 {
-                let at = base + rest.trailing_zeros() as usize;
-                rest &= rest - 1;
-                let (word, w, e) = three(middle, at);
-                if word == 0 {
-                    continue;
-                }
-                let (n, nw, ne) = three(north, at);
-                let (s, sw, se) = three(south, at);
-                let mut goes = word & rule(Neighbours { n, ne, e, se, s, sw, w, nw });
-                if goes != 0 {
-                    goes = confirm(rows, at, goes);
-                }
-                if goes != 0 {
-                    gone.push((at, goes));
-                }
-            }
-        }
+        let open = self.open.get_mut(step as usize);
+        open.and_then(|open| open.get_mut(start..start + self.per_row)).unwrap_or_default()
     }
 
     /// Deletes what goes of row `y` and marks the words it is in and the words beside; hands the list back, empty.
@@ -203,7 +157,7 @@ impl Sweeper {
         if gone.is_empty() {
             return gone;
         }
-        let Self { per_row, now, next, marks, .. } = self;
+        let Self { per_row, open, marks, .. } = self;
         marks.fill(0);
         let mut mark = |at: usize| {
             if let Some(word) = marks.get_mut(at / 64) {
@@ -223,9 +177,8 @@ impl Sweeper {
                 mark(at + 1);
             }
         }
-        // For the steps to come in this pass, and for all of the next.
         let first = (y as usize).saturating_sub(1) * *per_row;
-        for all in [now, next] {
+        for all in open {
             let end = all.len().min((y as usize + 2) * *per_row);
             for rows in all.get_mut(first..end).unwrap_or(&mut []).chunks_exact_mut(*per_row) {
                 for (word, mark) in rows.iter_mut().zip(marks.iter()) {
@@ -234,6 +187,41 @@ impl Sweeper {
             }
         }
         gone
+    }
+}
+
+/// What goes of row `y` in a step of the words that it has to look at, of which none is left.
+fn judge_row(
+    ink: &Bitmap,
+    y: u32,
+    open: &mut [u64],
+    rule: impl Fn(u64, Neighbours) -> u64,
+    confirm: impl Fn([&[u64]; 7], usize, u64) -> u64,
+    gone: &mut Gone,
+) {
+    let above = |up: u32| y.checked_sub(up).map_or(OUTSIDE, |y| ink.row(y));
+    let below = |down: u32| ink.row(y + down);
+    let rows = [above(3), above(2), above(1), below(0), below(1), below(2), below(3)];
+    let [_, _, north, middle, south, _, _] = rows;
+    for (base, open) in (0..).step_by(64).zip(open) {
+        let mut rest = core::mem::take(open);
+        while rest != 0 {
+            let at = base + rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let (word, w, e) = three(middle, at);
+            if word == 0 {
+                continue;
+            }
+            let (n, nw, ne) = three(north, at);
+            let (s, sw, se) = three(south, at);
+            let mut goes = rule(word, Neighbours { n, ne, e, se, s, sw, w, nw });
+            if goes != 0 {
+                goes = confirm(rows, at, goes);
+            }
+            if goes != 0 {
+                gone.push((at, goes));
+            }
+        }
     }
 }
 
@@ -333,7 +321,7 @@ mod tests {
                     };
                     let ring = neighbours(x, y);
                     let pair = ring.len() == 1 && ring.iter().all(|(u, v)| neighbours(*u, *v).len() == 1);
-                    n.tip() & u64::from(thick && !pair)
+                    n.tip(1) & u64::from(thick && !pair)
                 }
             };
             after.set(pixel, goes & 1 == 0);
