@@ -210,8 +210,7 @@ fn record(windows: &Path, machine: &str, paper: &Paper) -> Vec<PxPoint> {
         ..CameraSettings::default()
     };
     let mut camera = SimulatedCamera::new(paper, settings);
-    let [right, low] = machine.area_px();
-    let area = Some([PxPoint::new(0.0, 0.0), PxPoint::new(right, low)]);
+    let area = Some(machine.area());
     let mut follower = MappingFollower::new(MappingSettings { area, ..MappingSettings::default() });
     let mut commands = Vec::new();
     for index in 0..2000 {
