@@ -177,16 +177,11 @@ impl Bundle {
     /// The squared distances of a place as of [`Capsule::squared`], px².
     #[inline(never)]
     fn squared(&self, x: f32, y: f32, squared: &mut [f32; LANES]) {
-        let Self { from: (from_x, from_y), way: (way_x, way_y), per_square, half_px } = self;
-        let lanes =
-            from_x.iter().zip(from_y).zip(way_x.iter().zip(way_y)).zip(per_square.iter().zip(half_px));
-        for (squared, (((from_x, from_y), (way_x, way_y)), (per_square, half_px))) in
-            squared.iter_mut().zip(lanes)
-        {
-            let from = (*from_x, *from_y);
-            let way = (*way_x, *way_y);
-            let capsule = Capsule { from, way, per_square: *per_square, half_px: *half_px };
-            *squared = capsule.squared(x, y);
+        for (lane, squared) in squared.iter_mut().enumerate() {
+            let from = (self.from.0[lane], self.from.1[lane]);
+            let way = (self.way.0[lane], self.way.1[lane]);
+            let (per_square, half_px) = (self.per_square[lane], self.half_px[lane]);
+            *squared = Capsule { from, way, per_square, half_px }.squared(x, y);
         }
     }
 
@@ -198,10 +193,13 @@ impl Bundle {
             let within = least + half_px;
             within > 0.0 && squared < within * within
         };
-        let lanes = || squared.iter().zip(&self.half_px);
         // Mostly none is, which all at once show sooner.
-        if lanes().fold(false, |any, (squared, half_px)| any | is_nearer(*squared, *half_px, least)) {
-            for (squared, half_px) in lanes() {
+        let mut any = false;
+        for (lane, squared) in squared.iter().enumerate() {
+            any |= is_nearer(*squared, self.half_px[lane], least);
+        }
+        if any {
+            for (squared, half_px) in squared.iter().zip(&self.half_px) {
                 if is_nearer(*squared, *half_px, least) {
                     least = libm::sqrtf(*squared) - half_px;
                 }

@@ -174,6 +174,7 @@ impl<'a> Search<'a> {
                 at_exit.then_some((site, back, other, true)),
             ];
             for (seed, outwards, after, reversed) in stretches.into_iter().flatten() {
+                let growth = Moved::new(route, (reading, outwards), seed, after, reversed);
                 let mut far = seed;
                 for _ in 0..MOVED_TOGETHER {
                     if far == after || (reversed && !route.may_turn(far)) {
@@ -182,8 +183,8 @@ impl<'a> Search<'a> {
                     self.looked += 1;
                     let (first, last) = if outwards == reading { (seed, far) } else { (far, seed) };
                     if after != route.before(reading, first) {
-                        let growth = growth_of_move(route, reading, (first, last), after, reversed);
-                        consider(best, growth, reading, Change::Move { first, last, after, reversed });
+                        let change = Change::Move { first, last, after, reversed };
+                        consider(best, growth.up_to(route, far), reading, change);
                     }
                     far = route.next(outwards, far);
                 }
@@ -311,6 +312,63 @@ impl<'a> Search<'a> {
 fn consider(best: &mut Best, growth: f64, reading: Reading, change: Change) {
     if best.is_none_or(|(least, ..)| growth < least) {
         *best = Some((growth, reading, change));
+    }
+}
+
+/// What is the same for all stretches that go on from one thing outwards and are put after the same other thing: the sum for
+/// each is that of [`growth_of_move`].
+struct Moved {
+    outwards: Reading,
+    /// Whether the stretch is read outwards too.
+    is_along: bool,
+    /// The place before the first thing, and the way from there.
+    before: u32,
+    gap: f64,
+    /// The places between which the stretch is put, and the way between them.
+    put: (u32, u32),
+    put_gap: f64,
+    /// Whether the first thing comes to the first of these places, and how far it is from its own one.
+    is_first: bool,
+    near: f64,
+}
+
+impl Moved {
+    fn new(
+        route: &Route,
+        (reading, outwards): (Reading, Reading),
+        seed: u32,
+        after: u32,
+        reversed: bool,
+    ) -> Self {
+        let is_along = outwards == reading;
+        let before = route.exit(outwards, route.before(outwards, seed));
+        let own = route.entry(outwards, seed);
+        let put = (route.exit(reading, after), route.entry(reading, route.next(reading, after)));
+        let is_first = is_along != reversed;
+        Self {
+            outwards,
+            is_along,
+            before,
+            gap: route.distance(before, own),
+            put,
+            put_gap: route.distance(put.0, put.1),
+            is_first,
+            near: route.distance(own, if is_first { put.0 } else { put.1 }),
+        }
+    }
+
+    /// By how much the way grows with the stretch up to a thing.
+    fn up_to(&self, route: &Route, far: u32) -> f64 {
+        let own = route.exit(self.outwards, far);
+        let next = route.entry(self.outwards, route.next(self.outwards, far));
+        let closed = route.distance(self.before, next);
+        let gap = route.distance(own, next);
+        let left = if self.is_along { closed - self.gap - gap } else { closed - gap - self.gap };
+        if self.is_first {
+            left + self.near + route.distance(own, self.put.1) - self.put_gap
+        } else {
+            left + route.distance(self.put.0, own) + self.near - self.put_gap
+        }
     }
 }
 
@@ -460,6 +518,29 @@ mod tests {
             let work = search.looked + search.route.moved;
             assert!(work <= budget + BEYOND, "{work} of {budget}");
             assert!(search.route.length() < before || budget < 1000);
+        }
+    }
+
+    #[test]
+    fn what_a_move_gains_is_the_same_to_the_last_bit_however_it_is_summed_up() {
+        let end = |n: i32| ((n * 37) % 101, (n * 53) % 89);
+        let (sites, visits) = lines((0..12).map(|n| (end(2 * n), end(2 * n + 1))));
+        let route = Route::new(&sites, &visits, None);
+        for reading in [Reading::Up, Reading::Down] {
+            for (outwards, reversed) in
+                [reading, reading.other()].into_iter().flat_map(|way| [(way, false), (way, true)])
+            {
+                for (seed, after) in (2..9).flat_map(|seed| [(seed, 0), (seed, 11)]) {
+                    let moved = Moved::new(&route, (reading, outwards), seed, after, reversed);
+                    let mut far = seed;
+                    for _ in 0..2 {
+                        let stretch = if outwards == reading { (seed, far) } else { (far, seed) };
+                        let growth = growth_of_move(&route, reading, stretch, after, reversed);
+                        assert_eq!(moved.up_to(&route, far).to_bits(), growth.to_bits());
+                        far = route.next(outwards, far);
+                    }
+                }
+            }
         }
     }
 }

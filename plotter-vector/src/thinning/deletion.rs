@@ -27,12 +27,14 @@ pub(super) struct Neighbours {
 
 impl Neighbours {
     /// The neighbours after half a turn of the picture.
+    #[inline]
     pub(super) const fn half_turn(self) -> Self {
         let Self { n, ne, e, se, s, sw, w, nw } = self;
         Self { n: s, ne: sw, e: w, se: nw, s: n, sw: ne, w: e, nw: se }
     }
 
     /// The neighbours after a quarter turn of the picture to the left: the east comes to lie in the north.
+    #[inline]
     pub(super) const fn quarter_turn(self) -> Self {
         let Self { n, ne, e, se, s, sw, w, nw } = self;
         Self { n: e, ne: se, e: s, se: sw, s: w, sw: nw, w: n, nw: ne }
@@ -40,6 +42,7 @@ impl Neighbours {
 
     /// C = 1 of Guo & Hall: `¬P2(P3∨P4) + ¬P4(P5∨P6) + ¬P6(P7∨P8) + ¬P8(P9∨P2)`, the number of 8-connected pieces of
     /// the ring, is one. The centre of solid ink has C = 0.
+    #[inline]
     pub(super) const fn simple(self) -> u64 {
         let Self { n, ne, e, se, s, sw, w, nw } = self;
         let (a, b) = (!n & (ne | e), !e & (se | s));
@@ -52,6 +55,7 @@ impl Neighbours {
     ///
     /// C = 1, 2 ≤ N ≤ 3 with N = min(N1, N2) the number of neighbours counted in pairs, and
     /// `(P2 ∨ P3 ∨ ¬P5) ∧ P4 = 0`: pixels of the north and east sides.
+    #[inline]
     pub(super) const fn guo_hall(self) -> u64 {
         let Self { n, ne, e, se, s, sw, w, nw } = self;
         let (a, b, c, d) = (nw | n, ne | e, se | s, sw | w);
@@ -73,6 +77,7 @@ impl Neighbours {
     ///   two, diagonal lines two pixels wide are eaten up from their ends.
     /// - The north-west pixel of a square stays: a square of 2 x 2 would go as a whole, the only one of Ronse's
     ///   cases in which the step is wrong. On a larger corner the pixel goes in the other half.
+    #[inline]
     pub(super) const fn zhang_suen(self) -> u64 {
         let Self { n, ne, e, se, s, sw, w, nw } = self;
         let ring = [n, ne, e, se, s, sw, w, nw, n, ne];
@@ -94,12 +99,14 @@ impl Neighbours {
     }
 
     /// North-east corners of ink: what makes a diagonal edge. Paper on that side, ink on the other.
+    #[inline]
     pub(super) const fn corner(self) -> u64 {
         let Self { n, ne, e, se: _, s, sw, w, nw: _ } = self;
         w & sw & s & !(n | ne | e)
     }
 
     /// Tips among the pixels `here`: one neighbour, or two side by side.
+    #[inline]
     pub(super) const fn tip(self, here: u64) -> u64 {
         let Self { n, ne, e, se, s, sw, w, nw } = self;
         // None has ink on two opposite sides, and in most words all ink has.
@@ -113,6 +120,7 @@ impl Neighbours {
     }
 
     /// Clean-up: simple pixels with ink above and paper below, unless they are the last pixel of a line.
+    #[inline]
     pub(super) const fn bare_below(self) -> u64 {
         let Self { n, ne, e, se, s, sw, w, nw } = self;
         self.simple() & n & !s & (ne | e | se | sw | w | nw)
@@ -120,6 +128,7 @@ impl Neighbours {
 }
 
 /// Where at least one, two and three of the words are set.
+#[inline]
 const fn at_least(words: [u64; 8]) -> (u64, u64, u64) {
     let (mut ones, mut twos, mut threes) = (0, 0, 0);
     let mut rest: &[u64] = &words;
