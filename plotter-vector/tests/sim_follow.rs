@@ -82,6 +82,24 @@ fn dense_lines_are_followed_one_by_one() {
     assert!(run.judged.repeated < 0.01 && run.report.lifts == 4, "{:?} {:?}", run.judged, run.report);
 }
 
+/// A table that has gone astray is at its limits before the line is: the tool does not leave the line there.
+#[test]
+fn at_the_limits_of_the_machine_the_tool_stays_on_the_line() {
+    let (mut greatest, mut leaves) = (0.0_f64, 0);
+    for seed in 0..2 {
+        let lines =
+            vec![polyline(&[(430.3, 290.2), (-4.2, 120.6)]), polyline(&[(430.3, 90.7), (-4.6, 230.4)])];
+        let figure = Figure { name: "limits", width: 460, height: 340, lines, pen_px: 4.0 };
+        let camera = CameraSettings { width_px: 160, height_px: 160, seed, ..CameraSettings::default() };
+        let error = TableError { random_px: 4.0, play_px: 3.0, seed };
+        let run = ours(&figure, PxPoint::new(230.0, 180.0), camera, error, settings(&figure));
+        println!("{:?} {:?} {:?}", run.end, run.judged, run.report);
+        greatest = greatest.max(run.judged.max_px);
+        leaves += run.report.leaves.len();
+    }
+    assert!(greatest < 4.0 && leaves > 0, "{greatest} {leaves}");
+}
+
 /// 1 px between lines is nothing under 1.5 px of blur, and no window shows where they end: no look for that goes on for ever.
 #[test]
 fn lines_that_are_one_under_the_blur_come_to_an_end() {

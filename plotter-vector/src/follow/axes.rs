@@ -56,6 +56,12 @@ impl Axes {
         [dx, dy].iter().zip(&self.0).any(|(way, play)| way * play.side() < -TURN_PX)
     }
 
+    /// How far the command that leads to a place is beyond the machine's area, in either axis, px.
+    pub(super) fn beyond_px(&self, to: PxPoint, area: Option<[PxPoint; 2]>) -> f64 {
+        let x = self.0[0].beyond_px(to.x, area.map(|[from, to]| [from.x, to.x]));
+        x.max(self.0[1].beyond_px(to.y, area.map(|[from, to]| [from.y, to.y])))
+    }
+
     /// The command that takes the axes which turn round on the way to a place across their play, if any does.
     pub(super) fn crossing(&mut self, to: PxPoint, area: Option<[PxPoint; 2]>) -> Option<PxPoint> {
         let [x, y] = &mut self.0;

@@ -22,6 +22,9 @@ const GLANCE_PX: usize = 100;
 /// A line farther than this from the tool is gone back to before it is followed on, px.
 const OFF_PX: f64 = 0.45;
 
+/// A line ends where the machine would have to go farther than this beyond its area, px.
+const BEYOND_PX: f64 = 0.5;
+
 /// The tool is lowered when it is as near, px.
 const ARRIVED_PX: f64 = 0.35;
 
@@ -361,11 +364,23 @@ impl MappingFollower {
                 link.state = State::Outside;
             }
             let at = self.map.at(if inside[0] { link.ends[0] } else { link.ends[1] });
-            let is_new = self.report.leaves.iter().all(|known| known.distance(at) > 10.0);
-            if (inside[0] || inside[1]) && is_new && self.report.leaves.len() < 1000 {
-                self.report.leaves.push(at);
+            if inside[0] || inside[1] {
+                self.leaves_at(at);
             }
         }
+    }
+
+    /// A line leaves the machine's area at a place.
+    fn leaves_at(&mut self, at: PxPoint) {
+        let is_new = self.report.leaves.iter().all(|known| known.distance(at) > 10.0);
+        if is_new && self.report.leaves.len() < 1000 {
+            self.report.leaves.push(at);
+        }
+    }
+
+    /// Whether the machine's limits keep the tool from a place.
+    fn is_beyond(&self, at: PxPoint) -> bool {
+        self.axes.beyond_px(at, self.settings.area) > BEYOND_PX
     }
 
     /// Lines of the map that are not there.
@@ -532,6 +547,13 @@ impl MappingFollower {
         heading: (f64, f64),
         looked: bool,
     ) -> Option<Step> {
+        // An axis that stands still at its limit would let the other one take the tool off the line.
+        let ahead = link.or_else(|| trail::next(&self.map, node, heading).map(|(id, _, far)| (id, far)));
+        if let Some((id, far)) = ahead.filter(|(_, far)| self.is_beyond(self.map.at(*far))) {
+            self.map.set_state(id, State::Outside);
+            self.leaves_at(self.map.at(far));
+            return Some(self.choose(at));
+        }
         // Back to the line first, if the table went off it.
         let on_line = match link {
             Some((_, far)) => nearest(self.place, self.map.at(node), self.map.at(far)),
@@ -588,6 +610,10 @@ impl MappingFollower {
                 }
             };
             let to = self.map.at(far);
+            if !path.is_empty() && self.is_beyond(to) {
+                link = Some((id, far));
+                break;
+            }
             // Where an axis turns round its play may do something else than is known: a look before.
             if !path.is_empty() && self.axes.turns(from, to) {
                 link = Some((id, far));

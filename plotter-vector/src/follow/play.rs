@@ -45,6 +45,9 @@ const UNKNOWN_PX: f64 = 0.4;
 const SEEN_PX: f64 = 0.15;
 const TABLE_PX: f64 = 0.1;
 
+/// An axis is near a limit, px: nearer than it goes in one move along a line.
+const NEAR_LIMIT_PX: f64 = 40.0;
+
 /// A command to an axis, px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Command {
@@ -188,6 +191,17 @@ impl Play {
         }
     }
 
+    /// How far beyond the machine's limits the command is that leads to a place, px.
+    pub(super) fn beyond_px(&self, wanted: f64, limits: Option<[f64; 2]>) -> f64 {
+        let Some([from, to]) = limits else { return 0.0 };
+        // Nowhere else it matters.
+        if self.sent_px > from + NEAR_LIMIT_PX && self.sent_px < to - NEAR_LIMIT_PX {
+            return 0.0;
+        }
+        let command = self.command_to(wanted);
+        (from - command).max(command - to).max(0.0)
+    }
+
     fn send(&mut self, command: f64) {
         let moved = command - self.sent_px;
         if moved != 0.0 {
@@ -308,6 +322,14 @@ mod tests {
         // And it goes no farther, nor back.
         assert_eq!(play.command(9.5, limits).end_px, 10.0);
         assert!((play.place(10.0) - 8.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_place_behind_a_limit_is_known() {
+        let play = pushed_up();
+        // The command for 9.5 is 11.
+        let beyond = [Some([0.0, 10.0]), Some([0.0, 11.5]), None].map(|limits| play.beyond_px(9.5, limits));
+        assert!((beyond[0] - 1.0).abs() < 1e-6 && beyond[1] == 0.0 && beyond[2] == 0.0, "{beyond:?}");
     }
 
     #[test]
