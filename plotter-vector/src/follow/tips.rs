@@ -458,29 +458,6 @@ mod tests {
     }
 
     #[test]
-    fn a_cusp_is_followed_to_its_end() {
-        // Two quarters of circles of 45 px that touch in the tip; what is straight of them would meet 11 px before it.
-        let arc = |side: f64| {
-            let at = |k: i32| {
-                let (sin, cos) = libm::sincos(f64::from(k) * 0.02);
-                PxPoint::new(TIP.x + 45.0 * sin, TIP.y + side * 45.0 * (1.0 - cos))
-            };
-            (0..=75).map(at).collect::<Vec<PxPoint>>()
-        };
-        let paper = Paper::drawn(200, 160, &[(arc(1.0), 4.0), (arc(-1.0), 4.0)]).unwrap();
-        let settings = CameraSettings { width_px: 300, height_px: 300, ..CameraSettings::default() };
-        let middle = PxPoint::new(60.0, 60.0);
-        let flat = Flat::of(&SimulatedCamera::new(&paper, settings).window(middle), None, None);
-        let lines = super::super::lines::Lines::of(&flat, 40);
-        let [piece] = lines.pieces.as_slice() else { panic!("{lines:?}") };
-        let tip = PxPoint::new(150.0, 150.0).along(TIP.minus(middle), 1.0);
-        let off = piece.places.iter().map(|at| at.distance(tip)).fold(f64::MAX, f64::min);
-        assert!(off < 1.5, "{off} {piece:?}");
-        let least_x = piece.places.iter().map(|at| at.x).fold(f64::MAX, f64::min);
-        assert!((least_x - tip.x).abs() < 1.0, "{least_x}");
-    }
-
-    #[test]
     fn a_hook_at_an_end_goes() {
         let place = |(x, y): (f64, f64)| PxPoint::new(x, y);
         let line: Vec<PxPoint> = (0..=40).map(|y| PxPoint::new(50.0, f64::from(y))).collect();

@@ -140,7 +140,7 @@ impl Capsule {
         }
     }
 
-    /// The pixels of a row in some columns.
+    /// The pixels of a row in some columns. A function of its own, so that the lanes become vectors.
     #[inline(never)]
     fn draw_lanes(&self, cells: &mut [u32; LANES], xs: &[f32; LANES], y: f32, covered: f32) {
         for (cell, x) in cells.iter_mut().zip(xs) {
@@ -174,7 +174,7 @@ impl Bundle {
         capsules.chunks(LANES).map(bundle).collect()
     }
 
-    /// The squared distances of a place as of [`Capsule::squared`], px².
+    /// The squared distances of a place as of [`Capsule::squared`], px². A function of its own, so that the lanes become vectors.
     #[inline(never)]
     fn squared(&self, x: f32, y: f32, squared: &mut [f32; LANES]) {
         for (lane, squared) in squared.iter_mut().enumerate() {
