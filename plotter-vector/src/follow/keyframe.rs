@@ -13,7 +13,8 @@
 //! the gradient taken once, from the first window (S. Baker, I. Matthews, "Lucas-Kanade 20 years on", 2004).
 
 use super::flat::Flat;
-use super::prior::{Information, Prior};
+use super::poses::Poses;
+use super::prior::{Information, Prior, moved};
 use crate::PxPoint;
 
 /// Most places that are compared.
@@ -25,9 +26,6 @@ const LEAST_GRADIENT_NOISES: f32 = 5.0;
 
 /// A rim belongs to the end of a line, or to another one, if the darkness rises by more than this share of what is usual along the line.
 const ACROSS_SHARE: f64 = 0.3;
-
-/// And by so many standard deviations of what noise makes of it: of all places along lines those where noise is greatest look like ends.
-const ACROSS_NOISES: f64 = 6.0;
 
 /// Distances from the border of a window that are not compared, px.
 const MARGIN_PX: f64 = 4.0;
@@ -105,9 +103,9 @@ impl Keyframe {
                 places.push(([dx as f32, dy as f32], mean, [gx, gy]));
             }
         }
+        let places = chosen(places);
         // Sum of the squares of Scharr's coefficients: 4 * (3 / 32)² + 2 * (10 / 32)².
-        let noise = 0.23 * f64::from(noise) * f64::from(noise);
-        Self { camera, places: chosen(places, ACROSS_NOISES * libm::sqrt(noise)), noise }
+        Self { camera, places, noise: 0.23 * f64::from(noise) * f64::from(noise) }
     }
 
     /// The camera's place by a new window, with what is known before; it may be off by `sound_px` whatever
@@ -176,11 +174,11 @@ impl Keyframe {
     }
 }
 
-/// At most [`MOST_PLACES`], half of them where the darkness rises, by more than `least` per px, in the direction that most places tell
-/// least of: so lines that are long do not hide their ends.
+/// At most [`MOST_PLACES`], half of them where the darkness rises in the direction that most places tell least of: so lines that are long
+/// do not hide their ends.
 ///
 /// After S. Rusinkiewicz, M. Levoy, "Efficient variants of the ICP algorithm" (2001), section 3.1.
-fn chosen(places: Vec<Place>, least: f64) -> Vec<Place> {
+fn chosen(places: Vec<Place>) -> Vec<Place> {
     if places.len() <= MOST_PLACES {
         return places;
     }
@@ -193,7 +191,7 @@ fn chosen(places: Vec<Place>, least: f64) -> Vec<Place> {
     let mut rises: Vec<f64> = places.iter().map(|place| rise(place, (-v, u))).collect();
     let middle = rises.len() / 2;
     let (_, usual, _) = rises.select_nth_unstable_by(middle, f64::total_cmp);
-    let least = f64::max(ACROSS_SHARE * *usual, least);
+    let least = ACROSS_SHARE * *usual;
     let (ends, others): (Vec<Place>, Vec<Place>) =
         places.into_iter().partition(|place| rise(place, (u, v)) > least);
     let few = ends.len().min(MOST_PLACES / 2);
@@ -233,11 +231,34 @@ const FARTHEST_PX: f64 = 160.0;
 /// A window that tells both directions to this corrects a new keyframe, px.
 const TOLD_PX: f64 = 0.3;
 
+/// Where two keyframes have the camera as far apart, their places are settled anew, px.
+const SETTLED_PX: f64 = 0.15;
+
 /// Windows to compare others with, one about every [`NEAR_PX`]: coming back to one the camera's place is that of before.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Keyframes {
     kept: Vec<Keyframe>,
     active: Option<usize>,
+    /// Number of the first of them: of those that were forgotten.
+    first: u32,
+    poses: Poses,
+    is_unsettled: bool,
+}
+
+/// How far the places of keyframes were found to be elsewhere.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shifts {
+    /// Number of the first keyframe.
+    first: u32,
+    px: Vec<(f64, f64)>,
+}
+
+impl Shifts {
+    /// That of a keyframe by its number, px.
+    pub(super) fn of(&self, number: u32) -> (f64, f64) {
+        let i = number.checked_sub(self.first).and_then(|i| self.px.get(i as usize));
+        i.copied().unwrap_or_default()
+    }
 }
 
 impl Keyframes {
@@ -271,28 +292,39 @@ impl Keyframes {
         self.kept.get(self.active?)?.place(flat, middle, prior, sound_px)
     }
 
-    /// Where the camera is by the first window that showed what this one shows, if it is farther away: coming along a line to where
-    /// others end or turn that were seen long before, a new keyframe would have them where the way along the line puts them.
+    /// The first keyframe that showed what this window shows, if it is farther away, and where the camera is by it: coming along a line
+    /// to where others end or turn that were seen long before, a new keyframe would have them where the way along the line puts them.
+    /// `prior` is what is known of the camera's place seen from a keyframe.
     fn closed(
         &self,
         flat: &Flat,
         middle: PxPoint,
         camera: PxPoint,
-        told: Information,
-        across_px: f64,
-    ) -> PxPoint {
-        let prior = Prior { place: camera, information: told.astray(across_px, ASTRAY_PX) };
-        let around = self.kept.iter().filter(|frame| frame.camera.distance(camera) < FARTHEST_PX);
-        let found = around.take(MOST_TRIED).find_map(|frame| {
-            let found = frame.place(flat, middle, &prior, 0.0)?;
+        prior: &dyn Fn(usize) -> Prior,
+    ) -> Option<(usize, Prior)> {
+        let near = |(_, frame): &(usize, &Keyframe)| frame.camera.distance(camera) < FARTHEST_PX;
+        self.kept.iter().enumerate().filter(near).take(MOST_TRIED).find_map(|(i, frame)| {
+            let found = frame.place(flat, middle, &prior(i), 0.0)?;
             let [(_, one_sd_px), (_, other_sd_px)] = found.information.known();
-            (f64::max(one_sd_px, other_sd_px) < TOLD_PX).then_some(found.place)
-        });
-        found.unwrap_or(camera)
+            (f64::max(one_sd_px, other_sd_px) < TOLD_PX).then_some((i, found))
+        })
+    }
+
+    /// The way from the keyframe chosen last to another one, by a window that shows what both do: the camera's place by each.
+    fn join(&mut self, camera: PxPoint, told: Information, to: usize, found: &Prior, prior: &Prior) {
+        let Some((from, one)) = self.active.and_then(|i| Some((i, self.kept.get(i)?.camera))) else { return };
+        let Some(other) = self.kept.get(to).map(|frame| frame.camera) else { return };
+        let told = told.plus(moved(camera.distance(one)));
+        let seen = found.information.minus(prior.information).plus(moved(camera.distance(other)));
+        let (x, y) = camera.minus(one);
+        let (u, v) = found.place.minus(other);
+        self.poses.add([from, to], (x - u, y - v), told.inverse().plus(seen.inverse()).inverse());
+        self.is_unsettled |= camera.distance(found.place) > SETTLED_PX;
     }
 
     /// Chooses the keyframe near a place, or makes one of the window; gives the camera's place by it. `told` is what the window
-    /// tells, and `across_px` the standard deviation in the direction told best: across lines nobody goes astray, that would be the next one.
+    /// tells, and `across_px` the standard deviation in the direction told best: across lines nobody goes astray by more than what the
+    /// ways from keyframe to keyframe leave in doubt, that would be the next line.
     pub(super) fn choose(
         &mut self,
         flat: &Flat,
@@ -303,29 +335,76 @@ impl Keyframes {
     ) -> PxPoint {
         let near = self.kept.iter().enumerate().map(|(i, frame)| (frame.camera.distance(camera), i));
         let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(distance, _)| *distance < NEAR_PX);
+        if nearest.is_some_and(|(_, i)| self.active == Some(i)) {
+            return camera;
+        }
+        let doubts = self.active.map_or_else(Vec::new, |from| self.poses.doubts(from, self.kept.len()));
+        let here = Prior { place: camera, information: told.astray(across_px, ASTRAY_PX) };
+        let prior = |i: usize| here.with(doubts.get(i).copied().flatten());
         if let Some((_, i)) = nearest {
-            if self.active == Some(i) {
-                return camera;
-            }
-            let prior = Prior { place: camera, information: told.astray(across_px, ASTRAY_PX) };
+            let prior = prior(i);
             if let Some(found) = self.kept.get(i).and_then(|frame| frame.place(flat, middle, &prior, 0.0)) {
+                self.join(camera, told, i, &found, &prior);
                 self.active = Some(i);
                 return found.place;
             }
         }
-        let camera = self.closed(flat, middle, camera, told, across_px);
-        if self.kept.len() == MOST_KEYFRAMES {
-            // The oldest ones are the farthest, most likely.
-            self.kept.drain(..MOST_KEYFRAMES / 2);
+        let (mut camera, mut told) = (camera, told);
+        if let Some((i, found)) = self.closed(flat, middle, camera, &prior) {
+            let prior = prior(i);
+            self.join(camera, told, i, &found, &prior);
+            self.active = Some(i);
+            (camera, told) = (found.place, found.information.minus(prior.information));
         }
-        let frame = Keyframe::of(flat, middle, camera);
+        self.keep(Keyframe::of(flat, middle, camera), told);
+        camera
+    }
+
+    /// Keeps a new keyframe, which is chosen then; a window that is nearly empty is none. `told` is what it tells of its place seen from the
+    /// one chosen before.
+    fn keep(&mut self, frame: Keyframe, told: Information) {
         if frame.places.len() < LEAST_KEPT {
             self.active = None;
-            return camera;
+            return;
+        }
+        if self.kept.len() == MOST_KEYFRAMES {
+            // The oldest ones are the farthest, most likely.
+            let old = self.kept.drain(..MOST_KEYFRAMES / 2).len();
+            self.poses.forget(old);
+            self.first = self.number_of(old);
+            self.active = self.active.and_then(|i| i.checked_sub(old));
+        }
+        let new = self.kept.len();
+        // After a way without lines, from the one before.
+        let from = self.active.or(new.checked_sub(1));
+        if let Some((i, before)) = from.and_then(|i| Some((i, self.kept.get(i)?.camera))) {
+            let (way, told) = (frame.camera.minus(before), told.plus(moved(frame.camera.distance(before))));
+            self.poses.add([i, new], way, told);
         }
         self.kept.push(frame);
-        self.active = Some(self.kept.len() - 1);
-        camera
+        self.active = Some(new);
+    }
+
+    /// Number of the keyframe that was chosen last.
+    pub(super) fn number(&self) -> u32 {
+        self.number_of(self.active.unwrap_or(self.kept.len().saturating_sub(1)))
+    }
+
+    fn number_of(&self, i: usize) -> u32 {
+        self.first.saturating_add(u32::try_from(i).unwrap_or(u32::MAX))
+    }
+
+    /// Settles the places of all keyframes, if two of them did not agree.
+    pub(super) fn settled(&mut self) -> Option<Shifts> {
+        if !core::mem::take(&mut self.is_unsettled) {
+            return None;
+        }
+        let places: Vec<PxPoint> = self.kept.iter().map(|frame| frame.camera).collect();
+        let px = self.poses.shifts(&places);
+        for (frame, shift) in self.kept.iter_mut().zip(&px) {
+            frame.camera = frame.camera.along(*shift, 1.0);
+        }
+        Some(Shifts { first: self.first, px })
     }
 }
 
@@ -387,26 +466,6 @@ mod tests {
         let found = found(&[line((-50.0, 150.0), (400.0, 150.0))], (1.7, -1.2)).unwrap();
         assert!((found.place.y - 148.8).abs() < 0.1 && (found.place.x - 150.0).abs() < 0.1, "{found:?}");
         assert!(found.information.xx < 1.1 && found.information.yy > 100.0, "{found:?}");
-    }
-
-    #[test]
-    fn where_noise_is_greatest_there_is_no_end() {
-        // Rims along x, and noise across them: at 3 standard deviations it is 0.3 of the rims' gradient.
-        let sd = 0.008_f32;
-        let places: Vec<Place> = (0..20_000_u16)
-            .map(|i| {
-                let (i, turn) = (f32::from(i), 2.4 * f32::from(i));
-                // Normal, by Box and Muller.
-                let noise = sd * (-2.0 * ((i + 0.5) / 20_000.0).ln()).sqrt() * turn.cos();
-                ([i, 0.0], 0.5, [noise, 0.08])
-            })
-            .collect();
-        let square = |places: &[Place]| {
-            let sum: f32 = places.iter().map(|(_, _, [x, _])| x * x).sum();
-            sum / places.iter().map(|_| 1.0).sum::<f32>() / (sd * sd)
-        };
-        let [all, some] = [square(&places), square(&chosen(places, ACROSS_NOISES * f64::from(sd)))];
-        assert!((all - 1.0).abs() < 0.1 && (some - 1.0).abs() < 0.1, "{all} {some}");
     }
 
     #[test]

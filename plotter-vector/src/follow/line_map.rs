@@ -4,6 +4,7 @@
 //! length of the lines, whatever the size of the sheet. Lines that cross keep their own nodes; a *contact* of length 0 joins
 //! them.
 
+use super::keyframe::Shifts;
 use super::lines::{Piece, cosine};
 use super::paper::nearest;
 use crate::PxPoint;
@@ -48,6 +49,8 @@ pub(super) struct Node {
     missed: u16,
     /// The line goes on behind it, where no window has looked.
     pub(super) open: bool,
+    /// Number of the keyframe by which it was seen last.
+    keyframe: u32,
 }
 
 /// What joins two nodes.
@@ -81,6 +84,8 @@ pub(super) struct LineMap {
     cells: HashMap<(i32, i32), Vec<u32>>,
     /// Links before this one are not ahead.
     first_ahead: usize,
+    /// Number of the keyframe by which the camera's place is known.
+    pub(super) keyframe: u32,
 }
 
 fn cell(at: PxPoint) -> (i32, i32) {
@@ -220,18 +225,43 @@ impl LineMap {
 
     fn add_node(&mut self, at: PxPoint) -> u32 {
         let id = u32::try_from(self.nodes.len()).unwrap_or(u32::MAX);
-        self.nodes.push(Node { at, links: Vec::new(), seen: 1, missed: 0, open: false });
+        self.nodes.push(Node {
+            at,
+            links: Vec::new(),
+            seen: 1,
+            missed: 0,
+            open: false,
+            keyframe: self.keyframe,
+        });
         self.cells.entry(cell(at)).or_default().push(id);
         id
     }
 
-    /// Moves a node; its cell follows.
+    /// Moves a node to where it was seen.
     pub(super) fn shift(&mut self, id: u32, to: PxPoint) {
+        let Some(node) = self.nodes.get_mut(id as usize) else { return };
+        node.seen = node.seen.saturating_add(1);
+        node.missed = 0;
+        node.keyframe = self.keyframe;
+        self.put(id, to);
+    }
+
+    /// All nodes go with the keyframes by which they were seen.
+    pub(super) fn move_with(&mut self, shifts: &Shifts) {
+        for id in 0..u32::try_from(self.nodes.len()).unwrap_or(u32::MAX) {
+            let Some(node) = self.node(id) else { continue };
+            let by = shifts.of(node.keyframe);
+            if by != (0.0, 0.0) {
+                self.put(id, node.at.along(by, 1.0));
+            }
+        }
+    }
+
+    /// A node at another place; its cell follows.
+    fn put(&mut self, id: u32, to: PxPoint) {
         let Some(node) = self.nodes.get_mut(id as usize) else { return };
         let (from, new) = (cell(node.at), cell(to));
         node.at = to;
-        node.seen = node.seen.saturating_add(1);
-        node.missed = 0;
         if from != new {
             if let Some(ids) = self.cells.get_mut(&from) {
                 ids.retain(|other| *other != id);

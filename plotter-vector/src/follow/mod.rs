@@ -46,6 +46,7 @@ mod mapping;
 mod mapping_settings;
 mod paper;
 mod play;
+mod poses;
 mod prior;
 mod profile;
 mod published;

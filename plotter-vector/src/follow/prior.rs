@@ -5,6 +5,20 @@ use crate::PxPoint;
 /// Standard deviations beyond which a place is excluded.
 const EXCLUDED: f64 = 5.0;
 
+/// Standard deviation of a move: that of the shortest, and what grows with the square root of the way, px.
+const TABLE_BASE_PX: f64 = 0.2;
+const TABLE_PX: f64 = 0.15;
+
+/// Standard deviation of what a table makes of a way, in each axis, px.
+pub(super) fn moved_sd_px(way_px: f64) -> f64 {
+    TABLE_BASE_PX + TABLE_PX * libm::sqrt(way_px)
+}
+
+/// What a table alone tells of a place after a way.
+pub(super) fn moved(way_px: f64) -> Information {
+    Information::of_axes([moved_sd_px(way_px); 2])
+}
+
 /// Inverse of the covariance of a place, per px².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Information {
@@ -152,6 +166,12 @@ pub(super) struct Prior {
 }
 
 impl Prior {
+    /// With another doubt, a covariance, if there is any.
+    pub(super) fn with(&self, doubt: Option<Information>) -> Self {
+        let wider = |doubt: Information| self.information.inverse().plus(doubt).inverse();
+        Self { place: self.place, information: doubt.map_or(self.information, wider) }
+    }
+
     /// How far off a place is, in standard deviations.
     pub(super) fn off(&self, at: PxPoint) -> f64 {
         let off = at.minus(self.place);

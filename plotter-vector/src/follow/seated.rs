@@ -88,6 +88,11 @@ impl Seats {
         in_doubt
     }
 
+    /// Forgets where nodes were seen once: all are elsewhere.
+    pub(super) fn forget(&mut self) {
+        self.once.clear();
+    }
+
     /// Makes the moves if they are small or seen for the second time; whether it did.
     fn go(&mut self, map: &mut LineMap, moves: &[(u32, PxPoint)], alike_px: f64) -> bool {
         let is_seen = |(id, to): &(u32, PxPoint)| {

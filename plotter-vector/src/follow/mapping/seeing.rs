@@ -5,7 +5,7 @@ use super::super::align::aligned;
 use super::super::flat::Flat;
 use super::super::line_map::State;
 use super::super::lines::Lines;
-use super::super::prior::{Information, Prior};
+use super::super::prior::{Information, Prior, moved_sd_px};
 use super::super::registration::{View, registered};
 use super::MappingFollower;
 use crate::PxPoint;
@@ -22,10 +22,6 @@ const LEAST_PLACES: usize = 15;
 /// Lines that are thinner than this share of what they were are believed after so many looks.
 const THIN_SHARE: f64 = 0.6;
 const THIN_LOOKS: u32 = 3;
-
-/// Standard deviation of a move: that of the shortest, and what grows with the square root of the way, px.
-const TABLE_BASE_PX: f64 = 0.2;
-const TABLE_PX: f64 = 0.15;
 
 /// A place whose better known direction is known worse than this adds nothing to the map, px.
 const STRANGE_PX: f64 = 1.0;
@@ -44,7 +40,7 @@ impl MappingFollower {
     /// Where the camera should be by what is known of the table, with the last move's errors.
     pub(super) fn prior(&self, pose: PxPoint) -> Prior {
         let way = self.last_pose.map_or(0.0, |last| last.distance(pose));
-        let random = TABLE_BASE_PX + TABLE_PX * libm::sqrt(way);
+        let random = moved_sd_px(way);
         let (place, doubt_px) = self.axes.place(pose);
         let sd = doubt_px.map(|doubt| libm::hypot(random, doubt));
         Prior { place, information: self.known.after(sd) }
@@ -75,6 +71,13 @@ impl MappingFollower {
     /// Puts all that a window shows into the map.
     pub(super) fn look(&mut self, flat: &Flat, middle: PxPoint) -> usize {
         let place = self.keyframes.choose(flat, middle, self.place, self.told, 0.1 * self.width_px);
+        let shifts = self.keyframes.settled();
+        self.map.keyframe = self.keyframes.number();
+        let place = shifts.as_ref().map_or(place, |by| place.along(by.of(self.map.keyframe), 1.0));
+        if let Some(by) = shifts {
+            self.map.move_with(&by);
+            self.seats.forget();
+        }
         self.axes.shift(place.minus(self.place));
         self.place = place;
         let lines = Lines::of(flat, self.settings.max_line_px);
