@@ -126,11 +126,12 @@ impl Poses {
         let mut left = dot(&rest, &ahead);
         let enough = SOLVED * SOLVED * left;
         for _ in 0..4 * count {
-            if left <= enough {
+            let told = held(self.times(&ahead));
+            let share = left / dot(&ahead, &told);
+            // Not where nothing is left, or nothing is told of what is.
+            if left <= enough || !share.is_finite() {
                 break;
             }
-            let told = held(self.times(&ahead));
-            let share = left / dot(&ahead, &told).max(f64::MIN_POSITIVE);
             for ((shift, rest), (ahead, told)) in
                 shifts.iter_mut().zip(&mut rest).zip(ahead.iter().zip(&told))
             {
