@@ -82,6 +82,26 @@ fn dense_lines_are_followed_one_by_one() {
     assert!(run.judged.repeated < 0.01 && run.report.lifts == 4, "{:?} {:?}", run.judged, run.report);
 }
 
+/// From an end that is some px behind the line it meets the tool goes back to where they meet, not slantwise to what is ahead of that line.
+#[test]
+fn from_an_end_behind_another_line_the_tool_goes_back_to_where_they_meet() {
+    let mut greatest = 0.0_f64;
+    for behind_px in [5.0, 7.0, 9.0] {
+        let lines = vec![
+            polyline(&[(130.6 - behind_px, 100.4), (245.2, 96.4)]),
+            polyline(&[(132.5, 10.4), (128.6, 198.6)]),
+        ];
+        let figure = Figure { name: "end behind", width: 260, height: 210, lines, pen_px: 5.0 };
+        let camera = CameraSettings { width_px: 160, height_px: 160, ..CameraSettings::default() };
+        let start = PxPoint::new(245.0, 97.0);
+        let run = ours(&figure, start, camera, TableError::default(), settings(&figure));
+        println!("{:?} {:?}", run.judged, run.report.lifts);
+        assert!(run.end == End::Complete && run.judged.coverage > 0.999, "{:?}", run.judged);
+        greatest = greatest.max(run.judged.max_px);
+    }
+    assert!(greatest < 0.3, "{greatest}");
+}
+
 /// A table that has gone astray is at its limits before the line is: the tool does not leave the line there.
 #[test]
 fn at_the_limits_of_the_machine_the_tool_stays_on_the_line() {

@@ -30,6 +30,9 @@ const ARRIVED_PX: f64 = 0.35;
 /// Places of two lines that are as near are one on the way, px.
 const TOUCHING_PX: f64 = 1.0;
 
+/// And are no corner that the tool would cut by more, px.
+const CUT_PX: f64 = 0.3;
+
 /// The camera goes so much of its window at once to where no window has been: what tells places along a line, its corners and what
 /// crosses it, is then in both.
 const NEW_SHARE: f64 = 0.25;
@@ -423,12 +426,25 @@ impl MappingFollower {
                     let Some((id, near, far)) = trail::next(&self.map, node, heading) else { break };
                     if near != node {
                         // Places of two lines that touch are hardly ever one. The tool goes over where the other line passes.
-                        let (here, there) = (self.map.at(node), self.map.at(near));
-                        let over = nearest(here, there, self.map.at(far));
+                        let [here, there, to] = [node, near, far].map(|id| self.map.at(id));
+                        let over = nearest(here, there, to);
                         let is_passed = over.distance(there) > TOUCHING_PX;
                         let over = if is_passed { there } else { over };
+                        // From the end of a line behind the one that it meets back to where they meet, not slantwise to what is ahead.
+                        let behind = self
+                            .map
+                            .links_of(near)
+                            .filter(|(_, link, other)| {
+                                !link.contact && link.state != State::Ghost && *other != far
+                            })
+                            .map(|(_, _, other)| nearest(here, there, self.map.at(other)));
+                        let over = behind
+                            .chain([over])
+                            .min_by(|a, b| here.distance(*a).total_cmp(&here.distance(*b)))
+                            .unwrap_or(over);
                         node = near;
-                        if is_passed || here.distance(over) > TOUCHING_PX {
+                        let cut_px = nearest(over, here, to).distance(over);
+                        if is_passed || here.distance(over) > TOUCHING_PX || cut_px > CUT_PX {
                             if !path.is_empty() && self.axes.turns(from, over) {
                                 link = Some((id, far));
                                 break;
