@@ -158,6 +158,15 @@ const LOOK: usize = 256;
 const SURE_WIDTHS: f64 = 2.0;
 const SURE_PX: f64 = 12.0;
 
+/// A short line is at most so many radii of the ink at its junction long.
+const SHORT_RADII: f64 = 6.0;
+
+/// The same of the ink between the sides of a point: 1 / (2 sin 3°) widths, and the radius is nearly one.
+const POINT_RADII: f64 = 12.0;
+
+/// And at most so many px.
+const LONGEST_POINT_PX: f64 = 160.0;
+
 /// More arms meet in noise only.
 pub(super) const MOST_ARMS: usize = 8;
 
@@ -181,6 +190,8 @@ pub(super) struct ArmOf {
     pub(super) arm: Arm,
     /// Where a short line ends that leads from here to nowhere else.
     pub(super) tip: Option<PxPoint>,
+    /// The same of one as long as the ink between the sides of a sharp point is filled.
+    pub(super) point: Option<PxPoint>,
 }
 
 impl ArmOf {
@@ -376,9 +387,11 @@ impl Lines<'_> {
             group.iter().flat_map(|node| self.ends(*node)).filter(|end| !is_inner(end.edge)).collect();
         // By where they begin, whichever way their edges were walked.
         ends.sort_by_key(|end| self.first_pixels(*end));
-        ends.iter()
-            .filter_map(|end| Some(ArmOf { end: *end, arm: self.long_arm(*end)?, tip: self.tip(*end) }))
-            .collect()
+        let arm_of = |end: &End| {
+            let (tip, point) = self.tip(*end);
+            Some(ArmOf { end: *end, arm: self.long_arm(*end)?, tip, point })
+        };
+        ends.iter().filter_map(arm_of).collect()
     }
 
     /// The first node of a junction in reading order.
@@ -412,9 +425,9 @@ impl Lines<'_> {
             found.end(owner, one, vec![end], !is_cut);
         } else {
             let heart = self.heart(group, owner);
-            if !heart.resolve_point(&arms, found) {
+            if !heart.resolve_point(&arms, |end| self.sites_from(end), found) {
                 let ways = self.best(group, &heart, &arms, found);
-                found.take(owner, ways);
+                found.take(owner, as_one(ways));
             }
         }
     }
@@ -514,24 +527,28 @@ impl Lines<'_> {
         Some(ways)
     }
 
-    /// Where the pen stopped that drew the short line which leaves a junction here and ends free.
-    fn tip(&self, end: End) -> Option<PxPoint> {
-        let (first, last) = self.graph.edges.get(end.edge)?.nodes?;
+    /// Where the pen stopped that drew the line which leaves a junction here and ends free: of a short one, and of one as long
+    /// as the ink of a point.
+    fn tip(&self, end: End) -> (Option<PxPoint>, Option<PxPoint>) {
+        let nodes = self.graph.edges.get(end.edge).and_then(|edge| edge.nodes);
+        let Some((first, last)) = nodes else { return (None, None) };
         let (near, far) = if end.at_last { (last, first) } else { (first, last) };
-        if self.ends(far).count() != 1 {
-            return None;
-        }
-        let radius_px = self.scan.radius_px(self.place(near), f64::MAX);
         let (from, to) = (self.place(near), self.place(far));
         let length_px = from.distance(to);
-        if length_px > 6.0 * radius_px + 2.0 || length_px <= 0.0 {
-            return None;
+        if self.ends(far).count() != 1 || length_px <= 0.0 {
+            return (None, None);
+        }
+        let radius_px = self.scan.radius_px(self.place(near), f64::MAX);
+        let is_short = length_px <= SHORT_RADII * radius_px + 2.0;
+        if !is_short && length_px > (POINT_RADII * radius_px + 2.0).min(LONGEST_POINT_PX) {
+            return (None, None);
         }
         let direction = ((to.x - from.x) / length_px, (to.y - from.y) / length_px);
         let out_px = self.scan.reach_px(to, direction, 2.0 * radius_px + 2.0);
         let half_px = self.scan.radius_px(to, f64::MAX);
         let along = length_px + (out_px - half_px).max(0.0);
-        Some(PxPoint::new(from.x + direction.0 * along, from.y + direction.1 * along))
+        let tip = PxPoint::new(from.x + direction.0 * along, from.y + direction.1 * along);
+        (is_short.then_some(tip), Some(tip))
     }
 
     /// Thin lines keep their pixels; only the partners are found. What lies between the nodes of a junction becomes
@@ -625,6 +642,22 @@ impl Lines<'_> {
         way.reverse();
         Some((way, edges))
     }
+}
+
+/// Of two lines that end in the same place and meet nothing else there: one with a corner.
+fn as_one(ways: Vec<Way>) -> Vec<Way> {
+    /// Nearer ends are one place, px.
+    const SAME_PX: f64 = 1.0;
+    let [Way { one, other: None, points }, Way { one: other, other: None, points: theirs }] = ways.as_slice()
+    else {
+        return ways;
+    };
+    let ([at], [there]) = (points.as_slice(), theirs.as_slice()) else { return ways };
+    if at.distance(*there) > SAME_PX {
+        return ways;
+    }
+    let points = vec![PxPoint::new(f64::midpoint(at.x, there.x), f64::midpoint(at.y, there.y))];
+    vec![Way { one: *one, other: Some(*other), points }]
 }
 
 /// Whether a line shows its course.

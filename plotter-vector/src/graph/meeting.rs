@@ -4,11 +4,14 @@
 //! counted by how sure its continuation is there. Where they do not meet in one point (two branches that leave a
 //! line opposite each other, a little apart) the lines that go through are bridged and each branch ends on one.
 
+use super::End;
 use super::arm::Arm;
+use super::corner::direction;
 use super::junction::{ArmOf, Junctions, Way, bend};
-use super::site::Scan;
+use super::site::{Scan, Site};
 use crate::hairlines::Hairlines;
 use crate::{Pixel, PxPoint};
+use std::borrow::Cow;
 
 /// Greatest angle between two arms' courses that make one stroke: cos 50°.
 const GOES_ON_COS: f64 = 0.642_787_6;
@@ -39,15 +42,23 @@ pub(super) struct Heart<'a> {
 
 impl Heart<'_> {
     /// The two sides of a sharp point: the ink between them is filled near it, so that they seem to be a fork with a
-    /// short stem. Whether that is what these arms are; then the stem goes and the sides meet in the point.
-    pub(super) fn resolve_point(&self, arms: &[ArmOf], found: &mut Junctions) -> bool {
+    /// short stem. Whether that is what these arms are, each with its `sites`; then the stem goes and the sides meet in the point.
+    pub(super) fn resolve_point<'a>(
+        &self,
+        arms: &[ArmOf],
+        sites: impl Fn(End) -> Cow<'a, [Site]>,
+        found: &mut Junctions,
+    ) -> bool {
         /// Cosine of the widest angle between the sides of a point.
         const WIDEST_COS: f64 = 0.2;
+        /// What an error across the sides is along them, px, from where on the ink's end tells more; and if both agree.
+        const UNSURE_PX: f64 = 1.3;
+        const AGREE_UNSURE_PX: f64 = 1.8;
         let [a, b, c] = arms else { return false };
         let Some((stem, one, other)) =
             [(a, b, c), (b, c, a), (c, a, b)].into_iter().find(|(stem, one, other)| {
                 let (u, v) = (one.arm.direction, other.arm.direction);
-                stem.tip.is_some()
+                stem.point.is_some()
                     && one.tip.is_none()
                     && other.tip.is_none()
                     && u.0 * v.0 + u.1 * v.1 > WIDEST_COS
@@ -55,18 +66,69 @@ impl Heart<'_> {
         else {
             return false;
         };
-        let Some(tip) = stem.tip else { return false };
+        let Some(tip) = stem.point else { return false };
         let sides = [*one, *other];
         let meeting = meeting_point(&sides, self.centre);
         let slack_px = (0.35 * one.arm.width_px).max(1.2);
         let beyond = meeting.distance(self.centre) > tip.distance(self.centre) + slack_px;
-        if !beyond && meeting.distance(tip) > slack_px {
+        let meets = beyond || meeting.distance(tip) <= slack_px;
+        let least_px = if meets { AGREE_UNSURE_PX } else { UNSURE_PX };
+        let point = if let Some(point) = self.acute_point(stem, [one, other], tip, &sites(stem.end), least_px)
+        {
+            point
+        } else if meets && stem.tip.is_some() {
+            if !beyond && self.pen_was_at(meeting, &sides) { meeting } else { tip }
+        } else {
             return false;
-        }
-        let meets = !beyond && self.pen_was_at(meeting, &sides);
-        found.pair(self.owner, one, other, vec![if meets { meeting } else { tip }]);
+        };
+        found.pair(self.owner, one, other, vec![point]);
         found.drop_line(stem.end);
         true
+    }
+
+    /// The point of two sides at so acute an angle that they do not tell where along the ink between them they meet: half a width
+    /// before its end, if that ink is filled to there; a stem that is a line is as narrow as the sides. `filled` are its sites.
+    fn acute_point(
+        &self,
+        stem: &ArmOf,
+        [one, other]: [&ArmOf; 2],
+        tip: PxPoint,
+        filled: &[Site],
+        least_px: f64,
+    ) -> Option<PxPoint> {
+        /// Least width in the middle of the filled ink, in those of a side: it goes from two to one.
+        const FILLED: f64 = 1.3;
+        /// A stem of fewer px has no direction of its own.
+        const DIRECTED_PX: f64 = 6.0;
+        /// How far beside the line on which the point is thinning may end, px.
+        const OFF_PX: f64 = 1.5;
+        let (u, v) = (one.arm.direction, other.arm.direction);
+        let into = direction(PxPoint::new(u.0 + v.0, u.1 + v.1), PxPoint::default())?;
+        let half_sine = 0.5 * libm::hypot(u.0 - v.0, u.1 - v.1);
+        let error_px = |side: &ArmOf| side.arm.error_px(side.arm.along(tip).min(0.0));
+        let unsure_px = error_px(one).max(error_px(other)) * (1.0 / half_sine.max(0.01) - 1.0);
+        let width_px = 0.5 * (one.arm.width_px + other.arm.width_px);
+        let middle = filled.get(filled.len() / 4..filled.len() - filled.len() / 4)?;
+        #[expect(clippy::cast_precision_loss, reason = "a few hundred sites")]
+        let count = middle.len() as f64;
+        let filled_px = middle.iter().map(|site| site.width_px).sum::<f64>() / count;
+        if unsure_px < least_px || filled_px.is_nan() || filled_px < FILLED * width_px {
+            return None;
+        }
+        let (origin, into) = if stem.arm.support_px >= DIRECTED_PX {
+            (stem.arm.origin, stem.arm.direction)
+        } else {
+            (meeting_point(&[*one, *other], self.centre), into)
+        };
+        let (x, y) = tip.minus(origin);
+        if (y * into.0 - x * into.1).abs() > OFF_PX {
+            return None;
+        }
+        let (x, y) = self.centre.minus(origin);
+        let foot = origin.along(into, x * into.0 + y * into.1);
+        let longest_px = foot.distance(tip) + width_px + 4.0;
+        let reach_px = self.scan.reach_px(foot, into, longest_px);
+        Some(foot.along(into, (reach_px - 0.5 * width_px).max(0.0)))
     }
 
     /// How lines that meet go on, from the course of each where it is undisturbed: through one point if they agree on
