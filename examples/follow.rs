@@ -43,6 +43,13 @@ const WINDOWS: u64 = 2_000_000;
 /// Farther than this the true lines are not from the middle of the picture's lines, px: less than what the tool is off.
 const TRUTH_PX: f64 = 0.1;
 
+/// Fewest pixels of a window a side.
+const LEAST_SIDE_PX: f64 = MappingFollower::LEAST_WINDOW_PX as f64;
+
+/// What helps where the machine reaches none of the lines.
+const REACH_REMEDY: &str =
+    "all that were seen lie outside of the machine's area; a smaller --mm-per-px or another --start may help";
+
 /// Follows the lines of a picture with a simulated camera on a simulated table, or what a real camera sees.
 #[derive(Debug, Parser)]
 #[command(
@@ -167,7 +174,7 @@ fn camera(text: &str) -> Result<Box<CameraSettings>, String> {
             "barrel" => camera.lens = Lens { barrel: number(value, -0.3..=0.3).map_err(said)? },
             "size" => {
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in range")]
-                let side = number(value, 16.0..=2000.0).map_err(said)? as u32;
+                let side = number(value, LEAST_SIDE_PX..=2000.0).map_err(said)? as u32;
                 (camera.width_px, camera.height_px) = (side, side);
             }
             other => return Err(format!("{other:?} is none of blur, noise, rim, barrel, size")),
@@ -185,6 +192,11 @@ fn main() -> ExitCode {
             "follow: {}: the animation is a picture or a page: name it F.gif or F.html",
             path.display()
         );
+        return ExitCode::from(2);
+    }
+    // The library of options would let it pass beside an image.
+    if arguments.window.is_some() && arguments.from.is_none() {
+        eprintln!("follow: --window is for --from; the simulated camera's is --camera size=PX");
         return ExitCode::from(2);
     }
     if arguments.hand.is_some() && arguments.method == Method::Ours {
@@ -362,6 +374,9 @@ fn follow(arguments: &Arguments) -> Result<(), String> {
         }
     };
     bar.finish_and_clear();
+    let map = if let Follower::Ours(ours) = &follower { Some(ours.report()) } else { None };
+    let reached_none = map.as_ref().is_some_and(|map| map.followed_px == 0.0);
+    let end = if end == Ended::Said(End::Complete) && reached_none { Ended::OutOfReach } else { end };
     if let Some(file) = moves_file {
         file.finish()?;
     }
@@ -377,7 +392,7 @@ fn follow(arguments: &Arguments) -> Result<(), String> {
             .as_ref()
             .filter(|sheet| !sheet.truth.is_empty())
             .map(|sheet| judge(&sheet.truth, table.strokes(), 2.0)),
-        map: if let Follower::Ours(ours) = &follower { Some(ours.report()) } else { None },
+        map,
         motion: machine.finish()?,
     };
     write_files(arguments, sheet, table.strokes(), (&frames, film), window_px, &outcome)?;
@@ -396,6 +411,8 @@ fn follow(arguments: &Arguments) -> Result<(), String> {
 #[derive(Clone, Debug, PartialEq)]
 enum Ended {
     Said(End),
+    /// All lines that were seen lie outside of the machine's area.
+    OutOfReach,
     /// After as many windows as were allowed.
     Stopped,
     /// The folder has no more.
@@ -408,6 +425,7 @@ impl Ended {
     fn told(&self, windows: u64) -> String {
         match self {
             Self::Said(end) => end.to_string(),
+            Self::OutOfReach => format!("no line can be reached: {REACH_REMEDY}"),
             Self::Stopped => format!("stopped after {windows} windows; it never ends by itself"),
             Self::NoMorePictures(at) => {
                 format!(

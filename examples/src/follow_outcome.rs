@@ -38,29 +38,39 @@ impl FollowOutcome<'_> {
             "{}: {}\n  windows {}, moves {}, pictures without the line {}, lifts {}\n",
             self.name, self.said, self.windows, self.moves, self.lost, self.lifts
         );
-        if let Some(judged) = &self.judged {
+        if let Some(judged) = self.judged.as_ref().filter(|judged| judged.true_px > 0.0) {
             let _ = writeln!(
                 text,
-                "  covered {:.2} % of {:.0} px of lines, followed twice {:.2} %\n  \
-                 path {:.0} px, off the middle of the lines: rms {:.2} px, at most {:.2} px at ({:.0}, {:.0})",
+                "  covered {:.2} % of {:.0} px of lines, followed twice {:.2} %",
                 100.0 * judged.coverage,
                 judged.true_px,
-                100.0 * judged.repeated,
-                judged.path_px,
-                judged.rms_px,
-                judged.max_px,
-                judged.worst.x,
-                judged.worst.y,
+                100.0 * judged.repeated
+            );
+        }
+        if let Some(judged) = self.judged.as_ref().filter(|judged| judged.path_px > 0.0) {
+            let _ = writeln!(
+                text,
+                "  path {:.0} px, off the middle of the lines: rms {:.2} px, at most {:.2} px at ({:.0}, {:.0})",
+                judged.path_px, judged.rms_px, judged.max_px, judged.worst.x, judged.worst.y
             );
         }
         let _ =
             writeln!(text, "  machine: {:.1} s in motion, {} steps", self.motion.motion_s, self.motion.steps);
         if let Some(map) = &self.map {
-            let _ = writeln!(
-                text,
-                "  lines {:.1} px wide; play found: {:.2} and {:.2} px",
-                map.line_width_px, map.play_px[0], map.play_px[1]
-            );
+            if map.followed_px > 0.0 {
+                let _ = writeln!(
+                    text,
+                    "  lines {:.1} px wide; play found: {:.2} and {:.2} px",
+                    map.line_width_px, map.play_px[0], map.play_px[1]
+                );
+            }
+            if map.outside_px > 0.0 {
+                let _ = writeln!(
+                    text,
+                    "  outside of the machine's area: {:.0} px of the lines that were seen",
+                    map.outside_px
+                );
+            }
             for (what, places) in
                 [("a line leaves the machine's area", &map.leaves), ("an area of ink, left out", &map.areas)]
             {

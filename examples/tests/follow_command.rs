@@ -297,6 +297,36 @@ fn a_source_without_pictures_is_told() {
 }
 
 #[test]
+fn options_that_do_nothing_or_cannot_work_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = picture(&folder, "drawing.png", drawing);
+    for (arguments, says) in [
+        (["--window", "30"], "--window is for --from"),
+        (["--camera", "size=60"], "size: 60 is not from 80 to 2000"),
+    ] {
+        let output = run_example("follow", &[&image, arguments[0], arguments[1]]);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        assert!(said(&output).1.contains(says), "{output:?}");
+    }
+}
+
+#[test]
+fn lines_that_the_machine_does_not_reach_are_no_success() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = picture(&folder, "drawing.png", |x, y| (20..380).contains(&x) && (88..92).contains(&y));
+    let file = folder.path().join("f.json").to_str().unwrap().to_owned();
+    let output = run_example("follow", &[&image, "--mm-per-px", "10", "--report", &file]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let (told, complaint) = said(&output);
+    assert!(told.contains("outside of the machine's area:"), "{told}");
+    assert!(
+        complaint.contains("no line can be reached:") && complaint.contains("--mm-per-px"),
+        "{complaint}"
+    );
+    assert_eq!(report(&file)["finished"], Value::Bool(false));
+}
+
+#[test]
 fn ours_says_that_it_takes_no_hand() {
     let folder = tempfile::tempdir().unwrap();
     let image = picture(&folder, "drawing.png", |x, y| (100..200).contains(&x) && (148..152).contains(&y));

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use plotter_vector::follow::{
-    CameraSettings, End, LineFollower, MappingFollower, MappingSettings, Paper, SimulatedCamera,
+    CameraSettings, End, LineFollower, Lost, MappingFollower, MappingSettings, Paper, SimulatedCamera,
     SimulatedTable, Step, TableError,
 };
 use plotter_vector::{Gray, PxPoint};
@@ -89,7 +89,7 @@ fn ends(window: &Gray) -> (Vec<Step>, End) {
 #[test]
 fn a_window_of_one_colour_ends_with_its_place() {
     for level in [0, 128, 255] {
-        let (steps, end) = ends(&Gray::new(64, 64, vec![level; 64 * 64]).unwrap());
+        let (steps, end) = ends(&Gray::new(80, 80, vec![level; 80 * 80]).unwrap());
         assert_eq!(steps.len(), 8, "retried with new pictures");
         assert!(matches!(end, End::NoLine { at, .. } if at == PxPoint::new(5.0, 6.0)), "{end:?}");
         assert!(end.to_string().starts_with("no line in view at (5.0, 6.0) px"), "{end}");
@@ -98,6 +98,7 @@ fn a_window_of_one_colour_ends_with_its_place() {
 
 #[test]
 fn a_window_too_small_is_refused() {
-    let (_, end) = ends(&Gray::new(8, 8, vec![255; 64]).unwrap());
-    assert!(end.to_string().contains("less than 16 px"), "{end}");
+    let (_, end) = ends(&Gray::new(79, 200, vec![255; 79 * 200]).unwrap());
+    assert!(matches!(end, End::NoLine { why: Lost::WindowSize, .. }), "{end:?}");
+    assert!(end.to_string().contains("too few px a side"), "{end}");
 }

@@ -10,6 +10,9 @@ const CELL_PX: f64 = 16.0;
 /// Spacing of the places that are judged, px.
 const STEP_PX: f64 = 0.5;
 
+/// Farther lines are looked for one by one, px.
+const NEAR_PX: f64 = 64.0;
+
 /// How well lines were followed.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -24,7 +27,7 @@ pub struct Judged {
     pub path_px: f64,
     /// Root of the mean square of the path's distances from the true lines, px.
     pub rms_px: f64,
-    /// Greatest distance of the path from the true lines, px.
+    /// Greatest distance of the path from the true lines, px; 0 without lines.
     pub max_px: f64,
     /// Where that is.
     pub worst: PxPoint,
@@ -71,6 +74,12 @@ impl Route {
         }
         self.pieces.push(piece);
         self.places.push(place);
+    }
+
+    /// The distance of the nearest place, however far, px; 0 without any.
+    fn far(&self, at: PxPoint) -> f64 {
+        let distances = self.pieces.iter().map(|[a, b]| at.distance(nearest(at, *a, *b)));
+        distances.min_by(f64::total_cmp).unwrap_or(0.0)
     }
 
     /// The nearest place within `reach_px`: its distance, its line, and how far along the line it is, px.
@@ -144,7 +153,8 @@ pub fn judge(truth: &[Vec<PxPoint>], path: &[Vec<PxPoint>], reach_px: f64) -> Ju
 
     let (mut squares, mut count) = (0.0, 0.0);
     for (at, _) in path.iter().flat_map(|line| places(line)) {
-        let distance = true_route.nearest(at, 64.0).map_or(64.0, |(distance, ..)| distance);
+        let distance =
+            true_route.nearest(at, NEAR_PX).map_or_else(|| true_route.far(at), |(distance, ..)| distance);
         squares += distance * distance;
         count += 1.0;
         if distance > judged.max_px {
@@ -220,4 +230,19 @@ fn repeated(route: &Route, path: &[Vec<PxPoint>], reach_px: f64, true_px: f64) -
     }
     let again: u32 = passes.values().map(|count| count - 1).sum();
     if true_px > 0.0 { 2.0 * f64::from(again) / true_px } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_far_from_all_lines_is_as_far_off_as_it_is() {
+        let line = [vec![PxPoint::new(0.0, 0.0), PxPoint::new(100.0, 0.0)]];
+        let path = [vec![PxPoint::new(400.0, 400.0), PxPoint::new(400.0, 401.0)]];
+        // From (100, 0) to (400, 400.75), the middle of the last half pixel: √(300² + 400.75²).
+        let judged = judge(&line, &path, 2.0);
+        assert!((judged.max_px - 500.6).abs() < 0.01, "{judged:?}");
+        assert_eq!(judge(&[], &path, 2.0).max_px, 0.0);
+    }
 }

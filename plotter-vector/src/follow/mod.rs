@@ -113,13 +113,14 @@ pub enum Step {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Lost {
-    /// The window has one colour: white paper, a covered lens, no light.
+    /// The window has one colour: white paper, a covered lens, no light; or what is on it is hardly darker than the paper.
     OneColour,
     /// There is something, but no line: an area, or a line thicker than the window shows.
     TooThick,
     /// There are lines, but not those that should be here: paper or table were moved.
     Elsewhere,
-    /// The window is not of the size that it was at first, or smaller than 16 px.
+    /// The window is not of the size that it was at first, or too small a side: of [`MappingFollower::LEAST_WINDOW_PX`] for ours, of
+    /// 16 px for the published follower.
     WindowSize,
 }
 
@@ -146,10 +147,10 @@ pub enum End {
 impl fmt::Display for Lost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::OneColour => "the window has one colour: is there light, and is the lens free?",
+            Self::OneColour => "the window has one colour, or lines that are hardly darker than the paper: is there light, and is the lens free?",
             Self::TooThick => "what is seen is no line but an area, or a line too thick for the window",
             Self::Elsewhere => "the lines seen are not those that should be here: was the paper moved?",
-            Self::WindowSize => "the window has another size than before, or less than 16 px a side",
+            Self::WindowSize => "the window has another size than before, or too few px a side: the camera has to see more of the paper",
         })
     }
 }

@@ -134,6 +134,9 @@ pub struct MappingFollower {
 }
 
 impl MappingFollower {
+    /// Fewest pixels of a window a side: in smaller ones light that falls off cannot be told from wide lines.
+    pub const LEAST_WINDOW_PX: u32 = 80;
+
     /// Before the first window.
     #[must_use]
     pub fn new(settings: MappingSettings) -> Self {
@@ -204,7 +207,7 @@ impl MappingFollower {
     fn check(&mut self, window: &Gray) -> bool {
         let size = (window.width(), window.height());
         let known = *self.window_px.get_or_insert(size);
-        known == size && size.0.min(size.1) >= 16
+        known == size && size.0.min(size.1) >= Self::LEAST_WINDOW_PX
     }
 
     fn lost(&mut self, at: PxPoint, why: Lost) -> Step {
