@@ -4,7 +4,7 @@
 //! below comes to the same decisions as its neighbours; it hands out what lies in its own rows, and what it cuts at
 //! their border fits the neighbour's piece.
 
-use super::junction::{Connection, Junctions};
+use super::junction::{Connection, Junctions, Tip};
 use super::mark::Marks;
 use super::site::{Role, Scan, Site};
 use super::sites::Sites;
@@ -64,8 +64,10 @@ pub(crate) fn fragments(
             Some(to) => joint(to),
             None => Some(Joint::Free),
         };
-        let place = |at: &PxPoint| {
-            if connection.tip { Place::tip(*at) } else { Place::new(*at, -1.0, connection.corner) }
+        let place = |at: &PxPoint| match connection.tip {
+            None => Place::new(*at, -1.0, connection.corner),
+            Some(Tip::Ahead) => Place::tip(*at),
+            Some(Tip::Seated) => Place::seated_tip(*at),
         };
         let places = connection.points.iter().map(place).collect();
         found.extend(end.map(|end| Fragment { places, joints: Some([start, end]) }));

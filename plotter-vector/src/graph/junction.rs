@@ -7,7 +7,7 @@
 use super::arm::{Arm, LONG, SHORT};
 use super::corner::{TURN_COS, direction};
 use super::fan::Fan;
-use super::line_end::{line_end, tail};
+use super::line_end::{line_end, seated_across, tail};
 use super::meeting::{Heart, Meet, partners};
 use super::near::Near;
 use super::site::{Scan, Site};
@@ -35,7 +35,16 @@ pub(crate) struct Connection {
     /// Whether the stroke has a corner there.
     pub(crate) corner: bool,
     /// Whether the line ends where no other does.
-    pub(crate) tip: bool,
+    pub(crate) tip: Option<Tip>,
+}
+
+/// What is known of a line's end where no other one is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Tip {
+    /// It lies where the line leads.
+    Ahead,
+    /// Where it lies across the line its ink tells.
+    Seated,
 }
 
 /// How one line goes on in a junction: to another arm, or to where it ends.
@@ -80,7 +89,7 @@ impl Junctions {
     }
 
     /// A line ends, at others or, at its `tip`, nowhere.
-    pub(super) fn end(&mut self, owner: Pixel, one: &ArmOf, points: Vec<PxPoint>, tip: bool) {
+    pub(super) fn end(&mut self, owner: Pixel, one: &ArmOf, points: Vec<PxPoint>, tip: Option<Tip>) {
         self.set_skip(one.end, one.arm.skip);
         self.connections.push(Connection { owner, from: one.end, to: None, points, corner: false, tip });
     }
@@ -104,7 +113,7 @@ impl Junctions {
             to: Some(other.end),
             points,
             corner,
-            tip: false,
+            tip: None,
         });
     }
 
@@ -113,7 +122,7 @@ impl Junctions {
         for Way { one, other, points } in ways {
             match other {
                 Some(other) => self.pair(owner, &one, &other, points),
-                None => self.end(owner, &one, points, false),
+                None => self.end(owner, &one, points, None),
             }
         }
     }
@@ -422,7 +431,9 @@ impl Lines<'_> {
             self.resolve_thin(group, owner, &arms, found);
         } else if let [one] = arms.as_slice() {
             let (end, is_cut) = line_end(self.scan, &one.arm);
-            found.end(owner, one, vec![end], !is_cut);
+            let seat = if is_cut { None } else { seated_across(self.scan, &one.arm, end) };
+            let tip = (!is_cut).then_some(if seat.is_some() { Tip::Seated } else { Tip::Ahead });
+            found.end(owner, one, vec![seat.unwrap_or(end)], tip);
         } else {
             let heart = self.heart(group, owner);
             if !heart.resolve_point(&arms, |end| self.sites_from(end), found) {
@@ -569,7 +580,7 @@ impl Lines<'_> {
         }
         for (index, one) in arms.iter().enumerate() {
             if !paired.contains(&index) {
-                found.end(owner, one, Vec::new(), false);
+                found.end(owner, one, Vec::new(), None);
             }
         }
         let is_passed = |node: usize| {

@@ -28,6 +28,9 @@ pub(super) const AT_RIM_PX: f64 = 2.5;
 /// Least width of the ink along the rim, of the line's, where that cuts it: else it is the line's end.
 const LEAST_CUT: f64 = 0.6;
 
+/// The other part of the direction of a line along an axis: a rounding.
+pub(super) const LEVEL: f64 = 1e-9;
+
 /// Sites from a line's end on, whose pixels are given too, that lead into a corner of its ink or are disturbed by one: the
 /// discs of ink around them are smaller than those of the line. Whether branches into its corners have gone is known.
 pub(super) fn tail(
@@ -79,6 +82,57 @@ pub(super) fn line_end(scan: Scan<'_>, arm: &Arm) -> (PxPoint, bool) {
         return (straight, false);
     }
     (end(scan.reach_along_px(longest_px, |t| arm.at(-t))), false)
+}
+
+/// The end of a line along the raster's axis, put across it where the ink's end has it; none where that tells nothing.
+///
+/// Along such a line the middle of each column is the same, wherever within half a pixel of it the pen went. But the end of a pen's line is the
+/// same on both sides of that, and its columns get narrower: each has a middle less than half a pixel from the pen's way, and those of an even and of
+/// an odd number of pixels lie half a pixel apart. Ends that are not even, and square ones, tell nothing more.
+///
+/// ```text
+///   ■■■■■■■■■·        middles of the columns: 2.5, then 2.0 of rows 0 to 3: the way is between them
+///   ■■■■■■■■■■
+///   ■■■■■■■■■■        2.25 ± 0.25 instead of 2.5 ± 0.5
+///   ■■■■■■■■■■
+///   ■■■■■■■··
+/// ```
+pub(super) fn seated_across(scan: Scan<'_>, arm: &Arm, end: PxPoint) -> Option<PxPoint> {
+    /// Of thinner lines the end is hardly narrower than the line.
+    const LEAST_PX: f64 = 2.0;
+    let (dx, dy) = arm.direction;
+    let is_upright = dx.abs() < LEVEL;
+    if scan.grey.is_some() || arm.width_px < LEAST_PX || !(is_upright || dy.abs() < LEVEL) {
+        return None;
+    }
+    let across = if is_upright { (1.0, 0.0) } else { (0.0, 1.0) };
+    let middle = |at: PxPoint| {
+        let run = |way: (f64, f64)| scan.pixels_of_ink(at, way, arm.width_px + 1.0);
+        let (before, behind) = (run((-across.0, -across.1)), run(across));
+        let place = if is_upright { libm::floor(at.x) } else { libm::floor(at.y) };
+        (place + 0.5 + 0.5 * (behind - before), before + behind)
+    };
+    let mut range = (f64::NEG_INFINITY, f64::INFINITY);
+    // From the undisturbed part to the last column of ink.
+    let mut out_px = -0.5 * arm.width_px - 1.0;
+    while out_px < arm.width_px {
+        let at = end.along((-dx, -dy), out_px);
+        if !scan.is_ink_around(at) {
+            break;
+        }
+        let (middle_px, width_px) = middle(at);
+        if width_px > arm.width_px + 1.0 {
+            return None;
+        }
+        range = (range.0.max(middle_px - 0.5), range.1.min(middle_px + 0.5));
+        out_px += 1.0;
+    }
+    // A pixel wide it is what one column tells; noise leaves nothing.
+    if !(0.1..0.9).contains(&(range.1 - range.0)) {
+        return None;
+    }
+    let seat = f64::midpoint(range.0, range.1);
+    Some(if is_upright { PxPoint::new(seat, end.y) } else { PxPoint::new(end.x, seat) })
 }
 
 /// How far the fitted part of an arm begins from its tip, px.

@@ -31,6 +31,7 @@ pub(crate) struct Place {
 enum Role {
     Course,
     Tip,
+    SeatedTip,
     Corner,
 }
 
@@ -51,6 +52,11 @@ impl Place {
     /// The place where a line ends that joins nothing there.
     pub(crate) fn tip(at: PxPoint) -> Self {
         Self { role: Role::Tip, ..Self::new(at, -1.0, false) }
+    }
+
+    /// The same where it is known to lie across the line.
+    pub(crate) fn seated_tip(at: PxPoint) -> Self {
+        Self { role: Role::SeatedTip, ..Self::tip(at) }
     }
 
     /// Where.
@@ -84,7 +90,12 @@ impl Place {
 
     /// Whether the line ends here and joins nothing.
     pub(crate) fn is_tip(self) -> bool {
-        self.role == Role::Tip
+        matches!(self.role, Role::Tip | Role::SeatedTip)
+    }
+
+    /// Whether it ends here, and lies here across its line.
+    pub(crate) fn is_seated_tip(self) -> bool {
+        self.role == Role::SeatedTip
     }
 
     /// The same width at another place, which is no corner.

@@ -276,6 +276,15 @@ impl Scan<'_> {
         reach
     }
 
+    /// How many pixels of ink follow the one of a place, at most `limit_px`.
+    pub(super) fn pixels_of_ink(&self, from: PxPoint, direction: (f64, f64), limit_px: f64) -> f64 {
+        let mut count = 0.0;
+        while count < limit_px && self.is_ink_around(from.along(direction, count + 1.0)) {
+            count += 1.0;
+        }
+        count
+    }
+
     /// Whether the pixel that a place lies in is ink.
     pub(super) fn is_ink_around(&self, at: PxPoint) -> bool {
         self.is_ink(libm::floor(at.x), libm::floor(at.y))

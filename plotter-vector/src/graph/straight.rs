@@ -44,6 +44,9 @@ const FOUND_PX: f64 = 1.5;
 /// How near to it the place where a line meets others stays that place, px: other lines may end there, too.
 const MEETS_PX: f64 = 0.1;
 
+/// How far from the middle of a row a line along it may lie, px.
+const ROW_PX: f64 = 0.5;
+
 /// Where the ink is so much wider or narrower than the line, px, its middle is not the line's.
 const OTHER_PX: f64 = 0.9;
 
@@ -88,7 +91,17 @@ impl Straightened {
             found.extend(stretches(&Part { places, range: from..to, ends: true, width_px }));
             from = to + 1;
         }
-        for stretch in &found {
+        for stretch in &mut found {
+            // The ends of a line along an axis show where in its row the pen went.
+            let ends = [0, last].into_iter().filter(|end| stretch.places.contains(end));
+            let tips: Vec<PxPoint> = ends
+                .filter_map(|end| {
+                    places.get(end).filter(|place| place.is_seated_tip()).map(|place| place.at())
+                })
+                .collect();
+            if let Some(off_px) = stretch.line.level_off_px(&tips).filter(|off_px| off_px.abs() < ROW_PX) {
+                stretch.line = stretch.line.shifted(off_px);
+            }
             line.put(stretch);
         }
         for end in [0, last] {

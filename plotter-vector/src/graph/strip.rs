@@ -45,6 +45,25 @@ impl Line {
         self.at(self.along_px(at))
     }
 
+    /// How far across a line along an axis places lie in the mean, px; none for other lines, and without places.
+    pub(super) fn level_off_px(&self, places: &[PxPoint]) -> Option<f64> {
+        let (u, v) = self.direction;
+        let is_level = u == 0.0 || v == 0.0;
+        #[expect(clippy::cast_precision_loss, reason = "two ends")]
+        let count = places.len() as f64;
+        let across = |at: &PxPoint| {
+            let (x, y) = at.minus(self.origin);
+            y * u - x * v
+        };
+        (is_level && count > 0.0).then(|| places.iter().map(across).sum::<f64>() / count)
+    }
+
+    /// The same so far to the side.
+    pub(super) fn shifted(&self, across_px: f64) -> Self {
+        let (u, v) = self.direction;
+        Self { origin: self.origin.along((-v, u), across_px), ..*self }
+    }
+
     /// How far a place lies beside it, px.
     pub(super) fn off_px(&self, at: PxPoint) -> f64 {
         self.foot(at).distance(at)

@@ -298,7 +298,7 @@ impl Lines<'_> {
             let to = connection.to.and_then(root);
             let cut = connection.points.last().filter(|at| self.scan.rim_px(**at) <= ON_RIM_PX);
             // Near its end the cuts through a line may run out of that.
-            let is_end = connection.tip || cut.is_some();
+            let is_end = connection.tip.is_some() || cut.is_some();
             let width_px = if is_end { self.typical_px(connection.from).max(calm_px) } else { calm_px };
             // What the rim of the picture cuts goes on beyond it.
             let beyond = cut.map(|at| {
