@@ -4,8 +4,10 @@
 //! cargo bench -p plotter-motion --bench planner
 //! ```
 
-#[path = "../tests/drawings/mod.rs"]
+#[path = "../tests/all/drawings/mod.rs"]
 mod drawings;
+#[path = "../tests/all/real_files/mod.rs"]
+mod real_files;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use drawings::Drawing;

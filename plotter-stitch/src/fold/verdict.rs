@@ -58,7 +58,7 @@ pub struct FoldTest {
 
 impl Default for FoldTest {
     /// One false alarm in a thousand, with edges that are rough by 0.02 mm and a pen that comes back within 0.014 mm: found by
-    /// simulation (`cargo test --release --test sim_fold -- --ignored --nocapture`).
+    /// simulation (`cargo test --release --test all sim_fold:: -- --ignored --nocapture`).
     fn default() -> Self {
         Self { false_alarms: 1e-3, mean_mm: 0.025, common_mm: 0.012, each_mm: 0.033, least_scans: 5 }
     }

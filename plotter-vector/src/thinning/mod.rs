@@ -68,7 +68,7 @@ pub enum ThinningMethod {
 /// thin from the start, and stays. Branches of up to 3 px beside thick ink go as corners do.
 ///
 /// Of 840 straight strokes with square ends and 840 with round ends, 2 to 15 px wide, and 120 wedges 9 px wide at the
-/// base, at all angles (`cargo test -p plotter-vector --test thinning_ends -- --nocapture`):
+/// base, at all angles (`cargo test -p plotter-vector --test all thinning_ends:: -- --nocapture`):
 ///
 /// | | Guo & Hall | Zhang & Suen |
 /// | --- | --- | --- |

@@ -1,4 +1,4 @@
-//! The drawings of `plotter-motion/tests/drawings`, made as they are asked for, and one like the owl there: short strokes.
+//! The drawings of `plotter-motion/tests/all/drawings`, made as they are asked for, and one like the owl there: short strokes.
 
 use core::f64::consts::TAU;
 use plotter_motion::{PlotOp, Point};

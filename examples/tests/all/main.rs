@@ -1,0 +1,23 @@
+//! All integration tests of the examples as one program, which is linked once; a module is a subject.
+//!
+//! `cargo test -p plotter-examples --test all SUBJECT::` runs those of one.
+
+mod built_example;
+mod compare_controllers_command;
+mod convert_command;
+mod follow_command;
+mod judge_command;
+mod judged_corpus;
+mod licences;
+mod long_sheet_command;
+mod long_sheet_drawing;
+#[path = "../../../plotter-vector/tests/all/made_font/mod.rs"]
+mod made_font;
+mod max_error_command;
+mod plot_command;
+#[path = "../../../plotter-motion/tests/all/real_files/mod.rs"]
+mod real_files;
+mod stepper_command;
+mod trace_command;
+mod trace_compared;
+mod tune_command;

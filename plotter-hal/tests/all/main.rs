@@ -1,0 +1,19 @@
+//! All integration tests of the crate as one program, which is linked once; a module is a subject.
+//!
+//! `cargo test -p plotter-hal --test all SUBJECT::` runs those of one.
+
+mod a4988;
+mod axis;
+mod dependencies;
+mod estop_input;
+mod faulty;
+mod h_bridge;
+mod h_bridge_kinds;
+mod laser;
+mod limit_switch;
+mod logic_analyser;
+mod pen_servo;
+mod prop_drivers;
+mod pulse_counter;
+mod quadrature;
+mod serial_line;

@@ -1,0 +1,174 @@
+//! Drawings through planner and step generator, audited by their steps.
+#![allow(
+    clippy::print_stdout,
+    clippy::cast_precision_loss,
+    reason = "what was measured, for whoever looks; ticks below 2^53"
+)]
+
+use crate::auditor;
+use crate::drawings;
+
+use auditor::{Audit, Lens, audit, planned};
+use core::time::Duration;
+use drawings::Drawing;
+use plotter_motion::plant::{StepperPlant, StepperSettings};
+use plotter_motion::{Axis, Direction, MotorEvent, PathMode, PlannerSettings, StepGenSettings};
+
+/// A hundred times as fine as a motor, so that differences of places are accelerations and not roundings.
+const FINE: Lens =
+    Lens { steps_per_mm: 10_000.0, clock_hz: 1e8, bin_s: 0.000_05, window: 50, wide_window: 560 };
+/// For long drawings.
+const MIDDLE: Lens =
+    Lens { steps_per_mm: 4_000.0, clock_hz: 1e8, bin_s: 0.000_05, window: 80, wide_window: 560 };
+/// By how much what is measured may exceed a limit.
+const MEASURED: f64 = 1.05;
+/// By how much the times of planner and steps may differ.
+const TIME_SHARE: f64 = 0.01;
+const TOLERANCE_MM: f64 = 0.05;
+
+fn modes() -> [(&'static str, PlannerSettings); 4] {
+    let exact = PlannerSettings::default();
+    let path = PathMode::Tolerance { path_tolerance_mm: TOLERANCE_MM };
+    let tolerance = PlannerSettings { path, ..exact };
+    let curved = |settings| PlannerSettings { jerk_mm_s3: Some(20_000.0), ..settings };
+    [
+        ("exact", exact),
+        ("tolerance", tolerance),
+        ("exact s-curve", curved(exact)),
+        ("tolerance s-curve", curved(tolerance)),
+    ]
+}
+
+fn check(drawing: &Drawing, lens: Lens) {
+    for (mode, settings) in modes() {
+        // Jerks are differences of differences: they want longer windows.
+        let lens =
+            if settings.jerk_mm_s3.is_some() { Lens { window: lens.window * 3, ..lens } } else { lens };
+        let seen: Audit = audit::<16>(settings, lens, &drawing.ops);
+        let what = format!("{} {mode}: {seen:.4?}", drawing.name);
+        println!("{what}");
+        assert!(seen.speed_mm_s <= MEASURED * settings.speed_mm_s, "{what}");
+        for accel in [seen.along_mm_s2, seen.across_mm_s2, seen.wide_along_mm_s2, seen.wide_across_mm_s2] {
+            assert!(accel <= MEASURED * settings.accel_mm_s2, "{what}");
+        }
+        assert!(seen.corner_share <= MEASURED && seen.curve_share <= MEASURED, "{what}");
+        if let Some(jerk_mm_s3) = settings.jerk_mm_s3 {
+            assert!(seen.jerk_mm_s3 <= MEASURED * jerk_mm_s3, "{what}");
+        }
+        let step_mm = 1.0 / lens.steps_per_mm;
+        let tolerance_mm = if settings.path == PathMode::Exact { 0.0 } else { TOLERANCE_MM };
+        let most_mm = tolerance_mm + settings.resolution_mm + step_mm;
+        assert!(seen.from_drawing_mm <= most_mm && seen.from_pen_mm <= most_mm, "{what}");
+        assert!((seen.time_s - seen.planned_s).abs() <= TIME_SHARE * seen.planned_s, "{what}");
+        let end = drawing.ops.iter().rev().find_map(|op| op.target()).unwrap_or_default();
+        let steps = |mm: f64| plotter_motion::from_mm(mm, lens.steps_per_mm);
+        assert_eq!((seen.end.x, seen.end.y), (steps(end.x), steps(end.y)), "{what}");
+    }
+}
+
+#[test]
+fn short_drawings_keep_every_limit() {
+    for drawing in [drawings::spiral(2), drawings::hatch(4), drawings::zigzag(60), drawings::circle()] {
+        check(&drawing, FINE);
+    }
+}
+
+#[test]
+fn arcs_are_run_as_arcs_within_every_limit() {
+    check(&drawings::arcs(), FINE);
+    // Courses, not chords.
+    assert_eq!(planned::<16>(PlannerSettings::default(), &drawings::arcs().ops).1, 18);
+}
+
+#[test]
+#[ignore = "two minutes in a release build: .ci/run runs it"]
+fn whole_drawings_keep_every_limit() {
+    for drawing in drawings::built() {
+        check(&drawing, FINE);
+    }
+    for drawing in drawings::real() {
+        check(&drawing, if drawing.name == "Cassini" { MIDDLE } else { FINE });
+    }
+}
+
+/// The documented machine: 87.58 steps/mm, so up to 8758 pulses/s, and simulated motors that lose steps.
+#[test]
+#[ignore = "half a minute in a release build: .ci/run runs it"]
+fn whole_drawings_lose_no_step() {
+    let drawings = drawings::built().into_iter().chain(drawings::real());
+    for drawing in drawings {
+        for (mode, settings) in modes() {
+            let mut plant = StepperPlant::new(StepperSettings::default(), StepperSettings::default());
+            let clock = StepGenSettings::default();
+            let mut fastest_hz = 0.0_f64;
+            let mut last = [0; 2];
+            auditor::run::<16>(
+                settings,
+                clock,
+                87.58,
+                &drawing.ops,
+                |_, _| {},
+                |tick, event| {
+                    let MotorEvent::Step { x, y } = event else { return };
+                    let at_s = tick as f64 / f64::from(clock.clock_hz);
+                    for (axis, step) in [(Axis::X, x), (Axis::Y, y)] {
+                        if step != 0 {
+                            let direction = if step > 0 { Direction::Plus } else { Direction::Minus };
+                            plant.pulse(Duration::from_secs_f64(at_s), axis, direction);
+                            let last = &mut last[axis as usize];
+                            fastest_hz =
+                                fastest_hz.max(f64::from(clock.clock_hz) / (tick - *last).max(1) as f64);
+                            *last = tick;
+                        }
+                    }
+                },
+            );
+            plant.x.settle();
+            plant.y.settle();
+            println!("{} {mode}: up to {fastest_hz:.0} pulses/s", drawing.name);
+            assert_eq!((plant.x.lost_steps(), plant.y.lost_steps()), (0, 0), "{} {mode}", drawing.name);
+        }
+    }
+}
+
+/// Prints the table of docs/results.md: `cargo test --release -p plotter-motion --test all sim_planner::table -- --ignored --nocapture`
+#[test]
+#[ignore = "seconds in a release build: the table of docs/results.md, with the command that stands there"]
+fn table_of_times() {
+    let modes = modes();
+    println!(
+        "| drawing | courses | exact | 16 blocks | tolerance | 16 blocks | s-curve exact | s-curve tolerance |"
+    );
+    for drawing in drawings::built().into_iter().chain(drawings::real()) {
+        let [exact, tolerance, curved, curved_tolerance] = modes.map(|(_, settings)| {
+            (planned::<1024>(settings, &drawing.ops), planned::<16>(settings, &drawing.ops).0)
+        });
+        // A short look-ahead, a path that must be kept exactly and a bounded jerk take time, and save none.
+        for ((long, courses), short) in [exact, tolerance, curved, curved_tolerance] {
+            assert!(
+                courses > 0 && long > 0.0 && short >= long * (1.0 - 1e-9),
+                "{}: {long}, {short} s",
+                drawing.name
+            );
+        }
+        let saved = |less: ((f64, usize), f64), more: ((f64, usize), f64)| less.0.0 <= more.0.0;
+        assert!(
+            saved(tolerance, exact) && saved(exact, curved) && saved(tolerance, curved_tolerance),
+            "{}",
+            drawing.name
+        );
+        let row = |((long, _), short): ((f64, usize), f64)| format!("{long:.2} | {:.4}", short / long);
+        let ratio = |curved: ((f64, usize), f64), plain: ((f64, usize), f64)| {
+            format!("{:.2} ({:.3})", curved.0.0, curved.0.0 / plain.0.0)
+        };
+        println!(
+            "| {} | {} | {} | {} | {} | {} |",
+            drawing.name,
+            exact.0.1,
+            row(exact),
+            row(tolerance),
+            ratio(curved, exact),
+            ratio(curved_tolerance, tolerance)
+        );
+    }
+}

@@ -1,0 +1,342 @@
+//! The pages, as a person sees them: in a browser without a window.
+//!
+//! Needs Debian's package `chromium`, or another one named in `CHROMIUM`; screenshots go to `BROWSER_SCREENSHOTS`:
+//!
+//! ```text
+//! cargo test --release -p plotter-replay --features live --test all browser:: -- --ignored --test-threads 1 --nocapture
+//! ```
+#![cfg(unix)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a test that fails says so by a panic"
+)]
+
+use crate::devtools;
+
+use devtools::Browser;
+use serde_json::json;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_plotter-replay");
+/// Two figures with a way between them, nine targets; some four seconds at the usual speed.
+const FIGURES: &str =
+    "PU400,400;PD2400,400,2400,2400,400,2400,400,400;PU800,800;PD2000,800,1400,2000,800,800;";
+
+/// A program that ends with the test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+impl Running {
+    fn start(arguments: &[&str], here: &Path) -> (Self, impl FnMut() -> String + use<>) {
+        let mut child = Command::new(PROGRAM)
+            .args(arguments)
+            .current_dir(here)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        (Self(child), move || lines.next().expect("the program ended").unwrap())
+    }
+
+    /// Status and standard error.
+    fn finish(&mut self) -> (Option<i32>, String) {
+        let until = Instant::now() + Duration::from_secs(30);
+        let status = loop {
+            if let Some(status) = self.0.try_wait().unwrap() {
+                break status;
+            }
+            assert!(Instant::now() < until, "it does not end");
+            std::thread::sleep(Duration::from_millis(20));
+        };
+        let mut said = String::new();
+        let _ = std::io::Read::read_to_string(&mut self.0.stderr.take().unwrap(), &mut said);
+        (status.code(), said)
+    }
+}
+
+/// A machine that takes its bytes fast, and a drawing.
+fn set_up(here: &Path) {
+    std::fs::write(
+        here.join("machine.toml"),
+        "schema = 1\nname = \"test-bed\"\n[serial]\nbyte_gap_ms = 1.0\n",
+    )
+    .unwrap();
+    draw(here, 1);
+}
+
+/// The figures so many times.
+fn draw(here: &Path, times: usize) {
+    let drawing = format!("IN;SP1;{}PU0,0;", FIGURES.repeat(times));
+    std::fs::write(here.join("drawing.hpgl"), drawing).unwrap();
+}
+
+fn number(text: &str) -> f64 {
+    text.split_whitespace().next().unwrap().parse().unwrap_or_else(|_| panic!("{text} is no number"))
+}
+
+/// A recording that was made by the program itself, with two lost bytes and a silence put in by hand.
+fn recording(here: &Path) {
+    let (mut live, _) = Running::start(
+        &[
+            "live",
+            "--simulate",
+            "machine.toml",
+            "--link",
+            "digits",
+            "--speed",
+            "2",
+            "drawing.hpgl",
+            "--start",
+            "-o",
+            "good.plog",
+        ],
+        here,
+    );
+    assert_eq!(live.finish().0, Some(0));
+    let log = std::fs::read_to_string(here.join("good.plog")).unwrap();
+    let mut lines: Vec<&str> = log.lines().collect();
+    let third = lines.len() / 3;
+    let lost = (third..).find(|&n| lines[n].contains(" < ")).unwrap();
+    lines.remove(lost);
+    let cut = &lines[lines.len() / 2][..8]; // a damaged line
+    lines.insert(lines.len() / 2, cut);
+    std::fs::write(here.join("bad.plog"), lines.join("\n") + "\n").unwrap();
+}
+
+#[test]
+#[ignore = "needs a browser: .ci/browser"]
+fn a_recording_plays_in_a_browser() {
+    let here = tempfile::tempdir().unwrap();
+    set_up(here.path());
+    recording(here.path());
+    let render = Command::new(PROGRAM)
+        .args(["render", "bad.plog", "--drawing", "drawing.hpgl", "--html", "page.html"])
+        .current_dir(here.path())
+        .output()
+        .unwrap();
+    assert_eq!(render.status.code(), Some(1), "{render:?}"); // damage found
+    let page = here.path().join("page.html");
+    let mut browser = Browser::start();
+    // Without any network at all.
+    browser.ask("Network.enable", json!({}));
+    let offline = json!({"offline": true, "latency": 0, "downloadThroughput": -1, "uploadThroughput": -1});
+    browser.ask("Network.emulateNetworkConditions", offline);
+    browser.open(&format!("file://{}", page.display()));
+    browser.screenshot("recording-light");
+    browser.scheme("dark");
+    browser.screenshot("recording-dark");
+    browser.scheme("light");
+
+    let ends_at = number(&browser.value("time"));
+    let picture = "document.getElementById('sheet').toDataURL()";
+    let at_the_end = browser.eval(picture);
+    // The slider moves the pen.
+    browser.eval(
+        "(() => { const slider = document.getElementById('time'); slider.value = 4000; slider.dispatchEvent(new Event('input')); })()",
+    );
+    let place = |browser: &mut Browser| (browser.value("position x"), browser.value("position y"));
+    let at_4000 = place(&mut browser);
+    assert!((number(&browser.value("time")) - 0.4 * ends_at).abs() < 0.02 * ends_at);
+    assert_ne!(at_4000, (String::from("0.000 mm"), String::from("0.000 mm")));
+    assert_ne!(browser.eval(picture), at_the_end);
+    browser.screenshot("recording-middle");
+    // So do the keys.
+    browser.key("ArrowRight", 39);
+    assert_ne!(place(&mut browser), at_4000);
+    browser.key("Home", 36);
+    let begins_at = number(&browser.value("time"));
+    assert!(begins_at < 0.1, "{begins_at}");
+    browser.key(" ", 32);
+    browser.wait_for("document.getElementById('play').textContent === 'Pause'");
+    std::thread::sleep(Duration::from_millis(300));
+    browser.key(" ", 32);
+    let played_to = number(&browser.value("time"));
+    assert!(played_to > begins_at + 0.1, "{played_to}");
+    // What is wrong stands in the table, and leads there.
+    assert!(
+        browser.text("#anomalies-title").contains("damaged lines: 1"),
+        "{}",
+        browser.text("#anomalies-title")
+    );
+    assert!(browser.text("#anomalies").contains("bytes were lost"), "{}", browser.text("#anomalies"));
+    browser.eval("document.querySelector('#anomalies tr[tabindex]').click()");
+    let row = number(&browser.text("#anomalies tr[tabindex] td"));
+    assert!((number(&browser.value("time")) - row).abs() < 1e-5, "{row}");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs a browser: .ci/browser"]
+fn a_long_recording_is_a_small_page_that_opens_at_once() {
+    let here = tempfile::tempdir().unwrap();
+    let Some(log) = std::env::var_os("LONG_RECORDING") else {
+        println!("LONG_RECORDING names no recording: left out");
+        return;
+    };
+    let page = here.path().join("page.html");
+    let render = Command::new(PROGRAM).arg("render").arg(log).arg("--html").arg(&page).output().unwrap();
+    assert_eq!(render.status.code(), Some(0), "{render:?}");
+    let bytes = std::fs::metadata(&page).unwrap().len();
+    let mut browser = Browser::start();
+    let address = format!("file://{}", page.display());
+    browser.open(&address); // the first page of a new browser pays for the browser
+    // The time of the processor, which what else runs on this computer does not change.
+    browser.ask("Performance.enable", json!({"timeDomain": "threadTicks"}));
+    let before = browser.busy();
+    let opened = browser.open(&address);
+    let busy = browser.busy() - before;
+    println!(
+        "{} pulses: {bytes} bytes, {:.0} ms of the processor, open after {} ms",
+        browser.value("pulses"),
+        busy * 1e3,
+        opened.as_millis()
+    );
+    browser.screenshot("recording-long");
+    assert!(bytes < 2_000_000, "{bytes}");
+    assert!(busy < 1.0, "{busy} s");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs a browser: .ci/browser"]
+fn a_machine_behind_a_pseudo_terminal_is_started_watched_stopped_resumed_and_finishes() {
+    let here = tempfile::tempdir().unwrap();
+    set_up(here.path());
+    draw(here.path(), 5); // not done before it is stopped and paused, however busy the computer is
+    let (_machine, mut said) = Running::start(&["simulate", "machine.toml"], here.path());
+    let port = said().split_once(" is simulated on ").unwrap().1.to_owned();
+    let (mut live, mut said) = Running::start(
+        &["live", "--port", &port, "--machine", "machine.toml", "drawing.hpgl", "-o", "session.plog"],
+        here.path(),
+    );
+    assert!(said().contains(&port));
+    let address = said().strip_prefix("look at ").unwrap().to_owned();
+    let mut browser = Browser::start();
+    browser.open(&address);
+    browser.wait_for("document.body.dataset.state === 'ready'");
+    assert_eq!(browser.text("#kind"), "REAL MACHINE"); // for all that the program knows
+    browser.screenshot("live-ready");
+
+    browser.click("#start");
+    browser.wait_for("document.body.dataset.state === 'running' && way.length > 3 && last.sent >= 2");
+    let first = browser.value("position x") + &browser.value("position y");
+    browser.wait_for("last.speed_mm_s[0] !== 0 || last.speed_mm_s[1] !== 0");
+    browser.screenshot("live-running");
+    assert_ne!(browser.value("position x") + &browser.value("position y"), first);
+
+    // The key stops it in the middle of a line.
+    browser.wait_for("Math.hypot(...last.speed_mm_s) > 20");
+    browser.key("Escape", 27);
+    browser.wait_for("document.body.dataset.state === 'stopped'");
+    // The motors have run down when the machine has told nothing new for a while, on a busy computer too.
+    browser.wait_for(
+        "(window.rest = window.rest?.at === String(last.counts) ? window.rest : { at: String(last.counts), since: performance.now() }) \
+         && performance.now() - window.rest.since > 1000",
+    );
+    let stopped = (browser.value("position x"), browser.value("position y"));
+    browser.screenshot("live-stopped");
+    std::thread::sleep(Duration::from_millis(500));
+    assert_eq!((browser.value("position x"), browser.value("position y")), stopped);
+    assert_eq!(browser.eval("Math.hypot(...last.speed_mm_s)"), json!(0));
+
+    browser.click("#resume");
+    browser.wait_for("document.body.dataset.state === 'running'");
+    browser.key(" ", 32);
+    browser.wait_for("document.body.dataset.state === 'paused' && last.speed_mm_s.every((v) => v === 0)");
+    browser.key(" ", 32);
+    browser.wait_for("document.body.dataset.state === 'done'");
+    browser.screenshot("live-done");
+    assert_eq!(browser.value("targets done"), "46 of 46");
+    assert_eq!(browser.value("reached"), "46");
+    assert_eq!(browser.value("anomalies"), "0");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+    assert_eq!(live.finish(), (Some(0), String::new()));
+
+    let info =
+        Command::new(PROGRAM).args(["info", "session.plog"]).current_dir(here.path()).output().unwrap();
+    let info = String::from_utf8(info.stdout).unwrap();
+    assert!(info.contains("stopped over the line: 1") && info.contains("nothing lost"), "{info}");
+}
+
+#[test]
+#[ignore = "needs a browser: .ci/browser"]
+fn a_port_that_vanishes_is_said_on_the_page_and_the_recording_is_kept() {
+    let here = tempfile::tempdir().unwrap();
+    set_up(here.path());
+    let (machine, mut said) = Running::start(&["simulate", "machine.toml"], here.path());
+    let port = said().split_once(" is simulated on ").unwrap().1.to_owned();
+    let (mut live, mut said) = Running::start(
+        &[
+            "live",
+            "--port",
+            &port,
+            "--machine",
+            "machine.toml",
+            "drawing.hpgl",
+            "--start",
+            "-o",
+            "session.plog",
+        ],
+        here.path(),
+    );
+    said();
+    let address = said().strip_prefix("look at ").unwrap().to_owned();
+    let mut browser = Browser::start();
+    browser.open(&address);
+    browser.wait_for("last && last.sent >= 1");
+    drop(machine);
+    browser.wait_for("document.body.dataset.state === 'failed'");
+    let banner = browser.text("#banner");
+    assert!(banner.contains("recording up to here is kept"), "{banner}");
+    browser.screenshot("live-vanished");
+    let (status, said) = live.finish();
+    assert_eq!(status, Some(2), "{said}");
+    assert!(said.contains(&port) && said.contains("session.plog"), "{said}");
+    let info =
+        Command::new(PROGRAM).args(["info", "session.plog"]).current_dir(here.path()).output().unwrap();
+    assert_eq!(info.status.code(), Some(0));
+    assert!(String::from_utf8(info.stdout).unwrap().contains("notes: 1"));
+}
+
+#[test]
+#[ignore = "needs a browser: .ci/browser"]
+fn the_button_stops_a_simulated_machine_and_the_page_says_that_it_is_one() {
+    let here = tempfile::tempdir().unwrap();
+    set_up(here.path());
+    let (mut live, mut said) =
+        Running::start(&["live", "--simulate", "machine.toml", "drawing.hpgl", "--start"], here.path());
+    assert!(said().contains("SIMULATED"));
+    let address = said().strip_prefix("look at ").unwrap().to_owned();
+    let mut browser = Browser::start();
+    browser.open(&address);
+    assert_eq!(browser.text("#kind"), "SIMULATED MACHINE");
+    browser.wait_for("last && Math.hypot(...last.speed_mm_s) > 20");
+    assert!(browser.value("duty x").ends_with('%'), "{}", browser.value("duty x"));
+    // From the click to the first update that has both motors off, by the browser's own clock.
+    let ms = browser.eval(
+        "new Promise((done) => { const clicked = performance.now(); document.getElementById('stop').click(); \
+         const look = () => last.state === 'stopped' && last.duty.every((d) => d === 0) ? done(performance.now() - clicked) : setTimeout(look, 1); look(); })",
+    );
+    println!("both motors off on the screen {ms} ms after the click");
+    assert!(ms.as_f64().unwrap() < 1_000.0);
+    browser.scheme("dark");
+    browser.screenshot("live-simulated-dark");
+    browser.click("#resume");
+    // A browser that goes away stops nothing.
+    browser.wait_for("document.body.dataset.state === 'running'");
+    drop(browser);
+    assert_eq!(live.finish(), (Some(0), String::new()));
+}

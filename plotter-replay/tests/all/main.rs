@@ -1,0 +1,33 @@
+//! All integration tests of the crate as one program, which is linked once; a module is a subject.
+//!
+//! `cargo test -p plotter-replay --test all SUBJECT::` runs those of one.
+
+#[cfg(all(feature = "cli", feature = "live"))]
+mod browser;
+mod command_line;
+mod damaged_logs;
+#[cfg(all(feature = "cli", feature = "live"))]
+mod devtools;
+mod golden_presets;
+mod house;
+mod import;
+mod line;
+mod linked_session;
+#[cfg(all(feature = "cli", feature = "live"))]
+mod live_command;
+#[cfg(feature = "live")]
+mod live_session;
+mod log_commands;
+mod malformed_logs;
+mod pictures;
+mod player_times;
+mod prop_log;
+#[path = "../../../plotter-motion/tests/all/real_files/mod.rs"]
+mod real_files;
+mod real_logs;
+mod record_command;
+mod replay_of_the_gantry;
+mod replay_of_the_link;
+mod sim_drawings_over_lines;
+mod sim_link;
+mod virtual_plotter;

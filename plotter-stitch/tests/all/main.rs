@@ -1,0 +1,15 @@
+//! All integration tests of the crate as one program, which is linked once; a module is a subject.
+//!
+//! `cargo test -p plotter-stitch --test all SUBJECT::` runs those of one.
+
+mod chain_precision;
+mod golden_split;
+mod joints;
+mod prop_fold;
+mod prop_frame_transform;
+mod prop_rigid;
+mod prop_split;
+mod serde_readings;
+mod sim_fold;
+mod sim_joints;
+mod sim_long_sheet;

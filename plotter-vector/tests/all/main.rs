@@ -1,0 +1,55 @@
+//! All integration tests of the crate as one program, which is linked once; a module is a subject.
+//!
+//! `cargo test -p plotter-vector --test all SUBJECT::` runs those of one.
+
+mod blurred_corners;
+mod centrelines;
+mod cut_lines;
+mod follow_drawings;
+mod follow_figures;
+mod follow_kinds;
+mod frechet;
+mod hairline_widths;
+mod layers;
+mod level_lines;
+mod line_ends;
+mod lines;
+mod made_font;
+mod off_lines;
+mod outline_mode;
+#[cfg(target_os = "linux")]
+mod own_process;
+mod pen_ink;
+mod prop_arcs;
+mod prop_areas;
+mod prop_bounded;
+mod prop_cubics;
+mod prop_follow;
+mod prop_follow_bad_input;
+mod prop_ink;
+mod prop_inside;
+mod prop_layers;
+mod prop_order;
+mod prop_polyline;
+mod prop_sheet;
+mod prop_svg;
+mod prop_thinning;
+mod prop_tracking;
+mod random;
+mod scan;
+mod scan_memory;
+mod segment_distance;
+mod sharp_points;
+mod sheet_cancelled;
+mod sheet_memory;
+mod sheet_of_hairlines;
+mod sheet_of_many_rows;
+mod sim_follow;
+mod sim_follow_connected;
+mod small_marks;
+mod straight_lines;
+mod svg_text;
+mod thin_lines;
+mod thinning_ends;
+mod threads;
+mod uneven_light;
