@@ -91,8 +91,10 @@ impl Frame<'_> {
         let check = check(session, raw.get(..checked)?);
         raw.get_mut(checked..checked + CHECK)?.copy_from_slice(&check.to_le_bytes());
         let mut bytes = [0; MOST_BYTES];
-        let length = corncobs::encode_buf(raw.get(..checked + CHECK)?, &mut bytes);
-        Some((bytes, length))
+        // The last byte is left for the zero at the end, which `cobs` does not write.
+        let (_, room) = bytes.split_last_mut()?;
+        let length = cobs::try_encode(raw.get(..checked + CHECK)?, room).ok()?;
+        Some((bytes, length + 1))
     }
 }
 
@@ -189,7 +191,7 @@ impl Decoder {
 
     fn decoded(bytes: &mut [u8], session: u16) -> Result<Frame<'_>, DecodeError> {
         const MALFORMED: DecodeError = DecodeError::Malformed;
-        let length = corncobs::decode_in_place(bytes).map_err(|_| MALFORMED)?;
+        let length = cobs::decode_in_place(bytes).map_err(|_| MALFORMED)?;
         let raw = bytes.get(..length).ok_or(MALFORMED)?;
         let (checked, sum) = raw.split_last_chunk::<CHECK>().ok_or(MALFORMED)?;
         let (header, payload) = checked.split_first_chunk::<HEADER>().ok_or(MALFORMED)?;
