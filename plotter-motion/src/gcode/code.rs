@@ -52,11 +52,13 @@ pub(super) enum Code {
     /// mDraw's `M4 …`.
     LaserPower,
     ToolChange = 0xA0,
-    MachineCoordinates = 0xB0,
+    /// `G54` to `G59`: which coordinates.
+    System = 0xB0,
+    MachineCoordinates = 0xC0,
     /// Nothing for a pen plotter to do; the other words of the line belong to it.
-    QuietWithWords = 0xC0,
+    QuietWithWords = 0xD0,
     /// Nothing for a pen plotter to do.
-    Quiet = 0xD0,
+    Quiet = 0xE0,
 }
 
 /// The groups that a line is asked for as a whole.
@@ -71,11 +73,13 @@ pub(super) enum Group {
     Stop = 8,
     /// A servo or a laser that is told a number.
     Told = 9,
+    /// A coordinate system.
+    System = 11,
 }
 
 /// How many groups there are, and how many of them allow one word only.
 pub(super) const GROUPS: usize = Code::Quiet.group() + 1;
-pub(super) const EXCLUSIVE: usize = Code::ToolChange.group() + 1;
+pub(super) const EXCLUSIVE: usize = Code::System.group() + 1;
 
 /// Words whose numbers lie from `first` to `last`, and the digits behind the point within `tenths`.
 #[derive(Clone, Copy, Debug)]
@@ -120,12 +124,11 @@ static GENERAL: &[Words] = &[
     tenths(90, 1, 0, Code::AbsoluteCentres),
     tenths(91, 1, 0, Code::RelativeCentres),
     one(94, Code::FeedPerMinute),
-    // Cancelling what was never on; work coordinates; path control; what machines and lathes differ in.
+    words(54, 59, Code::System),
+    // Cancelling what was never on; path control; what machines and lathes differ in.
     one(15, Code::Quiet),
     one(40, Code::Quiet),
     words(49, 50, Code::Quiet),
-    words(54, 58, Code::Quiet),
-    tenths(59, 0, 3, Code::Quiet),
     tenths(61, 0, 1, Code::Quiet),
     one(64, Code::Quiet),
     one(69, Code::Quiet),
@@ -141,6 +144,7 @@ static GENERAL_UNDONE: &[Words] = &[
     one(76, Code::NoMotion),
     words(81, 89, Code::NoMotion),
     one(10, Code::Other),
+    tenths(59, 1, 2, Code::Quiet),
     tenths(28, 1, 0, Code::Other),
     tenths(30, 1, 0, Code::Other),
     one(29, Code::Other),
@@ -237,7 +241,7 @@ pub(super) fn meaning(command: Word) -> &'static str {
         50..=53 => "spline",
         330 | 331 => "synchronized motion",
         382..=385 => "probe",
-        100 => "another coordinate system",
+        100 | 591..=593 => "another coordinate system",
         281 | 301 => "set the place of homing",
         290 => "bed levelling",
         923 => "restore the offset",

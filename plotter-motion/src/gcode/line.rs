@@ -3,10 +3,13 @@
 use super::block::is_among;
 use super::code::{Code, EXCLUSIVE, GROUPS, Group};
 use super::error::Complaint;
-use super::{Block, Problem, Word};
+use super::{Block, Problem, SYSTEMS, Word};
 
 /// Letters whose words are worth a notice where no command uses them.
 const NOTEWORTHY: &[u8] = b"ABCEIJKRUVW";
+
+/// The first `P` of `G10` that is no coordinate system.
+const NO_SYSTEM: f64 = (SYSTEMS + 1) as f64;
 
 /// What the words of one line ask for together.
 #[derive(Clone, Copy, Debug)]
@@ -96,9 +99,9 @@ impl<'b> Line<'b> {
         if word.letter == b'M' && ((tenths == 20 && has(b"UD")) || (tenths == 50 && has(b"ABHW"))) {
             return Ok(Code::QuietWithWords);
         }
-        // There is one coordinate system: that of G54, which is the first, and the one in force, which is 0.
+        // P0 is the coordinate system in force, P1 that of G54, P6 that of G59.
         if (word.letter, tenths) == (b'G', 100)
-            && let (Some(0.0 | 1.0), Some(form @ (2.0 | 20.0))) =
+            && let (Some(0.0..NO_SYSTEM), Some(form @ (2.0 | 20.0))) =
                 (self.block.number(b'P'), self.block.number(b'L'))
         {
             return Ok(if form > 2.0 { Code::OriginHere } else { Code::Origin });

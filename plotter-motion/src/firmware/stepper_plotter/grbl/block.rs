@@ -2,6 +2,7 @@
 
 use super::super::{Command, Link, Setting, SettingProblem, StoredSettings, area};
 use super::codes::{Alarm, Code};
+use super::known;
 use super::listing::is_listed;
 use super::words::{read, whole};
 use super::{Grbl, Pens, Wait, send};
@@ -22,6 +23,7 @@ impl<P: Pens> Grbl<P> {
     #[inline(never)] // its memory on the stack is for its own time only, as that of a jog
     pub(super) fn block(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
         let Some(block) = read(text)? else { return Ok(()) };
+        known::check(&block, self.settings.convention())?;
         let before = self.interpreter;
         let done = self.carry_out(&block, link);
         if done.is_err() {
@@ -87,7 +89,7 @@ impl<P: Pens> Grbl<P> {
         let mut pauses = false;
         for op in outcomes.iter() {
             match op {
-                Ok(_) => {}
+                Ok(_) | Err(Code::NOTHING) => {}
                 Err(Code::PAUSE) => pauses = true,
                 Err(code) => return Err(*code),
             }
@@ -126,7 +128,21 @@ impl<P: Pens> Grbl<P> {
         }
         if pauses {
             self.command(link, Command::Pause);
-            send(link, Command::Finish);
+        }
+        let asks = |letter, tenths| {
+            block.words().iter().any(|word| word.letter == letter && word.tenths() == Some(tenths))
+        };
+        let dwells = asks(b'G', 40);
+        // It waits for a pen that goes down, too.
+        if dwells && let Some(dot) = self.interpreter.put_down() {
+            self.command(link, Command::Plot(dot));
+        }
+        // As in Grbl these are answered when all is done: programs wait for the machine by them.
+        if asks(b'M', 20) || asks(b'M', 300) {
+            self.command(link, Command::End);
+            self.wait = Some(Wait::End);
+        } else if pauses || dwells {
+            self.command(link, Command::Finish);
             self.wait = Some(Wait::Finish);
         }
         Ok(())

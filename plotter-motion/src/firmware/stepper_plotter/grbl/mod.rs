@@ -2,6 +2,7 @@
 
 mod block;
 mod codes;
+mod known;
 mod line_buffer;
 mod listing;
 mod overrides;
@@ -24,10 +25,12 @@ use overrides::Overrides;
 pub use pens::{AnyPen, Pens, SpindlePen};
 use rx_buffer::RxBuffer;
 
-/// Most bytes that are written at one time: an alarm with its message, and the line's answer.
-const MOST_ANSWER: usize = 208;
-/// Bytes that wait to be sent.
-const OUTPUT: usize = 224;
+/// Most bytes that a report of the motion side becomes: an alarm with its message, and the line's answer.
+const MOST_REPORT: usize = 208;
+/// Most bytes of any other answer, the longest of which is that to `?`.
+const MOST_ANSWER: usize = 136;
+/// Bytes that wait to be sent. Grbl keeps 104: while no more than those wait, lines are carried out.
+const OUTPUT: usize = MOST_ANSWER + 104;
 /// The longest way of telling the offset, or the overrides, only now and then: so many reports without it.
 const REPORTS_WITHOUT_OFFSET: u8 = 10;
 
@@ -36,8 +39,10 @@ const REPORTS_WITHOUT_OFFSET: u8 = 10;
 enum Wait {
     /// `$H`.
     Home,
-    /// `M0`: until it goes on.
+    /// `G4`: until all before and the pause are over; `M0`: until it goes on.
     Finish,
+    /// `M2`, `M30`: until all before is over.
+    End,
     /// `$n=value`.
     Set,
 }
@@ -126,16 +131,38 @@ impl<P: Pens> Grbl<P> {
     }
 
     pub(super) fn work(&mut self, status: &Status, link: &mut Link) {
-        while self.out.room() >= MOST_ANSWER {
-            let worked = self.tell(status, link) || self.read(status, link);
-            if !worked {
-                return;
-            }
+        while self.gather() || self.tell(status, link) || self.carry_on(status, link) {}
+    }
+
+    /// Gathers the line that is coming in; says whether there was a byte of it.
+    ///
+    /// As in Grbl a line that has ended has left the receive buffer, whatever it waits for: programs count with that.
+    fn gather(&mut self) -> bool {
+        if self.wait.is_some() || self.listing.is_some() || self.line.has_ended() {
+            return false;
+        }
+        let Some(byte) = self.rx.pop() else { return false };
+        self.line.push(byte);
+        true
+    }
+
+    /// Most bytes of what comes by itself and is to be told; 0 if there is nothing.
+    fn to_tell(&self, link: &Link) -> usize {
+        if self.greeting || !link.reports.is_empty() {
+            MOST_REPORT
+        } else if self.status_wanted || self.listing.is_some() {
+            MOST_ANSWER
+        } else {
+            0
         }
     }
 
-    /// Tells what comes by itself; says whether there was something.
+    /// Tells what comes by itself; says whether there was something, and room for it.
     fn tell(&mut self, status: &Status, link: &mut Link) -> bool {
+        let most = self.to_tell(link);
+        if most == 0 || self.out.room() < most {
+            return false;
+        }
         if core::mem::take(&mut self.greeting) {
             self.greet();
         } else if let Some(report) = link.reports.pop() {
@@ -143,30 +170,29 @@ impl<P: Pens> Grbl<P> {
         } else if core::mem::take(&mut self.status_wanted) {
             self.tell_status(status, link);
         } else if let Some((listing, index)) = self.listing {
-            if listing.line(index, &self.settings, &self.interpreter.modes(), &mut self.out) {
+            if listing.line(index, &self.settings, &self.interpreter, &mut self.out) {
                 self.listing = Some((listing, index.saturating_add(1)));
             } else {
                 self.listing = None;
                 self.out.line(format_args!("ok"));
             }
-        } else {
-            return false;
         }
         true
     }
 
-    /// Goes on with the line that is coming in; says whether there was a byte of it.
-    fn read(&mut self, status: &Status, link: &mut Link) -> bool {
-        if self.wait.is_some() || link.commands.room() < MOST_COMMANDS {
+    /// Carries out the line that is there, and answers it; says whether there was one, and room for all that comes of it.
+    fn carry_on(&mut self, status: &Status, link: &mut Link) -> bool {
+        let waits = self.wait.is_some() || self.to_tell(link) > 0 || self.out.room() < MOST_ANSWER;
+        if waits || !self.line.has_ended() {
             return false;
         }
-        let Some(byte) = self.rx.pop() else { return false };
-        if !self.line.push(byte) {
-            return true;
-        }
         let line = self.line;
+        let text = line.text();
+        if link.commands.room() < MOST_COMMANDS && !text.is_none_or(is_question) {
+            return false;
+        }
         self.line.clear();
-        let done = match line.text() {
+        let done = match text {
             None => Err(Code::OVERFLOW),
             Some(b"") => Ok(()),
             Some([b'$', command @ ..]) => self.system(command, status, link),
@@ -200,7 +226,13 @@ impl<P: Pens> Grbl<P> {
     fn take(&mut self, report: Report) {
         match report {
             Report::Done => {
-                if self.wait.take() == Some(Wait::Finish) {
+                let waited = self.wait.take();
+                if waited == Some(Wait::End) {
+                    (self.overrides, self.reports_to_overrides, self.reports_to_offset) =
+                        (Overrides::default(), 0, 0);
+                    self.out.line(format_args!("[MSG:Pgm End]"));
+                }
+                if waited.is_some() {
                     self.out.line(format_args!("ok"));
                 }
             }
@@ -264,11 +296,17 @@ impl<P: Pens> Grbl<P> {
         match command {
             b"" => self.out.line(format_args!("[HLP:$$ $# $G $I $N $x=val $J=line $X $H ~ ! ? ctrl-x]")),
             b"G" => self.tell_modes(),
-            b"$" | b"#" | b"I" | b"N" | b"H" | b"X" if !is_idle => return Err(Code::NOT_IDLE),
+            // In no alarm there is nothing to unlock.
+            b"X" if !is_idle => {}
+            b"$" | b"#" | b"I" | b"N" | b"H" | [b'N', b'0' | b'1', b'='] if !is_idle => {
+                return Err(Code::NOT_IDLE);
+            }
             b"$" => self.listing = Some((Listing::Settings, 0)),
             b"#" => self.listing = Some((Listing::Offsets, 0)),
             b"I" => self.listing = Some((Listing::Build, 0)),
             b"N" => self.listing = Some((Listing::Startup, 0)),
+            // There is no line that is carried out at the start: it stays so.
+            [b'N', b'0' | b'1', b'='] => {}
             [b'J', b'=', ..] if self.alarm.is_some() => return Err(Code::LOCKED),
             [b'J', b'=', ..] if !is_idle && !self.is_jogging(status, link) => return Err(Code::NOT_IDLE),
             [b'J', b'=', jog @ ..] => return self.jog(jog, link),
@@ -315,8 +353,9 @@ impl<P: Pens> Grbl<P> {
         let modes = self.interpreter.modes();
         let feed = modes.feed_mm_s.unwrap_or(0.0) * 60.0 / if modes.inches { 25.4 } else { 1.0 };
         self.out.line(format_args!(
-            "[GC:G{} G54 G17 G{} G{} G94 M{} M9 T{} F{} S{}]",
+            "[GC:G{} G{} G17 G{} G{} G94 M{} M9 T{} F{} S{}]",
             Whole(modes.motion.into()),
+            Whole(54 + u64::from(modes.system)),
             Plain(if modes.inches { "20" } else { "21" }),
             Plain(if modes.relative { "91" } else { "90" }),
             Whole(modes.spindle.into()),
@@ -325,6 +364,12 @@ impl<P: Pens> Grbl<P> {
             Thousandths::of(modes.power).trimmed(),
         ));
     }
+}
+
+/// Whether a line asks for nothing that has to be done, so that its answer waits for nothing: an empty one, `$`, `$G`, and those that get
+/// `error:8` on the way.
+fn is_question(line: &[u8]) -> bool {
+    matches!(line, b"" | b"$" | [b'$', b'$' | b'#' | b'G' | b'I' | b'N'])
 }
 
 fn send(link: &mut Link, command: Command) {
@@ -354,7 +399,7 @@ mod tests {
             homing.map(|error| format!("{error}")).into_iter().chain(stops.map(|stop| format!("{stop}")));
         for text in texts {
             let answer = format!("ALARM:10\r\n[MSG:{text}]\r\nerror:9\r\n");
-            assert!(answer.len() <= MOST_ANSWER, "{} bytes: {answer}", answer.len());
+            assert!(answer.len() <= MOST_REPORT, "{} bytes: {answer}", answer.len());
         }
     }
 }
