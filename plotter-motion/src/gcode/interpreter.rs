@@ -3,7 +3,7 @@
 use super::error::Complaint;
 use super::line::Line;
 use super::machine::Machine;
-use super::{Block, BlockDelete, Error, Modes, ReadOptions, Undrained};
+use super::{Block, BlockDelete, Error, Modes, ReadOptions, Undrained, Words};
 use crate::{PlotOp, Point, Vec2};
 
 /// Most that one line gives.
@@ -187,6 +187,11 @@ impl LineInterpreter {
         self.machine.origin(system)
     }
 
+    /// What `G92` adds to that, mm.
+    pub(crate) const fn shift(&self) -> Vec2 {
+        self.machine.shift()
+    }
+
     /// As [`Interpreter::stand_at`].
     pub(crate) fn stand_at(&mut self, point: Point) {
         self.machine.stand_at(point);
@@ -200,7 +205,7 @@ impl LineInterpreter {
     /// Where a line would have the pen travel, if it names a place, and its speed in mm/s: what a movement by hand is told. Nothing of it
     /// holds afterwards.
     pub(crate) fn travel<C: Complaint>(mut self, block: &Block) -> Result<(Option<Point>, Option<f64>), C> {
-        let to = self.machine.travel(&Line::read(block)?)?;
+        let to = self.machine.travel(&Line::read(block, Words::Grbl)?)?;
         Ok((to, self.machine.modes().feed_mm_s))
     }
 
@@ -216,6 +221,6 @@ impl LineInterpreter {
             return Ok(());
         }
         (out.count, out.taken) = (0, 0);
-        self.machine.carry_out(&Line::read(block)?, options, out)
+        self.machine.carry_out(&Line::read(block, options.words)?, options, out)
     }
 }

@@ -110,6 +110,11 @@ impl Machine {
         self.origins.get(usize::from(system)).copied().unwrap_or_default()
     }
 
+    /// What `G92` adds to that.
+    pub(super) const fn shift(&self) -> Vec2 {
+        self.shift
+    }
+
     fn offset(&self) -> Vec2 {
         self.origin(self.system) + self.shift
     }

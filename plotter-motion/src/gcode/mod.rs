@@ -147,7 +147,7 @@ pub use modes::Modes;
 pub(crate) use modes::SYSTEMS;
 pub use pen_convention::{LaserCommand, PenConvention, ServoCommand};
 pub use plot_ops::{PlotOps, plot_ops};
-pub use read_options::{BlockDelete, ReadOptions};
+pub use read_options::{BlockDelete, ReadOptions, Words};
 pub(crate) use reader::{MOST, is_control, is_text};
 pub use reader::{Reader, Spacing};
 pub use write_error::WriteError;

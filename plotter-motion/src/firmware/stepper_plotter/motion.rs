@@ -297,19 +297,21 @@ impl<M: Modes> Motion<M> {
     /// What the receive side may know.
     #[must_use]
     pub fn status(&self, now: Duration) -> Status {
+        let moves = self.moves(now);
+        let has_work = moves || self.unfinished || !self.planner.is_empty();
         let activity = match self.state {
             State::Stopped => Activity::Stopped,
             State::Homing(_) => Activity::Home,
             State::Ready if self.jogs => Activity::Jog,
-            State::Ready if self.held => Activity::Hold { stands: !self.moves(now) },
-            State::Ready if self.moves(now) || !self.planner.is_empty() || self.unfinished => Activity::Run,
+            State::Ready if self.held => Activity::Hold { stands: !moves },
+            State::Ready if has_work => Activity::Run,
             State::Ready => Activity::Idle,
         };
         let speed_mm_s = self.phase.map_or(0.0, |(began, phase)| {
             let time_s = now.saturating_sub(began).as_secs_f32();
             if time_s > phase.duration_s { 0.0 } else { greatest(phase.speed_at::<M>(time_s), 0.0) }
         });
-        let planned = self.planner.blocks() + usize::from(self.unfinished || self.moves(now));
+        let planned = self.planner.blocks() + usize::from(has_work);
         Status {
             activity,
             planned: u8::try_from(planned).unwrap_or(u8::MAX),

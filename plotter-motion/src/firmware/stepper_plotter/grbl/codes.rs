@@ -60,8 +60,6 @@ impl Code {
     pub(super) const SETTING_RANGE: Self = Self(52);
     /// `M0`, which is carried out: the interpreter leaves it to who is in charge of the machine.
     pub(super) const PAUSE: Self = Self(0);
-    /// `M1`, which asks for nothing: Grbl has no switch by which a person would have it pause.
-    pub(super) const NOTHING: Self = Self(u8::MAX);
 }
 
 impl Complaint for Code {
@@ -99,11 +97,7 @@ impl Complaint for Code {
     }
 
     fn undone(command: Word, _: Position) -> Self {
-        match (command.letter, command.tenths()) {
-            (b'M', Some(0)) => Self::PAUSE,
-            (b'M', Some(10)) => Self::NOTHING,
-            _ => Self::UNSUPPORTED,
-        }
+        if command.letter == b'M' && command.tenths() == Some(0) { Self::PAUSE } else { Self::UNSUPPORTED }
     }
 }
 

@@ -69,9 +69,8 @@ impl Listing {
                 6 => out.line(format_args!("[G28:0.000,0.000,0.000]")),
                 7 => out.line(format_args!("[G30:0.000,0.000,0.000]")),
                 8 => {
-                    let modes = interpreter.modes();
-                    let own = modes.offset + -modes.origin;
-                    let (x, y) = coordinates(own.x, own.y);
+                    let shift = interpreter.shift();
+                    let (x, y) = coordinates(shift.x, shift.y);
                     out.line(format_args!("[G92:{x},{y},0.000]"));
                 }
                 9 => out.line(format_args!("[TLO:0.000]")),

@@ -2,7 +2,6 @@
 
 mod block;
 mod codes;
-mod known;
 mod line_buffer;
 mod listing;
 mod overrides;
@@ -25,12 +24,10 @@ use overrides::Overrides;
 pub use pens::{AnyPen, Pens, SpindlePen};
 use rx_buffer::RxBuffer;
 
-/// Most bytes that a report of the motion side becomes: an alarm with its message, and the line's answer.
-const MOST_REPORT: usize = 208;
-/// Most bytes of any other answer, the longest of which is that to `?`.
-const MOST_ANSWER: usize = 136;
-/// Bytes that wait to be sent. Grbl keeps 104: while no more than those wait, lines are carried out.
-const OUTPUT: usize = MOST_ANSWER + 104;
+/// Most bytes that are written at one time: an alarm with its message, and the line's answer.
+const MOST_ANSWER: usize = 208;
+/// Bytes that wait to be sent.
+const OUTPUT: usize = 224;
 /// The longest way of telling the offset, or the overrides, only now and then: so many reports without it.
 const REPORTS_WITHOUT_OFFSET: u8 = 10;
 
@@ -131,38 +128,29 @@ impl<P: Pens> Grbl<P> {
     }
 
     pub(super) fn work(&mut self, status: &Status, link: &mut Link) {
-        while self.gather() || self.tell(status, link) || self.carry_on(status, link) {}
+        loop {
+            self.gather();
+            if self.out.room() < MOST_ANSWER || !(self.tell(status, link) || self.carry_on(status, link)) {
+                return;
+            }
+        }
     }
 
-    /// Gathers the line that is coming in; says whether there was a byte of it.
+    /// Gathers the line that is coming in.
     ///
     /// As in Grbl a line that has ended has left the receive buffer, whatever it waits for: programs count with that.
-    fn gather(&mut self) -> bool {
-        if self.wait.is_some() || self.listing.is_some() || self.line.has_ended() {
-            return false;
-        }
-        let Some(byte) = self.rx.pop() else { return false };
-        self.line.push(byte);
-        true
-    }
-
-    /// Most bytes of what comes by itself and is to be told; 0 if there is nothing.
-    fn to_tell(&self, link: &Link) -> usize {
-        if self.greeting || !link.reports.is_empty() {
-            MOST_REPORT
-        } else if self.status_wanted || self.listing.is_some() {
-            MOST_ANSWER
-        } else {
-            0
+    fn gather(&mut self) {
+        while self.wait.is_none()
+            && self.listing.is_none()
+            && !self.line.has_ended()
+            && let Some(byte) = self.rx.pop()
+        {
+            self.line.push(byte);
         }
     }
 
-    /// Tells what comes by itself; says whether there was something, and room for it.
+    /// Tells what comes by itself; says whether there was something.
     fn tell(&mut self, status: &Status, link: &mut Link) -> bool {
-        let most = self.to_tell(link);
-        if most == 0 || self.out.room() < most {
-            return false;
-        }
         if core::mem::take(&mut self.greeting) {
             self.greet();
         } else if let Some(report) = link.reports.pop() {
@@ -176,23 +164,20 @@ impl<P: Pens> Grbl<P> {
                 self.listing = None;
                 self.out.line(format_args!("ok"));
             }
+        } else {
+            return false;
         }
         true
     }
 
     /// Carries out the line that is there, and answers it; says whether there was one, and room for all that comes of it.
     fn carry_on(&mut self, status: &Status, link: &mut Link) -> bool {
-        let waits = self.wait.is_some() || self.to_tell(link) > 0 || self.out.room() < MOST_ANSWER;
-        if waits || !self.line.has_ended() {
+        if self.wait.is_some() || !self.line.has_ended() || link.commands.room() < MOST_COMMANDS {
             return false;
         }
         let line = self.line;
-        let text = line.text();
-        if link.commands.room() < MOST_COMMANDS && !text.is_none_or(is_question) {
-            return false;
-        }
         self.line.clear();
-        let done = match text {
+        let done = match line.text() {
             None => Err(Code::OVERFLOW),
             Some(b"") => Ok(()),
             Some([b'$', command @ ..]) => self.system(command, status, link),
@@ -298,9 +283,7 @@ impl<P: Pens> Grbl<P> {
             b"G" => self.tell_modes(),
             // In no alarm there is nothing to unlock.
             b"X" if !is_idle => {}
-            b"$" | b"#" | b"I" | b"N" | b"H" | [b'N', b'0' | b'1', b'='] if !is_idle => {
-                return Err(Code::NOT_IDLE);
-            }
+            b"$" | b"#" | b"I" | b"N" | b"H" if !is_idle => return Err(Code::NOT_IDLE),
             b"$" => self.listing = Some((Listing::Settings, 0)),
             b"#" => self.listing = Some((Listing::Offsets, 0)),
             b"I" => self.listing = Some((Listing::Build, 0)),
@@ -366,12 +349,6 @@ impl<P: Pens> Grbl<P> {
     }
 }
 
-/// Whether a line asks for nothing that has to be done, so that its answer waits for nothing: an empty one, `$`, `$G`, and those that get
-/// `error:8` on the way.
-fn is_question(line: &[u8]) -> bool {
-    matches!(line, b"" | b"$" | [b'$', b'$' | b'#' | b'G' | b'I' | b'N'])
-}
-
 fn send(link: &mut Link, command: Command) {
     let sent = link.commands.push(command);
     debug_assert!(sent.is_ok(), "room was looked at before");
@@ -399,7 +376,7 @@ mod tests {
             homing.map(|error| format!("{error}")).into_iter().chain(stops.map(|stop| format!("{stop}")));
         for text in texts {
             let answer = format!("ALARM:10\r\n[MSG:{text}]\r\nerror:9\r\n");
-            assert!(answer.len() <= MOST_REPORT, "{} bytes: {answer}", answer.len());
+            assert!(answer.len() <= MOST_ANSWER, "{} bytes: {answer}", answer.len());
         }
     }
 }
