@@ -5,8 +5,8 @@ use crate::decimal::Decimal;
 use crate::gcode::{Block, MOST, Position, Word, Words, is_control, is_text};
 
 /// The words of a line without blanks and comments, in capitals; none if it has no words. What a
-/// [`Reader`](crate::gcode::Reader) makes of it, byte by byte, in a third of the program memory; but checksums, texts and the words of
-/// programs only where words of [`Words::Any`] machine are known.
+/// [`Reader`](crate::gcode::Reader) makes of it, byte by byte, in a third of the program memory. Checksums, texts and programs are only
+/// for [`Words::Any`].
 #[inline(never)]
 pub(super) fn read(text: &[u8], known: Words) -> Result<Option<Block>, Code> {
     let knows_any = known == Words::Any;
