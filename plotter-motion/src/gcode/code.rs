@@ -1,6 +1,6 @@
 //! [`Code`]: what `G` and `M` words ask for.
 
-use super::Word;
+use super::{Word, Words};
 
 /// What a `G` or `M` word asks for. The upper half is its group: of each of the first [`EXCLUSIVE`] groups a line has one word at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,11 +52,13 @@ pub(super) enum Code {
     /// mDraw's `M4 …`.
     LaserPower,
     ToolChange = 0xA0,
-    MachineCoordinates = 0xB0,
+    /// `G54` to `G59`: which coordinates.
+    System = 0xB0,
+    MachineCoordinates = 0xC0,
     /// Nothing for a pen plotter to do; the other words of the line belong to it.
-    QuietWithWords = 0xC0,
+    QuietWithWords = 0xD0,
     /// Nothing for a pen plotter to do.
-    Quiet = 0xD0,
+    Quiet = 0xE0,
 }
 
 /// The groups that a line is asked for as a whole.
@@ -71,15 +73,17 @@ pub(super) enum Group {
     Stop = 8,
     /// A servo or a laser that is told a number.
     Told = 9,
+    /// A coordinate system.
+    System = 11,
 }
 
 /// How many groups there are, and how many of them allow one word only.
 pub(super) const GROUPS: usize = Code::Quiet.group() + 1;
-pub(super) const EXCLUSIVE: usize = Code::ToolChange.group() + 1;
+pub(super) const EXCLUSIVE: usize = Code::System.group() + 1;
 
 /// Words whose numbers lie from `first` to `last`, and the digits behind the point within `tenths`.
 #[derive(Clone, Copy, Debug)]
-struct Words {
+struct Range {
     first: u16,
     last: u16,
     /// The first digit, and how many more.
@@ -87,20 +91,20 @@ struct Words {
     code: Code,
 }
 
-const fn words(first: u16, last: u16, code: Code) -> Words {
-    Words { first, last, tenths: (0, 0), code }
+const fn words(first: u16, last: u16, code: Code) -> Range {
+    Range { first, last, tenths: (0, 0), code }
 }
 
-const fn one(number: u16, code: Code) -> Words {
+const fn one(number: u16, code: Code) -> Range {
     words(number, number, code)
 }
 
-const fn tenths(number: u16, first: u8, more: u8, code: Code) -> Words {
-    Words { first: number, last: number, tenths: (first, more), code }
+const fn tenths(number: u16, first: u8, more: u8, code: Code) -> Range {
+    Range { first: number, last: number, tenths: (first, more), code }
 }
 
-/// `G` words: what is done.
-static GENERAL: &[Words] = &[
+/// `G` words that GRBL knows: what is done.
+static GENERAL: &[Range] = &[
     one(0, Code::Rapid),
     one(1, Code::Straight),
     one(2, Code::Clockwise),
@@ -110,37 +114,45 @@ static GENERAL: &[Words] = &[
     one(28, Code::Home),
     one(30, Code::Home),
     one(92, Code::Offset),
-    tenths(92, 1, 1, Code::NoOffset),
+    tenths(92, 1, 0, Code::NoOffset),
     one(53, Code::MachineCoordinates),
     one(17, Code::Sheet),
     one(20, Code::Inches),
     one(21, Code::Millimetres),
     one(90, Code::Absolute),
     one(91, Code::Relative),
-    tenths(90, 1, 0, Code::AbsoluteCentres),
     tenths(91, 1, 0, Code::RelativeCentres),
     one(94, Code::FeedPerMinute),
-    // Cancelling what was never on; work coordinates; path control; what machines and lathes differ in.
-    one(15, Code::Quiet),
+    words(54, 59, Code::System),
+    one(10, Code::Other),
+    // Cancelling what was never on; path control.
     one(40, Code::Quiet),
-    words(49, 50, Code::Quiet),
-    words(54, 58, Code::Quiet),
-    tenths(59, 0, 3, Code::Quiet),
-    tenths(61, 0, 1, Code::Quiet),
+    one(49, Code::Quiet),
+    one(61, Code::Quiet),
+];
+
+/// `G` words of other machines: what is done.
+static GENERAL_OTHERS: &[Range] = &[
+    tenths(92, 2, 0, Code::NoOffset),
+    tenths(90, 1, 0, Code::AbsoluteCentres),
+    // Cancelling what was never on; path control; what machines and lathes differ in.
+    one(15, Code::Quiet),
+    one(50, Code::Quiet),
+    tenths(61, 1, 0, Code::Quiet),
     one(64, Code::Quiet),
     one(69, Code::Quiet),
     words(97, 99, Code::Quiet),
 ];
 
 /// `G` words that are known, and not carried out; [`meaning`] says what they are.
-static GENERAL_UNDONE: &[Words] = &[
+static GENERAL_UNDONE: &[Range] = &[
     tenths(5, 0, 3, Code::NoMotion),
     tenths(33, 0, 1, Code::NoMotion),
     tenths(38, 2, 3, Code::NoMotion),
     one(73, Code::NoMotion),
     one(76, Code::NoMotion),
     words(81, 89, Code::NoMotion),
-    one(10, Code::Other),
+    tenths(59, 1, 2, Code::Quiet),
     tenths(28, 1, 0, Code::Other),
     tenths(30, 1, 0, Code::Other),
     one(29, Code::Other),
@@ -154,21 +166,30 @@ static GENERAL_UNDONE: &[Words] = &[
     one(68, Code::Other),
 ];
 
-/// `M` words: what is done.
-static MISCELLANEOUS: &[Words] = &[
-    words(0, 1, Code::Pause),
+/// `M` words that GRBL knows, and the change of a pen: what is done.
+static MISCELLANEOUS: &[Range] = &[
+    one(0, Code::Pause),
     one(2, Code::End),
     one(30, Code::End),
     one(3, Code::Constant),
     one(4, Code::Dynamic),
     one(5, Code::SpindleOff),
     one(6, Code::ToolChange),
+    // A pause if a switch says so, which GRBL has not; coolant.
+    one(1, Code::Quiet),
+    words(8, 9, Code::Quiet),
+];
+
+/// `M` words of other machines: what is done.
+static MISCELLANEOUS_OTHERS: &[Range] = &[
+    one(1, Code::Pause),
     one(106, Code::FanOn),
     one(107, Code::FanOff),
     one(280, Code::ServoAngle),
     one(300, Code::Beep),
     // Coolant, mDraw's questions, drives, overrides.
-    words(7, 11, Code::Quiet),
+    one(7, Code::Quiet),
+    words(10, 11, Code::Quiet),
     words(17, 18, Code::Quiet),
     words(48, 49, Code::Quiet),
     // What printers are told and asked about themselves.
@@ -187,7 +208,7 @@ static MISCELLANEOUS: &[Words] = &[
 ];
 
 /// `M` words that are known, and not carried out.
-static MISCELLANEOUS_UNDONE: &[Words] = &[
+static MISCELLANEOUS_UNDONE: &[Range] = &[
     one(19, Code::Quiet),
     one(42, Code::QuietWithWords),
     words(62, 68, Code::QuietWithWords),
@@ -202,17 +223,24 @@ static MISCELLANEOUS_UNDONE: &[Words] = &[
 impl Code {
     /// What a `G` or `M` word with this number, times ten, asks for, and whether that is done. As tables: for a small processor they are
     /// a third of the decisions.
-    pub(super) fn of(letter: u8, tenths: u16) -> Option<(Self, bool)> {
-        let (done, undone) =
-            if letter == b'G' { (GENERAL, GENERAL_UNDONE) } else { (MISCELLANEOUS, MISCELLANEOUS_UNDONE) };
+    pub(super) fn of(letter: u8, tenths: u16, known: Words) -> Option<(Self, bool)> {
+        let is_general = letter == b'G';
         let (number, tenth) = (tenths / 10, tenths % 10);
-        let fits = |words: &&Words| {
-            let (first, more) = words.tenths;
-            (words.first..=words.last).contains(&number)
+        let fits = |range: &&Range| {
+            let (first, more) = range.tenths;
+            (range.first..=range.last).contains(&number)
                 && u8::try_from(tenth).is_ok_and(|tenth| tenth.wrapping_sub(first) <= more)
         };
-        let undone = || undone.iter().find(fits).map(|words| (words.code, false));
-        done.iter().find(fits).map(|words| (words.code, true)).or_else(undone)
+        let find = |ranges: &[Range]| ranges.iter().find(fits).map(|range| range.code);
+        let of_grbl =
+            || find(if is_general { GENERAL } else { MISCELLANEOUS }).map(|code| (code, code != Self::Other));
+        if known == Words::Grbl {
+            return of_grbl();
+        }
+        let others = find(if is_general { GENERAL_OTHERS } else { MISCELLANEOUS_OTHERS });
+        let undone =
+            || find(if is_general { GENERAL_UNDONE } else { MISCELLANEOUS_UNDONE }).map(|code| (code, false));
+        others.map(|code| (code, true)).or_else(of_grbl).or_else(undone)
     }
 
     /// Its group, a number below [`GROUPS`].
@@ -237,7 +265,7 @@ pub(super) fn meaning(command: Word) -> &'static str {
         50..=53 => "spline",
         330 | 331 => "synchronized motion",
         382..=385 => "probe",
-        100 => "another coordinate system",
+        100 | 591..=593 => "another coordinate system",
         281 | 301 => "set the place of homing",
         290 => "bed levelling",
         923 => "restore the offset",

@@ -2,7 +2,7 @@
 
 use super::code::{Code, Group};
 use super::line::Line;
-use super::{Block, DwellUnit, Error, LaserCommand, PenConvention, ReadOptions, Reader, ServoCommand};
+use super::{Block, DwellUnit, Error, LaserCommand, PenConvention, ReadOptions, Reader, ServoCommand, Words};
 
 /// Greatest angle of a servo, degrees: what is more is a tone, or switches the servo off.
 const MOST_DEG: f64 = 180.0;
@@ -174,7 +174,7 @@ impl Detection {
 
     /// Takes the next line.
     pub fn push(&mut self, block: &Block) {
-        let Ok(line) = Line::read::<Error>(block) else { return };
+        let Ok(line) = Line::read::<Error>(block, Words::Any) else { return };
         if block.is_deleted() {
             return;
         }

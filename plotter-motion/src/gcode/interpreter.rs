@@ -3,8 +3,8 @@
 use super::error::Complaint;
 use super::line::Line;
 use super::machine::Machine;
-use super::{Block, BlockDelete, Error, Modes, ReadOptions, Undrained};
-use crate::{PlotOp, Point};
+use super::{Block, BlockDelete, Error, Modes, ReadOptions, Undrained, Words};
+use crate::{PlotOp, Point, Vec2};
 
 /// Most that one line gives.
 const MOST_OUTCOMES: usize = 10;
@@ -177,9 +177,19 @@ impl LineInterpreter {
         self.machine.modes()
     }
 
-    /// As after a reset of the controller: the origin set by `G10` is kept, all else is not.
+    /// As after a reset of the controller: the origins set by `G10` are kept, all else is not.
     pub(crate) fn reset(&mut self) {
         self.machine.reset();
+    }
+
+    /// Where `G10` has set the origin of a coordinate system, 0 for `G54` to 5 for `G59`, mm.
+    pub(crate) fn origin(&self, system: u8) -> Vec2 {
+        self.machine.origin(system)
+    }
+
+    /// What `G92` adds to that, mm.
+    pub(crate) const fn shift(&self) -> Vec2 {
+        self.machine.shift()
     }
 
     /// As [`Interpreter::stand_at`].
@@ -187,10 +197,15 @@ impl LineInterpreter {
         self.machine.stand_at(point);
     }
 
+    /// Puts a pen down that was told to go down and has not moved since: the operation that does so, and leaves its dot.
+    pub(crate) fn put_down(&mut self) -> Option<PlotOp> {
+        self.machine.put_down()
+    }
+
     /// Where a line would have the pen travel, if it names a place, and its speed in mm/s: what a movement by hand is told. Nothing of it
     /// holds afterwards.
     pub(crate) fn travel<C: Complaint>(mut self, block: &Block) -> Result<(Option<Point>, Option<f64>), C> {
-        let to = self.machine.travel(&Line::read(block)?)?;
+        let to = self.machine.travel(&Line::read(block, Words::Grbl)?)?;
         Ok((to, self.machine.modes().feed_mm_s))
     }
 
@@ -206,6 +221,6 @@ impl LineInterpreter {
             return Ok(());
         }
         (out.count, out.taken) = (0, 0);
-        self.machine.carry_out(&Line::read(block)?, options, out)
+        self.machine.carry_out(&Line::read(block, options.words)?, options, out)
     }
 }

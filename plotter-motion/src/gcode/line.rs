@@ -3,10 +3,29 @@
 use super::block::is_among;
 use super::code::{Code, EXCLUSIVE, GROUPS, Group};
 use super::error::Complaint;
-use super::{Block, Problem, Word};
+use super::{Block, Problem, SYSTEMS, Word, Words};
 
 /// Letters whose words are worth a notice where no command uses them.
 const NOTEWORTHY: &[u8] = b"ABCEIJKRUVW";
+
+/// Letters, `A` the lowest bit, whose words GRBL knows, and of them those whose numbers are not below 0.
+const GRBL_LETTERS: u32 = letters(b"FIJKLNPRSTXYZ");
+const NOT_NEGATIVE: u32 = letters(b"FNPST");
+
+const fn letters(mut letters: &[u8]) -> u32 {
+    let mut bits = 0;
+    while let [letter, rest @ ..] = letters {
+        (bits, letters) = (bits | bit(*letter), rest);
+    }
+    bits
+}
+
+const fn bit(letter: u8) -> u32 {
+    1 << (letter & 31)
+}
+
+/// The first `P` of `G10` that is no coordinate system.
+const NO_SYSTEM: f64 = (SYSTEMS + 1) as f64;
 
 /// What the words of one line ask for together.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +41,7 @@ pub(super) struct Line<'b> {
 }
 
 impl<'b> Line<'b> {
-    pub(super) fn read<C: Complaint>(block: &'b Block) -> Result<Self, C> {
+    pub(super) fn read<C: Complaint>(block: &'b Block, known: Words) -> Result<Self, C> {
         let mut line = Self { block, codes: [None; GROUPS], places: [0; GROUPS], bare: 0.0, undone: None };
         let mut letters = 0_u32;
         // The letter before, and whatever no line begins with.
@@ -30,7 +49,16 @@ impl<'b> Line<'b> {
         for (&word, place) in block.words().iter().zip(1_u8..) {
             let after = core::mem::replace(&mut before, word.letter);
             if !matches!(word.letter, b'G' | b'M') {
-                let bit = 1 << (word.letter & 31);
+                let bit = bit(word.letter);
+                if known == Words::Grbl {
+                    if GRBL_LETTERS & bit == 0 {
+                        return Err(Problem::Unknown { command: word }.at(block.place(word)));
+                    }
+                    if NOT_NEGATIVE & bit != 0 && word.number.is_some_and(|number| number < 0.0) {
+                        let expected = "a number is not below 0 here";
+                        return Err(Problem::BadParameter { word, expected }.at(block.place(word)));
+                    }
+                }
                 if word.letter == Word::BARE {
                     if after == b'M' {
                         continue;
@@ -44,8 +72,8 @@ impl<'b> Line<'b> {
                 continue;
             }
             let next = block.words().get(usize::from(place)).filter(|_| word.letter == b'M');
-            let bare = next.filter(|next| next.letter == Word::BARE);
-            let code = line.command(word, bare.and_then(|bare| bare.number))?;
+            let bare = next.filter(|next| known == Words::Any && next.letter == Word::BARE);
+            let code = line.command(word, bare.and_then(|bare| bare.number), known)?;
             let group = code.group();
             if group < EXCLUSIVE
                 && let Some(first) = line.word_of(group)
@@ -57,7 +85,7 @@ impl<'b> Line<'b> {
             }
         }
         line.check_numbers()?;
-        let has_axis = || b"XYZ".iter().any(|letter| letters & (1 << (letter & 31)) != 0);
+        let has_axis = || b"XYZ".iter().any(|letter| letters & bit(*letter) != 0);
         if let (Some(motion), Some(action)) =
             (line.word_of(Group::Motion as usize), line.word_of(Group::Action as usize))
             && !line.is(Code::NoMotion)
@@ -72,7 +100,7 @@ impl<'b> Line<'b> {
     }
 
     /// One `G` or `M` word, and mDraw's number after it.
-    fn command<C: Complaint>(&mut self, word: Word, bare: Option<f64>) -> Result<Code, C> {
+    fn command<C: Complaint>(&mut self, word: Word, bare: Option<f64>, known: Words) -> Result<Code, C> {
         let at = self.block.place(word);
         if word.number.is_none() {
             return Err(Problem::NoNumber { letter: word.letter }.at(at));
@@ -87,18 +115,21 @@ impl<'b> Line<'b> {
                 _ => Err(Problem::NoLetter.at(at)),
             };
         }
-        let known = tenths.and_then(|tenths| Code::of(word.letter, tenths));
-        let (Some(tenths), Some((code, is_done))) = (tenths, known) else {
+        let found = tenths.and_then(|tenths| Code::of(word.letter, tenths, known));
+        let (Some(tenths), Some((code, is_done))) = (tenths, found) else {
             return Err(Problem::Unknown { command: word }.at(at));
         };
         // mDraw keeps the angles and the sheet of its machine by M2 and M5.
         let has = |letters: &[u8]| self.block.words().iter().any(|word| is_among(word.letter, letters));
-        if word.letter == b'M' && ((tenths == 20 && has(b"UD")) || (tenths == 50 && has(b"ABHW"))) {
+        if known == Words::Any
+            && word.letter == b'M'
+            && ((tenths == 20 && has(b"UD")) || (tenths == 50 && has(b"ABHW")))
+        {
             return Ok(Code::QuietWithWords);
         }
-        // There is one coordinate system: that of G54, which is the first, and the one in force, which is 0.
+        // P0 is the coordinate system in force, P1 that of G54, P6 that of G59.
         if (word.letter, tenths) == (b'G', 100)
-            && let (Some(0.0 | 1.0), Some(form @ (2.0 | 20.0))) =
+            && let (Some(0.0..NO_SYSTEM), Some(form @ (2.0 | 20.0))) =
                 (self.block.number(b'P'), self.block.number(b'L'))
         {
             return Ok(if form > 2.0 { Code::OriginHere } else { Code::Origin });

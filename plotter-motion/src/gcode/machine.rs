@@ -6,12 +6,14 @@ use super::error::Complaint;
 use super::interpreter::Outcomes;
 use super::line::Line;
 use super::pen_convention::{LaserCommand, PenConvention, ServoCommand};
-use super::{DwellUnit, Modes, Problem, ReadOptions, Remark, Word};
+use super::{DwellUnit, Modes, Problem, ReadOptions, Remark, SYSTEMS, Word};
 use crate::seconds::duration;
 use crate::whole::{is_whole, whole};
 use crate::{PlotOp, Point, Vec2};
 
 const MM_PER_INCH: f64 = 25.4;
+/// The number after `G` of the first coordinate system.
+const G54: u8 = 54;
 
 /// What holds from one line to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,9 +22,10 @@ pub(super) struct Machine {
     at: Point,
     /// Height of the pen as the text counts it: mm, or what a servo makes of it.
     z: f64,
-    /// What is added to a coordinate: `G10` and `G92`; and what of it `G10` has set.
-    offset: Vec2,
-    origin: Vec2,
+    /// What is added to a coordinate: what `G10` has set for the coordinate system in force, one of `G54` to `G59`, and `G92` for all.
+    origins: [Vec2; SYSTEMS as usize],
+    system: u8,
+    shift: Vec2,
     unit_mm: f64,
     relative: bool,
     absolute_centres: bool,
@@ -49,8 +52,9 @@ impl Machine {
         Self {
             at: Point::ORIGIN,
             z: 0.0,
-            offset: Vec2::new(0.0, 0.0),
-            origin: Vec2::new(0.0, 0.0),
+            origins: [Vec2::new(0.0, 0.0); SYSTEMS as usize],
+            system: 0,
+            shift: Vec2::new(0.0, 0.0),
             unit_mm: 1.0,
             relative: false,
             absolute_centres: false,
@@ -72,8 +76,9 @@ impl Machine {
     pub(super) fn modes(&self) -> Modes {
         Modes {
             position: self.at,
-            offset: self.offset,
-            origin: self.origin,
+            offset: self.offset(),
+            origin: self.origin(self.system),
+            system: self.system,
             inches: self.unit_mm != 1.0,
             relative: self.relative,
             motion: match self.motion {
@@ -95,10 +100,23 @@ impl Machine {
         }
     }
 
-    /// As switched on, but that the origin set by `G10` stays.
+    /// As switched on, but that the origins set by `G10` stay.
     pub(super) fn reset(&mut self) {
-        let origin = self.origin;
-        *self = Self { origin, offset: origin, ..Self::new() };
+        *self = Self { origins: self.origins, ..Self::new() };
+    }
+
+    /// Where the origin of a coordinate system lies.
+    pub(super) fn origin(&self, system: u8) -> Vec2 {
+        self.origins.get(usize::from(system)).copied().unwrap_or_default()
+    }
+
+    /// What `G92` adds to that.
+    pub(super) const fn shift(&self) -> Vec2 {
+        self.shift
+    }
+
+    fn offset(&self) -> Vec2 {
+        self.origin(self.system) + self.shift
     }
 
     pub(super) fn stand_at(&mut self, point: Point) {
@@ -128,7 +146,7 @@ impl Machine {
             Some(Code::Dwell) => self.dwell(line, options, out)?,
             Some(Code::Home) => self.home(line, options, out),
             Some(Code::Offset) => self.set_offset(line),
-            Some(Code::NoOffset) => self.offset = self.origin,
+            Some(Code::NoOffset) => self.shift = Vec2::default(),
             Some(Code::Origin) => self.set_origin(line, false),
             Some(Code::OriginHere) => self.set_origin(line, true),
             _ => {}
@@ -163,6 +181,9 @@ impl Machine {
         self.relative = line.chooses(Code::Relative, self.relative);
         self.absolute_centres = line.chooses(Code::AbsoluteCentres, self.absolute_centres);
         self.sheet = line.chooses(Code::Sheet, self.sheet);
+        if let Some(tenths) = line.word_of(Group::System as usize).and_then(Word::tenths) {
+            self.system = u8::try_from(tenths / 10).unwrap_or_default().saturating_sub(G54);
+        }
         let inverse_time = line.chooses(Code::InverseTime, self.inverse_time);
         if inverse_time != self.inverse_time {
             (self.inverse_time, self.feed_mm_s) = (inverse_time, None);
@@ -194,6 +215,11 @@ impl Machine {
         let asks_s = matches!(told, Some(Code::Beep | Code::ServoAngle | Code::FanOn | Code::FanOff))
             || (line.is(Code::Dwell) && !line.has(b"P"));
         let spindle_s = line.number(b'S').filter(|_| !asks_s && !line.owned());
+        if !matches!(options.pen, PenConvention::Laser { .. }) {
+            // Whatever lifts the pen, this is what a controller tells that is asked for its state.
+            self.power = spindle_s.unwrap_or(self.power);
+            self.spindle = line.of(Group::Spindle).unwrap_or(self.spindle);
+        }
         match options.pen {
             PenConvention::Spindle => {
                 if let Some(spindle) = line.of(Group::Spindle) {
@@ -273,6 +299,16 @@ impl Machine {
         }
     }
 
+    /// As [`LineInterpreter::put_down`](super::LineInterpreter::put_down).
+    pub(super) fn put_down(&mut self) -> Option<PlotOp> {
+        // That of a laser stays: it would burn.
+        if !(self.pen_down && self.dot_owed) {
+            return None;
+        }
+        self.dot_owed = false;
+        Some(PlotOp::Draw { to: self.at, feed_mm_s: None })
+    }
+
     fn tell_share<C: Complaint>(&mut self, share: f64, options: &ReadOptions, out: &mut Outcomes<C>) {
         if matches!(options.pen, PenConvention::Laser { .. }) && self.told_share != Some(share) {
             self.told_share = Some(share);
@@ -327,12 +363,12 @@ impl Machine {
 
     fn set_offset(&mut self, line: &Line<'_>) {
         let all = !line.has(b"XYZEABC");
-        let unit_mm = self.unit_mm;
-        for (letter, at, offset) in
-            [(b'X', self.at.x, &mut self.offset.x), (b'Y', self.at.y, &mut self.offset.y)]
+        let (unit_mm, origin) = (self.unit_mm, self.origin(self.system));
+        for (letter, at, origin, shift) in
+            [(b'X', self.at.x, origin.x, &mut self.shift.x), (b'Y', self.at.y, origin.y, &mut self.shift.y)]
         {
             if all || line.gives(letter) {
-                *offset = at - line.number(letter).unwrap_or_default() * unit_mm;
+                *shift = at - line.number(letter).unwrap_or_default() * unit_mm - origin;
             }
         }
         if all || line.gives(b'Z') {
@@ -341,15 +377,17 @@ impl Machine {
     }
 
     fn set_origin(&mut self, line: &Line<'_>, here: bool) {
+        // 0 is the one in force.
+        let chosen = whole(line.number(b'P').unwrap_or_default());
+        let system = chosen.checked_sub(1).and_then(|system| u8::try_from(system).ok());
+        let Some(origin) = self.origins.get_mut(usize::from(system.unwrap_or(self.system))) else { return };
         // The offset of G92 stays on top of it.
-        for (letter, at, offset, origin) in [
-            (b'X', self.at.x, &mut self.offset.x, &mut self.origin.x),
-            (b'Y', self.at.y, &mut self.offset.y, &mut self.origin.y),
-        ] {
+        for (letter, at, shift, origin) in
+            [(b'X', self.at.x, self.shift.x, &mut origin.x), (b'Y', self.at.y, self.shift.y, &mut origin.y)]
+        {
             let Some(number) = line.number(letter) else { continue };
-            let (own, place) = (*offset - *origin, number * self.unit_mm);
-            *origin = if here { at - place - own } else { place };
-            *offset = *origin + own;
+            let place = number * self.unit_mm;
+            *origin = if here { at - place - shift } else { place };
         }
     }
 
@@ -412,7 +450,8 @@ impl Machine {
     }
 
     fn work_origin(&self) -> Point {
-        Point::new(self.offset.x, self.offset.y)
+        let offset = self.offset();
+        Point::new(offset.x, offset.y)
     }
 
     /// The place that two letters name, from an origin; it is that of the pen where they are not there.
@@ -515,6 +554,7 @@ impl Machine {
         self.leave_dot(options, out);
         (self.pen_down, self.spindle, self.beam, self.settling) = (false, Code::SpindleOff, 0.0, false);
         (self.motion, self.relative, self.sheet, self.inverse_time) = (Code::Straight, false, true, false);
+        self.system = 0;
     }
 }
 

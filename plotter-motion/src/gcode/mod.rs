@@ -87,7 +87,8 @@
 //! | `G20`, `G21` | | inches, millimetres |
 //! | `G92` | X Y Z | here is that place; without words, the origin |
 //! | `G92.1`, `G92.2` | | that no longer |
-//! | `G10` | L2 or L20, P0 or P1, X Y | the origin is there; or here is that place, as the button *zero* of most programs has it |
+//! | `G54` … `G59` | | coordinates count from the origin that `G10` has set for this one; `G54` at first |
+//! | `G10` | L2 or L20, P0 to P6, X Y | its origin is there; or here is that place, as the button *zero* of most programs has it. P1 is that of `G54`, P6 that of `G59`, P0 the one in force |
 //! | `G80` | | coordinates without a command are an error from here on |
 //! | `M3`, `M4`, `M5`, `S` | | pens, servos and lasers, as above; so `M1 …`, `M4 …`, `M106`, `M107`, `M280`, `M300` |
 //! | `M6` | T | takes the pen T, also one of an earlier line |
@@ -97,7 +98,7 @@
 //! | coordinates alone | | the last of `G0` to `G3` again; `G0` at first |
 //! | `N`, `O`, `%` | | nothing |
 //!
-//! Nothing is done for `G17 G40 G49 G54`…`G59.3 G61 G64 G94`, coolant, drives (`M17 M18 M84`), and questions and settings of
+//! Nothing is done for `G17 G40 G49 G61 G64 G94`, coolant, drives (`M17 M18 M84`), and questions and settings of
 //! printers and of mDraw; what else is known by name is reported as [`Problem::Unsupported`], a notice; the end of a spline is
 //! gone to with the pen up, so that what follows stands where it should. All `G` and `M` words of a line are done, but two that
 //! exclude each other are an error.
@@ -143,9 +144,10 @@ pub use error::{Error, Problem};
 pub use interpreter::Interpreter;
 pub(crate) use interpreter::{LineInterpreter, Outcomes};
 pub use modes::Modes;
+pub(crate) use modes::SYSTEMS;
 pub use pen_convention::{LaserCommand, PenConvention, ServoCommand};
 pub use plot_ops::{PlotOps, plot_ops};
-pub use read_options::{BlockDelete, ReadOptions};
+pub use read_options::{BlockDelete, ReadOptions, Words};
 pub(crate) use reader::{MOST, is_control, is_text};
 pub use reader::{Reader, Spacing};
 pub use write_error::WriteError;

@@ -2,6 +2,9 @@
 
 use crate::{Point, Vec2};
 
+/// Coordinate systems: `G54` to `G59`.
+pub(crate) const SYSTEMS: u8 = 6;
+
 /// What holds from one line to the next: what a controller answers who is asked for its state.
 ///
 /// ```
@@ -22,8 +25,10 @@ pub struct Modes {
     pub position: Point,
     /// What is added to a coordinate, mm: `G10` and `G92`.
     pub offset: Vec2,
-    /// What of it is set by `G10`, mm.
+    /// What of it is set by `G10` for the coordinate system in force, mm.
     pub origin: Vec2,
+    /// Which coordinate system that is: 0 for `G54` to 5 for `G59`.
+    pub system: u8,
     /// `G20`, not `G21`.
     pub inches: bool,
     /// `G91`, not `G90`.
@@ -34,7 +39,7 @@ pub struct Modes {
     pub feed_mm_s: Option<f64>,
     /// 3, 4 or 5, the number of its `M`.
     pub spindle: u8,
-    /// `S`, of a laser.
+    /// The number after `S`: power of a laser, or what a spindle is told that lifts and lowers the pen.
     pub power: f64,
     /// `T`, 0 before the first.
     pub tool: u8,

@@ -29,6 +29,8 @@ pub struct ReadOptions {
     pub settle: Duration,
     /// What becomes of lines that begin with `/`.
     pub block_delete: BlockDelete,
+    /// Which words are known.
+    pub words: Words,
 }
 
 impl Default for ReadOptions {
@@ -38,6 +40,7 @@ impl Default for ReadOptions {
             dwell_unit: DwellUnit::Seconds,
             settle: Duration::from_millis(500),
             block_delete: BlockDelete::LeaveOut,
+            words: Words::Any,
         }
     }
 }
@@ -50,4 +53,15 @@ pub enum BlockDelete {
     LeaveOut,
     /// They are carried out: GRBL.
     CarryOut,
+}
+
+/// Which words are known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Words {
+    /// Those of every machine: a text is read for what it draws.
+    #[default]
+    Any,
+    /// Those of GRBL, of which a plotter carries out all that move it, and `M6`; any other, and a number below 0 where GRBL takes none,
+    /// is an error: a program that finds out what it talks to is to be told.
+    Grbl,
 }

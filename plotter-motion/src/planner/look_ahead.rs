@@ -127,6 +127,11 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.ring.len() == 0 && self.ramps.is_over() && self.ramps.rest_mm() <= 0.0
     }
 
+    /// How many blocks are known and not begun.
+    pub(crate) const fn blocks(&self) -> usize {
+        self.ring.len()
+    }
+
     /// Where the path that was pushed ends, mm.
     #[must_use]
     pub const fn position(&self) -> Point {

@@ -24,6 +24,9 @@ fn grbl_line() -> impl Strategy<Value = String> {
         8 => (0..40_u8, 0..40_u8).prop_map(|(x, y)| format!("G1 X{x} Y{y} F6000")),
         2 => (0..40_u8).prop_map(|x| format!("x{x}")),
         1 => Just("G4 P0.01".to_owned()),
+        1 => Just("G4 P0".to_owned()),
+        1 => Just("M2".to_owned()),
+        1 => Just("G55".to_owned()),
         1 => Just("M3 S90".to_owned()),
         1 => Just("M5".to_owned()),
         1 => Just("$G".to_owned()),
@@ -295,7 +298,7 @@ proptest! {
     fn each_line_of_a_stream_has_one_answer_in_its_order(
         lines in prop::collection::vec(grbl_line(), 1..40),
         end in prop_oneof![Just("\n"), Just("\r"), Just("\r\n")],
-        pieces in prop::collection::vec((0..60_u8, 0..40_u8, any::<bool>()), 1..20),
+        pieces in prop::collection::vec((0..60_u8, 1..40_u8, any::<bool>()), 1..20),
     ) {
         // One line at a time, each carried out before the next.
         let mut bench = Bench::new(settings(Dialect::Grbl));
@@ -310,6 +313,27 @@ proptest! {
         for counts_characters in [true, false] {
             prop_assert_eq!(&stream(&lines, end, counts_characters, &pieces), &expected);
         }
+    }
+
+    #[test]
+    fn each_line_has_one_answer_however_many_are_sent_ahead(
+        bursts in prop::collection::vec((prop::collection::vec(grbl_line(), 1..40), 0..400_u16), 1..4),
+    ) {
+        let mut bench = Bench::new(settings(Dialect::Grbl));
+        bench.ask("");
+        let (mut sent, mut answers) = (0, String::new());
+        for (lines, wait_ms) in &bursts {
+            for line in lines {
+                bench.send(&format!("{line}\n"));
+                sent += 1;
+            }
+            bench.run_for(Duration::from_millis((*wait_ms).into()));
+            answers += &bench.take_answers();
+        }
+        bench.run_out();
+        answers += &bench.take_answers();
+        prop_assert_eq!(answers.lines().filter(|line| is_answer(line)).count(), sent);
+        prop_assert_eq!(bench.ask("G1 X1 F6000\n"), "ok\r\n");
     }
 
     #[test]

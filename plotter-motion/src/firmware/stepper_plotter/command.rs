@@ -35,6 +35,8 @@ pub enum Command {
     Pause,
     /// [`Report::Done`] follows when all before is done and the machine stands.
     Finish,
+    /// As [`Command::Finish`] at the end of a program: speeds and the laser's power are no longer overridden.
+    End,
     /// The receive side has learned of a stop: what comes from here on was meant for the machine as it stands now. After a stop all
     /// before this is left out.
     GoOn,
@@ -102,7 +104,7 @@ impl fmt::Display for Stop {
 /// What the motion side tells the receive side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Report {
-    /// All before [`Command::Finish`] is done.
+    /// All before [`Command::Finish`] or [`Command::End`] is done.
     Done,
     /// What came of [`Command::Home`].
     Homed {

@@ -80,6 +80,7 @@ impl CommandQueue {
             Command::Unlock => self.put(13, [0; 2], &[]),
             Command::Jog { to, speed_mm_s } => self.put(14, [0; 2], &[to.x, to.y, speed_mm_s]),
             Command::Set(Setting { number, value }) => self.put(15, [number, 0], &[value]),
+            Command::End => self.put(16, [0; 2], &[]),
         };
         if is_taken { Ok(()) } else { Err(command) }
     }
@@ -194,6 +195,7 @@ impl Packed {
             12 => Command::GoOn,
             14 => Command::Jog { to, speed_mm_s: c },
             15 => Command::Set(Setting { number: low, value: a }),
+            16 => Command::End,
             _ => Command::Unlock,
         }
     }
@@ -226,6 +228,7 @@ mod tests {
             Command::Home,
             Command::Pause,
             Command::Finish,
+            Command::End,
             Command::GoOn,
             Command::Unlock,
             Command::Jog { to: Point { x: 1.0, y: 2.0 }, speed_mm_s: 3.0 },

@@ -86,10 +86,19 @@
 //! # Grbl
 //!
 //! Programs that stream (UGS, bCNC, cncjs, `LaserGRBL`) send many lines ahead, which are planned together: curves are drawn
-//! without stops. A line is answered by `ok` or `error:n` when it has left the receive buffer of 128 bytes and lies in the queue, so
-//! a program may count characters or wait for each answer. Blanks and comments take no room in a line of 80 characters. A machine at rest
-//! gathers lines for [`StepperPlotterSettings::gather`] before it starts.
+//! without stops. A line is answered by `ok` or `error:n` when it lies in the queue, so a program may count characters or wait for each
+//! answer. Blanks and comments take no room in a line of 80 characters. A machine at rest gathers lines for
+//! [`StepperPlotterSettings::gather`] before it starts.
 //!
+//! - The receive buffer has 128 bytes. As in Grbl 1.1h a line that has ended leaves it, also one that waits for room in the queue: all
+//!   of the buffer is there for what comes behind that. While a line waits for its answer below, nothing more is read.
+//! - What finds no room in the buffer is lost. Grbl loses single bytes, and draws what is left of a line if it still is one. Here whole lines
+//!   are lost, and each is answered by `error:11` in its turn; of lines in a row that are sent without waiting for any answer the first 127
+//!   are.
+//! - `G4` is answered when all before it and the pause are over, `M2` and `M30` when all before them is over, after `[MSG:Pgm End]`; a
+//!   program waits for the machine by `G4 P0`. What lies in the receive buffer by then starts at once. `M3` and `M5` are answered when
+//!   they lie in the queue; Grbl waits there, too.
+//! - `Bf` tells how many of 15 blocks are free, those in progress among the others, and how many bytes the receive buffer takes.
 //! - `?` is answered by `<Run|MPos:…|Bf:…|FS:…>` (`Pn` for pressed switches, `WCO` now and then), `!` brakes along the path, `~` goes
 //!   on, ctrl-X stops at once; the place stays known, as it is counted by steps really made.
 //! - Overrides act on the way, as soon as the phase in progress is over: feeds (`0x90` to `0x94`, 10 to 200 %), travels (`0x95` to
@@ -104,9 +113,13 @@
 //! - Errors and alarms have Grbl's numbers. A target outside the area is `ALARM:2` and `error:33`: what was accepted is drawn to its
 //!   end, and then the pen goes up. A limit switch is `ALARM:1`, the emergency stop `ALARM:10` (grblHAL's, Grbl has none). In an alarm
 //!   lines get `error:9` until `$X` or `$H`.
-//! - `M0` waits for `~`. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`] says. With the
+//! - `M0` waits for `~`; `M1` is no stop. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`] says. With the
 //!   pen up the machine travels at its own speed, whatever `F` says.
-//! - Probes, other coordinate systems, coolant and the safety door are not there; a line that needs one is `error:20`.
+//! - `G54` to `G59` have an origin each, set by `G10`; a reset keeps them, switching off does not.
+//! - Words that Grbl does not know are errors ([`Words::Grbl`](crate::gcode::Words::Grbl)), unless the pen is lifted by those of another
+//!   firmware.
+//! - Other planes, probes, `G28.1`, `G43.1`, `G93`, the check mode and the safety door are not there; a line that needs one is `error:20`
+//!   or `error:3`. No homing is asked for after switching on (`L` in `$I`).
 //!
 //! # Play
 //!

@@ -60,6 +60,8 @@ pub struct Motion<M: Modes = AllModes> {
     at_rest: bool,
     /// When a machine at rest starts, whatever it knows by then.
     start_at: Option<Duration>,
+    /// When the receive side was told last that all is done: what comes at that very time has waited for it.
+    told_at: Option<Duration>,
     /// Operations have been planned that may have been put off.
     unfinished: bool,
     held: bool,
@@ -121,6 +123,7 @@ impl<M: Modes> Motion<M> {
             base: Duration::ZERO,
             at_rest: true,
             start_at: None,
+            told_at: None,
             unfinished: false,
             held: false,
             jogs: false,
@@ -214,8 +217,7 @@ impl<M: Modes> Motion<M> {
             Signal::Reset => {
                 let during = self.status(now).activity;
                 self.stop(Stop::Reset { during }, link);
-                self.percents = Percents::default();
-                self.override_speeds();
+                self.end_overrides();
             }
             Signal::LaserOff => {
                 self.dark = true;
@@ -295,20 +297,24 @@ impl<M: Modes> Motion<M> {
     /// What the receive side may know.
     #[must_use]
     pub fn status(&self, now: Duration) -> Status {
+        let moves = self.moves(now);
+        let has_work = moves || self.unfinished || !self.planner.is_empty();
         let activity = match self.state {
             State::Stopped => Activity::Stopped,
             State::Homing(_) => Activity::Home,
             State::Ready if self.jogs => Activity::Jog,
-            State::Ready if self.held => Activity::Hold { stands: !self.moves(now) },
-            State::Ready if self.moves(now) || !self.planner.is_empty() || self.unfinished => Activity::Run,
+            State::Ready if self.held => Activity::Hold { stands: !moves },
+            State::Ready if has_work => Activity::Run,
             State::Ready => Activity::Idle,
         };
         let speed_mm_s = self.phase.map_or(0.0, |(began, phase)| {
             let time_s = now.saturating_sub(began).as_secs_f32();
             if time_s > phase.duration_s { 0.0 } else { greatest(phase.speed_at::<M>(time_s), 0.0) }
         });
+        let planned = self.planner.blocks() + usize::from(has_work);
         Status {
             activity,
+            planned: u8::try_from(planned).unwrap_or(u8::MAX),
             at: self.position_mm(),
             speed_mm_s,
             laser: self.beam.power(),
@@ -566,7 +572,9 @@ impl<M: Modes> Motion<M> {
     fn taken(&mut self, now: Duration) {
         self.unfinished = true;
         if self.at_rest && self.start_at.is_none() {
-            self.start_at = now.checked_add(self.settings.gather);
+            // Lines that have been waiting are gathered already.
+            let gather = if self.told_at == Some(now) { Duration::ZERO } else { self.settings.gather };
+            self.start_at = now.checked_add(gather);
         }
     }
 
@@ -596,7 +604,11 @@ impl<M: Modes> Motion<M> {
                 self.state = State::Homing(run);
             }
             Command::Pause => self.hold(),
-            Command::Finish => {
+            Command::Finish | Command::End => {
+                if command == Command::End {
+                    self.end_overrides();
+                }
+                self.told_at = Some(now);
                 let _ = link.reports.push(Report::Done);
             }
             Command::GoOn => {}

@@ -45,6 +45,8 @@ impl Default for Percents {
 pub struct Status {
     /// What it does.
     pub activity: Activity,
+    /// Blocks of the look-ahead that are planned and not over, the one in progress among them.
+    pub planned: u8,
     /// Where the pen is by the steps really made, mm.
     pub at: Point,
     /// How fast it moves, mm/s.

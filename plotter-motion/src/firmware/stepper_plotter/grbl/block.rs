@@ -7,7 +7,7 @@ use super::words::{read, whole};
 use super::{Grbl, Pens, Wait, send};
 use crate::PlotOp;
 use crate::decimal::Decimal;
-use crate::gcode::{Block, Outcomes, Word};
+use crate::gcode::{Block, Outcomes, Word, Words};
 use crate::geom::Vec2Single;
 
 /// Slower is not slower, mm/s: a step of 0.01 mm takes ten seconds.
@@ -21,7 +21,8 @@ impl<P: Pens> Grbl<P> {
     /// Carries a line out as a whole, or not at all.
     #[inline(never)] // its memory on the stack is for its own time only, as that of a jog
     pub(super) fn block(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
-        let Some(block) = read(text)? else { return Ok(()) };
+        let known = P::read(&self.settings, |options| options.words);
+        let Some(block) = read(text, known)? else { return Ok(()) };
         let before = self.interpreter;
         let done = self.carry_out(&block, link);
         if done.is_err() {
@@ -33,7 +34,7 @@ impl<P: Pens> Grbl<P> {
     /// A movement by hand, with the pen up. Of its line only the place is kept.
     #[inline(never)]
     pub(super) fn jog(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
-        let block = read(text)?.ok_or(Code::BAD_JOG)?;
+        let block = read(text, Words::Grbl)?.ok_or(Code::BAD_JOG)?;
         let is_allowed = |word: &Word| match word.letter {
             b'G' => matches!(word.tenths(), Some(200 | 210 | 530 | 900 | 910)),
             b'X' | b'Y' | b'Z' | b'F' | b'N' => true,
@@ -97,7 +98,15 @@ impl<P: Pens> Grbl<P> {
             self.reports_to_offset = 0; // the next report tells it
         }
         let moves = outcomes.iter().flatten().any(|op| op.target().is_some());
-        let has_axis = block.words().iter().any(|word| matches!(word.letter, b'X' | b'Y'));
+        let (mut has_axis, mut dwells, mut ends) = (false, false, false);
+        for word in block.words() {
+            match (word.letter, word.tenths()) {
+                (b'X' | b'Y', _) => has_axis = true,
+                (b'G', Some(40)) => dwells = true,
+                (b'M', Some(20 | 300)) => ends = true,
+                _ => {}
+            }
+        }
         if moves && has_axis && (1..=3).contains(&modes.motion) && modes.feed_mm_s.is_none() {
             return Err(Code::NO_FEED);
         }
@@ -126,7 +135,17 @@ impl<P: Pens> Grbl<P> {
         }
         if pauses {
             self.command(link, Command::Pause);
-            send(link, Command::Finish);
+        }
+        // It waits for a pen that goes down, too.
+        if dwells && let Some(dot) = self.interpreter.put_down() {
+            self.command(link, Command::Plot(dot));
+        }
+        // As in Grbl these are answered when all is done: programs wait for the machine by them.
+        if ends {
+            self.command(link, Command::End);
+            self.wait = Some(Wait::End);
+        } else if pauses || dwells {
+            self.command(link, Command::Finish);
             self.wait = Some(Wait::Finish);
         }
         Ok(())

@@ -6,12 +6,13 @@ use crate::protocol::SUBSTITUTE;
 /// Most characters of a line, without blanks and comments.
 pub(super) const MOST: usize = 80;
 
-/// The line that is coming in.
+/// The line that is coming in, or that waits to be carried out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LineBuffer {
     text: [u8; MOST],
     len: usize,
     comment: Comment,
+    ended: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,14 +26,15 @@ enum Comment {
 
 impl LineBuffer {
     pub(super) const fn new() -> Self {
-        Self { text: [0; MOST], len: 0, comment: Comment::None }
+        Self { text: [0; MOST], len: 0, comment: Comment::None, ended: false }
     }
 
-    /// Takes a byte; says whether it ends the line.
-    pub(super) fn push(&mut self, byte: u8) -> bool {
+    /// Takes a byte of a line that has not ended.
+    pub(super) fn push(&mut self, byte: u8) {
         match (self.comment, byte) {
-            (_, b'\n' | b'\r') => return true,
-            (_, LOST | SUBSTITUTE) => self.len = MOST + 1,
+            (_, b'\n' | b'\r') => self.ended = true,
+            (_, LOST) => (self.len, self.ended) = (MOST + 1, true),
+            (_, SUBSTITUTE) => self.len = MOST + 1,
             (Comment::Rest, _) => {}
             (Comment::Parentheses, b')') => self.comment = Comment::None,
             (Comment::Parentheses, _) => {}
@@ -47,7 +49,11 @@ impl LineBuffer {
                 self.len = (self.len + 1).min(MOST + 1);
             }
         }
-        false
+    }
+
+    /// Whether all of it is there.
+    pub(super) const fn has_ended(&self) -> bool {
+        self.ended
     }
 
     /// The line, without blanks and comments, in capitals; none if it was too long.
@@ -56,6 +62,6 @@ impl LineBuffer {
     }
 
     pub(super) const fn clear(&mut self) {
-        (self.len, self.comment) = (0, Comment::None);
+        (self.len, self.comment, self.ended) = (0, Comment::None, false);
     }
 }

@@ -8,7 +8,7 @@ use super::rx_buffer::RX_BYTES;
 use super::{MOST_COMMANDS, OUTPUT};
 use crate::decimal_text::{Thousandths, Whole};
 use crate::extremes::greater;
-use crate::gcode::Modes;
+use crate::gcode::{LineInterpreter, SYSTEMS};
 
 /// What is being listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ impl Listing {
         self,
         index: u8,
         settings: &StepperPlotterSettings,
-        modes: &Modes,
+        interpreter: &LineInterpreter,
         out: &mut Output<OUTPUT>,
     ) -> bool {
         match self {
@@ -47,7 +47,13 @@ impl Listing {
             }
             Self::Build => match index {
                 0 => out.line(format_args!("[VER:1.1h.20190830:plotter-motion]")),
-                1 => out.line(format_args!("[OPT:V,{},{}]", Whole(BLOCKS as u64), Whole(RX_BYTES as u64))),
+                // Variable spindle, origin where it was homed, both ends with switches, no lock before homing; nothing restored or
+                // stored by $RST and $I=, no wait for it.
+                1 => out.line(format_args!(
+                    "[OPT:VZTL*$#IEW,{},{}]",
+                    Whole(BLOCKS as u64),
+                    Whole(RX_BYTES as u64)
+                )),
                 _ => return false,
             },
             Self::Startup => match index {
@@ -55,16 +61,16 @@ impl Listing {
                 _ => return false,
             },
             Self::Offsets => match index {
-                0 => {
-                    let (x, y) = coordinates(modes.origin.x, modes.origin.y);
-                    out.line(format_args!("[G54:{x},{y},0.000]"));
+                0..SYSTEMS => {
+                    let origin = interpreter.origin(index);
+                    let (x, y) = coordinates(origin.x, origin.y);
+                    out.line(format_args!("[G{}:{x},{y},0.000]", Whole(54 + u64::from(index))));
                 }
-                1..=5 => out.line(format_args!("[G{}:0.000,0.000,0.000]", Whole(54 + u64::from(index)))),
                 6 => out.line(format_args!("[G28:0.000,0.000,0.000]")),
                 7 => out.line(format_args!("[G30:0.000,0.000,0.000]")),
                 8 => {
-                    let own = modes.offset + -modes.origin;
-                    let (x, y) = coordinates(own.x, own.y);
+                    let shift = interpreter.shift();
+                    let (x, y) = coordinates(shift.x, shift.y);
                     out.line(format_args!("[G92:{x},{y},0.000]"));
                 }
                 9 => out.line(format_args!("[TLO:0.000]")),

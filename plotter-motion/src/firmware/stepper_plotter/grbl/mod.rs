@@ -36,8 +36,10 @@ const REPORTS_WITHOUT_OFFSET: u8 = 10;
 enum Wait {
     /// `$H`.
     Home,
-    /// `M0`: until it goes on.
+    /// `G4`: until all before and the pause are over; `M0`: until it goes on.
     Finish,
+    /// `M2`, `M30`: until all before is over.
+    End,
     /// `$n=value`.
     Set,
 }
@@ -126,11 +128,24 @@ impl<P: Pens> Grbl<P> {
     }
 
     pub(super) fn work(&mut self, status: &Status, link: &mut Link) {
-        while self.out.room() >= MOST_ANSWER {
-            let worked = self.tell(status, link) || self.read(status, link);
-            if !worked {
+        loop {
+            self.gather();
+            if self.out.room() < MOST_ANSWER || !(self.tell(status, link) || self.carry_on(status, link)) {
                 return;
             }
+        }
+    }
+
+    /// Gathers the line that is coming in.
+    ///
+    /// As in Grbl a line that has ended has left the receive buffer, whatever it waits for: programs count with that.
+    fn gather(&mut self) {
+        while self.wait.is_none()
+            && self.listing.is_none()
+            && !self.line.has_ended()
+            && let Some(byte) = self.rx.pop()
+        {
+            self.line.push(byte);
         }
     }
 
@@ -143,7 +158,7 @@ impl<P: Pens> Grbl<P> {
         } else if core::mem::take(&mut self.status_wanted) {
             self.tell_status(status, link);
         } else if let Some((listing, index)) = self.listing {
-            if listing.line(index, &self.settings, &self.interpreter.modes(), &mut self.out) {
+            if listing.line(index, &self.settings, &self.interpreter, &mut self.out) {
                 self.listing = Some((listing, index.saturating_add(1)));
             } else {
                 self.listing = None;
@@ -155,14 +170,10 @@ impl<P: Pens> Grbl<P> {
         true
     }
 
-    /// Goes on with the line that is coming in; says whether there was a byte of it.
-    fn read(&mut self, status: &Status, link: &mut Link) -> bool {
-        if self.wait.is_some() || link.commands.room() < MOST_COMMANDS {
+    /// Carries out the line that is there, and answers it; says whether there was one, and room for all that comes of it.
+    fn carry_on(&mut self, status: &Status, link: &mut Link) -> bool {
+        if self.wait.is_some() || !self.line.has_ended() || link.commands.room() < MOST_COMMANDS {
             return false;
-        }
-        let Some(byte) = self.rx.pop() else { return false };
-        if !self.line.push(byte) {
-            return true;
         }
         let line = self.line;
         self.line.clear();
@@ -200,7 +211,13 @@ impl<P: Pens> Grbl<P> {
     fn take(&mut self, report: Report) {
         match report {
             Report::Done => {
-                if self.wait.take() == Some(Wait::Finish) {
+                let waited = self.wait.take();
+                if waited == Some(Wait::End) {
+                    (self.overrides, self.reports_to_overrides, self.reports_to_offset) =
+                        (Overrides::default(), 0, 0);
+                    self.out.line(format_args!("[MSG:Pgm End]"));
+                }
+                if waited.is_some() {
                     self.out.line(format_args!("ok"));
                 }
             }
@@ -264,11 +281,15 @@ impl<P: Pens> Grbl<P> {
         match command {
             b"" => self.out.line(format_args!("[HLP:$$ $# $G $I $N $x=val $J=line $X $H ~ ! ? ctrl-x]")),
             b"G" => self.tell_modes(),
-            b"$" | b"#" | b"I" | b"N" | b"H" | b"X" if !is_idle => return Err(Code::NOT_IDLE),
+            // In no alarm there is nothing to unlock.
+            b"X" if !is_idle => {}
+            b"$" | b"#" | b"I" | b"N" | b"H" if !is_idle => return Err(Code::NOT_IDLE),
             b"$" => self.listing = Some((Listing::Settings, 0)),
             b"#" => self.listing = Some((Listing::Offsets, 0)),
             b"I" => self.listing = Some((Listing::Build, 0)),
             b"N" => self.listing = Some((Listing::Startup, 0)),
+            // There is no line that is carried out at the start: it stays so.
+            [b'N', b'0' | b'1', b'='] => {}
             [b'J', b'=', ..] if self.alarm.is_some() => return Err(Code::LOCKED),
             [b'J', b'=', ..] if !is_idle && !self.is_jogging(status, link) => return Err(Code::NOT_IDLE),
             [b'J', b'=', jog @ ..] => return self.jog(jog, link),
@@ -315,8 +336,9 @@ impl<P: Pens> Grbl<P> {
         let modes = self.interpreter.modes();
         let feed = modes.feed_mm_s.unwrap_or(0.0) * 60.0 / if modes.inches { 25.4 } else { 1.0 };
         self.out.line(format_args!(
-            "[GC:G{} G54 G17 G{} G{} G94 M{} M9 T{} F{} S{}]",
+            "[GC:G{} G{} G17 G{} G{} G94 M{} M9 T{} F{} S{}]",
             Whole(modes.motion.into()),
+            Whole(54 + u64::from(modes.system)),
             Plain(if modes.inches { "20" } else { "21" }),
             Plain(if modes.relative { "91" } else { "90" }),
             Whole(modes.spindle.into()),

@@ -1,7 +1,7 @@
 //! [`Pens`]: by which words hosts may lift the pen.
 
 use super::super::StepperPlotterSettings;
-use crate::gcode::{BlockDelete, DwellUnit, PenConvention, ReadOptions};
+use crate::gcode::{BlockDelete, DwellUnit, LaserCommand, PenConvention, ReadOptions, ServoCommand, Words};
 use core::time::Duration;
 
 /// By which words hosts may lift the pen: [`AnyPen`], or [`SpindlePen`] for a small program. What both understand they carry out alike.
@@ -38,7 +38,19 @@ static OPTIONS: ReadOptions = ReadOptions {
     dwell_unit: DwellUnit::Seconds,
     settle: Duration::from_millis(500),
     block_delete: BlockDelete::CarryOut,
+    words: Words::Grbl,
 };
+
+/// Where the pen is lifted by words of another firmware, its drawings have others of its words, too.
+const fn words(pen: PenConvention) -> Words {
+    match pen {
+        PenConvention::Servo {
+            command: ServoCommand::M300 | ServoCommand::M280 | ServoCommand::M1, ..
+        }
+        | PenConvention::Laser { command: LaserCommand::Fan | LaserCommand::M4, .. } => Words::Any,
+        _ => Words::Grbl,
+    }
+}
 
 impl Pens for AnyPen {
     fn fit(_: &StepperPlotterSettings) -> bool {
@@ -46,7 +58,8 @@ impl Pens for AnyPen {
     }
 
     fn read<R>(settings: &StepperPlotterSettings, read: impl FnOnce(&ReadOptions) -> R) -> R {
-        read(&ReadOptions { pen: settings.convention(), ..OPTIONS })
+        let pen = settings.convention();
+        read(&ReadOptions { pen, words: words(pen), ..OPTIONS })
     }
 }
 

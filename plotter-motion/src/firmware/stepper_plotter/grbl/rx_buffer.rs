@@ -2,36 +2,37 @@
 
 use super::super::bytes::Bytes;
 
-/// Bytes that the controller keeps: a program that counts characters sends no more before they are answered.
+/// Bytes that the controller keeps, as many as Grbl: a program that counts characters sends no more before they are answered.
 pub(super) const RX_BYTES: usize = 128;
-/// Stands for bytes that were lost: makes its line too long. No byte of this value is let in otherwise.
+/// Stands for the rest of a line that was lost: makes the line too long, and ends it. No byte of this value is let in otherwise.
 pub(super) const LOST: u8 = 0xFF;
-/// Room to end a line that has lost some of its bytes.
-const SPARE: usize = 2;
+/// Room for the end of a line of which everything else has found room.
+const SPARE: usize = 1;
+/// A byte of this value and above stands for lines that were lost in this place; the other bits are their number.
+const LINES: u8 = 0x80;
+/// Most lines that one such byte counts. Of more in a row, sent without waiting for any answer, only these are answered.
+const MOST_LINES: u8 = 0x7F;
 
 /// Bytes that have come and wait to be read. An LF after a CR belongs to it and takes no room.
 ///
-/// A program that counts characters never sends more than there is room for. One that does loses lines, never parts of them:
-/// half a coordinate would be drawn. A line of which a part had found room is answered as too long.
+/// What finds no room is lost, as in Grbl. There it is single bytes, and what is left may be a line that means something else. Here a line
+/// is lost as a whole, the part of it that had found room makes no line, and each line that was lost is told in its place: it is read as
+/// [`LOST`].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RxBuffer {
     bytes: Bytes<{ RX_BYTES + SPARE }>,
     /// The byte before.
     last: u8,
-    losing: Losing,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Losing {
-    Nothing,
-    /// The rest of a line whose beginning is there: it still gets its end.
-    Rest,
-    Line,
+    /// The line that is coming in is being lost.
+    losing: bool,
+    /// Lines that were lost before the first of the bytes, and after the last.
+    lost_before: u8,
+    lost_after: u8,
 }
 
 impl RxBuffer {
     pub(super) const fn new() -> Self {
-        Self { bytes: Bytes::new(), last: b'\n', losing: Losing::Nothing }
+        Self { bytes: Bytes::new(), last: b'\n', losing: false, lost_before: 0, lost_after: 0 }
     }
 
     pub(super) fn push(&mut self, byte: u8) {
@@ -40,26 +41,39 @@ impl RxBuffer {
             return;
         }
         let (begins, ends) = (is_end(last), is_end(byte));
-        let (kept, losing) = match self.losing {
-            Losing::Line => (None, if ends { Losing::Nothing } else { Losing::Line }),
-            Losing::Rest if ends => (Some(byte), Losing::Nothing),
-            Losing::Rest => (None, Losing::Rest),
-            Losing::Nothing if self.room() > 0 || (ends && !begins) => (Some(byte), Losing::Nothing),
-            Losing::Nothing if begins && ends => (None, Losing::Nothing),
-            Losing::Nothing if begins => (None, Losing::Line),
-            Losing::Nothing => (Some(LOST), Losing::Rest),
-        };
-        self.losing = losing;
-        if let Some(byte) = kept {
-            let pushed = self.bytes.push(byte);
-            debug_assert!(pushed, "a line needs no more than the spare room to end");
+        let needed = if self.lost_after > 0 { 2 } else { 1 };
+        if !self.losing && (self.room() >= needed || (ends && !begins)) {
+            if self.lost_after > 0 {
+                let lines = core::mem::take(&mut self.lost_after);
+                self.keep(LINES | lines);
+            }
+            self.keep(byte);
+            return;
+        }
+        self.losing = !ends;
+        if ends {
+            self.lost_after = (self.lost_after + 1).min(MOST_LINES);
         }
     }
 
-    pub(super) fn pop(&mut self) -> Option<u8> {
-        self.bytes.pop()
+    fn keep(&mut self, byte: u8) {
+        let pushed = self.bytes.push(byte);
+        debug_assert!(pushed, "its room was looked at, or it is the end that has room of its own");
     }
 
+    pub(super) fn pop(&mut self) -> Option<u8> {
+        if self.lost_before == 0 {
+            match self.bytes.pop() {
+                Some(lines) if lines >= LINES => self.lost_before = lines - LINES,
+                Some(byte) => return Some(byte),
+                None => self.lost_before = core::mem::take(&mut self.lost_after),
+            }
+        }
+        self.lost_before = self.lost_before.checked_sub(1)?;
+        Some(LOST)
+    }
+
+    /// How many more bytes it keeps.
     pub(super) const fn room(&self) -> usize {
         self.bytes.room().saturating_sub(SPARE)
     }
@@ -78,19 +92,56 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    #[test]
-    fn what_finds_no_room_is_lost_by_lines() {
-        let mut buffer = RxBuffer::new();
-        let line = b"0123456789012345678901234567890123456789\n"; // 41 bytes: the fourth is cut
-        for byte in line.repeat(6) {
+    /// 41 bytes: of four the fourth is cut.
+    const LINE: &[u8; 41] = b"0123456789012345678901234567890123456789\n";
+
+    fn push(buffer: &mut RxBuffer, bytes: &[u8]) {
+        for &byte in bytes {
             buffer.push(byte);
         }
-        let kept: Vec<u8> = core::iter::from_fn(|| buffer.pop()).collect();
-        let lines: Vec<&[u8]> = kept.split(|byte| *byte == b'\n').collect();
-        assert_eq!(lines.len(), 5, "three, the one that was cut, and nothing after it");
-        assert!(lines[..3].iter().all(|kept| *kept == &line[..40]));
-        assert_eq!((lines[3], lines[4]), (&[b'0', b'1', b'2', b'3', b'4', LOST][..], &[][..]));
-        buffer.push(b'G');
-        assert_eq!(buffer.pop(), Some(b'G'));
+    }
+
+    fn read(buffer: &mut RxBuffer) -> Vec<u8> {
+        core::iter::from_fn(|| buffer.pop()).collect()
+    }
+
+    #[test]
+    fn what_finds_no_room_is_lost_by_lines_and_told_where_it_was() {
+        let mut buffer = RxBuffer::new();
+        push(&mut buffer, &LINE.repeat(6));
+        assert_eq!(buffer.room(), 0);
+        // Two are read, and there is room again.
+        assert_eq!((0..82).map(|_| buffer.pop()).last(), Some(Some(b'\n')));
+        push(&mut buffer, &LINE.repeat(3));
+        let expected = [&LINE[..], b"01234", &[LOST; 3], LINE, LINE, &[LOST]];
+        assert_eq!(read(&mut buffer), expected.concat());
+        push(&mut buffer, b"G1\n");
+        assert_eq!(read(&mut buffer), b"G1\n");
+    }
+
+    #[test]
+    fn a_line_that_is_lost_while_all_is_read_is_told_at_its_end() {
+        let mut buffer = RxBuffer::new();
+        push(&mut buffer, &LINE.repeat(4)[..150]);
+        assert_eq!(read(&mut buffer).len(), 128);
+        push(&mut buffer, &LINE[27..]);
+        assert_eq!(read(&mut buffer), [LOST]);
+    }
+
+    #[test]
+    fn the_end_of_a_line_always_finds_room_and_an_empty_line_does_not() {
+        let mut buffer = RxBuffer::new();
+        push(&mut buffer, &[b'X'; RX_BYTES]);
+        push(&mut buffer, b"\n\n\n");
+        let kept = read(&mut buffer);
+        assert_eq!((kept.len(), &kept[RX_BYTES..]), (RX_BYTES + 3, &[b'\n', LOST, LOST][..]));
+    }
+
+    #[test]
+    fn as_many_lost_lines_as_are_counted_are_told() {
+        let mut buffer = RxBuffer::new();
+        push(&mut buffer, &[b'X'; RX_BYTES]);
+        push(&mut buffer, &[b'\n'; 1000]);
+        assert_eq!(read(&mut buffer).iter().filter(|byte| **byte == LOST).count(), usize::from(MOST_LINES));
     }
 }

@@ -21,7 +21,9 @@ impl<P: Pens> Grbl<P> {
             Activity::Home => "Home",
         });
         let (x, y) = coordinates(status.at.x, status.at.y);
-        let blocks = Whole(link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS) as u64);
+        // As Grbl counts: of so many those that are not over, however many more there is room for.
+        let queued = link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS);
+        let blocks = Whole(queued.saturating_sub(status.planned.into()) as u64);
         let bytes = Whole(self.rx.room() as u64);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates")]
         let feed_mm_min = Whole(u64::from((status.speed_mm_s * 60.0 + 0.5) as u32));

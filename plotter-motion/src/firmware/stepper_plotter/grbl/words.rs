@@ -2,12 +2,14 @@
 
 use super::codes::Code;
 use crate::decimal::Decimal;
-use crate::gcode::{Block, MOST, Position, Word, is_control, is_text};
+use crate::gcode::{Block, MOST, Position, Word, Words, is_control, is_text};
 
 /// The words of a line without blanks and comments, in capitals; none if it has no words. What a
-/// [`Reader`](crate::gcode::Reader) makes of it, byte by byte, in a third of the program memory.
+/// [`Reader`](crate::gcode::Reader) makes of it, byte by byte, in a third of the program memory. Checksums, texts and programs are only
+/// for [`Words::Any`].
 #[inline(never)]
-pub(super) fn read(text: &[u8]) -> Result<Option<Block>, Code> {
+pub(super) fn read(text: &[u8], known: Words) -> Result<Option<Block>, Code> {
+    let knows_any = known == Words::Any;
     let mut block = Block::empty();
     let mut rest = text;
     let mut column = 0_u32;
@@ -21,10 +23,10 @@ pub(super) fn read(text: &[u8]) -> Result<Option<Block>, Code> {
                 continue;
             }
             b'$' if is_first => return Err(Code::BAD_STATEMENT),
-            b'*' if !is_first && checksum_fits(text, after) => break,
+            b'*' if knows_any && !is_first && checksum_fits(text, after) => break,
             _ => return Err(Code::NO_LETTER),
         }
-        if block.words().last().is_some_and(|word| is_control(word, letter)) {
+        if knows_any && block.words().last().is_some_and(|word| is_control(word, letter)) {
             return Err(Code::UNSUPPORTED);
         }
         rest = after;
@@ -46,7 +48,7 @@ pub(super) fn read(text: &[u8]) -> Result<Option<Block>, Code> {
         if !block.push(Word { letter, number, column }, Position::START) {
             return Err(Code::OVERFLOW);
         }
-        if is_text(letter, number) {
+        if knows_any && is_text(letter, number) {
             break;
         }
     }
@@ -119,10 +121,10 @@ mod tests {
         "*71",
     ];
 
-    type Words = Vec<(u8, Option<f64>)>;
+    type Found = Vec<(u8, Option<f64>)>;
 
     /// As the reader that takes byte by byte tells it.
-    fn by_bytes(text: &[u8]) -> Result<Option<Words>, Code> {
+    fn by_bytes(text: &[u8]) -> Result<Option<Found>, Code> {
         let mut reader = Reader::new();
         for &byte in text {
             if let Some(Err(error)) = reader.push(byte) {
@@ -135,7 +137,7 @@ mod tests {
         }
     }
 
-    fn words(block: &Block) -> Words {
+    fn words(block: &Block) -> Found {
         block.words().iter().map(|word| (word.letter, word.number)).collect()
     }
 
@@ -149,7 +151,7 @@ mod tests {
         let (mut good, mut bad) = (0, 0);
         for _ in 0..100_000 {
             let text: Vec<u8> = (0..chosen(24)).flat_map(|_| PIECES[chosen(PIECES.len())].bytes()).collect();
-            let found = read(&text).map(|block| block.map(|block| words(&block)));
+            let found = read(&text, Words::Any).map(|block| block.map(|block| words(&block)));
             assert_eq!(found, by_bytes(&text), "{}", text.escape_ascii());
             *if found.is_ok() { &mut good } else { &mut bad } += 1;
         }
@@ -158,9 +160,13 @@ mod tests {
 
     #[test]
     fn a_checksum_must_be_that_of_the_bytes_before_it() {
-        assert_eq!(read(b"N3T0*25").map(|block| block.map(|block| block.words().len())), Ok(Some(2)));
+        assert_eq!(
+            read(b"N3T0*25", Words::Any).map(|block| block.map(|block| block.words().len())),
+            Ok(Some(2))
+        );
+        assert_eq!(read(b"N3T0*25", Words::Grbl), Err(Code::NO_LETTER));
         for wrong in [&b"N3T0*26"[..], b"N3T0*", b"N3T0*281", b"N3T0*25X"] {
-            assert_eq!(read(wrong), Err(Code::NO_LETTER), "{}", wrong.escape_ascii());
+            assert_eq!(read(wrong, Words::Any), Err(Code::NO_LETTER), "{}", wrong.escape_ascii());
         }
     }
 }

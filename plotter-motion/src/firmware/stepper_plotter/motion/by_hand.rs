@@ -36,6 +36,12 @@ impl<M: Modes> Motion<M> {
         self.planner.override_speeds(f64::from(draw) / 100.0, f64::from(travel) / 100.0);
     }
 
+    pub(super) fn end_overrides(&mut self) {
+        self.percents = Percents::default();
+        self.override_speeds();
+        self.shine();
+    }
+
     /// The machine is another one from here on; its motors stay where they are.
     pub(super) fn set(&mut self, setting: Setting) {
         let Ok(settings) = setting.checked(&self.settings) else {
