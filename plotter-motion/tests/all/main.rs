@@ -10,6 +10,7 @@ mod drawings;
 mod exact_discretization;
 mod firmware_by_hand;
 mod firmware_grbl;
+mod firmware_grbl_waits;
 mod firmware_mdraw;
 mod firmware_two_tasks;
 mod gcode_interpreter;

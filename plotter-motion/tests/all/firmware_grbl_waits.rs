@@ -1,6 +1,6 @@
 //! What a program that streams to Grbl counts on: how much may be sent ahead, and which answers come when the motion is over.
 
-mod stepper_bench;
+use crate::stepper_bench;
 
 use core::time::Duration;
 use plotter_motion::StepPoint;
