@@ -145,6 +145,7 @@ fn the_animation_is_a_picture_of_bounded_size_and_time() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_correction_makes_a_bent_picture_straight() {
     let folder = tempfile::tempdir().unwrap();
     // A frame and a line across it.

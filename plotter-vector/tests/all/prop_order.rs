@@ -327,6 +327,7 @@ fn many(count: u32, stroke: impl Fn(u32, u32) -> Vec<Place>) -> Drawing {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn two_hundred_thousand_strokes_are_ordered_within_the_budget() {
     let noise = many(200_000, |x, y| vec![(x, y), (x + 40, y + y % 40)]);
     let settings = Order { budget: 1_000_000, ..Order::default() };
