@@ -18,7 +18,7 @@
 //! ```
 //! # use core::time::Duration;
 //! # use plotter_motion::StepPoint;
-//! # use plotter_motion::firmware::stepper_plotter::{StepperPlotter, StepperPlotterSettings};
+//! # use plotter_motion::firmware::stepper_plotter::{Drivers, StepperPlotter, StepperPlotterSettings};
 //! let mut plotter = StepperPlotter::new(StepperPlotterSettings::default())?; // mDraw's machine, 87.58 steps/mm
 //! let (mut now, mut answers, mut pulses) = (Duration::ZERO, Vec::new(), 0);
 //! for line in ["M1 90\n", "G1 X3 Y4\n", "P\n", "G1 X381\n"] {
@@ -26,8 +26,9 @@
 //!         plotter.receive(now, byte);
 //!     }
 //!     loop {
-//!         while let Some(step) = plotter.poll(now) {
-//!             pulses += 1; // the STEP and DIR pins, at step.at
+//!         // `motors.drivers()` of `plotter-hal` on a machine: a step that they cannot take stays due.
+//!         while let Some(step) = plotter.poll(now, Drivers::Ready) {
+//!             pulses += 1; // `motors.step(step.pulse, now)`
 //!         }
 //!         while let Some(byte) = plotter.transmit(now) {
 //!             answers.push(byte);
@@ -90,8 +91,9 @@
 //! a program may count characters or wait for each answer. Blanks and comments take no room in a line of 80 characters. A machine at rest
 //! gathers lines for [`StepperPlotterSettings::gather`] before it starts.
 //!
-//! - `?` is answered by `<Run|MPos:…|Bf:…|FS:…>` (`Pn` for pressed switches, `WCO` now and then), `!` brakes along the path, `~` goes
-//!   on, ctrl-X stops at once; the place stays known, as it is counted by steps really made.
+//! - `?` is answered by `<Run|MPos:…|Bf:…|FS:…>` (`Pn` for pressed switches, `WCO` now and then), `!` brakes along the path and lifts the
+//!   pen where it stands, `~` lowers it again and goes on, ctrl-X stops at once; the place stays known, as it is counted by steps really
+//!   made.
 //! - Overrides act on the way, as soon as the phase in progress is over: feeds (`0x90` to `0x94`, 10 to 200 %), travels (`0x95` to
 //!   `0x97`: 100, 50, 25 %), the laser's power (`0x99` to `0x9D`). The machine's limits hold whatever they say. They are told as `Ov`
 //!   when they have changed, and now and then; a reset ends them. A
@@ -104,9 +106,18 @@
 //! - Errors and alarms have Grbl's numbers. A target outside the area is `ALARM:2` and `error:33`: what was accepted is drawn to its
 //!   end, and then the pen goes up. A limit switch is `ALARM:1`, the emergency stop `ALARM:10` (grblHAL's, Grbl has none). In an alarm
 //!   lines get `error:9` until `$X` or `$H`.
-//! - `M0` waits for `~`. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`] says. With the
-//!   pen up the machine travels at its own speed, whatever `F` says.
+//! - `M0` waits for `~`, with the pen lifted as by `!`. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`]
+//!   says; `M2` and `M30` lift them too. `M5` acts when its line comes, `M3` with the line or the dot that follows. A `G4` leaves the pen
+//!   as it is. With the pen up the machine travels at its own speed, whatever `F` says.
 //! - Probes, other coordinate systems, coolant and the safety door are not there; a line that needs one is `error:20`.
+//!
+//! # Late steps
+//!
+//! A driver needs some microseconds for each step. A main loop that comes late finds several due, and hears from its drivers whether they
+//! can take one more ([`Drivers`]): what they cannot take is not counted, stays due, and is made in a later turn. So no step is lost,
+//! and the position is that of the motors. Nor does the machine hurry to catch up: a step that is more than 100 us late puts off all that
+//! follows by as much. [`StepperPlotter::lateness`] tells how many steps were late, and how late the latest was: with anything but zeros there, the loop
+//! is too slow for the speed of the machine.
 //!
 //! # Play
 //!
@@ -129,6 +140,7 @@ mod command;
 mod command_queue;
 mod grbl;
 mod homing_run;
+mod lateness;
 mod link;
 mod mdraw;
 mod motion;
@@ -144,6 +156,7 @@ mod status;
 pub use command::{Command, Report, Signal, Stop};
 pub use command_queue::{COMMANDS, CommandQueue};
 pub use grbl::{AnyPen, Grbl, Pens, SpindlePen};
+pub use lateness::{Drivers, Lateness};
 pub use link::{Link, REPORTS};
 pub use mdraw::MDraw;
 pub use motion::{Motion, Step};
