@@ -141,14 +141,14 @@ impl SteppedPlot {
         Ok(())
     }
 
-    /// Nothing comes for now: the machine goes on until it stands. More may be pushed afterwards.
+    /// Nothing comes for now: the machine goes on until it stands, its pen as it is. More may be pushed afterwards.
     ///
     /// # Errors
     ///
     /// Never, as far as is known.
     pub fn rest(&mut self, each: &mut impl FnMut(Happening)) -> Result<(), PlanError> {
         while !self.planner.has_room() && self.advance(each) {}
-        self.planner.finish()?;
+        self.planner.rest()?;
         while self.advance(each) {}
         Ok(())
     }
@@ -159,18 +159,18 @@ impl SteppedPlot {
         seconds(self.steps.tick())
     }
 
-    /// Nothing more comes: the machine goes on until it stands.
+    /// Nothing more comes: the machine goes on until it stands, and lifts its pen.
     ///
     /// # Errors
     ///
     /// Never, as far as is known.
     pub fn finish(mut self, each: &mut impl FnMut(Happening)) -> Result<SteppedFigures, PlanError> {
         self.rest(each)?;
+        self.planner.finish()?;
+        self.deviation.lift();
+        while self.advance(each) {}
         let pen = self.pen;
         self.audit.finish(self.steps.tick(), |moment| each(Happening::Moment(moment, pen)));
-        if self.pen == Pen::Down {
-            self.deviation.lifted();
-        }
         let (from_drawing_mm, from_steps_mm) = self.deviation.most_mm();
         let (along, across) = self.audit.most_accel_mm_s2();
         Ok(SteppedFigures {
@@ -191,7 +191,8 @@ impl SteppedPlot {
         let figures = &mut self.figures;
         let is_motion = match action {
             Action::Course(course) => {
-                figures.courses += 1;
+                // A lift where the pen stands is neither line nor arc.
+                figures.courses += u64::from(course.pen == Pen::Down || course.length_mm > 0.0);
                 match course.pen {
                     Pen::Up => figures.travel_mm += f64::from(course.length_mm),
                     Pen::Down => figures.draw_mm += f64::from(course.length_mm),
@@ -304,7 +305,7 @@ mod tests {
         let draw = |x, y| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
         let lift = PlotOp::Travel { to: Point::new(50.0, 0.0) };
         let found = figures(PlannerSettings::default(), &[draw(50.0, 0.0), lift, lift, draw(50.0, 50.0)]);
-        assert_eq!((found.strokes, found.pen_lifts), (2, 1));
+        assert_eq!((found.strokes, found.pen_lifts), (2, 2), "and the end lifts it");
         // Each stroke is compared with its own steps.
         assert!(found.from_drawing_mm < 0.01 && found.from_steps_mm < 0.01, "{found:?}");
     }

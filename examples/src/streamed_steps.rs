@@ -4,7 +4,7 @@ use crate::{BenchSwitches, Emulator, Told};
 use core::time::Duration;
 use crc::{CRC_64_XZ, Crc};
 use plotter_motion::firmware::StepperPlotter;
-use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
+use plotter_motion::firmware::stepper_plotter::{Dialect, Drivers, StepperPlotterSettings};
 use plotter_motion::plant::SimulatedLine;
 use plotter_motion::{Axis, Machine, StepPoint};
 use plotter_replay::serial::Port;
@@ -119,7 +119,7 @@ pub fn streamed_on_the_desk(
     let mut made = StreamedSteps::default();
     loop {
         if asked {
-            while let Some(step) = plotter.poll(now) {
+            while let Some(step) = plotter.poll(now, Drivers::Ready) {
                 made.steps += 1;
                 let at_us = u64::try_from(step.at.as_micros()).unwrap_or(u64::MAX);
                 digest.update(&at_us.to_le_bytes());

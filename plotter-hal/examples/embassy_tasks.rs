@@ -19,7 +19,7 @@ use core::future::Future;
 use core::pin::{Pin, pin};
 use core::task::{Context, Poll, Waker};
 use core::time::Duration;
-use desk::{Clock, Port, Pwm, Switch};
+use desk::{Clock, Motors, Port, Pwm, Switch};
 use plotter_hal::{
     EstopChange, EstopInput, LimitSwitch, LimitSwitchGroup, PenServo, PenServoSettings, SerialLine,
     SwitchSettings,
@@ -33,6 +33,7 @@ type Controller = RefCell<StepperPlotter>;
 type Switches = LimitSwitchGroup<Switch, Switch, Switch, Switch>;
 
 const MS: Duration = Duration::from_millis(1);
+const US: Duration = Duration::from_micros(1);
 
 /// What the host sends, and when, ms. The `?` is a byte that comes broken.
 const HOST: [(u64, &str); 4] = [
@@ -66,17 +67,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let switches = LimitSwitchGroup { x_min: switch(), x_max: switch(), y_min: switch(), y_max: switch() };
 
     let line = SerialLine::new(Port::new(&clock, &HOST));
+    let (mut motors, steps) = desk::motors();
+    motors.start(clock.now())?;
     run(
         &time,
         [
             pin!(serial(&time, &plotter, line)),
-            pin!(motion(&time, &plotter)),
+            pin!(motion(&time, &plotter, motors)),
             pin!(servo(&time, &plotter, pen)),
             pin!(safety(&time, &plotter, button, switches)),
         ],
     );
     let at = plotter.borrow().position_mm();
-    clock.say("at", &format!("({:.2}, {:.2}) mm", at.x, at.y));
+    let [x, y] = steps.map(|line| line.rises());
+    clock.say("at", &format!("({:.2}, {:.2}) mm after {x} and {y} steps", at.x, at.y));
     Ok(())
 }
 
@@ -98,13 +102,19 @@ async fn serial(time: &Time, plotter: &Controller, mut line: SerialLine<Port>) {
 }
 
 /// Steps at their times.
-async fn motion(time: &Time, plotter: &Controller) {
+async fn motion(time: &Time, plotter: &Controller, mut motors: Motors) {
     let mut moving = false;
     loop {
         let now = time.clock.now();
         let mut steps = 0;
-        while plotter.borrow_mut().poll(now).is_some() {
-            steps += 1; // an `axis` driver makes the pulse
+        let mut made = motors.tick(now);
+        // A step for which the drivers are not ready stays due.
+        while let Some(step) = plotter.borrow_mut().poll(now, motors.drivers()) {
+            made = made.and(motors.step(step.pulse, now));
+            steps += 1;
+        }
+        if let Err(error) = made {
+            time.clock.say("motors", &error.to_string());
         }
         let due = plotter.borrow().due();
         if moving != (steps > 0) && (steps > 0 || due.is_none_or(|due| due > now + MS * 20)) {
@@ -113,7 +123,8 @@ async fn motion(time: &Time, plotter: &Controller) {
             let what = if moving { "run from" } else { "stand at" };
             time.clock.say("motors", &format!("{what} ({:.2}, {:.2}) mm", at.x, at.y));
         }
-        time.until(due.map_or(now + MS, |due| due.min(now + MS))).await;
+        let next = [due, motors.due()].into_iter().flatten().min().unwrap_or(now + MS);
+        time.until(next.clamp(now + US, now + MS)).await;
     }
 }
 

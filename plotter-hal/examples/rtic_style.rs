@@ -15,7 +15,7 @@
 mod desk;
 
 use core::time::Duration;
-use desk::{Clock, Port, Pwm, Switch};
+use desk::{Clock, Line, Motors, Port, Pwm, Switch};
 use plotter_hal::{Laser, LimitSwitch, LimitSwitchGroup, SerialLine, SwitchSettings};
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
@@ -25,8 +25,8 @@ use std::error::Error;
 /// What more than one interrupt uses. RTIC locks it.
 struct Shared {
     plotter: StepperPlotter,
+    motors: Motors,
     laser: Laser<Pwm>,
-    steps: u32,
 }
 
 type Switches = LimitSwitchGroup<Switch, Switch, Switch, Switch>;
@@ -45,13 +45,16 @@ const LASER_TIMEOUT: Duration = Duration::from_millis(20);
 /// be called again.
 fn timer(shared: &mut Shared, clock: &Clock) -> Duration {
     let now = clock.now();
-    let Shared { plotter, laser, steps } = shared;
-    while plotter.poll(now).is_some() {
-        *steps += 1; // an `axis` driver makes the pulse
+    let Shared { plotter, motors, laser } = shared;
+    tell(clock, motors.tick(now));
+    // A step for which the drivers are not ready stays due.
+    while let Some(step) = plotter.poll(now, motors.drivers()) {
+        tell(clock, motors.step(step.pulse, now));
         tell(clock, laser.moved(now));
     }
     tell(clock, laser.shine(now, plotter.beam()));
-    plotter.due().unwrap_or(now + MS).max(now + Duration::from_micros(1)).min(now + MS)
+    let due = [plotter.due(), motors.due()].into_iter().flatten().min();
+    due.unwrap_or(now + MS).max(now + Duration::from_micros(1)).min(now + MS)
 }
 
 /// The serial port's interrupt, priority 2: a byte has come, or there is room for one.
@@ -94,7 +97,7 @@ fn millisecond(shared: &mut Shared, clock: &Clock, switches: &mut Switches) -> D
 
 fn tell<E: std::fmt::Display>(clock: &Clock, result: Result<(), E>) {
     if let Err(error) = result {
-        clock.say("laser", &error.to_string());
+        clock.say("fault", &error.to_string());
     }
 }
 
@@ -103,8 +106,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let settings =
         StepperPlotterSettings { dialect: Dialect::Grbl, laser: true, ..StepperPlotterSettings::default() };
     let pwm = Pwm { clock: clock.clone(), name: "laser", full: 999, duty: None, least_change: 150 };
+    let (mut motors, steps) = desk::motors();
+    motors.start(clock.now())?;
     let mut shared =
-        Shared { plotter: StepperPlotter::new(settings)?, laser: Laser::new(pwm, LASER_TIMEOUT), steps: 0 };
+        Shared { plotter: StepperPlotter::new(settings)?, motors, laser: Laser::new(pwm, LASER_TIMEOUT) };
     let mut line = SerialLine::new(Port::new(&clock, &HOST));
     let switch =
         |high_ms| LimitSwitch::new(Switch { clock: clock.clone(), high_ms }, SwitchSettings::default());
@@ -129,6 +134,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         due[priority] = next;
     }
     let at = shared.plotter.position_mm();
-    clock.say("at", &format!("({:.2}, {:.2}) mm after {} steps", at.x, at.y, shared.steps));
+    let [x, y] = steps.map(|line| Line::rises(&line));
+    clock.say("at", &format!("({:.2}, {:.2}) mm after {x} and {y} steps", at.x, at.y));
+    clock.say("late", &format!("{} steps", shared.plotter.lateness().steps()));
     Ok(())
 }

@@ -61,7 +61,9 @@ impl PenMove {
 
 /// One thing for a plotter to do. All coordinates are absolute, in mm on the sheet.
 ///
-/// Before the first operation the pen is up at the origin.
+/// Before the first operation the pen is up at the origin. After the last one it is lifted where it stands: whatever takes operations
+/// does so at its end ([`Planner::finish`](crate::Planner::finish), `finish` of the writers), so no drawing needs an operation for it.
+/// A travel to where the pen stands lifts it before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]

@@ -5,9 +5,12 @@
 
 use core::convert::Infallible;
 use core::time::Duration;
-use embedded_hal::digital::{self, InputPin};
+use embedded_hal::digital::{self, InputPin, OutputPin};
 use embedded_hal::pwm::{self, SetDutyCycle};
 use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write, WriteReady};
+use plotter_hal::a4988::Timing;
+use plotter_hal::{A4988, NoPin, StepperAxes};
+use plotter_motion::Axis;
 use std::cell::Cell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -85,6 +88,45 @@ impl InputPin for Switch {
         self.is_high().map(|high| !high)
     }
 }
+
+/// An output that counts how often it has risen.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Line(Rc<Cell<(bool, u32)>>);
+
+impl Line {
+    pub(crate) fn rises(&self) -> u32 {
+        self.0.get().1
+    }
+}
+
+impl digital::ErrorType for Line {
+    type Error = Infallible;
+}
+
+impl OutputPin for Line {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.0.set((false, self.rises()));
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        let (was_high, rises) = self.0.get();
+        self.0.set((true, rises + u32::from(!was_high)));
+        Ok(())
+    }
+}
+
+/// Two motors on such outputs, and both STEP lines.
+pub(crate) fn motors() -> (Motors, [Line; 2]) {
+    let steps = [Line::default(), Line::default()];
+    let [x, y] = steps.clone();
+    let x = A4988::new(Axis::X, x, Line::default(), Timing::A4988);
+    (StepperAxes::new(x, A4988::new(Axis::Y, y, Line::default(), Timing::A4988)), steps)
+}
+
+/// A motor, and both.
+type Motor = A4988<Line, Line, NoPin<Infallible>, NoPin<Infallible>>;
+pub(crate) type Motors = StepperAxes<Motor, Motor>;
 
 /// A serial port at 115200 baud, on which a host sends a text, and prints what it is answered.
 #[derive(Debug)]

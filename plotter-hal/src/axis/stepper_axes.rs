@@ -5,12 +5,16 @@ use crate::a4988::{self, A4988};
 use core::time::Duration;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
+#[cfg(doc)]
+use plotter_motion::firmware::StepperPlotter;
+use plotter_motion::firmware::stepper_plotter::Drivers;
 use plotter_motion::{Direction, Pulse, StepPair};
 
 /// Two stepper motors on chips of the A4988 kind, fed by a [`Pulse`].
 ///
 /// When both step, STEP rises at both at the same time: when one of them must wait, for its setup time or the end of its
-/// last pulse, the other one waits with it. As with [one motor](A4988), one pulse can be put off; a second is refused.
+/// last pulse, the other one waits with it. As with [one motor](A4988), one pulse can be put off; a second is refused. So ask
+/// [`drivers`](StepperAxes::drivers) before a pulse is taken from its source: a loop that comes late finds several due.
 ///
 /// ```
 /// use core::time::Duration;
@@ -67,9 +71,14 @@ where
         Self { x, y }
     }
 
-    /// Whether a pulse is put off: take the next one from its source when this is over, for it may be refused.
+    /// Whether a pulse is put off, so that another one may be refused.
     pub const fn is_waiting(&self) -> bool {
         self.x.is_waiting() || self.y.is_waiting()
+    }
+
+    /// Whether both take a pulse now: what [`StepperPlotter::poll`] asks before it gives one, so that none is refused and lost.
+    pub const fn drivers(&self) -> Drivers {
+        if self.is_waiting() { Drivers::Busy } else { Drivers::Ready }
     }
 
     /// When [`tick`](Self::tick) is to be called; later does no harm. `None` while there is nothing to do.

@@ -8,7 +8,7 @@ use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as SetDuty};
 use faulty::{Broken, Output};
 use plotter_hal::Laser;
 use plotter_hal::laser::Error;
-use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotter, StepperPlotterSettings};
+use plotter_motion::firmware::stepper_plotter::{Dialect, Drivers, StepperPlotter, StepperPlotterSettings};
 use plotter_motion::{Beam, SafetyGate};
 use proptest::prelude::*;
 use std::io::ErrorKind;
@@ -202,7 +202,7 @@ fn an_emergency_stop_in_the_middle_of_a_line_darkens_it_in_the_same_call() {
     }
     let (mut now, mut brightest, mut steps_after) = (ms(0), 0, 0);
     loop {
-        while let Some(step) = plotter.poll(now) {
+        while let Some(step) = plotter.poll(now, Drivers::Ready) {
             laser.moved(step.at).unwrap();
             steps_after += u32::from(plotter.status(now).emergency_stop);
         }

@@ -10,6 +10,7 @@ mod faulty;
 mod h_bridge;
 mod h_bridge_kinds;
 mod laser;
+mod late_loop;
 mod limit_switch;
 mod logic_analyser;
 mod pen_servo;

@@ -4,7 +4,7 @@ use core::time::Duration;
 use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write, WriteReady};
 use plotter_hal::SerialLine;
 use plotter_hal::serial_line::{Fault, FaultCounts};
-use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotter, StepperPlotterSettings};
+use plotter_motion::firmware::stepper_plotter::{Dialect, Drivers, StepperPlotter, StepperPlotterSettings};
 use plotter_motion::firmware::{Gantry, Notice};
 use plotter_motion::protocol::digits::{self, Receiver};
 use plotter_motion::{Drive, Machine, MachineConfig, StepPoint};
@@ -158,7 +158,7 @@ fn a_line_of_g_code_with_a_broken_byte_is_refused_and_the_next_one_is_drawn() {
                         break;
                     }
                 }
-                while plotter.poll(now).is_some() {}
+                while plotter.poll(now, Drivers::Ready).is_some() {}
                 line.send(|| plotter.transmit(now)).unwrap();
                 match plotter.due() {
                     Some(due) => now = due,

@@ -101,10 +101,11 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> LinkedGantry<
         &self.link
     }
 
-    /// Where the pen belongs. The digits protocol does not say: up.
+    /// Where the pen belongs: as the target under way has it, and up where none is, at the end, in a hold or a stop. The digits
+    /// protocol does not say: up.
     #[must_use]
     pub const fn pen(&self) -> Pen {
-        self.pen
+        if self.under_way && !self.gantry.is_stopped() { self.pen } else { Pen::Up }
     }
 
     /// What the last order and the button leave the machine to do.

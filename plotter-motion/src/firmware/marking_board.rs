@@ -295,10 +295,11 @@ impl<C: LineController> MarkingBoard<C> {
         self.drive
     }
 
-    /// Whether the pen is to be on the sheet.
+    /// Whether the pen is to be on the sheet: as the move under way has it, and up when it is done or an emergency stop is latched. The
+    /// move after it is to be started in the same turn if the pen is to stay down.
     #[must_use]
     pub const fn pen(&self) -> Pen {
-        self.pen
+        if self.under_way && !self.gate.is_stopped() { self.pen } else { Pen::Up }
     }
 
     /// Whether the last move is done.

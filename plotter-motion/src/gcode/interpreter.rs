@@ -80,6 +80,8 @@ impl<C: Complaint> Outcomes<C> {
 /// - A line is carried out whole or not at all. Within it speed, tool and pen come first, then `G4`, `G28` or `G92`, then the
 ///   movement, then `M0` or `M2`: the order of the standard.
 /// - A pen that is lowered and lifted again without a movement leaves a dot, a line to where it stands.
+/// - A pen that is lifted goes up with the travel that follows. Where a dwell, a pause or the end of the text or program follows
+///   instead, a travel to where it stands lifts it.
 /// - A line drawn by `G0`, and one before the first `F`, leaves its speed to the machine.
 /// - The power of a laser is told before the first line that needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,7 +135,8 @@ impl Interpreter {
         Ok(())
     }
 
-    /// Ends the drawing: a pen that has been lowered and never moved leaves its dot.
+    /// Ends the drawing: a pen that has been lowered and never moved leaves its dot, one that has been lifted since its last line is
+    /// lifted.
     ///
     /// # Errors
     ///
@@ -141,6 +144,7 @@ impl Interpreter {
     pub fn finish(&mut self) -> Result<(), Undrained> {
         self.drained()?;
         self.line.machine.leave_dot(&self.options, &mut self.outcomes);
+        self.line.machine.lift(&mut self.outcomes);
         Ok(())
     }
 
@@ -170,6 +174,11 @@ impl LineInterpreter {
     /// A machine that has just been switched on.
     pub(crate) fn new() -> Self {
         Self { machine: Machine::new() }
+    }
+
+    /// Nothing of the line is left to come: a pen that it lifts goes up now, whatever the next line says and whenever it comes.
+    pub(crate) fn lift<C: Complaint>(&mut self, out: &mut Outcomes<C>) {
+        self.machine.lift(out);
     }
 
     /// As [`Interpreter::modes`].

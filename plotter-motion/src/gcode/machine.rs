@@ -45,6 +45,10 @@ pub(super) struct Machine {
     /// Share of its power with which the laser burns after the line before.
     beam: f64,
     told_share: Option<f64>,
+    /// What has been given leaves the pen on the sheet.
+    on_sheet: bool,
+    /// It has been told to lift it, and nothing that lifts it has been given since.
+    lift_owed: bool,
 }
 
 impl Machine {
@@ -70,6 +74,8 @@ impl Machine {
             settling: false,
             beam: 0.0,
             told_share: None,
+            on_sheet: false,
+            lift_owed: false,
         }
     }
 
@@ -122,6 +128,28 @@ impl Machine {
     pub(super) fn stand_at(&mut self, point: Point) {
         self.at = point;
         (self.dot_owed, self.settling) = (false, false);
+        // Whoever moves or stops it lifts the pen.
+        (self.on_sheet, self.lift_owed) = (false, false);
+    }
+
+    /// Gives an operation, and notes where it leaves the pen.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn give<C: Complaint>(&mut self, op: PlotOp, out: &mut Outcomes<C>) {
+        match op {
+            PlotOp::LaserPower { .. } | PlotOp::Dwell { .. } => {}
+            _ => {
+                self.on_sheet = matches!(op, PlotOp::Draw { .. } | PlotOp::DrawArc { .. });
+                self.lift_owed = false;
+            }
+        }
+        out.give(Ok(op));
+    }
+
+    /// Lifts the pen where it stands, if it has been told to and no travel has done so: before the machine stands, or at the end.
+    pub(super) fn lift<C: Complaint>(&mut self, out: &mut Outcomes<C>) {
+        if self.lift_owed {
+            self.give(PlotOp::Travel { to: self.at }, out);
+        }
     }
 
     pub(super) fn carry_out<C: Complaint>(
@@ -133,13 +161,13 @@ impl Machine {
         self.set_modes(line)?;
         if let ([], Some(Remark::Pen(pen))) = (line.block.words(), line.block.remark()) {
             self.leave_dot(options, out);
-            out.give(Ok(PlotOp::SelectPen { pen }));
+            self.give(PlotOp::SelectPen { pen }, out);
         }
         if line.is(Code::ToolChange) {
             let expected = "M6 needs a T before it: which pen";
             let pen = self.tool.ok_or_else(|| Problem::Missing { expected }.at(line.block.position()))?;
             self.leave_dot(options, out);
-            out.give(Ok(PlotOp::SelectPen { pen }));
+            self.give(PlotOp::SelectPen { pen }, out);
         }
         self.put_pen(line, options, out);
         match line.of(Group::Action) {
@@ -263,6 +291,7 @@ impl Machine {
         }
         if !down {
             self.leave_dot(options, out);
+            self.lift_owed = self.on_sheet;
         }
         (self.pen_down, self.dot_owed, self.settling) = (down, down, true);
     }
@@ -288,6 +317,8 @@ impl Machine {
             self.dot_owed = begins && self.spindle == Code::Constant;
             // A laser needs no time to go out.
             self.settling = begins;
+            // What draws a laser's text with a pen lifts it.
+            self.lift_owed |= self.on_sheet && self.spindle == Code::SpindleOff;
         }
         self.beam = share;
     }
@@ -295,7 +326,7 @@ impl Machine {
     pub(super) fn leave_dot<C: Complaint>(&mut self, options: &ReadOptions, out: &mut Outcomes<C>) {
         if core::mem::take(&mut self.dot_owed) {
             self.tell_share(self.beam, options, out);
-            out.give(Ok(PlotOp::Draw { to: self.at, feed_mm_s: self.feed_mm_s }));
+            self.give(PlotOp::Draw { to: self.at, feed_mm_s: self.feed_mm_s }, out);
         }
     }
 
@@ -312,7 +343,7 @@ impl Machine {
     fn tell_share<C: Complaint>(&mut self, share: f64, options: &ReadOptions, out: &mut Outcomes<C>) {
         if matches!(options.pen, PenConvention::Laser { .. }) && self.told_share != Some(share) {
             self.told_share = Some(share);
-            out.give(Ok(PlotOp::LaserPower { share }));
+            self.give(PlotOp::LaserPower { share }, out);
         }
     }
 
@@ -335,7 +366,8 @@ impl Machine {
         let settles = core::mem::take(&mut self.settling) && duration <= options.settle;
         if !settles && !duration.is_zero() {
             self.leave_dot(options, out);
-            out.give(Ok(PlotOp::Dwell { duration }));
+            self.lift(out);
+            self.give(PlotOp::Dwell { duration }, out);
         }
         Ok(())
     }
@@ -357,7 +389,7 @@ impl Machine {
             self.at.x = if all || line.has(b"X") { 0.0 } else { self.at.x };
             self.at.y = if all || line.has(b"Y") { 0.0 } else { self.at.y };
             self.settling = false;
-            out.give(Ok(PlotOp::Travel { to: self.at }));
+            self.give(PlotOp::Travel { to: self.at }, out);
         }
     }
 
@@ -411,7 +443,7 @@ impl Machine {
             // A spline and its like have been reported: what follows it is to begin where it would have ended.
             if moves {
                 self.leave_dot(options, out);
-                out.give(Ok(PlotOp::Travel { to }));
+                self.give(PlotOp::Travel { to }, out);
                 (self.at, self.settling) = (to, false);
             }
             return Ok(false);
@@ -524,11 +556,12 @@ impl Machine {
             self.leave_dot(options, out);
         }
         let feed_mm_s = self.feed_mm_s.filter(|_| !is_rapid);
-        out.give(Ok(match arc {
+        let op = match arc {
             _ if !marks => PlotOp::Travel { to },
             Some((centre, sweep_rad)) => PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s },
             None => PlotOp::Draw { to, feed_mm_s },
-        }));
+        };
+        self.give(op, out);
         (self.at, self.settling) = (to, false);
     }
 
@@ -539,6 +572,7 @@ impl Machine {
             Some(Remark::NewSheet) => PlotOp::NewPage,
             Some(Remark::Pen(pen)) => PlotOp::SelectPen { pen },
             None => {
+                self.lift(out);
                 if let Some(command) = line.word_of(Group::Stop as usize) {
                     out.give(Err(C::undone(command, line.block.place(command))));
                 }
@@ -546,12 +580,13 @@ impl Machine {
             }
         };
         self.leave_dot(options, out);
-        out.give(Ok(op));
+        self.give(op, out);
     }
 
     /// `M2`, `M30`: pen up, and what GRBL sets back then.
     fn end<C: Complaint>(&mut self, options: &ReadOptions, out: &mut Outcomes<C>) {
         self.leave_dot(options, out);
+        self.lift_owed = self.on_sheet;
         (self.pen_down, self.spindle, self.beam, self.settling) = (false, Code::SpindleOff, 0.0, false);
         (self.motion, self.relative, self.sheet, self.inverse_time) = (Code::Straight, false, true, false);
         self.system = 0;

@@ -45,6 +45,11 @@ impl PenPath {
         }
     }
 
+    /// Where what has been given out has taken the pen.
+    pub(super) const fn given(&self) -> Vec2 {
+        self.given
+    }
+
     /// Another line type, which begins anew.
     pub(super) fn set_line_type(&mut self, line_type: LineType) {
         self.line_type = line_type;

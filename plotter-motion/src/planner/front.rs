@@ -222,6 +222,13 @@ impl<M: Modes> Front<M> {
         self.run = None;
     }
 
+    /// Lifts the pen where it stands, if it is down.
+    pub(super) fn lift<const N: usize>(&mut self, limits: &Limits, ring: &mut Ring<N>) {
+        if self.pen == Pen::Down {
+            self.put_pen(Pen::Up, limits, ring);
+        }
+    }
+
     fn stand<const N: usize>(&mut self, block: Block, limits: &Limits, ring: &mut Ring<N>) {
         self.end_run(limits, ring);
         if matches!(block.kind, Kind::SelectPen | Kind::NewPage) {

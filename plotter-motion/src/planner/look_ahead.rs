@@ -18,8 +18,8 @@ const MOST_SHARE: f64 = 100.0;
 
 /// Plans the motion along a tool path while it comes in: look-ahead over `N` blocks.
 ///
-/// Push operations until it is full, take actions when the motors want them, and so on; [`Planner::finish`] at the end. What is
-/// taken cannot be changed any more, so the more is known when it is taken, the faster the machine goes: keep it full. Whatever
+/// Push operations until it is full, take actions when the motors want them, and so on; [`Planner::finish`] at the end lifts the pen. What
+/// is taken cannot be changed any more, so the more is known when it is taken, the faster the machine goes: keep it full. Whatever
 /// has been pushed, the machine can always stop within it, and does so where nothing more comes.
 ///
 /// - Strokes and travels begin and end at rest. A travel of several lines is one.
@@ -121,7 +121,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.ring.room() >= Front::<M>::most_blocks(&self.limits.settings)
     }
 
-    /// Whether nothing is left to be taken, also after a feed hold. Operations that were put off come after [`Planner::finish`].
+    /// Whether nothing is left to be taken, also after a feed hold. Operations that were put off come after [`Planner::rest`] or
+    /// [`Planner::finish`].
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.ring.len() == 0 && self.ramps.is_over() && self.ramps.rest_mm() <= 0.0
@@ -221,13 +222,40 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.ramps.plan::<M>(exit2, &limits);
     }
 
-    /// No operation comes for now: what has been put off to see what follows is planned, and the machine stops at its end. More
-    /// may be pushed afterwards.
+    /// The drawing is over: what has been put off to see what follows is planned, the machine stops at its end, and the pen is lifted
+    /// where it stands. Another drawing may be pushed afterwards.
+    ///
+    /// ```
+    /// # use plotter_motion::{Action, Pen, PlanError, Planner, PlannerSettings, PlotOp, Point};
+    /// let mut planner = Planner::<16>::new(PlannerSettings::default())?;
+    /// planner.push(PlotOp::Draw { to: Point::new(10.0, 0.0), feed_mm_s: None })?;
+    /// planner.finish()?;
+    /// let mut pens = Vec::new();
+    /// while let Some(action) = planner.next_action() {
+    ///     if let Action::Course(course) = action {
+    ///         pens.push(course.pen);
+    ///     }
+    /// }
+    /// assert_eq!(pens, [Pen::Down, Pen::Up]);
+    /// # Ok::<(), PlanError>(())
+    /// ```
     ///
     /// # Errors
     ///
     /// [`PlanError::Full`] when there is no room for it.
     pub fn finish(&mut self) -> Result<(), PlanError> {
+        self.rest()?;
+        self.front.lift(&self.limits, &mut self.ring);
+        Ok(())
+    }
+
+    /// No operation comes for now: what has been put off to see what follows is planned, and the machine stops at its end with the pen
+    /// as it is. More of the same drawing may be pushed afterwards.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError::Full`] when there is no room for it.
+    pub fn rest(&mut self) -> Result<(), PlanError> {
         if !self.has_room() {
             return Err(PlanError::Full);
         }

@@ -278,6 +278,11 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         (self.put_off, self.waiting) = (None, [None; 2]);
     }
 
+    /// The pen has been lifted by somebody else, while the motors stand: what draws next lowers it first.
+    pub(crate) const fn lift(&mut self) {
+        self.pen = Pen::Up;
+    }
+
     /// The end of the last action, in ticks: when the next one begins.
     #[must_use]
     pub const fn tick(&self) -> u64 {
@@ -457,6 +462,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     }
 
     fn run(&mut self, phase: Phase) {
+        self.put(self.course.pen);
         // To the end, from the tick in which it begins.
         let parts = parts_of(phase.duration_s, self.settings.clock_hz).saturating_add(self.part.into());
         let left = parts >> PART_BITS;

@@ -17,6 +17,9 @@ pub struct QueuedEvent {
 /// [`SafetyGate`](crate::SafetyGate), set the pins, set the timer to the next. While the main loop puts an event in, the interrupt must be held
 /// off, as for every variable that both have.
 ///
+/// An interrupt that comes late may find two steps due. Whoever has drivers that can refuse a step takes it out only when they are ready
+/// (`StepperAxes::drivers` of `plotter-hal`): what has been taken out is gone, what has not stays the next one.
+///
 /// ```
 /// # use plotter_motion::{MotorEvent, StepQueue, TimedEvent};
 /// let mut queue = StepQueue::<16>::new();

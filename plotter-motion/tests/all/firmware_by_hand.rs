@@ -6,7 +6,7 @@ use crate::stepper_bench;
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{
-    Activity, Dialect, Grbl, Host, SpindlePen, Step, StepperPlotterSettings,
+    Activity, Dialect, Drivers, Grbl, Host, SpindlePen, Step, StepperPlotterSettings,
 };
 use plotter_motion::kinematics::Backlash;
 use plotter_motion::{ExactOnly, ExactPen, Modes, Point, StepPoint, from_mm};
@@ -421,7 +421,7 @@ fn steps_of<H: Host, M: Modes>(text: &str, hold_after: usize) -> Vec<Step> {
         while plotter.transmit(now).is_some() {}
     }
     loop {
-        while let Some(step) = plotter.poll(now) {
+        while let Some(step) = plotter.poll(now, Drivers::Ready) {
             made.push(step);
             if made.len() == hold_after {
                 plotter.receive(now, b'!');

@@ -3,7 +3,7 @@
 
 use core::time::Duration;
 use plotter_motion::firmware::stepper_plotter::{
-    Dialect, Link, Motion, Receive, Signal, Status, StepperPlotterSettings,
+    Dialect, Drivers, Link, Motion, Receive, Signal, Status, StepperPlotterSettings,
 };
 use plotter_motion::{Machine, MachineConfig, StepPoint};
 use std::collections::VecDeque;
@@ -20,7 +20,7 @@ fn motion_task(now: Duration, motion: &mut Motion, shared: &mut Shared) {
     while let Some(signal) = shared.signals.pop_front() {
         motion.signal(now, signal, &mut shared.link);
     }
-    while motion.poll(now, &mut shared.link).is_some() {}
+    while motion.poll(now, Drivers::Ready, &mut shared.link).is_some() {}
     shared.status = motion.status(now);
 }
 

@@ -111,7 +111,7 @@ fn arcs_that_are_none_are_named() {
 #[test]
 fn a_spindle_for_a_pen_marks_while_it_is_on() {
     let text = "M5\nG0 X1\nM3 S90\nG4 P0.15\nG1 X2 F60\nG0 X3\nM5\nG4 P0.15\nG0 X9\nM03\nM05\nG4 P2";
-    assert_eq!(by(ReadOptions::default(), text), "U1,0 D2,0@1 D3,0 U9,0 D9,0@1 W2s");
+    assert_eq!(by(ReadOptions::default(), text), "U1,0 D2,0@1 D3,0 U9,0 D9,0@1 U9,0 W2s");
     // The first wait after the pen was moved is the pen's, if it is short; milliseconds where the text counts them.
     let millis = ReadOptions { dwell_unit: DwellUnit::Milliseconds, ..ReadOptions::default() };
     assert_eq!(by(millis, "M3\nG4 P150\nG4 P150\nG1 X1\nG4 P20\nG4 S1"), "D0,0 W150ms D1,0 W20ms W1s");
@@ -156,7 +156,7 @@ fn a_laser_draws_by_g1_while_it_has_power() {
         "L0.1 D0,0@1 L1 D1,0@1"
     });
     // What it burns while it stands has the power of that time.
-    assert_eq!(by(laser, "G1 F60\nM3 S1000\nG4 P0.2\nS10\nG1 X1\nM5"), "L1 D0,0@1 L0.01 D1,0@1");
+    assert_eq!(by(laser, "G1 F60\nM3 S1000\nG4 P0.2\nS10\nG1 X1\nM5"), "L1 D0,0@1 L0.01 D1,0@1 U1,0");
     let fan = pen(PenConvention::Laser { command: LaserCommand::Fan, full: 255.0 });
     assert_eq!(
         by(fan, "G1 X1\nM106 S51\nG1 X2\nM107\nX3\nM106\nX4\nM106 S0\nX5"),

@@ -30,10 +30,10 @@ fn the_pen_and_the_kind_of_coordinates_last_across_commands() {
 
 #[test]
 fn a_pen_lowered_and_lifted_leaves_a_dot() {
-    assert_eq!(ops("PU5,5;PD;PU;"), "U5,5 D5,5");
+    assert_eq!(ops("PU5,5;PD;PU;"), "U5,5 D5,5 U5,5");
     assert_eq!(ops("PU5,5;PD;PD;PU9,9;"), "U5,5 D5,5 U9,9");
     assert_eq!(ops("PD5,5,5,5;PU;PU;PD"), "D5,5 D5,5 D5,5");
-    assert_eq!(ops("PD5,5;PD;PU;"), "D5,5");
+    assert_eq!(ops("PD5,5;PD;PU;"), "D5,5 U5,5");
     assert_eq!(ops("PU5,5;PD;SP2;PU;"), "U5,5 D5,5 S2");
 }
 

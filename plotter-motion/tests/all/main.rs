@@ -31,6 +31,7 @@ mod link_session;
 mod loaded_gantry;
 mod marking;
 mod messages;
+mod pen_ends_up;
 mod planner_ends;
 mod profile_many;
 mod prop_bresenham;

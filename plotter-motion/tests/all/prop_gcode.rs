@@ -88,9 +88,12 @@ fn written(ops: &[PlotOp], options: WriteOptions<'_>) -> Result<String, WriteErr
 fn meant(ops: &[PlotOp], write: &WriteOptions<'_>) -> Vec<PlotOp> {
     let mut meant = Vec::new();
     let (mut at, mut down, mut holder) = (None, false, 0);
+    // What has been read leaves the pen there.
+    let mut on_sheet = None;
     let (mut share, mut told) = (1.0, None);
     let laser = matches!(write.pen, PenControl::Laser { .. }) || write.pen == FAN;
     for op in ops {
+        let said = meant.len();
         match *op {
             PlotOp::Travel { to } => {
                 (at, down) = (Some(to), false);
@@ -126,9 +129,25 @@ fn meant(ops: &[PlotOp], write: &WriteOptions<'_>) -> Vec<PlotOp> {
                 meant.push(*op);
             }
             PlotOp::Dwell { duration } if duration.is_zero() => {}
+            PlotOp::Dwell { .. } => {
+                // Lifted for a pen that was not asked for: before it stands.
+                if !down && let Some(to) = on_sheet {
+                    meant.push(PlotOp::Travel { to });
+                }
+                meant.push(*op);
+            }
             _ => meant.push(*op),
         }
+        for op in meant.get(said..).unwrap_or_default() {
+            on_sheet = match op {
+                PlotOp::Draw { to, .. } => Some(*to),
+                PlotOp::LaserPower { .. } | PlotOp::Dwell { .. } => on_sheet,
+                _ => None,
+            };
+        }
     }
+    // The text ends lifted.
+    meant.extend(on_sheet.map(|to| PlotOp::Travel { to }));
     meant
 }
 
@@ -209,7 +228,10 @@ proptest! {
         let again: Vec<PlotOp> = PlotOps::with_options(text.bytes(), read)
             .collect::<Result<_, _>>()
             .map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
-        prop_assert_eq!(&written(&again, write).unwrap(), &text);
+        // The writer itself lifts the pen at the end.
+        let (lift, strokes) = again.split_last().unwrap();
+        prop_assert_eq!(*lift, PlotOp::Travel { to: strokes.iter().filter_map(|op| op.target()).next_back().unwrap() });
+        prop_assert_eq!(&written(strokes, write).unwrap(), &text);
         // And they are the arcs that were meant: their ends are reached in their order, to the last decimal.
         let half_step = 0.5 * 10_f64.powi(-i32::from(decimals)) + ROUNDING_MM;
         let mut reached = again.iter().filter_map(|op| op.target());

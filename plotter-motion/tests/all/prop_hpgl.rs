@@ -376,8 +376,10 @@ proptest! {
         text.extend_from_slice(b";\x03;\";IN;PU4000,4000;PD4040,4000;PU;");
         let last: Vec<PlotOp> = plot_ops(&text).flatten().collect();
         let stroke = PlotOp::Travel { to: Point::new(100.0, 100.0) };
-        prop_assert_eq!(last[last.len() - 2], stroke, "{}", String::from_utf8_lossy(&text));
-        prop_assert_eq!(last[last.len() - 1].target(), Some(Point::new(101.0, 100.0)));
+        prop_assert_eq!(last[last.len() - 3], stroke, "{}", String::from_utf8_lossy(&text));
+        let end = Point::new(101.0, 100.0);
+        prop_assert_eq!(last[last.len() - 2].target(), Some(end));
+        prop_assert_eq!(last[last.len() - 1], PlotOp::Travel { to: end });
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::stepper_bench;
 
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
-use plotter_motion::firmware::stepper_plotter::{Activity, Dialect, StepperPlotterSettings};
+use plotter_motion::firmware::stepper_plotter::{Activity, Dialect, Drivers, StepperPlotterSettings};
 use plotter_motion::kinematics::Backlash;
 use plotter_motion::{Axis, Direction, LimitSwitches, StepPoint, from_mm};
 use proptest::prelude::*;
@@ -170,7 +170,7 @@ impl Watch {
     fn steps(&mut self) -> Result<(), TestCaseError> {
         loop {
             let (before, activity) = (self.plotter.position(), self.plotter.status(self.now).activity);
-            let Some(step) = self.plotter.poll(self.now) else { return Ok(()) };
+            let Some(step) = self.plotter.poll(self.now, Drivers::Ready) else { return Ok(()) };
             let moves = [(Axis::X, step.pulse.x()), (Axis::Y, step.pulse.y())];
             prop_assert!(moves.iter().any(|(_, sign)| *sign != 0));
             for (axis, sign) in moves.into_iter().filter(|(_, sign)| *sign != 0) {

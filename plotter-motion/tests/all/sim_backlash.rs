@@ -5,7 +5,7 @@ use crate::drawings;
 
 use auditor::run;
 use plotter_motion::kinematics::Backlash;
-use plotter_motion::{BacklashSteps, MotorEvent, PlannerSettings, Point, StepGenSettings, TimedEvent};
+use plotter_motion::{BacklashSteps, MotorEvent, Pen, PlannerSettings, Point, StepGenSettings, TimedEvent};
 
 const STEPS_PER_MM: f64 = 100.0;
 /// 0.2 mm, as belts of a cheap plotter have.
@@ -47,9 +47,9 @@ fn drawn(take_up: bool) -> (f64, Point) {
             }
             place
         }
-        MotorEvent::Pen(_) => {
-            drawing = true;
-            Point::ORIGIN
+        MotorEvent::Pen(pen) => {
+            drawing = pen == Pen::Down;
+            Point::new(f64::from(x.at) / STEPS_PER_MM, f64::from(y.at) / STEPS_PER_MM)
         }
         _ => Point::ORIGIN,
     };

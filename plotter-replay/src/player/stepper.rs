@@ -5,6 +5,7 @@ use super::{Controller, MotorStep};
 use crate::log::SwitchName;
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
+use plotter_motion::firmware::stepper_plotter::Drivers;
 use plotter_motion::{Axis, Direction, Pen};
 
 /// Its steps are the log's `@ edge` records, the pen its `@ pen` records; both are compared. Pressing `reset` lets it go on after an
@@ -50,7 +51,7 @@ impl Controller for StepperPlotter {
     }
 
     fn step(&mut self, now: Duration) -> Option<MotorStep> {
-        self.poll(now).map(|step| MotorStep { x: step.pulse.x(), y: step.pulse.y() })
+        self.poll(now, Drivers::Ready).map(|step| MotorStep { x: step.pulse.x(), y: step.pulse.y() })
     }
 
     fn pen(&self) -> Option<Pen> {

@@ -104,7 +104,8 @@ fn main() -> ! {
     let mut asked = true;
     loop {
         if asked {
-            while let Some(step) = plotter.poll(now) {
+            // What they have no room for stays due, and is not counted.
+            while let Some(step) = plotter.poll(now, motors.drivers()) {
                 failed |= motors.step(step.pulse, now).is_err();
                 failed |= LASER && laser.moved(now).is_err();
                 board.stepped(step);
@@ -128,7 +129,9 @@ fn main() -> ! {
         }
         let mut due = look;
         let of_laser = if LASER { laser.due() } else { None };
-        for other in [plotter.due(), motors.due(), servo.due(), of_laser] {
+        // A step that waits for the drivers is due when they are ready.
+        let of_plotter = if motors.is_waiting() { None } else { plotter.due() };
+        for other in [of_plotter, motors.due(), servo.due(), of_laser] {
             due = other.map_or(due, |other| if board::has_come(other, due) { other } else { due });
         }
         let event;

@@ -18,7 +18,7 @@
 //! ```
 //! # use core::time::Duration;
 //! # use plotter_motion::StepPoint;
-//! # use plotter_motion::firmware::stepper_plotter::{StepperPlotter, StepperPlotterSettings};
+//! # use plotter_motion::firmware::stepper_plotter::{Drivers, StepperPlotter, StepperPlotterSettings};
 //! let mut plotter = StepperPlotter::new(StepperPlotterSettings::default())?; // mDraw's machine, 87.58 steps/mm
 //! let (mut now, mut answers, mut pulses) = (Duration::ZERO, Vec::new(), 0);
 //! for line in ["M1 90\n", "G1 X3 Y4\n", "P\n", "G1 X381\n"] {
@@ -26,8 +26,9 @@
 //!         plotter.receive(now, byte);
 //!     }
 //!     loop {
-//!         while let Some(step) = plotter.poll(now) {
-//!             pulses += 1; // the STEP and DIR pins, at step.at
+//!         // `motors.drivers()` of `plotter-hal` on a machine: a step that they cannot take stays due.
+//!         while let Some(step) = plotter.poll(now, Drivers::Ready) {
+//!             pulses += 1; // `motors.step(step.pulse, now)`
 //!         }
 //!         while let Some(byte) = plotter.transmit(now) {
 //!             answers.push(byte);
@@ -99,8 +100,9 @@
 //!   program waits for the machine by `G4 P0`. What lies in the receive buffer by then starts at once. `M3` and `M5` are answered when
 //!   they lie in the queue; Grbl waits there, too.
 //! - `Bf` tells how many of 15 blocks are free, those in progress among the others, and how many bytes the receive buffer takes.
-//! - `?` is answered by `<Run|MPos:…|Bf:…|FS:…>` (`Pn` for pressed switches, `WCO` now and then), `!` brakes along the path, `~` goes
-//!   on, ctrl-X stops at once; the place stays known, as it is counted by steps really made.
+//! - `?` is answered by `<Run|MPos:…|Bf:…|FS:…>` (`Pn` for pressed switches, `WCO` now and then), `!` brakes along the path and lifts the
+//!   pen where it stands, `~` lowers it again and goes on, ctrl-X stops at once; the place stays known, as it is counted by steps really
+//!   made.
 //! - Overrides act on the way, as soon as the phase in progress is over: feeds (`0x90` to `0x94`, 10 to 200 %), travels (`0x95` to
 //!   `0x97`: 100, 50, 25 %), the laser's power (`0x99` to `0x9D`). The machine's limits hold whatever they say. They are told as `Ov`
 //!   when they have changed, and now and then; a reset ends them. A
@@ -113,13 +115,22 @@
 //! - Errors and alarms have Grbl's numbers. A target outside the area is `ALARM:2` and `error:33`: what was accepted is drawn to its
 //!   end, and then the pen goes up. A limit switch is `ALARM:1`, the emergency stop `ALARM:10` (grblHAL's, Grbl has none). In an alarm
 //!   lines get `error:9` until `$X` or `$H`.
-//! - `M0` waits for `~`; `M1` is no stop. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`] says. With the
-//!   pen up the machine travels at its own speed, whatever `F` says.
+//! - `M0` waits for `~`, with the pen lifted as by `!`; `M1` is no stop. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`]
+//!   says; `M2` and `M30` lift them too. `M5` acts when its line comes, `M3` with the line or the dot that follows. A `G4` leaves the pen
+//!   as it is. With the pen up the machine travels at its own speed, whatever `F` says.
 //! - `G54` to `G59` have an origin each, set by `G10`; a reset keeps them, switching off does not.
 //! - Words that Grbl does not know are errors ([`Words::Grbl`](crate::gcode::Words::Grbl)), unless the pen is lifted by those of another
 //!   firmware.
 //! - Other planes, probes, `G28.1`, `G43.1`, `G93`, the check mode and the safety door are not there; a line that needs one is `error:20`
 //!   or `error:3`. No homing is asked for after switching on (`L` in `$I`).
+//!
+//! # Late steps
+//!
+//! A driver needs some microseconds for each step. A main loop that comes late finds several due, and hears from its drivers whether they
+//! can take one more ([`Drivers`]): what they cannot take is not counted, stays due, and is made in a later turn. So no step is lost,
+//! and the position is that of the motors. Nor does the machine hurry to catch up: a step that is more than 100 us late puts off all that
+//! follows by as much. [`StepperPlotter::lateness`] tells how many steps were late, and how late the latest was: with anything but zeros there, the loop
+//! is too slow for the speed of the machine.
 //!
 //! # Play
 //!
@@ -142,6 +153,7 @@ mod command;
 mod command_queue;
 mod grbl;
 mod homing_run;
+mod lateness;
 mod link;
 mod mdraw;
 mod motion;
@@ -157,6 +169,7 @@ mod status;
 pub use command::{Command, Report, Signal, Stop};
 pub use command_queue::{COMMANDS, CommandQueue};
 pub use grbl::{AnyPen, Grbl, Pens, SpindlePen};
+pub use lateness::{Drivers, Lateness};
 pub use link::{Link, REPORTS};
 pub use mdraw::MDraw;
 pub use motion::{Motion, Step};

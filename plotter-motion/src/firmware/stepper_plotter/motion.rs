@@ -5,8 +5,8 @@ mod by_hand;
 use super::homing_run::HomingRun;
 use super::play::{CLOCK_HZ, Play};
 use super::{
-    Activity, CheckedSettings, Command, Dialect, Link, Percents, Report, SettingsError, Signal, Status,
-    StepperPlotterSettings, Stop, StoredSettings,
+    Activity, CheckedSettings, Command, Dialect, Drivers, Lateness, Link, Percents, Report, SettingsError,
+    Signal, Status, StepperPlotterSettings, Stop, StoredSettings,
 };
 use crate::extremes::greatest;
 use crate::kinematics::{Cartesian, Kinematics};
@@ -40,7 +40,7 @@ enum State {
 
 /// The motion side: takes commands from the queue, plans, and gives every step at its time.
 ///
-/// After each input, call [`poll`](Self::poll) until it gives no step; then arm a timer for [`due`](Self::due) and call it
+/// After each input, call [`poll`](Self::poll) until it gives no step, and say each time whether the drivers can take one; then arm a timer for [`due`](Self::due) and call it
 /// again at that time. After each call, the servo gets [`pen_deg`](Self::pen_deg) and the laser [`beam`](Self::beam).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion<M: Modes = AllModes> {
@@ -77,6 +77,7 @@ pub struct Motion<M: Modes = AllModes> {
     pen_deg: u8,
     beam: Beam,
     due: Option<Duration>,
+    lateness: Lateness,
 }
 
 impl Motion {
@@ -135,11 +136,13 @@ impl<M: Modes> Motion<M> {
             pen_deg: settings.stored.pen_up_deg,
             beam: Beam::OFF,
             due: None,
+            lateness: Lateness::default(),
         }
     }
 
-    /// The next step that is due by `now`, if there is one.
-    pub fn poll(&mut self, now: Duration, link: &mut Link) -> Option<Step> {
+    /// The next step that is due by `now`, if there is one and the motors' drivers can take it. One that they cannot take is not counted,
+    /// and stays due.
+    pub fn poll(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step> {
         self.due = None;
         // Ends: every turn takes something from a queue, from the planner or from the step generator.
         loop {
@@ -155,19 +158,20 @@ impl<M: Modes> Motion<M> {
                     Some(command) => self.leave_out(command),
                 },
                 State::Homing(_) => {
-                    let step = self.home(now, link);
+                    let step = self.home(now, drivers, link);
                     if step.is_some() || matches!(self.state, State::Homing(_)) {
                         return step;
                     }
                 }
                 State::Ready => match self.next.map(|event| (event, self.time_of(event.tick))) {
-                    Some((_, at)) if !has_come(at, now) => {
+                    Some((event, at)) if !has_come(at, now) || drivers.keep_back(event.event) => {
                         self.due = Some(at);
                         return None;
                     }
                     Some((event, at)) => {
                         self.next = None;
                         if let Some(pulse) = self.give(event.event, link) {
+                            self.lateness.given(at, now, &mut self.base);
                             return Some(Step { at, pulse });
                         }
                     }
@@ -280,6 +284,12 @@ impl<M: Modes> Motion<M> {
     #[must_use]
     pub const fn settings(&self) -> &StepperPlotterSettings {
         &self.settings
+    }
+
+    /// How late steps have been given since the machine was switched on.
+    #[must_use]
+    pub const fn lateness(&self) -> Lateness {
+        self.lateness
     }
 
     /// Where the motors stand: steps really made, also those that take up play.
@@ -481,9 +491,14 @@ impl<M: Modes> Motion<M> {
         }
         if self.held {
             self.at_rest = true;
+            // A pen that stands on the sheet leaves a blot.
+            self.steps.lift();
+            if self.settings.dialect == Dialect::Grbl {
+                self.put_pen(Pen::Up);
+            }
             return false;
         }
-        if self.unfinished && !self.cancelling && self.planner.finish().is_ok() {
+        if self.unfinished && !self.cancelling && self.planner.rest().is_ok() {
             self.unfinished = false;
             return true;
         }
@@ -564,7 +579,7 @@ impl<M: Modes> Motion<M> {
             _ => true,
         };
         if self.unfinished && !self.cancelling && link.commands.first().is_some_and(waits) {
-            self.unfinished = self.planner.finish().is_err();
+            self.unfinished = self.planner.rest().is_err();
         }
     }
 
@@ -625,15 +640,16 @@ impl<M: Modes> Motion<M> {
     }
 
     /// One turn of homing.
-    fn home(&mut self, now: Duration, link: &mut Link) -> Option<Step> {
+    fn home(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step> {
         let State::Homing(run) = &mut self.state else { return None };
         let result = match run.next(&self.settings, self.gate.limits()) {
-            Ok((at, _)) if !has_come(at, now) => {
+            Ok((at, _)) if !has_come(at, now) || drivers == Drivers::Busy => {
                 self.due = Some(at);
                 return None;
             }
             Ok((at, step)) => {
-                run.made(at);
+                let is_late = self.lateness.given(at, now, &mut self.base);
+                run.made(if is_late { now } else { at });
                 return self.pass(step, link).map(|pulse| Step { at, pulse });
             }
             Err(result) => result,

@@ -1,8 +1,8 @@
 //! [`StepperPlotter`]: both sides in one.
 
 use super::{
-    CheckedSettings, Host, Link, Motion, Receive, SettingsError, Status, Step, StepperPlotterSettings,
-    StoredSettings,
+    CheckedSettings, Drivers, Host, Lateness, Link, Motion, Receive, SettingsError, Status, Step,
+    StepperPlotterSettings, StoredSettings,
 };
 use crate::planner::{AllModes, Modes};
 use crate::{Axis, Beam, Direction, Point, StepPoint};
@@ -11,8 +11,8 @@ use core::time::Duration;
 /// The whole controller of a stepper plotter, sans-IO: the receive side and the motion side joined by their queues.
 ///
 /// Inputs: [`receive`](Self::receive), [`limit_switch`](Self::limit_switch), [`emergency_stop`](Self::emergency_stop). After
-/// each of them and at [`due`](Self::due), call [`poll`](Self::poll) until it gives no more steps, fetch the answers
-/// ([`transmit`](Self::transmit)) and set the servo ([`pen_deg`](Self::pen_deg)) and the laser ([`beam`](Self::beam)). Times
+/// each of them and at [`due`](Self::due), call [`poll`](Self::poll) until it gives no more steps, and say each time whether the drivers
+/// can take one; fetch the answers ([`transmit`](Self::transmit)) and set the servo ([`pen_deg`](Self::pen_deg)) and the laser ([`beam`](Self::beam)). Times
 /// never go back.
 ///
 /// For a small processor it is built for one language and fewer ways of planning:
@@ -74,11 +74,12 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         self.work(now);
     }
 
-    /// The next step that is due by `now`, if there is one.
+    /// The next step that is due by `now`, if there is one and the motors' drivers can take it. It is for the drivers to make: it counts
+    /// as made from here on. While they are busy there is none; it stays due, and is given when they are ready.
     #[cfg_attr(target_os = "none", inline(never))]
-    pub fn poll(&mut self, now: Duration) -> Option<Step> {
+    pub fn poll(&mut self, now: Duration, drivers: Drivers) -> Option<Step> {
         loop {
-            let step = self.motion.poll(now, &mut self.link);
+            let step = self.motion.poll(now, drivers, &mut self.link);
             if step.is_some() {
                 return step;
             }
@@ -171,6 +172,13 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     #[must_use]
     pub const fn beam(&self) -> Beam {
         self.motion.beam()
+    }
+
+    /// How late steps have been given since the machine was switched on: whether the firmware's loop is fast enough, and what became of it
+    /// if not.
+    #[must_use]
+    pub const fn lateness(&self) -> Lateness {
+        self.motion.lateness()
     }
 
     /// Where the motors stand: steps really made.

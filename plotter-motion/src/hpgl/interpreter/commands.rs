@@ -20,13 +20,10 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             return;
         }
         match letters {
-            b"PU" => {
-                self.leave_dot();
-                self.pen_down = false;
-            }
+            b"PU" => self.lift(),
             b"PD" => {
                 self.dot_owed |= !self.pen_down && !self.recording;
-                self.pen_down = true;
+                (self.pen_down, self.lift_owed) = (true, false);
             }
             b"PA" => self.relative = false,
             b"PR" => self.relative = true,

@@ -92,7 +92,8 @@ enum Item {
 ///
 /// - The pen marks when it is lowered. A `PD` whose pen is lifted again without a line is a dot, a line to
 ///   where the pen stands.
-/// - `PU` and `PD` act when their two letters have been read, coordinates as each pair is complete.
+/// - `PU` and `PD` act when their two letters have been read, coordinates as each pair is complete. A pen that is lifted goes up with
+///   the travel that follows; where the text ends instead, a travel to where it stands lifts it.
 /// - A circle begins and ends on the same point, right of the centre (left of it for a negative radius), and runs
 ///   counter-clockwise. It is drawn whether the pen is up or down; then the pen goes back to the centre and is
 ///   as it was. Circles and arcs are [`PlotOp::DrawArc`], unless the text asks for chords of more than 5 degrees.
@@ -179,6 +180,10 @@ pub struct Interpreter<const VERTICES: usize = USUAL_VERTICES> {
     path_feed_mm_s: Option<f64>,
     /// Whether something has been drawn on the sheet.
     marked: bool,
+    /// What has been given leaves the pen on the sheet.
+    on_sheet: bool,
+    /// It has been told to lift it, and nothing that lifts it has been given since.
+    lift_owed: bool,
 }
 
 impl Default for Interpreter {
@@ -253,6 +258,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             path: PenPath::new(),
             path_feed_mm_s: None,
             marked: false,
+            on_sheet: false,
+            lift_owed: false,
         }
     }
 
@@ -296,7 +303,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         Ok(())
     }
 
-    /// Ends the drawing: a pen that has been lowered and never moved leaves its dot.
+    /// Ends the drawing: a pen that has been lowered and never moved leaves its dot, one that has been lifted since its last line is
+    /// lifted.
     ///
     /// # Errors
     ///
@@ -304,6 +312,9 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     pub fn finish(&mut self) -> Result<(), Undrained> {
         self.drained()?;
         self.leave_dot();
+        if self.on_sheet && self.lift_owed {
+            self.give(Item::Outcome(Ok(PlotOp::Travel { to: point(self.path.given()) })));
+        }
         Ok(())
     }
 
@@ -323,6 +334,9 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
                             self.pen = pen;
                         }
                         self.marked &= outcome != Ok(PlotOp::NewPage);
+                        // All of them lift it: another pen, a new sheet, a travel.
+                        self.on_sheet &= outcome.is_err();
+                        self.lift_owed &= outcome.is_err();
                         return Some(outcome);
                     }
                     Item::Piece { piece, patterned, feed_mm_s } => {
@@ -412,7 +426,9 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
 
     fn operation(&mut self, piece: Piece) -> PlotOp {
         let feed_mm_s = self.path_feed_mm_s;
-        self.marked |= !matches!(piece, Piece::Travel { .. });
+        self.on_sheet = !matches!(piece, Piece::Travel { .. });
+        self.lift_owed &= self.on_sheet;
+        self.marked |= self.on_sheet;
         match piece {
             Piece::Travel { to } => PlotOp::Travel { to: point(to) },
             Piece::Line { to, .. } => PlotOp::Draw { to: point(to), feed_mm_s },
@@ -453,6 +469,12 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     fn feed(&self) -> Option<f64> {
         let own = usize::from(self.pen).checked_sub(1).and_then(|index| self.feeds_mm_s.get(index));
         own.copied().unwrap_or(self.feed_mm_s)
+    }
+
+    /// Lifts the pen where it stands, or with the travel that follows.
+    fn lift(&mut self) {
+        self.leave_dot();
+        self.lift_owed |= core::mem::take(&mut self.pen_down);
     }
 
     fn leave_dot(&mut self) {

@@ -119,7 +119,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         match step {
             Step::Go { to, up, absolute } => {
                 if up {
-                    self.leave_dot();
+                    self.lift();
                 }
                 self.pen_down = !up;
                 self.move_to(self.target(to, !absolute));

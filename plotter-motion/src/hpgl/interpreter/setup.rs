@@ -34,8 +34,7 @@ const A4_FROM: f64 = 4.0;
 impl<const VERTICES: usize> Interpreter<VERTICES> {
     /// `IN`: everything but the size of the sheet and the place of the pen.
     pub(super) fn initialize(&mut self) {
-        self.leave_dot();
-        self.pen_down = false;
+        self.lift();
         self.leave_polygon();
         self.scaling.initialize();
         self.feeds_mm_s = [None; PENS];

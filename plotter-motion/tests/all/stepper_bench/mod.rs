@@ -4,7 +4,7 @@
 
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
-use plotter_motion::firmware::stepper_plotter::{Activity, StepperPlotterSettings};
+use plotter_motion::firmware::stepper_plotter::{Activity, Drivers, StepperPlotterSettings};
 use plotter_motion::plant::{StepperPlant, StepperSettings};
 use plotter_motion::{Axis, Direction, Point, StepPoint};
 
@@ -72,7 +72,7 @@ impl Bench {
 
     /// What is due now.
     fn settle(&mut self) {
-        while let Some(step) = self.plotter.poll(self.now) {
+        while let Some(step) = self.plotter.poll(self.now, Drivers::Ready) {
             let moves = [(Axis::X, step.pulse.x()), (Axis::Y, step.pulse.y())];
             for ((axis, sign), carriage) in moves.into_iter().zip(&mut self.carriage) {
                 *carriage += i32::from(sign);

@@ -85,6 +85,7 @@ impl<P: Pens> Grbl<P> {
         let before = self.interpreter.modes();
         let mut outcomes = Outcomes::none();
         P::read(&self.settings, |options| self.interpreter.carry_out(block, options, &mut outcomes))?;
+        self.interpreter.lift(&mut outcomes);
         let mut pauses = false;
         for op in outcomes.iter() {
             match op {
@@ -129,9 +130,6 @@ impl<P: Pens> Grbl<P> {
                 *feed = no_slower(*feed);
             }
             self.command(link, Command::Plot(op));
-        }
-        if before.pen_down && !modes.pen_down {
-            self.command(link, Command::Plot(PlotOp::Travel { to: at }));
         }
         if pauses {
             self.command(link, Command::Pause);

@@ -2,8 +2,8 @@
 
 use super::super::{Command, Dialect, Link, Percents, Report, Setting};
 use super::{Motion, State, darken, step_gen};
-use crate::Planner;
 use crate::planner::{Keep as _, Modes};
+use crate::{Pen, Planner};
 
 impl<M: Modes> Motion<M> {
     /// Whether the machine is being moved by hand, or is about to be.
@@ -49,6 +49,7 @@ impl<M: Modes> Motion<M> {
             return;
         };
         self.settings = settings;
+        self.put_pen(Pen::Up);
         debug_assert!(settings.dialect == Dialect::Grbl, "in which the limits are those of the planner");
         self.planner = Planner::of_checked(&settings.planner);
         self.base = self.time_of(self.steps.tick());
