@@ -22,7 +22,7 @@ use plotter_examples::{
     FollowFrame, FollowGif, FollowMachine, FollowOutcome, MovesFile, WindowSource, at, follow_page,
     follow_svg, print, read_file, run, write_file,
 };
-use plotter_motion::Machine;
+use plotter_motion::{Machine, MachineKind};
 use plotter_vector::follow::{
     CameraSettings, Correction, End, Hand, Lens, LineFollower, MappingFollower, MappingSettings, Paper,
     PublishedFollower, PublishedSettings, SimulatedCamera, SimulatedTable, Step, TableError, Tool, judge,
@@ -456,7 +456,9 @@ fn machine(arguments: &Arguments) -> Result<Machine, String> {
         }
         None => (MACHINE.to_owned(), Path::new("machines/plasma-follower.toml")),
     };
-    Machine::from_toml(&text).map_err(|error| at(named, &error))
+    let machine = Machine::from_toml(&text).map_err(|error| at(named, &error))?;
+    machine.require(MachineKind::Steppers, "follow").map_err(|error| at(named, &error))?;
+    Ok(machine)
 }
 
 fn correction(arguments: &Arguments) -> Result<Option<Correction>, String> {

@@ -25,7 +25,7 @@ use plotter_examples::{
     LongSheetReport, LongSheetRun, Reading, Severity, TextilePattern, at, long_sheet_svg, print, read_file,
     run, told_joints, write_file,
 };
-use plotter_motion::{Machine, MachineConfig, PlotOp};
+use plotter_motion::{Machine, MachineConfig, MachineKind, PlotOp};
 use plotter_stitch::{FramePasses, JoinFrames};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -185,7 +185,9 @@ fn machine(arguments: &Arguments) -> Result<Machine, String> {
         Some(path) => {
             let text = String::from_utf8(read_file(path)?)
                 .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
-            Machine::from_toml(&text).map_err(|error| at(path, &error))
+            let machine = Machine::from_toml(&text).map_err(|error| at(path, &error))?;
+            machine.require(MachineKind::Steppers, "long_sheet").map_err(|error| at(path, &error))?;
+            Ok(machine)
         }
         None => Machine::new(MachineConfig::textile_plotter()).map_err(|error| error.to_string()),
     }

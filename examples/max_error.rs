@@ -20,7 +20,7 @@ use plotter_examples::{
     speed_trial, vectorizer, write_file,
 };
 use plotter_motion::{
-    Budget, BudgetError, BudgetLimits, BudgetPart, DriveChoice, Machine, MachineConfig, PlotOp, Point,
+    Budget, BudgetError, BudgetLimits, BudgetPart, Machine, MachineConfig, MachineKind, PlotOp, Point,
     VectorizeConfig,
 };
 use plotter_replay::{Canvas, CanvasStyle, Layer};
@@ -302,7 +302,7 @@ fn plan(args: &Args, machine: &Machine, scan: &Scan, bar: &ProgressBar) -> Resul
     }
     bar.set_message("trying the machine on its test figure");
     let control = Control::measured(machine, scan.diagonal_mm())?;
-    let blends = machine.config().drive == DriveChoice::Stepper;
+    let blends = machine.kind() == MachineKind::Steppers;
     bar.set_message("tracing");
     let mut best: Option<(f64, Budget, Traced)> = None;
     let mut refusal: Option<BudgetError> = None;

@@ -16,8 +16,7 @@ use plotter_examples::{
 };
 use plotter_motion::firmware::MarkingBoardSettings;
 use plotter_motion::{
-    ControllerChoice, DriveChoice, KinematicsChoice, Machine, MachineConfig, OutOfReach, PenMove, PlotOp,
-    hpgl, targets,
+    ControllerChoice, Machine, MachineConfig, MachineKind, OutOfReach, PenMove, PlotOp, hpgl, targets,
 };
 use plotter_replay::log::{self, Header};
 use plotter_replay::{BenchRecorder, Canvas, Chart, ContourError, PlotterSettings, VirtualPlotter, Ways};
@@ -118,9 +117,10 @@ fn plot(args: &Args) -> Result<(), String> {
     write_file(&file("drawing.hpgl"), &text)?;
     let ops: Vec<PlotOp> =
         hpgl::plot_ops(text.as_bytes()).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
-    let moves: Result<Vec<PenMove>, OutOfReach> = match machine.config().kinematics.kind {
-        KinematicsChoice::CoreXy => MarkingBoardSettings::of(&machine).moves(ops).collect(),
-        _ => targets(&machine, ops).collect(),
+    let moves: Result<Vec<PenMove>, OutOfReach> = if machine.kind() == MachineKind::Belt {
+        MarkingBoardSettings::of(&machine).moves(ops).collect()
+    } else {
+        targets(&machine, ops).collect()
     };
     let moves = moves.map_err(|error| error.to_string())?;
 
@@ -197,22 +197,20 @@ fn machine(args: &Args) -> Result<Machine, String> {
         Some(path) => {
             let text = String::from_utf8(read_file(path)?)
                 .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
-            let config = *Machine::from_toml(&text).map_err(|error| at(path, &error))?.config();
-            if config.drive == DriveChoice::Stepper {
-                return Err(at(
-                    path,
-                    &"this machine has stepper motors (drive = \"stepper\"), and plot leads DC motors along their lines; \
-                      plan for it with the example `stepper`, or give a machine with drive = \"dc\"",
-                ));
+            let machine = Machine::from_toml(&text).map_err(|error| at(path, &error))?;
+            let refusal = match (machine.kind(), &args.firmware) {
+                (MachineKind::Steppers, _) => Some(("plot", "plan for this one with the example `stepper`")),
+                (MachineKind::Belt, Some(_)) => {
+                    Some(("--firmware", "leave --firmware out to simulate this one"))
+                }
+                (MachineKind::Gantry, _) | (MachineKind::Belt, None) => None,
+            };
+            if let Some((user, instead)) = refusal {
+                machine
+                    .require(MachineKind::Gantry, user)
+                    .map_err(|error| at(path, &format!("{error}; or {instead}")))?;
             }
-            if config.kinematics.kind == KinematicsChoice::CoreXy && args.firmware.is_some() {
-                return Err(at(
-                    path,
-                    &"this machine has one belt (kinematics.type = \"corexy\"), and the firmwares that --firmware plots with \
-                      move each axis by its own motor: leave --firmware out to simulate it",
-                ));
-            }
-            config
+            *machine.config()
         }
         None => MachineConfig::default(),
     };
@@ -245,7 +243,7 @@ fn trace(args: &Args, machine: &Machine) -> Result<Vectorized, String> {
 fn record(args: &Args, machine: &Machine, moves: Vec<PenMove>, path: &Path) -> Result<PlotOutcome, String> {
     let config = machine.config();
     let is_real = args.firmware.as_ref().is_some_and(|firmware| firmware != EMULATED);
-    let is_belt = config.kinematics.kind == KinematicsChoice::CoreXy;
+    let is_belt = machine.kind() == MachineKind::Belt;
     let may_be_linked = is_real && args.link == LinkArg::Auto;
     let header = if is_belt { board_header(machine) } else { line_header(machine, may_be_linked) };
     let header = header

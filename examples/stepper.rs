@@ -22,7 +22,7 @@ use plotter_examples::{
 };
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{
-    DriveChoice, Machine, MachineConfig, PathMode, Pen, PlannerSettings, PlotOp, Point, StepGenSettings,
+    Machine, MachineConfig, MachineKind, PathMode, Pen, PlannerSettings, PlotOp, Point, StepGenSettings,
 };
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -210,11 +210,7 @@ fn machine(arguments: &Arguments, said: &mut Diagnostics) -> Result<(Machine, Pl
             let text = String::from_utf8(read_file(path)?)
                 .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
             let machine = Machine::from_toml(&text).map_err(|error| at(path, &error))?;
-            if machine.config().drive != DriveChoice::Stepper {
-                let text = "this machine has no stepper motors: take one with drive = \"stepper\", as \
-                            machines/stepper-plotter.toml";
-                return Err(at(path, &text));
-            }
+            machine.require(MachineKind::Steppers, "stepper").map_err(|error| at(path, &error))?;
             machine
         }
         None => Machine::new(MachineConfig::stepper_plotter()).map_err(|error| error.to_string())?,

@@ -13,7 +13,7 @@ use plotter_examples::{
     BenchSwitches, StreamedSteps, at, built_firmware, print, read_file, run, streamed_in_emulator,
     streamed_on_the_desk,
 };
-use plotter_motion::{Machine, MachineConfig, StepPoint};
+use plotter_motion::{Machine, MachineConfig, MachineKind, StepPoint};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -44,7 +44,9 @@ fn stream(args: &Args) -> Result<(), String> {
     let machine = match &args.machine {
         Some(path) => {
             let text = String::from_utf8(read_file(path)?).map_err(|error| at(path, &error))?;
-            Machine::from_toml(&text).map_err(|error| at(path, &error))?
+            let machine = Machine::from_toml(&text).map_err(|error| at(path, &error))?;
+            machine.require(MachineKind::Steppers, "stream").map_err(|error| at(path, &error))?;
+            machine
         }
         None => Machine::new(MachineConfig::stepper_plotter()).map_err(|error| error.to_string())?,
     };

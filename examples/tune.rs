@@ -19,7 +19,7 @@ use plotter_examples::{
     TunedAxis, TuningMethod, TuningReport, TuningSettings, at, loop_charts_svg, print, read_file, run,
     tuned_lines, write_file,
 };
-use plotter_motion::{Axis, DriveChoice, Machine, MachineConfig};
+use plotter_motion::{Axis, Machine, MachineConfig, MachineKind};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -182,10 +182,7 @@ fn machine(arguments: &Arguments) -> Result<Machine, String> {
     let text = String::from_utf8(read_file(path)?)
         .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
     let machine = Machine::from_toml(&text).map_err(|error| at(path, &error))?;
-    if machine.config().drive != DriveChoice::Dc {
-        let text = "this machine has stepper motors, which follow their steps without a loop to tune: take one with drive = \
-                    \"dc\", as machines/semi-virtual-gantry.toml";
-        return Err(at(path, &text));
-    }
+    // Steppers follow their steps without a loop, and the motors of a belt have none of their own.
+    machine.require(MachineKind::Gantry, "tune").map_err(|error| at(path, &error))?;
     Ok(machine)
 }

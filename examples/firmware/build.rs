@@ -6,7 +6,7 @@ use plotter_motion::firmware::GantrySettings;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use plotter_motion::gcode::PenConvention;
 use plotter_motion::kinematics::Backlash;
-use plotter_motion::{AxisConfig, ControllerChoice, Machine, PathMode, PlannerSettings};
+use plotter_motion::{AxisConfig, ControllerChoice, Machine, MachineKind, PathMode, PlannerSettings};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -21,8 +21,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=build.rs");
 
     // Another machine: GANTRY=../my-gantry.toml, STEPPER_PLOTTER=../my-plotter.toml
-    let gantry = machine("GANTRY", "../machines/semi-virtual-gantry.toml")?;
-    let plotter = machine("STEPPER_PLOTTER", "../machines/stepper-plotter.toml")?;
+    let gantry = machine("GANTRY", "../machines/semi-virtual-gantry.toml", MachineKind::Gantry)?;
+    let plotter = machine("STEPPER_PLOTTER", "../machines/stepper-plotter.toml", MachineKind::Steppers)?;
     let mut text = String::new();
     gantry_constants(&gantry, &mut text)?;
     plotter_constants(&plotter, &mut text)?;
@@ -30,12 +30,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn machine(variable: &str, default: &str) -> Result<Machine, Box<dyn Error>> {
+fn machine(variable: &str, default: &str, kind: MachineKind) -> Result<Machine, Box<dyn Error>> {
     println!("cargo:rerun-if-env-changed={variable}");
     let path = env::var(variable).unwrap_or_else(|_| default.to_owned());
     println!("cargo:rerun-if-changed={path}");
     let text = fs::read_to_string(Path::new(&path)).map_err(|error| format!("{path}: {error}"))?;
-    Ok(Machine::from_toml(&text).map_err(|error| format!("{path}: {error}"))?)
+    let machine = Machine::from_toml(&text).map_err(|error| format!("{path}: {error}"))?;
+    machine.require(kind, "this firmware").map_err(|error| format!("{path}: {error}"))?;
+    Ok(machine)
 }
 
 /// Floats are written as Rust's shortest text that reads as the same bits; a plain struct's `Debug` text is its own Rust.

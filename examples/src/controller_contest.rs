@@ -5,7 +5,7 @@ use clap::Parser;
 use core::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_motion::testbed::{Drawing, Entry, Figures, Moment, Ranking, Score, TestBed, TestBedSettings};
-use plotter_motion::{DriveChoice, Machine, Pen, PenMove, PlotOp, Point, hpgl};
+use plotter_motion::{Machine, MachineKind, Pen, PenMove, PlotOp, Point, hpgl};
 use plotter_replay::{Chart, Curve, Panel, Role, Run};
 use plotter_vector::{Scale, Vectorizer, decode};
 use rayon::prelude::*;
@@ -176,12 +176,7 @@ fn plants(args: &Args) -> Result<Vec<Plant>, String> {
 
 fn plant(args: &Args, path: &Path, text: &str) -> Result<Plant, String> {
     let machine = Machine::from_toml(text).map_err(|error| at(path, &error))?;
-    if machine.config().drive == DriveChoice::Stepper {
-        return Err(at(
-            path,
-            &"this machine has stepper motors (drive = \"stepper\"), which need no controller; give a machine with drive = \"dc\"",
-        ));
-    }
+    machine.require(MachineKind::Gantry, "the contest of controllers").map_err(|error| at(path, &error))?;
     let settings = TestBedSettings { wrong_share: args.wrong, ..TestBedSettings::default() };
     let bed = TestBed::new(&machine, settings).map_err(|error| {
         at(path, &format!("cannot be described so wrongly (--wrong {}): {error}", args.wrong))

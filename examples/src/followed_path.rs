@@ -7,8 +7,8 @@ use plotter_motion::kinematics::MotorScale;
 use plotter_motion::plant::{Bench, BenchEvent, BenchSettings, MarkingBoardPlantSettings, StepperPlant};
 use plotter_motion::protocol::HostEvent;
 use plotter_motion::{
-    Axis, Budget, Direction, DriveChoice, KinematicsChoice, Machine, MachineConfig, MotionLimits, OutOfReach,
-    PathMode, Pen, PenMove, PlannerSettings, PlotOp, Point, SCurve, StepGenSettings, StepPoint, targets,
+    Axis, Budget, Direction, Machine, MachineConfig, MachineKind, MotionLimits, OutOfReach, PathMode, Pen,
+    PenMove, PlannerSettings, PlotOp, Point, SCurve, StepGenSettings, StepPoint, targets,
 };
 
 /// Where the marks of a marking board's encoders may stand when it is switched on: right at a mark is the worst, since
@@ -42,12 +42,12 @@ pub struct FollowedPath {
 pub fn rounding_mm(machine: &Machine) -> f64 {
     let config = machine.config();
     let half = |per_mm: f64| 0.5 / per_mm;
-    match (config.drive, config.kinematics.kind) {
+    match machine.kind() {
         // What is commanded is not rounded before it is stepped: the steps are part of what is measured.
-        (DriveChoice::Stepper, _) => 0.0,
+        MachineKind::Steppers => 0.0,
         // Half a count of both motors is one along an axis, and none along the other.
-        (_, KinematicsChoice::CoreXy) => half(config.x.counts_per_mm),
-        _ => half(config.x.counts_per_mm).hypot(half(config.y.counts_per_mm)),
+        MachineKind::Belt => half(config.x.counts_per_mm),
+        MachineKind::Gantry => half(config.x.counts_per_mm).hypot(half(config.y.counts_per_mm)),
     }
 }
 
@@ -73,10 +73,10 @@ pub fn slowed(machine: &Machine, budget: &Budget) -> Result<Machine, String> {
 ///
 /// A place out of reach, or settings that cannot be planned with.
 pub fn follow(machine: &Machine, ops: &[PlotOp], blend_mm: f64) -> Result<FollowedPath, String> {
-    match (machine.config().drive, machine.config().kinematics.kind) {
-        (DriveChoice::Stepper, _) => on_steppers(machine, ops, blend_mm),
-        (_, KinematicsChoice::CoreXy) => on_the_board(machine, ops),
-        _ => on_the_gantry(machine, ops),
+    match machine.kind() {
+        MachineKind::Steppers => on_steppers(machine, ops, blend_mm),
+        MachineKind::Belt => on_the_board(machine, ops),
+        MachineKind::Gantry => on_the_gantry(machine, ops),
     }
 }
 
@@ -87,7 +87,7 @@ pub fn follow(machine: &Machine, ops: &[PlotOp], blend_mm: f64) -> Result<Follow
 /// As [`follow`].
 pub fn predicted_s(machine: &Machine, ops: &[PlotOp], blend_mm: f64) -> Result<f64, String> {
     let config = machine.config();
-    if config.drive == DriveChoice::Stepper {
+    if machine.kind() == MachineKind::Steppers {
         let mut plot = stepped(machine, blend_mm)?;
         for op in ops {
             plot.push(*op, &mut |_| {}).map_err(|error| error.to_string())?;
@@ -100,7 +100,7 @@ pub fn predicted_s(machine: &Machine, ops: &[PlotOp], blend_mm: f64) -> Result<f
         accel_mm_s2: contouring.accel_mm_s2,
         jerk_mm_s3: contouring.jerk_mm_s3,
     };
-    let is_belt = config.kinematics.kind == KinematicsChoice::CoreXy;
+    let is_belt = machine.kind() == MachineKind::Belt;
     // Ten digits of ten bits.
     let byte_s = 10.0 / f64::from(config.serial.baud) + 1e-3 * config.serial.byte_gap_ms;
     let a_move_s = 1e-3 * contouring.settle_ms + if is_belt { 0.0 } else { 10.0 * byte_s };

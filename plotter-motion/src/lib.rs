@@ -49,10 +49,10 @@ pub use chords::chords;
 pub use config::{
     AreaConfig, AxisConfig, BeltConfig, Bound, ConfigError, ContouringConfig, ControlConfig,
     ControllerChoice, Decoding, DriveChoice, EncoderConfig, FileName, HomingConfig, KinematicsChoice,
-    KinematicsConfig, KnownMotors, LaserConfig, LoadConfig, Machine, MachineConfig, MachineName, MotorConfig,
-    PathChoice, PenConfig, PensChoice, PlannerConfig, PointToPointConfig, PublishedConfig, SerialConfig,
-    SheetConfig, ShortText, StepperConfig, StrokeOrder, SyncStopConfig, ThresholdChoice, TransmissionConfig,
-    VectorizeConfig, VectorizeMode,
+    KinematicsConfig, KnownMotors, LaserConfig, LoadConfig, Machine, MachineConfig, MachineKind, MachineName,
+    MotorConfig, PathChoice, PenConfig, PensChoice, PlannerConfig, PointToPointConfig, PublishedConfig,
+    SerialConfig, SheetConfig, ShortText, StepperConfig, StrokeOrder, SyncStopConfig, ThresholdChoice,
+    TransmissionConfig, VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};

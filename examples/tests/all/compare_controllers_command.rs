@@ -112,6 +112,8 @@ fn what_is_wrong_is_said_in_one_line() {
     assert!(said(&["--machine", &empty]).contains("schema"));
     assert!(said(&["--machine", &data("flag.png")]).contains("is not a text file"));
     assert!(said(&["--machine", &machine("stepper-plotter")]).contains("stepper motors"));
+    let belt = said(&["--machine", &machine("marking-board")]);
+    assert!(belt.contains("marking-board.toml: this machine has DC motors on one belt"), "{belt}");
     assert!(said(&["--only", "publishd"]).contains("there is no such controller; there are published,"));
     for wrong in ["-0.1", "0.6", "NaN", "inf"] {
         assert!(said(&["--wrong", wrong]).contains("give a share of 0 to 0.5"), "{wrong}");

@@ -175,7 +175,7 @@ fn what_cannot_be_plotted_is_said_in_one_line() {
     let text = file("a.plt", b"IN;PU0,0;PD400,0;");
     assert!(complaint("stepper", &[&text, "--machine", &text]).contains("line 1"));
     let dc = file("dc.toml", b"schema = 1\n");
-    assert!(complaint("stepper", &[&text, "--machine", &dc]).contains("no stepper motors"));
+    assert!(complaint("stepper", &[&text, "--machine", &dc]).contains("stepper needs stepper motors"));
     assert!(complaint("stepper", &[&text, "--svg", "/no/such/a.svg"]).contains("cannot be written"));
     // Junk in a language that is forced is not drawn either, and does no harm.
     for language in ["hpgl", "gcode", "thesis", "svg"] {

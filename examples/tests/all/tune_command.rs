@@ -128,6 +128,8 @@ fn what_cannot_be_tuned_is_said_in_one_line() {
     let refused = complaint("tune", &["--machine", &machine("stepper-plotter")]);
     assert!(refused.contains("stepper-plotter.toml: this machine has stepper motors"), "{refused}");
     assert!(refused.contains("drive = \"dc\""), "{refused}");
+    let refused = complaint("tune", &["--machine", &machine("marking-board")]);
+    assert!(refused.contains("marking-board.toml: this machine has DC motors on one belt"), "{refused}");
     assert!(
         complaint("tune", &["--machine", "no/such.toml"]).starts_with("tune: no/such.toml: cannot be read")
     );

@@ -1,5 +1,6 @@
 //! [`ConfigError`]: what is wrong with a machine's description.
 
+use super::MachineKind;
 use core::fmt;
 
 /// What is wrong with a machine's description: which key, which value, what would be right.
@@ -62,6 +63,15 @@ pub enum ConfigError {
         /// What it does not go with, and what would be right.
         remedy: &'static str,
     },
+    /// A good description of a machine of another kind than is needed: see [`Machine::require`](super::Machine::require).
+    OtherKind {
+        /// The machine's kind.
+        found: MachineKind,
+        /// The kind that is needed.
+        wanted: MachineKind,
+        /// What needs it.
+        user: &'static str,
+    },
 }
 
 /// On which side of a limit a value must lie.
@@ -108,6 +118,7 @@ impl ConfigError {
         match self {
             Self::Schema { .. } => "schema",
             Self::OutOfRange { key, .. } | Self::Conflict { key, .. } | Self::Unfit { key, .. } => key,
+            Self::OtherKind { found, wanted, .. } => found.key_beside(*wanted),
         }
     }
 }
@@ -135,6 +146,7 @@ impl fmt::Display for ConfigError {
                 write!(f, "{key}: {value}{space}{unit} must be {bound} {limit}{space}{unit}; {remedy}")
             }
             Self::Unfit { key, value, remedy } => write!(f, "{key}: \"{value}\" {remedy}"),
+            Self::OtherKind { found, wanted, user } => found.write_refusal(wanted, user, f),
         }
     }
 }

@@ -91,7 +91,7 @@ impl Machine {
 
     /// The description that was checked.
     #[must_use]
-    pub fn config(&self) -> &MachineConfig {
+    pub const fn config(&self) -> &MachineConfig {
         &self.config
     }
 }

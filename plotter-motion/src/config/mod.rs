@@ -12,6 +12,7 @@ mod error;
 mod kinematics;
 mod machine;
 mod machine_config;
+mod machine_kind;
 mod name;
 mod rules;
 mod sheet;
@@ -32,6 +33,7 @@ pub use machine_config::{
     AreaConfig, AxisConfig, ContouringConfig, ControlConfig, ControllerChoice, Decoding, EncoderConfig,
     LoadConfig, MachineConfig, MotorConfig, PublishedConfig, SerialConfig, SyncStopConfig,
 };
+pub use machine_kind::MachineKind;
 pub use name::{FileName, MachineName, ShortText};
 pub use sheet::SheetConfig;
 pub use stepper::{

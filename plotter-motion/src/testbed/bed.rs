@@ -4,7 +4,8 @@ use super::{Figures, misjudged};
 use crate::control::LineController;
 use crate::plant::{AxisPlant, DriveDelay};
 use crate::{
-    Axis, ConfigError, Demand, Direction, Drive, Machine, Pen, PenMove, Point, SafetyGate, Segment, StepPoint,
+    Axis, ConfigError, Demand, Direction, Drive, Machine, MachineKind, Pen, PenMove, Point, SafetyGate,
+    Segment, StepPoint,
 };
 use core::time::Duration;
 
@@ -81,8 +82,10 @@ impl TestBed {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] where no machine can be as wrongly described as the settings ask.
+    /// [`ConfigError`] where no machine can be as wrongly described as the settings ask, and for one whose DC motors do not each
+    /// move an axis.
     pub fn new(machine: &Machine, settings: TestBedSettings) -> Result<Self, ConfigError> {
+        machine.require(MachineKind::Gantry, "the control test bed")?;
         const SHORTEST: Duration = Duration::from_micros(1);
         const LONGEST: Duration = Duration::from_millis(1);
         let time_step = settings.time_step.clamp(SHORTEST, LONGEST);

@@ -15,9 +15,9 @@ use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-/// Longest time for which the line is listened to at once.
+/// Longest time for which the line is listened to at once, in its time; so long ahead it takes bytes.
 const LISTEN: Duration = Duration::from_millis(2);
-/// How often the response is sampled.
+/// How often the response is sampled, by the clock.
 const SAMPLE_EVERY: Duration = Duration::from_millis(20);
 
 pub(super) struct Engine<'a, W: Write> {
@@ -25,6 +25,8 @@ pub(super) struct Engine<'a, W: Write> {
     recorder: Option<Recording<W>>,
     telemetry: Option<Arc<Mutex<Telemetry>>>,
     began: Instant,
+    /// When the response was sampled last.
+    sampled: Option<Instant>,
     /// Time in which the host's clock stood still.
     frozen: Duration,
     frozen_since: Option<Duration>,
@@ -56,6 +58,7 @@ impl<'a, W: Write> Engine<'a, W> {
             recorder,
             telemetry,
             began: Instant::now(),
+            sampled: None,
             frozen: Duration::ZERO,
             frozen_since: None,
             under_way: None,
@@ -69,7 +72,7 @@ impl<'a, W: Write> Engine<'a, W> {
         }
     }
 
-    /// Until the drawing is done, has failed, or the program ends.
+    /// Until the drawing is done, has failed, or the program ends. All times are the line's.
     pub(super) fn run(mut self) {
         let end = loop {
             match self.round() {
@@ -81,6 +84,7 @@ impl<'a, W: Write> Engine<'a, W> {
         if let State::Failed(why) = &end {
             self.take(Event::Note(format!("the session failed: {why}")));
         }
+        let now = self.now();
         let kept = self.recorder.take().map(|recorder| recorder.finish());
         let mut view = lock(&self.shared.view);
         match kept {
@@ -89,14 +93,13 @@ impl<'a, W: Write> Engine<'a, W> {
             None => {}
         }
         view.duty = None;
-        let now = self.began.elapsed().mul_f64(self.settings.speed);
         view.sample(now);
         view.state = end;
         self.shared.finished.notify_all();
     }
 
     fn now(&self) -> Duration {
-        self.began.elapsed().mul_f64(self.settings.speed)
+        self.shared.line.now().unwrap_or_else(|| self.began.elapsed())
     }
 
     /// Once round: commands, host, line. The end, if that is it.
@@ -123,8 +126,8 @@ impl<'a, W: Write> Engine<'a, W> {
                 if host.is_done() {
                     return Ok(Some(State::Done));
                 }
-                let due = host.next_wake().map_or(LISTEN, |wake| wake.saturating_sub(host_now));
-                wait = due.div_f64(self.settings.speed.max(1e-3)).min(LISTEN);
+                let wake = host.next_wake(LISTEN);
+                wait = wake.map_or(LISTEN, |wake| wake.saturating_sub(host_now)).min(LISTEN);
             }
         }
         let mut bytes = [0; 1_024];
@@ -230,8 +233,7 @@ impl<'a, W: Write> Engine<'a, W> {
             return Ok(());
         };
         let event = host.poll(host_now);
-        let ahead = LISTEN.mul_f64(self.settings.speed.max(1.0));
-        let bytes = host.bytes(host_now, ahead);
+        let bytes = host.bytes(host_now, LISTEN);
         if let Some(event) = event {
             self.event(event);
         }
@@ -326,12 +328,13 @@ impl<'a, W: Write> Engine<'a, W> {
 
     /// Now and then: a sample of the response, and the recording written through.
     fn look(&mut self) {
-        let now = self.now();
-        let mut view = lock(&self.shared.view);
-        let every = SAMPLE_EVERY.mul_f64(self.settings.speed);
-        if view.samples.back().is_some_and(|sample| now.saturating_sub(sample.time) < every) {
+        let clock = Instant::now();
+        if self.sampled.is_some_and(|last| clock.saturating_duration_since(last) < SAMPLE_EVERY) {
             return;
         }
+        self.sampled = Some(clock);
+        let now = self.now();
+        let mut view = lock(&self.shared.view);
         if let Some(telemetry) = &self.telemetry {
             let duty = lock(telemetry).duty;
             let [x, y] = self.settings.pwm_steps.map(|steps| f64::from(steps.max(1)));

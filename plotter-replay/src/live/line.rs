@@ -1,10 +1,9 @@
 //! [`Line`]: a serial line that two threads may use at once.
 
-use crate::serial::{Port, PortError, PortErrorKind};
+use crate::serial::{Port, PortError};
 use core::fmt;
 use core::time::Duration;
-use std::collections::VecDeque;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A serial line: one thread listens while another sends.
 pub trait Line: Send + Sync + fmt::Debug {
@@ -15,12 +14,17 @@ pub trait Line: Send + Sync + fmt::Debug {
     /// [`PortError`] if they cannot be sent.
     fn send(&self, bytes: &[u8]) -> Result<(), PortError>;
 
-    /// Waits at most `wait` for bytes; says how many came, which may be none.
+    /// Waits at most `wait` for bytes, in the time of the line; says how many came, which may be none.
     ///
     /// # Errors
     ///
     /// [`PortError`] if nothing will ever come any more.
     fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError>;
+
+    /// The time of the line, where that is not the clock's: that of a simulated machine, which passes while it is listened to.
+    fn now(&self) -> Option<Duration> {
+        None
+    }
 }
 
 /// A serial port as a line.
@@ -48,90 +52,6 @@ impl Line for PortLine {
 
     fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
         lock(&self.reader).receive(bytes, wait)
-    }
-}
-
-/// One end of a line inside this program.
-///
-/// ```
-/// # use core::time::Duration;
-/// # use plotter_replay::live::{Line, Pipe};
-/// let (host, machine) = Pipe::pair();
-/// host.send(b"42")?;
-/// let mut bytes = [0; 8];
-/// assert_eq!(machine.receive(&mut bytes, Duration::ZERO)?, 2);
-/// drop(host);
-/// assert!(machine.receive(&mut bytes, Duration::ZERO).is_err());
-/// # Ok::<(), plotter_replay::serial::PortError>(())
-/// ```
-#[derive(Debug)]
-pub struct Pipe {
-    incoming: Arc<Channel>,
-    outgoing: Arc<Channel>,
-}
-
-#[derive(Debug, Default)]
-struct Channel {
-    bytes: Mutex<(VecDeque<u8>, bool)>,
-    changed: Condvar,
-}
-
-/// Bytes that wait in a pipe at most; what is more is refused as a port refuses it.
-const MOST_WAITING: usize = 1 << 20;
-
-impl Pipe {
-    /// Both ends of a new line.
-    #[must_use]
-    pub fn pair() -> (Self, Self) {
-        let (a, b) = (Arc::<Channel>::default(), Arc::<Channel>::default());
-        (Self { incoming: Arc::clone(&a), outgoing: Arc::clone(&b) }, Self { incoming: b, outgoing: a })
-    }
-
-    fn error(kind: PortErrorKind) -> PortError {
-        PortError { port: String::from("simulated machine"), kind }
-    }
-}
-
-impl Line for Pipe {
-    fn send(&self, bytes: &[u8]) -> Result<(), PortError> {
-        let mut inside = lock(&self.outgoing.bytes);
-        if inside.1 {
-            return Err(Self::error(PortErrorKind::Gone));
-        }
-        if inside.0.len().saturating_add(bytes.len()) > MOST_WAITING {
-            return Err(Self::error(PortErrorKind::Stuck));
-        }
-        inside.0.extend(bytes);
-        self.outgoing.changed.notify_all();
-        Ok(())
-    }
-
-    fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
-        let inside = lock(&self.incoming.bytes);
-        let (mut inside, _) = self
-            .incoming
-            .changed
-            .wait_timeout_while(inside, wait, |(waiting, gone)| waiting.is_empty() && !*gone)
-            .unwrap_or_else(PoisonError::into_inner);
-        if inside.0.is_empty() && inside.1 {
-            return Err(Self::error(PortErrorKind::Gone));
-        }
-        let mut count = 0;
-        for place in bytes {
-            let Some(byte) = inside.0.pop_front() else { break };
-            *place = byte;
-            count += 1;
-        }
-        Ok(count)
-    }
-}
-
-impl Drop for Pipe {
-    fn drop(&mut self) {
-        for channel in [&self.incoming, &self.outgoing] {
-            lock(&channel.bytes).1 = true;
-            channel.changed.notify_all();
-        }
     }
 }
 

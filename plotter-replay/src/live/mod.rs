@@ -1,7 +1,7 @@
 //! A machine watched and driven while it draws, in a browser or a terminal.
 //!
 //! ```text
-//!  drawing ──▶ Session ──▶ Line ──▶ machine on a serial port, or SimulatedMachine
+//!  drawing ──▶ Session ──▶ Line ──▶ machine on a serial port, or SimulatedMachine, in its own time
 //!                │  ▲
 //!      recording ◀┘  └──▶ Server ──▶ browser (127.0.0.1 only)     or a terminal
 //! ```
@@ -13,7 +13,9 @@
 mod commands;
 mod engine;
 mod line;
+mod machine_line;
 mod machine_log;
+mod pace;
 mod page;
 mod progress;
 mod sender;
@@ -25,7 +27,8 @@ pub mod terminal;
 mod view;
 
 pub use commands::{Command, State};
-pub use line::{Line, Pipe, PortLine};
+pub use line::{Line, PortLine};
+pub use machine_line::MachineLine;
 pub use machine_log::{MachineLog, Recording};
 pub use page::LivePage;
 pub use progress::Plan;

@@ -29,16 +29,7 @@ impl Sender {
         let host = if settings.link == LinkChoice::Digits {
             Spoken::Digits(Host::new(settings.byte_gap, settings.host, moves))
         } else {
-            // Where the machine's time goes faster, so does its line, but not this computer.
-            let usual = LinkSettings::default();
-            let longer = |time: Duration| time.mul_f64(settings.speed.max(1.0));
-            let link = LinkSettings {
-                call_again: longer(usual.call_again),
-                least_retry: longer(usual.least_retry),
-                most_retry: longer(usual.most_retry),
-                interrupted_after: longer(usual.interrupted_after),
-                ..usual
-            };
+            let link = LinkSettings::default();
             let host = LinkHost::new(settings.nonce, link, settings.byte_gap, settings.host, moves);
             Spoken::Linked(Box::new(match settings.resume {
                 Some(resume) => host.resuming(resume),
@@ -116,11 +107,13 @@ impl Sender {
         }
     }
 
-    pub(super) fn next_wake(&self) -> Option<Duration> {
-        match &self.host {
+    /// When it has something to do, for a line that takes the bytes of so long a time ahead.
+    pub(super) fn next_wake(&self, ahead: Duration) -> Option<Duration> {
+        let wake = match &self.host {
             Spoken::Digits(host) => host.next_wake(),
             Spoken::Linked(host) => host.next_wake(),
-        }
+        };
+        wake.map(|wake| wake.max(self.free.saturating_sub(ahead)))
     }
 
     pub(super) fn is_done(&self) -> bool {

@@ -28,8 +28,6 @@ pub struct SessionSettings {
     pub host: HostSettings,
     /// How much the drawing is, if there is one.
     pub plan: Option<Plan>,
-    /// How many seconds of the machine pass in one of ours; 1 for any that is real.
-    pub speed: f64,
     /// Duty steps that are the whole supply, of both motors.
     pub pwm_steps: [u32; 2],
     /// What is spoken.
@@ -43,14 +41,13 @@ pub struct SessionSettings {
 }
 
 impl Default for SessionSettings {
-    /// The semi-virtual gantry as published, in its own time, nothing to draw.
+    /// The semi-virtual gantry as published, nothing to draw.
     fn default() -> Self {
         Self {
             plotter: PlotterSettings::default(),
             byte_gap: Duration::from_millis(10),
             host: HostSettings::default(),
             plan: None,
-            speed: 1.0,
             pwm_steps: [255; 2],
             link: LinkChoice::Auto,
             nonce: 1,

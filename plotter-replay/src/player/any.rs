@@ -6,11 +6,9 @@ use crate::log::{self, Header};
 use core::fmt;
 use plotter_motion::control::ChosenController;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
-use plotter_motion::firmware::{
-    Gantry, GantrySettings, LinkedGantry, MarkingBoard, MarkingBoardSettings, StepperPlotter,
-};
+use plotter_motion::firmware::{Gantry, GantrySettings, LinkedGantry, MarkingBoard, StepperPlotter};
 use plotter_motion::protocol::LinkSettings;
-use plotter_motion::{ControllerChoice, DriveChoice, KinematicsChoice, Machine, MachineConfig};
+use plotter_motion::{ControllerChoice, Machine, MachineConfig, MachineKind};
 use std::path::Path;
 
 /// The controllers of `plotter-motion`, as the header of a log and the description of a machine tell which.
@@ -18,12 +16,15 @@ use std::path::Path;
 /// | header | machine | controller |
 /// |---|---|---|
 /// | `controller` `marking-board` | none given | [`MarkingBoard`] with the published controller |
-/// | `protocol` neither `digits` nor `link` | with one belt | [`MarkingBoard`] as the machine's description says |
+/// | other | with one belt | [`MarkingBoard`] as the machine's description says |
 /// | `protocol` `grbl` | steppers | [`StepperPlotter`], Grbl's language |
 /// | other | steppers | [`StepperPlotter`], mDraw's language |
 /// | `controller` `published` or `contouring` | none given | [`MachineController`] with that one |
 /// | other | DC motors | [`MachineController`] as the machine's description says |
 /// | `boot` | as of [`MachineController`] | [`LinkedController`]: a machine that spoke frames ([`LinkedMachine`]) |
+///
+/// A machine that does not speak the header's `protocol` is refused: DC motors that each move an axis speak `digits` and `link`, a
+/// belt `counts`, steppers `grbl` and `mdraw`.
 ///
 /// ```
 /// # use plotter_replay::{AnyController, Controller};
@@ -71,7 +72,7 @@ impl AnyController {
         if traits.settings(&header, false).edges != EdgeSource::Messages {
             return Self::of(&header, machine);
         }
-        let machine = machine.map_or_else(|| preset(header.text("controller")), |machine| Ok(*machine))?;
+        let machine = machine_of(&header, machine)?;
         let boot = LinkedMachine::of_header(&header).map_or(0, |linked| linked.boot);
         let gantry = Gantry::with_settings(GantrySettings::of(&machine), Told::default());
         Ok(Box::new(LinkedGantry::<4, 64, Told>::new(gantry, boot, LinkSettings::default())))
@@ -81,26 +82,18 @@ impl AnyController {
     ///
     /// # Errors
     ///
-    /// [`ControllerError`] for a name that is none.
+    /// [`ControllerError`] for a name that is none, or a machine that does not speak the log's protocol.
     pub fn of(header: &Header, machine: Option<&Machine>) -> Result<Box<dyn Controller>, ControllerError> {
-        let said = header.text("controller");
-        let machine = match machine {
-            Some(machine) => *machine,
-            None => preset(said)?,
-        };
-        let has_line = matches!(header.text("protocol"), Some("digits" | "link"));
-        if machine.config().kinematics.kind == KinematicsChoice::CoreXy && !has_line {
-            let controller = ChosenController::of(&machine);
-            return Ok(Box::new(MarkingBoard::new(MarkingBoardSettings::of(&machine), controller)));
-        }
-        Ok(match machine.config().drive {
-            DriveChoice::Stepper => {
+        let machine = machine_of(header, machine)?;
+        Ok(match machine.kind() {
+            MachineKind::Belt => Box::new(MarkingBoard::<ChosenController>::of(&machine)),
+            MachineKind::Steppers => {
                 let dialect =
                     if header.text("protocol") == Some("grbl") { Dialect::Grbl } else { Dialect::MDraw };
                 let settings = StepperPlotterSettings::of(&machine, dialect);
                 Box::new(StepperPlotter::new(settings).map_err(error)?)
             }
-            _ => match LinkedMachine::of_header(header) {
+            MachineKind::Gantry => match LinkedMachine::of_header(header) {
                 None => Box::new(MachineController::new(&machine)),
                 Some(LinkedMachine { boot, window: 4, payload: 64 }) => {
                     Box::new(LinkedController::<4, 64>::new(&machine, boot))
@@ -116,6 +109,22 @@ impl AnyController {
             },
         })
     }
+}
+
+/// The machine whose controller made a log: as described, or the preset that the header names. One that does not speak the log's
+/// protocol is refused.
+fn machine_of(header: &Header, machine: Option<&Machine>) -> Result<Machine, ControllerError> {
+    let machine = machine.map_or_else(|| preset(header.text("controller")), |machine| Ok(*machine))?;
+    let spoken_by = match header.text("protocol") {
+        Some("digits") => Some((MachineKind::Gantry, "a log of the protocol \"digits\"")),
+        Some("link") => Some((MachineKind::Gantry, "a log of the protocol \"link\"")),
+        Some("counts") => Some((MachineKind::Belt, "a log of the protocol \"counts\"")),
+        Some("grbl") => Some((MachineKind::Steppers, "a log of the protocol \"grbl\"")),
+        Some("mdraw") => Some((MachineKind::Steppers, "a log of the protocol \"mdraw\"")),
+        _ => None,
+    };
+    spoken_by.map_or(Ok(()), |(kind, log)| machine.require(kind, log)).map_err(error)?;
+    Ok(machine)
 }
 
 fn preset(said: Option<&str>) -> Result<Machine, ControllerError> {
@@ -152,3 +161,44 @@ impl fmt::Display for ControllerError {
 }
 
 impl core::error::Error for ControllerError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(protocol: &str, config: MachineConfig) -> Option<String> {
+        let header = Header::new().with_text("protocol", protocol);
+        let machine = Machine::new(config).unwrap();
+        AnyController::of(&header, Some(&machine)).err().map(|error| error.message)
+    }
+
+    #[test]
+    fn a_machine_that_does_not_speak_the_protocol_of_a_log_is_not_run_on_it() {
+        let (gantry, belt, steppers) =
+            (MachineConfig::default(), MachineConfig::marking_board(), MachineConfig::stepper_plotter());
+        for (protocol, speaks) in [
+            ("digits", MachineKind::Gantry),
+            ("link", MachineKind::Gantry),
+            ("counts", MachineKind::Belt),
+            ("grbl", MachineKind::Steppers),
+            ("mdraw", MachineKind::Steppers),
+        ] {
+            for config in [gantry, belt, steppers] {
+                let kind = Machine::new(config).unwrap().kind();
+                let said = refusal(protocol, config);
+                assert_eq!(said.is_none(), kind == speaks, "{protocol} {kind}: {said:?}");
+            }
+        }
+        assert_eq!(
+            refusal("digits", belt).unwrap(),
+            "this machine has DC motors on one belt (drive = \"dc\", kinematics.type = \"corexy\"), and a log of the protocol \
+             \"digits\" needs DC motors that each move an axis: take one with drive = \"dc\", kinematics.type = \"cartesian\", as \
+             examples/machines/semi-virtual-gantry.toml"
+        );
+        // Nor is one whose motors were where its messages tell, which reads nothing of the machine but its area.
+        let header = Header::new().with_text("protocol", "link");
+        let belt = Machine::new(belt).unwrap();
+        let refused = AnyController::of_recording(&header, &RecordingTraits::default(), Some(&belt));
+        assert!(refused.is_err());
+    }
+}

@@ -53,7 +53,7 @@ impl Running {
 
     /// Status and standard error.
     fn finish(&mut self) -> (Option<i32>, String) {
-        let until = Instant::now() + Duration::from_secs(30);
+        let until = Instant::now() + Duration::from_secs(180); // a drawing of half a minute, on a busy computer
         let status = loop {
             if let Some(status) = self.0.try_wait().unwrap() {
                 break status;
@@ -316,6 +316,7 @@ fn a_port_that_vanishes_is_said_on_the_page_and_the_recording_is_kept() {
 fn the_button_stops_a_simulated_machine_and_the_page_says_that_it_is_one() {
     let here = tempfile::tempdir().unwrap();
     set_up(here.path());
+    draw(here.path(), 5); // not done before it is stopped, however busy the computer is
     let (mut live, mut said) =
         Running::start(&["live", "--simulate", "machine.toml", "drawing.hpgl", "--start"], here.path());
     assert!(said().contains("SIMULATED"));
@@ -339,4 +340,105 @@ fn the_button_stops_a_simulated_machine_and_the_page_says_that_it_is_one() {
     browser.wait_for("document.body.dataset.state === 'running'");
     drop(browser);
     assert_eq!(live.finish(), (Some(0), String::new()));
+}
+
+/// The stop is whole on the screen, nothing lies over it, and it is as high as a finger is wide.
+fn assert_stop_is_in_reach(browser: &mut Browser, [width, height]: [u32; 2], when: &str) {
+    let [left, top, right, bottom] = browser.place("#stop");
+    let is_inside = left >= 0.0 && top >= 0.0 && right <= width.into() && bottom <= height.into();
+    assert!(is_inside, "{width} x {height}, {when}: {left}..{right}, {top}..{bottom}");
+    assert!(bottom - top >= 44.0 && right - left >= 120.0, "{width} x {height}, {when}");
+    let (x, y) = ((left + right) / 2.0, (top + bottom) / 2.0);
+    let over = browser.eval(&format!("document.elementFromPoint({x}, {y}).id"));
+    assert_eq!(over, json!("stop"), "{width} x {height}, {when}");
+}
+
+/// Where a finger or the wheel meets a canvas below the controls: its middle, as far as it is on the screen.
+fn middle_of_canvas(browser: &mut Browser, selector: &str, height: u32) -> [f64; 2] {
+    let ([left, top, right, bottom], [.., below]) = (browser.place(selector), browser.place(".controls"));
+    let (top, bottom) = (top.max(below), bottom.min(height.into()));
+    assert!(bottom - top > 80.0, "{selector}: only {top} to {bottom} of it is on the screen");
+    [(left + right) / 2.0, (top + bottom) / 2.0]
+}
+
+#[test]
+#[ignore = "needs a browser: .ci/browser"]
+fn the_stop_is_in_reach_on_every_screen_and_no_canvas_keeps_the_page_from_scrolling() {
+    let here = tempfile::tempdir().unwrap();
+    set_up(here.path());
+    draw(here.path(), 200); // not done before the last screen
+    let (_live, mut said) =
+        Running::start(&["live", "--simulate", "machine.toml", "drawing.hpgl", "--start"], here.path());
+    said();
+    let address = said().strip_prefix("look at ").unwrap().to_owned();
+    let mut browser = Browser::start();
+    for size in [[320, 568], [320, 640], [390, 844], [568, 320], [860, 600], [1280, 800]] {
+        let [width, height] = size;
+        for has_touch in [true, false] {
+            browser.screen(width, height, has_touch);
+            browser.open(&address);
+            browser.wait_for("document.body.dataset.state === 'running' && way.length > 3");
+            assert_stop_is_in_reach(&mut browser, size, "at first");
+            assert_eq!(
+                browser.eval("document.documentElement.scrollWidth"),
+                json!(width),
+                "wider than {width}"
+            );
+            if has_touch {
+                for scheme in ["dark", "light"] {
+                    browser.scheme(scheme);
+                    browser.screenshot_of_screen(&format!("live-{width}x{height}-{scheme}"));
+                }
+            }
+            // A finger that moves up the drawing, or the wheel over it, scrolls the page; the stop stays.
+            browser.eval("document.getElementById('sheet').scrollIntoView({ block: 'center' })");
+            browser.painted();
+            let before = browser.eval("scrollY").as_f64().unwrap();
+            let at = middle_of_canvas(&mut browser, "#sheet", height);
+            if has_touch {
+                let up = [at[0], at[1] - 30.0];
+                browser.swipe([at[0], at[1] + 30.0], up);
+            } else {
+                browser.wheel(at, 60.0);
+            }
+            browser.wait_for(&format!("scrollY > {before} + 20"));
+            assert_eq!(browser.eval("sheet.view"), json!(null), "the drawing was zoomed instead");
+            assert_stop_is_in_reach(&mut browser, size, "after the drawing was dragged");
+            browser.eval("scrollTo(0, document.documentElement.scrollHeight)");
+            browser.painted();
+            assert!(browser.eval("scrollY").as_f64().unwrap() > 100.0);
+            assert_stop_is_in_reach(&mut browser, size, "at the lower end");
+            if has_touch {
+                browser.screenshot_of_screen(&format!("live-{width}x{height}-lower-end"));
+            }
+            // A tap on it, or a click, stops the machine.
+            browser.wait_for("last.duty.some((d) => d !== 0)");
+            if has_touch {
+                let [left, top, right, bottom] = browser.place("#stop");
+                let middle = [(left + right) / 2.0, (top + bottom) / 2.0];
+                browser.swipe(middle, middle);
+            } else {
+                browser.click("#stop");
+            }
+            browser.wait_for("document.body.dataset.state === 'stopped' && last.duty.every((d) => d === 0)");
+            assert_stop_is_in_reach(&mut browser, size, "when it is stopped");
+            browser.click("#resume");
+            browser.wait_for("document.body.dataset.state === 'running'");
+        }
+    }
+    // With Ctrl the wheel zooms the drawing, and two fingers move and zoom it.
+    browser.eval("scrollTo(0, 0)");
+    browser.screen(390, 844, true);
+    let [x, y] = middle_of_canvas(&mut browser, "#sheet", 844);
+    for (kind, half) in [("touchStart", 40.0), ("touchMove", 60.0), ("touchMove", 80.0)] {
+        let fingers = json!([{"x": x - half, "y": y, "id": 0}, {"x": x + half, "y": y, "id": 1}]);
+        browser.ask("Input.dispatchTouchEvent", json!({"type": kind, "touchPoints": fingers}));
+    }
+    browser.ask("Input.dispatchTouchEvent", json!({"type": "touchEnd", "touchPoints": []}));
+    let zoom = browser.eval("sheet.view.zoom").as_f64().unwrap();
+    assert!((zoom - 2.0).abs() < 0.01, "{zoom}");
+    let wheel = json!({"type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": -100, "modifiers": 2});
+    browser.ask("Input.dispatchMouseEvent", wheel);
+    browser.wait_for("sheet.view.zoom > 2.1");
+    assert_eq!(browser.complaints, Vec::<String>::new());
 }

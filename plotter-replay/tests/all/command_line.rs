@@ -34,7 +34,10 @@ fn session(path: &Path) {
     let target = StepPoint::new(100, 50);
     let mut bench =
         Bench::new(&machine, BenchSettings::default(), [PenMove { pen: Pen::Down, target }].into_iter());
-    let header = Header::new().with_number("baud", 256_000).with_text("controller", "contouring");
+    let header = Header::new()
+        .with_number("baud", 256_000)
+        .with_text("protocol", "digits")
+        .with_text("controller", "contouring");
     let mut recorder = BenchRecorder::new(log::create(path, &header).unwrap());
     while !bench.host().is_done() {
         bench.step(|time, event| recorder.record(time, event));
@@ -122,6 +125,18 @@ fn another_machine_is_a_difference() {
     let slow = run(&["check", "line.plog", "--machine", "slow.toml"], here);
     assert_eq!(slow.status, 1, "{}{}", slow.out, slow.err);
     assert!(slow.out.contains("first difference at "), "{}", slow.out);
+    // Another kind of machine has never spoken what is in the log.
+    let stepper = "schema = 1\ndrive = \"stepper\"\n[area]\nwidth_mm = 100.0\nheight_mm = 100.0\n";
+    let belt = "schema = 1\n[area]\nwidth_mm = 300.0\nheight_mm = 200.0\n[kinematics]\ntype = \"corexy\"\n[control.contouring]\n\
+        feed_mm_s = 30.0\n[x]\nencoder.decoding = \"x2\"\n[y]\nencoder.decoding = \"x2\"\n";
+    for (name, text, has) in [("stepper.toml", stepper, "stepper motors"), ("belt.toml", belt, "one belt")] {
+        std::fs::write(here.join(name), text).unwrap();
+        for command in ["check", "replay"] {
+            let refused = run(&[command, "line.plog", "--machine", name], here);
+            assert_eq!(refused.status, 2, "{command} {name}: {}{}", refused.out, refused.err);
+            assert!(refused.err.contains(has) && refused.err.contains("\"digits\""), "{}", refused.err);
+        }
+    }
     std::fs::write(here.join("wrong.toml"), "schema = 1\nspeed = 3\n").unwrap();
     let wrong = run(&["check", "line.plog", "--machine", "wrong.toml"], here);
     assert_eq!(wrong.status, 2);

@@ -20,9 +20,7 @@ use crate::linked_session;
 
 use linked_session::LinkedSession;
 use plotter_motion::plant::{Bench, BenchSettings};
-use plotter_motion::{
-    ControllerChoice, DriveChoice, KinematicsChoice, Machine, Pen, PenMove, StepPoint, TransmissionConfig,
-};
+use plotter_motion::{ControllerChoice, Machine, MachineKind, Pen, PenMove, StepPoint, TransmissionConfig};
 use plotter_replay::log::{self, Event, Header, Record, Writer};
 use plotter_replay::transport::Faults;
 use plotter_replay::{AnyController, BenchRecorder, Player, PlayerSettings, golden};
@@ -50,8 +48,7 @@ fn presets() -> Vec<(String, Machine)> {
     presets.retain(|(_, machine)| {
         let config = machine.config();
         // Of what the belts do, a controller and so its log know nothing; worn ones are for the test bed.
-        config.kinematics.kind == KinematicsChoice::Cartesian
-            && config.x.transmission == TransmissionConfig::default()
+        machine.kind() != MachineKind::Belt && config.x.transmission == TransmissionConfig::default()
     });
     presets.sort_by(|a, b| a.0.cmp(&b.0));
     presets
@@ -61,8 +58,8 @@ fn presets() -> Vec<(String, Machine)> {
 fn sessions(name: &str, machine: &Machine) -> Vec<(String, Header, Machine)> {
     let header =
         Header::new().with_number("baud", u64::from(machine.config().serial.baud)).with_text("machine", name);
-    match machine.config().drive {
-        DriveChoice::Stepper => ["mdraw", "grbl"]
+    match machine.kind() {
+        MachineKind::Steppers => ["mdraw", "grbl"]
             .map(|protocol| {
                 (format!("{name}.{protocol}"), header.clone().with_text("protocol", protocol), *machine)
             })
@@ -90,7 +87,7 @@ fn tick_mark() -> [PenMove; 4] {
 /// A tick mark.
 fn record(header: &Header, machine: &Machine) -> Vec<u8> {
     let writer = Writer::new(Vec::new(), header).unwrap();
-    if machine.config().drive == DriveChoice::Stepper {
+    if machine.kind() == MachineKind::Steppers {
         return record_stepper(header, machine, writer);
     }
     let mut bench = Bench::new(machine, BenchSettings::default(), tick_mark().into_iter());

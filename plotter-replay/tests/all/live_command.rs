@@ -14,6 +14,9 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 const MACHINE: &str = "schema = 1\nname = \"test-bed\"\n[serial]\nbyte_gap_ms = 0.0\n[area]\nwidth_mm = 100.0\nheight_mm = 100.0\n";
+/// Two motors on one belt.
+const BELT: &str = "schema = 1\n[area]\nwidth_mm = 100.0\nheight_mm = 100.0\n[kinematics]\ntype = \"corexy\"\n[belt]\nstart_x_mm = 50.0\n\
+    start_y_mm = 50.0\n[control.contouring]\nfeed_mm_s = 30.0\n[x]\nencoder.decoding = \"x2\"\n[y]\nencoder.decoding = \"x2\"\n";
 
 fn run(arguments: &[&str], here: &Path) -> (Option<i32>, String, String) {
     let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_plotter-replay"))
@@ -34,6 +37,7 @@ fn what_cannot_be_driven_is_said_in_a_line_with_status_2() {
         "schema = 1\ndrive = \"stepper\"\n[area]\nwidth_mm = 100.0\nheight_mm = 100.0\n",
     )
     .unwrap();
+    std::fs::write(here.join("belt.toml"), BELT).unwrap();
     std::fs::write(here.join("line.hpgl"), "IN;PU0,0;PD400,0;").unwrap();
     std::fs::write(here.join("far.hpgl"), "IN;PU900000,0;PD900000,100;").unwrap();
     std::fs::write(here.join("empty.hpgl"), "").unwrap();
@@ -48,19 +52,30 @@ fn what_cannot_be_driven_is_said_in_a_line_with_status_2() {
         (&["far.hpgl"], "nothing in it that this machine could draw"),
         (&["line.hpgl", "--simulate", "nowhere.toml"], "nowhere.toml: cannot be read"),
         (&["line.hpgl", "--simulate", "line.hpgl"], "line.hpgl:"),
+        (&["line.hpgl", "--simulate", "stepper.toml"], "stepper.toml: this machine has stepper motors"),
         (&["line.hpgl", "--simulate", "stepper.toml"], "drive = \"dc\""),
+        (&["line.hpgl", "--simulate", "belt.toml"], "belt.toml: this machine has DC motors on one belt"),
+        (&["line.hpgl", "--simulate", "belt.toml"], "kinematics.type = \"cartesian\""),
+        (&["line.hpgl", "--port", "/dev/no-such-plotter", "--machine", "belt.toml"], "on one belt"),
+        (&["--port", "/dev/no-such-plotter", "--machine", "belt.toml"], "on one belt"),
         (&["line.hpgl", "--port", "/dev/no-such-plotter"], "there is no such serial port"),
         (&["line.hpgl", "-o", "no/such/folder.plog"], "no/such/folder.plog: the log cannot be written"),
         (&["line.hpgl", "--http-port", &taken], "used by another program"),
         (&["line.hpgl", "--port", "a", "--simulate", "machine.toml"], "cannot be used with"),
         (&["--start"], "required"),
-        (&["line.hpgl", "--speed", "0"], "expected 0.01 to 100"),
+        (&["line.hpgl", "--speed", "0"], "expected 0.01 to 1000000"),
         (&["line.hpgl", "--http-port", "http"], "invalid"),
     ];
     for (arguments, words) in cases {
         let (status, out, err) = run(&[&["live"], *arguments].concat(), here);
         assert_eq!(status, Some(2), "{arguments:?}: {out}{err}");
         assert!(err.contains(words), "{arguments:?}: {err}");
+    }
+    for machine in ["belt.toml", "stepper.toml"] {
+        let (status, out, err) = run(&["simulate", machine], here);
+        assert_eq!(status, Some(2), "{machine}: {out}{err}");
+        let place = format!("plotter-replay: {machine}: this machine has ");
+        assert!(err.starts_with(&place) && err.contains("simulate needs DC motors"), "{err}");
     }
 }
 

@@ -6,17 +6,25 @@
     reason = "a test that fails says so by a panic"
 )]
 
+use plotter_motion::protocol::frame::{Decoder, Kind};
 use plotter_motion::{Machine, MachineConfig, Pen, PenMove, SerialConfig, StepPoint};
 use plotter_replay::live::{
-    Command, Line, LinkChoice, LivePage, MachineLog, Pipe, Plan, Recording, Server, ServerError, Session,
-    SessionSettings, SimulatedMachine, State,
+    Command, Line, LinkChoice, LivePage, MachineLine, MachineLog, Plan, Recording, Server, ServerError,
+    Session, SessionSettings, SimulatedMachine, State, Telemetry,
 };
-use plotter_replay::log::{Header, LogFile, Writer, create, open};
+use plotter_replay::log::{Event, Header, LogFile, Reader, Writer, create, open};
+use plotter_replay::serial::{PortError, PortErrorKind};
 use plotter_replay::{AnyController, PlotterSettings, VirtualPlotter, golden};
+use std::fmt;
 use std::io::{Read, Write};
 use std::net::TcpStream;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::sync::{Arc, Mutex, OnceLock};
+use std::time::Duration;
+
+/// As fast as it goes: nothing here goes by the clock on the wall.
+const AS_FAST_AS_IT_GOES: f64 = 1e6;
+/// Longer than any session here takes on a computer that is busy with other things; only what never ends is ended by it.
+const FOR_EVER: Duration = Duration::from_secs(600);
 
 /// The gantry with a host that does not pause between bytes.
 fn machine() -> Machine {
@@ -36,69 +44,159 @@ fn settings(targets: u64) -> SessionSettings {
     SessionSettings { byte_gap: Duration::ZERO, plan, ..SessionSettings::default() }
 }
 
-fn until(what: &str, mut is_so: impl FnMut() -> bool) {
-    let end = Instant::now() + Duration::from_secs(20);
-    while !is_so() {
-        assert!(Instant::now() < end, "in vain: {what}");
-        std::thread::sleep(Duration::from_micros(200));
+/// Something that is done at a look, or looked for; true once it is over.
+type Step = Box<dyn FnMut(&Session, Telemetry) -> bool + Send>;
+
+/// A line whose machine is looked at whenever the session has listened to it: in the machine's time.
+struct Watched<W: Write> {
+    line: MachineLine<W>,
+    session: OnceLock<Session>,
+    /// What is still to be done, the next at the end.
+    steps: Mutex<Vec<Step>>,
+}
+
+impl<W: Write> fmt::Debug for Watched<W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Watched")
     }
+}
+
+impl<W: Write + Send> Line for Watched<W> {
+    fn send(&self, bytes: &[u8]) -> Result<(), PortError> {
+        self.line.send(bytes)
+    }
+
+    fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError> {
+        let count = self.line.receive(bytes, wait)?;
+        let now = *self.line.telemetry().lock().unwrap();
+        let mut steps = self.steps.lock().unwrap();
+        while steps.last_mut().is_some_and(|step| step(self.session.wait(), now)) {
+            steps.pop();
+        }
+        Ok(count)
+    }
+
+    fn now(&self) -> Option<Duration> {
+        self.line.now()
+    }
+}
+
+/// A session that is over; `steps` were done in their order while it went on.
+fn watched<W: Write + Send + 'static, R: Write + Send + 'static>(
+    line: MachineLine<W>,
+    moves: Vec<PenMove>,
+    recording: Option<Recording<R>>,
+    settings: SessionSettings,
+    mut steps: Vec<Step>,
+) -> Session {
+    steps.reverse();
+    let telemetry = Some(line.telemetry());
+    let line = Arc::new(Watched { line, session: OnceLock::new(), steps: Mutex::new(steps) });
+    let session = Session::open(
+        Arc::clone(&line) as _,
+        Some(Box::new(moves.into_iter())),
+        recording,
+        telemetry,
+        settings,
+    );
+    assert_eq!(session.state(), State::Ready);
+    line.session.set(session.clone()).unwrap();
+    assert_eq!(session.wait(FOR_EVER), State::Done);
+    assert!(line.steps.lock().unwrap().is_empty(), "the session was over before all was done");
+    session
+}
+
+fn ask_for(command: Command) -> Step {
+    Box::new(move |session, _| {
+        session.command(command);
+        true
+    })
+}
+
+fn until_it_moves() -> Step {
+    Box::new(|_, now| now.duty != [0, 0])
+}
+
+fn until_it_is(state: State) -> Step {
+    Box::new(move |session, _| session.state() == state)
+}
+
+/// So long in the machine's time; each time of it `check` is asked.
+fn during(time: Duration, mut check: impl FnMut(&Session, Telemetry) + Send + 'static) -> Step {
+    let mut until = None;
+    Box::new(move |session, now| {
+        check(session, now);
+        now.time >= *until.get_or_insert(now.time + time)
+    })
 }
 
 #[test]
 fn an_emergency_stop_takes_the_drive_within_one_control_period() {
     let machine = machine();
-    let (host, end) = Pipe::pair();
-    let simulated = SimulatedMachine::start(&machine, Arc::new(end), 1.0, 7);
-    let telemetry = simulated.telemetry();
-    let session = Session::open(
-        Arc::new(host),
-        Some(Box::new(square().into_iter())),
-        None::<Recording<LogFile>>,
-        Some(telemetry.clone()),
-        settings(4),
-    );
-    assert_eq!(session.state(), State::Ready);
-    session.command(Command::Start);
-    let period = Duration::from_secs_f64(1.0 / machine.config().control.contouring.loop_hz);
-    for _ in 0..3 {
-        until("it moves", || telemetry.lock().unwrap().duty != [0, 0]);
-        let before = telemetry.lock().unwrap().stopped;
-        session.command(Command::Stop);
-        let last = || telemetry.lock().unwrap().stopped;
-        until("it stopped", || last() != before && matches!(last(), Some((_, Some(_)))));
-        let (pressed, off) = telemetry.lock().unwrap().stopped.unwrap();
-        assert!(off.unwrap() - pressed <= period, "{pressed:?} {off:?}");
-        until("the session knows", || session.state() == State::Stopped);
-        std::thread::sleep(Duration::from_millis(30));
-        assert_eq!(telemetry.lock().unwrap().duty, [0, 0]);
-        session.command(Command::Resume);
-        until("it goes on", || session.state() != State::Stopped);
+    let line = SimulatedMachine::new(&machine, Some(7)).unwrap().line(AS_FAST_AS_IT_GOES);
+    let stops = Arc::new(Mutex::new(Vec::new()));
+    let moved = Arc::new(Mutex::new(0));
+    let mut steps = vec![ask_for(Command::Start)];
+    for n in 1..=3 {
+        let (stops, moved) = (Arc::clone(&stops), Arc::clone(&moved));
+        steps.extend([
+            until_it_moves(),
+            ask_for(Command::Stop),
+            Box::new(move |_, now| match now.stopped {
+                Some((pressed, Some(off))) => {
+                    let mut stops = stops.lock().unwrap();
+                    let is_new = stops.last() != Some(&(pressed, off));
+                    if is_new {
+                        stops.push((pressed, off));
+                    }
+                    is_new && stops.len() == n
+                }
+                _ => false,
+            }),
+            until_it_is(State::Stopped),
+            during(Duration::from_millis(300), move |session, now| {
+                let is_still = now.duty == [0, 0] && session.state() == State::Stopped;
+                *moved.lock().unwrap() += u32::from(!is_still);
+            }),
+            ask_for(Command::Resume),
+            Box::new(|session, _| session.state() != State::Stopped),
+        ]);
     }
-    assert_eq!(session.wait(Duration::from_secs(20)), State::Done);
+    let session = watched(line, square(), None::<Recording<LogFile>>, settings(4), steps);
     assert_eq!(session.reached(), 4);
+    let period = Duration::from_secs_f64(1.0 / machine.config().control.contouring.loop_hz);
+    let stops = stops.lock().unwrap();
+    assert!(stops.len() == 3 && stops.iter().all(|&(pressed, off)| off - pressed <= period), "{stops:?}");
+    assert_eq!(*moved.lock().unwrap(), 0, "moved while it was stopped");
 }
 
 #[test]
 fn a_paused_session_finishes_its_target_and_sends_no_other() {
-    let machine = machine();
-    let (host, end) = Pipe::pair();
-    let _simulated = SimulatedMachine::start(&machine, Arc::new(end), 4.0, 7);
-    let settings = SessionSettings { speed: 4.0, ..settings(4) };
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("session.plog");
-    let recorder = create(&path, &Header::new()).unwrap();
-    let moves = Box::new(square().into_iter());
-    let session = Session::open(Arc::new(host), Some(moves), Some(Recording::Line(recorder)), None, settings);
-    session.command(Command::Start);
-    session.command(Command::Pause);
-    until("the target under way is finished", || session.reached() == 1 || session.state() == State::Paused);
-    std::thread::sleep(Duration::from_millis(400));
-    let reached = session.reached();
-    assert!(reached <= 1);
-    std::thread::sleep(Duration::from_millis(200));
-    assert_eq!((session.reached(), session.state()), (reached, State::Paused));
-    session.command(Command::Resume);
-    assert_eq!(session.wait(Duration::from_secs(20)), State::Done);
+    let recording = Some(Recording::Line(create(&path, &Header::new()).unwrap()));
+    let line = SimulatedMachine::new(&machine(), Some(7)).unwrap().line(AS_FAST_AS_IT_GOES);
+    let reached = Arc::new(Mutex::new(Vec::new()));
+    let noted = Arc::clone(&reached);
+    let steps = vec![
+        ask_for(Command::Start),
+        until_it_moves(),
+        ask_for(Command::Pause),
+        until_it_is(State::Paused),
+        // a line of 30 mm takes a third of a second
+        during(Duration::from_secs(2), |_, _| ()),
+        during(Duration::from_secs(2), move |session, _| {
+            noted.lock().unwrap().push((session.reached(), session.state()));
+        }),
+        ask_for(Command::Resume),
+    ];
+    watched(line, square(), recording, settings(4), steps);
+    let reached = reached.lock().unwrap();
+    assert!(
+        reached.len() > 100 && reached.iter().all(|at| *at == (1, State::Paused)),
+        "{:?}",
+        reached.last()
+    );
     // What was recorded is what was drawn.
     let mut plotter = VirtualPlotter::new(PlotterSettings::default());
     open(&path).unwrap().for_each(|record| plotter.push(&record.unwrap()));
@@ -106,19 +204,25 @@ fn a_paused_session_finishes_its_target_and_sends_no_other() {
     assert_eq!((plotter.reached_count(), plotter.anomaly_count()), (4, 0));
 }
 
+/// A line that nothing is at the other end of.
+#[derive(Debug)]
+struct Cut;
+
+impl Line for Cut {
+    fn send(&self, _: &[u8]) -> Result<(), PortError> {
+        Ok(())
+    }
+
+    fn receive(&self, _: &mut [u8], _: Duration) -> Result<usize, PortError> {
+        Err(PortError { port: String::from("here"), kind: PortErrorKind::Gone })
+    }
+}
+
 #[test]
 fn a_machine_that_goes_away_fails_the_session() {
-    let (host, end) = Pipe::pair();
-    let session = Session::open(
-        Arc::new(host),
-        Some(Box::new(square().into_iter())),
-        None::<Recording<LogFile>>,
-        None,
-        settings(4),
-    );
-    session.command(Command::Start);
-    drop(end);
-    let State::Failed(why) = session.wait(Duration::from_secs(5)) else { panic!("{:?}", session.state()) };
+    let moves = Some(Box::new(square().into_iter()) as _);
+    let session = Session::open(Arc::new(Cut), moves, None::<Recording<LogFile>>, None, settings(4));
+    let State::Failed(why) = session.wait(FOR_EVER) else { panic!("{:?}", session.state()) };
     assert!(why.contains("gone away"), "{why}");
 }
 
@@ -138,27 +242,24 @@ impl Write for Disk {
 #[test]
 fn a_full_disk_stops_the_recording_and_not_the_drawing() {
     for is_machines in [false, true] {
-        let writer = Writer::new(Disk(3_000), &Header::new()).unwrap();
-        let (host, end) = Pipe::pair();
-        let log = MachineLog::new(writer);
-        let (recording, log) = if is_machines {
-            (Recording::Machine(log.clone()), Some(log))
-        } else {
-            (Recording::Line(Writer::new(Disk(3_000), &Header::new()).unwrap()), None)
-        };
-        let _simulated = SimulatedMachine::logged(&machine(), Arc::new(end), 4.0, Some(7), log);
-        let moves = Box::new(square().into_iter());
-        let settings = SessionSettings { speed: 4.0, ..settings(4) };
-        let session = Session::open(Arc::new(host), Some(moves), Some(recording), None, settings);
-        assert_eq!(session.recording(), "on");
-        session.command(Command::Start);
-        assert_eq!(session.wait(Duration::from_secs(20)), State::Done);
-        assert_eq!(session.reached(), 4);
-        assert!(
-            session.recording().starts_with("stopped: the log cannot be written"),
-            "{}",
-            session.recording()
-        );
+        let writer = || Writer::new(Disk(3_000), &Header::new()).unwrap();
+        let simulated = SimulatedMachine::new(&machine(), Some(7)).unwrap();
+        let log = MachineLog::new(writer());
+        let recording = if is_machines { Recording::Machine(log.clone()) } else { Recording::Line(writer()) };
+        let line = simulated.logged(log).line(AS_FAST_AS_IT_GOES);
+        let was = Arc::new(Mutex::new(String::new()));
+        let noted = Arc::clone(&was);
+        let steps: Vec<Step> = vec![
+            Box::new(move |session, _| {
+                *noted.lock().unwrap() = session.recording();
+                true
+            }),
+            ask_for(Command::Start),
+        ];
+        let session = watched(line, square(), Some(recording), settings(4), steps);
+        assert_eq!((session.reached(), was.lock().unwrap().as_str()), (4, "on"));
+        let said = session.recording();
+        assert!(said.starts_with("stopped: the log cannot be written"), "{said}");
     }
 }
 
@@ -171,24 +272,20 @@ fn a_session_with_a_simulated_machine_is_run_again_to_the_same_bytes() {
         let header = Header::new().with_number("baud", 256_000);
         let header = boot.map_or(header.clone(), |boot| header.with_number("boot", boot.into()));
         let log = MachineLog::new(create(&path, &header).unwrap());
-        let (host, end) = Pipe::pair();
         let machine = machine();
-        let simulated = SimulatedMachine::logged(&machine, Arc::new(end), 2.0, boot, Some(log.clone()));
-        let telemetry = simulated.telemetry();
+        let line =
+            SimulatedMachine::new(&machine, boot).unwrap().logged(log.clone()).line(AS_FAST_AS_IT_GOES);
         let link = if boot.is_some() { LinkChoice::Frames } else { LinkChoice::Digits };
-        let settings = SessionSettings { speed: 2.0, link, ..settings(4) };
-        let moves = Box::new(square().into_iter());
-        let recording = Some(Recording::Machine(log));
-        let session =
-            Session::open(Arc::new(host), Some(moves), recording, Some(telemetry.clone()), settings);
-        session.command(Command::Start);
-        until("it moves", || telemetry.lock().unwrap().duty != [0, 0]);
-        session.command(Command::Stop);
-        until("it is stopped", || session.state() == State::Stopped);
-        // On a busy computer the machine may learn of the stop later than the session.
-        until("the motors are off", || telemetry.lock().unwrap().duty == [0, 0]);
-        session.command(Command::Resume);
-        assert_eq!(session.wait(Duration::from_secs(20)), State::Done);
+        let settings = SessionSettings { link, ..settings(4) };
+        let steps = vec![
+            ask_for(Command::Start),
+            until_it_moves(),
+            ask_for(Command::Stop),
+            until_it_is(State::Stopped),
+            Box::new(|_: &Session, now: Telemetry| now.duty == [0, 0]) as Step,
+            ask_for(Command::Resume),
+        ];
+        let session = watched(line, square(), Some(Recording::Machine(log)), settings, steps);
         assert_eq!(session.recording(), "complete");
         golden::check(&path, || AnyController::of_log(&path, Some(&machine)).unwrap(), golden::Mode::Compare)
             .unwrap();
@@ -199,13 +296,102 @@ fn a_session_with_a_simulated_machine_is_run_again_to_the_same_bytes() {
     }
 }
 
+/// A quarter of a circle in forty lines of 0.4 mm: more targets than the link has on its way at once.
+fn quarter() -> Vec<PenMove> {
+    let at = |n: u32| {
+        let angle = f64::from(n) / 40.0 * core::f64::consts::FRAC_PI_2;
+        let counts = |mm: f64| StepPoint::new((mm * 40.0).round() as i32, 0).x;
+        StepPoint::new(counts(10.0 * angle.sin()), counts(10.0 * (1.0 - angle.cos())))
+    };
+    (1..=40).map(|n| PenMove { pen: Pen::Down, target: at(n) }).collect()
+}
+
+/// Where the bytes of a log go.
+#[derive(Clone, Default)]
+struct Kept(Arc<Mutex<Vec<u8>>>);
+
+impl Write for Kept {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.lock().unwrap().write(bytes)
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// The log of a machine whose host draws a quarter at this speed and after each so many looks is away for a while.
+fn quarter_at(speed: f64, away: Option<u32>) -> Vec<u8> {
+    let kept = Kept::default();
+    let log = MachineLog::new(Writer::new(kept.clone(), &Header::new()).unwrap());
+    let simulated = SimulatedMachine::new(&machine(), Some(7)).unwrap().logged(log.clone());
+    let mut looks = 0_u32;
+    let busy: Step = Box::new(move |session, _| {
+        looks += 1;
+        if away.is_some_and(|each| looks.is_multiple_of(each)) {
+            std::thread::sleep(Duration::from_millis(30));
+        }
+        session.reached() >= 39
+    });
+    let steps = vec![ask_for(Command::Start), busy];
+    let line = simulated.line(speed);
+    let telemetry = line.telemetry();
+    let session = watched(line, quarter(), Some(Recording::Machine(log)), settings(40), steps);
+    assert_eq!(session.reached(), 40);
+    let took = telemetry.lock().unwrap().time;
+    assert!(took < Duration::from_secs(5), "{took:?} of the machine");
+    let bytes = kept.0.lock().unwrap().clone();
+    bytes
+}
+
+/// Payloads that a side sent again.
+fn sent_again(log: &[u8], is_hosts: bool) -> u32 {
+    let mut decoder = Decoder::new();
+    let (mut session, mut next, mut again) = (0, 0_u8, 0);
+    let mut greeting = Decoder::new();
+    for record in Reader::new(log).unwrap() {
+        let (bytes, is_side) = match record.unwrap().event {
+            Event::Host(bytes) => (bytes, is_hosts),
+            Event::Controller(bytes) => (bytes, !is_hosts),
+            _ => continue,
+        };
+        for byte in bytes {
+            if let Some(Ok(frame)) = greeting.push(byte, 0)
+                && frame.kind == Kind::Hello
+                && let Some(hello) = plotter_motion::protocol::Hello::from_bytes(frame.payload)
+            {
+                session = hello.session;
+            }
+            if is_side
+                && let Some(Ok(frame)) = decoder.push(byte, session)
+                && frame.kind == Kind::Data
+            {
+                let is_next = frame.sequence == next;
+                again += u32::from(!is_next);
+                next = next.wrapping_add(u8::from(is_next));
+            }
+        }
+    }
+    again
+}
+
+/// Host and machine share the machine's time: neither is impatient with the other because this computer is slow, at any speed.
+#[test]
+fn a_session_is_the_same_at_any_speed_and_sends_nothing_twice() {
+    let usual = quarter_at(AS_FAST_AS_IT_GOES, None);
+    assert_eq!((sent_again(&usual, true), sent_again(&usual, false)), (0, 0));
+    for (speed, away) in [(4.0, None), (10.0, None), (50.0, Some(40)), (200.0, None), (1e6, Some(40))] {
+        let log = quarter_at(speed, away);
+        assert!(log == usual, "at {speed} times its time, away after {away:?} looks");
+    }
+}
+
 /// What the server answers to a request.
 fn ask(address: &str, path: &str, headers: &str) -> String {
     let host = address.strip_prefix("http://").unwrap().split('/').next().unwrap();
     let mut stream = TcpStream::connect(host).unwrap();
     let host_line = if headers.contains("Host:") { String::new() } else { format!("Host: {host}\r\n") };
     write!(stream, "GET {path} HTTP/1.1\r\n{host_line}{headers}\r\n").unwrap();
-    stream.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
+    stream.set_read_timeout(Some(FOR_EVER)).unwrap();
     let (mut answer, mut part) = (Vec::new(), [0; 1_024]);
     while !answer.windows(2).any(|end| end == b"\r\n") {
         match stream.read(&mut part) {
@@ -218,9 +404,8 @@ fn ask(address: &str, path: &str, headers: &str) -> String {
 
 #[test]
 fn only_who_knows_the_token_and_comes_from_this_page_gets_in() {
-    let (host, _machine) = Pipe::pair();
-    let line: Arc<dyn Line> = Arc::new(host);
-    let session = Session::open(line, None, None::<Recording<LogFile>>, None, SessionSettings::default());
+    let session =
+        Session::open(Arc::new(Cut), None, None::<Recording<LogFile>>, None, SessionSettings::default());
     let page = LivePage::new("gantry", PlotterSettings::default());
     let server =
         Server::open(session.clone(), 0, |sources| page.finish([0.0, 0.0, 1.0, 1.0], sources)).unwrap();

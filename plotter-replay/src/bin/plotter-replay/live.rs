@@ -2,12 +2,12 @@
 
 use crate::commands::{Done, Verdict, say, say_first};
 use crate::drawing::DrawingFile;
-use crate::machine::{clock_bits, header_of, read_machine, speed};
+use crate::machine::{clock_bits, header_of, read_machine_of, speed};
 use clap::{Args, ValueEnum};
-use plotter_motion::{DriveChoice, Machine, PenMove, targets};
+use plotter_motion::{Machine, MachineKind, PenMove, targets};
 use plotter_replay::live::{
-    Command, Line, LinkChoice, LivePage, MachineLog, Pipe, PortLine, Recording, Server, Session,
-    SessionSettings, SimulatedMachine, State, Telemetry, terminal,
+    Command, Line, LinkChoice, LivePage, MachineLog, PortLine, Recording, Server, Session, SessionSettings,
+    SimulatedMachine, State, Telemetry, terminal,
 };
 use plotter_replay::log::{self, FileWriter, LogFile};
 use plotter_replay::serial::{Port, find};
@@ -45,7 +45,7 @@ pub(crate) struct Live {
     /// frames.
     #[arg(long, value_name = "LOG", requires_all = ["drawing", "port"])]
     resume: Option<PathBuf>,
-    /// Seconds of a simulated machine in one of ours.
+    /// Seconds of a simulated machine in one of ours; more than this computer can is as fast as it goes.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed, conflicts_with = "port")]
     speed: f64,
     /// The recording [default: live.plog, or the first of live-2.plog, live-3.plog, ... that is not there].
@@ -95,21 +95,14 @@ fn free_name() -> PathBuf {
 struct Connected {
     line: Arc<dyn Line>,
     telemetry: Option<Arc<Mutex<Telemetry>>>,
-    /// Lives as long as the machine is needed.
-    _simulated: Option<SimulatedMachine>,
     name: String,
 }
 
 impl Live {
     /// Does it.
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
-        let machine = read_machine(self.simulate.as_deref().or(self.machine.as_deref()))?;
-        if machine.config().drive == DriveChoice::Stepper {
-            return Err(String::from(
-                "this machine has stepper motors (drive = \"stepper\"), and live speaks the protocol of machines with \
-                 encoders: give one with drive = \"dc\"",
-            ));
-        }
+        let described = self.simulate.as_deref().or(self.machine.as_deref());
+        let machine = read_machine_of(MachineKind::Gantry, "live", described)?;
         let config = machine.config();
         let plotter = PlotterSettings {
             x_mm_per_pulse: 1.0 / config.x.counts_per_mm,
@@ -129,13 +122,12 @@ impl Live {
         let port = self.open_port(&machine)?;
         let boot = (port.is_none() && !matches!(self.link, Link::Digits)).then(clock_bits);
         let writer = self.recorder(&machine, mark, resume, boot)?;
-        let (connected, recording) = self.connect(&machine, port, boot, writer);
+        let (connected, recording) = self.connect(&machine, port, boot, writer)?;
         let plan = drawing.is_some().then(|| page.plan());
         let settings = SessionSettings {
             plotter,
             byte_gap: Duration::from_secs_f64(config.serial.byte_gap_ms / 1e3),
             plan,
-            speed: self.speed,
             pwm_steps: [config.x.motor.pwm_steps, config.y.motor.pwm_steps],
             link: self.link.into(),
             nonce: u16::try_from(clock_bits() & 0xffff).unwrap_or(1),
@@ -222,18 +214,17 @@ impl Live {
         port: Option<(PortLine, String)>,
         boot: Option<u32>,
         writer: FileWriter,
-    ) -> (Connected, Recording<LogFile>) {
+    ) -> Result<(Connected, Recording<LogFile>), String> {
         if let Some((line, name)) = port {
-            let connected = Connected { line: Arc::new(line), telemetry: None, _simulated: None, name };
-            return (connected, Recording::Line(writer));
+            let connected = Connected { line: Arc::new(line), telemetry: None, name };
+            return Ok((connected, Recording::Line(writer)));
         }
-        let (host, end) = Pipe::pair();
         let log = MachineLog::new(writer);
-        let simulated = SimulatedMachine::logged(machine, Arc::new(end), self.speed, boot, Some(log.clone()));
-        let telemetry = Some(simulated.telemetry());
+        let simulated = SimulatedMachine::new(machine, boot).map_err(|error| error.to_string())?;
+        let line = simulated.logged(log.clone()).line(self.speed);
+        let telemetry = Some(line.telemetry());
         let name = String::from("none: simulated in this program");
-        let connected = Connected { line: Arc::new(host), telemetry, _simulated: Some(simulated), name };
-        (connected, Recording::Machine(log))
+        Ok((Connected { line: Arc::new(line), telemetry, name }, Recording::Machine(log)))
     }
 
     /// Where the last host left the drawing.
@@ -281,7 +272,7 @@ impl Live {
     fn heading(&self, machine: &str, port: &str, area_mm: [f64; 4]) -> terminal::Heading {
         let is_simulated = self.port.is_none();
         let machine = if is_simulated {
-            format!("{machine}: no motor turns, at {} times its time", self.speed)
+            format!("{machine}: no motor turns, at up to {} times its time", self.speed)
         } else {
             format!("on {port}, taken for a {machine}")
         };
@@ -292,8 +283,10 @@ impl Live {
         let config = machine.config();
         page.is_simulated = self.port.is_none();
         if page.is_simulated {
-            page.about =
-                format!("{} is SIMULATED: no motor turns, at {} times its time.", config.name, self.speed);
+            page.about = format!(
+                "{} is SIMULATED: no motor turns, at up to {} times its time.",
+                config.name, self.speed
+            );
             page.stops =
                 String::from("The stop takes the voltage off the simulated motors at its next time step.");
         } else {

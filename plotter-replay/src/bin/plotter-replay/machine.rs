@@ -2,7 +2,7 @@
 
 use crate::commands::{MOST_MACHINE_BYTES, read_file};
 #[cfg(feature = "live")]
-use plotter_motion::ControllerChoice;
+use plotter_motion::{ControllerChoice, MachineKind};
 use plotter_motion::{Machine, MachineConfig};
 #[cfg(feature = "live")]
 use plotter_replay::log::Header;
@@ -21,6 +21,23 @@ pub(crate) fn read_machine(path: Option<&Path>) -> Result<Machine, String> {
     let text = String::from_utf8(read_file(path, MOST_MACHINE_BYTES)?)
         .map_err(|error| refused(&error.utf8_error()))?;
     Machine::from_toml(&text).map_err(|error| refused(&error))
+}
+
+/// The same, if it is of the kind that `user` needs.
+///
+/// # Errors
+///
+/// As [`read_machine`], and for a machine of another kind.
+#[cfg(feature = "live")]
+pub(crate) fn read_machine_of(
+    kind: MachineKind,
+    user: &'static str,
+    path: Option<&Path>,
+) -> Result<Machine, String> {
+    let machine = read_machine(path)?;
+    let place = path.map_or_else(String::new, |path| format!("{}: ", path.display()));
+    machine.require(kind, user).map_err(|error| format!("{place}{error}"))?;
+    Ok(machine)
 }
 
 /// What a log's header says of a machine; `boot` is that of one that is simulated here, and speaks frames.
@@ -44,11 +61,11 @@ pub(crate) fn header_of(machine: &Machine, protocol: &str, boot: Option<u32>) ->
     }
 }
 
-/// How fast a simulated machine's time passes.
+/// How fast a simulated machine's time passes. No computer makes a million seconds of a machine in one.
 #[cfg(feature = "live")]
 pub(crate) fn speed(text: &str) -> Result<f64, String> {
     let factor: f64 = text.parse().map_err(|_| String::from("expected a number"))?;
-    if (0.01..=100.0).contains(&factor) { Ok(factor) } else { Err(String::from("expected 0.01 to 100")) }
+    if (0.01..=1e6).contains(&factor) { Ok(factor) } else { Err(String::from("expected 0.01 to 1000000")) }
 }
 
 /// Bits that are others each time: of the clock.

@@ -22,25 +22,49 @@ function ticks(low, high, most) { // round places between two values
   return places;
 }
 
-// A sheet in mm, y up. Turn the wheel to zoom, drag to move, double click for all of it.
+// A sheet in mm, y up. Ctrl and wheel or two fingers zoom, the mouse or two fingers move, a double click shows all of it. The wheel
+// alone and one finger belong to the page, which they scroll.
 class Sheet {
   constructor(canvas, paint) {
     this.canvas = canvas; this.paint = paint; this.box = null; this.view = null;
     canvas.addEventListener("wheel", (event) => {
+      if (!event.ctrlKey && !event.metaKey) return; // (fingers that spread on a touchpad come as Ctrl and wheel)
       event.preventDefault();
       this.zoom(Math.exp(-event.deltaY * 0.0015), event.offsetX, event.offsetY);
     }, { passive: false });
-    canvas.addEventListener("pointerdown", (event) => { this.held = [event.offsetX, event.offsetY]; canvas.setPointerCapture(event.pointerId); });
-    canvas.addEventListener("pointerup", () => { this.held = null; });
-    canvas.addEventListener("pointermove", (event) => {
-      if (!this.held || !this.view) return;
-      this.view.x -= (event.offsetX - this.held[0]) / this.scale;
-      this.view.y += (event.offsetY - this.held[1]) / this.scale;
-      this.held = [event.offsetX, event.offsetY];
-      this.draw();
+    canvas.addEventListener("pointerdown", (event) => {
+      if (event.pointerType === "touch") return;
+      this.held = [event.offsetX, event.offsetY]; canvas.setPointerCapture(event.pointerId);
     });
+    for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, () => { this.held = null; });
+    canvas.addEventListener("pointermove", (event) => {
+      if (this.held) this.held = this.move(this.held, [event.offsetX, event.offsetY]);
+    });
+    const fingers = ({ touches }) => { // the place between two of them, and how far apart they are
+      if (touches.length !== 2) return null;
+      const [a, b] = touches, { left, top } = canvas.getBoundingClientRect();
+      return { at: [(a.clientX + b.clientX) / 2 - left, (a.clientY + b.clientY) / 2 - top], apart: Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY) };
+    };
+    for (const name of ["touchstart", "touchmove", "touchend", "touchcancel"]) {
+      canvas.addEventListener(name, (event) => {
+        const last = this.fingers, next = this.fingers = fingers(event);
+        if (!next) return;
+        event.preventDefault(); // two fingers are not the page's
+        if (!last) return;
+        if (next.apart > 0 && last.apart > 0) this.zoom(next.apart / last.apart, ...last.at);
+        this.move(last.at, next.at);
+      }, { passive: false });
+    }
     canvas.addEventListener("dblclick", () => { this.view = null; this.draw(); });
     new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+  move(from, to) { // what is at one place of the canvas comes to another
+    if (this.view) {
+      this.view.x -= (to[0] - from[0]) / this.scale;
+      this.view.y += (to[1] - from[1]) / this.scale;
+      this.draw();
+    }
+    return to;
   }
   zoom(by, px, py) {
     const before = this.place(px, py);

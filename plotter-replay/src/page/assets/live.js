@@ -128,9 +128,12 @@ function connect() {
 for (const name of ["start", "pause", "resume", "stop", "clear"]) {
   $(name).addEventListener("click", (event) => {
     if (event.detail > 0) $(name).blur(); // clicked, not chosen by the keyboard: Space is to pause, not to press it again
-    ask(name);
+    if (name !== "stop" || event.timeStamp - pressed > 2000) ask(name);
   });
 }
+// At the press, not when the finger is lifted or has slid off; what clicks without a press stops too.
+let pressed = -Infinity;
+$("stop").addEventListener("pointerdown", (event) => { pressed = event.timeStamp; ask("stop"); });
 window.addEventListener("keydown", (event) => {
   if (event.key === "Escape") { event.preventDefault(); ask("stop"); return; } // always
   if (event.ctrlKey || event.altKey || event.metaKey || event.repeat || event.target.matches?.("button:enabled")) return;

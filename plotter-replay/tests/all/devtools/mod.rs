@@ -37,6 +37,11 @@ impl Browser {
                 "--disable-gpu",
                 "--disable-dev-shm-usage",
                 "--no-first-run",
+                // Nothing of the browser's own over the network.
+                "--disable-background-networking",
+                "--disable-component-update",
+                "--disable-quic",
+                "--disable-sync",
             ])
             .args(["--hide-scrollbars", "--window-size=1280,1400", "--remote-debugging-port=0"])
             .arg(format!("--user-data-dir={}", profile.path().display()))
@@ -114,7 +119,7 @@ impl Browser {
         self.ask("Page.navigate", json!({"url": address}));
         self.wait_for("location.href !== 'about:blank' && document.readyState === 'complete' && performance.timing.loadEventEnd > 0");
         // Two frames later everything is painted.
-        self.eval("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))");
+        self.painted();
         // A page that unpacks its data says when it is ready.
         self.wait_for("document.body.dataset.ready !== 'no'");
         let ms = self.eval(
@@ -188,20 +193,74 @@ impl Browser {
         }
     }
 
+    /// The screen of a telephone or a tablet, in its pixels, with fingers instead of a mouse; of a computer without.
+    pub(crate) fn screen(&mut self, width: u32, height: u32, has_touch: bool) {
+        let metrics = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": has_touch});
+        self.ask("Emulation.setDeviceMetricsOverride", metrics);
+        self.ask(
+            "Emulation.setTouchEmulationEnabled",
+            json!({"enabled": has_touch, "maxTouchPoints": if has_touch { 5 } else { 1 }}),
+        );
+        self.painted();
+    }
+
+    /// Waits until everything is painted.
+    pub(crate) fn painted(&mut self) {
+        self.eval("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))");
+    }
+
+    /// Lays a finger on one place of the screen, moves it to another in ten steps, and lifts it.
+    pub(crate) fn swipe(&mut self, from: [f64; 2], to: [f64; 2]) {
+        let at = |n: f64| [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * n / 10.0);
+        let mut touch = |kind: &str, at: Option<[f64; 2]>| {
+            let points: Vec<Value> = at.into_iter().map(|[x, y]| json!({"x": x, "y": y})).collect();
+            self.ask("Input.dispatchTouchEvent", json!({"type": kind, "touchPoints": points}));
+        };
+        touch("touchStart", Some(from));
+        if from != to {
+            (1..=10).for_each(|n| touch("touchMove", Some(at(n.into()))));
+        }
+        touch("touchEnd", None);
+    }
+
+    /// Turns the wheel of the mouse at a place of the screen by so many pixels.
+    pub(crate) fn wheel(&mut self, at: [f64; 2], pixels: f64) {
+        let params = json!({"type": "mouseWheel", "x": at[0], "y": at[1], "deltaX": 0, "deltaY": pixels});
+        self.ask("Input.dispatchMouseEvent", params);
+    }
+
+    /// Left, top, right and lower end of an element on the screen, pixels.
+    pub(crate) fn place(&mut self, selector: &str) -> [f64; 4] {
+        let of = format!("document.querySelector({}).getBoundingClientRect()", json!(selector));
+        let place = self.eval(&format!(
+            "(() => {{ const box = {of}; return [box.left, box.top, box.right, box.bottom]; }})()"
+        ));
+        [0, 1, 2, 3].map(|n| place[n].as_f64().unwrap())
+    }
+
     /// Light or dark.
     pub(crate) fn scheme(&mut self, name: &str) {
         let features = json!([{"name": "prefers-color-scheme", "value": name}]);
         self.ask("Emulation.setEmulatedMedia", json!({"features": features}));
-        self.eval("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))");
+        self.painted();
     }
 
-    /// Keeps what is to be seen as `NAME.png`.
+    /// Keeps the whole page as `NAME.png`.
     pub(crate) fn screenshot(&mut self, name: &str) -> PathBuf {
+        self.picture(name, true)
+    }
+
+    /// Keeps what is on the screen as `NAME.png`.
+    pub(crate) fn screenshot_of_screen(&mut self, name: &str) -> PathBuf {
+        self.picture(name, false)
+    }
+
+    fn picture(&mut self, name: &str, is_whole_page: bool) -> PathBuf {
         let directory = screenshots();
         std::fs::create_dir_all(&directory).unwrap();
         let file = directory.join(format!("{name}.png"));
-        let data =
-            self.ask("Page.captureScreenshot", json!({"format": "png", "captureBeyondViewport": true}));
+        let params = json!({"format": "png", "captureBeyondViewport": is_whole_page});
+        let data = self.ask("Page.captureScreenshot", params);
         std::fs::write(&file, from_base64(data["data"].as_str().unwrap())).unwrap();
         file
     }
