@@ -218,7 +218,7 @@ mod tests {
         ) {
             let mut ring = Ring::<16>::new();
             let mut stale = false;
-            let mut pop = |ring: &mut Ring<16>, stale: &mut bool| {
+            let pop = |ring: &mut Ring<16>, stale: &mut bool| {
                 let expected = by_hand(ring)[1];
                 if *stale && !ring.next_is_settled() {
                     ring.plan(TWICE_ACCEL);
