@@ -305,7 +305,7 @@ fn an_estimate_of_a_bad_file_says_so_as_a_plot_does() {
 #[test]
 fn real_files_are_estimated_as_they_are_stepped() {
     let folder = Folder::new();
-    for file in ["hpgl", "gcode"].into_iter().flat_map(collection) {
+    for file in ["hpgl", "gcode"].into_iter().flat_map(all) {
         for options in [&[][..], &["--tolerance-mm", "0.05"]] {
             estimated_as_stepped(&folder, &[&[file.to_str().unwrap()][..], options].concat());
         }

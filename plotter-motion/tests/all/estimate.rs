@@ -1,12 +1,10 @@
 //! The time of drawings without their steps is that of the steps.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by a panic")]
 
-mod auditor;
-mod drawings;
-
+use crate::{auditor, drawings, real_files};
 use core::time::Duration;
 use plotter_motion::{
-    Action, Estimator, PathMode, Pen, PlannerSettings, PlotOp, PlotTime, Point, StepGenSettings,
+    Action, Estimator, PathMode, Pen, PlannerSettings, PlotOp, PlotTime, Point, StepGenSettings, gcode, hpgl,
 };
 use proptest::prelude::*;
 use std::time::Instant;
@@ -91,15 +89,19 @@ fn drawings_take_what_their_steps_take_to_the_tick() {
 }
 
 #[test]
-fn real_files_take_what_their_steps_take_to_the_tick() {
-    for drawing in drawings::real() {
-        for (mode, settings) in modes() {
-            check::<64>(
-                &format!("{} {mode}", drawing.name),
-                settings,
-                StepGenSettings::default(),
-                &drawing.ops,
-            );
+fn files_take_what_their_steps_take_to_the_tick() {
+    for kind in ["hpgl", "gcode"] {
+        for file in real_files::all(kind) {
+            let text = std::fs::read(&file).unwrap();
+            let ops: Vec<PlotOp> = if kind == "hpgl" {
+                hpgl::plot_ops(&text).flatten().collect()
+            } else {
+                gcode::plot_ops(&text).flatten().collect()
+            };
+            for (mode, settings) in modes() {
+                let what = format!("{} {mode}", file.display());
+                check::<64>(&what, settings, StepGenSettings::default(), &ops);
+            }
         }
     }
 }
