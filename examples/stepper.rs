@@ -11,18 +11,23 @@
 //! cargo run --release --example stepper -- --svg plot.svg --speed-plot speed.svg
 //! cargo run --release --example stepper -- drawing.plt --mode tolerance --tolerance-mm 0.05
 //! cargo run --release --example stepper -- drawing.gcode --max-speed 100 --accel 1000 --ignore-feed --report plot.json
+//! cargo run --release --example stepper -- large.plt --estimate
 //! ```
+//!
+//! With `--estimate` the steps are not made: the plan alone tells how long the plot takes, to the microsecond as the steps would,
+//! some hundred times as fast.
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    Diagnostic, Diagnostics, DrawingFile, DrawnExtent, FontFiles, Happening, Language, Reading, Severity,
-    SpeedChart, StepFile, SteppedFigures, SteppedPlot, SteppedPreview, SteppedReport, at, print, read_file,
-    run, write_file,
+    BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, FontFiles, Happening, Language, PlotFigures,
+    Reading, Severity, SpeedChart, StepFile, SteppedPlot, SteppedPreview, SteppedReport, at, print,
+    read_file, run, write_file,
 };
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{
-    Machine, MachineConfig, MachineKind, PathMode, Pen, PlannerSettings, PlotOp, Point, StepGenSettings,
+    DriveChoice, Estimator, Machine, MachineConfig, MachineKind, PathMode, Pen, PlanError, PlannerSettings,
+    PlotOp, Point, StepGenSettings,
 };
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -42,6 +47,7 @@ const FARTHEST_MM: f64 = 100_000.0;
                   stepper --svg plot.svg --speed-plot speed.svg\n  \
                   stepper drawing.plt --mode tolerance --tolerance-mm 0.05 --report plot.json\n  \
                   stepper drawing.gcode --max-speed 100 --accel 1000 --ignore-feed\n  \
+                  stepper large.plt --estimate\n  \
                   cat drawing.svg | stepper - --s-curve --jerk 20000 --steps steps.txt\n\n\
                   Exit status: 0 plotted; 1 nothing that can be plotted, or with --strict any error or point outside of the \
                   area; 2 wrong options."
@@ -87,6 +93,9 @@ struct Arguments {
     /// What becomes of what lies outside of the machine's area; there is a warning either way
     #[arg(long, value_enum, default_value = "draw")]
     outside: Outside,
+    /// Tells the times and lengths from the plan alone, without making its steps: as they would be, in a hundredth of the time
+    #[arg(long, conflicts_with_all = ["svg", "speed_plot", "steps"])]
+    estimate: bool,
     /// Writes the picture that the pen draws: true scale in mm, pen-up ways dashed, the machine's area as frame
     #[arg(long, value_name = "F.svg")]
     svg: Option<PathBuf>,
@@ -160,24 +169,32 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
     let motors = [motor(&config.x.stepper), motor(&config.y.stepper)];
     let finest = motors[0].steps_per_mm.max(motors[1].steps_per_mm);
     let settings = PlannerSettings { resolution_mm: 0.5 / finest, ..settings };
-    let plot = SteppedPlot::new(settings, StepGenSettings::of(&machine), motors)?;
-
+    let timing = StepGenSettings::of(&machine);
+    let mut read = DrawnExtent::new(config.area);
+    if arguments.estimate {
+        let mut estimator = Estimator::<BLOCKS>::new(settings, timing).map_err(|error| error.to_string())?;
+        walk(arguments, &drawing, &mut read, &mut said, |op| Ok(estimator.push(op)))?;
+        let time = estimator.finish().map_err(|error| error.to_string())?;
+        check_drawn(&drawing, &read, &said)?;
+        read.warn(&mut said);
+        let figures = PlotFigures::Estimated(&time);
+        let report = SteppedReport::new(&drawing, &machine, &settings, motors, figures, &read, &said);
+        return tell(arguments, &drawing, &report, &said);
+    }
+    let mut plot = SteppedPlot::new(settings, timing, motors)?;
     let mut writers = Writers {
         preview: arguments.svg.is_some().then(|| SteppedPreview::new(Point::ORIGIN, 1.0 / finest)),
         chart: arguments.speed_plot.is_some().then(SpeedChart::default),
         steps: arguments.steps.as_deref().map(StepFile::create).transpose()?,
         pen: Pen::Up,
     };
-    let mut read = DrawnExtent::new(config.area);
-    let (figures, colours) = walk(arguments, &drawing, plot, &mut read, &mut said, &mut writers)?;
-    if read.drawn == 0 {
-        let why = said.first_error().map_or_else(String::new, |first| format!("; {first}"));
-        return Err(format!(
-            "{}: nothing is drawn by it, read as {}{why}",
-            drawing.name(),
-            drawing.language().name()
-        ));
-    }
+    let colours = walk(arguments, &drawing, &mut read, &mut said, |op| {
+        let outcome = plot.push(op, &mut |happening| writers.take(happening));
+        let failure = writers.steps.as_mut().and_then(|steps| steps.failure.take());
+        failure.map_or(Ok(outcome), Err)
+    })?;
+    let figures = plot.finish(&mut |happening| writers.take(happening)).map_err(|error| error.to_string())?;
+    check_drawn(&drawing, &read, &said)?;
     read.warn(&mut said);
 
     let title = format!("{}: {:.1} s", drawing.name(), figures.motion_s);
@@ -193,9 +210,28 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
     if let Some(steps) = writers.steps {
         steps.finish()?;
     }
-    let report = SteppedReport::new(&drawing, &machine, &settings, motors, &figures, &read, &said);
+    let figures = PlotFigures::Stepped(&figures);
+    let report = SteppedReport::new(&drawing, &machine, &settings, motors, figures, &read, &said);
+    tell(arguments, &drawing, &report, &said)
+}
+
+/// That something is drawn.
+fn check_drawn(drawing: &DrawingFile, read: &DrawnExtent, said: &Diagnostics) -> Result<(), String> {
+    if read.drawn > 0 {
+        return Ok(());
+    }
+    let why = said.first_error().map_or_else(String::new, |first| format!("; {first}"));
+    Err(format!("{}: nothing is drawn by it, read as {}{why}", drawing.name(), drawing.language().name()))
+}
+
+fn tell(
+    arguments: &Arguments,
+    drawing: &DrawingFile,
+    report: &SteppedReport,
+    said: &Diagnostics,
+) -> Result<(), String> {
     if let Some(path) = &arguments.report {
-        let text = serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?;
+        let text = serde_json::to_string_pretty(report).map_err(|error| error.to_string())?;
         write_file(path, text + "\n")?;
     }
     print(&report.table())?;
@@ -250,26 +286,31 @@ fn machine(arguments: &Arguments, said: &mut Diagnostics) -> Result<(Machine, Pl
     Ok((machine, settings))
 }
 
-/// Reads, plans and steps the drawing, all at once; gives the figures and the colours of its pens.
+/// Reads the drawing, and hands over its operations one by one to be planned; gives the colours of its pens. `push` says what is wrong
+/// with an operation, or why it cannot go on at all.
 fn walk(
     arguments: &Arguments,
     drawing: &DrawingFile,
-    mut plot: SteppedPlot,
     read: &mut DrawnExtent,
     said: &mut Diagnostics,
-    writers: &mut Writers,
-) -> Result<(SteppedFigures, Vec<[u8; 3]>), String> {
+    mut push: impl FnMut(PlotOp) -> Result<Result<(), PlanError>, String>,
+) -> Result<Vec<[u8; 3]>, String> {
     let mut ops = drawing.ops(Reading { counts_per_mm: 40.0, ..Reading::default() })?;
     let colours = std::mem::take(&mut ops.colours);
     let bar = ProgressBar::new(drawing.length_bytes());
-    if let Ok(style) = ProgressStyle::with_template("plotting {bar:40} {bytes}/{total_bytes}, {elapsed}") {
+    bar.set_prefix(if arguments.estimate { "estimating" } else { "plotting" });
+    if let Ok(style) = ProgressStyle::with_template("{prefix} {bar:40} {bytes}/{total_bytes}, {elapsed}") {
         bar.set_style(style);
     }
     // Whether the pen is not where the next line begins, because an operation was left out.
     let mut is_lost = false;
+    let mut shown = 0;
     let name = drawing.name();
     while let Some(item) = ops.next() {
-        bar.set_position(ops.bytes());
+        if ops.bytes() != shown {
+            shown = ops.bytes();
+            bar.set_position(shown);
+        }
         let op = match item {
             Ok(op) => op,
             Err(found) => {
@@ -297,7 +338,7 @@ fn walk(
         }
         let leaves_out = outside && arguments.outside == Outside::LeaveOut;
         let Some(to) = op.target() else {
-            push(&mut plot, op, ops.line(), writers, said)?;
+            plan(op, ops.line(), &mut push, said)?;
             continue;
         };
         if leaves_out {
@@ -306,15 +347,14 @@ fn walk(
         }
         // Nothing is drawn that the drawing does not hold: the way from what is left out is made with the pen up.
         let op = if std::mem::take(&mut is_lost) { PlotOp::Travel { to } } else { op };
-        if push(&mut plot, op, ops.line(), writers, said)? {
+        if plan(op, ops.line(), &mut push, said)? {
             read.drawn += u64::from(!matches!(op, PlotOp::Travel { .. }));
         } else {
             is_lost = true;
         }
     }
     bar.finish_and_clear();
-    let figures = plot.finish(&mut |happening| writers.take(happening)).map_err(|error| error.to_string())?;
-    Ok((figures, colours))
+    Ok(colours)
 }
 
 fn is_near(place: Point) -> bool {
@@ -322,18 +362,13 @@ fn is_near(place: Point) -> bool {
 }
 
 /// Says whether the operation could be planned.
-fn push(
-    plot: &mut SteppedPlot,
+fn plan(
     op: PlotOp,
     line: Option<u32>,
-    writers: &mut Writers,
+    push: &mut impl FnMut(PlotOp) -> Result<Result<(), PlanError>, String>,
     said: &mut Diagnostics,
 ) -> Result<bool, String> {
-    let outcome = plot.push(op, &mut |happening| writers.take(happening));
-    if let Some(failure) = writers.steps.as_mut().and_then(|steps| steps.failure.take()) {
-        return Err(failure);
-    }
-    if let Err(error) = outcome {
+    if let Err(error) = push(op)? {
         said.push(Diagnostic { line, ..Diagnostic::new(Severity::Error, error.to_string()) });
         return Ok(false);
     }

@@ -307,7 +307,7 @@ impl Ops<'_> {
         Some(self.place.line.get()).filter(|line| *line > 0)
     }
 
-    /// Bytes that have been read of the file.
+    /// Bytes that have been read of the file: to the end of the part of it that is in memory.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.place.bytes.get()
@@ -333,27 +333,32 @@ impl Iterator for Ops<'_> {
 }
 
 /// How far the bytes have been read.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Place {
     /// Line of the byte given last; 0 before the first.
     line: Cell<u32>,
-    line_ended: Cell<bool>,
+    /// How many lines later the byte to come is: one after a line end, and at the start.
+    further: Cell<u32>,
+    /// Bytes that have been fetched to be given.
     bytes: Cell<u64>,
     failure: RefCell<Option<String>>,
 }
 
+impl Default for Place {
+    fn default() -> Self {
+        Self { line: Cell::new(0), further: Cell::new(1), bytes: Cell::new(0), failure: RefCell::new(None) }
+    }
+}
+
 impl Place {
     fn pass(&self, byte: u8) {
-        if self.line.get() == 0 || self.line_ended.get() {
-            self.line.set(self.line.get().saturating_add(1));
-        }
-        self.line_ended.set(byte == b'\n');
-        self.bytes.set(self.bytes.get().saturating_add(1));
+        self.line.set(self.line.get().saturating_add(self.further.get()));
+        self.further.set(u32::from(byte == b'\n'));
     }
 
     fn restart(&self) -> Result<(), String> {
         self.line.set(0);
-        self.line_ended.set(false);
+        self.further.set(1);
         self.bytes.set(0);
         self.failure.borrow_mut().take().map_or(Ok(()), Err)
     }
@@ -375,7 +380,11 @@ impl Iterator for Bytes<'_> {
         while self.next == self.filled {
             match self.reader.read(&mut self.buffer) {
                 Ok(0) => return None,
-                Ok(filled) => (self.filled, self.next) = (filled, 0),
+                Ok(filled) => {
+                    (self.filled, self.next) = (filled, 0);
+                    let bytes = self.place.bytes.get();
+                    self.place.bytes.set(bytes.saturating_add(filled as u64));
+                }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => {
                     *self.place.failure.borrow_mut() = Some(error.to_string());

@@ -59,33 +59,37 @@ impl DrawnExtent {
     pub fn outside(&mut self, op: PlotOp) -> bool {
         let Some(to) = op.target() else { return false };
         let from = std::mem::replace(&mut self.position, to);
-        let mut extremes = vec![to];
-        match op {
-            PlotOp::Draw { .. } => extremes.push(from),
-            PlotOp::DrawArc { .. } => {
-                extremes.push(from);
-                let arc = [PlotOp::Travel { to: from }, op];
-                extremes.extend(plotter_motion::chords(arc, BORDER_MM).filter_map(PlotOp::target));
-            }
-            _ => {}
-        }
+        let mut first_outside = None;
+        self.pass(to, op, &mut first_outside);
         if !matches!(op, PlotOp::Travel { .. }) {
-            for place in &extremes {
-                let least = self.least.unwrap_or(*place);
-                let most = self.most.unwrap_or(*place);
-                self.least = Some(Point::new(least.x.min(place.x), least.y.min(place.y)));
-                self.most = Some(Point::new(most.x.max(place.x), most.y.max(place.y)));
+            self.pass(from, op, &mut first_outside);
+        }
+        if let PlotOp::DrawArc { .. } = op {
+            let arc = [PlotOp::Travel { to: from }, op];
+            for place in plotter_motion::chords(arc, BORDER_MM).filter_map(PlotOp::target) {
+                self.pass(place, op, &mut first_outside);
             }
+        }
+        let Some(place) = first_outside else { return false };
+        self.outside += 1;
+        self.first_outside = self.first_outside.or(Some((place, self.line)));
+        true
+    }
+
+    /// A place that an operation passes.
+    fn pass(&mut self, place: Point, op: PlotOp, first_outside: &mut Option<Point>) {
+        if !matches!(op, PlotOp::Travel { .. }) {
+            let least = self.least.unwrap_or(place);
+            let most = self.most.unwrap_or(place);
+            self.least = Some(Point::new(least.x.min(place.x), least.y.min(place.y)));
+            self.most = Some(Point::new(most.x.max(place.x), most.y.max(place.y)));
         }
         let AreaConfig { width_mm, height_mm } = self.area;
-        let is_inside = |place: &Point| {
-            (-BORDER_MM..=width_mm + BORDER_MM).contains(&place.x)
-                && (-BORDER_MM..=height_mm + BORDER_MM).contains(&place.y)
-        };
-        let Some(place) = extremes.iter().find(|place| !is_inside(place)) else { return false };
-        self.outside += 1;
-        self.first_outside = self.first_outside.or(Some((*place, self.line)));
-        true
+        let is_inside = (-BORDER_MM..=width_mm + BORDER_MM).contains(&place.x)
+            && (-BORDER_MM..=height_mm + BORDER_MM).contains(&place.y);
+        if !is_inside {
+            *first_outside = first_outside.or(Some(place));
+        }
     }
 
     /// Where the area is left first.

@@ -3,12 +3,12 @@
 use crate::{Moment, PathDeviation, SpeedAudit};
 use plotter_motion::kinematics::{Cartesian, Kinematics as _, MotorScale};
 use plotter_motion::{
-    Action, MotorEvent, Pen, PlanError, Planner, PlannerSettings, PlotOp, Point, StepGen, StepGenSettings,
-    StepPoint, TimedEvent, chords,
+    Action, MotorEvent, Pen, PlanError, Planner, PlannerSettings, PlotOp, PlotTime, Point, StepGen,
+    StepGenSettings, StepPoint, TimedEvent, chords,
 };
 
 /// Blocks of look-ahead: more than a controller has, less than what makes a difference.
-const BLOCKS: usize = 64;
+pub const BLOCKS: usize = 64;
 
 /// How finely arcs are compared with what is drawn, mm.
 const CHORD_MM: f64 = 1e-4;
@@ -46,6 +46,23 @@ pub struct SteppedFigures {
     pub from_drawing_mm: f64,
     /// Farthest that a vertex of the drawing is from the steps, mm.
     pub from_steps_mm: f64,
+}
+
+impl From<&PlotTime> for SteppedFigures {
+    /// Of a plan: nothing is known of steps.
+    fn from(time: &PlotTime) -> Self {
+        Self {
+            motion_s: time.motion.as_secs_f64(),
+            total_s: time.total.as_secs_f64(),
+            dwell_s: time.dwell.as_secs_f64(),
+            draw_mm: time.draw_mm,
+            travel_mm: time.travel_mm,
+            courses: time.courses,
+            strokes: time.strokes,
+            pen_lifts: time.pen_lifts,
+            ..Self::default()
+        }
+    }
 }
 
 /// Something that happens, for those who draw or write it down.

@@ -2,7 +2,7 @@
 
 use crate::{Diagnostic, Diagnostics, DrawingFile, DrawnExtent, Language, SteppedFigures};
 use plotter_motion::kinematics::MotorScale;
-use plotter_motion::{Machine, PathMode, PlannerSettings};
+use plotter_motion::{Machine, PathMode, PlannerSettings, PlotTime};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -15,6 +15,8 @@ pub struct SteppedReport {
     mode: &'static str,
     tolerance_mm: Option<f64>,
     s_curve: bool,
+    /// Whether the times are those of the plan, without its steps.
+    estimated: bool,
     limits: Limits,
     steps_per_mm: [f64; 2],
     time_s: f64,
@@ -24,9 +26,22 @@ pub struct SteppedReport {
     travel_mm: f64,
     segments: u64,
     courses: u64,
-    steps: u64,
     strokes: u64,
     pen_lifts: u64,
+    #[serde(flatten)]
+    measured: Option<Measured>,
+    bounds_mm: Option<[f64; 4]>,
+    outside: u64,
+    errors: usize,
+    warnings: usize,
+    notices: usize,
+    diagnostics: Vec<Diagnostic>,
+}
+
+/// What only steps tell.
+#[derive(Clone, Debug, Serialize)]
+struct Measured {
+    steps: u64,
     max_speed_mm_s: f64,
     max_accel_mm_s2: f64,
     max_accel_across_mm_s2: f64,
@@ -34,12 +49,30 @@ pub struct SteppedReport {
     max_deviation_mm: f64,
     max_steps_from_drawing_mm: f64,
     max_drawing_from_steps_mm: f64,
-    bounds_mm: Option<[f64; 4]>,
-    outside: u64,
-    errors: usize,
-    warnings: usize,
-    notices: usize,
-    diagnostics: Vec<Diagnostic>,
+}
+
+impl Measured {
+    fn of(figures: &SteppedFigures) -> Self {
+        Self {
+            steps: figures.steps,
+            max_speed_mm_s: figures.max_speed_mm_s,
+            max_accel_mm_s2: figures.max_accel_mm_s2,
+            max_accel_across_mm_s2: figures.max_accel_across_mm_s2,
+            accel_window_ms: figures.accel_window_ms,
+            max_deviation_mm: figures.from_drawing_mm.max(figures.from_steps_mm),
+            max_steps_from_drawing_mm: figures.from_drawing_mm,
+            max_drawing_from_steps_mm: figures.from_steps_mm,
+        }
+    }
+}
+
+/// What is known of a plot.
+#[derive(Clone, Copy, Debug)]
+pub enum PlotFigures<'a> {
+    /// From its steps.
+    Stepped(&'a SteppedFigures),
+    /// From its plan.
+    Estimated(&'a PlotTime),
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -59,13 +92,18 @@ impl SteppedReport {
         machine: &Machine,
         settings: &PlannerSettings,
         motors: [MotorScale; 2],
-        figures: &SteppedFigures,
+        figures: PlotFigures<'_>,
         read: &DrawnExtent,
         said: &Diagnostics,
     ) -> Self {
         let tolerance_mm = match settings.path {
             PathMode::Tolerance { path_tolerance_mm } => Some(path_tolerance_mm),
             PathMode::Exact => None,
+        };
+        // Both have the same figures of time, path and pen.
+        let (figures, measured) = match figures {
+            PlotFigures::Stepped(figures) => (*figures, Some(Measured::of(figures))),
+            PlotFigures::Estimated(time) => (SteppedFigures::from(time), None),
         };
         let Diagnostics { kept, errors, warnings, notices } = said.clone();
         Self {
@@ -75,6 +113,7 @@ impl SteppedReport {
             mode: if tolerance_mm.is_some() { "tolerance" } else { "exact" },
             tolerance_mm,
             s_curve: settings.jerk_mm_s3.is_some(),
+            estimated: measured.is_none(),
             limits: Limits {
                 speed_mm_s: settings.speed_mm_s,
                 travel_speed_mm_s: settings.travel_speed_mm_s,
@@ -90,16 +129,9 @@ impl SteppedReport {
             travel_mm: figures.travel_mm,
             segments: read.segments,
             courses: figures.courses,
-            steps: figures.steps,
             strokes: figures.strokes,
             pen_lifts: figures.pen_lifts,
-            max_speed_mm_s: figures.max_speed_mm_s,
-            max_accel_mm_s2: figures.max_accel_mm_s2,
-            max_accel_across_mm_s2: figures.max_accel_across_mm_s2,
-            accel_window_ms: figures.accel_window_ms,
-            max_deviation_mm: figures.from_drawing_mm.max(figures.from_steps_mm),
-            max_steps_from_drawing_mm: figures.from_drawing_mm,
-            max_drawing_from_steps_mm: figures.from_steps_mm,
+            measured,
             bounds_mm: read.least.zip(read.most).map(|(least, most)| [least.x, least.y, most.x, most.y]),
             outside: read.outside,
             errors,
@@ -116,8 +148,9 @@ impl SteppedReport {
         if let Some(tolerance_mm) = self.tolerance_mm {
             let _ = write!(out, " {tolerance_mm} mm");
         }
-        out.push_str(if self.s_curve { ", s-curve\n" } else { "\n" });
-        let rows = [
+        out.push_str(if self.s_curve { ", s-curve" } else { "" });
+        out.push_str(if self.estimated { ", estimated without steps\n" } else { "\n" });
+        let mut rows = vec![
             ("time in motion", format!("{:.1}", self.time_s), "s"),
             ("with pen and pauses", format!("{:.1}", self.time_with_pen_s), "s"),
             ("pen down", format!("{:.1}", self.draw_mm), "mm"),
@@ -125,12 +158,16 @@ impl SteppedReport {
             ("strokes", self.strokes.to_string(), ""),
             ("lines and arcs", self.segments.to_string(), "read"),
             ("", self.courses.to_string(), "planned"),
-            ("steps", self.steps.to_string(), ""),
-            ("greatest speed", format!("{:.1}", self.max_speed_mm_s), "mm/s"),
-            ("acceleration along", format!("{:.0}", self.max_accel_mm_s2), "mm/s²"),
-            ("across, in curves", format!("{:.0}", self.max_accel_across_mm_s2), "mm/s²"),
-            ("from the drawing", format!("{:.4}", self.max_deviation_mm), "mm"),
         ];
+        if let Some(measured) = &self.measured {
+            rows.extend([
+                ("steps", measured.steps.to_string(), ""),
+                ("greatest speed", format!("{:.1}", measured.max_speed_mm_s), "mm/s"),
+                ("acceleration along", format!("{:.0}", measured.max_accel_mm_s2), "mm/s²"),
+                ("across, in curves", format!("{:.0}", measured.max_accel_across_mm_s2), "mm/s²"),
+                ("from the drawing", format!("{:.4}", measured.max_deviation_mm), "mm"),
+            ]);
+        }
         for (name, value, unit) in rows {
             out.push_str(format!("  {name:20} {value:>12} {unit}").trim_end());
             out.push('\n');

@@ -70,7 +70,8 @@ pub use pulse_counter::PulseCounter;
 pub use safety::{Beam, Blocked, Demand, Drive, Duty, DutyError, LimitSwitches, Pulse, SafetyGate};
 pub use shapes::{circle, rectangle};
 pub use stepgen::{
-    BacklashSteps, Busy, MotorEvent, QueuedEvent, StepGen, StepGenSettings, StepQueue, TimedEvent,
+    BacklashSteps, Busy, Estimator, MotorEvent, PlotTime, PlotTimer, QueuedEvent, StepGen, StepGenSettings,
+    StepQueue, TimedEvent,
 };
 pub use steps::{StepPoint, from_mm};
 pub use sync_stop::SyncStop;

@@ -237,6 +237,81 @@ fn every_real_file_is_plotted_within_its_limits() {
     }
 }
 
+/// That an estimate says of a plot what its steps do, but what only they can tell; gives its report.
+fn estimated_as_stepped(folder: &Folder, arguments: &[&str]) -> Value {
+    /// What adding up a million floats leaves of a time, s.
+    const ROUNDING_S: f64 = 1e-6;
+    let stepped = folder.report(arguments);
+    let estimated = folder.report(&[arguments, &["--estimate"]].concat());
+    for (key, value) in estimated.as_object().unwrap() {
+        match (value.as_f64(), stepped[key].as_f64()) {
+            (Some(one), Some(other)) => {
+                assert!((one - other).abs() < ROUNDING_S, "{arguments:?}: {key} is {one}, not {other}");
+            }
+            _ if key == "estimated" => assert_eq!((value, &stepped[key]), (&true.into(), &false.into())),
+            _ => assert_eq!(value, &stepped[key], "{arguments:?}: {key}"),
+        }
+    }
+    let missing = stepped.as_object().unwrap().keys().filter(|key| estimated.get(key).is_none());
+    let only_steps = |key: &String| key.starts_with("max_") || key == "steps" || key == "accel_window_ms";
+    assert!(
+        missing.clone().count() == 8 && missing.clone().all(only_steps),
+        "{:?}",
+        missing.collect::<Vec<_>>()
+    );
+    estimated
+}
+
+#[test]
+fn an_estimate_says_what_the_steps_say() {
+    let folder = Folder::new();
+    for options in
+        [&[][..], &["--s-curve"], &["--tolerance-mm", "0.05"], &["--tolerance-mm", "0.05", "--s-curve"]]
+    {
+        let report = estimated_as_stepped(&folder, options);
+        assert!(number(&report, "time_s") > 60.0, "{report}");
+    }
+    // Dwells, pens, sheets, feeds; what is wrong; what lies outside.
+    let gcode = folder.write(
+        "a.nc",
+        "M3 S90\nG1 X10 F600\nG1 X1O\nG4 P250\nM104 S200\nG2 X20 I5 J0\nM5\nT2 M6\nM3\nG1 Y-5\nM0 (new sheet)\nG1 X900000000\n\
+         G1 X2 Y2\nM5\n",
+    );
+    let report = estimated_as_stepped(&folder, &[&gcode]);
+    assert_eq!((&report["errors"], &report["outside"]), (&2.into(), &3.into()), "{report}");
+    estimated_as_stepped(&folder, &[&gcode, "--outside", "leave-out", "--ignore-feed"]);
+    let hpgl = folder
+        .write("a.plt", "IN;SP1;VS2;PU400,400;PD800,400,800,800;CI200;SP2;PD;PU;PG;PD40,0,80;PU0,0;SP0;");
+    estimated_as_stepped(&folder, &[&hpgl]);
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='50mm' height='50mm' viewBox='0 0 50 50'>\
+               <path d='M5 5H45V30' fill='none' stroke='#00f'/><circle cx='25' cy='25' r='10' fill='none' stroke='red'/></svg>";
+    let report = estimated_as_stepped(&folder, &[&folder.write("a.svg", svg)]);
+    assert_eq!(report["strokes"], 2);
+}
+
+#[test]
+fn an_estimate_of_a_bad_file_says_so_as_a_plot_does() {
+    let folder = Folder::new();
+    let text = folder.write("up.plt", "IN;PU100,100;PU;");
+    assert_eq!(complaint("stepper", &[&text, "--estimate"]), complaint("stepper", &[&text]));
+    let text = folder.write("a.nc", "M3 S90\nG1 X10 F600\nG1 X1O\nG1 Y5\nM5\n");
+    let strict = complaint("stepper", &[&text, "--estimate", "--strict"]);
+    assert!(strict.contains("a.nc: line 3, column 6: O lacks its number"), "{strict}");
+    let output = run_example("stepper", &["--estimate", "--steps", "steps.txt"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot be used with"), "{output:?}");
+}
+
+#[test]
+fn real_files_are_estimated_as_they_are_stepped() {
+    let folder = Folder::new();
+    for file in ["hpgl", "gcode"].into_iter().flat_map(all) {
+        for options in [&[][..], &["--tolerance-mm", "0.05"]] {
+            estimated_as_stepped(&folder, &[&[file.to_str().unwrap()][..], options].concat());
+        }
+    }
+}
+
 #[test]
 fn published_times_are_found_again() {
     /// Of the times as published, which are rounded to this.

@@ -86,6 +86,15 @@ impl Block {
         }
     }
 
+    /// Forgets all of it: as [`Block::empty`] makes one.
+    pub(crate) fn clear(&mut self) {
+        for word in self.words.iter_mut().take(self.count.into()) {
+            *word = Word::NONE;
+        }
+        (self.at, self.count, self.deleted, self.checked, self.remark) =
+            (Position::START, 0, false, false, None);
+    }
+
     /// Takes one more word, the first of which stands at `at`; `false` if there is no room.
     pub(crate) fn push(&mut self, word: Word, at: Position) -> bool {
         let Some(slot) = self.words.get_mut(usize::from(self.count)) else { return false };

@@ -162,12 +162,13 @@ impl Detection {
     pub fn of(bytes: impl IntoIterator<Item = u8>) -> Self {
         let (mut reader, mut detection) = (Reader::new(), Self::new());
         for byte in bytes {
-            if let Some(Ok(block)) = reader.push(byte) {
-                detection.push(&block);
+            if let Some(Ok(())) = reader.advance(byte) {
+                detection.push(reader.block());
+                reader.clear_block();
             }
         }
-        if let Some(Ok(block)) = reader.finish() {
-            detection.push(&block);
+        if let Some(Ok(())) = reader.advance_to_end() {
+            detection.push(reader.block());
         }
         detection
     }

@@ -123,10 +123,15 @@ impl Interpreter {
     ///
     /// [`Undrained`] when [`Interpreter::next_op`] still has something to give; the line is not taken.
     pub fn push(&mut self, block: Result<Block, Error>) -> Result<(), Undrained> {
+        self.push_line(block.as_ref().map_err(|error| *error))
+    }
+
+    /// The same, with a line that stays where it is.
+    pub(super) fn push_line(&mut self, block: Result<&Block, Error>) -> Result<(), Undrained> {
         self.drained()?;
         let before = self.line;
         if let Err(error) =
-            block.and_then(|block| self.line.carry_out(&block, &self.options, &mut self.outcomes))
+            block.and_then(|block| self.line.carry_out(block, &self.options, &mut self.outcomes))
         {
             self.line = before;
             self.outcomes = Outcomes::none();

@@ -136,6 +136,7 @@ mod write_error;
 mod write_options;
 mod writer;
 
+pub(crate) use crate::hpgl::Cursor;
 pub use crate::hpgl::{Position, Undrained};
 pub use block::{Block, Remark, Word};
 pub use detection::{Detection, detect};

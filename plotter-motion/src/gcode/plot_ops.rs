@@ -74,12 +74,12 @@ impl<I: Iterator<Item = u8>> Iterator for PlotOps<I> {
                 }
                 return Some(outcome);
             }
-            let block = match self.stage {
-                Stage::Text => match self.bytes.by_ref().find_map(|byte| self.reader.push(byte)) {
-                    Some(block) => Some(block),
+            let ended = match self.stage {
+                Stage::Text => match self.bytes.by_ref().find_map(|byte| self.reader.advance(byte)) {
+                    Some(ended) => Some(ended),
                     None => {
                         self.stage = Stage::EndOfText;
-                        self.reader.finish()
+                        self.reader.advance_to_end()
                     }
                 },
                 Stage::EndOfText => {
@@ -90,9 +90,10 @@ impl<I: Iterator<Item = u8>> Iterator for PlotOps<I> {
                 }
                 Stage::EndOfDrawing | Stage::Failed => return None,
             };
-            if let Some(block) = block {
-                let taken = self.interpreter.push(block);
+            if let Some(ended) = ended {
+                let taken = self.interpreter.push_line(ended.map(|()| self.reader.block()));
                 debug_assert!(taken.is_ok(), "next_op has just given none");
+                self.reader.clear_block();
             }
         }
     }

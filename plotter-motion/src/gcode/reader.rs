@@ -2,7 +2,7 @@
 
 use super::block::is_among;
 use super::remark::RemarkReader;
-use super::{Block, Error, Position, Problem, Remark, Word};
+use super::{Block, Cursor, Error, Position, Problem, Remark, Word};
 use crate::decimal::Decimal;
 
 /// Greatest magnitude of a number: what [`Writer`](super::Writer) writes at most.
@@ -75,7 +75,8 @@ pub struct Reader {
     state: State,
     spacing: Spacing,
     /// The byte to come.
-    at: Position,
+    cursor: Cursor,
+    /// The words of the line in progress, or of the one that has just ended.
     block: Block,
     /// The bytes of the line by exclusive or.
     sum: u8,
@@ -105,19 +106,54 @@ impl Reader {
     /// ```
     #[must_use]
     pub fn with_spacing(spacing: Spacing) -> Self {
-        Self { state: START, spacing, at: Position::START, block: Block::empty(), sum: 0 }
+        Self { state: START, spacing, cursor: Cursor::START, block: Block::empty(), sum: 0 }
     }
 
     /// The place of the byte to come.
     #[must_use]
     pub fn position(&self) -> Position {
-        self.at
+        self.cursor.here()
     }
 
     /// Takes the next byte; gives the line that it ends, or what is wrong with it.
     pub fn push(&mut self, byte: u8) -> Option<Result<Block, Error>> {
-        let at = self.at;
-        self.at = at.after(byte);
+        let ended = self.advance(byte)?;
+        Some(ended.map(|()| self.take_block()))
+    }
+
+    /// As [`Reader::push`]; the line that has ended is the [block](Self::block), until that is [cleared](Self::clear_block), which must be
+    /// before the next byte.
+    #[cfg_attr(not(target_os = "none"), inline)]
+    pub(crate) fn advance(&mut self, byte: u8) -> Option<Result<(), Error>> {
+        // Most bytes are digits: such a one changes nothing but its number.
+        if let State::Number { number, .. } = &mut self.state
+            && number.push(byte)
+        {
+            self.cursor.pass(byte);
+            self.sum ^= byte;
+            return None;
+        }
+        self.advance_other(byte)
+    }
+
+    /// The line that has ended.
+    pub(crate) const fn block(&self) -> &Block {
+        &self.block
+    }
+
+    /// Forgets the line that has ended.
+    pub(crate) fn clear_block(&mut self) {
+        self.block.clear();
+    }
+
+    fn take_block(&mut self) -> Block {
+        core::mem::replace(&mut self.block, Block::empty())
+    }
+
+    /// A byte that does not go on with a number.
+    fn advance_other(&mut self, byte: u8) -> Option<Result<(), Error>> {
+        let at = self.cursor.here();
+        self.cursor.pass(byte);
         if byte == b'\n' || byte == b'\r' {
             return self.end_line();
         }
@@ -134,6 +170,12 @@ impl Reader {
 
     /// Ends the text; gives its last line, if no line end has done so. The reader then waits for another line.
     pub fn finish(&mut self) -> Option<Result<Block, Error>> {
+        let ended = self.end_line()?;
+        Some(ended.map(|()| self.take_block()))
+    }
+
+    /// As [`Reader::finish`], with the block as [`Reader::advance`] has it.
+    pub(crate) fn advance_to_end(&mut self) -> Option<Result<(), Error>> {
         self.end_line()
     }
 
@@ -169,9 +211,6 @@ impl Reader {
                 Ok(())
             }
             State::Number { letter, at: start, number } => {
-                if number.push(byte) {
-                    return Ok(());
-                }
                 let (letter, start, number) = (*letter, *start, *number);
                 match byte {
                     b'.' | b',' => return Err(Problem::BadNumber { letter }.at(start)),
@@ -242,9 +281,6 @@ impl Reader {
     fn spaced(&mut self, byte: u8, at: Position) -> Result<(), Error> {
         match &mut self.state {
             State::Number { letter, at: start, number } => {
-                if number.push(byte) {
-                    return Ok(());
-                }
                 let (letter, start, number) = (*letter, *start, *number);
                 self.word(letter, start, Some(number))?;
                 self.state = if is_blank(byte) { START } else { State::Lost };
@@ -301,10 +337,10 @@ impl Reader {
         Ok(())
     }
 
-    fn end_line(&mut self) -> Option<Result<Block, Error>> {
+    fn end_line(&mut self) -> Option<Result<(), Error>> {
         let ended = match self.state {
             State::Skip => {
-                self.block = Block::empty();
+                self.block.clear();
                 Ok(())
             }
             State::Letter { letter, at } => self.word(letter, at, None),
@@ -318,13 +354,15 @@ impl Reader {
         };
         (self.state, self.sum) = (START, 0);
         if let Err(error) = ended {
-            self.block = Block::empty();
+            self.block.clear();
             return Some(Err(error));
         }
         // A pen's number counts without words too.
-        let is_empty = self.block.words().is_empty() && !matches!(self.block.remark, Some(Remark::Pen(_)));
-        let block = core::mem::replace(&mut self.block, Block::empty());
-        (!is_empty).then_some(Ok(block))
+        if self.block.words().is_empty() && !matches!(self.block.remark, Some(Remark::Pen(_))) {
+            self.block.clear();
+            return None;
+        }
+        Some(Ok(()))
     }
 }
 

@@ -70,7 +70,8 @@ impl Mnemonic {
     }
 
     fn entry(self) -> Option<&'static (&'static [u8; 2], Syntax, &'static str)> {
-        TABLE.iter().find(|(letters, _, _)| **letters == self.0)
+        let found = TABLE.binary_search_by(|(letters, _, _)| letters.cmp(&&self.0)).ok()?;
+        TABLE.get(found)
     }
 }
 

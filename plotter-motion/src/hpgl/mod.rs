@@ -129,6 +129,7 @@ pub use command::{Mnemonic, Syntax};
 pub use error::Error;
 pub use interpreter::{Interpreter, Undrained};
 pub use plot_ops::{PlotOps, plot_ops};
+pub(crate) use position::Cursor;
 pub use position::Position;
 pub use read_options::ReadOptions;
 pub use reader::{Event, Reader};

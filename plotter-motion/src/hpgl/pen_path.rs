@@ -22,8 +22,6 @@ pub(super) struct PenPath {
     /// Where what has been given out has taken the pen.
     given: Vec2,
     dashes: Option<Dashes>,
-    /// Whether the line type applies to the piece in progress.
-    patterned: bool,
     visible: Option<Visible>,
     /// To be given after the travel to its beginning.
     next: Option<Piece>,
@@ -39,7 +37,6 @@ impl PenPath {
             end: Vec2::default(),
             given: Vec2::default(),
             dashes: None,
-            patterned: false,
             visible: None,
             next: None,
         }
@@ -77,9 +74,13 @@ impl PenPath {
             if piece.from() != self.end {
                 self.phase = Phase::default();
             }
-            let line_type = if patterned && self.parts_left > 0 { self.line_type } else { LineType::Solid };
-            self.patterned = patterned;
-            self.dashes = Some(Dashes::new(piece, line_type, self.phase));
+            if !patterned || self.parts_left == 0 || self.line_type == LineType::Solid {
+                // One dash, after which the pattern stands where it did.
+                self.parts_left = self.parts_left.saturating_sub(1);
+                self.visible = Some(Visible::new(piece, self.window));
+            } else {
+                self.dashes = Some(Dashes::new(piece, self.line_type, self.phase));
+            }
         }
         self.end = piece.to();
     }
@@ -108,9 +109,7 @@ impl PenPath {
                     self.visible = Some(Visible::new(piece, self.window));
                 }
                 None => {
-                    if self.patterned {
-                        self.phase = dashes.phase();
-                    }
+                    self.phase = dashes.phase();
                     self.dashes = None;
                 }
             }

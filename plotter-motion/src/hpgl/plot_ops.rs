@@ -27,6 +27,8 @@ pub struct PlotOps<I, const VERTICES: usize = USUAL_VERTICES> {
     reader: Reader,
     interpreter: Interpreter<VERTICES>,
     stage: Stage,
+    /// Whether the interpreter may have something to give.
+    has_more: bool,
     strict: bool,
 }
 
@@ -54,6 +56,7 @@ impl<I: Iterator<Item = u8>, const VERTICES: usize> PlotOps<I, VERTICES> {
             reader: Reader::new(),
             interpreter,
             stage: Stage::Text,
+            has_more: true,
             strict: false,
         }
     }
@@ -81,15 +84,18 @@ impl<I: Iterator<Item = u8>, const VERTICES: usize> Iterator for PlotOps<I, VERT
             if self.stage == Stage::Failed {
                 return None;
             }
-            if let Some(outcome) = self.interpreter.next_op() {
-                if self.strict && outcome.is_err_and(|error| !error.is_notice()) {
-                    self.stage = Stage::Failed;
+            if self.has_more {
+                if let Some(outcome) = self.interpreter.next_op() {
+                    if self.strict && outcome.is_err_and(|error| !error.is_notice()) {
+                        self.stage = Stage::Failed;
+                    }
+                    return Some(outcome);
                 }
-                return Some(outcome);
+                self.has_more = false;
             }
             let event = match self.stage {
-                Stage::Text => match self.bytes.next() {
-                    Some(byte) => self.reader.push(byte),
+                Stage::Text => match self.bytes.by_ref().find_map(|byte| self.reader.push(byte)) {
+                    Some(event) => Some(event),
                     None => {
                         self.stage = Stage::EndOfText;
                         self.reader.finish()
@@ -99,6 +105,7 @@ impl<I: Iterator<Item = u8>, const VERTICES: usize> Iterator for PlotOps<I, VERT
                     self.stage = Stage::EndOfDrawing;
                     let ended = self.interpreter.finish();
                     debug_assert!(ended.is_ok(), "next_op has just given none");
+                    self.has_more = true;
                     None
                 }
                 Stage::EndOfDrawing | Stage::Failed => return None,
@@ -106,6 +113,7 @@ impl<I: Iterator<Item = u8>, const VERTICES: usize> Iterator for PlotOps<I, VERT
             if let Some(event) = event {
                 let taken = self.interpreter.push(event);
                 debug_assert!(taken.is_ok(), "next_op has just given none");
+                self.has_more = true;
             }
         }
     }

@@ -29,6 +29,35 @@ impl Position {
     }
 }
 
+/// Where a reader stands in its text. A byte changes one number, but for line ends, and the [`Position`] is reckoned when it is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Cursor {
+    offset: u64,
+    line: u32,
+    /// Offset of the first byte of the line.
+    line_start: u64,
+}
+
+impl Cursor {
+    /// Before the first byte of a text.
+    pub(crate) const START: Self = Self { offset: 0, line: 1, line_start: 0 };
+
+    /// The place of the byte to come.
+    pub(crate) fn here(&self) -> Position {
+        let before = u32::try_from(self.offset - self.line_start).unwrap_or(u32::MAX);
+        Position { offset: self.offset, line: self.line, column: before.saturating_add(1) }
+    }
+
+    /// Goes past a byte.
+    pub(crate) fn pass(&mut self, byte: u8) {
+        self.offset = self.offset.saturating_add(1);
+        if byte == b'\n' {
+            self.line = self.line.saturating_add(1);
+            self.line_start = self.offset;
+        }
+    }
+}
+
 impl Default for Position {
     fn default() -> Self {
         Self::START
@@ -38,5 +67,23 @@ impl Default for Position {
 impl fmt::Display for Position {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "line {}, column {} (byte {})", self.line, self.column, self.offset)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cursor_is_where_the_bytes_before_it_lead() {
+        let (mut cursor, mut position) = (Cursor::START, Position::START);
+        for byte in *b"IN;\r\n\nPU0,0;\n" {
+            assert_eq!(cursor.here(), position);
+            cursor.pass(byte);
+            position = position.after(byte);
+        }
+        assert_eq!(cursor.here(), Position { offset: 13, line: 4, column: 1 });
+        let long = Cursor { offset: u64::MAX, ..Cursor::START };
+        assert_eq!(long.here().column, u32::MAX);
     }
 }

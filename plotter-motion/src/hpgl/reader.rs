@@ -1,7 +1,7 @@
 //! [`Reader`]: bytes in, commands and their numbers out.
 
 use super::escape::{Escape, Step};
-use super::{Error, Mnemonic, Position, Syntax};
+use super::{Cursor, Error, Mnemonic, Position, Syntax};
 use crate::decimal::Decimal;
 
 /// Greatest magnitude of a number: 2³⁰, the range of the widest HP-GL/2 plotters.
@@ -133,7 +133,7 @@ pub struct Reader {
     state: State,
     escape: Escape,
     /// The byte to come.
-    at: Position,
+    cursor: Cursor,
     terminator: u8,
     /// Whether the terminator belongs to the label (`DT` with a second argument of 0).
     terminator_shows: bool,
@@ -152,7 +152,7 @@ impl Reader {
         Self {
             state: State::Idle,
             escape: Escape::None,
-            at: Position::START,
+            cursor: Cursor::START,
             terminator: ETX,
             terminator_shows: false,
         }
@@ -161,16 +161,30 @@ impl Reader {
     /// The place of the byte to come.
     #[must_use]
     pub fn position(&self) -> Position {
-        self.at
+        self.cursor.here()
     }
 
     /// Takes the next byte; gives the piece that it completes, if it does.
     ///
     /// The error, if any, says what is wrong with the command in progress, which thereby ends. The next byte
     /// can be pushed all the same.
+    #[cfg_attr(not(target_os = "none"), inline)]
     pub fn push(&mut self, byte: u8) -> Option<Result<Event, Error>> {
-        let at = self.at;
-        self.at = at.after(byte);
+        // Most bytes are digits: such a one changes nothing but its number.
+        if let (State::Numbers { number: Some((digits, _)), .. }, Escape::None) =
+            (&mut self.state, self.escape)
+            && digits.push(byte)
+        {
+            self.cursor.pass(byte);
+            return None;
+        }
+        self.push_other(byte)
+    }
+
+    /// A byte that does not go on with a number.
+    fn push_other(&mut self, byte: u8) -> Option<Result<Event, Error>> {
+        let at = self.cursor.here();
+        self.cursor.pass(byte);
         match self.escape.push(byte) {
             Step::NotMine => self.plain(byte, at).transpose(),
             Step::Begun => self.interrupt().transpose(),
@@ -182,7 +196,7 @@ impl Reader {
 
     /// Ends the text; gives the piece that the end completes, if it does. The reader is then between commands.
     pub fn finish(&mut self) -> Option<Result<Event, Error>> {
-        let (state, at) = (self.state, self.at);
+        let (state, at) = (self.state, self.cursor.here());
         self.state = State::Idle;
         if self.escape.finish() {
             return Some(Err(Error::BadEscape { at, byte: None }));
@@ -330,13 +344,7 @@ impl Reader {
         byte: u8,
         at: Position,
     ) -> Result<Option<Event>, Error> {
-        if let Some((mut digits, start)) = number
-            && digits.push(byte)
-        {
-            self.state = State::Numbers { command, number: Some((digits, start)), comma };
-            return Ok(None);
-        }
-        // The byte is not part of a number in progress: it decides where the reader goes, and whether the
+        // The byte is not part of a number in progress, which takes its own at once: it decides where the reader goes, and whether the
         // number before it, if there is one, is the last.
         let begun = Decimal::begin(byte).map(|digits| (digits, at));
         let (next, last) = if let Some(begun) = begun {

@@ -204,6 +204,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             }
             return;
         }
+        if self.stale {
+            self.plan();
+        }
         let rest_mm = self.ramps.rest_mm();
         let next2 = self.ring.get(0).map_or(0.0, |head| head.entry2);
         let forced2 = if rest_mm > 0.0 { self.ramps.forced2(&limits) } else { next2 };
@@ -305,6 +308,12 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.limits.settings.jerk_of::<M>()
     }
 
+    /// Plans what has come.
+    fn plan(&mut self) {
+        self.stale = false;
+        self.ring.plan(self.limits.twice_accel);
+    }
+
     /// Whether the machine is at rest after what has been taken.
     fn stands(&self) -> bool {
         if self.jerk_mm_s3().is_some() {
@@ -327,12 +336,22 @@ impl<const N: usize, M: Modes> Planner<N, M> {
 
     /// The next thing for the motors to do; `None` when nothing is known, or the machine is held.
     pub fn next_action(&mut self) -> Option<Action> {
-        if core::mem::take(&mut self.stale) && self.jerk_mm_s3().is_none() {
-            self.ring.plan(self.limits.twice_accel);
-        }
         if let Some(phase) = self.ramps.next() {
             return Some(Action::Phase(phase));
         }
+        self.after_ramps()
+    }
+
+    /// As [`Planner::next_action`], for who does not want to hold the machine: a phase, and how many like it make the ramp.
+    pub(crate) fn next_ramp(&mut self) -> Option<(Action, u32)> {
+        if let Some((phase, count)) = self.ramps.next_whole() {
+            return Some((Action::Phase(phase), count));
+        }
+        self.after_ramps().map(|action| (action, 1))
+    }
+
+    /// The next thing that is no phase with a constant acceleration.
+    fn after_ramps(&mut self) -> Option<Action> {
         if let (Some(jerk_mm_s3), Some(s_curve)) = (self.jerk_mm_s3(), self.s_curve.get_mut())
             && let Some(phase) =
                 s_curve.next_phase(&mut self.ring, self.limits.settings.accel_mm_s2, jerk_mm_s3, self.hold)
@@ -360,6 +379,11 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             if let Some(under_way) = self.under_way.get_mut() {
                 *under_way = head.wish(&self.limits);
             }
+            // What has come is planned when it must be: once for many blocks, if they are short.
+            if self.stale && head.is_path() && !self.ring.next_is_settled() {
+                self.plan();
+            }
+            let Some(head) = self.ring.get(0) else { return Some(action) };
             self.ramps.begin::<M>(head, self.ring.next_entry2(), &self.limits);
             self.ring.pop();
             if self.hold {

@@ -24,6 +24,7 @@ mod ramps;
 mod ring;
 mod s_curve;
 mod settings;
+mod sum_down;
 
 pub use error::PlanError;
 pub use junction::junction_speed;

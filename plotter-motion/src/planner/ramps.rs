@@ -222,27 +222,42 @@ impl Ramps {
 
     /// The next phase. Those of a ramp are alike, and what is left of it is told by their number: nothing adds up, and it ends.
     pub(super) fn next(&mut self) -> Option<Phase> {
-        let Ramp { duration_s, accel, rest_mm, speed } = *self.ramps.get(self.next)?;
-        if self.left == 0 {
-            self.left = phases(duration_s);
-            self.phase_s = duration_s / number(self.left);
-        }
-        let phase = Phase {
-            duration_s: self.phase_s,
-            from_mm: self.length_mm - self.rest_mm,
-            speed_mm_s: self.speed,
-            accel_mm_s2: accel,
-            jerk_mm_s3: 0.0,
-        };
+        let ramp = *self.ramps.get(self.next)?;
+        let phase = self.phase(&ramp);
         self.left -= 1;
         if self.left == 0 {
             self.next += 1;
         }
         let left_s = number(self.left) * self.phase_s;
-        let change = accel * left_s;
-        self.speed = speed - change;
-        self.rest_mm = rest_mm + left_s * (speed - 0.5 * change);
+        let change = ramp.accel * left_s;
+        self.speed = ramp.speed - change;
+        self.rest_mm = ramp.rest_mm + left_s * (ramp.speed - 0.5 * change);
         Some(phase)
+    }
+
+    /// The next phase, and how many like it are left of the ramp, with it: all of them are taken.
+    pub(super) fn next_whole(&mut self) -> Option<(Phase, u32)> {
+        let ramp = *self.ramps.get(self.next)?;
+        let phase = self.phase(&ramp);
+        let count = core::mem::take(&mut self.left);
+        self.next += 1;
+        (self.speed, self.rest_mm) = (ramp.speed, ramp.rest_mm);
+        Some((phase, count))
+    }
+
+    /// The next phase of the ramp under way.
+    fn phase(&mut self, ramp: &Ramp) -> Phase {
+        if self.left == 0 {
+            self.left = phases(ramp.duration_s);
+            self.phase_s = ramp.duration_s / number(self.left);
+        }
+        Phase {
+            duration_s: self.phase_s,
+            from_mm: self.length_mm - self.rest_mm,
+            speed_mm_s: self.speed,
+            accel_mm_s2: ramp.accel,
+            jerk_mm_s3: 0.0,
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::block::Block;
 use super::limits::{Limits, Shares};
+use super::sum_down::{Sum, sum_down};
 use crate::extremes::{greatest, least};
 use crate::geom::single;
 
@@ -73,16 +74,27 @@ impl<const N: usize> Ring<N> {
         (self.len, self.planned) = (0, 0);
     }
 
+    /// Whether the block after the head has an entry speed that nothing to come can raise: what has come since it was planned makes no
+    /// difference to it.
+    pub(super) const fn next_is_settled(&self) -> bool {
+        self.planned > 0
+    }
+
     /// Plans anew after a change at the end. `twice_accel` is twice the limit along the path; the head's entry speed stands.
     pub(super) fn plan(&mut self, twice_accel: f32) {
         let first = self.planned.max(1);
-        let mut exit2 = 0.0_f32;
+        let mut exit2 = Sum::default();
         let mut index = self.len;
+        // The last block whose corner is what limits it, so far backwards.
+        let mut last_limited = None;
         while index > first {
             index -= 1;
             let Some(block) = self.get_mut(index) else { break };
-            exit2 = least(block.max_entry2, sum_down(exit2, reach2(block, twice_accel)));
-            block.entry2 = exit2;
+            exit2 = exit2.plus(reach2(block, twice_accel)).at_most(block.max_entry2);
+            block.entry2 = exit2.value();
+            if last_limited.is_none() && block.entry2 >= block.max_entry2 {
+                last_limited = Some(index);
+            }
         }
         let mut most2 =
             self.get(first - 1).map_or(0.0, |block| sum_down(block.entry2, reach2(block, twice_accel)));
@@ -96,6 +108,9 @@ impl<const N: usize> Ring<N> {
             most2 = sum_down(block.entry2, reach2(block, twice_accel));
             if settled {
                 self.planned = index;
+            } else if last_limited.is_none_or(|last| index > last) {
+                // From here on it brakes for the end: each block is entered no faster than the one before it.
+                break;
             }
         }
     }
@@ -135,12 +150,12 @@ impl<const N: usize> Ring<N> {
     /// Plans anew with a head that is entered with no more than this square of a speed; gives the one with which it is.
     pub(super) fn enter_at_most(&mut self, most2: f32, twice_accel: f32) -> f32 {
         // What can be braked from within the blocks known, backwards.
-        let mut entry2 = 0.0_f32;
+        let mut entry2 = Sum::default();
         for index in (0..self.len).rev() {
             let Some(block) = self.get(index) else { continue };
-            entry2 = least(block.max_entry2, sum_down(entry2, reach2(block, twice_accel)));
+            entry2 = entry2.plus(reach2(block, twice_accel)).at_most(block.max_entry2);
         }
-        let entry2 = least(entry2, most2);
+        let entry2 = least(entry2.value(), most2);
         if let Some(head) = self.get_mut(0) {
             head.entry2 = entry2;
         }
@@ -155,18 +170,93 @@ fn reach2(block: &Block, twice_accel: f32) -> f32 {
     if block.is_path() { twice_accel * block.length() } else { 0.0 }
 }
 
-/// The sum of two squares of speeds, rounded down: what the rounding added is found without error.
-///
-/// Source: D. E. Knuth, "The Art of Computer Programming", volume 2, section 4.2.2, theorem B.
-fn sum_down(a: f32, b: f32) -> f32 {
-    let sum = a + b;
-    let of_b = sum - a;
-    let error = (a - (sum - of_b)) + (b - of_b);
-    if error < 0.0 { sum.next_down() } else { sum }
-}
-
 /// A limit as the look-ahead keeps it: rounded down, so that no limit is exceeded by the rounding.
 pub(super) fn narrow(value: f64) -> f32 {
     let rounded = single(value);
     if f64::from(rounded) > value { greatest(rounded.next_down(), 0.0) } else { rounded }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{PlannerSettings, Shape};
+    use super::*;
+    use crate::{Pen, Point};
+    use proptest::prelude::*;
+    use std::vec;
+    use std::vec::Vec;
+
+    const TWICE_ACCEL: f32 = 2000.0;
+
+    fn block(length_mm: f32, max_entry2: f32) -> Block {
+        let mut block = Block::path(Shape::Line, Point::ORIGIN, length_mm, Pen::Down, 0, 1e4);
+        block.max_entry2 = max_entry2;
+        block
+    }
+
+    /// The squares of the speeds between all blocks from the head on, as one reckons them by hand.
+    fn by_hand<const N: usize>(ring: &Ring<N>) -> Vec<f32> {
+        let blocks: Vec<Block> = (0..ring.len()).filter_map(|index| ring.get(index).copied()).collect();
+        let mut speeds = vec![0.0; blocks.len() + 1];
+        for index in (1..blocks.len()).rev() {
+            let braked = sum_down(speeds[index + 1], reach2(&blocks[index], TWICE_ACCEL));
+            speeds[index] = least(blocks[index].max_entry2, braked);
+        }
+        speeds[0] = blocks.first().map_or(0.0, |head| head.entry2);
+        for index in 1..blocks.len() {
+            let reached = sum_down(speeds[index - 1], reach2(&blocks[index - 1], TWICE_ACCEL));
+            speeds[index] = least(reached, speeds[index]);
+        }
+        speeds
+    }
+
+    proptest! {
+        /// However many blocks have come since it was planned, and whether it is planned for each of them or only when it must be.
+        #[test]
+        fn the_next_speed_is_the_one_of_all_that_is_known(
+            rows in prop::collection::vec((0.001_f32..5.0, prop_oneof![1 => Just(0.0), 3 => 0.0_f32..1e4, 3 => Just(1e4_f32)], 0_usize..3), 1..200),
+            fine in prop_oneof![Just(1.0_f32), Just(0.01)],
+        ) {
+            let mut ring = Ring::<16>::new();
+            let mut stale = false;
+            let pop = |ring: &mut Ring<16>, stale: &mut bool| {
+                let expected = by_hand(ring)[1];
+                if *stale && !ring.next_is_settled() {
+                    ring.plan(TWICE_ACCEL);
+                    *stale = false;
+                }
+                let found = ring.next_entry2();
+                ring.pop();
+                (expected, found)
+            };
+            for (length_mm, max_entry2, pops) in rows {
+                if ring.room() == 0 {
+                    let (expected, found) = pop(&mut ring, &mut stale);
+                    prop_assert_eq!(found, expected);
+                }
+                ring.push(block(fine * length_mm, max_entry2));
+                stale = true;
+                for _ in 0..pops.saturating_sub(1).min(ring.len()) {
+                    let (expected, found) = pop(&mut ring, &mut stale);
+                    prop_assert_eq!(found, expected);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_settled_is_not_looked_at_again() {
+        let mut ring = Ring::<16>::new();
+        // 1 mm each at 1000 mm/s²: the fifth from the end is the first that may be entered with 100 mm/s.
+        for _ in 0..16 {
+            ring.push(block(1.0, 1e4));
+        }
+        let limits = Limits::of(&PlannerSettings::default());
+        ring.plan(limits.twice_accel);
+        let mut unplanned = 0;
+        while ring.next_is_settled() {
+            ring.pop();
+            unplanned += 1;
+        }
+        assert!(unplanned >= 7, "{unplanned}");
+    }
 }

@@ -72,6 +72,12 @@ impl State {
         }
     }
 
+    /// The speed that it comes to however soon its acceleration ends.
+    fn peak(self, limits: Limits) -> f64 {
+        let Self { speed, accel } = self;
+        speed + if accel > 0.0 { 0.5 * accel * accel / limits.jerk } else { 0.0 }
+    }
+
     /// Jerk and time, s, of the next phase of the quickest way to the cruising speed; none if it would go beyond it.
     fn next_to_cruise(self, cruise: f64, limits: Limits) -> Option<(f64, f64)> {
         if self.cruises(cruise, limits) {
@@ -174,11 +180,30 @@ impl<const N: usize> Ahead<N> {
         self.places.get(..self.count).unwrap_or(&[])
     }
 
+    /// Leaves out the places that a state keeps with room to spare: every state that is slower, has less acceleration and has not come so far
+    /// keeps them too, for all of its brakings are shorter.
+    fn leave_out_kept(&mut self, state: State, way_mm: f64, limits: Limits) {
+        /// Share of a speed, and a way, mm, that are far more than what rounding makes of them.
+        const SPARE: f64 = 1e-9;
+        const SPARE_MM: f64 = 1e-6;
+        let peak = state.peak(limits);
+        let mut count = 0;
+        for index in 0..self.count {
+            let Some(&(place_mm, most)) = self.places.get(index) else { break };
+            let is_kept = peak * (1.0 + SPARE) <= most
+                || state.braking_mm(most, limits) <= place_mm - way_mm - SPARE_MM;
+            if !is_kept && let Some(place) = self.places.get_mut(count) {
+                *place = (place_mm, most);
+                count += 1;
+            }
+        }
+        self.count = count;
+    }
+
     /// Whether a state that is `way_mm` ahead can still keep everything.
     fn is_viable(&self, state: State, way_mm: f64, limits: Limits) -> bool {
-        let State { speed, accel } = state;
-        let peak = speed + if accel > 0.0 { 0.5 * accel * accel / limits.jerk } else { 0.0 };
-        let within = speed >= -STANDSTILL_MM_S && peak <= self.cruise * (1.0 + 1e-12) + STANDSTILL_MM_S;
+        let peak = state.peak(limits);
+        let within = state.speed >= -STANDSTILL_MM_S && peak <= self.cruise * (1.0 + 1e-12) + STANDSTILL_MM_S;
         within
             && self.places().iter().all(|&(place_mm, most)| {
                 peak <= most || state.braking_mm(most, limits) <= place_mm - way_mm + SLACK_MM
@@ -366,7 +391,7 @@ impl SCurveState {
 
     /// Chooses the next phase or phases, at least one.
     fn choose<const N: usize>(&mut self, ring: &Ring<N>, rest_mm: f64, limits: Limits) -> Chosen {
-        let ahead = Ahead::new(ring, rest_mm, limits);
+        let mut ahead = Ahead::new(ring, rest_mm, limits);
         let state = self.state;
         let most = ahead.places().first().map_or(0.0, |place| place.1);
         let stands = state.speed <= STANDSTILL_MM_S && state.accel.abs() <= STANDSTILL_MM_S;
@@ -444,6 +469,8 @@ impl SCurveState {
             }
             low = forth;
         }
+        let (after, way_mm) = state.after(high, time_s);
+        ahead.leave_out_kept(after, way_mm, limits);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             let (after, way_mm) = state.after(middle, time_s);

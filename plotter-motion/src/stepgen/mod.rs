@@ -9,14 +9,21 @@
 //! as Bresenham's line: at each step of the motor that has the longer way, the other one steps or does not. Steps are due half
 //! way between the grid's lines, so that the motors are never farther than half a step from the path.
 //!
+//! [`Estimator`] tells the time without the steps: a [`PlotTimer`] adds up the same phases by the same clock.
+//!
 //! When a phase or a chord begins, floats are turned into whole numbers. From step to step there are only whole numbers.
 
 mod backlash_steps;
 mod chord;
+mod estimator;
+mod moment;
+mod plot_timer;
 mod slice;
 mod step_gen;
 mod step_queue;
 
 pub use backlash_steps::BacklashSteps;
+pub use estimator::Estimator;
+pub use plot_timer::{PlotTime, PlotTimer};
 pub use step_gen::{Busy, MotorEvent, StepGen, StepGenSettings, TimedEvent};
 pub use step_queue::{QueuedEvent, StepQueue};

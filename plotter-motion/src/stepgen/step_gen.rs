@@ -1,7 +1,8 @@
 //! [`StepGen`]: actions in, timed events out.
 
 use super::chord::Chords;
-use super::slice::{PART_BITS, Slice, parts_of, speed_fixed};
+use super::moment::Moment;
+use super::slice::{Slice, speed_fixed};
 use crate::extremes::greatest;
 use crate::geom::single;
 use crate::kinematics::Kinematics;
@@ -17,10 +18,6 @@ const CHORD_STEPS: f32 = 0.25;
 const LATE_MM: f32 = 2e-6;
 /// The same as a share of the course, which is what rounding makes of a long one.
 const LATE_SHARE: f32 = 2.5e-7;
-/// Nanoseconds in a second.
-const NANOS: u64 = 1_000_000_000;
-/// 2^32 / 10⁹, with 31 bits of fraction.
-const PARTS_PER_NANO: u64 = 9_223_372_037;
 /// What ends slower ends at rest, mm/s.
 const STANDSTILL_MM_S: f32 = 1e-3;
 
@@ -52,6 +49,16 @@ impl StepGenSettings {
             laser: config.laser.enabled,
             ..Self::default()
         }
+    }
+
+    /// With a clock as fast as can be counted, and no laser where none is built in.
+    pub(super) fn checked<M: Modes>(self) -> Self {
+        Self { clock_hz: self.clock_hz.clamp(1_000, 1_000_000_000), laser: self.laser && M::LASER, ..self }
+    }
+
+    /// How long the machine stands for a pen that goes from one state to another; none where it does not, and a laser never does.
+    pub(super) fn pen_time<M: Modes>(&self, from: Pen, to: Pen) -> Option<Duration> {
+        (from != to && !(M::LASER && self.laser)).then_some(self.pen_settle)
     }
 }
 
@@ -101,8 +108,7 @@ impl core::error::Error for Busy {}
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Running {
     phase: Phase,
-    /// The tick in which it ends, and the part of that, in 2^32ths.
-    end: (u64, u32),
+    end: Moment,
     /// Ticks to its end from the start of the slice.
     left: i64,
     slice: Slice,
@@ -143,9 +149,8 @@ pub struct StepGen<K, M: Modes = AllModes> {
     settings: StepGenSettings,
     chord_tolerance_mm: f32,
     seconds_per_tick: f32,
-    /// The end of the action pushed last: whole ticks, and the part of one, in 2^32ths.
-    tick: u64,
-    part: u32,
+    /// The end of the action pushed last.
+    now: Moment,
     /// Where the path and the motors are.
     at: Point,
     pen: Pen,
@@ -224,17 +229,16 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
             greatest(single(motors.x).abs(), single(motors.y).abs())
         };
         let steps_per_mm = greatest(scale(1.0, 0.0), scale(0.0, 1.0));
-        let clock_hz = settings.clock_hz.clamp(1_000, 1_000_000_000);
+        let settings = settings.checked::<M>();
         let steps = kinematics.steps_at(Point::ORIGIN);
         Self {
             modes: PhantomData,
             kinematics,
-            settings: StepGenSettings { clock_hz, ..settings },
+            settings,
             chord_tolerance_mm: CHORD_STEPS / steps_per_mm,
             #[expect(clippy::cast_precision_loss, reason = "to the last bit")]
-            seconds_per_tick: 1.0 / clock_hz as f32,
-            tick: 0,
-            part: 0,
+            seconds_per_tick: 1.0 / settings.clock_hz as f32,
+            now: Moment::default(),
             at: Point::ORIGIN,
             pen: Pen::Up,
             course: Course::default(),
@@ -286,7 +290,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     /// The end of the last action, in ticks: when the next one begins.
     #[must_use]
     pub const fn tick(&self) -> u64 {
-        self.tick
+        self.now.tick
     }
 
     /// Takes the next action.
@@ -397,7 +401,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
     fn end_phase(&mut self) -> Option<TimedEvent> {
         let running = self.running.take()?;
         let Phase { duration_s, from_mm, .. } = running.phase;
-        (self.tick, self.part) = running.end;
+        self.now = running.end;
         self.last_step = running.slice.base.saturating_add_signed(running.at);
         self.interval = running.interval;
         if M::LASER && self.laser != 0 && running.phase.speed_at::<M>(duration_s) < STANDSTILL_MM_S {
@@ -417,31 +421,24 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
             self.start(action);
             return self.next_event();
         }
-        self.step(self.tick)
+        self.step(self.now.tick)
     }
 
     fn give(&mut self, event: MotorEvent) {
-        let event = TimedEvent { tick: self.tick, event };
+        let event = TimedEvent { tick: self.now.tick, event };
         if let Some(slot) = self.waiting.iter_mut().find(|slot| slot.is_none()) {
             *slot = Some(event);
         }
     }
 
     fn wait(&mut self, duration: Duration) {
-        let clock_hz = u64::from(self.settings.clock_hz);
-        let nanos = u64::from(duration.subsec_nanos()) * clock_hz;
-        let (ticks, rest) = (nanos / NANOS, nanos % NANOS);
-        // rest · 2^32 / 10⁹
-        let parts = u64::from(self.part) + ((rest * PARTS_PER_NANO) >> 31);
-        let seconds = u64::from(u32::try_from(duration.as_secs()).unwrap_or(u32::MAX));
-        self.tick = self.tick.saturating_add(seconds * clock_hz + ticks + (parts >> PART_BITS));
-        self.part = low(parts);
+        self.now = self.now.after(duration, self.settings.clock_hz);
     }
 
     fn put(&mut self, pen: Pen) {
-        if self.pen != pen && !(M::LASER && self.settings.laser) {
+        if let Some(time) = self.settings.pen_time::<M>(self.pen, pen) {
             self.give(MotorEvent::Pen(pen));
-            self.wait(self.settings.pen_settle);
+            self.wait(time);
         }
         self.pen = pen;
     }
@@ -463,20 +460,11 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
 
     fn run(&mut self, phase: Phase) {
         self.put(self.course.pen);
-        // To the end, from the tick in which it begins.
-        let parts = parts_of(phase.duration_s, self.settings.clock_hz).saturating_add(self.part.into());
-        let left = parts >> PART_BITS;
-        let slice = Slice::new::<M>(&phase, self.seconds_per_tick, (self.tick, self.part), left);
-        let at = i64::try_from(self.tick.saturating_sub(self.last_step)).map_or(0, |since| -since);
-        self.running = Some(Running {
-            phase,
-            end: (self.tick.saturating_add_signed(left), low(parts.cast_unsigned())),
-            left,
-            slice,
-            at,
-            interval: self.interval,
-            change: 0,
-        });
+        let Moment { tick, part } = self.now;
+        let (end, left) = self.now.after_phase(phase.duration_s, self.settings.clock_hz);
+        let slice = Slice::new::<M>(&phase, self.seconds_per_tick, (tick, part), left);
+        let at = i64::try_from(tick.saturating_sub(self.last_step)).map_or(0, |since| -since);
+        self.running = Some(Running { phase, end, left, slice, at, interval: self.interval, change: 0 });
     }
 }
 
@@ -504,11 +492,4 @@ impl Running {
         self.slice = self.slice.following::<M>(self.left);
         true
     }
-}
-
-/// The lower half: what is less than a tick.
-fn low(parts: u64) -> u32 {
-    #[expect(clippy::cast_possible_truncation, reason = "that is meant")]
-    let low = parts as u32;
-    low
 }

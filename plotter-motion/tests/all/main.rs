@@ -7,6 +7,7 @@ mod closed_loop;
 mod config_messages;
 mod config_preset;
 mod drawings;
+mod estimate;
 mod exact_discretization;
 mod firmware_by_hand;
 mod firmware_grbl;

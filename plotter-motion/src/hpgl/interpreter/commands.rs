@@ -45,12 +45,18 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     }
 
     pub(super) fn number(&mut self, value: f64, at: Position) {
-        let Some(mut open) = self.open.take() else { return };
-        match open.command.letters() {
-            b"PU" | b"PD" | b"PA" | b"PR" => match open.x.take() {
+        // Nearly all numbers are places for the pen: nothing is moved about for them.
+        if let Some(open) = &mut self.open
+            && goes(open.command)
+        {
+            match open.x.take() {
                 None => open.x = Some((value, at)),
                 Some((x, _)) => self.go_to(x, value),
-            },
+            }
+            return;
+        }
+        let Some(mut open) = self.open.take() else { return };
+        match open.command.letters() {
             b"UC" => self.character_number(&mut open, value, at),
             b"DL" => self.own_number(&mut open, value, at),
             b"RF" => self.raster_number(&mut open, value, at),
@@ -64,17 +70,26 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     }
 
     pub(super) fn byte(&mut self, byte: u8, at: Position) {
-        let Some(open) = self.open else { return };
-        match open.command.letters() {
+        let Some(command) = self.open.as_ref().map(|open| open.command) else { return };
+        match command.letters() {
             b"LB" => self.label_byte(byte),
             b"BL" => self.buffer_byte(byte),
             b"SM" => self.symbol = Some(byte).filter(|byte| *byte > b' '),
-            b"PE" => self.encoded_byte(byte, at, &open),
+            b"PE" => self.encoded_byte(byte, at, command),
             _ => {}
         }
     }
 
     pub(super) fn end(&mut self) {
+        if let Some(Open { command, x, .. }) = self.open
+            && goes(command)
+        {
+            self.open = None;
+            if let Some((x, at)) = x {
+                self.complain(Error::OddCoordinates { at, command, x });
+            }
+            return;
+        }
         let Some(open) = self.open.take() else { return };
         let (command, at) = (open.command, open.at);
         if let Some(takes) = takes(command.letters())
@@ -89,10 +104,6 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
 
     fn carry_out(&mut self, open: &Open) -> Result<(), Error> {
         match open.command.letters() {
-            b"PU" | b"PD" | b"PA" | b"PR" => match open.x {
-                Some((x, at)) => Err(Error::OddCoordinates { at, command: open.command, x }),
-                None => Ok(()),
-            },
             b"IN" => {
                 self.initialize();
                 Ok(())
@@ -183,6 +194,11 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             _ => Ok(()),
         }
     }
+}
+
+/// Whether a command's numbers are places for the pen to go to, one after the other.
+fn goes(command: Mnemonic) -> bool {
+    matches!(command.letters(), b"PU" | b"PD" | b"PA" | b"PR")
 }
 
 /// How many numbers a command takes at most; `None` for one that is not carried out.

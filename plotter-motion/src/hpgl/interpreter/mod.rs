@@ -173,6 +173,8 @@ pub struct Interpreter<const VERTICES: usize = USUAL_VERTICES> {
     /// The command that has begun last.
     latest: Option<(Mnemonic, Position)>,
     queue: [Option<Item>; QUEUE],
+    /// How many of them there are.
+    queued: u8,
     report: Option<Error>,
     job: Job,
     path: PenPath,
@@ -253,6 +255,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             open: None,
             latest: None,
             queue: [None; QUEUE],
+            queued: 0,
             report: None,
             job: Job::None,
             path: PenPath::new(),
@@ -327,7 +330,10 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             if let Some(piece) = self.path.next() {
                 return Some(Ok(self.operation(piece)));
             }
-            if let Some(item) = self.queue.iter_mut().find_map(Option::take) {
+            if self.queued > 0
+                && let Some(item) = self.queue.iter_mut().find_map(Option::take)
+            {
+                self.queued -= 1;
                 match item {
                     Item::Outcome(outcome) => {
                         if let Ok(PlotOp::SelectPen { pen }) = outcome {
@@ -446,13 +452,16 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             && self.path.is_empty()
             && self.report.is_none()
             && self.playing.is_none()
-            && self.queue.iter().all(Option::is_none);
+            && self.queued == 0;
         if empty { Ok(()) } else { Err(Undrained) }
     }
 
     fn give(&mut self, item: Item) {
         match self.queue.iter_mut().find(|slot| slot.is_none()) {
-            Some(slot) => *slot = Some(item),
+            Some(slot) => {
+                *slot = Some(item);
+                self.queued += 1;
+            }
             None => debug_assert!(false, "an event gives at most {QUEUE} items"),
         }
     }

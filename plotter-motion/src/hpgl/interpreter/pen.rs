@@ -4,7 +4,7 @@ use super::super::bezier::Bezier;
 use super::super::encoded::Step;
 use super::super::piece::Piece;
 use super::super::scaling::limited;
-use super::super::{Error, Position};
+use super::super::{Error, Mnemonic, Position};
 use super::job::Job;
 use super::open::Open;
 use super::{Interpreter, Item, PENS};
@@ -99,23 +99,23 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         }
     }
 
-    pub(super) fn encoded_byte(&mut self, byte: u8, at: Position, open: &Open) {
+    pub(super) fn encoded_byte(&mut self, byte: u8, at: Position, command: Mnemonic) {
         let Some(mut decoder) = self.decoder.take() else { return };
         match decoder.push(byte) {
             Ok(steps) => {
                 self.decoder = Some(decoder);
                 for step in steps.into_iter().flatten() {
-                    self.encoded_step(step, at, open);
+                    self.encoded_step(step, at, command);
                 }
             }
             Err(_) => {
                 self.open = None;
-                self.complain(Error::UnexpectedByte { at, command: Some(open.command), byte });
+                self.complain(Error::UnexpectedByte { at, command: Some(command), byte });
             }
         }
     }
 
-    fn encoded_step(&mut self, step: Step, at: Position, open: &Open) {
+    fn encoded_step(&mut self, step: Step, at: Position, command: Mnemonic) {
         match step {
             Step::Go { to, up, absolute } => {
                 if up {
@@ -125,7 +125,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
                 self.move_to(self.target(to, !absolute));
             }
             Step::Pen(value) => {
-                let mut pen = Open::new(open.command, at);
+                let mut pen = Open::new(command, at);
                 pen.push(value, at);
                 if let Err(error) = self.select_pen(&pen) {
                     self.complain(error);
@@ -138,7 +138,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         // Without a decoder, its data have been complained about.
         let Some(mut decoder) = self.decoder.take() else { return Ok(()) };
         if let Ok(Some(step)) = decoder.finish() {
-            self.encoded_step(step, open.at, open);
+            self.encoded_step(step, open.at, open.command);
         }
         self.bytes = decoder.bytes();
         match decoder.lonely() {

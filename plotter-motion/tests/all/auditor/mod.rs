@@ -56,7 +56,7 @@ pub(crate) struct Audit {
     pub(crate) least_interval_s: f64,
 }
 
-/// Runs a drawing through planner and step generator.
+/// Runs a drawing through planner and step generator; gives the tick at which it ends.
 pub(crate) fn run<const N: usize>(
     settings: PlannerSettings,
     step_settings: StepGenSettings,
@@ -64,7 +64,7 @@ pub(crate) fn run<const N: usize>(
     ops: &[PlotOp],
     mut each: impl FnMut(Action, &StepGen<Cartesian>),
     mut event: impl FnMut(u64, MotorEvent),
-) {
+) -> u64 {
     let motor = MotorScale { steps_per_mm, inverted: false };
     let mut steps = StepGen::new(Cartesian::new(motor, motor).unwrap(), step_settings);
     let mut planner = Planner::<N>::new(settings).unwrap();
@@ -82,7 +82,7 @@ pub(crate) fn run<const N: usize>(
         }
         let Some(action) = planner.next_action() else {
             assert!(finished, "a planner with room for more has actions or is done");
-            break;
+            return steps.tick();
         };
         each(action, &steps);
         steps.push(action).unwrap();
