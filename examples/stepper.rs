@@ -5,7 +5,8 @@
 //! greatest speed, acceleration and distance from the drawing.
 //!
 //! Look at the speed chart: in the mode `exact` the pen brakes for every corner, with `tolerance` it rounds them within a
-//! distance that you name, and curves of many short lines run through. Compare the times.
+//! distance that you name. Compare the times. Short lines that turn by no more than the last digit of the file, or a motor step, are a
+//! curve in either mode: `--allowance-mm 0` shows what they would cost.
 //!
 //! ```text
 //! cargo run --release --example stepper -- --svg plot.svg --speed-plot speed.svg
@@ -16,9 +17,9 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    Diagnostic, Diagnostics, DrawingFile, DrawnExtent, FontFiles, Happening, Language, Reading, Severity,
-    SpeedChart, StepFile, SteppedFigures, SteppedPlot, SteppedPreview, SteppedReport, at, print, read_file,
-    run, write_file,
+    Diagnostic, Diagnostics, DrawingFile, DrawnExtent, FontFiles, Happening, Language, Ops, Reading,
+    Severity, SpeedChart, StepFile, SteppedFigures, SteppedPlot, SteppedPreview, SteppedReport, at, print,
+    read_file, run, write_file,
 };
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{
@@ -63,6 +64,10 @@ struct Arguments {
     /// How far the pen may be from the drawing, mm; chooses --mode tolerance [default: the machine's]
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     tolerance_mm: Option<f64>,
+    /// How far the pen may miss a vertex in the mode exact, because rounding did, mm [default: half the last digit that the file
+    /// writes, or a step, whichever is greater]
+    #[arg(long, value_name = "A", value_parser = allowance, allow_negative_numbers = true)]
+    allowance_mm: Option<f64>,
     /// Limits the jerk too
     #[arg(long)]
     s_curve: bool,
@@ -130,6 +135,11 @@ fn not_negative(text: &str) -> Result<f64, String> {
     if number >= 0.0 && number.is_finite() { Ok(number) } else { Err("give 0 or more".into()) }
 }
 
+fn allowance(text: &str) -> Result<f64, String> {
+    let number = not_negative(text)?;
+    if number <= 1000.0 { Ok(number) } else { Err("give 0 to 1000".into()) }
+}
+
 fn steps_per_mm(text: &str) -> Result<f64, String> {
     let number = positive(text)?;
     if (0.1..=100_000.0).contains(&number) { Ok(number) } else { Err("give 0.1 to 100000".into()) }
@@ -159,7 +169,13 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
     };
     let motors = [motor(&config.x.stepper), motor(&config.y.stepper)];
     let finest = motors[0].steps_per_mm.max(motors[1].steps_per_mm);
-    let settings = PlannerSettings { resolution_mm: 0.5 / finest, ..settings };
+    let ops = drawing.ops(Reading { counts_per_mm: 40.0, ..Reading::default() })?;
+    let settings = PlannerSettings { resolution_mm: 0.5 / finest, allowance_mm: 1.0 / finest, ..settings };
+    let settings = match (arguments.allowance_mm, ops.digit_mm) {
+        (Some(allowance_mm), _) => PlannerSettings { allowance_mm, ..settings },
+        (None, Some(digit_mm)) => settings.for_digits_of(digit_mm),
+        (None, None) => settings,
+    };
     let plot = SteppedPlot::new(settings, StepGenSettings::of(&machine), motors)?;
 
     let mut writers = Writers {
@@ -169,7 +185,7 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
         pen: Pen::Up,
     };
     let mut read = DrawnExtent::new(config.area);
-    let (figures, colours) = walk(arguments, &drawing, plot, &mut read, &mut said, &mut writers)?;
+    let (figures, colours) = walk(arguments, &drawing, ops, plot, &mut read, &mut said, &mut writers)?;
     if read.drawn == 0 {
         let why = said.first_error().map_or_else(String::new, |first| format!("; {first}"));
         return Err(format!(
@@ -258,12 +274,12 @@ fn machine(arguments: &Arguments, said: &mut Diagnostics) -> Result<(Machine, Pl
 fn walk(
     arguments: &Arguments,
     drawing: &DrawingFile,
+    mut ops: Ops<'_>,
     mut plot: SteppedPlot,
     read: &mut DrawnExtent,
     said: &mut Diagnostics,
     writers: &mut Writers,
 ) -> Result<(SteppedFigures, Vec<[u8; 3]>), String> {
-    let mut ops = drawing.ops(Reading { counts_per_mm: 40.0, ..Reading::default() })?;
     let colours = std::mem::take(&mut ops.colours);
     let bar = ProgressBar::new(drawing.length_bytes());
     if let Ok(style) = ProgressStyle::with_template("plotting {bar:40} {bytes}/{total_bytes}, {elapsed}") {

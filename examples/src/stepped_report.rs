@@ -14,6 +14,7 @@ pub struct SteppedReport {
     machine: String,
     mode: &'static str,
     tolerance_mm: Option<f64>,
+    allowance_mm: Option<f64>,
     s_curve: bool,
     limits: Limits,
     steps_per_mm: [f64; 2],
@@ -63,9 +64,9 @@ impl SteppedReport {
         read: &DrawnExtent,
         said: &Diagnostics,
     ) -> Self {
-        let tolerance_mm = match settings.path {
-            PathMode::Tolerance { path_tolerance_mm } => Some(path_tolerance_mm),
-            PathMode::Exact => None,
+        let (tolerance_mm, allowance_mm) = match settings.path {
+            PathMode::Tolerance { path_tolerance_mm } => (Some(path_tolerance_mm), None),
+            PathMode::Exact => (None, Some(settings.allowance_mm)),
         };
         let Diagnostics { kept, errors, warnings, notices } = said.clone();
         Self {
@@ -74,6 +75,7 @@ impl SteppedReport {
             machine: machine.config().name.as_str().to_owned(),
             mode: if tolerance_mm.is_some() { "tolerance" } else { "exact" },
             tolerance_mm,
+            allowance_mm,
             s_curve: settings.jerk_mm_s3.is_some(),
             limits: Limits {
                 speed_mm_s: settings.speed_mm_s,
@@ -115,6 +117,9 @@ impl SteppedReport {
         let mut out = format!("{} ({}), {}, {}", self.file, self.language.name(), self.machine, self.mode);
         if let Some(tolerance_mm) = self.tolerance_mm {
             let _ = write!(out, " {tolerance_mm} mm");
+        }
+        if let Some(allowance_mm) = self.allowance_mm.filter(|allowance_mm| *allowance_mm > 0.0) {
+            let _ = write!(out, " give or take {} mm", (allowance_mm * 1e4).round() / 1e4);
         }
         out.push_str(if self.s_curve { ", s-curve\n" } else { "\n" });
         let rows = [
