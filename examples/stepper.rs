@@ -5,7 +5,8 @@
 //! greatest speed, acceleration and distance from the drawing.
 //!
 //! Look at the speed chart: in the mode `exact` the pen brakes for every corner, with `tolerance` it rounds them within a
-//! distance that you name, and curves of many short lines run through. Compare the times.
+//! distance that you name. Compare the times. Short lines that turn by no more than the last digit of the file, or a motor step, are a
+//! curve in either mode: `--allowance-mm 0` shows what they would cost.
 //!
 //! ```text
 //! cargo run --release --example stepper -- --svg plot.svg --speed-plot speed.svg
@@ -20,14 +21,14 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, FontFiles, Happening, Language, PlotFigures,
-    Reading, Severity, SpeedChart, StepFile, SteppedPlot, SteppedPreview, SteppedReport, at, print,
-    read_file, run, write_file,
+    BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, FontFiles, Happening, Language, Ops,
+    PlotFigures, Reading, Severity, SpeedChart, StepFile, SteppedPlot, SteppedPreview, SteppedReport, at,
+    print, read_file, run, write_file,
 };
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{
-    DriveChoice, Estimator, Machine, MachineConfig, MachineKind, PathMode, Pen, PlanError, PlannerSettings,
-    PlotOp, Point, StepGenSettings,
+    Estimator, Machine, MachineConfig, MachineKind, PathMode, Pen, PlanError, PlannerSettings, PlotOp, Point,
+    StepGenSettings,
 };
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -69,6 +70,10 @@ struct Arguments {
     /// How far the pen may be from the drawing, mm; chooses --mode tolerance [default: the machine's]
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     tolerance_mm: Option<f64>,
+    /// How far the pen may miss a vertex in the mode exact, because rounding did, mm [default: half the last digit that the file
+    /// writes, or a step, whichever is greater]
+    #[arg(long, value_name = "A", value_parser = allowance, allow_negative_numbers = true)]
+    allowance_mm: Option<f64>,
     /// Limits the jerk too
     #[arg(long)]
     s_curve: bool,
@@ -139,6 +144,11 @@ fn not_negative(text: &str) -> Result<f64, String> {
     if number >= 0.0 && number.is_finite() { Ok(number) } else { Err("give 0 or more".into()) }
 }
 
+fn allowance(text: &str) -> Result<f64, String> {
+    let number = not_negative(text)?;
+    if number <= 1000.0 { Ok(number) } else { Err("give 0 to 1000".into()) }
+}
+
 fn steps_per_mm(text: &str) -> Result<f64, String> {
     let number = positive(text)?;
     if (0.1..=100_000.0).contains(&number) { Ok(number) } else { Err("give 0.1 to 100000".into()) }
@@ -168,12 +178,18 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
     };
     let motors = [motor(&config.x.stepper), motor(&config.y.stepper)];
     let finest = motors[0].steps_per_mm.max(motors[1].steps_per_mm);
-    let settings = PlannerSettings { resolution_mm: 0.5 / finest, ..settings };
+    let ops = drawing.ops(Reading { counts_per_mm: 40.0, ..Reading::default() })?;
+    let settings = PlannerSettings { resolution_mm: 0.5 / finest, allowance_mm: 1.0 / finest, ..settings };
+    let settings = match (arguments.allowance_mm, ops.digit_mm) {
+        (Some(allowance_mm), _) => PlannerSettings { allowance_mm, ..settings },
+        (None, Some(digit_mm)) => settings.for_digits_of(digit_mm),
+        (None, None) => settings,
+    };
     let timing = StepGenSettings::of(&machine);
     let mut read = DrawnExtent::new(config.area);
     if arguments.estimate {
         let mut estimator = Estimator::<BLOCKS>::new(settings, timing).map_err(|error| error.to_string())?;
-        walk(arguments, &drawing, &mut read, &mut said, |op| Ok(estimator.push(op)))?;
+        walk(arguments, &drawing, ops, &mut read, &mut said, |op| Ok(estimator.push(op)))?;
         let time = estimator.finish().map_err(|error| error.to_string())?;
         check_drawn(&drawing, &read, &said)?;
         read.warn(&mut said);
@@ -188,7 +204,7 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
         steps: arguments.steps.as_deref().map(StepFile::create).transpose()?,
         pen: Pen::Up,
     };
-    let colours = walk(arguments, &drawing, &mut read, &mut said, |op| {
+    let colours = walk(arguments, &drawing, ops, &mut read, &mut said, |op| {
         let outcome = plot.push(op, &mut |happening| writers.take(happening));
         let failure = writers.steps.as_mut().and_then(|steps| steps.failure.take());
         failure.map_or(Ok(outcome), Err)
@@ -291,11 +307,11 @@ fn machine(arguments: &Arguments, said: &mut Diagnostics) -> Result<(Machine, Pl
 fn walk(
     arguments: &Arguments,
     drawing: &DrawingFile,
+    mut ops: Ops<'_>,
     read: &mut DrawnExtent,
     said: &mut Diagnostics,
     mut push: impl FnMut(PlotOp) -> Result<Result<(), PlanError>, String>,
 ) -> Result<Vec<[u8; 3]>, String> {
-    let mut ops = drawing.ops(Reading { counts_per_mm: 40.0, ..Reading::default() })?;
     let colours = std::mem::take(&mut ops.colours);
     let bar = ProgressBar::new(drawing.length_bytes());
     bar.set_prefix(if arguments.estimate { "estimating" } else { "plotting" });

@@ -189,8 +189,10 @@ impl DrawingFile {
         let place = Rc::new(Place::default());
         let bytes = self.bytes(&place)?;
         let mut colours = Vec::new();
+        let mut digit_mm = None;
         let inner: Box<dyn Iterator<Item = Result<PlotOp, Diagnostic>>> = match self.language {
             Language::Hpgl => {
+                digit_mm = Some(1.0 / hpgl::UNITS_PER_MM);
                 let options =
                     hpgl::ReadOptions { tolerance_mm: how.tolerance_mm, ..hpgl::ReadOptions::default() };
                 let ops = hpgl::PlotOps::with_options(bytes, options);
@@ -201,7 +203,9 @@ impl DrawingFile {
                 }))
             }
             Language::Gcode => {
-                let mut options = gcode::Detection::of(bytes).options();
+                let detection = gcode::Detection::of(bytes);
+                digit_mm = detection.digit_mm();
+                let mut options = detection.options();
                 options.pen = how.pen.unwrap_or(options.pen);
                 place.restart()?;
                 let ops = gcode::PlotOps::with_options(self.bytes(&place)?, options);
@@ -211,7 +215,10 @@ impl DrawingFile {
                     })
                 }))
             }
-            Language::Thesis => Box::new(thesis_ops(bytes, how.counts_per_mm)),
+            Language::Thesis => {
+                digit_mm = Some(1.0 / how.counts_per_mm);
+                Box::new(thesis_ops(bytes, how.counts_per_mm))
+            }
             Language::Svg => {
                 let bytes = match &self.source {
                     Source::Held(bytes) => bytes.clone(),
@@ -225,7 +232,7 @@ impl DrawingFile {
                 Box::new(diagnostics.map(Err).chain(drawing.ops.into_iter().map(Ok)))
             }
         };
-        Ok(Ops { inner, place, colours, failed: false })
+        Ok(Ops { inner, place, colours, digit_mm, failed: false })
     }
 
     fn bytes(&self, place: &Rc<Place>) -> Result<Bytes<'_>, String> {
@@ -290,6 +297,8 @@ pub struct Ops<'a> {
     place: Rc<Place>,
     /// Colours of the pens from 1 on, as red, green and blue, if the drawing says them.
     pub colours: Vec<[u8; 3]>,
+    /// What the last digit of a place is worth that the file writes, mm, if the file tells: places are rounded to it.
+    pub digit_mm: Option<f64>,
     failed: bool,
 }
 

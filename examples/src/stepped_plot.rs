@@ -112,7 +112,7 @@ impl SteppedPlot {
         let kinematics = Cartesian::new(motors[0], motors[1]).map_err(|error| error.to_string())?;
         let reach_mm = match settings.path {
             plotter_motion::PathMode::Tolerance { path_tolerance_mm } => 2.0 * path_tolerance_mm,
-            plotter_motion::PathMode::Exact => 0.0,
+            plotter_motion::PathMode::Exact => 2.0 * settings.allowance_mm,
         };
         let coarsest = motors[0].steps_per_mm.min(motors[1].steps_per_mm);
         let timing = StepGenSettings { clock_hz: 1_000_000, ..timing };

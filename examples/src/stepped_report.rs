@@ -14,6 +14,7 @@ pub struct SteppedReport {
     machine: String,
     mode: &'static str,
     tolerance_mm: Option<f64>,
+    allowance_mm: Option<f64>,
     s_curve: bool,
     /// Whether the times are those of the plan, without its steps.
     estimated: bool,
@@ -96,9 +97,9 @@ impl SteppedReport {
         read: &DrawnExtent,
         said: &Diagnostics,
     ) -> Self {
-        let tolerance_mm = match settings.path {
-            PathMode::Tolerance { path_tolerance_mm } => Some(path_tolerance_mm),
-            PathMode::Exact => None,
+        let (tolerance_mm, allowance_mm) = match settings.path {
+            PathMode::Tolerance { path_tolerance_mm } => (Some(path_tolerance_mm), None),
+            PathMode::Exact => (None, Some(settings.allowance_mm)),
         };
         // Both have the same figures of time, path and pen.
         let (figures, measured) = match figures {
@@ -112,6 +113,7 @@ impl SteppedReport {
             machine: machine.config().name.as_str().to_owned(),
             mode: if tolerance_mm.is_some() { "tolerance" } else { "exact" },
             tolerance_mm,
+            allowance_mm,
             s_curve: settings.jerk_mm_s3.is_some(),
             estimated: measured.is_none(),
             limits: Limits {
@@ -148,8 +150,17 @@ impl SteppedReport {
         if let Some(tolerance_mm) = self.tolerance_mm {
             let _ = write!(out, " {tolerance_mm} mm");
         }
+        if let Some(allowance_mm) = self.allowance_mm.filter(|allowance_mm| *allowance_mm > 0.0) {
+            let _ = write!(out, " give or take {} mm", (allowance_mm * 1e4).round() / 1e4);
+        }
         out.push_str(if self.s_curve { ", s-curve" } else { "" });
-        out.push_str(if self.estimated { ", estimated without steps\n" } else { "\n" });
+        out.push_str(if self.estimated {
+            ", estimated without steps
+"
+        } else {
+            "
+"
+        });
         let mut rows = vec![
             ("time in motion", format!("{:.1}", self.time_s), "s"),
             ("with pen and pauses", format!("{:.1}", self.time_with_pen_s), "s"),

@@ -241,8 +241,8 @@ fn every_real_file_is_plotted_within_its_limits() {
 fn estimated_as_stepped(folder: &Folder, arguments: &[&str]) -> Value {
     /// What adding up a million floats leaves of a time, s.
     const ROUNDING_S: f64 = 1e-6;
-    let stepped = folder.report(arguments);
-    let estimated = folder.report(&[arguments, &["--estimate"]].concat());
+    let stepped = folder.stepper_report(arguments);
+    let estimated = folder.stepper_report(&[arguments, &["--estimate"]].concat());
     for (key, value) in estimated.as_object().unwrap() {
         match (value.as_f64(), stepped[key].as_f64()) {
             (Some(one), Some(other)) => {

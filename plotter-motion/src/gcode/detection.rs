@@ -10,6 +10,9 @@ const MOST_DEG: f64 = 180.0;
 /// A `G4 P` of this or more that is a whole number counts milliseconds: no pen waits for 20 s.
 const LEAST_MILLIS: f64 = 20.0;
 
+/// Most decimals that are looked for: millionths of a millimetre are below all that moves.
+const MOST_DECIMALS: u8 = 6;
+
 /// The places that a servo or an axis is told, and which of them it has when the pen must be up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Places {
@@ -119,6 +122,9 @@ pub struct Detection {
     fan: bool,
     dwells: bool,
     short_dwells: bool,
+    /// 10 to the power of the most decimals of a coordinate so far, and the least digit, mm; 0 for none.
+    scale: f64,
+    digit_mm: f64,
 }
 
 impl Default for Detection {
@@ -155,6 +161,8 @@ impl Detection {
             fan: false,
             dwells: false,
             short_dwells: false,
+            scale: 1.0,
+            digit_mm: 0.0,
         }
     }
 
@@ -197,12 +205,32 @@ impl Detection {
             self.short_dwells |= time < LEAST_MILLIS || libm::trunc(time) != time;
         }
         if moves {
+            for number in [line.number(b'X'), line.number(b'Y')].into_iter().flatten() {
+                self.take_digits(number);
+            }
             let is_rapid = self.motion == Code::Rapid;
             for places in
                 [&mut self.beeps, &mut self.servo, &mut self.degrees, &mut self.z, &mut self.spindle]
             {
                 places.go(is_rapid);
             }
+        }
+    }
+
+    fn take_digits(&mut self, number: f64) {
+        // The nearest float to a number of so many decimals is that whole number divided by the power of 10.
+        let is_written = |scale: f64| libm::round(number * scale) / scale == number;
+        let mut scale = self.scale;
+        for _ in 0..MOST_DECIMALS {
+            if is_written(scale) {
+                break;
+            }
+            scale *= 10.0;
+        }
+        self.scale = scale.min(1e6);
+        let digit_mm = self.unit_mm / self.scale;
+        if self.scale > 1.0 && (self.digit_mm == 0.0 || digit_mm < self.digit_mm) {
+            self.digit_mm = digit_mm;
         }
     }
 
@@ -293,6 +321,23 @@ impl Detection {
         let travel = if travel > down { travel } else { up };
         let threshold_mm = if travel > 0.0 && down <= 0.0 { 0.0 } else { 0.5 * (travel + down) };
         PenConvention::Height { threshold_mm }
+    }
+
+    /// What the last digit of its places is worth, mm: they are rounded to it. `None` if all are whole numbers, which say nothing of
+    /// what was rounded.
+    ///
+    /// Zeros at the end do not count, so it is that of the place with most decimals.
+    ///
+    /// ```
+    /// # use plotter_motion::gcode::Detection;
+    /// let digit_mm = |text: &[u8]| Detection::of(text.iter().copied()).digit_mm();
+    /// assert_eq!(digit_mm(b"G21\nG1 X10.5 Y20.123\nG1 X11 Y20.1\n"), Some(0.001));
+    /// assert_eq!(digit_mm(b"G20\nG1 X1.25 Y2\n"), Some(0.254)); // hundredths of an inch
+    /// assert_eq!(digit_mm(b"G1 X10 Y20 F1000.5\n"), None);
+    /// ```
+    #[must_use]
+    pub fn digit_mm(&self) -> Option<f64> {
+        (self.digit_mm > 0.0).then_some(self.digit_mm)
     }
 
     /// The options for reading the text again.

@@ -2,6 +2,7 @@
 
 use super::blend::{Blend, GROWTH, Room, to_pole};
 use super::block::{Block, Kind};
+use super::fit::{Fitter, Piece};
 use super::junction::{Corner, corner_speed2};
 use super::limits::{Limits, Share, Shares};
 use super::merge::{Merged, Merger};
@@ -86,6 +87,7 @@ pub(super) struct Front<M: Modes> {
     /// Square of the greatest speed of a segment too short for a block, which is still to come.
     short_cruise2: Option<f32>,
     rounding: M::Kept<Rounding>,
+    fitter: M::Kept<Fitter>,
     shares: M::Kept<Shares>,
     /// Lines are jogs.
     jogs: bool,
@@ -104,6 +106,7 @@ impl<M: Modes> Front<M> {
             run: None,
             short_cruise2: None,
             rounding: M::Kept::default(),
+            fitter: M::Kept::default(),
             shares: M::Kept::default(),
             jogs: false,
         }
@@ -119,10 +122,12 @@ impl<M: Modes> Front<M> {
         *self = Self { power: self.power, shares, ..Self::at(position) };
     }
 
-    /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; else what ends a
-    /// run (a line and two spirals, the line held back) and the new one.
+    /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; with an allowance an arc,
+    /// the rest of the way to its last vertex and the new one; else what ends a run (a line and two spirals, the line held back) and
+    /// the new one.
     pub(super) const fn most_blocks(settings: &PlannerSettings) -> usize {
         match settings.path_of::<M>() {
+            PathMode::Exact if settings.allowance_of::<M>() > 0.0 => 3,
             PathMode::Exact => 2,
             PathMode::Tolerance { .. } => 5,
         }
@@ -269,6 +274,9 @@ impl<M: Modes> Front<M> {
         self.pen = pen;
         self.position = *to;
         match limits.settings.path_of::<M>() {
+            PathMode::Exact if limits.settings.allowance_of::<M>() > 0.0 && !self.jogs => {
+                self.fit(&from, to, cruise2, limits, ring);
+            }
             PathMode::Exact => {
                 let way = Way::new(run.at.way_to(to));
                 if way.length_mm < limits.resolution_mm {
@@ -290,10 +298,95 @@ impl<M: Modes> Front<M> {
         }
     }
 
+    /// Takes the next vertex in exact mode with an allowance; `from` is the one before. What no longer is one arc with it ends.
+    fn fit<const N: usize>(
+        &mut self,
+        from: &Point,
+        to: &Point,
+        cruise2: f32,
+        limits: &Limits,
+        ring: &mut Ring<N>,
+    ) {
+        let allowance_mm = narrow(limits.settings.allowance_of::<M>());
+        let mut may_shorten = !self.fitter.get().is_some_and(|fitter| fitter.is_other(cruise2));
+        if !may_shorten {
+            self.end_fit(from, limits, ring);
+        }
+        loop {
+            let (Some(run), Some(fitter)) = (self.run, self.fitter.get_mut()) else { return };
+            let way = run.at.way_to(to);
+            if fitter.take(way, cruise2, allowance_mm) {
+                return;
+            }
+            let piece = if may_shorten { fitter.shorten(way, allowance_mm) } else { None };
+            may_shorten = false;
+            match piece {
+                Some(piece) => {
+                    let end = run.at + piece.way;
+                    self.emit_piece(piece, &end, cruise2, limits, ring);
+                }
+                None if fitter.is_empty() => return,
+                None => {
+                    self.end_fit(from, limits, ring);
+                }
+            }
+        }
+    }
+
+    /// Ends the piece in progress at its last vertex, or within the allowance of it. Gives the square of the greatest speed on it.
+    fn end_fit<const N: usize>(&mut self, at: &Point, limits: &Limits, ring: &mut Ring<N>) -> Option<f32> {
+        let (run, fitter) = (self.run?, self.fitter.get_mut()?);
+        if fitter.is_empty() {
+            return None;
+        }
+        let cruise2 = fitter.cruise2();
+        match fitter.end(narrow(limits.settings.allowance_of::<M>())) {
+            Some(piece) => {
+                let end = if piece.at_vertex { *at } else { run.at + piece.way };
+                self.emit_piece(piece, &end, cruise2, limits, ring);
+            }
+            // All of a stroke may be nearer to its start than the allowance, and end there.
+            None if *at == run.at && run.exit.is_none() => self.dot(run.pen, ring),
+            None => self.emit_line(at, cruise2, limits, ring),
+        }
+        Some(cruise2)
+    }
+
+    fn emit_piece<const N: usize>(
+        &mut self,
+        piece: Piece,
+        end: &Point,
+        cruise2: f32,
+        limits: &Limits,
+        ring: &mut Ring<N>,
+    ) {
+        let Some(run) = self.run else { return };
+        if piece.sweep_rad == 0.0 {
+            return self.emit_line(end, cruise2, limits, ring);
+        }
+        let radius_mm = single(piece.radius_mm) * (1.0 - RADIUS_ROUNDING);
+        let most2 = limits.accel * radius_mm;
+        let arc = Stretch {
+            shape: Shape::Arc { centre: run.at + piece.to_centre, sweep_rad: single(piece.sweep_rad) },
+            to: *end,
+            length_mm: single(piece.length_mm),
+            entry: direction(piece.entry),
+            exit: direction(piece.exit),
+            feed2: cruise2,
+            most2,
+            most_entry2: most2,
+        };
+        self.emit(arc, limits, ring);
+    }
+
     /// The pen is lowered where it stands, which leaves a dot, or lifted.
     fn put_pen<const N: usize>(&mut self, pen: Pen, limits: &Limits, ring: &mut Ring<N>) {
         self.end_run(limits, ring);
         self.pen = pen;
+        self.dot(pen, ring);
+    }
+
+    fn dot<const N: usize>(&self, pen: Pen, ring: &mut Ring<N>) {
         ring.push(Block::path(Shape::Line, self.position, 0.0, pen, self.power, 0.0));
     }
 
@@ -335,8 +428,12 @@ impl<M: Modes> Front<M> {
             let at = self.position;
             self.emit_line(&at, cruise2, limits, ring);
         }
+        let at = self.position;
+        if let Some(cruise2) = self.end_fit(&at, limits, ring) {
+            // Where no arc within the allowance ends there, the last bit.
+            self.emit_line(&at, cruise2, limits, ring);
+        }
         if let PathMode::Tolerance { path_tolerance_mm } = limits.settings.path_of::<M>() {
-            let at = self.position;
             if let Some(merged) = self.rounding.get_mut().and_then(|rounding| rounding.merger.end(at)) {
                 self.blend(merged, path_tolerance_mm, limits, ring);
             }

@@ -13,6 +13,7 @@
 mod blend;
 mod block;
 mod error;
+mod fit;
 mod front;
 mod junction;
 mod limits;

@@ -1,5 +1,6 @@
 //! [`Modes`]: which ways of planning a program is built with.
 
+use super::settings::LEAST_TOLERANCE_MM;
 use super::{PathMode, PlannerSettings};
 use core::fmt::Debug;
 use core::marker::PhantomData;
@@ -102,6 +103,11 @@ impl PlannerSettings {
     /// The way to follow the path: only what these modes can do is left in the program.
     pub(super) const fn path_of<M: Modes>(&self) -> PathMode {
         if M::ALL { self.path } else { PathMode::Exact }
+    }
+
+    /// As [`Self::path_of`], how far vertices may be missed in exact mode; 0 for not at all.
+    pub(super) const fn allowance_of<M: Modes>(&self) -> f64 {
+        if M::ALL && self.allowance_mm >= LEAST_TOLERANCE_MM { self.allowance_mm } else { 0.0 }
     }
 
     /// As [`Self::path_of`], the jerk.

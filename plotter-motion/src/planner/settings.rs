@@ -7,7 +7,7 @@ use crate::{Machine, PathChoice};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum PathMode {
-    /// Through every vertex. Corners are taken at the speed of junction deviation.
+    /// Through every vertex, give or take [`PlannerSettings::allowance_mm`]. Corners are taken at the speed of junction deviation.
     #[default]
     Exact,
     /// Corners become arcs, and vertices that are not needed are left out, so that no place of the path is farther than this
@@ -40,6 +40,11 @@ pub struct PlannerSettings {
     /// Vertices nearer than this to the one before are left out unless they end a stroke, mm; 0 keeps all. Half a step is what a
     /// motor cannot tell apart.
     pub resolution_mm: f64,
+    /// How far a vertex may be missed in exact mode because it is known no better, mm: half of the last digit that its file writes, or a
+    /// motor step, whichever is greater. Within it one arc stands for vertices that are noise to it; what is more is a corner. Less than
+    /// a nanometre, as 0, takes every vertex as it is. [`ExactOnly`](super::ExactOnly) and [`ExactPen`](super::ExactPen) do that
+    /// whatever it is.
+    pub allowance_mm: f64,
 }
 
 impl Default for PlannerSettings {
@@ -52,6 +57,7 @@ impl Default for PlannerSettings {
             jerk_mm_s3: None,
             junction_deviation_mm: 0.01,
             resolution_mm: 0.005,
+            allowance_mm: 0.0,
         }
     }
 }
@@ -61,7 +67,7 @@ const LIMITS: (f64, f64) = (1e-3, 1e7);
 /// Greatest jerk, mm/s³.
 const MOST_JERK: f64 = 1e12;
 /// Least and greatest tolerance, mm.
-const LEAST_TOLERANCE_MM: f64 = 1e-6;
+pub(super) const LEAST_TOLERANCE_MM: f64 = 1e-6;
 const MOST_TOLERANCE_MM: f64 = 1e3;
 
 impl PlannerSettings {
@@ -83,6 +89,7 @@ impl PlannerSettings {
             PathChoice::Exact => PathMode::Exact,
             PathChoice::Tolerance => PathMode::Tolerance { path_tolerance_mm: planner.path_tolerance_mm },
         };
+        let finest = config.x.stepper.steps_per_mm.max(config.y.stepper.steps_per_mm);
         Self {
             path,
             speed_mm_s: planner.speed_mm_s,
@@ -90,8 +97,28 @@ impl PlannerSettings {
             accel_mm_s2: planner.accel_mm_s2,
             jerk_mm_s3: planner.s_curve.then_some(planner.jerk_mm_s3),
             junction_deviation_mm: planner.junction_deviation_mm,
-            resolution_mm: 0.5 / config.x.stepper.steps_per_mm.max(config.y.stepper.steps_per_mm),
+            resolution_mm: 0.5 / finest,
+            allowance_mm: 1.0 / finest,
         }
+    }
+
+    /// The same for a drawing whose file writes places to `digit_mm`: half of that is the allowance, where it is more than the machine's.
+    /// Of a digit of more than 0.1 mm half of 0.1 mm is: who writes whole millimetres means corners.
+    ///
+    /// ```
+    /// # use plotter_motion::{Machine, MachineConfig, PlannerSettings};
+    /// let machine = Machine::new(MachineConfig::stepper_plotter())?; // a step is 0.0114 mm
+    /// let settings = PlannerSettings::of(&machine);
+    /// assert_eq!(settings.for_digits_of(0.1).allowance_mm, 0.05);
+    /// assert_eq!(settings.for_digits_of(0.001).allowance_mm, settings.allowance_mm);
+    /// # Ok::<(), plotter_motion::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn for_digits_of(self, digit_mm: f64) -> Self {
+        /// Greatest digit that is taken for rounding, mm.
+        const MOST_DIGIT_MM: f64 = 0.1;
+        let half_mm = if digit_mm > 0.0 { 0.5 * digit_mm.min(MOST_DIGIT_MM) } else { 0.0 };
+        Self { allowance_mm: self.allowance_mm.max(half_mm), ..self }
     }
 
     /// Checks every number by itself, and whether these modes are built in.
@@ -115,6 +142,7 @@ impl PlannerSettings {
             ("jerk_mm_s3", jerk_mm_s3, least, MOST_JERK),
             ("junction_deviation_mm", self.junction_deviation_mm, 0.0, MOST_TOLERANCE_MM),
             ("resolution_mm", self.resolution_mm, 0.0, MOST_TOLERANCE_MM),
+            ("allowance_mm", self.allowance_mm, 0.0, MOST_TOLERANCE_MM),
             ("path_tolerance_mm", path_tolerance_mm, LEAST_TOLERANCE_MM, MOST_TOLERANCE_MM),
         ];
         let mut rest = checks.as_slice();

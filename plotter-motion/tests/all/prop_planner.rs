@@ -5,7 +5,7 @@ use core::time::Duration;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::{
     Action, Course, MotorEvent, PathMode, Pen, Phase, PlanError, Planner, PlannerSettings, PlotOp, Point,
-    ProfilePoint, Shape, StepGen, StepGenSettings, StepPoint, from_mm, junction_speed,
+    ProfilePoint, Shape, StepGen, StepGenSettings, StepPoint, Vec2, from_mm, junction_speed,
 };
 use proptest::prelude::*;
 
@@ -58,8 +58,11 @@ fn path(parts: &[(u8, f64, f64, Option<f64>)]) -> Vec<PlotOp> {
 fn settings() -> impl Strategy<Value = PlannerSettings> {
     let tolerance = prop_oneof![Just(None), (1e-3..1.0).prop_map(Some)];
     let jerk = prop_oneof![Just(None), (1e2..1e6).prop_map(Some)];
-    (tolerance, jerk, 1.0..500.0, 10.0..5000.0, 0.0..0.1, prop_oneof![Just(0.0), Just(0.005)]).prop_map(
-        |(tolerance, jerk_mm_s3, speed_mm_s, accel_mm_s2, junction_deviation_mm, resolution_mm)| {
+    let allowance = prop_oneof![Just(0.0), 1e-4..0.2];
+    let resolution = prop_oneof![Just(0.0), Just(0.005)];
+    (tolerance, jerk, 1.0..500.0, 10.0..5000.0, 0.0..0.1, (resolution, allowance)).prop_map(
+        |(tolerance, jerk_mm_s3, speed_mm_s, accel_mm_s2, junction_deviation_mm, lengths)| {
+            let (resolution_mm, allowance_mm) = lengths;
             PlannerSettings {
                 path: tolerance
                     .map_or(PathMode::Exact, |path_tolerance_mm| PathMode::Tolerance { path_tolerance_mm }),
@@ -69,9 +72,62 @@ fn settings() -> impl Strategy<Value = PlannerSettings> {
                 jerk_mm_s3,
                 junction_deviation_mm,
                 resolution_mm,
+                allowance_mm,
             }
         },
     )
+}
+
+/// A polyline whose segments are of all lengths, and that turns a little or anyhow.
+fn polyline() -> impl Strategy<Value = Vec<Point>> {
+    let turn_rad = prop_oneof![4 => -0.1..0.1, 2 => -0.6..0.6, 1 => -3.2..3.2];
+    let segment = (-3.0..1.0, turn_rad);
+    let scale = -3.0..0.5;
+    (prop::collection::vec(segment, 2..60), scale, any::<bool>()).prop_map(|(segments, scale, alike)| {
+        let (mut at, mut direction_rad) = (Point::ORIGIN, 0.0);
+        let mut places = vec![at];
+        for (length, turn_rad) in segments {
+            direction_rad += turn_rad;
+            let exponent: f64 = if alike { scale + 0.1 * length } else { length };
+            at += Vec2::new(10.0_f64.powf(exponent), 0.0).rotated(direction_rad);
+            places.push(at);
+        }
+        places
+    })
+}
+
+/// How far a place is from a course that begins at `from`, mm.
+fn away_mm(course: &Course, from: Point, place: Point) -> f64 {
+    let ends_mm = from.distance(place).min(course.to.distance(place));
+    match course.shape {
+        Shape::Arc { centre, sweep_rad } => {
+            let sweep_rad = f64::from(sweep_rad);
+            let (out, to) = (from - centre, place - centre);
+            let angle_rad = libm::atan2(out.cross(to), out.dot(to)) * sweep_rad.signum();
+            let angle_rad = angle_rad.rem_euclid(core::f64::consts::TAU);
+            if angle_rad > sweep_rad.abs() {
+                ends_mm
+            } else {
+                ends_mm.min((to.length() - out.length()).abs())
+            }
+        }
+        _ => plotter_motion::Segment::new(from, course.to).distance(place),
+    }
+}
+
+/// Places along a course.
+fn places_on(course: &Course, from: Point) -> Vec<Point> {
+    (0..=20)
+        .map(|part| {
+            let share = f64::from(part) / 20.0;
+            match course.shape {
+                Shape::Arc { centre, sweep_rad } => {
+                    centre + (from - centre).rotated(share * f64::from(sweep_rad))
+                }
+                _ => from.lerp(course.to, share),
+            }
+        })
+        .collect()
 }
 
 /// What a person at the machine does.
@@ -280,6 +336,40 @@ proptest! {
         settings in settings(),
     ) {
         check(settings, &path(&parts), &[])?;
+    }
+
+    #[test]
+    fn an_allowance_is_kept_both_ways(places in polyline(), allowance_mm in 1e-3..0.1) {
+        /// What `f32` leaves of places as far from each other as these, mm.
+        const SINGLE_MM: f64 = 2e-5;
+        /// Between vertices an arc is compared with its chord, which may be a little longer than the drawing's.
+        const SLANTED: f64 = 1.02;
+        let most_mm = allowance_mm + SINGLE_MM;
+        let settings = PlannerSettings { allowance_mm, resolution_mm: 0.0, ..PlannerSettings::default() };
+        let ops: Vec<PlotOp> =
+            places.iter().skip(1).map(|&to| PlotOp::Draw { to, feed_mm_s: None }).collect();
+        let mut courses = Vec::new();
+        let mut at = Point::ORIGIN;
+        for action in actions(settings, &ops) {
+            if let Action::Course(course) = action {
+                courses.push((at, course));
+                at = course.to;
+            }
+        }
+        let last = places.last().copied().unwrap_or_default();
+        prop_assert!(at.distance(last) < SINGLE_MM, "ends at {at:?} for {last:?}");
+        for &place in &places {
+            let away = courses.iter().map(|(from, course)| away_mm(course, *from, place)).fold(f64::INFINITY, f64::min);
+            prop_assert!(away <= most_mm, "{away} of {allowance_mm} mm: {place:?} by {courses:?}");
+        }
+        let drawing: Vec<_> =
+            places.windows(2).map(|ends| plotter_motion::Segment::new(ends[0], ends[1])).collect();
+        for (from, course) in &courses {
+            for place in places_on(course, *from) {
+                let away = drawing.iter().map(|line| line.distance(place)).fold(f64::INFINITY, f64::min);
+                prop_assert!(away <= SLANTED * most_mm, "{away} of {allowance_mm} mm: {course:?} from {from:?}");
+            }
+        }
     }
 
     #[test]
