@@ -41,7 +41,12 @@ impl FollowMachine {
         let motor = |steps_per_mm| MotorScale { steps_per_mm, inverted: false };
         let motors = [motor(config.x.stepper.steps_per_mm), motor(config.y.stepper.steps_per_mm)];
         let finest = motors[0].steps_per_mm.max(motors[1].steps_per_mm);
-        let settings = PlannerSettings { resolution_mm: 0.5 / finest, ..PlannerSettings::of(machine) };
+        // Places come from a picture, and no file has rounded them.
+        let settings = PlannerSettings {
+            resolution_mm: 0.5 / finest,
+            allowance_mm: 0.0,
+            ..PlannerSettings::of(machine)
+        };
         let reach = [config.area.width_mm, config.area.height_mm].map(|mm| mm / mm_per_px);
         let size = size_px.unwrap_or(reach);
         let area_px = [size[0].min(reach[0]), size[1].min(reach[1])];

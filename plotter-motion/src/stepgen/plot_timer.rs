@@ -98,7 +98,8 @@ impl PlotTimer {
     pub(super) fn push_many(&mut self, action: &Action, count: u32) {
         match action {
             Action::Course(course) => {
-                self.counts.courses += 1;
+                // A lift where the pen stands is neither line nor arc.
+                self.counts.courses += u64::from(course.pen == Pen::Down || course.length_mm > 0.0);
                 let way_mm = match course.pen {
                     Pen::Up => &mut self.counts.travel_mm,
                     Pen::Down => &mut self.counts.draw_mm,
