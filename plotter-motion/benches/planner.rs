@@ -3,6 +3,7 @@
 //! ```text
 //! cargo bench -p plotter-motion --bench planner
 //! ```
+#![allow(clippy::unwrap_used, clippy::panic, reason = "shared with tests, which fail by a panic")]
 
 #[path = "../tests/all/drawings/mod.rs"]
 mod drawings;

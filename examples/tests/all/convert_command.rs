@@ -1,5 +1,4 @@
 //! The command `convert`: round trips between all languages, and what it says of what they lack.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use crate::built_example;
 use crate::made_font;

@@ -1,5 +1,4 @@
 //! The commands `follow` and `calibrate_camera`: what they write and measure, and what they say to bad input.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by a panic")]
 
 use crate::built_example;
 

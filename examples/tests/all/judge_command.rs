@@ -1,5 +1,4 @@
 //! The command `judge`: what it prints, and what it says when a file is wrong.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use crate::built_example;
 

@@ -1,5 +1,4 @@
 //! Every picture of the corpus, traced with the default settings and compared with what was drawn: prints the table of it.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
 use plotter_examples::corpus::{Truth, all};
 use plotter_examples::{Judgement, judged_corpus};

@@ -1,5 +1,4 @@
 //! The command `long_sheet`: recorded scans in, poses or refusals out.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use crate::built_example;
 

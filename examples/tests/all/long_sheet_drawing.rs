@@ -1,5 +1,4 @@
 //! The command `long_sheet` on drawings: what it draws and measures, and what it says to bad input.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use crate::built_example;
 

@@ -1,8 +1,5 @@
 //! The command `max_error`: what it promises, what it measures, and what it says when that cannot be.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
-#![allow(clippy::print_stdout, reason = "the table is for a person to read")]
-
 use crate::built_example;
 
 use built_example::{complaint, data, machine, run_example};

@@ -1,5 +1,4 @@
 //! The command `stepper`: what it writes and measures, and what it says to bad input.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use crate::built_example;
 

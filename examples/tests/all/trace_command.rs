@@ -1,5 +1,4 @@
 //! The command `trace`: what it writes, and what it says to bad input.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
 use crate::built_example;
 

@@ -1,5 +1,4 @@
 //! Published and ours on the two drawings, beside the published figures.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
 use plotter_vector::{
     Algorithm, Bounded, ErrorTally, OrderedTracking, Pixel, Simplify, Threshold, Vectorized, Vectorizer,

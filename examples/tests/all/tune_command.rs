@@ -1,5 +1,4 @@
 //! The command `tune`: what it finds and writes, and what it says to bad input.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use crate::built_example;
 

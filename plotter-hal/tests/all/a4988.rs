@@ -1,7 +1,5 @@
 //! The stepper driver pin by pin and pulse by pulse, over a simulated clock, with faults put in.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
-
 use crate::logic_analyser;
 
 use embedded_hal_mock::eh1::MockError;

@@ -1,7 +1,5 @@
 //! Two motors as one: pulses and drives on the pins of both, with faults put in.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
-
 use crate::logic_analyser;
 
 use logic_analyser::{Analyser, Broken, Fault, Wire};

@@ -1,8 +1,6 @@
 //! Every kind of bridge by what its motor sees: the voltage that follows from the levels of the pins by the tables of the
 //! datasheets, at every access, with faults put in.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
-
 use crate::logic_analyser;
 
 use logic_analyser::{Analyser, FULL, Fault, Wire};

@@ -1,7 +1,5 @@
 //! The stepper plotter's controller in main loops that are too slow for its steps, with real drivers on pins: no step is lost.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
-
 use core::convert::Infallible;
 use core::time::Duration;
 use embedded_hal::digital::{self, OutputPin};

@@ -1,8 +1,6 @@
 //! One machine with every kind of motor driver and a laser, under any sequence of calls, clock and faults: what must hold
 //! on its pins at all times.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
-
 use crate::logic_analyser;
 
 use logic_analyser::{Analyser, Broken, Fault, Wire};

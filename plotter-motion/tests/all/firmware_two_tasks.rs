@@ -1,5 +1,4 @@
 //! The stepper plotter's two sides as two tasks that run at their own times, as on an RTOS.
-#![allow(clippy::expect_used, reason = "a test that cannot be set up fails")]
 
 use core::time::Duration;
 use plotter_motion::firmware::stepper_plotter::{

@@ -1,7 +1,5 @@
 //! The bytes of a session, from the call to the first target reached, then a stop: what docs/serial-protocol.md shows.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use core::fmt::Write;
 use core::time::Duration;
 use plotter_motion::protocol::{Link, LinkSettings, Message, Order};

@@ -1,5 +1,4 @@
 //! Whatever is drawn, the pen is off the sheet when the machine stands: at the end, in a pause, in a stop.
-#![allow(clippy::unwrap_used, reason = "a refusal fails the test")]
 
 use crate::stepper_bench;
 

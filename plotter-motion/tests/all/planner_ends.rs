@@ -1,5 +1,4 @@
 //! Lines end where and when they should, however long they last and whatever is done near their ends.
-#![allow(clippy::unwrap_used, reason = "a refusal fails the test")]
 
 use plotter_motion::{Action, Phase, Planner, PlannerSettings, PlotOp, Point};
 

@@ -1,5 +1,4 @@
 //! Laws of planner and step generator over any tool path.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "laws that fail say so by a panic")]
 
 use core::time::Duration;
 use plotter_motion::kinematics::{Cartesian, MotorScale};

@@ -2,8 +2,6 @@
 //!
 //! `cargo test -p plotter-motion --test all sim_contour:: -- --nocapture` prints the tables of docs/results.md.
 
-#![allow(clippy::print_stdout, reason = "the tables are for a person to read")]
-
 use crate::closed_loop;
 
 use closed_loop::{LineResult, Loop, draw_line, machine};

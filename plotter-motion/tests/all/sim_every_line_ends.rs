@@ -1,6 +1,5 @@
 //! The contouring controller ends every line, on motors far from their description: there is no place where it waits for ever.
 
-#![allow(clippy::print_stdout, reason = "the table is for a person to read")]
 #![allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

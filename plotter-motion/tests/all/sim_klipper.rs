@@ -4,8 +4,6 @@
 //! looks ahead without end. Source: K. O'Connor, Klipper's documentation of kinematics, "Look-ahead". Here without what it adds for
 //! printers (smoothing by `minimum_cruise_ratio`), which makes it slower.
 
-#![allow(clippy::print_stdout, reason = "what was measured, for whoever looks")]
-
 use crate::auditor;
 use crate::drawings;
 

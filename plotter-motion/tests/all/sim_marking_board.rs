@@ -2,9 +2,6 @@
 //!
 //! `cargo test -p plotter-motion --test all sim_marking_board:: -- --nocapture --test-threads 1` prints the tables of docs/results.md.
 
-#![allow(clippy::print_stdout, reason = "the tables are for a person to read")]
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use crate::marking;
 
 use core::time::Duration;

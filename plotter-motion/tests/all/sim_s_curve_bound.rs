@@ -7,11 +7,6 @@
 //! as a function of both accelerations; and since neighbours share one, the least sum over a whole stroke by dynamic programming over
 //! it. In cells, each with what favours the motion: so the sum is a bound. The speeds at those places are the trapezoids',
 //! which no motion within the same acceleration exceeds anywhere. A line from rest to rest has its optimum in closed form.
-#![allow(
-    clippy::print_stdout,
-    clippy::expect_used,
-    reason = "a table, for whoever looks; a test that cannot be set up fails"
-)]
 
 use crate::auditor;
 use crate::drawings;

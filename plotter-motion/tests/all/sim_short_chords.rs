@@ -1,9 +1,4 @@
 //! Curves of many short chords, whose vertices are rounded to the last digit of a file: exact mode with an allowance.
-#![allow(
-    clippy::print_stdout,
-    clippy::unwrap_used,
-    reason = "what was measured, for whoever looks; a refusal fails the test"
-)]
 
 use crate::auditor::{Lens, audit, planned};
 use crate::drawings;

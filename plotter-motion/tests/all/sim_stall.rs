@@ -1,7 +1,5 @@
 //! One motor is held fast in the middle of a line: the other waits, and both go on when it is freed.
 
-#![allow(clippy::print_stdout, reason = "the table is for a person to read")]
-
 use crate::closed_loop;
 
 use closed_loop::{Loop, SETTLED_MM, draw_line, machine};

@@ -1,7 +1,5 @@
 //! The stepper plotter's controller against simulated motors that lose steps, and simulated limit switches.
 
-#![allow(clippy::expect_used, reason = "a test that cannot be set up fails")]
-
 use crate::drawings;
 use crate::stepper_bench;
 

@@ -1,7 +1,6 @@
 //! The emergency stop that comes over the line: from its last byte on nothing drives the motors, until it is taken back.
 
 #![cfg(feature = "alloc")]
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use core::time::Duration;
 use plotter_motion::firmware::{Gantry, LinkedGantry};

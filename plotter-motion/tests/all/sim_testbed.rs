@@ -4,8 +4,6 @@
 //! `cargo run --release --example compare_controllers` gives them with pictures.
 
 #![cfg(feature = "alloc")]
-#![allow(clippy::print_stdout, reason = "the tables are for a person to read")]
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::loaded_gantry;
 

@@ -3,9 +3,6 @@
 //!
 //! `cargo test -p plotter-motion --test all sim_tuning:: -- --nocapture` prints the tables of docs/results.md.
 
-#![allow(clippy::print_stdout, reason = "the tables are for a person to read")]
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use crate::closed_loop;
 use crate::tuning_bench;
 

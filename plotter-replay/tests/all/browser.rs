@@ -6,13 +6,6 @@
 //! cargo test --release -p plotter-replay --features live --test all browser:: -- --ignored --test-threads 1 --nocapture
 //! ```
 #![cfg(unix)]
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::expect_used,
-    clippy::print_stdout,
-    reason = "a test that fails says so by a panic"
-)]
 
 use crate::devtools;
 

@@ -1,6 +1,5 @@
 //! The program as a user runs it: what it says, and its exit status.
 #![cfg(feature = "cli")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that fails says so by a panic")]
 
 use plotter_motion::plant::{Bench, BenchSettings};
 use plotter_motion::{Axis, Direction, Machine, MachineConfig, Pen, PenMove, StepPoint};

@@ -1,5 +1,4 @@
 //! A hundred cuts and a hundred flipped bytes: each costs at most the record that it hits, and each is told.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that fails says so by a panic")]
 
 use plotter_replay::log::{Reader, Record};
 

@@ -8,12 +8,6 @@
 //! The machines are those of `examples/machines`, where they lie beside this crate; one with a belt has no serial line, and a log of
 //! its own.
 #![cfg(feature = "cli")] // machines as files
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::print_stdout,
-    reason = "a test that fails says so by a panic"
-)]
 
 use crate::house;
 use crate::linked_session;

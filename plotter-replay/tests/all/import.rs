@@ -1,12 +1,5 @@
 //! Recordings of other tools become logs with the same bytes in the same order at the same times.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::print_stdout,
-    reason = "a test that fails says so by a panic"
-)]
-
 use crate::real_files::{name_of, other, ours};
 use plotter_replay::import::{ImportError, ImportSettings, Imported, Side, Source, Tool, detect, import};
 use plotter_replay::log::{Event, Header, Reader, Record, Writer};

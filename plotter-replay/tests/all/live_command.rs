@@ -1,11 +1,5 @@
 //! `live` and `simulate` as a stranger uses them, without a browser.
 #![cfg(unix)]
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::expect_used,
-    reason = "a test that fails says so by a panic"
-)]
 
 use std::io::{BufRead, BufReader};
 use std::net::TcpListener;

@@ -1,11 +1,5 @@
 //! `import`, `export`, `compare`, `replay` and `info` as a user runs them.
 #![cfg(feature = "cli")]
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::print_stdout,
-    reason = "a test that fails says so by a panic"
-)]
 
 use plotter_replay::log::{self, Event, Header, Record, Writer};
 use std::io::Write as _;

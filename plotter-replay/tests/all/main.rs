@@ -2,6 +2,14 @@
 //!
 //! `cargo test -p plotter-replay --test all SUBJECT::` runs those of one.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test fails by a panic, and prints its tables"
+)]
+
 #[cfg(all(feature = "cli", feature = "live"))]
 mod browser;
 mod command_line;

@@ -1,12 +1,5 @@
 //! Whatever a file holds, the reader says what is wrong and goes on.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::print_stdout,
-    reason = "a test that fails says so by a panic"
-)]
-
 use plotter_replay::log::{self, DamageKind, Event, Header, ReadError, Reader, Record, SyntaxError};
 use std::io::{self, BufReader, Read, Write};
 

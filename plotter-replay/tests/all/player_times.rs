@@ -1,5 +1,4 @@
 //! The player's rules of time and order, on a controller small enough to follow by hand.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that fails says so by a panic")]
 
 use plotter_motion::{Axis, Direction};
 use plotter_replay::log::{Event, Record, SwitchName};

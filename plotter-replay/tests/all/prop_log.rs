@@ -1,12 +1,5 @@
 //! What is written is read again, and a cut costs one line.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::print_stdout,
-    reason = "a test that fails says so by a panic"
-)]
-
 use plotter_motion::{Axis, Direction, Pen};
 use plotter_replay::log::{DamageKind, Event, Header, ReadError, Reader, Record, SwitchName, Writer};
 use proptest::prelude::*;

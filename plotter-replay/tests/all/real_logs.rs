@@ -1,12 +1,5 @@
 //! Decodes recordings as the notes beside them say: small ones of ours, and of others where they are at hand.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::print_stdout,
-    reason = "a test that fails says so by a panic"
-)]
-
 use crate::real_files::{name_of, other, ours};
 use plotter_motion::StepPoint;
 use plotter_replay::log::{Event, Record};

@@ -1,11 +1,5 @@
 //! `record` as a user runs it: between two pseudo terminals, killed, with a full disk, with a plotter that is unplugged.
 #![cfg(all(feature = "cli", feature = "serial", target_os = "linux"))]
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::print_stdout,
-    reason = "a test that fails says so by a panic"
-)]
 
 use plotter_replay::log::{self, Event, Record};
 use serialport::{SerialPort, TTYPort};

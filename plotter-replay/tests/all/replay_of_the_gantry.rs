@@ -1,10 +1,4 @@
 //! A simulated session of the whole machine, recorded, drawn and run again.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::print_stdout,
-    reason = "a test that fails says so by a panic"
-)]
 
 use crate::house;
 

@@ -1,6 +1,5 @@
 //! A machine behind the reliable link, recorded and run again: the same frames, byte by byte and microsecond by microsecond, over a good
 //! line and a bad one; and the same answers where the recorder knew nothing of its motors.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that fails says so by a panic")]
 
 use crate::house;
 use crate::linked_session;

@@ -1,6 +1,5 @@
 //! Whole drawings over bad lines, by frames and by digits: which targets the machine goes to.
 
-#![allow(clippy::print_stdout, reason = "the figures are for a person to read")]
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,

@@ -1,6 +1,5 @@
 //! The reliable link over bad lines: what is written is read, once and in order.
 
-#![allow(clippy::print_stdout, reason = "the figures are for a person to read")]
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,

@@ -1,5 +1,4 @@
 //! What the virtual plotter makes of a line that is not as it should be.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that fails says so by a panic")]
 
 use plotter_motion::kinematics::BeltSigns;
 use plotter_motion::protocol::digits;

@@ -1,7 +1,5 @@
 //! Ten thousand frames in a row, against arithmetic with twice the digits: `f64` is enough.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
-
 use plotter_motion::{Point, Vec2};
 use plotter_stitch::{Chain, FrameTransform};
 

@@ -1,5 +1,4 @@
 //! A small drawing in its frames, as a picture that one can look at: `tests/golden/split.svg`.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use plotter_motion::{PlotOp, Point};
 use plotter_stitch::{FrameLayout, FramePasses};

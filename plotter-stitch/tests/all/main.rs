@@ -2,6 +2,14 @@
 //!
 //! `cargo test -p plotter-stitch --test all SUBJECT::` runs those of one.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test fails by a panic, and prints its tables"
+)]
+
 mod chain_precision;
 mod golden_split;
 mod joints;

@@ -1,5 +1,4 @@
 //! Laws of the search for an empty square: none that is found is drawn in, and one is found wherever there is one.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use plotter_motion::{PlotOp, Point, Segment};
 use plotter_stitch::{EmptySquare, FoldDirection, FoldProbe};

@@ -1,5 +1,4 @@
 //! Laws of the fit of a sheet to many crossings.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use plotter_motion::{Axis, Point, Vec2};
 use plotter_stitch::{

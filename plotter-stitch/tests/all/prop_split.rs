@@ -1,7 +1,5 @@
 //! Laws of dividing a drawing into frames, on drawings made by chance.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
-
 use plotter_motion::{PlotOp, Point, Vec2};
 use plotter_stitch::{Frame, FrameLayout, FramePasses, Frames, SplitError};
 use proptest::prelude::*;

@@ -3,7 +3,6 @@
 //! ```text
 //! cargo test --release -p plotter-stitch --test all sim_joints:: -- --ignored --nocapture
 //! ```
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and shows its table")]
 
 use crate::joints;
 

@@ -1,5 +1,4 @@
 //! Whole sheets, frame by frame, with both procedures: what is left at the joints, and how far the drawing drifts.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use plotter_stitch::{
     JoinFrames, LongSheet, PublishedJoin, ReferenceLines, SearchSettings, SheetSettings, StripJoin,

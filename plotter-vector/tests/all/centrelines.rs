@@ -1,5 +1,4 @@
 //! Strokes that a round pen draws, found again: junctions where they are, straight lines straight through.
-#![allow(clippy::unwrap_used, reason = "a failure shows")]
 #![allow(clippy::cast_precision_loss, reason = "a count of corners")]
 
 use crate::segment_distance;

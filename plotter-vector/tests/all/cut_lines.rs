@@ -1,6 +1,5 @@
 //! Lines that cross, or end on one another, in a picture whose rim cuts them all: what a camera sees of a larger drawing, and a scan of a
 //! part of it.
-#![allow(clippy::unwrap_used, reason = "a failure shows")]
 #![allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,5 +1,4 @@
 //! The follower over drawings of many kinds, as the example `follow` does it.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test prints its table")]
 
 use crate::follow_drawings;
 use crate::follow_figures;

@@ -1,5 +1,4 @@
 //! Where straight lines end whose pen was not lifted there: square ends, and lines that the picture's rim cuts.
-#![allow(clippy::unwrap_used, reason = "a failure shows")]
 
 use crate::segment_distance;
 

@@ -2,6 +2,14 @@
 //!
 //! `cargo test -p plotter-vector --test all SUBJECT::` runs those of one.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test fails by a panic, and prints its tables"
+)]
+
 mod blurred_corners;
 mod centrelines;
 mod cut_lines;

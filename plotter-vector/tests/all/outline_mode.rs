@@ -1,5 +1,4 @@
 //! Outlines of everything: of lines thinner than the pen as of areas, nothing is lost.
-#![allow(clippy::unwrap_used, reason = "a failure shows")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small numbers")]
 
 use crate::segment_distance;

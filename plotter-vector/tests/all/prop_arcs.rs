@@ -1,5 +1,4 @@
 //! Laws of arcs: the promise both ways, circles found as circles, and drawings that keep their arcs.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 #![allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,5 +1,4 @@
 //! Laws of areas: splitting ink by width, outlines, hatching.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 #![allow(
     clippy::cast_possible_truncation,
     clippy::cast_possible_wrap,

@@ -1,5 +1,4 @@
 //! Laws of the simplification with a promised error.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
 use plotter_vector::{Bounded, DynamicThreshold, ErrorTally, Pixel, Simplify};
 use proptest::prelude::*;

@@ -1,5 +1,4 @@
 //! Laws of cubic curves: the promise both ways, ends and corners kept, one direction where two curves meet.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
 use crate::frechet;
 use crate::lines;

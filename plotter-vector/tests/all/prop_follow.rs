@@ -1,5 +1,4 @@
 //! Laws of the line followers on random drawings, cameras and tables.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use plotter_vector::follow::{
     CameraSettings, End, LineFollower, Lost, MappingFollower, MappingSettings, Paper, SimulatedCamera,

@@ -1,5 +1,4 @@
 //! Bad input of the line followers: each ends in a state that says what and where, within a bound, inside of the machine's area.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::cast_possible_truncation, reason = "small numbers, and bytes of noise")]
 
 use plotter_vector::follow::{

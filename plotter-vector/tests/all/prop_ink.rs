@@ -1,5 +1,4 @@
 //! Laws of the way from grey levels to clean ink.
-#![allow(clippy::unwrap_used, reason = "a failure shows, and levels are made to fit")]
 
 use plotter_vector::{
     Bitmap, Gray, Pixel, Polarity, Survey, Threshold, ThresholdMethod, context_rows, despeckle,

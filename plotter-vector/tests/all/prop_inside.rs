@@ -1,5 +1,4 @@
 //! What is drawn lies within the picture, whatever the picture.
-#![allow(clippy::unwrap_used, reason = "a failure shows, and levels are made to fit")]
 
 use plotter_vector::{
     Algorithm, AreaStyle, Areas, Bounded, Colour, Drawing, Gray, GrayRows, Hatch, Mode, Pens, Progress,

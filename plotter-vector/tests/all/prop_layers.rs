@@ -1,5 +1,4 @@
 //! Laws of sharing ink out among pens, on any picture.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use plotter_vector::{Bitmap, Colour, Layers, Palette, PalettePen, Pens, Pixel, Rgb};
 use proptest::prelude::*;

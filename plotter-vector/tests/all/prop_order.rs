@@ -1,5 +1,4 @@
 //! Laws of ordering.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use plotter_vector::{Drawing, Lettering, Order, OrderEffort, PxPoint, TextBlock};
 use proptest::prelude::*;

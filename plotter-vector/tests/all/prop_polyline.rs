@@ -1,5 +1,4 @@
 //! Laws of the polyline with free vertices.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
 use crate::frechet;
 use crate::lines;

@@ -1,5 +1,4 @@
 //! Sheets by rows: the same strokes as of the whole picture, whatever the bands and the threads.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 #![allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,5 +1,4 @@
 //! Laws of thinning: topology, width, idempotence, and how far a pixel's influence reaches.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use plotter_vector::{Bitmap, Pixel, Thinned, Thinning, ThinningMethod};
 use proptest::prelude::*;

@@ -1,5 +1,4 @@
 //! Laws of tracking, linking and joining.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
 use plotter_motion::{Point, Segment};
 use plotter_vector::{

@@ -1,5 +1,4 @@
 //! Tracing of a sheet by rows stops where it is asked to, and leaves its source fit to begin again.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use core::ops::ControlFlow;
 use plotter_vector::{

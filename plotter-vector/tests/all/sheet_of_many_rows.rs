@@ -1,5 +1,4 @@
 //! A banner far longer than a picture may be wide: what is drawn on it is the same wherever it lies.
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use plotter_vector::{
     DecodeError, Depth, MAX_SHEET_ROWS, MAX_SIDE_PX, Order, OrderEffort, Progress, PxPoint, Row, RowSource,

@@ -1,5 +1,4 @@
 //! Followers over drawings, under a camera that blurs and on a table that misses: the thesis' four kinds of figure.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test prints its table")]
 
 use crate::follow_figures;
 

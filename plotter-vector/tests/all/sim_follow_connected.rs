@@ -1,5 +1,4 @@
 //! The thesis' own idea for lines close together, never built there: only exits that are joined to the current place count.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test prints its table")]
 
 use plotter_vector::PxPoint;
 use plotter_vector::follow::{

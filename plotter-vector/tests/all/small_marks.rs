@@ -1,5 +1,4 @@
 //! Lettering four to five times as high as its pen is wide: where each stroke ends before it is undisturbed.
-#![allow(clippy::unwrap_used, reason = "a failure shows")]
 
 use plotter_vector::{Bitmap, Pixel, PxPoint, Vectorizer};
 

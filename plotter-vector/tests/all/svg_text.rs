@@ -1,6 +1,5 @@
 //! Text of SVG files as outlines: places on the sheet to a hundredth of a millimetre, and what is said of missing fonts.
 #![cfg(feature = "svg-text")]
-#![allow(clippy::unwrap_used, reason = "a test fails by a panic")]
 
 use crate::made_font;
 

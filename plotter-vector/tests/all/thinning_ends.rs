@@ -1,6 +1,5 @@
 //! Where skeletons end: straight strokes with square and round ends, and wedges that taper to a point, at many angles.
 //! `cargo test -p plotter-vector --test all thinning_ends:: -- --nocapture` prints the tables.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by a panic and prints its table")]
 
 use plotter_vector::{Bitmap, Pixel, PxPoint, Thinning, ThinningMethod};
 use std::collections::BTreeSet;

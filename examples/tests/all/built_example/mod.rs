@@ -1,6 +1,5 @@
 //! Runs an example as a stranger does.
 
-#![expect(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![expect(unreachable_pub, reason = "shared by tests, not an interface")]
 
 use std::path::Path;

@@ -1,5 +1,4 @@
 #![allow(dead_code, reason = "each test uses its part of this")]
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![allow(unreachable_pub, reason = "shared by tests, not an interface")]
 //! The marking board's controller and its simulated board, in one time.
 

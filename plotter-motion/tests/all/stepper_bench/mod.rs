@@ -1,6 +1,5 @@
 //! A stepper plotter on the bench: the controller, two simulated motors, four limit switches and a clock.
 #![allow(dead_code, reason = "each test takes what it needs")]
-#![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;

@@ -1,6 +1,5 @@
 //! Drawings of other kinds than the thesis' figures, with lines of several widths.
 #![allow(unreachable_pub, reason = "of a test, not an interface")]
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use plotter_vector::PxPoint;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -1,6 +1,5 @@
 //! The four kinds of figure that the thesis tests with, drawn after its description, and runs over them.
 #![allow(unreachable_pub, dead_code, reason = "shared by tests, not an interface")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use plotter_vector::PxPoint;
 use plotter_vector::follow::{

@@ -1,5 +1,4 @@
 //! Decides whether two lines are near each other in order: the check of the promise, independent of the library's.
-#![allow(clippy::unwrap_used, reason = "lines have places")]
 
 use plotter_vector::PxPoint;
 

@@ -1,4 +1,5 @@
 //! What a pen leaves of straight lines at 1 bit a pixel.
+#![allow(clippy::cast_possible_truncation, reason = "places in a picture are made to fit")]
 
 use crate::segment_distance::segment_distance;
 use plotter_vector::{Bitmap, Pixel, PxPoint};

@@ -1,11 +1,5 @@
 //! Pictures of every kind and every damage, read whole and by rows.
 #![cfg(feature = "image")]
-#![expect(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a test that fails says so by a panic"
-)]
 
 mod damaged;
 mod formats;
