@@ -7,7 +7,7 @@
 )]
 
 use plotter_motion::protocol::frame::{Decoder, Kind};
-use plotter_motion::{Machine, MachineConfig, Pen, PenMove, SerialConfig, StepPoint};
+use plotter_motion::{Machine, MachineConfig, Pen, PenMove, SerialConfig, StepPoint, from_mm};
 use plotter_replay::live::{
     Command, Line, LinkChoice, LivePage, MachineLine, MachineLog, Plan, Recording, Server, ServerError,
     Session, SessionSettings, SimulatedMachine, State, Telemetry,
@@ -300,8 +300,7 @@ fn a_session_with_a_simulated_machine_is_run_again_to_the_same_bytes() {
 fn quarter() -> Vec<PenMove> {
     let at = |n: u32| {
         let angle = f64::from(n) / 40.0 * core::f64::consts::FRAC_PI_2;
-        let counts = |mm: f64| StepPoint::new((mm * 40.0).round() as i32, 0).x;
-        StepPoint::new(counts(10.0 * angle.sin()), counts(10.0 * (1.0 - angle.cos())))
+        StepPoint::new(from_mm(10.0 * angle.sin(), 40.0), from_mm(10.0 * (1.0 - angle.cos()), 40.0))
     };
     (1..=40).map(|n| PenMove { pen: Pen::Down, target: at(n) }).collect()
 }
@@ -339,8 +338,7 @@ fn quarter_at(speed: f64, away: Option<u32>) -> Vec<u8> {
     assert_eq!(session.reached(), 40);
     let took = telemetry.lock().unwrap().time;
     assert!(took < Duration::from_secs(5), "{took:?} of the machine");
-    let bytes = kept.0.lock().unwrap().clone();
-    bytes
+    kept.0.lock().unwrap().clone()
 }
 
 /// Payloads that a side sent again.
