@@ -1,7 +1,7 @@
 //! A drawing sent to a simulated machine, without a browser: the stop, the server's door, what goes wrong.
 
 use plotter_motion::protocol::frame::{Decoder, Kind};
-use plotter_motion::{Machine, MachineConfig, Pen, PenMove, SerialConfig, StepPoint};
+use plotter_motion::{Machine, MachineConfig, Pen, PenMove, SerialConfig, StepPoint, from_mm};
 use plotter_replay::live::{
     Command, Line, LinkChoice, LivePage, MachineLine, MachineLog, Plan, Recording, Server, ServerError,
     Session, SessionSettings, SimulatedMachine, State, Telemetry,
@@ -294,9 +294,7 @@ fn a_session_with_a_simulated_machine_is_run_again_to_the_same_bytes() {
 fn quarter() -> Vec<PenMove> {
     let at = |n: u32| {
         let angle = f64::from(n) / 40.0 * core::f64::consts::FRAC_PI_2;
-        #[expect(clippy::cast_possible_truncation, reason = "places of a few centimetres")]
-        let counts = |mm: f64| StepPoint::new((mm * 40.0).round() as i32, 0).x;
-        StepPoint::new(counts(10.0 * angle.sin()), counts(10.0 * (1.0 - angle.cos())))
+        StepPoint::new(from_mm(10.0 * angle.sin(), 40.0), from_mm(10.0 * (1.0 - angle.cos()), 40.0))
     };
     (1..=40).map(|n| PenMove { pen: Pen::Down, target: at(n) }).collect()
 }
