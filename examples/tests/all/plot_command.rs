@@ -6,7 +6,7 @@ use built_example::{complaint, data, machine, run_example};
 use plotter_motion::firmware::{Gantry, LinkedGantry};
 use plotter_motion::plant::{Bench, BenchController, BenchEvent, BenchSettings};
 use plotter_motion::protocol::LinkSettings;
-use plotter_motion::{Machine, MachineConfig, PenMove};
+use plotter_motion::{LimitSwitches, Machine, MachineConfig, PenMove, SafetyGate};
 use plotter_replay::serial::Port;
 use std::time::{Duration, Instant};
 
@@ -196,12 +196,18 @@ fn a_machine_on_a_port_is_spoken_to_in_the_best_language_that_it_knows() {
     let picture = directory.path().join("line.pbm");
     std::fs::write(&picture, "P1 9 3\n0 0 0 0 0 0 0 0 0\n0 1 1 1 1 1 1 1 0\n0 0 0 0 0 0 0 0 0\n").unwrap();
     let machine = Machine::new(MachineConfig::default()).unwrap();
-    let linked = LinkedGantry::<4, 64>::new(Gantry::new(&machine), 7, LinkSettings::default());
+    let linked = LinkedGantry::<4, 64>::new(
+        Gantry::new(&machine, SafetyGate::new(LimitSwitches::RELEASED, false)),
+        7,
+        LinkSettings::default(),
+    );
     // (the ports stay open: the last one to close a pseudo terminal hangs up the machine)
     let (first, new_port) = Port::pseudo_terminal().unwrap();
     let (second, old_port) = Port::pseudo_terminal().unwrap();
     std::thread::spawn(move || serve(&machine, linked, first));
-    std::thread::spawn(move || serve(&machine, Gantry::new(&machine), second));
+    std::thread::spawn(move || {
+        serve(&machine, Gantry::new(&machine, SafetyGate::new(LimitSwitches::RELEASED, false)), second)
+    });
     for (port, frames) in [(&new_port, true), (&old_port, false)] {
         let out = directory.path().join(if frames { "new" } else { "old" });
         let output = run_example(
