@@ -5,14 +5,15 @@
 //! recording alone a virtual plotter draws what the motors did, beside what they should have done.
 //!
 //! Look at `report.html` first: the drawing, the plot, both coordinates over time, and where the errors are. Then run it
-//! again with `--controller published` and compare.
+//! again with `--controller published` and compare. Both the vectorization and the controller of the thesis are an option away:
+//! `--algorithm published --controller published`.
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
     BenchSwitches, Figure, PlotOutcome, PortLanguage, Recorded, at, board_header, built_firmware,
-    fit_drawing, html_page, plot_in_emulator, plot_on_port, print, read_file, run, simulate, simulate_board,
-    vectorizer, write_file,
+    fit_drawing, html_page, lost_ink, plot_in_emulator, plot_on_port, print, read_file, run, simulate,
+    simulate_board, vectorized, vectorizer, write_file,
 };
 use plotter_motion::firmware::MarkingBoardSettings;
 use plotter_motion::{
@@ -20,9 +21,12 @@ use plotter_motion::{
 };
 use plotter_replay::log::{self, Header};
 use plotter_replay::{BenchRecorder, Canvas, Chart, ContourError, PlotterSettings, VirtualPlotter, Ways};
-use plotter_vector::{Algorithm, ErrorReport, Vectorized, Vectorizer, decode, error_chart, svg};
+use plotter_vector::{
+    Algorithm, Drawing, ErrorReport, RowSource as _, Scan, TracedSheet, Vectorizer, error_chart, svg,
+};
 use serde_json::json;
 use std::fmt::Write as _;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -33,6 +37,7 @@ use std::time::Instant;
     name = "plot",
     after_help = "Examples:\n  cargo run --release --example plot\n  \
                   cargo run --release --example plot -- scan.png --controller published --out target/published\n  \
+                  cargo run --release --example plot -- --algorithm published --controller published\n  \
                   cargo run --release --example plot -- scan.png --machine examples/machines/marking-board.toml\n  \
                   cargo run --release --example plot -- --firmware qemu\n  \
                   cargo run --release --example plot -- scan.png --firmware /dev/ttyUSB0"
@@ -46,8 +51,8 @@ struct Args {
     /// The controller, whatever the machine's file says
     #[arg(long)]
     controller: Option<ControllerArg>,
-    /// The vectorization
-    #[arg(long, default_value = "published")]
+    /// The vectorization; the published one is for lines one pixel wide, and draws the wider lines of a scan two or three times
+    #[arg(long, default_value = "ours")]
     algorithm: AlgorithmArg,
     /// Width of the drawing on the sheet, mm; less where the machine is smaller
     #[arg(long, value_name = "MM", default_value_t = 50.0, allow_negative_numbers = true)]
@@ -104,7 +109,7 @@ fn main() -> ExitCode {
 fn plot(args: &Args) -> Result<(), String> {
     let began = Instant::now();
     let machine = machine(args)?;
-    let traced = trace(args, &machine)?;
+    let (vectorizer, traced) = trace(args, &machine)?;
     std::fs::create_dir_all(&args.out)
         .map_err(|error| at(&args.out, &format!("this folder cannot be made: {error}")))?;
     let file = |name: &str| args.out.join(name);
@@ -129,10 +134,12 @@ fn plot(args: &Args) -> Result<(), String> {
     // From here on, the recording is all there is.
     let plotter = replay(&log_file)?;
 
-    let pictures = Pictures::new(&traced, &plotter)?;
+    let errors = traced.errors.clone().unwrap_or_default();
+    let pictures = Pictures::new(&traced.drawing, &errors.report, &promises(&vectorizer), &plotter)?;
     pictures.write(&args.out)?;
     let summary = Summary {
-        traced: &traced,
+        drawing: &traced.drawing,
+        error: &errors.report,
         outcome: &outcome,
         plotted: plotter.contour_error(Ways::Drawn),
         anomalies: plotter.anomaly_count(),
@@ -178,7 +185,7 @@ fn plot(args: &Args) -> Result<(), String> {
         let missed = outcome.targets - outcome.reached;
         eprintln!("warning: {missed} of {} targets were not reached", outcome.targets);
     }
-    Ok(())
+    lost_ink(&vectorizer, &errors, traced.pen_px).map_err(|error| at(picture_path(args), &error))
 }
 
 fn controller_name(machine: &Machine) -> &'static str {
@@ -222,21 +229,38 @@ fn machine(args: &Args) -> Result<Machine, String> {
     Machine::new(config).map_err(|error| error.to_string())
 }
 
-fn trace(args: &Args, machine: &Machine) -> Result<Vectorized, String> {
-    let (bytes, path) = match &args.image {
-        Some(path) => (read_file(path)?, path.as_path()),
-        None => (include_bytes!("data/flag.png").to_vec(), Path::new("flag.png")),
+fn picture_path(args: &Args) -> &Path {
+    args.image.as_deref().unwrap_or(Path::new("flag.png"))
+}
+
+fn trace(args: &Args, machine: &Machine) -> Result<(Vectorizer, TracedSheet), String> {
+    let bytes = match &args.image {
+        Some(path) => read_file(path)?,
+        None => include_bytes!("data/flag.png").to_vec(),
     };
-    let picture = decode(&bytes).map_err(|error| at(path, &error))?;
+    let path = picture_path(args);
     let vectorizer = match args.algorithm {
         AlgorithmArg::Published => Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
         // One pen, whatever the file says: this machine has no carousel.
         AlgorithmArg::Ours => {
-            let scale = fit_drawing((picture.width(), picture.height()), machine, args.width_mm)?;
+            let scan = Scan::new(Cursor::new(&bytes)).map_err(|error| at(path, &error))?;
+            let scale = fit_drawing((scan.width(), scan.height()), machine, args.width_mm)?;
             vectorizer(&machine.config().vectorize, scale.mm_per_px())?
         }
     };
-    vectorizer.vectorize(&picture).map_err(|error| at(path, &error))
+    let traced = vectorized(&vectorizer, bytes).map_err(|error| at(path, &error))?;
+    Ok((vectorizer, traced))
+}
+
+/// What the chart of the errors says beside them: the thesis' figures, or what ours promises.
+fn promises(vectorizer: &Vectorizer) -> Vec<String> {
+    match vectorizer.algorithm {
+        Algorithm::Published => vec![
+            "published: flag mean 0.0991, max 2.0392, sd 0.2435 px;".into(),
+            "technical drawing mean 0.0042, max 0.5547, sd 0.0386 px".into(),
+        ],
+        Algorithm::Ours => vec![format!("promised: {} px at most", vectorizer.ours.tolerance_px)],
+    }
 }
 
 /// Plots on the simulated machine, or with a firmware, and records the serial line.
@@ -316,15 +340,17 @@ struct Pictures {
 }
 
 impl Pictures {
-    fn new(traced: &Vectorized, plotter: &VirtualPlotter) -> Result<Self, String> {
+    fn new(
+        traced: &Drawing,
+        error: &ErrorReport,
+        promises: &[String],
+        plotter: &VirtualPlotter,
+    ) -> Result<Self, String> {
         const STROKE_PX: f64 = 1.0;
         let (mut drawing, mut errors) = (String::new(), String::new());
-        svg(&traced.drawing, STROKE_PX, &mut drawing).map_err(|error| error.to_string())?;
-        let published = [
-            "published: flag mean 0.0991, max 2.0392, sd 0.2435 px;",
-            "technical drawing mean 0.0042, max 0.5547, sd 0.0386 px",
-        ];
-        error_chart(&traced.error, "Vectorization error", &published, &mut errors)
+        svg(traced, STROKE_PX, &mut drawing).map_err(|error| error.to_string())?;
+        let promises: Vec<&str> = promises.iter().map(String::as_str).collect();
+        error_chart(error, "Vectorization error", &promises, &mut errors)
             .map_err(|error| error.to_string())?;
         let canvas = Canvas::from_plotter(plotter, 0.002);
         let style = canvas.fitted_style();
@@ -348,7 +374,8 @@ impl Pictures {
 
 /// All figures of a plot.
 struct Summary<'a> {
-    traced: &'a Vectorized,
+    drawing: &'a Drawing,
+    error: &'a ErrorReport,
     outcome: &'a PlotOutcome,
     plotted: ContourError,
     anomalies: u64,
@@ -357,10 +384,10 @@ struct Summary<'a> {
 
 impl Summary<'_> {
     fn json(&self) -> String {
-        let ErrorReport { mean_px, max_px, sd_px, .. } = self.traced.error;
+        let ErrorReport { mean_px, max_px, sd_px, .. } = *self.error;
         let report = json!({
-            "vertices": self.traced.drawing.vertices(),
-            "strokes": self.traced.drawing.strokes().len(),
+            "vertices": self.drawing.vertices(),
+            "strokes": self.drawing.strokes().len(),
             "vector_error_px": { "mean": mean_px, "max": max_px, "sd": sd_px },
             "contour_error_mm": { "rms": self.plotted.rms_mm, "max": self.plotted.max_mm },
             "true_contour_error_mm": { "rms": self.outcome.true_rms_mm, "max": self.outcome.true_max_mm },
@@ -374,11 +401,10 @@ impl Summary<'_> {
     }
 
     fn table(&self) -> Vec<(&'static str, String)> {
-        let error = &self.traced.error;
-        let outcome = self.outcome;
+        let Self { error, outcome, .. } = *self;
         vec![
-            ("vertices", self.traced.drawing.vertices().to_string()),
-            ("strokes", self.traced.drawing.strokes().len().to_string()),
+            ("vertices", self.drawing.vertices().to_string()),
+            ("strokes", self.drawing.strokes().len().to_string()),
             ("vector error, mean", format!("{:.4} px", error.mean_px)),
             ("vector error, max", format!("{:.4} px", error.max_px)),
             ("vector error, sd", format!("{:.4} px", error.sd_px)),

@@ -23,7 +23,7 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    INTERRUPTED, Interrupt, Overlay, at, is_standard, overlay_png, overlay_step, print, read_file,
+    INTERRUPTED, Interrupt, Overlay, at, is_standard, lost_ink, overlay_png, overlay_step, print, read_file,
     read_input, run, vectorizer, write_output,
 };
 use plotter_motion::gcode::{PenControl, WriteOptions};
@@ -34,7 +34,7 @@ use plotter_motion::{
 use plotter_vector::{
     Algorithm, Bin, Colour, DecodeError, Drawing, ErrorReport, MAX_PENS, Palette, Pens, Pixel, Progress,
     PxPoint, Row, RowSource as _, Scale, Scan, SheetErrors, ThresholdMethod, Vectorizer, decode_colour,
-    error_chart, gcode, hpgl, svg_in_colour,
+    error_chart, gcode, hpgl, pen_width_px, svg_in_colour,
 };
 use serde::Serialize;
 use std::borrow::Cow;
@@ -245,6 +245,8 @@ struct Traced {
     palette: Palette,
     /// Width of the lines, px; unknown where pens were told apart, and without lines.
     pen_px: Option<u32>,
+    /// The same of the widest pen's, also where pens were told apart.
+    widest_px: Option<u32>,
     /// For the overlay, where one is asked for.
     picture: Option<Picture>,
     time: Duration,
@@ -363,9 +365,16 @@ fn trace(arguments: &Arguments, stopped: &mut bool) -> Result<(), String> {
     let table = table(&format!("{name}: {width} x {height} px{empty}"), &report, megapixels, circled);
     if prints_file {
         eprint!("{table}");
-        return Ok(());
+    } else {
+        print(&table)?;
     }
-    print(&table)
+    // Everything is written: what was traced may still be of use.
+    match &traced.errors {
+        Some(errors) => {
+            lost_ink(&settings.vectorizer, errors, traced.widest_px).map_err(|error| here(&error))
+        }
+        None => Ok(()),
+    }
 }
 
 fn picture_bytes(path: &Path) -> Result<Vec<u8>, String> {
@@ -455,6 +464,7 @@ fn by_rows<R: Read + Seek>(
         errors: sheet.errors,
         palette: Palette::default(),
         pen_px: sheet.pen_px,
+        widest_px: sheet.pen_px,
         picture,
         time,
     })
@@ -532,7 +542,8 @@ fn in_colour(
     let errors = SheetErrors { report: found.traced.error, worst: found.worst };
     let errors = (!arguments.no_errors).then_some(errors);
     let picture = settings.overlay.is_some().then_some(Picture::Colour(colour));
-    Ok(Traced { errors, palette: found.palette, pen_px: None, picture, time, drawing })
+    let widest_px = found.inks.iter().filter_map(pen_width_px).max();
+    Ok(Traced { errors, palette: found.palette, pen_px: None, widest_px, picture, time, drawing })
 }
 
 fn pen_report<'a>(pen: &'a plotter_vector::PalettePen, drawing: &Drawing) -> PenReport<'a> {

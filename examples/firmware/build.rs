@@ -53,7 +53,7 @@ fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn 
         text,
         "use plotter_motion::{{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotionLimits, MotorConfig, TransmissionConfig}};"
     )?;
-    writeln!(text, "use plotter_motion::{{PublishedConfig, StepPoint, StepperConfig, SyncStop}};")?;
+    writeln!(text, "use plotter_motion::{{PublishedConfig, SafetyGate, StepPoint, StepperConfig, SyncStop}};")?;
     writeln!(text, "/// Bits a second of the gantry's line.\npub const BAUD: u32 = {};", config.serial.baud)?;
     writeln!(
         text,
@@ -93,7 +93,7 @@ fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn 
     writeln!(text, "/// The gantry's controller, at rest at the origin.")?;
     writeln!(
         text,
-        "#[must_use]\npub fn gantry() -> Gantry {{\n    Gantry::with_settings(GANTRY, {name}::with_settings(LINE))\n}}"
+        "#[must_use]\npub fn gantry(gate: SafetyGate) -> Gantry {{\n    Gantry::with_settings(GANTRY, {name}::with_settings(LINE), gate)\n}}"
     )?;
     Ok(())
 }

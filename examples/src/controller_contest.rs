@@ -1,13 +1,13 @@
 //! A contest of controllers on simulated machines: table, CSV and a page with pictures.
 
-use crate::{at, escaped, print, read_file, run, write_file};
+use crate::{at, escaped, lost_ink, print, read_file, run, vectorized, write_file};
 use clap::Parser;
 use core::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_motion::testbed::{Drawing, Entry, Figures, Moment, Ranking, Score, TestBed, TestBedSettings};
 use plotter_motion::{Machine, MachineKind, Pen, PenMove, PlotOp, Point, hpgl};
 use plotter_replay::{Chart, Curve, Panel, Role, Run};
-use plotter_vector::{Scale, Vectorizer, decode};
+use plotter_vector::{Scale, Vectorizer};
 use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -210,8 +210,10 @@ fn traced(args: &Args, path: &Path, bytes: &[u8], bed: &TestBed) -> Result<Strin
     if !(args.width_mm > 0.0 && args.width_mm.is_finite()) {
         return Err(format!("--width-mm {}: give a width above 0 mm", args.width_mm));
     }
-    let picture = decode(bytes).map_err(|error| at(path, &error))?;
-    let traced = Vectorizer::default().vectorize(&picture).map_err(|error| at(path, &error))?;
+    let vectorizer = Vectorizer::default();
+    let traced = vectorized(&vectorizer, bytes.to_vec()).map_err(|error| at(path, &error))?;
+    let errors = traced.errors.unwrap_or_default();
+    lost_ink(&vectorizer, &errors, traced.pen_px).map_err(|error| at(path, &error))?;
     let (width_px, height_px) = (traced.drawing.width_px().max(1), traced.drawing.height_px().max(1));
     let area = bed.machine().config().area;
     let height_mm = args.width_mm * f64::from(height_px) / f64::from(width_px);

@@ -6,7 +6,10 @@ use plotter_motion::control::ChosenController;
 use plotter_motion::firmware::{MarkingBoard, MarkingBoardSettings};
 use plotter_motion::kinematics::Kinematics as _;
 use plotter_motion::plant::{MarkingBoardPlant, MarkingBoardPlantSettings};
-use plotter_motion::{Axis, ControllerChoice, Drive, Machine, Pen, PenMove, Point, Segment, StepPoint};
+use plotter_motion::{
+    Axis, ControllerChoice, Drive, LimitSwitches, Machine, Pen, PenMove, Point, SafetyGate, Segment,
+    StepPoint,
+};
 use plotter_replay::BenchRecorder;
 use plotter_replay::log::{Event, Header};
 use std::io::Write;
@@ -18,7 +21,7 @@ const TIME_STEP: Duration = Duration::from_micros(100);
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A marking board's controller and its simulated motors in one time.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct SimulatedBoard {
     now: Duration,
     board: MarkingBoard<ChosenController>,
@@ -38,7 +41,7 @@ impl SimulatedBoard {
     pub fn with_plant(machine: &Machine, plant: &MarkingBoardPlantSettings) -> Self {
         Self {
             now: Duration::ZERO,
-            board: MarkingBoard::of(machine),
+            board: MarkingBoard::of(machine, SafetyGate::new(LimitSwitches::RELEASED, false)),
             plant: MarkingBoardPlant::new(plant, TIME_STEP.as_secs_f64()),
             settings: MarkingBoardSettings::of(machine),
         }
@@ -48,7 +51,7 @@ impl SimulatedBoard {
     pub fn step(&mut self, mut counted: impl FnMut(Duration, Axis, plotter_motion::Direction)) {
         self.now += TIME_STEP;
         let (now, board) = (self.now, &mut self.board);
-        self.plant.step(board.drive(), |motor| {
+        self.plant.step(board.drive().duties(), |motor| {
             board.pulse(now, motor);
             if let Some(direction) = board.counting(motor) {
                 counted(now, motor, direction);
@@ -79,7 +82,7 @@ impl SimulatedBoard {
 
     /// What both motors get.
     #[must_use]
-    pub fn drive(&self) -> Drive {
+    pub fn drive(&self) -> Drive<'_> {
         self.board.drive()
     }
 

@@ -6,7 +6,7 @@ use crc::{CRC_64_XZ, Crc};
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Dialect, Drivers, StepperPlotterSettings};
 use plotter_motion::plant::SimulatedLine;
-use plotter_motion::{Axis, Machine, StepPoint};
+use plotter_motion::{Axis, LimitSwitches, Machine, SafetyGate, StepPoint};
 use plotter_replay::serial::Port;
 use std::collections::VecDeque;
 use std::path::Path;
@@ -110,7 +110,8 @@ pub fn streamed_on_the_desk(
         ToHost,
     }
     let settings = StepperPlotterSettings::of(machine, Dialect::Grbl);
-    let mut plotter = StepperPlotter::new(settings).map_err(|error| error.to_string())?;
+    let mut plotter = StepperPlotter::new(settings, SafetyGate::new(LimitSwitches::RELEASED, false))
+        .map_err(|error| error.to_string())?;
     let mut host = Streamer::new(gcode);
     let baud = machine.config().serial.baud;
     let (mut to_controller, mut to_host) = (SimulatedLine::new(baud), SimulatedLine::new(baud));

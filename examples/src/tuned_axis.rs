@@ -5,7 +5,9 @@ use plotter_motion::control::tuning::{
     TuningError,
 };
 use plotter_motion::plant::AxisPlant;
-use plotter_motion::{Axis, AxisConfig, Demand, Duty, Pid, PidState, SafetyGate, SumPid, SumPidState};
+use plotter_motion::{
+    Axis, AxisConfig, Demand, Duty, LimitSwitches, Pid, PidState, SafetyGate, SumPid, SumPidState,
+};
 
 /// Longest step of the simulated motor, s.
 const LONGEST_STEP_S: f64 = 5e-5;
@@ -38,9 +40,13 @@ const FULL_DUTY: f32 = 255.0;
 pub struct SimulatedAxis {
     axis: Axis,
     plant: AxisPlant,
-    gate: SafetyGate,
     steps: u32,
     count: i32,
+}
+
+/// The gate of a simulated axis, which has neither switches nor a button.
+const fn free() -> SafetyGate {
+    SafetyGate::new(LimitSwitches::RELEASED, false)
 }
 
 /// What a step of the setpoint did, as the encoder counts it.
@@ -65,11 +71,11 @@ impl SimulatedAxis {
         )]
         let steps = (tick_s / LONGEST_STEP_S).ceil().max(1.0) as u32;
         let plant = AxisPlant::new(config, tick_s / f64::from(steps));
-        Self { axis, plant, gate: SafetyGate::default(), steps, count: 0 }
+        Self { axis, plant, steps, count: 0 }
     }
 
-    fn tick(&mut self, demand: Demand) {
-        let drive = self.gate.pass(demand);
+    fn tick(&mut self, gate: &SafetyGate, demand: Demand) {
+        let drive = gate.pass(demand);
         for _ in 0..self.steps {
             self.plant.step(drive.axis(self.axis), |edge| self.count += edge.direction.sign());
         }
@@ -81,10 +87,10 @@ impl SimulatedAxis {
     ///
     /// What the experiment says.
     pub fn step_experiment(mut self, settings: ExperimentSettings) -> Result<IdentifiedMotor, TuningError> {
-        let mut experiment = StepExperiment::new(settings);
+        let (mut experiment, gate) = (StepExperiment::new(settings), free());
         loop {
             let demand = experiment.tick(self.count);
-            self.tick(demand);
+            self.tick(&gate, demand);
             if let Some(outcome) = experiment.outcome() {
                 return outcome;
             }
@@ -97,10 +103,10 @@ impl SimulatedAxis {
     ///
     /// What the experiment says.
     pub fn relay_experiment(mut self, settings: ExperimentSettings) -> Result<RelayPoint, TuningError> {
-        let mut experiment = RelayExperiment::new(settings);
+        let (mut experiment, gate) = (RelayExperiment::new(settings), free());
         loop {
             let demand = experiment.tick(self.count);
-            self.tick(demand);
+            self.tick(&gate, demand);
             if let Some(outcome) = experiment.outcome() {
                 return outcome;
             }
@@ -112,6 +118,7 @@ impl SimulatedAxis {
     pub fn step_response(mut self, law: Law, counts: i32, tick_s: f64, watched_s: f64) -> StepResponse {
         let (mut pid_state, mut sum_state) = (PidState::default(), SumPidState::default());
         let mut response = StepResponse::default();
+        let gate = free();
         let band = (0.02 * f64::from(counts)).max(2.0);
         let mut most = 0;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "seconds of a loop")]
@@ -132,7 +139,7 @@ impl SimulatedAxis {
             };
             let now_s = f64::from(tick) * tick_s;
             response.places.push((now_s, self.count));
-            self.tick(demand);
+            self.tick(&gate, demand);
             most = most.max(self.count);
             if f64::from(self.count - counts).abs() > band {
                 response.settled_s = None;

@@ -26,7 +26,7 @@ use plotter_hal::{
 };
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
-use plotter_motion::{Axis, Direction};
+use plotter_motion::{Axis, Direction, SafetyGate};
 use std::error::Error;
 
 type Controller = RefCell<StepperPlotter>;
@@ -57,14 +57,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         pen_settle: pen.lowering_time(), // the controller waits for as long as the pen takes
         ..StepperPlotterSettings::default()
     };
-    let plotter = RefCell::new(StepperPlotter::new(settings)?);
     let button =
         EstopInput::new(Switch { clock: clock.clone(), high_ms: STOP_MS.into() }, SwitchSettings::default());
-    // Before the first task has run: nobody has looked at the button yet.
-    plotter.borrow_mut().emergency_stop(clock.now(), button.is_pressed());
     let switch =
         || LimitSwitch::new(Switch { clock: clock.clone(), high_ms: vec![] }, SwitchSettings::default());
     let switches = LimitSwitchGroup { x_min: switch(), x_max: switch(), y_min: switch(), y_max: switch() };
+    // Before the first task has run: nobody has looked at button and switches yet, so they count as pressed.
+    let gate = SafetyGate::new(switches.limits(), button.is_pressed());
+    let plotter = RefCell::new(StepperPlotter::new(settings, gate)?);
 
     let line = SerialLine::new(Port::new(&clock, &HOST));
     let (mut motors, steps) = desk::motors();

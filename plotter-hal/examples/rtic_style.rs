@@ -19,7 +19,7 @@ use desk::{Clock, Line, Motors, Port, Pwm, Switch};
 use plotter_hal::{Laser, LimitSwitch, LimitSwitchGroup, SerialLine, SwitchSettings};
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
-use plotter_motion::{Axis, Direction};
+use plotter_motion::{Axis, Direction, SafetyGate};
 use std::error::Error;
 
 /// What more than one interrupt uses. RTIC locks it.
@@ -108,8 +108,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let pwm = Pwm { clock: clock.clone(), name: "laser", full: 999, duty: None, least_change: 150 };
     let (mut motors, steps) = desk::motors();
     motors.start(clock.now())?;
-    let mut shared =
-        Shared { plotter: StepperPlotter::new(settings)?, motors, laser: Laser::new(pwm, LASER_TIMEOUT) };
     let mut line = SerialLine::new(Port::new(&clock, &HOST));
     let switch =
         |high_ms| LimitSwitch::new(Switch { clock: clock.clone(), high_ms }, SwitchSettings::default());
@@ -119,6 +117,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         y_min: switch(vec![]),
         y_max: switch(vec![]),
     };
+    // Nobody has looked at the switches yet, so they count as pressed; there is no button.
+    let plotter = StepperPlotter::new(settings, SafetyGate::new(switches.limits(), false))?;
+    let mut shared = Shared { plotter, motors, laser: Laser::new(pwm, LASER_TIMEOUT) };
 
     // The interrupt controller: the next one that is due, and of two at the same time the one with the higher priority.
     let mut due = [Duration::ZERO; 3];

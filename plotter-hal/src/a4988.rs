@@ -45,14 +45,15 @@ use plotter_motion::{Axis, Direction, Pulse};
 /// use core::time::Duration;
 /// use embedded_hal_mock::eh1::digital::{Mock as Pin, State::{High, Low}, Transaction as Set};
 /// use plotter_hal::a4988::{A4988, Timing};
-/// use plotter_motion::{Axis, SafetyGate, StepPair};
+/// use plotter_motion::{Axis, LimitSwitches, SafetyGate, StepPair};
 ///
 /// let step = Pin::new(&[Set::set(Low), Set::set(High), Set::set(Low)]);
 /// let dir = Pin::new(&[Set::set(High)]);
 /// let mut motor = A4988::new(Axis::X, step, dir, Timing::A4988);
 /// motor.start(Duration::ZERO)?;
 ///
-/// let right = SafetyGate::default().pass_step(StepPair { x: 1, y: 0 }).map_err(|_| "stopped")?;
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// let right = gate.pass_step(StepPair { x: 1, y: 0 }).map_err(|_| "stopped")?;
 /// let us = Duration::from_micros;
 /// motor.step(right, us(2000))?; // sets DIR; STEP must wait for its setup time
 /// assert_eq!(motor.due(), Some(us(2000) + Duration::from_nanos(200)));

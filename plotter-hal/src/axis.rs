@@ -8,8 +8,8 @@
 //! A fault of one motor stops both: with one alone the pen would leave its line. Both are tried whatever fails, and
 //! [`Error`] says what became of either.
 //!
-//! Both may hold something back: a drive for its dead time, a step for its setup time. The gate has let it through, and
-//! may have been latched since: so whoever latches the gate calls `stop` here as well.
+//! A step may be held back for its setup time. The gate has let it through, and may have been stopped since: so whoever stops the
+//! gate calls `stop` here as well. A drive is never held back: for its dead time none is given, and then it is asked for anew.
 
 mod dc_axes;
 mod stepper_axes;

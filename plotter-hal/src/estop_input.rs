@@ -28,12 +28,11 @@ use embedded_hal::digital::{self, InputPin};
 /// use core::time::Duration;
 /// use embedded_hal_mock::eh1::digital::{Mock as Pin, State::{High, Low}, Transaction as Read};
 /// use plotter_hal::{EstopChange, EstopInput, SwitchSettings};
-/// use plotter_motion::SafetyGate;
+/// use plotter_motion::{LimitSwitches, SafetyGate};
 ///
 /// let pin = Pin::new(&[Read::get(Low), Read::get(Low), Read::get(High), Read::get(Low)]);
 /// let mut button = EstopInput::new(pin, SwitchSettings::default());
-/// let mut gate = SafetyGate::default();
-/// gate.emergency_stop(button.is_pressed());
+/// let mut gate = SafetyGate::new(LimitSwitches::RELEASED, button.is_pressed());
 /// assert!(gate.is_stopped()); // nobody has looked yet
 ///
 /// for at_ms in [0, 20, 21, 22] {

@@ -72,7 +72,7 @@ pub trait Bridge {
 /// use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Set};
 /// use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as SetDuty};
 /// use plotter_hal::HBridge;
-/// use plotter_motion::{Axis, Demand, Duty, SafetyGate};
+/// use plotter_motion::{Axis, Demand, Duty, LimitSwitches, SafetyGate};
 ///
 /// let pwm = Pwm::new(&[SetDuty::set_duty_cycle(0), SetDuty::max_duty_cycle(255), SetDuty::set_duty_cycle(20)]);
 /// let forward = Pin::new(&[Set::set(State::High)]);
@@ -80,7 +80,8 @@ pub trait Bridge {
 /// let mut motor = HBridge::new(Axis::X, pwm, forward, reverse);
 ///
 /// let demand = Demand { x: Duty::saturating(20.0 / 255.0), y: Duty::ZERO };
-/// motor.drive(SafetyGate::default().pass(demand))?;
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// motor.drive(gate.pass(demand))?;
 /// # let (mut pwm, mut forward, mut reverse) = motor.release();
 /// # pwm.done();
 /// # forward.done();

@@ -28,13 +28,14 @@ use plotter_motion::Beam;
 /// Nothing is switched while nothing is called. A program that may hang with the beam on wants
 /// [`tick`](Self::tick) in the interrupt of a timer, or the chip's watchdog and a pin that is dark after a reset.
 ///
-/// It goes dark when it is dropped, too.
+/// It goes dark when it is dropped, too. The beam is kept until another is asked for: whoever stops the gate gives
+/// [`Beam::OFF`] here, or calls [`off`](Self::off).
 ///
 /// ```
 /// use core::time::Duration;
 /// use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as SetDuty};
 /// use plotter_hal::Laser;
-/// use plotter_motion::SafetyGate;
+/// use plotter_motion::{LimitSwitches, SafetyGate};
 ///
 /// let pwm = Pwm::new(&[
 ///     SetDuty::set_duty_cycle(0), // a laser that is taken over is dark
@@ -46,7 +47,8 @@ use plotter_motion::Beam;
 /// # let mut check = pwm.clone();
 /// let ms = Duration::from_millis;
 /// let mut laser = Laser::new(pwm, ms(20));
-/// laser.shine(ms(0), SafetyGate::default().pass_laser(32_768))?; // not yet: it stands
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// laser.shine(ms(0), gate.pass_laser(32_768))?; // not yet: it stands
 /// laser.moved(ms(1))?;
 /// laser.tick(ms(20))?; // the step was 19 ms ago: still lit
 /// assert_eq!(laser.due(), Some(ms(21)));
@@ -71,8 +73,8 @@ pub struct Laser<Pwm: SetDutyCycle> {
     /// `None` only once it has been given back: what is dropped then is an empty shell.
     pwm: Option<Pwm>,
     timeout: Duration,
-    /// The beam asked for, and when.
-    beam: Option<(Beam, Duration)>,
+    /// The power asked for, and when.
+    beam: Option<(u16, Duration)>,
     last_motion: Option<Duration>,
     /// The power that the PWM has been set to; `None` if it failed, and nobody knows.
     light: Option<u16>,
@@ -98,7 +100,7 @@ impl<Pwm: SetDutyCycle> Laser<Pwm> {
     /// [`Error`] if the PWM fails; it says what became of the light.
     pub fn shine(&mut self, now: Duration, beam: Beam) -> Result<(), Error<Pwm::Error>> {
         self.forget_if_still(now);
-        self.beam = (beam.power() > 0).then_some((beam, now));
+        self.beam = (beam.power() > 0).then_some((beam.power(), now));
         self.update()
     }
 
@@ -168,7 +170,7 @@ impl<Pwm: SetDutyCycle> Laser<Pwm> {
     /// Lights or darkens it as beam and motion say.
     fn update(&mut self) -> Result<(), Error<Pwm::Error>> {
         let power = match (self.beam, self.last_motion) {
-            (Some((beam, _)), Some(_)) => beam.power(),
+            (Some((power, _)), Some(_)) => power,
             (None, _) | (_, None) => 0,
         };
         if self.light == Some(power) { Ok(()) } else { self.write(power) }

@@ -105,8 +105,7 @@ impl<Pin: digital::Error> core::error::Error for Error<Pin> {}
 /// let mut switches =
 ///     LimitSwitchGroup { x_min: switch(Low), x_max: switch(High), y_min: switch(Low), y_max: switch(Low) };
 ///
-/// let mut gate = SafetyGate::default();
-/// gate.set_limits(switches.tick(Duration::ZERO)?);
+/// let gate = SafetyGate::new(switches.tick(Duration::ZERO)?, false);
 /// let drive = gate.pass(Demand { x: Duty::FULL, y: Duty::FULL });
 /// assert_eq!((drive.x(), drive.y()), (Duty::ZERO, Duty::FULL)); // not into the right end
 /// # for switch in [switches.x_min, switches.x_max, switches.y_min, switches.y_max] {

@@ -13,12 +13,13 @@ use plotter_motion::{Axis, Drive, PulseCounter};
 /// ```
 /// use embedded_hal_mock::eh1::digital::{Mock as Pin, State::{High, Low}, Transaction as Read};
 /// use plotter_hal::PulseInput;
-/// use plotter_motion::{Axis, Demand, Duty, SafetyGate};
+/// use plotter_motion::{Axis, Demand, Duty, LimitSwitches, SafetyGate};
 ///
 /// let pin = Pin::new(&[Read::get(Low), Read::get(High), Read::get(Low), Read::get(High)]);
 /// let mut encoder = PulseInput::new(Axis::X, pin);
 /// let back = Demand { x: Duty::saturating(-0.5), y: Duty::ZERO };
-/// encoder.driven(SafetyGate::default().pass(back));
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// encoder.driven(gate.pass(back));
 /// for _ in 0..4 {
 ///     encoder.poll()?;
 /// }

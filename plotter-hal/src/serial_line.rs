@@ -54,10 +54,11 @@ use plotter_motion::protocol::SUBSTITUTE;
 /// use plotter_hal::SerialLine;
 /// use plotter_motion::firmware::Gantry;
 /// use plotter_motion::protocol::digits;
-/// use plotter_motion::{Machine, MachineConfig, StepPoint};
+/// use plotter_motion::{LimitSwitches, Machine, MachineConfig, SafetyGate, StepPoint};
 ///
 /// # let port = Loopback(digits::encode(StepPoint::new(400, 0))?.into());
-/// let mut gantry = Gantry::new(&Machine::new(MachineConfig::default())?);
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// let mut gantry = Gantry::new(&Machine::new(MachineConfig::default())?, gate);
 /// let mut line = SerialLine::new(port);
 /// let now = Duration::ZERO;
 /// // again and again, in the main loop or when the port's interrupt says that there is something:

@@ -4,16 +4,82 @@
 //!  controller ──Demand──▶ SafetyGate ──Drive──▶ H-bridge, laser, simulated motor
 //!            ──StepPair──▶          ──Pulse──▶ step and direction pins
 //!                          ▲      ▲
-//!            limit switches       emergency stop (latched)
+//!            limit switches       emergency stop (latched), the host's stop
 //! ```
 //!
-//! Drivers take nothing but a [`Drive`], and only the gate makes one, so no controller can go round the
-//! limit switches: a program that tries does not compile.
+//! Drivers take nothing but a [`Drive`], a [`Pulse`] or a [`Beam`]. Only a gate makes one, and a gate is made from readings of the
+//! machine's switches and its stop button. So a program that goes round the limit switches does not compile:
+//!
+//! ```
+//! # use plotter_motion::{Demand, Duty, LimitSwitches, SafetyGate};
+//! let right = Demand { x: Duty::FULL, y: Duty::ZERO };
+//! let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+//! let drive = gate.pass(right);
+//! assert_eq!(drive.x(), Duty::FULL);
+//! gate.emergency_stop(true);
+//! let drive = gate.pass(right);
+//! assert_eq!(drive.x(), Duty::ZERO);
+//! ```
+//!
+//! A drive that no gate has passed:
 //!
 //! ```compile_fail
 //! # use plotter_motion::{Drive, Duty};
 //! let forged = Drive { x: Duty::FULL, y: Duty::ZERO };
 //! ```
+//!
+//! A gate that knows nothing of the machine:
+//!
+//! ```compile_fail,E0599
+//! # use plotter_motion::SafetyGate;
+//! let gate = SafetyGate::default();
+//! ```
+//!
+//! A copy of a gate, which would not hear of a later stop:
+//!
+//! ```compile_fail,E0599
+//! # use plotter_motion::{LimitSwitches, SafetyGate};
+//! let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+//! let copy = gate.clone();
+//! ```
+//!
+//! ```compile_fail,E0382
+//! # use plotter_motion::{Demand, LimitSwitches, SafetyGate};
+//! let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+//! let mut copy = gate;
+//! copy.emergency_stop(true);
+//! let drive = gate.pass(Demand::NONE);
+//! ```
+//!
+//! A drive, a step or a beam from before a stop, in use after it: each borrows its gate, so it ends when the gate is told anything.
+//!
+//! ```compile_fail,E0502
+//! # use plotter_motion::{Demand, Duty, LimitSwitches, SafetyGate};
+//! # let right = Demand { x: Duty::FULL, y: Duty::ZERO };
+//! # let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+//! let drive = gate.pass(right);
+//! gate.emergency_stop(true);
+//! assert_eq!(drive.x(), Duty::FULL);
+//! ```
+//!
+//! ```compile_fail,E0502
+//! # use plotter_motion::{LimitSwitches, SafetyGate, StepPair};
+//! # let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+//! let pulse = gate.pass_step(StepPair { x: 1, y: 0 });
+//! gate.set_limits(LimitSwitches { x_max: true, ..LimitSwitches::RELEASED });
+//! assert!(pulse.is_ok());
+//! ```
+//!
+//! ```compile_fail,E0502
+//! # use plotter_motion::{LimitSwitches, SafetyGate};
+//! # let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+//! let beam = gate.pass_laser(65_535);
+//! gate.stop_by_host(true);
+//! assert_eq!(beam.power(), 65_535);
+//! ```
+//!
+//! No type can see whether the readings are true. A program gets what it should not have if it makes a gate from switches that it has
+//! not read, if it makes a second gate beside the one that is told of them, or if it does not tell the gate what changed.
 //!
 //! Source of the block between every controller and the motors: the marking board's collision prevention
 //! (spec 2.6).
@@ -21,6 +87,7 @@
 use crate::kinematics::BeltSigns;
 use crate::{Axis, Direction, StepPair};
 use core::fmt;
+use core::marker::PhantomData;
 
 /// Share of the supply on a motor, with the sign of the direction: -1.0 to 1.0, checked once when made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
@@ -115,14 +182,15 @@ impl Demand {
     pub const NONE: Self = Self { x: Duty::ZERO, y: Duty::ZERO };
 }
 
-/// What both motors get: made by [`SafetyGate::pass`] only.
+/// What both motors get: made by [`SafetyGate::pass`] only. It ends when its gate is told anything; the default is none at all.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Drive {
+pub struct Drive<'gate> {
     x: Duty,
     y: Duty,
+    gate: PhantomData<&'gate SafetyGate>,
 }
 
-impl Drive {
+impl Drive<'_> {
     /// The duty of the first motor.
     #[must_use]
     pub const fn x(self) -> Duty {
@@ -143,16 +211,33 @@ impl Drive {
             Axis::Y => self.y,
         }
     }
+
+    /// Those of both motors.
+    #[must_use]
+    pub const fn duties(self) -> [Duty; 2] {
+        [self.x, self.y]
+    }
+
+    /// The same without its end: for a controller that keeps its gate in the same place, and passes the demand again whenever it
+    /// tells the gate anything. It lends the drive no longer than itself.
+    pub(crate) const fn kept(self) -> Drive<'static> {
+        drive(self.x, self.y)
+    }
 }
 
-/// A step of either motor or of both that may be made: by [`SafetyGate::pass_step`] only.
+const fn drive(x: Duty, y: Duty) -> Drive<'static> {
+    Drive { x, y, gate: PhantomData }
+}
+
+/// A step of either motor or of both that may be made: by [`SafetyGate::pass_step`] only. It ends when its gate is told anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Pulse {
+pub struct Pulse<'gate> {
     x: i8,
     y: i8,
+    gate: PhantomData<&'gate SafetyGate>,
 }
 
-impl Pulse {
+impl Pulse<'_> {
     /// The step of the first motor: -1, 0 or 1.
     #[must_use]
     pub const fn x(self) -> i8 {
@@ -164,27 +249,45 @@ impl Pulse {
     pub const fn y(self) -> i8 {
         self.y
     }
+
+    /// As [`Drive::kept`].
+    pub(crate) const fn kept(self) -> Pulse<'static> {
+        pulse(StepPair { x: self.x, y: self.y })
+    }
 }
 
-/// Power of a laser, in 65535ths, that may be switched on: by [`SafetyGate::pass_laser`] only; the default is off.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Beam(u16);
+const fn pulse(step: StepPair) -> Pulse<'static> {
+    Pulse { x: step.x, y: step.y, gate: PhantomData }
+}
 
-impl Beam {
+/// Power of a laser, in 65535ths, that may be switched on: by [`SafetyGate::pass_laser`] only. It ends when its gate is told anything;
+/// the default is off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Beam<'gate> {
+    power: u16,
+    gate: PhantomData<&'gate SafetyGate>,
+}
+
+impl Beam<'_> {
     /// No power.
-    pub const OFF: Self = Self(0);
+    pub const OFF: Self = Self { power: 0, gate: PhantomData };
 
     /// The power, in 65535ths.
     #[must_use]
     pub const fn power(self) -> u16 {
-        self.0
+        self.power
+    }
+
+    /// As [`Drive::kept`].
+    pub(crate) const fn kept(self) -> Beam<'static> {
+        Beam { power: self.power, gate: PhantomData }
     }
 }
 
 /// Why a step may not be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Blocked {
-    /// The emergency stop is latched.
+    /// The emergency stop is latched, or the host has stopped the machine.
     Stopped,
     /// It leads into a pressed limit switch.
     Limit {
@@ -209,6 +312,9 @@ pub struct LimitSwitches {
 }
 
 impl LimitSwitches {
+    /// None of them is pressed; also what a machine says that has none.
+    pub const RELEASED: Self = Self { x_min: false, x_max: false, y_min: false, y_max: false };
+
     /// Whether the switch at the end that `direction` leads to is pressed.
     #[must_use]
     #[cfg_attr(target_os = "none", inline(never))]
@@ -247,14 +353,15 @@ impl LimitSwitches {
 /// The only way from a [`Demand`] to a [`Drive`].
 ///
 /// A pressed limit switch takes the drive *towards* it and leaves every other. The emergency stop takes all
-/// drive at once and latches: letting the button go changes nothing until [`SafetyGate::reset`].
+/// drive at once and latches: letting the button go changes nothing until [`SafetyGate::reset`]. The host's stop takes all drive until
+/// the host takes it back. Neither ends the other.
+///
+/// A machine has one gate. It is made when switches and button have been read, it moves, and it is not copied.
 ///
 /// ```
 /// # use plotter_motion::{Demand, Duty, LimitSwitches, SafetyGate};
-/// let mut gate = SafetyGate::default();
+/// let mut gate = SafetyGate::new(LimitSwitches { x_max: true, ..LimitSwitches::RELEASED }, false);
 /// let right_and_up = Demand { x: Duty::FULL, y: Duty::FULL };
-///
-/// gate.set_limits(LimitSwitches { x_max: true, ..LimitSwitches::default() });
 /// assert_eq!(gate.pass(right_and_up).x(), Duty::ZERO); // not into the switch
 /// assert_eq!(gate.pass(right_and_up).y(), Duty::FULL); // but along it
 ///
@@ -263,17 +370,48 @@ impl LimitSwitches {
 /// assert_eq!(gate.pass(right_and_up).y(), Duty::ZERO);
 /// assert!(gate.reset());
 /// assert_eq!(gate.pass(right_and_up).y(), Duty::FULL);
+///
+/// gate.stop_by_host(true);
+/// assert_eq!(gate.pass(right_and_up).y(), Duty::ZERO);
+/// gate.stop_by_host(false);
+/// assert_eq!(gate.pass(right_and_up).y(), Duty::FULL);
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Debug, PartialEq, Eq)]
 pub struct SafetyGate {
     limits: LimitSwitches,
     button_pressed: bool,
     latched: bool,
-    /// Whether any of them is in the way of anything: what a step is asked first.
+    stopped_by_host: bool,
+    /// Whether either of both stops is in force.
+    stopped: bool,
+    /// Whether anything is in the way of anything: what a step is asked first.
     in_the_way: bool,
 }
 
 impl SafetyGate {
+    /// The gate of a machine, from what its limit switches and its emergency stop button say now. A button that is pressed, or that
+    /// has not been read yet, latches from the start. A machine without switches or without a button says so by
+    /// [`LimitSwitches::RELEASED`] and `false`.
+    ///
+    /// ```
+    /// # use plotter_motion::{Blocked, LimitSwitches, SafetyGate, StepPair};
+    /// let gate = SafetyGate::new(LimitSwitches::RELEASED, true);
+    /// assert_eq!(gate.pass_step(StepPair { x: 1, y: 0 }), Err(Blocked::Stopped));
+    /// ```
+    #[must_use]
+    pub const fn new(limits: LimitSwitches, button_pressed: bool) -> Self {
+        let mut gate = Self {
+            limits,
+            button_pressed,
+            latched: button_pressed,
+            stopped_by_host: false,
+            stopped: false,
+            in_the_way: false,
+        };
+        gate.note();
+        gate
+    }
+
     /// Notes the state of all limit switches.
     pub const fn set_limits(&mut self, limits: LimitSwitches) {
         self.limits = limits;
@@ -281,7 +419,8 @@ impl SafetyGate {
     }
 
     const fn note(&mut self) {
-        self.in_the_way = self.latched | self.limits.any();
+        self.stopped = self.latched | self.stopped_by_host;
+        self.in_the_way = self.stopped | self.limits.any();
     }
 
     /// The limit switches as last noted.
@@ -297,9 +436,21 @@ impl SafetyGate {
         self.note();
     }
 
-    /// Whether the emergency stop is latched.
+    /// Notes whether the host wants the machine to be stopped. It takes back its own stop only.
+    pub const fn stop_by_host(&mut self, stopped: bool) {
+        self.stopped_by_host = stopped;
+        self.note();
+    }
+
+    /// Whether all drive is taken: the emergency stop is latched, or the host has stopped the machine.
     #[must_use]
     pub const fn is_stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// Whether the emergency stop of the button is latched.
+    #[must_use]
+    pub const fn is_latched(&self) -> bool {
         self.latched
     }
 
@@ -309,7 +460,7 @@ impl SafetyGate {
         self.button_pressed
     }
 
-    /// Unlatches the emergency stop, unless the button is still pressed; says whether drive may flow again.
+    /// Unlatches the emergency stop, unless the button is still pressed; says whether it did. The host's stop stays.
     pub const fn reset(&mut self) -> bool {
         self.latched = self.button_pressed;
         self.note();
@@ -318,8 +469,8 @@ impl SafetyGate {
 
     /// Lets through what is safe of a demand.
     #[must_use]
-    pub fn pass(&self, demand: Demand) -> Drive {
-        Drive { x: self.pass_axis(Axis::X, demand.x), y: self.pass_axis(Axis::Y, demand.y) }
+    pub fn pass(&self, demand: Demand) -> Drive<'_> {
+        drive(self.pass_axis(Axis::X, demand.x), self.pass_axis(Axis::Y, demand.y))
     }
 
     /// The same for a machine whose two motors share a belt: `demand` is that of the *axes* (x to the right, y up), the drive
@@ -341,8 +492,7 @@ impl SafetyGate {
     ///
     /// ```
     /// # use plotter_motion::{kinematics::BeltSigns, Demand, Duty, LimitSwitches, SafetyGate};
-    /// let mut gate = SafetyGate::default();
-    /// gate.set_limits(LimitSwitches { x_max: true, ..LimitSwitches::default() });
+    /// let gate = SafetyGate::new(LimitSwitches { x_max: true, ..LimitSwitches::RELEASED }, false);
     /// let right_and_up = Demand { x: Duty::saturating(0.5), y: Duty::saturating(0.5) };
     /// let drive = gate.pass_belt(right_and_up, BeltSigns::DirectionTable, 0.0);
     /// assert_eq!((drive.x().value(), drive.y().value()), (-0.5, 0.5)); // up alone
@@ -351,7 +501,7 @@ impl SafetyGate {
     /// assert!((careful.y().value() - 0.5 * 0.8 / 1.2).abs() < 1e-6); // and away from the switch
     /// ```
     #[must_use]
-    pub fn pass_belt(&self, demand: Demand, signs: BeltSigns, unequal_share: f32) -> Drive {
+    pub fn pass_belt(&self, demand: Demand, signs: BeltSigns, unequal_share: f32) -> Drive<'_> {
         let axes = self.pass(demand);
         let (x, y) = (axes.x.value(), axes.y.value());
         let size = (x.abs() + y.abs()).max(1.0);
@@ -373,7 +523,7 @@ impl SafetyGate {
             motors =
                 (push.0.min(most(push.1)) * first * towards, push.1.min(most(push.0)) * second * towards);
         }
-        Drive { x: Duty::saturating(motors.0), y: Duty::saturating(motors.1) }
+        drive(Duty::saturating(motors.0), Duty::saturating(motors.1))
     }
 
     /// Lets a step of stepper motors through. One that leads into a switch with either motor is not made with the other: the pen
@@ -381,8 +531,7 @@ impl SafetyGate {
     ///
     /// ```
     /// # use plotter_motion::{Axis, Blocked, Direction, LimitSwitches, SafetyGate, StepPair};
-    /// let mut gate = SafetyGate::default();
-    /// gate.set_limits(LimitSwitches { x_max: true, ..LimitSwitches::default() });
+    /// let gate = SafetyGate::new(LimitSwitches { x_max: true, ..LimitSwitches::RELEASED }, false);
     /// let end = Direction::Plus;
     /// assert_eq!(gate.pass_step(StepPair { x: 1, y: 1 }), Err(Blocked::Limit { axis: Axis::X, end }));
     /// assert_eq!(gate.pass_step(StepPair { x: -1, y: 1 }).map(|pulse| pulse.x()), Ok(-1));
@@ -391,11 +540,11 @@ impl SafetyGate {
     /// # Errors
     ///
     /// [`Blocked`] says what is in the way.
-    pub const fn pass_step(&self, step: StepPair) -> Result<Pulse, Blocked> {
+    pub const fn pass_step(&self, step: StepPair) -> Result<Pulse<'_>, Blocked> {
         if !self.in_the_way {
-            return Ok(Pulse { x: step.x, y: step.y });
+            return Ok(pulse(step));
         }
-        if self.latched {
+        if self.stopped {
             return Err(Blocked::Stopped);
         }
         if step.x > 0 && self.limits.x_max {
@@ -410,19 +559,19 @@ impl SafetyGate {
         if step.y < 0 && self.limits.y_min {
             return Err(Blocked::Limit { axis: Axis::Y, end: Direction::Minus });
         }
-        Ok(Pulse { x: step.x, y: step.y })
+        Ok(pulse(step))
     }
 
-    /// Lets the power of a laser through, unless the emergency stop is latched.
+    /// Lets the power of a laser through, unless the machine is stopped.
     #[must_use]
-    pub const fn pass_laser(&self, power: u16) -> Beam {
-        if self.latched { Beam::OFF } else { Beam(power) }
+    pub const fn pass_laser(&self, power: u16) -> Beam<'_> {
+        if self.stopped { Beam::OFF } else { Beam { power, gate: PhantomData } }
     }
 
     fn pass_axis(&self, axis: Axis, duty: Duty) -> Duty {
         let into_switch =
             duty.direction().is_some_and(|direction| self.limits.blocks_inline(axis, direction));
-        if self.latched || into_switch { Duty::ZERO } else { duty }
+        if self.stopped || into_switch { Duty::ZERO } else { duty }
     }
 }
 
@@ -437,11 +586,50 @@ mod tests {
         assert_eq!(Duty::new(-1.0).map(Duty::value), Ok(-1.0));
     }
 
+    const RIGHT_AND_UP: Demand = Demand { x: Duty::FULL, y: Duty::FULL };
+    const STEP: StepPair = StepPair { x: 1, y: 1 };
+
+    fn flows(gate: &SafetyGate) -> bool {
+        let by = [
+            gate.pass(RIGHT_AND_UP) != Drive::default(),
+            gate.pass_belt(RIGHT_AND_UP, BeltSigns::DirectionTable, 0.0) != Drive::default(),
+            gate.pass_step(STEP) != Err(Blocked::Stopped),
+            gate.pass_laser(u16::MAX) != Beam::OFF,
+        ];
+        assert!(by.iter().all(|&flows| flows == by[0]), "{gate:?}: {by:?}");
+        by[0]
+    }
+
+    #[test]
+    fn a_gate_knows_from_the_start_what_it_is_made_from() {
+        let x_max = LimitSwitches { x_max: true, ..LimitSwitches::RELEASED };
+        let gate = SafetyGate::new(x_max, false);
+        assert_eq!(gate.pass(RIGHT_AND_UP).duties(), [Duty::ZERO, Duty::FULL]);
+        assert_eq!(gate.pass_step(STEP), Err(Blocked::Limit { axis: Axis::X, end: Direction::Plus }));
+        assert!(flows(&SafetyGate::new(LimitSwitches::RELEASED, false)));
+        assert!(!flows(&SafetyGate::new(LimitSwitches::RELEASED, true)));
+    }
+
     #[test]
     fn reset_does_nothing_while_the_button_is_pressed() {
-        let mut gate = SafetyGate::default();
-        gate.emergency_stop(true);
+        let mut gate = SafetyGate::new(LimitSwitches::RELEASED, true);
         assert!(!gate.reset());
         assert!(gate.is_stopped());
+        gate.emergency_stop(false);
+        assert!(!flows(&gate) && gate.reset() && flows(&gate));
+    }
+
+    #[test]
+    fn each_side_takes_back_its_own_stop_only() {
+        let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+        gate.stop_by_host(true);
+        assert!(!flows(&gate) && gate.is_stopped() && !gate.is_latched());
+        assert!(gate.reset()); // nothing is latched, and the host's stop stays
+        assert!(!flows(&gate));
+        gate.emergency_stop(true);
+        gate.emergency_stop(false);
+        gate.stop_by_host(false);
+        assert!(!flows(&gate) && gate.is_latched());
+        assert!(gate.reset() && flows(&gate));
     }
 }

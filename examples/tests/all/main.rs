@@ -19,6 +19,7 @@ mod judged_corpus;
 mod licences;
 mod long_sheet_command;
 mod long_sheet_drawing;
+mod lost_ink;
 #[path = "../../../plotter-vector/tests/all/made_font/mod.rs"]
 mod made_font;
 mod max_error_command;

@@ -12,7 +12,7 @@ use plotter_motion::Drive;
 /// use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as SetDuty};
 /// use plotter_hal::DcAxes;
 /// use plotter_hal::h_bridge::{Decay, Drv8871};
-/// use plotter_motion::{Axis, Demand, Duty, SafetyGate};
+/// use plotter_motion::{Axis, Demand, Duty, LimitSwitches, SafetyGate};
 ///
 /// # fn input(duties: &[u16]) -> Pwm { Pwm::new(&duties.iter().map(|&duty| SetDuty::set_duty_cycle(duty)).collect::<Vec<_>>()) }
 /// # let full = SetDuty::max_duty_cycle(200);
@@ -23,7 +23,8 @@ use plotter_motion::Drive;
 /// let y = Drv8871::new(Axis::Y, y_in1, y_in2, Decay::Fast);
 /// let mut motors = DcAxes::new(x, y, Duration::ZERO);
 /// let demand = Demand { x: Duty::new(0.5)?, y: Duty::new(-0.25)? };
-/// motors.drive(SafetyGate::default().pass(demand), Duration::ZERO)?;
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// motors.drive(gate.pass(demand), Duration::ZERO)?;
 /// # let (x, y) = motors.release();
 /// # let ((mut a, mut b), (mut c, mut d)) = (x.release(), y.release());
 /// # a.done();
@@ -45,7 +46,8 @@ impl<X: Bridge, Y: Bridge<Error = X::Error>> DcAxes<X, Y> {
         Self { x: DeadTime::new(x, dead_time), y: DeadTime::new(y, dead_time) }
     }
 
-    /// When [`tick`](Self::tick) is to be called; later does no harm. `None` while no drive waits.
+    /// When [`drive`](Self::drive) is to be called again, with what the gate lets through then; later does no harm. `None` while
+    /// no motor waits for its drive.
     pub fn due(&self) -> Option<Duration> {
         match (self.x.due(), self.y.due()) {
             (Some(x), Some(y)) => Some(x.min(y)),
@@ -63,7 +65,7 @@ impl<X: Bridge, Y: Bridge<Error = X::Error>> DcAxes<X, Y> {
         Error::check(x, y)
     }
 
-    /// Gives both motors their share, at once or after the dead time.
+    /// Gives both motors their share. One that waits for its dead time gets none: see [`due`](Self::due).
     ///
     /// # Errors
     ///
@@ -73,17 +75,7 @@ impl<X: Bridge, Y: Bridge<Error = X::Error>> DcAxes<X, Y> {
         self.check(x, y)
     }
 
-    /// Gives the drive that waits, if its time has come.
-    ///
-    /// # Errors
-    ///
-    /// As [`drive`](Self::drive).
-    pub fn tick(&mut self, now: Duration) -> Result<(), Error<X::Error>> {
-        let (x, y) = (self.x.tick(now), self.y.tick(now));
-        self.check(x, y)
-    }
-
-    /// Takes the drive of both motors away, and what waits.
+    /// Takes the drive of both motors away; none waits any more.
     ///
     /// # Errors
     ///

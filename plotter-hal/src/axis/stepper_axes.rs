@@ -21,7 +21,7 @@ use plotter_motion::{Direction, Pulse, StepPair};
 /// use embedded_hal_mock::eh1::digital::{Mock as Pin, State::{High, Low}, Transaction as Set};
 /// use plotter_hal::a4988::{A4988, Timing};
 /// use plotter_hal::StepperAxes;
-/// use plotter_motion::{Axis, SafetyGate, StepPair};
+/// use plotter_motion::{Axis, LimitSwitches, SafetyGate, StepPair};
 ///
 /// # fn pin(levels: &[embedded_hal_mock::eh1::digital::State]) -> Pin { Pin::new(&levels.iter().map(|&level| Set::set(level)).collect::<Vec<_>>()) }
 /// # let (x_step, x_dir) = (pin(&[Low, High, Low]), pin(&[High]));
@@ -31,7 +31,8 @@ use plotter_motion::{Direction, Pulse, StepPair};
 /// let mut motors = StepperAxes::new(x, y);
 /// let us = Duration::from_micros;
 /// motors.start(us(0))?;
-/// let diagonal = SafetyGate::default().pass_step(StepPair { x: 1, y: -1 }).map_err(|_| "stopped")?;
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// let diagonal = gate.pass_step(StepPair { x: 1, y: -1 }).map_err(|_| "stopped")?;
 /// motors.step(diagonal, us(2000))?; // sets DIR of both
 /// motors.tick(us(2001))?; // STEP rises at both
 /// assert_eq!(motors.due(), Some(Duration::from_nanos(2_002_900)));

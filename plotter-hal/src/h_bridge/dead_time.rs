@@ -11,15 +11,15 @@ use plotter_motion::{Axis, Direction, Drive};
 /// Bridges with a dead time of their own need none, and a motor with a bridge alone has none. One that is large
 /// for its supply may need some milliseconds.
 ///
-/// Without waiting: [`drive`](Self::drive) takes a drive and the time, [`due`](Self::due) says when to call
-/// [`tick`](Self::tick). With waiting: [`drive_blocking`](Self::drive_blocking). Each drive replaces the one that waits;
-/// one of 0 and [`stop`](Self::stop) take it back.
+/// Without waiting: [`drive`](Self::drive) takes a drive and the time. A motor that must wait gets none, and [`due`](Self::due) says
+/// when to call it again, with what the gate lets through then: no drive is kept here, which could be out of date. With
+/// waiting: [`drive_blocking`](Self::drive_blocking).
 ///
 /// ```
 /// # use core::time::Duration;
 /// # use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as SetDuty};
 /// # use plotter_hal::h_bridge::{Decay, Drv8871};
-/// # use plotter_motion::{Axis, Demand, Duty, SafetyGate};
+/// # use plotter_motion::{Axis, Demand, Duty, LimitSwitches, SafetyGate};
 /// use plotter_hal::h_bridge::DeadTime;
 /// # let in1 = [SetDuty::set_duty_cycle(0), SetDuty::max_duty_cycle(200), SetDuty::set_duty_cycle(100)];
 /// # let in2 = [SetDuty::set_duty_cycle(0), SetDuty::set_duty_cycle(0)];
@@ -27,10 +27,11 @@ use plotter_motion::{Axis, Direction, Drive};
 ///
 /// let ms = Duration::from_millis;
 /// let mut motor = DeadTime::new(motor, ms(2));
-/// let drive = SafetyGate::default().pass(Demand { x: Duty::new(0.5)?, y: Duty::ZERO });
-/// motor.drive(drive, ms(10))?; // what was before is not known
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// let demand = Demand { x: Duty::new(0.5)?, y: Duty::ZERO };
+/// motor.drive(gate.pass(demand), ms(10))?; // what was before is not known
 /// assert_eq!(motor.due(), Some(ms(12)));
-/// motor.tick(ms(12))?; // now it turns
+/// motor.drive(gate.pass(demand), ms(12))?; // now it turns
 /// assert_eq!(motor.due(), None);
 /// # let (mut in1, mut in2) = motor.release().release();
 /// # in1.done();
@@ -45,13 +46,14 @@ pub struct DeadTime<Motor> {
     direction: Option<Direction>,
     /// When the drive was taken away; `None` while there is one, and when that is not known.
     free_since: Option<Duration>,
-    waiting: Option<Drive>,
+    /// Whether a drive was asked for that has not been given.
+    waits: bool,
 }
 
 impl<Motor: Bridge> DeadTime<Motor> {
     /// The motor with a dead time. Leaves the pins as they are.
     pub const fn new(motor: Motor, dead_time: Duration) -> Self {
-        Self { motor, dead_time, direction: None, free_since: None, waiting: None }
+        Self { motor, dead_time, direction: None, free_since: None, waits: false }
     }
 
     /// The axis of the motor.
@@ -59,9 +61,9 @@ impl<Motor: Bridge> DeadTime<Motor> {
         self.motor.axis()
     }
 
-    /// When [`tick`](Self::tick) is to be called; later does no harm. `None` while no drive waits.
+    /// When [`drive`](Self::drive) is to be called again; later does no harm. `None` while the motor waits for none.
     pub fn due(&self) -> Option<Duration> {
-        self.waiting.and(self.free_since).map(|since| since.saturating_add(self.dead_time))
+        self.free_since.filter(|_| self.waits).map(|since| since.saturating_add(self.dead_time))
     }
 
     /// Brings the pins into a known state, without drive.
@@ -74,13 +76,13 @@ impl<Motor: Bridge> DeadTime<Motor> {
         self.motor.start()
     }
 
-    /// Gives the motor its share of `drive`, at once or after the dead time.
+    /// Gives the motor its share of `drive`, or none while it has to wait: see [`due`](Self::due).
     ///
     /// # Errors
     ///
-    /// Those of the motor; nothing waits then.
+    /// Those of the motor; it waits for none then.
     pub fn drive(&mut self, drive: Drive, now: Duration) -> Result<(), Motor::Error> {
-        self.waiting = None;
+        self.waits = false;
         let direction = drive.axis(self.axis()).direction();
         if direction.is_some() && direction == self.direction {
             return self.give(drive);
@@ -88,10 +90,8 @@ impl<Motor: Bridge> DeadTime<Motor> {
         if direction.is_none() || self.free_since.is_none() {
             self.take_away(now)?;
         }
-        if direction.is_some() {
-            self.waiting = Some(drive);
-        }
-        self.tick(now)
+        self.waits = direction.is_some();
+        if self.due().is_some_and(|due| now >= due) { self.give(drive) } else { Ok(()) }
     }
 
     /// As [`drive`](Self::drive), and comes back when the motor has its drive.
@@ -103,29 +103,17 @@ impl<Motor: Bridge> DeadTime<Motor> {
         self.drive(drive, Duration::ZERO)?;
         let Some(due) = self.due() else { return Ok(()) };
         delay.delay_ns(u32::try_from(self.dead_time.as_nanos()).unwrap_or(u32::MAX));
-        self.tick(due)
+        self.drive(drive, due)
     }
 
-    /// Gives the drive that waits, if its time has come.
-    ///
-    /// # Errors
-    ///
-    /// Those of the motor.
-    pub fn tick(&mut self, now: Duration) -> Result<(), Motor::Error> {
-        match (self.due(), self.waiting) {
-            (Some(due), Some(drive)) if now >= due => self.give(drive),
-            _ => Ok(()),
-        }
-    }
-
-    /// Takes the drive away, and the one that waits.
+    /// Takes the drive away; the motor waits for none any more.
     ///
     /// # Errors
     ///
     /// Those of the motor.
     pub fn stop(&mut self) -> Result<(), Motor::Error> {
         // No time is known: the next reversal takes the drive away once more, and counts from there.
-        self.waiting = None;
+        self.waits = false;
         self.free_since = None;
         self.motor.stop().inspect_err(|_| self.forget())
     }
@@ -136,7 +124,7 @@ impl<Motor: Bridge> DeadTime<Motor> {
     }
 
     fn give(&mut self, drive: Drive) -> Result<(), Motor::Error> {
-        self.waiting = None;
+        self.waits = false;
         self.free_since = None;
         self.direction = drive.axis(self.axis()).direction();
         self.motor.drive(drive).inspect_err(|_| self.forget())
@@ -152,6 +140,6 @@ impl<Motor: Bridge> DeadTime<Motor> {
     fn forget(&mut self) {
         self.direction = None;
         self.free_since = None;
-        self.waiting = None;
+        self.waits = false;
     }
 }

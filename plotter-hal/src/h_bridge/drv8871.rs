@@ -41,13 +41,14 @@ pub enum Decay {
 /// ```
 /// use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as SetDuty};
 /// use plotter_hal::h_bridge::{Bridge, Decay, Drv8871};
-/// use plotter_motion::{Axis, Demand, Duty, SafetyGate};
+/// use plotter_motion::{Axis, Demand, Duty, LimitSwitches, SafetyGate};
 ///
 /// let in1 = Pwm::new(&[SetDuty::max_duty_cycle(200), SetDuty::set_duty_cycle(50)]);
 /// let in2 = Pwm::new(&[SetDuty::set_duty_cycle(0)]);
 /// let mut motor = Drv8871::new(Axis::X, in1, in2, Decay::Fast);
 /// let quarter = Demand { x: Duty::new(0.25)?, y: Duty::ZERO };
-/// motor.drive(SafetyGate::default().pass(quarter))?;
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// motor.drive(gate.pass(quarter))?;
 /// # let (mut in1, mut in2) = motor.release();
 /// # in1.done();
 /// # in2.done();

@@ -33,14 +33,15 @@ use plotter_motion::{Axis, Direction, Drive};
 /// use embedded_hal_mock::eh1::digital::{Mock as Pin, State::{High, Low}, Transaction as Set};
 /// use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as SetDuty};
 /// use plotter_hal::h_bridge::{Bridge, Tb6612};
-/// use plotter_motion::{Axis, Demand, Duty, SafetyGate};
+/// use plotter_motion::{Axis, Demand, Duty, LimitSwitches, SafetyGate};
 ///
 /// let pwm = Pwm::new(&[SetDuty::set_duty_cycle(0), SetDuty::max_duty_cycle(200), SetDuty::set_duty_cycle(50)]);
 /// let (in1, in2) = (Pin::new(&[Set::set(High)]), Pin::new(&[Set::set(Low)]));
 /// let stby = Pin::new(&[Set::set(High)]);
 /// let mut motor = Tb6612::new(Axis::X, pwm, in1, in2).with_standby(stby);
 /// let quarter = Demand { x: Duty::new(0.25)?, y: Duty::ZERO };
-/// motor.drive(SafetyGate::default().pass(quarter))?;
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// motor.drive(gate.pass(quarter))?;
 /// # let (mut pwm, mut in1, mut in2, mut stby) = motor.release();
 /// # pwm.done();
 /// # in1.done();

@@ -8,7 +8,7 @@ use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Set};
 use logic_analyser::{Analyser, Broken, Fault, Wire};
 use plotter_hal::NoPin;
 use plotter_hal::a4988::{A4988, Chip, Error, MicrostepPins, Timing};
-use plotter_motion::{Axis, Blocked, Direction, Pulse, SafetyGate, StepPair};
+use plotter_motion::{Axis, Blocked, Direction, LimitSwitches, Pulse, SafetyGate, StepPair};
 use std::io::ErrorKind;
 use std::time::Duration;
 
@@ -18,8 +18,11 @@ const LATER: Duration = Duration::from_millis(5);
 
 type Motor<'a> = A4988<Wire<'a>, Wire<'a>, Wire<'a>, Wire<'a>>;
 
-fn pulse(x: i8) -> Pulse {
-    SafetyGate::default().pass_step(StepPair { x, y: 0 }).unwrap()
+/// Nothing is pressed.
+static GATE: SafetyGate = SafetyGate::new(LimitSwitches::RELEASED, false);
+
+fn pulse(x: i8) -> Pulse<'static> {
+    GATE.pass_step(StepPair { x, y: 0 }).unwrap()
 }
 
 fn motor(analyser: &Analyser, timing: Timing) -> Motor<'_> {
@@ -253,7 +256,7 @@ fn each_motor_takes_the_share_of_its_own_axis() {
     let analyser = Analyser::default();
     let mut y = A4988::new(Axis::Y, analyser.wire("STEP"), analyser.wire("DIR"), Timing::A4988);
     y.start(Duration::ZERO).unwrap();
-    let gate = SafetyGate::default();
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
     y.step(gate.pass_step(StepPair { x: 1, y: 0 }).unwrap(), LATER).unwrap();
     assert_eq!(y.due(), None);
     y.step(gate.pass_step(StepPair { x: 1, y: -1 }).unwrap(), LATER).unwrap();
@@ -504,7 +507,7 @@ fn after_a_watchdog_bite_within_a_pulse_a_start_makes_no_step() {
 fn with_the_stop_pressed_at_power_up_nothing_moves_until_the_reset() {
     let analyser = Analyser::default();
     let mut motor = motor(&analyser, Timing::A4988);
-    let mut gate = SafetyGate::default();
+    let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
     gate.emergency_stop(true);
     motor.start(Duration::ZERO).unwrap();
     let mut try_step = |gate: &SafetyGate, now| {

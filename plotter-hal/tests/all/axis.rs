@@ -22,8 +22,11 @@ const TIMING: Timing = Timing::A4988;
 /// Long after the wake-up.
 const LATER: Duration = Duration::from_millis(5);
 
-fn pulse(x: i8, y: i8) -> Pulse {
-    SafetyGate::default().pass_step(StepPair { x, y }).unwrap()
+/// Nothing is pressed.
+static GATE: SafetyGate = SafetyGate::new(LimitSwitches::RELEASED, false);
+
+fn pulse(x: i8, y: i8) -> Pulse<'static> {
+    GATE.pass_step(StepPair { x, y }).unwrap()
 }
 
 fn steppers(analyser: &Analyser) -> Steppers<'_> {
@@ -292,7 +295,7 @@ fn bridges(analyser: &Analyser, dead_time: Duration) -> DcAxes<Bridge<'_>, Bridg
     )
 }
 
-fn drive(gate: &SafetyGate, x: f32, y: f32) -> Drive {
+fn drive(gate: &SafetyGate, x: f32, y: f32) -> Drive<'_> {
     gate.pass(Demand { x: Duty::saturating(x), y: Duty::saturating(y) })
 }
 
@@ -306,7 +309,7 @@ fn voltages(analyser: &Analyser) -> [i32; 2] {
 fn both_dc_motors_take_their_shares_and_what_the_gate_takes_away() {
     let analyser = Analyser::default();
     let mut motors = bridges(&analyser, Duration::ZERO);
-    let mut gate = SafetyGate::default();
+    let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
     motors.start().unwrap();
     motors.drive(drive(&gate, 0.5, -0.25), Duration::ZERO).unwrap();
     assert_eq!(voltages(&analyser), [100, -50]);
@@ -323,26 +326,25 @@ fn each_dc_motor_waits_for_its_own_dead_time() {
     let analyser = Analyser::default();
     let ms = Duration::from_millis;
     let mut motors = bridges(&analyser, ms(2));
-    let gate = SafetyGate::default();
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
     motors.drive(drive(&gate, 0.5, 0.0), ms(0)).unwrap();
     motors.drive(drive(&gate, 0.5, 0.5), ms(1)).unwrap();
     assert_eq!((motors.due(), voltages(&analyser)), (Some(ms(2)), [0, 0]));
-    motors.tick(ms(2)).unwrap();
+    motors.drive(drive(&gate, 0.5, 0.5), ms(2)).unwrap();
     // y has been free since the first drive as well.
     assert_eq!((motors.due(), voltages(&analyser)), (None, [100, 100]));
     motors.drive(drive(&gate, -0.5, 0.5), ms(10)).unwrap();
     assert_eq!((motors.due(), voltages(&analyser)), (Some(ms(12)), [0, 100]));
     motors.drive(drive(&gate, -0.5, -0.5), ms(11)).unwrap();
-    motors.tick(ms(12)).unwrap();
+    motors.drive(drive(&gate, -0.5, -0.5), ms(12)).unwrap();
     assert_eq!((motors.due(), voltages(&analyser)), (Some(ms(13)), [-100, 0]));
     motors.stop().unwrap();
-    motors.tick(ms(13)).unwrap();
     assert_eq!((motors.due(), voltages(&analyser)), (None, [0, 0]));
 }
 
 #[test]
 fn whichever_access_fails_both_dc_motors_end_without_drive() {
-    let gate = SafetyGate::default();
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
     let scenario = |analyser: &Analyser| -> Result<(), DcError> {
         let mut motors = bridges(analyser, Duration::ZERO);
         motors.start()?;
@@ -368,8 +370,7 @@ fn whichever_access_fails_both_dc_motors_end_without_drive() {
 fn with_the_stop_pressed_at_power_up_no_motor_of_a_machine_moves_until_the_reset() {
     let analyser = Analyser::default();
     let (mut dc, mut steppers) = (bridges(&analyser, Duration::ZERO), steppers(&analyser));
-    let mut gate = SafetyGate::default();
-    gate.emergency_stop(true);
+    let mut gate = SafetyGate::new(LimitSwitches::RELEASED, true);
     dc.start().unwrap();
     steppers.start(Duration::ZERO).unwrap();
     for pressed in [true, false] {

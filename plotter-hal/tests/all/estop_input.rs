@@ -8,7 +8,7 @@ use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Read};
 use faulty::Levels;
 use plotter_hal::estop_input::Error;
 use plotter_hal::{EstopChange, EstopInput, SwitchSettings};
-use plotter_motion::{Beam, Demand, Drive, Duty, SafetyGate, StepPair};
+use plotter_motion::{Beam, Demand, Drive, Duty, LimitSwitches, SafetyGate, StepPair};
 use proptest::prelude::*;
 use std::io::ErrorKind;
 
@@ -35,8 +35,7 @@ struct Firmware {
 impl Firmware {
     fn new(levels: impl IntoIterator<Item = Option<bool>>) -> Self {
         let button = EstopInput::new(Levels::new(levels), SwitchSettings::default());
-        let mut gate = SafetyGate::default();
-        gate.emergency_stop(button.is_pressed());
+        let gate = SafetyGate::new(LimitSwitches::RELEASED, button.is_pressed());
         Self { button, gate }
     }
 

@@ -15,8 +15,11 @@ use std::io::ErrorKind;
 /// Steps of the PWM in these tests.
 const FULL: u16 = 200;
 
-fn drive(x: f32, y: f32) -> Drive {
-    SafetyGate::default().pass(Demand { x: Duty::saturating(x), y: Duty::saturating(y) })
+/// Nothing is pressed.
+static GATE: SafetyGate = SafetyGate::new(LimitSwitches::RELEASED, false);
+
+fn drive(x: f32, y: f32) -> Drive<'static> {
+    GATE.pass(Demand { x: Duty::saturating(x), y: Duty::saturating(y) })
 }
 
 /// What happens on the wires of one bridge, in order, and which accesses fail.
@@ -202,7 +205,7 @@ fn each_bridge_takes_the_share_of_its_own_axis() {
     let mut bridge = HBridge::new(Axis::Y, pwm, forward, reverse);
     bridge.drive(drive(0.5, -1.0)).unwrap();
 
-    let mut gate = SafetyGate::default();
+    let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
     gate.set_limits(LimitSwitches { y_min: true, ..LimitSwitches::default() });
     bridge.drive(gate.pass(Demand { x: Duty::FULL, y: Duty::saturating(-1.0) })).unwrap();
 

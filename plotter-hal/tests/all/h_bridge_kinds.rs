@@ -6,12 +6,15 @@ use crate::logic_analyser;
 use logic_analyser::{Analyser, FULL, Fault, Wire};
 use plotter_hal::HBridge;
 use plotter_hal::h_bridge::{Bridge, DeadTime, Decay, Drv8871, Error, Tb6612};
-use plotter_motion::{Axis, Demand, Drive, Duty, SafetyGate};
+use plotter_motion::{Axis, Demand, Drive, Duty, LimitSwitches, SafetyGate};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-fn drive(x: f32) -> Drive {
-    SafetyGate::default().pass(Demand { x: Duty::saturating(x), y: Duty::FULL })
+/// Nothing is pressed.
+static GATE: SafetyGate = SafetyGate::new(LimitSwitches::RELEASED, false);
+
+fn drive(x: f32) -> Drive<'static> {
+    GATE.pass(Demand { x: Duty::saturating(x), y: Duty::FULL })
 }
 
 /// The kinds, each on the wires of its own names.
@@ -347,21 +350,17 @@ fn a_reversal_waits_for_the_dead_time() {
     let analyser = Analyser::default();
     let mut motor = with_dead_time(&analyser);
     motor.start().unwrap();
-    let mut after = |now, duty: Option<f32>| {
+    let mut after = |now, duty| {
         analyser.now.set(ms(now));
-        match duty {
-            Some(duty) => motor.drive(drive(duty), ms(now)),
-            None => motor.tick(ms(now)),
-        }
-        .unwrap();
+        motor.drive(drive(duty), ms(now)).unwrap();
         motor.due()
     };
-    assert_eq!(after(1, Some(0.5)), Some(ms(3))); // what was before is not known
-    assert_eq!(after(2, None), Some(ms(3)));
-    assert_eq!(after(3, None), None);
-    assert_eq!(after(10, Some(-0.25)), Some(ms(12)));
-    assert_eq!(after(11, Some(-1.0)), Some(ms(12))); // another duty: the same wait
-    assert_eq!(after(13, None), None); // late
+    assert_eq!(after(1, 0.5), Some(ms(3))); // what was before is not known
+    assert_eq!(after(2, 0.5), Some(ms(3)));
+    assert_eq!(after(3, 0.5), None);
+    assert_eq!(after(10, -0.25), Some(ms(12)));
+    assert_eq!(after(11, -1.0), Some(ms(12))); // another duty: the same wait
+    assert_eq!(after(13, -1.0), None); // late
     insta::assert_snapshot!(analyser.table(), @r"
            0 ns  EN       0
            0 ns  1A       0
@@ -384,7 +383,7 @@ fn the_same_direction_does_not_wait() {
     let analyser = Analyser::default();
     let mut motor = with_dead_time(&analyser);
     motor.drive(drive(0.5), ms(0)).unwrap();
-    motor.tick(ms(2)).unwrap();
+    motor.drive(drive(0.5), ms(2)).unwrap();
     for (now, duty) in [(3, 1.0), (4, 0.0), (5, 0.25)] {
         motor.drive(drive(duty), ms(now)).unwrap();
         assert_eq!(motor.due(), None);
@@ -401,7 +400,7 @@ fn a_motor_that_has_been_free_long_enough_does_not_wait() {
     let analyser = Analyser::default();
     let mut motor = with_dead_time(&analyser);
     motor.drive(drive(0.5), ms(0)).unwrap();
-    motor.tick(ms(2)).unwrap();
+    motor.drive(drive(0.5), ms(2)).unwrap();
     motor.drive(drive(0.0), ms(10)).unwrap();
     motor.drive(drive(0.0), ms(11)).unwrap();
     motor.drive(drive(-0.5), ms(12)).unwrap();
@@ -409,18 +408,29 @@ fn a_motor_that_has_been_free_long_enough_does_not_wait() {
 }
 
 #[test]
-fn what_waits_is_taken_back_by_no_drive_and_by_a_stop() {
+fn a_motor_waits_no_more_after_no_drive_and_after_a_stop() {
     for by_a_stop in [false, true] {
         let analyser = Analyser::default();
         let mut motor = with_dead_time(&analyser);
         motor.drive(drive(0.5), ms(0)).unwrap();
-        motor.tick(ms(2)).unwrap();
+        motor.drive(drive(0.5), ms(2)).unwrap();
         motor.drive(drive(-0.5), ms(10)).unwrap();
         if by_a_stop { motor.stop() } else { motor.drive(drive(0.0), ms(11)) }.unwrap();
-        assert_eq!(motor.due(), None);
-        motor.tick(ms(20)).unwrap();
-        assert_eq!(Kind::L293d.now(&analyser), 0);
+        assert_eq!((motor.due(), Kind::L293d.now(&analyser)), (None, 0));
     }
+}
+
+#[test]
+fn what_the_gate_takes_while_a_motor_waits_it_does_not_get_afterwards() {
+    let analyser = Analyser::default();
+    let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    let mut motor = with_dead_time(&analyser);
+    let right = Demand { x: Duty::FULL, y: Duty::ZERO };
+    motor.drive(gate.pass(right), ms(0)).unwrap();
+    assert_eq!(motor.due(), Some(ms(2)));
+    gate.emergency_stop(true);
+    motor.drive(gate.pass(right), ms(2)).unwrap();
+    assert_eq!((motor.due(), Kind::L293d.now(&analyser)), (None, 0));
 }
 
 #[test]
@@ -443,7 +453,7 @@ fn with_a_dead_time_too_no_fault_drives_a_motor() {
         motor.start()?;
         for (number, duty) in (0..).zip([0.5, -0.5, 0.25]) {
             motor.drive(drive(duty), ms(10 * number))?;
-            motor.tick(ms(10 * number + 5))?;
+            motor.drive(drive(duty), ms(10 * number + 5))?;
         }
         motor.stop()
     };
@@ -460,7 +470,7 @@ fn with_a_dead_time_too_no_fault_drives_a_motor() {
     let analyser = Analyser::default();
     let mut motor = with_dead_time(&analyser);
     motor.drive(drive(0.5), ms(0)).unwrap();
-    motor.tick(ms(2)).unwrap();
+    motor.drive(drive(0.5), ms(2)).unwrap();
     analyser.set_fault(Fault::Once { at: analyser.accesses(), takes_effect: false });
     motor.drive(drive(1.0), ms(3)).unwrap_err();
     assert_eq!((motor.due(), Kind::L293d.now(&analyser)), (None, 0));

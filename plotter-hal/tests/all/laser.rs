@@ -9,7 +9,7 @@ use faulty::{Broken, Output};
 use plotter_hal::Laser;
 use plotter_hal::laser::Error;
 use plotter_motion::firmware::stepper_plotter::{Dialect, Drivers, StepperPlotter, StepperPlotterSettings};
-use plotter_motion::{Beam, SafetyGate};
+use plotter_motion::{Beam, LimitSwitches, SafetyGate};
 use proptest::prelude::*;
 use std::io::ErrorKind;
 
@@ -21,8 +21,11 @@ fn ms(ms: u64) -> Duration {
     Duration::from_millis(ms)
 }
 
-fn beam(power: u16) -> Beam {
-    SafetyGate::default().pass_laser(power)
+/// Nothing is pressed.
+static GATE: SafetyGate = SafetyGate::new(LimitSwitches::RELEASED, false);
+
+fn beam(power: u16) -> Beam<'static> {
+    GATE.pass_laser(power)
 }
 
 #[test]
@@ -194,7 +197,7 @@ fn after_a_fault_it_stays_dark_until_it_is_asked_for_again() {
 fn an_emergency_stop_in_the_middle_of_a_line_darkens_it_in_the_same_call() {
     let settings =
         StepperPlotterSettings { dialect: Dialect::Grbl, laser: true, ..StepperPlotterSettings::default() };
-    let mut plotter = StepperPlotter::new(settings).unwrap();
+    let mut plotter = StepperPlotter::new(settings, SafetyGate::new(LimitSwitches::RELEASED, false)).unwrap();
     let output = Output::default();
     let mut laser = Laser::new(output.pwm(FULL), TIMEOUT);
     for byte in "M3 S1000\nG1 X20 Y10 F1200\n".bytes() {
@@ -250,7 +253,7 @@ proptest! {
     ) {
         let output = Output::failing_at(failing);
         let mut laser = Laser::new(output.pwm(FULL), TIMEOUT);
-        let (mut now, mut gate) = (ms(0), SafetyGate::default());
+        let (mut now, mut gate) = (ms(0), SafetyGate::new(LimitSwitches::RELEASED, false));
         let (mut asked, mut moved) = (0, None);
         for (pause_ms, call, stop) in calls {
             now += ms(pause_ms);

@@ -9,7 +9,7 @@ use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{
     Dialect, Drivers, Lateness, Link, Motion, Receive, StepperPlotterSettings,
 };
-use plotter_motion::{Axis, StepPoint};
+use plotter_motion::{Axis, LimitSwitches, SafetyGate, StepPoint};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
@@ -96,7 +96,10 @@ fn settings() -> StepperPlotterSettings {
 
 /// A main loop of such turns, from the drawing's first byte until the machine is idle for a second.
 fn draw(mut turn: impl FnMut(u32) -> Duration) -> (Board, StepperPlotter) {
-    let (mut board, mut plotter) = (Board::new(), StepperPlotter::new(settings()).unwrap());
+    let (mut board, mut plotter) = (
+        Board::new(),
+        StepperPlotter::new(settings(), SafetyGate::new(LimitSwitches::RELEASED, false)).unwrap(),
+    );
     let mut now = board.wait(Duration::from_millis(5));
     for byte in DRAWING.bytes() {
         plotter.receive(now, byte);
@@ -157,7 +160,10 @@ fn a_loop_that_stands_still_for_a_while_is_not_followed_by_a_burst() {
 fn a_motion_task_that_comes_late_loses_no_step_either() {
     for turn_us in [100, 300, 1_000] {
         let mut board = Board::new();
-        let (mut receive, mut motion) = (Receive::new(settings()), Motion::new(settings()).unwrap());
+        let (mut receive, mut motion) = (
+            Receive::new(settings()),
+            Motion::new(settings(), SafetyGate::new(LimitSwitches::RELEASED, false)).unwrap(),
+        );
         let mut link = Link::default();
         let mut wire = DRAWING.bytes();
         for turn in 0..1_000_000_u32 {
@@ -182,7 +188,8 @@ fn a_motion_task_that_comes_late_loses_no_step_either() {
 
 #[test]
 fn a_step_that_the_drivers_cannot_take_is_not_counted_and_stays_due() {
-    let mut plotter = StepperPlotter::new(settings()).unwrap();
+    let mut plotter =
+        StepperPlotter::new(settings(), SafetyGate::new(LimitSwitches::RELEASED, false)).unwrap();
     let mut now = Duration::ZERO;
     for byte in "G0 X1\n".bytes() {
         plotter.receive(now, byte);

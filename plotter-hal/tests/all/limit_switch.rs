@@ -117,8 +117,7 @@ fn the_group_reads_all_switches_whichever_fails_and_names_it() {
 
         let sign = if end == Direction::Plus { 1.0 } else { -1.0 };
         let towards = Demand { x: Duty::saturating(sign), y: Duty::saturating(sign) };
-        let mut gate = SafetyGate::default();
-        gate.set_limits(group.limits());
+        let gate = SafetyGate::new(group.limits(), false);
         assert_eq!(
             gate.pass(towards).axis(axis),
             Duty::ZERO,

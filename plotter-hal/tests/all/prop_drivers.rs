@@ -91,14 +91,8 @@ type Tb6612s<'a> =
 struct MayRun([bool; 2]);
 
 impl MayRun {
-    fn note<Pin, Pwm>(
-        &mut self,
-        outcome: Result<(), plotter_hal::axis::Error<h_bridge::Error<Pin, Pwm>>>,
-        is_tick: bool,
-    ) {
+    fn note<Pin, Pwm>(&mut self, outcome: Result<(), plotter_hal::axis::Error<h_bridge::Error<Pin, Pwm>>>) {
         match outcome {
-            // A tick that had nothing to do says nothing.
-            Ok(()) if is_tick => {}
             Ok(()) => self.0 = [false; 2],
             Err(error) => {
                 let runs = |error| matches!(error, Some(h_bridge::Error::NotStopped(_)));
@@ -111,6 +105,7 @@ impl MayRun {
 struct Rig<'a> {
     analyser: &'a Analyser,
     gate: SafetyGate,
+    demand: Demand,
     steppers: StepperAxes<Stepper<'a>, Stepper<'a>>,
     l293d: L293d<'a>,
     drv8871: Two<'a>,
@@ -173,7 +168,8 @@ impl<'a> Rig<'a> {
         );
         Self {
             analyser,
-            gate: SafetyGate::default(),
+            gate: SafetyGate::new(LimitSwitches::RELEASED, false),
+            demand: Demand::NONE,
             steppers,
             l293d,
             drv8871,
@@ -229,10 +225,8 @@ impl<'a> Rig<'a> {
             }
             Call::Demand { x, y } => {
                 let duty = |quarters: i8| Duty::saturating(f32::from(quarters) / 4.0);
-                let drive = self.gate.pass(Demand { x: duty(x), y: duty(y) });
-                self.may_run[0].note(self.l293d.drive(drive, now), false);
-                self.may_run[1].note(self.drv8871.drive(drive, now), false);
-                self.may_run[2].note(self.tb6612.drive(drive, now), false);
+                self.demand = Demand { x: duty(x), y: duty(y) };
+                self.drive();
             }
             Call::Beam { power } => {
                 let outcome = self.laser.shine(now, self.gate.pass_laser(power));
@@ -250,9 +244,9 @@ impl<'a> Rig<'a> {
                 self.gate.reset();
             }
             Call::Start => {
-                self.may_run[0].note(self.l293d.start(), false);
-                self.may_run[1].note(self.drv8871.start(), false);
-                self.may_run[2].note(self.tb6612.start(), false);
+                self.may_run[0].note(self.l293d.start());
+                self.may_run[1].note(self.drv8871.start());
+                self.may_run[2].note(self.tb6612.start());
                 match self.steppers.start(now) {
                     Err(error) if error.x.or(error.y).is_some_and(is_refusal) => {}
                     _ => self.owed = self.rises(),
@@ -283,18 +277,24 @@ impl<'a> Rig<'a> {
         if self.steppers.tick(now).is_err() {
             self.owed = self.rises();
         }
-        self.may_run[0].note(self.l293d.tick(now), true);
-        self.may_run[1].note(self.drv8871.tick(now), true);
-        self.may_run[2].note(self.tb6612.tick(now), true);
+        self.drive();
+    }
+
+    /// The DC motors get what the gate lets through now.
+    fn drive(&mut self) {
+        let (now, drive) = (self.now(), self.gate.pass(self.demand));
+        self.may_run[0].note(self.l293d.drive(drive, now));
+        self.may_run[1].note(self.drv8871.drive(drive, now));
+        self.may_run[2].note(self.tb6612.drive(drive, now));
     }
 
     /// Whoever latches the gate stops the drivers as well.
     fn stop(&mut self) {
         let _ = self.steppers.stop();
         self.owed = self.rises();
-        self.may_run[0].note(self.l293d.stop(), false);
-        self.may_run[1].note(self.drv8871.stop(), false);
-        self.may_run[2].note(self.tb6612.stop(), false);
+        self.may_run[0].note(self.l293d.stop());
+        self.may_run[1].note(self.drv8871.stop());
+        self.may_run[2].note(self.tb6612.stop());
         let outcome = self.laser.off();
         self.note_laser(outcome);
     }

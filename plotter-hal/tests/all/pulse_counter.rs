@@ -5,10 +5,10 @@ use crate::faulty;
 use faulty::{Broken, Levels};
 use plotter_hal::pulse_counter::Error;
 use plotter_hal::{CounterDelta, PulseInput};
-use plotter_motion::{Axis, Demand, Drive, Duty, PulseCounter, SafetyGate};
+use plotter_motion::{Axis, Demand, Drive, Duty, LimitSwitches, PulseCounter, SafetyGate};
 use proptest::prelude::*;
 
-fn drive(gate: &SafetyGate, y: f32) -> Drive {
+fn drive(gate: &SafetyGate, y: f32) -> Drive<'_> {
     gate.pass(Demand { x: Duty::saturating(-y), y: Duty::saturating(y) })
 }
 
@@ -16,7 +16,7 @@ fn drive(gate: &SafetyGate, y: f32) -> Drive {
 fn run_down_after_an_emergency_stop_is_counted_the_way_it_was_driven() {
     let pulses = [false, true].repeat(30).into_iter().map(Some);
     let mut encoder = PulseInput::new(Axis::Y, Levels::new(pulses));
-    let mut gate = SafetyGate::default();
+    let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
     let mut positions = Vec::new();
     for (duty, stop) in [(0.5, false), (0.5, true), (-1.0, true)] {
         gate.emergency_stop(stop);
@@ -37,7 +37,7 @@ fn whichever_read_fails_no_pulse_is_made_up_and_none_is_lost_that_lasts_for_two(
     for failing in 0..levels.len() {
         let read = levels.iter().enumerate().map(|(read, &level)| (read != failing).then_some(level));
         let mut encoder = PulseInput::new(Axis::X, Levels::new(read));
-        encoder.driven(drive(&SafetyGate::default(), -1.0));
+        encoder.driven(drive(&SafetyGate::new(LimitSwitches::RELEASED, false), -1.0));
         let errors = levels.iter().filter(|_| encoder.poll() == Err(Error::Pin(Broken))).count();
         assert_eq!((errors, encoder.counter().position()), (1, 10), "{failing} failing");
     }

@@ -7,7 +7,7 @@ use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Read};
 use faulty::{Broken, Levels};
 use plotter_hal::Quadrature;
 use plotter_hal::quadrature::{Error, Phase};
-use plotter_motion::{Decoding, Demand, Direction, Drive, Duty, Phases, SafetyGate};
+use plotter_motion::{Decoding, Demand, Direction, Drive, Duty, LimitSwitches, Phases, SafetyGate};
 use proptest::prelude::*;
 use std::io::ErrorKind;
 
@@ -116,8 +116,7 @@ fn a_lost_phase_is_named_and_can_stop_the_machine() {
             assert_eq!(without_a.lost_phase(8), Some(Phase::A), "{decoding:?}");
             assert_eq!(shown(decoding, forwards.clone()).lost_phase(2), None, "{decoding:?}");
 
-            let mut gate = SafetyGate::default();
-            gate.emergency_stop(without_b.lost_phase(8).is_some());
+            let gate = SafetyGate::new(LimitSwitches::RELEASED, without_b.lost_phase(8).is_some());
             assert_eq!(gate.pass(Demand { x: Duty::FULL, y: Duty::FULL }), Drive::default());
         }
     }

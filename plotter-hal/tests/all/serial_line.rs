@@ -7,7 +7,7 @@ use plotter_hal::serial_line::{Fault, FaultCounts};
 use plotter_motion::firmware::stepper_plotter::{Dialect, Drivers, StepperPlotter, StepperPlotterSettings};
 use plotter_motion::firmware::{Gantry, Notice};
 use plotter_motion::protocol::digits::{self, Receiver};
-use plotter_motion::{Drive, Machine, MachineConfig, StepPoint};
+use plotter_motion::{Drive, LimitSwitches, Machine, MachineConfig, SafetyGate, StepPoint};
 use proptest::prelude::*;
 use std::collections::VecDeque;
 
@@ -106,7 +106,10 @@ fn a_target_with_a_broken_byte_is_not_drawn_and_the_host_can_send_it_again() {
     let to = StepPoint::new(2993, 1395);
     for kind in [ErrorKind::InvalidData, ErrorKind::OutOfMemory, ErrorKind::Other] {
         for broken in 0..digits::TARGET_BYTES {
-            let mut gantry = Gantry::new(&Machine::new(MachineConfig::default()).unwrap());
+            let mut gantry = Gantry::new(
+                &Machine::new(MachineConfig::default()).unwrap(),
+                SafetyGate::new(LimitSwitches::RELEASED, false),
+            );
             let mut line =
                 SerialLine::new(Port::receiving(target(to, |place| (place == broken).then_some(kind))));
             let mut faults = 0;
@@ -142,7 +145,8 @@ fn a_line_of_g_code_with_a_broken_byte_is_refused_and_the_next_one_is_drawn() {
     for dialect in [Dialect::Grbl, Dialect::MDraw] {
         for broken in 0..text.len() {
             let settings = StepperPlotterSettings { dialect, ..StepperPlotterSettings::default() };
-            let mut plotter = StepperPlotter::new(settings).unwrap();
+            let mut plotter =
+                StepperPlotter::new(settings, SafetyGate::new(LimitSwitches::RELEASED, false)).unwrap();
             let incoming = text.iter().enumerate();
             let incoming =
                 incoming.map(|(at, &byte)| if at == broken { Err(ErrorKind::InvalidData) } else { Ok(byte) });
@@ -220,7 +224,10 @@ fn whatever_happens_to_a_write_no_answer_is_lost_or_doubled() {
 
 #[test]
 fn a_notice_of_the_gantry_is_one_of_a_dropped_target() {
-    let mut gantry = Gantry::new(&Machine::new(MachineConfig::default()).unwrap());
+    let mut gantry = Gantry::new(
+        &Machine::new(MachineConfig::default()).unwrap(),
+        SafetyGate::new(LimitSwitches::RELEASED, false),
+    );
     let mut line = SerialLine::new(Port::receiving([Ok(1), Err(ErrorKind::InvalidData)]));
     while let Some(received) = line.receive() {
         gantry.receive(Duration::ZERO, received.byte);

@@ -50,10 +50,11 @@ const MOST_NOTICES: usize = 8;
 /// motors stood already with nothing at all, and so stopped for ever, this one answers at once.
 ///
 /// ```
-/// # use plotter_motion::{firmware::Gantry, Machine, MachineConfig, protocol::digits, StepPoint};
+/// # use plotter_motion::{firmware::Gantry, LimitSwitches, Machine, MachineConfig, SafetyGate, protocol::digits, StepPoint};
 /// # use core::time::Duration;
 /// let machine = Machine::new(MachineConfig::default())?;
-/// let mut gantry = Gantry::new(&machine);
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false); // what switches and button say
+/// let mut gantry = Gantry::new(&machine, gate);
 /// for byte in digits::encode(StepPoint::new(400, 0))? {
 ///     gantry.receive(Duration::ZERO, byte);
 /// }
@@ -64,13 +65,32 @@ const MOST_NOTICES: usize = 8;
 /// assert!(gantry.drive().x().value() > 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+///
+/// A drive ends when the gantry is told anything, and there is no copy of a gantry, because its gate has none:
+///
+/// ```compile_fail,E0502
+/// # use plotter_motion::{firmware::Gantry, LimitSwitches, Machine, MachineConfig, SafetyGate};
+/// # use core::time::Duration;
+/// # let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// # let mut gantry = Gantry::new(&Machine::new(MachineConfig::default()).unwrap(), gate);
+/// let drive = gantry.drive();
+/// gantry.emergency_stop(Duration::ZERO, true);
+/// let duty = drive.x();
+/// ```
+///
+/// ```compile_fail,E0599
+/// # use plotter_motion::{firmware::Gantry, LimitSwitches, Machine, MachineConfig, SafetyGate};
+/// # let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// # let gantry = Gantry::new(&Machine::new(MachineConfig::default()).unwrap(), gate);
+/// let copy = gantry.clone();
+/// ```
+#[derive(Debug, PartialEq)]
 pub struct Gantry<C = ChosenController> {
     receiver: Receiver,
     controller: C,
     gate: SafetyGate,
     demand: Demand,
-    drive: Drive,
+    drive: Drive<'static>,
     most: StepPoint,
     /// The target being approached.
     approached: Option<StepPoint>,
@@ -78,8 +98,7 @@ pub struct Gantry<C = ChosenController> {
     told: StepPoint,
     /// Whether the host is to be told that the target is reached.
     tell_reached: bool,
-    /// The host has stopped the motors, and waits to be told so.
-    stopped_by_host: bool,
+    /// The host waits to be told whether the motors are stopped.
     tell_stopped: bool,
     next_tick: Option<Duration>,
     notices: [Option<Notice>; MOST_NOTICES],
@@ -124,10 +143,10 @@ impl GantrySettings {
 }
 
 impl Gantry {
-    /// The controller of `machine`, with its motors at rest at the origin.
+    /// The controller of `machine`, with its motors at rest at the origin and its switches and its button as the gate has them.
     #[must_use]
-    pub fn new(machine: &Machine) -> Self {
-        Self::with_settings(GantrySettings::of(machine), ChosenController::of(machine))
+    pub fn new(machine: &Machine, gate: SafetyGate) -> Self {
+        Self::with_settings(GantrySettings::of(machine), ChosenController::of(machine), gate)
     }
 }
 
@@ -138,7 +157,7 @@ impl<C: LineController> Gantry<C> {
     /// ```
     /// # use plotter_motion::control::{LineTracking, LineTrackingSettings};
     /// # use plotter_motion::firmware::{Gantry, GantrySettings};
-    /// # use plotter_motion::{PublishedConfig, StepPoint, SyncStop};
+    /// # use plotter_motion::{LimitSwitches, PublishedConfig, SafetyGate, StepPoint, SyncStop};
     /// const GANTRY: GantrySettings = GantrySettings { resync_gap_us: 100_000, most: StepPoint::new(23_760, 16_800) };
     /// const TRACKING: LineTrackingSettings = LineTrackingSettings {
     ///     published: PublishedConfig {
@@ -152,23 +171,23 @@ impl<C: LineController> Gantry<C> {
     ///     },
     ///     sync_stop: SyncStop { slope_counts: 10.0, offset_counts: 10.0 },
     /// };
-    /// let gantry = Gantry::with_settings(GANTRY, LineTracking::with_settings(TRACKING));
+    /// let gate = SafetyGate::new(LimitSwitches::RELEASED, false); // it has neither switches nor a button
+    /// let gantry = Gantry::with_settings(GANTRY, LineTracking::with_settings(TRACKING), gate);
     /// assert_eq!(gantry.next_tick(), None); // it answers to edges only
     /// ```
     #[must_use]
-    pub fn with_settings(settings: GantrySettings, controller: C) -> Self {
+    pub fn with_settings(settings: GantrySettings, controller: C, gate: SafetyGate) -> Self {
         Self {
             next_tick: controller.period(),
             controller,
             receiver: Receiver::new(Duration::from_micros(u64::from(settings.resync_gap_us))),
-            gate: SafetyGate::default(),
+            gate,
             demand: Demand::NONE,
             drive: Drive::default(),
             most: settings.most,
             approached: None,
             told: StepPoint::default(),
             tell_reached: false,
-            stopped_by_host: false,
             tell_stopped: false,
             notices: [None; MOST_NOTICES],
         }
@@ -256,19 +275,19 @@ impl<C: LineController> Gantry<C> {
     /// Takes the host's own emergency stop: both motors stay off until the host takes it back, whatever is done at the machine;
     /// and what was stopped at the machine stays stopped, whatever the host says. Position and target are kept.
     pub fn stop_by_host(&mut self, stopped: bool) {
-        self.stopped_by_host = stopped;
+        self.gate.stop_by_host(stopped);
         self.apply(self.demand);
     }
 
     /// Whether the motors are off by an emergency stop: the button's, or the host's.
     #[must_use]
     pub const fn is_stopped(&self) -> bool {
-        self.stopped_by_host || self.gate.is_stopped()
+        self.gate.is_stopped()
     }
 
     fn apply(&mut self, demand: Demand) {
         self.demand = demand;
-        self.drive = if self.stopped_by_host { Drive::default() } else { self.gate.pass(demand) };
+        self.drive = self.gate.pass(demand).kept();
         self.controller.applied(self.drive);
         if self.approached.is_some() && self.controller.has_arrived() {
             self.approached = None;
@@ -306,7 +325,7 @@ impl<C: LineController> Gantry<C> {
 
     /// What both motors get.
     #[must_use]
-    pub const fn drive(&self) -> Drive {
+    pub const fn drive(&self) -> Drive<'_> {
         self.drive
     }
 
@@ -336,5 +355,33 @@ impl<C: LineController> Gantry<C> {
         if let Some(place) = self.notices.iter_mut().find(|place| place.is_none()) {
             *place = Some(notice);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Blocked, Duty, MachineConfig, StepPair};
+
+    /// What the gate lets through of the whole supply and of a step.
+    fn flows(gantry: &Gantry) -> bool {
+        let full = Demand { x: Duty::FULL, y: Duty::FULL };
+        let step = gantry.gate.pass_step(StepPair { x: 1, y: 1 });
+        assert!(matches!(step, Ok(_) | Err(Blocked::Stopped)));
+        assert_eq!(gantry.gate.pass(full) != Drive::default(), step.is_ok());
+        step.is_ok()
+    }
+
+    #[test]
+    fn the_gate_refuses_what_is_demanded_after_the_hosts_stop() {
+        let Ok(machine) = Machine::new(MachineConfig::default()) else { panic!("the preset is a machine") };
+        let mut gantry = Gantry::new(&machine, SafetyGate::new(LimitSwitches::RELEASED, false));
+        assert!(flows(&gantry));
+        gantry.receive(Duration::ZERO, Order::Stop.byte());
+        assert!(!flows(&gantry) && gantry.is_stopped());
+        gantry.reset_emergency_stop(Duration::ZERO);
+        assert!(!flows(&gantry));
+        gantry.receive(Duration::ZERO, Order::GoOn.byte());
+        assert!(flows(&gantry) && !gantry.is_stopped());
     }
 }

@@ -23,7 +23,7 @@ const DIGITS_WAIT: Duration = Duration::from_millis(5);
 ///
 /// Time, edges and switches go to the gantry itself ([`gantry_mut`](Self::gantry_mut)); after each of them, and after each byte,
 /// [`poll`](Self::poll) this one, and fetch the bytes for the line.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct LinkedGantry<const WINDOW: usize, const PAYLOAD: usize, C = ChosenController> {
     gantry: Gantry<C>,
     link: Link<WINDOW, PAYLOAD>,

@@ -132,11 +132,12 @@ impl BoardMotor {
 ///
 /// ```
 /// # use plotter_motion::firmware::MarkingBoard;
-/// # use plotter_motion::{ControllerChoice, Machine, MachineConfig, Pen, PenMove, StepPoint};
+/// # use plotter_motion::{ControllerChoice, LimitSwitches, Machine, MachineConfig, Pen, PenMove, SafetyGate, StepPoint};
 /// # use core::time::Duration;
 /// let mut config = MachineConfig::marking_board();
 /// config.control.controller = ControllerChoice::Published;
-/// let mut board = MarkingBoard::of(&Machine::new(config)?);
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false); // what switches and button say
+/// let mut board = MarkingBoard::of(&Machine::new(config)?, gate);
 /// board.start(Duration::ZERO, PenMove { pen: Pen::Down, target: StepPoint::new(463, 463) }); // 10 mm to the right
 /// board.tick(Duration::from_millis(5));
 /// assert!(board.drive().x().value() > 0.0 && board.drive().x() == board.drive().y());
@@ -144,7 +145,7 @@ impl BoardMotor {
 /// assert_eq!(board.drive().x().value(), 0.0);
 /// # Ok::<(), plotter_motion::ConfigError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct MarkingBoard<C> {
     settings: MarkingBoardSettings,
     controller: C,
@@ -152,7 +153,7 @@ pub struct MarkingBoard<C> {
     motors: [BoardMotor; 2],
     /// What the controller asked of both motors last.
     demand: Demand,
-    drive: Drive,
+    drive: Drive<'static>,
     pen: Pen,
     under_way: bool,
     points_done: u32,
@@ -161,17 +162,17 @@ pub struct MarkingBoard<C> {
 }
 
 impl MarkingBoard<ChosenController> {
-    /// The controller of `machine`, at rest where it is switched on.
+    /// The controller of `machine`, at rest where it is switched on, with its switches and its button as the gate has them.
     #[must_use]
-    pub fn of(machine: &Machine) -> Self {
-        Self::new(MarkingBoardSettings::of(machine), ChosenController::of(machine))
+    pub fn of(machine: &Machine, gate: SafetyGate) -> Self {
+        Self::new(MarkingBoardSettings::of(machine), ChosenController::of(machine), gate)
     }
 }
 
 impl<C: LineController> MarkingBoard<C> {
     /// The board at rest where it is switched on, its controller at the origin of its counts.
     #[must_use]
-    pub fn new(settings: MarkingBoardSettings, controller: C) -> Self {
+    pub fn new(settings: MarkingBoardSettings, controller: C, gate: SafetyGate) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let full_window_counts_s = (settings.speed_window_mm_s * settings.belt.steps_per_mm()) as f32;
         let motor = BoardMotor {
@@ -183,7 +184,7 @@ impl<C: LineController> MarkingBoard<C> {
             settings,
             next_run: controller.period(),
             controller,
-            gate: SafetyGate::default(),
+            gate,
             motors: [motor; 2],
             demand: Demand::NONE,
             drive: Drive::default(),
@@ -274,7 +275,7 @@ impl<C: LineController> MarkingBoard<C> {
         let (x, y) =
             belt.signs().twice_axes(unless_it_waits(first, demand.x), unless_it_waits(second, demand.y));
         let axes = Demand { x: Duty::saturating(0.5 * x), y: Duty::saturating(0.5 * y) };
-        let drive = self.gate.pass_belt(axes, belt.signs(), unequal_share);
+        let drive = self.gate.pass_belt(axes, belt.signs(), unequal_share).kept();
         // What the gate took of one axis may have left a motor to be reversed. To take the drive of that motor alone could lead
         // into the switch, so neither gets any until it stands.
         self.drive =
@@ -291,7 +292,7 @@ impl<C: LineController> MarkingBoard<C> {
 
     /// What both motors get.
     #[must_use]
-    pub const fn drive(&self) -> Drive {
+    pub const fn drive(&self) -> Drive<'_> {
         self.drive
     }
 
@@ -370,7 +371,9 @@ mod tests {
 
     /// A board on its way to the right, with one pulse of either motor 10 ms ago.
     fn moving() -> MarkingBoard<PointToPoint> {
-        let mut board = MarkingBoard::new(settings(), PointToPoint::new(PointToPointSettings::default()));
+        let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+        let mut board =
+            MarkingBoard::new(settings(), PointToPoint::new(PointToPointSettings::default()), gate);
         board.start(Duration::ZERO, PenMove { pen: Pen::Down, target: StepPoint::new(463, 463) });
         board.tick(5 * MS);
         board.pulse(10 * MS, Axis::X);

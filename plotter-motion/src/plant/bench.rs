@@ -4,7 +4,7 @@ use super::{AxisPlant, DriveDelay, SimulatedLine};
 use crate::control::LineController;
 use crate::firmware::{Gantry, LinkedGantry, Notice};
 use crate::protocol::{Host, HostEvent, HostSettings};
-use crate::{Axis, Direction, Drive, Machine, PenMove, Point};
+use crate::{Axis, Direction, Drive, LimitSwitches, Machine, PenMove, Point, SafetyGate};
 use alloc::collections::VecDeque;
 use core::time::Duration;
 
@@ -56,7 +56,7 @@ pub trait BenchController {
     /// The next thing that it noticed.
     fn take_notice(&mut self) -> Option<Notice>;
     /// What both motors get.
-    fn drive(&self) -> Drive;
+    fn drive(&self) -> Drive<'_>;
 }
 
 /// Its bytes wait on the line, however many they are.
@@ -79,7 +79,7 @@ impl<C: LineController> BenchController for Gantry<C> {
     fn take_notice(&mut self) -> Option<Notice> {
         Self::take_notice(self)
     }
-    fn drive(&self) -> Drive {
+    fn drive(&self) -> Drive<'_> {
         Self::drive(self)
     }
 }
@@ -110,7 +110,7 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> BenchControll
     fn take_notice(&mut self) -> Option<Notice> {
         Self::take_notice(self)
     }
-    fn drive(&self) -> Drive {
+    fn drive(&self) -> Drive<'_> {
         self.gantry().drive()
     }
 }
@@ -148,11 +148,12 @@ enum Next {
 }
 
 impl<I: Iterator<Item = PenMove>> Bench<I> {
-    /// A machine at rest at the origin, and a host with `moves` to send, at the pace of the machine's
+    /// A machine at rest at the origin, none of its switches pressed, and a host with `moves` to send, at the pace of the machine's
     /// `serial.byte_gap_ms`.
     #[must_use]
     pub fn new(machine: &Machine, settings: BenchSettings, moves: I) -> Self {
-        Self::with_controller(machine, settings, Gantry::new(machine), moves)
+        let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+        Self::with_controller(machine, settings, Gantry::new(machine, gate), moves)
     }
 }
 
@@ -192,10 +193,11 @@ impl<I: Iterator<Item = PenMove>, C: BenchController> Bench<I, C> {
     /// Goes on by one time step; `record` is told of everything that happens in it, in order of time.
     pub fn step(&mut self, mut record: impl FnMut(Duration, BenchEvent)) {
         let end = self.now + self.time_step;
-        let drive = self.delay.pass(self.now, self.controller.drive());
-        for (plant, axis) in [(&mut self.x, Axis::X), (&mut self.y, Axis::Y)] {
+        let duties = self.delay.pass(self.now, self.controller.drive());
+        for ((plant, axis), duty) in [(&mut self.x, Axis::X), (&mut self.y, Axis::Y)].into_iter().zip(duties)
+        {
             let (now, time_step, edges) = (self.now, self.time_step, &mut self.edges);
-            plant.step(drive.axis(axis), |edge| {
+            plant.step(duty, |edge| {
                 let at = now + time_step.mul_f64(edge.share_of_step);
                 edges.push_back((
                     Duration::from_micros(micros(at).max(micros(now) + 1)),

@@ -1,6 +1,6 @@
 //! [`DriveDelay`]: what a controller asks for now, a motor gets later.
 
-use crate::{Drive, Machine};
+use crate::{Drive, Duty, Machine};
 use core::time::Duration;
 
 /// Changes of the drive that are on their way; of more within one delay the last takes the place of the one before it.
@@ -10,29 +10,30 @@ const MOST: usize = 32;
 ///
 /// ```
 /// # use plotter_motion::plant::DriveDelay;
-/// # use plotter_motion::{Demand, Drive, Duty, SafetyGate};
+/// # use plotter_motion::{Demand, Duty, LimitSwitches, SafetyGate};
 /// # use core::time::Duration;
 /// let ms = Duration::from_millis;
 /// let mut delay = DriveDelay::new(ms(2));
-/// let full = SafetyGate::default().pass(Demand { x: Duty::FULL, y: Duty::ZERO });
-/// assert_eq!(delay.pass(ms(0), full), Drive::default());
-/// assert_eq!(delay.pass(ms(1), full), Drive::default());
-/// assert_eq!(delay.pass(ms(2), full), full);
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// let full = gate.pass(Demand { x: Duty::FULL, y: Duty::ZERO });
+/// assert_eq!(delay.pass(ms(0), full), [Duty::ZERO; 2]);
+/// assert_eq!(delay.pass(ms(1), full), [Duty::ZERO; 2]);
+/// assert_eq!(delay.pass(ms(2), full), [Duty::FULL, Duty::ZERO]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveDelay {
     delay: Duration,
-    on_the_way: [(Duration, Drive); MOST],
+    on_the_way: [(Duration, [Duty; 2]); MOST],
     waiting: usize,
-    last: Drive,
-    acting: Drive,
+    last: [Duty; 2],
+    acting: [Duty; 2],
 }
 
 impl DriveDelay {
     /// A delay by a time; 0 for none.
     #[must_use]
     pub fn new(delay: Duration) -> Self {
-        let none = Drive::default();
+        let none = [Duty::ZERO; 2];
         Self { delay, on_the_way: [(Duration::ZERO, none); MOST], waiting: 0, last: none, acting: none }
     }
 
@@ -44,8 +45,10 @@ impl DriveDelay {
         Self::new(period * control.latency_periods)
     }
 
-    /// What acts at the time `now`, from which on `asked` is asked for. Times do not go back.
-    pub fn pass(&mut self, now: Duration, asked: Drive) -> Drive {
+    /// The duties of both motors that act at the time `now`, from which on `asked` is asked for. Times do not go back. They are no
+    /// [`Drive`]: what acts late may have been stopped since, and is nothing for a driver of a real motor.
+    pub fn pass(&mut self, now: Duration, asked: Drive) -> [Duty; 2] {
+        let asked = asked.duties();
         if self.delay.is_zero() {
             return asked;
         }
@@ -58,8 +61,8 @@ impl DriveDelay {
             self.waiting = place + 1;
         }
         let due = self.on_the_way.iter().take(self.waiting).take_while(|(at, _)| *at <= now).count();
-        if let Some((_, drive)) = due.checked_sub(1).and_then(|last| self.on_the_way.get(last)) {
-            self.acting = *drive;
+        if let Some((_, duties)) = due.checked_sub(1).and_then(|last| self.on_the_way.get(last)) {
+            self.acting = *duties;
             self.on_the_way.rotate_left(due);
             self.waiting -= due;
         }

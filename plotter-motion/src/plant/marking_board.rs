@@ -2,7 +2,7 @@
 
 use super::dc_motor::{DcMotor, DcMotorState};
 use crate::kinematics::{CoreXy, Kinematics, MotorPoint};
-use crate::{Axis, Drive, Duty, LimitSwitches, LoadConfig, Machine, MotorConfig, Point};
+use crate::{Axis, Duty, LimitSwitches, LoadConfig, Machine, MotorConfig, Point};
 use core::f64::consts::TAU;
 
 /// What a simulated board is made of.
@@ -61,14 +61,15 @@ impl MarkingBoardPlantSettings {
 ///
 /// ```
 /// # use plotter_motion::plant::{MarkingBoardPlant, MarkingBoardPlantSettings};
-/// # use plotter_motion::{Demand, Duty, Machine, MachineConfig, SafetyGate};
+/// # use plotter_motion::{Demand, Duty, LimitSwitches, Machine, MachineConfig, SafetyGate};
 /// let settings = MarkingBoardPlantSettings::of(&Machine::new(MachineConfig::marking_board())?);
 /// let mut board = MarkingBoardPlant::new(&settings, 1e-4);
 /// let start = board.position_mm();
 /// let demand = Demand { x: Duty::saturating(0.4), y: Duty::ZERO };
-/// let right = SafetyGate::default().pass_belt(demand, settings.belt.signs(), 0.0);
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+/// let right = gate.pass_belt(demand, settings.belt.signs(), 0.0);
 /// for _ in 0..10_000 {
-///     board.step(right, |_| ());
+///     board.step(right.duties(), |_| ());
 /// }
 /// let moved = board.position_mm() - start;
 /// assert!(moved.x > 20.0 && moved.y.abs() > 0.5); // a second: to the right, and not straight
@@ -136,10 +137,9 @@ impl MarkingBoardPlant {
         Self { settings: *settings, motors, contacts }
     }
 
-    /// Goes on by one time step; `pulse` is told of every mark that passes an encoder: of the first motor (`X`) or the
+    /// Goes on by one time step with these duties of both motors; `pulse` is told of every mark that passes an encoder: of the first motor (`X`) or the
     /// second (`Y`).
-    pub fn step(&mut self, drive: Drive, mut pulse: impl FnMut(Axis)) {
-        let duties = [drive.x(), drive.y()];
+    pub fn step(&mut self, duties: [Duty; 2], mut pulse: impl FnMut(Axis)) {
         let [first, second] = &mut self.motors;
         let volts = [first.voltage_v(duties[0]), second.voltage_v(duties[1])];
         let now = [first.state.speed_rad_s, second.state.speed_rad_s];

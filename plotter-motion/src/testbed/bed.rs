@@ -4,8 +4,8 @@ use super::{Figures, misjudged};
 use crate::control::LineController;
 use crate::plant::{AxisPlant, DriveDelay};
 use crate::{
-    Axis, ConfigError, Demand, Direction, Drive, Machine, MachineKind, Pen, PenMove, Point, SafetyGate,
-    Segment, StepPoint,
+    Axis, ConfigError, Demand, Direction, Drive, LimitSwitches, Machine, MachineKind, Pen, PenMove, Point,
+    SafetyGate, Segment, StepPoint,
 };
 use core::time::Duration;
 
@@ -172,7 +172,7 @@ struct Run<'a, C: ?Sized> {
     controller: &'a mut C,
     axes: [AxisPlant; 2],
     gate: SafetyGate,
-    drive: Drive,
+    drive: Drive<'static>,
     delay: DriveDelay,
     now: Duration,
     next_tick: Option<Duration>,
@@ -190,7 +190,7 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
             next_tick: controller.period(),
             controller,
             axes: [AxisPlant::new(&config.x, dt_s), AxisPlant::new(&config.y, dt_s)],
-            gate: SafetyGate::default(),
+            gate: SafetyGate::new(LimitSwitches::RELEASED, false),
             drive: Drive::default(),
             delay: DriveDelay::of(&bed.machine),
             now: Duration::ZERO,
@@ -203,7 +203,7 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
     }
 
     fn apply(&mut self, demand: Demand) {
-        self.drive = self.gate.pass(demand);
+        self.drive = self.gate.pass(demand).kept();
         self.controller.applied(self.drive);
     }
 
@@ -215,11 +215,10 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
         let mut counts = [0_usize; 2];
         let mut energy_j = 0.0;
         let start = self.now;
-        let drive = self.delay.pass(start, self.drive);
-        for (((plant, axis), edges), count) in
-            self.axes.iter_mut().zip(Axis::BOTH).zip(&mut edges).zip(&mut counts)
+        let duties = self.delay.pass(start, self.drive);
+        for (((plant, duty), edges), count) in
+            self.axes.iter_mut().zip(duties).zip(&mut edges).zip(&mut counts)
         {
-            let duty = drive.axis(axis);
             plant.step(duty, |edge| {
                 if let Some(place) = edges.get_mut(*count) {
                     *place = (start + time_step.mul_f64(edge.share_of_step), edge.direction);

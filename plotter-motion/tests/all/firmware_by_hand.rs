@@ -6,10 +6,10 @@ use crate::stepper_bench;
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{
-    Activity, Dialect, Drivers, Grbl, Host, SpindlePen, Step, StepperPlotterSettings,
+    Activity, Dialect, Drivers, Grbl, Host, SpindlePen, StepperPlotterSettings,
 };
 use plotter_motion::kinematics::Backlash;
-use plotter_motion::{ExactOnly, ExactPen, Modes, Point, StepPoint, from_mm};
+use plotter_motion::{ExactOnly, ExactPen, LimitSwitches, Modes, Point, SafetyGate, StepPoint, from_mm};
 use stepper_bench::Bench;
 
 const STEPS_PER_MM: f64 = 87.58;
@@ -376,8 +376,11 @@ fn a_stop_within_the_play_loses_no_place() {
 
 #[test]
 fn a_small_controller_overrides_the_laser_alone_and_tells_so() {
-    let mut small = StepperPlotter::<Grbl<SpindlePen>, ExactOnly>::with_modes(settings())
-        .unwrap_or_else(|error| unreachable!("{error}"));
+    let mut small = StepperPlotter::<Grbl<SpindlePen>, ExactOnly>::with_modes(
+        settings(),
+        SafetyGate::new(LimitSwitches::RELEASED, false),
+    )
+    .unwrap_or_else(|error| unreachable!("{error}"));
     for byte in [FEED_LESS_10, LASER_LESS_10, b'?', b'?'] {
         small.receive(Duration::ZERO, byte);
         while small.transmit(Duration::ZERO).is_some() {}
@@ -389,7 +392,10 @@ fn a_small_controller_overrides_the_laser_alone_and_tells_so() {
 #[test]
 fn a_small_controller_has_no_laser_and_says_so() {
     let machine = StepperPlotterSettings { laser: true, ..settings() };
-    let small = StepperPlotter::<Grbl<SpindlePen>, ExactOnly>::with_modes(machine);
+    let small = StepperPlotter::<Grbl<SpindlePen>, ExactOnly>::with_modes(
+        machine,
+        SafetyGate::new(LimitSwitches::RELEASED, false),
+    );
     let error = small.err().map(|error| error.to_string()).unwrap_or_default();
     assert!(error.starts_with("the pen is lifted by Laser") && error.ends_with("Grbl<AnyPen>"), "{error}");
 }
@@ -397,7 +403,10 @@ fn a_small_controller_has_no_laser_and_says_so() {
 #[test]
 fn a_small_controller_has_no_play_and_says_so() {
     let machine = StepperPlotterSettings { backlash: PLAY, ..settings() };
-    let small = StepperPlotter::<Grbl<SpindlePen>, ExactOnly>::with_modes(machine);
+    let small = StepperPlotter::<Grbl<SpindlePen>, ExactOnly>::with_modes(
+        machine,
+        SafetyGate::new(LimitSwitches::RELEASED, false),
+    );
     let error = small.err().map(|error| error.to_string()).unwrap_or_default();
     assert!(error.starts_with("backlash"), "{error}");
 }
@@ -405,16 +414,26 @@ fn a_small_controller_has_no_play_and_says_so() {
 #[test]
 fn a_controller_of_exact_pens_has_no_laser_whatever_its_words_and_says_so() {
     let machine = StepperPlotterSettings { laser: true, ..settings() };
-    let small = StepperPlotter::<Grbl, ExactPen>::with_modes(machine);
+    let small = StepperPlotter::<Grbl, ExactPen>::with_modes(
+        machine,
+        SafetyGate::new(LimitSwitches::RELEASED, false),
+    );
     let error = small.err().map(|error| error.to_string()).unwrap_or_default();
     assert!(error.starts_with("laser") && error.contains("AllModes"), "{error}");
-    assert!(StepperPlotter::<Grbl, ExactOnly>::with_modes(machine).is_ok());
+    assert!(
+        StepperPlotter::<Grbl, ExactOnly>::with_modes(
+            machine,
+            SafetyGate::new(LimitSwitches::RELEASED, false)
+        )
+        .is_ok()
+    );
 }
 
 /// All steps of a text, with a hold after so many of them.
-fn steps_of<H: Host, M: Modes>(text: &str, hold_after: usize) -> Vec<Step> {
+fn steps_of<H: Host, M: Modes>(text: &str, hold_after: usize) -> Vec<(Duration, [i8; 2])> {
     let mut plotter =
-        StepperPlotter::<H, M>::with_modes(settings()).unwrap_or_else(|error| unreachable!("{error}"));
+        StepperPlotter::<H, M>::with_modes(settings(), SafetyGate::new(LimitSwitches::RELEASED, false))
+            .unwrap_or_else(|error| unreachable!("{error}"));
     let (mut now, mut made) = (Duration::ZERO, Vec::new());
     for byte in text.bytes() {
         plotter.receive(now, byte);
@@ -422,7 +441,7 @@ fn steps_of<H: Host, M: Modes>(text: &str, hold_after: usize) -> Vec<Step> {
     }
     loop {
         while let Some(step) = plotter.poll(now, Drivers::Ready) {
-            made.push(step);
+            made.push((step.at, [step.pulse.x(), step.pulse.y()]));
             if made.len() == hold_after {
                 plotter.receive(now, b'!');
             }

@@ -4,7 +4,7 @@ use core::time::Duration;
 use plotter_motion::firmware::stepper_plotter::{
     Dialect, Drivers, Link, Motion, Receive, Signal, Status, StepperPlotterSettings,
 };
-use plotter_motion::{Machine, MachineConfig, StepPoint};
+use plotter_motion::{LimitSwitches, Machine, MachineConfig, SafetyGate, StepPoint};
 use std::collections::VecDeque;
 
 /// What the tasks share.
@@ -34,7 +34,10 @@ fn receive_task(wire: &mut VecDeque<u8>, receive: &mut Receive, shared: &mut Sha
 fn talk(dialect: Dialect, lines: &[&str], receive_every_ms: u64) -> (String, StepPoint) {
     let machine = Machine::new(MachineConfig::stepper_plotter()).expect("the preset is a machine");
     let settings = StepperPlotterSettings::of(&machine, dialect);
-    let (mut receive, mut motion) = (Receive::new(settings), Motion::new(settings).expect("checked"));
+    let (mut receive, mut motion) = (
+        Receive::new(settings),
+        Motion::new(settings, SafetyGate::new(LimitSwitches::RELEASED, false)).expect("checked"),
+    );
     let (mut shared, mut wire, mut answers) = (Shared::default(), VecDeque::new(), Vec::new());
     let mut lines = lines.iter();
     let mut answered = 0;

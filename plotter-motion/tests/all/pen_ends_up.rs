@@ -10,8 +10,8 @@ use plotter_motion::hpgl;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::protocol::{Link, LinkSettings, Message};
 use plotter_motion::{
-    Axis, Machine, MachineConfig, MotorEvent, PathMode, Pen, PenMove, Planner, PlannerSettings, PlotOp,
-    Point, StepGen, StepGenSettings, StepPoint,
+    Axis, LimitSwitches, Machine, MachineConfig, MotorEvent, PathMode, Pen, PenMove, Planner,
+    PlannerSettings, PlotOp, Point, SafetyGate, StepGen, StepGenSettings, StepPoint,
 };
 use stepper_bench::Bench;
 
@@ -266,13 +266,13 @@ fn other_settings_do_not_leave_a_pen_on_the_sheet_that_is_believed_to_be_up() {
 #[test]
 fn a_marking_board_that_has_arrived_or_is_stopped_has_its_pen_up() {
     let machine = Machine::new(MachineConfig::marking_board()).unwrap();
-    let mut board = MarkingBoard::of(&machine);
+    let mut board = MarkingBoard::of(&machine, SafetyGate::new(LimitSwitches::RELEASED, false));
     let there = PenMove { pen: Pen::Down, target: StepPoint::new(463, 463) };
     board.start(Duration::ZERO, there);
     assert_eq!(board.pen(), Pen::Down);
     board.emergency_stop(Duration::from_millis(6), true);
     assert_eq!(board.pen(), Pen::Up);
-    let mut board = MarkingBoard::of(&machine);
+    let mut board = MarkingBoard::of(&machine, SafetyGate::new(LimitSwitches::RELEASED, false));
     board.start(Duration::ZERO, PenMove { pen: Pen::Down, target: StepPoint::default() });
     for ms in (5..5_000).step_by(5) {
         board.tick(Duration::from_millis(ms));
@@ -285,7 +285,11 @@ fn a_marking_board_that_has_arrived_or_is_stopped_has_its_pen_up() {
 fn a_linked_gantry_has_its_pen_down_on_the_way_of_a_line_only() {
     let machine = Machine::new(MachineConfig::default()).unwrap();
     let settings = LinkSettings::default();
-    let mut gantry = LinkedGantry::<8, 128, _>::new(Gantry::new(&machine), 1, settings);
+    let mut gantry = LinkedGantry::<8, 128, _>::new(
+        Gantry::new(&machine, SafetyGate::new(LimitSwitches::RELEASED, false)),
+        1,
+        settings,
+    );
     let mut host = Link::<8, 128>::host(0x1234, settings);
     let (mut now, mut pens, mut sent) = (Duration::ZERO, Vec::new(), false);
     while now < Duration::from_secs(20) {
@@ -303,9 +307,9 @@ fn a_linked_gantry_has_its_pen_down_on_the_way_of_a_line_only() {
             sent = true;
         }
         // A motor that turns a count a millisecond wherever it is driven.
-        let drive = gantry.gantry().drive();
-        for axis in Axis::BOTH {
-            if let Some(direction) = drive.axis(axis).direction() {
+        let duties = gantry.gantry().drive().duties();
+        for (axis, duty) in Axis::BOTH.into_iter().zip(duties) {
+            if let Some(direction) = duty.direction() {
                 gantry.gantry_mut().edge(now, axis, direction);
             }
         }

@@ -4,8 +4,8 @@ use core::time::Duration;
 use plotter_motion::control::{Contouring, LineController, LineTracking};
 use plotter_motion::plant::AxisPlant;
 use plotter_motion::{
-    Axis, AxisConfig, ControllerChoice, Decoding, Demand, Direction, Duty, Machine, MachineConfig, Pid,
-    PidState, SafetyGate, StepPoint,
+    Axis, AxisConfig, ControllerChoice, Decoding, Demand, Direction, Duty, LimitSwitches, Machine,
+    MachineConfig, Pid, PidState, SafetyGate, StepPoint,
 };
 use proptest::prelude::*;
 
@@ -70,7 +70,7 @@ fn in_range(demand: Demand) -> bool {
 
 /// Whatever may flow after `inputs`, `controller` still answers an error with a duty on a further line.
 fn runs(controller: &mut impl LineController, inputs: &[(Duration, Input)]) -> Result<(), TestCaseError> {
-    let gate = SafetyGate::default();
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
     let mut now = Duration::ZERO;
     for &(pause, input) in inputs {
         now = now.saturating_add(pause);
@@ -117,7 +117,7 @@ proptest! {
         inputs in prop::collection::vec((pause(), input()), 1..200),
     ) {
         let mut controller = LineTracking::new(&machine(ControllerChoice::Published, Decoding::X1, 10.0));
-        let gate = SafetyGate::default();
+        let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
         for (_, input) in inputs {
             let demand = match input {
                 Input::Target(x, y) => controller.start(Duration::ZERO, StepPoint::new(x, y)),

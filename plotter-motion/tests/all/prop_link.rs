@@ -10,7 +10,7 @@ use core::time::Duration;
 use plotter_motion::firmware::{Gantry, LinkedGantry};
 use plotter_motion::protocol::frame::{DecodeError, Decoder, Frame, Kind};
 use plotter_motion::protocol::{Hello, Link, LinkSettings, LinkState, Message, MessageDecoder, Order};
-use plotter_motion::{Machine, MachineConfig, Pen, StepPoint};
+use plotter_motion::{LimitSwitches, Machine, MachineConfig, Pen, SafetyGate, StepPoint};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -175,7 +175,11 @@ proptest! {
 /// What a host with payloads of `PAYLOAD` says to a machine until the session is open, and the machine after it.
 fn greeted<const PAYLOAD: usize>(host: &mut Link<8, PAYLOAD>) -> (Vec<u8>, LinkedGantry<4, 64>) {
     let machine = Machine::new(MachineConfig::default()).unwrap();
-    let mut machine = LinkedGantry::<4, 64>::new(Gantry::new(&machine), 1, LinkSettings::default());
+    let mut machine = LinkedGantry::<4, 64>::new(
+        Gantry::new(&machine, SafetyGate::new(LimitSwitches::RELEASED, false)),
+        1,
+        LinkSettings::default(),
+    );
     let (mut said, mut now) = (Vec::new(), Duration::ZERO);
     for _ in 0..3 {
         while let Some(byte) = host.transmit(now) {

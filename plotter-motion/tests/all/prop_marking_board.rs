@@ -106,7 +106,7 @@ fn holds<C: LineController>(
     speeds: [f32; 2],
     inputs: &[Input],
 ) -> Result<(), TestCaseError> {
-    let mut board = MarkingBoard::new(settings, controller);
+    let mut board = MarkingBoard::new(settings, controller, SafetyGate::new(LimitSwitches::RELEASED, false));
     let mut now = Duration::ZERO;
     let mut pressed = LimitSwitches::default();
     let mut stopped = false;
@@ -160,7 +160,7 @@ proptest! {
     fn no_drive_leads_into_a_pressed_switch(
         signs in signs(), demand in demand(), pressed in switches(), share in 0.0..0.9_f32, differ in prop::array::uniform2(-1.0..=1.0_f32),
     ) {
-        let mut gate = SafetyGate::default();
+        let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
         gate.set_limits(pressed);
         // the motors differ by as much as the gate was told, or less
         let speeds = differ.map(|by| 1.0 + by * share);
@@ -175,7 +175,8 @@ proptest! {
     /// Without a switch the pen goes where it was asked to; what is too much is made smaller as a whole.
     #[test]
     fn a_demand_keeps_its_direction(signs in signs(), demand in demand(), share in 0.0..1.0_f32) {
-        let drive = SafetyGate::default().pass_belt(demand, signs, share);
+        let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+        let drive = gate.pass_belt(demand, signs, share);
         let (x2, y2) = signs.twice_axes(drive.x().value(), drive.y().value());
         let size = (demand.x.value().abs() + demand.y.value().abs()).max(1.0);
         prop_assert!((x2 / 2.0 * size - demand.x.value()).abs() <= ROUNDING);
@@ -185,11 +186,11 @@ proptest! {
     /// A switch takes nothing that leads away from it.
     #[test]
     fn what_leads_away_from_a_switch_is_let_through(signs in signs(), demand in demand()) {
-        let mut gate = SafetyGate::default();
+        let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
         let away = |duty: Duty| LimitSwitches { x_min: duty.value() > 0.0, x_max: duty.value() < 0.0, ..LimitSwitches::default() };
-        let free = gate.pass_belt(Demand { y: Duty::ZERO, ..demand }, signs, 0.3);
+        let free = gate.pass_belt(Demand { y: Duty::ZERO, ..demand }, signs, 0.3).duties();
         gate.set_limits(away(demand.x));
-        prop_assert_eq!(gate.pass_belt(Demand { y: Duty::ZERO, ..demand }, signs, 0.3), free);
+        prop_assert_eq!(gate.pass_belt(Demand { y: Duty::ZERO, ..demand }, signs, 0.3).duties(), free);
     }
 
     #[test]

@@ -64,7 +64,7 @@ proptest! {
             1..60,
         ),
     ) {
-        let mut gate = SafetyGate::default();
+        let mut gate = SafetyGate::new(LimitSwitches::RELEASED, false);
         let mut limits = LimitSwitches::default();
         let (mut button, mut latched) = (false, false);
         for (kind, x, y, [x_min, x_max, y_min, y_max], pressed) in events {
@@ -225,7 +225,7 @@ proptest! {
         if published {
             config.control.controller = ControllerChoice::Published;
         }
-        let mut gantry = Gantry::new(&Machine::new(config).unwrap());
+        let mut gantry = Gantry::new(&Machine::new(config).unwrap(), SafetyGate::new(LimitSwitches::RELEASED, false));
         let mut now = Duration::ZERO;
         let mut told = StepPoint::default();
         let mut limits = LimitSwitches::default();

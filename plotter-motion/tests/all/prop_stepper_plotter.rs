@@ -6,7 +6,7 @@ use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Activity, Dialect, Drivers, StepperPlotterSettings};
 use plotter_motion::kinematics::Backlash;
-use plotter_motion::{Axis, Direction, LimitSwitches, StepPoint, from_mm};
+use plotter_motion::{Axis, Direction, LimitSwitches, SafetyGate, StepPoint, from_mm};
 use proptest::prelude::*;
 use std::collections::VecDeque;
 use stepper_bench::Bench;
@@ -171,17 +171,17 @@ impl Watch {
         loop {
             let (before, activity) = (self.plotter.position(), self.plotter.status(self.now).activity);
             let Some(step) = self.plotter.poll(self.now, Drivers::Ready) else { return Ok(()) };
-            let moves = [(Axis::X, step.pulse.x()), (Axis::Y, step.pulse.y())];
+            let (at, moves) = (step.at, [(Axis::X, step.pulse.x()), (Axis::Y, step.pulse.y())]);
             prop_assert!(moves.iter().any(|(_, sign)| *sign != 0));
             for (axis, sign) in moves.into_iter().filter(|(_, sign)| *sign != 0) {
                 let direction = if sign > 0 { Direction::Plus } else { Direction::Minus };
-                prop_assert!(!self.limits.blocks(axis, direction), "into a switch: {step:?}");
+                prop_assert!(!self.limits.blocks(axis, direction), "into a switch: {moves:?} at {at:?}");
             }
             // Grbl's $X ends an emergency stop, once the button has been released.
             self.latched &= self.button || self.plotter.status(self.now).emergency_stop;
             prop_assert!(!self.latched, "a step while stopped");
-            prop_assert!(step.at <= self.now && step.at >= self.last_step, "{step:?} at {:?}", self.now);
-            self.last_step = step.at;
+            prop_assert!(at <= self.now && at >= self.last_step, "{moves:?} of {at:?} at {:?}", self.now);
+            self.last_step = at;
             if activity != Activity::Home {
                 let [x, y] = moves.map(|(_, sign)| i32::from(sign));
                 prop_assert_eq!(self.plotter.position(), StepPoint::new(before.x + x, before.y + y));
@@ -252,7 +252,8 @@ fn watch(dialect: Dialect, laser: bool, play: u16, inputs: &[Input]) -> Result<(
     let backlash = Backlash { x_steps: play, y_steps: play / 2 };
     let settings = StepperPlotterSettings { laser, backlash, ..settings(dialect) };
     let mut watch = Watch {
-        plotter: StepperPlotter::new(settings).map_err(|error| TestCaseError::fail(error.to_string()))?,
+        plotter: StepperPlotter::new(settings, SafetyGate::new(LimitSwitches::RELEASED, false))
+            .map_err(|error| TestCaseError::fail(error.to_string()))?,
         now: Duration::ZERO,
         limits: LimitSwitches::default(),
         button: false,

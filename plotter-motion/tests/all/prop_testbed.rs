@@ -8,7 +8,7 @@ use plotter_motion::control::{
 };
 use plotter_motion::plant::{AxisPlant, DriveDelay};
 use plotter_motion::{
-    Axis, AxisConfig, Demand, Direction, Drive, Duty, LoadConfig, Machine, MachineConfig, SafetyGate,
+    Axis, AxisConfig, Demand, Direction, Duty, LimitSwitches, LoadConfig, Machine, MachineConfig, SafetyGate,
     StepPoint, TransmissionConfig,
 };
 use proptest::prelude::*;
@@ -55,7 +55,7 @@ fn stays_alive(
     mut controller: impl LineController,
     inputs: &[(Duration, Input)],
 ) -> Result<(), TestCaseError> {
-    let gate = SafetyGate::default();
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
     let mut now = Duration::ZERO;
     for &(pause, input) in inputs {
         now = now.saturating_add(pause);
@@ -229,14 +229,15 @@ proptest! {
     fn latency_keeps_the_order(changes in prop::collection::vec((1..500_u64, -1.0..1.0_f32), 1..20), delay_us in 1..20_000_u64) {
         let delay = Duration::from_micros(delay_us);
         let mut delayed = DriveDelay::new(delay);
-        let mut asked: Vec<(Duration, Drive)> = vec![(Duration::ZERO, Drive::default())];
+        let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+        let mut asked = vec![(Duration::ZERO, [Duty::ZERO; 2])];
         let mut now = Duration::ZERO;
         for (pause, x) in changes {
             now += Duration::from_micros(pause);
-            let drive = SafetyGate::default().pass(Demand { x: Duty::saturating(x), y: Duty::ZERO });
-            asked.push((now, drive));
+            let drive = gate.pass(Demand { x: Duty::saturating(x), y: Duty::ZERO });
+            asked.push((now, drive.duties()));
             let acts = delayed.pass(now, drive);
-            let expected = asked.iter().rev().find(|(at, _)| *at + delay <= now).map_or(Drive::default(), |(_, drive)| *drive);
+            let expected = asked.iter().rev().find(|(at, _)| *at + delay <= now).map_or([Duty::ZERO; 2], |(_, duties)| *duties);
             prop_assert_eq!(acts, expected);
         }
     }

@@ -60,9 +60,10 @@ fn uncontrolled_drift_mm() -> f64 {
     let mut plant = MarkingBoardPlant::new(&plant(), TIME_STEP.as_secs_f64());
     let from = plant.position_mm();
     let demand = Demand { x: Duty::saturating(0.45), y: Duty::ZERO };
-    let right = SafetyGate::default().pass_belt(demand, belt().signs(), 0.0);
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    let right = gate.pass_belt(demand, belt().signs(), 0.0);
     while (plant.position_mm() - from).x < 30.0 {
-        plant.step(right, |_| ());
+        plant.step(right.duties(), |_| ());
     }
     (plant.position_mm() - from).y.abs()
 }
@@ -187,13 +188,12 @@ fn the_carriage_does_not_go_into_a_switch_along_which_it_moves() {
         let start = Point::new(300.0, 150.0);
         let settings = MarkingBoardPlantSettings { start, ..plant() };
         let mut plant = MarkingBoardPlant::new(&settings, TIME_STEP.as_secs_f64());
-        let mut gate = SafetyGate::default();
+        // the switch is held down, so nothing but the gate keeps the pen from it
+        let gate = SafetyGate::new(LimitSwitches { x_max: true, ..LimitSwitches::RELEASED }, false);
         let down_and_right = Demand { x: Duty::saturating(0.4), y: Duty::saturating(-0.4) };
         let mut farthest = 0.0_f64;
         for _ in 0..20_000 {
-            // the switch is held down, so nothing but the gate keeps the pen from it
-            gate.set_limits(LimitSwitches { x_max: true, ..LimitSwitches::default() });
-            plant.step(gate.pass_belt(down_and_right, belt().signs(), unequal_share), |_| ());
+            plant.step(gate.pass_belt(down_and_right, belt().signs(), unequal_share).duties(), |_| ());
             farthest = farthest.max(plant.position_mm().x - start.x);
         }
         println!(

@@ -9,7 +9,10 @@ use plotter_motion::protocol::digits::{self, Reply};
 use plotter_motion::protocol::{
     HostEvent, HostNotice, HostSettings, LinkHost, LinkSettings, LinkState, Order, Wire,
 };
-use plotter_motion::{Axis, ControllerChoice, Direction, Machine, MachineConfig, Pen, PenMove, StepPoint};
+use plotter_motion::{
+    Axis, ControllerChoice, Direction, LimitSwitches, Machine, MachineConfig, Pen, PenMove, SafetyGate,
+    StepPoint,
+};
 use proptest::prelude::*;
 
 fn machine() -> Machine {
@@ -34,7 +37,7 @@ fn said(gantry: &mut Gantry) -> Vec<u8> {
 
 /// A gantry of digits on its way, with the motors driven.
 fn under_way(machine: &Machine, target: StepPoint) -> (Gantry, Duration) {
-    let mut gantry = Gantry::new(machine);
+    let mut gantry = Gantry::new(machine, SafetyGate::new(LimitSwitches::RELEASED, false));
     digits::encode(target).unwrap().into_iter().for_each(|byte| gantry.receive(Duration::ZERO, byte));
     let mut now = Duration::ZERO;
     while is_off(&gantry) {
@@ -110,7 +113,7 @@ fn a_stop_is_answered_and_each_side_takes_back_its_own() {
 
 #[test]
 fn a_stop_between_the_digits_of_a_target_costs_none_of_them() {
-    let mut gantry = Gantry::new(&machine());
+    let mut gantry = Gantry::new(&machine(), SafetyGate::new(LimitSwitches::RELEASED, false));
     let bytes = digits::encode(StepPoint::new(400, 0)).unwrap();
     for (place, byte) in bytes.into_iter().enumerate() {
         if place == 4 {
@@ -140,7 +143,11 @@ struct Line {
 impl Line {
     fn new(moves: &[PenMove]) -> Self {
         let machine = machine();
-        let controller = Linked::new(Gantry::new(&machine), 7, LinkSettings::default());
+        let controller = Linked::new(
+            Gantry::new(&machine, SafetyGate::new(LimitSwitches::RELEASED, false)),
+            7,
+            LinkSettings::default(),
+        );
         let settings = BenchSettings::default();
         Self {
             host: LinkHost::new(
@@ -269,7 +276,11 @@ fn a_button_at_a_linked_machine_is_told_and_another_host_learns_of_it() {
 
 #[test]
 fn a_machine_stops_by_three_bytes_in_any_session_or_none() {
-    let mut linked = Linked::new(Gantry::new(&machine()), 7, LinkSettings::default());
+    let mut linked = Linked::new(
+        Gantry::new(&machine(), SafetyGate::new(LimitSwitches::RELEASED, false)),
+        7,
+        LinkSettings::default(),
+    );
     assert_eq!(linked.link().state(), LinkState::Idle);
     linked.receive(Duration::ZERO, b'!');
     assert!(linked.gantry().is_stopped());

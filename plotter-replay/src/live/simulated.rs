@@ -10,7 +10,7 @@ use core::time::Duration;
 use plotter_motion::firmware::{Gantry, LinkedGantry};
 use plotter_motion::plant::{Bench, BenchController, BenchEvent, BenchSettings};
 use plotter_motion::protocol::{LinkSettings, Order};
-use plotter_motion::{Axis, ConfigError, Machine, MachineKind, PenMove};
+use plotter_motion::{Axis, ConfigError, LimitSwitches, Machine, MachineKind, PenMove, SafetyGate};
 use std::io::{Sink, Write};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
@@ -82,7 +82,7 @@ impl SimulatedMachine {
     /// [`ConfigError::OtherKind`] for a machine whose DC motors do not each move an axis.
     pub fn new(machine: &Machine, boot: Option<u32>) -> Result<Self, ConfigError> {
         machine.require(MachineKind::Gantry, "what is simulated on a line")?;
-        let gantry = Gantry::new(machine);
+        let gantry = Gantry::new(machine, SafetyGate::new(LimitSwitches::RELEASED, false));
         let bench: Box<dyn Steps + Send> = match boot {
             Some(boot) => {
                 let linked = LinkedGantry::<4, 64>::new(gantry, boot, LinkSettings::default());

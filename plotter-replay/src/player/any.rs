@@ -1,5 +1,6 @@
 //! [`AnyController`]: the controller of a machine, whichever it is.
 
+use super::machine::gate;
 use super::told::Told;
 use super::{Controller, EdgeSource, LinkedController, LinkedMachine, MachineController, RecordingTraits};
 use crate::log::{self, Header};
@@ -74,7 +75,7 @@ impl AnyController {
         }
         let machine = machine_of(&header, machine)?;
         let boot = LinkedMachine::of_header(&header).map_or(0, |linked| linked.boot);
-        let gantry = Gantry::with_settings(GantrySettings::of(&machine), Told::default());
+        let gantry = Gantry::with_settings(GantrySettings::of(&machine), Told::default(), gate());
         Ok(Box::new(LinkedGantry::<4, 64, Told>::new(gantry, boot, LinkSettings::default())))
     }
 
@@ -86,12 +87,12 @@ impl AnyController {
     pub fn of(header: &Header, machine: Option<&Machine>) -> Result<Box<dyn Controller>, ControllerError> {
         let machine = machine_of(header, machine)?;
         Ok(match machine.kind() {
-            MachineKind::Belt => Box::new(MarkingBoard::<ChosenController>::of(&machine)),
+            MachineKind::Belt => Box::new(MarkingBoard::<ChosenController>::of(&machine, gate())),
             MachineKind::Steppers => {
                 let dialect =
                     if header.text("protocol") == Some("grbl") { Dialect::Grbl } else { Dialect::MDraw };
                 let settings = StepperPlotterSettings::of(&machine, dialect);
-                Box::new(StepperPlotter::new(settings).map_err(error)?)
+                Box::new(StepperPlotter::new(settings, gate()).map_err(error)?)
             }
             MachineKind::Gantry => match LinkedMachine::of_header(header) {
                 None => Box::new(MachineController::new(&machine)),

@@ -2,7 +2,7 @@
 
 use super::Controller;
 use super::gantry::PWM_STEPS;
-use super::machine::{pwm_steps, steps_of};
+use super::machine::{gate, pwm_steps, steps_of};
 use crate::log::SwitchName;
 use core::time::Duration;
 use plotter_motion::control::LineController;
@@ -68,7 +68,7 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> Controller
 /// and frames once a host has called.
 ///
 /// Its window and its payload are part of what it says; those of a simulated machine are 4 frames and 64 bytes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct LinkedController<const WINDOW: usize = 4, const PAYLOAD: usize = 64> {
     linked: LinkedGantry<WINDOW, PAYLOAD>,
     pwm_steps: [u16; 2],
@@ -78,7 +78,7 @@ impl<const WINDOW: usize, const PAYLOAD: usize> LinkedController<WINDOW, PAYLOAD
     /// The controller of this machine, at rest at (0, 0); `boot` is its number since it was switched on, which it tells its host.
     #[must_use]
     pub fn new(machine: &Machine, boot: u32) -> Self {
-        let linked = LinkedGantry::new(Gantry::new(machine), boot, LinkSettings::default());
+        let linked = LinkedGantry::new(Gantry::new(machine, gate()), boot, LinkSettings::default());
         Self { linked, pwm_steps: pwm_steps(machine) }
     }
 

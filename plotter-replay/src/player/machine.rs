@@ -4,13 +4,13 @@ use super::Controller;
 use crate::log::SwitchName;
 use core::time::Duration;
 use plotter_motion::firmware::Gantry;
-use plotter_motion::{Axis, Direction, Machine};
+use plotter_motion::{Axis, Direction, LimitSwitches, Machine, SafetyGate};
 
 /// [`Gantry`] as a machine's description makes it.
 ///
 /// Switches are known by name: `x-min`, `x-max`, `y-min`, `y-max` are the limits, and pressing `reset` lets the
 /// motors go on after an emergency stop. Other names do nothing.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct MachineController {
     gantry: Gantry,
     pwm_steps: [u16; 2],
@@ -20,7 +20,7 @@ impl MachineController {
     /// The controller of this machine, at rest at (0, 0).
     #[must_use]
     pub fn new(machine: &Machine) -> Self {
-        Self { gantry: Gantry::new(machine), pwm_steps: pwm_steps(machine) }
+        Self { gantry: Gantry::new(machine, gate()), pwm_steps: pwm_steps(machine) }
     }
 
     /// The controller itself.
@@ -62,6 +62,11 @@ impl Controller for MachineController {
     fn duty(&self, axis: Axis) -> i32 {
         self.gantry.drive().axis(axis).steps(steps_of(self.pwm_steps, axis))
     }
+}
+
+/// The gate of a machine that is run again: nothing is pressed until the recording says so.
+pub(super) const fn gate() -> SafetyGate {
+    SafetyGate::new(LimitSwitches::RELEASED, false)
 }
 
 /// Steps of the PWM timers of both motors.

@@ -14,7 +14,10 @@ use crate::linked_session;
 
 use linked_session::LinkedSession;
 use plotter_motion::plant::{Bench, BenchSettings};
-use plotter_motion::{ControllerChoice, Machine, MachineKind, Pen, PenMove, StepPoint, TransmissionConfig};
+use plotter_motion::{
+    ControllerChoice, LimitSwitches, Machine, MachineKind, Pen, PenMove, SafetyGate, StepPoint,
+    TransmissionConfig,
+};
 use plotter_replay::log::{self, Event, Header, Record, Writer};
 use plotter_replay::transport::Faults;
 use plotter_replay::{AnyController, BenchRecorder, Player, PlayerSettings, golden};
@@ -203,7 +206,11 @@ fn the_marking_board_replays_its_golden_log() {
         config.control.controller = ControllerChoice::Published;
         let machine = Machine::new(config).unwrap();
         let settings = MarkingBoardSettings::of(&machine);
-        let mut board = MarkingBoard::new(settings, ChosenController::of(&machine));
+        let mut board = MarkingBoard::new(
+            settings,
+            ChosenController::of(&machine),
+            SafetyGate::new(LimitSwitches::RELEASED, false),
+        );
         let mut writer = Writer::new(Vec::new(), &header).unwrap();
         let mut write = |time, event| writer.write(&Record { time, event }).unwrap();
         let start: Point = settings.start;

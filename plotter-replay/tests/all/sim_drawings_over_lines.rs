@@ -15,7 +15,7 @@ use plotter_motion::firmware::{Gantry, GantrySettings, LinkedGantry};
 use plotter_motion::protocol::{
     Host, HostEvent, HostNotice, HostSettings, LinkHost, LinkSettings, Order, Resume, digits,
 };
-use plotter_motion::{Axis, Demand, Direction, Drive, Pen, PenMove, StepPoint};
+use plotter_motion::{Axis, Demand, Direction, Drive, LimitSwitches, Pen, PenMove, SafetyGate, StepPoint};
 use plotter_replay::transport::Faults;
 use std::vec::IntoIter;
 
@@ -71,7 +71,11 @@ impl LineController for Massless {
 type Linked = LinkedGantry<4, 64, Massless>;
 
 fn massless(runs: u32) -> Gantry<Massless> {
-    Gantry::with_settings(SETTINGS, Massless { runs, ..Massless::default() })
+    Gantry::with_settings(
+        SETTINGS,
+        Massless { runs, ..Massless::default() },
+        SafetyGate::new(LimitSwitches::RELEASED, false),
+    )
 }
 
 fn linked(runs: u32) -> Linked {

@@ -24,7 +24,7 @@ use plotter_motion::plant::AxisPlant;
 use plotter_motion::protocol::digits;
 use plotter_motion::{
     Action, Axis, Direction, Machine, MachineConfig, MotorEvent, PathMode, Planner, PlannerSettings, PlotOp,
-    SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, StepQueue,
+    LimitSwitches, SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, StepQueue,
 };
 use vcell::VolatileCell;
 
@@ -40,7 +40,8 @@ const TARGETS: [(i32, i32); 8] =
 fn gantry(counter: &Counter, machine: &Machine, name: &str, controller: impl LineController) {
     const STEP: Duration = Duration::from_micros(100);
     let config = machine.config();
-    let mut gantry = Gantry::with_settings(GantrySettings::of(machine), controller);
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    let mut gantry = Gantry::with_settings(GantrySettings::of(machine), controller, gate);
     let mut plants = [&config.x, &config.y].map(|axis| AxisPlant::new(axis, STEP.as_secs_f64()));
     let (mut edges, mut ticks) = (Tally::default(), Tally::default());
     let mut targets = TARGETS.into_iter();
@@ -215,7 +216,7 @@ fn main() -> ! {
     let motor = MotorScale { steps_per_mm: 100.0, inverted: false };
     if let Ok(kinematics) = Cartesian::new(motor, motor) {
         let mut generator = StepGen::new(kinematics, StepGenSettings::default());
-        let (gate, registers, mut queue) = (SafetyGate::default(), Registers::new(), StepQueue::new());
+        let (gate, registers, mut queue) = (SafetyGate::new(LimitSwitches::RELEASED, false), Registers::new(), StepQueue::new());
         let (mut filled, mut made, mut others) = (Tally::default(), Tally::default(), 0);
         plan(&counter, exact, drawings::strokes(), |action| {
             let _ = generator.push(action);

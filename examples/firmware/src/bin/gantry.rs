@@ -11,7 +11,7 @@ use cortex_m_rt::entry;
 use plotter_firmware::board::{self, Event, Notice};
 use plotter_firmware::machine;
 use plotter_hal::{DcAxes, EstopChange, EstopInput, HBridge, Quadrature, SwitchSettings};
-use plotter_motion::Axis;
+use plotter_motion::{Axis, LimitSwitches, SafetyGate};
 use plotter_motion::protocol::SUBSTITUTE;
 
 /// How often the buttons are looked at, and the watchdog is fed.
@@ -29,14 +29,14 @@ fn main() -> ! {
     let started = motors.start().is_ok();
     let mut button = EstopInput::new(parts.stop, SwitchSettings::default());
 
-    let Some(gantry) = singleton!(GANTRY: machine::Gantry = machine::gantry()) else { board::halt() };
+    // Pressed until it has shown that it is not. The machine has no limit switches.
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, button.is_pressed());
+    let Some(gantry) = singleton!(GANTRY: machine::Gantry = machine::gantry(gate)) else { board::halt() };
     let was_bitten = parts.rest.was_bitten();
     let [(xa, xb), (ya, yb)] = [parts.x_phases, parts.y_phases];
     let [x_decoding, y_decoding] = machine::DECODING;
     let mut board =
         parts.rest.start(Quadrature::new(xa, xb, x_decoding), Quadrature::new(ya, yb, y_decoding));
-    // Pressed until it has shown that it is not.
-    gantry.emergency_stop(board.now(), button.is_pressed());
     if was_bitten {
         board.notify(Notice::Bitten);
     }

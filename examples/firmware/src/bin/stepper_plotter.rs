@@ -17,7 +17,7 @@ use plotter_hal::{
 };
 use plotter_motion::firmware::stepper_plotter::SettingsError;
 use plotter_motion::protocol::SUBSTITUTE;
-use plotter_motion::{Axis, Direction};
+use plotter_motion::{Axis, Direction, SafetyGate};
 
 /// How often the switches are looked at, and the watchdog is fed.
 const LOOK: Duration = Duration::from_millis(1);
@@ -45,8 +45,8 @@ type Controller = Result<StepperPlotter, SettingsError>;
 
 /// The controller, where it stays. By itself, so that the stack is free again of what it takes to put it there.
 #[inline(never)]
-fn controller() -> Option<&'static mut StepperPlotter> {
-    singleton!(CELL: Controller = StepperPlotter::of(&CHECKED_PLOTTER))?.as_mut().ok()
+fn controller(gate: SafetyGate) -> Option<&'static mut StepperPlotter> {
+    singleton!(CELL: Controller = StepperPlotter::of(&CHECKED_PLOTTER, gate))?.as_mut().ok()
 }
 
 #[entry]
@@ -85,18 +85,13 @@ fn main() -> ! {
         }
         (now, _) = board.wait(Some(now.saturating_add(LOOK)));
     }
-    let Some(plotter) = controller() else { board::halt() };
     if was_bitten {
         // Where the motors stand is not known: a person looks first, and says so by `$X` or by homing.
         board.notify(Notice::Bitten);
     }
-    if was_bitten || !free {
-        plotter.emergency_stop(now, true);
-        plotter.emergency_stop(now, button.is_pressed());
-    }
-    for (axis, end) in ENDS {
-        plotter.limit_switch(now, axis, end, limits.limits().blocks(axis, end));
-    }
+    let gate = SafetyGate::new(limits.limits(), was_bitten || !free);
+    let Some(plotter) = controller(gate) else { board::halt() };
+    plotter.emergency_stop(now, button.is_pressed());
 
     let mut pen_deg = None;
     let mut look = now;

@@ -26,9 +26,10 @@ use core::f64::consts::TAU;
 /// ```
 /// # use plotter_motion::control::tuning::{ExperimentSettings, RelayExperiment};
 /// # use plotter_motion::plant::AxisPlant;
-/// # use plotter_motion::{Axis, AxisConfig, SafetyGate};
+/// # use plotter_motion::{Axis, AxisConfig, LimitSwitches, SafetyGate};
 /// let config = AxisConfig::default();
-/// let (mut plant, gate) = (AxisPlant::new(&config, 1e-4), SafetyGate::default());
+/// let mut plant = AxisPlant::new(&config, 1e-4);
+/// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
 /// let mut experiment = RelayExperiment::new(ExperimentSettings::of(&config, Axis::X, 2500.0, 30.0));
 /// let mut count = 0;
 /// let point = loop {

@@ -17,9 +17,10 @@
 //!
 //! ```
 //! # use core::time::Duration;
-//! # use plotter_motion::StepPoint;
+//! # use plotter_motion::{LimitSwitches, SafetyGate, StepPoint};
 //! # use plotter_motion::firmware::stepper_plotter::{Drivers, StepperPlotter, StepperPlotterSettings};
-//! let mut plotter = StepperPlotter::new(StepperPlotterSettings::default())?; // mDraw's machine, 87.58 steps/mm
+//! let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+//! let mut plotter = StepperPlotter::new(StepperPlotterSettings::default(), gate)?; // mDraw's machine, 87.58 steps/mm
 //! let (mut now, mut answers, mut pulses) = (Duration::ZERO, Vec::new(), 0);
 //! for line in ["M1 90\n", "G1 X3 Y4\n", "P\n", "G1 X381\n"] {
 //!     for byte in line.bytes() {
@@ -144,6 +145,9 @@
 //! [`StepperPlotter::restart`] or Grbl's `$X`, and only once the button has been released. A step towards a pressed limit switch is not
 //! made, and stops the machine; away from the switch it is free. A motor that is stopped at full speed may turn a little farther
 //! than its last step: home the machine if it was fast.
+//!
+//! A reset by the host (ctrl-X) is the gate's, too: from its byte on no step passes, until [`Command::GoOn`] or [`Command::Unlock`] says
+//! that the receive side has heard of it.
 //!
 //! Sources: spec 5 (Dounaev and Phan); the firmware xybot and the program mDraw; the Grbl project's wiki on version 1.1.
 

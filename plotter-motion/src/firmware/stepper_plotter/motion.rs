@@ -21,13 +21,13 @@ use core::time::Duration;
 /// Blocks of the look-ahead.
 const BLOCKS: usize = 16;
 
-/// A step of the motors that passed the safety gate, at the time at which it was due.
+/// A step of the motors that passed the safety gate, at the time at which it was due. It ends when the machine is told anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Step {
+pub struct Step<'gate> {
     /// When it was due.
     pub at: Duration,
     /// Which motors, and which way: 1 towards larger coordinates.
-    pub pulse: Pulse,
+    pub pulse: Pulse<'gate>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ enum State {
 ///
 /// After each input, call [`poll`](Self::poll) until it gives no step, and say each time whether the drivers can take one; then arm a timer for [`due`](Self::due) and call it
 /// again at that time. After each call, the servo gets [`pen_deg`](Self::pen_deg) and the laser [`beam`](Self::beam).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Motion<M: Modes = AllModes> {
     settings: StepperPlotterSettings,
     planner: Planner<BLOCKS, M>,
@@ -75,19 +75,20 @@ pub struct Motion<M: Modes = AllModes> {
     /// The phase in progress and when it began.
     phase: Option<(Duration, Phase)>,
     pen_deg: u8,
-    beam: Beam,
+    beam: Beam<'static>,
     due: Option<Duration>,
     lateness: Lateness,
 }
 
 impl Motion {
-    /// A machine at rest at the origin, pen up.
+    /// A machine at rest at the origin, pen up, with its switches and its button as the gate has them. If the gate is stopped, the first
+    /// thing that is to move is refused and reported as [`Stop::Emergency`].
     ///
     /// # Errors
     ///
     /// [`SettingsError`] for limits that no motion can be planned with.
-    pub fn new(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
-        Self::with_modes(settings)
+    pub fn new(settings: StepperPlotterSettings, gate: SafetyGate) -> Result<Self, SettingsError> {
+        Self::with_modes(settings, gate)
     }
 }
 
@@ -97,13 +98,13 @@ impl<M: Modes> Motion<M> {
     /// # Errors
     ///
     /// [`SettingsError`] for limits that no motion can be planned with, and for a mode that is not among them.
-    pub fn with_modes(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
-        Ok(Self::of(&settings.checked()?))
+    pub fn with_modes(settings: StepperPlotterSettings, gate: SafetyGate) -> Result<Self, SettingsError> {
+        Ok(Self::of(&settings.checked()?, gate))
     }
 
     /// The same, with settings that have been looked at.
     #[must_use]
-    pub fn of(checked: &CheckedSettings<M>) -> Self {
+    pub fn of(checked: &CheckedSettings<M>, gate: SafetyGate) -> Self {
         let settings = checked.settings();
         let mut planner = Planner::of_checked(&checked.limits);
         darken(&mut planner);
@@ -117,7 +118,7 @@ impl<M: Modes> Motion<M> {
             planner,
             steps,
             play,
-            gate: SafetyGate::default(),
+            gate,
             state: State::Ready,
             position: StepPoint::default(),
             next: None,
@@ -142,17 +143,28 @@ impl<M: Modes> Motion<M> {
 
     /// The next step that is due by `now`, if there is one and the motors' drivers can take it. One that they cannot take is not counted,
     /// and stays due.
-    pub fn poll(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step> {
+    #[inline]
+    pub fn poll(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step<'_>> {
+        self.next_step(now, drivers, link)
+    }
+
+    /// The same, for who asks again when there was none.
+    pub(super) fn next_step(
+        &mut self,
+        now: Duration,
+        drivers: Drivers,
+        link: &mut Link,
+    ) -> Option<Step<'static>> {
         self.due = None;
         // Ends: every turn takes something from a queue, from the planner or from the step generator.
         loop {
             match self.state {
                 State::Stopped => match link.commands.pop() {
                     None => return None,
-                    Some(Command::GoOn) => self.state = State::Ready,
+                    Some(Command::GoOn) => self.make_ready(),
                     Some(Command::Unlock) => {
                         self.gate.reset();
-                        self.state = State::Ready;
+                        self.make_ready();
                     }
                     Some(command @ Command::Set(_)) => self.stand(command, now, link),
                     Some(command) => self.leave_out(command),
@@ -220,6 +232,7 @@ impl<M: Modes> Motion<M> {
             }
             Signal::Reset => {
                 let during = self.status(now).activity;
+                self.gate.stop_by_host(true);
                 self.stop(Stop::Reset { during }, link);
                 self.end_overrides();
             }
@@ -239,9 +252,9 @@ impl<M: Modes> Motion<M> {
 
     /// Takes the state of the emergency stop button; pressed, it stops everything at once and latches.
     pub fn emergency_stop(&mut self, pressed: bool, link: &mut Link) {
-        let was_stopped = self.gate.is_stopped();
+        let was_latched = self.gate.is_latched();
         self.gate.emergency_stop(pressed);
-        if pressed && !was_stopped {
+        if pressed && !was_latched {
             self.stop(Stop::Emergency, link);
         }
     }
@@ -260,11 +273,18 @@ impl<M: Modes> Motion<M> {
             self.planner = planner;
         }
         self.percents = Percents::default();
-        if self.gate.is_stopped() {
+        if self.gate.is_latched() {
             self.stop(Stop::Emergency, link);
         } else {
             self.halt(link);
-            self.state = State::Ready;
+            self.make_ready();
+        }
+    }
+
+    /// A machine whose stop is latched when it is switched on begins stopped.
+    pub(super) fn begin_stopped(&mut self, link: &mut Link) {
+        if self.gate.is_stopped() {
+            self.stop(Stop::Emergency, link);
         }
     }
 
@@ -276,7 +296,7 @@ impl<M: Modes> Motion<M> {
 
     /// Power of the laser.
     #[must_use]
-    pub const fn beam(&self) -> Beam {
+    pub const fn beam(&self) -> Beam<'_> {
         self.beam
     }
 
@@ -330,7 +350,7 @@ impl<M: Modes> Motion<M> {
             laser: self.beam.power(),
             percents: self.percents,
             limits: self.gate.limits(),
-            emergency_stop: self.gate.is_stopped(),
+            emergency_stop: self.gate.is_latched(),
             emergency_button: self.gate.is_button_pressed(),
         }
     }
@@ -347,7 +367,7 @@ impl<M: Modes> Motion<M> {
         }
         let power = u32::from(self.laser) * u32::from(self.percents.laser) / 100;
         let power = u16::try_from(power).unwrap_or(u16::MAX);
-        self.beam = self.gate.pass_laser(if self.dark { 0 } else { power });
+        self.beam = self.gate.pass_laser(if self.dark { 0 } else { power }).kept();
     }
 
     /// Whether something is on its way: steps, or a pause that is not over.
@@ -371,9 +391,11 @@ impl<M: Modes> Motion<M> {
     }
 
     /// Carries out what is due.
-    fn give(&mut self, event: MotorEvent, link: &mut Link) -> Option<Pulse> {
+    fn give(&mut self, event: MotorEvent, link: &mut Link) -> Option<Pulse<'static>> {
         match event {
             MotorEvent::Step { x, y } => return self.pass(StepPair { x, y }, link),
+            // A gate that was stopped when the machine was made is noticed by what moves first.
+            MotorEvent::Pen(_) if self.gate.is_stopped() => self.stop(Stop::Emergency, link),
             MotorEvent::Pen(pen) => {
                 if self.settings.dialect == Dialect::Grbl {
                     self.put_pen(pen);
@@ -390,8 +412,8 @@ impl<M: Modes> Motion<M> {
     }
 
     /// The one way of a step to the motors.
-    fn pass(&mut self, step: StepPair, link: &mut Link) -> Option<Pulse> {
-        match self.gate.pass_step(step) {
+    fn pass(&mut self, step: StepPair, link: &mut Link) -> Option<Pulse<'static>> {
+        match self.gate.pass_step(step).map(Pulse::kept) {
             Ok(pulse) => {
                 self.position.x = self.position.x.saturating_add(pulse.x().into());
                 self.position.y = self.position.y.saturating_add(pulse.y().into());
@@ -445,6 +467,12 @@ impl<M: Modes> Motion<M> {
             Command::Set(setting) => self.set(setting),
             _ => {}
         }
+    }
+
+    /// Commands are carried out again, and the host's stop is over.
+    const fn make_ready(&mut self) {
+        self.gate.stop_by_host(false);
+        self.state = State::Ready;
     }
 
     fn stop(&mut self, why: Stop, link: &mut Link) {
@@ -640,7 +668,7 @@ impl<M: Modes> Motion<M> {
     }
 
     /// One turn of homing.
-    fn home(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step> {
+    fn home(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step<'static>> {
         let State::Homing(run) = &mut self.state else { return None };
         let result = match run.next(&self.settings, self.gate.limits()) {
             Ok((at, _)) if !has_come(at, now) || drivers == Drivers::Busy => {
@@ -685,4 +713,60 @@ fn darken<M: Modes>(planner: &mut Planner<BLOCKS, M>) {
     }
     let pushed = planner.push(PlotOp::LaserPower { share: 0.0 });
     debug_assert!(pushed.is_ok(), "it is empty");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP: StepPair = StepPair { x: 1, y: 1 };
+    const TRAVEL: PlotOp = PlotOp::Travel { to: Point::new(1.0, 0.0) };
+
+    fn motion(gate: SafetyGate) -> Motion {
+        let settings = StepperPlotterSettings { dialect: Dialect::Grbl, ..StepperPlotterSettings::default() };
+        let Ok(motion) = Motion::new(settings, gate) else { panic!("the default can be planned with") };
+        motion
+    }
+
+    /// How many steps come of a command.
+    fn steps_of(motion: &mut Motion, link: &mut Link, command: Command) -> usize {
+        assert_eq!(link.commands.push(command), Ok(()));
+        let mut steps = 0;
+        for ms in 0..2_000 {
+            while motion.poll(Duration::from_millis(ms), Drivers::Ready, link).is_some() {
+                steps += 1;
+            }
+        }
+        steps
+    }
+
+    #[test]
+    fn the_gate_refuses_what_is_demanded_between_the_hosts_reset_and_its_going_on() {
+        let mut link = Link::default();
+        let mut motion = motion(SafetyGate::new(LimitSwitches::RELEASED, false));
+        assert!(motion.gate.pass_step(STEP).is_ok());
+        motion.signal(Duration::ZERO, Signal::Reset, &mut link);
+        assert_eq!(motion.gate.pass_step(STEP), Err(Blocked::Stopped));
+        assert_eq!(motion.gate.pass_laser(u16::MAX), Beam::OFF);
+        // It is no emergency, for which a person must come to the machine.
+        assert!(!motion.status(Duration::ZERO).emergency_stop);
+        assert_eq!(steps_of(&mut motion, &mut link, Command::Plot(TRAVEL)), 0);
+        assert_eq!(motion.gate.pass_step(STEP), Err(Blocked::Stopped));
+        assert_eq!(steps_of(&mut motion, &mut link, Command::GoOn), 0);
+        assert!(motion.gate.pass_step(STEP).is_ok());
+        assert!(steps_of(&mut motion, &mut link, Command::Plot(TRAVEL)) > 0);
+    }
+
+    #[test]
+    fn a_button_that_was_pressed_before_the_start_lets_nothing_move() {
+        for op in [TRAVEL, PlotOp::Draw { to: Point::ORIGIN, feed_mm_s: None }] {
+            let mut link = Link::default();
+            let mut motion = motion(SafetyGate::new(LimitSwitches::RELEASED, true));
+            let pen_deg = motion.pen_deg();
+            assert_eq!(steps_of(&mut motion, &mut link, Command::Plot(op)), 0);
+            assert_eq!(motion.pen_deg(), pen_deg, "{op:?}");
+            let reported = link.reports.pop();
+            assert!(matches!(reported, Some(Report::Stopped { why: Stop::Emergency, .. })), "{reported:?}");
+        }
+    }
 }

@@ -5,7 +5,7 @@ use super::{
     StepperPlotterSettings, StoredSettings,
 };
 use crate::planner::{AllModes, Modes};
-use crate::{Axis, Beam, Direction, Point, StepPoint};
+use crate::{Axis, Beam, Direction, Point, SafetyGate, StepPoint};
 use core::time::Duration;
 
 /// The whole controller of a stepper plotter, sans-IO: the receive side and the motion side joined by their queues.
@@ -18,17 +18,18 @@ use core::time::Duration;
 /// For a small processor it is built for one language and fewer ways of planning:
 ///
 /// ```
-/// # use plotter_motion::ExactOnly;
+/// # use plotter_motion::{ExactOnly, LimitSwitches, SafetyGate};
 /// # use plotter_motion::firmware::StepperPlotter;
 /// # use plotter_motion::firmware::stepper_plotter::{Dialect, Grbl, SettingsError, StepperPlotterSettings};
 /// let settings = StepperPlotterSettings { dialect: Dialect::Grbl, ..StepperPlotterSettings::default() };
-/// let small = StepperPlotter::<Grbl, ExactOnly>::with_modes(settings)?;
+/// let gate = || SafetyGate::new(LimitSwitches::RELEASED, false); // what switches and button say
+/// let small = StepperPlotter::<Grbl, ExactOnly>::with_modes(settings, gate())?;
 /// assert!(size_of_val(&small) < size_of::<StepperPlotter>());
-/// # let other = StepperPlotter::<Grbl, ExactOnly>::with_modes(StepperPlotterSettings::default());
+/// # let other = StepperPlotter::<Grbl, ExactOnly>::with_modes(StepperPlotterSettings::default(), gate());
 /// # assert_eq!(other.err(), Some(SettingsError::Dialect(Dialect::MDraw)));
 /// # Ok::<(), SettingsError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct StepperPlotter<H: Host = Receive, M: Modes = AllModes> {
     receive: H,
     motion: Motion<M>,
@@ -36,13 +37,14 @@ pub struct StepperPlotter<H: Host = Receive, M: Modes = AllModes> {
 }
 
 impl StepperPlotter {
-    /// A machine that has just been switched on: at rest, its pen up, where it stands is (0, 0).
+    /// A machine that has just been switched on: at rest, its pen up, where it stands is (0, 0), its switches and its button as the
+    /// gate has them. If the gate is stopped, so is the machine, as after [`emergency_stop`](Self::emergency_stop).
     ///
     /// # Errors
     ///
     /// [`SettingsError`] for limits that no motion can be planned with.
-    pub fn new(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
-        Self::with_modes(settings)
+    pub fn new(settings: StepperPlotterSettings, gate: SafetyGate) -> Result<Self, SettingsError> {
+        Self::with_modes(settings, gate)
     }
 }
 
@@ -52,8 +54,8 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     /// # Errors
     ///
     /// [`SettingsError`] for a language or a mode that is not among them, and as [`StepperPlotter::new`].
-    pub fn with_modes(settings: StepperPlotterSettings) -> Result<Self, SettingsError> {
-        Self::of(&settings.checked()?)
+    pub fn with_modes(settings: StepperPlotterSettings, gate: SafetyGate) -> Result<Self, SettingsError> {
+        Self::of(&settings.checked()?, gate)
     }
 
     /// The same, with settings that have been looked at.
@@ -61,9 +63,12 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     /// # Errors
     ///
     /// [`SettingsError`] for a language that is not among them.
-    pub fn of(checked: &CheckedSettings<M>) -> Result<Self, SettingsError> {
+    pub fn of(checked: &CheckedSettings<M>, gate: SafetyGate) -> Result<Self, SettingsError> {
         H::check(checked.settings())?;
-        Ok(Self { receive: H::new(*checked.settings()), motion: Motion::of(checked), link: Link::default() })
+        let receive = H::new(*checked.settings());
+        let mut plotter = Self { receive, motion: Motion::of(checked, gate), link: Link::default() };
+        plotter.motion.begin_stopped(&mut plotter.link);
+        Ok(plotter)
     }
 
     /// Takes a byte from the host.
@@ -77,9 +82,9 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     /// The next step that is due by `now`, if there is one and the motors' drivers can take it. It is for the drivers to make: it counts
     /// as made from here on. While they are busy there is none; it stays due, and is given when they are ready.
     #[cfg_attr(target_os = "none", inline(never))]
-    pub fn poll(&mut self, now: Duration, drivers: Drivers) -> Option<Step> {
+    pub fn poll(&mut self, now: Duration, drivers: Drivers) -> Option<Step<'_>> {
         loop {
-            let step = self.motion.poll(now, drivers, &mut self.link);
+            let step = self.motion.next_step(now, drivers, &mut self.link);
             if step.is_some() {
                 return step;
             }
@@ -170,7 +175,7 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
 
     /// Power of the laser.
     #[must_use]
-    pub const fn beam(&self) -> Beam {
+    pub const fn beam(&self) -> Beam<'_> {
         self.motion.beam()
     }
 

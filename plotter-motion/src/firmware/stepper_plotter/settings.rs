@@ -137,10 +137,11 @@ impl StepperPlotterSettings {
     /// compiler, and needs no memory for it.
     ///
     /// ```
-    /// # use plotter_motion::ExactOnly;
+    /// # use plotter_motion::{ExactOnly, LimitSwitches, SafetyGate};
     /// # use plotter_motion::firmware::stepper_plotter::{Motion, SettingsError, StepperPlotterSettings};
     /// let checked = StepperPlotterSettings::default().checked::<ExactOnly>()?;
-    /// assert_eq!(Motion::of(&checked).settings().x_steps_per_mm, 87.58);
+    /// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    /// assert_eq!(Motion::of(&checked, gate).settings().x_steps_per_mm, 87.58);
     /// let wrong = StepperPlotterSettings { x_steps_per_mm: 0.0, ..StepperPlotterSettings::default() };
     /// assert!(wrong.checked::<ExactOnly>().is_err());
     /// # Ok::<(), SettingsError>(())

@@ -6,7 +6,8 @@ use core::time::Duration;
 use plotter_motion::control::{Contouring, LineController, LineTracking};
 use plotter_motion::plant::AxisPlant;
 use plotter_motion::{
-    Axis, ControllerChoice, Direction, Drive, Machine, MachineConfig, Point, SafetyGate, Segment, StepPoint,
+    Axis, ControllerChoice, Demand, Direction, LimitSwitches, Machine, MachineConfig, Point, SafetyGate,
+    Segment, StepPoint,
 };
 
 pub const TIME_STEP: Duration = Duration::from_micros(10);
@@ -17,7 +18,7 @@ pub struct Loop {
     pub axes: [AxisPlant; 2],
     pub counts_per_mm: f64,
     gate: SafetyGate,
-    drive: Drive,
+    demand: Demand,
     next_tick: Option<Duration>,
 }
 
@@ -36,8 +37,8 @@ impl Loop {
             controller,
             axes: [AxisPlant::new(&plant.x, dt_s), AxisPlant::new(&plant.y, dt_s)],
             counts_per_mm: machine.x.counts_per_mm,
-            gate: SafetyGate::default(),
-            drive: Drive::default(),
+            gate: SafetyGate::new(LimitSwitches::RELEASED, false),
+            demand: Demand::NONE,
         }
     }
 
@@ -46,16 +47,17 @@ impl Loop {
         self.apply(demand);
     }
 
-    fn apply(&mut self, demand: plotter_motion::Demand) {
-        self.drive = self.gate.pass(demand);
-        self.controller.applied(self.drive);
+    fn apply(&mut self, demand: Demand) {
+        self.demand = demand;
+        self.controller.applied(self.gate.pass(demand));
     }
 
     pub fn step(&mut self) {
         let end = self.now + TIME_STEP;
         let mut edges: Vec<(Duration, Axis, Direction)> = Vec::new();
+        let drive = self.gate.pass(self.demand);
         for (plant, axis) in self.axes.iter_mut().zip(Axis::BOTH) {
-            plant.step(self.drive.axis(axis), |edge| {
+            plant.step(drive.axis(axis), |edge| {
                 let at = self.now + TIME_STEP.mul_f64(edge.share_of_step);
                 edges.push((Duration::from_micros(at.as_micros().try_into().unwrap()), axis, edge.direction));
             });

@@ -7,7 +7,10 @@ use plotter_motion::control::{ChosenController, Contouring, LineController};
 use plotter_motion::firmware::{MarkingBoard, MarkingBoardSettings};
 use plotter_motion::kinematics::CoreXy;
 use plotter_motion::plant::{MarkingBoardPlant, MarkingBoardPlantSettings};
-use plotter_motion::{ControllerChoice, Machine, MachineConfig, PenMove, PlotOp, Point, PointToPointConfig};
+use plotter_motion::{
+    ControllerChoice, LimitSwitches, Machine, MachineConfig, PenMove, PlotOp, Point, PointToPointConfig,
+    SafetyGate,
+};
 
 pub const TIME_STEP: Duration = Duration::from_micros(100);
 
@@ -47,13 +50,17 @@ impl<C: LineController> Run<C> {
     /// On a board of which everything is said.
     pub fn on(settings: MarkingBoardSettings, controller: C, plant: &MarkingBoardPlantSettings) -> Self {
         let plant = MarkingBoardPlant::new(plant, TIME_STEP.as_secs_f64());
-        Self { now: Duration::ZERO, board: MarkingBoard::new(settings, controller), plant }
+        Self {
+            now: Duration::ZERO,
+            board: MarkingBoard::new(settings, controller, SafetyGate::new(LimitSwitches::RELEASED, false)),
+            plant,
+        }
     }
 
     pub fn step(&mut self) {
         self.now += TIME_STEP;
         let (now, board) = (self.now, &mut self.board);
-        self.plant.step(board.drive(), |motor| board.pulse(now, motor));
+        self.plant.step(board.drive().duties(), |motor| board.pulse(now, motor));
         board.limit_switches(now, self.plant.limit_switches());
         while board.next_tick() <= now {
             board.tick(now);

@@ -5,7 +5,7 @@ use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Activity, Drivers, StepperPlotterSettings};
 use plotter_motion::plant::{StepperPlant, StepperSettings};
-use plotter_motion::{Axis, Direction, Point, StepPoint};
+use plotter_motion::{Axis, Direction, LimitSwitches, Point, SafetyGate, StepPoint};
 
 /// A step as it was made, and what pen and laser did then.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ pub(crate) struct Bench {
 impl Bench {
     pub(crate) fn new(settings: StepperPlotterSettings) -> Self {
         Self {
-            plotter: StepperPlotter::new(settings).unwrap(),
+            plotter: StepperPlotter::new(settings, SafetyGate::new(LimitSwitches::RELEASED, false)).unwrap(),
             now: Duration::ZERO,
             plant: None,
             carriage: [500, 500],
@@ -72,6 +72,7 @@ impl Bench {
     /// What is due now.
     fn settle(&mut self) {
         while let Some(step) = self.plotter.poll(self.now, Drivers::Ready) {
+            let at = step.at;
             let moves = [(Axis::X, step.pulse.x()), (Axis::Y, step.pulse.y())];
             for ((axis, sign), carriage) in moves.into_iter().zip(&mut self.carriage) {
                 *carriage += i32::from(sign);
@@ -82,7 +83,7 @@ impl Bench {
             }
             self.switch();
             let (pen_deg, laser) = (self.plotter.pen_deg(), self.plotter.beam().power());
-            self.made.push(Made { at: step.at, position: self.plotter.position(), pen_deg, laser });
+            self.made.push(Made { at, position: self.plotter.position(), pen_deg, laser });
         }
         while let Some(byte) = self.plotter.transmit(self.now) {
             self.answers.push(byte);

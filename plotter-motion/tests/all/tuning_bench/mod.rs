@@ -7,7 +7,7 @@ use plotter_motion::control::tuning::{
     RelayPoint, SampledLoop, StepExperiment, TuningError,
 };
 use plotter_motion::plant::AxisPlant;
-use plotter_motion::{Axis, AxisConfig, Demand, Duty, Pid, PidState, SafetyGate};
+use plotter_motion::{Axis, AxisConfig, Demand, Duty, LimitSwitches, Pid, PidState, SafetyGate};
 
 /// Steps of the plant in a tick.
 const STEPS: u32 = 8;
@@ -27,7 +27,7 @@ impl Bench {
         Self {
             plant: AxisPlant::new(config, tick_s / f64::from(STEPS)),
             count: 0,
-            gate: SafetyGate::default(),
+            gate: SafetyGate::new(LimitSwitches::RELEASED, false),
             reversed: false,
             farthest: 0.0,
         }

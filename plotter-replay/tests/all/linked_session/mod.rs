@@ -5,7 +5,7 @@
 use plotter_motion::firmware::{Gantry, LinkedGantry};
 use plotter_motion::plant::{Bench, BenchEvent, BenchSettings, SimulatedLine};
 use plotter_motion::protocol::{HostSettings, LinkHost, LinkSettings, Order};
-use plotter_motion::{Machine, PenMove};
+use plotter_motion::{LimitSwitches, Machine, PenMove, SafetyGate};
 use plotter_replay::log::Event;
 use plotter_replay::transport::{FaultInjector, Faults};
 use std::collections::VecDeque;
@@ -32,7 +32,11 @@ pub(crate) struct LinkedSession {
 impl LinkedSession {
     pub(crate) fn new(machine: &Machine, faults: &Faults, seed: u64, moves: Vec<PenMove>) -> Self {
         let settings = LinkSettings::default();
-        let controller = LinkedGantry::new(Gantry::new(machine), BOOT, settings);
+        let controller = LinkedGantry::new(
+            Gantry::new(machine, SafetyGate::new(LimitSwitches::RELEASED, false)),
+            BOOT,
+            settings,
+        );
         let nothing = std::iter::empty();
         Self {
             bench: Bench::with_controller(machine, BenchSettings::default(), controller, nothing),

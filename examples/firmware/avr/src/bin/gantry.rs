@@ -5,7 +5,7 @@
 use avr_firmware::board::Board;
 use plotter_motion::control::{LineTracking, LineTrackingSettings};
 use plotter_motion::firmware::{Gantry, GantrySettings};
-use plotter_motion::{Axis, PublishedConfig, QuadratureX4, StepPoint, SyncStop};
+use plotter_motion::{Axis, LimitSwitches, PublishedConfig, QuadratureX4, SafetyGate, StepPoint, SyncStop};
 
 /// The documented gantry.
 const GANTRY: GantrySettings =
@@ -28,7 +28,9 @@ const TRACKING: LineTrackingSettings = LineTrackingSettings {
 #[unsafe(no_mangle)]
 extern "C" fn main() -> ! {
     let mut board = Board::new();
-    let mut gantry = Gantry::with_settings(GANTRY, LineTracking::with_settings(TRACKING));
+    // It has neither limit switches nor a stop button.
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    let mut gantry = Gantry::with_settings(GANTRY, LineTracking::with_settings(TRACKING), gate);
     let mut encoders = [Axis::X, Axis::Y].map(|axis| (axis, QuadratureX4::new(board.phases(axis))));
     loop {
         let now = board.now();

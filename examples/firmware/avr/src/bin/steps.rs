@@ -5,7 +5,7 @@
 use avr_firmware::board::Board;
 use core::time::Duration;
 use plotter_motion::protocol::digits::{Receiver, Reply};
-use plotter_motion::{Bresenham, SafetyGate, StepPoint};
+use plotter_motion::{Bresenham, LimitSwitches, SafetyGate, StepPoint};
 
 /// Time between two steps.
 const STEP: Duration = Duration::from_micros(500);
@@ -16,7 +16,8 @@ const STEP: Duration = Duration::from_micros(500);
 extern "C" fn main() -> ! {
     let mut board = Board::new();
     let mut receiver = Receiver::new(Duration::from_millis(100));
-    let gate = SafetyGate::default();
+    // It has neither limit switches nor a stop button.
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
     let mut line = Bresenham::new(StepPoint::default(), StepPoint::default());
     let mut drawing = false;
     let mut due = Duration::ZERO;
