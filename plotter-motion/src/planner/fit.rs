@@ -396,7 +396,12 @@ impl Fitter {
         let circle = circles
             .through(along.dot(end), along.cross(end), half_square)
             .unwrap_or_else(|| circles.middle());
-        Some(Piece::new(along, circle, end, allowance_mm))
+        let piece = Piece::new(along, circle, end, allowance_mm);
+        if let Some(newest) = self.last.last_mut().filter(|_| !piece.at_vertex) {
+            // The drawing goes on from beside the start.
+            *newest = Vec2Single { x: end.x - single(piece.way.x), y: end.y - single(piece.way.y) };
+        }
+        Some(piece)
     }
 }
 

@@ -432,6 +432,9 @@ impl<M: Modes> Front<M> {
         if let Some(cruise2) = self.end_fit(&at, limits, ring) {
             // Where no arc within the allowance ends there, the last bit.
             self.emit_line(&at, cruise2, limits, ring);
+            if let Some(fitter) = self.fitter.get_mut() {
+                *fitter = Fitter::default();
+            }
         }
         if let PathMode::Tolerance { path_tolerance_mm } = limits.settings.path_of::<M>() {
             if let Some(merged) = self.rounding.get_mut().and_then(|rounding| rounding.merger.end(at)) {

@@ -77,7 +77,7 @@ fn short_drawings_keep_every_limit() {
 fn arcs_are_run_as_arcs_within_every_limit() {
     check(&drawings::arcs(), FINE);
     // Courses, not chords.
-    assert_eq!(planned::<16>(PlannerSettings::default(), &drawings::arcs().ops).1, 18);
+    assert_eq!(planned::<16>(PlannerSettings::default(), &drawings::arcs().ops).1, 19);
 }
 
 #[test]

@@ -260,7 +260,8 @@ pub(crate) fn audit<const N: usize>(settings: PlannerSettings, lens: Lens, ops: 
     let mut seen = Audit { least_interval_s: f64::INFINITY, ..Audit::default() };
     let mut bins = Bins::new(lens);
     let mut nearness = Nearness::new(ops);
-    let (mut at, mut last, mut settles) = (StepPoint::default(), 0, 0);
+    // `waited` is what was settled before the last step: the lift at the end comes after it.
+    let (mut at, mut last, mut settles, mut waited) = (StepPoint::default(), 0, 0, 0);
     let stretches = core::cell::RefCell::new(Vec::<Stretch>::new());
     let planned_s = core::cell::Cell::new(0.0);
     run::<N>(
@@ -285,6 +286,7 @@ pub(crate) fn audit<const N: usize>(settings: PlannerSettings, lens: Lens, ops: 
                     seen.least_interval_s = seen.least_interval_s.min((tick - last) as f64 / lens.clock_hz);
                 }
                 last = tick;
+                waited = settles;
                 at = StepPoint::new(at.x + i32::from(x), at.y + i32::from(y));
                 bins.at = (f64::from(at.x), f64::from(at.y));
                 seen.steps += 1;
@@ -300,7 +302,7 @@ pub(crate) fn audit<const N: usize>(settings: PlannerSettings, lens: Lens, ops: 
     );
     seen.end = at;
     seen.planned_s = planned_s.get();
-    seen.time_s = last as f64 / lens.clock_hz - f64::from(settles) * settle_s;
+    seen.time_s = last as f64 / lens.clock_hz - f64::from(waited) * settle_s;
     seen.from_pen_mm = nearness.farthest();
     bins.until(last + (settle_s * lens.clock_hz) as u64, 1.0 / lens.steps_per_mm);
     let corners = corners(&stretches.borrow(), settings, lens, &mut seen);
