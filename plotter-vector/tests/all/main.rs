@@ -22,6 +22,7 @@ mod layers;
 mod level_lines;
 mod line_ends;
 mod lines;
+#[cfg(feature = "svg-text")]
 mod made_font;
 mod off_lines;
 mod outline_mode;
