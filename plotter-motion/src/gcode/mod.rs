@@ -44,7 +44,7 @@
 //! }
 //! assert_eq!(
 //!     again.finish()?,
-//!     "G21\nG90\nM5\nG0 X10 Y10\nM3 S90\nG1 X20 Y10 F1800\nG3 X20 Y20 I0 J5\nM5\nM2\n"
+//!     "G21\nG90\nM5\nG0 X10 Y10\nM3 S90\nG1 X20 Y10 F1800\nG3 X20 Y20 I0 J5\nM5\nG0 X20 Y20\nM2\n"
 //! );
 //! assert_eq!(reports, ["line 7, column 6 (byte 57): O lacks its number: a word is like `O10`"]); // not 10 but 1O
 //! # Ok::<(), gcode::WriteError>(())

@@ -115,7 +115,8 @@ impl<I: Iterator<Item = u8>> core::iter::FusedIterator for PlotOps<I> {}
 ///     to: Point::new(0.0, 10.0),
 ///     feed_mm_s: Some(10.0),
 /// };
-/// assert_eq!(ops?, [PlotOp::Travel { to: Point::new(10.0, 0.0) }, quarter]);
+/// let lift = PlotOp::Travel { to: Point::new(0.0, 10.0) };
+/// assert_eq!(ops?, [PlotOp::Travel { to: Point::new(10.0, 0.0) }, quarter, lift]);
 /// # Ok::<(), gcode::Error>(())
 /// ```
 pub fn plot_ops(text: &[u8]) -> PlotOps<Copied<Iter<'_, u8>>> {

@@ -15,7 +15,8 @@ use core::time::Duration;
 ///     ReadOptions { pen: PenConvention::UNICORN, dwell_unit: DwellUnit::Milliseconds, ..Default::default() };
 /// let text = b"M300 S30\nG4 P150\nG1 X5 Y2 F3000\nM300 S50";
 /// let ops: Vec<PlotOp> = PlotOps::with_options(text.iter().copied(), unicorn).collect::<Result<_, _>>()?;
-/// assert_eq!(ops, [PlotOp::Draw { to: Point::new(5.0, 2.0), feed_mm_s: Some(50.0) }]);
+/// let to = Point::new(5.0, 2.0);
+/// assert_eq!(ops, [PlotOp::Draw { to, feed_mm_s: Some(50.0) }, PlotOp::Travel { to }]);
 /// # Ok::<(), plotter_motion::gcode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

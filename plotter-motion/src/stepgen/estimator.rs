@@ -16,10 +16,10 @@ use crate::{PlanError, Planner, PlannerSettings, PlotOp};
 /// # use plotter_motion::{Estimator, PlannerSettings, PlotOp, Point, StepGenSettings};
 /// # use std::time::Duration;
 /// let mut estimator = Estimator::<16>::new(PlannerSettings::default(), StepGenSettings::default())?;
-/// // 100 mm at 100 mm/s and 1000 mm/s²: 1 s, and 0.1 s for the ramps; 200 ms for the pen
+/// // 100 mm at 100 mm/s and 1000 mm/s²: 1 s, and 0.1 s for the ramps; 200 ms for the pen down and up
 /// estimator.push(PlotOp::Draw { to: Point::new(100.0, 0.0), feed_mm_s: None })?;
 /// let time = estimator.finish()?;
-/// assert!(time.total.abs_diff(Duration::from_millis(1300)) < Duration::from_micros(2));
+/// assert!(time.total.abs_diff(Duration::from_millis(1500)) < Duration::from_micros(2));
 /// # Ok::<(), plotter_motion::PlanError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]

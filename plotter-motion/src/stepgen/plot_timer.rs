@@ -46,7 +46,7 @@ pub struct PlotTime {
 /// ```
 /// # use plotter_motion::{Planner, PlannerSettings, PlotOp, PlotTimer, Point, StepGenSettings};
 /// # use std::time::Duration;
-/// // 10 mm at 1000 mm/s²: 0.1 s up to 100 mm/s and 0.1 s down; 200 ms for the pen
+/// // 10 mm at 1000 mm/s²: 0.1 s up to 100 mm/s and 0.1 s down; 200 ms for the pen down and up
 /// let mut planner = Planner::<16>::new(PlannerSettings::default())?;
 /// planner.push(PlotOp::Draw { to: Point::new(10.0, 0.0), feed_mm_s: None })?;
 /// planner.finish()?;
@@ -54,7 +54,7 @@ pub struct PlotTime {
 /// while let Some(action) = planner.next_action() {
 ///     timer.push(&action);
 /// }
-/// assert_eq!(timer.time().total, Duration::from_millis(400));
+/// assert_eq!(timer.time().total, Duration::from_millis(600));
 /// assert_eq!((timer.time().motion, timer.time().strokes), (Duration::from_millis(200), 1));
 /// # Ok::<(), plotter_motion::PlanError>(())
 /// ```
