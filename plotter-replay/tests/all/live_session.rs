@@ -382,7 +382,8 @@ fn ask(address: &str, path: &str, headers: &str) -> String {
     let host = address.strip_prefix("http://").unwrap().split('/').next().unwrap();
     let mut stream = TcpStream::connect(host).unwrap();
     let host_line = if headers.contains("Host:") { String::new() } else { format!("Host: {host}\r\n") };
-    write!(stream, "GET {path} HTTP/1.1\r\n{host_line}{headers}\r\n").unwrap();
+    // At once, and not always to its end: who is refused at the first line is not listened to any further.
+    let _ = stream.write_all(format!("GET {path} HTTP/1.1\r\n{host_line}{headers}\r\n").as_bytes());
     stream.set_read_timeout(Some(FOR_EVER)).unwrap();
     let (mut answer, mut part) = (Vec::new(), [0; 1_024]);
     while !answer.windows(2).any(|end| end == b"\r\n") {
