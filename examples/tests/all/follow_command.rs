@@ -123,6 +123,7 @@ fn a_grid_calibrates_the_simulated_camera() {
 }
 
 #[test]
+#[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn the_animation_is_a_picture_of_bounded_size_and_time() {
     let folder = tempfile::tempdir().unwrap();
     let image = picture(&folder, "drawing.png", drawing);

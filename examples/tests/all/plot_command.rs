@@ -191,8 +191,11 @@ fn a_firmware_that_is_not_there_is_said_to_be_so() {
     assert!(said.starts_with("plot: /dev/no-such-plotter: there is no such serial port"), "{said}");
 }
 
-/// A simulated machine at one end of a pseudo terminal, in the time of the clock, until nobody listens any more.
+/// A simulated machine at one end of a pseudo terminal, in the time of the clock, or slower where it is too much for this
+/// computer, until nobody listens any more.
 fn serve(machine: &Machine, controller: impl BenchController, mut line: Port) {
+    /// Between two looks at the line, so that a machine that comes late still answers.
+    const LONGEST_TURN: Duration = Duration::from_millis(5);
     let moves = std::iter::empty::<PenMove>();
     let mut bench = Bench::with_controller(machine, BenchSettings::default(), controller, moves);
     let began = Instant::now();
@@ -200,7 +203,8 @@ fn serve(machine: &Machine, controller: impl BenchController, mut line: Port) {
     while began.elapsed() < Duration::from_secs(60) {
         let Ok(count) = line.receive(&mut bytes, Duration::from_millis(1)) else { return };
         bytes[..count].iter().for_each(|&byte| bench.disturb(byte));
-        while bench.now() < began.elapsed() {
+        let until = began.elapsed().min(bench.now() + LONGEST_TURN);
+        while bench.now() < until {
             bench.step(|_, event| {
                 if let BenchEvent::ControllerByte(byte) = event {
                     answers.push(byte);
