@@ -50,9 +50,9 @@ pub use config::{
     AreaConfig, AxisConfig, BeltConfig, Bound, ConfigError, ContouringConfig, ControlConfig,
     ControllerChoice, Decoding, DriveChoice, EncoderConfig, FileName, HomingConfig, KinematicsChoice,
     KinematicsConfig, KnownMotors, LaserConfig, LoadConfig, Machine, MachineConfig, MachineKind, MachineName,
-    MotorConfig, PathChoice, PenConfig, PensChoice, PlannerConfig, PointToPointConfig, PublishedConfig,
-    SerialConfig, SheetConfig, ShortText, StepperConfig, StrokeOrder, SyncStopConfig, ThresholdChoice,
-    TransmissionConfig, VectorizeConfig, VectorizeMode,
+    MotorConfig, PathChoice, PenConfig, PenLift, PensChoice, PlannerConfig, PointToPointConfig,
+    PublishedConfig, SerialConfig, SheetConfig, ShortText, StepperConfig, StrokeOrder, SyncStopConfig,
+    ThresholdChoice, TransmissionConfig, VectorizeConfig, VectorizeMode,
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};

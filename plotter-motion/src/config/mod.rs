@@ -37,7 +37,7 @@ pub use machine_kind::MachineKind;
 pub use name::{FileName, MachineName, ShortText};
 pub use sheet::SheetConfig;
 pub use stepper::{
-    DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PlannerConfig, StepperConfig,
+    DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PenLift, PlannerConfig, StepperConfig,
 };
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};

@@ -113,7 +113,7 @@ const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the s
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
-static MACHINE: [Rule; 65] = [
+static MACHINE: [Rule; 67] = [
     Rule { key: "schema", form: Form::Whole(SCHEMA) },
     Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
     Rule { key: "drive", form: Form::Choice(&["dc", "stepper"]) },
@@ -312,6 +312,14 @@ static MACHINE: [Rule; 65] = [
         (0.0, 10_000.0),
         "ms",
         "200 were found to be enough for a small servo",
+    ),
+    Rule { key: "pen.lifted_by", form: Form::Choice(&["spindle", "height"]) },
+    number(
+        "pen.down_z_mm",
+        |c| c.pen.down_z_mm,
+        (-1000.0, 1000.0),
+        "mm",
+        "0 where a text lifts to a Z above it and lowers to 0 or below",
     ),
     Rule { key: "laser.enabled", form: Form::Switch },
     whole(

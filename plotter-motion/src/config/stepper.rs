@@ -104,6 +104,18 @@ impl Default for PlannerConfig {
     }
 }
 
+/// By which words of a G-code text a controller lifts the pen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum PenLift {
+    /// `M5` lifts, `M3` and `M4` lower.
+    #[default]
+    Spindle,
+    /// The height that `Z` names.
+    Height,
+}
+
 /// The pen on its servo: `[pen]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
@@ -118,12 +130,17 @@ pub struct PenConfig {
     pub down_deg: f64,
     /// How long the motors wait after the pen has been moved, ms.
     pub settle_ms: f64,
+    /// By which words of a G-code text a controller lifts it.
+    pub lifted_by: PenLift,
+    /// With [`PenLift::Height`], the pen is down at this Z and below, mm.
+    pub down_z_mm: f64,
 }
 
 impl Default for PenConfig {
-    /// 160 and 90 degrees, 200 ms.
+    /// 160 and 90 degrees, 200 ms; lifted by `M5`, or above a height of 0.
     fn default() -> Self {
-        Self { up_deg: 160.0, down_deg: 90.0, settle_ms: 200.0 }
+        let lifted_by = PenLift::Spindle;
+        Self { up_deg: 160.0, down_deg: 90.0, settle_ms: 200.0, lifted_by, down_z_mm: 0.0 }
     }
 }
 

@@ -196,6 +196,16 @@ impl LineInterpreter {
         self.machine.reset();
     }
 
+    /// Forgets what `G10`, `G28.1`, `G30.1` and `G92` have set.
+    pub(crate) fn restore_origins(&mut self) {
+        self.machine.restore_origins();
+    }
+
+    /// Where `G28`, or `G30`, goes, mm.
+    pub(crate) const fn home_place(&self, second: bool) -> Point {
+        self.machine.home_place(second)
+    }
+
     /// Where `G10` has set the origin of a coordinate system, 0 for `G54` to 5 for `G59`, mm.
     pub(crate) fn origin(&self, system: u8) -> Vec2 {
         self.machine.origin(system)

@@ -6,7 +6,7 @@ use super::error::Complaint;
 use super::interpreter::Outcomes;
 use super::line::Line;
 use super::pen_convention::{LaserCommand, PenConvention, ServoCommand};
-use super::{DwellUnit, Modes, Problem, ReadOptions, Remark, SYSTEMS, Word};
+use super::{DwellUnit, Modes, Problem, ReadOptions, Remark, SYSTEMS, Word, Words};
 use crate::seconds::duration;
 use crate::whole::{is_whole, whole};
 use crate::{PlotOp, Point, Vec2};
@@ -30,7 +30,11 @@ pub(super) struct Machine {
     relative: bool,
     absolute_centres: bool,
     sheet: bool,
+    /// `G93`: `F` is one of the time of its line, which is told with each.
     inverse_time: bool,
+    lines_per_s: Option<f64>,
+    /// Where `G28` and `G30` go.
+    homes: [Point; 2],
     motion: Code,
     feed_mm_s: Option<f64>,
     spindle: Code,
@@ -64,6 +68,8 @@ impl Machine {
             absolute_centres: false,
             sheet: true,
             inverse_time: false,
+            lines_per_s: None,
+            homes: [Point::ORIGIN; 2],
             motion: Code::Rapid,
             feed_mm_s: None,
             spindle: Code::SpindleOff,
@@ -87,6 +93,7 @@ impl Machine {
             system: self.system,
             inches: self.unit_mm != 1.0,
             relative: self.relative,
+            inverse_time: self.inverse_time,
             motion: match self.motion {
                 Code::Rapid => 0,
                 Code::Straight => 1,
@@ -106,9 +113,21 @@ impl Machine {
         }
     }
 
-    /// As switched on, but that the origins set by `G10` stay.
+    /// As switched on, but that the places set by `G10`, `G28.1` and `G30.1` stay.
     pub(super) fn reset(&mut self) {
-        *self = Self { origins: self.origins, ..Self::new() };
+        *self = Self { origins: self.origins, homes: self.homes, ..Self::new() };
+    }
+
+    /// Forgets the places set by `G10`, `G28.1`, `G30.1` and `G92`.
+    pub(super) fn restore_origins(&mut self) {
+        let Self { origins, homes, shift, .. } = Self::new();
+        (self.origins, self.homes, self.shift) = (origins, homes, shift);
+    }
+
+    /// Where `G28`, or `G30`, goes.
+    pub(super) const fn home_place(&self, second: bool) -> Point {
+        let [first, other] = self.homes;
+        if second { other } else { first }
     }
 
     /// Where the origin of a coordinate system lies.
@@ -173,6 +192,10 @@ impl Machine {
         match line.of(Group::Action) {
             Some(Code::Dwell) => self.dwell(line, options, out)?,
             Some(Code::Home) => self.home(line, options, out),
+            Some(Code::KeepHome) => {
+                let [first, second] = &mut self.homes;
+                *(if is_second(line) { second } else { first }) = self.at;
+            }
             Some(Code::Offset) => self.set_offset(line),
             Some(Code::NoOffset) => self.shift = Vec2::default(),
             Some(Code::Origin) => self.set_origin(line, false),
@@ -213,9 +236,10 @@ impl Machine {
             self.system = u8::try_from(tenths / 10).unwrap_or_default().saturating_sub(G54);
         }
         let inverse_time = line.chooses(Code::InverseTime, self.inverse_time);
-        if inverse_time != self.inverse_time {
+        if inverse_time || inverse_time != self.inverse_time {
             (self.inverse_time, self.feed_mm_s) = (inverse_time, None);
         }
+        self.lines_per_s = None;
         let refused = |word: &Word| {
             let expected = match word.letter {
                 b'F' => "a speed is above 0",
@@ -226,7 +250,13 @@ impl Machine {
         if let Some(word) = line.word(b'F').filter(|_| !line.owned()) {
             let feed = word.number.filter(|feed| *feed > 0.0);
             let feed = feed.ok_or_else(|| refused(word))?;
-            self.feed_mm_s = (!self.inverse_time).then_some(feed * self.unit_mm / 60.0);
+            if self.inverse_time {
+                self.lines_per_s = Some(feed / 60.0);
+            } else {
+                // Of a turn of the spindle, whose speed no plotter knows.
+                let is_per_turn = line.is(Code::FeedPerRevolution);
+                self.feed_mm_s = (!is_per_turn).then_some(feed * self.unit_mm / 60.0);
+            }
         }
         if let Some(word) = line.word(b'T').filter(|_| !line.owned()) {
             let pen = word.number.filter(|number| is_whole(*number));
@@ -354,8 +384,9 @@ impl Machine {
         out: &mut Outcomes<C>,
     ) -> Result<(), C> {
         let unit_s = if options.dwell_unit == DwellUnit::Seconds { 1.0 } else { 1e-3 };
+        let seconds = line.word(b'S').filter(|_| options.words == Words::Any);
         let Some((word, unit_s)) =
-            line.word(b'P').map(|word| (word, unit_s)).or(line.word(b'S').map(|word| (word, 1.0)))
+            line.word(b'P').map(|word| (word, unit_s)).or(seconds.map(|word| (word, 1.0)))
         else {
             return Err(Problem::Missing { expected: "G4 needs a P: how long" }.at(line.block.position()));
         };
@@ -386,8 +417,14 @@ impl Machine {
         }
         if all || line.has(b"XY") {
             self.leave_dot(options, out);
-            self.at.x = if all || line.has(b"X") { 0.0 } else { self.at.x };
-            self.at.y = if all || line.has(b"Y") { 0.0 } else { self.at.y };
+            // Grbl goes there by way of the place that is named; printers name axes only.
+            if !all && options.words == Words::Grbl {
+                self.at = self.place(line);
+                self.give(PlotOp::Travel { to: self.at }, out);
+            }
+            let home = self.home_place(is_second(line));
+            self.at.x = if all || line.has(b"X") { home.x } else { self.at.x };
+            self.at.y = if all || line.has(b"Y") { home.y } else { self.at.y };
             self.settling = false;
             self.give(PlotOp::Travel { to: self.at }, out);
         }
@@ -555,6 +592,13 @@ impl Machine {
         } else {
             self.leave_dot(options, out);
         }
+        if let Some(lines_per_s) = self.lines_per_s {
+            let way_mm = match arc {
+                Some((centre, sweep_rad)) => self.at.distance(centre) * sweep_rad.abs(),
+                None => self.at.distance(to),
+            };
+            self.feed_mm_s = Some(way_mm * lines_per_s);
+        }
         let feed_mm_s = self.feed_mm_s.filter(|_| !is_rapid);
         let op = match arc {
             _ if !marks => PlotOp::Travel { to },
@@ -591,6 +635,11 @@ impl Machine {
         (self.motion, self.relative, self.sheet, self.inverse_time) = (Code::Straight, false, true, false);
         self.system = 0;
     }
+}
+
+/// Whether `G30` or `G30.1` asks for it, not `G28`.
+fn is_second(line: &Line<'_>) -> bool {
+    line.word_of(Group::Action as usize).and_then(Word::tenths) >= Some(300)
 }
 
 fn is_nearer(place: f64, one: f64, other: f64) -> bool {

@@ -33,6 +33,8 @@ pub struct Modes {
     pub inches: bool,
     /// `G91`, not `G90`.
     pub relative: bool,
+    /// `G93`, not `G94`.
+    pub inverse_time: bool,
     /// 0, 1, 2, 3 or 80, the number of its `G`.
     pub motion: u8,
     /// `F`, mm/s; none before the first.

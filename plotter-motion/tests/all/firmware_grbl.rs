@@ -18,6 +18,16 @@ fn bench() -> Bench {
     bench
 }
 
+/// One that homes, and so begins locked; it has been unlocked.
+fn homing_bench() -> Bench {
+    let mut bench = Bench::new(StepperPlotterSettings { homing: true, ..settings() });
+    assert_eq!(bench.ask(""), "\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n");
+    assert_eq!(bench.ask("G0 X1\n"), "error:9\r\n");
+    assert!(bench.ask("?").starts_with("<Alarm|"));
+    assert_eq!(bench.ask("$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
+    bench
+}
+
 /// `>` what is sent, `<` what is answered when nothing more happens.
 fn conversation(bench: &mut Bench, lines: &[&str]) -> String {
     let mut text = String::new();
@@ -192,7 +202,7 @@ fn reset_stops_at_once_and_keeps_the_place() {
 
 #[test]
 fn an_emergency_stop_is_an_alarm_until_the_button_is_released_and_x_is_sent() {
-    let mut bench = bench();
+    let mut bench = homing_bench();
     bench.send("G1 X50 F3000\nG1 Y50\n$$\n");
     bench.run_for(Duration::from_millis(700));
     let mut text = bench.take_answers();
@@ -210,7 +220,7 @@ fn an_emergency_stop_is_an_alarm_until_the_button_is_released_and_x_is_sent() {
 
 #[test]
 fn a_limit_switch_is_an_alarm_and_away_from_it_is_free() {
-    let mut bench = bench();
+    let mut bench = homing_bench();
     bench.length = [2_000, 28_000];
     let text = conversation(&mut bench, &["G0 X100 Y10\nG0 X0\n", "?", "$X\nG0 X10\n", "?", "$H\n", "?"]);
     insta::assert_snapshot!(text);
@@ -218,7 +228,7 @@ fn a_limit_switch_is_an_alarm_and_away_from_it_is_free() {
 
 #[test]
 fn homing_is_answered_when_it_is_done() {
-    let mut bench = bench();
+    let mut bench = homing_bench();
     bench.carriage = [5_000, 6_000];
     bench.send("$H\n?");
     assert!(bench.take_answers().starts_with("<Home|MPos:0.000,0.000,0.000|"));

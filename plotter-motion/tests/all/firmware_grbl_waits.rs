@@ -3,9 +3,9 @@
 use crate::stepper_bench;
 
 use core::time::Duration;
-use plotter_motion::StepPoint;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use plotter_motion::gcode::{PenConvention, ServoCommand};
+use plotter_motion::{Machine, MachineConfig, PenLift, StepPoint};
 use std::collections::VecDeque;
 use stepper_bench::Bench;
 
@@ -255,7 +255,7 @@ fn each_coordinate_system_has_its_origin_and_is_told() {
     assert!(told.contains("[G92:1.000,1.000,0.000]"), "{told}");
     bench.ask("\u{18}$X\n");
     assert!(bench.ask("$G\n").contains(" G54 ") && bench.ask("$#\n").contains("[G55:30.000,5.000,0.000]"));
-    assert_eq!(bench.ask("G10 L2 P7 X0\n"), "error:20\r\n");
+    assert_eq!(bench.ask("G10 L2 P7 X0\n"), "error:29\r\n");
 }
 
 #[test]
@@ -306,4 +306,85 @@ fn an_unlock_of_what_is_not_locked_and_an_empty_line_for_the_start_are_no_errors
     bench.run_for(Duration::from_millis(200));
     assert_eq!(bench.ask("$X\n$N\n"), "ok\r\nok\r\nerror:8\r\n");
     assert_eq!(bench.plotter.position(), StepPoint::new(876, 0));
+}
+
+#[test]
+fn who_checks_moves_nothing_and_who_sleeps_takes_nothing() {
+    let mut bench = bench();
+    bench.ask("G0 X10 Y10\n");
+    let (at, made) = (bench.plotter.position(), bench.made.len());
+    assert_eq!(bench.ask("$C\n"), "[MSG:Enabled]\r\nok\r\n");
+    assert!(bench.ask("?").starts_with("<Check|"));
+    assert_eq!(
+        bench.ask("G1 X50 F1000\nG1 X5 R1\nM3 S10\nM2\n"),
+        "ok\r\nerror:36\r\nok\r\n[MSG:Pgm End]\r\nok\r\n"
+    );
+    let greeting = "\r\nGrbl 1.1h ['$' for help]\r\n";
+    assert_eq!(bench.ask("$C\n"), format!("[MSG:Disabled]\r\nok\r\n{greeting}"));
+    assert_eq!((bench.plotter.position(), bench.made.len()), (at, made));
+    // And the next line begins where the machine stands.
+    bench.ask("G91 G0 X1\n");
+    assert_eq!(bench.plotter.position().x, 964); // 1 mm from 876 steps
+    bench.ask("G90 M3\nG1 X20 F1000\n");
+    assert_eq!(bench.ask("$SLP\n"), "ok\r\n[MSG:Sleeping]\r\n");
+    assert_eq!(bench.plotter.pen_deg(), 160);
+    let made = bench.made.len();
+    assert_eq!(bench.ask("G0 X0\n"), "");
+    assert!(bench.ask("?").starts_with("<Sleep|"));
+    assert_eq!(bench.ask("\u{18}"), format!("{greeting}[MSG:'$H'|'$X' to unlock]\r\n"));
+    assert_eq!(bench.ask("G0 X0\n"), "error:9\r\n");
+    assert_eq!(bench.made.len(), made);
+    assert!(bench.ask("$X\nG0 X0\n").ends_with("ok\r\nok\r\n"));
+    assert_eq!(bench.plotter.position().x, 0);
+}
+
+#[test]
+fn places_are_kept_and_gone_back_to_by_way_of_another() {
+    let mut bench = bench();
+    bench.ask("G0 X10 Y20\nG28.1\nG0 X40 Y30\nG30.1\nG0 X0 Y0\n");
+    let told = bench.ask("$#\n");
+    assert!(
+        told.contains("[G28:10.000,20.000,0.000]") && told.contains("[G30:40.000,30.000,0.000]"),
+        "{told}"
+    );
+    bench.ask("G30\n");
+    assert_eq!(bench.plotter.position(), StepPoint::new(3_503, 2_627)); // (40, 30) mm
+    bench.ask("G28 X0\n");
+    assert_eq!(bench.plotter.position(), StepPoint::new(876, 2_627)); // (0, 30), then (10, 30) mm
+    assert!(bench.made.iter().any(|made| made.position == StepPoint::new(0, 2_627)));
+    bench.ask("\u{18}");
+    assert!(bench.ask("$#\n").contains("[G28:10.000,20.000,0.000]"), "a reset keeps them");
+    assert!(bench.ask("$RST=#\n").starts_with("[MSG:Restoring defaults]\r\nok\r\n\r\nGrbl 1.1h"));
+    assert!(bench.ask("$#\n").contains("[G28:0.000,0.000,0.000]"));
+}
+
+#[test]
+fn by_inverse_time_a_line_takes_its_time_however_long_it_is() {
+    let mut bench = bench();
+    bench.ask("M3\nG1 X0.1 F600\n");
+    for (line, asked_s) in
+        [("G93 G1 X60 F6\n", 10.0), ("G2 X60 Y40 I0 J20 F6\n", 10.0), ("G1 X70 F12\n", 5.0)]
+    {
+        let first = bench.made.len();
+        assert_eq!(bench.ask(line), "ok\r\n");
+        let took_s = (bench.made.last().unwrap().at - bench.made[first].at).as_secs_f64();
+        // It begins and ends at rest.
+        assert!((took_s - asked_s).abs() < 0.1, "{line}: {took_s} s");
+    }
+    assert_eq!(bench.ask("G1 X80\n"), "error:22\r\n");
+    assert_eq!(bench.ask("G94 G1 X80\n"), "error:22\r\n");
+}
+
+#[test]
+fn a_pen_on_the_z_axis_is_lifted_by_the_height_that_the_file_of_the_machine_names() {
+    let mut config = MachineConfig::stepper_plotter();
+    (config.pen.lifted_by, config.pen.down_z_mm) = (PenLift::Height, 0.5);
+    let machine = Machine::new(config).unwrap();
+    let mut bench = Bench::new(StepperPlotterSettings::of(&machine, Dialect::Grbl));
+    bench.ask("");
+    let up_deg = bench.plotter.pen_deg();
+    assert_eq!(bench.ask("G0 Z5\nG0 X10 Y10\nG1 Z0.5 F600\nG1 X20\n"), "ok\r\n".repeat(4));
+    assert_ne!(bench.plotter.pen_deg(), up_deg);
+    assert_eq!(bench.ask("G0 Z5\nG0 X0\n"), "ok\r\n".repeat(2));
+    assert_eq!(bench.plotter.pen_deg(), up_deg);
 }

@@ -54,9 +54,7 @@ fn motion_units_and_the_kind_of_coordinates_last_from_line_to_line() {
     assert_eq!(ops("G20 G1 X1 F60\nG21 X1\nF120 X2"), "D25.4,0@25.4 D1,0@25.4 D2,0@2");
     // Units count for the whole line, wherever they stand in it.
     assert_eq!(ops("G1 X1 G20 Y2"), "D25.4,50.8");
-    assert_eq!(ops("G1 F600\nG1 X5\nG93\nG1 X6 F2\nG94\nG1 X7 F60"), {
-        "D5,0@10 <line 3, column 1 (byte 14): G93 (inverse time feed rate) is not supported and is left out> D6,0 D7,0@1"
-    });
+    assert_eq!(ops("G1 F600\nG1 X5\nG93\nG1 X6 F30\nG94\nG1 X7 F60"), "D5,0@10 D6,0@0.5 D7,0@1");
 }
 
 #[test]

@@ -19,6 +19,7 @@ mod estimate;
 mod exact_discretization;
 mod firmware_by_hand;
 mod firmware_grbl;
+mod firmware_grbl_table;
 mod firmware_grbl_waits;
 mod firmware_mdraw;
 mod firmware_two_tasks;

@@ -80,6 +80,7 @@ const OF_THE_MACHINE: [&str; 60] = [
     "pen.up_deg",
     "pen.down_deg",
     "pen.settle_ms",
+    "pen.down_z_mm",
     "laser.full_power",
     "homing.fast_rate_hz",
     "homing.slow_rate_hz",

@@ -139,7 +139,8 @@ fn a_stream_draws_a_square_and_a_circle_without_losing_a_step() {
 fn it_homes_from_any_place() {
     for dialect in [Dialect::MDraw, Dialect::Grbl] {
         for carriage in [[0, 0], [34_000, 28_000], [17_000, 3], [33_990, 14_000], [-20, 28_020]] {
-            let mut bench = Bench::new(settings(dialect)).with_plant();
+            let settings = StepperPlotterSettings { homing: true, ..settings(dialect) };
+            let mut bench = Bench::new(settings).with_plant();
             bench.ask("");
             bench.carriage = carriage;
             let answer = bench.ask(if dialect == Dialect::MDraw { "G28\n" } else { "$H\n" });

@@ -110,7 +110,9 @@
 //!   controller with [`ExactOnly`](crate::ExactOnly) overrides the laser only, and tells so.
 //! - `$J=` moves by hand at its own `F`, from rest or after another jog, while G-code is locked out (`error:9`); `0x85` or `!` brakes
 //!   along the path and forgets the jogs that wait, and the place stays known.
-//! - `$$ $# $I $G $N $X $H` are answered; `$n=value` changes what [`Setting`] lists, at rest: out of range it is `error:52`
+//! - `$$ $# $I $G $N $X $H` are answered. In the check mode (`$C`) lines are answered as if they were carried out; asleep (`$SLP`), with
+//!   the pen lifted, the machine takes nothing until a reset; `$RST=#` forgets the places that `G10`, `G28.1` and `G30.1` have set.
+//! - With `$22=1` a machine that is switched on is locked until `$H` or `$X`; without it `$H` is `error:5`. `$n=value` changes what [`Setting`] lists, at rest: out of range it is `error:52`
 //!   (grblHAL's), beyond 100,000 steps/s `error:12`, for what cannot be changed `error:3`, unless it says what is so already. What is to be
 //!   kept is [`StepperPlotter::settings`].
 //! - Errors and alarms have Grbl's numbers. A target outside the area is `ALARM:2` and `error:33`: what was accepted is drawn to its
@@ -119,11 +121,12 @@
 //! - `M0` waits for `~`, with the pen lifted as by `!`; `M1` is no stop. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`]
 //!   says; `M2` and `M30` lift them too. `M5` acts when its line comes, `M3` with the line or the dot that follows. A `G4` leaves the pen
 //!   as it is. With the pen up the machine travels at its own speed, whatever `F` says.
-//! - `G54` to `G59` have an origin each, set by `G10`; a reset keeps them, switching off does not.
+//! - `G54` to `G59` have an origin each, set by `G10`, and `G28` and `G30` a place, set by `G28.1` and `G30.1`; a reset keeps them,
+//!   switching off does not. By `G93` the `F` of a line is one of its time.
 //! - Words that Grbl does not know are errors ([`Words::Grbl`](crate::gcode::Words::Grbl)), unless the pen is lifted by those of another
 //!   firmware.
-//! - Other planes, probes, `G28.1`, `G43.1`, `G93`, the check mode and the safety door are not there; a line that needs one is `error:20`
-//!   or `error:3`. No homing is asked for after switching on (`L` in `$I`).
+//! - Arcs in other planes, probes, `G43.1`, start-up lines and the safety door are not there; a line that needs one is `error:20` or
+//!   `error:3`.
 //!
 //! # Late steps
 //!

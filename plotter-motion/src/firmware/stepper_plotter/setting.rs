@@ -18,6 +18,7 @@ const SIDES_MM: RangeInclusive<f64> = 1.0..=65_535.0;
 /// |---|---|---|
 /// | 3 | directions of the motors: 1 turns x round, 2 y; they hold after the next start | 0 to 3 |
 /// | 11 | junction deviation, mm | 0 to 10 |
+/// | 22 | homing: 1 answers `$H`, and locks the machine at the next start until `$H` or `$X` | 0 or 1 |
 /// | 24, 25, 27 | homing: slow and fast, mm/min; from the switch to the origin, mm | up to 100,000 pulses/s; 0.01 to 100 |
 /// | 100, 101 | steps/mm of x and y | 0.01 to 10,000 |
 /// | 110, 111 | greatest speed along the path, mm/min: one for both axes | 0.1 to 600,000; up to 100,000 pulses/s |
@@ -69,6 +70,7 @@ impl Setting {
         let range = match number {
             3 => 0.0..=3.0,
             11 => 0.0..=10.0,
+            22 => 0.0..=1.0,
             24 | 25 => 0.1..=f64::MAX,
             27 => 0.01..=100.0,
             100 | 101 => 0.01..=10_000.0,
@@ -80,7 +82,7 @@ impl Setting {
         if value < 0.0 {
             return Err(SettingProblem::Negative);
         }
-        if !range.contains(&value) || (number == 3 && !is_whole(value)) {
+        if !range.contains(&value) || (matches!(number, 3 | 22) && !is_whole(value)) {
             return Err(SettingProblem::OutOfRange);
         }
         let settings = self.applied(*settings);
@@ -106,6 +108,7 @@ impl Setting {
                 settings.stored.x_direction = u8::from(mask & 1 != 0);
                 settings.stored.y_direction = u8::from(mask & 2 != 0);
             }
+            22 => settings.homing = value > 0.0,
             11 => settings.planner.junction_deviation_mm = value,
             24 | 25 | 27 => {
                 let StepperPlotterSettings { home_x, home_y, x_steps_per_mm, y_steps_per_mm, .. } =

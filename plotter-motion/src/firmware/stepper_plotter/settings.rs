@@ -3,7 +3,7 @@
 use crate::gcode::PenConvention;
 use crate::kinematics::{Backlash, Cartesian, MotorScale, ScaleError};
 use crate::planner::{AllModes, Modes};
-use crate::{Axis, HomingAxis, Machine, PlanError, PlannerSettings, StepGenSettings};
+use crate::{Axis, HomingAxis, Machine, PenLift, PlanError, PlannerSettings, StepGenSettings};
 use core::fmt;
 use core::marker::PhantomData;
 use core::time::Duration;
@@ -97,6 +97,9 @@ pub struct StepperPlotterSettings {
     pub gather: Duration,
     /// Play of both axes, in steps of their motors. It takes [`AllModes`](crate::AllModes).
     pub backlash: Backlash,
+    /// Grbl's `$22`: `$H` homes, and a machine that is switched on takes no G-code until it has been homed or unlocked by `$X`. mDraw's
+    /// `G28` homes in any case.
+    pub homing: bool,
     /// How x is homed.
     pub home_x: HomingAxis,
     /// How y is homed.
@@ -121,6 +124,7 @@ impl Default for StepperPlotterSettings {
             pen: PenConvention::Spindle,
             gather: Duration::from_millis(50),
             backlash: Backlash::default(),
+            homing: false,
             home_x: HomingAxis::default(),
             home_y: HomingAxis::default(),
         }
@@ -202,6 +206,10 @@ impl StepperPlotterSettings {
             planner: PlannerSettings::of(machine),
             pen_settle: steps.pen_settle,
             laser: steps.laser,
+            pen: match config.pen.lifted_by {
+                PenLift::Spindle => PenConvention::Spindle,
+                PenLift::Height => PenConvention::Height { threshold_mm: config.pen.down_z_mm },
+            },
             backlash: Backlash::of(machine),
             home_x: HomingAxis::of(machine, Axis::X),
             home_y: HomingAxis::of(machine, Axis::Y),

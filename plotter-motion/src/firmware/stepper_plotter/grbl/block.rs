@@ -4,10 +4,10 @@ use super::super::{Command, Link, Setting, SettingProblem, StoredSettings, area}
 use super::codes::{Alarm, Code};
 use super::listing::is_listed;
 use super::words::{read, whole};
-use super::{Grbl, Pens, Wait, send};
+use super::{Grbl, Mode, Pens, Wait, send};
 use crate::PlotOp;
 use crate::decimal::Decimal;
-use crate::gcode::{Block, Outcomes, Word, Words};
+use crate::gcode::{Block, Outcomes, SYSTEMS, Word, Words};
 use crate::geom::Vec2Single;
 
 /// Slower is not slower, mm/s: a step of 0.01 mm takes ten seconds.
@@ -34,14 +34,14 @@ impl<P: Pens> Grbl<P> {
     /// A movement by hand, with the pen up. Of its line only the place is kept.
     #[inline(never)]
     pub(super) fn jog(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
-        let block = read(text, Words::Grbl)?.ok_or(Code::BAD_JOG)?;
+        let block = read(text, Words::Grbl)?.ok_or(Code::NO_FEED)?;
         let is_allowed = |word: &Word| match word.letter {
             b'G' => matches!(word.tenths(), Some(200 | 210 | 530 | 900 | 910)),
             b'X' | b'Y' | b'Z' | b'F' | b'N' => true,
             _ => false,
         };
-        if !block.words().iter().all(is_allowed) {
-            return Err(Code::BAD_JOG);
+        if let Some(word) = block.words().iter().find(|word| !is_allowed(word)) {
+            return Err(if matches!(word.letter, b'G' | b'M') { Code::BAD_JOG } else { Code::UNUSED });
         }
         if block.number(b'F').is_none() {
             return Err(Code::NO_FEED);
@@ -84,8 +84,16 @@ impl<P: Pens> Grbl<P> {
     fn carry_out(&mut self, block: &Block, link: &mut Link) -> Result<(), Code> {
         let before = self.interpreter.modes();
         let mut outcomes = Outcomes::none();
+        let known = P::read(&self.settings, |options| options.words);
+        if known == Words::Grbl {
+            check(block)?;
+        }
         P::read(&self.settings, |options| self.interpreter.carry_out(block, options, &mut outcomes))?;
+        if known == Words::Grbl && has_unused(block) {
+            return Err(Code::UNUSED);
+        }
         self.interpreter.lift(&mut outcomes);
+        let checks = self.mode == Mode::Check;
         let mut pauses = false;
         for op in outcomes.iter() {
             match op {
@@ -99,16 +107,17 @@ impl<P: Pens> Grbl<P> {
             self.reports_to_offset = 0; // the next report tells it
         }
         let moves = outcomes.iter().flatten().any(|op| op.target().is_some());
-        let (mut has_axis, mut dwells, mut ends) = (false, false, false);
+        let (mut has_axis, mut dwells, mut ends, mut is_told) = (false, false, false, false);
         for word in block.words() {
             match (word.letter, word.tenths()) {
                 (b'X' | b'Y', _) => has_axis = true,
+                (b'G', Some(10 | 20 | 30)) => is_told = true,
                 (b'G', Some(40)) => dwells = true,
                 (b'M', Some(20 | 300)) => ends = true,
                 _ => {}
             }
         }
-        if moves && has_axis && (1..=3).contains(&modes.motion) && modes.feed_mm_s.is_none() {
+        if (is_told || (moves && has_axis)) && (1..=3).contains(&modes.motion) && modes.feed_mm_s.is_none() {
             return Err(Code::NO_FEED);
         }
         let most = self.most();
@@ -121,6 +130,12 @@ impl<P: Pens> Grbl<P> {
                 return Err(Code::TARGET);
             }
             at = op.target().unwrap_or(at);
+        }
+        if checks {
+            if ends {
+                self.out.line(format_args!("[MSG:Pgm End]"));
+            }
+            return Ok(());
         }
         while let Some(op) = outcomes.take() {
             let Ok(mut op) = op else { continue };
@@ -148,6 +163,49 @@ impl<P: Pens> Grbl<P> {
         }
         Ok(())
     }
+}
+
+/// What Grbl asks of the words of a line together.
+#[inline(never)]
+fn check(block: &Block) -> Result<(), Code> {
+    /// The greatest number of a line.
+    const MOST_LINES: f64 = 1e7;
+    let has = |letters: &[u8]| block.words().iter().any(|word| letters.contains(&word.letter));
+    let asks =
+        |tenths: u16| block.words().iter().any(|word| word.letter == b'G' && word.tenths() == Some(tenths));
+    let (has_axes, sets) = (has(b"XYZ"), asks(100));
+    let is_arc = asks(20) || asks(30);
+    let too_many = |letter, most| block.number(letter).is_some_and(|number| number >= most);
+    if too_many(b'N', MOST_LINES) {
+        return Err(Code::LINE_NUMBER);
+    }
+    // Ours draws a whole circle by its centre alone.
+    if !has_axes && (sets || asks(920) || (is_arc && !has(b"IJ"))) {
+        return Err(Code::NO_AXES);
+    }
+    if sets && too_many(b'P', f64::from(SYSTEMS + 1)) {
+        return Err(Code::NO_SYSTEM);
+    }
+    if sets && has(b"R") {
+        return Err(Code::UNSUPPORTED);
+    }
+    if is_arc && asks(530) {
+        return Err(Code::NOT_STRAIGHT);
+    }
+    Ok(())
+}
+
+/// Whether a word stands there that nothing in its line uses, of those that Grbl knows and readers let pass.
+fn has_unused(block: &Block) -> bool {
+    block.words().iter().any(|word| {
+        let users: &[u16] = match word.letter {
+            b'L' => &[100],
+            b'P' => &[100, 40],
+            _ => return false,
+        };
+        let uses = |user: &Word| user.letter == b'G' && user.tenths().is_some_and(|at| users.contains(&at));
+        !block.words().iter().any(uses)
+    })
 }
 
 /// A setting's number and its value.

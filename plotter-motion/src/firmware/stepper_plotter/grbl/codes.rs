@@ -20,6 +20,8 @@ impl Code {
     pub(super) const BAD_STATEMENT: Self = Self(3);
     /// A negative value where one above 0 is expected.
     pub(super) const NEGATIVE: Self = Self(4);
+    /// `$H` where homing is not asked for (`$22`).
+    pub(super) const NO_HOMING: Self = Self(5);
     /// A `$` command that is only carried out at rest.
     pub(super) const NOT_IDLE: Self = Self(8);
     /// G-code is locked out in an alarm.
@@ -44,6 +46,14 @@ impl Code {
     pub(super) const AXIS_CONFLICT: Self = Self(24);
     /// A word twice.
     pub(super) const REPEATED: Self = Self(25);
+    /// A command that needs axis words has none.
+    pub(super) const NO_AXES: Self = Self(26);
+    /// The number of a line is too great.
+    pub(super) const LINE_NUMBER: Self = Self(27);
+    /// There is no such coordinate system.
+    pub(super) const NO_SYSTEM: Self = Self(29);
+    /// `G53` goes with `G0` and `G1` only.
+    pub(super) const NOT_STRAIGHT: Self = Self(30);
     /// A command lacks a word.
     pub(super) const MISSING: Self = Self(28);
     /// Axis words that no command uses.
@@ -77,7 +87,9 @@ impl Complaint for Code {
             Problem::System => Self::BAD_STATEMENT,
             Problem::TooManyWords => Self::OVERFLOW,
             Problem::Repeated { .. } => Self::REPEATED,
-            Problem::TwoCommands { first, second } if moves(first) != moves(second) => Self::AXIS_CONFLICT,
+            Problem::TwoCommands { first, second } if takes_axes(first) && takes_axes(second) => {
+                Self::AXIS_CONFLICT
+            }
             Problem::TwoCommands { .. } => Self::MODAL_GROUP,
             Problem::Unknown { command } if command.letter == b'M' && is_fraction(command) => Self::NOT_WHOLE,
             Problem::Unused { .. } => Self::UNUSED,
@@ -101,9 +113,9 @@ impl Complaint for Code {
     }
 }
 
-/// Whether a command is a way of moving: G0 to G3 and G80.
-fn moves(command: Word) -> bool {
-    command.letter == b'G' && matches!(command.tenths(), Some(0 | 10 | 20 | 30 | 800))
+/// Whether a command takes the axis words of its line: G0 to G3, G10, G28, G30, G92.
+fn takes_axes(command: Word) -> bool {
+    command.letter == b'G' && matches!(command.tenths(), Some(0 | 10 | 20 | 30 | 100 | 280 | 300 | 920))
 }
 
 fn is_fraction(word: Word) -> bool {
@@ -115,6 +127,8 @@ fn is_fraction(word: Word) -> bool {
 pub(super) struct Alarm(pub(super) u8);
 
 impl Alarm {
+    /// Switched on and not homed, or woken: it has no number, and is not told as one.
+    pub(super) const LOCKED: Self = Self(0);
     /// A limit switch stopped the machine.
     pub(super) const HARD_LIMIT: Self = Self(1);
     /// The target of a motion lies outside the area.

@@ -6,7 +6,7 @@ use super::super::{COMMANDS, Setting, StepperPlotterSettings};
 use super::codes::coordinates;
 use super::rx_buffer::RX_BYTES;
 use super::{MOST_COMMANDS, OUTPUT};
-use crate::decimal_text::{Thousandths, Whole};
+use crate::decimal_text::{Plain, Thousandths, Whole};
 use crate::extremes::greater;
 use crate::gcode::{LineInterpreter, SYSTEMS};
 
@@ -47,10 +47,10 @@ impl Listing {
             }
             Self::Build => match index {
                 0 => out.line(format_args!("[VER:1.1h.20190830:plotter-motion]")),
-                // Variable spindle, origin where it was homed, both ends with switches, no lock before homing; nothing restored or
-                // stored by $RST and $I=, no wait for it.
+                // Variable spindle, origin where it was homed, both ends with switches; no settings restored by $RST, nothing stored by
+                // $I=, no wait for it.
                 1 => out.line(format_args!(
-                    "[OPT:VZTL*$#IEW,{},{}]",
+                    "[OPT:VZT*$IEW,{},{}]",
                     Whole(BLOCKS as u64),
                     Whole(RX_BYTES as u64)
                 )),
@@ -66,8 +66,14 @@ impl Listing {
                     let (x, y) = coordinates(origin.x, origin.y);
                     out.line(format_args!("[G{}:{x},{y},0.000]", Whole(54 + u64::from(index))));
                 }
-                6 => out.line(format_args!("[G28:0.000,0.000,0.000]")),
-                7 => out.line(format_args!("[G30:0.000,0.000,0.000]")),
+                SYSTEMS | 7 => {
+                    let home = interpreter.home_place(index == 7);
+                    let (x, y) = coordinates(home.x, home.y);
+                    out.line(format_args!(
+                        "[G{}:{x},{y},0.000]",
+                        Plain(if index == 7 { "30" } else { "28" })
+                    ));
+                }
                 8 => {
                     let shift = interpreter.shift();
                     let (x, y) = coordinates(shift.x, shift.y);
@@ -97,7 +103,7 @@ static NUMBERS: [(u8, u8); 34] = [
     (13, 0),
     (20, 1),
     (21, 1),
-    (22, 1),
+    (22, 0),
     (23, 3), // towards smaller coordinates
     (24, 0),
     (25, 0),
@@ -128,6 +134,7 @@ fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, boo
     let whole = match number {
         3 => u16::from(stored.x_direction & 1) | u16::from(stored.y_direction & 1) << 1,
         30 => FULL_POWER,
+        22 => settings.homing.into(),
         32 => settings.laser.into(),
         130 => stored.width_mm,
         131 => stored.height_mm,

@@ -13,9 +13,9 @@ mod words;
 use super::command_queue::COMMANDS_OF_A_LINE as MOST_COMMANDS;
 use super::output::Output;
 use super::{Activity, Command, Link, Report, Signal, Status, StepperPlotterSettings, Stop, StoredSettings};
-use crate::Point;
 use crate::decimal_text::{Plain, Thousandths, Whole};
 use crate::gcode::LineInterpreter;
+use crate::{PlotOp, Point};
 use codes::{Alarm, Code};
 use core::marker::PhantomData;
 use line_buffer::LineBuffer;
@@ -44,6 +44,17 @@ enum Wait {
     Set,
 }
 
+/// What is done with lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    /// They are carried out.
+    Work,
+    /// `$C`: they are answered as if they were, and nothing moves.
+    Check,
+    /// `$SLP`: they wait for a reset, which forgets them.
+    Sleep,
+}
+
 /// The receive side for programs that stream to Grbl. Each line is answered by one `ok` or `error`, in their order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grbl<P: Pens = AnyPen> {
@@ -52,6 +63,7 @@ pub struct Grbl<P: Pens = AnyPen> {
     rx: RxBuffer,
     line: LineBuffer,
     interpreter: LineInterpreter,
+    mode: Mode,
     wait: Option<Wait>,
     listing: Option<(Listing, u8)>,
     alarm: Option<Alarm>,
@@ -75,9 +87,10 @@ impl<P: Pens> Grbl<P> {
             rx: RxBuffer::new(),
             line: LineBuffer::new(),
             interpreter: LineInterpreter::new(),
+            mode: Mode::Work,
             wait: None,
             listing: None,
-            alarm: None,
+            alarm: settings.homing.then_some(Alarm::LOCKED),
             stopped: false,
             status_wanted: false,
             reports_to_offset: 0,
@@ -112,6 +125,10 @@ impl<P: Pens> Grbl<P> {
                 self.rx.clear();
                 self.line.clear();
                 (self.wait, self.listing) = (None, None);
+                // As in Grbl: who sleeps may have been moved.
+                if core::mem::replace(&mut self.mode, Mode::Work) == Mode::Sleep {
+                    self.alarm = Some(Alarm::LOCKED);
+                }
                 (self.overrides, self.reports_to_overrides) = (Overrides::default(), 0);
                 return Some(Signal::Reset);
             }
@@ -172,7 +189,11 @@ impl<P: Pens> Grbl<P> {
 
     /// Carries out the line that is there, and answers it; says whether there was one, and room for all that comes of it.
     fn carry_on(&mut self, status: &Status, link: &mut Link) -> bool {
-        if self.wait.is_some() || !self.line.has_ended() || link.commands.room() < MOST_COMMANDS {
+        if self.wait.is_some()
+            || self.mode == Mode::Sleep
+            || !self.line.has_ended()
+            || link.commands.room() < MOST_COMMANDS
+        {
             return false;
         }
         let line = self.line;
@@ -186,7 +207,12 @@ impl<P: Pens> Grbl<P> {
         };
         match done {
             Ok(()) if self.wait.is_some() || self.listing.is_some() => {}
-            Ok(()) => self.out.line(format_args!("ok")),
+            Ok(()) => {
+                self.out.line(format_args!("ok"));
+                if self.mode == Mode::Sleep {
+                    self.out.line(format_args!("[MSG:Sleeping]"));
+                }
+            }
             Err(code) => self.error(code),
         }
         true
@@ -277,20 +303,48 @@ impl<P: Pens> Grbl<P> {
     /// A line that begins with `$`.
     fn system(&mut self, command: &[u8], status: &Status, link: &mut Link) -> Result<(), Code> {
         let stands = matches!(status.activity, Activity::Idle | Activity::Stopped);
-        let is_idle = self.alarm.is_some() || (stands && link.commands.is_empty());
+        let checks = self.mode == Mode::Check;
+        let is_idle = !checks && (self.alarm.is_some() || (stands && link.commands.is_empty()));
         match command {
-            b"" => self.out.line(format_args!("[HLP:$$ $# $G $I $N $x=val $J=line $X $H ~ ! ? ctrl-x]")),
+            b"" => self.out.line(format_args!(
+                "[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H ~ ! ? ctrl-x]"
+            )),
             b"G" => self.tell_modes(),
+            b"$" if checks => self.listing = Some((Listing::Settings, 0)),
+            b"C" if checks => {
+                // What has been read meanwhile has not been done.
+                self.mode = Mode::Work;
+                self.begin_anew(status.at);
+                self.out.line(format_args!("[MSG:Disabled]"));
+            }
+            b"C" if !is_idle || self.alarm.is_some() => return Err(Code::NOT_IDLE),
+            b"C" => {
+                self.mode = Mode::Check;
+                self.out.line(format_args!("[MSG:Enabled]"));
+            }
             // In no alarm there is nothing to unlock.
             b"X" if !is_idle => {}
-            b"$" | b"#" | b"I" | b"N" | b"H" if !is_idle => return Err(Code::NOT_IDLE),
+            b"$" | b"#" | b"I" | b"N" | b"H" | b"SLP" | b"RST=#" if !is_idle => return Err(Code::NOT_IDLE),
+            [b'H', ..] if !self.settings.homing => return Err(Code::NO_HOMING),
+            b"SLP" => {
+                if self.alarm.is_none() {
+                    let to = self.interpreter.modes().position;
+                    self.command(link, Command::Plot(PlotOp::Travel { to }));
+                }
+                self.mode = Mode::Sleep;
+            }
+            b"RST=#" => {
+                self.out.line(format_args!("[MSG:Restoring defaults]"));
+                self.interpreter.restore_origins();
+                self.begin_anew(status.at);
+            }
             b"$" => self.listing = Some((Listing::Settings, 0)),
             b"#" => self.listing = Some((Listing::Offsets, 0)),
             b"I" => self.listing = Some((Listing::Build, 0)),
             b"N" => self.listing = Some((Listing::Startup, 0)),
             // There is no line that is carried out at the start: it stays so.
             [b'N', b'0' | b'1', b'='] => {}
-            [b'J', b'=', ..] if self.alarm.is_some() => return Err(Code::LOCKED),
+            [b'J', ..] if self.alarm.is_some() || checks => return Err(Code::NOT_IDLE),
             [b'J', b'=', ..] if !is_idle && !self.is_jogging(status, link) => return Err(Code::NOT_IDLE),
             [b'J', b'=', jog @ ..] => return self.jog(jog, link),
             [b'0'..=b'9', ..] if !is_idle => return Err(Code::NOT_IDLE),
@@ -312,9 +366,21 @@ impl<P: Pens> Grbl<P> {
                 send(link, Command::Unlock);
                 self.stopped = false;
             }
-            _ => return Err(Code::BAD_STATEMENT),
+            [b'$' | b'#' | b'C' | b'G' | b'H' | b'I' | b'J' | b'N' | b'R' | b'S' | b'X', ..] => {
+                return Err(Code::BAD_STATEMENT);
+            }
+            // Else it would be the number of a setting.
+            _ => return Err(Code::BAD_NUMBER),
         }
         Ok(())
+    }
+
+    /// As after a reset, of a machine that stands.
+    fn begin_anew(&mut self, at: Point) {
+        self.interpreter.reset();
+        self.interpreter.stand_at(at);
+        self.reports_to_offset = 0;
+        self.greeting = true;
     }
 
     /// Whether the machine is moved by hand, or is about to be.
@@ -336,11 +402,12 @@ impl<P: Pens> Grbl<P> {
         let modes = self.interpreter.modes();
         let feed = modes.feed_mm_s.unwrap_or(0.0) * 60.0 / if modes.inches { 25.4 } else { 1.0 };
         self.out.line(format_args!(
-            "[GC:G{} G{} G17 G{} G{} G94 M{} M9 T{} F{} S{}]",
+            "[GC:G{} G{} G17 G{} G{} G{} M{} M9 T{} F{} S{}]",
             Whole(modes.motion.into()),
             Whole(54 + u64::from(modes.system)),
             Plain(if modes.inches { "20" } else { "21" }),
             Plain(if modes.relative { "91" } else { "90" }),
+            Plain(if modes.inverse_time { "93" } else { "94" }),
             Whole(modes.spindle.into()),
             Whole(modes.tool.into()),
             Thousandths::of(feed).trimmed(),

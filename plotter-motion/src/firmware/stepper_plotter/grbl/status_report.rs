@@ -3,14 +3,16 @@
 use super::super::{Activity, Link, Percents, Status, settings::FULL_POWER};
 use super::codes::coordinates;
 use super::listing::BLOCKS;
-use super::{Grbl, MOST_COMMANDS, Pens, REPORTS_WITHOUT_OFFSET};
+use super::{Grbl, MOST_COMMANDS, Mode, Pens, REPORTS_WITHOUT_OFFSET};
 use crate::decimal_text::{Plain, Thousandths, Whole};
 use core::fmt;
 
 impl<P: Pens> Grbl<P> {
     pub(super) fn tell_status(&mut self, status: &Status, link: &Link) {
         let state = Plain(match status.activity {
+            _ if self.mode == Mode::Sleep => "Sleep",
             _ if self.alarm.is_some() => "Alarm",
+            _ if self.mode == Mode::Check => "Check",
             Activity::Idle if self.is_jogging(status, link) => "Jog",
             Activity::Idle if !link.commands.is_empty() => "Run",
             Activity::Idle | Activity::Stopped => "Idle",

@@ -40,10 +40,13 @@ pub(super) fn read(text: &[u8], known: Words) -> Result<Option<Block>, Code> {
             {
                 rest = after;
             }
-            // A second point, a comma, an exponent; no digit at all; too great.
-            let ends = !matches!(rest.first(), Some(b'.' | b',' | b'E'));
+            // A second point, a comma, an exponent, of which Grbl takes the first two for no letters and the third for one; no digit at all;
+            // too great.
+            let ends = !knows_any || !matches!(rest.first(), Some(b'.' | b',' | b'E'));
             let value = decimal.value().filter(|value| ends && value.abs() <= MOST);
             number = Some(value.ok_or(Code::BAD_NUMBER)?);
+        } else if !knows_any {
+            return Err(Code::BAD_NUMBER);
         }
         if !block.push(Word { letter, number, column }, Position::START) {
             return Err(Code::OVERFLOW);
