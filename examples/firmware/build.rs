@@ -5,8 +5,7 @@ use plotter_motion::control::{ContouringSettings, LineTrackingSettings};
 use plotter_motion::firmware::GantrySettings;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use plotter_motion::gcode::PenConvention;
-use plotter_motion::kinematics::Backlash;
-use plotter_motion::{AxisConfig, ControllerChoice, Machine, MachineKind, PathMode, PlannerSettings};
+use plotter_motion::{AxisConfig, ControllerChoice, Machine, MachineKind};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -138,10 +137,7 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
         "/// Whether a laser takes the place of its pen.\npub const LASER: bool = {};",
         settings.laser
     )?;
-    let PlannerSettings { path, jerk_mm_s3, .. } = settings.planner;
-    let is_plain =
-        path == PathMode::Exact && jerk_mm_s3.is_none() && settings.backlash == Backlash::default();
-    let modes = match (is_plain, settings.laser) {
+    let modes = match (settings.is_plain(), settings.laser) {
         (true, false) => "ExactPen",
         (true, true) => "ExactOnly",
         (false, _) => "AllModes",

@@ -4,9 +4,9 @@ use crate::{BenchSwitches, Emulator, Told};
 use core::time::Duration;
 use crc::{CRC_64_XZ, Crc};
 use plotter_motion::firmware::StepperPlotter;
-use plotter_motion::firmware::stepper_plotter::{Dialect, Drivers, StepperPlotterSettings};
+use plotter_motion::firmware::stepper_plotter::{Dialect, Drivers, Receive, StepperPlotterSettings};
 use plotter_motion::plant::SimulatedLine;
-use plotter_motion::{Axis, LimitSwitches, Machine, SafetyGate, StepPoint};
+use plotter_motion::{AllModes, Axis, ExactOnly, LimitSwitches, Machine, Modes, SafetyGate, StepPoint};
 use plotter_replay::serial::Port;
 use std::collections::VecDeque;
 use std::path::Path;
@@ -93,7 +93,7 @@ impl Streamer {
     }
 }
 
-/// Streams `gcode` to the controller on the desk; `start` is when it is switched on.
+/// Streams `gcode` to the controller on the desk, built as its firmware is; `start` is when it is switched on.
 ///
 /// # Errors
 ///
@@ -103,15 +103,29 @@ pub fn streamed_on_the_desk(
     start: Duration,
     gcode: &str,
 ) -> Result<StreamedSteps, String> {
+    let settings = StepperPlotterSettings::of(machine, Dialect::Grbl);
+    if settings.is_plain() {
+        streamed::<ExactOnly>(machine, settings, start, gcode)
+    } else {
+        streamed::<AllModes>(machine, settings, start, gcode)
+    }
+}
+
+fn streamed<M: Modes>(
+    machine: &Machine,
+    settings: StepperPlotterSettings,
+    start: Duration,
+    gcode: &str,
+) -> Result<StreamedSteps, String> {
     #[derive(PartialEq, Eq, PartialOrd, Ord)]
     enum Next {
         Due,
         ToController,
         ToHost,
     }
-    let settings = StepperPlotterSettings::of(machine, Dialect::Grbl);
-    let mut plotter = StepperPlotter::new(settings, SafetyGate::new(LimitSwitches::RELEASED, false))
-        .map_err(|error| error.to_string())?;
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    let mut plotter =
+        StepperPlotter::<Receive, M>::with_modes(settings, gate).map_err(|error| error.to_string())?;
     let mut host = Streamer::new(gcode);
     let baud = machine.config().serial.baud;
     let (mut to_controller, mut to_host) = (SimulatedLine::new(baud), SimulatedLine::new(baud));

@@ -3,7 +3,7 @@
 use crate::gcode::PenConvention;
 use crate::kinematics::{Backlash, Cartesian, MotorScale, ScaleError};
 use crate::planner::{AllModes, Modes};
-use crate::{Axis, HomingAxis, Machine, PenLift, PlanError, PlannerSettings, StepGenSettings};
+use crate::{Axis, HomingAxis, Machine, PathMode, PenLift, PlanError, PlannerSettings, StepGenSettings};
 use core::fmt;
 use core::marker::PhantomData;
 use core::time::Duration;
@@ -215,6 +215,19 @@ impl StepperPlotterSettings {
             home_y: HomingAxis::of(machine, Axis::Y),
             ..Self::default()
         }
+    }
+
+    /// Whether [`ExactOnly`](crate::ExactOnly) is enough for them: the path is exact, the jerk has no limit, and there is no play. Such a
+    /// controller takes every vertex as it is, whatever [`PlannerSettings::allowance_mm`] says.
+    ///
+    /// ```
+    /// # use plotter_motion::firmware::stepper_plotter::StepperPlotterSettings;
+    /// assert!(StepperPlotterSettings::default().is_plain());
+    /// ```
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        let PlannerSettings { path, jerk_mm_s3, .. } = self.planner;
+        path == PathMode::Exact && jerk_mm_s3.is_none() && self.backlash == Backlash::default()
     }
 
     /// Speeds with the pen down and up, mm/s. mDraw's user chooses a greatest rate.
