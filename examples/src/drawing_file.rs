@@ -230,8 +230,8 @@ impl DrawingFile {
                 digit_mm = Some(options.step_mm);
                 let assumed = how.step_mm.is_none().then(|| {
                     let text = format!(
-                        "the size of a step is not said in {}: it is taken for {} mm; if the drawing has another size, say \
-                         another step",
+                        "the size of a step is not said in {}: it is taken for {} mm; if the drawing has another size, \
+                         give another step (--step-mm)",
                         self.language.name(),
                         options.step_mm
                     );

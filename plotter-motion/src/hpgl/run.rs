@@ -37,8 +37,8 @@ impl Commands {
 /// A digit of encoded data is a byte from 63 on, letters among them; a number ends with one from 191 on (in seven bits from 95 on).
 /// Commands are what a number that breaks off has been if all of its bytes are pairs of letters that are known as commands.
 ///
-/// Source: *The HP-GL/2 and HP RTL Reference Guide*, on `PE`, which must be ended by a `;`. AutoCAD's driver ends it so only before a
-/// command that is not `PU`.
+/// Source: *The HP-GL/2 and HP RTL Reference Guide*, on `PE`, which must be ended by a `;`. AutoCAD's driver leaves it out
+/// before `PU`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Run {
     letters: [[u8; 2]; MOST],
