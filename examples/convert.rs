@@ -1,4 +1,4 @@
-//! One language of plotters into another: HPGL, G-code, SVG and the thesis' text.
+//! One language of plotters into another: HPGL, G-code, SVG and the thesis' text; from CAMM-GL and GP-GL of cutters too.
 //!
 //! All of them say the same few things: take a pen, go there, draw there, along a line or an arc. What one language says and the
 //! other cannot is told on the standard error, with its line and column; the rest is converted. HPGL and G-code stream through:
@@ -33,7 +33,7 @@ use std::time::Duration;
 /// Greatest coordinate in an SVG: beyond it the single precision of viewers is coarser than a plotter, mm.
 const SVG_MOST_MM: f64 = 100_000.0;
 
-/// Converts a drawing between HPGL, G-code, SVG and the thesis' text.
+/// Converts a drawing between HPGL, G-code, SVG and the thesis' text; reads CAMM-GL and GP-GL too.
 ///
 /// Lines and arcs, pens, speeds and pauses are converted as far as the target knows them. Arcs stay arcs in HPGL (AA), G-code (G2,
 /// G3) and SVG (A). SVG is read in mm by width, height and viewBox, with the lower left corner as the origin: along strokes, and
@@ -82,6 +82,9 @@ struct Arguments {
     /// Encoder counts to the millimetre in the thesis' text
     #[arg(long, value_name = "N", default_value = "40", value_parser = positive, allow_negative_numbers = true)]
     counts_per_mm: f64,
+    /// Size of a step in CAMM-GL and GP-GL, mm [default: 0.025, 0.1, and Silhouette's 0.05]
+    #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
+    step_mm: Option<f64>,
     #[command(flatten)]
     fonts: FontFiles,
     /// Ends at the first error, with exit status 1; notices pass
@@ -137,6 +140,10 @@ fn main() -> ExitCode {
         );
         return ExitCode::from(2);
     };
+    if matches!(language, Language::CammGl | Language::GpGl) {
+        eprintln!("convert: {} is read, not written: give --to hpgl, gcode, svg or thesis", language.name());
+        return ExitCode::from(2);
+    }
     if is_same(&arguments.input, &arguments.output) {
         eprintln!("convert: {}: the drawing would be written over itself", arguments.output.display());
         return ExitCode::from(2);
@@ -155,6 +162,7 @@ fn convert(arguments: &Arguments, language: Language) -> Result<(), String> {
         tolerance_mm: arguments.tolerance_mm,
         counts_per_mm: arguments.counts_per_mm,
         pen: arguments.convention.map(convention),
+        step_mm: arguments.step_mm,
     };
     let mut ops = drawing.ops(how)?;
     let colours = std::mem::take(&mut ops.colours);
@@ -291,6 +299,7 @@ impl<'a> Writer<'a> {
             Language::Hpgl => Target::Hpgl(hpgl::Writer::new(sink)),
             Language::Thesis => Target::Thesis(sink, StepPoint::default()),
             Language::Svg => Target::Svg(SvgText::new(), sink),
+            Language::CammGl | Language::GpGl => return Err(format!("{} is not written", language.name())),
             Language::Gcode => {
                 let usual = gcode::WriteOptions::default();
                 let pen = match (&arguments.pen_up, &arguments.pen_down, arguments.gcode_pen) {

@@ -53,12 +53,15 @@ const MOST_FRAMES: u32 = 100_000;
                   are not, and the message says why; 2 wrong options."
 )]
 struct Arguments {
-    /// Drawing in HPGL, G-code, SVG or the thesis' text, of any length; - is the standard input [default: a textile
-    /// pattern of 30 m]
+    /// Drawing in HPGL, G-code, SVG, CAMM-GL, GP-GL or the thesis' text, of any length; - is the standard input [default: a
+    /// textile pattern of 30 m]
     file: Option<PathBuf>,
     /// What the file is written in [default: told by its contents]
     #[arg(long, value_enum)]
     language: Option<Language>,
+    /// Size of a step in CAMM-GL and GP-GL, mm [default: 0.025, 0.1, and Silhouette's 0.05]
+    #[arg(long, value_name = "S", value_parser = step, allow_negative_numbers = true)]
+    step_mm: Option<f64>,
     #[command(flatten)]
     fonts: FontFiles,
     /// The machine's TOML file [default: machines/textile-plotter.toml]
@@ -132,6 +135,10 @@ fn chord(text: &str) -> Result<f64, String> {
     in_range(text, 0.001, 100.0)
 }
 
+fn step(text: &str) -> Result<f64, String> {
+    in_range(text, 1e-6, 1e6)
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     run("long_sheet", || {
@@ -162,7 +169,7 @@ fn draw_sheet(arguments: &Arguments) -> Result<(), String> {
         }
         Some(path) => {
             let drawing = DrawingFile::open(path, arguments.language)?.with_fonts(&arguments.fonts)?;
-            let reading = Reading { counts_per_mm: 40.0, ..Reading::default() };
+            let reading = Reading { counts_per_mm: 40.0, step_mm: arguments.step_mm, ..Reading::default() };
             let mut said = Diagnostics::default();
             // Nothing is drawn of a drawing with errors: read it once before.
             for found in drawing.ops(reading)?.filter_map(Result::err) {

@@ -1,6 +1,6 @@
 //! How long a drawing takes on a plotter with stepper motors, and what its motors do on the way.
 //!
-//! A file in HPGL, G-code, SVG or the thesis' text is planned with look-ahead and turned into timed steps, as the controller
+//! A file in HPGL, G-code, SVG, a cutter's language or the thesis' text is planned with look-ahead and turned into timed steps, as the controller
 //! does it; then the steps alone are walked through. From them come the picture that the pen draws, its speed over time, and the
 //! greatest speed, acceleration and distance from the drawing.
 //!
@@ -54,11 +54,15 @@ const FARTHEST_MM: f64 = 100_000.0;
                   area; 2 wrong options."
 )]
 struct Arguments {
-    /// Drawing in HPGL, G-code, SVG or the thesis' text; - is the standard input [default: a spiral, hatching and letters]
+    /// Drawing in HPGL, G-code, SVG, CAMM-GL, GP-GL or the thesis' text; - is the standard input [default: a spiral, hatching
+    /// and letters]
     file: Option<PathBuf>,
     /// What the file is written in [default: told by its contents]
     #[arg(long, value_enum)]
     language: Option<Language>,
+    /// Size of a step in CAMM-GL and GP-GL, mm [default: 0.025, 0.1, and Silhouette's 0.05]
+    #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
+    step_mm: Option<f64>,
     #[command(flatten)]
     fonts: FontFiles,
     /// The machine's TOML file [default: machines/stepper-plotter.toml]
@@ -178,7 +182,8 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
     };
     let motors = [motor(&config.x.stepper), motor(&config.y.stepper)];
     let finest = motors[0].steps_per_mm.max(motors[1].steps_per_mm);
-    let ops = drawing.ops(Reading { counts_per_mm: 40.0, ..Reading::default() })?;
+    let ops =
+        drawing.ops(Reading { counts_per_mm: 40.0, step_mm: arguments.step_mm, ..Reading::default() })?;
     let settings = PlannerSettings { resolution_mm: 0.5 / finest, allowance_mm: 1.0 / finest, ..settings };
     let settings = match (arguments.allowance_mm, ops.digit_mm) {
         (Some(allowance_mm), _) => PlannerSettings { allowance_mm, ..settings },

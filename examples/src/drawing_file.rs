@@ -1,7 +1,8 @@
 //! [`DrawingFile`]: a drawing in any of the languages, read as plot operations and diagnostics.
 
+use crate::language::is_dm_pl;
 use crate::{FontFiles, Language, at, svg_drawing};
-use plotter_motion::hpgl::thesis_text;
+use plotter_motion::hpgl::{cutter, thesis_text};
 use plotter_motion::{PlotOp, gcode, hpgl};
 use plotter_vector::SvgFonts;
 use serde::Serialize;
@@ -78,11 +79,13 @@ pub struct Reading {
     pub counts_per_mm: f64,
     /// How G-code lifts the pen; `None` finds it out.
     pub pen: Option<gcode::PenConvention>,
+    /// Size of a step in the languages of cutters, mm; `None` takes that of a machine as it is delivered, and says so.
+    pub step_mm: Option<f64>,
 }
 
 impl Default for Reading {
     fn default() -> Self {
-        Self { tolerance_mm: 0.01, counts_per_mm: hpgl::UNITS_PER_MM, pen: None }
+        Self { tolerance_mm: 0.01, counts_per_mm: hpgl::UNITS_PER_MM, pen: None, step_mm: None }
     }
 }
 
@@ -219,6 +222,26 @@ impl DrawingFile {
                 digit_mm = Some(1.0 / how.counts_per_mm);
                 Box::new(thesis_ops(bytes, how.counts_per_mm))
             }
+            Language::CammGl | Language::GpGl => {
+                let dialect = self.dialect()?;
+                let mut options = cutter::ReadOptions::of(dialect);
+                options.tolerance_mm = how.tolerance_mm;
+                options.step_mm = how.step_mm.unwrap_or(options.step_mm);
+                digit_mm = Some(options.step_mm);
+                let assumed = how.step_mm.is_none().then(|| {
+                    let text = format!(
+                        "the size of a step is not said in {}: it is taken for {} mm; if the drawing has another size, \
+                         give another step (--step-mm)",
+                        self.language.name(),
+                        options.step_mm
+                    );
+                    Err(Diagnostic::new(Severity::Notice, text))
+                });
+                let ops = cutter::PlotOps::with_options(bytes, options).map(|op| {
+                    op.map_err(|error| Diagnostic::placed(error.at, error.is_notice(), error.to_string()))
+                });
+                Box::new(assumed.into_iter().chain(ops))
+            }
             Language::Svg => {
                 let bytes = match &self.source {
                     Source::Held(bytes) => bytes.clone(),
@@ -233,6 +256,16 @@ impl DrawingFile {
             }
         };
         Ok(Ops { inner, place, colours, digit_mm, failed: false })
+    }
+
+    /// Which of the languages of cutters it is.
+    fn dialect(&self) -> Result<cutter::Dialect, String> {
+        if self.language == Language::CammGl {
+            return Ok(cutter::Dialect::CammGl);
+        }
+        let head: Vec<u8> = self.bytes(&Rc::default())?.take(HEAD_BYTES).collect();
+        let found = cutter::Dialect::of(&head).map(|(dialect, _)| dialect);
+        Ok(found.filter(|dialect| *dialect != cutter::Dialect::CammGl).unwrap_or(cutter::Dialect::GpGl))
     }
 
     fn bytes(&self, place: &Rc<Place>) -> Result<Bytes<'_>, String> {
@@ -256,9 +289,15 @@ fn told(name: &str, head: &[u8], language: Option<Language>) -> Result<Language,
     if let Some(language) = language {
         return Ok(language);
     }
+    if is_dm_pl(head) {
+        return Err(format!(
+            "{name}: this is DM/PL, the language of Houston Instrument's plotters, which is not read: have the program write HPGL \
+             (most cutters that take DM/PL take it too)"
+        ));
+    }
     let language = Language::of_contents(head).ok_or_else(|| {
         format!(
-            "{name}: this looks like none of HPGL, G-code, SVG and the thesis' text; if it is one, say which"
+            "{name}: this looks like none of HPGL, G-code, SVG, CAMM-GL, GP-GL and the thesis' text; if it is one, say which"
         )
     })?;
     if let Some(line) = (language == Language::Gcode).then(|| first_extrusion(head)).flatten() {
@@ -506,5 +545,27 @@ mod tests {
         assert_eq!(open(b""), "a.plt: the file is empty");
         assert!(open(b"\x1f\x8b\x08").contains("compressed"));
         assert!(open(b"hello, world").contains("none of HPGL, G-code, SVG"));
+        let refused = open(b";:H A L0 EC1 U 100,100 D 200,200 @");
+        assert!(refused.starts_with("a.plt: this is DM/PL"), "{refused}");
+        assert!(refused.contains("write HPGL"), "{refused}");
+    }
+
+    #[test]
+    fn the_languages_of_cutters_are_read_in_steps_of_their_machines() {
+        for (text, step_mm, expected_mm) in [
+            ("H\nM400,0\nD800,400\n", None, (10.0, 20.0)),
+            ("H\nM400,0\nD800,400\n", Some(0.1), (40.0, 80.0)),
+            ("H\u{3}M400,0\u{3}D800,400\u{3}", None, (40.0, 80.0)),
+            ("\u{1b}\u{4}H\u{3}M400,0\u{3}D800,400\u{3}", None, (20.0, 40.0)),
+        ] {
+            let file = DrawingFile::held("test", text.into(), None).unwrap();
+            let how = Reading { step_mm, ..Reading::default() };
+            let (ops, said): (Vec<_>, Vec<_>) = file.ops(how).unwrap().partition(Result::is_ok);
+            let places: Vec<f64> =
+                ops.into_iter().flatten().filter_map(PlotOp::target).map(|to| to.x).collect();
+            assert_eq!(places, [0.0, expected_mm.0, expected_mm.1], "{text:?}");
+            // Whoever does not say the step is told which one is taken.
+            assert_eq!(said.len(), usize::from(step_mm.is_none()), "{said:?}");
+        }
     }
 }

@@ -1,13 +1,14 @@
 //! [`Language`]: what a drawing's file is written in, told by its contents or its name.
 
 use clap::ValueEnum;
+use plotter_motion::hpgl::cutter::Dialect;
 use plotter_motion::{gcode, hpgl};
 use serde::Serialize;
 use std::path::Path;
 
 /// The language of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, ValueEnum)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum Language {
     /// HPGL and HP-GL/2
     Hpgl,
@@ -17,6 +18,10 @@ pub enum Language {
     Gcode,
     /// Strokes of an SVG picture
     Svg,
+    /// Roland's CAMM-GL mode 1 and DXY-GL, one letter a command; it is read, not written
+    CammGl,
+    /// Graphtec's GP-GL, also Silhouette's; it is read, not written
+    GpGl,
 }
 
 impl Language {
@@ -28,6 +33,8 @@ impl Language {
             Self::Thesis => "thesis",
             Self::Gcode => "gcode",
             Self::Svg => "svg",
+            Self::CammGl => "camm-gl",
+            Self::GpGl => "gp-gl",
         }
     }
 
@@ -39,6 +46,8 @@ impl Language {
             "hpgl" | "plt" | "hpg" | "hp" | "hgl" | "plo" | "pcl" => Some(Self::Hpgl),
             "gcode" | "gco" | "g" | "nc" | "ngc" | "tap" | "cnc" => Some(Self::Gcode),
             "svg" => Some(Self::Svg),
+            "gpgl" => Some(Self::GpGl),
+            "camm" | "dxy" => Some(Self::CammGl),
             "txt" => Some(Self::Thesis),
             _ => None,
         }
@@ -56,8 +65,20 @@ impl Language {
         }
         let (hpgl, gcode) = (sense_in_hpgl(head), sense_in_gcode(head));
         let best = if hpgl >= gcode { (hpgl, Self::Hpgl) } else { (gcode, Self::Gcode) };
+        if let Some((dialect, sense)) = Dialect::of(head)
+            && sense > best.0
+        {
+            return Some(if dialect == Dialect::CammGl { Self::CammGl } else { Self::GpGl });
+        }
         (best.0 > LEAST_SENSE).then_some(best.1)
     }
+}
+
+/// Whether a text begins as DM/PL does, Houston Instrument's language: `;:`, with which a program takes hold of the plotter.
+#[must_use]
+pub(crate) fn is_dm_pl(head: &[u8]) -> bool {
+    let mut signs = head.iter().filter(|byte| !byte.is_ascii_whitespace() && !byte.is_ascii_control());
+    signs.next() == Some(&b';') && signs.next() == Some(&b':')
 }
 
 /// Lines that may stand before the first movement.
@@ -134,6 +155,9 @@ mod tests {
         assert_eq!(told(b"\x1b.Y\x1b.I81;;17:IN\nPA1 2 PD;"), Some(Language::Hpgl));
         assert_eq!(told(b"G21\nG0 X10 Y10 (go)\nM3 S90\n"), Some(Language::Gcode));
         assert_eq!(told(b"; made by hand\ng0x1y2\n"), Some(Language::Gcode));
+        assert_eq!(told(b"H\nJ1\nM400,400\nD800,400,800,800\nI-400,-400\n"), Some(Language::CammGl));
+        assert_eq!(told(b"H\x03M100,100\x03D200,100\x03"), Some(Language::GpGl));
+        assert_eq!(told(b"\x1b\x04FX10,1\x03M100,100\x03D200,100\x03"), Some(Language::GpGl));
         assert_eq!(told(b"Command, X, Y\r\nPU, 02993, 13955\r\n"), Some(Language::Thesis));
         assert_eq!(told(b"\xef\xbb\xbf <?xml version='1.0'?>\n<svg/>"), Some(Language::Svg));
         for junk in

@@ -101,6 +101,11 @@ impl Decoder {
         self.x
     }
 
+    /// Forgets the number in progress: its digits were something else.
+    pub(super) fn forget_number(&mut self) {
+        (self.value, self.digits) = (0, 0);
+    }
+
     /// Takes the next byte. One byte can complete two numbers: where a pair turns out not to be one, its first byte counts
     /// before it.
     pub(super) fn push(&mut self, byte: u8) -> Result<[Option<Step>; 2], Misplaced> {

@@ -1,6 +1,6 @@
 //! [`Error`]: what is wrong with a text, where, and what would be right.
 
-use super::{Mnemonic, Position};
+use super::{Extension, Mnemonic, Position, Syntax};
 use core::fmt;
 
 /// Something in an HPGL text that could not be carried out. Reading goes on after it.
@@ -16,6 +16,13 @@ pub enum Error {
         at: Position,
         /// Which one.
         command: Mnemonic,
+    },
+    /// What programs for cutters write into HPGL, and what a pen has not. A notice, once for each kind.
+    Extension {
+        /// Its first byte.
+        at: Position,
+        /// What.
+        extension: Extension,
     },
     /// A byte that no command may hold at this place. The rest of the command is skipped.
     UnexpectedByte {
@@ -177,6 +184,7 @@ impl Error {
     pub fn position(&self) -> Position {
         match *self {
             Self::Unsupported { at, .. }
+            | Self::Extension { at, .. }
             | Self::UnexpectedByte { at, .. }
             | Self::BadMnemonic { at, .. }
             | Self::BadNumber { at, .. }
@@ -203,7 +211,7 @@ impl Error {
     pub fn command(&self) -> Option<Mnemonic> {
         match *self {
             Self::UnexpectedByte { command, .. } => command,
-            Self::BadMnemonic { .. } | Self::BadEscape { .. } => None,
+            Self::Extension { .. } | Self::BadMnemonic { .. } | Self::BadEscape { .. } => None,
             Self::Unsupported { command, .. }
             | Self::BadNumber { command, .. }
             | Self::MissingNumber { command, .. }
@@ -229,14 +237,14 @@ impl Error {
     pub fn is_notice(&self) -> bool {
         match self {
             Self::Unsupported { command, .. } => command.meaning().is_some(),
-            Self::UnknownSigns { .. } => true,
+            Self::UnknownSigns { .. } | Self::Extension { .. } => true,
             _ => false,
         }
     }
 }
 
 /// A byte as a person would write it.
-struct Shown(u8);
+pub(super) struct Shown(pub(super) u8);
 
 impl fmt::Display for Shown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -256,6 +264,21 @@ impl fmt::Display for Error {
                 Some(meaning) => write!(f, "{command} ({meaning}) is not supported and is left out"),
                 None => write!(f, "{command} is no known command and is left out: check its two letters"),
             },
+            Self::Extension { extension, .. } => write!(
+                f,
+                "{extension} ({}) is for cutters and means nothing to a pen: it is left out, here and below",
+                extension.meaning()
+            ),
+            Self::UnexpectedByte { command: Some(command), byte, .. }
+                if command.syntax() == Syntax::Encoded =>
+            {
+                write!(
+                    f,
+                    "{} does not belong into {command}, whose rest is left out: its data are digits from `?` on and the flags \
+                     `<`, `=`, `>`, `:` and `7`; end them with `;`",
+                    Shown(byte)
+                )
+            }
             Self::UnexpectedByte { command: Some(command), byte, .. } => write!(
                 f,
                 "{} does not belong into {command}, whose rest is left out: separate numbers by commas and end \
@@ -292,8 +315,8 @@ impl fmt::Display for Error {
                 f,
                 "the text ends within {command}: it must be ended by {}",
                 match command.syntax() {
-                    super::Syntax::Label => "the label terminator (byte 0x03 unless DT sets another)",
-                    super::Syntax::Quoted | super::Syntax::Comment => "`\"`",
+                    Syntax::Label => "the label terminator (byte 0x03 unless DT sets another)",
+                    Syntax::Quoted | Syntax::Comment => "`\"`",
                     _ => "`;`",
                 }
             ),

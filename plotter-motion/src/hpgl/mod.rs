@@ -67,9 +67,9 @@
 //! | `PW` `PT` `WU` | width of the pen in mm or percent, which solid filling goes by |
 //! | `CI` `AA` `AR` `AT` `RT` `CT` | circles, arcs about a centre and through places: as arcs, or as chords where more than 5° are asked for |
 //! | `BZ` `BR` | cubic curves, as lines within [`ReadOptions::tolerance_mm`] |
-//! | `PE` | encoded polylines, of 5 or 6 bits; a text whose bytes were taken for Latin-1 and written as UTF-8 is read all the same |
-//! | `IP` `IR` `SC` `RO` `PS` | what coordinates mean: see [`ReadOptions`] for what holds before |
-//! | `IW` | nothing is drawn outside of this window; arcs are cut exactly |
+//! | `PE` | encoded polylines, of 5 or 6 bits; a text whose bytes were taken for Latin-1 and written as UTF-8 is read all the same, and so are data that the next command ends instead of a `;` |
+//! | `IP` `IR` `SC` `RO` `PS` | what coordinates mean: see [`ReadOptions`] for what holds before. P1, P2 and the window keep their numbers when the axes turn; `IR`, and `IP` without numbers, go by the sheet along the turned axes. `PS` says the sheet as it lies |
+//! | `IW` | nothing is drawn outside of this window, which turns with the axes; arcs are cut exactly |
 //! | `LT` `UL` | line types 1 to 8, fitted ones from −1, dots at the ends with 0; patterns of the text's own |
 //! | `PM` `EP` `FP` | polygons: kept, edged, filled (even-odd or winding) |
 //! | `EA` `ER` `RA` `RR` `EW` `WG` | rectangles and wedges, edged and filled; they stay in the polygon buffer |
@@ -85,11 +85,14 @@
 //! unsupported.
 //!
 //! What means nothing to a machine with one pen that draws what it is told is passed over without a word: colours and their order
-//! (`PC` `NP` `CR` `TR` `MC` …), ends and joins of thick lines (`LA`), the looks of fonts (`FI` `CF` …), forces, accelerations,
-//! and motion without stops (`CV`), which is the planner's business, questions to the plotter (`OE` `OP` `OS` …), its display and
-//! cutter (also what begins with `!`, and a lone `@`), comments. What would be seen and is not done is said, as [`Error::Unsupported`]: `RP`
-//! (replot: whoever has the text can read it again; a reader in constant memory has not kept it), `NR` (wait), `SV` (screened
-//! lines), `PP`, `TD`, digitizing; of a cutter its blade (`FC`, `FD`) and registration marks (`TB`).
+//! (`PC` `NP` `CR` `TR` `MC` …), ends and joins of thick lines (`LA`), the looks of fonts (`FI` `CF` …), accelerations, and motion
+//! without stops (`CV`), which is the planner's business, questions to the plotter (`OE` `OP` `OS` …), its display, comments. What
+//! would be seen and is not done is said, as [`Error::Unsupported`]: `RP` (replot: whoever has the text can read it again; a reader in
+//! constant memory has not kept it), `NR` (wait), `SV` (screened lines), `PP`, `TD`, digitizing.
+//!
+//! What is for cutters is named, with what it does there: force (`FS`), blade (`FC`, `FD`), registration marks (`TB`), and as
+//! [`Error::Extension`] what begins with `!` (Roland's own: `!ST` `!FS` `!PG` …), `@`, and a byte 3 between commands. Each kind is named
+//! once, but for the marks. The one-letter languages of cutters are in [`cutter`].
 //!
 //! # Bad input
 //!
@@ -101,9 +104,11 @@ mod arc;
 mod bezier;
 mod character_set;
 mod command;
+pub mod cutter;
 mod encoded;
 mod error;
 mod escape;
+mod extension;
 #[cfg(feature = "font")]
 mod font;
 mod hatch;
@@ -118,6 +123,7 @@ mod polygon;
 mod position;
 mod read_options;
 mod reader;
+mod run;
 mod scaling;
 pub mod thesis_text;
 mod window;
@@ -127,12 +133,14 @@ mod writer;
 
 pub use command::{Mnemonic, Syntax};
 pub use error::Error;
+pub use extension::Extension;
 pub use interpreter::{Interpreter, Undrained};
 pub use plot_ops::{PlotOps, plot_ops};
 pub(crate) use position::Cursor;
 pub use position::Position;
 pub use read_options::ReadOptions;
 pub use reader::{Event, Reader};
+pub use run::Commands;
 pub use write_error::WriteError;
 pub use write_options::{Coordinates, Opening, WriteOptions};
 pub use writer::{Writer, write_ops};

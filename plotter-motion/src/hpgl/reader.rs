@@ -1,6 +1,8 @@
 //! [`Reader`]: bytes in, commands and their numbers out.
 
 use super::escape::{Escape, Step};
+use super::extension::Extension;
+use super::run::{Commands, Run};
 use super::{Cursor, Error, Mnemonic, Position, Syntax};
 use crate::decimal::Decimal;
 
@@ -8,9 +10,6 @@ use crate::decimal::Decimal;
 const MAX_NUMBER: f64 = 1_073_741_824.0;
 /// What some editors put before a text.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
-/// What programs for cutters write behind the last command, once or many times: it lets go of a plotter in DM/PL, Houston
-/// Instrument's language, which the same cutters speak.
-const CUTTER_ENDS: u8 = b'@';
 /// Ends a label unless `DT` says otherwise: the control character ETX.
 const ETX: u8 = 3;
 
@@ -49,6 +48,26 @@ pub enum Event {
     },
     /// The command ends.
     End,
+    /// The encoded data of a command ended without their `;` where these commands begin: their letters looked like digits of a number
+    /// until a byte came that is none, and have been given as [`Event::Byte`] before. The last number has to be forgotten. Of the
+    /// commands each but the last has ended too.
+    EndedBy {
+        /// The commands.
+        commands: Commands,
+        /// The first letter of the first of them; the others follow without a gap.
+        at: Position,
+        /// Whether the last one has ended too.
+        last: bool,
+        /// The first byte of the last one's data, which is encoded too.
+        byte: Option<u8>,
+    },
+    /// What a cutter's program writes between commands.
+    Extension {
+        /// What.
+        extension: Extension,
+        /// Its first byte.
+        at: Position,
+    },
     /// An escape sequence. `ESC .` speaks to the plotter's interface and may stand anywhere, also between the
     /// numbers of a command, which it does not disturb. Any other one ends the command.
     Escape {
@@ -80,14 +99,22 @@ enum State {
     Quoted { command: Mnemonic },
     /// Within bytes that only `;` ends.
     UntilSemicolon { command: Mnemonic },
-    /// Within what a cutter is told about itself, as `!ST1`, before its `;`.
-    Cutter,
+    /// Within what a cutter is told about itself, as `!ST1`, before its `;`: after the `!`, or one letter more, or behind its letters.
+    Cutter { at: Position, letters: CutterLetters },
     /// After an error, before the next `;` or letter.
     Skip,
     /// In the other language of a printer, after `ESC %0A`.
     OtherLanguage,
     /// At the start of a line of printer job language, after `ESC %-12345X`, or within one.
     JobLanguage { within: bool },
+}
+
+/// How many letters of a cutter's command have been read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum CutterLetters {
+    None,
+    One(u8),
+    All,
 }
 
 /// What the last separator was, so that a missing number is found.
@@ -106,8 +133,10 @@ enum Comma {
 /// It owns no buffer: a `PD` with a hundred thousand coordinates is a hundred thousand events. It takes
 /// - either case, a missing `;`, and a lone `;` anywhere;
 /// - numbers with sign and point, separated by commas, blanks or line ends, or by nothing before a sign;
-/// - what begins with `!` up to its `;` (a Roland's own settings, as `!ST1;`), and `@` between commands (with which cutters are let go),
-///   which give nothing;
+/// - what begins with `!` up to its `;` (a Roland's own settings, as `!ST1;`), and `@` and a byte 3 between commands, as programs for
+///   cutters write them ([`Event::Extension`]);
+/// - encoded data without their `;` where the next commands begin, as AutoCAD writes them ([`Event::EndedBy`]), or where the text
+///   ends;
 /// - labels up to their terminator, which `DT` sets and `IN` and `DF` set back, so that a label is never read as
 ///   commands; strings, comments, and encoded data likewise;
 /// - escape sequences: device control (`ESC .`) between any two bytes, and the change of a printer's language
@@ -135,6 +164,8 @@ pub struct Reader {
     /// The byte to come.
     cursor: Cursor,
     terminator: u8,
+    /// Letters within encoded data that may be commands.
+    run: Run,
     /// Whether the terminator belongs to the label (`DT` with a second argument of 0).
     terminator_shows: bool,
 }
@@ -154,6 +185,7 @@ impl Reader {
             escape: Escape::None,
             cursor: Cursor::START,
             terminator: ETX,
+            run: Run::NONE,
             terminator_shows: false,
         }
     }
@@ -202,9 +234,8 @@ impl Reader {
             return Some(Err(Error::BadEscape { at, byte: None }));
         }
         match state {
-            State::Idle | State::Cutter | State::Skip | State::OtherLanguage | State::JobLanguage { .. } => {
-                None
-            }
+            State::Idle | State::Skip | State::OtherLanguage | State::JobLanguage { .. } => None,
+            State::Cutter { at, letters } => self.cutter_ends(at, letters),
             State::Letter { letter, .. } => Some(Err(Error::BadMnemonic { at, letter, byte: None })),
             State::Numbers { command, number: Some((number, start)), .. } => {
                 Some(self.number(command, number, start, true))
@@ -212,8 +243,11 @@ impl Reader {
             State::Numbers { .. } | State::Terminator { .. } | State::Symbol | State::Comment { .. } => {
                 Some(Ok(Event::End))
             }
-            State::UntilSemicolon { command } if command.syntax() == Syntax::Comment => Some(Ok(Event::End)),
-            State::Label { command } | State::Quoted { command } | State::UntilSemicolon { command } => {
+            // Data say by themselves whether a number is complete.
+            State::UntilSemicolon { command } => {
+                Some(Ok(self.encoded_ends(command.syntax() == Syntax::Encoded)))
+            }
+            State::Label { command } | State::Quoted { command } => {
                 Some(Err(Error::Unterminated { at, command }))
             }
         }
@@ -259,19 +293,19 @@ impl Reader {
                 }
                 Ok(Some(Event::Byte { byte, at, last: false }))
             }
-            State::UntilSemicolon { .. } => {
+            State::UntilSemicolon { command } => {
                 if byte == b';' {
                     self.state = State::Idle;
-                    return Ok(Some(Event::End));
+                    return Ok(Some(self.encoded_ends(command.syntax() == Syntax::Encoded)));
+                }
+                if command.syntax() == Syntax::Encoded
+                    && let Some(event) = self.ended_by(byte, at)
+                {
+                    return Ok(Some(event));
                 }
                 Ok(Some(Event::Byte { byte, at, last: false }))
             }
-            State::Cutter => {
-                if matches!(byte, b';' | b'\n' | b'\r') {
-                    self.state = State::Idle;
-                }
-                Ok(None)
-            }
+            State::Cutter { at: start, letters } => Ok(self.cutter(start, letters, byte)),
             State::Skip => {
                 if byte == b';' {
                     self.state = State::Idle;
@@ -294,10 +328,13 @@ impl Reader {
     fn idle(&mut self, byte: u8, at: Position) -> Result<Option<Event>, Error> {
         if byte.is_ascii_alphabetic() {
             self.state = State::Letter { letter: byte, at };
-        } else if byte == b';' || byte == CUTTER_ENDS || is_blank(byte) || is_mark(byte, at) {
+        } else if let Some(extension) = Extension::of_sign(byte) {
+            self.state = State::Idle;
+            return Ok(Some(Event::Extension { extension, at }));
+        } else if byte == b';' || is_blank(byte) || is_mark(byte, at) {
             self.state = State::Idle;
         } else if byte == b'!' {
-            self.state = State::Cutter;
+            self.state = State::Cutter { at, letters: CutterLetters::None };
         } else {
             self.state = State::Skip;
             return Err(Error::UnexpectedByte { at, command: None, byte });
@@ -327,13 +364,76 @@ impl Reader {
             Syntax::Terminator => State::Terminator { command },
             Syntax::Symbol => State::Symbol,
             Syntax::Comment => State::Comment { command },
-            Syntax::Encoded => State::UntilSemicolon { command },
+            Syntax::Encoded => {
+                self.run = Run::START;
+                State::UntilSemicolon { command }
+            }
         };
         if matches!(command.letters(), b"IN" | b"DF") {
             self.terminator = ETX;
             self.terminator_shows = false;
         }
         Ok(Some(Event::Command { command, at: start }))
+    }
+
+    /// One more byte of what a cutter is told about itself.
+    fn cutter(&mut self, at: Position, letters: CutterLetters, byte: u8) -> Option<Event> {
+        if matches!(byte, b';' | b'\n' | b'\r') {
+            self.state = State::Idle;
+            return self.cutter_ends(at, letters).and_then(Result::ok);
+        }
+        let (letters, extension) = match letters {
+            CutterLetters::None if byte.is_ascii_alphabetic() => (CutterLetters::One(byte), None),
+            CutterLetters::None => (CutterLetters::All, Some(Extension::setting([0, 0]))),
+            CutterLetters::One(first) => {
+                let second = if byte.is_ascii_alphabetic() { byte } else { 0 };
+                (CutterLetters::All, Some(Extension::setting([first, second])))
+            }
+            CutterLetters::All => (CutterLetters::All, None),
+        };
+        self.state = State::Cutter { at, letters };
+        extension.map(|extension| Event::Extension { extension, at })
+    }
+
+    /// What it was, if that has not been said.
+    fn cutter_ends(&self, at: Position, letters: CutterLetters) -> Option<Result<Event, Error>> {
+        let letters = match letters {
+            CutterLetters::None => [0, 0],
+            CutterLetters::One(first) => [first, 0],
+            CutterLetters::All => return None,
+        };
+        Some(Ok(Event::Extension { extension: Extension::setting(letters), at }))
+    }
+
+    /// The end of encoded data, or of a comment: maybe of commands that have been taken for data.
+    fn encoded_ends(&self, encoded: bool) -> Event {
+        match self.run.all_ended() {
+            Some((commands, at)) if encoded => Event::EndedBy { commands, at, last: true, byte: None },
+            _ => Event::End,
+        }
+    }
+
+    /// One more byte of encoded data, where it shows that commands have begun.
+    fn ended_by(&mut self, byte: u8, at: Position) -> Option<Event> {
+        let (commands, start) = self.run.push(byte, at)?;
+        let command = commands.last()?;
+        let mut event = Event::EndedBy { commands, at: start, last: false, byte: None };
+        if command.syntax() == Syntax::Encoded {
+            self.run = Run::START;
+            let _ = self.run.push(byte, at);
+            if let Event::EndedBy { byte: first, .. } = &mut event {
+                *first = Some(byte);
+            }
+            self.state = State::UntilSemicolon { command };
+            return Some(event);
+        }
+        // It is a digit, a sign, a point or a letter: none of them is an error here.
+        if let Ok(Some(Event::End)) = self.numbers(command, None, Comma::Leading, byte, at)
+            && let Event::EndedBy { last, .. } = &mut event
+        {
+            *last = true;
+        }
+        Some(event)
     }
 
     fn numbers(
@@ -432,7 +532,6 @@ impl Reader {
             self.state,
             State::Label { .. }
                 | State::Quoted { .. }
-                | State::UntilSemicolon { .. }
                 | State::OtherLanguage
                 | State::Terminator { .. }
                 | State::Symbol

@@ -32,12 +32,19 @@ pub(super) struct UserArea {
 ///
 /// ```text
 /// numbers ── SC, IP ──▶ plotter units ── RO ──▶ plotter units on the sheet
+///                       (turned axes)
 /// ```
+///
+/// P1 and P2 are counted along the turned axes, and keep their numbers when the axes turn: they turn with them. What goes by the
+/// sheet (`IR`, and `IP` without numbers) goes by the sheet as the turned axes see it, whose width and height change places with
+/// each quarter.
+///
+/// Source: *PCL 5 Printer Language Technical Reference Manual*, part II, chapter 19, on `IP`, `IR` and `RO`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scaling {
     p1: Vec2,
     p2: Vec2,
-    /// P1 and P2 when nothing has been said, and the far corner of the sheet.
+    /// P1 and P2 when nothing has been said, on the sheet as it lies; and its far corner.
     usual: (Vec2, Vec2),
     sheet: Vec2,
     /// Whether the text has said how big the sheet is.
@@ -72,27 +79,42 @@ impl Scaling {
         self.quarters = quarters;
     }
 
-    /// `PS`: a sheet of this size, with P1 and P2 in its corners (or where the plotter puts them).
+    /// `PS`: a sheet of this size as it lies, with P1 and P2 in its corners (or where the plotter puts them).
     pub(super) fn set_sheet(&mut self, sheet: Vec2, p1: Vec2, p2: Vec2) {
-        (self.p1, self.p2) = (p1, p2);
         self.usual = (p1, p2);
         self.sheet = sheet;
         self.sheet_said = true;
+        (self.p1, self.p2) = self.usual_now();
+    }
+
+    /// P1 and P2 when nothing has been said, along the turned axes: P1 is where least is counted of what lay between the two.
+    fn usual_now(&self) -> (Vec2, Vec2) {
+        let (p1, p2) = self.usual;
+        let [a, b] = [p1, p2].map(|place| self.back(place - self.corner()));
+        let ordered = |forwards: bool, a: f64, b: f64| {
+            let (low, high) = (libm::fmin(a, b), libm::fmax(a, b));
+            if forwards { (low, high) } else { (high, low) }
+        };
+        // A text's own P1 may be the right or the upper one: it stays so.
+        let (x1, x2) = ordered(p1.x <= p2.x, a.x, b.x);
+        let (y1, y2) = ordered(p1.y <= p2.y, a.y, b.y);
+        (Vec2::new(x1, y1), Vec2::new(x2, y2))
     }
 
     /// `IP`: P2 comes along where only P1 is given.
     pub(super) fn set_points(&mut self, p1: Option<Vec2>, p2: Option<Vec2>) {
         let (first, last) = match (p1, p2) {
-            (None, _) => self.usual,
+            (None, _) => self.usual_now(),
             (Some(p1), None) => (p1, p1 + (self.p2 - self.p1)),
             (Some(p1), Some(p2)) => (p1, p2),
         };
         (self.p1, self.p2) = (limited(first), limited(last));
     }
 
-    /// `IR`: as `IP`, in percent of the sheet.
+    /// `IR`: as `IP`, in percent of the sheet along the turned axes.
     pub(super) fn set_relative_points(&mut self, p1: Option<Vec2>, p2: Option<Vec2>) {
-        let sheet = self.sheet;
+        let is_odd = self.quarters % 2 == 1;
+        let sheet = if is_odd { Vec2::new(self.sheet.y, self.sheet.x) } else { self.sheet };
         let place = |share: Vec2| Vec2::new(sheet.x * share.x / 100.0, sheet.y * share.y / 100.0);
         self.set_points(p1.map(place), p2.map(place));
     }
@@ -128,13 +150,21 @@ impl Scaling {
 
     /// Where user coordinates lie.
     pub(super) fn place(&self, user: Vec2) -> Vec2 {
-        let at = if self.area.is_some() {
-            let (factor, origin) = self.factors();
-            Vec2::new(origin.x + factor.x * user.x, origin.y + factor.y * user.y)
-        } else {
-            user
-        };
-        limited(self.turned(at) + self.shift())
+        self.place_of_units(self.units(user))
+    }
+
+    /// User coordinates in plotter units along the turned axes.
+    pub(super) fn units(&self, user: Vec2) -> Vec2 {
+        if self.area.is_none() {
+            return user;
+        }
+        let (factor, origin) = self.factors();
+        Vec2::new(origin.x + factor.x * user.x, origin.y + factor.y * user.y)
+    }
+
+    /// Where plotter units along the turned axes lie on the sheet.
+    pub(super) fn place_of_units(&self, units: Vec2) -> Vec2 {
+        limited(self.turned(units) + self.shift())
     }
 
     /// The way that a user's step is.
@@ -194,10 +224,15 @@ impl Scaling {
 
     /// The corner of the sheet that the turned origin is moved to; none while the size of the sheet is not known.
     fn shift(&self) -> Vec2 {
-        match (self.sheet_said, self.quarters) {
-            (true, 1) => Vec2::new(self.sheet.x, 0.0),
-            (true, 2) => self.sheet,
-            (true, 3) => Vec2::new(0.0, self.sheet.y),
+        if self.sheet_said { self.corner() } else { Vec2::default() }
+    }
+
+    /// The corner of the sheet that is the lower left one along the turned axes.
+    fn corner(&self) -> Vec2 {
+        match self.quarters {
+            1 => Vec2::new(self.sheet.x, 0.0),
+            2 => self.sheet,
+            3 => Vec2::new(0.0, self.sheet.y),
             _ => Vec2::default(),
         }
     }

@@ -128,7 +128,7 @@ fn an_arc_goes_from_where_the_pen_stands_and_leaves_it_at_its_end() {
 fn what_a_cutter_is_told_is_a_notice() {
     let text = b"TB26,0,3000,2000;IN;FC18,1,1;FD90;PU1,1;PD2,2;PU;PG;@@";
     let said: Vec<_> = plot_ops(text).filter_map(Result::err).collect();
-    assert!(said.len() == 3 && said.iter().all(Error::is_notice), "{said:?}");
+    assert!(said.len() == 4 && said.iter().all(Error::is_notice), "{said:?}");
     assert_eq!(
         said[1].to_string(),
         "line 1, column 21 (byte 20): FC (blade offset of a cutter) is not supported and is left out"

@@ -144,8 +144,8 @@ fn encoded_data_are_a_polyline() {
     assert_eq!(
         ops("PE7O;PE!;PE7s;PU1,1"),
         "<line 1, column 1 (byte 0): PE lacks the last byte of its last number and is left out> \
-         <line 1, column 8 (byte 7): `!` does not belong into PE, whose rest is left out: separate numbers by commas and \
-         end the command with `;`> \
+         <line 1, column 8 (byte 7): `!` does not belong into PE, whose rest is left out: its data are digits from `?` on \
+         and the flags `<`, `=`, `>`, `:` and `7`; end them with `;`> \
          <line 1, column 10 (byte 9): PE has an x of 10 without a y, which is left out: give coordinates in pairs> U1,1"
     );
 }

@@ -14,6 +14,7 @@ fn events(text: &[u8]) -> String {
             Ok(Event::Number { value, last, .. }) => (format!(" {value}"), last),
             Ok(Event::Byte { byte, last, .. }) => (format!(" '{}'", byte.escape_ascii()), last),
             Ok(Event::End) => (String::new(), true),
+            Ok(Event::Extension { extension, .. }) => (format!(" {extension}"), true),
             Ok(Event::Escape { kind, name }) => {
                 (format!(" ESC{}{}", char::from(kind), char::from(name)), false)
             }
@@ -107,10 +108,11 @@ fn garbage_between_commands_is_reported_once() {
 }
 
 #[test]
-fn what_editors_and_cutters_add_is_passed_over() {
+fn what_editors_add_is_passed_over_and_what_cutters_are_told_is_no_command() {
     assert_eq!(events(b"\xEF\xBB\xBFPU;"), "PU.");
-    assert_eq!(events(b"!ST1;PU;!FS80\nPD1,2;!PG;"), "PU. PD 1 2.");
-    assert_eq!(events(b"PD1,2;PG;@@@\n@"), "PD 1 2. PG.");
+    assert_eq!(events(b"!ST1;PU;!FS80\nPD1,2;!PG;"), "!ST. PU. !FS. PD 1 2. !PG.");
+    assert_eq!(events(b"PD1,2;PG;@@@\n@"), "PD 1 2. PG. @. @. @. @.");
+    assert_eq!(events(b"!S;!;!1,2;\x03!Q"), "!S. !. !. byte 0x03. !Q.");
 }
 
 #[test]
@@ -136,7 +138,7 @@ fn a_truncated_text_says_what_is_missing() {
     PD 1 <line 1, column 5 (byte 4): PD holds a malformed number, and its rest is left out: a number is like `-12` or `0.5`>
     LB 'a' 'b' 'c' <line 1, column 6 (byte 5): the text ends within LB: it must be ended by the label terminator (byte 0x03 unless DT sets another)>
     BP 'a' 'b' 'c' <line 1, column 7 (byte 6): the text ends within BP: it must be ended by `"`>
-    PE '!' '!' <line 1, column 5 (byte 4): the text ends within PE: it must be ended by `;`>
+    PE '!' '!'.
     <line 1, column 2 (byte 1): the text ends within an escape sequence>
     <line 1, column 3 (byte 2): the text ends within an escape sequence>
     <line 1, column 4 (byte 3): the text ends within an escape sequence>

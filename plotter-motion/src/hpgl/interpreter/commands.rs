@@ -1,7 +1,7 @@
 //! Which command does what: from its first letter over its numbers and bytes to its end.
 
 use super::super::encoded::Decoder;
-use super::super::{Error, Mnemonic, Position};
+use super::super::{Commands, Error, Extension, Mnemonic, Position};
 use super::open::Open;
 use super::{Interpreter, Item};
 use crate::PlotOp;
@@ -35,6 +35,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             b"SM" => self.symbol = None,
             letters if takes(letters).is_some() => {}
             letters if is_quiet(letters) => self.open = None,
+            letters if once(letters).is_some_and(|kind| !self.is_new(kind)) => self.open = None,
             _ => self.leave_out(command, at),
         }
     }
@@ -42,6 +43,24 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     fn leave_out(&mut self, command: Mnemonic, at: Position) {
         self.open = None;
         self.complain(Error::Unsupported { at, command });
+    }
+
+    /// Encoded data ended without their `;`, where these commands begin.
+    pub(super) fn end_by(&mut self, commands: Commands, at: Position, last: bool, byte: Option<u8>) {
+        if let Some(decoder) = &mut self.decoder {
+            decoder.forget_number();
+        }
+        let mut at = at;
+        for command in commands.iter() {
+            self.end();
+            self.begin(command, at);
+            at = command.letters().iter().fold(at, |at, letter| at.after(*letter));
+        }
+        if let Some(byte) = byte {
+            self.byte(byte, at);
+        } else if last {
+            self.end();
+        }
     }
 
     pub(super) fn number(&mut self, value: f64, at: Position) {
@@ -220,8 +239,7 @@ fn takes(letters: &[u8; 2]) -> Option<u32> {
     })
 }
 
-/// What says nothing to a machine with one pen that draws what it is told: colours, the order of drawing, forces and
-/// accelerations, motion without a stop (which the planner sees to), ends and joins of thick lines, the looks of fonts, questions to the plotter, its display and its
+/// What says nothing to a machine with one pen that draws what it is told: colours, the order of drawing, accelerations, motion without a stop (which the planner sees to), ends and joins of thick lines, the looks of fonts, questions to the plotter, its display and its
 /// cutter. A person who reads what was left out of a drawing wants to read nothing of these.
 fn is_quiet(letters: &[u8; 2]) -> bool {
     matches!(
@@ -239,7 +257,6 @@ fn is_quiet(letters: &[u8; 2]) -> bool {
             | b"EC"
             | b"FI"
             | b"FN"
-            | b"FS"
             | b"GC"
             | b"GM"
             | b"GP"
@@ -275,6 +292,12 @@ fn is_quiet(letters: &[u8; 2]) -> bool {
             | b"VN"
             | b"WD"
     )
+}
+
+/// Which kind of what is said once this command is: what a pen has not, and a text may set before each line.
+fn once(letters: &[u8; 2]) -> Option<usize> {
+    let kind = [b"FS", b"FC", b"FD"].iter().position(|of| *of == letters)?;
+    Some(Extension::KINDS + kind)
 }
 
 /// What would draw, or use the polygon buffer, while a polygon is put there.

@@ -129,6 +129,8 @@ pub struct Interpreter<const VERTICES: usize = USUAL_VERTICES> {
     width_in_percent: bool,
     // what coordinates and lines are
     scaling: Scaling,
+    /// Opposite corners of the window, plotter units along the turned axes.
+    window: Option<(Vec2, Vec2)>,
     tolerance_units: f64,
     patterns: [Pattern; PATTERNS],
     /// Length of a pattern, units.
@@ -170,6 +172,8 @@ pub struct Interpreter<const VERTICES: usize = USUAL_VERTICES> {
     character_at: Vec2,
     // commands in, operations out
     open: Option<Open>,
+    /// What has been said and is said once: a bit for each kind.
+    said: u32,
     /// The command that has begun last.
     latest: Option<(Mnemonic, Position)>,
     queue: [Option<Item>; QUEUE],
@@ -226,6 +230,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             width_mm: setup::USUAL_WIDTH_MM,
             width_in_percent: false,
             scaling: Scaling::new(&options),
+            window: None,
             // A tolerance of 0 would ask for lines without end.
             tolerance_units: if tolerance_units > f64::EPSILON { tolerance_units } else { f64::EPSILON },
             patterns: core::array::from_fn(Pattern::usual),
@@ -253,6 +258,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             character_down: false,
             character_at: Vec2::default(),
             open: None,
+            said: 0,
             latest: None,
             queue: [None; QUEUE],
             queued: 0,
@@ -289,6 +295,12 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
                 }
             }
             Ok(Event::End) => self.end(),
+            Ok(Event::EndedBy { commands, at, last, byte }) => self.end_by(commands, at, last, byte),
+            Ok(Event::Extension { extension, at }) => {
+                if self.is_new(extension.kind()) {
+                    self.complain(Error::Extension { at, extension });
+                }
+            }
             Ok(Event::Escape { kind: b'.', .. }) => {}
             Ok(Event::Escape { kind, .. }) => {
                 self.end();
@@ -464,6 +476,14 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             }
             None => debug_assert!(false, "an event gives at most {QUEUE} items"),
         }
+    }
+
+    /// Whether this kind of thing has not been said yet; now it is.
+    fn is_new(&mut self, kind: usize) -> bool {
+        let bit = u32::try_from(kind).ok().and_then(|kind| 1_u32.checked_shl(kind)).unwrap_or(0);
+        let is_new = self.said & bit == 0;
+        self.said |= bit;
+        is_new
     }
 
     fn complain(&mut self, error: Error) {

@@ -51,7 +51,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
     pub(super) fn set_defaults(&mut self) {
         self.relative = false;
         self.scaling.set_area(None);
-        self.path.window = None;
+        self.set_window_corners(None);
         self.patterns = core::array::from_fn(Pattern::usual);
         self.pattern_length = 0.0;
         self.path.set_line_type(LineType::Solid);
@@ -118,6 +118,7 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             _ => return Err(open.bad(0, "0, 90, 180 or 270 degrees")),
         };
         self.scaling.turn(quarters);
+        self.set_window_corners(self.window);
         self.lettering.line_start = self.at;
         Ok(())
     }
@@ -135,17 +136,24 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
             _ => [Vec2::default(), Vec2::new(length, width), Vec2::new(length, width)],
         };
         self.scaling.set_sheet(sheet, p1, p2);
+        self.set_window_corners(self.window);
         Ok(())
     }
 
     pub(super) fn set_window(&mut self, open: &Open) -> Result<(), Error> {
-        self.path.window = if open.none_or(4, "the x and y of two opposite corners")? {
-            let corner = |index| self.scaling.place(open.pair(index).unwrap_or_default());
-            Some(Window::between(corner(0), corner(2)))
-        } else {
-            None
-        };
+        let has_corners = open.none_or(4, "the x and y of two opposite corners")?;
+        self.set_window_corners(has_corners.then(|| {
+            let corner = |index| self.scaling.units(open.pair(index).unwrap_or_default());
+            (corner(0), corner(2))
+        }));
         Ok(())
+    }
+
+    /// The window keeps its numbers, in plotter units, when the axes turn.
+    fn set_window_corners(&mut self, corners: Option<(Vec2, Vec2)>) {
+        self.window = corners;
+        self.path.window = corners
+            .map(|(a, b)| Window::between(self.scaling.place_of_units(a), self.scaling.place_of_units(b)));
     }
 
     pub(super) fn set_line_type(&mut self, open: &Open) -> Result<(), Error> {
