@@ -88,13 +88,14 @@ fn pen_of_group(name: &str) -> Option<u8> {
 }
 
 fn left_out(svg: &SvgDrawing) -> Vec<Diagnostic> {
-    let SvgLeftOut { texts, text_line, images, image_line, clip_paths, masks, filters, paper } = svg.left_out;
+    let SvgLeftOut { texts, text_line, images, image_line, clip_paths, masks, filters, paper, occluded: _ } =
+        svg.left_out;
     let remedy = |text| Cow::Borrowed(text);
     [
         (texts, text_line, "text", missing(svg)),
         (images, image_line, "picture", remedy("left out: trace it")),
-        (clip_paths, None, "clip path", remedy("without effect: what it cuts off is drawn")),
-        (masks, None, "mask", remedy("without effect: what it hides is drawn")),
+        (clip_paths, None, "clip path", remedy("applied: what it cuts off is left out")),
+        (masks, None, "mask", remedy("applied: what it hides is left out")),
         (filters, None, "filter", remedy("without effect")),
         (paper, None, "white shape", remedy("left out: it leaves no ink on white paper")),
     ]
