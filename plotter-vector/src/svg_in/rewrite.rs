@@ -391,11 +391,9 @@ impl<'a> Rewriter<'a> {
                     self.tell(byte, text);
                 }
             }
-            _ if in_style && MOVES.contains(&name) => {
-                if !matches!(value.trim(), "none" | "auto") {
-                    let text = format!("{name}: {} is not done: write it as transform", shortened(value));
-                    self.tell(byte, text);
-                }
+            _ if in_style && MOVES.contains(&name) && !matches!(value.trim(), "none" | "auto") => {
+                let text = format!("{name}: {} is not done: write it as transform", shortened(value));
+                self.tell(byte, text);
             }
             "filter" => {
                 let bare = paint::without_important(value).0;
