@@ -16,7 +16,7 @@
 
 use clap::{Parser, ValueEnum};
 use plotter_examples::{
-    Diagnostic, Diagnostics, DrawingFile, FontFiles, Language, Reading, Severity, SvgText, at, print, run,
+    Diagnostic, Diagnostics, DrawingFile, Language, Reading, Severity, SvgReading, SvgText, at, print, run,
 };
 use plotter_motion::gcode::{self, LaserCommand, PenControl, PenConvention, ServoCommand};
 use plotter_motion::hpgl::{self, thesis_text};
@@ -37,9 +37,10 @@ const SVG_MOST_MM: f64 = 100_000.0;
 ///
 /// Lines and arcs, pens, speeds and pauses are converted as far as the target knows them. Arcs stay arcs in HPGL (AA), G-code (G2,
 /// G3) and SVG (A). SVG is read in mm by width, height and viewBox, with the lower left corner as the origin: along strokes, and
-/// along the border of what is only filled; each colour is a pen, 1, 2, … in the order in which they come. Its texts are set in the
-/// fonts that --font gives, and never in others: so a file becomes the same strokes everywhere. In SVG written here each
-/// pen is a group, and is that pen when it is read again.
+/// along the border of what is only filled; each colour is a pen, 1, 2, … in the order in which they come, or each layer (--pens). Clip
+/// paths and masks cut it, and white is taken for the paper (--paper). Its texts are set in the fonts that --font gives, and never in
+/// others: so a file becomes the same strokes everywhere. In SVG written here each pen is a group, and is that pen when it is read
+/// again; the sheet of an SVG stays as large as it is.
 #[derive(Debug, Parser)]
 #[command(
     name = "convert",
@@ -48,6 +49,7 @@ const SVG_MOST_MM: f64 = 100_000.0;
                   convert drawing.svg drawing.plt --tolerance-mm 0.02\n  \
                   convert drawing.gcode drawing.svg --convention unicorn\n  \
                   convert plan.svg plan.plt --font DejaVuSans.ttf --font /usr/share/fonts\n  \
+                  convert layers.svg layers.plt --pens layer --paper none\n  \
                   convert drawing.svg - --to gcode --pen-up \"M280 P0 S60\" --pen-down \"M280 P0 S30\"\n  \
                   cat drawing.plt | convert - drawing.svg\n\n\
                   Suffixes: .hpgl .plt .hpg for hpgl; .gcode .nc .ngc for gcode; .svg; .txt for thesis.\n\
@@ -86,7 +88,7 @@ struct Arguments {
     #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     step_mm: Option<f64>,
     #[command(flatten)]
-    fonts: FontFiles,
+    svg_reading: SvgReading,
     /// Ends at the first error, with exit status 1; notices pass
     #[arg(long)]
     strict: bool,
@@ -157,7 +159,7 @@ fn is_same(input: &Path, output: &Path) -> bool {
 }
 
 fn convert(arguments: &Arguments, language: Language) -> Result<(), String> {
-    let drawing = DrawingFile::open(&arguments.input, arguments.from)?.with_fonts(&arguments.fonts)?;
+    let drawing = DrawingFile::open(&arguments.input, arguments.from)?.with_svg(&arguments.svg_reading)?;
     let how = Reading {
         tolerance_mm: arguments.tolerance_mm,
         counts_per_mm: arguments.counts_per_mm,
@@ -166,6 +168,7 @@ fn convert(arguments: &Arguments, language: Language) -> Result<(), String> {
     };
     let mut ops = drawing.ops(how)?;
     let colours = std::mem::take(&mut ops.colours);
+    let sheet_mm = ops.sheet_mm;
     let mut said = Diagnostics::default();
     // Nothing is written, and no file replaced, before there is something to draw.
     let mut waiting = Vec::new();
@@ -181,7 +184,7 @@ fn convert(arguments: &Arguments, language: Language) -> Result<(), String> {
                     continue;
                 }
                 if writer.is_none() {
-                    let mut opened = Writer::open(arguments, language)?;
+                    let mut opened = Writer::open(arguments, language, sheet_mm)?;
                     for (op, line) in waiting.drain(..) {
                         opened.push(op, line, &mut at_op, &mut said);
                     }
@@ -209,8 +212,11 @@ fn convert(arguments: &Arguments, language: Language) -> Result<(), String> {
         }
     }
     let Some(writer) = writer else {
-        let why = said.first_error().map_or_else(String::new, |first| format!("; {first}"));
-        return Err(format!("{name}: nothing is drawn by it, read as {}{why}", drawing.language().name()));
+        return Err(format!(
+            "{name}: nothing is drawn by it, read as {}{}",
+            drawing.language().name(),
+            said.why_nothing()
+        ));
     };
     writer.finish(&colours, &mut said)?;
     said.complain(name);
@@ -285,7 +291,11 @@ impl fmt::Write for Sink {
 }
 
 impl<'a> Writer<'a> {
-    fn open(arguments: &'a Arguments, language: Language) -> Result<Self, String> {
+    fn open(
+        arguments: &'a Arguments,
+        language: Language,
+        sheet_mm: Option<(f64, f64)>,
+    ) -> Result<Self, String> {
         let path = arguments.output.as_path();
         let out: Box<dyn Write> = if path == Path::new("-") {
             Box::new(io::stdout())
@@ -298,7 +308,7 @@ impl<'a> Writer<'a> {
         let target = match language {
             Language::Hpgl => Target::Hpgl(hpgl::Writer::new(sink)),
             Language::Thesis => Target::Thesis(sink, StepPoint::default()),
-            Language::Svg => Target::Svg(SvgText::new(), sink),
+            Language::Svg => Target::Svg(SvgText::new().on_sheet(sheet_mm), sink),
             Language::CammGl | Language::GpGl => return Err(format!("{} is not written", language.name())),
             Language::Gcode => {
                 let usual = gcode::WriteOptions::default();

@@ -21,9 +21,9 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    CrossingSet, Diagnostics, DrawingFile, FontFiles, JointFigures, Language, LongSheetMachine,
-    LongSheetReport, LongSheetRun, Reading, Severity, TextilePattern, at, long_sheet_svg, print, read_file,
-    run, told_joints, write_file,
+    CrossingSet, Diagnostics, DrawingFile, JointFigures, Language, LongSheetMachine, LongSheetReport,
+    LongSheetRun, Reading, Severity, SvgReading, TextilePattern, at, long_sheet_svg, print, read_file, run,
+    told_joints, write_file,
 };
 use plotter_motion::{Machine, MachineConfig, MachineKind, PlotOp};
 use plotter_stitch::{FramePasses, JoinFrames};
@@ -63,7 +63,7 @@ struct Arguments {
     #[arg(long, value_name = "S", value_parser = step, allow_negative_numbers = true)]
     step_mm: Option<f64>,
     #[command(flatten)]
-    fonts: FontFiles,
+    svg_reading: SvgReading,
     /// The machine's TOML file [default: machines/textile-plotter.toml]
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
@@ -168,7 +168,7 @@ fn draw_sheet(arguments: &Arguments) -> Result<(), String> {
             draw(arguments, &sheet, &name, || pattern.ops())
         }
         Some(path) => {
-            let drawing = DrawingFile::open(path, arguments.language)?.with_fonts(&arguments.fonts)?;
+            let drawing = DrawingFile::open(path, arguments.language)?.with_svg(&arguments.svg_reading)?;
             let reading = Reading { counts_per_mm: 40.0, step_mm: arguments.step_mm, ..Reading::default() };
             let mut said = Diagnostics::default();
             // Nothing is drawn of a drawing with errors: read it once before.

@@ -21,8 +21,8 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, FontFiles, Happening, Language, Ops,
-    PlotFigures, Reading, Severity, SpeedChart, StepFile, SteppedPlot, SteppedPreview, SteppedReport, at,
+    BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, Happening, Language, Ops, PlotFigures,
+    Reading, Severity, SpeedChart, StepFile, SteppedPlot, SteppedPreview, SteppedReport, SvgReading, at,
     print, read_file, run, write_file,
 };
 use plotter_motion::kinematics::MotorScale;
@@ -64,7 +64,7 @@ struct Arguments {
     #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     step_mm: Option<f64>,
     #[command(flatten)]
-    fonts: FontFiles,
+    svg_reading: SvgReading,
     /// The machine's TOML file [default: machines/stepper-plotter.toml]
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
@@ -169,7 +169,7 @@ fn main() -> ExitCode {
 
 fn plot(arguments: &Arguments) -> Result<(), String> {
     let drawing = match &arguments.file {
-        Some(path) => DrawingFile::open(path, arguments.language)?.with_fonts(&arguments.fonts)?,
+        Some(path) => DrawingFile::open(path, arguments.language)?.with_svg(&arguments.svg_reading)?,
         None => DrawingFile::held("the built-in drawing", built_in().into_bytes(), None)?,
     };
     let mut said = Diagnostics::default();
@@ -241,8 +241,12 @@ fn check_drawn(drawing: &DrawingFile, read: &DrawnExtent, said: &Diagnostics) ->
     if read.drawn > 0 {
         return Ok(());
     }
-    let why = said.first_error().map_or_else(String::new, |first| format!("; {first}"));
-    Err(format!("{}: nothing is drawn by it, read as {}{why}", drawing.name(), drawing.language().name()))
+    Err(format!(
+        "{}: nothing is drawn by it, read as {}{}",
+        drawing.name(),
+        drawing.language().name(),
+        said.why_nothing()
+    ))
 }
 
 fn tell(

@@ -33,10 +33,12 @@ impl Diagnostics {
         }
     }
 
-    /// The first error, if there was one.
+    /// Why nothing is drawn by a file: its first error, else its first warning, else its first notice; empty where there is none.
     #[must_use]
-    pub fn first_error(&self) -> Option<&Diagnostic> {
-        self.kept.iter().find(|said| said.severity == Severity::Error)
+    pub fn why_nothing(&self) -> String {
+        let kinds = [Severity::Error, Severity::Warning, Severity::Notice];
+        let first = kinds.into_iter().find_map(|kind| self.kept.iter().find(|said| said.severity == kind));
+        first.map_or_else(String::new, |first| format!("; {first}"))
     }
 
     /// Says the first of each kind about the file `name` on the standard error.

@@ -1,7 +1,7 @@
 //! [`DrawingFile`]: a drawing in any of the languages, read as plot operations and diagnostics.
 
 use crate::language::is_dm_pl;
-use crate::{FontFiles, Language, at, svg_drawing};
+use crate::{Language, SvgReading, at, svg_drawing};
 use plotter_motion::hpgl::{cutter, thesis_text};
 use plotter_motion::{PlotOp, gcode, hpgl};
 use plotter_vector::SvgFonts;
@@ -96,6 +96,7 @@ pub struct DrawingFile {
     source: Source,
     language: Language,
     fonts: SvgFonts,
+    svg: SvgReading,
     /// What there is to say about the files of its fonts.
     notices: Vec<String>,
 }
@@ -147,17 +148,19 @@ impl DrawingFile {
     }
 
     fn of(name: String, source: Source, language: Language) -> Self {
-        Self { name, source, language, fonts: SvgFonts::default(), notices: Vec::new() }
+        let (fonts, svg) = (SvgFonts::default(), SvgReading::default());
+        Self { name, source, language, fonts, svg, notices: Vec::new() }
     }
 
-    /// Sets its texts in these fonts, if it is one of the pictures that have texts.
+    /// Reads it so, if it is an SVG picture.
     ///
     /// # Errors
     ///
-    /// What is wrong with the files.
-    pub fn with_fonts(mut self, files: &FontFiles) -> Result<Self, String> {
+    /// What is wrong with the files of its fonts.
+    pub fn with_svg(mut self, how: &SvgReading) -> Result<Self, String> {
         if self.language == Language::Svg {
-            (self.fonts, self.notices) = files.load()?;
+            (self.fonts, self.notices) = how.fonts.load()?;
+            self.svg = how.clone();
         }
         Ok(self)
     }
@@ -193,6 +196,7 @@ impl DrawingFile {
         let bytes = self.bytes(&place)?;
         let mut colours = Vec::new();
         let mut digit_mm = None;
+        let mut sheet_mm = None;
         let inner: Box<dyn Iterator<Item = Result<PlotOp, Diagnostic>>> = match self.language {
             Language::Hpgl => {
                 digit_mm = Some(1.0 / hpgl::UNITS_PER_MM);
@@ -247,15 +251,16 @@ impl DrawingFile {
                     Source::Held(bytes) => bytes.clone(),
                     Source::File(path) => crate::read_file(path)?,
                 };
-                let drawing = svg_drawing(&bytes, how.tolerance_mm, &self.fonts)
+                let drawing = svg_drawing(&bytes, how.tolerance_mm, &self.svg, &self.fonts)
                     .map_err(|error| format!("{}: {error}", self.name))?;
                 colours = drawing.colours;
+                sheet_mm = Some(drawing.sheet_mm);
                 let notices = self.notices.iter().map(|text| Diagnostic::new(Severity::Notice, text.clone()));
                 let diagnostics = notices.chain(drawing.diagnostics);
                 Box::new(diagnostics.map(Err).chain(drawing.ops.into_iter().map(Ok)))
             }
         };
-        Ok(Ops { inner, place, colours, digit_mm, failed: false })
+        Ok(Ops { inner, place, colours, digit_mm, sheet_mm, failed: false })
     }
 
     /// Which of the languages of cutters it is.
@@ -338,6 +343,8 @@ pub struct Ops<'a> {
     pub colours: Vec<[u8; 3]>,
     /// What the last digit of a place is worth that the file writes, mm, if the file tells: places are rounded to it.
     pub digit_mm: Option<f64>,
+    /// Width and height of its sheet, mm, if it has one: the lower left corner is the origin.
+    pub sheet_mm: Option<(f64, f64)>,
     failed: bool,
 }
 

@@ -56,6 +56,12 @@ impl Language {
     /// The language of a text that begins with `head`: the one in which more of it makes sense than not.
     #[must_use]
     pub fn of_contents(head: &[u8]) -> Option<Self> {
+        if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") {
+            // UTF-16: of these languages only SVG is ever written so.
+            let letters: Vec<u8> = head.iter().skip(2).copied().filter(|byte| *byte != 0).collect();
+            return (letters.trim_ascii_start().starts_with(b"<") && contains(&letters, b"<svg"))
+                .then_some(Self::Svg);
+        }
         let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
         if head.trim_ascii_start().starts_with(b"<") {
             return contains(head, b"<svg").then_some(Self::Svg);
@@ -160,6 +166,7 @@ mod tests {
         assert_eq!(told(b"\x1b\x04FX10,1\x03M100,100\x03D200,100\x03"), Some(Language::GpGl));
         assert_eq!(told(b"Command, X, Y\r\nPU, 02993, 13955\r\n"), Some(Language::Thesis));
         assert_eq!(told(b"\xef\xbb\xbf <?xml version='1.0'?>\n<svg/>"), Some(Language::Svg));
+        assert_eq!(told(b"\xff\xfe<\0s\0v\0g\0/\0>\0"), Some(Language::Svg));
         for junk in
             [&b"Once upon a time there was a plotter.\nIt drew."[..], b"\x7fELF\x02\x01\x01", b"{}", b""]
         {

@@ -1,9 +1,10 @@
 //! [`svg_drawing`]: what an SVG picture has to draw, as plot operations.
 
-use crate::{Diagnostic, Severity, usual_colour};
+use crate::{Diagnostic, Severity, SvgReading, usual_colour};
 use plotter_motion::{PlotOp, Point};
-use plotter_vector::{SvgDrawing, SvgFonts, SvgLeftOut, SvgOptions, SvgPens, read_svg_with_fonts};
+use plotter_vector::{SvgDrawing, SvgFonts, SvgLayer, SvgLeftOut, SvgOptions, SvgPens, read_svg_with_fonts};
 use std::borrow::Cow;
+use std::time::Duration;
 
 /// Finest and coarsest that curves of an SVG are cut into chords, mm: single precision, in which they are parsed, says no more.
 const TOLERANCES_MM: (f64, f64) = (0.001, 10.0);
@@ -23,20 +24,34 @@ pub struct SvgOps {
     pub diagnostics: Vec<Diagnostic>,
     /// Colour of each pen from 1 on: red, green, blue.
     pub colours: Vec<[u8; 3]>,
+    /// Width and height of the sheet, mm.
+    pub sheet_mm: (f64, f64),
 }
 
 /// What an SVG picture has to draw; [`read_svg_with_fonts`] says what becomes of it. Arcs stay arcs.
 ///
-/// Each colour is a pen, in the order in which they come; in a picture that was written here, of which each pen is a group, the pens
-/// are those that they were.
+/// Each colour is a pen, in the order in which they come, unless `how` says otherwise; in a picture that was written here, of which
+/// each pen is a group, the pens are those that they were. Where a layer asks for it, the pen waits before it.
 ///
 /// # Errors
 ///
 /// What is wrong with the file, and where.
-pub fn svg_drawing(bytes: &[u8], tolerance_mm: f64, fonts: &SvgFonts) -> Result<SvgOps, String> {
+pub fn svg_drawing(
+    bytes: &[u8],
+    tolerance_mm: f64,
+    how: &SvgReading,
+    fonts: &SvgFonts,
+) -> Result<SvgOps, String> {
     let (least, most) = TOLERANCES_MM;
-    let options =
-        SvgOptions { tolerance_mm: tolerance_mm.clamp(least, most), arcs: true, ..SvgOptions::default() };
+    let options = SvgOptions {
+        tolerance_mm: tolerance_mm.clamp(least, most),
+        arcs: true,
+        paper: how.paper.0,
+        keeps_clipped: how.keep_clipped,
+        occludes: how.occlude,
+        px_per_inch: how.px_per_inch,
+        ..SvgOptions::default()
+    };
     let read = |pens| {
         let error = |error: plotter_vector::SvgError| {
             let text = error.to_string();
@@ -45,7 +60,7 @@ pub fn svg_drawing(bytes: &[u8], tolerance_mm: f64, fonts: &SvgFonts) -> Result<
         read_svg_with_fonts(bytes, &SvgOptions { pens, ..options }, fonts).map_err(error)
     };
     let may_name_pens = bytes.windows(PEN_GROUP.len()).any(|word| word == PEN_GROUP.as_bytes());
-    let by_groups = if may_name_pens { Some(read(SvgPens::ByLayer)?) } else { None };
+    let by_groups = if may_name_pens && how.pens.is_none() { Some(read(SvgPens::ByLayer)?) } else { None };
     let by_groups = by_groups.and_then(|svg| {
         let numbers: Option<Vec<u8>> = svg.pens.iter().map(|pen| pen_of_group(&pen.name)).collect();
         numbers.filter(|numbers| !numbers.is_empty()).map(|numbers| (svg, numbers))
@@ -53,7 +68,7 @@ pub fn svg_drawing(bytes: &[u8], tolerance_mm: f64, fonts: &SvgFonts) -> Result<
     let (svg, numbers) = match by_groups {
         Some(found) => found,
         None => {
-            let svg = read(SvgPens::ByColour)?;
+            let svg = read(how.pens.map_or(SvgPens::ByColour, SvgPens::from))?;
             let numbers = svg.pens.iter().map(|pen| pen.number).collect();
             (svg, numbers)
         }
@@ -74,12 +89,54 @@ pub fn svg_drawing(bytes: &[u8], tolerance_mm: f64, fonts: &SvgFonts) -> Result<
     if let [only] = numbers[..] {
         ops.push(PlotOp::SelectPen { pen: only });
     }
-    ops.extend(svg.drawing.plot_ops_with_arcs(svg.scale).map(|op| match op {
-        PlotOp::SelectPen { pen } => PlotOp::SelectPen { pen: number_of(pen) },
-        op => op,
-    }));
-    let diagnostics = left_out(&svg).into_iter().chain(beyond(&svg)).collect();
-    Ok(SvgOps { ops, diagnostics, colours })
+    let mut stroke = 0;
+    for op in svg.drawing.plot_ops_with_arcs(svg.scale) {
+        if matches!(op, PlotOp::Travel { .. }) {
+            let begins = |layer: &&SvgLayer| layer.first_stroke == Some(stroke);
+            let waits_ms = svg.layers.iter().filter(begins).filter_map(|layer| layer.delay_ms).max();
+            ops.extend(waits_ms.map(|ms| PlotOp::Dwell { duration: Duration::from_millis(ms.into()) }));
+            stroke += 1;
+        }
+        ops.push(match op {
+            PlotOp::SelectPen { pen } => PlotOp::SelectPen { pen: number_of(pen) },
+            op => op,
+        });
+    }
+    let problems = svg.problems.iter().map(|problem| Diagnostic {
+        line: Some(problem.line),
+        column: Some(problem.column),
+        ..Diagnostic::new(Severity::Warning, problem.text.clone())
+    });
+    let diagnostics =
+        problems.chain(left_out(&svg, how)).chain(of_layers(&svg)).chain(beyond(&svg)).collect();
+    Ok(SvgOps { ops, diagnostics, colours, sheet_mm: (svg.width_mm, svg.height_mm) })
+}
+
+/// What the names of layers ask for and is not done here.
+fn of_layers(svg: &SvgDrawing) -> Vec<Diagnostic> {
+    let mut said = Vec::new();
+    for layer in &svg.layers {
+        let SvgLayer { name, is_left_out, pauses, speed_percent, height_percent, first_stroke, .. } = layer;
+        if *is_left_out {
+            said.push(format!("layer {name:?} is left out, as the % in its name asks"));
+        }
+        if first_stroke.is_none() {
+            continue;
+        }
+        let asked = [
+            pauses.then(|| "a pause before it (!)".to_owned()),
+            speed_percent.map(|percent| format!("{percent} % of the speed (+S)")),
+            height_percent.map(|percent| format!("{percent} % of the pen's height (+H)")),
+        ];
+        let asked: Vec<String> = asked.into_iter().flatten().collect();
+        if !asked.is_empty() {
+            said.push(format!(
+                "layer {name:?} asks for {}, which is not done: set it at the machine",
+                asked.join(" and ")
+            ));
+        }
+    }
+    said.into_iter().map(|text| Diagnostic::new(Severity::Notice, text)).collect()
 }
 
 /// The pen that a group is of, by its name.
@@ -87,16 +144,32 @@ fn pen_of_group(name: &str) -> Option<u8> {
     name.strip_prefix(PEN_GROUP)?.parse().ok().filter(|pen| *pen > 0)
 }
 
-fn left_out(svg: &SvgDrawing) -> Vec<Diagnostic> {
-    let SvgLeftOut { texts, text_line, images, image_line, clip_paths, masks, filters, paper } = svg.left_out;
+fn left_out(svg: &SvgDrawing, how: &SvgReading) -> Vec<Diagnostic> {
+    let SvgLeftOut { texts, text_line, images, image_line, clip_paths, masks, filters, occluded, paper } =
+        svg.left_out;
     let remedy = |text| Cow::Borrowed(text);
+    let paper_colour = how.paper.0.map_or_else(String::new, |colour| match colour {
+        plotter_vector::Rgb::WHITE => "white".to_owned(),
+        plotter_vector::Rgb::BLACK => "black".to_owned(),
+        other => other.to_string(),
+    });
+    let in_paper = format!(
+        "left out: it leaves no ink on {paper_colour} paper; give the paper's colour with --paper COLOUR, or --paper none to draw all"
+    );
+    let shape = format!("{paper_colour} shape");
     [
         (texts, text_line, "text", missing(svg)),
         (images, image_line, "picture", remedy("left out: trace it")),
-        (clip_paths, None, "clip path", remedy("without effect: what it cuts off is drawn")),
-        (masks, None, "mask", remedy("without effect: what it hides is drawn")),
+        (
+            clip_paths,
+            None,
+            "clip path",
+            remedy("applied: what it cuts off is left out; --keep-clipped draws it"),
+        ),
+        (masks, None, "mask", remedy("applied: what it hides is left out; --keep-clipped draws it")),
+        (occluded, None, "stroke", remedy("hidden by filled shapes, or a part of it is")),
         (filters, None, "filter", remedy("without effect")),
-        (paper, None, "white shape", remedy("left out: it leaves no ink on white paper")),
+        (paper, None, &shape, in_paper.into()),
     ]
     .into_iter()
     .filter(|(count, ..)| *count > 0)
@@ -166,7 +239,7 @@ mod tests {
         let text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100mm\" height=\"5cm\" viewBox=\"0 0 200 100\">\n{body}\n</svg>"
         );
-        svg_drawing(text.as_bytes(), 0.01, &SvgFonts::default()).unwrap()
+        svg_drawing(text.as_bytes(), 0.01, &SvgReading::default(), &SvgFonts::default()).unwrap()
     }
 
     fn pens(drawing: &SvgOps) -> Vec<u8> {
@@ -239,10 +312,11 @@ mod tests {
             said,
             [
                 "line 2: a text is left out: give a font with --font FILE, or convert it to paths",
-                "a white shape is left out: it leaves no ink on white paper"
+                "a white shape is left out: it leaves no ink on white paper; give the paper's colour with --paper COLOUR, or \
+                 --paper none to draw all"
             ]
         );
         assert!(drawing.ops.is_empty());
-        assert!(svg_drawing(b"<svg", 0.01, &SvgFonts::default()).is_err());
+        assert!(svg_drawing(b"<svg", 0.01, &SvgReading::default(), &SvgFonts::default()).is_err());
     }
 }

@@ -21,6 +21,7 @@ pub struct SvgText {
     at: Point,
     stroke: String,
     bounds: Option<(Point, Point)>,
+    sheet_mm: Option<(f64, f64)>,
 }
 
 impl SvgText {
@@ -28,6 +29,12 @@ impl SvgText {
     #[must_use]
     pub fn new() -> Self {
         Self { pen: 1, ..Self::default() }
+    }
+
+    /// A sheet of this width and height, mm, with its lower left corner at the origin: as large stays the picture, whatever is drawn.
+    #[must_use]
+    pub fn on_sheet(self, sheet_mm: Option<(f64, f64)>) -> Self {
+        Self { sheet_mm, ..self }
     }
 
     /// Takes the next operation. What neither moves the pen nor changes it leaves no mark.
@@ -114,6 +121,9 @@ impl SvgText {
     /// Where the lower left corner of the picture lies, mm.
     #[must_use]
     pub fn corner(&self) -> Point {
+        if self.sheet_mm.is_some() {
+            return Point::ORIGIN;
+        }
         let (least, _) = self.bounds.unwrap_or_default();
         Point::new(least.x.min(0.0), least.y.min(0.0))
     }
@@ -124,8 +134,10 @@ impl SvgText {
         self.end();
         let corner = self.corner();
         let (_, most) = self.bounds.unwrap_or_default();
-        let width = (most.x - corner.x + PEN_MM).ceil().max(1.0);
-        let height = (most.y - corner.y + PEN_MM).ceil().max(1.0);
+        let (width, height) = self.sheet_mm.unwrap_or_else(|| {
+            let side = |length_mm: f64| (length_mm + PEN_MM).ceil().max(1.0);
+            (side(most.x - corner.x), side(most.y - corner.y))
+        });
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"{} {} {} {}\">\n",
             short(width),
@@ -177,6 +189,14 @@ mod tests {
         );
         assert!(svg.contains("<path d=\"M10 5L20.5 5\"/>"), "{svg}");
         assert!(svg.contains("<path d=\"M20.5 5A5 5 0 0 1 15.5 10\"/>"), "{svg}");
+    }
+
+    #[test]
+    fn a_sheet_stays_as_large_as_it_is() {
+        let mut text = SvgText::new().on_sheet(Some((210.0, 297.0)));
+        text.push(PlotOp::Draw { to: Point::new(-3.0, 300.0), feed_mm_s: None });
+        assert_eq!(text.corner(), Point::ORIGIN);
+        assert!(text.finish(&[]).contains("width=\"210mm\" height=\"297mm\" viewBox=\"0 -297 210 297\""));
     }
 
     #[test]

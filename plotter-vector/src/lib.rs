@@ -101,7 +101,9 @@ pub use simplify::{Bounded, DynamicThreshold, MAX_REACH_PX, Simplify};
 pub use speckle::{Despeckled, context_rows, despeckle, smallest_mark_px};
 pub use svg::{svg, svg_in_colour};
 #[cfg(feature = "svg-in")]
-pub use svg_in::{SvgDrawing, SvgError, SvgLeftOut, SvgMissingFonts, SvgOptions, SvgPens, read_svg};
+pub use svg_in::{
+    SvgDrawing, SvgError, SvgLayer, SvgLeftOut, SvgMissingFonts, SvgOptions, SvgPens, SvgProblem, read_svg,
+};
 #[cfg(feature = "svg-text")]
 pub use svg_in::{SvgFontError, SvgFonts, read_svg_with_fonts};
 pub use thinning::{Thinned, Thinning, ThinningMethod, ThinningProgress};

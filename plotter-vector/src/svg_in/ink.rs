@@ -1,12 +1,19 @@
 //! [`Ink`]: the parser's tree as strokes, each with its pen.
 
 use super::arc::bulge;
+use super::boxes::Boxes;
+use super::clip::{Regions, is_even_odd};
 use super::curve::Cubic;
 use super::dash::Dashes;
+use super::region::{Keep, Region, bounds_of};
 use super::survey::without_spaces;
-use super::{MAX_PX, MM_PER_PX, SvgError, SvgLeftOut, SvgOptions, SvgPens};
+use super::{MAX_PX, SvgError, SvgLayer, SvgLeftOut, SvgOptions, SvgPens};
 use crate::{Curve, Drawing, MAX_PENS, PalettePen, PxPoint, Rgb};
+use std::collections::{BTreeMap, BTreeSet};
 use usvg::tiny_skia_path::{PathSegment, Point, Transform};
+
+/// Least opacity with which a fill hides what lies below it.
+const HIDES: f32 = 0.5;
 
 /// A drawing in the making.
 pub(super) struct Ink<'a> {
@@ -15,13 +22,23 @@ pub(super) struct Ink<'a> {
     pub(super) left_out: SvgLeftOut,
     /// The letters of the first text that is left out, without spaces.
     pub(super) text: Option<String>,
+    pub(super) layers: Vec<SvgLayer>,
     options: SvgOptions,
-    /// Id and name of each group at the top of the file.
-    layers: &'a [(String, String)],
-    /// The layer's id that each pen stands for; beside `pens`.
-    pen_layers: Vec<String>,
+    /// The layer of each group that is one, by its id.
+    layer_of: BTreeMap<String, usize>,
+    /// Numbers of pens that the names of layers take.
+    named_pens: BTreeSet<u8>,
+    /// The layer that each pen stands for; beside `pens`.
+    pen_layers: Vec<Option<usize>>,
     /// Tells the texts of which all outlines are there.
     draw_whole: Option<&'a dyn Fn(&usvg::Text) -> bool>,
+    regions: Regions,
+    /// What the clip paths and masks of the groups around leave, and whether it has cut anything.
+    cuts: Vec<(Region, bool)>,
+    /// Opacity of the groups around.
+    opacity: f32,
+    /// Fills that hide what lies below, each with the number of strokes below it.
+    covers: Vec<(Region, usize)>,
 }
 
 /// What the pen follows on a shape.
@@ -37,24 +54,53 @@ impl<'a> Ink<'a> {
     pub(super) fn new(
         drawing: Drawing,
         options: SvgOptions,
-        layers: &'a [(String, String)],
+        layers: Vec<(String, SvgLayer)>,
         draw_whole: Option<&'a dyn Fn(&usvg::Text) -> bool>,
     ) -> Self {
-        let (pens, pen_layers, left_out) = (Vec::new(), Vec::new(), SvgLeftOut::default());
-        Self { drawing, pens, left_out, text: None, options, layers, pen_layers, draw_whole }
+        let (ids, layers): (Vec<String>, Vec<SvgLayer>) = layers.into_iter().unzip();
+        Self {
+            drawing,
+            pens: Vec::new(),
+            left_out: SvgLeftOut::default(),
+            text: None,
+            options,
+            layer_of: ids.into_iter().zip(0..).collect(),
+            named_pens: layers
+                .iter()
+                .filter(|layer| !layer.is_left_out)
+                .filter_map(|layer| layer.number)
+                .collect(),
+            layers,
+            pen_layers: Vec::new(),
+            draw_whole,
+            regions: Regions::new(options.tolerance_mm / options.mm_per_px(), options.max_vertices),
+            cuts: Vec::new(),
+            opacity: 1.0,
+            covers: Vec::new(),
+        }
     }
 
-    /// Draws a group and all that is in it. As deep as the file is nested, which has been checked.
-    pub(super) fn group(&mut self, group: &usvg::Group, layer: &str) -> Result<(), SvgError> {
+    /// Draws a group and all that is in it, which is of this layer. As deep as the file is nested, which has been checked.
+    pub(super) fn group(&mut self, group: &usvg::Group, layer: Option<usize>) -> Result<(), SvgError> {
         if group.opacity().get() <= 0.0 {
             return Ok(());
         }
-        let left_out = &mut self.left_out;
-        left_out.clip_paths += usize::from(group.clip_path().is_some());
-        left_out.masks += usize::from(group.mask().is_some());
-        left_out.filters += usize::from(!group.filters().is_empty());
-        let top = layer.is_empty() && self.layers.iter().any(|(id, _)| id == group.id());
-        let layer = if top { group.id() } else { layer };
+        let layer = layer.or_else(|| self.layer_of.get(group.id()).copied());
+        if layer.and_then(|layer| self.layers.get(layer)).is_some_and(|layer| layer.is_left_out) {
+            return Ok(());
+        }
+        let (around, opacity) = (self.cuts.len(), self.opacity);
+        self.opacity *= group.opacity().get();
+        if !self.options.keeps_clipped {
+            if let Some(clip) = group.clip_path() {
+                let region = self.regions.clip(clip, group.abs_transform())?;
+                self.cuts.push((region, false));
+            }
+            if let Some(mask) = group.mask() {
+                let region = self.regions.mask(mask, group.abs_transform())?;
+                self.cuts.push((region, false));
+            }
+        }
         for child in group.children() {
             match child {
                 usvg::Node::Group(inner) => self.group(inner, layer)?,
@@ -64,11 +110,19 @@ impl<'a> Ink<'a> {
                 usvg::Node::Image(_) => {}
             }
         }
+        self.opacity = opacity;
+        let mut has_cut = self.cuts.drain(around..).map(|(_, has_cut)| has_cut);
+        if !self.options.keeps_clipped {
+            if group.clip_path().is_some() {
+                self.left_out.clip_paths += usize::from(has_cut.next() == Some(true));
+            }
+            self.left_out.masks += usize::from(group.mask().is_some() && has_cut.next() == Some(true));
+        }
         Ok(())
     }
 
     /// Draws the outlines of a text, or counts it.
-    fn text(&mut self, text: &usvg::Text, layer: &str) -> Result<(), SvgError> {
+    fn text(&mut self, text: &usvg::Text, layer: Option<usize>) -> Result<(), SvgError> {
         let Some(draw_whole) = self.draw_whole else { return Ok(()) };
         if draw_whole(text) {
             for part in text.flattened().children() {
@@ -90,7 +144,7 @@ impl<'a> Ink<'a> {
         Ok(())
     }
 
-    fn path(&mut self, path: &usvg::Path, matrix: Transform, layer: &str) -> Result<(), SvgError> {
+    fn path(&mut self, path: &usvg::Path, matrix: Transform, layer: Option<usize>) -> Result<(), SvgError> {
         if !path.is_visible() {
             return Ok(());
         }
@@ -99,6 +153,9 @@ impl<'a> Ink<'a> {
             .and_then(|stroke| Some((Way::Line(stroke), colour_of(stroke.paint(), stroke.opacity().get())?)));
         let border =
             path.fill().and_then(|fill| Some((Way::Border, colour_of(fill.paint(), fill.opacity().get())?)));
+        if let Some(fill) = path.fill().filter(|_| self.options.occludes) {
+            self.cover(path, matrix, fill)?;
+        }
         let seen = |(_, colour): &(Way<'_>, Rgb)| Some(*colour) != self.options.paper;
         let inked = line.filter(seen).or_else(|| border.filter(seen));
         match inked {
@@ -110,6 +167,87 @@ impl<'a> Ink<'a> {
         }
     }
 
+    /// Notes a fill that hides what has been drawn before. What lies in none of the clip paths around is not filled.
+    fn cover(&mut self, path: &usvg::Path, matrix: Transform, fill: &usvg::Fill) -> Result<(), SvgError> {
+        let below = self.drawing.strokes().len();
+        if fill.opacity().get() * self.opacity < HIDES || below == 0 {
+            return Ok(());
+        }
+        let shape = Region::Shape(self.regions.shape(path.data(), matrix, is_even_odd(fill))?);
+        let region = if self.cuts.is_empty() {
+            shape
+        } else {
+            let around = self.cuts.iter().map(|(region, _)| region.clone());
+            let edges = self.cuts.iter().map(|(region, _)| region.edges()).sum();
+            self.regions.count(edges)?;
+            Region::All(core::iter::once(shape).chain(around).collect())
+        };
+        self.covers.push((region, below));
+        Ok(())
+    }
+
+    /// Cuts out of the strokes what the fills that were drawn later hide.
+    pub(super) fn hide(&mut self) -> Result<(), SvgError> {
+        if self.covers.is_empty() {
+            return Ok(());
+        }
+        let covers = core::mem::take(&mut self.covers);
+        let index = Boxes::new(covers.iter().map(|(region, _)| region.bounds()).collect());
+        let edge_px = self.edge_px();
+        let mut seen = Drawing::new(self.drawing.width_px(), self.drawing.height_px());
+        let mut first_strokes: Vec<usize> = Vec::new();
+        for number in 0..self.drawing.strokes().len() {
+            first_strokes.push(seen.strokes().len());
+            let (pen, stroke) = (self.drawing.pen(number), self.drawing.curve(number));
+            let mut over = Vec::new();
+            let steps = &mut self.regions.steps;
+            index.find(&bounds_of(&stroke).grown(edge_px), steps, |cover| {
+                if covers.get(cover).is_some_and(|(_, below)| *below > number) {
+                    over.push(cover);
+                }
+                true
+            });
+            over.sort_unstable();
+            let (mut parts, mut is_cut) = (vec![stroke], false);
+            for (region, _) in over.into_iter().filter_map(|cover| covers.get(cover)) {
+                let mut left = Vec::new();
+                for part in parts {
+                    match region.cut(&part, Keep::Outside, edge_px, steps)? {
+                        Some(cut) => {
+                            is_cut = true;
+                            left.extend(cut);
+                        }
+                        None => left.push(part),
+                    }
+                }
+                parts = left;
+            }
+            self.left_out.occluded += usize::from(is_cut);
+            for part in parts {
+                if seen.vertices().saturating_add(part.vertices.len()) > self.options.max_vertices {
+                    return Err(SvgError::TooManyVertices { limit: self.options.max_vertices });
+                }
+                seen.push_curve(pen, part);
+            }
+        }
+        let count = seen.strokes().len();
+        let starts: Vec<usize> = self.layers.iter().filter_map(|layer| layer.first_stroke).collect();
+        for layer in &mut self.layers {
+            let Some(start) = layer.first_stroke else { continue };
+            let end = starts.iter().copied().filter(|other| *other > start).min();
+            let place = |start: usize| first_strokes.get(start).copied().unwrap_or(count);
+            let end = end.map_or(count, place);
+            layer.first_stroke = Some(place(start)).filter(|start| *start < end);
+        }
+        self.drawing = seen;
+        Ok(())
+    }
+
+    /// How far from an edge a stroke may lie that is on it: both are chords within the tolerance, px.
+    fn edge_px(&self) -> f64 {
+        2.0 * self.regions.tolerance_px + 1e-3
+    }
+
     /// Draws the stroke of a shape, or the border of its fill.
     fn trace(
         &mut self,
@@ -117,17 +255,18 @@ impl<'a> Ink<'a> {
         matrix: Transform,
         way: Way<'_>,
         colour: Rgb,
-        layer: &str,
+        layer: Option<usize>,
     ) -> Result<(), SvgError> {
         let [a, b, c, d] = [matrix.sx, matrix.ky, matrix.kx, matrix.sy].map(f64::from);
         let [e, f] = [matrix.tx, matrix.ty].map(f64::from);
+        let mm_per_px = self.options.mm_per_px();
         let place = |at: Point| -> Result<PxPoint, SvgError> {
             let (x, y) = (f64::from(at.x), f64::from(at.y));
             let at = PxPoint::new(a * x + c * y + e, b * x + d * y + f);
             if at.x.abs() <= MAX_PX && at.y.abs() <= MAX_PX {
                 Ok(at)
             } else {
-                Err(SvgError::TooFar { x_mm: at.x * MM_PER_PX, y_mm: at.y * MM_PER_PX })
+                Err(SvgError::TooFar { x_mm: at.x * mm_per_px, y_mm: at.y * mm_per_px })
             }
         };
         let determinant = a * d - b * c;
@@ -139,7 +278,7 @@ impl<'a> Ink<'a> {
             }
             _ => None,
         };
-        let tolerance_px = self.options.tolerance_mm / MM_PER_PX;
+        let tolerance_px = self.options.tolerance_mm / mm_per_px;
         // Dashes are cut out of chords.
         let arcs = self.options.arcs && dashes.is_none();
         let mut stroke = Curve::default();
@@ -148,12 +287,19 @@ impl<'a> Ink<'a> {
             let mut stroke = core::mem::take(stroke);
             ready(&mut stroke, way, closed);
             if !stroke.vertices.is_empty() {
-                // Only what is drawn takes a pen.
-                let pen = *pen.get_or_insert_with(|| ink.pen(colour, layer));
+                let mut push = |stroke: Curve| -> Result<(), SvgError> {
+                    for part in ink.left(stroke)? {
+                        // Only what is drawn takes a pen.
+                        let pen = *pen.get_or_insert_with(|| ink.pen(colour, layer));
+                        ink.push(pen, part, layer)?;
+                    }
+                    Ok(())
+                };
                 match &dashes {
-                    Some(dashes) => dashes
-                        .draw(&stroke.vertices, own_length, |dash| ink.push(pen, dash.to_vec().into()))?,
-                    None => ink.push(pen, stroke)?,
+                    Some(dashes) => {
+                        dashes.draw(&stroke.vertices, own_length, |dash| push(dash.to_vec().into()))?;
+                    }
+                    None => push(stroke)?,
                 }
             }
             Ok(())
@@ -199,8 +345,32 @@ impl<'a> Ink<'a> {
         Ok(())
     }
 
-    fn push(&mut self, pen: u8, stroke: Curve) -> Result<(), SvgError> {
+    /// What the clip paths and masks around leave of a stroke.
+    fn left(&mut self, stroke: Curve) -> Result<Vec<Curve>, SvgError> {
+        let edge_px = self.edge_px();
+        let mut parts = vec![stroke];
+        for (region, has_cut) in &mut self.cuts {
+            let mut left = Vec::new();
+            for part in parts {
+                match region.cut(&part, Keep::Inside, edge_px, &mut self.regions.steps)? {
+                    Some(cut) => {
+                        *has_cut = true;
+                        left.extend(cut);
+                    }
+                    None => left.push(part),
+                }
+            }
+            parts = left;
+        }
+        Ok(parts)
+    }
+
+    fn push(&mut self, pen: u8, stroke: Curve, layer: Option<usize>) -> Result<(), SvgError> {
         self.check_vertices(stroke.vertices.len())?;
+        let next = self.drawing.strokes().len();
+        if let Some(layer) = layer.and_then(|layer| self.layers.get_mut(layer)) {
+            layer.first_stroke.get_or_insert(next);
+        }
         self.drawing.push_curve(pen, stroke);
         Ok(())
     }
@@ -215,13 +385,19 @@ impl<'a> Ink<'a> {
     }
 
     /// The pen of a colour or a layer; the next free one when it has none.
-    fn pen(&mut self, colour: Rgb, layer: &str) -> u8 {
+    fn pen(&mut self, colour: Rgb, layer: Option<usize>) -> u8 {
+        let of_layer = layer.and_then(|layer| self.layers.get(layer));
+        let by_layers = matches!(self.options.pens, SvgPens::ByLayer | SvgPens::ByOrder);
+        let named = of_layer.and_then(|layer| layer.number).filter(|_| self.options.pens == SvgPens::ByLayer);
         let known = match self.options.pens {
             SvgPens::ByColour => self.pens.iter().find(|pen| pen.colour == colour),
-            SvgPens::ByLayer => {
-                let found = self.pen_layers.iter().position(|id| id == layer);
-                found.and_then(|index| self.pens.get(index))
-            }
+            SvgPens::ByLayer | SvgPens::ByOrder => match named {
+                Some(number) => self.pens.iter().find(|pen| pen.number == number),
+                None => {
+                    let found = self.pen_layers.iter().position(|known| *known == layer);
+                    found.and_then(|index| self.pens.get(index))
+                }
+            },
             SvgPens::One => self.pens.first(),
         };
         if let Some(pen) = known {
@@ -230,17 +406,22 @@ impl<'a> Ink<'a> {
         if self.pens.len() >= MAX_PENS {
             return self.nearest(colour);
         }
-        let name = match self.options.pens {
-            SvgPens::ByColour => colour.to_string(),
-            SvgPens::ByLayer => {
-                let named = self.layers.iter().find(|(id, _)| id == layer);
-                named.map_or_else(String::new, |(_, name)| fitting(name))
-            }
-            SvgPens::One => String::new(),
+        let name = if by_layers {
+            of_layer.map_or_else(String::new, |layer| layer.name.clone())
+        } else if self.options.pens == SvgPens::ByColour {
+            colour.to_string()
+        } else {
+            String::new()
         };
-        let number = self.pens.last().map_or(1, |pen| pen.number.saturating_add(1));
+        let is_taken = |number: &u8| {
+            (self.options.pens == SvgPens::ByLayer && self.named_pens.contains(number))
+                || self.pens.iter().any(|pen| pen.number == *number)
+        };
+        let Some(number) = named.or_else(|| (1..=u8::MAX).find(|number| !is_taken(number))) else {
+            return self.nearest(colour);
+        };
         self.pens.push(PalettePen { number, name, colour, width_mm: None });
-        self.pen_layers.push(layer.to_owned());
+        self.pen_layers.push(layer);
         number
     }
 
@@ -283,17 +464,4 @@ fn colour_of(paint: &usvg::Paint, opacity: f32) -> Option<Rgb> {
         usvg::Paint::Pattern(_) => usvg::Color::black(),
     };
     (opacity > 0.0).then_some(Rgb([colour.red, colour.green, colour.blue]))
-}
-
-/// A name that a pen may have: at most 64 bytes.
-fn fitting(name: &str) -> String {
-    const MAX_NAME_BYTES: usize = 64;
-    let mut fitting = String::new();
-    for letter in name.chars().filter(|letter| !letter.is_control()) {
-        if fitting.len() + letter.len_utf8() > MAX_NAME_BYTES {
-            break;
-        }
-        fitting.push(letter);
-    }
-    fitting
 }

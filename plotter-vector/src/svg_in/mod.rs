@@ -1,15 +1,24 @@
 //! [`read_svg`]: a drawing from an SVG file.
 //!
 //! `usvg` resolves what the format allows (styles, units, `use`, shapes, arcs) into paths with one matrix each; here
-//! they become strokes: curves are cut into chords, dashes into strokes, and colours or layers become pens.
+//! they become strokes: curves are cut into chords, dashes into strokes, and colours or layers become pens. What `usvg` would leave
+//! out without a word is put into its words before ([`Rewritten`]), and clip paths and masks cut the strokes ([`region::Region`]).
 
 mod arc;
+mod boxes;
+mod clip;
+mod css_transform;
 mod curve;
 mod dash;
 mod font_size;
 #[cfg(feature = "svg-text")]
 mod fonts;
 mod ink;
+mod layers;
+mod mask;
+mod paint;
+mod region;
+mod rewrite;
 mod survey;
 
 use crate::{Drawing, PalettePen, Rgb, Scale};
@@ -17,12 +26,19 @@ use core::fmt;
 #[cfg(feature = "svg-text")]
 pub use fonts::{SvgFontError, SvgFonts, read_svg_with_fonts};
 use ink::Ink;
+pub use layers::SvgLayer;
 use plotter_motion::Point;
+use rewrite::Rewritten;
+use std::borrow::Cow;
 use survey::Survey;
 use usvg::roxmltree;
 
-/// Size of an SVG pixel, mm: 1/96 inch (CSS Values and Units Level 3, section 5.2, "Absolute lengths").
-const MM_PER_PX: f64 = 25.4 / 96.0;
+/// Pixels to the inch of CSS (CSS Values and Units Level 3, section 5.2, "Absolute lengths").
+const PX_PER_INCH: f64 = 96.0;
+/// Pixels to the inch that a file may have: 72 and 90 are those of older programs.
+const PX_PER_INCHES: core::ops::RangeInclusive<f64> = 10.0..=10_000.0;
+/// Millimetres to the inch.
+const MM_PER_INCH: f64 = 25.4;
 /// Farthest place from the origin, px: 277 m. Single precision, in which paths are parsed, still tells 0.1 px there.
 const MAX_PX: f64 = 1_048_576.0;
 /// Chords finer or coarser than this are not for pens, mm.
@@ -32,6 +48,9 @@ const TOLERANCES_MM: core::ops::RangeInclusive<f64> = 0.001..=10.0;
 const FONT_SIZE_PX: f32 = 16.0;
 /// Stack of the parser, which recurses into nested elements: reserved, used as far as it is needed.
 const STACK_BYTES: usize = 128 << 20;
+/// Deepest nesting where no thread can be had, as on wasm32, and the caller's stack has to do: that is 1 MB there, of which a level
+/// takes some 10 kB.
+const MAX_DEPTH_ON_CALLERS_STACK: usize = 48;
 
 /// Which strokes are of one pen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -40,10 +59,12 @@ pub enum SvgPens {
     /// [`MAX_PENS`](crate::MAX_PENS) colours, the others are drawn by the pen of the nearest one.
     #[default]
     ByColour,
-    /// Those of one layer: of one group with an `id` at the top of the file, named by its `label` (that of Inkscape)
-    /// or its `id`. What is in none of them is of one pen, too, whose name is empty. When there are more than
+    /// Those of one [`SvgLayer`]: the pen is the number that its name begins with. Layers without a number have the next free
+    /// one each, in the order of the file, and so has what is in no layer: its pen has no name. When there are more than
     /// [`MAX_PENS`](crate::MAX_PENS), the others are drawn by the pen of the nearest colour.
     ByLayer,
+    /// Those of one layer, whatever its name: the first that draws something is pen 1.
+    ByOrder,
     /// All.
     One,
 }
@@ -60,8 +81,22 @@ pub struct SvgOptions {
     pub pens: SvgPens,
     /// What has this colour leaves no ink: a background, say. `None` draws all.
     pub paper: Option<Rgb>,
-    /// More vertices than this are refused.
+    /// More vertices than this are refused; so many edges may clip paths and masks have, too.
     pub max_vertices: usize,
+    /// Whether what clip paths, masks and the edges of nested `svg` elements cut off is drawn all the same.
+    pub keeps_clipped: bool,
+    /// Whether filled shapes hide what lies below them, also those in the colour of the paper; those that are less than half
+    /// opaque do not.
+    pub occludes: bool,
+    /// Pixels to the inch: 96 in the standard, 72 and 90 in files of older programs. Lengths in mm and inches are what they are.
+    pub px_per_inch: f64,
+}
+
+impl SvgOptions {
+    /// Size of a pixel, mm.
+    fn mm_per_px(&self) -> f64 {
+        MM_PER_INCH / self.px_per_inch
+    }
 }
 
 impl Default for SvgOptions {
@@ -72,6 +107,9 @@ impl Default for SvgOptions {
             pens: SvgPens::ByColour,
             paper: Some(Rgb::WHITE),
             max_vertices: 10_000_000,
+            keeps_clipped: false,
+            occludes: false,
+            px_per_inch: PX_PER_INCH,
         }
     }
 }
@@ -88,12 +126,15 @@ pub struct SvgLeftOut {
     pub images: usize,
     /// Line of the first of them in the file, from 1.
     pub image_line: Option<u32>,
-    /// Clip paths: what they would cut off is drawn. Those of nested `svg` and `symbol` elements count too.
+    /// Groups of which a clip path cuts something off, or the edge of a nested `svg`, a `symbol` or a marker. With
+    /// [`SvgOptions::keeps_clipped`], none.
     pub clip_paths: usize,
-    /// Masks: what they would hide is drawn.
+    /// Groups of which a mask hides something.
     pub masks: usize,
     /// Filters: what they would change is drawn as it is.
     pub filters: usize,
+    /// Strokes that filled shapes hide, or a part of them, with [`SvgOptions::occludes`].
+    pub occluded: usize,
     /// Shapes in the colour of the paper.
     pub paper: usize,
 }
@@ -105,6 +146,17 @@ pub struct SvgMissingFonts {
     pub families: Vec<String>,
     /// Letters that no given font has; up to 16.
     pub letters: String,
+}
+
+/// Something of a file that is not done as it says, and where.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct SvgProblem {
+    /// Line of the file, from 1.
+    pub line: u32,
+    /// Letter in the line, from 1.
+    pub column: u32,
+    /// What it is, and what was done instead.
+    pub text: String,
 }
 
 /// A drawing read from an SVG file.
@@ -127,6 +179,10 @@ pub struct SvgDrawing {
     pub left_out: SvgLeftOut,
     /// The fonts for the texts among it.
     pub missing_fonts: SvgMissingFonts,
+    /// The layers, in the order of the file.
+    pub layers: Vec<SvgLayer>,
+    /// What is not done as the file says; up to 64.
+    pub problems: Vec<SvgProblem>,
 }
 
 /// Why an SVG file cannot be read.
@@ -142,7 +198,12 @@ pub enum SvgError {
     Empty,
     /// The file is compressed (`.svgz`).
     Compressed,
-    /// The text is not UTF-8.
+    /// The pixels to the inch are no such number.
+    PxPerInch {
+        /// Asked pixels to the inch.
+        px_per_inch: f64,
+    },
+    /// The text is neither UTF-8 nor, with its mark, UTF-16.
     Encoding {
         /// Bytes before the first wrong one.
         byte: usize,
@@ -197,6 +258,8 @@ pub enum SvgError {
         /// Most elements.
         limit: usize,
     },
+    /// Clip paths, masks or shapes that hide others take too long, or too much memory.
+    TooMuchClipping,
     /// The texts are longer than can be set, references followed.
     TooMuchText,
     /// More vertices than [`SvgOptions::max_vertices`].
@@ -217,12 +280,18 @@ impl fmt::Display for SvgError {
                 TOLERANCES_MM.start(),
                 TOLERANCES_MM.end()
             ),
+            Self::PxPerInch { px_per_inch } => write!(
+                f,
+                "px per inch: {px_per_inch} lies outside {}..={}; 96 is that of the standard, 90 and 72 those of older programs",
+                PX_PER_INCHES.start(),
+                PX_PER_INCHES.end()
+            ),
             Self::Empty => f.write_str("svg: the file is empty; export it again"),
             Self::Compressed => {
                 f.write_str("svg: the file is compressed; unpack it with gunzip, or save it as .svg")
             }
             Self::Encoding { byte } => {
-                write!(f, "svg: byte {byte} is not UTF-8; save the file in this encoding")
+                write!(f, "svg: byte {byte} is neither UTF-8 nor UTF-16 with its mark; save the file as UTF-8")
             }
             Self::Xml { reason } => write!(f, "svg: {reason}; if the file is cut off, export it again"),
             Self::NotSvg { root } => {
@@ -234,7 +303,7 @@ impl fmt::Display for SvgError {
             Self::Sheet { width_mm, height_mm } => write!(
                 f,
                 "svg: a sheet of {width_mm:.0} x {height_mm:.0} mm is larger than {:.0} mm; correct width and height",
-                MAX_PX * MM_PER_PX
+                MAX_PX * MM_PER_INCH / PX_PER_INCH
             ),
             Self::Number { line, attribute, value } => write!(
                 f,
@@ -243,7 +312,7 @@ impl fmt::Display for SvgError {
             Self::TooFar { x_mm, y_mm } => write!(
                 f,
                 "svg: a place at ({x_mm:.0}, {y_mm:.0}) mm lies farther out than {:.0} mm; correct its transform",
-                MAX_PX * MM_PER_PX
+                MAX_PX * MM_PER_INCH / PX_PER_INCH
             ),
             Self::Circular { id } => {
                 write!(f, "svg: element {id:?} refers to itself; unlink the clones in it")
@@ -258,6 +327,9 @@ impl fmt::Display for SvgError {
                     "svg: more than {limit} elements, references followed; unlink clones, or split the file"
                 )
             }
+            Self::TooMuchClipping => f.write_str(
+                "svg: cutting along clip paths, masks or shapes takes too long; simplify them, or draw what they cut off",
+            ),
             Self::TooMuchText => f.write_str(
                 "svg: the texts are too long to be set, references followed; split them or the file, unlink clones, or \
                  convert texts to paths",
@@ -281,8 +353,12 @@ impl core::error::Error for SvgError {}
 /// resolved as the format says. A shape is drawn along its stroke, however wide; one without a stroke along the border of its
 /// fill, once. Curves become chords, or arcs where [`SvgOptions::arcs`] asks for them, dashes strokes, markers shapes; a line of
 /// no length with round or square caps is a dot. What is hidden (`display`, `visibility`, opacity 0, no paint) is not drawn, nor
-/// is what has the colour of the paper. The colour of a gradient is that of its first visible stop, of a pattern black. What no
-/// pen draws is counted in [`SvgLeftOut`]. Other files are never opened.
+/// is what has the colour of the paper, what clip paths, masks and nested `svg` elements cut off, or a layer whose name begins with
+/// `%`. A mask shows where luminance times alpha is at least one half. The colour of a gradient is that of its first visible stop, of
+/// a pattern or of a paint that is not known black. What no pen draws is counted in [`SvgLeftOut`], what is done otherwise than the
+/// file says told in [`SvgDrawing::problems`]. Other files are never opened.
+///
+/// Where no thread can be had, as on wasm32, elements may be nested 48 deep instead of 1000.
 ///
 /// Coordinates are parsed in single precision: to 0.001 px or 0.0003 mm up to 4 m from the origin. Arcs are first
 /// made into cubic curves that are 0.03 % of the radius off at most, and no more than 0.1 of the file's units; that
@@ -302,48 +378,85 @@ impl core::error::Error for SvgError {}
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_svg(bytes: &[u8], options: &SvgOptions) -> Result<SvgDrawing, SvgError> {
-    on_own_stack(bytes, options, |text| parse(text, *options, &parser_options(), None))
+    on_own_stack(bytes, options, |text, max_depth| {
+        parse(text, options, max_depth, &parser_options(options), None)
+    })
 }
 
-/// Reads the text of a file on a stack that is large enough.
+/// Reads the text of a file on a stack that is large enough for the depth of nesting that is handed on.
 fn on_own_stack(
     bytes: &[u8],
     options: &SvgOptions,
-    parse: impl FnOnce(&str) -> Result<SvgDrawing, SvgError> + Send,
+    parse: impl Fn(&str, usize) -> Result<SvgDrawing, SvgError> + Sync,
 ) -> Result<SvgDrawing, SvgError> {
     if !TOLERANCES_MM.contains(&options.tolerance_mm) {
         return Err(SvgError::Tolerance { tolerance_mm: options.tolerance_mm });
     }
+    if !PX_PER_INCHES.contains(&options.px_per_inch) {
+        return Err(SvgError::PxPerInch { px_per_inch: options.px_per_inch });
+    }
     if bytes.starts_with(&[0x1f, 0x8b]) {
         return Err(SvgError::Compressed);
     }
-    let text =
-        core::str::from_utf8(bytes).map_err(|error| SvgError::Encoding { byte: error.valid_up_to() })?;
+    let text = decoded(bytes)?;
     if text.trim_start_matches('\u{feff}').trim().is_empty() {
         return Err(SvgError::Empty);
     }
     // The caller's stack may be short of what nested elements need.
-    std::thread::scope(|scope| {
+    let parsed = std::thread::scope(|scope| {
         let parser = std::thread::Builder::new().name("svg".to_owned()).stack_size(STACK_BYTES);
-        let parsed = parser.spawn_scoped(scope, || parse(text)).map_err(|_| SvgError::Parser)?;
-        parsed.join().unwrap_or(Err(SvgError::Parser))
-    })
+        let parsed = parser.spawn_scoped(scope, || parse(&text, survey::MAX_DEPTH)).ok()?;
+        Some(parsed.join().unwrap_or(Err(SvgError::Parser)))
+    });
+    // Where there are no threads it has to do.
+    parsed.unwrap_or_else(|| parse(&text, MAX_DEPTH_ON_CALLERS_STACK))
+}
+
+/// The text of a file: UTF-8, or UTF-16 with its mark.
+fn decoded(bytes: &[u8]) -> Result<Cow<'_, str>, SvgError> {
+    let unit: fn([u8; 2]) -> u16 = match bytes {
+        [0xff, 0xfe, ..] => u16::from_le_bytes,
+        [0xfe, 0xff, ..] => u16::from_be_bytes,
+        _ => {
+            let text = core::str::from_utf8(bytes);
+            return text.map(Cow::Borrowed).map_err(|error| SvgError::Encoding { byte: error.valid_up_to() });
+        }
+    };
+    let mut text = String::new();
+    let units = bytes.as_chunks().0.iter().skip(1).map(|pair| unit(*pair));
+    for letter in char::decode_utf16(units) {
+        match letter {
+            Ok(letter) => text.push(letter),
+            // How far it is good: letters beyond 16 bits are two units.
+            Err(_) => return Err(SvgError::Encoding { byte: 2 + 2 * text.encode_utf16().count() }),
+        }
+    }
+    if bytes.len() % 2 == 1 {
+        return Err(SvgError::Encoding { byte: bytes.len() - 1 });
+    }
+    // It is UTF-8 from here on, whatever it says.
+    Ok(Cow::Owned(text))
 }
 
 /// `draw_whole` tells the texts that the parser has all outlines of; without it, it has none.
 fn parse(
     text: &str,
-    options: SvgOptions,
+    options: &SvgOptions,
+    max_depth: usize,
     parser: &usvg::Options<'_>,
     draw_whole: Option<&dyn Fn(&usvg::Text) -> bool>,
 ) -> Result<SvgDrawing, SvgError> {
     let limit = survey::MAX_ELEMENTS;
     let mut document = document_of(text)?;
-    let numbered = font_size::with_numbers(text, &document);
-    if let Some(text) = &numbered {
+    let root = document.root_element().tag_name().name();
+    if root != "svg" {
+        return Err(SvgError::NotSvg { root: survey::shortened(root) });
+    }
+    let Rewritten { text: rewritten, problems, filters, layers } = Rewritten::new(text, &document, options);
+    if let Some(text) = &rewritten {
         document = document_of(text)?;
     }
-    let survey = Survey::new(&document, draw_whole.is_some())?;
+    let survey = Survey::new(&document, draw_whole.is_some(), max_depth)?;
     let tree = usvg::Tree::from_xmltree(&document, parser).map_err(|error| match error {
         usvg::Error::InvalidSize => SvgError::NoSize,
         usvg::Error::ElementsLimitReached => SvgError::TooManyElements { limit },
@@ -352,17 +465,21 @@ fn parse(
         }
         error => SvgError::Xml { reason: error.to_string() },
     })?;
+    drop(document);
+    drop(rewritten);
+    let mm_per_px = options.mm_per_px();
     let (width_px, height_px) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
-    let (width_mm, height_mm) = (width_px * MM_PER_PX, height_px * MM_PER_PX);
+    let (width_mm, height_mm) = (width_px * mm_per_px, height_px * mm_per_px);
     let too_large = SvgError::Sheet { width_mm, height_mm };
     let whole = |px: f64| whole_px(px).ok_or_else(|| too_large.clone());
     let drawing = Drawing::new(whole(width_px)?, whole(height_px)?);
     // The last row of pixels may stick out below the sheet.
-    let below_mm = height_mm - f64::from(drawing.height_px()) * MM_PER_PX;
+    let below_mm = height_mm - f64::from(drawing.height_px()) * mm_per_px;
     let scale =
-        Scale::new(drawing.height_px(), MM_PER_PX, Point::new(0.0, below_mm)).map_err(|_| too_large)?;
-    let mut ink = Ink::new(drawing, options, &survey.layers, draw_whole);
-    ink.group(tree.root(), "")?;
+        Scale::new(drawing.height_px(), mm_per_px, Point::new(0.0, below_mm)).map_err(|_| too_large)?;
+    let mut ink = Ink::new(drawing, *options, layers, draw_whole);
+    ink.group(tree.root(), None)?;
+    ink.hide()?;
     let (texts, text_line) = match draw_whole {
         None => (survey.texts.len(), survey.texts.first().map(|(_, line)| *line)),
         Some(_) => {
@@ -371,8 +488,9 @@ fn parse(
             (ink.left_out.texts, survey.texts.iter().find_map(same))
         }
     };
-    let left_out =
-        SvgLeftOut { texts, text_line, images: survey.images, image_line: survey.image_line, ..ink.left_out };
+    let (images, image_line) = (survey.images, survey.image_line);
+    let left_out = SvgLeftOut { texts, text_line, images, image_line, filters, ..ink.left_out };
+    ink.pens.sort_by_key(|pen| pen.number);
     Ok(SvgDrawing {
         drawing: ink.drawing,
         scale,
@@ -381,6 +499,8 @@ fn parse(
         pens: ink.pens,
         left_out,
         missing_fonts: SvgMissingFonts::default(),
+        layers: ink.layers,
+        problems,
     })
 }
 
@@ -397,8 +517,11 @@ fn document_of(text: &str) -> Result<roxmltree::Document<'_>, SvgError> {
 }
 
 /// No files, no pictures: neither from a path in the file, nor from data in it.
-fn parser_options() -> usvg::Options<'static> {
+fn parser_options(options: &SvgOptions) -> usvg::Options<'static> {
+    #[expect(clippy::cast_possible_truncation, reason = "within 10..=10000, checked before")]
+    let dpi = options.px_per_inch as f32;
     usvg::Options {
+        dpi,
         font_size: FONT_SIZE_PX,
         image_href_resolver: usvg::ImageHrefResolver {
             resolve_data: Box::new(|_, _, _| None),
@@ -426,3 +549,6 @@ fn whole_px(px: f64) -> Option<u32> {
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod kind_tests;

@@ -37,7 +37,7 @@ const COORDINATES: [&str; 17] = [
     "y2",
 ];
 /// Elements whose content is drawn only where something refers to them, if at all.
-const TEMPLATES: [&str; 6] = ["defs", "symbol", "clipPath", "mask", "pattern", "marker"];
+pub(super) const TEMPLATES: [&str; 6] = ["defs", "symbol", "clipPath", "mask", "pattern", "marker"];
 
 /// What a file holds that the parser does not tell.
 #[derive(Debug)]
@@ -48,21 +48,15 @@ pub(super) struct Survey {
     pub(super) images: usize,
     /// Line of the first of them.
     pub(super) image_line: Option<u32>,
-    /// Id and name of each group at the top.
-    pub(super) layers: Vec<(String, String)>,
 }
 
 impl Survey {
-    /// `sets_texts` says whether texts are more than counted.
-    pub(super) fn new(document: &Document<'_>, sets_texts: bool) -> Result<Self, SvgError> {
-        let root = document.root_element();
-        if root.tag_name().name() != "svg" {
-            return Err(SvgError::NotSvg { root: shortened(root.tag_name().name()) });
-        }
+    /// `sets_texts` says whether texts are more than counted; `max_depth` how deep elements may be nested.
+    pub(super) fn new(document: &Document<'_>, sets_texts: bool, max_depth: usize) -> Result<Self, SvgError> {
         for node in document.descendants().filter(Node::is_element) {
             check_numbers(document, node)?;
         }
-        check_references(document, sets_texts)?;
+        check_references(document, sets_texts, max_depth)?;
         let drawn = |name: &str| {
             let templates =
                 |node: &Node<'_, '_>| node.ancestors().any(|up| TEMPLATES.contains(&up.tag_name().name()));
@@ -73,11 +67,6 @@ impl Survey {
         };
         let texts: Vec<Node<'_, '_>> = drawn("text");
         let images: Vec<Node<'_, '_>> = drawn("image");
-        let layer = |node: Node<'_, '_>| {
-            let id = node.attribute("id")?;
-            let label = node.attributes().find(|attribute| attribute.name() == "label");
-            Some((id.to_owned(), label.map_or(id, |label| label.value()).to_owned()))
-        };
         let line = |node: &Node<'_, '_>| document.text_pos_at(node.range().start).row;
         let written = |node: &Node<'_, '_>| {
             let letters =
@@ -88,7 +77,6 @@ impl Survey {
             texts: texts.iter().filter_map(written).collect(),
             images: images.len(),
             image_line: images.first().map(line),
-            layers: root.children().filter(|node| node.tag_name().name() == "g").filter_map(layer).collect(),
         })
     }
 }
@@ -115,7 +103,7 @@ pub(super) fn shortened(text: &str) -> String {
     short
 }
 
-/// Refuses coordinates that the parser would leave out without a word.
+/// Refuses coordinates that are beyond the parser's precision.
 fn check_numbers(document: &Document<'_>, node: Node<'_, '_>) -> Result<(), SvgError> {
     let own = |name: &str, namespace: Option<&str>| namespace.is_none() && COORDINATES.contains(&name);
     for attribute in node.attributes().filter(|attribute| own(attribute.name(), attribute.namespace())) {
@@ -128,11 +116,7 @@ fn check_numbers(document: &Document<'_>, node: Node<'_, '_>) -> Result<(), SvgE
         // A minus begins a number, or an exponent that makes it small.
         let in_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '.' | '+' | 'e' | 'E');
         let huge = |word: &&str| word.parse::<f64>().is_ok_and(|number| number.abs() > MAX_NUMBER);
-        let unnumbered =
-            |word: &&str| ["nan", "inf", "infinity"].contains(&word.to_ascii_lowercase().as_str());
-        let numbers = text.split(|letter| !in_number(letter)).find(huge);
-        let words = || text.split(|letter: char| !letter.is_ascii_alphabetic()).find(unnumbered);
-        if let Some(word) = numbers.or_else(words) {
+        if let Some(word) = text.split(|letter| !in_number(letter)).find(huge) {
             return Err(refuse(word));
         }
     }
@@ -162,13 +146,13 @@ enum Cost {
 }
 
 /// Counts elements and nesting as if each reference were its target.
-fn check_references(document: &Document<'_>, sets_texts: bool) -> Result<(), SvgError> {
+fn check_references(document: &Document<'_>, sets_texts: bool, max_depth: usize) -> Result<(), SvgError> {
     let mut ids: BTreeMap<&str, NodeId> = BTreeMap::new();
     let elements = || document.descendants().filter(Node::is_element);
     for (id, node) in elements().filter_map(|node| node.attribute("id").zip(Some(node.id()))) {
         ids.entry(id).or_insert(node);
     }
-    let links = Links { ids, rules: rules(document), sets_texts };
+    let links = Links { ids, rules: rules(document), sets_texts, max_depth };
     let mut costs = vec![Cost::Unknown; document.descendants().count()];
     let root = document.root_element().id();
     follow(document, root, &links, &mut costs)
@@ -191,12 +175,12 @@ fn follow(
             }
             open.pop();
             if let Some(parent) = open.last_mut() {
-                parent.add(done)?;
+                parent.add(done, links.max_depth)?;
             }
             continue;
         };
         match costs.get(id.get_usize()).copied().unwrap_or(Cost::Unknown) {
-            Cost::Known(total) => top.add(total)?,
+            Cost::Known(total) => top.add(total, links.max_depth)?,
             Cost::Open => {
                 let name = document.get_node(id).and_then(|node| node.attribute("id")).unwrap_or_default();
                 return Err(SvgError::Circular { id: shortened(name) });
@@ -205,8 +189,8 @@ fn follow(
                 if let Some(cost) = costs.get_mut(id.get_usize()) {
                     *cost = Cost::Open;
                 }
-                if open.len() >= MAX_DEPTH {
-                    return Err(SvgError::TooDeep { limit: MAX_DEPTH });
+                if open.len() >= links.max_depth {
+                    return Err(SvgError::TooDeep { limit: links.max_depth });
                 }
                 open.push(Open::new(document, id, links));
             }
@@ -221,7 +205,7 @@ impl Open {
         Self { id, next: next(document, id, links), total: Total { elements: 1, depth: 1, text_steps } }
     }
 
-    fn add(&mut self, more: Total) -> Result<(), SvgError> {
+    fn add(&mut self, more: Total, max_depth: usize) -> Result<(), SvgError> {
         let total = &mut self.total;
         total.elements = total.elements.saturating_add(more.elements);
         total.depth = total.depth.max(more.depth.saturating_add(1));
@@ -232,7 +216,7 @@ impl Open {
         if total.text_steps > MAX_TEXT_STEPS {
             return Err(SvgError::TooMuchText);
         }
-        if total.depth > MAX_DEPTH { Err(SvgError::TooDeep { limit: MAX_DEPTH }) } else { Ok(()) }
+        if total.depth > max_depth { Err(SvgError::TooDeep { limit: max_depth }) } else { Ok(()) }
     }
 }
 
@@ -293,6 +277,7 @@ struct Links<'a> {
     ids: BTreeMap<&'a str, NodeId>,
     rules: Vec<Rule<'a>>,
     sets_texts: bool,
+    max_depth: usize,
 }
 
 /// A rule of a style sheet that refers to something.

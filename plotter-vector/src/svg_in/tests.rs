@@ -117,7 +117,7 @@ fn a_circle_stays_within_the_tolerance_of_its_radius() {
     let read = read_with("<circle cx='50' cy='50' r='40' fill='none' stroke='#000'/>", options);
     let circle = read.drawing.stroke(0);
     // Chords within the tolerance, and the arc's own cubic within 0.03 % of the radius.
-    let allowed = tolerance_mm / MM_PER_PX + 40.0 * 0.0003;
+    let allowed = tolerance_mm / (MM_PER_INCH / PX_PER_INCH) + 40.0 * 0.0003;
     let centre = PxPoint::new(50.0, 50.0);
     for pair in circle.windows(2) {
         let middle = PxPoint::new(f64::midpoint(pair[0].x, pair[1].x), f64::midpoint(pair[0].y, pair[1].y));
@@ -229,7 +229,8 @@ fn what_no_pen_draws_is_counted() {
             ..SvgLeftOut::default()
         }
     );
-    assert_eq!(read.drawing.strokes().len(), 2);
+    // The black mask hides all of its path.
+    assert_eq!(read.drawing.strokes().len(), 1);
 }
 
 #[test]
@@ -316,7 +317,6 @@ fn what_is_refused_is_told_with_a_remedy() {
         "<svg xmlns='http://www.w3.org/2000/svg' width='9km' height='1e7mm'/>".to_owned(),
         "<svg xmlns='http://www.w3.org/2000/svg' width='1e7mm' height='9'/>".to_owned(),
         with_path("M0 0L1e39 5"),
-        with_path("M0 0L5 NaN"),
         with_path("M0 0L5 8000000"),
         file("<g transform='scale(1e9)'><path d='M0 0L5 8' stroke='#000'/></g>"),
         entity_bomb(),
