@@ -96,7 +96,9 @@ impl Spindles {
         let has_rapids = self.rapids.iter().any(|count| *count > 0);
         let others_but = |up: usize| {
             let mut others = self.others;
-            others.get_mut(up).map(|count| *count = 0);
+            if let Some(count) = others.get_mut(up) {
+                *count = 0;
+            }
             others
         };
         let (up, down) = if has_rapids {

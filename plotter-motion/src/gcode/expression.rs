@@ -1,10 +1,10 @@
-//! [`Expression`]: the values that LinuxCNC's programs reckon: numbers, variables, `[ ]` and functions.
+//! [`Expression`]: the values that `LinuxCNC`'s programs reckon: numbers, variables, `[ ]` and functions.
 
 use super::variables::Variables;
 use super::{Problem, Text};
 use crate::decimal::Decimal;
 
-/// Deepest nesting of brackets: a line of LinuxCNC holds 255 bytes, and no program's formula needs more than a few.
+/// Deepest nesting of brackets: a line of `LinuxCNC` holds 255 bytes, and no program's formula needs more than a few.
 const MOST_DEPTH: u8 = 32;
 
 /// Functions, in capitals.

@@ -103,8 +103,8 @@
 //! | `M6` | T | takes the pen T, also one of an earlier line |
 //! | `M0 (pen 2)`, `(pen 1)`, `M0 (new sheet)` | | what [`Writer`] writes for another pen, the first one, and a new sheet; every other `M0` and `M1` is a pause, and reported with its text |
 //! | `M2`, `M30` | | pen up; modes as GRBL sets them back then. For [`PlotOps`] the program ends; [`Interpreter`] reads on |
-//! | `#1 = …`, `#<name> = …`, `[ ]` | | values are reckoned, with LinuxCNC's operators and functions, angles in degrees |
-//! | `O…` `sub`, `call`, `if`, `while`, `do`, `repeat` | | as in LinuxCNC, in [`PlotOps`] |
+//! | `#1 = …`, `#<name> = …`, `[ ]` | | values are reckoned, with `LinuxCNC`'s operators and functions, angles in degrees |
+//! | `O…` `sub`, `call`, `if`, `while`, `do`, `repeat` | | as in `LinuxCNC`, in [`PlotOps`] |
 //! | `M98`, `M99` | P L | Fanuc's subprogram `O…`, behind the end of the program; `P30015` is `P15 L3` |
 //! | `F`, `S`, `T` | | hold until another one comes |
 //! | coordinates alone | | the last of `G0` to `G3` again; `G0` at first |
@@ -131,7 +131,7 @@
 //! It finds commands and their arguments, and no arcs, units or pens, which are the larger part here. Of the dialects above it
 //! reports `M1 90`, `/`, `$` and checksums as wrong; `X1e3` it takes for an X and an E.
 //!
-//! Sources: the LinuxCNC project's G-code and O-code reference; NIST, *The NIST RS274NGC Interpreter, Version 3* (2000); the GRBL project's wiki on version 1.1.
+//! Sources: the `LinuxCNC` project's G-code and O-code reference; NIST, *The NIST RS274NGC Interpreter, Version 3* (2000); the GRBL project's wiki on version 1.1.
 
 mod arc;
 mod block;

@@ -1,6 +1,7 @@
 //! [`PenWords`]: the lines that lift and lower a pen, in a person's own words.
 
 use super::{Block, Error, Problem, Reader};
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 /// The lines that lift and lower the pen, as somebody says who knows the machine: `M42 P4 S0` and `M42 P4 S255`, `M9` and `M8`,
@@ -41,7 +42,7 @@ struct Pattern {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Line {
-    Words(Block),
+    Words(Box<Block>),
     Named(Vec<u8>),
 }
 
@@ -77,11 +78,11 @@ impl PenWords {
     pub(super) fn replace(&self, block: &mut Block) {
         let found = self.patterns.iter().find_map(|pattern| match &pattern.line {
             Line::Words(words) if words.words().iter().all(|word| has(block, *word)) => {
-                Some((*words, pattern.is_down))
+                Some((words, pattern.is_down))
             }
             _ => None,
         });
-        let words = found.as_ref().map_or(&[][..], |(words, _)| words.words());
+        let words = found.map_or(&[][..], |(words, _)| words.words());
         block.retain(|word| {
             let is_spindle = word.letter == b'M' && matches!(word.tenths(), Some(30 | 40 | 50));
             // A way of moving holds further on.
@@ -104,7 +105,7 @@ impl Line {
         let missing =
             Problem::Missing { expected: "a line that moves the pen has a word, such as `M3` or `PEN_DOWN`" };
         let block = block.ok_or(Error { at: super::Position::START, problem: missing })??;
-        Ok(Self::Words(block))
+        Ok(Self::Words(Box::new(block)))
     }
 }
 

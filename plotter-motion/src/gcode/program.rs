@@ -1,4 +1,4 @@
-//! [`Program`]: variables, loops and subprograms, as LinuxCNC has them; and Fanuc's `M98`.
+//! [`Program`]: variables, loops and subprograms, as `LinuxCNC` has them; and Fanuc's `M98`.
 
 use super::expression::Expression;
 use super::pen_words::{PenWords, is_named};
@@ -7,13 +7,13 @@ use super::{Cursor, Error, Position, Problem, Reader, Text};
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
-/// Longest line that is held as a whole, bytes: 16 times that of LinuxCNC. A longer one is read byte by byte, and has no variables.
+/// Longest line that is held as a whole, bytes: 16 times that of `LinuxCNC`. A longer one is read byte by byte, and has no variables.
 const MOST_LINE: usize = 4096;
 
 /// Most bytes of loops and subprograms together: a thousand times what people write by hand.
 const MOST_HELD: usize = 16 << 20;
 
-/// Deepest calls: as in LinuxCNC.
+/// Deepest calls: as in `LinuxCNC`.
 const MOST_CALLS: usize = 10;
 
 /// Most loops and conditions in each other.
@@ -687,13 +687,15 @@ impl Program {
         reader: &mut Reader,
     ) -> Option<Result<(), Error>> {
         let block = reader.block();
-        let is = |tenths| move |word: &&super::Word| word.letter == b'M' && word.tenths() == Some(tenths);
-        if block.words().iter().find(is(990)).is_some() && !self.calls.is_empty() {
+        let is_m = |word: &super::Word, tenths| word.letter == b'M' && word.tenths() == Some(tenths);
+        if !self.calls.is_empty() && block.words().iter().any(|word| is_m(word, 990)) {
             reader.clear_block();
             self.end_call();
             return None;
         }
-        let Some(word) = block.words().iter().find(is(980)).copied() else { return Some(Ok(())) };
+        let Some(word) = block.words().iter().find(|word| is_m(word, 980)).copied() else {
+            return Some(Ok(()));
+        };
         let at = block.place(word);
         let number = block.number(b'P').unwrap_or(-1.0);
         let count = block.number(b'L');

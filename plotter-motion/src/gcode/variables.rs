@@ -5,13 +5,13 @@ use super::{Problem, Text};
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
-/// Most variables of a program: LinuxCNC has 5602 with numbers.
+/// Most variables of a program: `LinuxCNC` has 5602 with numbers.
 const MOST: usize = 10_000;
 
 /// How many of the first ones are a subprogram's own.
 pub(super) const OWN: u16 = 30;
 
-/// States of the machine and of its probe in LinuxCNC, which a drawing has not.
+/// States of the machine and of its probe in `LinuxCNC`, which a drawing has not.
 const STATES: core::ops::RangeInclusive<u16> = 5061..=5070;
 const PLACES: core::ops::RangeInclusive<u16> = 5420..=5428;
 

@@ -4,7 +4,7 @@ use plotter_motion::PlotOp;
 use plotter_motion::gcode::{Detection, PenWords, PlotOps, plot_ops};
 
 /// Strokes as the places they go through, `~` before the end of an arc, and what is told in `<>`.
-fn drawn(text: &str) -> String {
+pub(crate) fn drawn(text: &str) -> String {
     strokes(plot_ops(text.as_bytes()).collect())
 }
 
