@@ -22,8 +22,8 @@ use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
     CrossingSet, Diagnostics, DrawingFile, FontFiles, JointFigures, Language, LongSheetMachine,
-    LongSheetReport, LongSheetRun, Reading, Severity, TextilePattern, at, long_sheet_svg, print, read_file,
-    run, told_joints, write_file,
+    LongSheetReport, LongSheetRun, PenLines, Reading, Severity, TextilePattern, at, long_sheet_svg, print,
+    read_file, run, told_joints, write_file,
 };
 use plotter_motion::{Machine, MachineConfig, MachineKind, PlotOp};
 use plotter_stitch::{FramePasses, JoinFrames};
@@ -61,6 +61,8 @@ struct Arguments {
     language: Option<Language>,
     #[command(flatten)]
     fonts: FontFiles,
+    #[command(flatten)]
+    pen_lines: PenLines,
     /// The machine's TOML file [default: machines/textile-plotter.toml]
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
@@ -161,7 +163,9 @@ fn draw_sheet(arguments: &Arguments) -> Result<(), String> {
             draw(arguments, &sheet, &name, || pattern.ops())
         }
         Some(path) => {
-            let drawing = DrawingFile::open(path, arguments.language)?.with_fonts(&arguments.fonts)?;
+            let drawing = DrawingFile::open(path, arguments.language)?
+                .with_fonts(&arguments.fonts)?
+                .with_pen_lines(&arguments.pen_lines)?;
             let reading = Reading { counts_per_mm: 40.0, ..Reading::default() };
             let mut said = Diagnostics::default();
             // Nothing is drawn of a drawing with errors: read it once before.

@@ -21,7 +21,7 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, FontFiles, Happening, Language, Ops,
+    BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, FontFiles, Happening, Language, Ops, PenLines,
     PlotFigures, Reading, Severity, SpeedChart, StepFile, SteppedPlot, SteppedPreview, SteppedReport, at,
     print, read_file, run, write_file,
 };
@@ -61,6 +61,8 @@ struct Arguments {
     language: Option<Language>,
     #[command(flatten)]
     fonts: FontFiles,
+    #[command(flatten)]
+    pen_lines: PenLines,
     /// The machine's TOML file [default: machines/stepper-plotter.toml]
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
@@ -165,7 +167,9 @@ fn main() -> ExitCode {
 
 fn plot(arguments: &Arguments) -> Result<(), String> {
     let drawing = match &arguments.file {
-        Some(path) => DrawingFile::open(path, arguments.language)?.with_fonts(&arguments.fonts)?,
+        Some(path) => DrawingFile::open(path, arguments.language)?
+            .with_fonts(&arguments.fonts)?
+            .with_pen_lines(&arguments.pen_lines)?,
         None => DrawingFile::held("the built-in drawing", built_in().into_bytes(), None)?,
     };
     let mut said = Diagnostics::default();
@@ -236,8 +240,7 @@ fn check_drawn(drawing: &DrawingFile, read: &DrawnExtent, said: &Diagnostics) ->
     if read.drawn > 0 {
         return Ok(());
     }
-    let why = said.first_error().map_or_else(String::new, |first| format!("; {first}"));
-    Err(format!("{}: nothing is drawn by it, read as {}{why}", drawing.name(), drawing.language().name()))
+    Err(drawing.nothing_drawn(said))
 }
 
 fn tell(

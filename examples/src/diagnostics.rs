@@ -33,6 +33,12 @@ impl Diagnostics {
         }
     }
 
+    /// The first error, or else the first of anything, if there was one.
+    #[must_use]
+    pub fn first(&self) -> Option<&Diagnostic> {
+        self.first_error().or(self.kept.first())
+    }
+
     /// The first error, if there was one.
     #[must_use]
     pub fn first_error(&self) -> Option<&Diagnostic> {
