@@ -465,11 +465,9 @@ impl Program {
                     self.kept = self.held.len();
                     self.skip = None;
                 }
-                (Until::Branch, b"elseif") => {
-                    if self.holds_true(word, at)? {
-                        self.skip = None;
-                        self.begin(label, Kind::If)?;
-                    }
+                (Until::Branch, b"elseif") if self.holds_true(word, at)? => {
+                    self.skip = None;
+                    self.begin(label, Kind::If)?;
                 }
                 (Until::Branch, b"else") => {
                     self.skip = None;

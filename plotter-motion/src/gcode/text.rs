@@ -78,7 +78,8 @@ impl fmt::Display for Text {
             }
             end -= chunk.valid().len() + chunk.invalid().len();
             // A letter that is cut off at the end of the room is no fault of the text.
-            if !chunk.invalid().is_empty() && !(end == 0 && usize::from(self.count) > MOST_BYTES) {
+            let is_cut = end == 0 && usize::from(self.count) > MOST_BYTES;
+            if !(is_cut || chunk.invalid().is_empty()) {
                 f.write_str("\u{fffd}")?;
             }
         }
