@@ -16,7 +16,8 @@
 
 use clap::{Parser, ValueEnum};
 use plotter_examples::{
-    Diagnostic, Diagnostics, DrawingFile, Language, Reading, Severity, SvgReading, SvgText, at, print, run,
+    Diagnostic, Diagnostics, DrawingFile, Language, PenLines, Reading, Severity, SvgReading, SvgText, at,
+    print, run,
 };
 use plotter_motion::gcode::{self, LaserCommand, PenControl, PenConvention, ServoCommand};
 use plotter_motion::hpgl::{self, thesis_text};
@@ -48,6 +49,7 @@ const SVG_MOST_MM: f64 = 100_000.0;
                   convert drawing.plt drawing.gcode\n  \
                   convert drawing.svg drawing.plt --tolerance-mm 0.02\n  \
                   convert drawing.gcode drawing.svg --convention unicorn\n  \
+                  convert drawing.gcode drawing.svg --pen-up PEN_UP --pen-down PEN_DOWN\n  \
                   convert plan.svg plan.plt --font DejaVuSans.ttf --font /usr/share/fonts\n  \
                   convert layers.svg layers.plt --pens layer --paper none\n  \
                   convert drawing.svg - --to gcode --pen-up \"M280 P0 S60\" --pen-down \"M280 P0 S30\"\n  \
@@ -75,12 +77,9 @@ struct Arguments {
     /// How G-code that is written lifts its pen
     #[arg(long, value_enum, default_value = "servo")]
     gcode_pen: GcodePen,
-    /// Line of G-code that lifts the pen, instead of --gcode-pen
-    #[arg(long, value_name = "LINE", requires = "pen_down")]
-    pen_up: Option<String>,
-    /// Line of G-code that lowers the pen
-    #[arg(long, value_name = "LINE", requires = "pen_up")]
-    pen_down: Option<String>,
+    // The pen of G-code in other words: where G-code is written, instead of --gcode-pen; else where it is read
+    #[command(flatten)]
+    pen_lines: PenLines,
     /// Encoder counts to the millimetre in the thesis' text
     #[arg(long, value_name = "N", default_value = "40", value_parser = positive, allow_negative_numbers = true)]
     counts_per_mm: f64,
@@ -159,7 +158,15 @@ fn is_same(input: &Path, output: &Path) -> bool {
 }
 
 fn convert(arguments: &Arguments, language: Language) -> Result<(), String> {
-    let drawing = DrawingFile::open(&arguments.input, arguments.from)?.with_svg(&arguments.svg_reading)?;
+    let mut drawing =
+        DrawingFile::open(&arguments.input, arguments.from)?.with_svg(&arguments.svg_reading)?;
+    if language != Language::Gcode {
+        drawing = drawing.with_pen_lines(&arguments.pen_lines)?;
+    } else if arguments.pen_lines.up.len() > 1 || arguments.pen_lines.down.len() > 1 {
+        return Err(
+            "--pen-up, --pen-down: G-code is written with one line each: give each option once".into()
+        );
+    }
     let how = Reading {
         tolerance_mm: arguments.tolerance_mm,
         counts_per_mm: arguments.counts_per_mm,
@@ -212,11 +219,7 @@ fn convert(arguments: &Arguments, language: Language) -> Result<(), String> {
         }
     }
     let Some(writer) = writer else {
-        return Err(format!(
-            "{name}: nothing is drawn by it, read as {}{}",
-            drawing.language().name(),
-            said.why_nothing()
-        ));
+        return Err(drawing.nothing_drawn(&said));
     };
     writer.finish(&colours, &mut said)?;
     said.complain(name);
@@ -312,7 +315,11 @@ impl<'a> Writer<'a> {
             Language::CammGl | Language::GpGl => return Err(format!("{} is not written", language.name())),
             Language::Gcode => {
                 let usual = gcode::WriteOptions::default();
-                let pen = match (&arguments.pen_up, &arguments.pen_down, arguments.gcode_pen) {
+                let pen = match (
+                    arguments.pen_lines.up.first(),
+                    arguments.pen_lines.down.first(),
+                    arguments.gcode_pen,
+                ) {
                     (Some(up), Some(down), _) => PenControl::Commands { up, down },
                     (.., GcodePen::Servo) => usual.pen,
                     (.., GcodePen::Z) => PenControl::Height { up_mm: 5.0, down_mm: 0.0 },
@@ -321,7 +328,7 @@ impl<'a> Writer<'a> {
                     (.., GcodePen::Laser) => PenControl::Laser { full: 1000 },
                 };
                 // mDraw knows neither arcs nor pauses.
-                let is_mdraw = arguments.pen_up.is_none() && arguments.gcode_pen == GcodePen::Mdraw;
+                let is_mdraw = arguments.pen_lines.up.is_empty() && arguments.gcode_pen == GcodePen::Mdraw;
                 has_chords = is_mdraw;
                 let settle = if is_mdraw { Duration::ZERO } else { usual.settle };
                 Target::Gcode(gcode::Writer::with_options(sink, gcode::WriteOptions { pen, settle, ..usual }))

@@ -22,8 +22,8 @@ use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
     CrossingSet, Diagnostics, DrawingFile, JointFigures, Language, LongSheetMachine, LongSheetReport,
-    LongSheetRun, Reading, Severity, SvgReading, TextilePattern, at, long_sheet_svg, print, read_file, run,
-    told_joints, write_file,
+    LongSheetRun, PenLines, Reading, Severity, SvgReading, TextilePattern, at, long_sheet_svg, print,
+    read_file, run, told_joints, write_file,
 };
 use plotter_motion::{Machine, MachineConfig, MachineKind, PlotOp};
 use plotter_stitch::{FramePasses, JoinFrames};
@@ -64,6 +64,8 @@ struct Arguments {
     step_mm: Option<f64>,
     #[command(flatten)]
     svg_reading: SvgReading,
+    #[command(flatten)]
+    pen_lines: PenLines,
     /// The machine's TOML file [default: machines/textile-plotter.toml]
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
@@ -168,7 +170,9 @@ fn draw_sheet(arguments: &Arguments) -> Result<(), String> {
             draw(arguments, &sheet, &name, || pattern.ops())
         }
         Some(path) => {
-            let drawing = DrawingFile::open(path, arguments.language)?.with_svg(&arguments.svg_reading)?;
+            let drawing = DrawingFile::open(path, arguments.language)?
+                .with_svg(&arguments.svg_reading)?
+                .with_pen_lines(&arguments.pen_lines)?;
             let reading = Reading { counts_per_mm: 40.0, step_mm: arguments.step_mm, ..Reading::default() };
             let mut said = Diagnostics::default();
             // Nothing is drawn of a drawing with errors: read it once before.

@@ -21,9 +21,9 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, Happening, Language, Ops, PlotFigures,
-    Reading, Severity, SpeedChart, StepFile, SteppedPlot, SteppedPreview, SteppedReport, SvgReading, at,
-    print, read_file, run, write_file,
+    BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, Happening, Language, Ops, PenLines,
+    PlotFigures, Reading, Severity, SpeedChart, StepFile, SteppedPlot, SteppedPreview, SteppedReport,
+    SvgReading, at, print, read_file, run, write_file,
 };
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{
@@ -65,6 +65,8 @@ struct Arguments {
     step_mm: Option<f64>,
     #[command(flatten)]
     svg_reading: SvgReading,
+    #[command(flatten)]
+    pen_lines: PenLines,
     /// The machine's TOML file [default: machines/stepper-plotter.toml]
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
@@ -169,7 +171,9 @@ fn main() -> ExitCode {
 
 fn plot(arguments: &Arguments) -> Result<(), String> {
     let drawing = match &arguments.file {
-        Some(path) => DrawingFile::open(path, arguments.language)?.with_svg(&arguments.svg_reading)?,
+        Some(path) => DrawingFile::open(path, arguments.language)?
+            .with_svg(&arguments.svg_reading)?
+            .with_pen_lines(&arguments.pen_lines)?,
         None => DrawingFile::held("the built-in drawing", built_in().into_bytes(), None)?,
     };
     let mut said = Diagnostics::default();
@@ -241,12 +245,7 @@ fn check_drawn(drawing: &DrawingFile, read: &DrawnExtent, said: &Diagnostics) ->
     if read.drawn > 0 {
         return Ok(());
     }
-    Err(format!(
-        "{}: nothing is drawn by it, read as {}{}",
-        drawing.name(),
-        drawing.language().name(),
-        said.why_nothing()
-    ))
+    Err(drawing.nothing_drawn(said))
 }
 
 fn tell(

@@ -1,7 +1,7 @@
 //! [`DrawingFile`]: a drawing in any of the languages, read as plot operations and diagnostics.
 
 use crate::language::is_dm_pl;
-use crate::{Language, SvgReading, at, svg_drawing};
+use crate::{Diagnostics, Language, PenLines, SvgReading, at, svg_drawing};
 use plotter_motion::hpgl::{cutter, thesis_text};
 use plotter_motion::{PlotOp, gcode, hpgl};
 use plotter_vector::SvgFonts;
@@ -97,6 +97,8 @@ pub struct DrawingFile {
     language: Language,
     fonts: SvgFonts,
     svg: SvgReading,
+    /// The lines that move its pen, if somebody says them.
+    pen_words: Option<gcode::PenWords>,
     /// What there is to say about the files of its fonts.
     notices: Vec<String>,
 }
@@ -149,7 +151,7 @@ impl DrawingFile {
 
     fn of(name: String, source: Source, language: Language) -> Self {
         let (fonts, svg) = (SvgFonts::default(), SvgReading::default());
-        Self { name, source, language, fonts, svg, notices: Vec::new() }
+        Self { name, source, language, fonts, svg, pen_words: None, notices: Vec::new() }
     }
 
     /// Reads it so, if it is an SVG picture.
@@ -163,6 +165,42 @@ impl DrawingFile {
             self.svg = how.clone();
         }
         Ok(self)
+    }
+
+    /// Lifts and lowers the pen by these lines, if there are any.
+    ///
+    /// # Errors
+    ///
+    /// The line that is no G-code, or that the drawing is none.
+    pub fn with_pen_lines(mut self, lines: &PenLines) -> Result<Self, String> {
+        self.pen_words = lines.words()?;
+        if self.pen_words.is_some() && self.language != Language::Gcode {
+            let name = self.language.name();
+            return Err(format!(
+                "{}: --pen-up and --pen-down are lines of G-code, and this is {name}",
+                self.name
+            ));
+        }
+        Ok(self)
+    }
+
+    /// What to say where nothing is drawn: what has been seen instead, and what helps.
+    #[must_use]
+    pub fn nothing_drawn(&self, said: &Diagnostics) -> String {
+        let why = said.why_nothing();
+        let text = format!("{}: nothing is drawn by it, read as {}{why}", self.name, self.language.name());
+        if self.language != Language::Gcode {
+            return text;
+        }
+        let seen = if self.pen_words.is_some() {
+            "none of the lines that lower the pen stands before a movement".to_owned()
+        } else {
+            let detection = self.bytes(&Rc::default()).map(gcode::Detection::of).unwrap_or_default();
+            lifted_by(detection.pen())
+        };
+        format!(
+            "{text}; {seen}: say the lines that lift and lower it by --pen-up LINE --pen-down LINE, such as M5 and M3"
+        )
     }
 
     /// What it is called in messages.
@@ -215,7 +253,10 @@ impl DrawingFile {
                 let mut options = detection.options();
                 options.pen = how.pen.unwrap_or(options.pen);
                 place.restart()?;
-                let ops = gcode::PlotOps::with_options(self.bytes(&place)?, options);
+                let mut ops = gcode::PlotOps::with_options(self.bytes(&place)?, options);
+                if let Some(words) = &self.pen_words {
+                    ops = ops.with_pen_words(words.clone());
+                }
                 Box::new(ops.map(|op| {
                     op.map_err(|error| {
                         Diagnostic::placed(error.at, error.is_notice(), error.problem.to_string())
@@ -281,6 +322,27 @@ impl DrawingFile {
             }
         };
         Ok(Bytes { reader, buffer: vec![0; HEAD_BYTES], filled: 0, next: 0, place: Rc::clone(place) })
+    }
+}
+
+/// How a pen is lifted and lowered.
+fn lifted_by(pen: gcode::PenConvention) -> String {
+    use gcode::PenConvention;
+    match pen {
+        PenConvention::Spindle => "its pen seems to be lowered by M3 and lifted by M5".into(),
+        PenConvention::SpindleWords { up, down } => {
+            format!("its pen seems to be lowered by M{down} and lifted by M{up}")
+        }
+        PenConvention::Height { threshold_mm } => {
+            format!("its pen seems to be down at Z {threshold_mm} mm and below")
+        }
+        PenConvention::Servo { command, up, down } => {
+            format!("its pen seems to be moved by a servo ({command:?}: up at {up}, down at {down})")
+        }
+        PenConvention::Laser { command, .. } => {
+            format!("it seems to be for a laser ({command:?}) that is never on as it moves")
+        }
+        PenConvention::Motion => "it has no word that is known to move a pen, and no line by G1".into(),
     }
 }
 

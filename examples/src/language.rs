@@ -130,11 +130,15 @@ fn sense_in_hpgl(text: &[u8]) -> f64 {
     share(good, bad)
 }
 
-/// Share of the lines that G-code knows.
+/// Share of the lines that G-code knows. Commands by their names say nothing: other languages have words, too.
 fn sense_in_gcode(text: &[u8]) -> f64 {
+    let plain = |line: &&[u8]| {
+        let is_reckoned = line.iter().any(|byte| matches!(byte, b'#' | b'['));
+        !gcode::is_named(line) && !is_reckoned
+    };
     let (mut reader, mut interpreter) = (gcode::Reader::new(), gcode::Interpreter::new());
     let (mut good, mut bad) = (0, 0);
-    for byte in text {
+    for byte in text.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')).filter(plain).flatten() {
         let Some(block) = reader.push(*byte) else { continue };
         let lines = u32::from(block.as_ref().is_ok_and(|block| !block.words().is_empty()));
         if interpreter.push(block).is_err() {
@@ -160,6 +164,11 @@ mod tests {
         assert_eq!(told(b"IN;SP1;PU400,400;PD800,400;"), Some(Language::Hpgl));
         assert_eq!(told(b"\x1b.Y\x1b.I81;;17:IN\nPA1 2 PD;"), Some(Language::Hpgl));
         assert_eq!(told(b"G21\nG0 X10 Y10 (go)\nM3 S90\n"), Some(Language::Gcode));
+        assert_eq!(
+            told(b"START_PLOT PEN=1\nG28\nG90\nPEN_UP\nG1 X10 Y10\nPEN_DOWN\nG1 X4\n"),
+            Some(Language::Gcode)
+        );
+        assert_eq!(told(b"#1=10\nG0 X[#1*2]\nM3\nG1 X4\n"), Some(Language::Gcode));
         assert_eq!(told(b"; made by hand\ng0x1y2\n"), Some(Language::Gcode));
         assert_eq!(told(b"H\nJ1\nM400,400\nD800,400,800,800\nI-400,-400\n"), Some(Language::CammGl));
         assert_eq!(told(b"H\x03M100,100\x03D200,100\x03"), Some(Language::GpGl));

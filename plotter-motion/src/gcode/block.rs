@@ -106,6 +106,31 @@ impl Block {
         true
     }
 
+    /// Keeps the words that are asked for.
+    pub(super) fn retain(&mut self, mut keeps: impl FnMut(&Word) -> bool) {
+        let before = *self;
+        self.words = [Word::NONE; MOST_WORDS];
+        self.count = 0;
+        for word in before.words().iter().filter(|word| keeps(word)) {
+            self.push(*word, before.at);
+        }
+    }
+
+    /// One more word, where the line stands; there is none where the line is full.
+    pub(super) fn insert(&mut self, letter: u8, number: f64) {
+        let (at, column) = (self.at, self.at.column);
+        self.push(Word { letter, number: Some(number), column }, at);
+    }
+
+    /// The number of this letter, from here on.
+    pub(super) fn set(&mut self, letter: u8, number: f64) {
+        let count = usize::from(self.count);
+        match self.words.iter_mut().take(count).find(|word| word.letter == letter) {
+            Some(word) => word.number = Some(number),
+            None => self.insert(letter, number),
+        }
+    }
+
     /// Where its first word stands, or its comment.
     #[must_use]
     pub fn position(&self) -> Position {

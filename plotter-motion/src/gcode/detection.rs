@@ -2,7 +2,9 @@
 
 use super::code::{Code, Group};
 use super::line::Line;
-use super::{Block, DwellUnit, Error, LaserCommand, PenConvention, ReadOptions, Reader, ServoCommand, Words};
+use super::lines::Lines;
+use super::machine::spindle_number;
+use super::{Block, DwellUnit, Error, LaserCommand, PenConvention, ReadOptions, ServoCommand, Words};
 
 /// Greatest angle of a servo, degrees: what is more is a tone, or switches the servo off.
 const MOST_DEG: f64 = 180.0;
@@ -66,6 +68,55 @@ impl Places {
     }
 }
 
+/// Movements across the sheet after each of `M3`, `M4` and `M5`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Spindles {
+    rapids: [u32; 3],
+    others: [u32; 3],
+    /// What was in force at the first movement, and what is now, counted from `M3`.
+    first: Option<usize>,
+    now: usize,
+}
+
+impl Spindles {
+    /// Before the first word it is as after `M5`.
+    const NONE: Self = Self { rapids: [0; 3], others: [0; 3], first: None, now: 2 };
+
+    fn go(&mut self, is_rapid: bool) {
+        self.first = self.first.or(Some(self.now));
+        let counts = if is_rapid { &mut self.rapids } else { &mut self.others };
+        if let Some(count) = counts.get_mut(self.now) {
+            *count = count.saturating_add(1);
+        }
+    }
+
+    /// Which of them lifts and which lowers, where it is not `M5` that lifts.
+    fn up_and_down(&self) -> Option<PenConvention> {
+        let most = |counts: [u32; 3]| (0..3).rev().max_by_key(|at| counts.get(*at).copied());
+        let has_rapids = self.rapids.iter().any(|count| *count > 0);
+        let others_but = |up: usize| {
+            let mut others = self.others;
+            if let Some(count) = others.get_mut(up) {
+                *count = 0;
+            }
+            others
+        };
+        let (up, down) = if has_rapids {
+            let (up, down) = (most(self.rapids)?, most(self.others)?);
+            let is_clear = self.rapids.get(up) > self.rapids.get(down);
+            (is_clear && self.others.get(down) > self.others.get(up)).then_some((up, down))?
+        } else {
+            // All of it by G1: a drawing begins and ends with the pen up.
+            let up = self.first.filter(|first| *first == self.now)?;
+            (up, most(others_but(up))?)
+        };
+        let number = |at: usize| u8::try_from(3 + at).unwrap_or(5);
+        let draws = others_but(up).get(down).is_some_and(|count| *count > 0);
+        (up != 2 && up != down && draws)
+            .then(|| PenConvention::SpindleWords { up: number(up), down: number(down) })
+    }
+}
+
 /// Finds out by which words a text lifts its pen: takes the text's lines, one after the other, in constant memory.
 ///
 /// The first of these rules that fits holds:
@@ -77,6 +128,7 @@ impl Places {
 /// | `M4 …` without a letter, above 0 | [`LaserCommand::M4`] |
 /// | `M1 …` without a letter | [`ServoCommand::M1`] |
 /// | two changes of Z or more, and as many as there are of the spindle | [`PenConvention::Height`], or [`ServoCommand::Z`] where the pen is never lower than it travels |
+/// | `M3`, `M4` and `M5`, no `S` in lines that move, most of `G0` after `M3` or `M4` and most other movements after another of the three; or no `G0`, and `M3` or `M4` before the first movement and at the end | [`PenConvention::SpindleWords`] |
 /// | `M4`; or `M3`, and `S` in lines that move, `S0` among others, or three numbers after `S` | [`LaserCommand::Spindle`] |
 /// | `M3` with two numbers after `S`, and at most one `M5` | [`ServoCommand::M3`] |
 /// | `M3` | [`PenConvention::Spindle`] |
@@ -108,6 +160,7 @@ pub struct Detection {
     spindle: Places,
     /// Greatest number after mDraw's `M4`.
     laser: f64,
+    spindles: Spindles,
     spindle_on: bool,
     spindle_changes: u32,
     offs: u32,
@@ -148,6 +201,7 @@ impl Detection {
             z: none,
             spindle: none,
             laser: 0.0,
+            spindles: Spindles::NONE,
             spindle_on: false,
             spindle_changes: 0,
             offs: 0,
@@ -168,15 +222,12 @@ impl Detection {
 
     /// What a whole text says.
     pub fn of(bytes: impl IntoIterator<Item = u8>) -> Self {
-        let (mut reader, mut detection) = (Reader::new(), Self::new());
-        for byte in bytes {
-            if let Some(Ok(())) = reader.advance(byte) {
-                detection.push(reader.block());
-                reader.clear_block();
+        let (mut lines, mut detection) = (Lines::new(bytes.into_iter()), Self::new());
+        while let Some(line) = lines.advance() {
+            if line.is_ok() {
+                detection.push(lines.block());
             }
-        }
-        if let Some(Ok(())) = reader.advance_to_end() {
-            detection.push(reader.block());
+            lines.clear();
         }
         detection
     }
@@ -197,6 +248,7 @@ impl Detection {
             let z = z * self.unit_mm;
             self.z.put(if self.relative { self.z.now.unwrap_or_default() + z } else { z });
         }
+        self.take_cycle(&line);
         self.take_spindle(&line, moves);
         if line.is(Code::Dwell)
             && let Some(time) = line.number(b'P').filter(|time| *time > 0.0)
@@ -209,10 +261,27 @@ impl Detection {
                 self.take_digits(number);
             }
             let is_rapid = self.motion == Code::Rapid;
+            self.spindles.go(is_rapid);
             for places in
                 [&mut self.beeps, &mut self.servo, &mut self.degrees, &mut self.z, &mut self.spindle]
             {
                 places.go(is_rapid);
+            }
+        }
+    }
+
+    /// A canned cycle goes down to Z and up to R in each place.
+    fn take_cycle(&mut self, line: &Line<'_>) {
+        let is_cycle = |word: &super::Word| {
+            word.letter == b'G' && matches!(word.tenths(), Some(730 | 810 | 820 | 830 | 850..=890))
+        };
+        if self.motion == Code::NoMotion && line.undone.as_ref().is_some_and(is_cycle) {
+            let now = self.z.now.unwrap_or_default();
+            let from = |height: f64| if self.relative { height } else { 0.0 };
+            let near = line.number(b'R').map_or(now, |number| from(now) + number * self.unit_mm);
+            if let Some(number) = line.number(b'Z') {
+                self.z.put(from(near) + number * self.unit_mm);
+                self.z.put(near);
             }
         }
     }
@@ -252,6 +321,7 @@ impl Detection {
                 .spindle_changes
                 .saturating_add(u32::from(self.spindle_on != (spindle != Code::SpindleOff)));
             self.spindle_on = spindle != Code::SpindleOff;
+            self.spindles.now = usize::from(spindle_number(spindle).saturating_sub(3));
             self.dynamic |= spindle == Code::Dynamic;
             self.constant |= spindle == Code::Constant;
             self.offs = self.offs.saturating_add(u32::from(spindle == Code::SpindleOff));
@@ -295,6 +365,8 @@ impl Detection {
             servo(ServoCommand::M1, &self.degrees, (160.0, 90.0))
         } else if self.z.changes >= 2 && self.z.changes >= self.spindle_changes {
             self.height()
+        } else if let (Some(words), false) = (self.spindles.up_and_down(), self.power_in_move) {
+            words
         } else if spindle_laser {
             PenConvention::Laser { command: LaserCommand::Spindle, full: self.most_power.max(1000.0) }
         } else if self.constant && other != 0.0 && self.offs <= 1 {

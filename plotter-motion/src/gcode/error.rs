@@ -1,7 +1,7 @@
 //! [`Error`]: what is wrong with a text, where, and what would be right.
 
 use super::code::meaning;
-use super::{Position, Word};
+use super::{Position, Text, Word};
 use core::fmt;
 
 /// Something in a text that could not be carried out. Reading goes on with the next line.
@@ -50,6 +50,54 @@ pub enum Problem {
         letter: u8,
         /// The number; infinite when it is very long.
         value: f64,
+    },
+    /// A comment within a comment, in a line that has words.
+    NestedComment,
+    /// `M0` or `M1`: the machine waits for a person. A notice.
+    Pause {
+        /// The command.
+        command: Word,
+        /// What it asks for.
+        text: Text,
+    },
+    /// A command by its name, whose meaning stands in the controller's configuration. A notice.
+    Named {
+        /// Its name, and what follows it.
+        name: Text,
+    },
+    /// Lines behind the end of the program, `M2` or `M30`.
+    AfterEnd {
+        /// The line in which the program ends.
+        line: u32,
+    },
+    /// A formula that has no value.
+    Expression {
+        /// What is wrong with it, and what would be right.
+        what: &'static str,
+    },
+    /// A variable by its name that has not been set.
+    Undefined {
+        /// The name.
+        name: Text,
+    },
+    /// A function of a number that has none.
+    OutOfDomain {
+        /// The function.
+        function: &'static str,
+        /// The number.
+        value: f64,
+        /// What it takes.
+        expected: &'static str,
+    },
+    /// A loop, a condition or a subprogram that cannot be carried out.
+    Program {
+        /// What is wrong with it, and what would be right.
+        what: &'static str,
+    },
+    /// A subprogram that is not there.
+    NoSubprogram {
+        /// Its number or name.
+        name: Text,
     },
     /// More than 16 words.
     TooManyWords,
@@ -160,7 +208,14 @@ impl Error {
     /// passes over it.
     #[must_use]
     pub fn is_notice(&self) -> bool {
-        matches!(self.problem, Problem::Unsupported { .. } | Problem::Unused { .. } | Problem::System)
+        matches!(
+            self.problem,
+            Problem::Unsupported { .. }
+                | Problem::Unused { .. }
+                | Problem::System
+                | Problem::Pause { .. }
+                | Problem::Named { .. }
+        )
     }
 }
 
@@ -215,6 +270,35 @@ impl fmt::Display for Problem {
             Self::NumberOutOfRange { letter, value } => {
                 write!(f, "{} with {value}: numbers reach from -1000000000 to 1000000000", Letter(letter))
             }
+            Self::NestedComment => f.write_str(
+                "a comment begins within a comment, of which controllers end the outer one with the inner one: take the inner \
+                 parentheses away",
+            ),
+            Self::Pause { command, text } if text.is_empty() => {
+                write!(f, "{command} (pause) is not supported and is left out")
+            }
+            Self::Pause { command, text } => {
+                write!(f, "{command} (pause: {text}) is not supported and is left out")
+            }
+            Self::Named { name } => write!(
+                f,
+                "`{name}` is a command of the controller's own, by its name, and is left out; if it lifts or lowers the pen, say \
+                 so"
+            ),
+            Self::AfterEnd { line } => write!(
+                f,
+                "the program has ended in line {line} by M2 or M30, and what follows is not drawn: take that word away to draw it"
+            ),
+            Self::Expression { what } | Self::Program { what } => f.write_str(what),
+            Self::Undefined { name } => write!(f, "#<{name}> has no value: set it before, as in `#<{name}> = 5`"),
+            Self::OutOfDomain { function, value, expected } => {
+                write!(f, "{function} of {value} is no number: it takes {expected}")
+            }
+            Self::NoSubprogram { name } => write!(
+                f,
+                "there is no subprogram `{name}`: LinuxCNC's begins with `O{name} sub`, before its call, and Fanuc's with `O{name}` in a \
+                 line of its own, in the same file"
+            ),
             Self::TooManyWords => f.write_str("more than 16 words: divide the line"),
             Self::BadChecksum { given: Some(given), expected } => {
                 write!(f, "checksum *{given} of a line whose bytes make *{expected}: send it again")

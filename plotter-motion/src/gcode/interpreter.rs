@@ -1,9 +1,12 @@
 //! [`Interpreter`]: lines in, plot operations out; [`LineInterpreter`]: the same without a memory for what a line has given.
 
+#[cfg(feature = "alloc")]
+use super::PenConvention;
 use super::error::Complaint;
+use super::expansion::{Expansion, ends};
 use super::line::Line;
 use super::machine::Machine;
-use super::{Block, BlockDelete, Error, Modes, ReadOptions, Undrained, Words};
+use super::{Block, BlockDelete, Error, Modes, Problem, ReadOptions, Text, Undrained, Words};
 use crate::{PlotOp, Point, Vec2};
 
 /// Most that one line gives.
@@ -35,6 +38,15 @@ impl<C: Complaint> Outcomes<C> {
         }
     }
 
+    /// Puts a complaint before what has been given.
+    pub(super) fn give_first(&mut self, complaint: C) {
+        let count = usize::from(self.count);
+        self.give(Err(complaint));
+        if let Some(slots) = self.slots.get_mut(..=count) {
+            slots.rotate_right(1);
+        }
+    }
+
     /// What has not been taken, in its order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Result<PlotOp, C>> {
         self.slots.iter().take(self.count.into()).flatten()
@@ -48,6 +60,21 @@ impl<C: Complaint> Outcomes<C> {
         let slot = self.slots.get_mut(usize::from(self.taken));
         self.taken += 1;
         slot.and_then(Option::take)
+    }
+}
+
+impl Outcomes<Error> {
+    /// Adds what a pause asks for.
+    fn put_text(&mut self, text: Text) {
+        for outcome in self.slots.iter_mut().flatten() {
+            if let Err(Error { problem, .. }) = outcome
+                && let Problem::Unsupported { command, .. } = *problem
+                && command.letter == b'M'
+                && matches!(command.tenths(), Some(0 | 10))
+            {
+                *problem = Problem::Pause { command, text };
+            }
+        }
     }
 }
 
@@ -77,7 +104,7 @@ impl<C: Complaint> Outcomes<C> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// - A line is carried out whole or not at all. Within it speed, tool and pen come first, then `G4`, `G28` or `G92`, then the
+/// - A line is carried out whole or not at all; but the end of an arc that is none is gone to, with the pen up. Within it speed, tool and pen come first, then `G4`, `G28` or `G92`, then the
 ///   movement, then `M0` or `M2`: the order of the standard.
 /// - A pen that is lowered and lifted again without a movement leaves a dot, a line to where it stands.
 /// - A pen that is lifted goes up with the travel that follows. Where a dwell, a pause or the end of the text or program follows
@@ -88,7 +115,10 @@ impl<C: Complaint> Outcomes<C> {
 pub struct Interpreter {
     options: ReadOptions,
     line: LineInterpreter,
+    expansion: Expansion,
     outcomes: Outcomes<Error>,
+    /// The line in which the program has ended.
+    ended: Option<u32>,
 }
 
 /// What of an [`Interpreter`] holds from one line to the next.
@@ -114,7 +144,19 @@ impl Interpreter {
     /// A machine that has just been switched on.
     #[must_use]
     pub fn with_options(options: ReadOptions) -> Self {
-        Self { options, line: LineInterpreter::new(), outcomes: Outcomes::none() }
+        Self {
+            options,
+            line: LineInterpreter::new(),
+            expansion: Expansion::new(),
+            outcomes: Outcomes::none(),
+            ended: None,
+        }
+    }
+
+    /// The same, with the pen lifted by `M5` and lowered by `M3`.
+    #[cfg(feature = "alloc")]
+    pub(super) fn with_spindle(self) -> Self {
+        Self { options: ReadOptions { pen: PenConvention::Spindle, ..self.options }, ..self }
     }
 
     /// Takes the next line, or the error that the reader gave instead.
@@ -123,21 +165,59 @@ impl Interpreter {
     ///
     /// [`Undrained`] when [`Interpreter::next_op`] still has something to give; the line is not taken.
     pub fn push(&mut self, block: Result<Block, Error>) -> Result<(), Undrained> {
-        self.push_line(block.as_ref().map_err(|error| *error))
+        self.push_line(block.as_ref().map_err(|error| *error), Text::default())
     }
 
     /// The same, with a line that stays where it is.
-    pub(super) fn push_line(&mut self, block: Result<&Block, Error>) -> Result<(), Undrained> {
+    pub(super) fn push_line(&mut self, block: Result<&Block, Error>, text: Text) -> Result<(), Undrained> {
         self.drained()?;
-        let before = self.line;
-        if let Err(error) =
-            block.and_then(|block| self.line.carry_out(block, &self.options, &mut self.outcomes))
-        {
-            self.line = before;
-            self.outcomes = Outcomes::none();
-            self.outcomes.give(Err(error));
+        let before = (self.line, self.expansion);
+        if let Err(error) = block.and_then(|block| self.carry_out(block)) {
+            (self.line, self.expansion) = before;
+            self.refuse(block.ok(), error);
         }
+        self.outcomes.put_text(text);
         Ok(())
+    }
+
+    fn carry_out(&mut self, block: &Block) -> Result<(), Error> {
+        let (line, options, out) = (&mut self.line, &self.options, &mut self.outcomes);
+        if options.words == Words::Grbl {
+            return line.carry_out(block, options, out);
+        }
+        if block.is_deleted() && options.block_delete == BlockDelete::LeaveOut {
+            return Ok(());
+        }
+        if ends(block) {
+            self.ended = self.ended.or(Some(block.position().line));
+        }
+        self.expansion.carry_out(block, line, options, out)
+    }
+
+    /// Leaves a line out, or what is left of it. The end of an arc that is none is gone to with the pen up: what follows begins there.
+    fn refuse(&mut self, block: Option<&Block>, error: Error) {
+        self.outcomes = Outcomes::none();
+        self.expansion.forget();
+        let is_arc = matches!(
+            error.problem,
+            Problem::Plane
+                | Problem::ArcForm
+                | Problem::ArcWithoutEnd
+                | Problem::ArcRadii { .. }
+                | Problem::ArcRadius { .. }
+        );
+        if let (true, Some(block)) = (is_arc && self.options.words == Words::Any, block) {
+            let before = self.line;
+            if self.line.leave_out(block, &self.options, &mut self.outcomes).is_err() {
+                (self.line, self.outcomes) = (before, Outcomes::none());
+            }
+        }
+        self.outcomes.give_first(error);
+    }
+
+    /// The line in which the program has ended, by `M2` or `M30`.
+    pub(super) const fn ended(&self) -> Option<u32> {
+        self.ended
     }
 
     /// Ends the drawing: a pen that has been lowered and never moved leaves its dot, one that has been lifted since its last line is
@@ -155,23 +235,38 @@ impl Interpreter {
 
     /// The next operation, or what could not be carried out; `None` when the next line is wanted.
     pub fn next_op(&mut self) -> Option<Result<PlotOp, Error>> {
-        self.outcomes.take()
+        loop {
+            if let Some(outcome) = self.outcomes.take() {
+                return Some(outcome.map(|op| self.expansion.frame.apply_to(op)));
+            }
+            let block = self.expansion.next_block(&self.line, &self.options)?;
+            let before = self.line;
+            if let Err(error) = self.line.carry_out(&block, &self.options, &mut self.outcomes) {
+                self.line = before;
+                self.refuse(Some(&block), error);
+            }
+        }
     }
 
     /// What holds from one line to the next.
     #[must_use]
     pub fn modes(&self) -> Modes {
-        self.line.modes()
+        let modes = self.line.modes();
+        Modes { position: self.expansion.frame.apply(modes.position), ..modes }
     }
 
     /// The machine has been moved by something else, or stopped on its way: the pen stands at `point`, in mm on the sheet. What has
     /// been set by `G92` stays.
     pub fn stand_at(&mut self, point: Point) {
-        self.line.stand_at(point);
+        self.line.stand_at(self.expansion.frame.inverse(point));
     }
 
     fn drained(&self) -> Result<(), Undrained> {
-        if self.outcomes.taken == self.outcomes.count { Ok(()) } else { Err(Undrained) }
+        if self.outcomes.taken == self.outcomes.count && !self.expansion.is_pending() {
+            Ok(())
+        } else {
+            Err(Undrained)
+        }
     }
 }
 
@@ -219,6 +314,40 @@ impl LineInterpreter {
     /// As [`Interpreter::stand_at`].
     pub(crate) fn stand_at(&mut self, point: Point) {
         self.machine.stand_at(point);
+    }
+
+    /// The number of the `G` that coordinates alone ask for.
+    pub(super) const fn motion(&self) -> u8 {
+        self.machine.motion_number()
+    }
+
+    /// The height that the text has told: mm, or what a servo makes of it.
+    pub(super) const fn height(&self) -> f64 {
+        self.machine.height_told()
+    }
+
+    pub(super) fn set_shift(&mut self, shift: Vec2) {
+        self.machine.set_shift(shift);
+    }
+
+    /// Exchanges the origin of `G59` for another one.
+    pub(super) fn exchange_last_origin(&mut self, origin: &mut Vec2) {
+        self.machine.exchange_last_origin(origin);
+    }
+
+    /// The place where the pen stands has these coordinates from here on.
+    pub(super) fn relocate(&mut self, point: Point) {
+        self.machine.relocate(point);
+    }
+
+    /// Goes to the end of a movement that is left out, with the pen up.
+    pub(super) fn leave_out(
+        &mut self,
+        block: &Block,
+        options: &ReadOptions,
+        out: &mut Outcomes<Error>,
+    ) -> Result<(), Error> {
+        self.machine.leave_out(&Line::read(block, options.words)?, options, out)
     }
 
     /// Puts a pen down that was told to go down and has not moved since: the operation that does so, and leaves its dot.

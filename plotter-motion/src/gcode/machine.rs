@@ -94,22 +94,22 @@ impl Machine {
             inches: self.unit_mm != 1.0,
             relative: self.relative,
             inverse_time: self.inverse_time,
-            motion: match self.motion {
-                Code::Rapid => 0,
-                Code::Straight => 1,
-                Code::Clockwise => 2,
-                Code::CounterClockwise => 3,
-                _ => 80,
-            },
+            motion: self.motion_number(),
             feed_mm_s: self.feed_mm_s,
-            spindle: match self.spindle {
-                Code::Constant => 3,
-                Code::Dynamic => 4,
-                _ => 5,
-            },
+            spindle: spindle_number(self.spindle),
             power: self.power,
             tool: self.tool.unwrap_or(0),
             pen_down: self.pen_down,
+        }
+    }
+
+    pub(super) const fn motion_number(&self) -> u8 {
+        match self.motion {
+            Code::Rapid => 0,
+            Code::Straight => 1,
+            Code::Clockwise => 2,
+            Code::CounterClockwise => 3,
+            _ => 80,
         }
     }
 
@@ -282,6 +282,14 @@ impl Machine {
             PenConvention::Spindle => {
                 if let Some(spindle) = line.of(Group::Spindle) {
                     self.set_pen(spindle != Code::SpindleOff, options, out);
+                }
+            }
+            PenConvention::SpindleWords { up, down } => {
+                if let Some(spindle) = line.of(Group::Spindle) {
+                    let number = spindle_number(spindle);
+                    if number == up || number == down {
+                        self.set_pen(number == down, options, out);
+                    }
                 }
             }
             PenConvention::Servo { command, up, down } => {
@@ -500,6 +508,49 @@ impl Machine {
         Ok(moves)
     }
 
+    /// The height that the text has told.
+    pub(super) const fn height_told(&self) -> f64 {
+        self.z
+    }
+
+    pub(super) fn set_shift(&mut self, shift: Vec2) {
+        self.shift = shift;
+    }
+
+    /// Exchanges the origin of the last coordinate system for another one.
+    pub(super) fn exchange_last_origin(&mut self, origin: &mut Vec2) {
+        if let Some(last) = self.origins.last_mut() {
+            core::mem::swap(last, origin);
+        }
+    }
+
+    /// The place where the pen stands has these coordinates from here on.
+    pub(super) fn relocate(&mut self, point: Point) {
+        self.at = point;
+    }
+
+    /// Goes to the end of a movement that is left out, with the pen up.
+    pub(super) fn leave_out<C: Complaint>(
+        &mut self,
+        line: &Line<'_>,
+        options: &ReadOptions,
+        out: &mut Outcomes<C>,
+    ) -> Result<(), C> {
+        self.set_modes(line)?;
+        self.put_pen(line, options, out);
+        self.motion = line.of(Group::Motion).unwrap_or(self.motion);
+        if line.has(b"XY") && line.may_move() {
+            let to = self.place(line);
+            self.leave_dot(options, out);
+            self.give(PlotOp::Travel { to }, out);
+            (self.at, self.settling) = (to, false);
+        }
+        if let Some(is_down) = self.height(line, options) {
+            self.set_pen(is_down, options, out);
+        }
+        Ok(())
+    }
+
     /// As [`LineInterpreter::travel`](super::LineInterpreter::travel).
     pub(super) fn travel<C: Complaint>(&mut self, line: &Line<'_>) -> Result<Option<Point>, C> {
         self.set_modes(line)?;
@@ -640,6 +691,15 @@ impl Machine {
 /// Whether `G30` or `G30.1` asks for it, not `G28`.
 fn is_second(line: &Line<'_>) -> bool {
     line.word_of(Group::Action as usize).and_then(Word::tenths) >= Some(300)
+}
+
+/// The number after its `M`.
+pub(super) const fn spindle_number(spindle: Code) -> u8 {
+    match spindle {
+        Code::Constant => 3,
+        Code::Dynamic => 4,
+        _ => 5,
+    }
 }
 
 fn is_nearer(place: f64, one: f64, other: f64) -> bool {

@@ -1,6 +1,9 @@
 //! [`PlotOps`]: a whole text as an iterator of plot operations.
 
-use super::{Error, Interpreter, ReadOptions, Reader};
+#[cfg(feature = "alloc")]
+use super::PenWords;
+use super::lines::Lines;
+use super::{Error, Interpreter, Problem, ReadOptions};
 use crate::PlotOp;
 use core::iter::Copied;
 use core::slice::Iter;
@@ -9,6 +12,8 @@ use core::slice::Iter;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     Text,
+    /// The program has ended in this line; what follows is looked at once.
+    EndOfProgram(u32),
     EndOfText,
     EndOfDrawing,
     /// Strict reading met an error: what the interpreter still holds is not to follow.
@@ -17,12 +22,11 @@ enum Stage {
 
 /// The plot operations of a G-code text, read from an iterator of bytes as they are asked for.
 ///
-/// Memory is constant, whatever the length of the text. An [`Error`] stands in the place of what could not be
+/// Memory is constant, whatever the length of the text; but for loops and subprograms, which are held, 16 MiB at most. An [`Error`] stands in the place of what could not be
 /// carried out, and the operations after it follow, unless reading is [strict](PlotOps::strict).
 #[derive(Clone, Debug)]
 pub struct PlotOps<I> {
-    bytes: I,
-    reader: Reader,
+    lines: Lines<I>,
     interpreter: Interpreter,
     stage: Stage,
     strict: bool,
@@ -37,12 +41,18 @@ impl<I: Iterator<Item = u8>> PlotOps<I> {
     /// The operations of the text `bytes`.
     pub fn with_options(bytes: impl IntoIterator<Item = u8, IntoIter = I>, options: ReadOptions) -> Self {
         Self {
-            bytes: bytes.into_iter(),
-            reader: Reader::new(),
+            lines: Lines::new(bytes.into_iter()),
             interpreter: Interpreter::with_options(options),
             stage: Stage::Text,
             strict: false,
         }
+    }
+
+    /// The same, lifting and lowering the pen by these words instead of those of the options.
+    #[cfg(feature = "alloc")]
+    #[must_use]
+    pub fn with_pen_words(self, words: PenWords) -> Self {
+        Self { lines: self.lines.with_pen_words(words), interpreter: self.interpreter.with_spindle(), ..self }
     }
 
     /// The same, ending with the first error. Notices ([`Error::is_notice`]) do not count as errors.
@@ -57,6 +67,25 @@ impl<I: Iterator<Item = u8>> PlotOps<I> {
     #[must_use]
     pub fn strict(self) -> Self {
         Self { strict: true, ..self }
+    }
+}
+
+impl<I: Iterator<Item = u8>> PlotOps<I> {
+    /// What to say of the lines behind the end of the program, if they would do something.
+    fn after_end(&mut self, line: u32) -> Option<Error> {
+        let labels = self.lines.labels();
+        while let Some(ended) = self.lines.advance() {
+            let block = *self.lines.block();
+            self.lines.clear();
+            // Subprograms stand there.
+            if ended.is_err() || self.lines.labels() != labels {
+                return None;
+            }
+            if block.words().iter().any(|word| matches!(word.letter, b'X' | b'Y' | b'Z')) {
+                return Some(Error { at: block.position(), problem: Problem::AfterEnd { line } });
+            }
+        }
+        None
     }
 }
 
@@ -75,13 +104,25 @@ impl<I: Iterator<Item = u8>> Iterator for PlotOps<I> {
                 return Some(outcome);
             }
             let ended = match self.stage {
-                Stage::Text => match self.bytes.by_ref().find_map(|byte| self.reader.advance(byte)) {
-                    Some(ended) => Some(ended),
+                Stage::Text => match self.interpreter.ended() {
+                    Some(line) => {
+                        self.stage = Stage::EndOfProgram(line);
+                        let ended = self.interpreter.finish();
+                        debug_assert!(ended.is_ok(), "next_op has just given none");
+                        None
+                    }
                     None => {
-                        self.stage = Stage::EndOfText;
-                        self.reader.advance_to_end()
+                        let ended = self.lines.advance();
+                        if ended.is_none() {
+                            self.stage = Stage::EndOfText;
+                        }
+                        ended
                     }
                 },
+                Stage::EndOfProgram(line) => {
+                    self.stage = Stage::EndOfDrawing;
+                    self.after_end(line).map(Err)
+                }
                 Stage::EndOfText => {
                     self.stage = Stage::EndOfDrawing;
                     let ended = self.interpreter.finish();
@@ -91,9 +132,10 @@ impl<I: Iterator<Item = u8>> Iterator for PlotOps<I> {
                 Stage::EndOfDrawing | Stage::Failed => return None,
             };
             if let Some(ended) = ended {
-                let taken = self.interpreter.push_line(ended.map(|()| self.reader.block()));
+                let block = ended.map(|()| self.lines.block());
+                let taken = self.interpreter.push_line(block, self.lines.text());
                 debug_assert!(taken.is_ok(), "next_op has just given none");
-                self.reader.clear_block();
+                self.lines.clear();
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use super::block::is_among;
 use super::remark::RemarkReader;
+use super::text::Text;
 use super::{Block, Cursor, Error, Position, Problem, Remark, Word};
 use crate::decimal::Decimal;
 
@@ -36,10 +37,10 @@ enum State {
     Between { after_m: bool },
     /// After a letter.
     Letter { letter: u8, at: Position },
-    /// Within a number.
-    Number { letter: u8, at: Position, number: Decimal },
-    /// Within parentheses, or after a semicolon.
-    Comment { parentheses: bool, remark: RemarkReader },
+    /// Within a number, or after a blank behind its last digit, where more digits may follow.
+    Number { letter: u8, at: Position, number: Decimal, blank: bool },
+    /// Within so many parentheses, or with none after a semicolon.
+    Comment { parentheses: u16, remark: RemarkReader },
     /// After the `*`.
     Checksum { at: Position, given: Option<u16> },
     /// In what is not read, up to the end of the line.
@@ -54,7 +55,7 @@ const START: State = State::Between { after_m: false };
 
 /// Splits G-code into lines and their words, byte by byte, in constant memory.
 ///
-/// It takes words with and without blanks, in either case; numbers with sign and point; comments in `( )` and after `;`; `%`
+/// It takes words with and without blanks, also within numbers, in either case; numbers with sign and point; comments in `( )` and after `;`; `%`
 /// and `/` before a line; checksums (`*71`, the bytes before it by exclusive or), which must be right; lines that end with
 /// LF, CR or both. Control characters are blanks. Lines without words give nothing, but for `(pen 2)`.
 ///
@@ -80,6 +81,12 @@ pub struct Reader {
     block: Block,
     /// The bytes of the line by exclusive or.
     sum: u8,
+    /// Where a comment begins within a comment of this line.
+    nested: Option<Position>,
+    /// A text for people may begin: after `M0` or `M1` and a blank.
+    pauses: bool,
+    /// The last comment of the line, or what stands behind `M0`; or a message of a line before it.
+    text: Text,
 }
 
 impl Default for Reader {
@@ -106,7 +113,16 @@ impl Reader {
     /// ```
     #[must_use]
     pub fn with_spacing(spacing: Spacing) -> Self {
-        Self { state: START, spacing, cursor: Cursor::START, block: Block::empty(), sum: 0 }
+        Self {
+            state: START,
+            spacing,
+            cursor: Cursor::START,
+            block: Block::empty(),
+            sum: 0,
+            nested: None,
+            pauses: false,
+            text: Text::default(),
+        }
     }
 
     /// The place of the byte to come.
@@ -141,13 +157,54 @@ impl Reader {
         &self.block
     }
 
+    /// What the line that has ended tells people: its last comment, or a message of the lines before it.
+    pub(crate) const fn text(&self) -> Text {
+        self.text
+    }
+
     /// Forgets the line that has ended.
     pub(crate) fn clear_block(&mut self) {
         self.block.clear();
+        self.text = Text::default();
     }
 
     fn take_block(&mut self) -> Block {
         core::mem::replace(&mut self.block, Block::empty())
+    }
+
+    /// The byte to come stands there.
+    #[cfg(feature = "alloc")]
+    pub(super) fn stand_at(&mut self, cursor: Cursor) {
+        self.cursor = cursor;
+    }
+
+    /// Goes past bytes that somebody else has read.
+    #[cfg(feature = "alloc")]
+    pub(super) fn pass_over(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.cursor.pass(*byte));
+    }
+
+    /// The number of the letter that has been read, which somebody else has reckoned.
+    #[cfg(feature = "alloc")]
+    pub(super) fn give_number(&mut self, value: f64) -> Result<(), Error> {
+        let State::Letter { letter, at } = self.state else { return Ok(()) };
+        let letter = letter.to_ascii_uppercase();
+        if value.abs() > MOST {
+            return Err(Problem::NumberOutOfRange { letter, value }.at(at));
+        }
+        self.put(letter, at, Some(value))
+    }
+
+    /// Leaves the line out.
+    #[cfg(feature = "alloc")]
+    pub(super) fn give_up(&mut self) {
+        self.state = State::Skip;
+        let _ = self.end_line();
+    }
+
+    #[cfg(feature = "alloc")]
+    pub(super) fn block_mut(&mut self) -> &mut Block {
+        &mut self.block
     }
 
     /// A byte that does not go on with a number.
@@ -182,14 +239,27 @@ impl Reader {
     /// A byte of a line whose words need no blanks between them.
     fn free(&mut self, byte: u8, at: Position) -> Result<(), Error> {
         match &mut self.state {
-            State::Text | State::Skip | State::Lost => Ok(()),
-            State::Comment { parentheses: true, remark } if byte == b')' => {
+            State::Text => {
+                self.text.push(byte);
+                Ok(())
+            }
+            State::Skip | State::Lost => Ok(()),
+            State::Comment { parentheses: 1, remark } if byte == b')' => {
                 self.block.remark = remark.finish().or(self.block.remark);
                 self.state = START;
                 Ok(())
             }
-            State::Comment { remark, .. } => {
+            State::Comment { parentheses, remark } => {
                 remark.push(byte);
+                self.text.push(byte);
+                match (byte, *parentheses) {
+                    (b'(', 1..) => {
+                        *parentheses = parentheses.saturating_add(1);
+                        self.nested = self.nested.or(Some(at));
+                    }
+                    (b')', 2..) => *parentheses -= 1,
+                    _ => {}
+                }
                 Ok(())
             }
             State::Checksum { at: star, given } => {
@@ -210,22 +280,32 @@ impl Reader {
                 self.sum ^= byte;
                 Ok(())
             }
-            State::Number { letter, at: start, number } => {
-                let (letter, start, number) = (*letter, *start, *number);
+            State::Number { letter, at: start, number, blank } => {
+                // After the number of an M another one may follow: that of mDraw.
+                if is_blank(byte) && !matches!(*letter, b'M' | Word::BARE) {
+                    *blank = true;
+                    return Ok(());
+                }
+                let (letter, start, number, blank) = (*letter, *start, *number, *blank);
                 match byte {
                     b'.' | b',' => return Err(Problem::BadNumber { letter }.at(start)),
-                    b'e' | b'E' => return Err(Problem::Exponent { letter }.at(start)),
+                    b'e' | b'E' if !blank => return Err(Problem::Exponent { letter }.at(start)),
                     _ => self.word(letter, start, Some(number))?,
                 }
                 if self.state == State::Text {
                     return Ok(());
                 }
-                self.between(byte, at, letter == b'M' && is_blank(byte))
+                let after_m = letter == b'M' && is_blank(byte);
+                self.pauses |= after_m && self.block.words().last().is_some_and(is_pause);
+                self.between(byte, at, after_m)
             }
             State::Letter { letter, at: start } => {
-                let (letter, start) = (*letter, *start);
+                let (raw, start) = (*letter, *start);
+                let letter = raw.to_ascii_uppercase();
                 if let Some(number) = Decimal::begin(byte) {
-                    self.state = State::Number { letter, at: start, number };
+                    self.state = State::Number { letter, at: start, number, blank: false };
+                } else if self.pauses && !matches!(byte, b'(' | b';' | b'*') {
+                    self.begin_text(&[raw, byte]);
                 } else if !is_blank(byte) {
                     self.word(letter, start, None)?;
                     return self.between(byte, at, false);
@@ -249,7 +329,7 @@ impl Reader {
                 if let Some(number) = self.block.words().last().filter(|word| is_control(word, letter)) {
                     return Err(Problem::Control { number: *number }.at(self.block.place(*number)));
                 }
-                self.state = State::Letter { letter, at };
+                self.state = State::Letter { letter: byte, at };
             }
             b'(' | b';' => {
                 if is_first {
@@ -269,7 +349,10 @@ impl Reader {
             _ if usize::try_from(at.offset)
                 .is_ok_and(|offset| BYTE_ORDER_MARK.get(offset) == Some(&byte)) => {}
             _ => match Decimal::begin(byte) {
-                Some(number) if after_m => self.state = State::Number { letter: Word::BARE, at, number },
+                Some(number) if after_m && !self.stops() => {
+                    self.state = State::Number { letter: Word::BARE, at, number, blank: false };
+                }
+                _ if self.pauses => self.begin_text(&[byte]),
                 Some(_) => return Err(Problem::NoLetter.at(at)),
                 None => return Err(Problem::UnexpectedByte { byte }.at(at)),
             },
@@ -280,7 +363,7 @@ impl Reader {
     /// A byte of a line whose words are separated by blanks.
     fn spaced(&mut self, byte: u8, at: Position) -> Result<(), Error> {
         match &mut self.state {
-            State::Number { letter, at: start, number } => {
+            State::Number { letter, at: start, number, .. } => {
                 let (letter, start, number) = (*letter, *start, *number);
                 self.word(letter, start, Some(number))?;
                 self.state = if is_blank(byte) { START } else { State::Lost };
@@ -288,7 +371,7 @@ impl Reader {
             State::Letter { letter, at: start } => {
                 let (letter, at) = (*letter, *start);
                 if let Some(number) = Decimal::begin(byte) {
-                    self.state = State::Number { letter, at, number };
+                    self.state = State::Number { letter, at, number, blank: false };
                 } else {
                     self.word(letter, at, None)?;
                     self.state = if is_blank(byte) { START } else { State::Lost };
@@ -299,7 +382,7 @@ impl Reader {
             }
             State::Between { .. } if !is_blank(byte) => {
                 self.state = match Decimal::begin(byte) {
-                    Some(number) => State::Number { letter: Word::BARE, at, number },
+                    Some(number) => State::Number { letter: Word::BARE, at, number, blank: false },
                     None => State::Lost,
                 };
             }
@@ -310,7 +393,22 @@ impl Reader {
     }
 
     fn comment(&mut self, parentheses: bool) {
-        self.state = State::Comment { parentheses, remark: RemarkReader::default() };
+        self.state = State::Comment { parentheses: u16::from(parentheses), remark: RemarkReader::default() };
+        self.text = Text::default();
+    }
+
+    /// What stands behind `M0` and `M1` and is no word is for people.
+    fn begin_text(&mut self, bytes: &[u8]) {
+        self.text = Text::default();
+        for byte in bytes {
+            self.text.push(*byte);
+        }
+        self.state = State::Text;
+    }
+
+    /// Whether the last word is `M0`: a number behind that belongs to its text.
+    fn stops(&self) -> bool {
+        self.pauses && self.block.words().last().is_some_and(|word| word.number == Some(0.0))
     }
 
     fn word(&mut self, letter: u8, at: Position, number: Option<Decimal>) -> Result<(), Error> {
@@ -321,6 +419,10 @@ impl Reader {
             Some(Err(_)) if self.spacing == Spacing::Required => None,
             Some(Err(_)) => return Err(Problem::BadNumber { letter }.at(at)),
         };
+        self.put(letter, at, number)
+    }
+
+    fn put(&mut self, letter: u8, at: Position, number: Option<f64>) -> Result<(), Error> {
         if !self.block.push(Word { letter, number, column: at.column }, at) {
             return Err(Problem::TooManyWords.at(at));
         }
@@ -343,16 +445,32 @@ impl Reader {
                 self.block.clear();
                 Ok(())
             }
-            State::Letter { letter, at } => self.word(letter, at, None),
-            State::Number { letter, at, number } => self.word(letter, at, Some(number)),
+            State::Letter { letter, .. } if self.pauses => {
+                self.begin_text(&[letter]);
+                Ok(())
+            }
+            State::Letter { letter, at } => self.word(letter.to_ascii_uppercase(), at, None),
+            State::Number { letter, at, number, .. } => self.word(letter, at, Some(number)),
             State::Checksum { at, .. } => self.check(at),
             State::Comment { remark, .. } => {
                 self.block.remark = remark.finish().or(self.block.remark);
                 Ok(())
             }
-            State::Between { .. } | State::Text | State::Lost => Ok(()),
+            State::Text => {
+                let remark = self.pauses.then(|| self.text.remark()).flatten();
+                self.block.remark = remark.or(self.block.remark);
+                Ok(())
+            }
+            State::Between { .. } | State::Lost => Ok(()),
         };
-        (self.state, self.sum) = (START, 0);
+        let is_open = matches!(self.state, State::Comment { parentheses: 1.., .. });
+        let is_skipped = self.state == State::Skip;
+        (self.state, self.sum, self.pauses) = (START, 0, false);
+        let nested = self.nested.take().filter(|_| !is_skipped);
+        let ended = match nested.filter(|_| is_open || !self.block.words().is_empty()) {
+            Some(at) => ended.and(Err(Problem::NestedComment.at(at))),
+            None => ended,
+        };
         if let Err(error) = ended {
             self.block.clear();
             return Some(Err(error));
@@ -360,10 +478,16 @@ impl Reader {
         // A pen's number counts without words too.
         if self.block.words().is_empty() && !matches!(self.block.remark, Some(Remark::Pen(_))) {
             self.block.clear();
+            self.text = self.text.message();
             return None;
         }
         Some(Ok(()))
     }
+}
+
+/// Whether this word is `M0` or `M1`.
+fn is_pause(word: &Word) -> bool {
+    word.letter == b'M' && matches!(word.number, Some(0.0 | 1.0))
 }
 
 /// Whether a letter after this word begins a loop or a subprogram.

@@ -91,17 +91,15 @@ fn arcs_by_centre_and_by_radius() {
 #[test]
 fn arcs_that_are_none_are_named() {
     insta::assert_snapshot!(
-        ops("G0 X10\nG3 X0 Y10 R7\nG3 X0 Y10 I-9\nG3 X0 Y10\nG3 X10 Y0 R5\nG3 X0 Y1 R5 I2\nG18\nG3 X0 Y10 I-10\nG17 G3 X0 Y10 I-10")
+        ops("G0 X10\nG3 X0 Y10 R7\nG0 X10 Y0\nG3 X0 Y10 I-9\nG0 X10 Y0\nG3 X0 Y10\nG3 X0 Y10 R5\nG3 X0 Y1 R5 I2")
             .replace("> ", ">\n"),
         @r#"
     U10,0 <line 2, column 1 (byte 7): an arc of a radius of 7.000 mm does not reach its end: it needs 7.071 mm or more>
-    <line 3, column 1 (byte 20): an arc begins 9.000 mm from its centre and ends 10.050 mm from it: check I and J, which count from its beginning>
-    <line 4, column 1 (byte 34): an arc needs its centre, I and J, or its radius, R, and not both>
-    <line 5, column 1 (byte 44): an arc that ends where it begins needs its centre, I and J: a radius does not tell it>
-    <line 6, column 1 (byte 57): an arc needs its centre, I and J, or its radius, R, and not both>
-    <line 7, column 1 (byte 72): G18 (plane XZ) is not supported and is left out>
-    <line 8, column 1 (byte 76): an arc out of the sheet: put G17 before it>
-    A0,10about0,0by90
+    U0,10 U10,0 <line 4, column 1 (byte 30): an arc begins 9.000 mm from its centre and ends 10.050 mm from it: check I and J, which count from its beginning>
+    U0,10 U10,0 <line 6, column 1 (byte 54): an arc needs its centre, I and J, or its radius, R, and not both>
+    U0,10 <line 7, column 1 (byte 64): an arc that ends where it begins needs its centre, I and J: a radius does not tell it>
+    U0,10 <line 8, column 1 (byte 77): an arc needs its centre, I and J, or its radius, R, and not both>
+    U0,1
     "#
     );
 }
@@ -169,8 +167,13 @@ fn tools_pauses_and_ends() {
     assert_eq!(ops("T2 M6\nT3\nG1 X1\nM6\nM0 (pen 4)\nM0 (New sheet)\nM6"), "S2 D1,0 S3 S4 N S3");
     // A pen is named in a line of its own too, or it is a remark.
     assert_eq!(ops("(pen 2)\nG1 X1 (pen 3)\n; pen 4\n(new sheet)\n(pen 5 is red)"), "S2 D1,0 S4");
-    // The end sets back what GRBL does, and what follows is drawn as well.
-    assert_eq!(by(ReadOptions::default(), "M3\nG91 G0 X1\nM2\nX3\n%\nM3\nX4"), "D1,0 U3,0 D4,0");
+    // The program ends, and what follows is told once.
+    assert_eq!(
+        by(ReadOptions::default(), "M3\nG91 G0 X1\nM2\n%\nM3\nX4\nX5"),
+        "D1,0 U1,0 <line 6, column 1 (byte 21): the program has ended in line 3 by M2 or M30, and what follows is not drawn: take that \
+         word away to draw it>"
+    );
+    assert_eq!(by(ReadOptions::default(), "M3\nX1\nM30\n%\n"), "D1,0 U1,0");
     let named =
         ops("M6\nT300\nT1.5\nM0\nM1 (pen down)\nG4\nG4 P-1\nM104 S200\nM117 X marks it\n$H\nM777\nG1 X1");
     insta::assert_snapshot!(named.replace("> ", ">\n"), @r#"
@@ -178,7 +181,7 @@ fn tools_pauses_and_ends() {
     <line 2, column 1 (byte 3): T300 is wrong: a pen is a whole number from 0 to 255>
     <line 3, column 1 (byte 8): T1.5 is wrong: a pen is a whole number from 0 to 255>
     <line 4, column 1 (byte 13): M0 (pause) is not supported and is left out>
-    <line 5, column 1 (byte 16): M1 (pause) is not supported and is left out>
+    <line 5, column 1 (byte 16): M1 (pause: pen down) is not supported and is left out>
     <line 6, column 1 (byte 30): G4 needs a P: how long>
     <line 7, column 4 (byte 36): P-1 is wrong: a time is not below 0>
     <line 8, column 1 (byte 40): M104 (temperature) is not supported and is left out>
@@ -204,8 +207,7 @@ fn a_line_is_carried_out_whole_or_not_at_all() {
     D0,2 <line 9, column 7 (byte 71): E5 means nothing to the commands of its line and is left out>
     <line 10, column 1 (byte 77): G77 is no known command: check its number>
     U1,2 <line 11, column 1 (byte 81): G81 (canned cycle) is not supported and is left out>
-    <line 12, column 1 (byte 92): coordinates that no command asks for: put G0 or G1 before them>
-    U3,2 <line 15, column 4 (byte 109): M5 excludes M3, which stands before it: divide the line>
+    U2,2 U3,2 <line 15, column 4 (byte 109): M5 excludes M3, which stands before it: divide the line>
     "#);
 }
 
@@ -214,9 +216,10 @@ fn an_origin_is_set_there_or_here_and_g92_counts_from_it() {
     assert_eq!(ops("G10 L2 P1 X5 Y7\nG1 X1 Y1\nG53 X1 Y1"), "D6,8 D1,1");
     assert_eq!(ops("G0 X10 Y10\nG10 L20 P0 X0\nG1 X1 Y1\nG10 P1 L2 X0\nX1"), "U10,10 D11,1 D1,1");
     assert_eq!(ops("G0 X10\nG92 X0\nG10 L20 P1 X2\nG1 X3\nG92.1\nX0"), "U10,0 D11,0 D-2,0");
-    let other = ops("G10 L2 P7 X5\nG10 L1 P1 R1\nG10 L20 X1\nG59.1 G1 X1").replace("> ", ">\n");
-    assert_eq!(other.matches("G10 (another coordinate system) is not supported").count(), 3, "{other}");
-    assert_eq!(other.matches("G59.1 (another coordinate system) is not supported").count(), 1, "{other}");
+    assert_eq!(ops("G10 L2 P7 X5\nG59.1 G1 X1\nG59 X1\nG59.3 X2\nG59.1 X2"), "D6,0 D1,0 D2,0 D7,0");
+    assert_eq!(ops("G10 L2 P7 X5\nG0 X9\nG59.2\nG10 L20 P0 X0\nG1 X1\nM2"), "U9,0 D10,0 U10,0");
+    let other = ops("G10 L1 P1 R1\nG10 L20 X1\nG1 X1").replace("> ", ">\n");
+    assert_eq!(other.matches("G10 (another coordinate system) is not supported").count(), 2, "{other}");
     assert!(other.contains("D1,0"), "{other}");
 }
 
@@ -224,14 +227,14 @@ fn an_origin_is_set_there_or_here_and_g92_counts_from_it() {
 fn each_coordinate_system_has_its_origin_and_g92_counts_in_all() {
     assert_eq!(ops("G10 L2 P2 X5 Y7\nG1 X1 Y1\nG55 X1 Y1\nG54 X2"), "D1,1 D6,8 D2,8");
     assert_eq!(ops("G10 L2 P6 X5\nG59 G92 X1\nG1 X0\nG54 X0\nG92.1\nX1"), "D-1,0 D-6,0 D1,0");
-    assert_eq!(ops("G56\nG10 L20 P0 X-3\nG1 X0\nM2\nX0"), "D3,0 D0,0");
+    assert_eq!(ops("G56\nG10 L20 P0 X-3\nG1 X0\nG54\nX0"), "D3,0 D0,0");
 }
 
 #[test]
 fn what_follows_a_spline_begins_where_it_ends() {
     assert_eq!(
-        ops("M3\nG1 X1\nG5 I0 J3 P0 Q-3 X5 Y5\nG1 Y9").replace("> ", ">\n"),
-        "D1,0 U5,5 <line 3, column 1 (byte 9): G5 (spline) is not supported and is left out>\nD5,9"
+        ops("M3\nG1 X1\nG5.2 X5 Y5 P1 L3\nG1 Y9").replace("> ", ">\n"),
+        "D1,0 U5,5 <line 3, column 1 (byte 9): G5.2 (spline) is not supported and is left out>\nD5,9"
     );
 }
 

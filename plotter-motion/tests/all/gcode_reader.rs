@@ -82,27 +82,27 @@ fn a_line_with_a_checksum_has_to_be_right() {
 fn what_is_wrong_is_named_and_costs_its_line() {
     let many = (0..17).map(|number| format!("N{number}")).collect::<String>();
     let text = format!(
-        "G1 X1 0\nG1 X-\nG1 X1.2.3 Y1\nG1 X1e3\nG1 X#1\nG1 X--1\nX1000000001\n{many}\n$H\n10 20\nG1 X1\u{e4}\nG1X{}\nG1 X1\nG1 X1,5\nO10 sub\nO20 (a)\nG1 X[1+2]",
+        "10 G1\nG1 X-\nG1 X1.2.3 Y1\nG1 X1e3\nG1 X#1\nG1 X--1\nX1000000001\n{many}\n$H\n10 20\nG1 X1\u{e4}\nG1X{}\nG1 X1\nG1 X1,5\nO10 sub\nO20 (a)\nG1 X[1+2]",
         "9".repeat(400)
     );
     insta::assert_snapshot!(words(text), @r#"
-    <line 1, column 7 (byte 6): a number without its letter: a word is like `X10`>
-    <line 2, column 4 (byte 11): X has a malformed number: a number is like `-12` or `0.5`>
-    <line 3, column 4 (byte 17): X has a malformed number: a number is like `-12` or `0.5`>
-    <line 4, column 4 (byte 30): X has a number with an exponent: write `1500`, not `1.5e3`>
-    <line 5, column 5 (byte 39): `#` begins a variable, which is not reckoned here: have the numbers written out>
-    <line 6, column 4 (byte 45): X has a malformed number: a number is like `-12` or `0.5`>
-    <line 7, column 1 (byte 50): X with 1000000001: numbers reach from -1000000000 to 1000000000>
-    <line 8, column 39 (byte 100): more than 16 words: divide the line>
-    <line 9, column 1 (byte 104): $ speaks to the controller, not the plotter, and is left out>
-    <line 10, column 1 (byte 107): a number without its letter: a word is like `X10`>
-    <line 11, column 6 (byte 118): byte 0xC3 begins no word: a word is a letter and a number>
-    <line 12, column 3 (byte 123): X with inf: numbers reach from -1000000000 to 1000000000>
+    <line 1, column 1 (byte 0): a number without its letter: a word is like `X10`>
+    <line 2, column 4 (byte 9): X has a malformed number: a number is like `-12` or `0.5`>
+    <line 3, column 4 (byte 15): X has a malformed number: a number is like `-12` or `0.5`>
+    <line 4, column 4 (byte 28): X has a number with an exponent: write `1500`, not `1.5e3`>
+    <line 5, column 5 (byte 37): `#` begins a variable, which is not reckoned here: have the numbers written out>
+    <line 6, column 4 (byte 43): X has a malformed number: a number is like `-12` or `0.5`>
+    <line 7, column 1 (byte 48): X with 1000000001: numbers reach from -1000000000 to 1000000000>
+    <line 8, column 39 (byte 98): more than 16 words: divide the line>
+    <line 9, column 1 (byte 102): $ speaks to the controller, not the plotter, and is left out>
+    <line 10, column 1 (byte 105): a number without its letter: a word is like `X10`>
+    <line 11, column 6 (byte 116): byte 0xC3 begins no word: a word is a letter and a number>
+    <line 12, column 3 (byte 121): X with inf: numbers reach from -1000000000 to 1000000000>
     G1 X1
-    <line 14, column 4 (byte 534): X has a malformed number: a number is like `-12` or `0.5`>
-    <line 15, column 1 (byte 539): O10 controls a loop or a subprogram, which is not done here: have it written out>
+    <line 14, column 4 (byte 532): X has a malformed number: a number is like `-12` or `0.5`>
+    <line 15, column 1 (byte 537): O10 controls a loop or a subprogram, which is not done here: have it written out>
     O20
-    <line 17, column 5 (byte 559): `[` begins an expression, which is not reckoned here: have the numbers written out>
+    <line 17, column 5 (byte 557): `[` begins an expression, which is not reckoned here: have the numbers written out>
     "#);
 }
 

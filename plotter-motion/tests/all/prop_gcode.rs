@@ -370,24 +370,8 @@ proptest! {
     #[test]
     fn bytes_may_come_in_any_portions(text in likely_text(), read in any_options()) {
         // One byte at a time is all there is: a reader that is copied between any two bytes goes on as if it had not been.
-        let whole: Vec<_> = PlotOps::with_options(text.iter().copied(), read).collect();
-        let (mut reader, mut interpreter) = (Reader::new(), Interpreter::with_options(read));
-        let mut pieces = Vec::new();
-        for byte in &text {
-            let mut copy = reader;
-            let block = copy.push(*byte);
-            reader = copy;
-            if let Some(block) = block {
-                interpreter.push(block).unwrap();
-                pieces.extend(std::iter::from_fn(|| interpreter.next_op()));
-            }
-        }
-        if let Some(block) = reader.finish() {
-            interpreter.push(block).unwrap();
-            pieces.extend(std::iter::from_fn(|| interpreter.next_op()));
-        }
-        interpreter.finish().unwrap();
-        pieces.extend(std::iter::from_fn(|| interpreter.next_op()));
+        let whole = by_bytes(&text, read, false);
+        let pieces = by_bytes(&text, read, true);
         prop_assert_eq!(pieces, whole);
     }
 
@@ -402,9 +386,34 @@ proptest! {
     }
 }
 
+/// A text by its reader and interpreter, which are copied before each byte or not.
+fn by_bytes(text: &[u8], read: ReadOptions, copies: bool) -> Vec<Result<PlotOp, Error>> {
+    let (mut reader, mut interpreter) = (Reader::new(), Interpreter::with_options(read));
+    let mut ops = Vec::new();
+    for byte in text {
+        let mut copy = reader;
+        let block = if copies { copy.push(*byte) } else { reader.push(*byte) };
+        if copies {
+            reader = copy;
+        }
+        if let Some(block) = block {
+            interpreter.push(block).unwrap();
+            ops.extend(std::iter::from_fn(|| interpreter.next_op()));
+        }
+    }
+    if let Some(block) = reader.finish() {
+        interpreter.push(block).unwrap();
+        ops.extend(std::iter::from_fn(|| interpreter.next_op()));
+    }
+    interpreter.finish().unwrap();
+    ops.extend(std::iter::from_fn(|| interpreter.next_op()));
+    ops
+}
+
 #[test]
 fn a_text_of_any_length_needs_no_more_memory() {
-    const BYTES: usize = 2048;
+    // Most of it is what the longest line gives, and the texts of its complaints.
+    const BYTES: usize = 4096;
     let size = std::mem::size_of::<(Reader, Interpreter)>();
     println!(
         "reader {} bytes, interpreter {} bytes, detection {} bytes",
