@@ -46,7 +46,7 @@ static_n_m = 1.3e-3
 "#;
 
 /// Numeric keys that the machine has once.
-const OF_THE_MACHINE: [&str; 60] = [
+const OF_THE_MACHINE: [&str; 61] = [
     "schema",
     "area.width_mm",
     "area.height_mm",
