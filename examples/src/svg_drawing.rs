@@ -84,11 +84,7 @@ pub fn svg_drawing(
             *colour = pen.colour.0;
         }
     }
-    // The drawing does not select its first pen where all is drawn by it.
     let mut ops = Vec::new();
-    if let [only] = numbers[..] {
-        ops.push(PlotOp::SelectPen { pen: only });
-    }
     let mut stroke = 0;
     for op in svg.drawing.plot_ops_with_arcs(svg.scale) {
         if matches!(op, PlotOp::Travel { .. }) {
@@ -101,6 +97,12 @@ pub fn svg_drawing(
             PlotOp::SelectPen { pen } => PlotOp::SelectPen { pen: number_of(pen) },
             op => op,
         });
+    }
+    // Where all is drawn by the first pen, the drawing does not select it.
+    if let [only] = numbers[..]
+        && !ops.iter().any(|op| matches!(op, PlotOp::SelectPen { .. }))
+    {
+        ops.insert(0, PlotOp::SelectPen { pen: only });
     }
     let problems = svg.problems.iter().map(|problem| Diagnostic {
         line: Some(problem.line),
