@@ -60,6 +60,14 @@ impl Dialect {
     /// ```
     #[must_use]
     pub fn of(head: &[u8]) -> Option<(Self, f64)> {
+        // Their commands are a letter, but for those of GP-GL that begin with F; HPGL's are two.
+        if let [first, second, ..] = head.trim_ascii_start()
+            && first.is_ascii_alphabetic()
+            && second.is_ascii_alphabetic()
+            && !first.eq_ignore_ascii_case(&b'F')
+        {
+            return None;
+        }
         let (camm, gp) = (sense(head, Self::CammGl), sense(head, Self::GpGl));
         let is_silhouette = head.trim_ascii_start().starts_with(b"\x1b\x04");
         let has_etx = head.contains(&ETX);
