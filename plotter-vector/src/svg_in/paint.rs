@@ -101,6 +101,10 @@ fn colour(text: &str) -> Option<[f64; 4]> {
     if let Ok(Color { red, green, blue, alpha }) = Color::from_str(text) {
         return Some([red, green, blue, alpha].map(|byte| f64::from(byte) / 255.0));
     }
+    // The one name of CSS that SVG has not.
+    if text == "rebeccapurple" {
+        return colour("#663399");
+    }
     let (name, rest) = text.split_once('(')?;
     let arguments = rest.strip_suffix(')').unwrap_or(rest);
     // An ICC colour stands behind the one for screens.
