@@ -24,6 +24,7 @@ mod firmware_grbl_waits;
 mod firmware_mdraw;
 mod firmware_two_tasks;
 mod gcode_interpreter;
+#[cfg(feature = "alloc")]
 mod gcode_kinds;
 mod gcode_producers;
 mod gcode_reader;
