@@ -356,13 +356,15 @@ fn told(name: &str, head: &[u8], language: Option<Language>) -> Result<Language,
     if let Some(language) = language {
         return Ok(language);
     }
-    if is_dm_pl(head) {
+    let found = Language::of_contents(head);
+    // A comment of G-code may begin so, too.
+    if found != Some(Language::Gcode) && is_dm_pl(head) {
         return Err(format!(
             "{name}: this is DM/PL, the language of Houston Instrument's plotters, which is not read: have the program write HPGL \
              (most cutters that take DM/PL take it too)"
         ));
     }
-    let language = Language::of_contents(head).ok_or_else(|| {
+    let language = found.ok_or_else(|| {
         format!(
             "{name}: this looks like none of HPGL, G-code, SVG, CAMM-GL, GP-GL and the thesis' text; if it is one, say which"
         )
@@ -617,6 +619,9 @@ mod tests {
         let refused = open(b";:H A L0 EC1 U 100,100 D 200,200 @");
         assert!(refused.starts_with("a.plt: this is DM/PL"), "{refused}");
         assert!(refused.contains("write HPGL"), "{refused}");
+        let commented =
+            DrawingFile::held("a.nc", b";: by hand\nG0 X1 Y2\nM3\nG1 X3\n".to_vec(), None).unwrap();
+        assert_eq!(commented.language(), Language::Gcode);
     }
 
     #[test]

@@ -73,6 +73,8 @@ pub(super) enum Group {
     Motion,
     /// What is done once with the words of the line.
     Action,
+    /// What `F` counts.
+    Feed = 6,
     Spindle = 7,
     Stop = 8,
     /// A servo or a laser that is told a number.

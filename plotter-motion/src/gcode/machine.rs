@@ -30,8 +30,8 @@ pub(super) struct Machine {
     relative: bool,
     absolute_centres: bool,
     sheet: bool,
-    /// `G93`: `F` is one of the time of its line, which is told with each.
-    inverse_time: bool,
+    /// What `F` counts: mm a minute, lines a minute, which is told with each line, or mm a turn.
+    feed: Code,
     lines_per_s: Option<f64>,
     /// Where `G28` and `G30` go.
     homes: [Point; 2],
@@ -67,7 +67,7 @@ impl Machine {
             relative: false,
             absolute_centres: false,
             sheet: true,
-            inverse_time: false,
+            feed: Code::FeedPerMinute,
             lines_per_s: None,
             homes: [Point::ORIGIN; 2],
             motion: Code::Rapid,
@@ -93,7 +93,7 @@ impl Machine {
             system: self.system,
             inches: self.unit_mm != 1.0,
             relative: self.relative,
-            inverse_time: self.inverse_time,
+            inverse_time: self.feed == Code::InverseTime,
             motion: self.motion_number(),
             feed_mm_s: self.feed_mm_s,
             spindle: spindle_number(self.spindle),
@@ -235,9 +235,9 @@ impl Machine {
         if let Some(tenths) = line.word_of(Group::System as usize).and_then(Word::tenths) {
             self.system = u8::try_from(tenths / 10).unwrap_or_default().saturating_sub(G54);
         }
-        let inverse_time = line.chooses(Code::InverseTime, self.inverse_time);
-        if inverse_time || inverse_time != self.inverse_time {
-            (self.inverse_time, self.feed_mm_s) = (inverse_time, None);
+        let feed = line.of(Group::Feed).unwrap_or(self.feed);
+        if feed == Code::InverseTime || feed != self.feed {
+            (self.feed, self.feed_mm_s) = (feed, None);
         }
         self.lines_per_s = None;
         let refused = |word: &Word| {
@@ -250,12 +250,11 @@ impl Machine {
         if let Some(word) = line.word(b'F').filter(|_| !line.owned()) {
             let feed = word.number.filter(|feed| *feed > 0.0);
             let feed = feed.ok_or_else(|| refused(word))?;
-            if self.inverse_time {
-                self.lines_per_s = Some(feed / 60.0);
-            } else {
-                // Of a turn of the spindle, whose speed no plotter knows.
-                let is_per_turn = line.is(Code::FeedPerRevolution);
-                self.feed_mm_s = (!is_per_turn).then_some(feed * self.unit_mm / 60.0);
+            match self.feed {
+                Code::InverseTime => self.lines_per_s = Some(feed / 60.0),
+                Code::FeedPerMinute => self.feed_mm_s = Some(feed * self.unit_mm / 60.0),
+                // How fast a spindle turns no plotter knows.
+                _ => {}
             }
         }
         if let Some(word) = line.word(b'T').filter(|_| !line.owned()) {
@@ -683,7 +682,8 @@ impl Machine {
         self.leave_dot(options, out);
         self.lift_owed = self.on_sheet;
         (self.pen_down, self.spindle, self.beam, self.settling) = (false, Code::SpindleOff, 0.0, false);
-        (self.motion, self.relative, self.sheet, self.inverse_time) = (Code::Straight, false, true, false);
+        (self.motion, self.relative, self.sheet, self.feed) =
+            (Code::Straight, false, true, Code::FeedPerMinute);
         self.system = 0;
     }
 }

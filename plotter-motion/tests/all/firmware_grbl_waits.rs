@@ -319,6 +319,9 @@ fn who_checks_moves_nothing_and_who_sleeps_takes_nothing() {
         bench.ask("G1 X50 F1000\nG1 X5 R1\nM3 S10\nM2\n"),
         "ok\r\nerror:36\r\nok\r\n[MSG:Pgm End]\r\nok\r\n"
     );
+    // What lies outside is told, and nothing moves for it.
+    assert_eq!(bench.ask("G0 X1000\nG0 X10 Y10\n"), "error:33\r\nok\r\n");
+    assert!(bench.ask("?").starts_with("<Check|") && bench.made.len() == made);
     let greeting = "\r\nGrbl 1.1h ['$' for help]\r\n";
     assert_eq!(bench.ask("$C\n"), format!("[MSG:Disabled]\r\nok\r\n{greeting}"));
     assert_eq!((bench.plotter.position(), bench.made.len()), (at, made));
@@ -336,6 +339,18 @@ fn who_checks_moves_nothing_and_who_sleeps_takes_nothing() {
     assert_eq!(bench.made.len(), made);
     assert!(bench.ask("$X\nG0 X0\n").ends_with("ok\r\nok\r\n"));
     assert_eq!(bench.plotter.position().x, 0);
+}
+
+#[test]
+fn an_emergency_stop_ends_checking() {
+    let mut bench = bench();
+    bench.ask("$C\n");
+    bench.stop_button(true);
+    bench.stop_button(false);
+    assert!(bench.ask("").contains("ALARM:10"));
+    assert!(bench.ask("?").starts_with("<Alarm|"));
+    assert!(bench.ask("$X\nG0 X1\n").ends_with("ok\r\nok\r\n"));
+    assert_eq!(bench.plotter.position().x, 88); // 1 mm
 }
 
 #[test]

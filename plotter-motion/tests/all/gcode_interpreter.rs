@@ -55,6 +55,11 @@ fn motion_units_and_the_kind_of_coordinates_last_from_line_to_line() {
     // Units count for the whole line, wherever they stand in it.
     assert_eq!(ops("G1 X1 G20 Y2"), "D25.4,50.8");
     assert_eq!(ops("G1 F600\nG1 X5\nG93\nG1 X6 F30\nG94\nG1 X7 F60"), "D5,0@10 D6,0@0.5 D7,0@1");
+    // By the turn of a spindle no speed is told, in this line and in later ones.
+    assert_eq!(
+        ops("G1 X5 F600\nG95 X6 F0.1\nX7 F0.2\nG94 X8 F60"),
+        "D5,0@10 D6,0 <line 2, column 1 (byte 11): G95 (feed rate per revolution) is not supported and is left out> D7,0 D8,0@1"
+    );
 }
 
 #[test]

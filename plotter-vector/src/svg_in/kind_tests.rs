@@ -1,22 +1,8 @@
 //! One row for each kind of thing that an SVG file may say, and what a pen draws of it.
 
+use super::tests::{file, read, read_with};
 use super::*;
 use crate::PxPoint;
-
-fn file(content: &str) -> String {
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-         xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"100\" height=\"100\">{content}</svg>"
-    )
-}
-
-fn read_with(content: &str, options: SvgOptions) -> SvgDrawing {
-    read_svg(file(content).as_bytes(), &options).unwrap()
-}
-
-fn read(content: &str) -> SvgDrawing {
-    read_with(content, SvgOptions::default())
-}
 
 /// The strokes in short: places rounded to a tenth of a px, joined by blanks, strokes by bars.
 fn short(read: &SvgDrawing) -> String {

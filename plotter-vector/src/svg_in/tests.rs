@@ -4,18 +4,18 @@ use super::*;
 use crate::PxPoint;
 
 /// A file of 100 x 100 px with this in it.
-fn file(content: &str) -> String {
+pub(super) fn file(content: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
          xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"100\" height=\"100\">{content}</svg>"
     )
 }
 
-fn read_with(content: &str, options: SvgOptions) -> SvgDrawing {
+pub(super) fn read_with(content: &str, options: SvgOptions) -> SvgDrawing {
     read_svg(file(content).as_bytes(), &options).unwrap()
 }
 
-fn read(content: &str) -> SvgDrawing {
+pub(super) fn read(content: &str) -> SvgDrawing {
     read_with(content, SvgOptions::default())
 }
 

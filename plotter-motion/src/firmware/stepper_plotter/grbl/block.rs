@@ -93,7 +93,6 @@ impl<P: Pens> Grbl<P> {
             return Err(Code::UNUSED);
         }
         self.interpreter.lift(&mut outcomes);
-        let checks = self.mode == Mode::Check;
         let mut pauses = false;
         for op in outcomes.iter() {
             match op {
@@ -107,23 +106,30 @@ impl<P: Pens> Grbl<P> {
             self.reports_to_offset = 0; // the next report tells it
         }
         let moves = outcomes.iter().flatten().any(|op| op.target().is_some());
-        let (mut has_axis, mut dwells, mut ends, mut is_told) = (false, false, false, false);
+        let (mut has_axis, mut dwells, mut ends, mut asks_to_move) = (false, false, false, false);
         for word in block.words() {
             match (word.letter, word.tenths()) {
                 (b'X' | b'Y', _) => has_axis = true,
-                (b'G', Some(10 | 20 | 30)) => is_told = true,
+                (b'G', Some(10 | 20 | 30)) => asks_to_move = true,
                 (b'G', Some(40)) => dwells = true,
                 (b'M', Some(20 | 300)) => ends = true,
                 _ => {}
             }
         }
-        if (is_told || (moves && has_axis)) && (1..=3).contains(&modes.motion) && modes.feed_mm_s.is_none() {
+        if (asks_to_move || (moves && has_axis))
+            && (1..=3).contains(&modes.motion)
+            && modes.feed_mm_s.is_none()
+        {
             return Err(Code::NO_FEED);
         }
         let most = self.most();
         let mut at = before.position;
         for op in outcomes.iter().flatten() {
             if !area::contains(most, &at, op) {
+                // Where nothing moves there is nothing to stop.
+                if self.mode == Mode::Check {
+                    return Err(Code::TARGET);
+                }
                 // What has been answered by ok is still drawn, then the pen goes up.
                 self.command(link, Command::Plot(PlotOp::Travel { to: before.position }));
                 self.alarm(Alarm::SOFT_LIMIT);
@@ -131,7 +137,7 @@ impl<P: Pens> Grbl<P> {
             }
             at = op.target().unwrap_or(at);
         }
-        if checks {
+        if self.mode == Mode::Check {
             if ends {
                 self.out.line(format_args!("[MSG:Pgm End]"));
             }
@@ -168,7 +174,7 @@ impl<P: Pens> Grbl<P> {
 /// What Grbl asks of the words of a line together.
 #[inline(never)]
 fn check(block: &Block) -> Result<(), Code> {
-    /// The greatest number of a line.
+    /// Above the greatest number of a line, 9,999,999: Grbl's.
     const MOST_LINES: f64 = 1e7;
     let has = |letters: &[u8]| block.words().iter().any(|word| letters.contains(&word.letter));
     let asks =

@@ -50,12 +50,12 @@ impl Code {
     pub(super) const NO_AXES: Self = Self(26);
     /// The number of a line is too great.
     pub(super) const LINE_NUMBER: Self = Self(27);
+    /// A command lacks a word.
+    pub(super) const MISSING: Self = Self(28);
     /// There is no such coordinate system.
     pub(super) const NO_SYSTEM: Self = Self(29);
     /// `G53` goes with `G0` and `G1` only.
     pub(super) const NOT_STRAIGHT: Self = Self(30);
-    /// A command lacks a word.
-    pub(super) const MISSING: Self = Self(28);
     /// Axis words that no command uses.
     pub(super) const AXIS_UNUSED: Self = Self(31);
     /// The target of a motion is invalid.

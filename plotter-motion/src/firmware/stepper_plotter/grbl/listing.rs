@@ -133,8 +133,8 @@ fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, boo
     let per_step = |count: u32, of_one: f64| f64::from(count) / settings.x_steps_per_mm * of_one;
     let whole = match number {
         3 => u16::from(stored.x_direction & 1) | u16::from(stored.y_direction & 1) << 1,
-        30 => FULL_POWER,
         22 => settings.homing.into(),
+        30 => FULL_POWER,
         32 => settings.laser.into(),
         130 => stored.width_mm,
         131 => stored.height_mm,

@@ -230,7 +230,8 @@ impl<P: Pens> Grbl<P> {
     }
 
     fn alarm(&mut self, alarm: Alarm) {
-        self.alarm = Some(alarm);
+        // It takes the place of checking, and of sleep.
+        (self.alarm, self.mode) = (Some(alarm), Mode::Work);
         self.out.line(format_args!("ALARM:{}", Whole(alarm.0.into())));
     }
 
