@@ -12,7 +12,8 @@ fn main() -> std::io::Result<()> {
             std::fs::write(folder.join(format!("seed-{number:03}")), bytes)?;
         }
     }
-    for (target, texts) in [("hpgl", &HPGL[..]), ("gcode", &GCODE), ("log", &LOGS), ("import", &RECORDINGS)] {
+    let all = [("hpgl", &HPGL[..]), ("gcode", &GCODE), ("svg", &SVG), ("log", &LOGS), ("import", &RECORDINGS)];
+    for (target, texts) in all {
         let folder = corpus.join(target);
         std::fs::create_dir_all(&folder)?;
         for (number, text) in texts.iter().enumerate() {
@@ -39,6 +40,19 @@ const RECORDINGS: [&[u8]; 8] = [
     b"\x14109-189 uart-1: 02\nuart-1: Stop bit\n209-289 uart-1: [0A]\n300-310 uart-1: Frame error\n",
     b"\x15\x02\x00\x05131+",
     b"\x06# plotter-raw/1 name=x\n0,H,00\n39,D,3132\n78,H,",
+];
+
+/// Every kind of thing that is read of an SVG file, behind the byte that chooses how.
+const SVG: [&[u8]; 4] = [
+    b"\x01<svg xmlns='http://www.w3.org/2000/svg' width='9mm' height='9mm' viewBox='0 0 9 9'><style>.a{stroke:var(--b,red);transform:\
+      rotate(1rad)}</style><path class='a' d='M0 0h9a2 2 0 0 1 3 3q1 1 2 0t2 0c1 1 2 2 3 0s1 1 2 2z' stroke-dasharray='2 1'/></svg>",
+    b"\x04<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><clipPath id='c'><circle cx='4' cy='4' r='3'/></clipPath>\
+      <g clip-path='url(#c)'><polyline points='0 0 9 9 nan' stroke='currentcolor'/></g><rect width='5' height='5' fill='#fff'/></svg>",
+    b"\x08<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><mask id='m'><rect width='1' height='1' fill='url(#g)'/></mask>\
+      <linearGradient id='g'><stop/><stop offset='1' stop-color='#fff'/></linearGradient><g id='!1+D5'><ellipse rx='5' ry='3' \
+      mask='url(#m)' stroke='oklch(50% .1 20)'/></g></svg>",
+    b"\x10<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><symbol id='s' viewBox='0 0 2 2'><line x2='3' y2='3' \
+      stroke='#000' marker-end='url(#k)'/></symbol><marker id='k'><path d='M0 0L3 1'/></marker><use href='#s' width='4' height='4'/></svg>",
 ];
 
 /// Each way of lifting a pen, behind the byte that chooses it, and between them every word that is read.
