@@ -126,5 +126,5 @@ fn pixels_of_older_programs_have_their_size() {
 #[test]
 fn what_is_wrong_with_a_path_has_its_place() {
     let (_, said) = converted(&sheet("\n<path d='M5 5H40 L nan 3'/>"), "b.plt", &[]);
-    assert!(said.contains("line 2, column 19: a path is wrong at nan: what comes before is drawn"), "{said}");
+    assert!(said.contains("line 2, column 20: a path is wrong at nan: what comes before is drawn"), "{said}");
 }

@@ -275,6 +275,14 @@ fn what_a_program_cannot_do_is_told_at_its_place() {
     ]);
 }
 
+/// What follows is searched once, not for each of them: that would be half a billion lines.
+#[test]
+fn calls_of_what_is_not_there_cost_no_more_than_others() {
+    const CALLS: usize = 30_000;
+    let text = "M98 P5\n".repeat(CALLS);
+    assert_eq!(plot_ops(text.as_bytes()).filter(Result::is_err).count(), CALLS);
+}
+
 #[test]
 fn a_person_says_which_lines_move_the_pen() {
     let words = |up: &[&str], down: &[&str], text: &str| {
