@@ -12,6 +12,9 @@
 //! a −4 ─ descenders                   0e     8e
 //! ```
 
+use super::lettering::place_of;
+use crate::Point;
+
 /// From the blank to the tilde.
 const ASCII: [&str; 95] = [
     "",                                           // blank
@@ -217,6 +220,31 @@ pub(super) fn strokes(character: u8) -> (&'static str, &'static str) {
         }
         _ => ("", ""),
     }
+}
+
+/// The strokes of a letter of the labels' font, one line wide, for texts of other languages: rows of places in steps, of which a
+/// capital letter is 8 wide and 12 high. The line that letters stand on is at y = 0, the y axis points up, and a row of one place is a
+/// dot. A blank has no stroke; `None` for what the font does not have: it has Latin-1, without control characters.
+///
+/// ```
+/// use plotter_motion::{Point, hpgl::letter_strokes};
+///
+/// let strokes: Vec<Vec<Point>> = letter_strokes('L').unwrap().map(Iterator::collect).collect();
+/// assert_eq!(strokes, [[Point::new(0.0, 12.0), Point::new(0.0, 0.0), Point::new(8.0, 0.0)]]);
+/// assert!(letter_strokes('→').is_none());
+/// ```
+pub fn letter_strokes(
+    letter: char,
+) -> Option<impl Iterator<Item = impl Iterator<Item = Point> + Clone> + Clone> {
+    let character = u8::try_from(letter).ok().filter(|_| !letter.is_control())?;
+    let (letter, accent) = strokes(character);
+    let places = |stroke: &'static str| {
+        stroke.as_bytes().chunks_exact(2).filter_map(|place| match place {
+            [x, y] => Some(place_of(*x, *y)),
+            _ => None,
+        })
+    };
+    Some(letter.split(' ').chain(accent.split(' ')).filter(|stroke| !stroke.is_empty()).map(places))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! [`Lettering`]: how labels look and where they stand: `SI`, `SR`, `DI`, `DR`, `SL`, `DV`, `LO`, `ES`, `SD`.
 
 use super::scaling::Scaling;
-use crate::Vec2;
+use crate::{Point, Vec2};
 
 /// Plotter units in a cm.
 const UNITS_PER_CM: f64 = 400.0;
@@ -18,8 +18,21 @@ const UNITS_PER_INCH: f64 = 1016.0;
 const CAPITAL_SHARE: f64 = 2.0 / 3.0;
 const CAPITAL_WIDTH: f64 = 0.7;
 
+/// Height of a capital letter in the steps of [`letter_strokes`](crate::hpgl::letter_strokes).
+pub const LETTER_HEIGHT: f64 = 12.0;
+/// Width of a capital letter in the steps of [`letter_strokes`](crate::hpgl::letter_strokes).
+pub const LETTER_WIDTH: f64 = 8.0;
+/// From one letter to the next in the steps of [`letter_strokes`](crate::hpgl::letter_strokes): one and a half widths, as labels
+/// have them when nothing is said.
+pub const LETTER_ADVANCE: f64 = 1.5 * LETTER_WIDTH;
+
 /// Characters that are kept where the place of a label depends on its length: as many as a 7550A keeps.
 pub(super) const MOST_KEPT: usize = 150;
+
+/// The place that two characters stand for, in steps.
+pub(super) fn place_of(x: u8, y: u8) -> Point {
+    Point::new(f64::from(x) - f64::from(b'0'), f64::from(y) - f64::from(b'e'))
+}
 
 /// Of what the size of characters is a part.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -134,7 +134,10 @@ mod writer;
 pub use command::{Mnemonic, Syntax};
 pub use error::Error;
 pub use extension::Extension;
+#[cfg(feature = "font")]
+pub use font::letter_strokes;
 pub use interpreter::{Interpreter, Undrained};
+pub use lettering::{LETTER_ADVANCE, LETTER_HEIGHT, LETTER_WIDTH};
 pub use plot_ops::{PlotOps, plot_ops};
 pub(crate) use position::Cursor;
 pub use position::Position;

@@ -3,13 +3,10 @@
 use super::super::character_set::OWN;
 #[cfg(feature = "font")]
 use super::super::font;
-use super::super::lettering::Metrics;
+use super::super::lettering::{LETTER_HEIGHT, LETTER_WIDTH, Metrics, place_of};
 use super::super::own_characters::{GRID as OWN_GRID, OwnCharacters};
 use super::super::piece::Piece;
 use crate::Vec2;
-
-/// Steps of the grid on which characters are drawn, in a capital letter's width and height.
-const GRID: (f64, f64) = (8.0, 12.0);
 
 /// The characters of a label that are being drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,9 +120,8 @@ impl Strokes {
             Self::Font(strokes, accent) => match **strokes {
                 [x, y, ..] if x != b' ' => {
                     *strokes = strokes.get(2..).unwrap_or(&[]);
-                    let x = (f64::from(x) - f64::from(b'0')) / GRID.0;
-                    let y = (f64::from(y) - f64::from(b'e')) / GRID.1;
-                    Next::Place { x, y, begins: false }
+                    let place = place_of(x, y);
+                    Next::Place { x: place.x / LETTER_WIDTH, y: place.y / LETTER_HEIGHT, begins: false }
                 }
                 [_, ref rest @ ..] => {
                     *strokes = rest;
