@@ -1,4 +1,4 @@
-//! One language of plotters into another: HPGL, G-code, SVG and the thesis' text; from CAMM-GL and GP-GL of cutters too.
+//! One language of plotters into another: HPGL, G-code, SVG and the thesis' text; from CAMM-GL and GP-GL of cutters, and DXF of CAD programs, too.
 //!
 //! All of them say the same few things: take a pen, go there, draw there, along a line or an arc. What one language says and the
 //! other cannot is told on the standard error, with its line and column; the rest is converted. HPGL and G-code stream through:
@@ -34,14 +34,14 @@ use std::time::Duration;
 /// Greatest coordinate in an SVG: beyond it the single precision of viewers is coarser than a plotter, mm.
 const SVG_MOST_MM: f64 = 100_000.0;
 
-/// Converts a drawing between HPGL, G-code, SVG and the thesis' text; reads CAMM-GL and GP-GL too.
+/// Converts a drawing between HPGL, G-code, SVG and the thesis' text; reads DXF, CAMM-GL and GP-GL too.
 ///
 /// Lines and arcs, pens, speeds and pauses are converted as far as the target knows them. Arcs stay arcs in HPGL (AA), G-code (G2,
 /// G3) and SVG (A). SVG is read in mm by width, height and viewBox, with the lower left corner as the origin: along strokes, and
 /// along the border of what is only filled; each colour is a pen, 1, 2, … in the order in which they come, or each layer (--pens). Clip
 /// paths and masks cut it, and white is taken for the paper (--paper). Its texts are set in the fonts that --font gives, and never in
 /// others: so a file becomes the same strokes everywhere. In SVG written here each pen is a group, and is that pen when it is read
-/// again; the sheet of an SVG stays as large as it is.
+/// again; the sheet of an SVG stays as large as it is. Layers of a DXF are pens, its texts are set in the font of HPGL's labels.
 #[derive(Debug, Parser)]
 #[command(
     name = "convert",
@@ -51,10 +51,11 @@ const SVG_MOST_MM: f64 = 100_000.0;
                   convert drawing.gcode drawing.svg --convention unicorn\n  \
                   convert drawing.gcode drawing.svg --pen-up PEN_UP --pen-down PEN_DOWN\n  \
                   convert plan.svg plan.plt --font DejaVuSans.ttf --font /usr/share/fonts\n  \
+                  convert plan.dxf plan.plt --step-mm 25.4\n  \
                   convert layers.svg layers.plt --pens layer --paper none\n  \
                   convert drawing.svg - --to gcode --pen-up \"M280 P0 S60\" --pen-down \"M280 P0 S30\"\n  \
                   cat drawing.plt | convert - drawing.svg\n\n\
-                  Suffixes: .hpgl .plt .hpg for hpgl; .gcode .nc .ngc for gcode; .svg; .txt for thesis.\n\
+                  Suffixes: .hpgl .plt .hpg for hpgl; .gcode .nc .ngc for gcode; .svg; .dxf; .txt for thesis.\n\
                   Exit status: 0 converted; 1 nothing that can be converted, or with --strict any error; 2 wrong options."
 )]
 struct Arguments {
@@ -83,7 +84,8 @@ struct Arguments {
     /// Encoder counts to the millimetre in the thesis' text
     #[arg(long, value_name = "N", default_value = "40", value_parser = positive, allow_negative_numbers = true)]
     counts_per_mm: f64,
-    /// Size of a step in CAMM-GL and GP-GL, mm [default: 0.025, 0.1, and Silhouette's 0.05]
+    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025, 0.1, Silhouette's 0.05; what
+    /// the DXF says, else 1]
     #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     step_mm: Option<f64>,
     #[command(flatten)]
@@ -141,7 +143,7 @@ fn main() -> ExitCode {
         );
         return ExitCode::from(2);
     };
-    if matches!(language, Language::CammGl | Language::GpGl) {
+    if matches!(language, Language::CammGl | Language::GpGl | Language::Dxf) {
         eprintln!("convert: {} is read, not written: give --to hpgl, gcode, svg or thesis", language.name());
         return ExitCode::from(2);
     }
@@ -312,7 +314,9 @@ impl<'a> Writer<'a> {
             Language::Hpgl => Target::Hpgl(hpgl::Writer::new(sink)),
             Language::Thesis => Target::Thesis(sink, StepPoint::default()),
             Language::Svg => Target::Svg(SvgText::new().on_sheet(sheet_mm), sink),
-            Language::CammGl | Language::GpGl => return Err(format!("{} is not written", language.name())),
+            Language::CammGl | Language::GpGl | Language::Dxf => {
+                return Err(format!("{} is not written", language.name()));
+            }
             Language::Gcode => {
                 let usual = gcode::WriteOptions::default();
                 let pen = match (

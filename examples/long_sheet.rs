@@ -53,13 +53,14 @@ const MOST_FRAMES: u32 = 100_000;
                   are not, and the message says why; 2 wrong options."
 )]
 struct Arguments {
-    /// Drawing in HPGL, G-code, SVG, CAMM-GL, GP-GL or the thesis' text, of any length; - is the standard input [default: a
+    /// Drawing in HPGL, G-code, SVG, DXF, CAMM-GL, GP-GL or the thesis' text, of any length; - is the standard input [default: a
     /// textile pattern of 30 m]
     file: Option<PathBuf>,
     /// What the file is written in [default: told by its contents]
     #[arg(long, value_enum)]
     language: Option<Language>,
-    /// Size of a step in CAMM-GL and GP-GL, mm [default: 0.025, 0.1, and Silhouette's 0.05]
+    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025, 0.1, Silhouette's 0.05; what
+    /// the DXF says, else 1]
     #[arg(long, value_name = "S", value_parser = step, allow_negative_numbers = true)]
     step_mm: Option<f64>,
     #[command(flatten)]

@@ -54,13 +54,14 @@ const FARTHEST_MM: f64 = 100_000.0;
                   area; 2 wrong options."
 )]
 struct Arguments {
-    /// Drawing in HPGL, G-code, SVG, CAMM-GL, GP-GL or the thesis' text; - is the standard input [default: a spiral, hatching
+    /// Drawing in HPGL, G-code, SVG, DXF, CAMM-GL, GP-GL or the thesis' text; - is the standard input [default: a spiral, hatching
     /// and letters]
     file: Option<PathBuf>,
     /// What the file is written in [default: told by its contents]
     #[arg(long, value_enum)]
     language: Option<Language>,
-    /// Size of a step in CAMM-GL and GP-GL, mm [default: 0.025, 0.1, and Silhouette's 0.05]
+    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025, 0.1, Silhouette's 0.05; what
+    /// the DXF says, else 1]
     #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     step_mm: Option<f64>,
     #[command(flatten)]

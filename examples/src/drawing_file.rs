@@ -3,10 +3,10 @@
 use crate::language::is_dm_pl;
 use crate::{Diagnostics, Language, PenLines, SvgReading, at, svg_drawing};
 use plotter_motion::hpgl::{cutter, thesis_text};
-use plotter_motion::{PlotOp, gcode, hpgl};
+use plotter_motion::{PlotOp, Point, Vec2, chords, dxf, gcode, hpgl};
 use plotter_vector::SvgFonts;
 use serde::Serialize;
-use std::cell::{Cell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read};
@@ -79,7 +79,8 @@ pub struct Reading {
     pub counts_per_mm: f64,
     /// How G-code lifts the pen; `None` finds it out.
     pub pen: Option<gcode::PenConvention>,
-    /// Size of a step in the languages of cutters, mm; `None` takes that of a machine as it is delivered, and says so.
+    /// Size of a step in the languages of cutters, and of the unit of a DXF, mm; `None` takes that of a machine as it is delivered, and what
+    /// the DXF says, or a millimetre. Where it is not said, there is a notice.
     pub step_mm: Option<f64>,
 }
 
@@ -97,6 +98,8 @@ pub struct DrawingFile {
     language: Language,
     fonts: SvgFonts,
     svg: SvgReading,
+    /// What is in it, if it is a DXF.
+    dxf: OnceCell<dxf::Drawing>,
     /// The lines that move its pen, if somebody says them.
     pen_words: Option<gcode::PenWords>,
     /// What there is to say about the files of its fonts.
@@ -151,10 +154,19 @@ impl DrawingFile {
 
     fn of(name: String, source: Source, language: Language) -> Self {
         let (fonts, svg) = (SvgFonts::default(), SvgReading::default());
-        Self { name, source, language, fonts, svg, pen_words: None, notices: Vec::new() }
+        Self {
+            name,
+            source,
+            language,
+            fonts,
+            svg,
+            dxf: OnceCell::new(),
+            pen_words: None,
+            notices: Vec::new(),
+        }
     }
 
-    /// Reads it so, if it is an SVG picture.
+    /// Reads it so, if it is an SVG picture; what is a pen counts for a DXF too.
     ///
     /// # Errors
     ///
@@ -162,8 +174,8 @@ impl DrawingFile {
     pub fn with_svg(mut self, how: &SvgReading) -> Result<Self, String> {
         if self.language == Language::Svg {
             (self.fonts, self.notices) = how.fonts.load()?;
-            self.svg = how.clone();
         }
+        self.svg = how.clone();
         Ok(self)
     }
 
@@ -300,8 +312,39 @@ impl DrawingFile {
                 let diagnostics = notices.chain(drawing.diagnostics);
                 Box::new(diagnostics.map(Err).chain(drawing.ops.into_iter().map(Ok)))
             }
+            Language::Dxf => {
+                let drawing = self.dxf()?;
+                let mut options = dxf::ReadOptions {
+                    tolerance_mm: how.tolerance_mm,
+                    unit_mm: how.step_mm,
+                    pens: self.svg.pens.map_or(dxf::Pens::ByLayer, dxf::Pens::from),
+                    ..dxf::ReadOptions::default()
+                };
+                let moved;
+                (options.moved_mm, moved, colours) = placed(drawing, options);
+                let ops = drawing.plot_ops(options).map(|op| {
+                    op.map_err(|error| {
+                        let severity = if error.is_notice() { Severity::Notice } else { Severity::Error };
+                        let line = Some(error.line).filter(|line| *line > 0);
+                        Diagnostic { line, ..Diagnostic::new(severity, error.problem.to_string()) }
+                    })
+                });
+                Box::new(moved.map(Err).into_iter().chain(ops))
+            }
         };
         Ok(Ops { inner, place, colours, digit_mm, sheet_mm, failed: false })
+    }
+
+    /// What is in it, if it is a DXF: held, since it is walked through more than once.
+    fn dxf(&self) -> Result<&dxf::Drawing, String> {
+        if let Some(drawing) = self.dxf.get() {
+            return Ok(drawing);
+        }
+        let place = Rc::default();
+        let drawing =
+            dxf::Drawing::read(self.bytes(&place)?).map_err(|error| format!("{}: {error}", self.name))?;
+        place.restart()?;
+        Ok(self.dxf.get_or_init(|| drawing))
     }
 
     /// Which of the languages of cutters it is.
@@ -323,6 +366,36 @@ impl DrawingFile {
         };
         Ok(Bytes { reader, buffer: vec![0; HEAD_BYTES], filled: 0, next: 0, place: Rc::clone(place) })
     }
+}
+
+/// Farthest from the origin that a drawing of a CAD program may begin, mm: no table is as large.
+const FARTHEST_MM: f64 = 10_000.0;
+
+/// By how much a DXF is moved, what there is to say of that, and the colours of its pens. Drawings of CAD programs lie anywhere;
+/// what begins to the left of the origin, below it, or far from it is put there with its lower left corner.
+fn placed(drawing: &dxf::Drawing, options: dxf::ReadOptions) -> (Vec2, Option<Diagnostic>, Vec<[u8; 3]>) {
+    let mut ops = drawing.plot_ops(options);
+    let least = chords(ops.by_ref().flatten(), FARTHEST_MM)
+        .filter_map(PlotOp::target)
+        .reduce(|least, at| Point::new(least.x.min(at.x), least.y.min(at.y)));
+    let most_pen = ops.pens().map(|(pen, _)| pen).max().unwrap_or(0);
+    let mut colours: Vec<[u8; 3]> = (1..=most_pen).map(crate::usual_colour).collect();
+    for (pen, colour) in ops.pens() {
+        if let Some(known) = colours.get_mut(usize::from(pen).saturating_sub(1)) {
+            *known = colour;
+        }
+    }
+    /// What rounding may put to the left of an origin on which the drawing stands, mm.
+    const ROUNDING_MM: f64 = 1e-6;
+    let is_fine = |at: f64| (-ROUNDING_MM..=FARTHEST_MM).contains(&at);
+    let Some(least) = least.filter(|least| !is_fine(least.x) || !is_fine(least.y)) else {
+        return (Vec2::default(), None, colours);
+    };
+    let text = format!(
+        "the drawing begins at {:.3}, {:.3} mm: it is moved, so that its lower left corner is the origin",
+        least.x, least.y
+    );
+    (Vec2::new(-least.x, -least.y), Some(Diagnostic::new(Severity::Notice, text)), colours)
 }
 
 /// How a pen is lifted and lowered.
@@ -353,6 +426,9 @@ fn told(name: &str, head: &[u8], language: Option<Language>) -> Result<Language,
     if head.starts_with(&[0x1f, 0x8b]) {
         return Err(format!("{name}: the file is compressed: unpack it first (gunzip)"));
     }
+    if matches!(head, [b'A', b'C', b'1', b'0', digit, ..] if digit.is_ascii_digit()) {
+        return Err(format!("{name}: this is a DWG, which is not read: save it as ASCII DXF"));
+    }
     if let Some(language) = language {
         return Ok(language);
     }
@@ -366,7 +442,7 @@ fn told(name: &str, head: &[u8], language: Option<Language>) -> Result<Language,
     }
     let language = found.ok_or_else(|| {
         format!(
-            "{name}: this looks like none of HPGL, G-code, SVG, CAMM-GL, GP-GL and the thesis' text; if it is one, say which"
+            "{name}: this looks like none of HPGL, G-code, SVG, DXF, CAMM-GL, GP-GL and the thesis' text; if it is one, say which"
         )
     })?;
     if let Some(line) = (language == Language::Gcode).then(|| first_extrusion(head)).flatten() {

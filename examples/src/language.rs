@@ -22,6 +22,8 @@ pub enum Language {
     CammGl,
     /// Graphtec's GP-GL, also Silhouette's; it is read, not written
     GpGl,
+    /// DXF of CAD programs, as text; it is read, not written
+    Dxf,
 }
 
 impl Language {
@@ -35,6 +37,7 @@ impl Language {
             Self::Svg => "svg",
             Self::CammGl => "camm-gl",
             Self::GpGl => "gp-gl",
+            Self::Dxf => "dxf",
         }
     }
 
@@ -46,6 +49,7 @@ impl Language {
             "hpgl" | "plt" | "hpg" | "hp" | "hgl" | "plo" | "pcl" => Some(Self::Hpgl),
             "gcode" | "gco" | "g" | "nc" | "ngc" | "tap" | "cnc" => Some(Self::Gcode),
             "svg" => Some(Self::Svg),
+            "dxf" => Some(Self::Dxf),
             "gpgl" => Some(Self::GpGl),
             "camm" | "dxy" => Some(Self::CammGl),
             "txt" => Some(Self::Thesis),
@@ -66,6 +70,9 @@ impl Language {
         if head.trim_ascii_start().starts_with(b"<") {
             return contains(head, b"<svg").then_some(Self::Svg);
         }
+        if is_dxf(head) {
+            return Some(Self::Dxf);
+        }
         if head.split(|byte| *byte == b'\n').take(MOST_HEADERS).any(is_pen_movement) {
             return Some(Self::Thesis);
         }
@@ -85,6 +92,26 @@ impl Language {
 pub(crate) fn is_dm_pl(head: &[u8]) -> bool {
     let mut signs = head.iter().filter(|byte| !byte.is_ascii_whitespace() && !byte.is_ascii_control());
     signs.next() == Some(&b';') && signs.next() == Some(&b':')
+}
+
+/// Whether a text begins as DXF does: a section, or comments (999) before it. What DXF is in other forms counts too, so that it can be
+/// refused by name.
+fn is_dxf(head: &[u8]) -> bool {
+    if head.starts_with(b"AutoCAD Binary DXF") {
+        return true;
+    }
+    let mut lines = head
+        .split(|byte| matches!(byte, b'\n' | b'\r'))
+        .map(<[u8]>::trim_ascii)
+        .filter(|line| !line.is_empty());
+    while let Some(code) = lines.next() {
+        match (code, lines.next()) {
+            (b"999", Some(_)) => {}
+            (b"0", Some(b"SECTION")) => return true,
+            _ => return false,
+        }
+    }
+    false
 }
 
 /// Lines that may stand before the first movement.
@@ -176,6 +203,8 @@ mod tests {
         assert_eq!(told(b"Command, X, Y\r\nPU, 02993, 13955\r\n"), Some(Language::Thesis));
         assert_eq!(told(b"\xef\xbb\xbf <?xml version='1.0'?>\n<svg/>"), Some(Language::Svg));
         assert_eq!(told(b"\xff\xfe<\0s\0v\0g\0/\0>\0"), Some(Language::Svg));
+        assert_eq!(told(b"  0\r\nSECTION\r\n  2\r\nENTITIES\r\n"), Some(Language::Dxf));
+        assert_eq!(told(b"999\nby hand\n0\nSECTION\n"), Some(Language::Dxf));
         for junk in
             [&b"Once upon a time there was a plotter.\nIt drew."[..], b"\x7fELF\x02\x01\x01", b"{}", b""]
         {

@@ -1,6 +1,7 @@
 //! [`SvgReading`]: how SVG pictures are read, as options of the command line.
 
 use crate::FontFiles;
+use plotter_motion::dxf;
 use plotter_vector::{Rgb, SvgPens};
 use std::str::FromStr;
 
@@ -10,8 +11,8 @@ pub struct SvgReading {
     /// Fonts of its texts.
     #[command(flatten)]
     pub fonts: FontFiles,
-    /// What is a pen in an SVG picture: each colour, in the order in which they come; each layer, by the number that its name
-    /// begins with; each layer, in their order [default: colour; pictures written here have their own pens]
+    /// What is a pen in an SVG picture or a DXF: each colour, in the order in which they come; each layer, by the number that its name
+    /// begins with; each layer, in their order [default: colour in SVG, where pictures written here have their own pens; order in DXF]
     #[arg(long, value_enum, value_name = "P")]
     pub pens: Option<PensBy>,
     /// Colour of the paper, which leaves no ink: what an SVG picture has in it is not drawn. As white, black or #ff8800; none draws
@@ -59,6 +60,16 @@ impl From<PensBy> for SvgPens {
             PensBy::Colour => Self::ByColour,
             PensBy::Layer => Self::ByLayer,
             PensBy::Order => Self::ByOrder,
+        }
+    }
+}
+
+impl From<PensBy> for dxf::Pens {
+    fn from(by: PensBy) -> Self {
+        match by {
+            PensBy::Colour => Self::ByColour,
+            PensBy::Layer => Self::ByLayerNumber,
+            PensBy::Order => Self::ByLayer,
         }
     }
 }

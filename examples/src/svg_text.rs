@@ -125,7 +125,9 @@ impl SvgText {
             return Point::ORIGIN;
         }
         let (least, _) = self.bounds.unwrap_or_default();
-        Point::new(least.x.min(0.0), least.y.min(0.0))
+        // What is written as 0 is none below it.
+        let below = |at: f64| if at < -0.5 * DIGIT_MM { at } else { 0.0 };
+        Point::new(below(least.x), below(least.y))
     }
 
     /// The picture.
@@ -159,6 +161,9 @@ impl SvgText {
         svg
     }
 }
+
+/// What the last digit of a number is worth that is written, mm.
+const DIGIT_MM: f64 = 1e-4;
 
 /// With at most four decimals, and no zeros behind them.
 fn short(number: f64) -> String {
@@ -197,6 +202,13 @@ mod tests {
         text.push(PlotOp::Draw { to: Point::new(-3.0, 300.0), feed_mm_s: None });
         assert_eq!(text.corner(), Point::ORIGIN);
         assert!(text.finish(&[]).contains("width=\"210mm\" height=\"297mm\" viewBox=\"0 -297 210 297\""));
+    }
+
+    #[test]
+    fn what_rounding_puts_below_the_origin_is_at_it() {
+        let mut text = SvgText::new();
+        text.push(PlotOp::Draw { to: Point::new(-1e-14, -4e-5), feed_mm_s: None });
+        assert_eq!(text.corner(), Point::ORIGIN);
     }
 
     #[test]

@@ -12,7 +12,15 @@ fn main() -> std::io::Result<()> {
             std::fs::write(folder.join(format!("seed-{number:03}")), bytes)?;
         }
     }
-    let all = [("hpgl", &HPGL[..]), ("gcode", &GCODE), ("svg", &SVG), ("log", &LOGS), ("import", &RECORDINGS)];
+    let all = [
+        ("hpgl", &HPGL[..]),
+        ("cutters", &CUTTERS),
+        ("gcode", &GCODE),
+        ("svg", &SVG),
+        ("dxf", &DXF),
+        ("log", &LOGS),
+        ("import", &RECORDINGS),
+    ];
     for (target, texts) in all {
         let folder = corpus.join(target);
         std::fs::create_dir_all(&folder)?;
@@ -66,6 +74,27 @@ const GCODE: [&[u8]; 9] = [
     b"\x06G00 X1\nG01 X2 Y2\nG1 X.5 Y-.5 E0.3\nG80\nM280 P0 S40\nM106 S255\n",
     b"\x07M280 P0 S90\nG0 X1\nM280 P0 S40\nG1 X2 F60\nM280 P0 S90\nG4 S0.5\nN5 G1 X3*71\nG1 X1e3\nG1 X1 X2\nM6 T3\n",
     b"\x08G1 X10 Y10 A50\nM1 90\nM2 U160 D90\nG38.2 X1\nG1 X99999999999\n$H\nG5.1 X1\nG2 X1 Y1 I1 R2\nG1 X",
+];
+
+/// The languages of cutters, with what is left out of them.
+const CUTTERS: [&[u8]; 3] = [
+    b"H\nJ1\nM400,400\nD800,400,800,800\nI-400,-400\nR10,10\nC500,500,100,0,360\nL1\nB20\nS5\nPtext\nX1,10,5\n^IN\n",
+    b"\x1b\x04FX10,1\x03!10,1\x03M100,100\x03D200,100,200,300\x03E-10,10\x03Y0,0,50,0,50,50,100,0\x03W0,0,50,50,0,3600\x03FN0\x03J1\x03",
+    b"\x1b\x00H,\x03O5,5\x03)3,10,10,20\x03]100,300,300,0,3600\x03B100\x03L5\x03TB50,381\x03&100,100,1,2\x03SO0\x03",
+];
+
+/// Tables, blocks and between them every kind of entity of a DXF.
+const DXF: [&[u8]; 3] = [
+    b"0\nSECTION\n2\nTABLES\n0\nLTYPE\n2\nD\n49\n2\n49\n-1\n0\nLAYER\n2\n7a\n62\n-3\n6\nD\n0\nENDSEC\n0\nSECTION\n2\nBLOCKS\n0\nBLOCK\n2\nB\n\
+      10\n1\n20\n1\n0\nARC\n6\nD\n10\n0\n20\n0\n40\n9\n50\n0\n51\n90\n0\nENDBLK\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n0\nINSERT\n2\nB\n10\n5\n20\n5\n\
+      41\n2\n50\n30\n70\n2\n44\n9\n0\nCIRCLE\n10\n0\n20\n0\n40\n1\n230\n-1\n0\nENDSEC\n0\nEOF\n",
+    b"0\nSECTION\n2\nENTITIES\n0\nLWPOLYLINE\n70\n1\n10\n0\n20\n0\n42\n.5\n10\n9\n20\n9\n0\nSPLINE\n71\n2\n40\n0\n40\n0\n40\n0\n40\n1\n40\n1\n\
+      40\n1\n10\n0\n20\n0\n10\n5\n20\n9\n10\n9\n20\n0\n41\n1\n41\n2\n41\n1\n0\nMTEXT\n10\n0\n20\n0\n40\n3\n41\n9\n1\n{\\H2x;a\\P%%d\\S1^2;}\n0\nTEXT\n10\n0\n20\n\
+      0\n11\n9\n21\n9\n40\n3\n72\n5\n1\nab\n0\nELLIPSE\n10\n0\n20\n0\n11\n5\n21\n1\n40\n.3\n41\n0\n42\n4\n0\nENDSEC\n0\nEOF\n",
+    b"0\nSECTION\n2\nENTITIES\n0\nHATCH\n70\n0\n91\n2\n92\n2\n72\n0\n73\n1\n93\n3\n10\n0\n20\n0\n10\n9\n20\n0\n10\n9\n20\n9\n97\n0\n92\n1\n93\n1\n72\n3\n\
+      10\n5\n20\n5\n11\n2\n21\n0\n40\n.5\n50\n0\n51\n360\n73\n0\n97\n0\n75\n0\n78\n1\n53\n45\n43\n0\n44\n0\n45\n0\n46\n1\n79\n2\n49\n1\n49\n-1\n0\nPOLYLINE\n70\n\
+      16\n71\n2\n72\n2\n0\nVERTEX\n10\n0\n20\n0\n0\nVERTEX\n10\n1\n20\n0\n0\nVERTEX\n10\n0\n20\n1\n0\nVERTEX\n10\n1\n20\n1\n0\nSEQEND\n0\n3DFACE\n10\n0\n20\n0\n\
+      11\n1\n21\n0\n12\n1\n22\n1\n0\nXLINE\n10\n0\n20\n0\n0\nENDSEC\n0\nEOF\n",
 ];
 
 /// Between them, every command of HPGL and HP-GL/2 that is carried out.

@@ -13,6 +13,7 @@
 mod built_example;
 mod compare_controllers_command;
 mod convert_command;
+mod convert_dxf_command;
 mod convert_svg_command;
 mod follow_command;
 mod judge_command;

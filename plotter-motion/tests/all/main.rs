@@ -15,6 +15,8 @@ mod closed_loop;
 mod config_messages;
 mod config_preset;
 mod drawings;
+#[cfg(all(feature = "alloc", feature = "font"))]
+mod dxf_kinds;
 mod estimate;
 mod exact_discretization;
 mod firmware_by_hand;

@@ -1,0 +1,241 @@
+//! [`Hatch`]: an area, and the lines that fill it.
+
+use super::frame::{Plane, Vec3, sin_cos};
+use super::path::Path;
+use super::spline::Spline;
+use crate::{Point, Vec2};
+use alloc::vec::Vec;
+
+/// Most lines of one family in one area: 10 m of them at 0.1 mm.
+const MOST_LINES: f64 = 100_000.0;
+
+/// A part of an area's outline.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Edge {
+    Line {
+        from: Vec2,
+        to: Vec2,
+    },
+    /// Of an ellipse with these half axes, from an angle on.
+    Arc {
+        centre: Vec2,
+        axes: (Vec2, Vec2),
+        from_rad: f64,
+        sweep_rad: f64,
+    },
+    Spline(Spline),
+}
+
+/// Lines at equal distances.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Family {
+    pub(super) turned_rad: f64,
+    /// Where one of them begins.
+    pub(super) base: Vec2,
+    /// From there to where the next one does.
+    pub(super) offset: Vec2,
+    /// Dashes, and gaps below 0; none for whole lines.
+    pub(super) dashes: Vec<f64>,
+}
+
+/// An area.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Hatch {
+    /// Its outlines: what lies within an odd number of them is filled.
+    pub(super) outlines: Vec<Vec<Edge>>,
+    pub(super) families: Vec<Family>,
+    pub(super) is_solid: bool,
+}
+
+impl Hatch {
+    /// Its outlines on the sheet.
+    pub(super) fn outlines(&self, plane: &Plane, tolerance_mm: f64) -> Vec<Path> {
+        self.outlines.iter().filter_map(|edges| outline(edges, plane, tolerance_mm)).collect()
+    }
+
+    /// The lines that fill it, on the sheet.
+    ///
+    /// An area is filled by the rule of odd and even: a line is drawn from its first crossing of the outlines to the second, from the
+    /// third to the fourth, and so on.
+    pub(super) fn lines(&self, plane: &Plane, tolerance_mm: f64) -> Vec<(Point, Point)> {
+        let outlines: Vec<Vec<Point>> = self
+            .outlines(plane, tolerance_mm)
+            .into_iter()
+            .map(|mut path| {
+                path.close();
+                path.places(tolerance_mm)
+            })
+            .collect();
+        let mut drawn = Vec::new();
+        for family in &self.families {
+            family.fill(plane, &outlines, &mut drawn);
+        }
+        drawn
+    }
+}
+
+fn outline(edges: &[Edge], plane: &Plane, tolerance_mm: f64) -> Option<Path> {
+    let first = edges.first()?;
+    let mut path = Path::new(match first {
+        Edge::Line { from, .. } => plane.place(*from),
+        Edge::Arc { centre, axes, from_rad, .. } => {
+            let (sin, cos) = sin_cos(*from_rad);
+            plane.place(*centre + axes.0 * cos + axes.1 * sin)
+        }
+        Edge::Spline(spline) => {
+            let at = spline.points.first()?;
+            plane.place(Vec2::new(at.x, at.y))
+        }
+    });
+    for edge in edges {
+        match edge {
+            Edge::Line { to, .. } => path.line_to(plane.place(*to)),
+            Edge::Arc { centre, axes, from_rad, sweep_rad } => {
+                path.arc(plane, *centre, *axes, (*from_rad, *sweep_rad), None, tolerance_mm);
+            }
+            Edge::Spline(spline) => {
+                let scale = libm::fmax(plane.x.length(), plane.y.length());
+                for at in spline.places(tolerance_mm / libm::fmax(scale, f64::MIN_POSITIVE)) {
+                    path.line_to(plane.place(Vec2::new(at.x, at.y)));
+                }
+            }
+        }
+    }
+    Some(path)
+}
+
+impl Family {
+    fn fill(&self, plane: &Plane, outlines: &[Vec<Point>], drawn: &mut Vec<(Point, Point)>) {
+        let (sin, cos) = sin_cos(self.turned_rad);
+        let seen = plane.way(Vec2::new(cos, sin));
+        let stretch = seen.length();
+        let (Some(way), offset) = (seen.normalized(), plane.way(self.offset)) else { return };
+        let base = plane.place(self.base);
+        let across = way.perpendicular();
+        let distance_mm = across.dot(offset);
+        // How many distances a place lies from the first line.
+        let row = |at: Point| across.dot(at - base) / distance_mm;
+        let rows = || outlines.iter().flatten().map(|at| row(*at));
+        let (least, most) =
+            (rows().fold(f64::INFINITY, libm::fmin), rows().fold(f64::NEG_INFINITY, libm::fmax));
+        if !(least.is_finite() && most.is_finite()) || most - least > MOST_LINES {
+            return;
+        }
+        // Where lines cross the outlines, row by row; edges are walked once.
+        let first = libm::ceil(least);
+        let count = usize::try_from(crate::whole::whole(libm::floor(most) - first) + 1).unwrap_or(0);
+        let mut crossings: Vec<Vec<f64>> = (0..count).map(|_| Vec::new()).collect();
+        for outline in outlines {
+            for pair in outline.windows(2) {
+                let [from, to] = pair else { continue };
+                let (from_row, to_row) = (row(*from), row(*to));
+                let (low, high) = (libm::fmin(from_row, to_row), libm::fmax(from_row, to_row));
+                // Half open, so that a corner on a line counts once.
+                let mut at = libm::ceil(low);
+                while at < high {
+                    let place = from.lerp(*to, (at - from_row) / (to_row - from_row));
+                    if let Some(row) = usize::try_from(crate::whole::whole(at - first))
+                        .ok()
+                        .and_then(|row| crossings.get_mut(row))
+                    {
+                        row.push(way.dot(place - base));
+                    }
+                    at += 1.0;
+                }
+            }
+        }
+        let mut number = first;
+        for mut row in crossings {
+            row.sort_by(f64::total_cmp);
+            let start = offset * number;
+            let begins = way.dot(start);
+            let place = |along: f64| base + start + way * (along - begins);
+            for pair in row.chunks_exact(2) {
+                let [from, to] = pair else { continue };
+                self.dash(*from - begins, *to - begins, stretch, |a, b| {
+                    drawn.push((place(a + begins), place(b + begins)));
+                });
+            }
+            number += 1.0;
+        }
+    }
+
+    /// The dashes of a line that begins at 0 and is seen from one length to another.
+    fn dash(&self, from: f64, to: f64, stretch: f64, mut push: impl FnMut(f64, f64)) {
+        let total = stretch * self.dashes.iter().map(|part| libm::fabs(*part)).sum::<f64>();
+        if total <= 0.0 || (to - from) / total > MOST_LINES {
+            push(from, to);
+            return;
+        }
+        let mut at = libm::floor(from / total) * total;
+        while at < to {
+            for part in &self.dashes {
+                let end = at + stretch * libm::fabs(*part);
+                if *part >= 0.0 && end >= from && at <= to {
+                    push(libm::fmax(at, from), libm::fmin(end, to));
+                }
+                at = end;
+            }
+        }
+    }
+}
+
+/// From a flat place.
+pub(super) fn flat(at: Vec3) -> Vec2 {
+    Vec2::new(at.x, at.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::frame::Frame;
+    use super::*;
+    use std::vec;
+
+    fn square(from: f64, to: f64) -> Vec<Edge> {
+        let places =
+            [(from, from), (to, from), (to, to), (from, to), (from, from)].map(|(x, y)| Vec2::new(x, y));
+        places.windows(2).map(|pair| Edge::Line { from: pair[0], to: pair[1] }).collect()
+    }
+
+    fn family(dashes: &[f64]) -> Family {
+        Family {
+            offset: Vec2::new(0.0, 1.0),
+            base: Vec2::new(0.0, 0.5),
+            dashes: dashes.to_vec(),
+            turned_rad: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_square_with_a_hole_is_filled_round_it() {
+        let hatch = Hatch {
+            outlines: vec![square(0.0, 10.0), square(4.0, 6.0)],
+            families: vec![family(&[])],
+            is_solid: false,
+        };
+        let lines = hatch.lines(&Frame::WORLD.seen(), 0.01);
+        // Ten lines, of which the two at 4.5 and 5.5 are in two parts.
+        assert_eq!(lines.len(), 12);
+        let length: f64 = lines.iter().map(|(from, to)| from.distance(*to)).sum();
+        assert!((length - 96.0).abs() < 1e-9, "{length}");
+    }
+
+    #[test]
+    fn dashes_keep_their_places_on_each_line() {
+        let hatch = Hatch {
+            outlines: vec![square(1.0, 10.0)],
+            families: vec![family(&[2.0, -1.0])],
+            is_solid: false,
+        };
+        let lines = hatch.lines(&Frame::WORLD.seen(), 0.01);
+        let first: Vec<_> = lines.iter().take(4).map(|(from, to)| (from.x, to.x)).collect();
+        assert_eq!(first, [(1.0, 2.0), (3.0, 5.0), (6.0, 8.0), (9.0, 10.0)]);
+    }
+
+    #[test]
+    fn lines_without_a_distance_fill_nothing() {
+        let families = vec![Family { offset: Vec2::new(1.0, 0.0), ..family(&[]) }];
+        let hatch = Hatch { outlines: vec![square(0.0, 1.0)], families, is_solid: false };
+        assert_eq!(hatch.lines(&Frame::WORLD.seen(), 0.01), []);
+    }
+}
