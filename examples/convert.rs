@@ -78,7 +78,7 @@ struct Arguments {
     /// How G-code that is written lifts its pen
     #[arg(long, value_enum, default_value = "servo")]
     gcode_pen: GcodePen,
-    // The pen of G-code in other words: where G-code is written, instead of --gcode-pen; else where it is read
+    // The pen of G-code in other words: where G-code is written, instead of --gcode-pen; and where it is read, if it has them
     #[command(flatten)]
     pen_lines: PenLines,
     /// Encoder counts to the millimetre in the thesis' text
@@ -162,9 +162,9 @@ fn is_same(input: &Path, output: &Path) -> bool {
 fn convert(arguments: &Arguments, language: Language) -> Result<(), String> {
     let mut drawing =
         DrawingFile::open(&arguments.input, arguments.from)?.with_svg(&arguments.svg_reading)?;
-    if language != Language::Gcode {
-        drawing = drawing.with_pen_lines(&arguments.pen_lines)?;
-    } else if arguments.pen_lines.up.len() > 1 || arguments.pen_lines.down.len() > 1 {
+    let writes_gcode = language == Language::Gcode;
+    let reads_gcode = drawing.language() == Language::Gcode;
+    if writes_gcode && (arguments.pen_lines.up.len() > 1 || arguments.pen_lines.down.len() > 1) {
         return Err(
             "--pen-up, --pen-down: G-code is written with one line each: give each option once".into()
         );
@@ -175,6 +175,15 @@ fn convert(arguments: &Arguments, language: Language) -> Result<(), String> {
         pen: arguments.convention.map(convention),
         step_mm: arguments.step_mm,
     };
+    if reads_gcode || !writes_gcode {
+        drawing = drawing.with_pen_lines(&arguments.pen_lines)?;
+    }
+    // From G-code to G-code, words that the drawing does not have are only those to write.
+    let draws =
+        |op: Result<PlotOp, Diagnostic>| matches!(op, Ok(PlotOp::Draw { .. } | PlotOp::DrawArc { .. }));
+    if reads_gcode && writes_gcode && !drawing.ops(how)?.any(draws) {
+        drawing = drawing.with_pen_lines(&PenLines::default())?;
+    }
     let mut ops = drawing.ops(how)?;
     let colours = std::mem::take(&mut ops.colours);
     let sheet_mm = ops.sheet_mm;

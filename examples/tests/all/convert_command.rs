@@ -305,3 +305,24 @@ fn every_real_file_becomes_the_same_strokes_in_the_other_languages() {
         }
     }
 }
+
+#[test]
+fn gcode_in_words_of_its_own_becomes_gcode_in_the_same_or_in_others() {
+    let folder = Folder::new();
+    let macros = folder.write(
+        "a.gcode",
+        "G21 G90\nPEN_UP\nG1 X10 Y10\nPEN_DOWN\nG1 X30\nPEN_UP\nG1 X40\nPEN_DOWN\nG1 Y20\nPEN_UP\n",
+    );
+    let out = folder.file("b.gcode");
+    let converted = |input: &str, up: &str, down: &str| {
+        let output = run_example("convert", &[input, &out, "--pen-up", up, "--pen-down", down]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        std::fs::read_to_string(&out).unwrap()
+    };
+    let same = converted(&macros, "PEN_UP", "PEN_DOWN");
+    assert_eq!((same.matches("PEN_DOWN").count(), same.matches("G1").count()), (2, 2), "{same}");
+    // Words that are not in the drawing are those to write.
+    let spindle = folder.write("c.gcode", "G0 X1 Y1\nM3\nG1 X30\nM5\nG0 X40\nM3\nG1 Y20\nM5\n");
+    let other = converted(&spindle, "M280 P0 S60", "M280 P0 S30");
+    assert_eq!((other.matches("M280 P0 S30").count(), other.matches("G1").count()), (2, 2), "{other}");
+}

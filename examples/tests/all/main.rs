@@ -28,6 +28,7 @@ mod max_error_command;
 mod plot_command;
 #[path = "../../../plotter-motion/tests/all/real_files/mod.rs"]
 mod real_files;
+mod round_trip;
 mod stepper_command;
 mod trace_command;
 mod trace_compared;

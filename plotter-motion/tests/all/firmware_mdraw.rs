@@ -43,6 +43,21 @@ fn moves_report_their_distance() {
 }
 
 #[test]
+fn places_may_be_ways_from_where_the_pen_is() {
+    let mut bench = bench();
+    let said = ["G1 X10 Y5\n", "G91\n", "G1 X2.5\n", "G1 X-1 Y3\n", "P\n", "G90\n", "G1 X1\n", "P\n"]
+        .map(|line| bench.ask(line));
+    assert_eq!(said[1], "OK\r\n");
+    assert_eq!(said[2], "distance=2.50\r\nOK\r\n");
+    assert_eq!(said[4], "POS X11.50 Y8.00\r\nOK\r\n");
+    assert_eq!(said[7], "POS X1.00 Y8.00\r\nOK\r\n");
+    // What lies outside is refused, however it is said, and the pen stays.
+    bench.ask("G91\n");
+    assert!(bench.ask("G1 X-1.5\n").starts_with("error: "));
+    assert_eq!(bench.ask("P\n"), said[7]);
+}
+
+#[test]
 fn pen_laser_delay_and_stored_settings_are_answered_by_ok_alone() {
     insta::assert_snapshot!(conversation(
         &mut bench(),

@@ -69,6 +69,7 @@
 //! | `M10` | | `M10 XY 380 310 0.00 0.00 A0 B0 H0 S80 U160 D90` |
 //! | `M11` | | `M11 1 1 1 1`: y upper, y lower, x upper, x lower; 1 is open |
 //! | `P` | | `POS X0.00 Y0.00` |
+//! | `G91`, `G90` | X and Y of later lines are ways from where the pen is, or places again | |
 //! | anything else | nothing | |
 //!
 //! Where that firmware goes wrong, this one does not follow. What it refuses it says in a line `error: …` before the `OK`, since mDraw

@@ -12,6 +12,8 @@ pub(super) enum Request {
     Move { x: Option<Option<f32>>, y: Option<Option<f32>>, delay_us: Option<i32> },
     /// `G28`.
     Home,
+    /// `G91`, and `G90`.
+    Relative(bool),
     /// `M1`, degrees.
     Servo(Option<i32>),
     /// `M2`, degrees.
@@ -54,6 +56,7 @@ impl Request {
                 Self::Move { x, y, delay_us }
             }
             (b'G', 28) => Self::Home,
+            (b'G', 90 | 91) => Self::Relative(code == 91),
             (b'M', 1) => Self::Servo(words.next().and_then(whole)),
             (b'M', 2) => Self::PenAngles { up: lettered(words.clone(), b'U'), down: lettered(words, b'D') },
             (b'M', 3) => Self::Delay(words.next().and_then(whole)),

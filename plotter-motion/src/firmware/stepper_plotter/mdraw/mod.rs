@@ -46,6 +46,8 @@ pub struct MDraw {
     /// Where the pen has been sent, mm, in the precision of the original.
     at: (f32, f32),
     delay_us: i32,
+    /// Whether X and Y are ways from there: `G91`, up to `G90` or a restart.
+    relative: bool,
     /// Whether the servo was last told an angle nearer to that of the pen down.
     pen_down: bool,
     laser_on: bool,
@@ -67,6 +69,7 @@ impl MDraw {
             early: 0,
             at: (0.0, 0.0),
             delay_us: 0,
+            relative: false,
             pen_down: false,
             laser_on: false,
             stopped: false,
@@ -172,6 +175,10 @@ impl MDraw {
     fn carry_out(&mut self, request: Request, status: &Status, link: &mut Link) -> Result<(), Refusal> {
         match request {
             Request::Nothing => Ok(()),
+            Request::Relative(relative) => {
+                self.relative = relative;
+                Ok(())
+            }
             Request::Settings => {
                 self.tell_settings();
                 Ok(())
@@ -237,7 +244,10 @@ impl MDraw {
             Request::Move { x, y, delay_us } => {
                 let there = |word: Option<Option<f32>>, here: f32, command| match word {
                     None => Ok(here),
-                    Some(number) => number.ok_or(Refusal::NoNumber { command }),
+                    Some(number) => {
+                        let number = number.ok_or(Refusal::NoNumber { command })?;
+                        Ok(if self.relative { here + number } else { number })
+                    }
                 };
                 let (x, y) = (there(x, self.at.0, "X")?, there(y, self.at.1, "Y")?);
                 let delay_us = in_range("A", delay_us.unwrap_or(self.delay_us), 0, MOST_DELAY_US)?;
