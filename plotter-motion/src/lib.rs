@@ -15,6 +15,8 @@ mod config;
 pub mod control;
 mod decimal;
 mod decimal_text;
+#[cfg(feature = "alloc")]
+pub mod drawing;
 #[cfg(all(feature = "alloc", feature = "font"))]
 pub mod dxf;
 mod encoder;

@@ -55,6 +55,8 @@ mod prop_bresenham;
 mod prop_budget;
 mod prop_config;
 mod prop_control;
+#[cfg(feature = "alloc")]
+mod prop_drawing;
 mod prop_gcode;
 mod prop_homing;
 mod prop_hpgl;

@@ -1,0 +1,178 @@
+//! [`Drawing`]: strokes on their way from any language, picture or program to any other.
+//!
+//! ```text
+//! HPGL, G-code, DXF, cutters ──▶ PlotOp ──▶ Drawing ──▶ PlotOp ──▶ planner, writers
+//! SVG, traced pictures ───────────────────▶    │
+//!                                   placed, cropped, ordered, hatched, …
+//! ```
+//!
+//! A stroke is what is drawn without lifting the pen: lines, arcs and cubic curves, with the speed and the power of each. It has a pen
+//! and a layer, and what happens before it: a dwell, a new sheet. The way of the lifted pen is no part of a drawing.
+//!
+//! ```
+//! use plotter_motion::{drawing::{Affine, Drawing}, gcode, hpgl};
+//!
+//! let mut drawing: Drawing = hpgl::plot_ops(b"IN;SP1;PU0,0;PD400,0,400,400;PU;").filter_map(Result::ok).collect();
+//! drawing.map(&Affine::scaled(2.0, 2.0));
+//! assert_eq!((drawing.strokes.len(), drawing.length_mm()), (1, 40.0));
+//! let mut text = String::new();
+//! gcode::write_ops(drawing.ops(0.01), &mut text)?;
+//! assert!(text.contains("G1 X20 Y0"));
+//! # Ok::<(), gcode::WriteError>(())
+//! ```
+
+mod affine;
+mod bounds;
+mod ops;
+mod segment;
+mod stroke;
+
+pub use affine::Affine;
+pub use bounds::Bounds;
+pub use segment::{PathSegment, Shape};
+pub use stroke::{Mark, Stroke};
+
+use crate::Point;
+use alloc::collections::BTreeSet;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+/// Strokes in the order in which they are drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "Parts"))]
+pub struct Drawing {
+    /// The strokes.
+    pub strokes: Vec<Stroke>,
+    /// What happens after the last one.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub after: Vec<Mark>,
+    /// Names of the layers; layer 1 is the first of them.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub layers: Vec<String>,
+}
+
+impl Drawing {
+    /// One without strokes.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { strokes: Vec::new(), after: Vec::new(), layers: Vec::new() }
+    }
+
+    /// Length of all strokes, mm.
+    #[must_use]
+    pub fn length_mm(&self) -> f64 {
+        self.strokes.iter().map(Stroke::length_mm).sum()
+    }
+
+    /// Way of the lifted pen from stroke to stroke, mm, from the origin to the first.
+    #[must_use]
+    pub fn travel_mm(&self) -> f64 {
+        let mut at = Point::ORIGIN;
+        let way = |stroke: &Stroke| core::mem::replace(&mut at, stroke.to()).distance(stroke.from);
+        self.strokes.iter().map(way).sum()
+    }
+
+    /// All segments, each with its stroke and the place where it begins.
+    pub fn segments(&self) -> impl Iterator<Item = (&Stroke, Point, &PathSegment)> {
+        self.strokes
+            .iter()
+            .flat_map(|stroke| stroke.segments().map(move |(from, segment)| (stroke, from, segment)))
+    }
+
+    /// The box round all strokes.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::default();
+        self.strokes.iter().for_each(|stroke| bounds.join(&stroke.bounds()));
+        bounds
+    }
+
+    /// Moves, turns, scales or mirrors all of it.
+    pub fn map(&mut self, map: &Affine) {
+        for stroke in &mut self.strokes {
+            *stroke = stroke.mapped(map);
+        }
+    }
+
+    /// Draws it from its end to its start. What happens before a stroke still does.
+    pub fn reverse(&mut self) {
+        self.strokes.reverse();
+        self.strokes.iter_mut().for_each(Stroke::reverse);
+    }
+
+    /// The pens that draw something, in rising order.
+    #[must_use]
+    pub fn pens(&self) -> BTreeSet<u8> {
+        self.strokes.iter().map(|stroke| stroke.pen).collect()
+    }
+
+    /// What one pen draws.
+    #[must_use]
+    pub fn of_pen(&self, pen: u8) -> Self {
+        self.only(|stroke| stroke.pen == pen)
+    }
+
+    /// What lies on one layer, by its number.
+    #[must_use]
+    pub fn of_layer(&self, layer: u32) -> Self {
+        self.only(|stroke| stroke.layer == layer)
+    }
+
+    /// Only some of its strokes.
+    #[must_use]
+    pub fn only(&self, mut wanted: impl FnMut(&Stroke) -> bool) -> Self {
+        let strokes = self.strokes.iter().filter(|stroke| wanted(stroke)).cloned().collect();
+        Self { strokes, after: self.after.clone(), layers: self.layers.clone() }
+    }
+
+    /// What is wrong with it: a stroke without a segment, a number that is none, an arc of more than a turn, a layer without a name.
+    ///
+    /// # Errors
+    ///
+    /// The first stroke that is not sound.
+    pub fn check(&self) -> Result<(), UnsoundDrawing> {
+        let is_known = |layer: u32| usize::try_from(layer).is_ok_and(|layer| layer <= self.layers.len());
+        let wrong = self.strokes.iter().position(|stroke| !stroke.is_sound() || !is_known(stroke.layer));
+        wrong.map_or(Ok(()), |stroke| Err(UnsoundDrawing { stroke }))
+    }
+}
+
+/// That a drawing contradicts itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnsoundDrawing {
+    /// Which of its strokes, from 0.
+    pub stroke: usize,
+}
+
+impl core::fmt::Display for UnsoundDrawing {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(
+            f,
+            "stroke {} has no segment, a number that is none, an arc of more than a turn, or a layer without a name",
+            self.stroke
+        )
+    }
+}
+
+impl core::error::Error for UnsoundDrawing {}
+
+/// The parts of a drawing, before it is known whether they go together.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct Parts {
+    strokes: Vec<Stroke>,
+    #[serde(default)]
+    after: Vec<Mark>,
+    #[serde(default)]
+    layers: Vec<String>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Parts> for Drawing {
+    type Error = UnsoundDrawing;
+
+    fn try_from(Parts { strokes, after, layers }: Parts) -> Result<Self, UnsoundDrawing> {
+        let drawing = Self { strokes, after, layers };
+        drawing.check().map(|()| drawing)
+    }
+}
