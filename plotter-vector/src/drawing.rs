@@ -486,6 +486,12 @@ impl Scale {
     pub fn to_sheet(self, at: PxPoint) -> Point {
         Point::new(self.upper_left.x + at.x * self.mm_per_px, self.upper_left.y - at.y * self.mm_per_px)
     }
+
+    /// Where a place on the sheet lies on the picture.
+    #[must_use]
+    pub fn to_picture(self, at: Point) -> PxPoint {
+        PxPoint::new((at.x - self.upper_left.x) / self.mm_per_px, (self.upper_left.y - at.y) / self.mm_per_px)
+    }
 }
 
 #[cfg(test)]

@@ -31,6 +31,7 @@ mod lettering;
 mod light;
 mod line_width;
 mod oklab;
+mod on_sheet;
 mod order;
 mod palette;
 mod pen;

@@ -7,6 +7,7 @@
 //! ```
 
 pub(crate) mod forest;
+mod on_sheet;
 pub(crate) mod plan;
 pub(crate) mod point_tree;
 mod route;
@@ -88,6 +89,9 @@ pub struct Order {
     pub merge_gap_px: f64,
     /// Whether strokes are joined at corners too.
     pub one_stroke: bool,
+    /// Whether pens are changed wherever that shortens the way, and not only once each: for drawings of one tool.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub across_pens: bool,
     /// How lettering is found, so that each block of it is drawn in one go, in reading order; `None` does not look.
     pub lettering: Option<Lettering>,
 }
@@ -105,6 +109,7 @@ impl Default for Order {
             budget: 100_000_000,
             merge_gap_px: 0.5,
             one_stroke: true,
+            across_pens: false,
             lettering: None,
         }
     }
@@ -118,28 +123,35 @@ impl Order {
             return drawing.clone();
         }
         let mut strokes = strokes_of(drawing);
-        let within = |at: &PxPoint| at.x.abs() <= FARTHEST_PX && at.y.abs() <= FARTHEST_PX;
         if !strokes.iter().flat_map(|stroke| stroke.vertices).all(within) {
-            return rebuild(drawing, &strokes, &as_given(&strokes, &[]));
+            return rebuild(drawing, &strokes, &as_given(&strokes, &[], self.across_pens));
         }
         let blocks = match self.lettering {
             Some(lettering) if drawing.has_arcs() => lettering.find(drawing),
             Some(lettering) => lettering.find_in(&strokes),
             None => Vec::new(),
         };
-        let given = rebuild(drawing, &strokes, &as_given(&strokes, &blocks));
+        let given = rebuild(drawing, &strokes, &as_given(&strokes, &blocks, self.across_pens));
         mark_letters(&mut strokes, &blocks);
-        let gap_px = if self.merge_gap_px > 0.0 { self.merge_gap_px } else { 0.0 };
-        let joined = trails::trails(&strokes, gap_px, self.one_stroke);
-        let mut trails = self.sequence(&strokes, units(&strokes, joined, &blocks));
-        start_rings_well(&strokes, &mut trails);
-        let ordered = rebuild(drawing, &strokes, &trails);
+        let ordered = rebuild(drawing, &strokes, &self.plan(&strokes, &blocks));
         if ordered.pen_up_px() <= given.pen_up_px() { ordered } else { given }
+    }
+
+    /// What is drawn as one, in order.
+    fn plan(&self, strokes: &[Stroke<'_>], blocks: &[TextBlock]) -> Vec<Trail> {
+        let gap_px = if self.merge_gap_px > 0.0 { self.merge_gap_px } else { 0.0 };
+        let joined = trails::trails(strokes, gap_px, self.one_stroke);
+        let mut trails = self.sequence(strokes, units(strokes, joined, blocks));
+        start_rings_well(strokes, &mut trails);
+        trails
     }
 
     /// The trails of the units in order, pen by pen.
     fn sequence(&self, strokes: &[Stroke<'_>], mut units: Vec<Vec<Trail>>) -> Vec<Trail> {
-        let pen = |unit: &Vec<Trail>| unit.first().map_or(0, |trail| trail.pen(strokes));
+        let pen = |unit: &Vec<Trail>| match unit.first() {
+            Some(trail) if !self.across_pens => trail.pen(strokes),
+            _ => 0,
+        };
         units.sort_by_key(pen);
         let all = units.len().max(1) as u64;
         let mut ordered: Vec<Trail> = Vec::with_capacity(units.len());
@@ -171,6 +183,11 @@ impl Order {
     }
 }
 
+/// Whether a place can be ordered by distances.
+fn within(at: &PxPoint) -> bool {
+    at.x.abs() <= FARTHEST_PX && at.y.abs() <= FARTHEST_PX
+}
+
 /// Where the pen may enter and leave a unit, one of so many rings if it is one.
 fn add_site(sites: &mut Sites, strokes: &[Stroke<'_>], unit: &[Trail], rings: usize) {
     match unit {
@@ -198,7 +215,7 @@ pub fn order(drawing: &Drawing) -> Drawing {
 
 /// Each stroke by itself, in the given order, but for the pens, and for blocks of lettering: those are drawn in reading
 /// order where their first stroke was.
-fn as_given(strokes: &[Stroke<'_>], blocks: &[TextBlock]) -> Vec<Trail> {
+fn as_given(strokes: &[Stroke<'_>], blocks: &[TextBlock], across_pens: bool) -> Vec<Trail> {
     let mut order: Vec<usize> = (0..strokes.len()).collect();
     let mut first = order.clone();
     for block in blocks {
@@ -210,7 +227,8 @@ fn as_given(strokes: &[Stroke<'_>], blocks: &[TextBlock]) -> Vec<Trail> {
     for (place, stroke) in blocks.iter().flat_map(TextBlock::letters).flatten().enumerate() {
         read.get_mut(*stroke).into_iter().for_each(|slot| *slot = place);
     }
-    let key = |stroke: &usize| Some((strokes.get(*stroke)?.pen, *first.get(*stroke)?, *read.get(*stroke)?));
+    let pen = |stroke: usize| Some(if across_pens { 0 } else { strokes.get(stroke)?.pen });
+    let key = |stroke: &usize| Some((pen(*stroke)?, *first.get(*stroke)?, *read.get(*stroke)?));
     order.sort_by_key(key);
     let alone =
         |stroke| Trail { pieces: vec![Piece { stroke, reversed: false, start: 0 }], ..Trail::default() };

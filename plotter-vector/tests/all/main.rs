@@ -39,6 +39,7 @@ mod prop_ink;
 mod prop_inside;
 mod prop_layers;
 mod prop_order;
+mod prop_order_on_sheet;
 mod prop_polyline;
 mod prop_sheet;
 mod prop_svg;

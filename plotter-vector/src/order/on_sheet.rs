@@ -1,0 +1,146 @@
+//! [`Order`] for drawings of the sheet: pens, layers, speeds and what happens between strokes stay with them.
+
+use super::plan::{Trail, strokes_of};
+use super::{Order, OrderEffort, as_given, within};
+use crate::{Drawing, PxPoint};
+use plotter_motion::drawing::{self, Mark, PathSegment, Stroke};
+use std::collections::BTreeMap;
+
+/// Pixels to the millimetre: what is a pixel to the search, over which ends are compared, is the tenth of a millimetre here, about a
+/// third of a pen's line.
+const PX_PER_MM: f64 = 10.0;
+
+impl Order {
+    /// The drawing in an order with less travel. As [`Order::apply`], with `merge_gap_px` in tenths of a millimetre.
+    ///
+    /// Strokes are joined within one pen and one layer; one that is preceded by a dwell stays by itself. A new sheet, and a pen that is
+    /// put away, part what is ordered. Speeds and powers stay with their segments; a bridged gap has those of what follows it.
+    ///
+    /// ```
+    /// use plotter_motion::{Point, drawing::{Drawing, Stroke}};
+    /// use plotter_vector::Order;
+    /// let line = |from, to| Stroke::through([Point::new(from, 0.0), Point::new(to, 0.0)]);
+    /// let strokes = [line(0.0, 9.0), line(30.0, 39.0), line(20.0, 10.0)].into_iter().flatten().collect();
+    /// let ordered = Order::default().apply_to(&Drawing { strokes, ..Drawing::default() });
+    /// assert_eq!(ordered.travel_mm(), 1.0 + 10.0);
+    /// ```
+    #[must_use]
+    pub fn apply_to(&self, drawing: &drawing::Drawing) -> drawing::Drawing {
+        let mut ordered = drawing::Drawing {
+            strokes: Vec::new(),
+            after: drawing.after.clone(),
+            layers: drawing.layers.clone(),
+        };
+        let parts = |stroke: &Stroke| stroke.before.iter().any(|mark| !matches!(mark, Mark::Dwell(_)));
+        let mut rest = drawing.strokes.as_slice();
+        while !rest.is_empty() {
+            let end = rest.iter().skip(1).position(parts).map_or(rest.len(), |index| index + 1);
+            let (sheet, next) = rest.split_at(end);
+            // What begins the sheet begins it whatever is drawn first.
+            let (begins, own) = match sheet.split_first() {
+                Some((first, others)) if parts(first) => {
+                    let own = Stroke { before: Vec::new(), ..first.clone() };
+                    (first.before.clone(), std::iter::once(own).chain(others.iter().cloned()).collect())
+                }
+                _ => (Vec::new(), sheet.to_vec()),
+            };
+            let mut strokes = self.ordered(own);
+            if let Some(first) = strokes.first_mut() {
+                first.before.splice(0..0, begins);
+            }
+            ordered.strokes.append(&mut strokes);
+            rest = next;
+        }
+        ordered
+    }
+
+    fn ordered(&self, given: Vec<Stroke>) -> Vec<Stroke> {
+        if self.effort == OrderEffort::None {
+            return given;
+        }
+        let px = |at: plotter_motion::Point| PxPoint::new(at.x * PX_PER_MM, at.y * PX_PER_MM);
+        let mut picture = Drawing::new(0, 0);
+        for stroke in &given {
+            picture.push_curve(stroke.pen, crate::on_sheet::curve(stroke, px, 1.0));
+        }
+        let mut strokes = strokes_of(&picture);
+        let mut groups = BTreeMap::new();
+        for (known, stroke) in strokes.iter_mut().zip(&given) {
+            // Pens are told apart here, so that pen 0 is one too.
+            known.pen = stroke.pen;
+            let next = groups.len() + 1;
+            known.letter = if stroke.before.is_empty() {
+                *groups.entry((stroke.pen, stroke.layer, None)).or_insert(next)
+            } else {
+                *groups.entry((0, 0, Some(next))).or_insert(next)
+            };
+        }
+        let is_near = strokes.iter().flat_map(|stroke| stroke.vertices).all(within);
+        let plan = if is_near { self.plan(&strokes, &[]) } else { as_given(&strokes, &[], self.across_pens) };
+        let ordered: Vec<Stroke> = plan.iter().filter_map(|trail| joined(trail, &given)).collect();
+        let sorted = as_given(&strokes, &[], self.across_pens);
+        let sorted: Vec<Stroke> = sorted.iter().filter_map(|trail| joined(trail, &given)).collect();
+        if travel(&ordered) <= travel(&sorted) { ordered } else { sorted }
+    }
+}
+
+/// From stroke to stroke; the way to the first is not known.
+fn travel(strokes: &[Stroke]) -> f64 {
+    let way = |pair: &[Stroke]| Some(pair.first()?.to().distance(pair.last()?.from));
+    strokes.windows(2).filter_map(way).sum()
+}
+
+/// The strokes of a trail as one.
+fn joined(trail: &Trail, given: &[Stroke]) -> Option<Stroke> {
+    let mut all: Option<Stroke> = None;
+    for piece in &trail.pieces {
+        let mut stroke = given.get(piece.stroke)?.clone();
+        if stroke.is_closed() {
+            begin_at(&mut stroke, piece.start);
+        }
+        if piece.reversed {
+            stroke.reverse();
+        }
+        match &mut all {
+            None => all = Some(stroke),
+            Some(all) => {
+                if all.is_dot() && all.from == stroke.from {
+                    all.segments.clear();
+                }
+                if all.to() != stroke.from {
+                    let like = stroke.segments.first().copied().unwrap_or_default();
+                    all.segments.push(PathSegment {
+                        feed_mm_s: like.feed_mm_s,
+                        power: like.power,
+                        ..PathSegment::line(stroke.from)
+                    });
+                }
+                if !stroke.is_dot() || all.segments.is_empty() {
+                    all.segments.append(&mut stroke.segments);
+                }
+            }
+        }
+    }
+    let mut all = all?;
+    if trail.closed {
+        if all.to() != all.from && !all.is_dot() {
+            let like = all.segments.last().copied().unwrap_or_default();
+            all.segments.push(PathSegment {
+                feed_mm_s: like.feed_mm_s,
+                power: like.power,
+                ..PathSegment::line(all.from)
+            });
+        }
+        begin_at(&mut all, trail.start);
+    }
+    Some(all)
+}
+
+/// Lets a closed stroke begin where its segment of this number does.
+fn begin_at(stroke: &mut Stroke, segment: usize) {
+    let Some(before) = segment.checked_sub(1).and_then(|before| stroke.segments.get(before)) else { return };
+    if segment < stroke.segments.len() {
+        stroke.from = before.to;
+        stroke.segments.rotate_left(segment);
+    }
+}
