@@ -65,6 +65,22 @@ impl Bounds {
         if self.is_empty() { Point::ORIGIN } else { self.least.lerp(self.most, 0.5) }
     }
 
+    /// Its corners, counter-clockwise from the lower left.
+    #[must_use]
+    pub const fn corners(&self) -> [Point; 4] {
+        let (least, most) = (self.least, self.most);
+        [least, Point::new(most.x, least.y), most, Point::new(least.x, most.y)]
+    }
+
+    /// Wider on each side.
+    pub(super) const fn wider(&self, by_mm: f64) -> Self {
+        let (least, most) = (self.least, self.most);
+        Self {
+            least: Point::new(least.x - by_mm, least.y - by_mm),
+            most: Point::new(most.x + by_mm, most.y + by_mm),
+        }
+    }
+
     /// Whether a place lies in it or on its border.
     #[must_use]
     pub fn has(&self, place: Point) -> bool {

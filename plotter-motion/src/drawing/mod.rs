@@ -9,6 +9,9 @@
 //! A stroke is what is drawn without lifting the pen: lines, arcs and cubic curves, with the speed and the power of each. It has a pen
 //! and a layer, and what happens before it: a dwell, a new sheet. The way of the lifted pen is no part of a drawing.
 //!
+//! A drawing is cut to a [`Region`] or a rectangle by [`Drawing::crop`] and [`Drawing::crop_to_rectangle`]. [`Drawing::occlude`] takes away
+//! what later closed strokes hide, and [`Drawing::hatch`] fills closed strokes with lines. Arcs stay arcs and curves curves.
+//!
 //! ```
 //! use plotter_motion::{drawing::{Affine, Drawing}, gcode, hpgl};
 //!
@@ -23,12 +26,23 @@
 
 mod affine;
 mod bounds;
+mod boxes;
+mod crop;
+mod hatch;
+mod occlude;
 mod ops;
+mod region;
+mod remains;
+pub(crate) mod scan;
 mod segment;
 mod stroke;
 
 pub use affine::Affine;
 pub use bounds::Bounds;
+pub use hatch::{HatchError, Hatching};
+pub use occlude::Hides;
+pub use region::{Keep, Region};
+pub use remains::CutCount;
 pub use segment::{PathSegment, Shape};
 pub use stroke::{Mark, Stroke};
 

@@ -1,6 +1,6 @@
 //! [`PathSegment`]: a line, an arc or a cubic curve of a stroke.
 
-use super::Affine;
+use super::{Affine, Bounds};
 use crate::{PlotOp, Point, chords};
 use alloc::vec::Vec;
 use core::f64::consts::{FRAC_PI_8, PI, TAU};
@@ -191,10 +191,13 @@ impl PathSegment {
                 let (low, high) =
                     if sweep_rad < 0.0 { (begin + sweep_rad, begin) } else { (begin, begin + sweep_rad) };
                 let quarter = 0.5 * PI;
-                let mut angle = libm::ceil(low / quarter) * quarter;
-                while angle <= high && sweep_rad != 0.0 {
-                    grow(self.at(from, (angle - begin) / sweep_rad));
-                    angle += quarter;
+                let first = libm::ceil(low / quarter);
+                // A whole turn has five quarters in it, its ends included; more turns have the same places.
+                for index in 0..5 {
+                    let angle = (first + f64::from(index)) * quarter;
+                    if angle <= high && sweep_rad != 0.0 {
+                        grow(self.at(from, (angle - begin) / sweep_rad));
+                    }
                 }
             }
             // Where the derivative, a quadratic, is 0 in x or in y.
@@ -210,6 +213,13 @@ impl PathSegment {
                 }
             }
         }
+    }
+
+    /// The box round it.
+    pub(super) fn bounds(&self, from: Point) -> Bounds {
+        let mut bounds = Bounds::of(from);
+        self.extremes(from, &mut |at| bounds.grow(at));
+        bounds
     }
 
     /// It as `map` shows it. An arc that becomes one of an ellipse is cubic curves, of an eighth of a turn at most, which are within
@@ -249,7 +259,7 @@ impl PathSegment {
 }
 
 /// Where a t² + b t + c is 0.
-fn roots(a: f64, b: f64, c: f64) -> impl Iterator<Item = f64> {
+pub(super) fn roots(a: f64, b: f64, c: f64) -> impl Iterator<Item = f64> {
     let root = b * b - 4.0 * a * c;
     let q = -0.5 * (b + libm::copysign(libm::sqrt(libm::fmax(root, 0.0)), b));
     let share = |over: f64, under: f64| (root >= 0.0 && under != 0.0).then(|| over / under);

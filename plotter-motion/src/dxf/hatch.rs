@@ -3,11 +3,16 @@
 use super::frame::{Plane, Vec3, sin_cos};
 use super::path::Path;
 use super::spline::Spline;
+use crate::drawing::scan::{Rows, TooMany};
 use crate::{Point, Vec2};
 use alloc::vec::Vec;
 
-/// Most lines of one family in one area: 10 m of them at 0.1 mm.
-const MOST_LINES: f64 = 100_000.0;
+/// Most repetitions of the dashes of one line: 10 m of them at 0.1 mm.
+const MOST_DASHES: f64 = 100_000.0;
+/// The shortest dashes as a share of how far the line runs from where they begin: millions of times the rounding of their ends.
+const LEAST_DASHES: f64 = 1e-9;
+/// Most lines and dashes of one area, but for the dashes of the last line: a dash each mm² of an A0 sheet.
+const MOST_DRAWN: usize = 1_000_000;
 
 /// A part of an area's outline.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,11 +58,12 @@ impl Hatch {
         self.outlines.iter().filter_map(|edges| outline(edges, plane, tolerance_mm)).collect()
     }
 
-    /// The lines that fill it, on the sheet.
+    /// The lines that fill it, on the sheet, by the rule of odd and even.
     ///
-    /// An area is filled by the rule of odd and even: a line is drawn from its first crossing of the outlines to the second, from the
-    /// third to the fourth, and so on.
-    pub(super) fn lines(&self, plane: &Plane, tolerance_mm: f64) -> Vec<(Point, Point)> {
+    /// # Errors
+    ///
+    /// Lines that are too many, or have no distance.
+    pub(super) fn lines(&self, plane: &Plane, tolerance_mm: f64) -> Result<Vec<(Point, Point)>, TooMany> {
         let outlines: Vec<Vec<Point>> = self
             .outlines(plane, tolerance_mm)
             .into_iter()
@@ -68,9 +74,9 @@ impl Hatch {
             .collect();
         let mut drawn = Vec::new();
         for family in &self.families {
-            family.fill(plane, &outlines, &mut drawn);
+            family.fill(plane, &outlines, &mut drawn)?;
         }
-        drawn
+        Ok(drawn)
     }
 }
 
@@ -105,65 +111,40 @@ fn outline(edges: &[Edge], plane: &Plane, tolerance_mm: f64) -> Option<Path> {
 }
 
 impl Family {
-    fn fill(&self, plane: &Plane, outlines: &[Vec<Point>], drawn: &mut Vec<(Point, Point)>) {
+    fn fill(
+        &self,
+        plane: &Plane,
+        outlines: &[Vec<Point>],
+        drawn: &mut Vec<(Point, Point)>,
+    ) -> Result<(), TooMany> {
         let (sin, cos) = sin_cos(self.turned_rad);
         let seen = plane.way(Vec2::new(cos, sin));
         let stretch = seen.length();
-        let (Some(way), offset) = (seen.normalized(), plane.way(self.offset)) else { return };
-        let base = plane.place(self.base);
-        let across = way.perpendicular();
-        let distance_mm = across.dot(offset);
-        // How many distances a place lies from the first line.
-        let row = |at: Point| across.dot(at - base) / distance_mm;
-        let rows = || outlines.iter().flatten().map(|at| row(*at));
-        let (least, most) =
-            (rows().fold(f64::INFINITY, libm::fmin), rows().fold(f64::NEG_INFINITY, libm::fmax));
-        if !(least.is_finite() && most.is_finite()) || most - least > MOST_LINES {
-            return;
-        }
-        // Where lines cross the outlines, row by row; edges are walked once.
-        let first = libm::ceil(least);
-        let count = usize::try_from(crate::whole::whole(libm::floor(most) - first) + 1).unwrap_or(0);
-        let mut crossings: Vec<Vec<f64>> = (0..count).map(|_| Vec::new()).collect();
-        for outline in outlines {
-            for pair in outline.windows(2) {
-                let [from, to] = pair else { continue };
-                let (from_row, to_row) = (row(*from), row(*to));
-                let (low, high) = (libm::fmin(from_row, to_row), libm::fmax(from_row, to_row));
-                // Half open, so that a corner on a line counts once.
-                let mut at = libm::ceil(low);
-                while at < high {
-                    let place = from.lerp(*to, (at - from_row) / (to_row - from_row));
-                    if let Some(row) = usize::try_from(crate::whole::whole(at - first))
-                        .ok()
-                        .and_then(|row| crossings.get_mut(row))
-                    {
-                        row.push(way.dot(place - base));
-                    }
-                    at += 1.0;
-                }
+        let (Some(way), offset) = (seen.normalized(), plane.way(self.offset)) else { return Ok(()) };
+        let rows = Rows { base: plane.place(self.base), way, distance_mm: way.perpendicular().dot(offset) };
+        // The dashes of each line begin where the offset, which need not be across the lines, has carried them.
+        let shift_mm = way.dot(offset);
+        rows.fill(outlines, |row, from, to| {
+            let begins = shift_mm * row;
+            if drawn.len() > MOST_DRAWN {
+                return;
             }
-        }
-        let mut number = first;
-        for mut row in crossings {
-            row.sort_by(f64::total_cmp);
-            let start = offset * number;
-            let begins = way.dot(start);
-            let place = |along: f64| base + start + way * (along - begins);
-            for pair in row.chunks_exact(2) {
-                let [from, to] = pair else { continue };
-                self.dash(*from - begins, *to - begins, stretch, |a, b| {
-                    drawn.push((place(a + begins), place(b + begins)));
-                });
-            }
-            number += 1.0;
+            self.dash(from - begins, to - begins, stretch, |a, b| {
+                drawn.push((rows.place(row, a + begins), rows.place(row, b + begins)));
+            });
+        })?;
+        if drawn.len() > MOST_DRAWN {
+            Err(TooMany { lines: f64::INFINITY, most: MOST_DRAWN as f64 })
+        } else {
+            Ok(())
         }
     }
 
     /// The dashes of a line that begins at 0 and is seen from one length to another.
     fn dash(&self, from: f64, to: f64, stretch: f64, mut push: impl FnMut(f64, f64)) {
         let total = stretch * self.dashes.iter().map(|part| libm::fabs(*part)).sum::<f64>();
-        if total <= 0.0 || (to - from) / total > MOST_LINES {
+        let farthest = libm::fmax(libm::fabs(from), libm::fabs(to));
+        if total <= LEAST_DASHES * farthest || (to - from) / total > MOST_DASHES {
             push(from, to);
             return;
         }
@@ -213,7 +194,7 @@ mod tests {
             families: vec![family(&[])],
             is_solid: false,
         };
-        let lines = hatch.lines(&Frame::WORLD.seen(), 0.01);
+        let lines = hatch.lines(&Frame::WORLD.seen(), 0.01).unwrap();
         // Ten lines, of which the two at 4.5 and 5.5 are in two parts.
         assert_eq!(lines.len(), 12);
         let length: f64 = lines.iter().map(|(from, to)| from.distance(*to)).sum();
@@ -227,7 +208,7 @@ mod tests {
             families: vec![family(&[2.0, -1.0])],
             is_solid: false,
         };
-        let lines = hatch.lines(&Frame::WORLD.seen(), 0.01);
+        let lines = hatch.lines(&Frame::WORLD.seen(), 0.01).unwrap();
         let first: Vec<_> = lines.iter().take(4).map(|(from, to)| (from.x, to.x)).collect();
         assert_eq!(first, [(1.0, 2.0), (3.0, 5.0), (6.0, 8.0), (9.0, 10.0)]);
     }
@@ -236,6 +217,29 @@ mod tests {
     fn lines_without_a_distance_fill_nothing() {
         let families = vec![Family { offset: Vec2::new(1.0, 0.0), ..family(&[]) }];
         let hatch = Hatch { outlines: vec![square(0.0, 1.0)], families, is_solid: false };
-        assert_eq!(hatch.lines(&Frame::WORLD.seen(), 0.01), []);
+        assert!(hatch.lines(&Frame::WORLD.seen(), 0.01).is_err());
+    }
+
+    #[test]
+    fn dashes_that_nobody_can_tell_apart_are_a_line() {
+        // So far from where the dashes begin, the end of a dash is its start.
+        let far = Family { base: Vec2::new(-1e20, 0.5), ..family(&[2.0, -1.0]) };
+        let hatch = Hatch { outlines: vec![square(0.0, 1e5)], families: vec![far], is_solid: false };
+        assert_eq!(hatch.lines(&Frame::WORLD.seen(), 0.01).map(|lines| lines.len()), Ok(100_000));
+    }
+
+    #[test]
+    fn dashes_beyond_all_measure_are_told() {
+        let families = vec![family(&[0.01, -0.01])];
+        let hatch = Hatch { outlines: vec![square(0.0, 1500.0)], families, is_solid: false };
+        assert!(hatch.lines(&Frame::WORLD.seen(), 0.01).is_err());
+    }
+
+    #[test]
+    fn lines_that_nobody_can_count_end() {
+        // At 10²⁰ the next line has the number of this one.
+        let families = vec![Family { base: Vec2::new(0.0, -1e20), ..family(&[]) }];
+        let hatch = Hatch { outlines: vec![square(0.0, 1e5)], families, is_solid: false };
+        assert!(hatch.lines(&Frame::WORLD.seen(), 0.01).is_err());
     }
 }

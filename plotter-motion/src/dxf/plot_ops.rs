@@ -314,21 +314,22 @@ impl<'d> PlotOps<'d> {
             }
             Shape::Hatch(hatch, height) => {
                 let plane = plane(*height);
-                if hatch.is_solid || hatch.families.is_empty() {
-                    self.count_otherwise(
-                        entity.line,
-                        "a filled area (HATCH) is drawn as its outline: choose a pattern of lines to fill it",
-                    );
-                    for mut outline in hatch.outlines(&plane, tolerance_mm) {
-                        outline.close();
-                        outline.draw(&[], strokes);
+                let otherwise = if hatch.is_solid || hatch.families.is_empty() {
+                    "a filled area (HATCH) is drawn as its outline: choose a pattern of lines to fill it"
+                } else if let Ok(lines) = hatch.lines(&plane, tolerance_mm) {
+                    for (from, to) in lines {
+                        let mut path = Path::new(from);
+                        path.line_to(to);
+                        path.draw(&[], strokes);
                     }
                     return;
-                }
-                for (from, to) in hatch.lines(&plane, tolerance_mm) {
-                    let mut path = Path::new(from);
-                    path.line_to(to);
-                    path.draw(&[], strokes);
+                } else {
+                    "an area (HATCH) with too many lines is drawn as its outline: choose a greater scale of the pattern"
+                };
+                self.count_otherwise(entity.line, otherwise);
+                for mut outline in hatch.outlines(&plane, tolerance_mm) {
+                    outline.close();
+                    outline.draw(&[], strokes);
                 }
             }
             Shape::Insert(_) => {}

@@ -56,6 +56,8 @@ mod prop_budget;
 mod prop_config;
 mod prop_control;
 #[cfg(feature = "alloc")]
+mod prop_cut;
+#[cfg(feature = "alloc")]
 mod prop_drawing;
 mod prop_gcode;
 mod prop_homing;
