@@ -235,18 +235,19 @@ pub fn read_svg_with_fonts(
     fonts: &SvgFonts,
 ) -> Result<SvgDrawing, SvgError> {
     on_own_stack(bytes, options, |text, max_depth| {
-        let wanted = Mutex::new(Wanted::default());
-        let parser = usvg::Options {
+        let (wanted, unminded) = (Mutex::new(Wanted::default()), Mutex::new(Wanted::default()));
+        let parser = |wanted| usvg::Options {
             font_family: ANY_FAMILY.to_owned(),
-            font_resolver: resolver(fonts, &wanted),
+            font_resolver: resolver(fonts, wanted),
             fontdb: Arc::clone(&fonts.database),
             ..parser_options(options)
         };
+        let (probe, parser) = (parser(&unminded), parser(&wanted));
         let draw_whole = |text: &usvg::Text| fonts.draw_whole(text, &wanted);
         let draw_whole: Option<&dyn Fn(&usvg::Text) -> bool> =
             if fonts.is_empty() { None } else { Some(&draw_whole) };
-        let mut read = parse(text, options, max_depth, &parser, draw_whole)?;
-        drop(parser);
+        let mut read = parse(text, options, max_depth, [&probe, &parser], draw_whole)?;
+        drop((probe, parser));
         let wanted = wanted.into_inner().unwrap_or_else(PoisonError::into_inner);
         // Where all letters of a text are missing, it may have no outline to be counted by.
         read.left_out.texts = read.left_out.texts.max(wanted.texts);

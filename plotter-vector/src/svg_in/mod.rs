@@ -16,6 +16,7 @@ mod fonts;
 mod ink;
 mod layers;
 mod mask;
+mod moves;
 mod paint;
 mod region;
 mod rewrite;
@@ -379,7 +380,8 @@ impl core::error::Error for SvgError {}
 /// ```
 pub fn read_svg(bytes: &[u8], options: &SvgOptions) -> Result<SvgDrawing, SvgError> {
     on_own_stack(bytes, options, |text, max_depth| {
-        parse(text, options, max_depth, &parser_options(options), None)
+        let parser = parser_options(options);
+        parse(text, options, max_depth, [&parser; 2], None)
     })
 }
 
@@ -438,12 +440,13 @@ fn decoded(bytes: &[u8]) -> Result<Cow<'_, str>, SvgError> {
     Ok(Cow::Owned(text))
 }
 
+/// `probe` is a parser that finds the boxes of elements, `parser` the one that reads the file.
 /// `draw_whole` tells the texts that the parser has all outlines of; without it, it has none.
 fn parse(
     text: &str,
     options: &SvgOptions,
     max_depth: usize,
-    parser: &usvg::Options<'_>,
+    [probe, parser]: [&usvg::Options<'_>; 2],
     draw_whole: Option<&dyn Fn(&usvg::Text) -> bool>,
 ) -> Result<SvgDrawing, SvgError> {
     let limit = survey::MAX_ELEMENTS;
@@ -452,7 +455,8 @@ fn parse(
     if root != "svg" {
         return Err(SvgError::NotSvg { root: survey::shortened(root) });
     }
-    let Rewritten { text: rewritten, problems, filters, layers } = Rewritten::new(text, &document, options);
+    let Rewritten { text: rewritten, problems, filters, layers } =
+        Rewritten::new(text, &document, options, probe, max_depth)?;
     if let Some(text) = &rewritten {
         document = document_of(text)?;
     }
