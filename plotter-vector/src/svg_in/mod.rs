@@ -17,9 +17,12 @@ mod ink;
 mod layers;
 mod mask;
 mod moves;
+mod one_line;
 mod paint;
 mod region;
 mod rewrite;
+#[cfg(feature = "svg-text")]
+mod single_stroke;
 mod survey;
 
 use crate::{Drawing, PalettePen, Rgb, Scale};
@@ -441,13 +444,14 @@ fn decoded(bytes: &[u8]) -> Result<Cow<'_, str>, SvgError> {
 }
 
 /// `probe` is a parser that finds the boxes of elements, `parser` the one that reads the file.
-/// `draw_whole` tells the texts that the parser has all outlines of; without it, it has none.
+/// `draw_whole` tells the texts that the parser has all outlines of, and of these how far apart two ways along one line may be;
+/// without it, it has none.
 fn parse(
     text: &str,
     options: &SvgOptions,
     max_depth: usize,
     [probe, parser]: [&usvg::Options<'_>; 2],
-    draw_whole: Option<&dyn Fn(&usvg::Text) -> bool>,
+    draw_whole: Option<&DrawWhole<'_>>,
 ) -> Result<SvgDrawing, SvgError> {
     let limit = survey::MAX_ELEMENTS;
     let mut document = document_of(text)?;
@@ -508,6 +512,9 @@ fn parse(
     })
 }
 
+/// Whether a text is drawn, and then how far from each other two ways along one line of it may be, in the text's own unit.
+type DrawWhole<'a> = dyn Fn(&usvg::Text) -> Option<f32> + 'a;
+
 /// The elements of a file. Document types are common: entities in them are resolved, within the limits of the XML parser, but not
 /// those in other files.
 fn document_of(text: &str) -> Result<roxmltree::Document<'_>, SvgError> {
@@ -556,3 +563,6 @@ mod tests;
 
 #[cfg(test)]
 mod kind_tests;
+
+#[cfg(all(test, feature = "svg-text"))]
+mod single_stroke_tests;
