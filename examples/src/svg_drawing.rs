@@ -160,7 +160,7 @@ fn left_out(svg: &SvgDrawing, how: &SvgReading) -> Vec<Diagnostic> {
     );
     let shape = format!("{paper_colour} shape");
     [
-        (texts, text_line, "text", missing(svg)),
+        (texts, text_line, "text", missing(svg, how)),
         (images, image_line, "picture", remedy("left out: trace it")),
         (
             clip_paths,
@@ -213,20 +213,27 @@ fn beyond(svg: &SvgDrawing) -> Option<Diagnostic> {
 }
 
 /// What texts that are left out need.
-fn missing(svg: &SvgDrawing) -> Cow<'static, str> {
+fn missing(svg: &SvgDrawing, how: &SvgReading) -> Cow<'static, str> {
     let needs = &svg.missing_fonts;
     let families = needs.families.join(", ");
+    if needs.letters.is_empty() && how.fonts.is_empty() {
+        let wanted = if families.is_empty() { String::new() } else { format!(" ({families} is asked for)") };
+        return format!("left out: give a font with --font FILE{wanted}, or --single-stroke").into();
+    }
     let mut wanted = Vec::new();
     if !families.is_empty() {
         wanted.push(format!("no font {families} is given"));
     }
     if !needs.letters.is_empty() {
-        wanted.push(format!("no font given has {}", needs.letters));
+        let who = if how.fonts.single_stroke {
+            "neither the letters of one line nor a font given"
+        } else {
+            "no font given"
+        };
+        wanted.push(format!("{who} has {}", needs.letters));
     }
-    if wanted.is_empty() {
-        return "left out: give a font with --font FILE, or convert it to paths".into();
-    }
-    format!("left out: {}; give one with --font FILE, or convert it to paths", wanted.join(", and ")).into()
+    let else_by = if how.fonts.single_stroke { "convert it to paths" } else { "--single-stroke" };
+    format!("left out: {}; give one with --font FILE, or {else_by}", wanted.join(", and ")).into()
 }
 
 #[cfg(test)]
@@ -313,7 +320,7 @@ mod tests {
         assert_eq!(
             said,
             [
-                "line 2: a text is left out: give a font with --font FILE, or convert it to paths",
+                "line 2: a text is left out: give a font with --font FILE, or --single-stroke",
                 "a white shape is left out: it leaves no ink on white paper; give the paper's colour with --paper COLOUR, or \
                  --paper none to draw all"
             ]
