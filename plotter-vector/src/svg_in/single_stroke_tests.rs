@@ -192,3 +192,35 @@ fn the_font_is_the_same_always() {
     assert_eq!(bytes, single_stroke::font_file(false));
     assert!(bytes.len() < 64 << 10, "{}", bytes.len());
 }
+
+#[test]
+fn a_given_font_is_used_for_what_names_it() {
+    // The equally wide letters under another name, as long.
+    let utf_16 = |text: &str| text.encode_utf16().flat_map(u16::to_be_bytes).collect::<Vec<u8>>();
+    let (name, other) = (utf_16(single_stroke::MONOSPACED), utf_16("Letters Of A Hand1"));
+    let mut font = single_stroke::font_file(true);
+    let at = font.windows(name.len()).position(|bytes| bytes == name).unwrap();
+    font[at..at + name.len()].copy_from_slice(&other);
+    let mut fonts = SvgFonts::single_stroke();
+    fonts.add(font).unwrap();
+    let apart = |attributes: &str| {
+        let text = file(&format!("<text x='10' y='50' font-size='17.142857' {attributes}>ll</text>"));
+        let read = read_svg_with_fonts(text.as_bytes(), &SvgOptions::default(), &fonts).unwrap();
+        libm::round(read.drawing.stroke(1)[0].x - read.drawing.stroke(0)[0].x)
+    };
+    assert_eq!(apart("font-family='Letters Of A Hand1'"), 11.0);
+    assert_eq!(apart("font-family='Missing, \"letters of a hand1\"'"), 11.0);
+    for not_given in ["", "font-family='Missing'", "font-family='sans-serif'"] {
+        assert_eq!(apart(not_given), 5.0, "{not_given}");
+    }
+}
+
+#[test]
+fn a_text_in_hpgl() {
+    let text = "<svg xmlns='http://www.w3.org/2000/svg' width='60mm' height='20mm' viewBox='0 0 60 20'>\
+                <text x='30' y='15' text-anchor='middle' font-size='10'>Grüße 1:2</text></svg>";
+    let read = read_svg_with_fonts(text.as_bytes(), &SvgOptions::default(), &FONTS).unwrap();
+    let mut written = String::new();
+    crate::hpgl(&read.drawing, read.scale, &mut written).unwrap();
+    insta::assert_snapshot!(written);
+}
