@@ -4,6 +4,7 @@
 
 use super::{SvgDrawing, SvgError, SvgOptions, on_own_stack, parse, parser_options, single_stroke};
 use core::fmt;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use usvg::fontdb::{self, Database, ID, Query, Source};
@@ -272,12 +273,12 @@ fn resolver<'a>(fonts: &'a SvgFonts, wanted: &'a Mutex<Wanted>) -> FontResolver<
 ///
 /// # Errors
 /// [`SvgError`].
-pub fn read_svg_with_fonts(
-    bytes: &[u8],
+pub fn read_svg_with_fonts<'a>(
+    bytes: impl Into<Cow<'a, [u8]>>,
     options: &SvgOptions,
     fonts: &SvgFonts,
 ) -> Result<SvgDrawing, SvgError> {
-    on_own_stack(bytes, options, |text, max_depth| {
+    on_own_stack(bytes.into(), options, |text, max_depth| {
         let (wanted, unminded) = (Mutex::new(Wanted::default()), Mutex::new(Wanted::default()));
         let parser = |wanted| usvg::Options {
             font_family: ANY_FAMILY.to_owned(),

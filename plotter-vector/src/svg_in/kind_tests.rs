@@ -597,7 +597,7 @@ fn filters_are_counted_wherever_they_stand() {
 fn without_a_thread_the_callers_stack_does() {
     let parse = |text: &str| {
         let options = SvgOptions::default();
-        super::parse(text, &options, MAX_DEPTH_ON_CALLERS_STACK, [&parser_options(&options); 2], None)
+        super::parse(text.into(), &options, MAX_DEPTH_ON_CALLERS_STACK, [&parser_options(&options); 2], None)
     };
     let nested = |depth: usize| {
         file(&format!(
