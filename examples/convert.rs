@@ -40,8 +40,9 @@ const SVG_MOST_MM: f64 = 100_000.0;
 /// G3) and SVG (A). SVG is read in mm by width, height and viewBox, with the lower left corner as the origin: along strokes, and
 /// along the border of what is only filled; each colour is a pen, 1, 2, … in the order in which they come, or each layer (--pens). Clip
 /// paths and masks cut it, and white is taken for the paper (--paper). Its texts are set in the fonts that --font gives, and never in
-/// others: so a file becomes the same strokes everywhere. In SVG written here each pen is a group, and is that pen when it is read
-/// again; the sheet of an SVG stays as large as it is. Layers of a DXF are pens, its texts are set in the font of HPGL's labels.
+/// others, or drawn in letters of one line (--single-stroke): so a file becomes the same strokes everywhere. In SVG written here each pen
+/// is a group, and is that pen when it is read again; the sheet of an SVG stays as large as it is. Layers of a DXF are pens, its texts are
+/// set in the font of HPGL's labels.
 #[derive(Debug, Parser)]
 #[command(
     name = "convert",
@@ -52,6 +53,7 @@ const SVG_MOST_MM: f64 = 100_000.0;
                   convert drawing.gcode drawing.svg --pen-up PEN_UP --pen-down PEN_DOWN\n  \
                   convert plan.svg plan.plt --font DejaVuSans.ttf --font /usr/share/fonts\n  \
                   convert plan.dxf plan.plt --step-mm 25.4\n  \
+                  convert sign.svg sign.gcode --single-stroke\n  \
                   convert layers.svg layers.plt --pens layer --paper none\n  \
                   convert drawing.svg - --to gcode --pen-up \"M280 P0 S60\" --pen-down \"M280 P0 S30\"\n  \
                   cat drawing.plt | convert - drawing.svg\n\n\

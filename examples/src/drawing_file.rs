@@ -6,6 +6,7 @@ use plotter_motion::hpgl::{cutter, thesis_text};
 use plotter_motion::{PlotOp, Point, Vec2, chords, dxf, gcode, hpgl};
 use plotter_vector::SvgFonts;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::cell::{Cell, OnceCell, RefCell};
 use std::fmt;
 use std::fs::File;
@@ -301,16 +302,16 @@ impl DrawingFile {
             }
             Language::Svg => {
                 let bytes = match &self.source {
-                    Source::Held(bytes) => bytes.clone(),
-                    Source::File(path) => crate::read_file(path)?,
+                    Source::Held(bytes) => Cow::Borrowed(&bytes[..]),
+                    Source::File(path) => Cow::Owned(crate::read_file(path)?),
                 };
-                let drawing = svg_drawing(&bytes, how.tolerance_mm, &self.svg, &self.fonts)
+                let drawing = svg_drawing(bytes, how.tolerance_mm, &self.svg, &self.fonts)
                     .map_err(|error| format!("{}: {error}", self.name))?;
                 colours = drawing.colours;
                 sheet_mm = Some(drawing.sheet_mm);
                 let notices = self.notices.iter().map(|text| Diagnostic::new(Severity::Notice, text.clone()));
                 let diagnostics = notices.chain(drawing.diagnostics);
-                Box::new(diagnostics.map(Err).chain(drawing.ops.into_iter().map(Ok)))
+                Box::new(diagnostics.map(Err).chain(drawing.ops.map(Ok)))
             }
             Language::Dxf => {
                 let drawing = self.dxf()?;

@@ -1,4 +1,4 @@
-//! [`FontFiles`]: the fonts that texts of SVG pictures are set in.
+//! [`FontFiles`]: what texts of SVG pictures are set in.
 
 use crate::{at, read_file};
 use plotter_vector::SvgFonts;
@@ -13,16 +13,26 @@ const DEEPEST: usize = 16;
 /// Most that the fonts may come to together, bytes.
 const MOST_BYTES: usize = 1 << 30;
 
-/// The option `--font`.
+/// The options `--font` and `--single-stroke`.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct FontFiles {
     /// Font for the texts of an SVG picture, which are left out without: a file (TrueType, OpenType), or a folder for all fonts in
     /// it, as /usr/share/fonts; may be given several times
     #[arg(long = "font", value_name = "FILE")]
     files: Vec<PathBuf>,
+    /// Draws the texts of an SVG picture in letters of one line each, as labels of HPGL. With --font too, texts that name one of
+    /// those fonts are set in it, and letters that are not in Latin-1 taken from them: a font is given to be used
+    #[arg(long)]
+    pub single_stroke: bool,
 }
 
 impl FontFiles {
+    /// Whether neither is given.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.files.is_empty() && !self.single_stroke
+    }
+
     /// Those of the files, in the order in which they are named, and of a folder's files by their names; of each folder with files
     /// that are called fonts and are none, what there is to say about these.
     ///
@@ -30,7 +40,7 @@ impl FontFiles {
     ///
     /// The file that cannot be read or is no font, or the folder that has none.
     pub fn load(&self) -> Result<(SvgFonts, Vec<String>), String> {
-        let mut fonts = SvgFonts::default();
+        let mut fonts = if self.single_stroke { SvgFonts::single_stroke() } else { SvgFonts::default() };
         let mut told = Vec::new();
         let mut room = MOST_BYTES;
         for named in &self.files {
@@ -102,7 +112,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("web.ttf"), b"wOF2\0\x01\0\0").unwrap();
         std::fs::write(folder.path().join("notes.txt"), b"no font, and not called so").unwrap();
-        let error = FontFiles { files: vec![folder.path().to_owned()] }.load().unwrap_err();
+        let error =
+            FontFiles { files: vec![folder.path().to_owned()], ..FontFiles::default() }.load().unwrap_err();
         assert!(
             error.contains("this folder holds no font") && error.contains("web.ttf: this is a web font"),
             "{error}"

@@ -2,8 +2,12 @@
 
 use crate::{Diagnostic, Severity, SvgReading, usual_colour};
 use plotter_motion::{PlotOp, Point};
-use plotter_vector::{SvgDrawing, SvgFonts, SvgLayer, SvgLeftOut, SvgOptions, SvgPens, read_svg_with_fonts};
+use plotter_vector::{
+    PxPoint, SvgDrawing, SvgFonts, SvgLayer, SvgLeftOut, SvgOptions, SvgPens, read_svg_with_fonts,
+};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fmt;
 use std::time::Duration;
 
 /// Finest and coarsest that curves of an SVG are cut into chords, mm: single precision, in which they are parsed, says no more.
@@ -16,16 +20,21 @@ const OUTSIDE_MM: f64 = 0.05;
 const PEN_GROUP: &str = "pen-";
 
 /// What an SVG picture has to draw.
-#[derive(Debug, Default)]
 pub struct SvgOps {
     /// The strokes, mm from the sheet's lower left corner.
-    pub ops: Vec<PlotOp>,
+    pub ops: Box<dyn Iterator<Item = PlotOp>>,
     /// What cannot be drawn.
     pub diagnostics: Vec<Diagnostic>,
     /// Colour of each pen from 1 on: red, green, blue.
     pub colours: Vec<[u8; 3]>,
     /// Width and height of the sheet, mm.
     pub sheet_mm: (f64, f64),
+}
+
+impl fmt::Debug for SvgOps {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SvgOps").field("diagnostics", &self.diagnostics).finish_non_exhaustive()
+    }
 }
 
 /// What an SVG picture has to draw; [`read_svg_with_fonts`] says what becomes of it. Arcs stay arcs.
@@ -37,7 +46,7 @@ pub struct SvgOps {
 ///
 /// What is wrong with the file, and where.
 pub fn svg_drawing(
-    bytes: &[u8],
+    bytes: Cow<'_, [u8]>,
     tolerance_mm: f64,
     how: &SvgReading,
     fonts: &SvgFonts,
@@ -52,7 +61,7 @@ pub fn svg_drawing(
         px_per_inch: how.px_per_inch,
         ..SvgOptions::default()
     };
-    let read = |pens| {
+    let read = |bytes: Cow<'_, [u8]>, pens| {
         let error = |error: plotter_vector::SvgError| {
             let text = error.to_string();
             text.strip_prefix("svg: ").or(text.strip_prefix("svg, ")).unwrap_or(&text).to_owned()
@@ -60,7 +69,11 @@ pub fn svg_drawing(
         read_svg_with_fonts(bytes, &SvgOptions { pens, ..options }, fonts).map_err(error)
     };
     let may_name_pens = bytes.windows(PEN_GROUP.len()).any(|word| word == PEN_GROUP.as_bytes());
-    let by_groups = if may_name_pens && how.pens.is_none() { Some(read(SvgPens::ByLayer)?) } else { None };
+    let by_groups = if may_name_pens && how.pens.is_none() {
+        Some(read(Cow::Borrowed(&bytes), SvgPens::ByLayer)?)
+    } else {
+        None
+    };
     let by_groups = by_groups.and_then(|svg| {
         let numbers: Option<Vec<u8>> = svg.pens.iter().map(|pen| pen_of_group(&pen.name)).collect();
         numbers.filter(|numbers| !numbers.is_empty()).map(|numbers| (svg, numbers))
@@ -68,41 +81,17 @@ pub fn svg_drawing(
     let (svg, numbers) = match by_groups {
         Some(found) => found,
         None => {
-            let svg = read(how.pens.map_or(SvgPens::ByColour, SvgPens::from))?;
+            let svg = read(bytes, how.pens.map_or(SvgPens::ByColour, SvgPens::from))?;
             let numbers = svg.pens.iter().map(|pen| pen.number).collect();
             (svg, numbers)
         }
     };
     let most_pen = numbers.iter().copied().max().unwrap_or(0);
     let mut colours: Vec<[u8; 3]> = (1..=most_pen).map(usual_colour).collect();
-    let number_of = |pen: u8| {
-        let found = svg.pens.iter().zip(&numbers).find(|(known, _)| known.number == pen);
-        found.map_or(pen, |(_, number)| *number)
-    };
     for (pen, number) in svg.pens.iter().zip(&numbers) {
         if let Some(colour) = colours.get_mut(usize::from(*number).saturating_sub(1)) {
             *colour = pen.colour.0;
         }
-    }
-    let mut ops = Vec::new();
-    let mut stroke = 0;
-    for op in svg.drawing.plot_ops_with_arcs(svg.scale) {
-        if matches!(op, PlotOp::Travel { .. }) {
-            let begins = |layer: &&SvgLayer| layer.first_stroke == Some(stroke);
-            let waits_ms = svg.layers.iter().filter(begins).filter_map(|layer| layer.delay_ms).max();
-            ops.extend(waits_ms.map(|ms| PlotOp::Dwell { duration: Duration::from_millis(ms.into()) }));
-            stroke += 1;
-        }
-        ops.push(match op {
-            PlotOp::SelectPen { pen } => PlotOp::SelectPen { pen: number_of(pen) },
-            op => op,
-        });
-    }
-    // Where all is drawn by the first pen, the drawing does not select it.
-    if let [only] = numbers[..]
-        && !ops.iter().any(|op| matches!(op, PlotOp::SelectPen { .. }))
-    {
-        ops.insert(0, PlotOp::SelectPen { pen: only });
     }
     let problems = svg.problems.iter().map(|problem| Diagnostic {
         line: Some(problem.line),
@@ -111,7 +100,41 @@ pub fn svg_drawing(
     });
     let diagnostics =
         problems.chain(left_out(&svg, how)).chain(of_layers(&svg)).chain(beyond(&svg)).collect();
-    Ok(SvgOps { ops, diagnostics, colours, sheet_mm: (svg.width_mm, svg.height_mm) })
+    let sheet_mm = (svg.width_mm, svg.height_mm);
+    Ok(SvgOps { ops: Box::new(ops(svg, numbers)), diagnostics, colours, sheet_mm })
+}
+
+/// Its operations by pens of these numbers, one for each of its own; where a layer asks for it, the pen waits before it.
+fn ops(svg: SvgDrawing, numbers: Vec<u8>) -> impl Iterator<Item = PlotOp> {
+    let SvgDrawing { drawing, scale, pens, layers, .. } = svg;
+    let mut waits_ms: BTreeMap<usize, u32> = BTreeMap::new();
+    for (stroke, ms) in layers.iter().filter_map(|layer| layer.first_stroke.zip(layer.delay_ms)) {
+        let wait = waits_ms.entry(stroke).or_default();
+        *wait = ms.max(*wait);
+    }
+    // Where all is drawn by the first pen, the drawing does not select it.
+    let first = match (&pens[..], &numbers[..]) {
+        ([pen], [only]) if pen.number <= 1 => Some(PlotOp::SelectPen { pen: *only }),
+        _ => None,
+    };
+    let number_of = move |pen: u8| {
+        let found = pens.iter().zip(&numbers).find(|(known, _)| known.number == pen);
+        found.map_or(pen, |(_, number)| *number)
+    };
+    let mut stroke = 0;
+    first.into_iter().chain(drawing.into_plot_ops_with_arcs(scale).flat_map(move |op| {
+        let mut wait = None;
+        if matches!(op, PlotOp::Travel { .. }) {
+            let duration = |ms: u32| Duration::from_millis(ms.into());
+            wait = waits_ms.remove(&stroke).map(|ms| PlotOp::Dwell { duration: duration(ms) });
+            stroke += 1;
+        }
+        let op = match op {
+            PlotOp::SelectPen { pen } => PlotOp::SelectPen { pen: number_of(pen) },
+            op => op,
+        };
+        wait.into_iter().chain([op])
+    }))
 }
 
 /// What the names of layers ask for and is not done here.
@@ -160,7 +183,7 @@ fn left_out(svg: &SvgDrawing, how: &SvgReading) -> Vec<Diagnostic> {
     );
     let shape = format!("{paper_colour} shape");
     [
-        (texts, text_line, "text", missing(svg)),
+        (texts, text_line, "text", missing(svg, how)),
         (images, image_line, "picture", remedy("left out: trace it")),
         (
             clip_paths,
@@ -185,14 +208,22 @@ fn left_out(svg: &SvgDrawing, how: &SvgReading) -> Vec<Diagnostic> {
 
 /// What reaches beyond the sheet: shown by no viewer, and drawn all the same.
 fn beyond(svg: &SvgDrawing) -> Option<Diagnostic> {
-    let drawing = svg.drawing.chords(OUTSIDE_MM / svg.scale.mm_per_px());
-    let places = drawing.strokes().flatten().map(|at| svg.scale.to_sheet(*at));
+    let drawing = &svg.drawing;
     let [mut left, mut right, mut below, mut above] = [0.0_f64; 4];
-    for Point { x, y } in places {
+    let mut see = |at: &PxPoint| {
+        let Point { x, y } = svg.scale.to_sheet(*at);
         left = left.max(-x);
         right = right.max(x - svg.width_mm);
         below = below.max(-y);
         above = above.max(y - svg.height_mm);
+    };
+    for (index, stroke) in drawing.strokes().enumerate() {
+        if drawing.bulges(index).is_empty() {
+            stroke.iter().for_each(&mut see);
+        } else {
+            let chords = drawing.curve(index).chords(OUTSIDE_MM / svg.scale.mm_per_px());
+            chords.iter().for_each(&mut see);
+        }
     }
     let sides = [(left, "to the left of"), (right, "to the right of"), (below, "below"), (above, "above")];
     let told: Vec<String> = sides
@@ -213,20 +244,27 @@ fn beyond(svg: &SvgDrawing) -> Option<Diagnostic> {
 }
 
 /// What texts that are left out need.
-fn missing(svg: &SvgDrawing) -> Cow<'static, str> {
+fn missing(svg: &SvgDrawing, how: &SvgReading) -> Cow<'static, str> {
     let needs = &svg.missing_fonts;
     let families = needs.families.join(", ");
+    if needs.letters.is_empty() && how.fonts.is_empty() {
+        let wanted = if families.is_empty() { String::new() } else { format!(" ({families} is asked for)") };
+        return format!("left out: give a font with --font FILE{wanted}, or --single-stroke").into();
+    }
     let mut wanted = Vec::new();
     if !families.is_empty() {
         wanted.push(format!("no font {families} is given"));
     }
     if !needs.letters.is_empty() {
-        wanted.push(format!("no font given has {}", needs.letters));
+        let who = if how.fonts.single_stroke {
+            "neither the letters of one line nor a font given"
+        } else {
+            "no font given"
+        };
+        wanted.push(format!("{who} has {}", needs.letters));
     }
-    if wanted.is_empty() {
-        return "left out: give a font with --font FILE, or convert it to paths".into();
-    }
-    format!("left out: {}; give one with --font FILE, or convert it to paths", wanted.join(", and ")).into()
+    let else_by = if how.fonts.single_stroke { "convert it to paths" } else { "--single-stroke" };
+    format!("left out: {}; give one with --font FILE, or {else_by}", wanted.join(", and ")).into()
 }
 
 #[cfg(test)]
@@ -237,14 +275,24 @@ mod tests {
     /// What single precision leaves of a coordinate of some hundred pixels.
     const ROUNDING_MM: f64 = 1e-4;
 
-    fn drawing(body: &str) -> SvgOps {
+    /// The diagnostics and all operations.
+    struct Drawn {
+        ops: Vec<PlotOp>,
+        diagnostics: Vec<Diagnostic>,
+        colours: Vec<[u8; 3]>,
+    }
+
+    fn drawing(body: &str) -> Drawn {
         let text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100mm\" height=\"5cm\" viewBox=\"0 0 200 100\">\n{body}\n</svg>"
         );
-        svg_drawing(text.as_bytes(), 0.01, &SvgReading::default(), &SvgFonts::default()).unwrap()
+        let bytes = text.as_bytes().into();
+        let SvgOps { ops, diagnostics, colours, .. } =
+            svg_drawing(bytes, 0.01, &SvgReading::default(), &SvgFonts::default()).unwrap();
+        Drawn { ops: ops.collect(), diagnostics, colours }
     }
 
-    fn pens(drawing: &SvgOps) -> Vec<u8> {
+    fn pens(drawing: &Drawn) -> Vec<u8> {
         let pen = |op: &PlotOp| if let PlotOp::SelectPen { pen } = op { Some(*pen) } else { None };
         drawing.ops.iter().filter_map(pen).collect()
     }
@@ -313,12 +361,12 @@ mod tests {
         assert_eq!(
             said,
             [
-                "line 2: a text is left out: give a font with --font FILE, or convert it to paths",
+                "line 2: a text is left out: give a font with --font FILE, or --single-stroke",
                 "a white shape is left out: it leaves no ink on white paper; give the paper's colour with --paper COLOUR, or \
                  --paper none to draw all"
             ]
         );
         assert!(drawing.ops.is_empty());
-        assert!(svg_drawing(b"<svg", 0.01, &SvgReading::default(), &SvgFonts::default()).is_err());
+        assert!(svg_drawing(b"<svg".into(), 0.01, &SvgReading::default(), &SvgFonts::default()).is_err());
     }
 }

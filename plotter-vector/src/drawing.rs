@@ -361,6 +361,24 @@ impl Drawing {
         (0..self.ends.len())
             .flat_map(move |index| self.select_pen(index).into_iter().chain(stroke_ops(self, index, scale)))
     }
+
+    /// The same of a drawing that nobody else needs: a list of all operations takes some three times its memory.
+    ///
+    /// ```
+    /// # use plotter_vector::{Drawing, PxPoint, Scale};
+    /// # use plotter_motion::{PlotOp, Point};
+    /// let mut drawing = Drawing::new(20, 10);
+    /// drawing.push([PxPoint::new(2.0, 10.0), PxPoint::new(18.0, 10.0)]);
+    /// let mut ops = drawing.into_plot_ops_with_arcs(Scale::new(10, 0.5, Point::ORIGIN)?);
+    /// assert_eq!(ops.next(), Some(PlotOp::Travel { to: Point::new(1.0, 0.0) }));
+    /// # Ok::<(), plotter_vector::ScaleError>(())
+    /// ```
+    pub fn into_plot_ops_with_arcs(self, scale: Scale) -> impl Iterator<Item = PlotOp> {
+        (0..self.ends.len()).flat_map(move |index| {
+            let select = self.select_pen(index);
+            select.into_iter().chain(stroke_ops(&self, index, scale)).collect::<Vec<PlotOp>>()
+        })
+    }
 }
 
 /// Adds what belongs to the pieces of a stroke that begins at the vertex `before`, the last of `count`; nothing where it

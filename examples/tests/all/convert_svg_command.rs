@@ -90,7 +90,32 @@ fn the_colour_of_the_paper_is_an_option() {
 #[test]
 fn a_picture_of_text_alone_says_what_it_needs() {
     let why = refused(&sheet("<text x='5' y='15'>My Sign</text>"));
-    assert!(why.contains("nothing is drawn by it") && why.contains("give a font with --font"), "{why}");
+    assert!(why.contains("nothing is drawn by it"), "{why}");
+    assert!(
+        why.contains("line 1: a text is left out: give a font with --font FILE, or --single-stroke"),
+        "{why}"
+    );
+    let why = refused(&sheet("<text x='5' y='15' font-family='Dialog'>My Sign</text>"));
+    assert!(why.contains("give a font with --font FILE (Dialog is asked for), or --single-stroke"), "{why}");
+}
+
+#[test]
+fn texts_are_drawn_in_letters_of_one_line_where_that_is_asked_for() {
+    // 17.14 mm: a step of the letters is a mm, and the ink begins one and a half within.
+    let text = sheet(
+        "<text x='10' y='40' font-family='Dialog' font-size='17.142857' fill='#000' stroke='none'>L.</text>",
+    );
+    let (plt, said) = converted(&text, "b.plt", &["--single-stroke"]);
+    assert!(plt.contains("PU460,1280;") && plt.contains("460,800") && plt.contains("780,800"), "{plt}");
+    assert_eq!(said, "");
+    // The dot is a dot.
+    assert!(plt.contains("PU900,800;\nPD;\nPU;"), "{plt}");
+    let (_, said) =
+        converted(&sheet("<path d='M0 0H9'/>\n<text y='9'>5 €</text>"), "b.plt", &["--single-stroke"]);
+    assert!(
+        said.contains("line 2: a text is left out: neither the letters of one line nor a font given has €"),
+        "{said}"
+    );
 }
 
 #[test]

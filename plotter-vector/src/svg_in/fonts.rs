@@ -2,8 +2,9 @@
 //!
 //! They are those that the caller gives, never those of the host: a file becomes the same strokes everywhere.
 
-use super::{SvgDrawing, SvgError, SvgOptions, on_own_stack, parse, parser_options};
+use super::{SvgDrawing, SvgError, SvgOptions, on_own_stack, parse, parser_options, single_stroke};
 use core::fmt;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use usvg::fontdb::{self, Database, ID, Query, Source};
@@ -33,6 +34,8 @@ pub struct SvgFonts {
     names: BTreeMap<String, String>,
     first: Option<String>,
     first_monospaced: Option<String>,
+    /// Whether the first fonts are the letters of one line, which stand for all that are not given.
+    is_single_stroke: bool,
 }
 
 /// Why a file is no font.
@@ -57,6 +60,34 @@ impl fmt::Display for SvgFontError {
 impl core::error::Error for SvgFontError {}
 
 impl SvgFonts {
+    /// The letters of HPGL's labels, which are lines for a pen and not outlines, for all texts: they are set in these whatever font
+    /// they ask for, with anchors, spacing, `textPath` and all else as in other fonts. A dot of a letter is a dot, a line below letters
+    /// one line. Capitals are 0.7 em high, and letters about as wide as in Helvetica, or all equally wide where a text asks for
+    /// `monospace`. There are those of Latin-1, and for common quotation marks and dashes those that look nearly so.
+    ///
+    /// Of fonts that are added, texts are set in those that they name, and letters taken that Latin-1 does not have: who gives a
+    /// font wants it used.
+    ///
+    /// ```
+    /// # use plotter_vector::{SvgFonts, SvgOptions, read_svg_with_fonts};
+    /// let file = r#"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="50">
+    ///     <text x="10" y="40" font-size="24">L</text></svg>"#;
+    /// let read = read_svg_with_fonts(file.as_bytes(), &SvgOptions::default(), &SvgFonts::single_stroke())?;
+    /// let letter = read.drawing.stroke(0); // down, and to the right
+    /// assert_eq!(letter.len(), 3);
+    /// assert!((letter[1].y - letter[0].y - 0.7 * 24.0).abs() < 1e-3);
+    /// # Ok::<(), plotter_vector::SvgError>(())
+    /// ```
+    #[must_use]
+    pub fn single_stroke() -> Self {
+        let mut fonts = Self { is_single_stroke: true, ..Self::default() };
+        for is_monospaced in [false, true] {
+            let added = fonts.add(single_stroke::font_file(is_monospaced));
+            debug_assert_eq!(added, Ok(()), "the font made here is one");
+        }
+        fonts
+    }
+
     /// Adds the font of a TrueType or OpenType file, or all fonts of a collection, by the bytes of the file.
     ///
     /// # Errors
@@ -105,15 +136,16 @@ impl SvgFonts {
     }
 
     /// The first family of a text's list that is there. A kind of fonts (`serif`) is any: the first that was given, of those
-    /// for `monospace` the first whose letters are equally wide.
+    /// for `monospace` the first whose letters are equally wide. Letters of one line are for any.
     fn family_of(&self, font: &usvg::Font) -> Option<&str> {
         let first = self.first.as_deref();
-        font.families().iter().find_map(|family| match family {
+        let named = font.families().iter().find_map(|family| match family {
             FontFamily::Named(name) if name == ANY_FAMILY => first,
             FontFamily::Named(name) => self.names.get(&name.to_lowercase()).map(String::as_str),
             FontFamily::Monospace => self.first_monospaced.as_deref().or(first),
             _ => first,
-        })
+        });
+        named.or(first.filter(|_| self.is_single_stroke))
     }
 
     /// The font of that family whose style is nearest.
@@ -139,8 +171,9 @@ impl SvgFonts {
         self.database.query(&Query { families: &families, weight, stretch, style })
     }
 
-    /// Whether a text is set in the fonts that it asks for, each letter of it with an outline.
-    fn draw_whole(&self, text: &usvg::Text, wanted: &Mutex<Wanted>) -> bool {
+    /// Where a text is set in the fonts that it asks for, each letter of it with an outline: how far from each other two ways along
+    /// one line of it may be.
+    fn draw_whole(&self, text: &usvg::Text, wanted: &Mutex<Wanted>) -> Option<f32> {
         let mut spans = text.chunks().iter().flat_map(usvg::TextChunk::spans);
         // What the font does not have is its glyph 0.
         let glyphs = text.layouted().iter().flat_map(|span| &span.positioned_glyphs);
@@ -150,11 +183,21 @@ impl SvgFonts {
             is_whole = false;
             locked(wanted).letter(letter);
         }
-        is_whole
+        let is_drawn = is_whole
             && spans.all(|span| self.family_of(span.font()).is_some())
             // Letters in several colours are groups, and pictures of letters images.
-            && text.flattened().children().iter().all(|part| matches!(part, usvg::Node::Path(_)))
+            && text.flattened().children().iter().all(|part| matches!(part, usvg::Node::Path(_)));
+        is_drawn.then(|| slack(text))
     }
+}
+
+/// How far from each other two ways along one line of a text may be: of its largest letters, as they are stretched.
+fn slack(text: &usvg::Text) -> f32 {
+    let sizes = text.layouted().iter().flat_map(|span| &span.positioned_glyphs).map(|glyph| {
+        let (along, across) = glyph.transform().get_scale();
+        glyph.font_size() * if along > across { along / across } else { 1.0 }
+    });
+    super::one_line::SLACK_EM * sizes.filter(|size| size.is_finite()).fold(0.0, f32::max)
 }
 
 /// What the texts of a file need and no given font has: why they are left out.
@@ -218,7 +261,8 @@ fn resolver<'a>(fonts: &'a SvgFonts, wanted: &'a Mutex<Wanted>) -> FontResolver<
 }
 
 /// Reads a drawing from the text of an SVG file as [`read_svg`](crate::read_svg) does, and draws its texts, too: along the
-/// outlines of their letters, or along their strokes.
+/// outlines of their letters, or along their strokes. Letters that are lines and not areas, as those of
+/// [`SvgFonts::single_stroke`] and of fonts for pens are, are drawn once.
 ///
 /// A text is set in the first family of its list that is among `fonts`, in the weight and style that are nearest; a kind of
 /// fonts as `sans-serif`, or none at all, takes the first font. Letters that this one lacks are taken from the others. A text
@@ -229,24 +273,25 @@ fn resolver<'a>(fonts: &'a SvgFonts, wanted: &'a Mutex<Wanted>) -> FontResolver<
 ///
 /// # Errors
 /// [`SvgError`].
-pub fn read_svg_with_fonts(
-    bytes: &[u8],
+pub fn read_svg_with_fonts<'a>(
+    bytes: impl Into<Cow<'a, [u8]>>,
     options: &SvgOptions,
     fonts: &SvgFonts,
 ) -> Result<SvgDrawing, SvgError> {
-    on_own_stack(bytes, options, |text, max_depth| {
-        let wanted = Mutex::new(Wanted::default());
-        let parser = usvg::Options {
+    on_own_stack(bytes.into(), options, |text, max_depth| {
+        let (wanted, unminded) = (Mutex::new(Wanted::default()), Mutex::new(Wanted::default()));
+        let parser = |wanted| usvg::Options {
             font_family: ANY_FAMILY.to_owned(),
-            font_resolver: resolver(fonts, &wanted),
+            font_resolver: resolver(fonts, wanted),
             fontdb: Arc::clone(&fonts.database),
             ..parser_options(options)
         };
+        let (probe, parser) = (parser(&unminded), parser(&wanted));
         let draw_whole = |text: &usvg::Text| fonts.draw_whole(text, &wanted);
-        let draw_whole: Option<&dyn Fn(&usvg::Text) -> bool> =
+        let draw_whole: Option<&super::DrawWhole<'_>> =
             if fonts.is_empty() { None } else { Some(&draw_whole) };
-        let mut read = parse(text, options, max_depth, &parser, draw_whole)?;
-        drop(parser);
+        let mut read = parse(text, options, max_depth, [&probe, &parser], draw_whole)?;
+        drop((probe, parser));
         let wanted = wanted.into_inner().unwrap_or_else(PoisonError::into_inner);
         // Where all letters of a text are missing, it may have no outline to be counted by.
         read.left_out.texts = read.left_out.texts.max(wanted.texts);

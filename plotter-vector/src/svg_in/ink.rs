@@ -5,12 +5,13 @@ use super::boxes::Boxes;
 use super::clip::{Regions, is_even_odd};
 use super::curve::Cubic;
 use super::dash::Dashes;
+use super::one_line;
 use super::region::{Keep, Region, bounds_of};
 use super::survey::without_spaces;
-use super::{MAX_PX, SvgError, SvgLayer, SvgLeftOut, SvgOptions, SvgPens};
+use super::{DrawWhole, MAX_PX, SvgError, SvgLayer, SvgLeftOut, SvgOptions, SvgPens};
 use crate::{Curve, Drawing, MAX_PENS, PalettePen, PxPoint, Rgb};
 use std::collections::{BTreeMap, BTreeSet};
-use usvg::tiny_skia_path::{PathSegment, Point, Transform};
+use usvg::tiny_skia_path::{Path, PathSegment, Point, Transform};
 
 /// Least opacity with which a fill hides what lies below it.
 const HIDES: f32 = 0.5;
@@ -31,7 +32,7 @@ pub(super) struct Ink<'a> {
     /// The layer that each pen stands for; beside `pens`.
     pen_layers: Vec<Option<usize>>,
     /// Tells the texts of which all outlines are there.
-    draw_whole: Option<&'a dyn Fn(&usvg::Text) -> bool>,
+    draw_whole: Option<&'a DrawWhole<'a>>,
     regions: Regions,
     /// What the clip paths and masks of the groups around leave, and whether it has cut anything.
     cuts: Vec<(Region, bool)>,
@@ -48,6 +49,8 @@ enum Way<'a> {
     Line(&'a usvg::Stroke),
     /// The border of its fill.
     Border,
+    /// The lines of letters, in dashes where their stroke is.
+    Letters(Option<&'a usvg::Stroke>),
 }
 
 impl<'a> Ink<'a> {
@@ -55,7 +58,7 @@ impl<'a> Ink<'a> {
         drawing: Drawing,
         options: SvgOptions,
         layers: Vec<(String, SvgLayer)>,
-        draw_whole: Option<&'a dyn Fn(&usvg::Text) -> bool>,
+        draw_whole: Option<&'a DrawWhole<'a>>,
     ) -> Self {
         let (ids, layers): (Vec<String>, Vec<SvgLayer>) = layers.into_iter().unzip();
         Self {
@@ -104,7 +107,7 @@ impl<'a> Ink<'a> {
         for child in group.children() {
             match child {
                 usvg::Node::Group(inner) => self.group(inner, layer)?,
-                usvg::Node::Path(path) => self.path(path, path.abs_transform(), layer)?,
+                usvg::Node::Path(path) => self.path(path, path.data(), path.abs_transform(), layer)?,
                 usvg::Node::Text(text) => self.text(text, layer)?,
                 // None is made: `SvgLeftOut` counts them in the file.
                 usvg::Node::Image(_) => {}
@@ -124,11 +127,11 @@ impl<'a> Ink<'a> {
     /// Draws the outlines of a text, or counts it.
     fn text(&mut self, text: &usvg::Text, layer: Option<usize>) -> Result<(), SvgError> {
         let Some(draw_whole) = self.draw_whole else { return Ok(()) };
-        if draw_whole(text) {
+        if let Some(slack) = draw_whole(text) {
             for part in text.flattened().children() {
                 if let usvg::Node::Path(path) = part {
                     // That of the text: lines below and through letters have none of their own.
-                    self.path(path, text.abs_transform(), layer)?;
+                    self.letters(path, slack, text.abs_transform(), layer)?;
                 }
             }
             return Ok(());
@@ -144,36 +147,66 @@ impl<'a> Ink<'a> {
         Ok(())
     }
 
-    fn path(&mut self, path: &usvg::Path, matrix: Transform, layer: Option<usize>) -> Result<(), SvgError> {
+    /// Draws letters of one look: along their outlines, and once along what is a line.
+    fn letters(
+        &mut self,
+        path: &usvg::Path,
+        slack: f32,
+        matrix: Transform,
+        layer: Option<usize>,
+    ) -> Result<(), SvgError> {
+        let Some((outlines, lines)) = one_line::parted(path.data(), slack) else {
+            return self.path(path, path.data(), matrix, layer);
+        };
+        if let Some(outlines) = outlines {
+            self.path(path, &outlines, matrix, layer)?;
+        }
+        match self.inked(path) {
+            Some((_, colour)) => self.trace(&lines, matrix, Way::Letters(path.stroke()), colour, layer),
+            None => Ok(()),
+        }
+    }
+
+    /// Draws an outline as it is looked at.
+    fn path(
+        &mut self,
+        looks: &usvg::Path,
+        outline: &Path,
+        matrix: Transform,
+        layer: Option<usize>,
+    ) -> Result<(), SvgError> {
+        if let Some(fill) = looks.fill().filter(|_| self.options.occludes && looks.is_visible()) {
+            self.cover(outline, matrix, fill)?;
+        }
+        match self.inked(looks) {
+            Some((way, colour)) => self.trace(outline, matrix, way, colour, layer),
+            None => Ok(()),
+        }
+    }
+
+    /// What leaves ink of a shape, its stroke or else its fill, and in which colour; what is in that of the paper is counted.
+    fn inked<'p>(&mut self, path: &'p usvg::Path) -> Option<(Way<'p>, Rgb)> {
         if !path.is_visible() {
-            return Ok(());
+            return None;
         }
         let line = path
             .stroke()
             .and_then(|stroke| Some((Way::Line(stroke), colour_of(stroke.paint(), stroke.opacity().get())?)));
         let border =
             path.fill().and_then(|fill| Some((Way::Border, colour_of(fill.paint(), fill.opacity().get())?)));
-        if let Some(fill) = path.fill().filter(|_| self.options.occludes) {
-            self.cover(path, matrix, fill)?;
-        }
         let seen = |(_, colour): &(Way<'_>, Rgb)| Some(*colour) != self.options.paper;
         let inked = line.filter(seen).or_else(|| border.filter(seen));
-        match inked {
-            Some((way, colour)) => self.trace(path, matrix, way, colour, layer),
-            None => {
-                self.left_out.paper += usize::from(line.is_some() || border.is_some());
-                Ok(())
-            }
-        }
+        self.left_out.paper += usize::from(inked.is_none() && (line.is_some() || border.is_some()));
+        inked
     }
 
     /// Notes a fill that hides what has been drawn before. What lies in none of the clip paths around is not filled.
-    fn cover(&mut self, path: &usvg::Path, matrix: Transform, fill: &usvg::Fill) -> Result<(), SvgError> {
+    fn cover(&mut self, outline: &Path, matrix: Transform, fill: &usvg::Fill) -> Result<(), SvgError> {
         let below = self.drawing.strokes().len();
         if fill.opacity().get() * self.opacity < HIDES || below == 0 {
             return Ok(());
         }
-        let shape = Region::Shape(self.regions.shape(path.data(), matrix, is_even_odd(fill))?);
+        let shape = Region::Shape(self.regions.shape(outline, matrix, is_even_odd(fill))?);
         let region = if self.cuts.is_empty() {
             shape
         } else {
@@ -251,7 +284,7 @@ impl<'a> Ink<'a> {
     /// Draws the stroke of a shape, or the border of its fill.
     fn trace(
         &mut self,
-        path: &usvg::Path,
+        path: &Path,
         matrix: Transform,
         way: Way<'_>,
         colour: Rgb,
@@ -273,7 +306,7 @@ impl<'a> Ink<'a> {
         let own_length =
             |dx: f64, dy: f64| libm::hypot((d * dx - c * dy) / determinant, (a * dy - b * dx) / determinant);
         let dashes = match way {
-            Way::Line(line) if determinant != 0.0 => {
+            Way::Line(line) | Way::Letters(Some(line)) if determinant != 0.0 => {
                 line.dasharray().and_then(|lengths| Dashes::new(lengths, line.dashoffset()))
             }
             _ => None,
@@ -304,7 +337,7 @@ impl<'a> Ink<'a> {
             }
             Ok(())
         };
-        for segment in path.data().segments() {
+        for segment in path.segments() {
             let last = stroke.vertices.last().copied();
             match (segment, last) {
                 (PathSegment::MoveTo(to), _) => {
@@ -446,6 +479,7 @@ fn ready(stroke: &mut Curve, way: Way<'_>, closed: bool) {
             stroke
                 .truncate(usize::from((stroke.len() > 1 || closed) && line.linecap() != usvg::LineCap::Butt));
         }
+        Way::Letters(_) => stroke.truncate(if dot { 1 } else { stroke.len() }),
         // Fewer than three places have nothing between them.
         Way::Border if stroke.len() < 3 && is_straight => stroke.clear(),
         _ if (closed || matches!(way, Way::Border)) && stroke.last() != Some(&first) => stroke.push(first),

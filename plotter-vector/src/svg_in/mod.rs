@@ -16,9 +16,14 @@ mod fonts;
 mod ink;
 mod layers;
 mod mask;
+mod moves;
+mod one_line;
 mod paint;
+mod pieces;
 mod region;
 mod rewrite;
+#[cfg(feature = "svg-text")]
+mod single_stroke;
 mod survey;
 
 use crate::{Drawing, PalettePen, Rgb, Scale};
@@ -360,6 +365,8 @@ impl core::error::Error for SvgError {}
 ///
 /// Where no thread can be had, as on wasm32, elements may be nested 48 deep instead of 1000.
 ///
+/// A text that is given away (`Vec<u8>`) is dropped as soon as it has been parsed: a large file takes less memory then.
+///
 /// Coordinates are parsed in single precision: to 0.001 px or 0.0003 mm up to 4 m from the origin. Arcs are first
 /// made into cubic curves that are 0.03 % of the radius off at most, and no more than 0.1 of the file's units; that
 /// adds to the tolerance, which is kept between those curves and the chords. A path is read up to its first error.
@@ -377,17 +384,18 @@ impl core::error::Error for SvgError {}
 /// assert!(text.contains("PU400,400;\nPD3600,400;\n")); // 10 mm from the left and from below: 40 units a mm
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read_svg(bytes: &[u8], options: &SvgOptions) -> Result<SvgDrawing, SvgError> {
-    on_own_stack(bytes, options, |text, max_depth| {
-        parse(text, options, max_depth, &parser_options(options), None)
+pub fn read_svg<'a>(bytes: impl Into<Cow<'a, [u8]>>, options: &SvgOptions) -> Result<SvgDrawing, SvgError> {
+    on_own_stack(bytes.into(), options, |text, max_depth| {
+        let parser = parser_options(options);
+        parse(text, options, max_depth, [&parser; 2], None)
     })
 }
 
 /// Reads the text of a file on a stack that is large enough for the depth of nesting that is handed on.
 fn on_own_stack(
-    bytes: &[u8],
+    bytes: Cow<'_, [u8]>,
     options: &SvgOptions,
-    parse: impl Fn(&str, usize) -> Result<SvgDrawing, SvgError> + Sync,
+    parse: impl Fn(Cow<'_, str>, usize) -> Result<SvgDrawing, SvgError> + Sync,
 ) -> Result<SvgDrawing, SvgError> {
     if !TOLERANCES_MM.contains(&options.tolerance_mm) {
         return Err(SvgError::Tolerance { tolerance_mm: options.tolerance_mm });
@@ -403,23 +411,29 @@ fn on_own_stack(
         return Err(SvgError::Empty);
     }
     // The caller's stack may be short of what nested elements need.
+    let mut text = Some(text);
     let parsed = std::thread::scope(|scope| {
         let parser = std::thread::Builder::new().name("svg".to_owned()).stack_size(STACK_BYTES);
-        let parsed = parser.spawn_scoped(scope, || parse(&text, survey::MAX_DEPTH)).ok()?;
-        Some(parsed.join().unwrap_or(Err(SvgError::Parser)))
+        let whole = || parse(text.take().unwrap_or_default(), survey::MAX_DEPTH);
+        Some(parser.spawn_scoped(scope, whole).ok()?.join().unwrap_or(Err(SvgError::Parser)))
     });
-    // Where there are no threads it has to do.
-    parsed.unwrap_or_else(|| parse(&text, MAX_DEPTH_ON_CALLERS_STACK))
+    // Where there are no threads it has to do; nobody has taken the text then.
+    parsed.unwrap_or_else(|| parse(text.unwrap_or_default(), MAX_DEPTH_ON_CALLERS_STACK))
 }
 
 /// The text of a file: UTF-8, or UTF-16 with its mark.
-fn decoded(bytes: &[u8]) -> Result<Cow<'_, str>, SvgError> {
-    let unit: fn([u8; 2]) -> u16 = match bytes {
+fn decoded(bytes: Cow<'_, [u8]>) -> Result<Cow<'_, str>, SvgError> {
+    let unit: fn([u8; 2]) -> u16 = match bytes.as_ref() {
         [0xff, 0xfe, ..] => u16::from_le_bytes,
         [0xfe, 0xff, ..] => u16::from_be_bytes,
         _ => {
-            let text = core::str::from_utf8(bytes);
-            return text.map(Cow::Borrowed).map_err(|error| SvgError::Encoding { byte: error.valid_up_to() });
+            let text = match bytes {
+                Cow::Borrowed(bytes) => core::str::from_utf8(bytes).map(Cow::Borrowed),
+                Cow::Owned(bytes) => {
+                    String::from_utf8(bytes).map(Cow::Owned).map_err(|error| error.utf8_error())
+                }
+            };
+            return text.map_err(|error| SvgError::Encoding { byte: error.valid_up_to() });
         }
     };
     let mut text = String::new();
@@ -438,47 +452,60 @@ fn decoded(bytes: &[u8]) -> Result<Cow<'_, str>, SvgError> {
     Ok(Cow::Owned(text))
 }
 
-/// `draw_whole` tells the texts that the parser has all outlines of; without it, it has none.
+/// `probe` is a parser that finds the boxes of elements, `parser` the one that reads the file.
+/// `draw_whole` tells the texts that the parser has all outlines of, and of these how far apart two ways along one line may be;
+/// without it, it has none.
 fn parse(
-    text: &str,
+    mut text: Cow<'_, str>,
     options: &SvgOptions,
     max_depth: usize,
-    parser: &usvg::Options<'_>,
-    draw_whole: Option<&dyn Fn(&usvg::Text) -> bool>,
+    [probe, parser]: [&usvg::Options<'_>; 2],
+    draw_whole: Option<&DrawWhole<'_>>,
 ) -> Result<SvgDrawing, SvgError> {
-    let limit = survey::MAX_ELEMENTS;
-    let mut document = document_of(text)?;
+    let mut document = document_of(&text)?;
     let root = document.root_element().tag_name().name();
     if root != "svg" {
         return Err(SvgError::NotSvg { root: survey::shortened(root) });
     }
-    let Rewritten { text: rewritten, problems, filters, layers } = Rewritten::new(text, &document, options);
-    if let Some(text) = &rewritten {
-        document = document_of(text)?;
+    let Rewritten { text: rewritten, problems, filters, layers } =
+        Rewritten::new(&text, &document, options, probe, max_depth)?;
+    // Large files are long in memory: what has been read goes before the next is made.
+    if let Some(rewritten) = rewritten {
+        drop(document);
+        text = Cow::Owned(rewritten);
+        document = document_of(&text)?;
     }
     let survey = Survey::new(&document, draw_whole.is_some(), max_depth)?;
-    let tree = usvg::Tree::from_xmltree(&document, parser).map_err(|error| match error {
-        usvg::Error::InvalidSize => SvgError::NoSize,
-        usvg::Error::ElementsLimitReached => SvgError::TooManyElements { limit },
-        usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => {
-            SvgError::TooDeep { limit: survey::MAX_DEPTH }
+    let mut layers = Some(layers);
+    let mut started = None;
+    let mut draw = |tree: &usvg::Tree| {
+        let (_, ink) = match &mut started {
+            Some(started) => started,
+            None => {
+                let (drawing, sheet) = sheet_of(tree, options)?;
+                let layers = layers.take().unwrap_or_default();
+                started.insert((sheet, Ink::new(drawing, *options, layers, draw_whole)))
+            }
+        };
+        ink.group(tree.root(), None)
+    };
+    match pieces::pieces(&document, &text) {
+        None => {
+            let tree = tree_of(&document, parser)?;
+            drop(document);
+            drop(text);
+            draw(&tree)?;
         }
-        error => SvgError::Xml { reason: error.to_string() },
-    })?;
-    drop(document);
-    drop(rewritten);
-    let mm_per_px = options.mm_per_px();
-    let (width_px, height_px) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
-    let (width_mm, height_mm) = (width_px * mm_per_px, height_px * mm_per_px);
-    let too_large = SvgError::Sheet { width_mm, height_mm };
-    let whole = |px: f64| whole_px(px).ok_or_else(|| too_large.clone());
-    let drawing = Drawing::new(whole(width_px)?, whole(height_px)?);
-    // The last row of pixels may stick out below the sheet.
-    let below_mm = height_mm - f64::from(drawing.height_px()) * mm_per_px;
-    let scale =
-        Scale::new(drawing.height_px(), mm_per_px, Point::new(0.0, below_mm)).map_err(|_| too_large)?;
-    let mut ink = Ink::new(drawing, *options, layers, draw_whole);
-    ink.group(tree.root(), None)?;
+        Some(pieces) => {
+            drop(document);
+            for piece in &pieces {
+                let piece = pieces::text_of(&text, piece);
+                draw(&tree_of(&document_of(&piece)?, parser)?)?;
+            }
+            drop(text);
+        }
+    }
+    let ((width_mm, height_mm, scale), mut ink) = started.ok_or(SvgError::Parser)?;
     ink.hide()?;
     let (texts, text_line) = match draw_whole {
         None => (survey.texts.len(), survey.texts.first().map(|(_, line)| *line)),
@@ -503,6 +530,39 @@ fn parse(
         problems,
     })
 }
+
+fn tree_of(document: &roxmltree::Document<'_>, parser: &usvg::Options<'_>) -> Result<usvg::Tree, SvgError> {
+    let limit = survey::MAX_ELEMENTS;
+    usvg::Tree::from_xmltree(document, parser).map_err(|error| match error {
+        usvg::Error::InvalidSize => SvgError::NoSize,
+        usvg::Error::ElementsLimitReached => SvgError::TooManyElements { limit },
+        usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => {
+            SvgError::TooDeep { limit: survey::MAX_DEPTH }
+        }
+        error => SvgError::Xml { reason: error.to_string() },
+    })
+}
+
+/// Width and height of a sheet, mm, and where it lies.
+type Sheet = (f64, f64, Scale);
+
+/// An empty drawing on the sheet, and the sheet.
+fn sheet_of(tree: &usvg::Tree, options: &SvgOptions) -> Result<(Drawing, Sheet), SvgError> {
+    let mm_per_px = options.mm_per_px();
+    let (width_px, height_px) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
+    let (width_mm, height_mm) = (width_px * mm_per_px, height_px * mm_per_px);
+    let too_large = SvgError::Sheet { width_mm, height_mm };
+    let whole = |px: f64| whole_px(px).ok_or_else(|| too_large.clone());
+    let drawing = Drawing::new(whole(width_px)?, whole(height_px)?);
+    // The last row of pixels may stick out below the sheet.
+    let below_mm = height_mm - f64::from(drawing.height_px()) * mm_per_px;
+    let scale =
+        Scale::new(drawing.height_px(), mm_per_px, Point::new(0.0, below_mm)).map_err(|_| too_large)?;
+    Ok((drawing, (width_mm, height_mm, scale)))
+}
+
+/// Whether a text is drawn, and then how far from each other two ways along one line of it may be, in the text's own unit.
+type DrawWhole<'a> = dyn Fn(&usvg::Text) -> Option<f32> + 'a;
 
 /// The elements of a file. Document types are common: entities in them are resolved, within the limits of the XML parser, but not
 /// those in other files.
@@ -552,3 +612,6 @@ mod tests;
 
 #[cfg(test)]
 mod kind_tests;
+
+#[cfg(all(test, feature = "svg-text"))]
+mod single_stroke_tests;

@@ -7,13 +7,13 @@
 use super::css_transform::{self, Plain};
 use super::font_size;
 use super::layers::SvgLayer;
+use super::moves::{self, Added, Moves, after_name};
 use super::paint::{self, Known};
 use super::survey::{TEMPLATES, shortened};
-use super::{SvgOptions, SvgProblem};
+use super::{SvgError, SvgOptions, SvgProblem};
 use core::ops::Range;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
-use std::str::FromStr;
 use usvg::roxmltree::{Document, Node};
 
 /// Most problems that are told.
@@ -37,8 +37,6 @@ const WORDS: [&str; 9] = [
     "text-anchor",
     "mask-type",
 ];
-/// Properties that move what is drawn, and are not done.
-const MOVES: [&str; 4] = ["translate", "rotate", "scale", "offset-path"];
 /// Attributes that hold one number, or a few.
 const NUMBERS: [&str; 16] =
     ["viewBox", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "x1", "y1", "x2", "y2", "dx", "dy"];
@@ -68,13 +66,28 @@ struct Rewriter<'a> {
     /// The size that percentages are of, px.
     sheet: (f64, f64),
     edits: Vec<(Range<usize>, String)>,
+    /// Attributes that elements get.
+    added: Added,
+    /// Whether elements are moved otherwise than the parser knows: then what moves them is taken out of style sheets and `style`s,
+    /// and put together for each.
+    has_moves: bool,
     /// Byte in the file and text of each.
     problems: Vec<(usize, String)>,
     filters: usize,
 }
 
 impl Rewritten {
-    pub(super) fn new(text: &str, document: &Document<'_>, options: &SvgOptions) -> Self {
+    /// `parser` finds the boxes of elements, which may be nested this deep.
+    ///
+    /// # Errors
+    /// Where a box is asked for, and the references in the file are not safe to follow.
+    pub(super) fn new(
+        text: &str,
+        document: &Document<'_>,
+        options: &SvgOptions,
+        parser: &usvg::Options<'_>,
+        max_depth: usize,
+    ) -> Result<Self, SvgError> {
         let mut rewriter = Rewriter {
             text,
             document,
@@ -82,6 +95,8 @@ impl Rewritten {
             variables: variables(document),
             sheet: sheet(document),
             edits: Vec::new(),
+            added: Added::new(),
+            has_moves: moves::has_any(document),
             problems: Vec::new(),
             filters: 0,
         };
@@ -95,10 +110,22 @@ impl Rewritten {
                 rewriter.style_sheet(node.range());
             }
         }
-        let Rewriter { mut edits, mut problems, filters, .. } = rewriter;
-        // What an entity stands for is met wherever it stands.
-        edits.sort_by_key(|(range, _)| (range.start, range.end));
-        edits.dedup_by_key(|(range, _)| range.start);
+        if rewriter.has_moves {
+            let resolved = |value: &str| rewriter.without_variables(value).into_owned();
+            let mut moves = Moves::new(document, options.px_per_inch, rewriter.sheet, &resolved);
+            moves.find_boxes(document, text, parser, max_depth, &|mut added, mut edits| {
+                for (at, attributes) in &rewriter.added {
+                    let own = added.entry(*at).or_default();
+                    for (name, value) in attributes {
+                        own.entry(name).or_insert_with(|| value.clone());
+                    }
+                }
+                edits.extend(rewriter.edits.iter().cloned());
+                applied(text, edits, added)
+            })?;
+            moves.write(document, text, &mut rewriter.added, &mut rewriter.edits);
+        }
+        let Rewriter { edits, added, mut problems, filters, .. } = rewriter;
         problems.sort();
         problems.dedup();
         let problems = problems
@@ -108,8 +135,20 @@ impl Rewritten {
                 SvgProblem { line: place.row, column: place.col, text }
             })
             .collect();
-        Self { text: written(text, &edits), problems, filters, layers }
+        Ok(Self { text: applied(text, edits, added), problems, filters, layers })
     }
+}
+
+/// The text with its edits and what its elements get; `None` without any.
+fn applied(text: &str, mut edits: Vec<(Range<usize>, String)>, added: Added) -> Option<String> {
+    edits.extend(added.into_iter().map(|(at, attributes)| {
+        let attributes = attributes.iter().map(|(name, value)| format!(" {name}=\"{value}\""));
+        (at..at, attributes.collect())
+    }));
+    // What an entity stands for is met wherever it stands.
+    edits.sort_by_key(|(range, _)| (range.start, range.end));
+    edits.dedup_by_key(|(range, _)| range.start);
+    written(text, &edits)
 }
 
 /// The text with its edits, all lines where they were; `None` without any.
@@ -166,7 +205,11 @@ fn variables<'a>(document: &'a Document<'a>) -> BTreeMap<&'a str, &'a str> {
 
 /// Hands the places of name and value of each declaration of a style sheet, or of a `style`, to `visit`; without blanks around them.
 /// What has no colon is a name without a value.
-fn declarations(text: &str, is_sheet: bool, mut visit: impl FnMut(Range<usize>, Option<Range<usize>>)) {
+pub(super) fn declarations(
+    text: &str,
+    is_sheet: bool,
+    mut visit: impl FnMut(Range<usize>, Option<Range<usize>>),
+) {
     let bytes = text.as_bytes();
     let (mut start, mut colon, mut depth, mut at) = (0, None, 0_usize, 0);
     let mut blocks = usize::from(!is_sheet);
@@ -218,6 +261,35 @@ fn declarations(text: &str, is_sheet: bool, mut visit: impl FnMut(Range<usize>, 
     }
 }
 
+/// Whether this is the name of a property, not of a variable or of nothing.
+fn is_property(name: &str) -> bool {
+    let letters = name.strip_prefix('-').unwrap_or(name);
+    letters.starts_with(|letter: char| letter.is_ascii_alphabetic())
+        && letters.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_')
+}
+
+/// What stands instead of something that is no declaration of a property: one of none.
+fn instead(name: Range<usize>, value: Option<Range<usize>>, name_text: &str) -> Vec<(Range<usize>, String)> {
+    match value {
+        _ if name_text.starts_with('@') => Vec::new(),
+        Some(value) => vec![(name, "x".to_owned()), (value, "0".to_owned())],
+        None => vec![(name, "x:0".to_owned())],
+    }
+}
+
+/// A style sheet or a `style` of declarations alone, for readers that stop at what is none.
+pub(super) fn sound(text: &str, is_sheet: bool) -> Cow<'_, str> {
+    let mut edits = Vec::new();
+    declarations(text, is_sheet, |name, value| {
+        let name_text = text.get(name.clone()).unwrap_or_default();
+        let is_empty = value.as_ref().is_none_or(Range::is_empty);
+        if is_empty || !is_property(name_text) {
+            edits.extend(instead(name, value, name_text));
+        }
+    });
+    written(text, &edits).map_or(Cow::Borrowed(text), Cow::Owned)
+}
+
 impl<'a> Rewriter<'a> {
     /// Finds the layers, and gives each an `id` that is its own.
     fn layers(&mut self) -> Vec<(String, SvgLayer)> {
@@ -254,7 +326,7 @@ impl<'a> Rewriter<'a> {
                         Some(attribute) => self.edits.push((attribute.range_value(), new.clone())),
                         None => {
                             let at = after_name(self.text, node.range());
-                            self.edits.push((at..at, format!(" id=\"{new}\"")));
+                            self.added.entry(at).or_default().insert("id", new.clone());
                         }
                     }
                     new
@@ -326,21 +398,21 @@ impl<'a> Rewriter<'a> {
             let name_text = text.get(name.clone()).unwrap_or_default();
             let held = value.clone().and_then(|value| text.get(value)).unwrap_or_default();
             let lower = name_text.to_ascii_lowercase();
-            let letters = lower.strip_prefix('-').unwrap_or(&lower);
-            let is_name = letters.starts_with(|letter: char| letter.is_ascii_alphabetic())
-                && letters.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_');
             match value {
-                _ if name_text.starts_with('@') => {}
-                Some(value) if is_name && !held.is_empty() => {
+                Some(value) if is_property(&lower) && !held.is_empty() => {
+                    let changed = self.value(&lower, held, place(value.start), true);
+                    if self.has_moves && moves::PROPERTIES.contains(&lower.as_str()) {
+                        edits.extend([(name, "x".to_owned()), (value, "0".to_owned())]);
+                        return;
+                    }
                     if lower != name_text {
                         edits.push((name, lower.clone()));
                     }
-                    if let Some(changed) = self.value(&lower, held, place(value.start), true) {
+                    if let Some(changed) = changed {
                         edits.push((value, changed));
                     }
                 }
-                Some(value) => edits.extend([(name, "x".to_owned()), (value, "0".to_owned())]),
-                None => edits.push((name, "x:0".to_owned())),
+                value => edits.extend(instead(name, value, name_text)),
             }
         });
         edits
@@ -366,8 +438,8 @@ impl<'a> Rewriter<'a> {
             },
             "transform" | "gradientTransform" | "patternTransform" => {
                 match css_transform::as_svg(value, self.sheet, self.options.px_per_inch) {
-                    Plain::So(text) => new = Some(text),
-                    Plain::AsItIs => {}
+                    Plain::So(text) if !self.has_moves || name != "transform" => new = Some(text),
+                    Plain::So(_) | Plain::AsItIs => {}
                     Plain::Not(why) => {
                         let text = format!("{name} holds {}, which is not done: {why}", shortened(value));
                         self.tell(byte, text);
@@ -376,23 +448,40 @@ impl<'a> Rewriter<'a> {
             }
             "transform-origin" => {
                 let lower = paint::without_important(value).0.to_ascii_lowercase();
-                if svgtypes::TransformOrigin::from_str(&lower).is_err() {
+                if css_transform::origin(&lower, self.sheet, self.options.px_per_inch).is_err() {
                     let text =
                         format!("transform-origin holds {}, which is not understood", shortened(value));
                     self.tell(byte, text);
-                } else if lower != value {
+                } else if lower != value && !self.has_moves {
                     new = Some(lower);
                 }
             }
             "transform-box" => {
+                const BOXES: [&str; 8] = [
+                    "view-box",
+                    "fill-box",
+                    "stroke-box",
+                    "content-box",
+                    "border-box",
+                    "initial",
+                    "unset",
+                    "inherit",
+                ];
                 let bare = paint::without_important(value).0.to_ascii_lowercase();
-                if !matches!(bare.as_str(), "view-box" | "initial" | "unset" | "inherit") {
-                    let text = format!("transform-box: {} is not done: view-box is taken", shortened(value));
+                if !BOXES.contains(&bare.as_str()) {
+                    let text = format!("transform-box: {} is not known: view-box is taken", shortened(value));
                     self.tell(byte, text);
                 }
             }
-            _ if in_style && MOVES.contains(&name) && !matches!(value.trim(), "none" | "auto") => {
-                let text = format!("{name}: {} is not done: write it as transform", shortened(value));
+            "translate" | "rotate" | "scale" if in_style => {
+                let bare = paint::without_important(value).0;
+                if let Err(why) = css_transform::property(name, bare, self.sheet, self.options.px_per_inch) {
+                    let text = format!("{name} holds {}, which is not done: {why}", shortened(value));
+                    self.tell(byte, text);
+                }
+            }
+            "offset-path" if in_style && value.trim() != "none" => {
+                let text = format!("offset-path: {} is not done: write it as transform", shortened(value));
                 self.tell(byte, text);
             }
             "filter" => {
@@ -497,13 +586,6 @@ impl<'a> Rewriter<'a> {
 /// Whether each byte of an attribute's value stands in the file as it is; only line ends have become blanks.
 fn stands_as(text: &str, range: &Range<usize>, value: &str) -> bool {
     range.len() == value.len() && text.get(range.clone()).is_some_and(|text| !text.contains('&'))
-}
-
-/// Where the name of an element's tag ends.
-fn after_name(text: &str, range: Range<usize>) -> usize {
-    let tag = text.get(range.clone()).unwrap_or_default();
-    let end = tag.find(|letter: char| letter.is_whitespace() || matches!(letter, '>' | '/'));
-    range.start + end.unwrap_or(0)
 }
 
 /// As the value of an attribute.

@@ -316,7 +316,7 @@ impl Rule<'_> {
 }
 
 /// The ids in each `url(#id)` of a text.
-fn targets(text: &str) -> impl Iterator<Item = &str> {
+pub(super) fn targets(text: &str) -> impl Iterator<Item = &str> {
     text.split("url(").skip(1).filter_map(|rest| {
         let rest = rest.trim_start_matches([' ', '\t', '\r', '\n', '"', '\'']).strip_prefix('#')?;
         rest.split([')', '"', '\'', ' ']).next()
