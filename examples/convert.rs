@@ -16,8 +16,8 @@
 
 use clap::{Parser, ValueEnum};
 use plotter_examples::{
-    Diagnostic, Diagnostics, DrawingFile, Language, PenLines, Reading, Severity, SvgReading, SvgText, at,
-    print, run,
+    Arrangement, Diagnostic, Diagnostics, DrawingFile, Language, PenLines, Reading, Severity, SvgReading,
+    SvgText, at, print, run,
 };
 use plotter_motion::gcode::{self, LaserCommand, PenControl, PenConvention, ServoCommand};
 use plotter_motion::hpgl::{self, thesis_text};
@@ -92,6 +92,8 @@ struct Arguments {
     step_mm: Option<f64>,
     #[command(flatten)]
     svg_reading: SvgReading,
+    #[command(flatten)]
+    arrangement: Arrangement,
     /// Ends at the first error, with exit status 1; notices pass
     #[arg(long)]
     strict: bool,
@@ -162,8 +164,9 @@ fn is_same(input: &Path, output: &Path) -> bool {
 }
 
 fn convert(arguments: &Arguments, language: Language) -> Result<(), String> {
-    let mut drawing =
-        DrawingFile::open(&arguments.input, arguments.from)?.with_svg(&arguments.svg_reading)?;
+    let mut drawing = DrawingFile::open(&arguments.input, arguments.from)?
+        .with_svg(&arguments.svg_reading)?
+        .arranged(&arguments.arrangement);
     let writes_gcode = language == Language::Gcode;
     let reads_gcode = drawing.language() == Language::Gcode;
     if writes_gcode && (arguments.pen_lines.up.len() > 1 || arguments.pen_lines.down.len() > 1) {

@@ -21,9 +21,9 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    CrossingSet, Diagnostics, DrawingFile, JointFigures, Language, LongSheetMachine, LongSheetReport,
-    LongSheetRun, PenLines, Reading, Severity, SvgReading, TextilePattern, at, long_sheet_svg, print,
-    read_file, run, told_joints, write_file,
+    Arrangement, CrossingSet, Diagnostics, DrawingFile, JointFigures, Language, LongSheetMachine,
+    LongSheetReport, LongSheetRun, PenLines, Reading, Severity, SvgReading, TextilePattern, at,
+    long_sheet_svg, print, read_file, run, told_joints, write_file,
 };
 use plotter_motion::{Machine, MachineConfig, MachineKind, PlotOp};
 use plotter_stitch::{FramePasses, JoinFrames};
@@ -65,6 +65,8 @@ struct Arguments {
     step_mm: Option<f64>,
     #[command(flatten)]
     svg_reading: SvgReading,
+    #[command(flatten)]
+    arrangement: Arrangement,
     #[command(flatten)]
     pen_lines: PenLines,
     /// The machine's TOML file [default: machines/textile-plotter.toml]
@@ -173,6 +175,7 @@ fn draw_sheet(arguments: &Arguments) -> Result<(), String> {
         Some(path) => {
             let drawing = DrawingFile::open(path, arguments.language)?
                 .with_svg(&arguments.svg_reading)?
+                .arranged(&arguments.arrangement)
                 .with_pen_lines(&arguments.pen_lines)?;
             let reading = Reading { counts_per_mm: 40.0, step_mm: arguments.step_mm, ..Reading::default() };
             let mut said = Diagnostics::default();

@@ -21,9 +21,9 @@
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_examples::{
-    BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, Happening, Language, Ops, PenLines,
-    PlotFigures, Reading, Severity, SpeedChart, StepFile, SteppedPlot, SteppedPreview, SteppedReport,
-    SvgReading, at, print, read_file, run, write_file,
+    Arrangement, BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, Happening, Language, Ops,
+    PenLines, PlotFigures, Reading, Severity, SpeedChart, StepFile, SteppedPlot, SteppedPreview,
+    SteppedReport, SvgReading, at, print, read_file, run, write_file,
 };
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{
@@ -66,6 +66,8 @@ struct Arguments {
     step_mm: Option<f64>,
     #[command(flatten)]
     svg_reading: SvgReading,
+    #[command(flatten)]
+    arrangement: Arrangement,
     #[command(flatten)]
     pen_lines: PenLines,
     /// The machine's TOML file [default: machines/stepper-plotter.toml]
@@ -174,6 +176,7 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
     let drawing = match &arguments.file {
         Some(path) => DrawingFile::open(path, arguments.language)?
             .with_svg(&arguments.svg_reading)?
+            .arranged(&arguments.arrangement)
             .with_pen_lines(&arguments.pen_lines)?,
         None => DrawingFile::held("the built-in drawing", built_in().into_bytes(), None)?,
     };

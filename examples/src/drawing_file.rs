@@ -1,7 +1,7 @@
 //! [`DrawingFile`]: a drawing in any of the languages, read as plot operations and diagnostics.
 
 use crate::language::is_dm_pl;
-use crate::{Diagnostics, Language, PenLines, SvgReading, at, svg_drawing};
+use crate::{Arrangement, Diagnostics, Language, PenLines, SvgReading, at, svg_drawing};
 use plotter_motion::hpgl::{cutter, thesis_text};
 use plotter_motion::{PlotOp, Point, Vec2, chords, dxf, gcode, hpgl};
 use plotter_vector::SvgFonts;
@@ -99,6 +99,7 @@ pub struct DrawingFile {
     language: Language,
     fonts: SvgFonts,
     svg: SvgReading,
+    arrangement: Arrangement,
     /// What is in it, if it is a DXF.
     dxf: OnceCell<dxf::Drawing>,
     /// The lines that move its pen, if somebody says them.
@@ -161,6 +162,7 @@ impl DrawingFile {
             language,
             fonts,
             svg,
+            arrangement: Arrangement::default(),
             dxf: OnceCell::new(),
             pen_words: None,
             notices: Vec::new(),
@@ -178,6 +180,13 @@ impl DrawingFile {
         }
         self.svg = how.clone();
         Ok(self)
+    }
+
+    /// Does so with what is read.
+    #[must_use]
+    pub fn arranged(mut self, arrangement: &Arrangement) -> Self {
+        self.arrangement = arrangement.clone();
+        self
     }
 
     /// Lifts and lowers the pen by these lines, if there are any.
@@ -237,17 +246,35 @@ impl DrawingFile {
         }
     }
 
-    /// Its operations, from the start.
+    /// Its operations, from the start, with what is to be done with them.
     ///
     /// # Errors
     ///
-    /// The file, and why it cannot be read.
+    /// The file, and why it cannot be read, or what cannot be done with it.
     pub fn ops(&self, how: Reading) -> Result<Ops<'_>, String> {
+        if self.arrangement.from_line.is_some() && matches!(self.language, Language::Svg | Language::Dxf) {
+            return Err(format!(
+                "{}: --from-line: the lines of {} say nothing of what is drawn when: give --from-layer",
+                self.name,
+                self.language.name()
+            ));
+        }
+        let ops = self.read(how)?;
+        // SVG says itself what is filled.
+        let occludes = self.svg.occlude && self.language != Language::Svg;
+        self.arrangement
+            .apply(ops, how.tolerance_mm, occludes)
+            .map_err(|error| format!("{}: {error}", self.name))
+    }
+
+    /// Its operations as they are in the file.
+    fn read(&self, how: Reading) -> Result<Ops<'_>, String> {
         let place = Rc::new(Place::default());
         let bytes = self.bytes(&place)?;
         let mut colours = Vec::new();
         let mut digit_mm = None;
         let mut sheet_mm = None;
+        let mut layers = Rc::default();
         let inner: Box<dyn Iterator<Item = Result<PlotOp, Diagnostic>>> = match self.language {
             Language::Hpgl => {
                 digit_mm = Some(1.0 / hpgl::UNITS_PER_MM);
@@ -311,7 +338,17 @@ impl DrawingFile {
                 sheet_mm = Some(drawing.sheet_mm);
                 let notices = self.notices.iter().map(|text| Diagnostic::new(Severity::Notice, text.clone()));
                 let diagnostics = notices.chain(drawing.diagnostics);
-                Box::new(diagnostics.map(Err).chain(drawing.ops.map(Ok)))
+                let (names, begins): (Vec<String>, Vec<usize>) = drawing.layers.into_iter().unzip();
+                layers = Rc::new(names);
+                let (place, mut stroke) = (Rc::clone(&place), 0);
+                let ops = drawing.ops.inspect(move |op| {
+                    if matches!(op, PlotOp::Travel { .. }) {
+                        let layer = begins.iter().filter(|first| **first <= stroke).count();
+                        place.layer.set(u32::try_from(layer).unwrap_or(0));
+                        stroke += 1;
+                    }
+                });
+                Box::new(diagnostics.map(Err).chain(ops.map(Ok)))
             }
             Language::Dxf => {
                 let drawing = self.dxf()?;
@@ -323,7 +360,15 @@ impl DrawingFile {
                 };
                 let moved;
                 (options.moved_mm, moved, colours) = placed(drawing, options);
-                let ops = drawing.plot_ops(options).map(|op| {
+                layers = Rc::new(drawing.layers().map(str::to_owned).collect());
+                let mut ops = drawing.plot_ops(options);
+                let place = Rc::clone(&place);
+                let ops = std::iter::from_fn(move || {
+                    let op = ops.next()?;
+                    place.layer.set(ops.layer());
+                    Some(op)
+                });
+                let ops = ops.map(|op| {
                     op.map_err(|error| {
                         let severity = if error.is_notice() { Severity::Notice } else { Severity::Error };
                         let line = Some(error.line).filter(|line| *line > 0);
@@ -333,7 +378,7 @@ impl DrawingFile {
                 Box::new(moved.map(Err).into_iter().chain(ops))
             }
         };
-        Ok(Ops { inner, place, colours, digit_mm, sheet_mm, failed: false })
+        Ok(Ops { inner, place, colours, digit_mm, sheet_mm, layers, failed: false })
     }
 
     /// What is in it, if it is a DXF: held, since it is walked through more than once.
@@ -486,6 +531,8 @@ pub struct Ops<'a> {
     pub digit_mm: Option<f64>,
     /// Width and height of its sheet, mm, if it has one: the lower left corner is the origin.
     pub sheet_mm: Option<(f64, f64)>,
+    /// Names of its layers, if it has any.
+    pub(crate) layers: Rc<Vec<String>>,
     failed: bool,
 }
 
@@ -495,7 +542,56 @@ impl fmt::Debug for Ops<'_> {
     }
 }
 
-impl Ops<'_> {
+impl<'a> Ops<'a> {
+    /// Number of the layer on which the operation given last lies, from 1; 0 for none.
+    pub(crate) fn layer(&self) -> u32 {
+        self.place.layer.get()
+    }
+
+    /// Other operations and what there is to say, with what these tell besides; no line of the file belongs to them.
+    pub(crate) fn with(self, said: Vec<Diagnostic>, ops: impl Iterator<Item = PlotOp> + 'a) -> Self {
+        let inner = Box::new(said.into_iter().map(Err).chain(ops.map(Ok)));
+        self.place.line.set(0);
+        Ops { inner, failed: false, ..self }
+    }
+
+    /// From a line on, with the pen, the power and the place that hold there; a line that is cut is drawn from there on.
+    pub(crate) fn beginning_at(mut self, line: u32) -> Self {
+        let place = Rc::clone(&self.place);
+        let (mut before, mut at, mut begun) = (Vec::new(), Point::ORIGIN, false);
+        let (mut pen, mut power) = (None, None);
+        let mut inner = std::mem::replace(&mut self.inner, Box::new(std::iter::empty()));
+        self.inner = Box::new(std::iter::from_fn(move || {
+            loop {
+                if let Some(op) = before.pop() {
+                    return Some(Ok(op));
+                }
+                let item = inner.next()?;
+                let Ok(op) = item else { return Some(item) };
+                if begun {
+                    return Some(Ok(op));
+                }
+                if place.line.get() >= line {
+                    begun = true;
+                    // Last in, first out.
+                    before.push(op);
+                    if op.target().is_some() && !matches!(op, PlotOp::Travel { .. }) {
+                        before.push(PlotOp::Travel { to: at });
+                    }
+                    before.extend(power);
+                    before.extend(pen);
+                    continue;
+                }
+                match op {
+                    PlotOp::SelectPen { .. } => pen = Some(op),
+                    PlotOp::LaserPower { .. } => power = Some(op),
+                    _ => at = op.target().unwrap_or(at),
+                }
+            }
+        }));
+        self
+    }
+
     /// The line that has been read up to, from 1: that of the operation given last, or near it; `None` where the whole file
     /// was read before the first operation.
     #[must_use]
@@ -535,6 +631,8 @@ struct Place {
     line: Cell<u32>,
     /// How many lines later the byte to come is: one after a line end, and at the start.
     further: Cell<u32>,
+    /// Layer of the operation given last, from 1; 0 for none.
+    layer: Cell<u32>,
     /// Bytes that have been fetched to be given.
     bytes: Cell<u64>,
     failure: RefCell<Option<String>>,
@@ -542,7 +640,13 @@ struct Place {
 
 impl Default for Place {
     fn default() -> Self {
-        Self { line: Cell::new(0), further: Cell::new(1), bytes: Cell::new(0), failure: RefCell::new(None) }
+        Self {
+            line: Cell::new(0),
+            further: Cell::new(1),
+            layer: Cell::new(0),
+            bytes: Cell::new(0),
+            failure: RefCell::new(None),
+        }
     }
 }
 

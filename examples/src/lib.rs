@@ -1,6 +1,7 @@
 //! What the examples share: one clear line for every error, and plots with their recordings: simulated, in the emulator, or on
 //! a real machine.
 
+mod arrangement;
 mod controller_contest;
 pub mod corpus;
 mod diagnostics;
@@ -60,6 +61,7 @@ mod vectorize_settings;
 mod window_source;
 mod wrong_choices;
 
+pub use arrangement::{Arrangement, Effort, Mirror, Page, Rectangle};
 pub use controller_contest::compare_controllers;
 pub use diagnostics::Diagnostics;
 pub use drawing_file::{Diagnostic, DrawingFile, Ops, Reading, Severity};

@@ -29,6 +29,8 @@ pub struct SvgOps {
     pub colours: Vec<[u8; 3]>,
     /// Width and height of the sheet, mm.
     pub sheet_mm: (f64, f64),
+    /// Name of each layer that draws, and the number of its first stroke, from 0.
+    pub layers: Vec<(String, usize)>,
 }
 
 impl fmt::Debug for SvgOps {
@@ -100,8 +102,11 @@ pub fn svg_drawing(
     });
     let diagnostics =
         problems.chain(left_out(&svg, how)).chain(of_layers(&svg)).chain(beyond(&svg)).collect();
+    let mut layers: Vec<(String, usize)> =
+        svg.layers.iter().filter_map(|layer| Some((layer.name.clone(), layer.first_stroke?))).collect();
+    layers.sort_by_key(|(_, first)| *first);
     let sheet_mm = (svg.width_mm, svg.height_mm);
-    Ok(SvgOps { ops: Box::new(ops(svg, numbers)), diagnostics, colours, sheet_mm })
+    Ok(SvgOps { ops: Box::new(ops(svg, numbers)), diagnostics, colours, sheet_mm, layers })
 }
 
 /// Its operations by pens of these numbers, one for each of its own; where a layer asks for it, the pen waits before it.

@@ -22,7 +22,7 @@ pub struct SvgReading {
     /// Draws what clip paths, masks and the edges of nested sheets of an SVG picture cut off
     #[arg(long)]
     pub keep_clipped: bool,
-    /// Hides what lies below filled shapes of an SVG picture
+    /// Hides what lies below filled shapes of an SVG picture, or below closed strokes of another drawing
     #[arg(long)]
     pub occlude: bool,
     /// Pixels to the inch of an SVG picture: 90 and 72 are those of older programs. Sizes in mm and inches stay what they are

@@ -10,6 +10,7 @@
     reason = "a test fails by a panic, and prints its tables"
 )]
 
+mod arrange_command;
 mod built_example;
 mod compare_controllers_command;
 mod convert_command;

@@ -101,7 +101,7 @@ impl BoxTree {
     }
 
     /// The numbers of the boxes that are met, from the greatest down to `least`, until `found` breaks off.
-    pub(super) fn from_last(
+    pub(super) fn back_from_last(
         &self,
         least: usize,
         meets: impl Fn(&Bounds) -> bool,
@@ -166,7 +166,7 @@ mod tests {
             found.sort_unstable();
             prop_assert_eq!(&found, &wanted);
             let mut found = Vec::new();
-            tree.from_last(least, |bounds| asked.meets(bounds), |at| {
+            tree.back_from_last(least, |bounds| asked.meets(bounds), |at| {
                 found.push(at);
                 if found.len() > most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });

@@ -28,23 +28,31 @@ mod affine;
 mod bounds;
 mod boxes;
 mod crop;
+#[cfg(any(feature = "kurbo", feature = "mint"))]
+mod foreign;
 mod hatch;
 mod occlude;
 mod ops;
+mod place;
 mod region;
 mod remains;
 pub(crate) mod scan;
 mod segment;
 mod stroke;
+mod written;
 
 pub use affine::Affine;
 pub use bounds::Bounds;
 pub use hatch::{HatchError, Hatching};
 pub use occlude::Hides;
+pub use ops::DrawingBuilder;
+pub use place::{Placement, PlacementError};
 pub use region::{Keep, Region};
 pub use remains::CutCount;
 pub use segment::{PathSegment, Shape};
 pub use stroke::{Mark, Stroke};
+#[cfg(feature = "std")]
+pub use written::IoText;
 
 use crate::Point;
 use alloc::collections::BTreeSet;
@@ -148,6 +156,12 @@ impl Drawing {
         let is_known = |layer: u32| usize::try_from(layer).is_ok_and(|layer| layer <= self.layers.len());
         let wrong = self.strokes.iter().position(|stroke| !stroke.is_sound() || !is_known(stroke.layer));
         wrong.map_or(Ok(()), |stroke| Err(UnsoundDrawing { stroke }))
+    }
+}
+
+impl FromIterator<Stroke> for Drawing {
+    fn from_iter<I: IntoIterator<Item = Stroke>>(strokes: I) -> Self {
+        Self { strokes: strokes.into_iter().collect(), ..Self::new() }
     }
 }
 

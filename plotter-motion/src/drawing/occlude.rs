@@ -46,7 +46,7 @@ impl Cover {
     /// in sight, comes first; nothing is asked any more when all is hidden.
     fn hide(&self, first: usize, from: Point, segment: &PathSegment, shares: &mut Vec<(f64, f64)>) {
         let bounds = segment.bounds(from);
-        self.tree.from_last(
+        self.tree.back_from_last(
             first,
             |other| bounds.meets(other) && is_near(other, from, segment),
             |number| {

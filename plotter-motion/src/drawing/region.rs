@@ -137,7 +137,7 @@ impl Region {
     fn side_of(&self, from: Point, segment: &PathSegment, (begin, end): (f64, f64)) -> Side {
         // The middle tells, unless the segment touches the border there; then other places do. All on the border, it runs along it.
         // Shares that no drawing has, lest each of them meets a tooth of the same comb.
-        const PLACES: [f64; 4] = [0.5, 0.309_016_994, 0.785_398_163, 0.135_335_283];
+        const PLACES: [f64; 4] = [0.5, 0.309_016_994, 0.786_151_378, 0.135_335_283];
         let sides = PLACES.iter().map(|share| self.side(segment.at(from, begin + (end - begin) * share)));
         sides.into_iter().find(|side| *side != Side::Border).unwrap_or(Side::Border)
     }

@@ -121,6 +121,11 @@ impl Drawing {
         PlotOps::new(self, options)
     }
 
+    /// Names of its layers.
+    pub fn layers(&self) -> impl Iterator<Item = &str> {
+        self.layers.iter().map(|layer| layer.name.as_str())
+    }
+
     /// Size of its unit, mm; `None` where the file does not say it.
     #[must_use]
     pub fn unit_mm(&self) -> Option<f64> {

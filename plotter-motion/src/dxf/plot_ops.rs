@@ -29,6 +29,7 @@ pub struct PlotOps<'d> {
     pens: BTreeMap<PenKey, u8>,
     colours: BTreeMap<u8, [u8; 3]>,
     pen: Option<u8>,
+    layer: usize,
     entities: u32,
     hidden: BTreeMap<usize, (u32, u32)>,
     missing: BTreeMap<char, (u32, u32)>,
@@ -96,6 +97,7 @@ impl<'d> PlotOps<'d> {
             pens: BTreeMap::new(),
             colours: BTreeMap::new(),
             pen: None,
+            layer: 0,
             entities: 0,
             hidden: BTreeMap::new(),
             missing: BTreeMap::new(),
@@ -109,6 +111,12 @@ impl<'d> PlotOps<'d> {
     /// The pens that have drawn so far, with their colours: red, green, blue.
     pub fn pens(&self) -> impl Iterator<Item = (u8, [u8; 3])> + '_ {
         self.colours.iter().map(|(pen, colour)| (*pen, *colour))
+    }
+
+    /// Number of the layer on which the operation given last lies, from 1: that of [`Drawing::layers`].
+    #[must_use]
+    pub fn layer(&self) -> u32 {
+        u32::try_from(self.layer + 1).unwrap_or(u32::MAX)
     }
 
     /// Draws the next entity, if there is one.
@@ -187,6 +195,7 @@ impl<'d> PlotOps<'d> {
 
     /// Takes the pen of an entity.
     fn select(&mut self, given: Given) {
+        self.layer = given.layer;
         let name = self.drawing.layers.get(given.layer).map_or("", |layer| layer.name.as_str());
         let key = match self.options.pens {
             Pens::ByColour => PenKey::Colour(given.colour),

@@ -11,6 +11,9 @@ use std::collections::BTreeMap;
 const PX_PER_MM: f64 = 10.0;
 
 impl Order {
+    /// What is a pixel in the settings is the tenth of a millimetre on the sheet.
+    pub const PX_PER_MM: f64 = PX_PER_MM;
+
     /// The drawing in an order with less travel. As [`Order::apply`], with `merge_gap_px` in tenths of a millimetre.
     ///
     /// Strokes are joined within one pen and one layer; one that is preceded by a dwell stays by itself. A new sheet, and a pen that is
@@ -21,35 +24,27 @@ impl Order {
     /// use plotter_vector::Order;
     /// let line = |from, to| Stroke::through([Point::new(from, 0.0), Point::new(to, 0.0)]);
     /// let strokes = [line(0.0, 9.0), line(30.0, 39.0), line(20.0, 10.0)].into_iter().flatten().collect();
-    /// let ordered = Order::default().apply_to(&Drawing { strokes, ..Drawing::default() });
+    /// let ordered = Order::default().apply_to(Drawing { strokes, ..Drawing::default() });
     /// assert_eq!(ordered.travel_mm(), 1.0 + 10.0);
     /// ```
     #[must_use]
-    pub fn apply_to(&self, drawing: &drawing::Drawing) -> drawing::Drawing {
-        let mut ordered = drawing::Drawing {
-            strokes: Vec::new(),
-            after: drawing.after.clone(),
-            layers: drawing.layers.clone(),
-        };
+    pub fn apply_to(&self, drawing: drawing::Drawing) -> drawing::Drawing {
+        let mut ordered =
+            drawing::Drawing { strokes: Vec::new(), after: drawing.after, layers: drawing.layers };
         let parts = |stroke: &Stroke| stroke.before.iter().any(|mark| !matches!(mark, Mark::Dwell(_)));
-        let mut rest = drawing.strokes.as_slice();
-        while !rest.is_empty() {
-            let end = rest.iter().skip(1).position(parts).map_or(rest.len(), |index| index + 1);
-            let (sheet, next) = rest.split_at(end);
+        let mut rest = drawing.strokes.into_iter().peekable();
+        while let Some(mut first) = rest.next() {
             // What begins the sheet begins it whatever is drawn first.
-            let (begins, own) = match sheet.split_first() {
-                Some((first, others)) if parts(first) => {
-                    let own = Stroke { before: Vec::new(), ..first.clone() };
-                    (first.before.clone(), std::iter::once(own).chain(others.iter().cloned()).collect())
-                }
-                _ => (Vec::new(), sheet.to_vec()),
-            };
-            let mut strokes = self.ordered(own);
+            let begins = if parts(&first) { std::mem::take(&mut first.before) } else { Vec::new() };
+            let mut sheet = vec![first];
+            while let Some(stroke) = rest.next_if(|stroke| !parts(stroke)) {
+                sheet.push(stroke);
+            }
+            let mut strokes = self.ordered(sheet);
             if let Some(first) = strokes.first_mut() {
                 first.before.splice(0..0, begins);
             }
             ordered.strokes.append(&mut strokes);
-            rest = next;
         }
         ordered
     }
@@ -75,26 +70,33 @@ impl Order {
                 *groups.entry((0, 0, Some(next))).or_insert(next)
             };
         }
-        let is_near = strokes.iter().flat_map(|stroke| stroke.vertices).all(within);
-        let plan = if is_near { self.plan(&strokes, &[]) } else { as_given(&strokes, &[], self.across_pens) };
-        let ordered: Vec<Stroke> = plan.iter().filter_map(|trail| joined(trail, &given)).collect();
-        let sorted = as_given(&strokes, &[], self.across_pens);
-        let sorted: Vec<Stroke> = sorted.iter().filter_map(|trail| joined(trail, &given)).collect();
-        if travel(&ordered) <= travel(&sorted) { ordered } else { sorted }
+        let mut plan = as_given(&strokes, &[], self.across_pens);
+        if strokes.iter().flat_map(|stroke| stroke.vertices).all(within) {
+            let ordered = self.plan(&strokes, &[]);
+            if travel(&ordered, &strokes) <= travel(&plan, &strokes) {
+                plan = ordered;
+            }
+        }
+        let mut given: Vec<Option<Stroke>> = given.into_iter().map(Some).collect();
+        plan.iter().filter_map(|trail| joined(trail, &mut given)).collect()
     }
 }
 
-/// From stroke to stroke; the way to the first is not known.
-fn travel(strokes: &[Stroke]) -> f64 {
-    let way = |pair: &[Stroke]| Some(pair.first()?.to().distance(pair.last()?.from));
-    strokes.windows(2).filter_map(way).sum()
+/// From trail to trail; the way to the first is not known.
+fn travel(trails: &[Trail], strokes: &[super::plan::Stroke<'_>]) -> f64 {
+    let mut at: Option<PxPoint> = None;
+    let way = |trail: &Trail| {
+        let (from, to) = trail.ends(strokes);
+        at.replace(to).map_or(0.0, |at| at.distance(from))
+    };
+    trails.iter().map(way).sum()
 }
 
-/// The strokes of a trail as one.
-fn joined(trail: &Trail, given: &[Stroke]) -> Option<Stroke> {
+/// The strokes of a trail as one. Each stroke is of one trail only.
+fn joined(trail: &Trail, given: &mut [Option<Stroke>]) -> Option<Stroke> {
     let mut all: Option<Stroke> = None;
     for piece in &trail.pieces {
-        let mut stroke = given.get(piece.stroke)?.clone();
+        let mut stroke = given.get_mut(piece.stroke)?.take()?;
         if stroke.is_closed() {
             begin_at(&mut stroke, piece.start);
         }
@@ -108,12 +110,7 @@ fn joined(trail: &Trail, given: &[Stroke]) -> Option<Stroke> {
                     all.segments.clear();
                 }
                 if all.to() != stroke.from {
-                    let like = stroke.segments.first().copied().unwrap_or_default();
-                    all.segments.push(PathSegment {
-                        feed_mm_s: like.feed_mm_s,
-                        power: like.power,
-                        ..PathSegment::line(stroke.from)
-                    });
+                    all.segments.push(bridge(stroke.segments.first(), stroke.from));
                 }
                 if !stroke.is_dot() || all.segments.is_empty() {
                     all.segments.append(&mut stroke.segments);
@@ -124,16 +121,17 @@ fn joined(trail: &Trail, given: &[Stroke]) -> Option<Stroke> {
     let mut all = all?;
     if trail.closed {
         if all.to() != all.from && !all.is_dot() {
-            let like = all.segments.last().copied().unwrap_or_default();
-            all.segments.push(PathSegment {
-                feed_mm_s: like.feed_mm_s,
-                power: like.power,
-                ..PathSegment::line(all.from)
-            });
+            all.segments.push(bridge(all.segments.last(), all.from));
         }
         begin_at(&mut all, trail.start);
     }
     Some(all)
+}
+
+/// A line over a gap, as quick and as strong as another one.
+fn bridge(like: Option<&PathSegment>, to: plotter_motion::Point) -> PathSegment {
+    let like = like.copied().unwrap_or_default();
+    PathSegment { feed_mm_s: like.feed_mm_s, power: like.power, ..PathSegment::line(to) }
 }
 
 /// Lets a closed stroke begin where its segment of this number does.

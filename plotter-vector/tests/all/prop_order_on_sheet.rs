@@ -75,7 +75,7 @@ proptest! {
     fn the_same_is_drawn_with_no_more_travel(drawing in drawing(), across_pens in any::<bool>(), is_best in any::<bool>()) {
         let effort = if is_best { OrderEffort::Best } else { OrderEffort::Fast };
         let order = Order { merge_gap_px: 0.0, across_pens, effort, ..Order::default() };
-        let ordered = order.apply_to(&drawing);
+        let ordered = order.apply_to(drawing.clone());
         prop_assert_eq!(ink(&ordered), ink(&drawing));
         prop_assert_eq!(marks(&ordered), marks(&drawing));
         prop_assert!((ordered.length_mm() - drawing.length_mm()).abs() <= 1e-9 * (1.0 + drawing.length_mm()));
@@ -91,7 +91,7 @@ proptest! {
             }
         }
         // Ordered again, nothing is lost either, and the order stays as short.
-        prop_assert_eq!(ink(&order.apply_to(&ordered)), ink(&drawing));
+        prop_assert_eq!(ink(&order.apply_to(ordered)), ink(&drawing));
     }
 }
 
@@ -103,7 +103,7 @@ fn a_gap_is_bridged_at_the_speed_of_what_follows_and_a_dwell_keeps_its_stroke() 
         stroke
     };
     let strokes = vec![line(0.0, 10.0, 1.0), line(10.03, 20.0, 2.0)];
-    let joined = Order::default().apply_to(&Drawing { strokes: strokes.clone(), ..Drawing::default() });
+    let joined = Order::default().apply_to(Drawing { strokes: strokes.clone(), ..Drawing::default() });
     assert_eq!(joined.strokes.len(), 1);
     assert_eq!(
         joined.strokes[0].segments.iter().map(|segment| segment.feed_mm_s).collect::<Vec<_>>(),
@@ -111,5 +111,5 @@ fn a_gap_is_bridged_at_the_speed_of_what_follows_and_a_dwell_keeps_its_stroke() 
     );
     let mut waits = strokes;
     waits[1].before.push(Mark::Dwell(Duration::from_secs(2)));
-    assert_eq!(Order::default().apply_to(&Drawing { strokes: waits, ..Drawing::default() }).strokes.len(), 2);
+    assert_eq!(Order::default().apply_to(Drawing { strokes: waits, ..Drawing::default() }).strokes.len(), 2);
 }

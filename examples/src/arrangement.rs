@@ -1,0 +1,353 @@
+//! [`Arrangement`]: what is done with a drawing between reading and writing it, as options of the command line.
+
+use crate::drawing_file::{Diagnostic, Ops, Severity};
+use clap::ValueEnum;
+use plotter_motion::Point;
+use plotter_motion::drawing::{Bounds, Drawing, DrawingBuilder, Hatching, Hides, Placement};
+use plotter_vector::{Order, OrderEffort};
+use std::rc::Rc;
+use std::str::FromStr;
+
+/// The options for what is done with a drawing. Without any of them it streams through.
+///
+/// They work in this order: what is left out before a line or a layer; mirrored, turned, scaled, put on the page; cropped; hidden; hatched; put in order.
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
+#[command(next_help_heading = "What is done with the drawing")]
+pub struct Arrangement {
+    /// Makes it so many times as large, about the origin
+    #[arg(long, value_name = "F", value_parser = factor, allow_negative_numbers = true, conflicts_with = "fit")]
+    pub scale: Option<f64>,
+    /// Makes it as large as a page allows, and puts it in its middle: A4, letter, 210x297 (mm)
+    #[arg(long, value_name = "PAGE")]
+    pub fit: Option<Page>,
+    /// Puts it in the middle of a page: of its own, or as --center=A4
+    #[arg(long, value_name = "PAGE", num_args = 0..=1, require_equals = true, default_missing_value = "own", conflicts_with = "fit")]
+    pub center: Option<Page>,
+    /// What stays free along each side of the page, mm
+    #[arg(long, value_name = "MM", value_parser = not_negative, allow_negative_numbers = true)]
+    pub margin: Option<f64>,
+    /// Takes the page with its longer side across
+    #[arg(long)]
+    pub landscape: bool,
+    /// Turns it about its middle, counter-clockwise, degrees
+    #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true)]
+    pub rotate: Option<f64>,
+    /// Turns left into right (x) or above into below (y)
+    #[arg(long, value_enum, value_name = "AXIS")]
+    pub mirror: Option<Mirror>,
+    /// Cuts off what lies outside of a rectangle: x and y of its lower left corner, width and height, mm
+    #[arg(long, value_name = "X,Y,W,H", allow_negative_numbers = true)]
+    pub crop: Option<Rectangle>,
+    /// Fills closed strokes with lines at this distance, mm
+    #[arg(long, value_name = "MM", value_parser = factor, allow_negative_numbers = true)]
+    pub hatch: Option<f64>,
+    /// Direction of the lines that fill, degrees from the right
+    #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true, default_value = "45", requires = "hatch")]
+    pub hatch_angle: f64,
+    /// Joins strokes whose ends are so near, mm [default with --order: 0.05]
+    #[arg(long, value_name = "MM", value_parser = not_negative, allow_negative_numbers = true)]
+    pub merge_mm: Option<f64>,
+    /// Draws strokes in an order with less travel, pen by pen, joined where they meet [default with --merge-mm: fast]
+    #[arg(long, value_enum, value_name = "HOW")]
+    pub order: Option<Effort>,
+    /// Begins at a line of the file, with the pen, the speed and the power that hold there
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub from_line: Option<u32>,
+    /// Begins at a layer: its name, or its number in the order of the file
+    #[arg(long, value_name = "LAYER")]
+    pub from_layer: Option<String>,
+}
+
+/// Which way a drawing is mirrored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Mirror {
+    /// Left becomes right
+    X,
+    /// Above becomes below
+    Y,
+}
+
+/// How hard an order is searched for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Effort {
+    /// As in the file
+    None,
+    /// From each end to the nearest stroke
+    Fast,
+    /// Then shortened further, for about a second
+    Best,
+}
+
+/// A page.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Page {
+    /// That of the drawing.
+    Own,
+    /// Width and height, mm.
+    Size(f64, f64),
+}
+
+/// Greatest side of a page, mm.
+const MOST_PAGE_MM: f64 = 1e6;
+
+impl FromStr for Page {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let lower = text.to_ascii_lowercase();
+        let size = match lower.as_str() {
+            "own" => return Ok(Self::Own),
+            "a0" => (841.0, 1189.0),
+            "a1" => (594.0, 841.0),
+            "a2" => (420.0, 594.0),
+            "a3" => (297.0, 420.0),
+            "a4" => (210.0, 297.0),
+            "a5" => (148.0, 210.0),
+            "a6" => (105.0, 148.0),
+            "letter" => (215.9, 279.4),
+            "legal" => (215.9, 355.6),
+            "tabloid" => (279.4, 431.8),
+            sides => {
+                let side = |text: &str| {
+                    let side: f64 = text.trim().trim_end_matches("mm").parse().ok()?;
+                    (side > 0.0 && side <= MOST_PAGE_MM).then_some(side)
+                };
+                let wrong = || {
+                    "give A0 to A6, letter, legal, tabloid, or width x height in mm, as 210x297".to_owned()
+                };
+                let (width, height) = sides.split_once('x').ok_or_else(wrong)?;
+                (side(width).ok_or_else(wrong)?, side(height).ok_or_else(wrong)?)
+            }
+        };
+        Ok(Self::Size(size.0, size.1))
+    }
+}
+
+/// A rectangle of the sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    /// Its lower left corner, mm.
+    pub corner: Point,
+    /// Width and height, mm.
+    pub size_mm: (f64, f64),
+}
+
+impl FromStr for Rectangle {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
+        match numbers[..] {
+            [x, y, width, height]
+                if text.matches(',').count() == 3
+                    && numbers.iter().all(|number| number.abs() <= MOST_PAGE_MM)
+                    && width > 0.0
+                    && height > 0.0 =>
+            {
+                Ok(Self { corner: Point::new(x, y), size_mm: (width, height) })
+            }
+            _ => {
+                Err("give x and y of the lower left corner, width and height in mm, as 10,10,180,120".into())
+            }
+        }
+    }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|number: &f64| number.abs() <= 1e6).ok_or_else(|| String::from("give a number"))
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    let factor = number(text)?;
+    if (1e-6..=1e6).contains(&factor) { Ok(factor) } else { Err("give a number above 0, as 0.5 or 2".into()) }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number = number(text)?;
+    if number >= 0.0 { Ok(number) } else { Err("give 0 or more".into()) }
+}
+
+/// Millimetres over which strokes are joined when nothing is said: a tenth of a pen's line.
+const MERGE_MM: f64 = 0.05;
+
+impl Arrangement {
+    /// Whether the whole drawing has to be there before the first stroke of it can be drawn.
+    fn needs_all(&self) -> bool {
+        let Self { scale, fit, center, rotate, mirror, crop, hatch, merge_mm, order, from_layer, .. } = self;
+        let places =
+            scale.is_some() || fit.is_some() || center.is_some() || rotate.is_some() || mirror.is_some();
+        places
+            || crop.is_some()
+            || hatch.is_some()
+            || merge_mm.is_some()
+            || order.is_some()
+            || from_layer.is_some()
+    }
+
+    /// The operations of a drawing with all that is asked for; `occludes` lets closed strokes hide what is below them.
+    ///
+    /// # Errors
+    ///
+    /// What cannot be done with it, and what helps.
+    pub(crate) fn apply<'a>(
+        &self,
+        ops: Ops<'a>,
+        tolerance_mm: f64,
+        occludes: bool,
+    ) -> Result<Ops<'a>, String> {
+        let ops = match self.from_line {
+            Some(line) => ops.beginning_at(line),
+            None => ops,
+        };
+        if !self.needs_all() && !occludes {
+            if self.margin.is_some() || self.landscape {
+                return Err("--margin and --landscape belong to a page: give --fit or --center".into());
+            }
+            return Ok(ops);
+        }
+        let (mut drawing, mut said, head) = gathered(ops);
+        if let Some(layer) = &self.from_layer {
+            from_layer(&mut drawing, layer)?;
+        }
+        let sheet_mm = self.put(&mut drawing, head.sheet_mm, &mut said)?;
+        if let Some(Rectangle { corner, size_mm: (width, height) }) = self.crop {
+            let upper = Point::new(corner.x + width, corner.y + height);
+            drawing.crop_to_rectangle(Bounds::between(corner, upper));
+        }
+        if occludes {
+            drawing.occlude(Hides::All, tolerance_mm);
+        }
+        if let Some(distance_mm) = self.hatch {
+            let mut hatching = Hatching::default();
+            (hatching.distance_mm, hatching.angle_rad) = (distance_mm, self.hatch_angle.to_radians());
+            hatching.tolerance_mm = tolerance_mm;
+            let lines = drawing.hatch(&hatching, |_| true).map_err(|error| format!("--hatch: {error}"))?;
+            if lines == 0 {
+                let text = "--hatch: no stroke is closed, so that nothing is filled: join their ends first (--merge-mm), and convert again";
+                said.push(Diagnostic::new(Severity::Warning, text.into()));
+            }
+        }
+        if self.order.is_some() || self.merge_mm.is_some() {
+            let effort = match self.order.unwrap_or(Effort::Fast) {
+                Effort::None => OrderEffort::None,
+                Effort::Fast => OrderEffort::Fast,
+                Effort::Best => OrderEffort::Best,
+            };
+            let merge_mm = self.merge_mm.unwrap_or(MERGE_MM);
+            let order = Order { effort, merge_gap_px: merge_mm * Order::PX_PER_MM, ..Order::default() };
+            drawing = order.apply_to(drawing);
+        }
+        let mut arranged = head.with(said, drawing.into_ops(tolerance_mm));
+        arranged.sheet_mm = sheet_mm;
+        Ok(arranged)
+    }
+
+    /// Mirrored, turned, scaled and put on the page; gives the page.
+    fn put(
+        &self,
+        drawing: &mut Drawing,
+        own_mm: Option<(f64, f64)>,
+        said: &mut Vec<Diagnostic>,
+    ) -> Result<Option<(f64, f64)>, String> {
+        let asked = match self.fit.or(self.center) {
+            Some(Page::Own) => {
+                Some(own_mm.ok_or("the drawing has no page of its own: give one, as --center=A4")?)
+            }
+            Some(Page::Size(width, height)) => Some((width, height)),
+            None => None,
+        };
+        let turned = |(width, height): (f64, f64)| {
+            if self.landscape { (width.max(height), width.min(height)) } else { (width, height) }
+        };
+        let page_mm = asked.map(turned);
+        if page_mm.is_none() && (self.margin.is_some() || self.landscape) {
+            return Err("--margin and --landscape belong to a page: give --fit or --center".into());
+        }
+        let placement = Placement {
+            mirror_x: self.mirror == Some(Mirror::X),
+            mirror_y: self.mirror == Some(Mirror::Y),
+            rotate_deg: self.rotate.unwrap_or(0.0),
+            scale: self.scale.unwrap_or(1.0),
+            page_mm,
+            fits: self.fit.is_some(),
+            centres: self.center.is_some(),
+            margin_mm: self.margin.unwrap_or(0.0),
+        };
+        placement.put(drawing).map_err(|error| error.to_string())?;
+        let (bounds, Some((width, height))) = (drawing.bounds(), page_mm) else {
+            // A page that is scaled with what is on it.
+            return Ok(own_mm.map(|(width, height)| (width * placement.scale, height * placement.scale)));
+        };
+        let margin_mm = placement.margin_mm;
+        let (x, y) = bounds.size_mm();
+        if x > width - 2.0 * margin_mm + 1e-6 || y > height - 2.0 * margin_mm + 1e-6 {
+            let text = format!(
+                "the drawing is {x:.1} x {y:.1} mm, larger than the page of {width:.1} x {height:.1} mm within its margins: --fit makes \
+                 it smaller"
+            );
+            said.push(Diagnostic::new(Severity::Warning, text));
+        }
+        Ok(Some((width, height)))
+    }
+}
+
+/// Leaves out what lies before the first stroke of a layer.
+fn from_layer(drawing: &mut Drawing, asked: &str) -> Result<(), String> {
+    let names = &drawing.layers;
+    let by_name = names.iter().position(|name| name.eq_ignore_ascii_case(asked));
+    let by_number = || {
+        asked.parse::<usize>().ok().and_then(|number| number.checked_sub(1)).filter(|at| *at < names.len())
+    };
+    let Some(layer) = by_name.or_else(by_number) else {
+        let known =
+            if names.is_empty() { "it has none".into() } else { format!("it has {}", names.join(", ")) };
+        return Err(format!("--from-layer: the drawing has no layer {asked}: {known}"));
+    };
+    let number = u32::try_from(layer + 1).unwrap_or(u32::MAX);
+    let first = drawing.strokes.iter().position(|stroke| stroke.layer == number);
+    let first = first.ok_or_else(|| format!("--from-layer: the layer {asked} draws nothing"))?;
+    drawing.strokes.drain(..first);
+    Ok(())
+}
+
+/// All of a drawing, what there is to say of it, and what its operations tell besides.
+fn gathered(mut ops: Ops<'_>) -> (Drawing, Vec<Diagnostic>, Ops<'_>) {
+    let (mut builder, mut said) = (DrawingBuilder::default(), Vec::new());
+    while let Some(item) = ops.next() {
+        match item {
+            Ok(op) => {
+                builder.set_layer(ops.layer());
+                builder.push(op);
+            }
+            Err(found) => said.push(found),
+        }
+    }
+    let mut drawing = builder.finish();
+    if !ops.layers.is_empty() {
+        drawing.layers = Rc::unwrap_or_clone(std::mem::take(&mut ops.layers));
+    }
+    (drawing, said, ops)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pages_have_names_and_sizes() {
+        assert_eq!("A4".parse(), Ok(Page::Size(210.0, 297.0)));
+        assert_eq!("100x50.5mm".parse(), Ok(Page::Size(100.0, 50.5)));
+        for bad in ["A9", "10", "0x5", "-1x5", "nanx5", ""] {
+            assert!(bad.parse::<Page>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn rectangles_are_four_numbers() {
+        let expected = Rectangle { corner: Point::new(-1.0, 2.0), size_mm: (3.0, 4.5) };
+        assert_eq!("-1,2, 3,4.5".parse(), Ok(expected));
+        for bad in ["1,2,3", "1,2,3,0", "1,2,3,4,5", "a,1,1,1", "1,2,nan,4"] {
+            assert!(bad.parse::<Rectangle>().is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! What `convert` and `stepper` do with a drawing on its way: place, crop, order, begin in the middle.
+
+use crate::built_example::{Folder, complaint, run_example};
+use plotter_examples::{DrawingFile, Reading};
+use plotter_motion::Point;
+use plotter_motion::drawing::Drawing;
+use std::path::Path;
+
+/// Half of the last digit in an SVG, mm.
+const DIGIT_MM: f64 = 1e-4;
+
+/// Three lines of two pens, 30 x 20 mm in all.
+const LINES: &str =
+    "IN;SP1;PU400,400;PD800,400;\nSP2;PU1600,1200;PD1600,400;\nSP1;PU1200,400;PD810,400;\nPU;SP0;";
+
+fn read(path: &str) -> Drawing {
+    let file = DrawingFile::open(Path::new(path), None).unwrap();
+    file.ops(Reading::default()).unwrap().filter_map(Result::ok).collect()
+}
+
+fn arranged_as(text: &str, name: &str, options: &[&str]) -> (Drawing, String) {
+    let folder = Folder::new();
+    let (from, to) = (folder.write(name, text), folder.file("b.svg"));
+    let output = run_example("convert", &[&[from.as_str(), &to][..], options].concat());
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    (read(&to), said)
+}
+
+fn arranged(options: &[&str]) -> Drawing {
+    arranged_as(LINES, "a.plt", options).0
+}
+
+fn box_of(drawing: &Drawing) -> [f64; 4] {
+    let bounds = drawing.bounds();
+    [bounds.least.x, bounds.least.y, bounds.most.x, bounds.most.y]
+}
+
+fn near(one: [f64; 4], other: [f64; 4]) -> bool {
+    one.iter().zip(other).all(|(one, other)| (one - other).abs() < 2.0 * DIGIT_MM)
+}
+
+#[test]
+fn a_drawing_is_placed_as_asked() {
+    let rows: [(&[&str], [f64; 4]); 9] = [
+        (&["--scale", "2"], [20.0, 20.0, 80.0, 60.0]),
+        (&["--fit", "A4"], [0.0, 78.5, 210.0, 218.5]),
+        (&["--fit", "a4", "--margin", "15", "--landscape"], [15.0, 16.0, 282.0, 194.0]),
+        (&["--fit", "100x100"], [0.0, 16.6667, 100.0, 83.3333]),
+        (&["--center=100x50"], [35.0, 15.0, 65.0, 35.0]),
+        (&["--center=100x50", "--scale", "2"], [20.0, 5.0, 80.0, 45.0]),
+        (&["--rotate", "90"], [15.0, 5.0, 35.0, 35.0]),
+        (&["--rotate", "90", "--fit", "40x60"], [0.0, 0.0, 40.0, 60.0]),
+        (&["--mirror", "x"], [10.0, 10.0, 40.0, 30.0]),
+    ];
+    for (options, expected) in rows {
+        let found = box_of(&arranged(options));
+        assert!(near(found, expected), "{options:?}: {found:?}");
+    }
+    // The line that stands on the right is on the left.
+    let mirrored = arranged(&["--mirror", "x"]);
+    let stands = mirrored.strokes.iter().find(|stroke| stroke.pen == 2).unwrap();
+    assert!((stands.from.x - 10.0).abs() < DIGIT_MM, "{stands:?}");
+    let above = arranged(&["--mirror", "y"]);
+    assert!(above.strokes.iter().any(|stroke| stroke.from.distance(Point::new(10.0, 30.0)) < DIGIT_MM));
+}
+
+#[test]
+fn a_page_is_that_of_the_drawing_or_what_is_asked_for() {
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='60mm' viewBox='0 0 100 60'><path d='M0 0H20' stroke='#000'/></svg>";
+    let folder = Folder::new();
+    let (from, to) = (folder.write("a.svg", svg), folder.file("b.svg"));
+    let page = |options: &[&str]| {
+        let output = run_example("convert", &[&[from.as_str(), &to][..], options].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = std::fs::read_to_string(&to).unwrap();
+        let width = text.split("width=\"").nth(1).unwrap().split('"').next().unwrap().to_owned();
+        (width, box_of(&read(&to)))
+    };
+    let (width, place) = page(&["--center"]);
+    assert!(width == "100mm" && near(place, [40.0, 30.0, 60.0, 30.0]), "{width} {place:?}");
+    assert_eq!(page(&["--scale", "2"]).0, "200mm");
+    assert_eq!(page(&["--fit", "A3"]).0, "297mm");
+    assert_eq!(page(&["--fit", "own", "--landscape"]).0, "100mm");
+    let (_, said) = arranged_as(LINES, "a.plt", &["--center=20x10"]);
+    assert!(said.contains("the drawing is 30.0 x 20.0 mm, larger than the page of 20.0 x 10.0 mm"), "{said}");
+}
+
+#[test]
+fn what_lies_outside_is_cut_off() {
+    let cropped = arranged(&["--crop", "15,0,10,100"]);
+    assert!(near(box_of(&cropped), [15.0, 10.0, 25.0, 10.0]), "{:?}", box_of(&cropped));
+    assert!((cropped.length_mm() - 9.75).abs() < 1e-3, "{}", cropped.length_mm());
+}
+
+#[test]
+fn strokes_come_in_an_order_with_less_travel_and_are_joined() {
+    let ordered = arranged(&["--order", "best"]);
+    assert_eq!(ordered.strokes.iter().map(|stroke| stroke.pen).collect::<Vec<_>>(), [1, 1, 2]);
+    assert!((ordered.length_mm() - arranged(&[]).length_mm()).abs() < 1e-3);
+    // The gap of a quarter of a millimetre is bridged where that is asked for.
+    assert_eq!(arranged(&["--merge-mm", "0.3"]).strokes.len(), 2);
+    assert_eq!(arranged(&["--order", "fast", "--merge-mm", "0.3"]).strokes.len(), 2);
+}
+
+#[test]
+fn a_plot_goes_on_at_a_line_with_its_pen() {
+    let folder = Folder::new();
+    let (from, to) = (folder.write("a.plt", LINES), folder.file("b.plt"));
+    for (line, expected) in [("2", "SP2;\nPU1600,1200;"), ("3", "SP1;\nPU1200,400;\nPD810,400;")] {
+        let output = run_example("convert", &[&from, &to, "--from-line", line]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = std::fs::read_to_string(&to).unwrap();
+        assert!(text.contains(expected) && !text.contains("PD800,400"), "{line}: {text}");
+    }
+    // In the middle of a stroke: from where the pen is, with the speed and the power that hold there.
+    let gcode = folder.write("a.gcode", "G21 G90\nM4 S500\nG1 X10 Y0 F600\nX20\nX30\nM5\n");
+    let output = run_example(
+        "convert",
+        &[&gcode, &folder.file("c.gcode"), "--from-line", "5", "--gcode-pen", "laser"],
+    );
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = std::fs::read_to_string(folder.file("c.gcode")).unwrap();
+    assert!(text.contains("G0 X20 Y0\nM4 S500\nG1 X30 Y0 F600"), "{text}");
+}
+
+#[test]
+fn a_plot_goes_on_at_a_layer() {
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' width='100mm' height='60mm' \
+               viewBox='0 0 100 60' stroke='#000'><g inkscape:groupmode='layer' inkscape:label='one'><path d='M0 60H20'/></g>\
+               <g inkscape:groupmode='layer' inkscape:label='two'><path d='M0 50H20'/></g></svg>";
+    for layer in ["two", "TWO", "2"] {
+        let (drawing, _) = arranged_as(svg, "a.svg", &["--from-layer", layer]);
+        assert_eq!(drawing.strokes.len(), 1);
+        assert!(drawing.strokes[0].from.distance(Point::new(0.0, 10.0)) < DIGIT_MM);
+    }
+    let folder = Folder::new();
+    let from = folder.write("a.svg", svg);
+    let said = complaint("convert", &[&from, &folder.file("b.svg"), "--from-layer", "three"]);
+    assert!(said.ends_with("--from-layer: the drawing has no layer three: it has one, two"), "{said}");
+}
+
+#[test]
+fn the_stepper_plans_what_was_arranged() {
+    let folder = Folder::new();
+    let from = folder.write("a.plt", LINES);
+    let output = run_example("stepper", &[&from, "--scale", "3", "--estimate"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let down = text.lines().find(|line| line.contains("pen down")).unwrap();
+    assert!(down.contains("119.2 mm") || down.contains("119.3 mm"), "{text}");
+}
+
+#[test]
+fn what_cannot_be_done_is_said_in_one_line() {
+    let folder = Folder::new();
+    let (from, to) = (folder.write("a.plt", LINES), folder.file("b.svg"));
+    for (options, expected) in [
+        (&["--margin", "5"][..], "--margin and --landscape belong to a page: give --fit or --center"),
+        (&["--center"], "the drawing has no page of its own: give one, as --center=A4"),
+        (&["--fit", "20x20", "--margin", "10"], "0.0 x 0.0 mm are left of the page within its margins"),
+        (&["--from-layer", "1"], "--from-layer: the drawing has no layer 1: it has none"),
+        (&["--from-line", "99"], "nothing is drawn"),
+        (&["--crop", "500,500,1,1"], "nothing is drawn"),
+    ] {
+        let said = complaint("convert", &[&[from.as_str(), &to][..], options].concat());
+        assert!(said.contains(expected), "{options:?}: {said}");
+        assert!(!Path::new(&to).exists());
+    }
+    for options in [
+        &["--scale", "0"][..],
+        &["--fit", "A9"],
+        &["--crop", "1,2,3"],
+        &["--order", "quick"],
+        &["--from-line", "0"],
+        &["--scale", "2", "--fit", "A4"],
+    ] {
+        let output = run_example("convert", &[&[from.as_str(), &to][..], options].concat());
+        assert_eq!(output.status.code(), Some(2), "{options:?}");
+    }
+}
