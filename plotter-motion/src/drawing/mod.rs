@@ -22,9 +22,11 @@
 //! ```
 
 mod affine;
+mod arcs;
 mod bounds;
 mod ops;
 mod segment;
+mod simplify;
 mod stroke;
 
 pub use affine::Affine;
