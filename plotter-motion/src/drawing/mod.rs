@@ -20,10 +20,15 @@
 //! assert!(text.contains("G1 X20 Y0"));
 //! # Ok::<(), gcode::WriteError>(())
 //! ```
+//!
+//! Less to draw and to send: [`Drawing::drop_doubles`] draws nothing twice, [`Drawing::simplify`] leaves out places of lines, and
+//! [`Drawing::fit_arcs`] makes arcs of lines that lie on a circle. In this order, with `fit_arcs` before `simplify`, each finds most.
 
 mod affine;
 mod arcs;
 mod bounds;
+mod doubles;
+mod ink;
 mod ops;
 mod segment;
 mod simplify;
@@ -31,6 +36,7 @@ mod stroke;
 
 pub use affine::Affine;
 pub use bounds::Bounds;
+pub use doubles::Doubles;
 pub use segment::{PathSegment, Shape};
 pub use stroke::{Mark, Stroke};
 
