@@ -10,7 +10,7 @@ use std::str::FromStr;
 
 /// The options for what is done with a drawing. Without any of them it streams through.
 ///
-/// They work in this order: what is left out before a line or a layer; mirrored, turned, scaled, put on the page; cropped; hidden; hatched; put in order.
+/// They work in this order: what is left out before a line or a layer; mirrored, turned, scaled, put on the page; cropped; hidden; drawn once; with arcs; simplified; hatched; put in order.
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "What is done with the drawing")]
 pub struct Arrangement {
@@ -38,6 +38,15 @@ pub struct Arrangement {
     /// Cuts off what lies outside of a rectangle: x and y of its lower left corner, width and height, mm
     #[arg(long, value_name = "X,Y,W,H", allow_negative_numbers = true)]
     pub crop: Option<Rectangle>,
+    /// Draws nothing twice with one pen, not even a part of a line
+    #[arg(long)]
+    pub drop_doubles: bool,
+    /// Makes arcs of lines that lie on a circle within so much, mm: --arcs, or --arcs=0.05 [default: 0.01]
+    #[arg(long, value_name = "MM", value_parser = factor, allow_negative_numbers = true, num_args = 0..=1, require_equals = true, default_missing_value = "0.01")]
+    pub arcs: Option<f64>,
+    /// Leaves out places of lines that lie within so much of what stays, mm
+    #[arg(long, value_name = "MM", value_parser = factor, allow_negative_numbers = true)]
+    pub simplify_mm: Option<f64>,
     /// Fills closed strokes with lines at this distance, mm
     #[arg(long, value_name = "MM", value_parser = factor, allow_negative_numbers = true)]
     pub hatch: Option<f64>,
@@ -173,15 +182,13 @@ const MERGE_MM: f64 = 0.05;
 impl Arrangement {
     /// Whether the whole drawing has to be there before the first stroke of it can be drawn.
     fn needs_all(&self) -> bool {
-        let Self { scale, fit, center, rotate, mirror, crop, hatch, merge_mm, order, from_layer, .. } = self;
+        let Self { scale, fit, center, rotate, mirror, crop, .. } = self;
+        let Self { hatch, drop_doubles, arcs, simplify_mm, merge_mm, order, from_layer, .. } = self;
         let places =
             scale.is_some() || fit.is_some() || center.is_some() || rotate.is_some() || mirror.is_some();
-        places
-            || crop.is_some()
-            || hatch.is_some()
-            || merge_mm.is_some()
-            || order.is_some()
-            || from_layer.is_some()
+        let cuts = crop.is_some() || hatch.is_some() || *drop_doubles;
+        let bends = arcs.is_some() || simplify_mm.is_some();
+        places || cuts || bends || merge_mm.is_some() || order.is_some() || from_layer.is_some()
     }
 
     /// The operations of a drawing with all that is asked for; `occludes` lets closed strokes hide what is below them.
@@ -216,6 +223,15 @@ impl Arrangement {
         }
         if occludes {
             drawing.occlude(Hides::All, tolerance_mm);
+        }
+        if self.drop_doubles {
+            drawing.drop_doubles(tolerance_mm);
+        }
+        if let Some(arcs_mm) = self.arcs {
+            drawing.fit_arcs(arcs_mm);
+        }
+        if let Some(simplify_mm) = self.simplify_mm {
+            drawing.simplify(simplify_mm);
         }
         if let Some(distance_mm) = self.hatch {
             let mut hatching = Hatching::default();

@@ -23,14 +23,20 @@
 //! assert!(text.contains("G1 X20 Y0"));
 //! # Ok::<(), gcode::WriteError>(())
 //! ```
+//!
+//! Less to draw and to send: [`Drawing::drop_doubles`] draws nothing twice, [`Drawing::simplify`] leaves out places of lines, and
+//! [`Drawing::fit_arcs`] makes arcs of lines that lie on a circle. In this order, with `fit_arcs` before `simplify`, each finds most.
 
 mod affine;
+mod arcs;
 mod bounds;
 mod boxes;
 mod crop;
+mod doubles;
 #[cfg(any(feature = "kurbo", feature = "mint"))]
 mod foreign;
 mod hatch;
+mod ink;
 mod occlude;
 mod ops;
 mod place;
@@ -38,11 +44,13 @@ mod region;
 mod remains;
 pub(crate) mod scan;
 mod segment;
+mod simplify;
 mod stroke;
 mod written;
 
 pub use affine::Affine;
 pub use bounds::Bounds;
+pub use doubles::Doubles;
 pub use hatch::{HatchError, Hatching};
 pub use occlude::Hides;
 pub use ops::DrawingBuilder;

@@ -64,6 +64,7 @@ mod prop_homing;
 mod prop_hpgl;
 mod prop_hpgl_thesis_text;
 mod prop_kinematics;
+mod prop_lines;
 mod prop_link;
 mod prop_marking_board;
 mod prop_motion;

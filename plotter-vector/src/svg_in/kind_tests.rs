@@ -475,8 +475,8 @@ fn boxes_are_those_of_what_is_drawn() {
         ("<style>@keyframes k{from{rotate:45deg}}*{transform-box:fill-box}</style><path d='M20 30H60' transform='translate(1 2)'/>".to_owned(), "21,32 61,32"),
         // Of a group with what no pen draws, without marks; of a line that has no height.
         (format!("<g style='{TURNED}'><path d='M20 30H60'/><rect x='10' y='10' width='5' height='5' stroke='none'/></g>"), "25,5 25,45"),
-        (format!("<marker id='m' markerWidth='20' markerHeight='20' overflow='visible'><path d='M-30 -30V30'/></marker>\
-                  <g style='transform-box:fill-box;transform-origin:center;scale:2'><path d='M20 30H60' marker-end='url(#m)'/></g>"), "0,30 80,30 | 20,-30 20,90"),
+        ("<marker id='m' markerWidth='20' markerHeight='20' overflow='visible'><path d='M-30 -30V30'/></marker>\
+                  <g style='transform-box:fill-box;transform-origin:center;scale:2'><path d='M20 30H60' marker-end='url(#m)'/></g>".to_owned(), "0,30 80,30 | 20,-30 20,90"),
         (format!("<path d='M20 30H60' style='{TURNED}'/>"), "40,10 40,50"),
         // One within another: both are turned, about the same place.
         (format!("<g style='{TURNED}'><path d='M20 30H60' style='{TURNED}'/></g>"), "60,30 20,30"),

@@ -613,5 +613,6 @@ mod tests;
 #[cfg(test)]
 mod kind_tests;
 
-#[cfg(all(test, feature = "svg-text"))]
+#[cfg(test)]
+#[cfg(feature = "svg-text")]
 mod single_stroke_tests;

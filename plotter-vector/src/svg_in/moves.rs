@@ -25,6 +25,9 @@ use std::str::FromStr;
 use usvg::roxmltree::{Document, Node, NodeId};
 use usvg::tiny_skia_path::Rect;
 
+/// Ranges of a file, and what stands in their place.
+type Replaced = Vec<(Range<usize>, String)>;
+
 /// The properties that move an element, or say how it is moved.
 pub(super) const PROPERTIES: [&str; 6] =
     ["transform", "transform-origin", "transform-box", "translate", "rotate", "scale"];
@@ -184,7 +187,7 @@ impl Moves {
         text: &str,
         parser: &usvg::Options<'_>,
         max_depth: usize,
-        text_with: &dyn Fn(Added, Vec<(Range<usize>, String)>) -> Option<String>,
+        text_with: &dyn Fn(Added, Replaced) -> Option<String>,
     ) -> Result<(), SvgError> {
         let Some(levels) = self
             .moved
