@@ -104,6 +104,56 @@ fn strokes_come_in_an_order_with_less_travel_and_are_joined() {
 }
 
 #[test]
+fn nothing_is_drawn_twice() {
+    // The second line covers half of the first one; the third one is of another pen.
+    let text = "IN;SP1;PU0,0;PD800,0;PU1200,0;PD400,0;SP2;PU0,0;PD800,0;PU;";
+    let (once, _) = arranged_as(text, "a.plt", &["--drop-doubles"]);
+    let of_pen = |pen| once.of_pen(pen).length_mm();
+    assert!((of_pen(1) - 30.0).abs() < 1e-3 && (of_pen(2) - 20.0).abs() < 1e-3, "{once:?}");
+}
+
+/// A circle of 20 mm in 72 lines about (50, 50) mm.
+fn round() -> String {
+    let mut text = String::from("IN;SP1;PU2800,2000;PD");
+    let places: Vec<String> = (1..=72)
+        .map(|k| {
+            let angle = f64::from(5 * (k % 72)).to_radians();
+            format!("{:.0},{:.0}", 2000.0 + 800.0 * angle.cos(), 2000.0 + 800.0 * angle.sin())
+        })
+        .collect();
+    text + &places.join(",") + ";PU;"
+}
+
+#[test]
+fn lines_become_arcs_or_fewer_lines() {
+    let segments = |options: &[&str]| {
+        let (drawing, _) = arranged_as(&round(), "a.plt", options);
+        drawing.strokes.iter().map(|stroke| stroke.segments.len()).sum::<usize>()
+    };
+    assert_eq!(segments(&[]), 72);
+    // A whole turn, as SVG writes it: two arcs, or one for each part that rounding to HPGL's units sets apart.
+    let arcs = segments(&["--arcs=0.05"]);
+    assert!((2..=4).contains(&arcs), "{arcs}");
+    // A chord of 10 degrees is 0.08 mm off, one of 20 degrees 0.3 mm.
+    let few = segments(&["--simplify-mm", "0.2"]);
+    assert!((18..=36).contains(&few), "{few}");
+}
+
+#[test]
+fn closed_strokes_are_filled_and_hide_what_is_below() {
+    let (filled, _) = arranged_as(&round(), "a.plt", &["--hatch", "2", "--hatch-angle", "0"]);
+    // 20 lines or so, together as long as the area of the circle through the distance: 400 π / 2 mm, beside its outline of 40 π.
+    let lines_mm = filled.length_mm() - 40.0 * std::f64::consts::PI;
+    assert!((lines_mm - 200.0 * std::f64::consts::PI).abs() < 15.0, "{lines_mm}");
+    let crossed = round().replace("IN;SP1;", "IN;SP1;PU0,2000;PD4000,2000;");
+    let (hidden, _) = arranged_as(&crossed, "a.plt", &["--occlude"]);
+    let line_mm = hidden.length_mm() - arranged_as(&round(), "a.plt", &[]).0.length_mm();
+    assert!((line_mm - 60.0).abs() < 0.05, "{line_mm}");
+    let (_, said) = arranged_as(LINES, "a.plt", &["--hatch", "1"]);
+    assert!(said.contains("--hatch: no stroke is closed"), "{said}");
+}
+
+#[test]
 fn a_plot_goes_on_at_a_line_with_its_pen() {
     let folder = Folder::new();
     let (from, to) = (folder.write("a.plt", LINES), folder.file("b.plt"));

@@ -44,7 +44,7 @@ enum Side {
 ///
 /// ```
 /// use plotter_motion::{Point, drawing::{Bounds, Region}};
-/// let square = |half| Bounds::between(Point::new(-half, -half), Point::new(half, half));
+/// let square = |half: f64| Bounds::between(Point::new(-half, -half), Point::new(half, half));
 /// let frame = Region::polygons([square(5.0).corners(), square(3.0).corners()]);
 /// assert!(frame.has(Point::new(4.0, 0.0)) && frame.has(Point::new(3.0, 3.0)));
 /// assert!(!frame.has(Point::new(2.9, 0.0)) && !frame.has(Point::new(5.1, 0.0)));

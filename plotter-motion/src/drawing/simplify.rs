@@ -8,7 +8,7 @@
 //! cones' common part, which only shrinks (W. Chan and F. Chin, "Approximation of polygonal curves with minimum number of line segments or
 //! minimum error", 1996). So all lines from one place are known after one look at each place that follows, until the cone is empty.
 //! Of all lines found, the fewest that lead from end to end are taken (H. Imai and M. Iri, 1988). Douglas and Peucker's halving
-//! is not used: it takes a square of the number of places at worst, and some fifth more lines.
+//! is not used: it takes a square of the number of places at worst.
 
 use super::{Drawing, PathSegment, Shape, Stroke};
 use crate::{Point, Segment, Vec2};
@@ -25,8 +25,8 @@ impl Drawing {
     /// The places left are places of before; ends of strokes stay. Arcs and curves are left as they are, and lines of different speeds
     /// or powers stay apart. What is closed stays closed. A tolerance of 0 or below, or that is no number, changes nothing.
     ///
-    /// The result is the least number of lines for runs of which no line stands for more than 64; it is never more than that of
-    /// taking the longest line again and again. The time is proportional to the number of places, whatever they are.
+    /// The result is the least number of lines that lead the way of the places forward, for runs of which no line stands for more than 64;
+    /// it is never more than that of taking the longest line again and again. The time is proportional to the number of places, whatever they are.
     ///
     /// ```
     /// use plotter_motion::{Point, drawing::{Drawing, Stroke}};
