@@ -10,7 +10,7 @@ use std::str::FromStr;
 
 /// The options for what is done with a drawing. Without any of them it streams through.
 ///
-/// They work in this order: what is left out before a line or a layer; mirrored, turned, scaled, put on the page; cropped; hidden; drawn once; with arcs; simplified; hatched; put in order.
+/// They work in this order: what is left out before a line or a layer; mirrored, turned, scaled, put on the page; hidden; hatched; cropped; drawn once; with arcs; simplified; put in order.
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "What is done with the drawing")]
 pub struct Arrangement {
@@ -217,21 +217,8 @@ impl Arrangement {
             from_layer(&mut drawing, layer)?;
         }
         let sheet_mm = self.put(&mut drawing, head.sheet_mm, &mut said)?;
-        if let Some(Rectangle { corner, size_mm: (width, height) }) = self.crop {
-            let upper = Point::new(corner.x + width, corner.y + height);
-            drawing.crop_to_rectangle(Bounds::between(corner, upper));
-        }
         if occludes {
             drawing.occlude(Hides::All, tolerance_mm);
-        }
-        if self.drop_doubles {
-            drawing.drop_doubles(tolerance_mm);
-        }
-        if let Some(arcs_mm) = self.arcs {
-            drawing.fit_arcs(arcs_mm);
-        }
-        if let Some(simplify_mm) = self.simplify_mm {
-            drawing.simplify(simplify_mm);
         }
         if let Some(distance_mm) = self.hatch {
             let mut hatching = Hatching::default();
@@ -242,6 +229,19 @@ impl Arrangement {
                 let text = "--hatch: no stroke is closed, so that nothing is filled: join their ends first (--merge-mm), and convert again";
                 said.push(Diagnostic::new(Severity::Warning, text.into()));
             }
+        }
+        if let Some(Rectangle { corner, size_mm: (width, height) }) = self.crop {
+            let upper = Point::new(corner.x + width, corner.y + height);
+            drawing.crop_to_rectangle(Bounds::between(corner, upper));
+        }
+        if self.drop_doubles {
+            drawing.drop_doubles(tolerance_mm);
+        }
+        if let Some(arcs_mm) = self.arcs {
+            drawing.fit_arcs(arcs_mm);
+        }
+        if let Some(simplify_mm) = self.simplify_mm {
+            drawing.simplify(simplify_mm);
         }
         if self.order.is_some() || self.merge_mm.is_some() {
             let effort = match self.order.unwrap_or(Effort::Fast) {

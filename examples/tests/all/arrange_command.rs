@@ -145,6 +145,10 @@ fn closed_strokes_are_filled_and_hide_what_is_below() {
     // 20 lines or so, together as long as the area of the circle through the distance: 400 π / 2 mm, beside its outline of 40 π.
     let lines_mm = filled.length_mm() - 40.0 * std::f64::consts::PI;
     assert!((lines_mm - 200.0 * std::f64::consts::PI).abs() < 15.0, "{lines_mm}");
+    // Half of it: what is cropped was filled before.
+    let options = ["--hatch", "2", "--hatch-angle", "0", "--crop", "50,0,100,100"];
+    let half_mm = arranged_as(&round(), "a.plt", &options).0.length_mm() - 20.0 * std::f64::consts::PI;
+    assert!((half_mm - 100.0 * std::f64::consts::PI).abs() < 15.0, "{half_mm}");
     let crossed = round().replace("IN;SP1;", "IN;SP1;PU0,2000;PD4000,2000;");
     let (hidden, _) = arranged_as(&crossed, "a.plt", &["--occlude"]);
     let line_mm = hidden.length_mm() - arranged_as(&round(), "a.plt", &[]).0.length_mm();

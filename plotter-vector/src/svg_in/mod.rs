@@ -568,7 +568,8 @@ type DrawWhole<'a> = dyn Fn(&usvg::Text) -> Option<f32> + 'a;
 /// those in other files.
 fn document_of(text: &str) -> Result<roxmltree::Document<'_>, SvgError> {
     let limit = survey::MAX_ELEMENTS;
-    let nodes_limit = u32::try_from(limit).unwrap_or(u32::MAX);
+    // Between elements, the ends of lines are nodes too.
+    let nodes_limit = u32::try_from(limit.saturating_mul(2)).unwrap_or(u32::MAX);
     let xml = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit, ..Default::default() };
     roxmltree::Document::parse_with_options(text, xml).map_err(|error| match error {
         roxmltree::Error::NodesLimitReached => SvgError::TooManyElements { limit },

@@ -14,6 +14,7 @@ use usvg::tiny_skia_path::{Path, PathBuilder, PathSegment, Point};
 
 /// How far the way back may be from the way forth, and how large a dot may be, ems. The thinnest stems of letters that are areas are
 /// some ten times as wide.
+#[cfg(feature = "svg-text")]
 pub(super) const SLACK_EM: f32 = 0.001;
 
 /// A piece of a contour: its ends and handles.
