@@ -114,7 +114,7 @@ fn nothing_is_drawn_twice() {
 
 /// A circle of 20 mm in 72 lines about (50, 50) mm.
 fn round() -> String {
-    let mut text = String::from("IN;SP1;PU2800,2000;PD");
+    let text = String::from("IN;SP1;PU2800,2000;PD");
     let places: Vec<String> = (1..=72)
         .map(|k| {
             let angle = f64::from(5 * (k % 72)).to_radians();
