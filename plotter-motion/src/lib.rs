@@ -8,6 +8,7 @@ extern crate alloc;
 extern crate std;
 
 mod axis;
+mod bezier;
 mod bresenham;
 mod budget;
 mod chords;

@@ -47,20 +47,7 @@ impl Affine {
     /// Turns about the origin, counter-clockwise; exactly for quarters of a turn.
     #[must_use]
     pub fn turned(angle_rad: f64) -> Self {
-        let quarters = angle_rad / core::f64::consts::FRAC_PI_2;
-        let nearest = libm::round(quarters);
-        /// Share of a turn that degrees lose as radians.
-        const NEAR: f64 = 1e-15;
-        let (sin, cos) = if libm::fabs(quarters - nearest) <= NEAR * libm::fmax(1.0, libm::fabs(quarters)) {
-            match libm::fmod(libm::fmod(nearest, 4.0) + 4.0, 4.0) {
-                1.0 => (1.0, 0.0),
-                2.0 => (0.0, -1.0),
-                3.0 => (-1.0, 0.0),
-                _ => (0.0, 1.0),
-            }
-        } else {
-            (libm::sin(angle_rad), libm::cos(angle_rad))
-        };
+        let (sin, cos) = sin_cos(angle_rad);
         Self { x: Vec2::new(cos, sin), y: Vec2::new(-sin, cos), ..Self::IDENTITY }
     }
 
@@ -83,13 +70,13 @@ impl Affine {
     }
 
     /// Whether circles stay circles: 1 or −1 for whether they turn as before; `None` where they become ellipses.
-    pub(super) fn turns_circles(&self) -> Option<f64> {
-        /// Share of a length that rounding may have changed.
-        const ROUNDING: f64 = 1e-12;
+    pub(crate) fn turns_circles(&self) -> Option<f64> {
+        /// Share of a length by which axes may differ: what rounding makes of maps within maps, and a millionth of a millimetre of a metre.
+        const ROUNDING: f64 = 1e-9;
         let square = self.x.length_squared();
         let is_square = libm::fabs(self.x.dot(self.y)) <= ROUNDING * square
             && libm::fabs(self.y.length_squared() - square) <= ROUNDING * square;
-        is_square.then(|| if self.x.cross(self.y) < 0.0 { -1.0 } else { 1.0 })
+        (is_square && square > 0.0).then(|| if self.x.cross(self.y) < 0.0 { -1.0 } else { 1.0 })
     }
 
     /// Whether all its numbers are finite, and no area becomes a line.
@@ -97,5 +84,22 @@ impl Affine {
     pub fn is_sound(&self) -> bool {
         let area = self.x.cross(self.y);
         self.origin.is_finite() && area.is_finite() && area != 0.0
+    }
+}
+
+/// Sine and cosine: exact at quarters of a turn, in which most drawings, blocks and texts are turned.
+pub(crate) fn sin_cos(angle_rad: f64) -> (f64, f64) {
+    /// Share of an angle that degrees lose as radians: some last bits.
+    const NEAR: f64 = 1e-15;
+    let quarters = angle_rad / core::f64::consts::FRAC_PI_2;
+    let nearest = libm::round(quarters);
+    if libm::fabs(quarters - nearest) > NEAR * libm::fmax(1.0, libm::fabs(quarters)) {
+        return (libm::sin(angle_rad), libm::cos(angle_rad));
+    }
+    match libm::fmod(libm::fmod(nearest, 4.0) + 4.0, 4.0) {
+        1.0 => (1.0, 0.0),
+        2.0 => (0.0, -1.0),
+        3.0 => (-1.0, 0.0),
+        _ => (0.0, 1.0),
     }
 }

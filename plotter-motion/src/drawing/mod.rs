@@ -27,7 +27,7 @@
 //! Less to draw and to send: [`Drawing::drop_doubles`] draws nothing twice, [`Drawing::simplify`] leaves out places of lines, and
 //! [`Drawing::fit_arcs`] makes arcs of lines that lie on a circle. In this order, with `fit_arcs` before `simplify`, each finds most.
 
-mod affine;
+pub(crate) mod affine;
 mod arcs;
 mod bounds;
 mod boxes;

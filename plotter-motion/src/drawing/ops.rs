@@ -108,6 +108,14 @@ impl Drawing {
     }
 }
 
+impl Stroke {
+    /// Its own operations: to its start with the pen up, and along it. Its pen is not selected.
+    #[cfg(feature = "font")]
+    pub(crate) fn ops(&self, tolerance_mm: f64) -> Vec<PlotOp> {
+        State { pen: self.pen, power: None }.ops(self, tolerance_mm)
+    }
+}
+
 /// What holds on the machine.
 #[derive(Clone, Copy, Debug, Default)]
 struct State {

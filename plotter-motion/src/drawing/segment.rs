@@ -1,12 +1,10 @@
 //! [`PathSegment`]: a line, an arc or a cubic curve of a stroke.
 
 use super::{Affine, Bounds};
+use crate::bezier::Bezier;
 use crate::{PlotOp, Point, chords};
 use alloc::vec::Vec;
 use core::f64::consts::{FRAC_PI_8, PI, TAU};
-
-/// Most lines of one cubic curve.
-const MOST_LINES: f64 = 4096.0;
 
 /// What lies between two places of a stroke.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -125,27 +123,19 @@ impl PathSegment {
     /// The ends of its lines, of which none is farther than `tolerance_mm` from it; the last one is where it ends.
     pub fn places(&self, from: Point, tolerance_mm: f64) -> impl Iterator<Item = Point> + use<> {
         let segment = *self;
-        let lines = match self.shape {
-            Shape::Line => 1.0,
+        let count = match self.shape {
+            Shape::Line => 1,
             Shape::Arc { centre, sweep_rad } => {
                 let arc = [
                     PlotOp::Travel { to: from },
                     PlotOp::DrawArc { centre, sweep_rad, to: self.to, feed_mm_s: None },
                 ];
-                #[expect(clippy::cast_precision_loss, reason = "at most 65,536")]
-                let lines = (chords(arc, tolerance_mm).count().saturating_sub(1)) as f64;
-                lines
+                u32::try_from(chords(arc, tolerance_mm).count().saturating_sub(1)).unwrap_or(1)
             }
-            // A cubic in n parts lies within M · 6/8 / n² of its chords, with M the greatest second difference of its points
-            // (G. Wang, "The subdivision method for finding the intersection between two Bézier curves or surfaces", 1984).
             Shape::Cubic { handles: [a, b] } => {
-                let bend = |p: Point, q: Point, r: Point| ((p - q) + (r - q)).length();
-                let most = libm::fmax(bend(from, a, b), bend(a, b, self.to));
-                libm::ceil(libm::sqrt(0.75 * most / tolerance_mm)).clamp(1.0, MOST_LINES)
+                Bezier::new([from, a, b, self.to].map(|at| at - Point::ORIGIN), tolerance_mm).lines()
             }
         };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 65,536")]
-        let count = if lines.is_nan() { 1 } else { lines as u32 };
         (1..=count).map(move |index| segment.at(from, f64::from(index) / f64::from(count)))
     }
 
@@ -224,7 +214,7 @@ impl PathSegment {
 
     /// It as `map` shows it. An arc that becomes one of an ellipse is cubic curves, of an eighth of a turn at most, which are within
     /// 4·10⁻⁶ of the radius.
-    pub(super) fn mapped(&self, from: Point, map: &Affine, into: &mut Vec<Self>) {
+    pub(crate) fn mapped(&self, from: Point, map: &Affine, into: &mut Vec<Self>) {
         let to = map.apply(self.to);
         match self.shape {
             Shape::Line => into.push(Self { to, ..*self }),

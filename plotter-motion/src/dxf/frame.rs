@@ -1,5 +1,7 @@
 //! [`Vec3`] and [`Frame`]: places in space, and how those of an entity or a block lie in the drawing.
 
+use crate::drawing::Affine;
+use crate::drawing::affine::sin_cos;
 use crate::{Point, Vec2};
 use core::ops::{Add, Mul, Sub};
 
@@ -26,6 +28,11 @@ impl Vec3 {
             self.z * other.x - self.x * other.z,
             self.x * other.y - self.y * other.x,
         )
+    }
+
+    /// As it is seen from above.
+    pub(super) fn flat(self) -> Point {
+        Point::new(self.x, self.y)
     }
 
     pub(super) fn length(self) -> f64 {
@@ -126,61 +133,13 @@ impl Frame {
 
     /// Where places within it are seen from above.
     pub(super) fn seen_place(self) -> impl Fn(Vec3) -> Point {
-        move |place| {
-            let place = self.place(place);
-            Point::new(place.x, place.y)
-        }
+        move |place| self.place(place).flat()
     }
 
     /// What its x and y axes look like from above: the sheet shows nothing of heights.
-    pub(super) fn seen(&self) -> Plane {
+    pub(super) fn seen(&self) -> Affine {
         let flat = |way: Vec3| Vec2::new(way.x, way.y);
-        Plane { x: flat(self.x), y: flat(self.y), origin: Point::new(self.origin.x, self.origin.y) }
-    }
-}
-
-/// Sine and cosine: exact at quarters of a turn, in which most blocks and texts are turned.
-pub(super) fn sin_cos(angle_rad: f64) -> (f64, f64) {
-    let quarters = angle_rad / core::f64::consts::FRAC_PI_2;
-    let nearest = libm::round(quarters);
-    /// As near as degrees come that have been made radians.
-    const NEAR: f64 = 1e-15;
-    if libm::fabs(quarters - nearest) <= NEAR * libm::fmax(1.0, libm::fabs(quarters)) {
-        return match libm::fmod(libm::fmod(nearest, 4.0) + 4.0, 4.0) {
-            1.0 => (1.0, 0.0),
-            2.0 => (0.0, -1.0),
-            3.0 => (-1.0, 0.0),
-            _ => (0.0, 1.0),
-        };
-    }
-    (libm::sin(angle_rad), libm::cos(angle_rad))
-}
-
-/// A plane as it is seen from above.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Plane {
-    pub(super) x: Vec2,
-    pub(super) y: Vec2,
-    pub(super) origin: Point,
-}
-
-impl Plane {
-    pub(super) fn way(&self, way: Vec2) -> Vec2 {
-        self.x * way.x + self.y * way.y
-    }
-
-    pub(super) fn place(&self, place: Vec2) -> Point {
-        self.origin + self.way(place)
-    }
-
-    /// How much larger all in it is seen, and 1 or −1 for how circles turn; `None` where circles become ellipses.
-    pub(super) fn similar(&self) -> Option<(f64, f64)> {
-        /// Share of a length that rounding may have changed.
-        const ROUNDING: f64 = 1e-9;
-        let (long, square) = (self.x.length(), self.x.length_squared());
-        let is_square = libm::fabs(self.x.dot(self.y)) <= ROUNDING * square
-            && libm::fabs(self.y.length_squared() - square) <= ROUNDING * square;
-        (is_square && long > 0.0).then(|| (long, if self.x.cross(self.y) < 0.0 { -1.0 } else { 1.0 }))
+        Affine { x: flat(self.x), y: flat(self.y), origin: self.origin.flat() }
     }
 }
 
@@ -193,7 +152,7 @@ mod tests {
         let below = Frame::across(Vec3::new(0.0, 0.0, -1.0));
         let place = below.place(Vec3::new(3.0, 4.0, 0.0));
         assert_eq!((place.x, place.y), (-3.0, 4.0));
-        assert_eq!(below.seen().similar(), Some((1.0, -1.0)));
+        assert_eq!(below.seen().turns_circles(), Some(-1.0));
         assert_eq!(Frame::across(Vec3::UP), Frame::WORLD);
         assert_eq!(Frame::across(Vec3::ZERO), Frame::WORLD);
     }

@@ -1,9 +1,10 @@
 //! [`Hatch`]: an area, and the lines that fill it.
 
-use super::frame::{Plane, Vec3, sin_cos};
-use super::path::Path;
+use super::path::Bow;
 use super::spline::Spline;
+use crate::drawing::affine::sin_cos;
 use crate::drawing::scan::{Rows, TooMany};
+use crate::drawing::{Affine, PathSegment, Stroke};
 use crate::{Point, Vec2};
 use alloc::vec::Vec;
 
@@ -17,17 +18,8 @@ const MOST_DRAWN: usize = 1_000_000;
 /// A part of an area's outline.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Edge {
-    Line {
-        from: Vec2,
-        to: Vec2,
-    },
-    /// Of an ellipse with these half axes, from an angle on.
-    Arc {
-        centre: Vec2,
-        axes: (Vec2, Vec2),
-        from_rad: f64,
-        sweep_rad: f64,
-    },
+    Line { from: Point, to: Point },
+    Bow(Bow),
     Spline(Spline),
 }
 
@@ -36,7 +28,7 @@ pub(super) enum Edge {
 pub(super) struct Family {
     pub(super) turned_rad: f64,
     /// Where one of them begins.
-    pub(super) base: Vec2,
+    pub(super) base: Point,
     /// From there to where the next one does.
     pub(super) offset: Vec2,
     /// Dashes, and gaps below 0; none for whole lines.
@@ -53,8 +45,8 @@ pub(super) struct Hatch {
 }
 
 impl Hatch {
-    /// Its outlines on the sheet.
-    pub(super) fn outlines(&self, plane: &Plane, tolerance_mm: f64) -> Vec<Path> {
+    /// Its outlines on the sheet, which end where they begin.
+    pub(super) fn outlines(&self, plane: &Affine, tolerance_mm: f64) -> Vec<Stroke> {
         self.outlines.iter().filter_map(|edges| outline(edges, plane, tolerance_mm)).collect()
     }
 
@@ -63,15 +55,10 @@ impl Hatch {
     /// # Errors
     ///
     /// Lines that are too many, or have no distance.
-    pub(super) fn lines(&self, plane: &Plane, tolerance_mm: f64) -> Result<Vec<(Point, Point)>, TooMany> {
-        let outlines: Vec<Vec<Point>> = self
-            .outlines(plane, tolerance_mm)
-            .into_iter()
-            .map(|mut path| {
-                path.close();
-                path.places(tolerance_mm)
-            })
-            .collect();
+    pub(super) fn lines(&self, plane: &Affine, tolerance_mm: f64) -> Result<Vec<(Point, Point)>, TooMany> {
+        let outlines = self.outlines(plane, tolerance_mm);
+        let outlines: Vec<Vec<Point>> =
+            outlines.iter().map(|outline| outline.places(tolerance_mm).collect()).collect();
         let mut drawn = Vec::new();
         for family in &self.families {
             family.fill(plane, &outlines, &mut drawn)?;
@@ -80,40 +67,36 @@ impl Hatch {
     }
 }
 
-fn outline(edges: &[Edge], plane: &Plane, tolerance_mm: f64) -> Option<Path> {
-    let first = edges.first()?;
-    let mut path = Path::new(match first {
-        Edge::Line { from, .. } => plane.place(*from),
-        Edge::Arc { centre, axes, from_rad, .. } => {
-            let (sin, cos) = sin_cos(*from_rad);
-            plane.place(*centre + axes.0 * cos + axes.1 * sin)
-        }
-        Edge::Spline(spline) => {
-            let at = spline.points.first()?;
-            plane.place(Vec2::new(at.x, at.y))
-        }
-    });
+fn outline(edges: &[Edge], plane: &Affine, tolerance_mm: f64) -> Option<Stroke> {
+    let from = match edges.first()? {
+        Edge::Line { from, .. } => plane.apply(*from),
+        Edge::Bow(bow) => bow.from(plane),
+        Edge::Spline(spline) => plane.apply(spline.points.first()?.flat()),
+    };
+    let mut stroke = Stroke { from, ..Stroke::default() };
     for edge in edges {
         match edge {
-            Edge::Line { to, .. } => path.line_to(plane.place(*to)),
-            Edge::Arc { centre, axes, from_rad, sweep_rad } => {
-                path.arc(plane, *centre, *axes, (*from_rad, *sweep_rad), None, tolerance_mm);
-            }
+            Edge::Line { to, .. } => stroke.segments.push(PathSegment::line(plane.apply(*to))),
+            Edge::Bow(bow) => bow.draw(plane, None, &mut stroke),
             Edge::Spline(spline) => {
                 let scale = libm::fmax(plane.x.length(), plane.y.length());
-                for at in spline.places(tolerance_mm / libm::fmax(scale, f64::MIN_POSITIVE)) {
-                    path.line_to(plane.place(Vec2::new(at.x, at.y)));
-                }
+                let places = spline.places(tolerance_mm / libm::fmax(scale, f64::MIN_POSITIVE));
+                stroke
+                    .segments
+                    .extend(places.into_iter().map(|at| PathSegment::line(plane.apply(at.flat()))));
             }
         }
     }
-    Some(path)
+    if stroke.to() != from {
+        stroke.segments.push(PathSegment::line(from));
+    }
+    Some(stroke)
 }
 
 impl Family {
     fn fill(
         &self,
-        plane: &Plane,
+        plane: &Affine,
         outlines: &[Vec<Point>],
         drawn: &mut Vec<(Point, Point)>,
     ) -> Result<(), TooMany> {
@@ -121,7 +104,7 @@ impl Family {
         let seen = plane.way(Vec2::new(cos, sin));
         let stretch = seen.length();
         let (Some(way), offset) = (seen.normalized(), plane.way(self.offset)) else { return Ok(()) };
-        let rows = Rows { base: plane.place(self.base), way, distance_mm: way.perpendicular().dot(offset) };
+        let rows = Rows { base: plane.apply(self.base), way, distance_mm: way.perpendicular().dot(offset) };
         // The dashes of each line begin where the offset, which need not be across the lines, has carried them.
         let shift_mm = way.dot(offset);
         rows.fill(outlines, |row, from, to| {
@@ -161,27 +144,21 @@ impl Family {
     }
 }
 
-/// From a flat place.
-pub(super) fn flat(at: Vec3) -> Vec2 {
-    Vec2::new(at.x, at.y)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::frame::Frame;
     use super::*;
     use std::vec;
 
     fn square(from: f64, to: f64) -> Vec<Edge> {
         let places =
-            [(from, from), (to, from), (to, to), (from, to), (from, from)].map(|(x, y)| Vec2::new(x, y));
+            [(from, from), (to, from), (to, to), (from, to), (from, from)].map(|(x, y)| Point::new(x, y));
         places.windows(2).map(|pair| Edge::Line { from: pair[0], to: pair[1] }).collect()
     }
 
     fn family(dashes: &[f64]) -> Family {
         Family {
             offset: Vec2::new(0.0, 1.0),
-            base: Vec2::new(0.0, 0.5),
+            base: Point::new(0.0, 0.5),
             dashes: dashes.to_vec(),
             turned_rad: 0.0,
         }
@@ -194,7 +171,7 @@ mod tests {
             families: vec![family(&[])],
             is_solid: false,
         };
-        let lines = hatch.lines(&Frame::WORLD.seen(), 0.01).unwrap();
+        let lines = hatch.lines(&Affine::IDENTITY, 0.01).unwrap();
         // Ten lines, of which the two at 4.5 and 5.5 are in two parts.
         assert_eq!(lines.len(), 12);
         let length: f64 = lines.iter().map(|(from, to)| from.distance(*to)).sum();
@@ -208,7 +185,7 @@ mod tests {
             families: vec![family(&[2.0, -1.0])],
             is_solid: false,
         };
-        let lines = hatch.lines(&Frame::WORLD.seen(), 0.01).unwrap();
+        let lines = hatch.lines(&Affine::IDENTITY, 0.01).unwrap();
         let first: Vec<_> = lines.iter().take(4).map(|(from, to)| (from.x, to.x)).collect();
         assert_eq!(first, [(1.0, 2.0), (3.0, 5.0), (6.0, 8.0), (9.0, 10.0)]);
     }
@@ -217,29 +194,29 @@ mod tests {
     fn lines_without_a_distance_fill_nothing() {
         let families = vec![Family { offset: Vec2::new(1.0, 0.0), ..family(&[]) }];
         let hatch = Hatch { outlines: vec![square(0.0, 1.0)], families, is_solid: false };
-        assert!(hatch.lines(&Frame::WORLD.seen(), 0.01).is_err());
+        assert!(hatch.lines(&Affine::IDENTITY, 0.01).is_err());
     }
 
     #[test]
     fn dashes_that_nobody_can_tell_apart_are_a_line() {
         // So far from where the dashes begin, the end of a dash is its start.
-        let far = Family { base: Vec2::new(-1e20, 0.5), ..family(&[2.0, -1.0]) };
+        let far = Family { base: Point::new(-1e20, 0.5), ..family(&[2.0, -1.0]) };
         let hatch = Hatch { outlines: vec![square(0.0, 1e5)], families: vec![far], is_solid: false };
-        assert_eq!(hatch.lines(&Frame::WORLD.seen(), 0.01).map(|lines| lines.len()), Ok(100_000));
+        assert_eq!(hatch.lines(&Affine::IDENTITY, 0.01).map(|lines| lines.len()), Ok(100_000));
     }
 
     #[test]
     fn dashes_beyond_all_measure_are_told() {
         let families = vec![family(&[0.01, -0.01])];
         let hatch = Hatch { outlines: vec![square(0.0, 1500.0)], families, is_solid: false };
-        assert!(hatch.lines(&Frame::WORLD.seen(), 0.01).is_err());
+        assert!(hatch.lines(&Affine::IDENTITY, 0.01).is_err());
     }
 
     #[test]
     fn lines_that_nobody_can_count_end() {
         // At 10²⁰ the next line has the number of this one.
-        let families = vec![Family { base: Vec2::new(0.0, -1e20), ..family(&[]) }];
+        let families = vec![Family { base: Point::new(0.0, -1e20), ..family(&[]) }];
         let hatch = Hatch { outlines: vec![square(0.0, 1e5)], families, is_solid: false };
-        assert!(hatch.lines(&Frame::WORLD.seen(), 0.01).is_err());
+        assert!(hatch.lines(&Affine::IDENTITY, 0.01).is_err());
     }
 }

@@ -1,196 +1,119 @@
-//! [`Path`]: the lines and arcs of an entity on the sheet, whole or dashed.
+//! [`Bow`] and [`draw`]: arcs of an entity as they are seen, and its strokes whole or dashed.
 
-use super::frame::{Plane, sin_cos};
+use crate::drawing::affine::sin_cos;
+use crate::drawing::{Affine, PathSegment, Shape, Stroke};
 use crate::{PlotOp, Point, Vec2};
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
 
-/// Most chords of one ellipse: as far apart as 0.01 mm allows on one of 1 km.
-const MOST_CHORDS: f64 = 65_536.0;
-/// Most dashes of one path; one with more is drawn whole.
+/// Most dashes of one stroke; one with more is drawn whole: 100 m of them at 1 mm.
 const MOST_DASHES: f64 = 100_000.0;
 
-/// A stretch of a path, from where the one before it ends.
+/// A part of an ellipse about a centre, with two half axes, within a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Stretch {
-    Line { to: Point },
-    Arc { centre: Point, sweep_rad: f64, to: Point },
+pub(super) struct Bow {
+    pub(super) centre: Point,
+    pub(super) axes: (Vec2, Vec2),
+    /// Where it begins, counted from the first axis towards the second one.
+    pub(super) from_rad: f64,
+    pub(super) sweep_rad: f64,
 }
 
-/// Lines and arcs that follow each other, mm.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Path {
-    from: Point,
-    stretches: Vec<Stretch>,
+impl Bow {
+    /// Of a circle.
+    pub(super) fn round(centre: Point, radius: f64, from_rad: f64, sweep_rad: f64) -> Self {
+        let axes = (Vec2::new(radius, 0.0), Vec2::new(0.0, radius));
+        Self { centre, axes, from_rad, sweep_rad }
+    }
+
+    /// How the circle of radius 1 is seen that it is in its own axes.
+    fn seen(&self, plane: &Affine) -> Affine {
+        Affine { x: plane.way(self.axes.0), y: plane.way(self.axes.1), origin: plane.apply(self.centre) }
+    }
+
+    /// Where it begins on the sheet.
+    pub(super) fn from(&self, plane: &Affine) -> Point {
+        self.seen(plane).apply(on_circle(self.from_rad))
+    }
+
+    /// Goes on with it. It ends at `to` where that is known better than by the angle. It stays an arc where the plane shows circles;
+    /// elsewhere it becomes cubic curves.
+    pub(super) fn draw(&self, plane: &Affine, to: Option<Point>, stroke: &mut Stroke) {
+        let arc = PathSegment::arc(Point::ORIGIN, self.sweep_rad, on_circle(self.from_rad + self.sweep_rad));
+        arc.mapped(on_circle(self.from_rad), &self.seen(plane), &mut stroke.segments);
+        if let (Some(to), Some(last)) = (to, stroke.segments.last_mut()) {
+            last.to = to;
+        }
+    }
 }
 
-impl Path {
-    pub(super) fn new(from: Point) -> Self {
-        Self { from, stretches: Vec::new() }
-    }
+fn on_circle(angle_rad: f64) -> Point {
+    let (sin, cos) = sin_cos(angle_rad);
+    Point::new(cos, sin)
+}
 
-    fn end(&self) -> Point {
-        match self.stretches.last() {
-            Some(Stretch::Line { to } | Stretch::Arc { to, .. }) => *to,
-            None => self.from,
+/// The operations of a stroke: whole, or in dashes of `pattern`, mm. A stroke without a segment is a dot.
+pub(super) fn draw(mut stroke: Stroke, pattern: &[f64], tolerance_mm: f64, ops: &mut VecDeque<PlotOp>) {
+    if stroke.segments.is_empty() {
+        stroke.segments.push(PathSegment::line(stroke.from));
+    }
+    if !pattern.is_empty() {
+        without_curves(&mut stroke, tolerance_mm);
+    }
+    let Some(dashes) = Dashes::of(pattern, stroke.length_mm()) else {
+        ops.extend(stroke.ops(tolerance_mm));
+        return;
+    };
+    // Each segment with where it begins and ends along the stroke.
+    let mut along_mm = 0.0;
+    let segments: Vec<(Point, &PathSegment, f64, f64)> = stroke
+        .segments()
+        .map(|(from, segment)| {
+            let begin_mm = along_mm;
+            along_mm += segment.length_mm(from);
+            (from, segment, begin_mm, along_mm)
+        })
+        .filter(|(.., begin_mm, end_mm)| end_mm > begin_mm)
+        .collect();
+    let mut rest = segments.as_slice();
+    for (from_mm, to_mm) in dashes {
+        // A dash begins in the first segment that ends behind its start; the last one ends where the stroke does.
+        while let [(.., end_mm), later @ ..] = rest
+            && *end_mm <= from_mm
+            && !later.is_empty()
+        {
+            rest = later;
         }
-    }
-
-    pub(super) fn line_to(&mut self, to: Point) {
-        self.stretches.push(Stretch::Line { to });
-    }
-
-    /// An arc of the circle with this radius about `centre`, both within `plane`, counter-clockwise where `sweep_rad` is above 0. It
-    /// ends at `to` where that is known better than by the angle. Arcs stay arcs where the plane is seen without distortion; elsewhere
-    /// they become chords within `tolerance_mm`.
-    ///
-    /// The chords of an ellipse are at most as far from it as those of the circle about it that touches its longer axis, which divide
-    /// it at equal angles: r (1 − cos(step / 2)).
-    pub(super) fn arc(
-        &mut self,
-        plane: &Plane,
-        centre: Vec2,
-        axes: (Vec2, Vec2),
-        (from_rad, sweep_rad): (f64, f64),
-        to: Option<Point>,
-        tolerance_mm: f64,
-    ) {
-        let seen = Plane { x: plane.way(axes.0), y: plane.way(axes.1), origin: plane.place(centre) };
-        let at = |angle_rad: f64| {
-            let (sin, cos) = sin_cos(angle_rad);
-            seen.place(Vec2::new(cos, sin))
-        };
-        let to = to.unwrap_or_else(|| at(from_rad + sweep_rad));
-        if let Some((_, sense)) = seen.similar() {
-            self.stretches.push(Stretch::Arc { centre: seen.origin, sweep_rad: sense * sweep_rad, to });
-            return;
-        }
-        let radius_mm = longer_axis(&seen);
-        let half_step =
-            libm::acos((1.0 - tolerance_mm / libm::fmax(radius_mm, tolerance_mm)).clamp(-1.0, 1.0));
-        let chords = libm::ceil(libm::fabs(sweep_rad) / (2.0 * half_step)).clamp(4.0, MOST_CHORDS);
-        let mut chord = 1.0;
-        while chord < chords {
-            self.line_to(at(from_rad + sweep_rad * (chord / chords)));
-            chord += 1.0;
-        }
-        self.line_to(to);
-    }
-
-    /// As operations: whole, or in dashes of `pattern`, mm.
-    pub(super) fn draw(&self, pattern: &[f64], ops: &mut VecDeque<PlotOp>) {
-        let Some(dashes) = Dashes::of(pattern, self.length_mm()) else {
-            ops.push_back(PlotOp::Travel { to: self.from });
-            ops.extend(self.stretches.iter().map(|stretch| stretch.op()));
-            if self.stretches.is_empty() {
-                ops.push_back(PlotOp::Draw { to: self.from, feed_mm_s: None });
+        let mut dash: Option<Stroke> = None;
+        for (from, segment, begin_mm, end_mm) in rest {
+            if *begin_mm >= to_mm && dash.is_some() {
+                break;
             }
-            return;
-        };
-        for (from_mm, to_mm) in dashes {
-            self.draw_part(from_mm, to_mm, ops);
+            let share = |mm: f64| ((mm - begin_mm) / (end_mm - begin_mm)).clamp(0.0, 1.0);
+            let (begin, end) = (share(from_mm), share(to_mm));
+            let start = segment.at(*from, begin);
+            let dash = dash.get_or_insert_with(|| Stroke { from: start, ..Stroke::default() });
+            dash.segments.push(segment.part(*from, begin, end));
         }
-    }
-
-    /// The part of it between two lengths from its start.
-    fn draw_part(&self, from_mm: f64, to_mm: f64, ops: &mut VecDeque<PlotOp>) {
-        let (mut at, mut before_mm, mut is_down) = (self.from, 0.0, false);
-        for stretch in &self.stretches {
-            let length_mm = stretch.length_mm(at);
-            let after_mm = before_mm + length_mm;
-            if after_mm >= from_mm && before_mm <= to_mm && length_mm > 0.0 {
-                let share = |mm: f64| ((mm - before_mm) / length_mm).clamp(0.0, 1.0);
-                let (begin, end) = (share(from_mm), share(to_mm));
-                if !is_down {
-                    ops.push_back(PlotOp::Travel { to: stretch.at(at, begin) });
-                    is_down = true;
-                }
-                if end > begin || from_mm >= to_mm {
-                    ops.push_back(stretch.part(at, begin, end).op());
-                }
-                if after_mm > to_mm || from_mm >= to_mm {
-                    return;
-                }
-            }
-            (at, before_mm) = (stretch.to(), after_mm);
-        }
-    }
-
-    fn length_mm(&self) -> f64 {
-        let mut at = self.from;
-        let mut length_mm = 0.0;
-        for stretch in &self.stretches {
-            length_mm += stretch.length_mm(at);
-            at = stretch.to();
-        }
-        length_mm
-    }
-
-    /// Its places, with those of arcs as chords within `tolerance_mm`.
-    pub(super) fn places(&self, tolerance_mm: f64) -> Vec<Point> {
-        let mut ops = VecDeque::new();
-        self.draw(&[], &mut ops);
-        crate::chords(ops, tolerance_mm).filter_map(PlotOp::target).collect()
-    }
-
-    /// Ends it where it began.
-    pub(super) fn close(&mut self) {
-        if self.end().distance(self.from) > 0.0 {
-            self.line_to(self.from);
-        }
+        ops.extend(dash.into_iter().flat_map(|dash| dash.ops(tolerance_mm)));
     }
 }
 
-impl Stretch {
-    fn to(&self) -> Point {
-        match self {
-            Self::Line { to } | Self::Arc { to, .. } => *to,
+/// Makes lines of cubic curves, of which parts cannot be taken by their length.
+fn without_curves(stroke: &mut Stroke, tolerance_mm: f64) {
+    let mut segments = Vec::with_capacity(stroke.segments.len());
+    for (from, segment) in stroke.segments() {
+        match segment.shape {
+            Shape::Cubic { .. } => segments.extend(segment.places(from, tolerance_mm).map(PathSegment::line)),
+            _ => segments.push(*segment),
         }
     }
-
-    fn op(&self) -> PlotOp {
-        match *self {
-            Self::Line { to } => PlotOp::Draw { to, feed_mm_s: None },
-            Self::Arc { centre, sweep_rad, to } => PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s: None },
-        }
-    }
-
-    fn length_mm(&self, from: Point) -> f64 {
-        match *self {
-            Self::Line { to } => from.distance(to),
-            Self::Arc { centre, sweep_rad, .. } => from.distance(centre) * libm::fabs(sweep_rad),
-        }
-    }
-
-    fn at(&self, from: Point, share: f64) -> Point {
-        match *self {
-            Self::Line { to } => from.lerp(to, share),
-            Self::Arc { to, .. } if share >= 1.0 => to,
-            Self::Arc { centre, sweep_rad, .. } => centre + (from - centre).rotated(sweep_rad * share),
-        }
-    }
-
-    fn part(&self, from: Point, begin: f64, end: f64) -> Self {
-        let to = self.at(from, end);
-        match *self {
-            Self::Line { .. } => Self::Line { to },
-            Self::Arc { centre, sweep_rad, .. } => {
-                Self::Arc { centre, sweep_rad: sweep_rad * (end - begin), to }
-            }
-        }
-    }
+    stroke.segments = segments;
 }
 
-/// Half the longer axis of the ellipse that a circle of radius 1 becomes: the greater singular value of the map.
-fn longer_axis(seen: &Plane) -> f64 {
-    let sum = seen.x.length_squared() + seen.y.length_squared();
-    let area = seen.x.cross(seen.y);
-    libm::sqrt(0.5 * (sum + libm::sqrt(libm::fmax(0.0, sum * sum - 4.0 * area * area))))
-}
-
-/// Where the dashes of a path begin and end, as lengths from its start: each end of the path lies in a dash, and both of these are
-/// equally long. A path shorter than the pattern is whole.
+/// Where the dashes of a stroke begin and end, as lengths from its start: each end of the stroke lies in a dash, and both of these are
+/// equally long. A stroke shorter than the pattern is whole.
 struct Dashes<'p> {
     pattern: &'p [f64],
     /// Which part of the pattern comes next, and where it begins.
@@ -244,11 +167,11 @@ impl Iterator for Dashes<'_> {
     }
 }
 
-/// How far the arc of a polyline turns, and where its centre lies, by its bulge: the tangent of a quarter of the angle.
+/// The arc of a polyline by its bulge: the tangent of a quarter of the angle.
 ///
 /// Source: Autodesk, *DXF Reference*, group 42 of LWPOLYLINE. With half the chord h and the bulge b the radius is h (1 + b²) / 2b, so that
 /// the centre lies h (1 − b²) / 2b to the left of the chord.
-pub(super) fn of_bulge(from: Vec2, to: Vec2, bulge: f64) -> Option<(Vec2, f64)> {
+pub(super) fn of_bulge(from: Point, to: Point, bulge: f64) -> Option<Bow> {
     let chord = to - from;
     // Straighter than this, the arc leaves its chord by less than a millionth of its length.
     if libm::fabs(bulge) < 2e-6 || chord.length_squared() <= 0.0 {
@@ -256,7 +179,8 @@ pub(super) fn of_bulge(from: Vec2, to: Vec2, bulge: f64) -> Option<(Vec2, f64)> 
     }
     let sweep_rad = (4.0 * libm::atan(bulge)).clamp(-TAU, TAU);
     let centre = from + chord * 0.5 + chord.perpendicular() * ((1.0 - bulge * bulge) / (4.0 * bulge));
-    Some((centre, sweep_rad))
+    let out = from - centre;
+    Some(Bow::round(centre, out.length(), libm::atan2(out.y, out.x), sweep_rad))
 }
 
 /// From one angle counter-clockwise to another: above 0, at most a whole turn.
@@ -293,45 +217,62 @@ mod tests {
 
     #[test]
     fn a_bulge_of_one_is_half_a_circle() {
-        let (centre, sweep_rad) = of_bulge(Vec2::new(0.0, 0.0), Vec2::new(2.0, 0.0), 1.0).unwrap();
-        assert_eq!((centre, sweep_rad), (Vec2::new(1.0, 0.0), PI));
+        let bow = of_bulge(Point::ORIGIN, Point::new(2.0, 0.0), 1.0).unwrap();
+        assert_eq!((bow.centre, bow.sweep_rad), (Point::new(1.0, 0.0), PI));
         // A quarter: its centre is above the chord, half a chord away.
-        let (centre, _) = of_bulge(Vec2::new(0.0, 0.0), Vec2::new(2.0, 0.0), libm::tan(PI / 8.0)).unwrap();
-        assert!((centre - Vec2::new(1.0, 1.0)).length() < 1e-12);
-        assert_eq!(of_bulge(Vec2::new(0.0, 0.0), Vec2::new(2.0, 0.0), 0.0), None);
+        let bow = of_bulge(Point::ORIGIN, Point::new(2.0, 0.0), libm::tan(PI / 8.0)).unwrap();
+        assert!(bow.centre.distance(Point::new(1.0, 1.0)) < 1e-12);
+        assert_eq!(of_bulge(Point::ORIGIN, Point::new(2.0, 0.0), 0.0), None);
+    }
+
+    fn drawn(bow: Bow, plane: &Affine, pattern: &[f64]) -> VecDeque<PlotOp> {
+        let mut stroke = Stroke { from: bow.from(plane), ..Stroke::default() };
+        bow.draw(plane, None, &mut stroke);
+        let mut ops = VecDeque::new();
+        draw(stroke, pattern, 0.01, &mut ops);
+        ops
     }
 
     #[test]
     fn dashes_of_an_arc_are_arcs() {
-        let plane = super::super::frame::Frame::WORLD.seen();
-        let mut path = Path::new(Point::new(1.0, 0.0));
-        path.arc(&plane, Vec2::default(), (Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)), (0.0, PI), None, 0.01);
-        let mut ops = VecDeque::new();
-        path.draw(&[1.0, -0.5], &mut ops);
+        let ops = drawn(Bow::round(Point::ORIGIN, 1.0, 0.0, PI), &Affine::IDENTITY, &[1.0, -0.5]);
         assert!(ops.iter().all(|op| matches!(op, PlotOp::Travel { .. } | PlotOp::DrawArc { .. })));
-        let turned: f64 = ops
-            .iter()
-            .map(|op| if let PlotOp::DrawArc { sweep_rad, .. } = op { *sweep_rad } else { 0.0 })
-            .sum();
+        let turn = |op: &PlotOp| if let PlotOp::DrawArc { sweep_rad, .. } = op { *sweep_rad } else { 0.0 };
+        let turned: f64 = ops.iter().map(turn).sum();
         // A pattern and a dash, one gap.
         assert!((turned - (PI - 0.5)).abs() < 1e-12, "{turned}");
-        assert_eq!(
-            ops.back().and_then(|op| op.target()).map(|to| to.distance(Point::new(-1.0, 0.0)) < 1e-12),
-            Some(true)
-        );
+        let end = ops.back().and_then(|op| op.target()).unwrap();
+        assert!(end.distance(Point::new(-1.0, 0.0)) < 1e-12, "{end:?}");
+    }
+
+    #[test]
+    fn dashes_go_round_corners_and_dots_are_drawn() {
+        let corner = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0)].map(|(x, y)| Point::new(x, y));
+        let places = |pattern: &[f64]| -> Vec<Point> {
+            let mut ops = VecDeque::new();
+            draw(Stroke::through(corner).unwrap(), pattern, 0.01, &mut ops);
+            ops.iter().filter_map(|op| op.target()).collect()
+        };
+        // 6 mm are two patterns and a dash, and half a millimetre more for each end.
+        let expected = [(0.0, 0.0), (1.5, 0.0), (2.5, 0.0), (3.0, 0.0), (3.0, 0.5), (3.0, 1.5), (3.0, 3.0)];
+        assert_eq!(places(&[1.0, -1.0]), expected.map(|(x, y)| Point::new(x, y)));
+        // Two dashes of 2 mm with a dot between them, at the corner.
+        let expected = [(0.0, 0.0), (2.0, 0.0), (3.0, 0.0), (3.0, 0.0), (3.0, 1.0), (3.0, 3.0)];
+        assert_eq!(places(&[2.0, -1.0, 0.0, -1.0]), expected.map(|(x, y)| Point::new(x, y)));
     }
 
     #[test]
     fn what_is_seen_askew_is_chords_within_the_tolerance() {
-        let plane = Plane { x: Vec2::new(3.0, 0.0), y: Vec2::new(0.0, 1.0), origin: Point::ORIGIN };
-        let mut path = Path::new(Point::new(3.0, 0.0));
-        path.arc(&plane, Vec2::default(), (Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)), (0.0, TAU), None, 0.01);
-        let places = path.places(0.01);
-        for pair in places.windows(2) {
-            let middle = pair[0].lerp(pair[1], 0.5);
-            let radius = libm::hypot(middle.x / 3.0, middle.y);
-            assert!(1.0 - radius < 0.01, "{radius}");
+        let plane = Affine::scaled(3.0, 1.0);
+        for pattern in [&[][..], &[5.0, -0.01]] {
+            let ops = drawn(Bow::round(Point::ORIGIN, 1.0, 0.0, TAU), &plane, pattern);
+            let places: Vec<Point> = ops.iter().filter_map(|op| op.target()).collect();
+            for pair in places.windows(2) {
+                let middle = pair[0].lerp(pair[1], 0.5);
+                let radius = libm::hypot(middle.x / 3.0, middle.y);
+                assert!(1.0 - radius < 0.011, "{radius}");
+            }
+            assert!((16..60).contains(&places.len()), "{}", places.len());
         }
-        assert!(places.len() < 50, "{}", places.len());
     }
 }

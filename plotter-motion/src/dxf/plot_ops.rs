@@ -1,11 +1,11 @@
 //! [`PlotOps`]: the entities of a drawing on the sheet, as plot operations.
 
 use super::entity::{Block, Colour, Entity, Insert, LineKind, Shape, Vertex, of_index};
-use super::frame::{Frame, Plane, Vec3, sin_cos};
-use super::hatch::flat;
-use super::path::{Path, of_bulge};
+use super::frame::{Frame, Vec3};
+use super::path::{Bow, draw, of_bulge};
 use super::{Drawing, Error, Pens, Problem, ReadOptions};
-use crate::{PlotOp, Vec2};
+use crate::drawing::{Affine, PathSegment, Stroke};
+use crate::{PlotOp, Point};
 use alloc::collections::{BTreeMap, VecDeque};
 use alloc::vec::Vec;
 
@@ -267,43 +267,46 @@ impl<'d> PlotOps<'d> {
         let plane = |height: f64| {
             frame.holding(&Frame::across(entity.normal)).moved(Vec3::new(0.0, 0.0, height)).seen()
         };
+        let lines = |places: Vec<Point>, pattern: &[f64], strokes: &mut VecDeque<PlotOp>| {
+            if let Some(stroke) = Stroke::through(places) {
+                draw(stroke, pattern, tolerance_mm, strokes);
+            }
+        };
         match &entity.shape {
-            Shape::Point { at } => Path::new(world(*at)).draw(&[], strokes),
-            Shape::Lines(lines) => {
-                for [from, to] in lines {
-                    let mut path = Path::new(world(*from));
-                    path.line_to(world(*to));
-                    path.draw(&pattern, strokes);
+            Shape::Point { at } => lines(alloc::vec![world(*at)], &[], strokes),
+            Shape::Lines(all) => {
+                for ends in all {
+                    lines(ends.map(&world).to_vec(), &pattern, strokes);
                 }
             }
             Shape::Polyline { vertices, is_closed } => {
                 let height = vertices.first().map_or(0.0, |vertex| vertex.at.z);
-                if let Some(path) =
-                    polyline(vertices, *is_closed, |_| plane(height), frame, entity, tolerance_mm)
-                {
-                    path.draw(&pattern, strokes);
+                let is_level = vertices.iter().all(|vertex| vertex.at.z == height);
+                if is_level {
+                    let stroke = polyline(vertices, *is_closed, &plane(height));
+                    stroke.into_iter().for_each(|stroke| draw(stroke, &pattern, tolerance_mm, strokes));
+                    return;
                 }
+                // In space, where its corners have heights of their own.
+                let place = frame.holding(&Frame::across(entity.normal)).seen_place();
+                let first = vertices.first().filter(|_| *is_closed);
+                let places = vertices.iter().chain(first).map(|vertex| place(vertex.at)).collect();
+                lines(places, &pattern, strokes);
             }
             Shape::Arc { centre, radius, from_rad, sweep_rad } => {
-                let axes = (Vec2::new(*radius, 0.0), Vec2::new(0.0, *radius));
-                let ellipse = (flat(*centre), axes, (*from_rad, *sweep_rad));
-                arc(&plane(centre.z), ellipse, tolerance_mm).draw(&pattern, strokes);
+                let bow = Bow::round(centre.flat(), *radius, *from_rad, *sweep_rad);
+                draw(bow_alone(bow, &plane(centre.z)), &pattern, tolerance_mm, strokes);
             }
             Shape::Ellipse { centre, major, ratio, from_rad, sweep_rad } => {
                 let minor = entity.normal.normalized().unwrap_or(Vec3::UP).cross(*major) * *ratio;
                 let seen = Frame { x: *major, y: minor, z: entity.normal, origin: *centre };
-                let axes = (Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0));
-                let ellipse = (Vec2::default(), axes, (*from_rad, *sweep_rad));
-                arc(&frame.holding(&seen).seen(), ellipse, tolerance_mm).draw(&pattern, strokes);
+                let bow = Bow::round(Point::ORIGIN, 1.0, *from_rad, *sweep_rad);
+                draw(bow_alone(bow, &frame.holding(&seen).seen()), &pattern, tolerance_mm, strokes);
             }
             Shape::Spline(spline) => {
                 let longest = [frame.x, frame.y, frame.z].map(Vec3::length).into_iter().fold(0.0, libm::fmax);
-                let mut places =
-                    spline.places(tolerance_mm / libm::fmax(longest, f64::MIN_POSITIVE)).into_iter();
-                let Some(first) = places.next() else { return };
-                let mut path = Path::new(world(first));
-                places.for_each(|at| path.line_to(world(at)));
-                path.draw(&pattern, strokes);
+                let places = spline.places(tolerance_mm / libm::fmax(longest, f64::MIN_POSITIVE));
+                lines(places.into_iter().map(world).collect(), &pattern, strokes);
             }
             Shape::Text(text) => {
                 let line = entity.line;
@@ -314,32 +317,25 @@ impl<'d> PlotOps<'d> {
                     *count = count.saturating_add(1);
                 });
                 for stroke in letters {
-                    let mut places = stroke.into_iter().map(|at| plane.place(Vec2::new(at.x, at.y)));
-                    let Some(first) = places.next() else { continue };
-                    let mut path = Path::new(first);
-                    places.for_each(|at| path.line_to(at));
-                    path.draw(&[], strokes);
+                    lines(stroke.into_iter().map(|at| plane.apply(at)).collect(), &[], strokes);
                 }
             }
             Shape::Hatch(hatch, height) => {
                 let plane = plane(*height);
                 let otherwise = if hatch.is_solid || hatch.families.is_empty() {
                     "a filled area (HATCH) is drawn as its outline: choose a pattern of lines to fill it"
-                } else if let Ok(lines) = hatch.lines(&plane, tolerance_mm) {
-                    for (from, to) in lines {
-                        let mut path = Path::new(from);
-                        path.line_to(to);
-                        path.draw(&[], strokes);
+                } else if let Ok(all) = hatch.lines(&plane, tolerance_mm) {
+                    for (from, to) in all {
+                        lines(alloc::vec![from, to], &[], strokes);
                     }
                     return;
                 } else {
                     "an area (HATCH) with too many lines is drawn as its outline: choose a greater scale of the pattern"
                 };
-                self.count_otherwise(entity.line, otherwise);
-                for mut outline in hatch.outlines(&plane, tolerance_mm) {
-                    outline.close();
-                    outline.draw(&[], strokes);
+                for outline in hatch.outlines(&plane, tolerance_mm) {
+                    draw(outline, &[], tolerance_mm, strokes);
                 }
+                self.count_otherwise(entity.line, otherwise);
             }
             Shape::Insert(_) => {}
         }
@@ -386,54 +382,29 @@ impl Iterator for PlotOps<'_> {
     }
 }
 
-/// An arc of an ellipse about a centre, with two half axes, from an angle on.
-fn arc(plane: &Plane, (centre, axes, span): (Vec2, (Vec2, Vec2), (f64, f64)), tolerance_mm: f64) -> Path {
-    let (sin, cos) = sin_cos(span.0);
-    let from = plane.place(centre + axes.0 * cos + axes.1 * sin);
-    let mut path = Path::new(from);
-    let is_whole = libm::fabs(span.1) >= core::f64::consts::TAU;
-    path.arc(plane, centre, axes, span, is_whole.then_some(from), tolerance_mm);
-    path
+/// An arc that is a stroke of its own; a whole turn ends exactly where it begins.
+fn bow_alone(bow: Bow, plane: &Affine) -> Stroke {
+    let from = bow.from(plane);
+    let mut stroke = Stroke { from, ..Stroke::default() };
+    let is_whole = libm::fabs(bow.sweep_rad) >= core::f64::consts::TAU;
+    bow.draw(plane, is_whole.then_some(from), &mut stroke);
+    stroke
 }
 
-/// A polyline: in space where its corners have heights of their own, else in the plane of its entity.
-fn polyline(
-    vertices: &[Vertex],
-    is_closed: bool,
-    plane: impl Fn(f64) -> Plane,
-    frame: &Frame,
-    entity: &Entity,
-    tolerance_mm: f64,
-) -> Option<Path> {
+/// A polyline in its plane.
+fn polyline(vertices: &[Vertex], is_closed: bool, plane: &Affine) -> Option<Stroke> {
     let first = vertices.first()?;
-    let level = |vertex: &Vertex| vertex.at.z == first.at.z;
-    if !vertices.iter().all(level) {
-        let axes = frame.holding(&Frame::across(entity.normal));
-        let place = axes.seen_place();
-        let mut path = Path::new(place(first.at));
-        vertices.iter().skip(1).for_each(|vertex| path.line_to(place(vertex.at)));
-        if is_closed {
-            path.line_to(place(first.at));
-        }
-        return Some(path);
-    }
-    let plane = plane(first.at.z);
-    let mut path = Path::new(plane.place(flat(first.at)));
+    let mut stroke = Stroke { from: plane.apply(first.at.flat()), ..Stroke::default() };
     let ends = vertices.iter().skip(1).chain(if is_closed { Some(first) } else { None });
     for (vertex, next) in vertices.iter().zip(ends) {
-        let (from, to) = (flat(vertex.at), flat(next.at));
+        let (from, to) = (vertex.at.flat(), next.at.flat());
+        let end = plane.apply(to);
         match of_bulge(from, to, vertex.bulge) {
-            Some((centre, sweep_rad)) => {
-                let out = from - centre;
-                let radius = out.length();
-                let axes = (Vec2::new(radius, 0.0), Vec2::new(0.0, radius));
-                let span = (libm::atan2(out.y, out.x), sweep_rad);
-                path.arc(&plane, centre, axes, span, Some(plane.place(to)), tolerance_mm);
-            }
-            None => path.line_to(plane.place(to)),
+            Some(bow) => bow.draw(plane, Some(end), &mut stroke),
+            None => stroke.segments.push(PathSegment::line(end)),
         }
     }
-    Some(path)
+    Some(stroke)
 }
 
 /// The number that a layer's name begins with, 1 to 255.

@@ -2,12 +2,12 @@
 
 use super::entity::{Insert, Shape, Vertex};
 use super::frame::{Frame, Vec3};
-use super::hatch::{Edge, Family, Hatch, flat};
+use super::hatch::{Edge, Family, Hatch};
 use super::pairs::Pair;
-use super::path::{rad, sweep};
+use super::path::{Bow, rad, sweep};
 use super::spline::{Spline, through};
 use super::text::{Across, Along, Text, lines, plain};
-use crate::Vec2;
+use crate::Point;
 use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -381,21 +381,10 @@ fn polyline_edges(path: &[Pair]) -> Result<Vec<Edge>, Complaint> {
         .iter()
         .zip(next)
         .map(|(vertex, next)| {
-            let (from, to) = (flat(vertex.at), flat(next.at));
-            match super::path::of_bulge(from, to, vertex.bulge) {
-                Some((centre, sweep_rad)) => {
-                    let radius = (from - centre).length();
-                    let from_rad = libm::atan2(from.y - centre.y, from.x - centre.x);
-                    Edge::Arc { centre, axes: circle(radius), from_rad, sweep_rad }
-                }
-                None => Edge::Line { from, to },
-            }
+            let (from, to) = (vertex.at.flat(), next.at.flat());
+            super::path::of_bulge(from, to, vertex.bulge).map_or(Edge::Line { from, to }, Edge::Bow)
         })
         .collect())
-}
-
-fn circle(radius: f64) -> (Vec2, Vec2) {
-    (Vec2::new(radius, 0.0), Vec2::new(0.0, radius))
 }
 
 fn edges(path: &[Pair]) -> Result<Vec<Edge>, Complaint> {
@@ -412,26 +401,28 @@ fn edges(path: &[Pair]) -> Result<Vec<Edge>, Complaint> {
         let stop = starts.get(number_of + 1).copied().unwrap_or(end);
         let pairs = path.get(*start..stop).unwrap_or(&[]).to_vec();
         let edge = Record { pairs, kind: String::from("edge"), line: 0 };
-        let place = |code| edge.place(code).map(flat);
+        let place = |code| edge.place(code).map(Vec3::flat);
         edges.push(match edge.whole(72) {
             Some(1) => Edge::Line { from: place(10)?, to: place(11)? },
             Some(kind @ (2 | 3)) => {
                 let (mut from_rad, mut to_rad) = (rad(edge.number(50)?), rad(edge.number(51)?));
-                let axes = if kind == 2 {
-                    circle(edge.above_zero(40)?)
+                let centre = place(10)?;
+                // Clockwise, angles count the other way.
+                let sense = if edge.whole(73) == Some(0) { -1.0 } else { 1.0 };
+                let mut bow = Bow::round(centre, 0.0, 0.0, 0.0);
+                if kind == 2 {
+                    bow = Bow::round(centre, edge.above_zero(40)?, 0.0, 0.0);
                 } else {
-                    let (major, ratio) = (place(11)?, edge.above_zero(40)?);
+                    let (major, ratio) = (place(11)? - Point::ORIGIN, edge.above_zero(40)?);
                     // Angles here, where an ELLIPSE has parameters: those of the circle that it is made of.
                     let parameter = |angle: f64| libm::atan2(libm::sin(angle), ratio * libm::cos(angle));
                     if sweep(from_rad, to_rad) < TAU {
                         (from_rad, to_rad) = (parameter(from_rad), parameter(to_rad));
                     }
-                    (major, major.perpendicular() * ratio)
-                };
-                // Clockwise, angles count the other way.
-                let sense = if edge.whole(73) == Some(0) { -1.0 } else { 1.0 };
-                let sweep_rad = sense * sweep(from_rad, to_rad);
-                Edge::Arc { centre: place(10)?, axes, from_rad: sense * from_rad, sweep_rad }
+                    bow.axes = (major, major.perpendicular() * ratio);
+                }
+                (bow.from_rad, bow.sweep_rad) = (sense * from_rad, sense * sweep(from_rad, to_rad));
+                Edge::Bow(bow)
             }
             Some(4) => {
                 let mut spline = Spline {

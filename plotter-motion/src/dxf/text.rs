@@ -1,6 +1,7 @@
 //! [`Text`]: texts of a drawing, set in the single-line font of HPGL's labels.
 
-use super::frame::{Frame, Vec3, sin_cos};
+use super::frame::{Frame, Vec3};
+use crate::drawing::affine::sin_cos;
 use crate::hpgl::{LETTER_ADVANCE, LETTER_HEIGHT, LETTER_WIDTH, letter_strokes};
 use crate::{Point, Vec2};
 use alloc::string::String;

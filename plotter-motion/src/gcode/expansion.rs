@@ -4,15 +4,13 @@
 
 use super::interpreter::{LineInterpreter, Outcomes};
 use super::{Block, Error, Modes, PenConvention, Problem, ReadOptions, ServoCommand, Word, frame::Frame};
+use crate::bezier::Bezier;
 use crate::{Point, Vec2};
 
 const MM_PER_INCH: f64 = 25.4;
 
 /// Farthest that a curve's chords may be from it, mm: a tenth of the finest pen's line.
 const TOLERANCE_MM: f64 = 0.01;
-
-/// Most chords of a curve: one of 10 m that turns back needs 4000.
-const MOST_CHORDS: u16 = 4000;
 
 /// Farthest place of the pen in the coordinates of a scaled drawing, mm: a thousand times what a number can say.
 const MOST_MM: f64 = 1e12;
@@ -59,7 +57,7 @@ struct Cycle {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Pending {
     Nothing,
-    Curve { points: [Point; 4], next: u16, count: u16 },
+    Curve(Bezier),
     Turns { rest: u16 },
     Dot { stage: u8 },
 }
@@ -411,14 +409,8 @@ impl Expansion {
             let control = from + out;
             [from, from.lerp(control, 2.0 / 3.0), to.lerp(control, 2.0 / 3.0), to]
         };
-        // A chord is farther from its curve by no more than an eighth of the second derivative, over the square of their count.
-        let [a, b, c, d] = points;
-        let bend_mm = ((a - b) + (c - b)).length().max(((b - c) + (d - c)).length());
-        let count =
-            libm::ceil(libm::sqrt(6.0 * bend_mm / (8.0 * TOLERANCE_MM))).clamp(1.0, MOST_CHORDS.into());
-        let count = u16::try_from(crate::whole::whole(count)).unwrap_or(MOST_CHORDS);
         self.block = *block;
-        self.pending = Pending::Curve { points, next: 1, count };
+        self.pending = Pending::Curve(Bezier::new(points.map(|at| at - Point::ORIGIN), TOLERANCE_MM));
         Ok(())
     }
 
@@ -442,20 +434,16 @@ impl Expansion {
         let mut block = self.block;
         match &mut self.pending {
             Pending::Nothing => return None,
-            Pending::Curve { points: [a, b, c, d], next, count } => {
-                let t = f64::from(*next) / f64::from(*count);
-                let (ab, bc, cd) = (a.lerp(*b, t), b.lerp(*c, t), c.lerp(*d, t));
-                let (abc, bcd) = (ab.lerp(bc, t), bc.lerp(cd, t));
-                let to = if next == count { *d } else { abc.lerp(bcd, t) };
-                let from = if modes.relative { modes.position } else { Point::ORIGIN + modes.offset };
+            Pending::Curve(curve) => {
+                let Some(to) = curve.next() else {
+                    self.pending = Pending::Nothing;
+                    return None;
+                };
+                let from = if modes.relative { modes.position - Point::ORIGIN } else { modes.offset };
                 block.retain(|_| false);
                 block.insert(b'G', 1.0);
                 block.set(b'X', (to.x - from.x) / unit_mm(&modes));
                 block.set(b'Y', (to.y - from.y) / unit_mm(&modes));
-                *next += 1;
-                if *next > *count {
-                    self.pending = Pending::Nothing;
-                }
             }
             Pending::Turns { rest } => {
                 // The first part of the line has done what is no movement.

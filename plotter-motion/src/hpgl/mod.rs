@@ -101,7 +101,6 @@
 //! [`PlotOps::strict`] stops instead.
 
 mod arc;
-mod bezier;
 mod character_set;
 mod command;
 pub mod cutter;

@@ -1,11 +1,11 @@
 //! [`PlotOps`]: a text of a cutter as plot operations, read byte by byte.
 
-use super::super::bezier::Bezier;
 use super::super::escape::{Escape, Step};
 use super::super::scaling::limited;
 use super::super::{Cursor, Position};
 use super::command::{Entry, Form, MOST_ENTRIES, entry};
 use super::{Command, Dialect, Error, Problem};
+use crate::bezier::Bezier;
 use crate::decimal::Decimal;
 use crate::{PlotOp, Point, Vec2};
 use core::f64::consts::TAU;

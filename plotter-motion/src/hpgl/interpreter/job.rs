@@ -1,12 +1,12 @@
 //! [`Job`]: a command that draws more than fits into the queue, piece by piece.
 
-use super::super::bezier::Bezier;
 use super::super::hatch::Hatch;
 use super::super::piece::{Arc, Piece, turned_deg};
 use super::super::polygon::Cursor;
 use super::super::scaling::Scaling;
 use super::text_job::TextJob;
 use crate::Vec2;
+use crate::bezier::Bezier;
 use crate::shapes::unit_circle;
 
 /// What is being drawn.

@@ -1,6 +1,5 @@
 //! The pen: where it goes, which one it is, how fast it draws; and curves and encoded data, which are many places.
 
-use super::super::bezier::Bezier;
 use super::super::encoded::Step;
 use super::super::piece::Piece;
 use super::super::scaling::limited;
@@ -8,6 +7,7 @@ use super::super::{Error, Mnemonic, Position};
 use super::job::Job;
 use super::open::Open;
 use super::{Interpreter, Item, PENS};
+use crate::bezier::Bezier;
 use crate::{PlotOp, Vec2};
 
 /// mm/s in a cm/s, the unit of `VS`.

@@ -1,4 +1,4 @@
-//! [`Bezier`]: a cubic curve as lines: `BZ`, `BR`.
+//! [`Bezier`]: a cubic curve as lines, for all languages and drawings.
 
 use crate::Vec2;
 
@@ -7,7 +7,7 @@ const MOST_LINES: f64 = 4096.0;
 
 /// A cubic Bézier curve that is being divided.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bezier {
+pub(crate) struct Bezier {
     points: [Vec2; 4],
     lines: u32,
     next: u32,
@@ -21,7 +21,7 @@ impl Bezier {
     /// points.
     ///
     /// Source: G. Wang, "The subdivision method for finding the intersection between two Bézier curves or surfaces" (1984).
-    pub(super) fn new(points: [Vec2; 4], tolerance_units: f64) -> Self {
+    pub(crate) fn new(points: [Vec2; 4], tolerance_units: f64) -> Self {
         let [a, b, c, d] = points;
         let bend = libm::fmax(((a - b) + (c - b)).length(), ((b - c) + (d - c)).length());
         let lines = libm::ceil(libm::sqrt(0.75 * bend / tolerance_units));
@@ -34,8 +34,14 @@ impl Bezier {
         Self { points, lines, next: 1 }
     }
 
+    /// How many lines it becomes.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn lines(&self) -> u32 {
+        self.lines
+    }
+
     /// The end of the next line.
-    pub(super) fn next(&mut self) -> Option<Vec2> {
+    pub(crate) fn next(&mut self) -> Option<Vec2> {
         let [a, b, c, d] = self.points;
         let index = self.next;
         self.next += 1;
