@@ -22,18 +22,18 @@ pub(super) struct Mark<'a> {
 
 impl<'a> Mark<'a> {
     pub(super) fn new(index: usize, stroke: &Stroke<'a>) -> Option<Self> {
-        let (first, last) = (stroke.vertices.first()?, stroke.vertices.last()?);
+        let (first, last) = (stroke.vertices().first()?, stroke.vertices().last()?);
         let (mut least, mut most) = (*first, *first);
         // Twice the area of the triangle over the chord, for each vertex.
         let mut deviation: f64 = 0.0;
-        for at in stroke.vertices {
+        for at in stroke.vertices() {
             least = PxPoint::new(least.x.min(at.x), least.y.min(at.y));
             most = PxPoint::new(most.x.max(at.x), most.y.max(at.y));
             let area = (last.x - first.x) * (at.y - first.y) - (last.y - first.y) * (at.x - first.x);
             deviation = deviation.max(area.abs());
         }
         let mark =
-            Self { stroke: index, pen: stroke.pen, vertices: stroke.vertices, least, most, bent: false };
+            Self { stroke: index, pen: stroke.pen, vertices: stroke.vertices(), least, most, bent: false };
         let chord = first.distance(*last);
         let bent = stroke.closed || deviation > BENT * mark.size() * chord || chord < mark.size() / 2.0;
         mark.size().is_finite().then_some(Self { bent, ..mark })

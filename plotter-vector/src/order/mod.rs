@@ -17,10 +17,10 @@ mod trails;
 mod units;
 
 use crate::{Curve, Drawing, Lettering, PxPoint, TextBlock, curve};
-use plan::{Piece, Stroke, Trail, rebuild, strokes_of};
+use plan::{Parts, Piece, Stroke, Trail, rebuild, strokes_of};
 use search::shorten;
-use sites::{Site, Sites};
-use units::{mark_letters, units};
+use sites::{Sites, number};
+use units::{Units, mark_letters};
 
 /// Greatest coordinate of a drawing that is ordered, px: squares of distances stay far from infinity.
 const FARTHEST_PX: f64 = 1e12;
@@ -123,43 +123,48 @@ impl Order {
             return drawing.clone();
         }
         let mut strokes = strokes_of(drawing);
-        if !strokes.iter().flat_map(|stroke| stroke.vertices).all(within) {
-            return rebuild(drawing, &strokes, &as_given(&strokes, &[], self.across_pens));
-        }
         let blocks = match self.lettering {
+            Some(_) if !strokes.iter().all(is_within) => Vec::new(),
             Some(lettering) if drawing.has_arcs() => lettering.find(drawing),
             Some(lettering) => lettering.find_in(&strokes),
             None => Vec::new(),
         };
-        let given = rebuild(drawing, &strokes, &as_given(&strokes, &blocks, self.across_pens));
         mark_letters(&mut strokes, &blocks);
-        let ordered = rebuild(drawing, &strokes, &self.plan(&strokes, &blocks));
-        if ordered.pen_up_px() <= given.pen_up_px() { ordered } else { given }
+        let (parts, trails) = self.plan(&strokes, &blocks);
+        rebuild(drawing, &parts, &trails)
     }
 
     /// What is drawn as one, in order.
-    fn plan(&self, strokes: &[Stroke<'_>], blocks: &[TextBlock]) -> Vec<Trail> {
+    fn plan<'a>(&self, strokes: &'a [Stroke<'a>], blocks: &[TextBlock]) -> (Parts<'a>, Vec<Trail>) {
+        if !strokes.iter().all(is_within) {
+            return as_given(strokes, &[], self.across_pens);
+        }
         let gap_px = if self.merge_gap_px > 0.0 { self.merge_gap_px } else { 0.0 };
-        let joined = trails::trails(strokes, gap_px, self.one_stroke);
-        let mut trails = self.sequence(strokes, units(strokes, joined, blocks));
-        start_rings_well(strokes, &mut trails);
-        trails
+        let (parts, joined) = trails::trails(strokes, gap_px, self.one_stroke);
+        let (mut trails, mut ends) = self.sequence(&parts, &Units::new(&parts, joined, blocks));
+        start_rings_well(&parts, &mut trails, &mut ends);
+        let ordered_px = travel_px(ends);
+        let (as_given, given) = as_given(strokes, blocks, self.across_pens);
+        let given_px = travel_px(given.iter().map(|trail| as_given.ends(*trail)));
+        if ordered_px <= given_px { (parts, trails) } else { (as_given, given) }
     }
 
-    /// The trails of the units in order, pen by pen.
-    fn sequence(&self, strokes: &[Stroke<'_>], mut units: Vec<Vec<Trail>>) -> Vec<Trail> {
-        let pen = |unit: &Vec<Trail>| match unit.first() {
-            Some(trail) if !self.across_pens => trail.pen(strokes),
+    /// The trails of the units in order, pen by pen, and where each begins and ends.
+    fn sequence(&self, parts: &Parts<'_>, units: &Units) -> (Vec<Trail>, Vec<Ends>) {
+        let pen = |unit: &u32| match units.of(*unit).first() {
+            Some(trail) if !self.across_pens => parts.pen(*trail),
             _ => 0,
         };
-        units.sort_by_key(pen);
+        let mut by_pen: Vec<u32> = (0..number(units.len())).collect();
+        by_pen.sort_by_key(pen);
         let all = units.len().max(1) as u64;
         let mut ordered: Vec<Trail> = Vec::with_capacity(units.len());
-        for same_pen in units.chunk_by(|a, b| pen(a) == pen(b)) {
-            let from = ordered.last().map(|trail| trail.ends(strokes).1);
+        let mut ends: Vec<Ends> = Vec::with_capacity(units.len());
+        for same_pen in by_pen.chunk_by(|a, b| pen(a) == pen(b)) {
+            let from = ends.last().map(|ends| ends.1);
             let mut sites = Sites::default();
-            let rings = same_pen.iter().flatten().filter(|trail| trail.closed).count();
-            same_pen.iter().for_each(|unit| add_site(&mut sites, strokes, unit, rings));
+            let rings = same_pen.iter().flat_map(|unit| units.of(*unit)).filter(|trail| trail.closed).count();
+            same_pen.iter().for_each(|unit| add_site(&mut sites, parts, units.of(*unit), rings));
             let mut visits = sites.nearest_first(from);
             if self.effort == OrderEffort::Best {
                 let share = (self.budget / all).min(LOOKS_PER_STROKE) * same_pen.len() as u64;
@@ -168,41 +173,52 @@ impl Order {
             for visit in visits {
                 let Some(unit) = same_pen.get(visit.site as usize) else { continue };
                 let from = ordered.len();
-                ordered.extend(unit.iter().cloned());
+                ordered.extend(units.of(*unit));
                 if let Some([trail]) = ordered.get_mut(from..) {
+                    ends.push((sites.place(visit.entry), sites.place(visit.exit)));
                     if trail.closed {
-                        trail.start =
-                            sites.vertices.get(visit.entry as usize).map_or(0, |vertex| *vertex as usize);
+                        trail.start = sites.vertices.get(visit.entry as usize).map_or(0, |vertex| *vertex);
                     } else if visit.entry > visit.exit {
-                        trail.reverse();
+                        trail.reversed = !trail.reversed;
                     }
+                } else {
+                    ends.extend(units.of(*unit).iter().map(|trail| parts.ends(*trail)));
                 }
             }
         }
-        ordered
+        (ordered, ends)
     }
 }
 
-/// Whether a place can be ordered by distances.
-fn within(at: &PxPoint) -> bool {
-    at.x.abs() <= FARTHEST_PX && at.y.abs() <= FARTHEST_PX
+/// Where a trail begins and ends.
+type Ends = (PxPoint, PxPoint);
+
+/// Way from trail to trail, px; the way to the first is not known.
+fn travel_px(ends: impl IntoIterator<Item = Ends>) -> f64 {
+    let mut at: Option<PxPoint> = None;
+    let way = |(from, to): Ends| at.replace(to).map_or(0.0, |at| at.distance(from));
+    ends.into_iter().map(way).fold(0.0, |sum, px| sum + px)
+}
+
+/// Whether a stroke can be ordered by distances.
+fn is_within(stroke: &Stroke<'_>) -> bool {
+    stroke.vertices().iter().all(|at| at.x.abs() <= FARTHEST_PX && at.y.abs() <= FARTHEST_PX)
 }
 
 /// Where the pen may enter and leave a unit, one of so many rings if it is one.
-fn add_site(sites: &mut Sites, strokes: &[Stroke<'_>], unit: &[Trail], rings: usize) {
+fn add_site(sites: &mut Sites, parts: &Parts<'_>, unit: &[Trail], rings: usize) {
     match unit {
-        [trail] => {
-            let vertices = trail.vertices(strokes);
-            match vertices.as_slice() {
-                [ring @ .., _] if trail.closed => sites.push_ring(ring, rings),
-                [from, .., to] => sites.push(Site::Line(*from, *to)),
-                dot => sites.push_ring(dot, rings),
-            }
+        [trail] if trail.closed => {
+            let mut ring = parts.vertices(*trail);
+            ring.pop();
+            sites.push_ring(&ring, rings);
         }
+        [trail] if parts.is_dot(*trail) => sites.push_ring(&[parts.ends(*trail).0], rings),
+        [trail] => sites.push_line(parts.ends(*trail)),
         trails => {
-            let from = trails.first().map(|trail| trail.ends(strokes).0);
-            let to = trails.last().map(|trail| trail.ends(strokes).1);
-            sites.push(Site::OneWay(from.unwrap_or_default(), to.unwrap_or_default()));
+            let from = trails.first().map(|trail| parts.ends(*trail).0);
+            let to = trails.last().map(|trail| parts.ends(*trail).1);
+            sites.push_one_way((from.unwrap_or_default(), to.unwrap_or_default()));
         }
     }
 }
@@ -215,40 +231,45 @@ pub fn order(drawing: &Drawing) -> Drawing {
 
 /// Each stroke by itself, in the given order, but for the pens, and for blocks of lettering: those are drawn in reading
 /// order where their first stroke was.
-fn as_given(strokes: &[Stroke<'_>], blocks: &[TextBlock], across_pens: bool) -> Vec<Trail> {
-    let mut order: Vec<usize> = (0..strokes.len()).collect();
-    let mut first = order.clone();
+fn as_given<'a>(
+    strokes: &'a [Stroke<'a>],
+    blocks: &[TextBlock],
+    across_pens: bool,
+) -> (Parts<'a>, Vec<Trail>) {
+    let pen = |stroke: &Stroke<'_>| if across_pens { 0 } else { stroke.pen };
+    // The pen, where its block begins, its place in the block, and which it is.
+    let mut order: Vec<(u8, u32, u32, u32)> =
+        strokes.iter().zip(0..).map(|(stroke, index)| (pen(stroke), stroke.rank, 0, index)).collect();
     for block in blocks {
         let own = || block.letters().flatten().copied();
-        let least = own().min().unwrap_or(0);
-        own().for_each(|stroke| first.get_mut(stroke).into_iter().for_each(|slot| *slot = least));
+        let least =
+            own().filter_map(|stroke| strokes.get(stroke)).map(|stroke| stroke.rank).min().unwrap_or(0);
+        for (stroke, read) in own().zip(0..) {
+            if let Some(slot) = order.get_mut(stroke) {
+                (slot.1, slot.2) = (least, read);
+            }
+        }
     }
-    let mut read = vec![0; strokes.len()];
-    for (place, stroke) in blocks.iter().flat_map(TextBlock::letters).flatten().enumerate() {
-        read.get_mut(*stroke).into_iter().for_each(|slot| *slot = place);
-    }
-    let pen = |stroke: usize| Some(if across_pens { 0 } else { strokes.get(stroke)?.pen });
-    let key = |stroke: &usize| Some((pen(*stroke)?, *first.get(*stroke)?, *read.get(*stroke)?));
-    order.sort_by_key(key);
-    let alone =
-        |stroke| Trail { pieces: vec![Piece { stroke, reversed: false, start: 0 }], ..Trail::default() };
-    order.into_iter().map(alone).collect()
+    order.sort_unstable();
+    let mut parts = Parts::new(strokes);
+    let alone = |stroke| parts.push([Piece { stroke, reversed: false, start: 0 }], false);
+    let trails = order.into_iter().map(|(_, _, _, stroke)| stroke).map(alone).collect();
+    (parts, trails)
 }
 
 /// Lets each ring begin at the vertex that is on the way from the stroke before to the one after; of equally good
 /// ones at the sharpest corner, where the pen's coming and going is not seen.
-fn start_rings_well(strokes: &[Stroke<'_>], trails: &mut [Trail]) {
-    let mut ends: Vec<(PxPoint, PxPoint)> = trails.iter().map(|trail| trail.ends(strokes)).collect();
+fn start_rings_well(parts: &Parts<'_>, trails: &mut [Trail], ends: &mut [Ends]) {
     for _ in 0..RING_PASSES {
         let mut settled = true;
         for (index, trail) in trails.iter_mut().enumerate().filter(|(_, trail)| trail.closed) {
             let before = index.checked_sub(1).and_then(|before| ends.get(before)).map(|ends| ends.1);
             let after = ends.get(index + 1).map(|ends| ends.0);
             trail.start = 0;
-            let mut ring = trail.curve(strokes);
+            let mut ring = parts.curve(*trail);
             ring.vertices.pop();
             let start = best_start(&ring, before, after);
-            trail.start = start;
+            trail.start = number(start);
             let at = ring.vertices.get(start).copied().unwrap_or_default();
             if let Some(slot) = ends.get_mut(index).filter(|slot| slot.0 != at) {
                 *slot = (at, at);
@@ -316,10 +337,11 @@ mod tests {
             stroke.pen = pen;
         }
         let order = Order::default();
-        let joined = trails::trails(&strokes, 0.5, true);
-        let trails = order.sequence(&strokes, units(&strokes, joined, &[]));
-        let drawn: Vec<usize> = trails.iter().map(|trail| trail.pieces[0].stroke).collect();
-        let pens: Vec<u8> = trails.iter().map(|trail| trail.pen(&strokes)).collect();
+        let (parts, joined) = trails::trails(&strokes, 0.5, true);
+        let (trails, _) = order.sequence(&parts, &Units::new(&parts, joined, &[]));
+        let drawn: Vec<u32> =
+            trails.iter().flat_map(|trail| trail.pieces(&parts.pieces)).map(|piece| piece.stroke).collect();
+        let pens: Vec<u8> = trails.iter().map(|trail| parts.pen(*trail)).collect();
         assert_eq!(pens, [1, 1, 1, 2, 2, 2, 3, 3, 3]);
         // Each pen begins on the side where the one before ended.
         assert!(drawn == [1, 4, 7, 6, 3, 0, 2, 5, 8] || drawn == [7, 4, 1, 0, 3, 6, 8, 5, 2], "{drawn:?}");
@@ -344,7 +366,7 @@ mod tests {
         drawing.push(line(5.0, 9.0));
         let mut strokes = strokes_of(&drawing);
         strokes[1].pen = 2;
-        assert_eq!(trails::trails(&strokes, 0.5, true).len(), 2);
+        assert_eq!(trails::trails(&strokes, 0.5, true).1.len(), 2);
     }
 
     #[test]

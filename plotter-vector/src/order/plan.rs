@@ -1,6 +1,7 @@
 //! What the search knows of a drawing ([`Stroke`]), what it answers ([`Trail`]), and [`rebuild`], the only place
-//! that makes a drawing of the answer.
+//! that makes a drawing of the answer. A drawing of a million lines has a million of each, so they are small.
 
+use super::sites::number;
 use crate::curve::{CHORD_ERROR_PX, Course, unit};
 use crate::{Curve, Drawing, PxPoint};
 
@@ -13,50 +14,59 @@ const MIN_CLOSED: usize = 3;
 /// A stroke as the search sees it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stroke<'a> {
+    drawing: &'a Drawing,
+    index: u32,
+    /// Its place in the given order.
+    pub(crate) rank: u32,
+    /// Letter it belongs to, 0 for none; strokes are joined only within one letter.
+    pub(crate) letter: u32,
     /// Pen that draws it.
     pub(crate) pen: u8,
-    /// Letter it belongs to, 0 for none; strokes are joined only within one letter.
-    pub(crate) letter: usize,
-    /// Places at which it may be entered if it is closed; else the first and the last one count.
-    pub(crate) vertices: &'a [PxPoint],
-    /// What lies between them.
-    pub(crate) course: Course<'a>,
     /// Whether its last vertex is its first one again.
     pub(crate) closed: bool,
     /// Unit vectors in which it would go on beyond its first and its last vertex; (0, 0) for a dot.
     pub(crate) outward: [(f64, f64); 2],
 }
 
-impl Stroke<'_> {
+impl<'a> Stroke<'a> {
+    /// Places at which it may be entered if it is closed; else the first and the last one count.
+    pub(crate) fn vertices(&self) -> &'a [PxPoint] {
+        self.drawing.stroke(self.index as usize)
+    }
+
+    /// What lies between its vertices.
+    pub(crate) fn course(&self) -> Course<'a> {
+        self.drawing.course(self.index as usize)
+    }
+
     /// Its length, px.
     pub(crate) fn length_px(&self) -> f64 {
-        self.course.length_px()
+        self.course().length_px()
     }
 
     /// Where it begins (`false`) or ends (`true`).
     pub(crate) fn end(&self, last: bool) -> PxPoint {
-        let vertex = if last { self.vertices.last() } else { self.vertices.first() };
+        let vertices = self.vertices();
+        let vertex = if last { vertices.last() } else { vertices.first() };
         vertex.copied().unwrap_or_default()
     }
 }
 
 /// The strokes of a drawing.
 pub(crate) fn strokes_of(drawing: &Drawing) -> Vec<Stroke<'_>> {
-    drawing
-        .strokes()
-        .enumerate()
-        .map(|(index, vertices)| {
-            let places = drawing.stroke_chords(index, CHORD_ERROR_PX);
-            Stroke {
-                pen: drawing.pen(index),
-                letter: 0,
-                vertices,
-                course: drawing.course(index),
-                closed: vertices.len() >= MIN_CLOSED && vertices.first() == vertices.last(),
-                outward: [outward(places.iter()), outward(places.iter().rev())],
-            }
-        })
-        .collect()
+    let stroke = |(vertices, index): (&[PxPoint], u32)| {
+        let places = drawing.stroke_chords(index as usize, CHORD_ERROR_PX);
+        Stroke {
+            drawing,
+            index,
+            rank: index,
+            letter: 0,
+            pen: drawing.pen(index as usize),
+            closed: vertices.len() >= MIN_CLOSED && vertices.first() == vertices.last(),
+            outward: [outward(places.iter()), outward(places.iter().rev())],
+        }
+    };
+    drawing.strokes().zip(0..).map(stroke).collect()
 }
 
 /// The unit vector from a place some way along the stroke to its end; the walk begins at the end.
@@ -76,43 +86,89 @@ fn outward<'a>(mut walk: impl Iterator<Item = &'a PxPoint>) -> (f64, f64) {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Piece {
     /// Which stroke.
-    pub(crate) stroke: usize,
+    pub(crate) stroke: u32,
+    /// Vertex of a closed stroke with which it begins and ends.
+    pub(crate) start: u32,
     /// Whether it is drawn from its last vertex to its first one.
     pub(crate) reversed: bool,
-    /// Vertex of a closed stroke with which it begins and ends.
-    pub(crate) start: usize,
 }
 
-/// Strokes of the given drawing that are drawn as one.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// Pieces that are drawn as one, each from where the one before ended: a range of all pieces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Trail {
-    /// The strokes, each from where the one before ended.
-    pub(crate) pieces: Vec<Piece>,
+    /// The first of its pieces, and one past the last.
+    range: (u32, u32),
+    /// Vertex of the closed trail with which it begins and ends.
+    pub(crate) start: u32,
     /// Whether it comes back to where it began.
     pub(crate) closed: bool,
-    /// Vertex of the closed trail with which it begins and ends.
-    pub(crate) start: usize,
+    /// Whether it is drawn from the end of the last piece.
+    pub(crate) reversed: bool,
 }
 
 impl Trail {
+    /// Its pieces as they are drawn.
+    pub(crate) fn pieces(self, all: &[Piece]) -> impl Iterator<Item = Piece> + '_ {
+        let own = all.get(self.range.0 as usize..self.range.1 as usize).unwrap_or(&[]);
+        let last = own.len().saturating_sub(1);
+        (0..own.len()).filter_map(move |k| {
+            let piece = own.get(if self.reversed { last - k } else { k })?;
+            Some(Piece { reversed: piece.reversed != self.reversed, ..*piece })
+        })
+    }
+}
+
+/// What trails are made of.
+#[derive(Debug)]
+pub(crate) struct Parts<'a> {
+    pub(crate) strokes: &'a [Stroke<'a>],
+    pub(crate) pieces: Vec<Piece>,
+}
+
+impl<'a> Parts<'a> {
+    /// No pieces yet of these strokes.
+    pub(crate) fn new(strokes: &'a [Stroke<'a>]) -> Self {
+        Self { strokes, pieces: Vec::with_capacity(strokes.len()) }
+    }
+
+    /// The pieces as a trail.
+    pub(crate) fn push(&mut self, pieces: impl IntoIterator<Item = Piece>, closed: bool) -> Trail {
+        let from = number(self.pieces.len());
+        self.pieces.extend(pieces);
+        Trail { range: (from, number(self.pieces.len())), closed, ..Trail::default() }
+    }
+
+    fn of(&self, trail: Trail) -> impl Iterator<Item = (Piece, &Stroke<'a>)> {
+        trail.pieces(&self.pieces).filter_map(|piece| Some((piece, self.strokes.get(piece.stroke as usize)?)))
+    }
+
+    /// The first of its strokes.
+    pub(crate) fn first(&self, trail: Trail) -> Option<&Stroke<'a>> {
+        self.of(trail).next().map(|(_, stroke)| stroke)
+    }
+
     /// Pen of its strokes.
-    pub(crate) fn pen(&self, strokes: &[Stroke<'_>]) -> u8 {
-        self.pieces.first().and_then(|piece| strokes.get(piece.stroke)).map_or(0, |stroke| stroke.pen)
+    pub(crate) fn pen(&self, trail: Trail) -> u8 {
+        self.first(trail).map_or(0, |stroke| stroke.pen)
+    }
+
+    /// Whether it is one place.
+    pub(crate) fn is_dot(&self, trail: Trail) -> bool {
+        self.of(trail).map(|(_, stroke)| stroke.vertices().len()).sum::<usize>() < 2
     }
 
     /// Its vertices in drawing order; a closed trail's last vertex is its first one.
-    pub(crate) fn vertices(&self, strokes: &[Stroke<'_>]) -> Vec<PxPoint> {
-        self.curve(strokes).vertices
+    pub(crate) fn vertices(&self, trail: Trail) -> Vec<PxPoint> {
+        self.curve(trail).vertices
     }
 
     /// Its vertices with its arcs and cubic curves.
-    pub(crate) fn curve(&self, strokes: &[Stroke<'_>]) -> Curve {
+    pub(crate) fn curve(&self, trail: Trail) -> Curve {
         let mut joined = Curve::default();
-        for piece in &self.pieces {
-            let Some(stroke) = strokes.get(piece.stroke) else { continue };
-            let mut own = Curve::from(stroke.course);
+        for (piece, stroke) in self.of(trail) {
+            let mut own = Curve::from(stroke.course());
             if stroke.closed {
-                own.begin_at(piece.start);
+                own.begin_at(piece.start as usize);
             }
             if piece.reversed {
                 own.reverse();
@@ -120,46 +176,39 @@ impl Trail {
             // Across a gap the pen stays down.
             joined.append(own);
         }
-        if self.closed && joined.vertices.first() != joined.vertices.last() {
+        if trail.closed && joined.vertices.first() != joined.vertices.last() {
             joined.append(joined.vertices.first().copied().into_iter().collect::<Vec<PxPoint>>().into());
         }
-        if self.closed {
-            joined.begin_at(self.start);
+        if trail.closed {
+            joined.begin_at(trail.start as usize);
         }
         joined
     }
 
     /// Its first and its last vertex.
-    pub(crate) fn ends(&self, strokes: &[Stroke<'_>]) -> (PxPoint, PxPoint) {
-        if self.closed || self.pieces.iter().any(|piece| piece.start > 0) {
-            let vertices = self.vertices(strokes);
+    pub(crate) fn ends(&self, trail: Trail) -> (PxPoint, PxPoint) {
+        if trail.closed || trail.pieces(&self.pieces).any(|piece| piece.start > 0) {
+            let vertices = self.vertices(trail);
             return (
                 vertices.first().copied().unwrap_or_default(),
                 vertices.last().copied().unwrap_or_default(),
             );
         }
-        let end = |piece: Option<&Piece>, last: bool| {
-            piece
-                .and_then(|piece| Some(strokes.get(piece.stroke)?.end(last != piece.reversed)))
-                .unwrap_or_default()
+        let mut ends = self.of(trail).map(|(piece, stroke)| (stroke, piece.reversed));
+        let first = ends.next();
+        let last = ends.last().or(first);
+        let end = |known: Option<(&Stroke<'_>, bool)>, last| {
+            known.map(|(stroke, reversed)| stroke.end(last != reversed)).unwrap_or_default()
         };
-        (end(self.pieces.first(), false), end(self.pieces.last(), true))
-    }
-
-    /// The same trail from its other end.
-    pub(crate) fn reverse(&mut self) {
-        self.pieces.reverse();
-        for piece in &mut self.pieces {
-            piece.reversed = !piece.reversed;
-        }
+        (end(first, false), end(last, true))
     }
 }
 
 /// The drawing that draws the strokes of `drawing` as the trails say.
-pub(crate) fn rebuild(drawing: &Drawing, strokes: &[Stroke<'_>], trails: &[Trail]) -> Drawing {
+pub(crate) fn rebuild(drawing: &Drawing, parts: &Parts<'_>, trails: &[Trail]) -> Drawing {
     let mut ordered = Drawing::new(drawing.width_px(), drawing.height_px());
     for trail in trails {
-        ordered.push_curve(trail.pen(strokes), trail.curve(strokes));
+        ordered.push_curve(parts.pen(*trail), parts.curve(*trail));
     }
     ordered
 }
@@ -177,11 +226,11 @@ mod tests {
         let mut drawing = Drawing::new(9, 9);
         drawing.push([0, 1, 2, 0].map(at));
         let strokes = strokes_of(&drawing);
-        let mut trail =
-            Trail { pieces: vec![Piece { stroke: 0, reversed: false, start: 1 }], ..Trail::default() };
-        assert_eq!(trail.vertices(&strokes), [1, 2, 0, 1].map(at));
-        trail.reverse();
-        assert_eq!(trail.vertices(&strokes), [1, 0, 2, 1].map(at));
+        let mut parts = Parts::new(&strokes);
+        let mut trail = parts.push([Piece { stroke: 0, reversed: false, start: 1 }], false);
+        assert_eq!(parts.vertices(trail), [1, 2, 0, 1].map(at));
+        trail.reversed = true;
+        assert_eq!(parts.vertices(trail), [1, 0, 2, 1].map(at));
     }
 
     #[test]
@@ -191,8 +240,11 @@ mod tests {
         drawing.push([3, 1].map(at));
         drawing.push([4, 5].map(at));
         let pieces = [(0, false), (1, true), (2, false)];
-        let pieces = pieces.map(|(stroke, reversed)| Piece { stroke, reversed, start: 0 }).to_vec();
-        let trail = Trail { pieces, closed: true, start: 2 };
-        assert_eq!(trail.vertices(&strokes_of(&drawing)), [3, 4, 5, 0, 1, 3].map(at));
+        let pieces = pieces.map(|(stroke, reversed)| Piece { stroke, reversed, start: 0 });
+        let strokes = strokes_of(&drawing);
+        let mut parts = Parts::new(&strokes);
+        let mut trail = parts.push(pieces, true);
+        trail.start = 2;
+        assert_eq!(parts.vertices(trail), [3, 4, 5, 0, 1, 3].map(at));
     }
 }

@@ -1,6 +1,7 @@
 //! [`PointTree`]: points that are found by nearness, and can be taken out.
 
 use crate::PxPoint;
+use crate::centrelines::each;
 
 /// Points in a balanced k-d tree: the node of a range is its middle element, the halves are its subtrees, split by x
 /// and y in turn (J. L. Bentley, "Multidimensional binary search trees", 1975).
@@ -8,14 +9,18 @@ use crate::PxPoint;
 /// The order of equal coordinates is that of the points' numbers, so the tree is the same on every machine.
 #[derive(Debug)]
 pub(crate) struct PointTree {
+    /// Each with its number; `GONE` when it was taken out.
     points: Vec<(PxPoint, u32)>,
     /// Points left in the subtree of each node.
     left: Vec<u32>,
-    /// Node of each point; `GONE` when it was taken out.
+    /// Node of each point.
     nodes: Vec<u32>,
 }
 
-/// No node.
+/// Most points of a range that is split by one core: less than a millisecond of work.
+const ALONE: usize = 10_000;
+
+/// No point.
 const GONE: u32 = u32::MAX;
 
 impl PointTree {
@@ -24,7 +29,7 @@ impl PointTree {
         let mut points: Vec<(PxPoint, u32)> = points.zip(0..).collect();
         let mut left = vec![0; points.len()];
         split(&mut points, &mut left, false);
-        let mut nodes = vec![GONE; points.len()];
+        let mut nodes = vec![0; points.len()];
         for ((_, id), node) in points.iter().zip(0..) {
             if let Some(slot) = nodes.get_mut(*id as usize) {
                 *slot = node;
@@ -35,9 +40,9 @@ impl PointTree {
 
     /// Takes a point out.
     pub(crate) fn remove(&mut self, id: u32) {
-        let Some(slot) = self.nodes.get_mut(id as usize).filter(|slot| **slot != GONE) else { return };
-        let node = *slot as usize;
-        *slot = GONE;
+        let Some(node) = self.nodes.get(id as usize).map(|node| *node as usize) else { return };
+        let Some(point) = self.points.get_mut(node).filter(|point| point.1 != GONE) else { return };
+        point.1 = GONE;
         let (mut low, mut high) = (0, self.points.len());
         while low < high {
             let middle = low + (high - low) / 2;
@@ -86,7 +91,7 @@ impl PointTree {
         };
         let (dx, dy) = (at.x - point.x, at.y - point.y);
         let distance = dx * dx + dy * dy;
-        if distance < *squared && self.nodes.get(*id as usize) != Some(&GONE) {
+        if distance < *squared && *id != GONE {
             *squared = found(*id, distance);
         }
         let beyond = if by_y { dy } else { dx };
@@ -116,8 +121,12 @@ fn split(points: &mut [(PxPoint, u32)], left: &mut [u32], by_y: bool) {
         (high_points.split_first_mut(), high_left.split_first_mut())
     {
         *own = u32::try_from(count).unwrap_or(u32::MAX);
-        split(low_points, low_left, !by_y);
-        split(high_points, high_left, !by_y);
+        let halves = [(low_points, low_left), (high_points, high_left)];
+        if count > ALONE {
+            each(halves.into(), |(points, left)| split(points, left, !by_y));
+        } else {
+            halves.into_iter().for_each(|(points, left)| split(points, left, !by_y));
+        }
     }
 }
 

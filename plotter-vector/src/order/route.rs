@@ -65,7 +65,7 @@ impl Route {
         ports[home as usize] = [end, start];
         place[home as usize] = home;
         let is_one_way: Vec<bool> =
-            (0..=home).map(|site| site < home && matches!(sites.kind(site), Site::OneWay(..))).collect();
+            (0..=home).map(|site| site < home && matches!(sites.kind(site), Site::OneWay)).collect();
         Self {
             order: visits.iter().map(|visit| visit.site).chain([home]).collect(),
             place,
@@ -287,7 +287,7 @@ mod tests {
         let mut sites = Sites::default();
         for k in 0..6 {
             let (from, to) = (at(10 * k), at(10 * k + 1));
-            sites.push(if k == 2 { Site::OneWay(from, to) } else { Site::Line(from, to) });
+            if k == 2 { sites.push_one_way((from, to)) } else { sites.push_line((from, to)) }
         }
         let visits = sites.nearest_first(None);
         let route = Route::new(&sites, &visits, None);

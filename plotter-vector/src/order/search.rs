@@ -443,7 +443,7 @@ mod tests {
         let mut sites = Sites::default();
         let mut visits = Vec::new();
         for ((from, to), site) in ends.into_iter().zip(0..) {
-            sites.push(Site::Line(at(from.0, from.1), at(to.0, to.1)));
+            sites.push_line((at(from.0, from.1), at(to.0, to.1)));
             visits.push(Visit { site, entry: 2 * site, exit: 2 * site + 1 });
         }
         (sites, visits)
@@ -493,7 +493,7 @@ mod tests {
         let mut sites = Sites::default();
         let mut visits = Vec::new();
         for (x, site) in (0..200).step_by(10).zip(0..) {
-            sites.push(Site::Line(at(x, 0), at(x + 8, 0)));
+            sites.push_line((at(x, 0), at(x + 8, 0)));
             visits.push(Visit { site, entry: 2 * site, exit: 2 * site + 1 });
         }
         // A square beside the middle of the row, drawn last and from its far corner.

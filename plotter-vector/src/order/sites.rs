@@ -19,12 +19,12 @@ const PLACES_TOGETHER: usize = 1024;
 const NONE: u32 = u32::MAX;
 
 /// How a thing is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Site {
-    /// From one place to the other, either way.
-    Line(PxPoint, PxPoint),
+    /// From one of its two places to the other, either way.
+    Line,
     /// From the first place to the second one.
-    OneWay(PxPoint, PxPoint),
+    OneWay,
     /// From the place at which it is entered back to that place.
     Ring,
 }
@@ -57,10 +57,13 @@ pub(crate) fn number(index: usize) -> u32 {
 
 impl Sites {
     /// Adds a line; its places are its ends.
-    pub(crate) fn push(&mut self, kind: Site) {
-        if let Site::Line(from, to) | Site::OneWay(from, to) = kind {
-            self.add(kind, [(from, 0), (to, 0)].into_iter());
-        }
+    pub(crate) fn push_line(&mut self, (from, to): (PxPoint, PxPoint)) {
+        self.add(Site::Line, [(from, 0), (to, 0)].into_iter());
+    }
+
+    /// Adds what is drawn from the first place to the second one only.
+    pub(crate) fn push_one_way(&mut self, (from, to): (PxPoint, PxPoint)) {
+        self.add(Site::OneWay, [(from, 0), (to, 0)].into_iter());
     }
 
     /// Adds one of so many rings (or dots); its places are some of its vertices, evenly chosen.
@@ -96,6 +99,11 @@ impl Sites {
         from..self.ends.get(site as usize).copied().unwrap_or(from)
     }
 
+    /// Where a place lies.
+    pub(crate) fn place(&self, place: u32) -> PxPoint {
+        self.places.get(place as usize).copied().unwrap_or_default()
+    }
+
     pub(crate) fn owner(&self, place: u32) -> u32 {
         self.owners.get(place as usize).copied().unwrap_or(NONE)
     }
@@ -106,8 +114,8 @@ impl Sites {
         let own = self.of(site);
         let exit = match self.kind(site) {
             Site::Ring => place,
-            Site::Line(..) => own.start + own.end.checked_sub(place + 1)?,
-            Site::OneWay(..) => (place == own.start).then_some(place + 1)?,
+            Site::Line => own.start + own.end.checked_sub(place + 1)?,
+            Site::OneWay => (place == own.start).then_some(place + 1)?,
         };
         Some(Visit { site, entry: place, exit })
     }
@@ -123,8 +131,7 @@ impl Sites {
         while let Some(visit) = next {
             self.of(visit.site).for_each(|place| tree.remove(place));
             visits.push(visit);
-            let pen = self.places.get(visit.exit as usize).copied().unwrap_or_default();
-            next = tree.nearest(pen).and_then(|place| self.enter(place));
+            next = tree.nearest(self.place(visit.exit)).and_then(|place| self.enter(place));
         }
         visits
     }
@@ -181,9 +188,9 @@ mod tests {
     #[test]
     fn a_place_knows_each_near_thing_once_by_its_nearest_place() {
         let mut sites = Sites::default();
-        sites.push(Site::Line(at(0), at(1)));
+        sites.push_line((at(0), at(1)));
         sites.push_ring(&[at(7), at(5), at(6)], 1);
-        sites.push(Site::OneWay(at(9), at(30)));
+        sites.push_one_way((at(9), at(30)));
         let near = sites.neighbours();
         assert_eq!(near[1], [3, 5, NONE, NONE, NONE, NONE, NONE, NONE]);
         assert_eq!(near[6], [2, 1, NONE, NONE, NONE, NONE, NONE, NONE]);
@@ -192,8 +199,8 @@ mod tests {
     #[test]
     fn a_one_way_line_is_never_entered_at_its_end() {
         let mut sites = Sites::default();
-        sites.push(Site::Line(at(0), at(10)));
-        sites.push(Site::OneWay(at(30), at(11)));
+        sites.push_line((at(0), at(10)));
+        sites.push_one_way((at(30), at(11)));
         let visits = sites.nearest_first(None);
         assert_eq!(visits[1], Visit { site: 1, entry: 2, exit: 3 });
     }

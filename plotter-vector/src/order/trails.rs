@@ -15,8 +15,9 @@
 //! ends in odd nodes then is max(1, k) trails, fewer is impossible.
 
 use super::forest::Forest;
-use super::plan::{Piece, Stroke, Trail};
+use super::plan::{Parts, Piece, Stroke, Trail};
 use super::point_tree::PointTree;
+use super::sites::number;
 use crate::PxPoint;
 
 /// Greatest cosine between the outward directions of two ends that go on in each other: they bend by 45° at most.
@@ -33,7 +34,11 @@ const CLOSED_GAPS: f64 = 8.0;
 
 /// Joins strokes end to end. Ends within `gap_px` are joined where the line goes on; with `one_stroke` so are ends in
 /// exactly one place, whatever the angle. Trails come in the order of their first strokes.
-pub(crate) fn trails(strokes: &[Stroke<'_>], gap_px: f64, one_stroke: bool) -> Vec<Trail> {
+pub(crate) fn trails<'a>(
+    strokes: &'a [Stroke<'a>],
+    gap_px: f64,
+    one_stroke: bool,
+) -> (Parts<'a>, Vec<Trail>) {
     let mut meeting = Meeting::new(strokes, one_stroke);
     meeting.go_on_straight(gap_px);
     if one_stroke {
@@ -48,116 +53,140 @@ pub(crate) fn trails(strokes: &[Stroke<'_>], gap_px: f64, one_stroke: bool) -> V
 struct Meeting<'a> {
     strokes: &'a [Stroke<'a>],
     /// First vertex of each closed stroke.
-    starts: Vec<usize>,
+    starts: Vec<u32>,
     /// Ends by node, and in a node by direction.
-    ends: Vec<usize>,
+    ends: Vec<u32>,
     /// One past the last end of each node, in `ends`.
-    nodes: Vec<usize>,
-    /// Node of each end.
-    node_of: Vec<Option<usize>>,
-    partners: Vec<Option<usize>>,
+    nodes: Vec<u32>,
+    /// Where each node lies.
+    places: Vec<PxPoint>,
+    /// Node of each end; `NONE` of a dot's.
+    node_of: Vec<u32>,
+    /// What each end goes on in; `NONE` where it ends.
+    partners: Vec<u32>,
 }
 
-/// What joins: the pen, the letter and the place.
-type Key = (u8, usize, u64, u64);
+/// No end, and no node.
+const NONE: u32 = u32::MAX;
+
+/// What joins: the pen and the letter, and the place.
+type Key = (u64, u64, u64);
 
 fn key(stroke: &Stroke<'_>, at: PxPoint) -> Key {
     // Adding 0.0 makes one zero of the two.
-    (stroke.pen, stroke.letter, (at.x + 0.0).to_bits(), (at.y + 0.0).to_bits())
+    (u64::from(stroke.pen) << 32 | u64::from(stroke.letter), (at.x + 0.0).to_bits(), (at.y + 0.0).to_bits())
 }
 
 impl<'a> Meeting<'a> {
     fn new(strokes: &'a [Stroke<'a>], one_stroke: bool) -> Self {
         let starts = if one_stroke { starts_at_nodes(strokes) } else { vec![0; strokes.len()] };
-        let mut keyed: Vec<(Key, f64, usize)> = Vec::with_capacity(2 * strokes.len());
-        for (index, stroke) in strokes.iter().enumerate().filter(|(_, stroke)| stroke.vertices.len() > 1) {
+        let mut keyed: Vec<(Key, u32)> = Vec::with_capacity(2 * strokes.len());
+        for (stroke, index) in strokes.iter().zip(0_u32..).filter(|(stroke, _)| stroke.vertices().len() > 1) {
             for last in [false, true] {
-                let (at, direction) = tip(stroke, starts.get(index).copied().unwrap_or(0), last);
-                let angle = libm::atan2(direction.1, direction.0);
-                keyed.push((key(stroke, at), angle, 2 * index + usize::from(last)));
+                let (at, _) = tip(stroke, starts.get(index as usize).copied().unwrap_or(0), last);
+                keyed.push((key(stroke, at), 2 * index + u32::from(last)));
             }
         }
-        keyed.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
-        let mut node_of = vec![None; 2 * strokes.len()];
-        let mut nodes = Vec::new();
-        for run in keyed.chunk_by(|a, b| a.0 == b.0) {
-            for (_, _, end) in run {
-                if let Some(slot) = node_of.get_mut(*end) {
-                    *slot = Some(nodes.len());
-                }
-            }
-            nodes.push(nodes.last().unwrap_or(&0) + run.len());
-        }
+        keyed.sort_unstable();
         let mut meeting = Self {
             strokes,
             starts,
-            ends: keyed.into_iter().map(|(_, _, end)| end).collect(),
-            nodes,
-            node_of,
-            partners: vec![None; 2 * strokes.len()],
+            ends: keyed.iter().map(|(_, end)| *end).collect(),
+            nodes: Vec::new(),
+            places: Vec::new(),
+            node_of: vec![NONE; 2 * strokes.len()],
+            partners: vec![NONE; 2 * strokes.len()],
         };
-        for index in
-            (0..strokes.len()).filter(|index| strokes.get(*index).is_some_and(|stroke| stroke.closed))
-        {
+        let mut from = 0;
+        for same in keyed.chunk_by(|a, b| a.0 == b.0) {
+            for (_, end) in same {
+                if let Some(slot) = meeting.node_of.get_mut(*end as usize) {
+                    *slot = number(meeting.nodes.len());
+                }
+            }
+            if same.len() > 1 {
+                let mut by_angle: Vec<(f64, u32)> =
+                    same.iter().map(|(_, end)| (meeting.angle(*end), *end)).collect();
+                by_angle.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+                let slots = meeting.ends.iter_mut().skip(from);
+                slots.zip(by_angle).for_each(|(slot, (_, end))| *slot = end);
+            }
+            from += same.len();
+            meeting.nodes.push(number(from));
+            let at = same.first().map(|((_, x, y), _)| PxPoint::new(f64::from_bits(*x), f64::from_bits(*y)));
+            meeting.places.extend(at);
+        }
+        for (_, index) in strokes.iter().zip(0_u32..).filter(|(stroke, _)| stroke.closed) {
             meeting.connect(2 * index, 2 * index + 1);
         }
         meeting
     }
 
-    fn node(&self, index: usize) -> &[usize] {
-        let from = index.checked_sub(1).and_then(|before| self.nodes.get(before)).copied().unwrap_or(0);
-        self.nodes.get(index).and_then(|to| self.ends.get(from..*to)).unwrap_or(&[])
+    fn node(&self, index: u32) -> &[u32] {
+        let end = |index: usize| self.nodes.get(index).map_or(0, |end| *end as usize);
+        let from = (index as usize).checked_sub(1).map_or(0, end);
+        self.ends.get(from..end(index as usize)).unwrap_or(&[])
     }
 
-    fn partner(&self, end: usize) -> Option<usize> {
-        self.partners.get(end).copied().flatten()
+    fn partner(&self, end: u32) -> Option<u32> {
+        self.partners.get(end as usize).copied().filter(|partner| *partner != NONE)
     }
 
-    fn connect(&mut self, a: usize, b: usize) {
+    fn connect(&mut self, a: u32, b: u32) {
         for (end, other) in [(a, b), (b, a)] {
-            if let Some(slot) = self.partners.get_mut(end) {
-                *slot = Some(other);
+            if let Some(slot) = self.partners.get_mut(end as usize) {
+                *slot = other;
             }
         }
     }
 
-    fn tip(&self, end: usize) -> (PxPoint, (f64, f64)) {
-        let start = self.starts.get(end / 2).copied().unwrap_or(0);
-        self.strokes.get(end / 2).map(|stroke| tip(stroke, start, end % 2 == 1)).unwrap_or_default()
+    fn tip(&self, end: u32) -> (PxPoint, (f64, f64)) {
+        let start = self.start(end / 2);
+        self.strokes.get(end as usize / 2).map(|stroke| tip(stroke, start, end % 2 == 1)).unwrap_or_default()
     }
 
-    fn place(&self, end: usize) -> PxPoint {
+    fn start(&self, stroke: u32) -> u32 {
+        self.starts.get(stroke as usize).copied().unwrap_or(0)
+    }
+
+    fn place(&self, end: u32) -> PxPoint {
         self.tip(end).0
     }
 
-    fn outward(&self, end: usize) -> (f64, f64) {
+    fn outward(&self, end: u32) -> (f64, f64) {
         self.tip(end).1
     }
 
+    /// Direction in which an end points.
+    fn angle(&self, end: u32) -> f64 {
+        let (x, y) = self.outward(end);
+        libm::atan2(y, x)
+    }
+
     /// Cosine between the directions in which two ends point: −1 when the line goes straight on, 1 for a hairpin.
-    fn hairpin(&self, a: usize, b: usize) -> f64 {
+    fn hairpin(&self, a: u32, b: u32) -> f64 {
         let (a, b) = (self.outward(a), self.outward(b));
         a.0 * b.0 + a.1 * b.1
     }
 
     /// Pairs ends within the gap that go on in each other, the straightest first.
     fn go_on_straight(&mut self, gap_px: f64) {
-        let places: Vec<PxPoint> = (0..self.nodes.len())
-            .map(|node| self.node(node).first().map_or(PxPoint::default(), |end| self.place(*end)))
-            .collect();
-        let tree = PointTree::new(places.iter().copied().take(if gap_px > 0.0 { places.len() } else { 0 }));
-        let mut pairs: Vec<(f64, f64, usize, usize)> = Vec::new();
-        let mut near: Vec<usize> = Vec::new();
+        let tree = PointTree::new(self.places.iter().copied().take(if gap_px > 0.0 {
+            self.places.len()
+        } else {
+            0
+        }));
+        let mut pairs: Vec<(f64, f64, u32, u32)> = Vec::new();
+        let mut near: Vec<u32> = Vec::new();
         // A little more, for the rounding of the differences.
         let reach = gap_px * gap_px * (1.0 + 1e-9);
-        for (node, at) in places.iter().enumerate() {
+        for (node, at) in (0..).zip(&self.places) {
             let own = self.node(node);
             if own.iter().all(|end| self.partner(*end).is_some()) {
                 continue;
             }
             near.clear();
             tree.visit(*at, reach, &mut |other, squared| {
-                let other = other as usize;
                 if other != node {
                     near.push(other);
                 }
@@ -165,7 +194,7 @@ impl<'a> Meeting<'a> {
             });
             for end in own.iter().filter(|end| self.partner(**end).is_none()) {
                 for other in core::iter::once(node).chain(near.iter().copied()) {
-                    for partner in self.offers(*end, other) {
+                    for partner in self.offers(*end, other).filter(|partner| partner != end) {
                         let cos = self.hairpin(*end, partner);
                         if cos <= STRAIGHT_COS && self.may_join(*end, partner, gap_px) {
                             let far = self.place(*end).distance(self.place(partner));
@@ -187,24 +216,26 @@ impl<'a> Meeting<'a> {
     }
 
     /// The ends of a node nearest to straight on from `end`.
-    fn offers(&self, end: usize, node: usize) -> impl Iterator<Item = usize> {
+    fn offers(&self, end: u32, node: u32) -> impl Iterator<Item = u32> {
         let ends = self.node(node);
-        let angle = |end: usize| {
-            let (x, y) = self.outward(end);
-            libm::atan2(y, x)
-        };
-        let turn = core::f64::consts::PI;
-        let opposite = if angle(end) > 0.0 { angle(end) - turn } else { angle(end) + turn };
-        let from = ends.partition_point(|other| angle(*other) < opposite) + ends.len();
         // Round the node, a few on either side; a small node is looked at whole, each end once.
         let few = (2 * OFFERS + 2).min(ends.len());
+        let turn = core::f64::consts::PI;
+        let opposite = |angle: f64| if angle > 0.0 { angle - turn } else { angle + turn };
+        let from = if few < ends.len() {
+            let opposite = opposite(self.angle(end));
+            ends.partition_point(|other| self.angle(*other) < opposite) + ends.len()
+        } else {
+            ends.len()
+        };
         let first = from - few / 2;
         (first..first + few).filter_map(move |index| ends.get(index % ends.len().max(1)).copied())
     }
 
     /// Whether two ends are free, of the same pen and letter, and not those of one stroke too short to be closed.
-    fn may_join(&self, a: usize, b: usize, gap_px: f64) -> bool {
-        let (Some(of_a), Some(of_b)) = (self.strokes.get(a / 2), self.strokes.get(b / 2)) else {
+    fn may_join(&self, a: u32, b: u32, gap_px: f64) -> bool {
+        let of = |end: u32| self.strokes.get(end as usize / 2);
+        let (Some(of_a), Some(of_b)) = (of(a), of(b)) else {
             return false;
         };
         let closes = || a != b && of_a.length_px() > CLOSED_GAPS * gap_px;
@@ -215,13 +246,16 @@ impl<'a> Meeting<'a> {
 
     /// Pairs the free ends of each node, the straightest first, until at most one is left.
     fn pair_the_rest(&mut self) {
-        for node in 0..self.nodes.len() {
-            let mut free: Vec<usize> =
+        for node in 0..number(self.nodes.len()) {
+            if self.node(node).len() < 2 {
+                continue;
+            }
+            let mut free: Vec<u32> =
                 self.node(node).iter().copied().filter(|end| self.partner(*end).is_none()).collect();
             if free.len() > ALL_PAIRS {
                 // In order of direction: each with the one half round.
                 let (half, rest) = free.split_at(free.len() / 2);
-                let pairs: Vec<(usize, usize)> = half.iter().copied().zip(rest.iter().copied()).collect();
+                let pairs: Vec<(u32, u32)> = half.iter().copied().zip(rest.iter().copied()).collect();
                 pairs.into_iter().for_each(|(a, b)| self.connect(a, b));
                 continue;
             }
@@ -232,7 +266,7 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    fn straightest(&self, free: &[usize]) -> Option<(usize, usize)> {
+    fn straightest(&self, free: &[u32]) -> Option<(u32, u32)> {
         let pairs =
             free.iter().enumerate().flat_map(|(index, a)| free.iter().skip(index + 1).map(move |b| (*a, *b)));
         pairs.min_by(|a, b| self.hairpin(a.0, a.1).total_cmp(&self.hairpin(b.0, b.1)))
@@ -241,9 +275,12 @@ impl<'a> Meeting<'a> {
     /// Opens each ring at a node that it shares with another trail, and goes round it from there.
     fn splice(&mut self) {
         let (mut chains, open) = self.chains();
-        for node in 0..self.nodes.len() {
+        for node in 0..number(self.nodes.len()) {
+            if self.node(node).len() < 2 {
+                continue;
+            }
             let ends = self.node(node).to_vec();
-            let roots: Vec<usize> = ends.iter().map(|end| chains.root(end / 2)).collect();
+            let roots: Vec<usize> = ends.iter().map(|end| chains.root(*end as usize / 2)).collect();
             if roots.iter().all(|root| Some(root) == roots.first()) {
                 continue;
             }
@@ -264,12 +301,12 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    fn same_node(&self, a: usize, b: usize) -> bool {
-        self.node_of.get(a) == self.node_of.get(b)
+    fn same_node(&self, a: u32, b: u32) -> bool {
+        self.node_of.get(a as usize) == self.node_of.get(b as usize)
     }
 
     /// Puts the ring that goes through its node from `a` to `b` between `host` and what follows it there.
-    fn open_ring(&mut self, host: usize, a: usize, b: usize) {
+    fn open_ring(&mut self, host: u32, a: u32, b: u32) {
         match self.partner(host) {
             Some(next) if self.same_node(host, next) => {
                 let straight = self.hairpin(host, a) + self.hairpin(b, next);
@@ -285,24 +322,31 @@ impl<'a> Meeting<'a> {
             }
             None => {
                 self.connect(host, a);
-                if let Some(slot) = self.partners.get_mut(b) {
-                    *slot = None;
+                if let Some(slot) = self.partners.get_mut(b as usize) {
+                    *slot = NONE;
                 }
             }
         }
     }
 
+    /// All ends with their partners.
+    fn pairs(&self) -> impl Iterator<Item = (u32, Option<u32>)> {
+        (0..)
+            .zip(&self.partners)
+            .map(|(end, partner)| (end, Some(*partner).filter(|partner| *partner != NONE)))
+    }
+
     /// The strokes by trail, and whether the trail of each root is open.
     fn chains(&self) -> (Forest, Vec<bool>) {
         let mut chains = Forest::new(self.strokes.len());
-        for (end, partner) in self.partners.iter().enumerate() {
+        for (end, partner) in self.pairs() {
             if let Some(partner) = partner {
-                chains.join(end / 2, partner / 2);
+                chains.join(end as usize / 2, partner as usize / 2);
             }
         }
         let mut open = vec![false; self.strokes.len()];
-        for end in (0..self.partners.len()).filter(|end| self.partner(*end).is_none()) {
-            if let Some(slot) = open.get_mut(chains.root(end / 2)) {
+        for (end, _) in self.pairs().filter(|(_, partner)| partner.is_none()) {
+            if let Some(slot) = open.get_mut(chains.root(end as usize / 2)) {
                 *slot = true;
             }
         }
@@ -310,40 +354,41 @@ impl<'a> Meeting<'a> {
     }
 
     /// The trails: those with free ends from the free end, then the rings from their first stroke.
-    fn assemble(&self) -> Vec<Trail> {
+    fn assemble(&self) -> (Parts<'a>, Vec<Trail>) {
         let mut done = vec![false; self.strokes.len()];
-        let mut found: Vec<(usize, Trail)> = Vec::new();
-        let free = (0..self.partners.len()).filter(|end| self.partner(*end).is_none());
-        let rings = (0..self.strokes.len()).map(|stroke| 2 * stroke);
+        let mut parts = Parts::new(self.strokes);
+        let mut found: Vec<(u32, Trail)> = Vec::with_capacity(self.strokes.len());
+        let free = self.pairs().filter(|(_, partner)| partner.is_none()).map(|(end, _)| end);
+        let rings = (0..number(self.strokes.len())).map(|stroke| 2 * stroke);
         for entry in free.chain(rings) {
-            if done.get(entry / 2) != Some(&false) {
-                continue;
-            }
-            let mut trail = Trail { closed: self.partner(entry).is_some(), ..Trail::default() };
             let mut next = Some(entry);
-            let mut least = entry / 2;
-            while let Some(end) = next.filter(|end| done.get(end / 2) == Some(&false)) {
-                let start = self.starts.get(end / 2).copied().unwrap_or(0);
-                trail.pieces.push(Piece { stroke: end / 2, reversed: end % 2 == 1, start });
-                if let Some(flag) = done.get_mut(end / 2) {
-                    *flag = true;
-                }
+            let mut least = NONE;
+            let pieces = core::iter::from_fn(|| {
+                let end = next?;
+                let flag = done.get_mut(end as usize / 2).filter(|done| !**done)?;
+                *flag = true;
                 least = least.min(end / 2);
                 next = self.partner(end ^ 1);
+                Some(Piece { stroke: end / 2, reversed: end % 2 == 1, start: self.start(end / 2) })
+            });
+            let trail = parts.push(pieces, self.partner(entry).is_some());
+            if least != NONE {
+                found.push((least, trail));
             }
-            found.push((least, trail));
         }
         found.sort_by_key(|(least, _)| *least);
-        found.into_iter().map(|(_, trail)| trail).collect()
+        (parts, found.into_iter().map(|(_, trail)| trail).collect())
     }
 }
 
 /// Where a stroke ends, and in which direction; a closed stroke ends at its vertex `start`.
-fn tip(stroke: &Stroke<'_>, start: usize, last: bool) -> (PxPoint, (f64, f64)) {
+fn tip(stroke: &Stroke<'_>, start: u32, last: bool) -> (PxPoint, (f64, f64)) {
     let [first_outward, last_outward] = stroke.outward;
     if let (Some(before), true) = (start.checked_sub(1), stroke.closed) {
-        let at = stroke.vertices.get(start).copied().unwrap_or_default();
-        let heading = |index| stroke.course.piece(index).map_or((0.0, 0.0), |piece| piece.heading(last));
+        let at = stroke.vertices().get(start as usize).copied().unwrap_or_default();
+        let heading = |index: u32| {
+            stroke.course().piece(index as usize).map_or((0.0, 0.0), |piece| piece.heading(last))
+        };
         let (x, y) = heading(if last { before } else { start });
         return (at, if last { (x, y) } else { (-x, -y) });
     }
@@ -351,9 +396,12 @@ fn tip(stroke: &Stroke<'_>, start: usize, last: bool) -> (PxPoint, (f64, f64)) {
 }
 
 /// The first vertex of each closed stroke at which another stroke ends; 0 where there is none.
-fn starts_at_nodes(strokes: &[Stroke<'_>]) -> Vec<usize> {
+fn starts_at_nodes(strokes: &[Stroke<'_>]) -> Vec<u32> {
+    if strokes.iter().all(|stroke| !stroke.closed) {
+        return vec![0; strokes.len()];
+    }
     let mut nodes: Vec<(Key, usize)> = Vec::with_capacity(2 * strokes.len());
-    for (index, stroke) in strokes.iter().enumerate().filter(|(_, stroke)| stroke.vertices.len() > 1) {
+    for (index, stroke) in strokes.iter().enumerate().filter(|(_, stroke)| stroke.vertices().len() > 1) {
         nodes.extend([false, true].map(|last| (key(stroke, stroke.end(last)), index)));
     }
     nodes.sort_unstable();
@@ -365,7 +413,7 @@ fn starts_at_nodes(strokes: &[Stroke<'_>]) -> Vec<usize> {
     };
     let start = |(index, stroke): (usize, &Stroke<'_>)| {
         let meets = |at: &PxPoint| met(stroke, index, *at);
-        if stroke.closed { stroke.vertices.iter().position(meets).unwrap_or(0) } else { 0 }
+        if stroke.closed { stroke.vertices().iter().position(meets).map_or(0, number) } else { 0 }
     };
     strokes.iter().enumerate().map(start).collect()
 }
@@ -386,13 +434,15 @@ mod tests {
 
     /// Strokes of each trail, one more than their numbers, negative where drawn backwards; `o` for a ring.
     fn joined(drawing: &Drawing, gap_px: f64, one_stroke: bool) -> Vec<String> {
+        let strokes = strokes_of(drawing);
+        let (parts, trails) = trails(&strokes, gap_px, one_stroke);
         let name = |trail: Trail| {
             let name =
-                |piece: &Piece| format!("{}{}", if piece.reversed { "-" } else { "" }, piece.stroke + 1);
-            let names: Vec<String> = trail.pieces.iter().map(name).collect();
+                |piece: Piece| format!("{}{}", if piece.reversed { "-" } else { "" }, piece.stroke + 1);
+            let names: Vec<String> = trail.pieces(&parts.pieces).map(name).collect();
             format!("{}{}", if trail.closed { "o " } else { "" }, names.join(" "))
         };
-        trails(&strokes_of(drawing), gap_px, one_stroke).into_iter().map(name).collect()
+        trails.into_iter().map(name).collect()
     }
 
     #[test]
@@ -446,9 +496,9 @@ mod tests {
         for gap in [0.0, 0.3] {
             let touching = drawing(&[&[(0.0, 0.0), (5.0, 0.0)], &[(5.0 + gap, 0.0), (9.0, 0.0)]]);
             let mut strokes = strokes_of(&touching);
-            assert_eq!(trails(&strokes, 0.5, true).len(), 1);
+            assert_eq!(trails(&strokes, 0.5, true).1.len(), 1);
             (strokes[0].letter, strokes[1].letter) = (1, 2);
-            assert_eq!(trails(&strokes, 0.5, true).len(), 2, "{gap}");
+            assert_eq!(trails(&strokes, 0.5, true).1.len(), 2, "{gap}");
         }
     }
 
@@ -482,10 +532,10 @@ mod tests {
             &[(0.0, 0.0), (0.0, 5.0), (5.0, 5.0), (0.0, 0.0)],
         ]);
         let strokes = strokes_of(&eight);
-        let trails = trails(&strokes, 0.0, true);
+        let (parts, trails) = trails(&strokes, 0.0, true);
         assert_eq!(trails.len(), 1);
         assert!(trails[0].closed);
-        let vertices = trails[0].vertices(&strokes);
+        let vertices = parts.vertices(trails[0]);
         assert_eq!(vertices.len(), 7);
         assert_eq!(vertices.iter().filter(|at| **at == PxPoint::new(5.0, 5.0)).count(), 3);
     }

@@ -1,62 +1,94 @@
-//! [`units`]: what is drawn in one go: a trail, or a block of lettering with its trails in reading order.
+//! [`Units`]: what is drawn in one go: a trail, or a block of lettering with its trails in reading order.
 
-use super::plan::{Stroke, Trail};
-use super::sites::RING_PLACES;
+use super::plan::{Parts, Stroke, Trail};
+use super::sites::{RING_PLACES, number};
 use crate::PxPoint;
 use crate::lettering::TextBlock;
 
 /// Marks the strokes of each letter with its number: 1 for the first one read, and so on.
 pub(crate) fn mark_letters(strokes: &mut [Stroke<'_>], blocks: &[TextBlock]) {
-    for (letter, own) in blocks.iter().flat_map(TextBlock::letters).enumerate() {
+    for (own, letter) in blocks.iter().flat_map(TextBlock::letters).zip(1..) {
         for stroke in own {
             if let Some(stroke) = strokes.get_mut(*stroke) {
-                stroke.letter = letter + 1;
+                stroke.letter = letter;
             }
         }
     }
 }
 
-/// The trails by unit; those of a block in reading order, each from the end that makes the block's travel least.
-pub(crate) fn units(strokes: &[Stroke<'_>], trails: Vec<Trail>, blocks: &[TextBlock]) -> Vec<Vec<Trail>> {
-    // Of each letter its block; of each stroke its place in the letter.
-    let mut block_of = vec![None];
-    let mut rank = vec![0; strokes.len()];
-    for (index, block) in blocks.iter().enumerate() {
-        for letter in block.letters() {
-            block_of.push(Some(index));
-            for (place, stroke) in letter.iter().enumerate() {
-                if let Some(slot) = rank.get_mut(*stroke) {
-                    *slot = place;
+/// Trails, those of a unit one after the other.
+#[derive(Debug)]
+pub(crate) struct Units {
+    trails: Vec<Trail>,
+    /// One past the last trail of each unit.
+    ends: Vec<u32>,
+}
+
+impl Units {
+    /// The trails by unit, in the order in which units come first; those of a block in reading order, each from the end that makes
+    /// the block's travel least.
+    pub(crate) fn new(parts: &Parts<'_>, trails: Vec<Trail>, blocks: &[TextBlock]) -> Self {
+        let mut units = Self { ends: (1..=number(trails.len())).collect(), trails };
+        if !blocks.is_empty() {
+            units.gather(parts, blocks);
+        }
+        units
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// The trails of a unit.
+    pub(crate) fn of(&self, unit: u32) -> &[Trail] {
+        let end = |unit: usize| self.ends.get(unit).map_or(0, |end| *end as usize);
+        let from = (unit as usize).checked_sub(1).map_or(0, end);
+        self.trails.get(from..end(unit as usize)).unwrap_or(&[])
+    }
+
+    /// Makes a unit of the trails of each block.
+    fn gather(&mut self, parts: &Parts<'_>, blocks: &[TextBlock]) {
+        // Of each letter its block; of each stroke its place in the letter.
+        let mut block_of = vec![None];
+        let mut rank = vec![0; parts.strokes.len()];
+        for (index, block) in blocks.iter().enumerate() {
+            for letter in block.letters() {
+                block_of.push(Some(index));
+                for (place, stroke) in letter.iter().enumerate() {
+                    if let Some(slot) = rank.get_mut(*stroke) {
+                        *slot = place;
+                    }
                 }
             }
         }
-    }
-    let letter = |trail: &Trail| {
-        let first = trail.pieces.first().and_then(|piece| strokes.get(piece.stroke));
-        first.map_or(0, |stroke| stroke.letter)
-    };
-    let place = |trail: &Trail| {
-        let places = trail.pieces.iter().filter_map(|piece| rank.get(piece.stroke));
-        (letter(trail), places.min().copied().unwrap_or(0))
-    };
-    let mut units: Vec<Vec<Trail>> = Vec::with_capacity(trails.len());
-    let mut of_block: Vec<Option<usize>> = vec![None; blocks.len()];
-    for trail in trails {
-        let block = block_of.get(letter(&trail)).copied().flatten().and_then(|block| of_block.get_mut(block));
-        match block {
-            Some(Some(unit)) => units.get_mut(*unit).into_iter().for_each(|unit| unit.push(trail.clone())),
-            Some(slot) => {
-                *slot = Some(units.len());
-                units.push(vec![trail]);
+        let letter = |trail: Trail| parts.first(trail).map_or(0, |stroke| stroke.letter);
+        let place = |trail: &Trail| {
+            let places = trail.pieces(&parts.pieces).filter_map(|piece| rank.get(piece.stroke as usize));
+            (letter(*trail), places.min().copied().unwrap_or(0))
+        };
+        let mut of_block: Vec<Option<u32>> = vec![None; blocks.len()];
+        let mut all = 0;
+        let unit = |trail: Trail| {
+            let block = block_of.get(letter(trail) as usize).copied().flatten();
+            let known = block.and_then(|block| of_block.get_mut(block));
+            let unit = known.as_ref().and_then(|known| **known).unwrap_or(all);
+            known.into_iter().for_each(|known| *known = Some(unit));
+            all = all.max(unit + 1);
+            (unit, trail)
+        };
+        let mut by_unit: Vec<(u32, Trail)> = self.trails.drain(..).map(unit).collect();
+        by_unit.sort_by_key(|(unit, _)| *unit);
+        self.ends.clear();
+        for same in by_unit.chunk_by(|a, b| a.0 == b.0) {
+            let from = self.trails.len();
+            self.trails.extend(same.iter().map(|(_, trail)| *trail));
+            self.ends.push(number(self.trails.len()));
+            if let Some(unit @ [_, _, ..]) = self.trails.get_mut(from..) {
+                unit.sort_by_key(place);
+                turn_well(parts, unit);
             }
-            None => units.push(vec![trail]),
         }
     }
-    for unit in units.iter_mut().filter(|unit| unit.len() > 1) {
-        unit.sort_by_key(place);
-        turn_well(strokes, unit);
-    }
-    units
 }
 
 /// A way to draw a trail: where it begins and ends, and its first vertex if it is closed, else whether it is reversed.
@@ -64,7 +96,7 @@ pub(crate) fn units(strokes: &[Stroke<'_>], trails: Vec<Trail>, blocks: &[TextBl
 struct Way {
     from: PxPoint,
     to: PxPoint,
-    start: usize,
+    start: u32,
     reversed: bool,
     /// Least travel up to here, and the way of the trail before that has it.
     travel: f64,
@@ -73,10 +105,10 @@ struct Way {
 
 /// Turns the trails of a fixed order so that the travel between them is least: the shortest path through the ways to
 /// draw them, trail by trail (R. Bellman, "Dynamic programming", 1957).
-fn turn_well(strokes: &[Stroke<'_>], trails: &mut [Trail]) {
+fn turn_well(parts: &Parts<'_>, trails: &mut [Trail]) {
     let mut layers: Vec<Vec<Way>> = Vec::with_capacity(trails.len());
     for trail in trails.iter() {
-        let mut ways = ways(strokes, trail);
+        let mut ways = ways(parts, *trail);
         if let Some(last) = layers.last() {
             for way in &mut ways {
                 let travel = |before: &Way| before.travel + before.to.distance(way.from);
@@ -92,24 +124,24 @@ fn turn_well(strokes: &[Stroke<'_>], trails: &mut [Trail]) {
     for (trail, ways) in trails.iter_mut().zip(&layers).rev() {
         let Some(way) = ways.get(chosen) else { return };
         trail.start = way.start;
-        if way.reversed {
-            trail.reverse();
-        }
+        trail.reversed = way.reversed;
         chosen = way.before;
     }
 }
 
-fn ways(strokes: &[Stroke<'_>], trail: &Trail) -> Vec<Way> {
+fn ways(parts: &Parts<'_>, trail: Trail) -> Vec<Way> {
     let way = |from, to, start, reversed| Way { from, to, start, reversed, travel: 0.0, before: 0 };
     if !trail.closed {
-        let (from, to) = trail.ends(strokes);
+        let (from, to) = parts.ends(trail);
         return vec![way(from, to, 0, false), way(to, from, 0, true)];
     }
-    let vertices = Trail { start: 0, ..trail.clone() }.vertices(strokes);
+    let mut from_first = trail;
+    from_first.start = 0;
+    let vertices = parts.vertices(from_first);
     let ring = vertices.len().saturating_sub(1);
     let places = ring.min(RING_PLACES);
     let starts = (0..places).map(|k| k * ring / places.max(1));
-    starts.filter_map(|start| vertices.get(start).map(|at| way(*at, *at, start, false))).collect()
+    starts.filter_map(|start| vertices.get(start).map(|at| way(*at, *at, number(start), false))).collect()
 }
 
 #[cfg(test)]
