@@ -59,6 +59,9 @@ pub struct Arrangement {
     /// Draws strokes in an order with less travel, pen by pen, joined where they meet [default with --merge-mm: fast]
     #[arg(long, value_enum, value_name = "HOW")]
     pub order: Option<Effort>,
+    /// Changes the pen wherever that shortens the way, instead of once for each pen
+    #[arg(long, requires = "order")]
+    pub across_pens: bool,
     /// Begins at a line of the file, with the pen, the speed and the power that hold there
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub from_line: Option<u32>,
@@ -250,7 +253,8 @@ impl Arrangement {
                 Effort::Best => OrderEffort::Best,
             };
             let merge_mm = self.merge_mm.unwrap_or(MERGE_MM);
-            let order = Order { effort, merge_gap_px: merge_mm * Order::PX_PER_MM, ..Order::default() };
+            let (merge_gap_px, across_pens) = (merge_mm * Order::PX_PER_MM, self.across_pens);
+            let order = Order { effort, merge_gap_px, across_pens, ..Order::default() };
             drawing = order.apply_to(drawing);
         }
         let mut arranged = head.with(said, drawing.into_ops(tolerance_mm));

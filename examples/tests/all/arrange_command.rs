@@ -104,6 +104,21 @@ fn strokes_come_in_an_order_with_less_travel_and_are_joined() {
 }
 
 #[test]
+fn pens_are_changed_on_the_way_where_that_is_asked_for() {
+    // Lines of 10 mm, 1 mm above each other, of two pens by turns.
+    let text = "IN;SP1;PU0,0;PD400,0;SP2;PU0,40;PD400,40;SP1;PU0,80;PD400,80;SP2;PU0,120;PD400,120;PU;";
+    let pens = |options: &[&str]| {
+        let drawing = arranged_as(text, "a.plt", options).0;
+        (drawing.strokes.iter().map(|stroke| stroke.pen).collect::<Vec<_>>(), drawing.travel_mm())
+    };
+    let (by_pen, far_mm) = pens(&["--order", "best"]);
+    assert_eq!(by_pen, [1, 1, 2, 2]);
+    let (by_turns, near_mm) = pens(&["--order", "best", "--across-pens"]);
+    assert_eq!(by_turns, [1, 2, 1, 2]);
+    assert!((far_mm - 5.0).abs() < 1e-3 && (near_mm - 3.0).abs() < 1e-3, "{far_mm} {near_mm}");
+}
+
+#[test]
 fn nothing_is_drawn_twice() {
     // The second line covers half of the first one; the third one is of another pen.
     let text = "IN;SP1;PU0,0;PD800,0;PU1200,0;PD400,0;SP2;PU0,0;PD800,0;PU;";

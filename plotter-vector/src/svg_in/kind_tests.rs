@@ -536,6 +536,12 @@ fn what_comes_before_an_error_is_drawn_and_the_error_told() {
         ("<path d='M0 50H100 L5 x9' stroke='#000'/>", "0,50 100,50", "2:23: a path is wrong at x9"),
         ("<path d='M0 50H100 L5 NaN 7' stroke='#000'/>", "0,50 100,50", "2:23: a path is wrong at NaN"),
         ("<path d='M0 50H100 L5' stroke='#000'/>", "0,50 100,50", "2:22: a path is wrong at its end"),
+        (
+            "<path d='M0 50H100 L5 -1e30 7 8' stroke='#000'/>",
+            "0,50 100,50",
+            "2:24: 1e30 is no place on a sheet",
+        ),
+        ("<path d='M0 50H100 Lnan 3 L1e30 8' stroke='#000'/>", "0,50 100,50", "2:21: a path is wrong at nan"),
         ("<path d='M0 50\nH100 foo' stroke='#000'/>", "0,50 100,50", "3:6: a path is wrong at foo"),
         (
             "<polyline points='0 50 100,50 9 nan 4' fill='none' stroke='#000'/>",

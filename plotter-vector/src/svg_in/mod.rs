@@ -5,6 +5,7 @@
 //! out without a word is put into its words before ([`Rewritten`]), and clip paths and masks cut the strokes ([`region::Region`]).
 
 mod arc;
+mod blanks;
 mod boxes;
 mod clip;
 mod css_transform;
@@ -27,6 +28,7 @@ mod single_stroke;
 mod survey;
 
 use crate::{Drawing, PalettePen, Rgb, Scale};
+use blanks::without_blank_nodes;
 use core::fmt;
 #[cfg(feature = "svg-text")]
 pub use fonts::{SvgFontError, SvgFonts, read_svg_with_fonts};
@@ -462,13 +464,18 @@ fn parse(
     [probe, parser]: [&usvg::Options<'_>; 2],
     draw_whole: Option<&DrawWhole<'_>>,
 ) -> Result<SvgDrawing, SvgError> {
+    let moved = without_blank_nodes(&text);
+    let has_moved = moved.is_some();
+    if let Some(moved) = moved {
+        text = Cow::Owned(moved);
+    }
     let mut document = document_of(&text)?;
     let root = document.root_element().tag_name().name();
     if root != "svg" {
         return Err(SvgError::NotSvg { root: survey::shortened(root) });
     }
     let Rewritten { text: rewritten, problems, filters, layers } =
-        Rewritten::new(&text, &document, options, probe, max_depth)?;
+        Rewritten::new(&text, &document, options, probe, max_depth, has_moved)?;
     // Large files are long in memory: what has been read goes before the next is made.
     if let Some(rewritten) = rewritten {
         drop(document);
@@ -532,12 +539,13 @@ fn parse(
 }
 
 fn tree_of(document: &roxmltree::Document<'_>, parser: &usvg::Options<'_>) -> Result<usvg::Tree, SvgError> {
-    let limit = survey::MAX_ELEMENTS;
+    let limit = survey::MAX_PARSED;
     usvg::Tree::from_xmltree(document, parser).map_err(|error| match error {
         usvg::Error::InvalidSize => SvgError::NoSize,
-        usvg::Error::ElementsLimitReached => SvgError::TooManyElements { limit },
-        usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => {
-            SvgError::TooDeep { limit: survey::MAX_DEPTH }
+        // It says the same of what is nested too deep, but the survey has refused that.
+        usvg::Error::ElementsLimitReached
+        | usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => {
+            SvgError::TooManyElements { limit }
         }
         error => SvgError::Xml { reason: error.to_string() },
     })

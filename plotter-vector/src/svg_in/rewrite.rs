@@ -4,12 +4,13 @@
 //! a place holds is written anew before it reads the file, in attributes, `style` and style sheets alike; all lines stay where they
 //! were. What has no other words is told.
 
+use super::blanks::moved_by;
 use super::css_transform::{self, Plain};
 use super::font_size;
 use super::layers::SvgLayer;
 use super::moves::{self, Added, Moves, after_name};
 use super::paint::{self, Known};
-use super::survey::{TEMPLATES, shortened};
+use super::survey::{TEMPLATES, huge_number, shortened};
 use super::{SvgError, SvgOptions, SvgProblem};
 use core::ops::Range;
 use std::borrow::Cow;
@@ -77,7 +78,8 @@ struct Rewriter<'a> {
 }
 
 impl Rewritten {
-    /// `parser` finds the boxes of elements, which may be nested this deep.
+    /// `parser` finds the boxes of elements, which may be nested this deep; `has_moved_blanks` says that ends of elements stand where
+    /// [`without_blank_nodes`](super::blanks::without_blank_nodes) puts them.
     ///
     /// # Errors
     /// Where a box is asked for, and the references in the file are not safe to follow.
@@ -87,6 +89,7 @@ impl Rewritten {
         options: &SvgOptions,
         parser: &usvg::Options<'_>,
         max_depth: usize,
+        has_moved_blanks: bool,
     ) -> Result<Self, SvgError> {
         let mut rewriter = Rewriter {
             text,
@@ -130,9 +133,10 @@ impl Rewritten {
         problems.dedup();
         let problems = problems
             .into_iter()
-            .map(|(byte, text)| {
+            .map(|(byte, problem)| {
                 let place = document.text_pos_at(byte);
-                SvgProblem { line: place.row, column: place.col, text }
+                let moved = if has_moved_blanks { moved_by(text, byte) } else { 0 };
+                SvgProblem { line: place.row, column: place.col.saturating_sub(moved), text: problem }
             })
             .collect();
         Ok(Self { text: applied(text, edits, added), problems, filters, layers })
@@ -545,27 +549,41 @@ impl<'a> Rewriter<'a> {
                 .find_map(Result::err)
                 .map(|error| (error, "list of places"))
         };
-        let Some((error, what)) = wrong else {
+        let at = wrong.as_ref().map(|(error, _)| {
+            let letter = match error {
+                svgtypes::Error::UnexpectedData(letter)
+                | svgtypes::Error::InvalidChar(_, letter)
+                | svgtypes::Error::InvalidString(_, letter)
+                | svgtypes::Error::InvalidNumber(letter) => letter.saturating_sub(1),
+                _ => value.trim_end().chars().count(),
+            };
+            value.char_indices().nth(letter).map_or(value.len(), |(at, _)| at)
+        });
+        // Where entities stand in it, only its beginning is known.
+        let starts = if stands_as(self.text, &range, value) { usize::MAX } else { 0 };
+        let byte = |at: usize| range.start + at.min(starts);
+        if let Some(word) = huge_number(value) {
+            let end = word.start.min(at.unwrap_or(usize::MAX));
+            let before = value.get(..end).unwrap_or_default().trim_end_matches(['-', '+']);
+            self.edits.push((range.clone(), escaped(before)));
+            if end == word.start {
+                let found = shortened(value.get(word).unwrap_or_default());
+                let what = "is no place on a sheet: what comes before is drawn, the rest is left out";
+                self.tell(byte(end), format!("{found} {what}"));
+                return;
+            }
+        }
+        let (Some((_, what)), Some(at)) = (wrong, at) else {
             if name == "points" && svgtypes::NumberListParser::from(value).count() % 2 == 1 {
                 self.tell(range.start, "the last place has an x without a y: it is left out".to_owned());
             }
             return;
         };
-        let letter = match error {
-            svgtypes::Error::UnexpectedData(letter)
-            | svgtypes::Error::InvalidChar(_, letter)
-            | svgtypes::Error::InvalidString(_, letter)
-            | svgtypes::Error::InvalidNumber(letter) => letter.saturating_sub(1),
-            _ => value.trim_end().chars().count(),
-        };
-        let at = value.char_indices().nth(letter).map_or(value.len(), |(at, _)| at);
         let found = value.get(at..).unwrap_or_default();
         let found = found.split([' ', ',', '\n', '\t']).next().unwrap_or_default();
         let found = if found.is_empty() { "its end".to_owned() } else { shortened(found) };
-        // Where entities stand in it, only its beginning is known.
-        let byte = if stands_as(self.text, &range, value) { range.start + at } else { range.start };
         self.tell(
-            byte,
+            byte(at),
             format!("a {what} is wrong at {found}: what comes before is drawn, the rest is left out"),
         );
     }

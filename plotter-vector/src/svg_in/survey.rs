@@ -4,11 +4,14 @@
 //! nesting than there is stack. Both are counted here before anything is built, each element once.
 
 use super::SvgError;
+use core::ops::Range;
 use std::collections::BTreeMap;
 use usvg::roxmltree::{Document, Node, NodeId};
 
 /// Most elements, when each reference is followed.
 pub(super) const MAX_ELEMENTS: usize = 2_000_000;
+/// Most elements that the parser takes at a time: all, where a file cannot be divided.
+pub(super) const MAX_PARSED: usize = 1_000_000;
 /// Deepest nesting, when each reference is followed: what the parser and its stack are made for.
 pub(super) const MAX_DEPTH: usize = 1000;
 /// Most steps that setting the texts may take, when each reference is followed: some ten seconds.
@@ -107,20 +110,30 @@ pub(super) fn shortened(text: &str) -> String {
 fn check_numbers(document: &Document<'_>, node: Node<'_, '_>) -> Result<(), SvgError> {
     let own = |name: &str, namespace: Option<&str>| namespace.is_none() && COORDINATES.contains(&name);
     for attribute in node.attributes().filter(|attribute| own(attribute.name(), attribute.namespace())) {
-        let refuse = |value: &str| SvgError::Number {
-            line: document.text_pos_at(node.range().start).row,
-            attribute: attribute.name().to_owned(),
-            value: shortened(value),
-        };
-        let text = attribute.value();
-        // A minus begins a number, or an exponent that makes it small.
-        let in_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '.' | '+' | 'e' | 'E');
-        let huge = |word: &&str| word.parse::<f64>().is_ok_and(|number| number.abs() > MAX_NUMBER);
-        if let Some(word) = text.split(|letter| !in_number(letter)).find(huge) {
-            return Err(refuse(word));
+        if let Some(word) = huge_number(attribute.value()) {
+            return Err(SvgError::Number {
+                line: document.text_pos_at(node.range().start).row,
+                attribute: attribute.name().to_owned(),
+                value: shortened(attribute.value().get(word).unwrap_or_default()),
+            });
         }
     }
     Ok(())
+}
+
+/// Where the first number stands that is beyond the parser's precision, without its sign.
+pub(super) fn huge_number(text: &str) -> Option<Range<usize>> {
+    // A minus begins a number, or an exponent that makes it small.
+    let in_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '.' | '+' | 'e' | 'E');
+    let mut at = 0;
+    for word in text.split_inclusive(|letter| !in_number(letter)) {
+        let number = word.trim_end_matches(|letter| !in_number(letter));
+        if number.parse::<f64>().is_ok_and(|number| number.abs() > MAX_NUMBER) {
+            return Some(at..at + number.len());
+        }
+        at += word.len();
+    }
+    None
 }
 
 /// An element whose references are being followed.
