@@ -59,7 +59,7 @@ pub struct Arrangement {
     /// Draws strokes in an order with less travel, pen by pen, joined where they meet [default with --merge-mm: fast]
     #[arg(long, value_enum, value_name = "HOW")]
     pub order: Option<Effort>,
-    /// Changes the pen wherever that shortens the way, instead of once for each pen
+    /// Changes the pen wherever that shortens the way, instead of once for each pen; in an SVG each pen is one group all the same
     #[arg(long, requires = "order")]
     pub across_pens: bool,
     /// Begins at a line of the file, with the pen, the speed and the power that hold there
@@ -82,11 +82,11 @@ pub enum Mirror {
 /// How hard an order is searched for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Effort {
-    /// As in the file
+    /// As in the file; with --merge-mm joined, where the first piece of each is
     None,
     /// From each end to the nearest stroke
     Fast,
-    /// Then shortened further, for about a second
+    /// Then shortened further, for some 10 s at most
     Best,
 }
 
@@ -182,6 +182,12 @@ fn not_negative(text: &str) -> Result<f64, String> {
 /// Millimetres over which strokes are joined when nothing is said: a tenth of a pen's line.
 const MERGE_MM: f64 = 0.05;
 
+/// Most that `--order best` looks at: some 10 s, used up by 200,000 strokes and more.
+const LOOKS: u64 = 1_000_000_000;
+
+/// How far the pen travels while it is lifted and lowered, mm: a servo takes some 0.1 s each way, in which a plotter at 100 mm/s goes so far.
+const LIFT_MM: f64 = 20.0;
+
 impl Arrangement {
     /// Whether the whole drawing has to be there before the first stroke of it can be drawn.
     fn needs_all(&self) -> bool {
@@ -248,13 +254,23 @@ impl Arrangement {
         }
         if self.order.is_some() || self.merge_mm.is_some() {
             let effort = match self.order.unwrap_or(Effort::Fast) {
+                Effort::None if self.merge_mm.is_some() => OrderEffort::Join,
                 Effort::None => OrderEffort::None,
                 Effort::Fast => OrderEffort::Fast,
                 Effort::Best => OrderEffort::Best,
             };
             let merge_mm = self.merge_mm.unwrap_or(MERGE_MM);
             let (merge_gap_px, across_pens) = (merge_mm * Order::PX_PER_MM, self.across_pens);
-            let order = Order { effort, merge_gap_px, across_pens, ..Order::default() };
+            let lift_px = LIFT_MM * Order::PX_PER_MM;
+            let order = Order {
+                effort,
+                budget: LOOKS,
+                merge_gap_px,
+                bridges_corners: true,
+                across_pens,
+                lift_px,
+                ..Order::default()
+            };
             drawing = order.apply_to(drawing);
         }
         let mut arranged = head.with(said, drawing.into_ops(tolerance_mm));

@@ -19,8 +19,12 @@ fn read(path: &str) -> Drawing {
 }
 
 fn arranged_as(text: &str, name: &str, options: &[&str]) -> (Drawing, String) {
+    arranged_into("b.svg", text, name, options)
+}
+
+fn arranged_into(into: &str, text: &str, name: &str, options: &[&str]) -> (Drawing, String) {
     let folder = Folder::new();
-    let (from, to) = (folder.write(name, text), folder.file("b.svg"));
+    let (from, to) = (folder.write(name, text), folder.file(into));
     let output = run_example("convert", &[&[from.as_str(), &to][..], options].concat());
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{said}");
@@ -104,11 +108,44 @@ fn strokes_come_in_an_order_with_less_travel_and_are_joined() {
 }
 
 #[test]
+fn strokes_are_joined_round_corners_and_in_the_order_of_the_file() {
+    // Two squares of four sides that miss each other by 0.03 mm, and a line between them.
+    let square = |x: f64| {
+        let sides = [
+            [0.0, 0.0, 10.0, 0.0],
+            [10.0, 0.03, 10.0, 10.0],
+            [10.0, 10.03, 0.0, 10.0],
+            [0.0, 9.97, 0.0, 0.03],
+        ];
+        sides.map(|[x1, y1, x2, y2]| format!("<path d='M{} {y1}L{} {y2}'/>", x + x1, x + x2)).concat()
+    };
+    let svg = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='60mm' viewBox='0 0 100 60' stroke='#000' fill='none'>{}<path d='M60 5H70'/>{}</svg>",
+        square(80.0),
+        square(20.0)
+    );
+    let begins = |options: &[&str]| {
+        let drawing = arranged_as(&svg, "a.svg", options).0;
+        drawing.strokes.iter().map(|stroke| libm::round(stroke.from.x)).collect::<Vec<f64>>()
+    };
+    assert_eq!(begins(&["--order", "none"]).len(), 9);
+    let joined = begins(&["--order", "none", "--merge-mm", "0.05"]);
+    assert!(matches!(joined[..], [80.0..=90.0, 60.0, 20.0..=30.0]), "{joined:?}");
+    for effort in ["fast", "best"] {
+        assert_eq!(begins(&["--order", effort, "--merge-mm", "0.05"]).len(), 3);
+    }
+    // The way of the file is shorter than that from end to end, but takes one lift more.
+    let text = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='60mm' viewBox='0 0 100 60' stroke='#000'><path d='M10 30L10 20'/><path d='M10 20L10 10'/><path d='M8.9 10L8 10'/><path d='M11 10L60 10'/></svg>";
+    assert_eq!(arranged_as(text, "a.svg", &["--merge-mm", "0.05"]).0.strokes.len(), 3);
+}
+
+#[test]
 fn pens_are_changed_on_the_way_where_that_is_asked_for() {
     // Lines of 10 mm, 1 mm above each other, of two pens by turns.
     let text = "IN;SP1;PU0,0;PD400,0;SP2;PU0,40;PD400,40;SP1;PU0,80;PD400,80;SP2;PU0,120;PD400,120;PU;";
     let pens = |options: &[&str]| {
-        let drawing = arranged_as(text, "a.plt", options).0;
+        // In an SVG each pen is one group.
+        let drawing = arranged_into("b.plt", text, "a.plt", options).0;
         (drawing.strokes.iter().map(|stroke| stroke.pen).collect::<Vec<_>>(), drawing.travel_mm())
     };
     let (by_pen, far_mm) = pens(&["--order", "best"]);

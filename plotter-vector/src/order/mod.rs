@@ -40,6 +40,8 @@ const RING_PASSES: usize = 3;
 pub enum OrderEffort {
     /// The given strokes in the given order.
     None,
+    /// Strokes joined, each where the first of its pieces was, pen by pen.
+    Join,
     /// Strokes joined, then from each end to the nearest stroke.
     Fast,
     /// Then 2-opt and Or-opt, and local shakes as long as the budget lasts.
@@ -59,8 +61,8 @@ pub enum OrderEffort {
 ///    then changes of the order that shorten the travel are made (2-opt: Croes 1958; Or-opt: Or 1976; Johnson and
 ///    McGeoch 1997).
 ///
-/// The travel is never longer than that of the given order; where there are several pens or lettering, than that of
-/// the given order with the strokes of each pen and of each block brought together. Drawn is what was drawn, and the
+/// The travel, with `lift_px` for each stroke, is never longer than that of the given order; where there are several pens or lettering,
+/// than that of the given order with the strokes of each pen and of each block brought together. Drawn is what was drawn, and the
 /// bridges of gaps. The result depends on nothing but the drawing and the settings.
 ///
 /// A drawing with a coordinate that is no number, or beyond 10¹² px, is only sorted by pen.
@@ -92,6 +94,13 @@ pub struct Order {
     /// Whether pens are changed wherever that shortens the way, and not only once each: for drawings of one tool.
     #[cfg_attr(feature = "serde", serde(default))]
     pub across_pens: bool,
+    /// Whether ends within `merge_gap_px` are joined at corners too, where `one_stroke` is set: for files whose corners do not quite meet.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub bridges_corners: bool,
+    /// What lifting and lowering the pen costs, as the way that it travels in that time, px. The order with the least sum of travel and
+    /// lifts is taken.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub lift_px: f64,
     /// How lettering is found, so that each block of it is drawn in one go, in reading order; `None` does not look.
     pub lettering: Option<Lettering>,
 }
@@ -110,6 +119,8 @@ impl Default for Order {
             merge_gap_px: 0.5,
             one_stroke: true,
             across_pens: false,
+            bridges_corners: false,
+            lift_px: 0.0,
             lettering: None,
         }
     }
@@ -139,14 +150,56 @@ impl Order {
         if !strokes.iter().all(is_within) {
             return as_given(strokes, &[], self.across_pens);
         }
-        let gap_px = if self.merge_gap_px > 0.0 { self.merge_gap_px } else { 0.0 };
-        let (parts, joined) = trails::trails(strokes, gap_px, self.one_stroke);
-        let (mut trails, mut ends) = self.sequence(&parts, &Units::new(&parts, joined, blocks));
+        let joining = trails::Joining {
+            gap_px: self.merge_gap_px,
+            one_stroke: self.one_stroke,
+            at_corners: self.bridges_corners,
+        };
+        let (parts, joined) = trails::trails(strokes, &joining);
+        let units = Units::new(&parts, joined, blocks);
+        let cost_px = |parts: &Parts<'_>, trails: &[Trail]| {
+            self.cost_px(trails.len(), trails.iter().map(|trail| parts.ends(*trail)))
+        };
+        let joined = self.joined(&parts, &units);
+        if self.effort == OrderEffort::Join {
+            return (parts, joined);
+        }
+        let (mut trails, mut ends) = self.sequence(&parts, &units);
         start_rings_well(&parts, &mut trails, &mut ends);
-        let ordered_px = travel_px(ends);
+        let mut least_px = self.cost_px(trails.len(), ends);
+        if joined.len() < strokes.len() {
+            let joined_px = cost_px(&parts, &joined);
+            if joined_px < least_px {
+                (trails, least_px) = (joined, joined_px);
+            }
+        }
         let (as_given, given) = as_given(strokes, blocks, self.across_pens);
-        let given_px = travel_px(given.iter().map(|trail| as_given.ends(*trail)));
-        if ordered_px <= given_px { (parts, trails) } else { (as_given, given) }
+        if least_px <= cost_px(&as_given, &given) { (parts, trails) } else { (as_given, given) }
+    }
+
+    /// What so many trails cost besides the ink: the way between them, and the lifts.
+    fn cost_px(&self, trails: usize, ends: impl IntoIterator<Item = Ends>) -> f64 {
+        let lift_px = if self.lift_px > 0.0 { self.lift_px.min(FARTHEST_PX) } else { 0.0 };
+        #[expect(clippy::cast_precision_loss, reason = "fewer than 2^32")]
+        let lifts = trails as f64;
+        travel_px(ends) + lifts * lift_px
+    }
+
+    /// The trails of the units in the given order, pen by pen.
+    fn joined(&self, parts: &Parts<'_>, units: &Units) -> Vec<Trail> {
+        let rank = |trail: &Trail| {
+            let strokes =
+                trail.pieces(&parts.pieces).filter_map(|piece| parts.strokes.get(piece.stroke as usize));
+            strokes.map(|stroke| stroke.rank).min()
+        };
+        let key = |unit: u32| {
+            let own = units.of(unit);
+            let pen = own.first().filter(|_| !self.across_pens).map_or(0, |trail| parts.pen(*trail));
+            (pen, own.iter().filter_map(rank).min(), unit)
+        };
+        let mut order: Vec<_> = (0..number(units.len())).map(key).collect();
+        order.sort_unstable();
+        order.into_iter().flat_map(|(_, _, unit)| units.of(unit).iter().copied()).collect()
     }
 
     /// The trails of the units in order, pen by pen, and where each begins and ends.
@@ -322,6 +375,8 @@ fn bend_cos(from: PxPoint, at: PxPoint, to: PxPoint) -> f64 {
 mod tests {
     use super::*;
 
+    const JOINING: trails::Joining = trails::Joining { gap_px: 0.5, one_stroke: true, at_corners: false };
+
     fn line(from: f64, to: f64) -> [PxPoint; 2] {
         [PxPoint::new(from, 0.0), PxPoint::new(to, 0.0)]
     }
@@ -337,7 +392,7 @@ mod tests {
             stroke.pen = pen;
         }
         let order = Order::default();
-        let (parts, joined) = trails::trails(&strokes, 0.5, true);
+        let (parts, joined) = trails::trails(&strokes, &JOINING);
         let (trails, _) = order.sequence(&parts, &Units::new(&parts, joined, &[]));
         let drawn: Vec<u32> =
             trails.iter().flat_map(|trail| trail.pieces(&parts.pieces)).map(|piece| piece.stroke).collect();
@@ -366,7 +421,7 @@ mod tests {
         drawing.push(line(5.0, 9.0));
         let mut strokes = strokes_of(&drawing);
         strokes[1].pen = 2;
-        assert_eq!(trails::trails(&strokes, 0.5, true).1.len(), 2);
+        assert_eq!(trails::trails(&strokes, &JOINING).1.len(), 2);
     }
 
     #[test]

@@ -32,19 +32,31 @@ const ALL_PAIRS: usize = 24;
 /// Fewest gaps' lengths of a stroke that is closed with itself.
 const CLOSED_GAPS: f64 = 8.0;
 
-/// Joins strokes end to end. Ends within `gap_px` are joined where the line goes on; with `one_stroke` so are ends in
-/// exactly one place, whatever the angle. Trails come in the order of their first strokes.
-pub(crate) fn trails<'a>(
-    strokes: &'a [Stroke<'a>],
-    gap_px: f64,
-    one_stroke: bool,
-) -> (Parts<'a>, Vec<Trail>) {
-    let mut meeting = Meeting::new(strokes, one_stroke);
-    meeting.go_on_straight(gap_px);
-    if one_stroke {
+/// Which ends are joined.
+pub(crate) struct Joining {
+    /// Ends so near are joined where the line goes on.
+    pub(crate) gap_px: f64,
+    /// And ends in exactly one place, whatever the angle.
+    pub(crate) one_stroke: bool,
+    /// And then what is left within the gap, whatever the angle.
+    pub(crate) at_corners: bool,
+}
+
+/// Joins strokes end to end. Trails come in the order of their first strokes.
+pub(crate) fn trails<'a>(strokes: &'a [Stroke<'a>], joining: &Joining) -> (Parts<'a>, Vec<Trail>) {
+    let mut meeting = Meeting::new(strokes, joining.one_stroke);
+    let gap_px = if joining.gap_px > 0.0 { joining.gap_px } else { 0.0 };
+    let searched = if gap_px > 0.0 { meeting.places.len() } else { 0 };
+    let tree = PointTree::new(meeting.places.iter().copied().take(searched));
+    meeting.go_on_straight(&tree, gap_px);
+    if joining.one_stroke {
         meeting.pair_the_rest();
+        if joining.at_corners {
+            meeting.bridge_the_rest(&tree, gap_px);
+        }
         meeting.splice();
     }
+    drop(tree);
     meeting.assemble()
 }
 
@@ -170,28 +182,15 @@ impl<'a> Meeting<'a> {
     }
 
     /// Pairs ends within the gap that go on in each other, the straightest first.
-    fn go_on_straight(&mut self, gap_px: f64) {
-        let tree = PointTree::new(self.places.iter().copied().take(if gap_px > 0.0 {
-            self.places.len()
-        } else {
-            0
-        }));
+    fn go_on_straight(&mut self, tree: &PointTree, gap_px: f64) {
         let mut pairs: Vec<(f64, f64, u32, u32)> = Vec::new();
         let mut near: Vec<u32> = Vec::new();
-        // A little more, for the rounding of the differences.
-        let reach = gap_px * gap_px * (1.0 + 1e-9);
         for (node, at) in (0..).zip(&self.places) {
             let own = self.node(node);
             if own.iter().all(|end| self.partner(*end).is_some()) {
                 continue;
             }
-            near.clear();
-            tree.visit(*at, reach, &mut |other, squared| {
-                if other != node {
-                    near.push(other);
-                }
-                if near.len() < NEAR_NODES { reach } else { -squared }
-            });
+            nodes_near(tree, (node, *at), gap_px, &mut near);
             for end in own.iter().filter(|end| self.partner(**end).is_none()) {
                 for other in core::iter::once(node).chain(near.iter().copied()) {
                     for partner in self.offers(*end, other).filter(|partner| partner != end) {
@@ -262,6 +261,28 @@ impl<'a> Meeting<'a> {
             while let Some((a, b)) = self.straightest(&free) {
                 self.connect(a, b);
                 free.retain(|end| *end != a && *end != b);
+            }
+        }
+    }
+
+    /// Pairs the free end of each node with that of another one within the gap, the nearest first.
+    fn bridge_the_rest(&mut self, tree: &PointTree, gap_px: f64) {
+        let mut pairs: Vec<(f64, u32, u32)> = Vec::new();
+        let mut near: Vec<u32> = Vec::new();
+        let free = |node: u32| self.node(node).iter().copied().find(|end| self.partner(*end).is_none());
+        for (node, at) in (0..).zip(&self.places) {
+            let Some(end) = free(node) else { continue };
+            nodes_near(tree, (node, *at), gap_px, &mut near);
+            for partner in near.iter().filter_map(|other| free(*other)) {
+                if self.may_join(end, partner, gap_px) {
+                    pairs.push((at.distance(self.place(partner)), end.min(partner), end.max(partner)));
+                }
+            }
+        }
+        pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        for (_, a, b) in pairs {
+            if self.partner(a).is_none() && self.partner(b).is_none() {
+                self.connect(a, b);
             }
         }
     }
@@ -381,6 +402,19 @@ impl<'a> Meeting<'a> {
     }
 }
 
+/// The nodes within the gap of one, besides itself; not all where there are very many.
+fn nodes_near(tree: &PointTree, (node, at): (u32, PxPoint), gap_px: f64, near: &mut Vec<u32>) {
+    // A little more, for the rounding of the differences.
+    let reach = gap_px * gap_px * (1.0 + 1e-9);
+    near.clear();
+    tree.visit(at, reach, &mut |other, squared| {
+        if other != node {
+            near.push(other);
+        }
+        if near.len() < NEAR_NODES { reach } else { -squared }
+    });
+}
+
 /// Where a stroke ends, and in which direction; a closed stroke ends at its vertex `start`.
 fn tip(stroke: &Stroke<'_>, start: u32, last: bool) -> (PxPoint, (f64, f64)) {
     let [first_outward, last_outward] = stroke.outward;
@@ -424,6 +458,8 @@ mod tests {
     use crate::Drawing;
     use crate::order::plan::strokes_of;
 
+    const TIGHT: Joining = Joining { gap_px: 0.5, one_stroke: true, at_corners: false };
+
     fn drawing(strokes: &[&[(f64, f64)]]) -> Drawing {
         let mut drawing = Drawing::new(100, 100);
         for stroke in strokes {
@@ -435,7 +471,7 @@ mod tests {
     /// Strokes of each trail, one more than their numbers, negative where drawn backwards; `o` for a ring.
     fn joined(drawing: &Drawing, gap_px: f64, one_stroke: bool) -> Vec<String> {
         let strokes = strokes_of(drawing);
-        let (parts, trails) = trails(&strokes, gap_px, one_stroke);
+        let (parts, trails) = trails(&strokes, &Joining { gap_px, one_stroke, at_corners: false });
         let name = |trail: Trail| {
             let name =
                 |piece: Piece| format!("{}{}", if piece.reversed { "-" } else { "" }, piece.stroke + 1);
@@ -496,9 +532,9 @@ mod tests {
         for gap in [0.0, 0.3] {
             let touching = drawing(&[&[(0.0, 0.0), (5.0, 0.0)], &[(5.0 + gap, 0.0), (9.0, 0.0)]]);
             let mut strokes = strokes_of(&touching);
-            assert_eq!(trails(&strokes, 0.5, true).1.len(), 1);
+            assert_eq!(trails(&strokes, &TIGHT).1.len(), 1);
             (strokes[0].letter, strokes[1].letter) = (1, 2);
-            assert_eq!(trails(&strokes, 0.5, true).1.len(), 2, "{gap}");
+            assert_eq!(trails(&strokes, &TIGHT).1.len(), 2, "{gap}");
         }
     }
 
@@ -532,7 +568,7 @@ mod tests {
             &[(0.0, 0.0), (0.0, 5.0), (5.0, 5.0), (0.0, 0.0)],
         ]);
         let strokes = strokes_of(&eight);
-        let (parts, trails) = trails(&strokes, 0.0, true);
+        let (parts, trails) = trails(&strokes, &Joining { gap_px: 0.0, ..TIGHT });
         assert_eq!(trails.len(), 1);
         assert!(trails[0].closed);
         let vertices = parts.vertices(trails[0]);
@@ -545,6 +581,21 @@ mod tests {
         let (a, b, c, d, e) = ((0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0), (4.0, 12.0));
         let house = drawing(&[&[a, b], &[b, c], &[c, d], &[d, a], &[a, c], &[b, d], &[d, e], &[e, c]]);
         assert_eq!(joined(&house, 0.0, true).len(), 1);
+    }
+
+    #[test]
+    fn what_is_left_within_the_gap_is_joined_round_corners_where_that_is_asked_for() {
+        // A square of four strokes that do not quite meet.
+        let square = drawing(&[
+            &[(0.2, 0.0), (9.0, 0.0)],
+            &[(0.0, 9.0), (9.0, 9.2)],
+            &[(0.0, 0.0), (0.0, 8.8)],
+            &[(9.2, 9.0), (9.0, 0.2)],
+        ]);
+        let strokes = strokes_of(&square);
+        assert_eq!(trails(&strokes, &TIGHT).1.len(), 4);
+        let (parts, trails) = trails(&strokes, &Joining { at_corners: true, ..TIGHT });
+        assert_eq!((trails.len(), trails[0].closed, parts.vertices(trails[0]).len()), (1, true, 9));
     }
 
     #[test]

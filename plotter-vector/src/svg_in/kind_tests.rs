@@ -299,6 +299,11 @@ fn filled_shapes_hide_what_lies_below_when_asked() {
             "0,50 20,50 | 30,50 50,50 | 60,50 100,50",
         ),
         (format!("{line}<circle cx='50' cy='50' r='200' fill='white'/>"), ""),
+        // On its border.
+        (
+            format!("{line}<rect x='20' y='50' width='60' height='30' fill='white'/>"),
+            "0,50 20,50 | 80,50 100,50",
+        ),
     ];
     for (content, expected) in rows {
         let hidden = read_with(&content, SvgOptions { occludes: true, ..SvgOptions::default() });

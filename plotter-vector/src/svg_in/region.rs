@@ -129,8 +129,8 @@ impl Region {
         steps: &mut Steps,
     ) -> Result<Option<Vec<Curve>>, SvgError> {
         let is_kept = |at: PxPoint, steps: &mut Steps| match (keep, self.side(at, edge_px, steps)) {
-            (_, Side::Edge) => true,
-            (Keep::Inside, side) => side == Side::Inside,
+            // What a clip path leaves has its border, and what lies on the border of a later shape is hidden by its ink.
+            (Keep::Inside, side) => side != Side::Outside,
             (Keep::Outside, side) => side == Side::Outside,
         };
         let Some(first) = stroke.vertices.first().copied() else { return Ok(None) };
