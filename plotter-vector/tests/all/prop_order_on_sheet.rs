@@ -70,21 +70,47 @@ fn marks(drawing: &Drawing) -> Vec<String> {
     marks
 }
 
+/// Of the two, what the first has and the second has not.
+fn missing(all: &[String], among: &[String]) -> Vec<String> {
+    let mut rest = among.to_vec();
+    let is_gone = |text: &&String| match rest.iter().position(|other| other == *text) {
+        Some(at) => {
+            rest.swap_remove(at);
+            false
+        }
+        None => true,
+    };
+    all.iter().filter(is_gone).cloned().collect()
+}
+
+fn efforts() -> impl Strategy<Value = OrderEffort> {
+    prop_oneof![Just(OrderEffort::Join), Just(OrderEffort::Fast), Just(OrderEffort::Best)]
+}
+
 proptest! {
     #[test]
-    fn the_same_is_drawn_with_no_more_travel(drawing in drawing(), across_pens in any::<bool>(), is_best in any::<bool>()) {
-        let effort = if is_best { OrderEffort::Best } else { OrderEffort::Fast };
-        let order = Order { merge_gap_px: 0.0, across_pens, effort, ..Order::default() };
+    fn the_same_is_drawn_with_no_more_travel_and_lifts(
+        drawing in drawing(),
+        across_pens in any::<bool>(),
+        effort in efforts(),
+        lift_px in prop_oneof![Just(0.0), Just(200.0)],
+    ) {
+        let order = Order { merge_gap_px: 0.0, across_pens, effort, lift_px, ..Order::default() };
         let ordered = order.apply_to(drawing.clone());
         prop_assert_eq!(ink(&ordered), ink(&drawing));
         prop_assert_eq!(marks(&ordered), marks(&drawing));
         prop_assert!((ordered.length_mm() - drawing.length_mm()).abs() <= 1e-9 * (1.0 + drawing.length_mm()));
         prop_assert_eq!(ordered.check(), Ok(()));
-        if across_pens {
-            let travel = |drawing: &Drawing| drawing.strokes.windows(2).map(|pair| pair[0].to().distance(pair[1].from)).sum::<f64>();
-            let is_one_sheet = !marks(&drawing).iter().any(|mark| mark.contains("Page"));
-            prop_assert!(!is_one_sheet || travel(&ordered) <= travel(&drawing) + 1e-9);
-        } else {
+        prop_assert!(ordered.strokes.len() <= drawing.strokes.len());
+        let is_one_sheet = !marks(&drawing).iter().any(|mark| mark.contains("Page"));
+        if across_pens && is_one_sheet && effort != OrderEffort::Join {
+            let cost = |drawing: &Drawing| {
+                let travel = drawing.strokes.windows(2).map(|pair| pair[0].to().distance(pair[1].from)).sum::<f64>();
+                travel + f64::from(u32::try_from(drawing.strokes.len()).unwrap()) * lift_px / Order::PX_PER_MM
+            };
+            prop_assert!(cost(&ordered) <= cost(&drawing) + 1e-9);
+        }
+        if !across_pens {
             let sheets = ordered.strokes.chunk_by(|_, next| !next.before.contains(&Mark::NewPage));
             for sheet in sheets {
                 prop_assert!(sheet.is_sorted_by_key(|stroke| stroke.pen));
@@ -92,6 +118,48 @@ proptest! {
         }
         // Ordered again, nothing is lost either, and the order stays as short.
         prop_assert_eq!(ink(&order.apply_to(ordered)), ink(&drawing));
+    }
+
+    #[test]
+    fn over_gaps_nothing_is_lost_and_only_gaps_are_added(
+        drawing in drawing(),
+        effort in efforts(),
+        bridges_corners in any::<bool>(),
+    ) {
+        // Places of the grid beside each other, but not over its diagonals.
+        let gap_mm = 1.1;
+        let order = Order { merge_gap_px: gap_mm * Order::PX_PER_MM, effort, bridges_corners, ..Order::default() };
+        let ordered = order.apply_to(drawing.clone());
+        prop_assert_eq!(missing(&ink(&drawing), &ink(&ordered)), Vec::<String>::new());
+        let added = ordered.length_mm() - drawing.length_mm();
+        let joined = drawing.strokes.len() + 1 - ordered.strokes.len().min(drawing.strokes.len());
+        // A trail of several strokes may be closed besides.
+        let most = gap_mm * f64::from(u32::try_from(2 * joined).unwrap());
+        prop_assert!(added >= -1e-9 && added <= most, "{added} {most}");
+        prop_assert_eq!(ordered.check(), Ok(()));
+    }
+}
+
+#[test]
+fn places_that_are_none_keep_the_order_and_all_strokes() {
+    let odd = [f64::NAN, f64::INFINITY, 1e30, -1e30, 5.0, 5.0, 0.0];
+    let strokes: Vec<Stroke> = odd
+        .iter()
+        .flat_map(|x| {
+            [
+                Stroke::through([Point::new(*x, 1.0), Point::new(3.0, *x)]),
+                Stroke::through([Point::new(*x, *x)]),
+            ]
+        })
+        .flatten()
+        .collect();
+    for effort in [OrderEffort::None, OrderEffort::Join, OrderEffort::Fast, OrderEffort::Best] {
+        for merge_gap_px in [0.0, f64::NAN, 1e300] {
+            let order =
+                Order { effort, merge_gap_px, bridges_corners: true, lift_px: f64::NAN, ..Order::default() };
+            let ordered = order.apply_to(Drawing { strokes: strokes.clone(), ..Drawing::default() });
+            assert_eq!(format!("{:?}", ordered.strokes), format!("{strokes:?}"), "{order:?}");
+        }
     }
 }
 
