@@ -10,7 +10,8 @@ use std::str::FromStr;
 
 /// The options for what is done with a drawing. Without any of them it streams through.
 ///
-/// They work in this order: what is left out before a line or a layer; mirrored, turned, scaled, put on the page; hidden; hatched; cropped; drawn once; with arcs; simplified; put in order.
+/// They work in this order: what is left out before a line or a layer; mirrored, turned, scaled, put on the
+/// page; hidden; hatched; cropped; drawn once; with arcs; simplified; put in order.
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "What is done with the drawing")]
 pub struct Arrangement {
@@ -59,7 +60,8 @@ pub struct Arrangement {
     /// Draws strokes in an order with less travel, pen by pen, joined where they meet [default with --merge-mm: fast]
     #[arg(long, value_enum, value_name = "HOW")]
     pub order: Option<Effort>,
-    /// Changes the pen wherever that shortens the way, instead of once for each pen; in an SVG each pen is one group all the same
+    /// Changes the pen wherever that shortens the way, instead of once for each pen; in an SVG each pen is
+    /// one group all the same
     #[arg(long, requires = "order")]
     pub across_pens: bool,
     /// Begins at a line of the file, with the pen, the speed and the power that hold there
@@ -185,7 +187,8 @@ const MERGE_MM: f64 = 0.05;
 /// Most that `--order best` looks at: some 10 s, used up by 200,000 strokes and more.
 const LOOKS: u64 = 1_000_000_000;
 
-/// How far the pen travels while it is lifted and lowered, mm: a servo takes some 0.1 s each way, in which a plotter at 100 mm/s goes so far.
+/// How far the pen travels while it is lifted and lowered, mm: a servo takes some 0.1 s each way, in which a
+/// plotter at 100 mm/s goes so far.
 const LIFT_MM: f64 = 20.0;
 
 impl Arrangement {

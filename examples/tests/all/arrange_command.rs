@@ -183,7 +183,8 @@ fn lines_become_arcs_or_fewer_lines() {
         drawing.strokes.iter().map(|stroke| stroke.segments.len()).sum::<usize>()
     };
     assert_eq!(segments(&[]), 72);
-    // A whole turn, as SVG writes it: two arcs, or one for each part that rounding to HPGL's units sets apart.
+    // A whole turn, as SVG writes it: two arcs, or one for each part that rounding to HPGL's units sets
+    // apart.
     let arcs = segments(&["--arcs=0.05"]);
     assert!((2..=4).contains(&arcs), "{arcs}");
     // A chord of 10 degrees is 0.08 mm off, one of 20 degrees 0.3 mm.
@@ -194,7 +195,8 @@ fn lines_become_arcs_or_fewer_lines() {
 #[test]
 fn closed_strokes_are_filled_and_hide_what_is_below() {
     let (filled, _) = arranged_as(&round(), "a.plt", &["--hatch", "2", "--hatch-angle", "0"]);
-    // 20 lines or so, together as long as the area of the circle through the distance: 400 π / 2 mm, beside its outline of 40 π.
+    // 20 lines or so, together as long as the area of the circle through the distance: 400 π / 2 mm, beside
+    // its outline of 40 π.
     let lines_mm = filled.length_mm() - 40.0 * std::f64::consts::PI;
     assert!((lines_mm - 200.0 * std::f64::consts::PI).abs() < 15.0, "{lines_mm}");
     // Half of it: what is cropped was filled before.

@@ -71,7 +71,8 @@ impl Affine {
 
     /// Whether circles stay circles: 1 or −1 for whether they turn as before; `None` where they become ellipses.
     pub(crate) fn turns_circles(&self) -> Option<f64> {
-        /// Share of a length by which axes may differ: what rounding makes of maps within maps, and a millionth of a millimetre of a metre.
+        /// Share of a length by which axes may differ: what rounding makes of maps within maps, and a
+        /// millionth of a millimetre of a metre.
         const ROUNDING: f64 = 1e-9;
         let square = self.x.length_squared();
         let is_square = libm::fabs(self.x.dot(self.y)) <= ROUNDING * square

@@ -112,7 +112,8 @@ struct Part {
 
 /// What of a stroke has not been drawn yet, and the length of what has been, mm.
 fn parts_left(stroke: Stroke, pen: u8, tools: &mut Tools, ink: &mut Ink) -> (Vec<Stroke>, f64) {
-    if stroke.is_dot() {
+    // What has no length is a dot, of however many segments.
+    if stroke.segments().all(|(from, segment)| length_at_most_mm(from, segment) <= NO_LENGTH_MM) {
         let tool = stroke.segments.last().map_or(0, |dot| tools.number(pen, dot));
         return (if ink.draw_dot(tool, stroke.from) { alloc::vec![stroke] } else { Vec::new() }, 0.0);
     }

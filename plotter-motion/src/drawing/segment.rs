@@ -62,6 +62,17 @@ impl PathSegment {
         Self { shape: Shape::Cubic { handles }, to, feed_mm_s: None, power: None }
     }
 
+    /// Whether from there it is one place: also an arc about it, and a curve all of whose places are there.
+    #[must_use]
+    pub fn is_dot(&self, from: Point) -> bool {
+        let is_place = match self.shape {
+            Shape::Line => true,
+            Shape::Arc { centre, sweep_rad } => centre == from || sweep_rad == 0.0,
+            Shape::Cubic { handles } => handles == [from; 2],
+        };
+        is_place && self.to == from
+    }
+
     /// Whether all its numbers are finite, and its arc is at most a whole turn.
     #[must_use]
     pub fn is_sound(&self) -> bool {

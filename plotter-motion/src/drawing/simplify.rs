@@ -25,8 +25,9 @@ impl Drawing {
     /// The places left are places of before; ends of strokes stay. Arcs and curves are left as they are, and lines of different speeds
     /// or powers stay apart. What is closed stays closed. A tolerance of 0 or below, or that is no number, changes nothing.
     ///
-    /// The result is the least number of lines that lead the way of the places forward, for runs of which no line stands for more than 64;
-    /// it is never more than that of taking the longest line again and again. The time is proportional to the number of places, whatever they are.
+    /// The result is the least number of lines, for runs of which no line stands for more than 64; it is never
+    /// more than that of taking the longest line again and again.
+    /// The time is proportional to the number of places, whatever they are.
     ///
     /// ```
     /// use plotter_motion::{Point, drawing::{Drawing, Stroke}};
@@ -84,7 +85,8 @@ struct Reached {
 /// The ends of the fewest lines along places: their indices, without that of the first.
 fn fewest(places: &[Point], tolerance_mm: f64) -> Vec<usize> {
     let last = places.len().saturating_sub(1);
-    let is_closed = last > 1 && places.first() == places.last();
+    let is_closed =
+        places.first() == places.last() && places.iter().any(|place| Some(place) != places.first());
     let mut reached = alloc::vec![Reached { lines: usize::MAX, from: 0 }; places.len()];
     if let Some(first) = reached.first_mut() {
         first.lines = 0;
@@ -96,7 +98,7 @@ fn fewest(places: &[Point], tolerance_mm: f64) -> Vec<usize> {
         let is_link = begin == link;
         lines_from(places, begin, is_link, tolerance_mm, |end| {
             // One line from a place back to it would be a dot.
-            if is_closed && begin == 0 && end == last {
+            if is_closed && end > begin + 1 && places.get(begin) == places.get(end) {
                 return;
             }
             if let Some(there) = reached.get_mut(end).filter(|there| lines < there.lines) {
@@ -121,19 +123,28 @@ fn fewest(places: &[Point], tolerance_mm: f64) -> Vec<usize> {
 /// Tells the ends of lines from one place that stand for all places between.
 fn lines_from(places: &[Point], begin: usize, is_far: bool, tolerance_mm: f64, mut found: impl FnMut(usize)) {
     let Some((&from, rest)) = places.get(begin..).and_then(<[Point]>::split_first) else { return };
+    let stands_for = |passed: usize| {
+        let (Some(&to), Some(between)) = (rest.get(passed), rest.get(..passed)) else { return false };
+        between.iter().all(|&place| Segment::new(from, to).distance(place) <= tolerance_mm)
+    };
     let mut cone = Cone::All;
-    // The farthest place so far: it must not lie beyond the line's end.
+    // The farthest place so far.
     let mut farthest_mm: f64 = 0.0;
-    // Places passed to the last end found, and to the last one beyond which a place lies by less than the tolerance.
+    // Places passed to the last end found, and to the last of those that were not looked at because they are many.
     let (mut best, mut perhaps) = (0, 0);
     for (passed, &to) in rest.iter().enumerate() {
         let way = to - from;
         let length_mm = way.length_near();
-        if passed == 0 || (cone.has(way) && length_mm >= farthest_mm) {
-            best = passed;
-            found(begin + passed + 1);
-        } else if cone.has(way) && length_mm + tolerance_mm >= farthest_mm {
-            perhaps = passed;
+        if cone.has(way) {
+            // A place farther than the line's end must be near that end, but where all are near its beginning.
+            let is_end = length_mm >= farthest_mm || matches!(cone, Cone::All);
+            let turns_back = !is_end && length_mm + tolerance_mm >= farthest_mm;
+            if is_end || (turns_back && passed <= WINDOW && stands_for(passed)) {
+                best = passed;
+                found(begin + passed + 1);
+            } else if turns_back {
+                perhaps = passed;
+            }
         }
         farthest_mm = farthest_mm.max(length_mm);
         let most = if is_far { 3 * best + WINDOW } else { WINDOW };
@@ -141,10 +152,7 @@ fn lines_from(places: &[Point], begin: usize, is_far: bool, tolerance_mm: f64, m
             break;
         }
     }
-    if perhaps > best
-        && let (Some(&to), Some(between)) = (rest.get(perhaps), rest.get(..perhaps))
-        && between.iter().all(|&place| Segment::new(from, to).distance(place) <= tolerance_mm)
-    {
+    if perhaps > best && stands_for(perhaps) {
         found(begin + perhaps + 1);
     }
 }

@@ -1,6 +1,6 @@
 //! [`Stroke`]: what is drawn without lifting the pen.
 
-use super::{Affine, Bounds, PathSegment, Shape};
+use super::{Affine, Bounds, PathSegment};
 use crate::Point;
 use alloc::vec::Vec;
 use core::time::Duration;
@@ -80,14 +80,13 @@ impl Stroke {
     /// Whether it ends where it begins and is more than a dot.
     #[must_use]
     pub fn is_closed(&self) -> bool {
-        self.to() == self.from
-            && (self.segments.len() > 1 || self.segments.iter().any(|segment| segment.shape != Shape::Line))
+        self.to() == self.from && !self.is_dot()
     }
 
     /// Whether it is one place.
     #[must_use]
     pub fn is_dot(&self) -> bool {
-        self.segments.iter().all(|segment| segment.shape == Shape::Line && segment.to == self.from)
+        self.segments.iter().all(|segment| segment.is_dot(self.from))
     }
 
     /// The box round it.

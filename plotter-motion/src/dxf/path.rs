@@ -37,8 +37,8 @@ impl Bow {
         self.seen(plane).apply(on_circle(self.from_rad))
     }
 
-    /// Goes on with it. It ends at `to` where that is known better than by the angle. It stays an arc where the plane shows circles;
-    /// elsewhere it becomes cubic curves.
+    /// Goes on with it. It ends at `to` where that is known better than by the angle. It stays an arc where
+    /// the plane shows circles; elsewhere it becomes cubic curves.
     pub(super) fn draw(&self, plane: &Affine, to: Option<Point>, stroke: &mut Stroke) {
         let arc = PathSegment::arc(Point::ORIGIN, self.sweep_rad, on_circle(self.from_rad + self.sweep_rad));
         arc.mapped(on_circle(self.from_rad), &self.seen(plane), &mut stroke.segments);
@@ -78,7 +78,8 @@ pub(super) fn draw(mut stroke: Stroke, pattern: &[f64], tolerance_mm: f64, ops: 
         .collect();
     let mut rest = segments.as_slice();
     for (from_mm, to_mm) in dashes {
-        // A dash begins in the first segment that ends behind its start; the last one ends where the stroke does.
+        // A dash begins in the first segment that ends behind its start; the last one ends where the stroke
+        // does.
         while let [(.., end_mm), later @ ..] = rest
             && *end_mm <= from_mm
             && !later.is_empty()
@@ -112,8 +113,8 @@ fn without_curves(stroke: &mut Stroke, tolerance_mm: f64) {
     stroke.segments = segments;
 }
 
-/// Where the dashes of a stroke begin and end, as lengths from its start: each end of the stroke lies in a dash, and both of these are
-/// equally long. A stroke shorter than the pattern is whole.
+/// Where the dashes of a stroke begin and end, as lengths from its start: each end of the stroke lies in a
+/// dash, and both of these are equally long. A stroke shorter than the pattern is whole.
 struct Dashes<'p> {
     pattern: &'p [f64],
     /// Which part of the pattern comes next, and where it begins.

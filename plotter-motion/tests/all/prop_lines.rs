@@ -376,9 +376,7 @@ proptest! {
         let mut rest = one.segments.iter();
         prop_assert!(other.segments.iter().all(|segment| rest.any(|old| old == segment)));
         if !one.is_closed() {
-            let fewest = fewest(&places, tolerance);
-            // Where a line turns back within the tolerance, its cone is narrower than what would do.
-            prop_assert!(other.segments.len() <= fewest + 1 + fewest / 8, "{} {fewest}", other.segments.len());
+            prop_assert_eq!(other.segments.len(), fewest(&places, tolerance));
             prop_assert!(other.segments.len() <= halved(&places, tolerance));
         }
     }

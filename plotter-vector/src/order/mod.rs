@@ -61,9 +61,10 @@ pub enum OrderEffort {
 ///    then changes of the order that shorten the travel are made (2-opt: Croes 1958; Or-opt: Or 1976; Johnson and
 ///    McGeoch 1997).
 ///
-/// The travel, with `lift_px` for each stroke, is never longer than that of the given order; where there are several pens or lettering,
-/// than that of the given order with the strokes of each pen and of each block brought together. Drawn is what was drawn, and the
-/// bridges of gaps. The result depends on nothing but the drawing and the settings.
+/// The travel, with `lift_px` for each stroke, is never longer than that of the given order; where there are
+/// several pens or lettering, than that of the given order with the strokes of each pen and of each block
+/// brought together. Drawn is what was drawn, and the bridges of gaps. The result depends on nothing but the
+/// drawing and the settings.
 ///
 /// A drawing with a coordinate that is no number, or beyond 10¹² px, is only sorted by pen.
 ///
@@ -94,11 +95,12 @@ pub struct Order {
     /// Whether pens are changed wherever that shortens the way, and not only once each: for drawings of one tool.
     #[cfg_attr(feature = "serde", serde(default))]
     pub across_pens: bool,
-    /// Whether ends within `merge_gap_px` are joined at corners too, where `one_stroke` is set: for files whose corners do not quite meet.
+    /// Whether ends within `merge_gap_px` are joined at corners too, where `one_stroke` is set: for files
+    /// whose corners do not quite meet.
     #[cfg_attr(feature = "serde", serde(default))]
     pub bridges_corners: bool,
-    /// What lifting and lowering the pen costs, as the way that it travels in that time, px. The order with the least sum of travel and
-    /// lifts is taken.
+    /// What lifting and lowering the pen costs, as the way that it travels in that time, px. The order with
+    /// the least sum of travel and lifts is taken.
     #[cfg_attr(feature = "serde", serde(default))]
     pub lift_px: f64,
     /// How lettering is found, so that each block of it is drawn in one go, in reading order; `None` does not look.
@@ -157,22 +159,25 @@ impl Order {
         };
         let (parts, joined) = trails::trails(strokes, &joining);
         let units = Units::new(&parts, joined, blocks);
-        let cost_px = |parts: &Parts<'_>, trails: &[Trail]| {
-            self.cost_px(trails.len(), trails.iter().map(|trail| parts.ends(*trail)))
-        };
-        let joined = self.joined(&parts, &units);
         if self.effort == OrderEffort::Join {
+            let joined = self.as_joined(&parts, &units);
             return (parts, joined);
         }
         let (mut trails, mut ends) = self.sequence(&parts, &units);
         start_rings_well(&parts, &mut trails, &mut ends);
         let mut least_px = self.cost_px(trails.len(), ends);
-        if joined.len() < strokes.len() {
+        let cost_px = |parts: &Parts<'_>, trails: &[Trail]| {
+            self.cost_px(trails.len(), trails.iter().map(|trail| parts.ends(*trail)))
+        };
+        // Where nothing is joined, this is the given order.
+        if trails.len() < strokes.len() {
+            let joined = self.as_joined(&parts, &units);
             let joined_px = cost_px(&parts, &joined);
             if joined_px < least_px {
                 (trails, least_px) = (joined, joined_px);
             }
         }
+        drop(units);
         let (as_given, given) = as_given(strokes, blocks, self.across_pens);
         if least_px <= cost_px(&as_given, &given) { (parts, trails) } else { (as_given, given) }
     }
@@ -186,7 +191,7 @@ impl Order {
     }
 
     /// The trails of the units in the given order, pen by pen.
-    fn joined(&self, parts: &Parts<'_>, units: &Units) -> Vec<Trail> {
+    fn as_joined(&self, parts: &Parts<'_>, units: &Units) -> Vec<Trail> {
         let rank = |trail: &Trail| {
             let strokes =
                 trail.pieces(&parts.pieces).filter_map(|piece| parts.strokes.get(piece.stroke as usize));

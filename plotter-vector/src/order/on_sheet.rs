@@ -81,8 +81,8 @@ impl Order {
     }
 }
 
-/// The strokes along a Z-order curve (G. M. Morton, "A computer oriented geodetic data base", 1966), each with its number before, so that
-/// what is near on the sheet is near in memory: the search of a million lines takes half as long.
+/// The strokes along a Z-order curve (G. M. Morton, "A computer oriented geodetic data base", 1966), each
+/// with its number before: what is near on the sheet is near in memory, where the search needs it next.
 fn side_by_side(given: Vec<Stroke>) -> (Vec<u32>, Vec<Option<Stroke>>) {
     let mut all = Bounds::default();
     given.iter().for_each(|stroke| all.grow(stroke.from));

@@ -25,8 +25,8 @@ pub(crate) struct Units {
 }
 
 impl Units {
-    /// The trails by unit, in the order in which units come first; those of a block in reading order, each from the end that makes
-    /// the block's travel least.
+    /// The trails by unit, in the order in which units come first; those of a block in reading order, each
+    /// from the end that makes the block's travel least.
     pub(crate) fn new(parts: &Parts<'_>, trails: Vec<Trail>, blocks: &[TextBlock]) -> Self {
         let mut units = Self { ends: (1..=number(trails.len())).collect(), trails };
         if !blocks.is_empty() {

@@ -1,7 +1,7 @@
 //! [`without_blank_nodes`]: blanks between the elements of a large file as parts of tags.
 //!
-//! The XML parser makes a node of the end of a line between two elements, as large as that of an element. Within a tag blanks are
-//! nothing:
+//! The XML parser makes a node of the end of a line between two elements, as large as that of an element.
+//! Within a tag blanks are nothing:
 //!
 //! ```text
 //!   <path d="…"/>⏎              <path d="…"⏎
@@ -13,8 +13,8 @@ use core::ops::Range;
 /// Smaller files stay as they are, bytes: below this, nodes are a few MB.
 const SMALL_BYTES: usize = 4_000_000;
 
-/// The text with blanks moved into the tags before them, as long as it was, each line where it was; `None` where it stays as it is: small,
-/// or with texts, in which blanks are letters.
+/// The text with blanks moved into the tags before them, as long as it was, each line where it was; `None`
+/// where it stays as it is: small, or with texts, in which blanks are letters.
 pub(super) fn without_blank_nodes(text: &str) -> Option<String> {
     if text.len() < SMALL_BYTES || text.contains("<text") || text.contains(":text") {
         return None;

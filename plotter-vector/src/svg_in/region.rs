@@ -129,7 +129,8 @@ impl Region {
         steps: &mut Steps,
     ) -> Result<Option<Vec<Curve>>, SvgError> {
         let is_kept = |at: PxPoint, steps: &mut Steps| match (keep, self.side(at, edge_px, steps)) {
-            // What a clip path leaves has its border, and what lies on the border of a later shape is hidden by its ink.
+            // What a clip path leaves has its border, and what lies on the border of a later shape is hidden
+            // by its ink.
             (Keep::Inside, side) => side != Side::Outside,
             (Keep::Outside, side) => side == Side::Outside,
         };

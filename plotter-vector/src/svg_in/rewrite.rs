@@ -78,8 +78,8 @@ struct Rewriter<'a> {
 }
 
 impl Rewritten {
-    /// `parser` finds the boxes of elements, which may be nested this deep; `has_moved_blanks` says that ends of elements stand where
-    /// [`without_blank_nodes`](super::blanks::without_blank_nodes) puts them.
+    /// `parser` finds the boxes of elements, which may be nested this deep; `has_moved_blanks` says that ends
+    /// of elements stand where [`without_blank_nodes`](super::blanks::without_blank_nodes) puts them.
     ///
     /// # Errors
     /// Where a box is asked for, and the references in the file are not safe to follow.

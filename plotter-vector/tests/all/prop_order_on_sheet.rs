@@ -1,7 +1,7 @@
 //! Laws of ordering drawings of the sheet: the same ink, pen by pen, with what belongs to it.
 
 use plotter_motion::Point;
-use plotter_motion::drawing::{Drawing, Mark, PathSegment, Shape, Stroke};
+use plotter_motion::drawing::{Drawing, Mark, PathSegment, Stroke};
 use plotter_vector::{Order, OrderEffort};
 use proptest::prelude::*;
 use std::time::Duration;
@@ -51,7 +51,7 @@ fn ink(drawing: &Drawing) -> Vec<String> {
     for stroke in &drawing.strokes {
         sheet += stroke.before.iter().filter(|mark| **mark == Mark::NewPage).count();
         for (from, segment) in stroke.segments() {
-            if segment.shape == Shape::Line && segment.to == from {
+            if segment.is_dot(from) {
                 continue;
             }
             let key = |from: Point, segment: PathSegment| format!("{from:?}{segment:?}");
