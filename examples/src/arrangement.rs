@@ -263,7 +263,9 @@ impl Arrangement {
                 Effort::Best => OrderEffort::Best,
             };
             let merge_mm = self.merge_mm.unwrap_or(MERGE_MM);
-            let (merge_gap_px, across_pens) = (merge_mm * Order::PX_PER_MM, self.across_pens);
+            // The order of the file is that of its pens too.
+            let across_pens = self.across_pens || effort == OrderEffort::Join;
+            let merge_gap_px = merge_mm * Order::PX_PER_MM;
             let lift_px = LIFT_MM * Order::PX_PER_MM;
             let order = Order {
                 effort,

@@ -150,6 +150,7 @@ fn pens_are_changed_on_the_way_where_that_is_asked_for() {
     };
     let (by_pen, far_mm) = pens(&["--order", "best"]);
     assert_eq!(by_pen, [1, 1, 2, 2]);
+    assert_eq!(pens(&["--order", "none", "--merge-mm", "0.05"]).0, [1, 2, 1, 2]);
     let (by_turns, near_mm) = pens(&["--order", "best", "--across-pens"]);
     assert_eq!(by_turns, [1, 2, 1, 2]);
     assert!((far_mm - 5.0).abs() < 1e-3 && (near_mm - 3.0).abs() < 1e-3, "{far_mm} {near_mm}");
