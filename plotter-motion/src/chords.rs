@@ -10,26 +10,44 @@ const MOST_CHORDS: u32 = 65_536;
 
 /// An arc that is being divided.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Arc {
+pub(crate) struct DividedArc {
     centre: Point,
     /// From the centre to where it begins.
     out: Vec2,
     sweep_rad: f64,
     /// How much farther from the centre it ends than it begins, as a share of the radius.
     growth: f64,
-    to: Point,
-    feed_mm_s: Option<f64>,
+    pub(crate) to: Point,
     chords: u32,
     next: u32,
 }
 
-impl Arc {
-    fn place(&self, index: u32) -> Point {
-        if index >= self.chords {
-            return self.to;
+impl DividedArc {
+    /// From a place about a centre, in chords no farther than this from it, but at most [`MOST_CHORDS`].
+    pub(crate) fn new(from: Point, centre: Point, sweep_rad: f64, to: Point, tolerance_mm: f64) -> Self {
+        let out = from - centre;
+        let radius_mm = out.length();
+        let growth = if radius_mm > 0.0 { (to - centre).length() / radius_mm - 1.0 } else { 0.0 };
+        let chords = chord_count(single(radius_mm), single(sweep_rad), single(tolerance_mm));
+        Self { centre, out, sweep_rad, growth, to, chords, next: 0 }
+    }
+
+    /// Where the next chord ends.
+    pub(crate) fn next_place(&mut self) -> Option<Point> {
+        if self.next >= self.chords {
+            return None;
         }
-        let share = f64::from(index) / f64::from(self.chords);
-        self.centre + self.out.rotated(self.sweep_rad * share) * (1.0 + self.growth * share)
+        self.next += 1;
+        if self.next == self.chords {
+            return Some(self.to);
+        }
+        let share = f64::from(self.next) / f64::from(self.chords);
+        Some(self.centre + self.out.rotated(self.sweep_rad * share) * (1.0 + self.growth * share))
+    }
+
+    /// Whether it has no more.
+    pub(crate) const fn is_over(&self) -> bool {
+        self.next >= self.chords
     }
 }
 
@@ -54,15 +72,12 @@ pub fn chords<I: IntoIterator<Item = PlotOp>>(
 ) -> impl Iterator<Item = PlotOp> + use<I> {
     let mut ops = ops.into_iter();
     let mut position = Point::ORIGIN;
-    let mut arc: Option<Arc> = None;
+    let mut arc: Option<(DividedArc, Option<f64>)> = None;
     core::iter::from_fn(move || {
-        if let Some(mut current) = arc.take() {
-            current.next += 1;
-            let to = current.place(current.next);
-            if current.next < current.chords {
-                arc = Some(current);
-            }
-            return Some(PlotOp::Draw { to, feed_mm_s: current.feed_mm_s });
+        if let Some((divided, feed_mm_s)) = &mut arc
+            && let Some(to) = divided.next_place()
+        {
+            return Some(PlotOp::Draw { to, feed_mm_s: *feed_mm_s });
         }
         let op = ops.next()?;
         let from = position;
@@ -70,15 +85,10 @@ pub fn chords<I: IntoIterator<Item = PlotOp>>(
         let PlotOp::DrawArc { centre, sweep_rad, to, feed_mm_s } = op else {
             return Some(op);
         };
-        let out = from - centre;
-        let radius_mm = out.length();
-        let growth = if radius_mm > 0.0 { (to - centre).length() / radius_mm - 1.0 } else { 0.0 };
-        let count = chord_count(single(radius_mm), single(sweep_rad), single(tolerance_mm));
-        let divided = Arc { centre, out, sweep_rad, growth, to, feed_mm_s, chords: count, next: 1 };
-        if count > 1 {
-            arc = Some(divided);
-        }
-        Some(PlotOp::Draw { to: divided.place(1), feed_mm_s })
+        let mut divided = DividedArc::new(from, centre, sweep_rad, to, tolerance_mm);
+        let to = divided.next_place()?;
+        arc = Some((divided, feed_mm_s));
+        Some(PlotOp::Draw { to, feed_mm_s })
     })
 }
 

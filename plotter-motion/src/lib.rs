@@ -52,7 +52,7 @@ pub use bresenham::{Bresenham, StepPair};
 pub use budget::{Budget, BudgetError, BudgetLimits, BudgetPart};
 pub use chords::chords;
 pub use config::{
-    AreaConfig, AxisConfig, BeltConfig, Bound, ConfigError, ContouringConfig, ControlConfig,
+    AccelChoice, AreaConfig, AxisConfig, BeltConfig, Bound, ConfigError, ContouringConfig, ControlConfig,
     ControllerChoice, Decoding, DriveChoice, EncoderConfig, FileName, HomingConfig, KinematicsChoice,
     KinematicsConfig, KnownMotors, LaserConfig, LoadConfig, Machine, MachineConfig, MachineKind, MachineName,
     MotorConfig, PathChoice, PenConfig, PenLift, PensChoice, PlannerConfig, PointToPointConfig,
@@ -67,7 +67,7 @@ pub(crate) use homing::HomingProgress;
 pub use homing::{Homed, Homing, HomingAxis, HomingError, HomingStatus, HomingStep};
 pub use pid::{Pid, PidState, SumPid, SumPidState};
 pub use planner::{
-    Action, AllModes, Course, ExactOnly, ExactPen, Modes, PathMode, Phase, PlanError, Planner,
+    AccelLimit, Action, AllModes, Course, ExactOnly, ExactPen, Modes, PathMode, Phase, PlanError, Planner,
     PlannerSettings, Shape, junction_speed,
 };
 pub use profile::{MotionLimits, ProfileError, ProfilePoint, Ramp, SCurve, Trapezoid, TrapezoidMove};

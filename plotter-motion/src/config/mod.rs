@@ -37,7 +37,8 @@ pub use machine_kind::MachineKind;
 pub use name::{FileName, MachineName, ShortText};
 pub use sheet::SheetConfig;
 pub use stepper::{
-    DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PenLift, PlannerConfig, StepperConfig,
+    AccelChoice, DriveChoice, HomingConfig, LaserConfig, PathChoice, PenConfig, PenLift, PlannerConfig,
+    StepperConfig,
 };
 #[cfg(feature = "toml")]
 pub use toml_error::{TomlError, TomlPlace};

@@ -113,7 +113,7 @@ const SIGN_OF_GAIN: &str = "for a motor that runs away swap its wires, not the s
 const DUTY_OF_255: &str = "duty counts in steps of 255, as the published gains do";
 
 /// Keys that the machine has once.
-static MACHINE: [Rule; 67] = [
+static MACHINE: [Rule; 70] = [
     Rule { key: "schema", form: Form::Whole(SCHEMA) },
     Rule { key: "name", form: Form::Text(super::MachineName::MAX_BYTES) },
     Rule { key: "drive", form: Form::Choice(&["dc", "stepper"]) },
@@ -262,6 +262,7 @@ static MACHINE: [Rule; 67] = [
     ),
     Rule { key: "planner.mode", form: Form::Choice(&["exact", "tolerance"]) },
     Rule { key: "planner.s_curve", form: Form::Switch },
+    Rule { key: "planner.accel_limit", form: Form::Choice(&["vector", "axes"]) },
     number(
         "planner.path_tolerance_mm",
         |c| c.planner.path_tolerance_mm,
@@ -296,6 +297,20 @@ static MACHINE: [Rule; 67] = [
         (0.1, 1.0e6),
         "mm/s^2",
         "the documented stepper plotter needs 250",
+    ),
+    number(
+        "planner.accel_x_mm_s2",
+        |c| c.planner.accel_x_mm_s2,
+        (0.1, 1.0e6),
+        "mm/s^2",
+        "what the motor x can do, without `accel_limit = \"axes\"` it is not read",
+    ),
+    number(
+        "planner.accel_y_mm_s2",
+        |c| c.planner.accel_y_mm_s2,
+        (0.1, 1.0e6),
+        "mm/s^2",
+        "what the motor y can do, without `accel_limit = \"axes\"` it is not read",
     ),
     number(
         "planner.jerk_mm_s3",

@@ -60,6 +60,18 @@ pub enum PathChoice {
     Tolerance,
 }
 
+/// What the greatest acceleration is a limit of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum AccelChoice {
+    /// The acceleration of the pen as a vector: `accel_mm_s2`.
+    #[default]
+    Vector,
+    /// That of each motor: `accel_x_mm_s2` and `accel_y_mm_s2`.
+    Axes,
+}
+
 /// How moves are planned: `[planner]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
@@ -81,8 +93,14 @@ pub struct PlannerConfig {
     pub speed_mm_s: f64,
     /// Greatest speed with the pen up, mm/s.
     pub travel_speed_mm_s: f64,
-    /// Greatest acceleration along the path, mm/s^2.
+    /// What the greatest acceleration is a limit of.
+    pub accel_limit: AccelChoice,
+    /// Greatest acceleration of the pen with [`AccelChoice::Vector`], mm/s^2.
     pub accel_mm_s2: f64,
+    /// Greatest acceleration of the motor `x` with [`AccelChoice::Axes`], mm/s^2; of a motor of a belt, mm of the belt.
+    pub accel_x_mm_s2: f64,
+    /// The same of the motor `y`.
+    pub accel_y_mm_s2: f64,
     /// Greatest jerk along the path, mm/s^3.
     pub jerk_mm_s3: f64,
 }
@@ -98,7 +116,10 @@ impl Default for PlannerConfig {
             junction_deviation_mm: 0.01,
             speed_mm_s: 45.0,
             travel_speed_mm_s: 90.0,
+            accel_limit: AccelChoice::Vector,
             accel_mm_s2: 250.0,
+            accel_x_mm_s2: 250.0,
+            accel_y_mm_s2: 250.0,
             jerk_mm_s3: 10_000.0,
         }
     }

@@ -1,10 +1,9 @@
 //! [`Block`]: a stretch of path in the look-ahead.
 
-use super::blend::GROWTH;
+use super::law::{Law, MOST_FORM_SHARE, twice};
 use super::limits::{Limits, Share, Wish};
 use super::{Course, Shape};
-use crate::extremes::{greatest, least};
-use crate::geom::single;
+use crate::geom::Vec2Single;
 use crate::root::root;
 use crate::{Pen, Point};
 use core::time::Duration;
@@ -17,13 +16,22 @@ pub(super) enum Kind {
     /// A line with the pen up, at a speed that shares of the speeds do not change.
     Jog,
     Arc,
-    /// Logarithmic spirals that narrow and widen.
-    Narrowing,
-    Widening,
+    Parabola,
     /// A standstill of `length` seconds.
     Dwell,
     SelectPen,
     NewPage,
+}
+
+/// How a stretch of path turns, and what that leaves of the acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Bend {
+    /// Greatest acceleration along it, mm/s².
+    Line { accel: f32 },
+    /// How far it turns, rad, and the square of the speed at which that takes all of the acceleration, mm²/s².
+    Arc { sweep_rad: f32, form2: f32 },
+    /// Sine of half of its turn, the part along the first motor's axis of the direction towards its inside, and as of an arc.
+    Parabola { lean: f32, inwards: f32, form2: f32 },
 }
 
 /// A stretch of path with the square of its speeds, or something that is done at a standstill.
@@ -32,14 +40,19 @@ pub(super) enum Kind {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Block {
     to: Point,
-    /// Of an arc; of a spiral its pole.
-    centre: Point,
+    /// From its end to the centre of an arc, or to the control point of a parabola, mm. What `f32` rounds is small against the way along it.
+    to_centre: Vec2Single,
     /// mm; seconds of a dwell. In f32 a metre is right to 60 nm.
     length: f32,
     /// Speed that was asked for, mm/s.
     feed_mm_s: f32,
-    /// Of an arc or a spiral; f32 says ±2π to 5e-7, and the end is said by `to`.
-    sweep_rad: f32,
+    /// Of an arc how far it turns, rad; f32 says ±2π to 5e-7, and the end is said by `to`. Of a parabola the sine of half of that.
+    form: f32,
+    /// Of a line the greatest acceleration along it, mm/s². Of a parabola the part along the first motor's axis of the direction towards its
+    /// inside.
+    accel: f32,
+    /// One over the square of the greatest speed of its form, s²/mm²; 0 on a line. See [`Law`].
+    per_form2: f32,
     /// Square of the speed at its start as it is planned, and the greatest that its corner allows.
     pub(super) entry2: f32,
     pub(super) max_entry2: f32,
@@ -53,16 +66,47 @@ pub(super) struct Block {
     power: u16,
 }
 
+/// Greatest part of an arc that is passed with one acceleration, rad. From rest to the greatest speed of a circle the machine needs an eighth
+/// of it at least; in parts of so much it comes within 1 % of that speed after a sixth.
+const ARC_PIECE_RAD: f32 = 0.2;
+/// The same of a parabola, of which a curve in short chords has one after the other. With parts of 0.1 rad such drawings take 0.3 % longer.
+const PARABOLA_PIECE_RAD: f32 = 0.05;
+/// Most parts of a parabola: sharp corners are passed at nearly one speed.
+const MOST_PARABOLA_PIECES: u16 = 4;
+
 impl Block {
-    pub(super) fn path(shape: Shape, to: Point, length_mm: f32, pen: Pen, power: u16, feed2: f32) -> Self {
-        let (kind, centre, sweep_rad) = match shape {
-            Shape::Line => (Kind::Line, Point::ORIGIN, 0.0),
-            Shape::Arc { centre, sweep_rad } => (Kind::Arc, centre, sweep_rad),
-            Shape::Spiral { pole, sweep_rad, growth } if growth < 0.0 => (Kind::Narrowing, pole, sweep_rad),
-            Shape::Spiral { pole, sweep_rad, .. } => (Kind::Widening, pole, sweep_rad),
+    pub(super) fn path(
+        shape: Shape,
+        to: Point,
+        length_mm: f32,
+        (pen, power): (Pen, u16),
+        feed2: f32,
+        bend: Bend,
+    ) -> Self {
+        let (kind, centre) = match shape {
+            Shape::Line => (Kind::Line, to),
+            Shape::Arc { centre, .. } => (Kind::Arc, centre),
+            Shape::Parabola { control } => (Kind::Parabola, control),
         };
-        let (feed_mm_s, sweep_rad) = (root(feed2), sweep_rad);
-        Self { to, centre, length: length_mm, feed_mm_s, sweep_rad, kind, pen, power, ..Self::default() }
+        let (form, accel, per_form2) = match bend {
+            Bend::Line { accel } => (0.0, accel, 0.0),
+            Bend::Arc { sweep_rad, form2 } => (sweep_rad, 0.0, 1.0 / form2),
+            Bend::Parabola { lean, inwards, form2 } => (lean, inwards, 1.0 / form2),
+        };
+        let (feed_mm_s, to_centre) = (root(feed2), to.way_to(&centre));
+        Self {
+            to,
+            to_centre,
+            length: length_mm,
+            feed_mm_s,
+            form,
+            accel,
+            per_form2,
+            kind,
+            pen,
+            power,
+            ..Self::default()
+        }
     }
 
     pub(super) fn dwell(duration: Duration) -> Self {
@@ -84,7 +128,7 @@ impl Block {
 
     /// Whether it moves.
     pub(super) fn is_path(&self) -> bool {
-        matches!(self.kind, Kind::Line | Kind::Jog | Kind::Arc | Kind::Narrowing | Kind::Widening)
+        matches!(self.kind, Kind::Line | Kind::Jog | Kind::Arc | Kind::Parabola)
     }
 
     pub(super) fn number(&self) -> u8 {
@@ -92,34 +136,84 @@ impl Block {
     }
 
     /// What its speed is made of.
-    pub(super) fn wish(&self, limits: &Limits) -> Wish {
+    pub(super) fn wish(&self) -> Wish {
         let share = match (self.kind, self.pen) {
             (Kind::Jog, _) => Share::Jog,
             (_, Pen::Up) => Share::Travel,
             (_, Pen::Down) => Share::Draw,
         };
-        Wish { feed_mm_s: self.feed_mm_s, form2: self.form2(limits), share }
+        Wish { feed_mm_s: self.feed_mm_s, form2: self.form2(), share }
     }
 
-    /// Square of the greatest speed that its form allows: on an arc that of its lesser radius.
-    fn form2(&self, limits: &Limits) -> f32 {
-        /// What the length and the angle may have been rounded by.
-        const ROUNDING: f32 = 1e-6;
-        if self.kind != Kind::Arc {
-            return f32::INFINITY;
+    /// Square of the greatest speed that its form allows.
+    pub(super) fn form2(&self) -> f32 {
+        if self.per_form2 > 0.0 { MOST_FORM_SHARE / self.per_form2 } else { f32::INFINITY }
+    }
+
+    /// How hard it may be sped up and braked along it.
+    pub(super) fn law(&self, limits: &Limits) -> Law {
+        match self.kind {
+            Kind::Arc => limits.arc(self.per_form2),
+            Kind::Parabola => limits.parabola(self.per_form2, self.form, self.accel, self.length),
+            _ => Law::Line(self.accel),
         }
-        // The length is the angle times the mean of both radii.
-        let end_mm = self.to.way_to(&self.centre).length_near();
-        let other_mm = 2.0 * self.length / self.sweep_rad.abs() - end_mm;
-        limits.accel * greatest(least(end_mm, other_mm), 0.0) * (1.0 - ROUNDING)
+    }
+
+    /// In how many parts of equal length it is passed, each with one acceleration at a time.
+    pub(super) fn pieces(&self) -> u16 {
+        let (turn_rad, piece_rad, most) = match self.kind {
+            Kind::Arc => (self.form.abs(), ARC_PIECE_RAD, u16::MAX),
+            // Twice the sine of half of it.
+            Kind::Parabola => (2.0 * self.form, PARABOLA_PIECE_RAD, MOST_PARABOLA_PIECES),
+            _ => return 1,
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 120")]
+        let whole = (turn_rad / piece_rad) as u16;
+        (whole + 1).min(most)
+    }
+
+    /// Square of the greatest speed at its end if it is entered with this one; and at its start, if it is left with this one. What is at
+    /// least `enough2` may be any such number.
+    pub(super) fn reach2(&self, from2: f32, enough2: f32, limits: &Limits) -> f32 {
+        let (law, pieces) = (self.law(limits), self.pieces());
+        let piece_mm = self.length / f32::from(pieces);
+        let mut speed2 = from2;
+        for piece in 0..pieces {
+            speed2 = law.on_part(piece, pieces).reach2(speed2, piece_mm);
+            if speed2 >= enough2 {
+                break;
+            }
+        }
+        speed2
+    }
+
+    /// Whether it can be sped up by as much at every speed: how much the square of the speed changes then.
+    pub(super) fn even_reach2(&self) -> Option<f32> {
+        if !self.is_path() {
+            return Some(0.0);
+        }
+        (self.per_form2 <= 0.0).then(|| twice(self.accel) * self.length)
+    }
+
+    /// Square of the speed with which it is left at the least if it is entered with this one: however hard the machine brakes.
+    pub(super) fn forced2(&self, from2: f32, limits: &Limits) -> f32 {
+        let (law, pieces) = (self.law(limits), self.pieces());
+        let twice_mm = 2.0 * self.length / f32::from(pieces);
+        let mut speed2 = from2;
+        for piece in (0..pieces).rev() {
+            speed2 -= law.on_part(piece, pieces).accel_at(speed2) * twice_mm;
+            if speed2 <= 0.0 {
+                return 0.0;
+            }
+        }
+        speed2
     }
 
     pub(super) fn course(&self) -> Course {
-        let (centre, sweep_rad) = (self.centre, self.sweep_rad);
+        let centre = self.to.after(self.to_centre);
         let shape = match self.kind {
-            Kind::Arc => Shape::Arc { centre, sweep_rad },
-            Kind::Narrowing => Shape::Spiral { pole: centre, sweep_rad, growth: single(-GROWTH) },
-            Kind::Widening => Shape::Spiral { pole: centre, sweep_rad, growth: single(GROWTH) },
+            Kind::Arc => Shape::Arc { centre, sweep_rad: self.form },
+            Kind::Parabola => Shape::Parabola { control: centre },
             _ => Shape::Line,
         };
         Course {

@@ -1,14 +1,15 @@
 //! [`Front`]: plot operations in, blocks out. Finds the corners, and in tolerance mode rounds them.
 
-use super::blend::{Blend, GROWTH, Room, to_pole};
-use super::block::{Block, Kind};
+use super::blend::{Blend, BlendArc, Room, half_turn};
+use super::block::{Bend, Block, Kind};
 use super::fit::{Fitter, Piece};
-use super::junction::{Corner, corner_speed2};
+use super::junction::corner_speed2;
 use super::limits::{Limits, Share, Shares};
-use super::merge::{Merged, Merger};
-use super::modes::{Keep as _, Modes};
+use super::merge::{Merged, Merger, Pace};
+use super::modes::{Keep, Modes};
 use super::ring::{Ring, narrow};
 use super::{PathMode, PlanError, PlannerSettings, Shape};
+use crate::chords::DividedArc;
 use crate::extremes::least;
 use crate::geom::{Vec2Single, single};
 use crate::root::root;
@@ -20,8 +21,12 @@ use core::f32::consts::TAU;
 const FARTHEST_MM: f32 = 1e7;
 /// Share of the path tolerance that vertices may be left out for; corners are rounded within the rest.
 const MERGED_SHARE: f64 = 0.5;
+/// Share of the path tolerance that the chords of an arc may be from it.
+const CHORD_SHARE: f64 = 1.0 / 32.0;
 /// What the radius of an arc, and the product with it, may have been rounded by, as a share.
 const RADIUS_ROUNDING: f32 = 5e-7;
+/// A corner is moved outwards by at most the tolerance over this.
+const LEAST_LEVEL: f64 = 0.5;
 /// A line that is shorter is left out between two curves, mm.
 const SHORTEST_MM: f64 = 1e-9;
 
@@ -51,30 +56,137 @@ struct Stretch {
     /// Directions at its ends.
     entry: [f32; 2],
     exit: [f32; 2],
-    /// Squares of the speed that was asked for, of the greatest for its form, and of the greatest at its start.
+    /// Square of the speed that was asked for.
     feed2: f32,
-    most2: f32,
-    most_entry2: f32,
+    bend: Bend,
 }
 
-/// A corner that is rounded.
+/// A corner of the path, and where the corner of the lines is that are drawn in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Turn {
-    vertex: Point,
-    /// Directions before and after it.
-    along: Vec2,
-    after: Vec2,
-    turn_rad: f64,
-    tangent_mm: f64,
-    length_mm: f64,
+struct Vertex {
+    asked: Point,
+    moved: Point,
+    /// How far the path may be from it, mm.
+    within_mm: f64,
+    /// What holds before it, and the square of the greatest speed on the curve there.
+    before: Pace,
+    cruise2: f32,
+}
+
+impl Vertex {
+    /// The curve between two directions, and how far from the corner it touches the lines; none where there is no room for one.
+    fn blend(
+        &self,
+        (along, after): (Vec2, Vec2),
+        tangent_mm: f64,
+        limits: &Limits,
+    ) -> Option<(f64, Stretch)> {
+        let Self { asked, moved, within_mm, cruise2, .. } = *self;
+        let (lean, inwards) = half_turn(along, after);
+        // An arc is accelerated towards every side in turn.
+        let accel = if limits.has_jerk {
+            limits.turning_round()
+        } else {
+            limits.turning(direction(inwards), single(lean))
+        };
+        let room = Room {
+            deviation_mm: reach_mm(moved - asked, inwards, within_mm),
+            tangent_mm,
+            cruise2: cruise2.into(),
+            accel_mm_s2: accel.into(),
+        };
+        let (tangent_mm, length_mm, shape, bend);
+        if limits.has_jerk {
+            let arc = BlendArc::new(lean, room);
+            (tangent_mm, length_mm) = (arc.tangent_mm, arc.length_mm());
+            let side = if along.cross(after) > 0.0 { 1.0 } else { -1.0 };
+            let centre = moved - along * tangent_mm + along.perpendicular() * (side * arc.radius_mm);
+            let sweep_rad = single(side * arc.turn_rad);
+            shape = Shape::Arc { centre, sweep_rad };
+            bend = Bend::Arc { sweep_rad, form2: narrow(arc.form2) };
+        } else {
+            let parabola = Blend::new(lean, room);
+            (tangent_mm, length_mm) = (parabola.tangent_mm, 2.0 * parabola.tangent_mm);
+            shape = Shape::Parabola { control: moved };
+            let inwards = limits.of_motors(direction(inwards))[0];
+            bend = Bend::Parabola { lean: single(lean), inwards, form2: narrow(parabola.form2) };
+        }
+        let curve = Stretch {
+            shape,
+            to: moved + after * tangent_mm,
+            length_mm: single(length_mm),
+            entry: direction(along),
+            exit: direction(after),
+            feed2: cruise2,
+            bend,
+        };
+        (tangent_mm > SHORTEST_MM && length_mm > SHORTEST_MM).then_some((tangent_mm, curve))
+    }
 }
 
 /// What is put off where corners are rounded.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rounding {
     merger: Merger,
-    /// A segment whose end may still be rounded.
+    /// The last corner, from which the direction is not known yet.
+    corner: Option<Vertex>,
+    /// The segment after it, whose end may still be a corner.
     held: Option<Merged>,
+    /// An arc whose chords have not all come, and the square of its greatest speed.
+    arc: Option<(DividedArc, f32)>,
+    /// Whether the run has had chords of arcs, which have used up their share of the tolerance.
+    has_arcs: bool,
+}
+
+impl Rounding {
+    /// What is left of the tolerance for lines, mm.
+    fn within_mm(&self, path_tolerance_mm: f64) -> f64 {
+        if self.has_arcs { (1.0 - CHORD_SHARE) * path_tolerance_mm } else { path_tolerance_mm }
+    }
+}
+
+/// What is put off to see what follows, as the way to follow the path wants it.
+#[derive(Clone, Debug, PartialEq)]
+enum PutOff {
+    Exact(Fitter),
+    Tolerance(Rounding),
+}
+
+impl Default for PutOff {
+    fn default() -> Self {
+        Self::Exact(Fitter::default())
+    }
+}
+
+/// What is put off, if the modes do that at all.
+trait Waiting {
+    fn fitter(&self) -> Option<&Fitter>;
+    fn fitter_mut(&mut self) -> Option<&mut Fitter>;
+    fn rounding(&self) -> Option<&Rounding>;
+    fn rounding_mut(&mut self) -> Option<&mut Rounding>;
+}
+
+impl<K: Keep<PutOff>> Waiting for K {
+    fn fitter(&self) -> Option<&Fitter> {
+        if let Some(PutOff::Exact(fitter)) = self.get() { Some(fitter) } else { None }
+    }
+
+    fn fitter_mut(&mut self) -> Option<&mut Fitter> {
+        if let Some(PutOff::Exact(fitter)) = self.get_mut() { Some(fitter) } else { None }
+    }
+
+    fn rounding(&self) -> Option<&Rounding> {
+        if let Some(PutOff::Tolerance(rounding)) = self.get() { Some(rounding) } else { None }
+    }
+
+    /// The first time there is none yet.
+    fn rounding_mut(&mut self) -> Option<&mut Rounding> {
+        let put_off = self.get_mut()?;
+        if let PutOff::Exact(_) = put_off {
+            *put_off = PutOff::Tolerance(Rounding::default());
+        }
+        if let PutOff::Tolerance(rounding) = put_off { Some(rounding) } else { None }
+    }
 }
 
 /// Makes blocks of plot operations.
@@ -86,8 +198,7 @@ pub(super) struct Front<M: Modes> {
     run: Option<Run>,
     /// Square of the greatest speed of a segment too short for a block, which is still to come.
     short_cruise2: Option<f32>,
-    rounding: M::Kept<Rounding>,
-    fitter: M::Kept<Fitter>,
+    put_off: M::Kept<PutOff>,
     shares: M::Kept<Shares>,
     /// Lines are jogs.
     jogs: bool,
@@ -105,15 +216,46 @@ impl<M: Modes> Front<M> {
             power: u16::MAX,
             run: None,
             short_cruise2: None,
-            rounding: M::Kept::default(),
-            fitter: M::Kept::default(),
+            put_off: M::Kept::default(),
             shares: M::Kept::default(),
             jogs: false,
         }
     }
 
-    pub(super) const fn position(&self) -> Point {
-        self.position
+    /// Where the path that was pushed ends.
+    pub(super) fn position(&self) -> Point {
+        self.arc_end().unwrap_or(self.position)
+    }
+
+    /// Where an arc ends whose chords have not all come.
+    fn arc_end(&self) -> Option<Point> {
+        self.put_off.rounding().and_then(|rounding| rounding.arc).map(|(arc, _)| arc.to)
+    }
+
+    /// Whether an arc has chords that are still to come: nothing else is taken before them.
+    pub(super) fn has_chords(&self) -> bool {
+        M::ALL && self.arc_end().is_some()
+    }
+
+    /// Takes chords of the arc as long as there is room; says whether there were any.
+    pub(super) fn take_chords<const N: usize>(&mut self, limits: &Limits, ring: &mut Ring<N>) -> bool {
+        let mut any = false;
+        while ring.room() >= Self::most_blocks(&limits.settings)
+            && let Some((arc, cruise2)) =
+                self.put_off.rounding_mut().and_then(|rounding| rounding.arc.as_mut())
+        {
+            let (place, cruise2) = (arc.next_place(), *cruise2);
+            if arc.is_over()
+                && let Some(rounding) = self.put_off.rounding_mut()
+            {
+                rounding.arc = None;
+            }
+            if let Some(to) = place {
+                self.line(&to, Pen::Down, cruise2, limits, ring);
+                any = true;
+            }
+        }
+        any
     }
 
     /// Begins anew at another place, with the pen up.
@@ -123,13 +265,13 @@ impl<M: Modes> Front<M> {
     }
 
     /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; with an allowance an arc,
-    /// the rest of the way to its last vertex and the new one; else what ends a run (a line and two spirals, the line held back) and
+    /// the rest of the way to its last vertex and the new one; else what ends a run (twice a line and a parabola, the line held back) and
     /// the new one.
     pub(super) const fn most_blocks(settings: &PlannerSettings) -> usize {
         match settings.path_of::<M>() {
             PathMode::Exact if settings.allowance_of::<M>() > 0.0 => 3,
             PathMode::Exact => 2,
-            PathMode::Tolerance { .. } => 5,
+            PathMode::Tolerance { .. } => 6,
         }
     }
 
@@ -172,8 +314,10 @@ impl<M: Modes> Front<M> {
                     return Err(PlanError::Power { share });
                 }
                 let power = u16::try_from(nearest(share * f64::from(u16::MAX))).unwrap_or(u16::MAX);
-                // What was put off is still of the old power.
-                self.flush(limits, ring);
+                // What was put off is still of the old power; within a tolerance each line has its own.
+                if limits.settings.path_of::<M>() == PathMode::Exact {
+                    self.flush(limits, ring);
+                }
                 self.power = power;
             }
             PlotOp::Dwell { duration } => self.stand(Block::dwell(duration), limits, ring),
@@ -287,10 +431,11 @@ impl<M: Modes> Front<M> {
                 }
             }
             PathMode::Tolerance { path_tolerance_mm } => {
-                let Some(rounding) = self.rounding.get_mut() else { return };
+                let Some(rounding) = self.put_off.rounding_mut() else { return };
                 let start = rounding.held.map_or(run.at, |held| held.to);
-                let within_mm = MERGED_SHARE * path_tolerance_mm;
-                let merged = rounding.merger.push(start, from, *to, cruise2, within_mm);
+                let within_mm = MERGED_SHARE * rounding.within_mm(path_tolerance_mm);
+                let pace = Pace { cruise2, power: self.power };
+                let merged = rounding.merger.push(start, from, *to, pace, within_mm);
                 if let Some(merged) = merged {
                     self.blend(merged, path_tolerance_mm, limits, ring);
                 }
@@ -308,12 +453,12 @@ impl<M: Modes> Front<M> {
         ring: &mut Ring<N>,
     ) {
         let allowance_mm = narrow(limits.settings.allowance_of::<M>());
-        let mut may_shorten = !self.fitter.get().is_some_and(|fitter| fitter.is_other(cruise2));
+        let mut may_shorten = !self.put_off.fitter().is_some_and(|fitter| fitter.is_other(cruise2));
         if !may_shorten {
             self.end_fit(from, limits, ring);
         }
         loop {
-            let (Some(run), Some(fitter)) = (self.run, self.fitter.get_mut()) else { return };
+            let (Some(run), Some(fitter)) = (self.run, self.put_off.fitter_mut()) else { return };
             let way = run.at.way_to(to);
             if fitter.take(way, cruise2, allowance_mm) {
                 return;
@@ -335,7 +480,7 @@ impl<M: Modes> Front<M> {
 
     /// Ends the piece in progress at its last vertex, or within the allowance of it. Gives the square of the greatest speed on it.
     fn end_fit<const N: usize>(&mut self, at: &Point, limits: &Limits, ring: &mut Ring<N>) -> Option<f32> {
-        let (run, fitter) = (self.run?, self.fitter.get_mut()?);
+        let (run, fitter) = (self.run?, self.put_off.fitter_mut()?);
         if fitter.is_empty() {
             return None;
         }
@@ -365,7 +510,6 @@ impl<M: Modes> Front<M> {
             return self.emit_line(end, cruise2, limits, ring);
         }
         let radius_mm = single(piece.radius_mm) * (1.0 - RADIUS_ROUNDING);
-        let most2 = limits.accel * radius_mm;
         let arc = Stretch {
             shape: Shape::Arc { centre: run.at + piece.to_centre, sweep_rad: single(piece.sweep_rad) },
             to: *end,
@@ -373,8 +517,7 @@ impl<M: Modes> Front<M> {
             entry: direction(piece.entry),
             exit: direction(piece.exit),
             feed2: cruise2,
-            most2,
-            most_entry2: most2,
+            bend: Bend::Arc { sweep_rad: single(piece.sweep_rad), form2: limits.turning_round() * radius_mm },
         };
         self.emit(arc, limits, ring);
     }
@@ -387,7 +530,14 @@ impl<M: Modes> Front<M> {
     }
 
     fn dot<const N: usize>(&self, pen: Pen, ring: &mut Ring<N>) {
-        ring.push(Block::path(Shape::Line, self.position, 0.0, pen, self.power, 0.0));
+        ring.push(Block::path(
+            Shape::Line,
+            self.position,
+            0.0,
+            (pen, self.power),
+            0.0,
+            Bend::Line { accel: 0.0 },
+        ));
     }
 
     fn arc<const N: usize>(
@@ -407,6 +557,16 @@ impl<M: Modes> Front<M> {
             return self.line(to, Pen::Down, cruise2, limits, ring);
         }
         self.run(Pen::Down, limits, ring);
+        if let PathMode::Tolerance { path_tolerance_mm } = limits.settings.path_of::<M>()
+            && let Some(rounding) = self.put_off.rounding_mut()
+        {
+            let chord_mm = CHORD_SHARE * path_tolerance_mm;
+            let divided = DividedArc::new(self.position, *centre, sweep_rad.into(), *to, chord_mm);
+            rounding.arc = Some((divided, cruise2));
+            rounding.has_arcs = true;
+            self.take_chords(limits, ring);
+            return;
+        }
         self.flush(limits, ring);
         self.pen = Pen::Down;
         self.position = *to;
@@ -415,11 +575,10 @@ impl<M: Modes> Front<M> {
         let ahead = |radius: Vec2Single| Way::new(radius.perpendicular().times(side)).direction;
         let shape = Shape::Arc { centre: *centre, sweep_rad };
         // Less what the radius may have been rounded by.
-        let most2 = limits.accel * near_mm * (1.0 - RADIUS_ROUNDING);
+        let form2 = limits.turning_round() * near_mm * (1.0 - RADIUS_ROUNDING);
         let (entry, exit) = (ahead(out), ahead(end));
-        let stretch =
-            Stretch { shape, to: *to, length_mm, entry, exit, feed2: cruise2, most2, most_entry2: most2 };
-        self.emit(stretch, limits, ring);
+        let bend = Bend::Arc { sweep_rad, form2 };
+        self.emit(Stretch { shape, to: *to, length_mm, entry, exit, feed2: cruise2, bend }, limits, ring);
     }
 
     /// Gives out what has been put off. The run goes on.
@@ -432,21 +591,25 @@ impl<M: Modes> Front<M> {
         if let Some(cruise2) = self.end_fit(&at, limits, ring) {
             // Where no arc within the allowance ends there, the last bit.
             self.emit_line(&at, cruise2, limits, ring);
-            if let Some(fitter) = self.fitter.get_mut() {
+            if let Some(fitter) = self.put_off.fitter_mut() {
                 *fitter = Fitter::default();
             }
         }
         if let PathMode::Tolerance { path_tolerance_mm } = limits.settings.path_of::<M>() {
-            if let Some(merged) = self.rounding.get_mut().and_then(|rounding| rounding.merger.end(at)) {
+            if let Some(merged) = self.put_off.rounding_mut().and_then(|rounding| rounding.merger.end(at)) {
                 self.blend(merged, path_tolerance_mm, limits, ring);
             }
-            if let Some(held) = self.rounding.get_mut().and_then(|rounding| rounding.held.take()) {
-                self.emit_line(&held.to, held.cruise2, limits, ring);
+            let last = self.put_off.rounding_mut().and_then(|rounding| rounding.held.take());
+            if let Some(held) = last {
+                self.round(&held.to, limits, ring);
+                let power = core::mem::replace(&mut self.power, held.pace.power);
+                self.emit_line(&held.to, held.pace.cruise2, limits, ring);
+                self.power = power;
             }
         }
     }
 
-    /// Takes the next segment in tolerance mode: the corner before it is rounded, and it is held back for the sake of its end.
+    /// Takes the next segment in tolerance mode: the corner before it may now be moved, so the one before that is rounded.
     fn blend<const N: usize>(
         &mut self,
         next: Merged,
@@ -454,94 +617,51 @@ impl<M: Modes> Front<M> {
         limits: &Limits,
         ring: &mut Ring<N>,
     ) {
-        let held = self.rounding.get_mut().and_then(|rounding| rounding.held.replace(next));
-        let (Some(held), Some(run)) = (held, self.run) else { return };
-        // The blocks given so far reach to where the corner before has been left.
-        let (way_in, way_out) = (held.to - run.at, next.to - held.to);
-        let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
-        if in_mm > 0.0 && out_mm > 0.0 {
-            let (along, after) = (way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
-            let corner = Corner::new(-along.dot(after));
-            let turn_rad = libm::atan2(along.cross(after), along.dot(after));
-            let room = Room {
-                deviation_mm: path_tolerance_mm - f64::from(held.deviation_mm.max(next.deviation_mm)),
-                // The next corner is left its half of the segment between.
-                tangent_mm: in_mm.min(0.5 * out_mm),
-                cruise2: f64::from(least(held.cruise2, next.cruise2)),
-                accel_mm_s2: limits.settings.accel_mm_s2,
-            };
-            let blend = Blend::choose(corner, turn_rad.abs(), room);
-            let tangent_mm = blend.tangent_mm(corner, turn_rad.abs());
-            let blend_mm = blend.length_mm(turn_rad.abs());
-            if tangent_mm.is_finite() && blend_mm > limits.settings.resolution_mm {
-                // However short: a curve that begins elsewhere is another curve.
-                if in_mm - tangent_mm > SHORTEST_MM {
-                    self.emit_line(&(held.to - along * tangent_mm), held.cruise2, limits, ring);
-                }
-                let turn = Turn { vertex: held.to, along, after, turn_rad, tangent_mm, length_mm: blend_mm };
-                self.emit_blend(blend, turn, least(held.cruise2, next.cruise2), limits, ring);
-                return;
-            }
+        let (Some(run), Some(rounding)) = (self.run, self.put_off.rounding_mut()) else { return };
+        let Some(held) = rounding.held.replace(next) else { return };
+        let from = rounding.corner.map_or(run.at, |corner| corner.asked);
+        let vertex = Vertex {
+            asked: held.to,
+            moved: held.to,
+            within_mm: rounding.within_mm(path_tolerance_mm)
+                - f64::from(held.deviation_mm.max(next.deviation_mm)),
+            before: held.pace,
+            cruise2: least(held.pace.cruise2, next.pace.cruise2),
+        };
+        let vertex = Vertex { moved: moved(&vertex, &from, &next.to, limits), ..vertex };
+        self.round(&vertex.moved, limits, ring);
+        if let Some(rounding) = self.put_off.rounding_mut() {
+            rounding.corner = Some(vertex);
         }
-        self.emit_line(&held.to, held.cruise2, limits, ring);
     }
 
-    fn emit_blend<const N: usize>(
-        &mut self,
-        blend: Blend,
-        turn: Turn,
-        cruise2: f32,
-        limits: &Limits,
-        ring: &mut Ring<N>,
-    ) {
-        let Turn { vertex, along, after, turn_rad, tangent_mm, length_mm } = turn;
-        let inwards =
-            |along: Vec2| if turn_rad > 0.0 { along.perpendicular() } else { -along.perpendicular() };
-        let (begin, end) = (vertex - along * tangent_mm, vertex + after * tangent_mm);
-        match blend {
-            Blend::Arc { radius_mm } => {
-                let shape =
-                    Shape::Arc { centre: begin + inwards(along) * radius_mm, sweep_rad: single(turn_rad) };
-                let most2 = narrow(limits.settings.accel_mm_s2 * radius_mm);
-                let (entry, exit, feed2) = (direction(along), direction(after), cruise2);
-                let length_mm = single(length_mm);
-                let arc =
-                    Stretch { shape, to: end, length_mm, entry, exit, feed2, most2, most_entry2: most2 };
-                self.emit(arc, limits, ring);
+    /// Rounds the last corner, from which the path goes on to `to`.
+    fn round<const N: usize>(&mut self, to: &Point, limits: &Limits, ring: &mut Ring<N>) {
+        let corner = self.put_off.rounding_mut().and_then(|rounding| rounding.corner.take());
+        let (Some(corner), Some(run)) = (corner, self.run) else { return };
+        let power = core::mem::replace(&mut self.power, corner.before.power);
+        // The blocks given so far reach to where the corner before has been left.
+        let (way_in, way_out) = (corner.moved - run.at, *to - corner.moved);
+        let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
+        let (along, after) = (way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
+        let blend = if in_mm > 0.0 && out_mm > 0.0 {
+            // The next corner is left its half of the segment between.
+            corner.blend((along, after), in_mm.min(0.5 * out_mm), limits)
+        } else {
+            None
+        };
+        if let Some((tangent_mm, curve)) = blend {
+            // However short: a curve that begins elsewhere is another curve.
+            if in_mm - tangent_mm > SHORTEST_MM {
+                let begin = corner.moved - along * tangent_mm;
+                let way = Way { length_mm: single(in_mm - tangent_mm), direction: direction(along) };
+                self.emit_way(&begin, way, corner.before.cruise2, limits, ring);
             }
-            Blend::Spirals { radius_mm, deviation_mm } => {
-                let grown_mm = radius_mm * libm::exp(GROWTH * 0.5 * turn_rad.abs());
-                let middle = along.rotated(0.5 * turn_rad);
-                let (sweep_rad, half_mm) = (single(0.5 * turn_rad), 0.5 * length_mm);
-                let apex = vertex + inwards(middle) * deviation_mm;
-                let pole = begin + to_pole(along, inwards(along), grown_mm, -GROWTH);
-                let narrowing = Shape::Spiral { pole, sweep_rad, growth: single(-GROWTH) };
-                let narrowing = Stretch {
-                    shape: narrowing,
-                    to: apex,
-                    length_mm: single(half_mm),
-                    entry: direction(along),
-                    exit: direction(middle),
-                    feed2: cruise2,
-                    // What can brake in time for the apex is nowhere too fast for the radius: both grow alike.
-                    most2: f32::INFINITY,
-                    most_entry2: f32::INFINITY,
-                };
-                self.emit(narrowing, limits, ring);
-                let pole = apex + to_pole(middle, inwards(middle), radius_mm, GROWTH);
-                let widening = Shape::Spiral { pole, sweep_rad, growth: single(GROWTH) };
-                let apex2 = narrow(limits.settings.accel_mm_s2 * radius_mm);
-                let widening = Stretch {
-                    shape: widening,
-                    to: end,
-                    entry: direction(middle),
-                    exit: direction(after),
-                    most_entry2: apex2,
-                    ..narrowing
-                };
-                self.emit(widening, limits, ring);
-            }
+            self.emit(curve, limits, ring);
+        } else {
+            self.emit_line(&corner.moved, corner.before.cruise2, limits, ring);
         }
+        self.power = power;
     }
 
     fn emit_line<const N: usize>(&mut self, to: &Point, cruise2: f32, limits: &Limits, ring: &mut Ring<N>) {
@@ -561,7 +681,6 @@ impl<M: Modes> Front<M> {
     ) {
         let Way { length_mm, direction } = way;
         if length_mm > 0.0 {
-            let most = f32::INFINITY;
             let line = Stretch {
                 shape: Shape::Line,
                 to: *to,
@@ -569,8 +688,7 @@ impl<M: Modes> Front<M> {
                 entry: direction,
                 exit: direction,
                 feed2: cruise2,
-                most2: most,
-                most_entry2: most,
+                bend: Bend::Line { accel: limits.along(direction) },
             };
             self.emit(line, limits, ring);
         }
@@ -579,29 +697,55 @@ impl<M: Modes> Front<M> {
     /// Gives out a block with the speed that the corner at its start allows.
     fn emit<const N: usize>(&mut self, stretch: Stretch, limits: &Limits, ring: &mut Ring<N>) {
         let Some(run) = &mut self.run else { return };
-        let Stretch { shape, to, length_mm, entry, exit, feed2, most2, most_entry2 } = stretch;
+        let Stretch { shape, to, length_mm, entry, exit, feed2, bend } = stretch;
         let share = match run.pen {
             _ if self.jogs => Share::Jog,
             Pen::Up => Share::Travel,
             Pen::Down => Share::Draw,
         };
         let asked2 = self.shares.get().map_or(feed2, |shares| shares.of(share, feed2, limits));
-        let cruise2 = least(asked2, most2);
-        let mut block = Block::path(shape, to, length_mm, run.pen, self.power, feed2);
+        let mut block = Block::path(shape, to, length_mm, (run.pen, self.power), feed2, bend);
+        let cruise2 = least(asked2, block.form2());
         block.cruise2 = cruise2;
         if self.jogs && block.kind == Kind::Line {
             block.kind = Kind::Jog;
         }
         if let Some(before) = run.exit {
             let shorter_mm = least(before.length_mm, length_mm);
-            let corner2 = corner_speed2(before.direction, entry, shorter_mm, limits);
-            block.corner2 = least(corner2, most_entry2);
+            block.corner2 = corner_speed2(before.direction, entry, shorter_mm, limits);
             block.max_entry2 = least(block.corner2, least(before.cruise2, cruise2));
         }
         run.at = to;
         run.exit = Some(Exit { direction: exit, length_mm, cruise2 });
         ring.push(block);
     }
+}
+
+/// How far from a place that is `off` from the corner asked for, in a direction, one stays within this of the corner, mm.
+fn reach_mm(off: Vec2, direction: Vec2, within_mm: f64) -> f64 {
+    let (along, across) = (off.dot(direction), off.cross(direction));
+    let room2 = within_mm * within_mm - across * across;
+    if room2 > 0.0 { libm::sqrt(room2) - along } else { 0.0 }
+}
+
+/// Where the lines that are drawn in place of a corner, which comes from one place and goes to another, meet: outside of it, so that the
+/// curve begins on the outer side of the path and passes the corner on the inner one, where there is room for that and the speed gains by it.
+fn moved(vertex: &Vertex, from: &Point, to: &Point, limits: &Limits) -> Point {
+    let Vertex { asked, within_mm, cruise2, .. } = *vertex;
+    let (way_in, way_out) = (asked - *from, *to - asked);
+    let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
+    if !(in_mm > 0.0 && out_mm > 0.0) {
+        return asked;
+    }
+    let (lean, inwards) = half_turn(way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
+    let tangent_mm = 0.5 * in_mm.min(out_mm);
+    let accel_mm_s2 = limits.turning(direction(inwards), single(lean)).into();
+    let room = Room { deviation_mm: f64::INFINITY, tangent_mm, cruise2: cruise2.into(), accel_mm_s2 };
+    let wanted_mm = 0.5 * lean * Blend::new(lean, room).tangent_mm - within_mm;
+    // The lines may be off by as much across their way.
+    let level = libm::sqrt((1.0 - lean * lean).max(0.0)).max(LEAST_LEVEL);
+    let off_mm = wanted_mm.min(within_mm / level).max(0.0);
+    asked - inwards * off_mm
 }
 
 /// Whether a place is near enough.

@@ -59,16 +59,6 @@ impl Corner {
         let under = self.cos_half * self.cos_half;
         if under > 0.0 { over / under } else { f64::INFINITY }
     }
-
-    /// Radius of the arc that touches the segments at this distance from the vertex, mm; infinite straight on.
-    pub(super) fn radius_of_tangent_mm(self, tangent_mm: f64) -> f64 {
-        if self.cos_half > 0.0 { tangent_mm * self.sin_half / self.cos_half } else { f64::INFINITY }
-    }
-
-    /// How far from the vertex an arc of this radius touches the segments, mm; infinite for a way straight back.
-    pub(super) fn tangent_mm(self, radius_mm: f64) -> f64 {
-        if self.sin_half > 0.0 { radius_mm * self.cos_half / self.sin_half } else { f64::INFINITY }
-    }
 }
 
 /// A turn that is smaller cannot be told from none in `f32`, rad.
@@ -93,15 +83,18 @@ pub(super) fn corner_speed2(before: [f32; 2], after: [f32; 2], shorter_mm: f32, 
     let minor = 0.5 * sin_turn / major;
     let (sin_half, cos_half) = if cos_turn > 0.0 { (major, minor) } else { (minor, major) };
     let (sin_half, cos_half) = (sin_half * (1.0 - LEAST_TURN), cos_half + LEAST_TURN);
+    // The part of the acceleration that it takes points from one direction to the other.
+    let change =
+        if limits.motors.is_some() { [u - x, v - y].map(|way| way / (2.0 * cos_half)) } else { after };
     let of_deviation = limits.junction_deviation_mm * (1.0 + sin_half) / cos_half;
-    limits.accel * sin_half / cos_half * least(of_deviation, 0.5 * shorter_mm)
+    limits.along(change) * sin_half / cos_half * least(of_deviation, 0.5 * shorter_mm)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::PlannerSettings;
     use crate::geom::single;
+    use crate::{AllModes, PlannerSettings};
 
     #[test]
     fn straight_on_is_unlimited_and_straight_back_is_a_stop() {
@@ -114,13 +107,13 @@ mod tests {
     fn a_right_angle_between_short_segments_is_limited_by_their_length() {
         let settings = PlannerSettings { junction_deviation_mm: 1.0, ..PlannerSettings::default() };
         // tan 45 deg = 1: the arc touches half way along 0.02 mm, radius 0.01 mm, at 1000 mm/s²
-        let speed2 = corner_speed2([1.0, 0.0], [0.0, 1.0], 0.02, &Limits::of(&settings));
+        let speed2 = corner_speed2([1.0, 0.0], [0.0, 1.0], 0.02, &Limits::of::<AllModes>(&settings));
         assert!((10.0 - 2e-5..=10.0).contains(&speed2), "{speed2}");
     }
 
     #[test]
     fn single_precision_is_never_faster_and_hardly_slower() {
-        let limits = Limits::of(&PlannerSettings::default());
+        let limits = Limits::of::<AllModes>(&PlannerSettings::default());
         for turn_rad in [1e-5, 1e-3, 0.1, 1.0, 1.6, 3.0, 3.1] {
             let after = [libm::cos(turn_rad), libm::sin(turn_rad)];
             let exact = junction_speed(-after[0], 1000.0, 0.01);

@@ -1,21 +1,31 @@
 //! [`Limits`]: a planner's settings as it reckons with them for every block.
 
-use super::PlannerSettings;
+use super::law::{Law, MOST_FORM_SHARE};
 use super::ring::narrow;
-use crate::extremes::least;
+use super::{AccelLimit, Modes, PathMode, PlannerSettings};
+use crate::extremes::{greatest, least};
 use crate::geom::single;
+use crate::root::root;
+use core::f32::consts::FRAC_1_SQRT_2;
+
+/// What directions and quotients may have been rounded by.
+const ROUNDING: f32 = 1e-6;
+/// A part of a direction that is less is none.
+const LEAST_PART: f32 = 1e-6;
 
 /// What is the same for every block, computed once. Small numbers are `f32`, which small processors reckon with in hardware. Limits
 /// and their squares are rounded down; a speed made of them may be 2·10⁻⁷ of itself too much.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
     pub(super) settings: PlannerSettings,
-    /// 1/a and 1/2a.
-    pub(super) per_accel: f32,
-    pub(super) per_twice_accel: f32,
-    /// a and 2a.
+    /// What may be had in every direction, mm/s².
     pub(super) accel: f32,
-    pub(super) twice_accel: f32,
+    /// Greatest accelerations along the axes of the motors, where each is limited for itself.
+    pub(super) motors: Option<[f32; 2]>,
+    /// Whether those axes are the diagonals.
+    belts: bool,
+    /// Whether the acceleration changes with a limited jerk.
+    pub(super) has_jerk: bool,
     /// Squares of the speeds with the pen down and up.
     pub(super) speed2: f32,
     pub(super) travel2: f32,
@@ -24,20 +34,102 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    pub(super) fn of(settings: &PlannerSettings) -> Self {
-        let PlannerSettings { speed_mm_s, travel_speed_mm_s, accel_mm_s2, .. } = *settings;
-        let accel = narrow(accel_mm_s2);
+    pub(super) fn of<M: Modes>(settings: &PlannerSettings) -> Self {
+        /// What the pen does of a belt's way along its diagonal: √½, rounded down.
+        const OF_BELT: f32 = 0.707_106_7;
+        let PlannerSettings { speed_mm_s, travel_speed_mm_s, accel_mm_s2, accel_limit, .. } = *settings;
+        let (motors, belts) = match accel_limit {
+            AccelLimit::Vector => (None, false),
+            AccelLimit::Axes { x_mm_s2, y_mm_s2 } => (Some([narrow(x_mm_s2), narrow(y_mm_s2)]), false),
+            AccelLimit::Belts { sum_mm_s2, difference_mm_s2 } => {
+                (Some([sum_mm_s2, difference_mm_s2].map(|accel| narrow(accel) * OF_BELT)), true)
+            }
+        };
+        let accel = motors.map_or(narrow(accel_mm_s2), |[one, other]| least(one, other));
         Self {
             settings: *settings,
-            per_accel: 1.0 / accel,
-            per_twice_accel: 0.5 / accel,
             accel,
-            // so much less that no product with a length is rounded above the true one
-            twice_accel: 2.0 * accel * (1.0 - f32::EPSILON),
+            motors,
+            belts,
+            has_jerk: settings.jerk_of::<M>().is_some(),
             speed2: narrow(speed_mm_s * speed_mm_s),
             travel2: narrow(travel_speed_mm_s * travel_speed_mm_s),
             junction_deviation_mm: narrow(settings.junction_deviation_mm),
             resolution_mm: narrow(settings.resolution_mm),
+        }
+    }
+
+    /// A direction along the axes of the motors.
+    pub(super) fn of_motors(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        if self.belts { [(x + y) * FRAC_1_SQRT_2, (x - y) * FRAC_1_SQRT_2] } else { [x, y] }
+    }
+
+    /// Greatest acceleration in a direction (of length 1), mm/s².
+    pub(super) fn along(&self, direction: [f32; 2]) -> f32 {
+        let Some([most_one, most_other]) = self.motors else { return self.accel };
+        let [one, other] = self.of_motors(direction);
+        greatest(self.accel, (1.0 - ROUNDING) / greatest(one.abs() / most_one, other.abs() / most_other))
+    }
+
+    /// How hard the machine may be sped up and braked along an arc: see [`Block`](super::block::Block) for what it is told by.
+    pub(super) fn arc(&self, per_form2: f32) -> Law {
+        let accel = self.accel;
+        if self.motors.is_some() {
+            return Law::Motors { along: [accel; 2], per_form2: [per_form2; 2] };
+        }
+        Law::Curve { accel, per_form2, lean: 0.0 }
+    }
+
+    /// The same along a parabola of this length.
+    pub(super) fn parabola(&self, per_form2: f32, lean: f32, inwards: f32, length_mm: f32) -> Law {
+        let Some(motors) = self.motors else {
+            return Law::Curve { accel: self.accel, per_form2, lean };
+        };
+        // Its directions are cos h along the middle, less or more sin h inwards; it bends by sin h / L inwards.
+        let one = inwards.abs();
+        let inwards = [one, root(greatest(1.0 - one * one, 0.0))];
+        let (cos, bend) = (root(greatest(1.0 - lean * lean, 0.0)), 2.0 * lean / length_mm);
+        let [most_one, most_other] = motors;
+        let along = |most: f32, inwards: f32, level: f32| {
+            (1.0 - ROUNDING) * most / greatest(cos * level + lean * inwards, LEAST_PART)
+        };
+        Law::Motors {
+            along: [along(most_one, inwards[0], inwards[1]), along(most_other, inwards[1], inwards[0])],
+            per_form2: [inwards[0] * bend / most_one, inwards[1] * bend / most_other],
+        }
+    }
+
+    /// Greatest acceleration along the path where the jerk is limited, mm/s².
+    pub(super) fn along_with_jerk(&self) -> f32 {
+        self.along_share() * self.accel
+    }
+
+    /// Greatest acceleration that turns the path towards the inside of a curve, mm/s². See [`Law`] for what leans.
+    pub(super) fn turning(&self, inwards: [f32; 2], lean: f32) -> f32 {
+        self.along(inwards) * if self.has_jerk { self.across_share(lean) / MOST_FORM_SHARE } else { 1.0 }
+    }
+
+    /// The same on an arc, which turns in every direction.
+    pub(super) fn turning_round(&self) -> f32 {
+        self.accel * if self.has_jerk { self.across_share(0.0) / MOST_FORM_SHARE } else { 1.0 }
+    }
+
+    /// Share of the acceleration that motion with a limited jerk uses along the path. What it leaves for turning is the same at every speed,
+    /// since such a motion looks ahead with one limit. Within a tolerance a path is curves for the most part, in exact mode lines.
+    const fn along_share(&self) -> f32 {
+        match self.settings.path {
+            PathMode::Exact => 0.9,
+            PathMode::Tolerance { .. } => 0.7,
+        }
+    }
+
+    /// What is left for turning where the acceleration along the path is [`Limits::along_share`] of its limit.
+    fn across_share(&self, lean: f32) -> f32 {
+        let along = self.along_share();
+        if self.motors.is_some() {
+            1.0 - along
+        } else {
+            root(1.0 - along * along * (1.0 - lean * lean)) - along * lean
         }
     }
 

@@ -98,7 +98,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     pub(crate) fn of_checked(settings: &PlannerSettings) -> Self {
         () = Self::ENOUGH;
         Self {
-            limits: Limits::of(settings),
+            limits: Limits::of::<M>(settings),
             front: Front::new(),
             ring: Ring::new(),
             stale: false,
@@ -117,15 +117,18 @@ impl<const N: usize, M: Modes> Planner<N, M> {
 
     /// Whether [`Planner::push`] takes another operation now.
     #[must_use]
-    pub const fn has_room(&self) -> bool {
-        self.ring.room() >= Front::<M>::most_blocks(&self.limits.settings)
+    pub fn has_room(&self) -> bool {
+        self.ring.room() >= Front::<M>::most_blocks(&self.limits.settings) && !self.front.has_chords()
     }
 
     /// Whether nothing is left to be taken, also after a feed hold. Operations that were put off come after [`Planner::rest`] or
     /// [`Planner::finish`].
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.ring.len() == 0 && self.ramps.is_over() && self.ramps.rest_mm() <= 0.0
+        self.ring.len() == 0
+            && !self.front.has_chords()
+            && self.ramps.is_over()
+            && self.ramps.rest_mm() <= 0.0
     }
 
     /// How many blocks are known and not begun.
@@ -135,7 +138,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
 
     /// Where the path that was pushed ends, mm.
     #[must_use]
-    pub const fn position(&self) -> Point {
+    pub fn position(&self) -> Point {
         self.front.position()
     }
 
@@ -209,10 +212,10 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         }
         let rest_mm = self.ramps.rest_mm();
         let next2 = self.ring.get(0).map_or(0.0, |head| head.entry2);
-        let forced2 = if rest_mm > 0.0 { self.ramps.forced2(&limits) } else { next2 };
+        let forced2 = if rest_mm > 0.0 { self.ramps.forced2() } else { next2 };
         self.front.rescale(shares, under_way2, forced2, &limits, &mut self.ring);
         if rest_mm <= 0.0 {
-            self.ring.enter_with(next2, limits.twice_accel);
+            self.ring.enter_with(next2, &limits);
             return;
         }
         self.ramps.cruise_at(under_way2);
@@ -220,9 +223,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             self.brake();
             return;
         }
-        let most2 = self.ramps.speed2() + 2.0 * limits.accel * rest_mm;
-        let exit2 = self.ring.enter_at_most(most2, limits.twice_accel);
-        self.ramps.plan::<M>(exit2, &limits);
+        let exit2 = self.ring.enter_at_most(self.ramps.most_exit2(), &limits);
+        self.ramps.plan::<M>(exit2);
     }
 
     /// The drawing is over: what has been put off to see what follows is planned, the machine stops at its end, and the pen is lifted
@@ -296,11 +298,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         if !core::mem::take(&mut self.hold) || self.jerk_mm_s3().is_some() {
             return;
         }
-        let (limits, rest_mm) = (self.limits, self.ramps.rest_mm());
-        if rest_mm > 0.0 {
-            let most2 = self.ramps.speed2() + 2.0 * limits.accel * rest_mm;
-            let exit2 = self.ring.enter_at_most(most2, limits.twice_accel);
-            self.ramps.plan::<M>(exit2, &limits);
+        if self.ramps.rest_mm() > 0.0 {
+            let exit2 = self.ring.enter_at_most(self.ramps.most_exit2(), &self.limits);
+            self.ramps.plan::<M>(exit2);
         }
     }
 
@@ -311,7 +311,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// Plans what has come.
     fn plan(&mut self) {
         self.stale = false;
-        self.ring.plan(self.limits.twice_accel);
+        self.ring.plan(&self.limits);
     }
 
     /// Whether the machine is at rest after what has been taken.
@@ -328,15 +328,14 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// Brakes on what is left of the course, and with what speed is left on the next.
     fn brake(&mut self) {
         if self.jerk_mm_s3().is_none() && self.ramps.rest_mm() > 0.0 {
-            let forced2 = self.ramps.forced2(&self.limits);
-            let exit2 = self.ring.enter_at_most(forced2, self.limits.twice_accel);
-            self.ramps.brake(exit2, &self.limits);
+            let exit2 = self.ring.enter_at_most(self.ramps.forced2(), &self.limits);
+            self.ramps.brake(exit2);
         }
     }
 
     /// The next thing for the motors to do; `None` when nothing is known, or the machine is held.
     pub fn next_action(&mut self) -> Option<Action> {
-        if let Some(phase) = self.ramps.next() {
+        if let Some(phase) = self.ramps.next::<M>() {
             return Some(Action::Phase(phase));
         }
         self.after_ramps()
@@ -344,7 +343,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
 
     /// As [`Planner::next_action`], for who does not want to hold the machine: a phase, and how many like it make the ramp.
     pub(crate) fn next_ramp(&mut self) -> Option<(Action, u32)> {
-        if let Some((phase, count)) = self.ramps.next_whole() {
+        if let Some((phase, count)) = self.ramps.next_whole::<M>() {
             return Some((Action::Phase(phase), count));
         }
         self.after_ramps().map(|action| (action, 1))
@@ -353,19 +352,24 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// The next thing that is no phase with a constant acceleration.
     fn after_ramps(&mut self) -> Option<Action> {
         if let (Some(jerk_mm_s3), Some(s_curve)) = (self.jerk_mm_s3(), self.s_curve.get_mut())
-            && let Some(phase) =
-                s_curve.next_phase(&mut self.ring, self.limits.settings.accel_mm_s2, jerk_mm_s3, self.hold)
+            && let Some(phase) = s_curve.next_phase(
+                &mut self.ring,
+                self.limits.along_with_jerk().into(),
+                jerk_mm_s3,
+                self.hold,
+            )
         {
             return Some(Action::Phase(phase));
         }
         if self.is_held() {
             return None;
         }
+        if self.front.has_chords() && self.front.take_chords(&self.limits, &mut self.ring) {
+            self.stale = true;
+        }
         let head = self.ring.get(0)?;
         let action = match head.kind {
-            Kind::Line | Kind::Jog | Kind::Arc | Kind::Narrowing | Kind::Widening => {
-                Action::Course(head.course())
-            }
+            Kind::Line | Kind::Jog | Kind::Arc | Kind::Parabola => Action::Course(head.course()),
             Kind::Dwell => Action::Dwell(duration(f64::from(head.length())).unwrap_or_default()),
             Kind::SelectPen => Action::SelectPen(head.number()),
             Kind::NewPage => Action::NewPage,
@@ -377,7 +381,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             s_curve.begin();
         } else {
             if let Some(under_way) = self.under_way.get_mut() {
-                *under_way = head.wish(&self.limits);
+                *under_way = head.wish();
             }
             // What has come is planned when it must be: once for many blocks, if they are short.
             if self.stale && head.is_path() && !self.ring.next_is_settled() {
@@ -460,7 +464,10 @@ mod tests {
     }
 
     #[test]
-    fn sixteen_blocks_take_less_than_1800_bytes() {
-        assert!(size_of::<Planner<16>>() < 1800, "{}", size_of::<Planner<16>>());
+    fn sixteen_blocks_take_at_most_1600_bytes_and_with_all_modes_1800() {
+        use super::super::{ExactOnly, ExactPen};
+        let sizes = [size_of::<Planner<16, ExactPen>>(), size_of::<Planner<16, ExactOnly>>()];
+        assert!(sizes.iter().all(|&size| size <= 1600), "{sizes:?}");
+        assert!(size_of::<Planner<16>>() <= 1800, "{}", size_of::<Planner<16>>());
     }
 }

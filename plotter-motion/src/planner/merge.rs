@@ -6,14 +6,28 @@ use crate::{Point, Segment};
 /// Most vertices that one segment stands for.
 const MOST: usize = 8;
 
+/// Least share of a segment's length by which it is made longer within the line that ends it. A smooth curve allows more, so that segments
+/// along it are equally long and not a whole number of its chords; behind a corner there is less, and the segment ends in the corner.
+const LONGER_SHARE: f64 = 0.1;
+/// Halvings of that line in the search for the place: to a 32nd.
+const HALVINGS: u32 = 5;
+
 /// A straight segment that stands for one or more of the path. It begins where the one before it ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Merged {
     pub(super) to: Point,
     /// Farthest that a vertex left out is from it, mm; rounded up.
     pub(super) deviation_mm: f32,
+    pub(super) pace: Pace,
+}
+
+/// What holds along a line.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Pace {
     /// Square of the greatest speed, mm²/s².
     pub(super) cruise2: f32,
+    /// Power of the laser, in 65535ths.
+    pub(super) power: u16,
 }
 
 /// Joins segments as long as one straight line is near enough to all their vertices: the greedy form of polyline
@@ -25,7 +39,7 @@ pub(super) struct Merger {
     points: [(f32, f32); MOST],
     count: u8,
     deviation_mm: f32,
-    cruise2: f32,
+    pace: Pace,
 }
 
 impl Merger {
@@ -36,31 +50,56 @@ impl Merger {
         start: Point,
         at: Point,
         to: Point,
-        cruise2: f32,
+        pace: Pace,
         tolerance_mm: f64,
     ) -> Option<Merged> {
         if self.count > 0
             && usize::from(self.count) < MOST
-            && self.cruise2.total_cmp(&cruise2).is_eq()
+            && self.pace == pace
             && let Some(deviation_mm) = self.deviation(start, to, tolerance_mm)
         {
             self.deviation_mm = deviation_mm;
             self.add(start, to);
             return None;
         }
-        let ended = self.end(at);
-        *self = Self { cruise2, ..Self::default() };
-        self.add(at, to);
+        let end = if self.pace == pace { self.end_between(start, at, to, tolerance_mm) } else { None };
+        let ended = self.end(end.unwrap_or(at));
+        *self = Self { pace, ..Self::default() };
+        self.add(end.unwrap_or(at), to);
         ended
+    }
+
+    /// How far along the line from `at` to `to` the segment in progress may go.
+    fn end_between(&mut self, start: Point, at: Point, to: Point, tolerance_mm: f64) -> Option<Point> {
+        if self.count == 0 {
+            return None;
+        }
+        let (length_mm, way) = ((at - start).length(), to - at);
+        let least = LONGER_SHARE * length_mm / way.length();
+        if least.is_nan() || least >= 1.0 {
+            return None;
+        }
+        let fits = |share: f64| self.deviation(start, at + way * share, tolerance_mm);
+        let mut found = (least, fits(least)?);
+        let mut beyond = 1.0;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (found.0 + beyond);
+            match fits(middle) {
+                Some(deviation_mm) => found = (middle, deviation_mm),
+                None => beyond = middle,
+            }
+        }
+        self.deviation_mm = found.1;
+        Some(at + way * found.0)
     }
 
     /// Ends the segment in progress, where the path is.
     pub(super) fn end(&mut self, at: Point) -> Option<Merged> {
-        let Self { deviation_mm, cruise2, .. } = *self;
+        let Self { deviation_mm, pace, .. } = *self;
         if core::mem::take(&mut self.count) == 0 {
             return None;
         }
-        Some(Merged { to: at, deviation_mm, cruise2 })
+        Some(Merged { to: at, deviation_mm, pace })
     }
 
     fn add(&mut self, start: Point, point: Point) {
@@ -93,13 +132,15 @@ impl Merger {
 mod tests {
     use super::*;
 
+    const PACE: Pace = Pace { cruise2: 1.0, power: 0 };
+
     #[test]
     fn a_shallow_bend_is_left_out_and_a_deep_one_stays() {
         let mut merger = Merger::default();
         let (start, at) = (Point::ORIGIN, |x, y| Point::new(x, y));
-        assert_eq!(merger.push(start, start, at(1.0, 0.01), 1.0, 0.02), None);
-        assert_eq!(merger.push(start, at(1.0, 0.01), at(2.0, 0.0), 1.0, 0.02), None);
-        let merged = merger.push(start, at(2.0, 0.0), at(2.0, 1.0), 1.0, 0.02).unwrap();
+        assert_eq!(merger.push(start, start, at(1.0, 0.01), PACE, 0.02), None);
+        assert_eq!(merger.push(start, at(1.0, 0.01), at(2.0, 0.0), PACE, 0.02), None);
+        let merged = merger.push(start, at(2.0, 0.0), at(2.0, 1.0), PACE, 0.02).unwrap();
         assert_eq!(merged.to, at(2.0, 0.0));
         /// What single precision leaves of 0.01.
         const ROUNDING_MM: f32 = 1e-9;
@@ -111,7 +152,7 @@ mod tests {
     fn another_speed_ends_the_segment() {
         let mut merger = Merger::default();
         let at = |x| Point::new(x, 0.0);
-        merger.push(at(0.0), at(0.0), at(1.0), 1.0, 0.1);
-        assert!(merger.push(at(0.0), at(1.0), at(2.0), 4.0, 0.1).is_some());
+        merger.push(at(0.0), at(0.0), at(1.0), PACE, 0.1);
+        assert!(merger.push(at(0.0), at(1.0), at(2.0), Pace { cruise2: 4.0, power: 0 }, 0.1).is_some());
     }
 }

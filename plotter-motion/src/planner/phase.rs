@@ -17,14 +17,11 @@ pub enum Shape {
         /// How far round, rad; counter-clockwise above 0.
         sweep_rad: f32,
     },
-    /// A logarithmic spiral about a pole: turned by an angle θ about it, the distance from it has changed by e^(growth |θ|).
-    Spiral {
-        /// The pole, mm.
-        pole: Point,
-        /// How far round, rad; counter-clockwise above 0.
-        sweep_rad: f32,
-        /// Above 0 it widens.
-        growth: f32,
+    /// A parabola with a control point, the vertex that it rounds: it touches the lines from there to both of its ends, which are equally
+    /// far away.
+    Parabola {
+        /// The control point, mm.
+        control: Point,
     },
 }
 
@@ -34,11 +31,13 @@ pub enum Shape {
 /// micrometre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Course {
-    /// Line or arc.
+    /// Line, arc or parabola.
     pub shape: Shape,
     /// Where it ends, mm.
     pub to: Point,
-    /// How long it is, mm; 0 for a dot.
+    /// How long it is, mm; 0 for a dot. Of a parabola the length of both its tangents, and its phases are told by that: s of it is the
+    /// share s / `length_mm` of its parameter. Speeds are true at its ends, and between them less than is said, at the apex by the
+    /// cosine of half of its turn.
     pub length_mm: f32,
     /// The pen on it.
     pub pen: Pen,

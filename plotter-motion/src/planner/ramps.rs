@@ -2,6 +2,7 @@
 
 use super::Phase;
 use super::block::Block;
+use super::law::Law;
 use super::limits::Limits;
 use super::modes::Modes;
 use crate::extremes::{greatest, least};
@@ -15,6 +16,9 @@ const ROUNDING: f32 = 2.5e-7;
 /// Squares of speeds that differ less are alike.
 const ALIKE: f32 = 4e-7;
 
+/// Ramps of a part of a block: up, along, down.
+const RAMPS: u8 = 3;
+
 /// A time with a constant acceleration: to a place on the block, so far from its end, which is passed with a speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Ramp {
@@ -26,11 +30,18 @@ struct Ramp {
 
 /// Speeding up, cruising, braking: what is left of a block.
 ///
+/// An arc is passed in several parts, each with the acceleration that the greatest speed on it leaves: see [`Law`]. A part is planned when
+/// the one before it is over.
+///
 /// Places are told by what is left of the block behind them, so that they are right to the last bit where the least of it is left: there
 /// a speed is right for no other place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ramps {
+    law: Law,
     length_mm: f32,
+    /// How many parts it has, and how long they are.
+    parts: u16,
+    part_mm: f32,
     cruise2: f32,
     /// The greatest speed on it.
     cruise: f32,
@@ -42,15 +53,38 @@ pub(super) struct Ramps {
     /// How many phases of the ramp under way are left, and how long each of them is.
     left: u32,
     phase_s: f32,
-    /// What is to come, from `next` on.
+    /// What is to come of the part under way, from `next` on.
     ramps: [Ramp; 3],
-    next: usize,
+    next: u8,
+    /// Whether it stops as soon as it can.
+    stops: bool,
+}
+
+/// An acceleration, and one over it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Steepness {
+    accel: f32,
+    per_accel: f32,
+}
+
+impl Steepness {
+    fn new(accel: f32) -> Self {
+        Self { accel, per_accel: 1.0 / accel }
+    }
+
+    /// The way over which the square of a speed changes by so much.
+    fn way_mm(self, change2: f32) -> f32 {
+        change2 * (0.5 * self.per_accel)
+    }
 }
 
 impl Ramps {
     /// Nothing left.
     pub(super) const OVER: Self = Self {
+        law: Law::Line(0.0),
         length_mm: 0.0,
+        parts: 1,
+        part_mm: 0.0,
         cruise2: 0.0,
         cruise: 0.0,
         exit2: 0.0,
@@ -59,7 +93,8 @@ impl Ramps {
         left: 0,
         phase_s: 0.0,
         ramps: [Ramp { duration_s: 0.0, accel: 0.0, rest_mm: 0.0, speed: 0.0 }; 3],
-        next: usize::MAX,
+        next: u8::MAX,
+        stops: false,
     };
 
     /// Begins the next block: the quickest way along it that leaves it with the given square of a speed.
@@ -75,73 +110,146 @@ impl Ramps {
         if self.cruise2 != block.cruise2 {
             self.cruise_at(block.cruise2);
         }
+        self.law = block.law(limits);
         (self.length_mm, self.rest_mm) = (block.length(), block.length());
-        let exit = if exit2 == self.cruise2 { self.cruise } else { root(exit2) };
-        self.plan_from::<M>(block.entry2, (exit2, exit), limits);
+        self.parts = block.pieces();
+        self.part_mm = self.length_mm / f32::from(self.parts);
+        (self.exit2, self.stops) = (exit2, false);
+        self.plan_part::<M>(block.entry2);
     }
 
     /// Plans what is left of the block.
-    pub(super) fn plan<M: Modes>(&mut self, exit2: f32, limits: &Limits) {
-        self.plan_from::<M>(self.speed2(), (exit2, root(exit2)), limits);
+    pub(super) fn plan<M: Modes>(&mut self, exit2: f32) {
+        (self.exit2, self.stops) = (exit2, false);
+        self.plan_part::<M>(self.speed2());
+    }
+
+    /// How many parts are left behind the one under way.
+    fn parts_left(&self) -> u16 {
+        /// What their number may have been rounded by.
+        const ROUNDING: f32 = 1e-3;
+        if self.parts > 1 { whole(self.rest_mm / self.part_mm - ROUNDING) } else { 0 }
+    }
+
+    /// How hard it may be sped up, and braked, on the part with so many behind it.
+    fn laws(&self, parts_left: u16) -> (Law, Law) {
+        let before = self.parts.saturating_sub(1).saturating_sub(parts_left);
+        (self.law.on_part(before, self.parts), self.law.on_part(parts_left, self.parts))
+    }
+
+    /// Square of the greatest speed with which the last so many parts can be entered, for who leaves the block as it should be.
+    fn before2(&self, parts: u16) -> f32 {
+        let mut speed2 = self.exit2;
+        for part in 0..parts {
+            if speed2 >= self.cruise2 {
+                break;
+            }
+            speed2 = self.laws(part).1.reach2(speed2, self.part_mm);
+        }
+        speed2
+    }
+
+    /// Square of the greatest speed with which the block can be left.
+    pub(super) fn most_exit2(&self) -> f32 {
+        let left = self.parts_left();
+        let mut way_mm = self.rest_mm - f32::from(left) * self.part_mm;
+        let mut speed2 = self.speed2();
+        for part in (0..=left).rev() {
+            if speed2 >= self.cruise2 {
+                break;
+            }
+            speed2 = self.laws(part).0.reach2(speed2, way_mm);
+            way_mm = self.part_mm;
+        }
+        speed2
+    }
+
+    /// Plans the part that begins here, with this square of a speed.
+    fn plan_part<M: Modes>(&mut self, entry2: f32) {
+        let (left, cruise2) = (self.parts_left(), self.cruise2);
+        let end_mm = f32::from(left) * self.part_mm;
+        let way_mm = self.rest_mm - end_mm;
+        let laws = self.laws(left);
+        let exit2 = if left > 0 {
+            let most2 = least(self.before2(left), cruise2);
+            if entry2 > cruise2 {
+                // The greatest speed has become less meanwhile.
+                greatest(most2, entry2 - 2.0 * laws.1.accel_at(entry2) * way_mm)
+            } else {
+                least(most2, laws.0.reach2(entry2, way_mm))
+            }
+        } else {
+            self.exit2
+        };
+        let exit = if exit2 == cruise2 { self.cruise } else { root(exit2) };
+        self.begin_anew();
+        // By another share of the speed: that comes first.
+        if M::ALL && entry2 > cruise2 * (1.0 + ALIKE) {
+            self.plan_down(entry2, (exit2, exit), end_mm, laws.1);
+        } else {
+            self.plan_up(entry2, (exit2, exit), end_mm, laws);
+        }
+        // Whatever rounding has left out, the part ends where and as it should.
+        if self.has_none() {
+            (self.rest_mm, self.speed) = (end_mm, exit);
+        } else if let Some(last) = self.ramps.last_mut() {
+            (last.rest_mm, last.speed) = (end_mm, exit);
+        }
     }
 
     /// From a square of a speed to another speed, of which both the square and the root are given.
-    fn plan_from<M: Modes>(&mut self, entry2: f32, (exit2, exit): (f32, f32), limits: &Limits) {
-        let rest_mm = self.rest_mm;
-        self.begin_anew(exit2);
-        // The greatest speed has become less meanwhile, by another share of it: that comes first.
-        if M::ALL && entry2 > self.cruise2 * (1.0 + ALIKE) {
-            return self.plan_down(entry2, (exit2, exit), limits);
-        }
-        // Where speeding up and braking meet.
-        let peak2 = 0.5 * (entry2 + exit2) + limits.accel * rest_mm;
+    fn plan_up(&mut self, entry2: f32, (exit2, exit): (f32, f32), end_mm: f32, (up, down): (Law, Law)) {
+        let (rest_mm, cruise2) = (self.rest_mm, self.cruise2);
+        let way_mm = rest_mm - end_mm;
+        // Where speeding up and braking meet, for the stricter of both.
+        let law = up.stricter(down);
+        let peak2 = law.reach2(0.5 * (entry2 + exit2), 0.5 * way_mm);
         let faster2 = greatest(entry2, exit2);
-        let cruises = peak2 > self.cruise2 * (1.0 + ALIKE);
+        let cruises = peak2 > cruise2 * (1.0 + ALIKE);
         if !cruises && peak2 - faster2 <= ALIKE * peak2 {
-            return self.put_through(exit, limits);
+            let law = if exit2 > entry2 { up } else { down };
+            return self.put_through(exit, end_mm, Steepness::new(law.accel_at(faster2)));
         }
-        let cruise2 = self.cruise2;
-        if peak2 >= cruise2 {
-            let down_mm = (cruise2 - exit2) * limits.per_twice_accel;
-            let up_mm = (cruise2 - entry2) * limits.per_twice_accel;
-            self.put_ramp(0.0, (self.cruise, exit), limits);
-            self.put_cruise(rest_mm - down_mm - up_mm, down_mm);
-            self.put_ramp(rest_mm - up_mm, (self.speed, self.cruise), limits);
-        } else {
-            let peak = root(peak2);
-            let up_mm = (peak2 - entry2) * limits.per_twice_accel;
-            self.put_ramp(0.0, (peak, exit), limits);
-            self.put_ramp(rest_mm - up_mm, (self.speed, peak), limits);
+        let steepness = Steepness::new(law.accel_at(least(peak2, cruise2)));
+        // By rounding one end may be faster than the cruise.
+        let down_mm = steepness.way_mm(greatest(cruise2 - exit2, 0.0));
+        let up_mm = steepness.way_mm(greatest(cruise2 - entry2, 0.0));
+        let cruise_mm = way_mm - down_mm - up_mm;
+        if peak2 >= cruise2 && self.counts(cruise_mm) {
+            self.put_ramp(down_mm, end_mm, (self.cruise, exit), steepness);
+            self.put_cruise(cruise_mm, end_mm + down_mm);
+            self.put_ramp(up_mm, rest_mm - up_mm, (self.speed, self.cruise), steepness);
+            return;
         }
-        // Whatever rounding has left out, the block ends where and as it should.
-        if self.is_over() {
-            (self.rest_mm, self.speed) = (0.0, exit);
-        } else if let Some(last) = self.ramps.last_mut() {
-            (last.rest_mm, last.speed) = (0.0, exit);
-        }
+        let (peak2, peak) = if peak2 >= cruise2 { (cruise2, self.cruise) } else { (peak2, root(peak2)) };
+        let split = match law {
+            Law::Line(_) => steepness,
+            // What is left along a curve where it is fast is known to some hundred thousandths: from the way that there is.
+            _ => Steepness::new((2.0 * peak2 - entry2 - exit2) / (2.0 * way_mm)),
+        };
+        let up_mm = least(greatest(split.way_mm(peak2 - entry2), 0.0), way_mm);
+        self.put_ramp(way_mm - up_mm, end_mm, (peak, exit), steepness);
+        self.put_ramp(up_mm, rest_mm - up_mm, (self.speed, peak), steepness);
     }
 
     /// From a speed above the greatest one: brakes to that, goes on with it, and brakes for the end; or brakes all the way.
-    fn plan_down(&mut self, entry2: f32, (exit2, exit): (f32, f32), limits: &Limits) {
-        let rest_mm = self.rest_mm;
-        let cruise2 = self.cruise2;
-        let first_mm = (entry2 - cruise2) * limits.per_twice_accel;
-        let last_mm = greatest(cruise2 - exit2, 0.0) * limits.per_twice_accel;
-        let cruise_mm = rest_mm - first_mm - last_mm;
+    fn plan_down(&mut self, entry2: f32, (exit2, exit): (f32, f32), end_mm: f32, down: Law) {
+        let (rest_mm, cruise2) = (self.rest_mm, self.cruise2);
+        let steepness = Steepness::new(down.accel_at(entry2));
+        let first_mm = steepness.way_mm(entry2 - cruise2);
+        let last_mm = steepness.way_mm(greatest(cruise2 - exit2, 0.0));
+        let cruise_mm = rest_mm - end_mm - first_mm - last_mm;
         if exit2 > cruise2 * (1.0 + ALIKE) || !self.counts(cruise_mm) {
-            return self.put_through(exit, limits);
+            return self.put_through(exit, end_mm, steepness);
         }
-        self.put_ramp(0.0, (self.cruise, exit), limits);
-        self.put_cruise(cruise_mm, last_mm);
-        self.put_ramp(rest_mm - first_mm, (self.speed, self.cruise), limits);
-        if let Some(last) = self.ramps.last_mut() {
-            (last.rest_mm, last.speed) = (0.0, exit);
-        }
+        self.put_ramp(last_mm, end_mm, (self.cruise, exit), steepness);
+        self.put_cruise(cruise_mm, end_mm + last_mm);
+        self.put_ramp(first_mm, rest_mm - first_mm, (self.speed, self.cruise), steepness);
     }
 
-    /// Nothing is to come, up to the end with this square of a speed.
-    fn begin_anew(&mut self, exit2: f32) {
-        (self.exit2, self.left, self.next) = (exit2, 0, self.ramps.len());
+    /// Nothing is to come.
+    fn begin_anew(&mut self) {
+        (self.left, self.next) = (0, RAMPS);
     }
 
     /// Another greatest speed holds on what is left of the block.
@@ -154,23 +262,52 @@ impl Ramps {
         way_mm > ROUNDING * self.rest_mm
     }
 
-    /// Puts a change of speed all the way to the end: a little less hard than could be, and never harder. Where rounding would have it so,
-    /// the place is left some last bits of the braking way before the end, or after it.
-    fn put_through(&mut self, exit: f32, limits: &Limits) {
+    /// Puts a change of speed all the way to the end of the part: a little less hard than could be, and never harder. Where rounding would
+    /// have it so, the place is left some last bits of the braking way before the end, or after it.
+    fn put_through(&mut self, exit: f32, end_mm: f32, steepness: Steepness) {
         let change = exit - self.speed;
-        let duration_s = greatest(2.0 * self.rest_mm / (self.speed + exit), change.abs() * limits.per_accel);
+        let even_s = self.even_s(self.rest_mm - end_mm, (self.speed, exit));
+        let duration_s = match self.law {
+            Law::Line(_) => greatest(even_s, change.abs() * steepness.per_accel),
+            _ => self.curve_s(self.rest_mm - end_mm, (self.speed, exit), steepness),
+        };
         if duration_s > 0.0 {
-            self.put(Ramp { duration_s, accel: change / duration_s, rest_mm: 0.0, speed: exit });
+            self.put(Ramp { duration_s, accel: change / duration_s, rest_mm: end_mm, speed: exit });
         }
     }
 
-    /// Puts a change of speed at full acceleration before those put so far.
-    fn put_ramp(&mut self, rest_mm: f32, (from, speed): (f32, f32), limits: &Limits) {
+    /// The time for a way along which the speed changes evenly.
+    fn even_s(&self, way_mm: f32, (from, speed): (f32, f32)) -> f32 {
+        2.0 * way_mm / (from + speed)
+    }
+
+    /// The same on a curve. A change as small as rounding may take all of a part there: its way is known better than its acceleration. Only
+    /// of a time so short that rounding makes more than a thousandth of an acceleration the latter holds.
+    fn curve_s(&self, way_mm: f32, (from, speed): (f32, f32), steepness: Steepness) -> f32 {
+        /// Share of the time for all of the speed, and of what is left of the block: the last bits of two of them, a thousand times.
+        const SHORT: f32 = 1.2e-4;
+        let even_s = self.even_s(way_mm, (from, speed));
+        let is_long = even_s * self.law.accel_at(0.0) > SHORT * greatest(from, speed);
+        if is_long && way_mm > SHORT * self.rest_mm {
+            even_s
+        } else {
+            greatest(even_s, (speed - from).abs() * steepness.per_accel)
+        }
+    }
+
+    /// Puts a change of speed at full acceleration before those put so far: along so much of the block, to a place with so much left of it.
+    fn put_ramp(&mut self, way_mm: f32, rest_mm: f32, (from, speed): (f32, f32), steepness: Steepness) {
         let change = speed - from;
-        if change.abs() > ROUNDING * greatest(from, speed) {
-            let accel = limits.accel.copysign(change);
-            let duration_s = change.abs() * limits.per_accel;
-            self.put(Ramp { duration_s, accel, rest_mm, speed });
+        let changes = change.abs() > ROUNDING * greatest(from, speed);
+        if let Law::Line(_) = self.law {
+            if changes {
+                let accel = steepness.accel.copysign(change);
+                let duration_s = change.abs() * steepness.per_accel;
+                self.put(Ramp { duration_s, accel, rest_mm, speed });
+            }
+        } else if changes || self.counts(way_mm) {
+            let duration_s = self.curve_s(way_mm, (from, speed), steepness);
+            self.put(Ramp { duration_s, accel: change / duration_s, rest_mm, speed });
         }
     }
 
@@ -183,26 +320,51 @@ impl Ramps {
 
     fn put(&mut self, ramp: Ramp) {
         self.next = self.next.saturating_sub(1);
-        if let Some(place) = self.ramps.get_mut(self.next) {
+        if let Some(place) = self.ramps.get_mut(usize::from(self.next)) {
             *place = ramp;
         }
     }
 
     /// Plans to stop as soon as can be: where the block is too short for that, to leave it with this square of a speed.
-    pub(super) fn brake(&mut self, exit2: f32, limits: &Limits) {
-        let way_mm = least(self.speed2() * limits.per_twice_accel, self.rest_mm);
-        let is_short = self.forced2(limits) > 0.0;
-        let (rest_mm, exit) = if is_short { (0.0, root(exit2)) } else { (self.rest_mm - way_mm, 0.0) };
-        self.begin_anew(exit2);
-        self.put_ramp(rest_mm, (self.speed, exit), limits);
-        if self.is_over() {
+    pub(super) fn brake(&mut self, exit2: f32) {
+        (self.exit2, self.stops) = (exit2, true);
+        self.brake_part();
+    }
+
+    /// Brakes in the part that begins here.
+    fn brake_part(&mut self) {
+        let (left, speed2) = (self.parts_left(), self.speed2());
+        let end_mm = f32::from(left) * self.part_mm;
+        let steepness = Steepness::new(self.laws(left).1.accel_at(speed2));
+        let (part_mm, stop_mm) = (self.rest_mm - end_mm, steepness.way_mm(speed2));
+        let left2 = speed2 - 2.0 * steepness.accel * part_mm;
+        let (way_mm, rest_mm, exit) = if left2 <= 0.0 {
+            (stop_mm, self.rest_mm - least(stop_mm, self.rest_mm), 0.0)
+        } else if left > 0 {
+            (part_mm, end_mm, root(left2))
+        } else {
+            (part_mm, 0.0, root(self.exit2))
+        };
+        self.begin_anew();
+        self.put_ramp(way_mm, rest_mm, (self.speed, exit), steepness);
+        if self.has_none() {
             (self.rest_mm, self.speed) = (rest_mm, exit);
         }
     }
 
     /// Square of the speed at the end of the block, however hard it brakes from here on: no more than was planned, whatever the rounding.
-    pub(super) fn forced2(&self, limits: &Limits) -> f32 {
-        greatest(least(self.speed2() - 2.0 * limits.accel * self.rest_mm, self.exit2), 0.0)
+    pub(super) fn forced2(&self) -> f32 {
+        let left = self.parts_left();
+        let mut way_mm = self.rest_mm - f32::from(left) * self.part_mm;
+        let mut speed2 = self.speed2();
+        for part in (0..=left).rev() {
+            speed2 -= 2.0 * self.laws(part).1.accel_at(speed2) * way_mm;
+            way_mm = self.part_mm;
+            if speed2 <= 0.0 {
+                break;
+            }
+        }
+        greatest(least(speed2, self.exit2), 0.0)
     }
 
     /// Square of the speed at the end of the phases taken.
@@ -215,14 +377,39 @@ impl Ramps {
         self.rest_mm
     }
 
+    /// Whether no ramp of the part under way is left.
+    const fn has_none(&self) -> bool {
+        self.next >= RAMPS
+    }
+
     /// Whether no phase is left, be it that the machine was held in the middle.
-    pub(super) const fn is_over(&self) -> bool {
-        self.next >= self.ramps.len()
+    pub(super) fn is_over(&self) -> bool {
+        self.has_none() && (self.rest_mm <= 0.0 || (self.stops && self.speed <= 0.0))
+    }
+
+    /// The ramp under way: that of the next part, if the one before is over.
+    fn ramp<M: Modes>(&mut self) -> Option<Ramp> {
+        while self.has_none() {
+            if self.is_over() {
+                return None;
+            }
+            let (rest_mm, speed2) = (self.rest_mm, self.speed2());
+            if self.stops {
+                self.brake_part();
+            } else {
+                self.plan_part::<M>(self.speed2());
+            }
+            if self.has_none() && self.rest_mm >= rest_mm && self.speed2() >= speed2 {
+                // Nothing of it can be passed.
+                self.rest_mm = 0.0;
+            }
+        }
+        self.ramps.get(usize::from(self.next)).copied()
     }
 
     /// The next phase. Those of a ramp are alike, and what is left of it is told by their number: nothing adds up, and it ends.
-    pub(super) fn next(&mut self) -> Option<Phase> {
-        let ramp = *self.ramps.get(self.next)?;
+    pub(super) fn next<M: Modes>(&mut self) -> Option<Phase> {
+        let ramp = self.ramp::<M>()?;
         let phase = self.phase(&ramp);
         self.left -= 1;
         if self.left == 0 {
@@ -236,8 +423,8 @@ impl Ramps {
     }
 
     /// The next phase, and how many like it are left of the ramp, with it: all of them are taken.
-    pub(super) fn next_whole(&mut self) -> Option<(Phase, u32)> {
-        let ramp = *self.ramps.get(self.next)?;
+    pub(super) fn next_whole<M: Modes>(&mut self) -> Option<(Phase, u32)> {
+        let ramp = self.ramp::<M>()?;
         let phase = self.phase(&ramp);
         let count = core::mem::take(&mut self.left);
         self.next += 1;
@@ -261,6 +448,13 @@ impl Ramps {
     }
 }
 
+/// The whole number below a number of at most a few dozens; 0 for what is less than that.
+fn whole(number: f32) -> u16 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    let whole = number as u16;
+    whole
+}
+
 /// How many phases a time is, at least one; no more than a `u32` counts.
 fn phases(duration_s: f32) -> u32 {
     #[expect(
@@ -280,15 +474,23 @@ fn number(phases: u32) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::block::Bend;
     use super::super::{AllModes, PlannerSettings, Shape};
     use super::*;
     use crate::{Pen, Point};
 
     fn ramps(length_mm: f32, speed_mm_s: f32) -> Ramps {
-        let limits = Limits::of(&PlannerSettings::default());
+        let limits = Limits::of::<AllModes>(&PlannerSettings::default());
         let to = Point::new(length_mm.into(), 0.0);
         let cruise2 = speed_mm_s * speed_mm_s;
-        let mut block = Block::path(Shape::Line, to, length_mm, Pen::Down, 0, cruise2);
+        let mut block = Block::path(
+            Shape::Line,
+            to,
+            length_mm,
+            (Pen::Down, 0),
+            cruise2,
+            Bend::Line { accel: limits.accel },
+        );
         block.cruise2 = cruise2;
         let mut ramps = Ramps::OVER;
         ramps.begin::<AllModes>(&block, 0.0, &limits);
@@ -300,23 +502,27 @@ mod tests {
         // 10 m at 0.1 mm/min, 1.2 m at the least feed of the firmware.
         for (length_mm, speed_mm_s) in [(1e4, 0.1 / 60.0), (1.2e3, 1e-3)] {
             let mut ramps = ramps(length_mm, speed_mm_s);
-            assert_eq!(ramps.next().map(|phase| phase.from_mm), Some(0.0));
+            assert_eq!(ramps.next::<AllModes>().map(|phase| phase.from_mm), Some(0.0));
             // The cruise.
-            let first = ramps.next().unwrap();
+            let first = ramps.next::<AllModes>().unwrap();
             let all = ramps.left;
             let time_s = f64::from(first.duration_s) * (f64::from(all) + 1.0);
             let due_s = f64::from(length_mm) / f64::from(speed_mm_s);
             assert!((time_s / due_s - 1.0).abs() < 1e-6, "{time_s} s for {due_s} s");
             for left in [all / 2, 100_000, 100, 3] {
                 ramps.left = left;
-                let before = ramps.next().unwrap();
-                let phase = ramps.next().unwrap();
+                let before = ramps.next::<AllModes>().unwrap();
+                let phase = ramps.next::<AllModes>().unwrap();
                 let rest_mm = length_mm * (number(left) / number(all));
                 assert!((length_mm - phase.from_mm - rest_mm).abs() <= 2e-7 * length_mm, "{before:?}");
                 assert_eq!((phase.duration_s, phase.speed_mm_s), (first.duration_s, speed_mm_s));
             }
             // One more of the cruise, and the stop.
-            assert!(ramps.next().is_some() && ramps.next().is_some() && ramps.next().is_none());
+            assert!(
+                ramps.next::<AllModes>().is_some()
+                    && ramps.next::<AllModes>().is_some()
+                    && ramps.next::<AllModes>().is_none()
+            );
             assert_eq!((ramps.rest_mm, ramps.speed), (0.0, 0.0));
         }
     }

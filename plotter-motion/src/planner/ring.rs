@@ -80,8 +80,8 @@ impl<const N: usize> Ring<N> {
         self.planned > 0
     }
 
-    /// Plans anew after a change at the end. `twice_accel` is twice the limit along the path; the head's entry speed stands.
-    pub(super) fn plan(&mut self, twice_accel: f32) {
+    /// Plans anew after a change at the end; the head's entry speed stands.
+    pub(super) fn plan(&mut self, limits: &Limits) {
         let first = self.planned.max(1);
         let mut exit2 = Sum::default();
         let mut index = self.len;
@@ -90,14 +90,13 @@ impl<const N: usize> Ring<N> {
         while index > first {
             index -= 1;
             let Some(block) = self.get_mut(index) else { break };
-            exit2 = exit2.plus(reach2(block, twice_accel)).at_most(block.max_entry2);
+            exit2 = before(exit2, block, limits);
             block.entry2 = exit2.value();
             if last_limited.is_none() && block.entry2 >= block.max_entry2 {
                 last_limited = Some(index);
             }
         }
-        let mut most2 =
-            self.get(first - 1).map_or(0.0, |block| sum_down(block.entry2, reach2(block, twice_accel)));
+        let mut most2 = self.get(first - 1).map_or(0.0, |block| after2(block, limits));
         for index in first..self.len {
             let Some(block) = self.get_mut(index) else { break };
             let slower = most2 < block.entry2;
@@ -105,7 +104,7 @@ impl<const N: usize> Ring<N> {
                 block.entry2 = most2;
             }
             let settled = slower || block.entry2 >= block.max_entry2;
-            most2 = sum_down(block.entry2, reach2(block, twice_accel));
+            most2 = after2(block, limits);
             if settled {
                 self.planned = index;
             } else if last_limited.is_none_or(|last| index > last) {
@@ -123,13 +122,13 @@ impl<const N: usize> Ring<N> {
         for index in 0..self.len {
             let Some(block) = self.get_mut(index) else { continue };
             if block.is_path() {
-                block.cruise2 = block.wish(limits).cruise2(shares, limits);
+                block.cruise2 = block.wish().cruise2(shares, limits);
                 let most2 = least(block.corner2, least(before2, block.cruise2));
                 // What can no longer be avoided was planned before, however it has been rounded since.
                 forced2 = least(forced2, block.entry2);
                 block.max_entry2 = greatest(most2, forced2);
                 before2 = block.cruise2;
-                forced2 = greatest(forced2 - 2.0 * limits.accel * block.length(), 0.0);
+                forced2 = block.forced2(forced2, limits);
             } else {
                 forced2 = 0.0;
             }
@@ -139,35 +138,49 @@ impl<const N: usize> Ring<N> {
     }
 
     /// Plans anew with a head that is entered with exactly this square of a speed.
-    pub(super) fn enter_with(&mut self, entry2: f32, twice_accel: f32) {
+    pub(super) fn enter_with(&mut self, entry2: f32, limits: &Limits) {
         if let Some(head) = self.get_mut(0) {
             head.entry2 = entry2;
         }
         self.planned = 0;
-        self.plan(twice_accel);
+        self.plan(limits);
     }
 
     /// Plans anew with a head that is entered with no more than this square of a speed; gives the one with which it is.
-    pub(super) fn enter_at_most(&mut self, most2: f32, twice_accel: f32) -> f32 {
+    pub(super) fn enter_at_most(&mut self, most2: f32, limits: &Limits) -> f32 {
         // What can be braked from within the blocks known, backwards.
         let mut entry2 = Sum::default();
         for index in (0..self.len).rev() {
             let Some(block) = self.get(index) else { continue };
-            entry2 = entry2.plus(reach2(block, twice_accel)).at_most(block.max_entry2);
+            entry2 = before(entry2, block, limits);
         }
         let entry2 = least(entry2.value(), most2);
         if let Some(head) = self.get_mut(0) {
             head.entry2 = entry2;
         }
         self.planned = 0;
-        self.plan(twice_accel);
+        self.plan(limits);
         self.get(0).map_or(0.0, |head| head.entry2)
     }
 }
 
-/// How much the square of the speed can change along a block.
-fn reach2(block: &Block, twice_accel: f32) -> f32 {
-    if block.is_path() { twice_accel * block.length() } else { 0.0 }
+/// Square of the greatest speed at which a block may be entered that is left with the given one.
+fn before(exit2: Sum, block: &Block, limits: &Limits) -> Sum {
+    let entry2 = match block.even_reach2() {
+        Some(reach2) => exit2.plus(reach2),
+        None => Sum::of(block.reach2(exit2.value(), block.max_entry2, limits)),
+    };
+    entry2.at_most(block.max_entry2)
+}
+
+/// Square of the greatest speed at which a block can be left.
+fn after2(block: &Block, limits: &Limits) -> f32 {
+    match block.even_reach2() {
+        Some(reach2) => sum_down(block.entry2, reach2),
+        // Faster than its cruise it is only if it was told to be slower meanwhile.
+        None if block.entry2 >= block.cruise2 => block.reach2(block.entry2, f32::INFINITY, limits),
+        None => block.reach2(block.entry2, block.cruise2, limits),
+    }
 }
 
 /// A limit as the look-ahead keeps it: rounded down, so that no limit is exceeded by the rounding.
@@ -178,17 +191,21 @@ pub(super) fn narrow(value: f64) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{PlannerSettings, Shape};
+    use super::super::block::Bend;
+    use super::super::{AllModes, PlannerSettings, Shape};
     use super::*;
     use crate::{Pen, Point};
     use proptest::prelude::*;
     use std::vec;
     use std::vec::Vec;
 
-    const TWICE_ACCEL: f32 = 2000.0;
+    fn limits() -> Limits {
+        Limits::of::<AllModes>(&PlannerSettings::default())
+    }
 
     fn block(length_mm: f32, max_entry2: f32) -> Block {
-        let mut block = Block::path(Shape::Line, Point::ORIGIN, length_mm, Pen::Down, 0, 1e4);
+        let line = Bend::Line { accel: limits().accel };
+        let mut block = Block::path(Shape::Line, Point::ORIGIN, length_mm, (Pen::Down, 0), 1e4, line);
         block.max_entry2 = max_entry2;
         block
     }
@@ -198,12 +215,12 @@ mod tests {
         let blocks: Vec<Block> = (0..ring.len()).filter_map(|index| ring.get(index).copied()).collect();
         let mut speeds = vec![0.0; blocks.len() + 1];
         for index in (1..blocks.len()).rev() {
-            let braked = sum_down(speeds[index + 1], reach2(&blocks[index], TWICE_ACCEL));
+            let braked = sum_down(speeds[index + 1], blocks[index].even_reach2().unwrap());
             speeds[index] = least(blocks[index].max_entry2, braked);
         }
         speeds[0] = blocks.first().map_or(0.0, |head| head.entry2);
         for index in 1..blocks.len() {
-            let reached = sum_down(speeds[index - 1], reach2(&blocks[index - 1], TWICE_ACCEL));
+            let reached = sum_down(speeds[index - 1], blocks[index - 1].even_reach2().unwrap());
             speeds[index] = least(reached, speeds[index]);
         }
         speeds
@@ -221,7 +238,7 @@ mod tests {
             let pop = |ring: &mut Ring<16>, stale: &mut bool| {
                 let expected = by_hand(ring)[1];
                 if *stale && !ring.next_is_settled() {
-                    ring.plan(TWICE_ACCEL);
+                    ring.plan(&limits());
                     *stale = false;
                 }
                 let found = ring.next_entry2();
@@ -250,8 +267,7 @@ mod tests {
         for _ in 0..16 {
             ring.push(block(1.0, 1e4));
         }
-        let limits = Limits::of(&PlannerSettings::default());
-        ring.plan(limits.twice_accel);
+        ring.plan(&limits());
         let mut unplanned = 0;
         while ring.next_is_settled() {
             ring.pop();

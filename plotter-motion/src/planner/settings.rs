@@ -1,7 +1,7 @@
 //! [`PlannerSettings`]: the limits of a machine's motion, and how its path is followed.
 
 use super::{Modes, PlanError};
-use crate::{Machine, PathChoice};
+use crate::{AccelChoice, KinematicsChoice, Machine, MachineConfig, PathChoice};
 
 /// How nearly a path is followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,6 +18,54 @@ pub enum PathMode {
     },
 }
 
+/// What the limit of the acceleration is a limit of.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum AccelLimit {
+    /// The acceleration as a vector: what speeds up along the path and what turns across it, together, are at most
+    /// [`PlannerSettings::accel_mm_s2`].
+    #[default]
+    Vector,
+    /// Each axis for itself, where a motor moves each: `accel_mm_s2` is not looked at. Along a diagonal of two like axes the machine
+    /// speeds up √2 times as hard as along either.
+    Axes {
+        /// Greatest acceleration along x, mm/s².
+        x_mm_s2: f64,
+        /// Greatest acceleration along y, mm/s².
+        y_mm_s2: f64,
+    },
+    /// Each motor of a belt machine for itself, in mm of the belt: one motor moves x + y, the other x − y. Along a diagonal one of them does
+    /// all of it, √2 times what the pen does.
+    Belts {
+        /// Greatest acceleration of x + y, mm/s².
+        sum_mm_s2: f64,
+        /// Greatest acceleration of x − y, mm/s².
+        difference_mm_s2: f64,
+    },
+}
+
+impl AccelLimit {
+    /// That of a machine, by how its motors move the pen.
+    fn of(machine: &Machine) -> Self {
+        let MachineConfig { planner, kinematics, .. } = machine.config();
+        let (first, second) = (planner.accel_x_mm_s2, planner.accel_y_mm_s2);
+        match (planner.accel_limit, kinematics.kind) {
+            (AccelChoice::Vector, _) => Self::Vector,
+            (AccelChoice::Axes, KinematicsChoice::Cartesian) => {
+                Self::Axes { x_mm_s2: first, y_mm_s2: second }
+            }
+            (AccelChoice::Axes, KinematicsChoice::CoreXy) => {
+                // Which motor moves the sum is told by what both do for a step to the right and up.
+                let (sum_mm_s2, difference_mm_s2) = match kinematics.signs.motors(1, 1) {
+                    (0, _) => (second, first),
+                    _ => (first, second),
+                };
+                Self::Belts { sum_mm_s2, difference_mm_s2 }
+            }
+        }
+    }
+}
+
 /// The limits that a [`Planner`](super::Planner) keeps.
 ///
 /// The default suits a light pen plotter with belts: 100 mm/s, 1000 mm/s², 20,000 mm/s³.
@@ -30,8 +78,10 @@ pub struct PlannerSettings {
     pub speed_mm_s: f64,
     /// Speed with the pen up, mm/s.
     pub travel_speed_mm_s: f64,
-    /// Greatest acceleration, mm/s²: along the path, and across it in curves.
+    /// Greatest acceleration, mm/s², as [`PlannerSettings::accel_limit`] says.
     pub accel_mm_s2: f64,
+    /// What that is a limit of. It holds at every instant but in a corner of [`PathMode::Exact`], which is a jump of the velocity.
+    pub accel_limit: AccelLimit,
     /// Greatest jerk along the path, mm/s³; `None` lets the acceleration change at once (trapezoidal profiles), a limit makes
     /// them S-curves.
     pub jerk_mm_s3: Option<f64>,
@@ -54,6 +104,7 @@ impl Default for PlannerSettings {
             speed_mm_s: 100.0,
             travel_speed_mm_s: 100.0,
             accel_mm_s2: 1000.0,
+            accel_limit: AccelLimit::Vector,
             jerk_mm_s3: None,
             junction_deviation_mm: 0.01,
             resolution_mm: 0.005,
@@ -95,6 +146,7 @@ impl PlannerSettings {
             speed_mm_s: planner.speed_mm_s,
             travel_speed_mm_s: planner.travel_speed_mm_s,
             accel_mm_s2: planner.accel_mm_s2,
+            accel_limit: AccelLimit::of(machine),
             jerk_mm_s3: planner.s_curve.then_some(planner.jerk_mm_s3),
             junction_deviation_mm: planner.junction_deviation_mm,
             resolution_mm: 0.5 / finest,
@@ -121,6 +173,21 @@ impl PlannerSettings {
         Self { allowance_mm: self.allowance_mm.max(half_mm), ..self }
     }
 
+    /// The limit of the first or of the second motor; where they have one together, that.
+    pub(crate) const fn accel_of_motor(&mut self, is_second: bool) -> &mut f64 {
+        match &mut self.accel_limit {
+            AccelLimit::Vector => &mut self.accel_mm_s2,
+            AccelLimit::Axes { x_mm_s2: first, y_mm_s2: second }
+            | AccelLimit::Belts { sum_mm_s2: first, difference_mm_s2: second } => {
+                if is_second {
+                    second
+                } else {
+                    first
+                }
+            }
+        }
+    }
+
     /// Checks every number by itself, and whether these modes are built in.
     pub(crate) const fn check<M: Modes>(&self) -> Result<(), PlanError> {
         if !M::ALL && matches!(self.path, PathMode::Tolerance { .. }) {
@@ -135,10 +202,18 @@ impl PlannerSettings {
             PathMode::Exact => LEAST_TOLERANCE_MM,
             PathMode::Tolerance { path_tolerance_mm } => path_tolerance_mm,
         };
+        let motors = match self.accel_limit {
+            AccelLimit::Vector => [self.accel_mm_s2; 2],
+            AccelLimit::Axes { x_mm_s2, y_mm_s2 } => [x_mm_s2, y_mm_s2],
+            AccelLimit::Belts { sum_mm_s2, difference_mm_s2 } => [sum_mm_s2, difference_mm_s2],
+        };
+        let [one, other] = motors;
         let checks = [
             ("speed_mm_s", self.speed_mm_s, least, most),
             ("travel_speed_mm_s", self.travel_speed_mm_s, least, most),
             ("accel_mm_s2", self.accel_mm_s2, least, most),
+            ("accel_limit", one, least, most),
+            ("accel_limit", other, least, most),
             ("jerk_mm_s3", jerk_mm_s3, least, MOST_JERK),
             ("junction_deviation_mm", self.junction_deviation_mm, 0.0, MOST_TOLERANCE_MM),
             ("resolution_mm", self.resolution_mm, 0.0, MOST_TOLERANCE_MM),

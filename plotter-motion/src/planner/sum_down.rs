@@ -24,6 +24,10 @@ pub(super) struct Sum(#[cfg(target_os = "none")] f32, #[cfg(not(target_os = "non
 
 #[cfg(target_os = "none")]
 impl Sum {
+    pub(super) const fn of(value: f32) -> Self {
+        Self(value)
+    }
+
     pub(super) fn plus(self, other: f32) -> Self {
         Self(sum_down(self.0, other))
     }
@@ -42,6 +46,10 @@ impl Sum {
 impl Sum {
     /// The bits of an `f64`'s fraction that an `f32` does not have.
     const BEYOND: u64 = (1 << 29) - 1;
+
+    pub(super) fn of(value: f32) -> Self {
+        Self(value.into())
+    }
 
     pub(super) fn plus(self, other: f32) -> Self {
         Self(f64::from_bits((self.0 + f64::from(other)).to_bits() & !Self::BEYOND))

@@ -3,12 +3,11 @@
 use super::slice::{FRACTION_BITS, fixed};
 use crate::chords::chord_count;
 use crate::extremes::greatest;
-use crate::geom::single;
 use crate::kinematics::Kinematics;
 use crate::planner::Modes;
 use crate::root::root;
 use crate::turn::sin_cos;
-use crate::{Course, Point, Shape, StepPoint, Vec2};
+use crate::{Course, Point, Shape, StepPoint};
 
 /// A straight way between two whole steps, and where along the course it ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,16 +31,23 @@ impl Chords {
         let count = match course.shape {
             Shape::Line => 1,
             // A planner with such modes gives none.
-            Shape::Spiral { .. } if !M::ALL => 1,
+            Shape::Parabola { .. } if !M::ALL => 1,
             Shape::Arc { centre, sweep_rad } => {
                 let radius_mm =
                     greatest(centre.way_to(from).length_near(), centre.way_to(&course.to).length_near());
                 chord_count(radius_mm, sweep_rad, tolerance_mm)
             }
-            Shape::Spiral { pole, sweep_rad, growth } => {
-                // Its radius of curvature is greater than the distance from the pole.
-                let farther_mm = pole.way_to(from).length_near().max(pole.way_to(&course.to).length_near());
-                chord_count(farther_mm * root(1.0 + growth * growth), sweep_rad, tolerance_mm)
+            Shape::Parabola { control } => {
+                // Between two places a share u of the parameter apart it is at most u² / 4 of both tangents' difference from its chord.
+                let bend = from.way_to(&control).plus(course.to.way_to(&control));
+                let parts = root(0.25 * bend.length_near() / tolerance_mm);
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "a cast saturates, and a NaN is 0"
+                )]
+                let whole = parts as u16;
+                u32::from(whole) + 1
             }
         };
         Self { from: *from, count, next: 0 }
@@ -66,7 +72,7 @@ impl Chords {
     fn place<M: Modes>(&self, course: &Course, share: f32) -> (Point, f32) {
         let Course { shape, to, length_mm, .. } = *course;
         match shape {
-            Shape::Spiral { .. } if !M::ALL => (to, length_mm),
+            Shape::Parabola { .. } if !M::ALL => (to, length_mm),
             // It is one chord.
             Shape::Line => (to, length_mm),
             Shape::Arc { centre, sweep_rad } => {
@@ -86,14 +92,10 @@ impl Chords {
                 let way = out.times(along).plus(out.perpendicular().times(across));
                 (self.from.after(way), length_mm * share)
             }
-            Shape::Spiral { pole, sweep_rad, growth } => {
-                let out: Vec2 = self.from - pole;
-                let [sweep_rad, growth, share] = [sweep_rad, growth, share].map(f64::from);
-                let angle_rad = sweep_rad * share;
-                let grown = libm::exp(growth * angle_rad.abs());
-                let all = libm::exp(growth * sweep_rad.abs());
-                let way = single((grown - 1.0) / (all - 1.0));
-                (pole + out.rotated(angle_rad) * grown, length_mm * way)
+            Shape::Parabola { control } => {
+                let (before, after) = (self.from.way_to(&control), control.way_to(&to));
+                let way = before.times(share * (2.0 - share)).plus(after.times(share * share));
+                (self.from.after(way), length_mm * share)
             }
         }
     }
@@ -108,6 +110,8 @@ fn share(part: u32, whole: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Vec2;
+    use crate::geom::single;
     use crate::kinematics::{Cartesian, MotorScale};
     use crate::planner::AllModes;
 

@@ -172,7 +172,7 @@ fn a_line_of_centuries_is_told_at_once() {
 #[test]
 fn an_estimator_has_all_its_memory_in_itself() {
     // 64 blocks of 64 bytes, and what holds at its ends.
-    assert!(size_of::<Estimator<64>>() < 5 * 1024, "{}", size_of::<Estimator<64>>());
+    assert!(size_of::<Estimator<64>>() <= 5 * 1024, "{}", size_of::<Estimator<64>>());
 }
 
 #[test]

@@ -19,6 +19,7 @@ mod drawings;
 mod dxf_kinds;
 mod estimate;
 mod exact_discretization;
+mod felt;
 mod firmware_by_hand;
 mod firmware_grbl;
 mod firmware_grbl_table;

@@ -75,7 +75,7 @@ fn rounded_curves_keep_the_limits_and_the_allowance() {
         for accel in [seen.along_mm_s2, seen.across_mm_s2, seen.wide_along_mm_s2, seen.wide_across_mm_s2] {
             assert!(accel <= MEASURED * settings.accel_mm_s2, "{what}");
         }
-        assert!(seen.corner_share <= MEASURED && seen.curve_share <= MEASURED, "{what}");
+        assert!(seen.corner_share <= MEASURED && seen.vector_share <= MEASURED, "{what}");
         // A step of each motor.
         let most_mm = settings.allowance_mm + 2.0_f64.sqrt() / LENS.steps_per_mm;
         assert!(seen.from_drawing_mm <= most_mm && seen.from_pen_mm <= most_mm, "{what}");

@@ -6,10 +6,11 @@
     reason = "part of tests, each of which takes what it needs"
 )]
 
+use crate::felt;
 use core::time::Duration;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::{
-    Action, Course, MotorEvent, Planner, PlannerSettings, PlotOp, Point, Segment, Shape, StepGen,
+    Action, Course, MotorEvent, PathMode, Planner, PlannerSettings, PlotOp, Point, Segment, Shape, StepGen,
     StepGenSettings, StepPoint, Vec2,
 };
 use std::collections::VecDeque;
@@ -42,8 +43,8 @@ pub(crate) struct Audit {
     /// Square of the speed at a corner as a share of what is allowed there: the greatest; and how many corners there were.
     pub(crate) corner_share: f64,
     pub(crate) corners: usize,
-    /// The same at both ends of arcs and spirals.
-    pub(crate) curve_share: f64,
+    /// The acceleration as a vector, as a share of its limit, in every window; in exact mode in those without a corner.
+    pub(crate) vector_share: f64,
     /// Farthest place of the pen from the drawing, and of the drawing from the pen's way, mm.
     pub(crate) from_drawing_mm: f64,
     pub(crate) from_pen_mm: f64,
@@ -223,20 +224,16 @@ impl Stretch {
 
     /// Directions of travel at both ends.
     fn directions(&self) -> (Vec2, Vec2) {
-        let along = |radius: Vec2, sweep_rad: f64, growth: f64| {
-            let turn = if sweep_rad > 0.0 { radius.perpendicular() } else { -radius.perpendicular() };
-            turn + radius * growth
+        let along = |radius: Vec2, sweep_rad: f64| {
+            if sweep_rad > 0.0 { radius.perpendicular() } else { -radius.perpendicular() }
         };
         match self.course.shape {
             Shape::Line => (self.course.to - self.from, self.course.to - self.from),
             Shape::Arc { centre, sweep_rad } => {
                 let sweep_rad = f64::from(sweep_rad);
-                (along(self.from - centre, sweep_rad, 0.0), along(self.course.to - centre, sweep_rad, 0.0))
+                (along(self.from - centre, sweep_rad), along(self.course.to - centre, sweep_rad))
             }
-            Shape::Spiral { pole, sweep_rad, growth } => {
-                let [sweep_rad, growth] = [sweep_rad, growth].map(f64::from);
-                (along(self.from - pole, sweep_rad, growth), along(self.course.to - pole, sweep_rad, growth))
-            }
+            Shape::Parabola { control } => (control - self.from, self.course.to - control),
         }
     }
 }
@@ -306,28 +303,10 @@ pub(crate) fn audit<const N: usize>(settings: PlannerSettings, lens: Lens, ops: 
     seen.from_pen_mm = nearness.farthest();
     bins.until(last + (settle_s * lens.clock_hz) as u64, 1.0 / lens.steps_per_mm);
     let corners = corners(&stretches.borrow(), settings, lens, &mut seen);
-    curves(&stretches.borrow(), settings, lens, &mut seen);
     narrow_windows(&bins.means, &corners, lens, &mut seen);
+    vectors(&bins.means, &corners, settings, lens, &mut seen);
     wide_windows(&bins.means, lens, &mut seen);
     seen
-}
-
-/// Audits the speeds on curves, by the steps at their ends: v² is at most a r.
-fn curves(stretches: &[Stretch], settings: PlannerSettings, lens: Lens, seen: &mut Audit) {
-    for stretch in stretches {
-        let (centre, factor) = match stretch.course.shape {
-            Shape::Line => continue,
-            Shape::Arc { centre, .. } => (centre, 1.0),
-            Shape::Spiral { pole, growth, .. } => (pole, libm::sqrt(1.0 + f64::from(growth * growth))),
-        };
-        let Some(speeds) = stretch.curve_speeds(lens) else { continue };
-        for (place, (speed, way_mm)) in [stretch.from, stretch.course.to].into_iter().zip(speeds) {
-            // The mean speed over some way is that in its middle.
-            let at_end2 = speed * speed - settings.accel_mm_s2 * way_mm;
-            let allowed2 = settings.accel_mm_s2 * factor * place.distance(centre);
-            seen.curve_share = seen.curve_share.max(at_end2 / allowed2);
-        }
-    }
 }
 
 impl Stretch {
@@ -465,6 +444,24 @@ fn narrow_windows(means: &[Point], corners: &[usize], lens: Lens, seen: &mut Aud
         {
             seen.jerk_mm_s3 = seen.jerk_mm_s3.max((second - first).abs() / dt);
         }
+    }
+}
+
+/// The second difference of places is an average of the acceleration with weights above 0: where it is above the limit, the acceleration is
+/// somewhere.
+fn vectors(means: &[Point], corners: &[usize], settings: PlannerSettings, lens: Lens, seen: &mut Audit) {
+    let (window, smooth) = (lens.window, smooth(means, lens.window));
+    let dt = window as f64 * lens.bin_s;
+    let span = 2 * window + window / 2 + 1;
+    let in_exact = settings.path == PathMode::Exact;
+    for at in 0..smooth.len().saturating_sub(2 * window) {
+        let next = corners.partition_point(|&corner| corner + 1 < at);
+        if in_exact && corners.get(next).is_some_and(|&corner| corner <= at + span) {
+            continue;
+        }
+        let (before, middle, after) = (smooth[at], smooth[at + window], smooth[at + 2 * window]);
+        let accel = ((after - middle) - (middle - before)) * (1.0 / (dt * dt));
+        seen.vector_share = seen.vector_share.max(felt::share(accel, &settings));
     }
 }
 

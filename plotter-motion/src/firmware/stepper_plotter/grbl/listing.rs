@@ -149,7 +149,7 @@ fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, boo
         100 => settings.x_steps_per_mm,
         101 => settings.y_steps_per_mm,
         110 | 111 => greater(planner.travel_speed_mm_s, planner.speed_mm_s) * 60.0,
-        120 | 121 => planner.accel_mm_s2,
+        120 | 121 => *planner.clone().accel_of_motor(number == 121),
         _ => f64::from(whole),
     };
     Some((number, value, !matches!(number, 11 | 12 | 24 | 25 | 27 | 100..)))
