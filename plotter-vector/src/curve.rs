@@ -148,6 +148,22 @@ impl Curve {
         rotated(&mut self.bulges, pieces, start);
         rotated(&mut self.handles, pieces, start);
     }
+
+    /// Lets a closed one begin and end within its first piece, a share of it on: the piece becomes two, the first and the last.
+    pub(crate) fn begin_within(&mut self, share: f64) {
+        let Some(whole) = self.course().piece(0).filter(|_| share > 0.0 && share < 1.0) else { return };
+        let (at, pieces) = (whole.at(share), self.vertices.len().saturating_sub(1));
+        if let Some(first) = self.vertices.first_mut() {
+            let was = core::mem::replace(first, at);
+            if let Some(last) = self.vertices.last_mut() {
+                *last = was;
+            }
+            self.vertices.push(at);
+        }
+        let [(first_bulge, first_handles), (last_bulge, last_handles)] = whole.halves(share);
+        within(&mut self.bulges, pieces, first_bulge, last_bulge);
+        within(&mut self.handles, pieces, first_handles, last_handles);
+    }
 }
 
 /// What belongs to the pieces, from their other end; `turn` makes one of them the other way round.
@@ -175,6 +191,15 @@ fn rotated<T: Clone + Default>(of_pieces: &mut Vec<T>, pieces: usize, start: usi
         of_pieces.resize(pieces, T::default());
         of_pieces.rotate_left(start);
         of_pieces.push(T::default());
+    }
+}
+
+/// What belongs to the pieces of a ring, the first of which becomes the first and the last one.
+fn within<T: Clone + Default>(of_pieces: &mut Vec<T>, pieces: usize, first: T, last: T) {
+    if let Some(slot) = of_pieces.first_mut() {
+        *slot = first;
+        of_pieces.resize(pieces, T::default());
+        of_pieces.extend([last, T::default()]);
     }
 }
 
@@ -261,6 +286,40 @@ impl Piece {
             Self::Arc(arc) => arc.to,
             Self::Cubic(cubic) => cubic.to,
         }
+    }
+
+    /// The place a share of the way along, 0 to 1: of a cubic curve, at that t.
+    pub(crate) fn at(&self, share: f64) -> PxPoint {
+        match self {
+            Self::Line(from, to) => {
+                let (x, y) = to.minus(*from);
+                from.along((x, y), share)
+            }
+            Self::Arc(arc) => arc.at(share),
+            Self::Cubic(cubic) => cubic.at(share),
+        }
+    }
+
+    /// Bulge and handles of what comes after a share of it, and of what comes before.
+    fn halves(&self, share: f64) -> [(f64, Option<[PxPoint; 2]>); 2] {
+        match self {
+            Self::Line(..) => [(0.0, None); 2],
+            Self::Arc(arc) => [1.0 - share, share].map(|part| (libm::tan(0.25 * arc.sweep_rad * part), None)),
+            Self::Cubic(cubic) => {
+                let [before, after] = cubic.halves(share);
+                [(0.0, Some(after)), (0.0, Some(before))]
+            }
+        }
+    }
+
+    /// No shorter than its part over so great a share of it, px.
+    pub(crate) fn longest_part_px(&self, share: f64) -> f64 {
+        share
+            * match self {
+                Self::Line(from, to) => from.distance(*to),
+                Self::Arc(arc) => arc.length_px(),
+                Self::Cubic(cubic) => cubic.greatest_speed(),
+            }
     }
 
     fn length_px(&self) -> f64 {
