@@ -234,7 +234,7 @@ pub enum SvgError {
         /// Its height, mm.
         height_mm: f64,
     },
-    /// A coordinate that is no number, or a huge one.
+    /// A number of the sheet itself, its size or its `viewBox`, that is huge.
     Number {
         /// The element's line, from 1.
         line: u32,
@@ -371,7 +371,8 @@ impl core::error::Error for SvgError {}
 ///
 /// Coordinates are parsed in single precision: to 0.001 px or 0.0003 mm up to 4 m from the origin. Arcs are first
 /// made into cubic curves that are 0.03 % of the radius off at most, and no more than 0.1 of the file's units; that
-/// adds to the tolerance, which is kept between those curves and the chords. A path is read up to its first error.
+/// adds to the tolerance, which is kept between those curves and the chords. A path is read up to its first error. Another element with a
+/// number that is no place on a sheet, beyond 10¹², is left out.
 ///
 /// # Errors
 /// [`SvgError`].
