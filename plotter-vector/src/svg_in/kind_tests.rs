@@ -639,6 +639,51 @@ fn an_element_with_a_number_that_is_no_place_is_left_out_and_told_and_the_rest_i
 }
 
 #[test]
+fn what_is_seen_of_each_shape_is_hatched() {
+    // Squares of 50 px, the second over the right half of the first, a third in the second with the paper's colour, and a clipped one.
+    let shapes = "<clipPath id='c'><path d='M0 60H25V100H0'/></clipPath>\
+        <path d='M0 0H50V50H0Z' fill='#f00'/><path d='M25 0H75V50H25Z' fill='#00f'/><path d='M30 10H70V40H30Z' fill='#fff'/>\
+        <path d='M0 60H50V100H0Z' fill='#f00' clip-path='url(#c)'/><path d='M80 0H99V50Z' stroke='#000' fill='none' stroke-dasharray='3'/>";
+    let mut hatching = plotter_motion::drawing::Hatching::default();
+    let mm_per_px = 25.4 / 96.0;
+    (hatching.distance_mm, hatching.angle_rad) = (2.0 * mm_per_px, 0.0);
+    let options = SvgOptions { occludes: true, hatch: Some(hatching), ..SvgOptions::default() };
+    let (plain, hatched) =
+        (read_with(shapes, SvgOptions { hatch: None, ..options }), read_with(shapes, options));
+    let of_pen = |read: &SvgDrawing, pen: u8| {
+        let own = |index: &usize| read.drawing.pen(*index) == pen;
+        (0..read.drawing.strokes().len())
+            .filter(own)
+            .map(|index| read.drawing.curve(index).length_px())
+            .sum::<f64>()
+    };
+    let lines_px = [1, 2, 3].map(|pen| of_pen(&hatched, pen) - of_pen(&plain, pen));
+    // Area through distance; the square in the second has no ink, but hides.
+    let expected = [(25.0 * 50.0 + 25.0 * 40.0) / 2.0, (50.0 * 50.0 - 40.0 * 30.0) / 2.0, 0.0];
+    assert!(
+        lines_px.iter().zip(expected).all(|(px, expected)| (px - expected).abs() < 0.1),
+        "{lines_px:?} {expected:?}"
+    );
+    assert_eq!((hatched.hatched, plain.hatched), (3, 0));
+    let sloping = |angle_rad: f64| {
+        let mut hatching = hatching;
+        hatching.angle_rad = angle_rad;
+        let read = read_with("<path d='M0 0H50V50H0Z'/>", SvgOptions { hatch: Some(hatching), ..options });
+        let line = read.drawing.stroke(read.drawing.strokes().len() / 2).to_vec();
+        (line[1].y - line[0].y) / (line[1].x - line[0].x)
+    };
+    // Counter-clockwise from the right on the sheet: upwards, which is against y here.
+    assert!((sloping(0.5) + 0.5_f64.tan()).abs() < 1e-6, "{}", sloping(0.5));
+    hatching.distance_mm = 0.0;
+    let wrong = read_svg(
+        file("<path d='M0 0H50V50H0Z'/>").as_bytes(),
+        &SvgOptions { hatch: Some(hatching), ..options },
+    )
+    .unwrap_err();
+    assert_eq!(wrong.to_string(), "svg: the distance of hatch lines is 0 mm: choose one above 0 mm");
+}
+
+#[test]
 fn utf_16_with_its_mark_is_read() {
     let text = file("<path id='ä𝄞' d='M0 50H100' stroke='#000'/>").replacen(
         "<svg",
