@@ -210,7 +210,48 @@ const LOOKS: u64 = 1_000_000_000;
 /// plotter at 100 mm/s goes so far.
 const LIFT_MM: f64 = 20.0;
 
+/// What closed strokes hide of a drawing that is arranged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Hidden {
+    /// Nothing more.
+    None,
+    /// What lies below them.
+    Below,
+    /// Nothing more: it is hidden, and hatched.
+    Hatched,
+}
+
+/// That `--hatch` has filled nothing.
+pub(crate) fn nothing_filled() -> Diagnostic {
+    let text = "--hatch: no stroke is closed, so that nothing is filled: join their ends first (--merge-mm), and convert again";
+    Diagnostic::new(Severity::Warning, text.into())
+}
+
 impl Arrangement {
+    /// How closed strokes are filled, if they are.
+    pub(crate) fn hatching(&self, tolerance_mm: f64) -> Option<Hatching> {
+        let mut hatching = Hatching::default();
+        hatching.distance_mm = self.hatch?;
+        (hatching.angle_rad, hatching.tolerance_mm) = (self.hatch_angle.to_radians(), tolerance_mm);
+        Some(hatching)
+    }
+
+    /// What is hatched before a drawing is mirrored, turned and scaled, so that it is `hatching` afterwards.
+    pub(crate) fn before_placing(&self, hatching: Hatching, ops: Ops<'_>) -> Result<Hatching, String> {
+        let (mut drawing, _, head) = gathered(ops);
+        let before_mm = drawing.length_mm();
+        self.put(&mut drawing, head.sheet_mm, &mut Vec::new())?;
+        let scale = drawing.length_mm() / before_mm;
+        let mut before = hatching;
+        if scale.is_finite() && scale > 0.0 {
+            before.distance_mm /= scale;
+            before.tolerance_mm /= scale;
+        }
+        let unturned_rad = hatching.angle_rad - self.rotate.unwrap_or(0.0).to_radians();
+        before.angle_rad = if self.mirror.is_some() { -unturned_rad } else { unturned_rad };
+        Ok(before)
+    }
+
     /// Whether the whole drawing has to be there before the first stroke of it can be drawn.
     fn needs_all(&self) -> bool {
         let Self { scale, fit, center, rotate, mirror, crop, .. } = self;
@@ -222,7 +263,7 @@ impl Arrangement {
         places || cuts || bends || merge_mm.is_some() || order.is_some() || from_layer.is_some()
     }
 
-    /// The operations of a drawing with all that is asked for; `occludes` lets closed strokes hide what is below them.
+    /// The operations of a drawing with all that is asked for; `hides` says whether closed strokes hide what is below them.
     ///
     /// # Errors
     ///
@@ -231,8 +272,9 @@ impl Arrangement {
         &self,
         ops: Ops<'a>,
         tolerance_mm: f64,
-        occludes: bool,
+        hides: Hidden,
     ) -> Result<Ops<'a>, String> {
+        let occludes = hides == Hidden::Below;
         let ops = match self.from_line {
             Some(line) => ops.beginning_at(line),
             None => ops,
@@ -248,17 +290,13 @@ impl Arrangement {
             from_layer(&mut drawing, layer)?;
         }
         let sheet_mm = self.put(&mut drawing, head.sheet_mm, &mut said)?;
-        if let Some(distance_mm) = self.hatch {
-            let mut hatching = Hatching::default();
-            (hatching.distance_mm, hatching.angle_rad) = (distance_mm, self.hatch_angle.to_radians());
-            hatching.tolerance_mm = tolerance_mm;
+        if let Some(mut hatching) = self.hatching(tolerance_mm).filter(|_| hides != Hidden::Hatched) {
             if occludes {
                 hatching.together = HatchTogether::Within;
             }
             let lines = drawing.hatch(&hatching, |_| true).map_err(|error| format!("--hatch: {error}"))?;
             if lines == 0 {
-                let text = "--hatch: no stroke is closed, so that nothing is filled: join their ends first (--merge-mm), and convert again";
-                said.push(Diagnostic::new(Severity::Warning, text.into()));
+                said.push(nothing_filled());
             }
         }
         if occludes {

@@ -241,6 +241,40 @@ fn what_is_seen_of_a_hidden_shape_is_hatched() {
 }
 
 #[test]
+fn a_picture_is_hatched_where_its_shapes_are_seen() {
+    // Squares of 40 mm, the second over the right half of the first one.
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' viewBox='0 0 100 100'>\
+               <path d='M10 10H50V50H10Z' fill='#f00'/><path d='M30 10H70V50H30Z' fill='#00f'/></svg>";
+    let hatch = ["--hatch", "2", "--hatch-angle", "0"];
+    // Whatever its size on the sheet, the distance is 2 mm; turned by a quarter the lines are still level.
+    for (placed, scale) in [
+        (&[][..], 1.0),
+        (&["--scale", "0.5"], 0.5),
+        (&["--fit", "120x200", "--rotate", "90", "--mirror", "y"], 3.0),
+    ] {
+        let of = |options: &[&str]| arranged_into("b.plt", svg, "a.svg", options).0;
+        let plain = of(&[&["--occlude"], placed].concat());
+        let both = of(&[&["--occlude"], &hatch[..], placed].concat());
+        let lines_mm = [1, 2].map(|pen| both.of_pen(pen).length_mm() - plain.of_pen(pen).length_mm());
+        let area_mm2 = [20.0 * 40.0, 40.0 * 40.0].map(|area| area * scale * scale);
+        for (length_mm, area_mm2) in lines_mm.iter().zip(area_mm2) {
+            // A row more or less.
+            let row_mm = 80.0 * scale;
+            assert!((length_mm - area_mm2 / 2.0).abs() <= row_mm, "{placed:?}: {lines_mm:?} {area_mm2}");
+        }
+        let level = both.strokes.iter().filter(|stroke| stroke.segments.len() == 1);
+        assert!(
+            level.clone().count() > 10
+                && level.clone().all(|stroke| (stroke.to().y - stroke.from.y).abs() < 0.03),
+            "{placed:?}"
+        );
+    }
+    let open = svg.replace("fill='", "fill='none' stroke-dasharray='1' stroke='");
+    let (_, said) = arranged_as(&open, "a.svg", &["--occlude", "--hatch", "2"]);
+    assert!(said.contains("--hatch: no stroke is closed"), "{said}");
+}
+
+#[test]
 fn a_plot_goes_on_at_a_line_with_its_pen() {
     let folder = Folder::new();
     let (from, to) = (folder.write("a.plt", LINES), folder.file("b.plt"));
