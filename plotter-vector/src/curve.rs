@@ -245,6 +245,18 @@ impl Course<'_> {
         Some(cubic.map(Piece::Cubic).or_else(|| arc().map(Piece::Arc)).unwrap_or(Piece::Line(from, to)))
     }
 
+    /// No shorter than the piece that begins at a vertex, px, in fewer sums than its length: of a cubic curve the sides of its polygon;
+    /// of an arc with the chord c and the bulge b its length is c (1 + b²) atan(b) / b.
+    pub(crate) fn longest_px(&self, index: usize) -> f64 {
+        let Some(from) = self.vertices.get(index) else { return 0.0 };
+        let Some(to) = self.vertices.get(index + 1).or(self.vertices.first()) else { return 0.0 };
+        if let Some([first, second]) = self.handles.get(index).copied().flatten() {
+            return from.distance(first) + first.distance(second) + second.distance(*to);
+        }
+        let bulge = self.bulges.get(index).copied().filter(|bulge| is_bulge(*bulge)).unwrap_or(0.0);
+        from.distance(*to) * (1.0 + bulge * bulge)
+    }
+
     pub(crate) fn pieces(self) -> impl Iterator<Item = Piece> {
         (1..self.vertices.len()).filter_map(move |next| self.piece(next - 1))
     }
@@ -502,6 +514,17 @@ mod tests {
         assert!(one.iter().zip(&other).all(|(a, b)| a.distance(*b) < 1e-12));
         back.reverse();
         assert_eq!(back, stroke());
+    }
+
+    #[test]
+    fn no_piece_is_longer_than_its_bound() {
+        for curve in [stroke(), bent(), Curve { bulges: vec![7.0, -0.1, 1.0], ..stroke() }] {
+            let course = curve.course();
+            for (index, piece) in course.pieces().enumerate() {
+                let (px, most_px) = (piece.length_px(), course.longest_px(index));
+                assert!(px <= most_px + 1e-9 && most_px < 60.0 * px, "{piece:?}: {px} px of {most_px} px");
+            }
+        }
     }
 
     #[test]

@@ -22,14 +22,11 @@ use crate::{Curve, Drawing, Lettering, PxPoint, TextBlock};
 use plan::{Parts, Piece, Stroke, Trail, rebuild, strokes_of};
 use ring_start::start_rings_well;
 use search::shorten;
-use sites::{Sites, number};
+use sites::{RING_PLACES, Sites, number};
 use units::{Units, mark_letters};
 
 /// Greatest coordinate of a drawing that is ordered, px: squares of distances stay far from infinity.
 const FARTHEST_PX: f64 = 1e12;
-
-/// Places on an arc or a cubic curve of a closed stroke that the search considers, of which there are as few as two.
-const BENT_PLACES: u32 = 6;
 
 /// How hard an order is searched for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -163,8 +160,12 @@ impl Order {
         let (mut trails, mut ends) = self.sequence(&parts, &units);
         let mut least_px = self.well_begun(&parts, &mut trails, &mut ends);
         let cost_px = |parts: &Parts<'_>, trails: &mut [Trail]| {
-            let mut ends: Vec<Ends> = trails.iter().map(|trail| parts.ends(*trail)).collect();
-            self.well_begun(parts, trails, &mut ends)
+            if trails.iter().any(|trail| trail.closed) {
+                let mut ends: Vec<Ends> = trails.iter().map(|trail| parts.ends(*trail)).collect();
+                return self.well_begun(parts, trails, &mut ends);
+            }
+            // A million lines are not noted once more.
+            self.cost_px(trails.len(), trails.iter().map(|trail| parts.ends(*trail)))
         };
         // Where nothing is joined, this is the given order.
         if trails.len() < strokes.len() {
@@ -282,16 +283,16 @@ fn add_site(sites: &mut Sites, parts: &Parts<'_>, unit: &[Trail], rings: usize) 
     }
 }
 
-/// Places at which a closed trail may be entered, each with the vertex before: the vertices, and those that divide what is
-/// not straight evenly.
+/// Places at which a closed trail may be entered, each with the vertex before: the vertices, and where these are few, those that divide
+/// what is not straight evenly.
 fn ring_places(ring: &Curve) -> Vec<(PxPoint, u32)> {
-    let mut places = Vec::with_capacity(ring.vertices.len());
+    let pieces = ring.vertices.len().saturating_sub(1).max(1);
+    let parts = number(RING_PLACES.div_ceil(pieces));
+    let mut places = Vec::with_capacity(pieces);
     for (vertex, piece) in ring.course().pieces().enumerate() {
-        let parts = if matches!(piece, Segment::Line(..)) { 1 } else { BENT_PLACES };
-        places.extend((0..parts).map(|part| {
-            let share = f64::from(part) / f64::from(BENT_PLACES);
-            (piece.at(share), number(vertex))
-        }));
+        let parts = if matches!(piece, Segment::Line(..)) { 1 } else { parts };
+        let place = |part: u32| (piece.at(f64::from(part) / f64::from(parts)), number(vertex));
+        places.extend((0..parts).map(place));
     }
     places
 }

@@ -22,8 +22,8 @@ const SHARPER_COS: f64 = 0.05;
 /// that has moved are looked at again.
 const RING_PASSES: usize = 20;
 
-/// How far a start has to move for its neighbours to be looked at again, px: less gains no hundredth of a pixel.
-const MOVED_PX: f64 = 1e-3;
+/// How far a start has to move for its neighbours to be looked at again, px: less gains no tenth of a pixel.
+const MOVED_PX: f64 = 0.05;
 
 /// Least travel that a start within a piece saves over one at a vertex, px: a tenth of a millimetre of a sheet, some
 /// milliseconds. It costs a vertex, and at a corner the pen's coming and going is not seen.
@@ -35,12 +35,18 @@ const ARC_STEP_RAD: f64 = core::f64::consts::FRAC_PI_8;
 /// Stretches of a cubic curve over which it is taken to have one least value.
 const CUBIC_STRETCHES: u32 = 16;
 
-/// Halvings of the search within a stretch: a thousandth of a pixel in one of 10⁶ px, at two thirds each.
-const SEARCH_STEPS: u32 = 52;
+/// Steps of the search within a stretch, each to the golden section of what is left: to 10⁻⁶ of it.
+const SEARCH_STEPS: u32 = 28;
+
+/// The golden section: (√5 − 1) / 2.
+const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// Lets each ring begin at the place that is on the way from the stroke before to the one after; of equally good
 /// vertices at the sharpest corner, where the pen's coming and going is not seen.
 pub(super) fn start_rings_well(parts: &Parts<'_>, trails: &mut [Trail], ends: &mut [Ends]) {
+    if !trails.iter().any(|trail| trail.closed) {
+        return;
+    }
     let mut is_due: Vec<bool> = trails.iter().map(|trail| trail.closed).collect();
     for _ in 0..RING_PASSES {
         let mut settled = true;
@@ -106,7 +112,15 @@ impl Ways {
     fn best_start(&self, ring: &Curve) -> Start {
         let (mut start, least_px) = self.best_vertex(ring);
         let mut most_px = least_px - LEAST_SAVED_PX;
-        for vertex in 0..ring.vertices.len() {
+        let ends = ring.vertices.iter().zip(ring.vertices.iter().cycle().skip(1));
+        let slope = self.slope();
+        for (vertex, (from, to)) in ends.enumerate() {
+            // Nowhere on it is there less than this: the other pieces are not asked for.
+            let least_px =
+                0.5 * (self.travel(*from) + self.travel(*to) - slope * ring.course().longest_px(vertex));
+            if least_px >= most_px {
+                continue;
+            }
             let Some(piece) = ring.course().piece(vertex) else { continue };
             if let Some((share, px)) = self.best_share(&piece, most_px) {
                 let parts = parts_of(share);
@@ -161,22 +175,35 @@ impl Ways {
             let least_px = best.map_or(most_px, |(_, px)| px);
             // Nowhere on it is there less than this.
             if 0.5 * (begins_px + ends_px - steep_px) < least_px {
-                let (mut low, mut high) = (share(stretch), share(stretch + 1));
-                for _ in 0..SEARCH_STEPS {
-                    let third = (high - low) / 3.0;
-                    let (one, other) = (low + third, high - third);
-                    if travel(one) <= travel(other) { high = other } else { low = one }
-                }
-                let middle = f64::midpoint(low, high);
-                let px = travel(middle);
+                let (at, px) = least(share(stretch), share(stretch + 1), travel);
                 if px < least_px {
-                    best = Some((middle, px));
+                    best = Some((at, px));
                 }
             }
             begins_px = ends_px;
         }
         best
     }
+}
+
+/// Where a function with one least value between two places has it, and how much it is (J. Kiefer, "Sequential minimax search for a
+/// maximum", 1953).
+fn least(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
+    let sections = |low: f64, high: f64| (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+    let (one, other) = sections(low, high);
+    let (mut one, mut other) = ((one, value(one)), (other, value(other)));
+    for _ in 0..SEARCH_STEPS {
+        if one.1 <= other.1 {
+            (high, other) = (other.0, one);
+            let at = sections(low, high).0;
+            one = (at, value(at));
+        } else {
+            (low, one) = (one.0, other);
+            let at = sections(low, high).1;
+            other = (at, value(at));
+        }
+    }
+    if one.1 <= other.1 { one } else { other }
 }
 
 /// Cosine of the change of direction at a vertex: 1 straight on, −1 back.
