@@ -104,7 +104,7 @@ pub fn svg_drawing(
         column: Some(problem.column),
         ..Diagnostic::new(Severity::Warning, problem.text.clone())
     });
-    let unfilled = (hatch.is_some() && svg.hatched == 0).then(|| crate::arrangement::nothing_filled());
+    let unfilled = (hatch.is_some() && svg.hatched == 0).then(crate::arrangement::nothing_filled);
     let diagnostics = problems
         .chain(left_out(&svg, how))
         .chain(of_layers(&svg))
