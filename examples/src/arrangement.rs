@@ -3,7 +3,7 @@
 use crate::drawing_file::{Diagnostic, Ops, Severity};
 use clap::ValueEnum;
 use plotter_motion::Point;
-use plotter_motion::drawing::{Bounds, Drawing, DrawingBuilder, Hatching, Hides, Placement};
+use plotter_motion::drawing::{Bounds, Drawing, DrawingBuilder, HatchTogether, Hatching, Hides, Placement};
 use plotter_vector::{Order, OrderEffort};
 use std::rc::Rc;
 use std::str::FromStr;
@@ -11,7 +11,7 @@ use std::str::FromStr;
 /// The options for what is done with a drawing. Without any of them it streams through.
 ///
 /// They work in this order: what is left out before a line or a layer; mirrored, turned, scaled, put on the
-/// page; hidden; hatched; cropped; drawn once; with arcs; simplified; put in order.
+/// page; hatched; hidden; cropped; drawn once; with arcs; simplified; put in order.
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "What is done with the drawing")]
 pub struct Arrangement {
@@ -36,9 +36,10 @@ pub struct Arrangement {
     /// Turns left into right (x) or above into below (y)
     #[arg(long, value_enum, value_name = "AXIS")]
     pub mirror: Option<Mirror>,
-    /// Cuts off what lies outside of a rectangle: x and y of its lower left corner, width and height, mm
-    #[arg(long, value_name = "X,Y,W,H", allow_negative_numbers = true)]
-    pub crop: Option<Rectangle>,
+    /// Cuts off what lies outside of a rectangle: x and y of its lower left corner, width and height, mm; or of a polygon: x and y of
+    /// three corners or more, as 10,10,60,10,35,60. One that crosses itself keeps what lies in it an odd number of times
+    #[arg(long, value_name = "X,Y,W,H|X,Y,X,Y,X,Y,...", allow_negative_numbers = true)]
+    pub crop: Option<Crop>,
     /// Draws nothing twice with one pen, not even a part of a line
     #[arg(long)]
     pub drop_doubles: bool,
@@ -137,33 +138,51 @@ impl FromStr for Page {
     }
 }
 
-/// A rectangle of the sheet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rectangle {
-    /// Its lower left corner, mm.
-    pub corner: Point,
-    /// Width and height, mm.
-    pub size_mm: (f64, f64),
+/// What is kept of a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Crop {
+    /// What lies in a rectangle.
+    Rectangle(Bounds),
+    /// What lies in a polygon with these corners.
+    Polygon(Vec<Point>),
 }
 
-impl FromStr for Rectangle {
+impl FromStr for Crop {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
-        match numbers[..] {
-            [x, y, width, height]
-                if text.matches(',').count() == 3
-                    && numbers.iter().all(|number| number.abs() <= MOST_PAGE_MM)
-                    && width > 0.0
-                    && height > 0.0 =>
-            {
-                Ok(Self { corner: Point::new(x, y), size_mm: (width, height) })
+        const KINDS: &str = "give x and y of the lower left corner, width and height in mm, as 10,10,180,120, \
+                             or x and y of three corners or more, as 10,10,60,10,35,60";
+        let number = |text: &str| {
+            let number: Option<f64> = text.trim().parse().ok();
+            let number = number.filter(|number| number.abs() <= MOST_PAGE_MM);
+            number
+                .ok_or_else(|| format!("{:?} is no number of mm up to {MOST_PAGE_MM}: {KINDS}", text.trim()))
+        };
+        let numbers = text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?;
+        if let [x, y, width, height] = numbers[..] {
+            if width > 0.0 && height > 0.0 {
+                return Ok(Self::Rectangle(Bounds::between(
+                    Point::new(x, y),
+                    Point::new(x + width, y + height),
+                )));
             }
-            _ => {
-                Err("give x and y of the lower left corner, width and height in mm, as 10,10,180,120".into())
-            }
+            return Err(format!("{width} x {height} mm is no rectangle: give a width and a height above 0"));
         }
+        let (pairs, rest) = numbers.as_chunks::<2>();
+        if !rest.is_empty() {
+            let count = numbers.len();
+            return Err(format!("{count} numbers are no corners, which have x and y each: {KINDS}"));
+        }
+        let corners: Vec<Point> = pairs.iter().map(|[x, y]| Point::new(*x, *y)).collect();
+        let &[first, second, ..] = &corners[..] else { return Err(KINDS.into()) };
+        if corners.iter().all(|corner| (*corner - first).cross(second - first) == 0.0) && second != first {
+            return Err(format!(
+                "{} corners lie on one line: give three or more round an area",
+                corners.len()
+            ));
+        }
+        Ok(Self::Polygon(corners))
     }
 }
 
@@ -191,7 +210,48 @@ const LOOKS: u64 = 1_000_000_000;
 /// plotter at 100 mm/s goes so far.
 const LIFT_MM: f64 = 20.0;
 
+/// What closed strokes hide of a drawing that is arranged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Hidden {
+    /// Nothing more.
+    None,
+    /// What lies below them.
+    Below,
+    /// Nothing more: it is hidden, and hatched.
+    Hatched,
+}
+
+/// That `--hatch` has filled nothing.
+pub(crate) fn nothing_filled() -> Diagnostic {
+    let text = "--hatch: no stroke is closed, so that nothing is filled: join their ends first (--merge-mm), and convert again";
+    Diagnostic::new(Severity::Warning, text.into())
+}
+
 impl Arrangement {
+    /// How closed strokes are filled, if they are.
+    pub(crate) fn hatching(&self, tolerance_mm: f64) -> Option<Hatching> {
+        let mut hatching = Hatching::default();
+        hatching.distance_mm = self.hatch?;
+        (hatching.angle_rad, hatching.tolerance_mm) = (self.hatch_angle.to_radians(), tolerance_mm);
+        Some(hatching)
+    }
+
+    /// What is hatched before a drawing is mirrored, turned and scaled, so that it is `hatching` afterwards.
+    pub(crate) fn before_placing(&self, hatching: Hatching, ops: Ops<'_>) -> Result<Hatching, String> {
+        let (mut drawing, _, head) = gathered(ops);
+        let before_mm = drawing.length_mm();
+        self.put(&mut drawing, head.sheet_mm, &mut Vec::new())?;
+        let scale = drawing.length_mm() / before_mm;
+        let mut before = hatching;
+        if scale.is_finite() && scale > 0.0 {
+            before.distance_mm /= scale;
+            before.tolerance_mm /= scale;
+        }
+        let unturned_rad = hatching.angle_rad - self.rotate.unwrap_or(0.0).to_radians();
+        before.angle_rad = if self.mirror.is_some() { -unturned_rad } else { unturned_rad };
+        Ok(before)
+    }
+
     /// Whether the whole drawing has to be there before the first stroke of it can be drawn.
     fn needs_all(&self) -> bool {
         let Self { scale, fit, center, rotate, mirror, crop, .. } = self;
@@ -203,7 +263,7 @@ impl Arrangement {
         places || cuts || bends || merge_mm.is_some() || order.is_some() || from_layer.is_some()
     }
 
-    /// The operations of a drawing with all that is asked for; `occludes` lets closed strokes hide what is below them.
+    /// The operations of a drawing with all that is asked for; `hides` says whether closed strokes hide what is below them.
     ///
     /// # Errors
     ///
@@ -212,8 +272,9 @@ impl Arrangement {
         &self,
         ops: Ops<'a>,
         tolerance_mm: f64,
-        occludes: bool,
+        hides: Hidden,
     ) -> Result<Ops<'a>, String> {
+        let occludes = hides == Hidden::Below;
         let ops = match self.from_line {
             Some(line) => ops.beginning_at(line),
             None => ops,
@@ -229,22 +290,26 @@ impl Arrangement {
             from_layer(&mut drawing, layer)?;
         }
         let sheet_mm = self.put(&mut drawing, head.sheet_mm, &mut said)?;
+        if let Some(mut hatching) = self.hatching(tolerance_mm).filter(|_| hides != Hidden::Hatched) {
+            if occludes {
+                hatching.together = HatchTogether::Within;
+            }
+            let lines = drawing.hatch(&hatching, |_| true).map_err(|error| format!("--hatch: {error}"))?;
+            if lines == 0 {
+                said.push(nothing_filled());
+            }
+        }
         if occludes {
             drawing.occlude(Hides::All, tolerance_mm);
         }
-        if let Some(distance_mm) = self.hatch {
-            let mut hatching = Hatching::default();
-            (hatching.distance_mm, hatching.angle_rad) = (distance_mm, self.hatch_angle.to_radians());
-            hatching.tolerance_mm = tolerance_mm;
-            let lines = drawing.hatch(&hatching, |_| true).map_err(|error| format!("--hatch: {error}"))?;
-            if lines == 0 {
-                let text = "--hatch: no stroke is closed, so that nothing is filled: join their ends first (--merge-mm), and convert again";
-                said.push(Diagnostic::new(Severity::Warning, text.into()));
+        match &self.crop {
+            Some(Crop::Rectangle(rectangle)) => {
+                drawing.crop_to_rectangle(*rectangle);
             }
-        }
-        if let Some(Rectangle { corner, size_mm: (width, height) }) = self.crop {
-            let upper = Point::new(corner.x + width, corner.y + height);
-            drawing.crop_to_rectangle(Bounds::between(corner, upper));
+            Some(Crop::Polygon(corners)) => {
+                drawing.crop_to_polygon(corners);
+            }
+            None => {}
         }
         if self.drop_doubles {
             drawing.drop_doubles(tolerance_mm);
@@ -384,11 +449,26 @@ mod tests {
     }
 
     #[test]
-    fn rectangles_are_four_numbers() {
-        let expected = Rectangle { corner: Point::new(-1.0, 2.0), size_mm: (3.0, 4.5) };
-        assert_eq!("-1,2, 3,4.5".parse(), Ok(expected));
-        for bad in ["1,2,3", "1,2,3,0", "1,2,3,4,5", "a,1,1,1", "1,2,nan,4"] {
-            assert!(bad.parse::<Rectangle>().is_err(), "{bad}");
+    fn rectangles_are_four_numbers_and_polygons_six_or_more() {
+        let corner = |x: f64, y: f64| Point::new(x, y);
+        let rectangle = Bounds::between(corner(-1.0, 2.0), corner(2.0, 6.5));
+        assert_eq!("-1,2, 3,4.5".parse(), Ok(Crop::Rectangle(rectangle)));
+        let triangle = vec![corner(10.0, 10.0), corner(60.0, 10.0), corner(35.0, -6.5)];
+        assert_eq!("10,10,60,10, 35,-6.5".parse(), Ok(Crop::Polygon(triangle)));
+        for (bad, expected) in [
+            ("1,2", "give x and y of the lower left corner"),
+            ("1,2,3", "3 numbers are no corners"),
+            ("1,2,3,0", "3 x 0 mm is no rectangle"),
+            ("1,2,3,4,5", "5 numbers are no corners"),
+            ("1,2,3,4,5,6,7", "7 numbers are no corners"),
+            ("0,0,1,1,3,3", "3 corners lie on one line"),
+            ("a,1,1,1", "\"a\" is no number of mm"),
+            ("1,2,nan,4", "\"nan\" is no number"),
+            ("1,2,3,4,5,1e9", "\"1e9\" is no number of mm up to 1000000"),
+            ("", "\"\" is no number"),
+        ] {
+            let error = bad.parse::<Crop>().unwrap_err();
+            assert!(error.contains(expected), "{bad}: {error}");
         }
     }
 }

@@ -1,7 +1,9 @@
 //! [`DrawingFile`]: a drawing in any of the languages, read as plot operations and diagnostics.
 
+use crate::arrangement::Hidden;
 use crate::language::is_dm_pl;
 use crate::{Arrangement, Diagnostics, Language, PenLines, SvgReading, at, svg_drawing};
+use plotter_motion::drawing::Hatching;
 use plotter_motion::hpgl::{cutter, thesis_text};
 use plotter_motion::{PlotOp, Point, Vec2, chords, dxf, gcode, hpgl};
 use plotter_vector::SvgFonts;
@@ -259,16 +261,28 @@ impl DrawingFile {
                 self.language.name()
             ));
         }
-        let ops = self.read(how)?;
-        // SVG says itself what is filled.
-        let occludes = self.svg.occlude && self.language != Language::Svg;
-        self.arrangement
-            .apply(ops, how.tolerance_mm, occludes)
-            .map_err(|error| format!("{}: {error}", self.name))
+        let named = |error| format!("{}: {error}", self.name);
+        // SVG says itself what is filled, and hides when it is read: what is hatched then is hidden too.
+        let (occludes, hidden) = match self.language {
+            Language::Svg => (false, self.svg.occlude),
+            _ => (self.svg.occlude, false),
+        };
+        let hatch = match self.arrangement.hatching(how.tolerance_mm).filter(|_| hidden) {
+            Some(hatching) => {
+                Some(self.arrangement.before_placing(hatching, self.read(how, None)?).map_err(named)?)
+            }
+            None => None,
+        };
+        let hides = match (occludes, hatch) {
+            (_, Some(_)) => Hidden::Hatched,
+            (true, None) => Hidden::Below,
+            (false, None) => Hidden::None,
+        };
+        self.arrangement.apply(self.read(how, hatch)?, how.tolerance_mm, hides).map_err(named)
     }
 
-    /// Its operations as they are in the file.
-    fn read(&self, how: Reading) -> Result<Ops<'_>, String> {
+    /// Its operations as they are in the file; an SVG picture hatched.
+    fn read(&self, how: Reading, hatch: Option<Hatching>) -> Result<Ops<'_>, String> {
         let place = Rc::new(Place::default());
         let bytes = self.bytes(&place)?;
         let mut colours = Vec::new();
@@ -332,7 +346,7 @@ impl DrawingFile {
                     Source::Held(bytes) => Cow::Borrowed(&bytes[..]),
                     Source::File(path) => Cow::Owned(crate::read_file(path)?),
                 };
-                let drawing = svg_drawing(bytes, how.tolerance_mm, &self.svg, &self.fonts)
+                let drawing = svg_drawing(bytes, how.tolerance_mm, &self.svg, &self.fonts, hatch)
                     .map_err(|error| format!("{}: {error}", self.name))?;
                 colours = drawing.colours;
                 sheet_mm = Some(drawing.sheet_mm);

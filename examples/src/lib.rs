@@ -61,7 +61,7 @@ mod vectorize_settings;
 mod window_source;
 mod wrong_choices;
 
-pub use arrangement::{Arrangement, Effort, Mirror, Page, Rectangle};
+pub use arrangement::{Arrangement, Crop, Effort, Mirror, Page};
 pub use controller_contest::compare_controllers;
 pub use diagnostics::Diagnostics;
 pub use drawing_file::{Diagnostic, DrawingFile, Ops, Reading, Severity};

@@ -1,6 +1,7 @@
 //! [`svg_drawing`]: what an SVG picture has to draw, as plot operations.
 
 use crate::{Diagnostic, Severity, SvgReading, usual_colour};
+use plotter_motion::drawing::Hatching;
 use plotter_motion::{PlotOp, Point};
 use plotter_vector::{
     PxPoint, SvgDrawing, SvgFonts, SvgLayer, SvgLeftOut, SvgOptions, SvgPens, read_svg_with_fonts,
@@ -42,7 +43,8 @@ impl fmt::Debug for SvgOps {
 /// What an SVG picture has to draw; [`read_svg_with_fonts`] says what becomes of it. Arcs stay arcs.
 ///
 /// Each colour is a pen, in the order in which they come, unless `how` says otherwise; in a picture that was written here, of which
-/// each pen is a group, the pens are those that they were. Where a layer asks for it, the pen waits before it.
+/// each pen is a group, the pens are those that they were. Where a layer asks for it, the pen waits before it. `hatch` fills closed
+/// shapes, as large as the file has them.
 ///
 /// # Errors
 ///
@@ -52,6 +54,7 @@ pub fn svg_drawing(
     tolerance_mm: f64,
     how: &SvgReading,
     fonts: &SvgFonts,
+    hatch: Option<Hatching>,
 ) -> Result<SvgOps, String> {
     let (least, most) = TOLERANCES_MM;
     let options = SvgOptions {
@@ -60,6 +63,7 @@ pub fn svg_drawing(
         paper: how.paper.0,
         keeps_clipped: how.keep_clipped,
         occludes: how.occlude,
+        hatch,
         px_per_inch: how.px_per_inch,
         ..SvgOptions::default()
     };
@@ -100,8 +104,13 @@ pub fn svg_drawing(
         column: Some(problem.column),
         ..Diagnostic::new(Severity::Warning, problem.text.clone())
     });
-    let diagnostics =
-        problems.chain(left_out(&svg, how)).chain(of_layers(&svg)).chain(beyond(&svg)).collect();
+    let unfilled = (hatch.is_some() && svg.hatched == 0).then(crate::arrangement::nothing_filled);
+    let diagnostics = problems
+        .chain(left_out(&svg, how))
+        .chain(of_layers(&svg))
+        .chain(beyond(&svg))
+        .chain(unfilled)
+        .collect();
     let mut layers: Vec<(String, usize)> =
         svg.layers.iter().filter_map(|layer| Some((layer.name.clone(), layer.first_stroke?))).collect();
     layers.sort_by_key(|(_, first)| *first);
@@ -293,7 +302,7 @@ mod tests {
         );
         let bytes = text.as_bytes().into();
         let SvgOps { ops, diagnostics, colours, .. } =
-            svg_drawing(bytes, 0.01, &SvgReading::default(), &SvgFonts::default()).unwrap();
+            svg_drawing(bytes, 0.01, &SvgReading::default(), &SvgFonts::default(), None).unwrap();
         Drawn { ops: ops.collect(), diagnostics, colours }
     }
 
@@ -372,6 +381,8 @@ mod tests {
             ]
         );
         assert!(drawing.ops.is_empty());
-        assert!(svg_drawing(b"<svg".into(), 0.01, &SvgReading::default(), &SvgFonts::default()).is_err());
+        assert!(
+            svg_drawing(b"<svg".into(), 0.01, &SvgReading::default(), &SvgFonts::default(), None).is_err()
+        );
     }
 }

@@ -1,4 +1,6 @@
-//! [`Decimal`]: a number read digit by digit.
+//! [`Decimal`]: a number read digit by digit; [`WrittenNumber`]: what of it a message shows.
+
+use core::fmt;
 
 /// Digits kept. An `f64` holds 15 to 17, and 18 fit into a `u64`.
 const MAX_DIGITS: u8 = 18;
@@ -59,6 +61,39 @@ impl Decimal {
         let magnitude = if self.huge { f64::INFINITY } else { self.mantissa as f64 / scale };
         Some(if self.negative { -magnitude } else { magnitude })
     }
+
+    /// It as a message shows it.
+    pub(crate) fn written(self) -> WrittenNumber {
+        WrittenNumber { number: self }
+    }
+}
+
+/// A number as it was written, for messages: its first 18 digits without leading zeros, and `…` where more stand before the point.
+///
+/// ```
+/// use plotter_motion::gcode::Reader;
+/// let mut reader = Reader::new();
+/// let error = b"G1 X-99999999999999999999999999\n".iter().find_map(|byte| reader.push(*byte)).unwrap().unwrap_err();
+/// assert!(error.to_string().starts_with("line 1, column 4: X with -999999999999999999…: "));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrittenNumber {
+    number: Decimal,
+}
+
+impl fmt::Display for WrittenNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Decimal { negative, mantissa, places, huge, .. } = self.number;
+        f.write_str(if negative { "-" } else { "" })?;
+        match 10_u64.checked_pow(places.into()) {
+            Some(scale) if places > 0 => {
+                write!(f, "{}.{:0width$}", mantissa / scale, mantissa % scale, width = places.into())
+            }
+            // So many places are of numbers that are near 0.
+            None => write!(f, "{mantissa}e-{places}"),
+            _ => write!(f, "{mantissa}{}", if huge { "…" } else { "" }),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -76,6 +111,21 @@ mod tests {
         for text in ["0", "-1385.640646", "+.5", "7.", "0.1", "007", "-0.0000000003", "8388607.9999"] {
             assert_eq!(read(text), text.parse().ok(), "{text}");
         }
+    }
+
+    #[test]
+    fn a_number_is_shown_as_it_was_written() {
+        let shown = |text: &str| {
+            let (first, rest) = text.as_bytes().split_first().unwrap();
+            let mut number = Decimal::begin(*first).unwrap();
+            assert!(rest.iter().all(|byte| number.push(*byte)));
+            std::format!("{}", number.written())
+        };
+        for text in ["1000000001", "-12345678901.0625", "7.05"] {
+            assert_eq!(shown(text), text);
+        }
+        assert_eq!(shown("+00012345678901234567890123.5"), "123456789012345678…");
+        assert_eq!(shown("-0.00000000000000000000001"), "-0e-22");
     }
 
     #[test]

@@ -61,6 +61,7 @@ pub use config::{
 };
 #[cfg(feature = "toml")]
 pub use config::{TomlError, TomlPlace};
+pub use decimal::WrittenNumber;
 pub use encoder::{Phases, QuadratureX1, QuadratureX2, QuadratureX4};
 pub use geom::{Point, Segment, Vec2};
 pub(crate) use homing::HomingProgress;

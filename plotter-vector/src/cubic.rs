@@ -60,6 +60,20 @@ impl Cubic {
         (i * u.0 + j * v.0 + k * w.0, i * u.1 + j * v.1 + k * w.1)
     }
 
+    /// No less than its speed anywhere: that along the longest side of its polygon, px per unit of t.
+    pub(crate) fn greatest_speed(&self) -> f64 {
+        let [b, c] = self.handles;
+        3.0 * self.from.distance(b).max(b.distance(c)).max(c.distance(self.to))
+    }
+
+    /// The handles of its parts up to t and from there on (de Casteljau).
+    pub(crate) fn halves(&self, t: f64) -> [[PxPoint; 2]; 2] {
+        let [b, c] = self.handles;
+        let between = |from: PxPoint, to: PxPoint| from.along(to.minus(from), t);
+        let (first, middle, last) = (between(self.from, b), between(b, c), between(c, self.to));
+        [[first, between(first, middle)], [between(middle, last), last]]
+    }
+
     /// The change of its speed at t, px per unit of t squared.
     pub(crate) fn bend(&self, t: f64) -> (f64, f64) {
         let (first, second) = self.bends();

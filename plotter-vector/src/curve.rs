@@ -148,6 +148,22 @@ impl Curve {
         rotated(&mut self.bulges, pieces, start);
         rotated(&mut self.handles, pieces, start);
     }
+
+    /// Lets a closed one begin and end within its first piece, a share of it on: the piece becomes two, the first and the last.
+    pub(crate) fn begin_within(&mut self, share: f64) {
+        let Some(whole) = self.course().piece(0).filter(|_| share > 0.0 && share < 1.0) else { return };
+        let (at, pieces) = (whole.at(share), self.vertices.len().saturating_sub(1));
+        if let Some(first) = self.vertices.first_mut() {
+            let was = core::mem::replace(first, at);
+            if let Some(last) = self.vertices.last_mut() {
+                *last = was;
+            }
+            self.vertices.push(at);
+        }
+        let [(first_bulge, first_handles), (last_bulge, last_handles)] = whole.halves(share);
+        within(&mut self.bulges, pieces, first_bulge, last_bulge);
+        within(&mut self.handles, pieces, first_handles, last_handles);
+    }
 }
 
 /// What belongs to the pieces, from their other end; `turn` makes one of them the other way round.
@@ -175,6 +191,15 @@ fn rotated<T: Clone + Default>(of_pieces: &mut Vec<T>, pieces: usize, start: usi
         of_pieces.resize(pieces, T::default());
         of_pieces.rotate_left(start);
         of_pieces.push(T::default());
+    }
+}
+
+/// What belongs to the pieces of a ring, the first of which becomes the first and the last one.
+fn within<T: Clone + Default>(of_pieces: &mut Vec<T>, pieces: usize, first: T, last: T) {
+    if let Some(slot) = of_pieces.first_mut() {
+        *slot = first;
+        of_pieces.resize(pieces, T::default());
+        of_pieces.extend([last, T::default()]);
     }
 }
 
@@ -220,6 +245,18 @@ impl Course<'_> {
         Some(cubic.map(Piece::Cubic).or_else(|| arc().map(Piece::Arc)).unwrap_or(Piece::Line(from, to)))
     }
 
+    /// No shorter than the piece that begins at a vertex, px, in fewer sums than its length: of a cubic curve the sides of its polygon;
+    /// of an arc with the chord c and the bulge b its length is c (1 + b²) atan(b) / b.
+    pub(crate) fn longest_px(&self, index: usize) -> f64 {
+        let Some(from) = self.vertices.get(index) else { return 0.0 };
+        let Some(to) = self.vertices.get(index + 1).or(self.vertices.first()) else { return 0.0 };
+        if let Some([first, second]) = self.handles.get(index).copied().flatten() {
+            return from.distance(first) + first.distance(second) + second.distance(*to);
+        }
+        let bulge = self.bulges.get(index).copied().filter(|bulge| is_bulge(*bulge)).unwrap_or(0.0);
+        from.distance(*to) * (1.0 + bulge * bulge)
+    }
+
     pub(crate) fn pieces(self) -> impl Iterator<Item = Piece> {
         (1..self.vertices.len()).filter_map(move |next| self.piece(next - 1))
     }
@@ -261,6 +298,40 @@ impl Piece {
             Self::Arc(arc) => arc.to,
             Self::Cubic(cubic) => cubic.to,
         }
+    }
+
+    /// The place a share of the way along, 0 to 1: of a cubic curve, at that t.
+    pub(crate) fn at(&self, share: f64) -> PxPoint {
+        match self {
+            Self::Line(from, to) => {
+                let (x, y) = to.minus(*from);
+                from.along((x, y), share)
+            }
+            Self::Arc(arc) => arc.at(share),
+            Self::Cubic(cubic) => cubic.at(share),
+        }
+    }
+
+    /// Bulge and handles of what comes after a share of it, and of what comes before.
+    fn halves(&self, share: f64) -> [(f64, Option<[PxPoint; 2]>); 2] {
+        match self {
+            Self::Line(..) => [(0.0, None); 2],
+            Self::Arc(arc) => [1.0 - share, share].map(|part| (libm::tan(0.25 * arc.sweep_rad * part), None)),
+            Self::Cubic(cubic) => {
+                let [before, after] = cubic.halves(share);
+                [(0.0, Some(after)), (0.0, Some(before))]
+            }
+        }
+    }
+
+    /// No shorter than its part over so great a share of it, px.
+    pub(crate) fn longest_part_px(&self, share: f64) -> f64 {
+        share
+            * match self {
+                Self::Line(from, to) => from.distance(*to),
+                Self::Arc(arc) => arc.length_px(),
+                Self::Cubic(cubic) => cubic.greatest_speed(),
+            }
     }
 
     fn length_px(&self) -> f64 {
@@ -443,6 +514,17 @@ mod tests {
         assert!(one.iter().zip(&other).all(|(a, b)| a.distance(*b) < 1e-12));
         back.reverse();
         assert_eq!(back, stroke());
+    }
+
+    #[test]
+    fn no_piece_is_longer_than_its_bound() {
+        for curve in [stroke(), bent(), Curve { bulges: vec![7.0, -0.1, 1.0], ..stroke() }] {
+            let course = curve.course();
+            for (index, piece) in course.pieces().enumerate() {
+                let (px, most_px) = (piece.length_px(), course.longest_px(index));
+                assert!(px <= most_px + 1e-9 && most_px < 60.0 * px, "{piece:?}: {px} px of {most_px} px");
+            }
+        }
     }
 
     #[test]

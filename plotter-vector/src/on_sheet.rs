@@ -2,6 +2,7 @@
 
 use crate::curve::Piece;
 use crate::{Curve, Drawing, PxPoint, Scale};
+use plotter_motion::Point;
 use plotter_motion::drawing::{self, PathSegment, Shape, Stroke};
 
 impl Drawing {
@@ -56,13 +57,14 @@ impl Drawing {
 }
 
 /// A stroke as a curve, whose places `place` gives; `sense` is −1 where it turns the y axis over.
-pub(crate) fn curve(stroke: &Stroke, place: impl Fn(plotter_motion::Point) -> PxPoint, sense: f64) -> Curve {
+pub(crate) fn curve(stroke: &Stroke, place: impl Fn(Point) -> PxPoint, sense: f64) -> Curve {
     let mut curve = Curve { vertices: vec![place(stroke.from)], ..Curve::default() };
     if stroke.is_dot() {
         return curve;
     }
     let (mut has_arcs, mut has_cubics) = (false, false);
-    for segment in &stroke.segments {
+    let halves = stroke.segments().flat_map(|(from, segment)| halved(from, segment));
+    for segment in halves {
         let (mut bulge, mut handles) = (0.0, None);
         match segment.shape {
             Shape::Line => {}
@@ -88,10 +90,34 @@ pub(crate) fn curve(stroke: &Stroke, place: impl Fn(plotter_motion::Point) -> Px
     curve
 }
 
+/// A segment, but of a whole turn its halves: an arc between two vertices has a chord.
+pub(crate) fn halved(from: Point, segment: &PathSegment) -> impl Iterator<Item = PathSegment> + use<> {
+    let is_whole_turn =
+        matches!(segment.shape, Shape::Arc { .. }) && segment.to == from && !segment.is_dot(from);
+    let (first, second) = if is_whole_turn {
+        (segment.part(from, 0.0, 0.5), Some(segment.part(from, 0.5, 1.0)))
+    } else {
+        (*segment, None)
+    };
+    core::iter::once(first).chain(second)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plotter_motion::Point;
+
+    #[test]
+    fn a_whole_turn_is_a_circle() {
+        let from = Point::new(7.0, 4.0);
+        let turn = PathSegment::arc(Point::new(4.0, 4.0), core::f64::consts::TAU, from);
+        let sheet = drawing::Drawing {
+            strokes: vec![Stroke { from, segments: vec![turn], ..Stroke::default() }],
+            ..drawing::Drawing::default()
+        };
+        let drawing = Drawing::of_sheet(&sheet, (10, 10), Scale::new(10, 1.0, Point::ORIGIN).unwrap());
+        let (centre, radius_px) = drawing.curve(0).circle().unwrap();
+        assert!(centre.distance(PxPoint::new(4.0, 6.0)) < 1e-9 && (radius_px - 3.0).abs() < 1e-9);
+    }
 
     #[test]
     fn there_and_back_is_the_same_drawing() {

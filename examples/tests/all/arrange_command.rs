@@ -95,6 +95,13 @@ fn what_lies_outside_is_cut_off() {
     let cropped = arranged(&["--crop", "15,0,10,100"]);
     assert!(near(box_of(&cropped), [15.0, 10.0, 25.0, 10.0]), "{:?}", box_of(&cropped));
     assert!((cropped.length_mm() - 9.75).abs() < 1e-3, "{}", cropped.length_mm());
+    // A triangle, between x = 15 and x = 25 at y = 10 where both level lines run.
+    let triangle = arranged(&["--crop", "10,0,20,20,30,0"]);
+    assert!(near(box_of(&triangle), [15.0, 10.0, 25.0, 10.0]), "{:?}", box_of(&triangle));
+    assert!((triangle.length_mm() - 9.75).abs() < 1e-3, "{}", triangle.length_mm());
+    // One that goes round twice: what lies within both turns is cut off.
+    let twice = arranged(&["--crop", "10,0,10,20,30,20,30,0,10,0,15,0,15,20,25,20,25,0,15,0"]);
+    assert!((twice.length_mm() - 10.0).abs() < 1e-3, "{}", twice.length_mm());
 }
 
 #[test]
@@ -213,6 +220,61 @@ fn closed_strokes_are_filled_and_hide_what_is_below() {
 }
 
 #[test]
+fn what_is_seen_of_a_hidden_shape_is_hatched() {
+    // Two squares of 40 mm: the second one, of another pen, hides the right half of the first one. A third is drawn in the second, a hole.
+    let square = |pen: u32, x: u32, y: u32, side: u32| {
+        let (right, upper) = (x + side, y + side);
+        format!("SP{pen};PU{x},{y};PD{right},{y},{right},{upper},{x},{upper},{x},{y};PU;")
+    };
+    let text = format!("IN;{}{}", square(1, 400, 400, 1600), square(2, 1200, 400, 1600));
+    let hatched_mm = |text: &str| {
+        let of = |options: &[&str]| arranged_into("b.plt", text, "a.plt", options).0;
+        let (plain, both) = (of(&["--occlude"]), of(&["--occlude", "--hatch", "2", "--hatch-angle", "0"]));
+        [1, 2].map(|pen| both.of_pen(pen).length_mm() - plain.of_pen(pen).length_mm())
+    };
+    // 20 lines each, of 20 mm and of 40 mm: area through distance.
+    let [lower, upper] = hatched_mm(&text);
+    assert!((lower - 400.0).abs() < 0.1 && (upper - 800.0).abs() < 0.1, "{lower} {upper}");
+    let holed = text.clone() + &square(2, 1600, 800, 800);
+    let [lower, upper] = hatched_mm(&holed);
+    assert!((lower - 400.0).abs() < 0.1 && (upper - 600.0).abs() < 0.1, "{lower} {upper}");
+}
+
+#[test]
+fn a_picture_is_hatched_where_its_shapes_are_seen() {
+    // Squares of 40 mm, the second over the right half of the first one.
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' viewBox='0 0 100 100'>\
+               <path d='M10 10H50V50H10Z' fill='#f00'/><path d='M30 10H70V50H30Z' fill='#00f'/></svg>";
+    let hatch = ["--hatch", "2", "--hatch-angle", "0"];
+    // Whatever its size on the sheet, the distance is 2 mm; turned by a quarter the lines are still level.
+    for (placed, scale) in [
+        (&[][..], 1.0),
+        (&["--scale", "0.5"], 0.5),
+        (&["--fit", "120x200", "--rotate", "90", "--mirror", "y"], 3.0),
+    ] {
+        let of = |options: &[&str]| arranged_into("b.plt", svg, "a.svg", options).0;
+        let plain = of(&[&["--occlude"], placed].concat());
+        let both = of(&[&["--occlude"], &hatch[..], placed].concat());
+        let lines_mm = [1, 2].map(|pen| both.of_pen(pen).length_mm() - plain.of_pen(pen).length_mm());
+        let area_mm2 = [20.0 * 40.0, 40.0 * 40.0].map(|area| area * scale * scale);
+        for (length_mm, area_mm2) in lines_mm.iter().zip(area_mm2) {
+            // A row more or less.
+            let row_mm = 80.0 * scale;
+            assert!((length_mm - area_mm2 / 2.0).abs() <= row_mm, "{placed:?}: {lines_mm:?} {area_mm2}");
+        }
+        let level = both.strokes.iter().filter(|stroke| stroke.segments.len() == 1);
+        assert!(
+            level.clone().count() > 10
+                && level.clone().all(|stroke| (stroke.to().y - stroke.from.y).abs() < 0.03),
+            "{placed:?}"
+        );
+    }
+    let open = svg.replace("fill='", "fill='none' stroke-dasharray='1' stroke='");
+    let (_, said) = arranged_as(&open, "a.svg", &["--occlude", "--hatch", "2"]);
+    assert!(said.contains("--hatch: no stroke is closed"), "{said}");
+}
+
+#[test]
 fn a_plot_goes_on_at_a_line_with_its_pen() {
     let folder = Folder::new();
     let (from, to) = (folder.write("a.plt", LINES), folder.file("b.plt"));
@@ -279,6 +341,7 @@ fn what_cannot_be_done_is_said_in_one_line() {
         &["--scale", "0"][..],
         &["--fit", "A9"],
         &["--crop", "1,2,3"],
+        &["--crop", "1,2,3,4,5,6,7"],
         &["--order", "quick"],
         &["--from-line", "0"],
         &["--scale", "2", "--fit", "A4"],

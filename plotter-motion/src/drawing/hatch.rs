@@ -1,13 +1,25 @@
 //! [`Drawing::hatch`]: lines that fill closed strokes.
 
+use super::boxes::BoxTree;
 use super::occlude::sheets;
-use super::region::outline;
-use super::scan::{Rows, TooMany};
-use super::{Affine, Drawing, PathSegment, Stroke};
+use super::region::{Region, outline};
+use super::scan::{MOST_SPANS, Rows, TooMany};
+use super::{Affine, Bounds, Drawing, PathSegment, Stroke};
 use crate::Point;
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 use core::f64::consts::FRAC_PI_4;
+
+/// Which closed strokes are filled together, of one pen, layer and sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum HatchTogether {
+    /// All of them: what lies within an odd number of them. The lines stand behind the last one.
+    #[default]
+    All,
+    /// Each by itself. One that is drawn later and lies in it wholly, without touching it, is its hole, and one in that is filled again.
+    /// The lines stand directly behind their stroke, so that [`Drawing::occlude`] hides them as it hides the stroke: hatch first then.
+    Within,
+}
 
 /// How closed strokes are filled: by default with lines at 45 degrees and 1 mm from each other, within 0.01 mm.
 ///
@@ -25,11 +37,18 @@ pub struct Hatching {
     /// How far the ends of lines may lie from an arc or a curve, and how far the ends of a closed stroke from each other, mm. A tenth of a
     /// micrometre at least.
     pub tolerance_mm: f64,
+    /// Which closed strokes are filled together.
+    pub together: HatchTogether,
 }
 
 impl Default for Hatching {
     fn default() -> Self {
-        Self { distance_mm: 1.0, angle_rad: FRAC_PI_4, tolerance_mm: 0.01 }
+        Self {
+            distance_mm: 1.0,
+            angle_rad: FRAC_PI_4,
+            tolerance_mm: 0.01,
+            together: HatchTogether::default(),
+        }
     }
 }
 
@@ -51,7 +70,7 @@ pub enum HatchError {
     TooMany {
         /// How many there would be.
         lines: f64,
-        /// The most that there may be in the shapes of one pen and layer on one sheet.
+        /// The most that there may be in shapes that are filled together, or in all of them.
         most: f64,
     },
 }
@@ -67,7 +86,7 @@ impl core::fmt::Display for HatchError {
             }
             Self::TooMany { lines, most } => write!(
                 f,
-                "the closed strokes of one pen would be hatched with {lines:.0} lines, more than {most:.0}: choose a greater distance"
+                "closed strokes would be hatched with {lines:.0} lines, more than {most:.0}: choose a greater distance"
             ),
         }
     }
@@ -81,12 +100,14 @@ impl Drawing {
     /// The strokes of one pen, layer and sheet are filled together: what lies within an odd number of them. So a ring's inner stroke is
     /// the border of its hole. The lines are strokes of the same pen and layer, and have the speed and the power of the first segment
     /// of the first of these strokes. They stand behind the last of them, and every other one runs the other way, for short ways between.
+    /// [`HatchTogether::Within`] fills each stroke by itself.
     ///
     /// The lines of all shapes lie at odd multiples of half the distance from the origin, so that those of neighbours go on in each other.
     ///
     /// # Errors
     ///
-    /// A distance that is not above 0, an angle that is not finite, more than 100,000 rows or 1,000,000 lines. Nothing is hatched then.
+    /// A distance that is not above 0, an angle that is not finite, more than 100,000 rows or 1,000,000 lines in strokes that are filled
+    /// together, or 1,000,000 lines in all. Nothing is hatched then.
     ///
     /// ```
     /// use plotter_motion::{Point, drawing::{Bounds, Drawing, Hatching, Stroke}};
@@ -106,7 +127,7 @@ impl Drawing {
         hatching: &Hatching,
         mut wanted: impl FnMut(&Stroke) -> bool,
     ) -> Result<usize, HatchError> {
-        let Hatching { distance_mm, angle_rad, tolerance_mm } = *hatching;
+        let Hatching { distance_mm, angle_rad, tolerance_mm, together } = *hatching;
         if !(distance_mm > 0.0 && distance_mm.is_finite()) {
             return Err(HatchError::Distance { distance_mm });
         }
@@ -116,24 +137,31 @@ impl Drawing {
         let way = Affine::turned(angle_rad).x;
         let base = Point::ORIGIN + way.perpendicular() * (0.5 * distance_mm);
         let rows = Rows { base, way, distance_mm };
-        let mut shapes: BTreeMap<(usize, u8, u32), Shapes> = BTreeMap::new();
+        let mut shapes: BTreeMap<(usize, u8, u32), Vec<Numbered>> = BTreeMap::new();
         for ((number, stroke), sheet) in self.strokes.iter().enumerate().zip(sheets(&self.strokes)) {
             if let Some(outline) = outline(stroke, tolerance_mm).filter(|_| wanted(stroke)) {
-                let shapes = shapes.entry((sheet, stroke.pen, stroke.layer)).or_insert_with(|| Shapes {
-                    outlines: Vec::new(),
-                    first: number,
-                    last: number,
-                });
-                shapes.outlines.push(closed(outline));
-                shapes.last = number;
+                shapes.entry((sheet, stroke.pen, stroke.layer)).or_default().push((number, closed(outline)));
             }
         }
         let mut lines: BTreeMap<usize, Vec<Stroke>> = BTreeMap::new();
-        for shapes in shapes.values() {
-            let Some(first) = self.strokes.get(shapes.first) else { continue };
-            lines.insert(shapes.last, shapes.lines(&rows, first)?);
+        let mut count = 0;
+        for shapes in shapes.into_values() {
+            let shapes = match together {
+                HatchTogether::All => Shapes::all(shapes).into_iter().collect(),
+                HatchTogether::Within => Shapes::within(shapes),
+            };
+            for shapes in shapes {
+                let Some(first) = self.strokes.get(shapes.first) else { continue };
+                let own = shapes.lines(&rows, first)?;
+                count += own.len();
+                #[expect(clippy::cast_precision_loss, reason = "a count in memory")]
+                let all = count as f64;
+                if all > MOST_SPANS {
+                    return Err(HatchError::TooMany { lines: all, most: MOST_SPANS });
+                }
+                lines.insert(shapes.behind, own);
+            }
         }
-        let count = lines.values().map(Vec::len).sum();
         if count > 0 {
             let strokes = core::mem::take(&mut self.strokes).into_iter().enumerate();
             self.strokes = strokes
@@ -146,21 +174,66 @@ impl Drawing {
     }
 }
 
+/// The box round an outline.
+fn round(outline: &[Point]) -> Bounds {
+    let mut bounds = Bounds::default();
+    outline.iter().for_each(|place| bounds.grow(*place));
+    bounds
+}
+
 /// The last place of an outline is the first one.
 fn closed(mut outline: Vec<Point>) -> Vec<Point> {
     outline.extend(outline.first().copied());
     outline
 }
 
+/// An outline and the number of its stroke.
+type Numbered = (usize, Vec<Point>);
+
 /// Closed strokes that are filled together.
 struct Shapes {
     outlines: Vec<Vec<Point>>,
-    /// Numbers of the first and the last of the strokes.
+    /// Number of the first of the strokes.
     first: usize,
-    last: usize,
+    /// Number of the stroke behind which the lines stand.
+    behind: usize,
 }
 
 impl Shapes {
+    fn all(shapes: Vec<Numbered>) -> Option<Self> {
+        let (first, behind) = (shapes.first()?.0, shapes.last()?.0);
+        Some(Self { outlines: shapes.into_iter().map(|(_, outline)| outline).collect(), first, behind })
+    }
+
+    /// Each outline that is filled with its holes. The last of the earlier ones that an outline lies in tells: within a filled one it
+    /// is a hole, within a hole it is filled.
+    fn within(shapes: Vec<Numbered>) -> Vec<Self> {
+        let bounds: Vec<Bounds> = shapes.iter().map(|(_, outline)| round(outline)).collect();
+        let tree = BoxTree::new(bounds.iter().copied());
+        let regions: Vec<Region> =
+            shapes.iter().map(|(_, outline)| Region::polygons([outline.iter().copied()])).collect();
+        let mut all: Vec<Self> = Vec::new();
+        // Where each outline went that is filled.
+        let mut filled: Vec<Option<usize>> = Vec::with_capacity(shapes.len());
+        let mut around: Vec<usize> = Vec::new();
+        for (index, ((number, outline), own)) in shapes.into_iter().zip(&bounds).enumerate() {
+            around.clear();
+            tree.each(|other| other.has(own.least) && other.has(own.most), |other| around.push(other));
+            around.retain(|other| *other < index);
+            around.sort_unstable_by(|a, b| b.cmp(a));
+            let holds = |other: &&usize| regions.get(**other).is_some_and(|region| region.holds(&outline));
+            let around = around.iter().find(holds).and_then(|other| filled.get(*other).copied().flatten());
+            if let Some(shapes) = around.and_then(|around| all.get_mut(around)) {
+                shapes.outlines.push(outline);
+                filled.push(None);
+            } else {
+                filled.push(Some(all.len()));
+                all.push(Self { outlines: alloc::vec![outline], first: number, behind: number });
+            }
+        }
+        all
+    }
+
     fn lines(&self, rows: &Rows, like: &Stroke) -> Result<Vec<Stroke>, HatchError> {
         let mut lines: Vec<Stroke> = Vec::new();
         let (mut last_row, mut row_begin, mut is_back) = (f64::NAN, 0, true);

@@ -51,7 +51,7 @@ mod written;
 pub use affine::Affine;
 pub use bounds::Bounds;
 pub use doubles::Doubles;
-pub use hatch::{HatchError, Hatching};
+pub use hatch::{HatchError, HatchTogether, Hatching};
 pub use occlude::Hides;
 pub use ops::DrawingBuilder;
 pub use place::{Placement, PlacementError};

@@ -112,6 +112,19 @@ impl Region {
         self.side(place) != Side::Outside
     }
 
+    /// Whether all lines from place to place lie in it, none of them on its border.
+    pub(super) fn holds(&self, places: &[Point]) -> bool {
+        let is_inside = |place: Point| self.side(place) == Side::Inside;
+        places.iter().all(|place| is_inside(*place))
+            && places.windows(2).all(|pair| {
+                let &[from, to] = pair else { return true };
+                let line = PathSegment::line(to);
+                // Who leaves it, or touches the border, does so there.
+                let cuts = self.crossings(from, &line, &Bounds::between(from, to));
+                cuts.into_iter().all(|share| is_inside(line.at(from, share)))
+            })
+    }
+
     fn side(&self, place: Point) -> Side {
         let (mut is_border, mut is_inside) = (false, false);
         let is_left = |bounds: &Bounds| {

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 /// Most rows over one area: 10 m of them at 0.1 mm.
 const MOST_ROWS: f64 = 100_000.0;
 /// Most pieces of rows in one area: a row each 0.3 mm of an A0 sheet may have 350. As strokes they take 200 MB.
-const MOST_SPANS: f64 = 1_000_000.0;
+pub(super) const MOST_SPANS: f64 = 1_000_000.0;
 
 /// Parallel lines at equal distances, numbered: row 0 goes through `base`.
 ///

@@ -2,6 +2,7 @@
 
 use super::code::meaning;
 use super::{Position, Text, Word};
+use crate::WrittenNumber;
 use core::fmt;
 
 /// Something in a text that could not be carried out. Reading goes on with the next line.
@@ -50,6 +51,8 @@ pub enum Problem {
         letter: u8,
         /// The number; infinite when it is very long.
         value: f64,
+        /// How it was written; `None` of one that a formula gave.
+        written: Option<WrittenNumber>,
     },
     /// A comment within a comment, in a line that has words.
     NestedComment,
@@ -267,8 +270,13 @@ impl fmt::Display for Problem {
             Self::Exponent { letter } => {
                 write!(f, "{} has a number with an exponent: write `1500`, not `1.5e3`", Letter(letter))
             }
-            Self::NumberOutOfRange { letter, value } => {
-                write!(f, "{} with {value}: numbers reach from -1000000000 to 1000000000", Letter(letter))
+            Self::NumberOutOfRange { letter, value, written } => {
+                let letter = Letter(letter);
+                match written {
+                    Some(written) => write!(f, "{letter} with {written}")?,
+                    None => write!(f, "{letter} with {value}")?,
+                }
+                f.write_str(": numbers reach from -1000000000 to 1000000000")
             }
             Self::NestedComment => f.write_str(
                 "a comment begins within a comment, of which controllers end the outer one with the inner one: take the inner \

@@ -190,7 +190,7 @@ impl Reader {
         let State::Letter { letter, at } = self.state else { return Ok(()) };
         let letter = letter.to_ascii_uppercase();
         if value.abs() > MOST {
-            return Err(Problem::NumberOutOfRange { letter, value }.at(at));
+            return Err(Problem::NumberOutOfRange { letter, value, written: None }.at(at));
         }
         self.put(letter, at, Some(value))
     }
@@ -412,12 +412,14 @@ impl Reader {
     }
 
     fn word(&mut self, letter: u8, at: Position, number: Option<Decimal>) -> Result<(), Error> {
-        let number = match number.map(|number| number.value().ok_or(number)) {
+        let number = match number.map(|number| (number.value(), number.written())) {
             None => None,
-            Some(Ok(value)) if value.abs() <= MOST => Some(value),
-            Some(Ok(value)) => return Err(Problem::NumberOutOfRange { letter, value }.at(at)),
-            Some(Err(_)) if self.spacing == Spacing::Required => None,
-            Some(Err(_)) => return Err(Problem::BadNumber { letter }.at(at)),
+            Some((Some(value), _)) if value.abs() <= MOST => Some(value),
+            Some((Some(value), written)) => {
+                return Err(Problem::NumberOutOfRange { letter, value, written: Some(written) }.at(at));
+            }
+            Some((None, _)) if self.spacing == Spacing::Required => None,
+            Some((None, _)) => return Err(Problem::BadNumber { letter }.at(at)),
         };
         self.put(letter, at, number)
     }

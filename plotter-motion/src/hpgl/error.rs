@@ -1,6 +1,7 @@
 //! [`Error`]: what is wrong with a text, where, and what would be right.
 
 use super::{Extension, Mnemonic, Position, Syntax};
+use crate::WrittenNumber;
 use core::fmt;
 
 /// Something in an HPGL text that could not be carried out. Reading goes on after it.
@@ -64,6 +65,8 @@ pub enum Error {
         command: Mnemonic,
         /// The number; infinite when it is very long.
         value: f64,
+        /// How it was written.
+        written: WrittenNumber,
     },
     /// The text ends within a label, a string or encoded data.
     Unterminated {
@@ -306,9 +309,9 @@ impl fmt::Display for Error {
                 "{command} lacks a number between two commas, and its rest is left out: write the number, \
                  0 included"
             ),
-            Self::NumberOutOfRange { command, value, .. } => write!(
+            Self::NumberOutOfRange { command, written, .. } => write!(
                 f,
-                "{command} holds the number {value}, and its rest is left out: numbers reach from -1073741824 to \
+                "{command} holds the number {written}, and its rest is left out: numbers reach from -1073741824 to \
                  1073741824"
             ),
             Self::Unterminated { command, .. } => write!(

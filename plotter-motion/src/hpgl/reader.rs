@@ -496,7 +496,7 @@ impl Reader {
                 }
                 return Ok(Event::Number { value, at, last });
             }
-            Some(value) => Error::NumberOutOfRange { at, command, value },
+            Some(value) => Error::NumberOutOfRange { at, command, value, written: number.written() },
             None => Error::BadNumber { at, command },
         };
         if !last {

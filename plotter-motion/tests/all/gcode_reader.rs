@@ -97,7 +97,7 @@ fn what_is_wrong_is_named_and_costs_its_line() {
     <line 9, column 1 (byte 102): $ speaks to the controller, not the plotter, and is left out>
     <line 10, column 1 (byte 105): a number without its letter: a word is like `X10`>
     <line 11, column 6 (byte 116): byte 0xC3 begins no word: a word is a letter and a number>
-    <line 12, column 3 (byte 121): X with inf: numbers reach from -1000000000 to 1000000000>
+    <line 12, column 3 (byte 121): X with 999999999999999999…: numbers reach from -1000000000 to 1000000000>
     G1 X1
     <line 14, column 4 (byte 532): X has a malformed number: a number is like `-12` or `0.5`>
     <line 15, column 1 (byte 537): O10 controls a loop or a subprogram, which is not done here: have it written out>

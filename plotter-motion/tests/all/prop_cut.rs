@@ -3,7 +3,8 @@
 use core::f64::consts::{PI, TAU};
 use core::time::Duration;
 use plotter_motion::drawing::{
-    Bounds, CutCount, Drawing, HatchError, Hatching, Hides, Keep, Mark, PathSegment, Region, Shape, Stroke,
+    Bounds, CutCount, Drawing, HatchError, HatchTogether, Hatching, Hides, Keep, Mark, PathSegment, Region,
+    Shape, Stroke,
 };
 use plotter_motion::{Point, Segment};
 use proptest::prelude::*;
@@ -242,6 +243,56 @@ proptest! {
     }
 }
 
+/// A rectangle between whole millimetres: left, right, lower and upper.
+type Sides = [i32; 4];
+
+fn sides() -> impl Strategy<Value = Sides> {
+    (0..12_i32, 1..9_i32, 0..12_i32, 1..9_i32).prop_map(|(x, width, y, height)| [x, x + width, y, y + height])
+}
+
+proptest! {
+    #[test]
+    fn what_is_hatched_first_and_hidden_then_is_what_is_seen_of_each_shape(
+        rectangles in proptest::collection::vec((sides(), 1..3_u8), 1..9),
+    ) {
+        let stroke = |([left, right, lower, upper], pen): &(Sides, u8)| {
+            let corner = |x: i32, y: i32| Point::new(f64::from(x), f64::from(y));
+            let corners = Bounds::between(corner(*left, *lower), corner(*right, *upper)).corners();
+            let stroke = Stroke::through(corners.into_iter().chain([corners[0]])).unwrap();
+            Stroke { pen: *pen, ..stroke }
+        };
+        let mut drawing = drawing_of(rectangles.iter().map(stroke));
+        let mut hatching = Hatching::default();
+        (hatching.angle_rad, hatching.together) = (0.0, HatchTogether::Within);
+        drawing.hatch(&hatching, |_| true).unwrap();
+        drawing.occlude(Hides::All, 0.01);
+        // Within another one of its pen that is filled, it is a hole.
+        let mut filled: Vec<bool> = Vec::new();
+        for (index, (own, pen)) in rectangles.iter().enumerate() {
+            let holds = |[left, right, lower, upper]: Sides| {
+                left < own[0] && own[1] < right && lower < own[2] && own[3] < upper
+            };
+            let around = (0..index).rev().find(|other| rectangles[*other].1 == *pen && holds(rectangles[*other].0));
+            filled.push(around.is_none_or(|around| !filled[around]));
+        }
+        // Lines run through the middles of squares of 1 mm: each square is drawn by the shape on top of it.
+        let mut squares = [0.0; 3];
+        for (x, y) in (0..21).flat_map(|x| (0..21).map(move |y| (x, y))) {
+            let has = |[left, right, lower, upper]: Sides| (left..right).contains(&x) && (lower..upper).contains(&y);
+            let top = rectangles.iter().zip(&filled).rev().find(|((sides, _), _)| has(*sides));
+            if let Some(((_, pen), true)) = top {
+                squares[usize::from(*pen)] += 1.0;
+            }
+        }
+        for pen in 1..3 {
+            let lines = drawing.strokes.iter().filter(|stroke| stroke.pen == pen && (stroke.from.y + 0.5).fract() == 0.0);
+            let lines = lines.filter(|stroke| stroke.to().y == stroke.from.y && stroke.segments.len() == 1);
+            let length_mm: f64 = lines.map(Stroke::length_mm).sum();
+            prop_assert!((length_mm - squares[usize::from(pen)]).abs() < 1e-6, "pen {pen}: {length_mm} {squares:?}");
+        }
+    }
+}
+
 /// The area within an odd number of polygons, by counting the middles of squares of 1 mm.
 fn area_mm2(polygons: &[Vec<Point>]) -> f64 {
     let middles = || (-50..50).map(|at| f64::from(at) + 0.5);
@@ -362,6 +413,27 @@ fn hatches_keep_to_their_pen_layer_and_sheet() {
     // The pen never goes farther between them than across the hole and to the next row.
     assert!(lines.windows(2).all(|pair| pair[0].to().distance(pair[1].from) < 4.2), "{lines:?}");
     assert_eq!((drawing.strokes.len(), drawing.strokes[16].before.len()), (18, 1));
+}
+
+#[test]
+fn rings_in_rings_are_hatched_as_rings_whether_hidden_or_not() {
+    // A ring with an island in its hole, and the same square once more on top of all: nothing of the others is seen.
+    let rings = || [square(0.0, 12.0), square(2.0, 10.0), square(4.0, 8.0)];
+    let mut hatching = Hatching::default();
+    hatching.angle_rad = 0.0;
+    for together in [HatchTogether::All, HatchTogether::Within] {
+        hatching.together = together;
+        let mut drawing = drawing_of(rings());
+        drawing.hatch(&hatching, |_| true).unwrap();
+        drawing.occlude(Hides::All, 0.01);
+        let lines_mm = drawing.length_mm() - 4.0 * (12.0 + 8.0 + 4.0);
+        // Behind the last one they are hidden by none; so are those that stand behind their own.
+        assert!((lines_mm - (144.0 - 64.0 + 16.0)).abs() < 1e-9, "{together:?}: {lines_mm}");
+    }
+    let mut twice = drawing_of(rings().into_iter().chain([square(0.0, 12.0)]));
+    twice.hatch(&hatching, |_| true).unwrap();
+    twice.occlude(Hides::All, 0.01);
+    assert!((twice.length_mm() - (48.0 + 144.0)).abs() < 1e-9, "{}", twice.length_mm());
 }
 
 #[test]

@@ -10,29 +10,23 @@ pub(crate) mod forest;
 mod on_sheet;
 pub(crate) mod plan;
 pub(crate) mod point_tree;
+mod ring_start;
 mod route;
 mod search;
 mod sites;
 mod trails;
 mod units;
 
-use crate::{Curve, Drawing, Lettering, PxPoint, TextBlock, curve};
+use crate::curve::Piece as Segment;
+use crate::{Curve, Drawing, Lettering, PxPoint, TextBlock};
 use plan::{Parts, Piece, Stroke, Trail, rebuild, strokes_of};
+use ring_start::start_rings_well;
 use search::shorten;
-use sites::{Sites, number};
+use sites::{RING_PLACES, Sites, number};
 use units::{Units, mark_letters};
 
 /// Greatest coordinate of a drawing that is ordered, px: squares of distances stay far from infinity.
 const FARTHEST_PX: f64 = 1e12;
-
-/// Travel that counts as equal, px.
-const SAME_PX: f64 = 1e-9;
-
-/// Difference of the cosines of two bends that counts as one being sharper.
-const SHARPER_COS: f64 = 0.05;
-
-/// Passes over the rings' starts; each depends on its neighbours', which two passes mostly settle.
-const RING_PASSES: usize = 3;
 
 /// How hard an order is searched for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -57,7 +51,7 @@ pub enum OrderEffort {
 ///    crossing is whole again: the straightest pairs first, one partner an end;
 /// 2. with `one_stroke`, ends in exactly one place are joined whatever the angle, so that each connected part of the
 ///    drawing takes the fewest strokes it can (Hierholzer 1873);
-/// 3. the pen goes from each end to the nearest stroke, entering lines at either end and closed strokes at any vertex,
+/// 3. the pen goes from each end to the nearest stroke, entering lines at either end and closed strokes anywhere,
 ///    then changes of the order that shorten the travel are made (2-opt: Croes 1958; Or-opt: Or 1976; Johnson and
 ///    McGeoch 1997).
 ///
@@ -164,22 +158,32 @@ impl Order {
             return (parts, joined);
         }
         let (mut trails, mut ends) = self.sequence(&parts, &units);
-        start_rings_well(&parts, &mut trails, &mut ends);
-        let mut least_px = self.cost_px(trails.len(), ends);
-        let cost_px = |parts: &Parts<'_>, trails: &[Trail]| {
+        let mut least_px = self.well_begun(&parts, &mut trails, &mut ends);
+        let cost_px = |parts: &Parts<'_>, trails: &mut [Trail]| {
+            if trails.iter().any(|trail| trail.closed) {
+                let mut ends: Vec<Ends> = trails.iter().map(|trail| parts.ends(*trail)).collect();
+                return self.well_begun(parts, trails, &mut ends);
+            }
+            // A million lines are not noted once more.
             self.cost_px(trails.len(), trails.iter().map(|trail| parts.ends(*trail)))
         };
         // Where nothing is joined, this is the given order.
         if trails.len() < strokes.len() {
-            let joined = self.as_joined(&parts, &units);
-            let joined_px = cost_px(&parts, &joined);
+            let mut joined = self.as_joined(&parts, &units);
+            let joined_px = cost_px(&parts, &mut joined);
             if joined_px < least_px {
                 (trails, least_px) = (joined, joined_px);
             }
         }
         drop(units);
-        let (as_given, given) = as_given(strokes, blocks, self.across_pens);
-        if least_px <= cost_px(&as_given, &given) { (parts, trails) } else { (as_given, given) }
+        let (as_given, mut given) = as_given(strokes, blocks, self.across_pens);
+        if least_px <= cost_px(&as_given, &mut given) { (parts, trails) } else { (as_given, given) }
+    }
+
+    /// Lets closed trails begin where that is best, and gives what all of them cost.
+    fn well_begun(&self, parts: &Parts<'_>, trails: &mut [Trail], ends: &mut [Ends]) -> f64 {
+        start_rings_well(parts, trails, ends);
+        self.cost_px(trails.len(), ends.iter().copied())
     }
 
     /// What so many trails cost besides the ink: the way between them, and the lifts.
@@ -267,11 +271,9 @@ fn is_within(stroke: &Stroke<'_>) -> bool {
 fn add_site(sites: &mut Sites, parts: &Parts<'_>, unit: &[Trail], rings: usize) {
     match unit {
         [trail] if trail.closed => {
-            let mut ring = parts.vertices(*trail);
-            ring.pop();
-            sites.push_ring(&ring, rings);
+            sites.push_ring(&ring_places(&parts.curve(*trail)), rings);
         }
-        [trail] if parts.is_dot(*trail) => sites.push_ring(&[parts.ends(*trail).0], rings),
+        [trail] if parts.is_dot(*trail) => sites.push_ring(&[(parts.ends(*trail).0, 0)], rings),
         [trail] => sites.push_line(parts.ends(*trail)),
         trails => {
             let from = trails.first().map(|trail| parts.ends(*trail).0);
@@ -279,6 +281,20 @@ fn add_site(sites: &mut Sites, parts: &Parts<'_>, unit: &[Trail], rings: usize) 
             sites.push_one_way((from.unwrap_or_default(), to.unwrap_or_default()));
         }
     }
+}
+
+/// Places at which a closed trail may be entered, each with the vertex before: the vertices, and where these are few, those that divide
+/// what is not straight evenly.
+fn ring_places(ring: &Curve) -> Vec<(PxPoint, u32)> {
+    let pieces = ring.vertices.len().saturating_sub(1).max(1);
+    let parts = number(RING_PLACES.div_ceil(pieces));
+    let mut places = Vec::with_capacity(pieces);
+    for (vertex, piece) in ring.course().pieces().enumerate() {
+        let parts = if matches!(piece, Segment::Line(..)) { 1 } else { parts };
+        let place = |part: u32| (piece.at(f64::from(part) / f64::from(parts)), number(vertex));
+        places.extend((0..parts).map(place));
+    }
+    places
 }
 
 /// The same strokes in an order with less travel: [`Order::apply`] with the default settings.
@@ -310,70 +326,12 @@ fn as_given<'a>(
     }
     order.sort_unstable();
     let mut parts = Parts::new(strokes);
-    let alone = |stroke| parts.push([Piece { stroke, reversed: false, start: 0 }], false);
+    let alone = |stroke: u32| {
+        let closed = strokes.get(stroke as usize).is_some_and(|stroke| stroke.closed);
+        parts.push([Piece { stroke, reversed: false, start: 0 }], closed)
+    };
     let trails = order.into_iter().map(|(_, _, _, stroke)| stroke).map(alone).collect();
     (parts, trails)
-}
-
-/// Lets each ring begin at the vertex that is on the way from the stroke before to the one after; of equally good
-/// ones at the sharpest corner, where the pen's coming and going is not seen.
-fn start_rings_well(parts: &Parts<'_>, trails: &mut [Trail], ends: &mut [Ends]) {
-    for _ in 0..RING_PASSES {
-        let mut settled = true;
-        for (index, trail) in trails.iter_mut().enumerate().filter(|(_, trail)| trail.closed) {
-            let before = index.checked_sub(1).and_then(|before| ends.get(before)).map(|ends| ends.1);
-            let after = ends.get(index + 1).map(|ends| ends.0);
-            trail.start = 0;
-            let mut ring = parts.curve(*trail);
-            ring.vertices.pop();
-            let start = best_start(&ring, before, after);
-            trail.start = number(start);
-            let at = ring.vertices.get(start).copied().unwrap_or_default();
-            if let Some(slot) = ends.get_mut(index).filter(|slot| slot.0 != at) {
-                *slot = (at, at);
-                settled = false;
-            }
-        }
-        if settled {
-            break;
-        }
-    }
-}
-
-/// The vertex of a ring, whose first one is not repeated, from which it is drawn.
-fn best_start(ring: &Curve, before: Option<PxPoint>, after: Option<PxPoint>) -> usize {
-    let travel =
-        |at: PxPoint| before.map_or(0.0, |from| from.distance(at)) + after.map_or(0.0, |to| to.distance(at));
-    let mut best = (f64::INFINITY, f64::INFINITY, 0);
-    for (index, at) in ring.vertices.iter().enumerate() {
-        let far = travel(*at);
-        if far > best.0 + SAME_PX {
-            continue;
-        }
-        let count = ring.vertices.len();
-        let piece = |index: usize| ring.course().piece(index).unwrap_or(curve::Piece::Line(*at, *at));
-        // Of what is not straight the directions at the vertex count.
-        let from = match piece(index.checked_sub(1).unwrap_or(count - 1)) {
-            curve::Piece::Line(previous, _) => previous,
-            bent => at.along(bent.heading(true), -1.0),
-        };
-        let to = match piece(index) {
-            curve::Piece::Line(_, next) => next,
-            bent => at.along(bent.heading(false), 1.0),
-        };
-        let bend = bend_cos(from, *at, to);
-        if far < best.0 - SAME_PX || bend < best.1 - SHARPER_COS {
-            best = (far, bend, index);
-        }
-    }
-    best.2
-}
-
-/// Cosine of the change of direction at a vertex: 1 straight on, −1 back.
-fn bend_cos(from: PxPoint, at: PxPoint, to: PxPoint) -> f64 {
-    let lengths = from.distance(at) * at.distance(to);
-    let dot = (at.x - from.x) * (to.x - at.x) + (at.y - from.y) * (to.y - at.y);
-    if lengths > 0.0 { dot / lengths } else { 1.0 }
 }
 
 #[cfg(test)]
@@ -451,14 +409,6 @@ mod tests {
         let nearest =
             (0..100).map(|k| vertex(k).distance(PxPoint::new(10.0, 0.0))).fold(f64::INFINITY, f64::min);
         assert_eq!(order(&drawing).pen_up_px(), nearest);
-    }
-
-    #[test]
-    fn of_equally_near_vertices_a_ring_begins_at_the_sharpest() {
-        let ring = [(0.0, 0.0), (2.0, 0.0), (4.0, 0.0), (2.0, 9.0)].map(|(x, y)| PxPoint::new(x, y));
-        let ring = Curve::from(ring.to_vec());
-        assert_eq!(best_start(&ring, None, None), 3);
-        assert_eq!(best_start(&ring, Some(PxPoint::new(2.0, -1.0)), None), 1);
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! [`Order`] for drawings of the sheet: pens, layers, speeds and what happens between strokes stay with them.
 
-use super::plan::{Parts, Piece, Trail, strokes_of};
+use super::plan::{Parts, Piece, Trail, share_of, strokes_of};
 use super::sites::number;
 use super::{Order, OrderEffort};
 use crate::{Drawing, PxPoint};
-use plotter_motion::drawing::{self, Bounds, Mark, PathSegment, Stroke};
+use core::f64::consts::TAU;
+use plotter_motion::drawing::{self, Bounds, Mark, PathSegment, Shape, Stroke};
 use std::collections::BTreeMap;
 
 /// Pixels to the millimetre: what is a pixel to the search, over which ends are compared, is the tenth of a millimetre here, about a
@@ -115,8 +116,16 @@ fn z_order(at: plotter_motion::Point, all: Bounds) -> u32 {
 /// The strokes of a trail as one. Each stroke is of one trail only.
 fn joined(trail: Trail, pieces: &[Piece], given: &mut [Option<Stroke>]) -> Option<Stroke> {
     let mut all: Option<Stroke> = None;
+    let mut has_halves = false;
     for piece in trail.pieces(pieces) {
         let mut stroke = given.get_mut(piece.stroke as usize)?.take()?;
+        // As the search knows it.
+        let halves: Vec<PathSegment> =
+            stroke.segments().flat_map(|(from, segment)| crate::on_sheet::halved(from, segment)).collect();
+        if halves.len() > stroke.segments.len() {
+            stroke.segments = halves;
+            has_halves = true;
+        }
         if piece.start > 0 && stroke.is_closed() {
             begin_at(&mut stroke, piece.start as usize);
         }
@@ -144,14 +153,53 @@ fn joined(trail: Trail, pieces: &[Piece], given: &mut [Option<Stroke>]) -> Optio
             all.segments.push(bridge(all.segments.last(), all.from));
         }
         begin_at(&mut all, trail.start as usize);
+        begin_within(&mut all, share_of(trail.share));
+    }
+    if has_halves {
+        join_arcs(&mut all.segments);
     }
     Some(all)
 }
+
+/// Makes one of arcs of one circle that go on in each other, up to a whole turn.
+fn join_arcs(segments: &mut Vec<PathSegment>) {
+    segments.dedup_by(|next, last| {
+        let (Shape::Arc { centre, sweep_rad }, Shape::Arc { centre: own, sweep_rad: before }) =
+            (next.shape, last.shape)
+        else {
+            return false;
+        };
+        let sum_rad = before + sweep_rad;
+        let goes_on = own == centre
+            && before * sweep_rad > 0.0
+            && sum_rad.abs() <= TAU + ROUNDING_RAD
+            && (last.feed_mm_s, last.power) == (next.feed_mm_s, next.power);
+        if goes_on {
+            let sweep_rad = if sum_rad.abs() > TAU - ROUNDING_RAD { TAU.copysign(sum_rad) } else { sum_rad };
+            *last = PathSegment { shape: Shape::Arc { centre, sweep_rad }, ..*next };
+        }
+        goes_on
+    });
+}
+
+/// What the sum of the parts of a turn may be off, rad.
+const ROUNDING_RAD: f64 = 1e-12;
 
 /// A line over a gap, as quick and as strong as another one.
 fn bridge(like: Option<&PathSegment>, to: plotter_motion::Point) -> PathSegment {
     let like = like.copied().unwrap_or_default();
     PathSegment { feed_mm_s: like.feed_mm_s, power: like.power, ..PathSegment::line(to) }
+}
+
+/// Lets a closed stroke begin within its first segment, a share of it on: that becomes the first and the last one.
+fn begin_within(stroke: &mut Stroke, share: f64) {
+    let from = stroke.from;
+    if let Some(first) = stroke.segments.first_mut().filter(|_| share > 0.0) {
+        let (before, after) = (first.part(from, 0.0, share), first.part(from, share, 1.0));
+        *first = after;
+        stroke.from = before.to;
+        stroke.segments.push(before);
+    }
 }
 
 /// Lets a closed stroke begin where its segment of this number does.

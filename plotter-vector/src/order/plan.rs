@@ -8,7 +8,7 @@ use crate::{Curve, Drawing, PxPoint};
 /// Way along a stroke over which the direction of its end is taken, px: enough for one stair of a gentle slope.
 const END_REACH_PX: f64 = 4.0;
 
-/// Fewest vertices of a stroke that encloses something or comes back: there, back, and the first one again.
+/// Fewest vertices of a closed stroke of lines: there, back, and the first one again. A loop of one curve has two.
 const MIN_CLOSED: usize = 3;
 
 /// A stroke as the search sees it.
@@ -56,13 +56,14 @@ impl<'a> Stroke<'a> {
 pub(crate) fn strokes_of(drawing: &Drawing) -> Vec<Stroke<'_>> {
     let stroke = |(vertices, index): (&[PxPoint], u32)| {
         let places = drawing.stroke_chords(index as usize, CHORD_ERROR_PX);
+        let encloses = vertices.len() >= MIN_CLOSED || (vertices.len() > 1 && places.len() >= MIN_CLOSED);
         Stroke {
             drawing,
             index,
             rank: index,
             letter: 0,
             pen: drawing.pen(index as usize),
-            closed: vertices.len() >= MIN_CLOSED && vertices.first() == vertices.last(),
+            closed: encloses && vertices.first() == vertices.last(),
             outward: [outward(places.iter()), outward(places.iter().rev())],
         }
     };
@@ -100,11 +101,32 @@ pub(crate) struct Trail {
     range: (u32, u32),
     /// Vertex of the closed trail with which it begins and ends.
     pub(crate) start: u32,
+    /// Share of the piece from that vertex on, in parts of 2³², at which it begins and ends instead; 0 is the vertex.
+    pub(crate) share: u32,
     /// Whether it comes back to where it began.
     pub(crate) closed: bool,
     /// Whether it is drawn from the end of the last piece.
     pub(crate) reversed: bool,
 }
+
+/// A share of a piece, 0 to 1, of what [`Trail::share`] says.
+pub(crate) fn share_of(parts: u32) -> f64 {
+    f64::from(parts) / PARTS
+}
+
+/// [`Trail::share`] of a share below 1.
+pub(crate) fn parts_of(share: f64) -> u32 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a cast stays within the range of u32"
+    )]
+    let parts = (share * PARTS) as u32;
+    parts
+}
+
+/// Parts of a piece in which places on it are counted: a metre in steps of less than a nanometre.
+const PARTS: f64 = 4_294_967_296.0;
 
 impl Trail {
     /// Its pieces as they are drawn.
@@ -181,6 +203,7 @@ impl<'a> Parts<'a> {
         }
         if trail.closed {
             joined.begin_at(trail.start as usize);
+            joined.begin_within(share_of(trail.share));
         }
         joined
     }

@@ -497,7 +497,7 @@ mod tests {
             visits.push(Visit { site, entry: 2 * site, exit: 2 * site + 1 });
         }
         // A square beside the middle of the row, drawn last and from its far corner.
-        sites.push_ring(&[at(99, 61), at(69, 31), at(99, 1), at(129, 31)], 1);
+        sites.push_ring(&[(99, 61), (69, 31), (99, 1), (129, 31)].map(|(x, y)| (at(x, y), 0)), 1);
         visits.push(Visit { site: 20, entry: 40, exit: 40 });
         let (order, length) = settled(&(sites, visits));
         assert_eq!(order.iter().position(|site| *site == 20), Some(10), "{order:?}");

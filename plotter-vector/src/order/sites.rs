@@ -46,7 +46,7 @@ pub(crate) struct Sites {
     pub(crate) places: Vec<PxPoint>,
     /// Thing of each place.
     owners: Vec<u32>,
-    /// Vertex of the ring that a place is.
+    /// Vertex of the ring that a place is, or lies behind.
     pub(crate) vertices: Vec<u32>,
 }
 
@@ -66,11 +66,10 @@ impl Sites {
         self.add(Site::OneWay, [(from, 0), (to, 0)].into_iter());
     }
 
-    /// Adds one of so many rings (or dots); its places are some of its vertices, evenly chosen.
-    pub(crate) fn push_ring(&mut self, ring: &[PxPoint], rings: usize) {
+    /// Adds one of so many rings (or dots); its places are some of these, evenly chosen, each with the vertex before.
+    pub(crate) fn push_ring(&mut self, ring: &[(PxPoint, u32)], rings: usize) {
         let few = (ALL_RING_PLACES / rings.max(1)).clamp(2, RING_PLACES).min(ring.len());
-        let vertex = |k: usize| k * ring.len() / few.max(1);
-        let places = (0..few).filter_map(|k| Some((*ring.get(vertex(k))?, number(vertex(k)))));
+        let places = (0..few).filter_map(|k| ring.get(k * ring.len() / few.max(1)).copied());
         self.add(Site::Ring, places);
     }
 
@@ -189,7 +188,7 @@ mod tests {
     fn a_place_knows_each_near_thing_once_by_its_nearest_place() {
         let mut sites = Sites::default();
         sites.push_line((at(0), at(1)));
-        sites.push_ring(&[at(7), at(5), at(6)], 1);
+        sites.push_ring(&[(at(7), 0), (at(5), 1), (at(6), 2)], 1);
         sites.push_one_way((at(9), at(30)));
         let near = sites.neighbours();
         assert_eq!(near[1], [3, 5, NONE, NONE, NONE, NONE, NONE, NONE]);

@@ -10,6 +10,7 @@ use super::region::{Keep, Region, bounds_of};
 use super::survey::without_spaces;
 use super::{DrawWhole, MAX_PX, SvgError, SvgLayer, SvgLeftOut, SvgOptions, SvgPens};
 use crate::{Curve, Drawing, MAX_PENS, PalettePen, PxPoint, Rgb};
+use plotter_motion::drawing::Stroke;
 use std::collections::{BTreeMap, BTreeSet};
 use usvg::tiny_skia_path::{Path, PathSegment, Point, Transform};
 
@@ -40,6 +41,8 @@ pub(super) struct Ink<'a> {
     opacity: f32,
     /// Fills that hide what lies below, each with the number of strokes below it.
     covers: Vec<(Region, usize)>,
+    /// Closed shapes that have been filled with lines.
+    pub(super) hatched: usize,
 }
 
 /// What the pen follows on a shape.
@@ -80,6 +83,7 @@ impl<'a> Ink<'a> {
             cuts: Vec::new(),
             opacity: 1.0,
             covers: Vec::new(),
+            hatched: 0,
         }
     }
 
@@ -314,11 +318,16 @@ impl<'a> Ink<'a> {
         let tolerance_px = self.options.tolerance_mm / mm_per_px;
         // Dashes are cut out of chords.
         let arcs = self.options.arcs && dashes.is_none();
+        let hatches = self.options.hatch.is_some() && dashes.is_none();
+        let mut outlines = Vec::new();
         let mut stroke = Curve::default();
         let mut pen = None;
         let mut draw = |ink: &mut Self, stroke: &mut Curve, closed: bool| -> Result<(), SvgError> {
             let mut stroke = core::mem::take(stroke);
             ready(&mut stroke, way, closed);
+            if hatches && stroke.vertices.len() > 2 && stroke.vertices.first() == stroke.vertices.last() {
+                outlines.push(stroke.chords(tolerance_px));
+            }
             if !stroke.vertices.is_empty() {
                 let mut push = |stroke: Curve| -> Result<(), SvgError> {
                     for part in ink.left(stroke)? {
@@ -360,7 +369,37 @@ impl<'a> Ink<'a> {
             }
             self.check_vertices(stroke.vertices.len())?;
         }
-        draw(self, &mut stroke, false)
+        draw(self, &mut stroke, false)?;
+        self.hatch(outlines, |ink| pen.unwrap_or_else(|| ink.pen(colour, layer)), layer)
+    }
+
+    /// Fills what lies within an odd number of outlines.
+    fn hatch(
+        &mut self,
+        outlines: Vec<Vec<PxPoint>>,
+        pen: impl FnOnce(&mut Self) -> u8,
+        layer: Option<usize>,
+    ) -> Result<(), SvgError> {
+        let Some(hatching) = self.options.hatch.filter(|_| !outlines.is_empty()) else { return Ok(()) };
+        // The sheet's y is up.
+        let mm_per_px = self.options.mm_per_px();
+        let sheet = |at: PxPoint| plotter_motion::Point::new(at.x * mm_per_px, -at.y * mm_per_px);
+        let px = |at: plotter_motion::Point| PxPoint::new(at.x / mm_per_px, -at.y / mm_per_px);
+        let strokes =
+            outlines.into_iter().filter_map(|outline| Stroke::through(outline.into_iter().map(sheet)));
+        let mut shape = sheet_drawing(strokes.collect());
+        let outlines = shape.strokes.len();
+        if shape.hatch(&hatching, |_| true).map_err(SvgError::Hatch)? == 0 {
+            return Ok(());
+        }
+        self.hatched += 1;
+        let pen = pen(self);
+        for line in shape.strokes.into_iter().skip(outlines) {
+            for part in self.left(Curve::from(vec![px(line.from), px(line.to())]))? {
+                self.push(pen, part, layer)?;
+            }
+        }
+        Ok(())
     }
 
     fn curve(&self, stroke: &mut Curve, curve: Cubic, tolerance_px: f64, arcs: bool) -> Result<(), SvgError> {
@@ -465,6 +504,10 @@ impl<'a> Ink<'a> {
         let nearest = self.pens.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)));
         nearest.map_or(1, |pen| pen.number)
     }
+}
+
+fn sheet_drawing(strokes: Vec<Stroke>) -> plotter_motion::drawing::Drawing {
+    plotter_motion::drawing::Drawing { strokes, ..plotter_motion::drawing::Drawing::default() }
 }
 
 /// Brings the places of a part of a shape into the form in which they are drawn; none when nothing is.

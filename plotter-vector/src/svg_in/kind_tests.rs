@@ -577,6 +577,113 @@ fn what_comes_before_an_error_is_drawn_and_the_error_told() {
 }
 
 #[test]
+fn an_element_with_a_number_that_is_no_place_is_left_out_and_told_and_the_rest_is_drawn() {
+    let rows = [
+        (
+            "<line x1='1e30' x2='100' y1='50' y2='50'/>",
+            "2:11: x1 holds 1e30, which is no place on a sheet: the line is left out",
+        ),
+        ("<line x1='0' x2='-1e30' y1='50' y2='50'></line>", "2:19: x2 holds 1e30"),
+        (
+            "<rect x='1e30' y='1' width='5' height='5'/>",
+            "2:10: x holds 1e30, which is no place on a sheet: the rect is left out",
+        ),
+        ("<rect x='1' y='1' width=' 1e30mm' height='5' rx='1'>\n</rect >", "2:27: width holds 1e30"),
+        (
+            "<circle cx='9' cy='9' r='99999999999999999999999999999999999'/>",
+            "2:26: r holds 999999999999999999999999…",
+        ),
+        ("<ellipse cx='9' cy='1e400' rx='1' ry='1'/>", "2:21: cy holds 1e400"),
+        (
+            "<use href='#shape' x='1e13'/>",
+            "2:23: x holds 1e13, which is no place on a sheet: the use is left out",
+        ),
+        ("<g transform='translate(1e30 5)'><path d='M0 0H5'/><g><g/></g></g>", "2:25: transform holds 1e30"),
+        ("<path transform='matrix(1 0 0 1 1e30 0)' d='M0 0H5'/>", "2:33: transform holds 1e30"),
+        ("<svg x='1e30' width='9' height='9'><path d='M0 0H5'/></svg>", "2:9: x holds 1e30"),
+        (
+            "<s:svg xmlns:s='http://www.w3.org/2000/svg' viewBox='0 0 1e30 5'><s:path d='M0 0H5'/></s:svg>",
+            "2:58: viewBox holds 1e30",
+        ),
+        (
+            "<text x='1 2 1e30' y='5'>svg text</text>",
+            "2:14: x holds 1e30, which is no place on a sheet: the text is left out",
+        ),
+        (
+            "<linearGradient id='f' x1='1e30'><stop stop-color='red'/></linearGradient>",
+            "2:28: x1 holds 1e30, which is no place on a sheet: it is taken as if it were not there",
+        ),
+        ("<line x1='&far;' x2='100' y1='50' y2='50'/>", "2:11: x1 holds 1e30"),
+        // Others whose size depends on boxes.
+        ("<line style='transform-box:fill-box;rotate:9deg' x1='1e30' x2='100'/>", "2:54: x1 holds 1e30"),
+    ];
+    for (content, problem) in rows {
+        let text = file(&format!("\n{content}<path id='shape' d='M0 50H100' stroke='url(#f) #000'/>"));
+        let text = format!(
+            "<!DOCTYPE svg [<!ENTITY far '1e30'>]>{}",
+            text.replacen("<svg", "<svg stroke='#000' fill='none'", 1)
+        );
+        let read = read_svg(text.as_bytes(), &SvgOptions::default())
+            .unwrap_or_else(|error| panic!("{content}: {error}"));
+        assert_eq!(short(&read), "0,50 100,50", "{content}");
+        let told = told(&read);
+        assert!(told.len() == 1 && told[0].starts_with(problem), "{content}: {told:?}");
+        assert_eq!(read.left_out.texts, 0, "{content}");
+    }
+    // Nothing is drawn without a sheet.
+    let sheet = file("<path d='M0 50H100'/>").replacen("width=\"", "width=\"1e30", 1);
+    assert!(
+        matches!(read_svg(sheet.as_bytes(), &SvgOptions::default()), Err(SvgError::Number { line: 1, .. })),
+        "{sheet}"
+    );
+}
+
+#[test]
+fn what_is_seen_of_each_shape_is_hatched() {
+    // Squares of 50 px, the second over the right half of the first, a third in the second with the paper's colour, and a clipped one.
+    let shapes = "<clipPath id='c'><path d='M0 60H25V100H0'/></clipPath>\
+        <path d='M0 0H50V50H0Z' fill='#f00'/><path d='M25 0H75V50H25Z' fill='#00f'/><path d='M30 10H70V40H30Z' fill='#fff'/>\
+        <path d='M0 60H50V100H0Z' fill='#f00' clip-path='url(#c)'/><path d='M80 0H99V50Z' stroke='#000' fill='none' stroke-dasharray='3'/>";
+    let mut hatching = plotter_motion::drawing::Hatching::default();
+    let mm_per_px = 25.4 / 96.0;
+    (hatching.distance_mm, hatching.angle_rad) = (2.0 * mm_per_px, 0.0);
+    let options = SvgOptions { occludes: true, hatch: Some(hatching), ..SvgOptions::default() };
+    let (plain, hatched) =
+        (read_with(shapes, SvgOptions { hatch: None, ..options }), read_with(shapes, options));
+    let of_pen = |read: &SvgDrawing, pen: u8| {
+        let own = |index: &usize| read.drawing.pen(*index) == pen;
+        (0..read.drawing.strokes().len())
+            .filter(own)
+            .map(|index| read.drawing.curve(index).length_px())
+            .sum::<f64>()
+    };
+    let lines_px = [1, 2, 3].map(|pen| of_pen(&hatched, pen) - of_pen(&plain, pen));
+    // Area through distance; the square in the second has no ink, but hides.
+    let expected = [(25.0 * 50.0 + 25.0 * 40.0) / 2.0, (50.0 * 50.0 - 40.0 * 30.0) / 2.0, 0.0];
+    assert!(
+        lines_px.iter().zip(expected).all(|(px, expected)| (px - expected).abs() < 0.1),
+        "{lines_px:?} {expected:?}"
+    );
+    assert_eq!((hatched.hatched, plain.hatched), (3, 0));
+    let sloping = |angle_rad: f64| {
+        let mut hatching = hatching;
+        hatching.angle_rad = angle_rad;
+        let read = read_with("<path d='M0 0H50V50H0Z'/>", SvgOptions { hatch: Some(hatching), ..options });
+        let line = read.drawing.stroke(read.drawing.strokes().len() / 2).to_vec();
+        (line[1].y - line[0].y) / (line[1].x - line[0].x)
+    };
+    // Counter-clockwise from the right on the sheet: upwards, which is against y here.
+    assert!((sloping(0.5) + 0.5_f64.tan()).abs() < 1e-6, "{}", sloping(0.5));
+    hatching.distance_mm = 0.0;
+    let wrong = read_svg(
+        file("<path d='M0 0H50V50H0Z'/>").as_bytes(),
+        &SvgOptions { hatch: Some(hatching), ..options },
+    )
+    .unwrap_err();
+    assert_eq!(wrong.to_string(), "svg: the distance of hatch lines is 0 mm: choose one above 0 mm");
+}
+
+#[test]
 fn utf_16_with_its_mark_is_read() {
     let text = file("<path id='ä𝄞' d='M0 50H100' stroke='#000'/>").replacen(
         "<svg",

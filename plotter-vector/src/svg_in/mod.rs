@@ -35,6 +35,7 @@ pub use fonts::{SvgFontError, SvgFonts, read_svg_with_fonts};
 use ink::Ink;
 pub use layers::SvgLayer;
 use plotter_motion::Point;
+use plotter_motion::drawing::{HatchError, Hatching};
 use rewrite::Rewritten;
 use std::borrow::Cow;
 use survey::Survey;
@@ -95,6 +96,10 @@ pub struct SvgOptions {
     /// Whether filled shapes hide what lies below them, also those in the colour of the paper; those that are less than half
     /// opaque do not.
     pub occludes: bool,
+    /// Fills each closed shape with lines, which fills that are drawn later hide with [`occludes`](Self::occludes), and clip paths cut. The
+    /// distance is in mm of the sheet, the angle counter-clockwise as on the sheet; the lines of all shapes lie at odd multiples of half
+    /// the distance from the sheet's upper left corner. Dashed shapes are left as they are.
+    pub hatch: Option<Hatching>,
     /// Pixels to the inch: 96 in the standard, 72 and 90 in files of older programs. Lengths in mm and inches are what they are.
     pub px_per_inch: f64,
 }
@@ -116,6 +121,7 @@ impl Default for SvgOptions {
             max_vertices: 10_000_000,
             keeps_clipped: false,
             occludes: false,
+            hatch: None,
             px_per_inch: PX_PER_INCH,
         }
     }
@@ -190,6 +196,8 @@ pub struct SvgDrawing {
     pub layers: Vec<SvgLayer>,
     /// What is not done as the file says; up to 64.
     pub problems: Vec<SvgProblem>,
+    /// Closed shapes that [`SvgOptions::hatch`] has filled.
+    pub hatched: usize,
 }
 
 /// Why an SVG file cannot be read.
@@ -234,7 +242,7 @@ pub enum SvgError {
         /// Its height, mm.
         height_mm: f64,
     },
-    /// A coordinate that is no number, or a huge one.
+    /// A number of the sheet itself, its size or its `viewBox`, that is huge.
     Number {
         /// The element's line, from 1.
         line: u32,
@@ -269,6 +277,8 @@ pub enum SvgError {
     TooMuchClipping,
     /// The texts are longer than can be set, references followed.
     TooMuchText,
+    /// Shapes cannot be filled so.
+    Hatch(HatchError),
     /// More vertices than [`SvgOptions::max_vertices`].
     TooManyVertices {
         /// That limit.
@@ -337,6 +347,7 @@ impl fmt::Display for SvgError {
             Self::TooMuchClipping => f.write_str(
                 "svg: cutting along clip paths, masks or shapes takes too long; simplify them, or draw what they cut off",
             ),
+            Self::Hatch(error) => write!(f, "svg: {error}"),
             Self::TooMuchText => f.write_str(
                 "svg: the texts are too long to be set, references followed; split them or the file, unlink clones, or \
                  convert texts to paths",
@@ -371,7 +382,8 @@ impl core::error::Error for SvgError {}
 ///
 /// Coordinates are parsed in single precision: to 0.001 px or 0.0003 mm up to 4 m from the origin. Arcs are first
 /// made into cubic curves that are 0.03 % of the radius off at most, and no more than 0.1 of the file's units; that
-/// adds to the tolerance, which is kept between those curves and the chords. A path is read up to its first error.
+/// adds to the tolerance, which is kept between those curves and the chords. A path is read up to its first error. Another element with a
+/// number that is no place on a sheet, beyond 10¹², is left out.
 ///
 /// # Errors
 /// [`SvgError`].
@@ -535,6 +547,7 @@ fn parse(
         missing_fonts: SvgMissingFonts::default(),
         layers: ink.layers,
         problems,
+        hatched: ink.hatched,
     })
 }
 

@@ -42,6 +42,29 @@ const WORDS: [&str; 9] = [
 const NUMBERS: [&str; 16] =
     ["viewBox", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "x1", "y1", "x2", "y2", "dx", "dy"];
 
+/// Elements that draw something, by themselves or by what is in them.
+const DRAWN: [&str; 17] = [
+    "a",
+    "circle",
+    "ellipse",
+    "foreignObject",
+    "g",
+    "image",
+    "line",
+    "path",
+    "polygon",
+    "polyline",
+    "rect",
+    "svg",
+    "switch",
+    "text",
+    "textPath",
+    "tspan",
+    "use",
+];
+/// A name that no element has: the parser passes over what has it, and all that is in it.
+const NO_ELEMENT: &str = "x";
+
 const SVG_NAMESPACE: &str = "http://www.w3.org/2000/svg";
 
 /// What became of a file.
@@ -359,6 +382,13 @@ impl<'a> Rewriter<'a> {
             if attribute.namespace().is_some() {
                 continue;
             }
+            if (name == "transform" || NUMBERS.contains(&name))
+                && let Some(word) = huge_number(attribute.value())
+                && node != self.document.root_element()
+            {
+                self.huge(node, name, attribute.value(), (range, word));
+                continue;
+            }
             match name {
                 "style" => self.style(attribute.value(), range),
                 "d" | "points" => self.places(name, attribute.value(), range),
@@ -370,6 +400,42 @@ impl<'a> Rewriter<'a> {
                 }
             }
         }
+    }
+
+    /// An attribute with a number that is no place on a sheet: what draws something is left out, with all that is in it. Else it is as
+    /// if the attribute were not there. The sheet's own are not asked for.
+    fn huge(
+        &mut self,
+        node: Node<'a, 'a>,
+        name: &str,
+        value: &str,
+        (range, word): (Range<usize>, Range<usize>),
+    ) {
+        let at = range.start + if stands_as(self.text, &range, value) { word.start } else { 0 };
+        let tag = node.tag_name().name();
+        let instead = if DRAWN.contains(&tag) {
+            self.edits.extend(self.names_of(node).map(|range| (range, NO_ELEMENT.to_owned())));
+            format!("the {tag} is left out")
+        } else {
+            "it is taken as if it were not there".to_owned()
+        };
+        self.edits.push((range, String::new()));
+        let found = shortened(value.get(word).unwrap_or_default());
+        self.tell(at, format!("{name} holds {found}, which is no place on a sheet: {instead}"));
+    }
+
+    /// Where the name of an element stands: at its start, and at its end if it has one, without a prefix.
+    fn names_of(&self, node: Node<'a, 'a>) -> impl Iterator<Item = Range<usize>> + use<> {
+        let (range, tag) = (node.range(), node.tag_name().name());
+        let start = after_name(self.text, range.clone());
+        let whole = self.text.get(range.clone()).unwrap_or_default();
+        let end = whole.rfind("</").filter(|_| !whole.ends_with("/>")).and_then(|end| {
+            let end = range.start + end;
+            let name = end + self.text.get(end..range.end)?.rfind(tag)?;
+            Some(name + tag.len())
+        });
+        let length = tag.len();
+        [Some(start), end].into_iter().flatten().map(move |end| end.saturating_sub(length)..end)
     }
 
     /// A `style`, as the entities in it are resolved.

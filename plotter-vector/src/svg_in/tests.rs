@@ -316,7 +316,7 @@ fn what_is_refused_is_told_with_a_remedy() {
         "<svg xmlns='http://www.w3.org/2000/svg' width='0' height='9'/>".to_owned(),
         "<svg xmlns='http://www.w3.org/2000/svg' width='9km' height='1e7mm'/>".to_owned(),
         "<svg xmlns='http://www.w3.org/2000/svg' width='1e7mm' height='9'/>".to_owned(),
-        file("<line x2='1e39' y2='5' stroke='#000'/>"),
+        "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9' viewBox='0 0 1e39 5'/>".to_owned(),
         with_path("M0 0L5 8000000"),
         file("<g transform='scale(1e9)'><path d='M0 0L5 8' stroke='#000'/></g>"),
         entity_bomb(),

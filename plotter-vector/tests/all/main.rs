@@ -48,6 +48,7 @@ mod prop_tracking;
 mod random;
 mod scan;
 mod scan_memory;
+mod seams;
 mod segment_distance;
 mod sharp_points;
 mod sheet_cancelled;

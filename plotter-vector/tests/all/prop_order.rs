@@ -1,5 +1,6 @@
 //! Laws of ordering.
 
+use crate::seams::unsplit;
 use plotter_vector::{Drawing, Lettering, Order, OrderEffort, PxPoint, TextBlock};
 use proptest::prelude::*;
 
@@ -53,7 +54,7 @@ proptest! {
     #[test]
     fn what_is_drawn_is_kept(strokes in strokes(12, 40), one_stroke in any::<bool>()) {
         let drawing = drawing_of(&strokes, 1.0);
-        let ordered = Order { one_stroke, ..exactly_meeting() }.apply(&drawing);
+        let ordered = unsplit(&Order { one_stroke, ..exactly_meeting() }.apply(&drawing), &drawing);
         prop_assert_eq!(ink(&ordered), ink(&drawing));
         prop_assert!(ordered.strokes().len() <= drawing.strokes().len());
         // Each joint saves the vertex that both strokes had.
@@ -66,7 +67,7 @@ proptest! {
     #[test]
     fn over_gaps_no_more_is_drawn_than_the_gaps(strokes in strokes(60, 60)) {
         let drawing = drawing_of(&strokes, 0.4);
-        let ordered = Order::default().apply(&drawing);
+        let ordered = unsplit(&Order::default().apply(&drawing), &drawing);
         let joints = drawing.strokes().len() - ordered.strokes().len();
         let mut bridges = ink(&ordered);
         for line in ink(&drawing) {
@@ -97,7 +98,8 @@ proptest! {
         for (stroke, pen) in strokes.iter().zip(&pens) {
             mixed.push_with_pen(*pen, drawing_of(core::slice::from_ref(stroke), 1.0).stroke(0).iter().copied());
         }
-        let ordered = exactly_meeting().apply(&mixed);
+        let as_drawn = exactly_meeting().apply(&mixed);
+        let ordered = unsplit(&as_drawn, &mixed);
         let drawn: Vec<u8> = (0..ordered.strokes().len()).map(|stroke| ordered.pen(stroke)).collect();
         prop_assert!(drawn.is_sorted());
         let of_pen = |drawing: &Drawing, pen: u8| {
@@ -111,7 +113,7 @@ proptest! {
             prop_assert_eq!(ink(&of_pen(&ordered, pen)), ink(&of_pen(&mixed, pen)));
             of_pen(&mixed, pen).strokes().for_each(|stroke| sorted.push(stroke.iter().copied()));
         }
-        prop_assert!(ordered.pen_up_px() <= sorted.pen_up_px());
+        prop_assert!(as_drawn.pen_up_px() <= sorted.pen_up_px());
     }
 
     #[test]
@@ -215,7 +217,7 @@ proptest! {
         strokes.reverse();
         let drawing = drawing_of(&strokes, 1.0);
         let settings = Order { lettering: Some(Lettering::default()), budget, ..exactly_meeting() };
-        let ordered = settings.apply(&drawing);
+        let ordered = unsplit(&settings.apply(&drawing), &drawing);
         prop_assert_eq!(ink(&ordered), ink(&drawing));
         for block in Lettering::default().find(&drawing) {
             let names = |drawing: &Drawing, index: usize| {
@@ -244,6 +246,7 @@ proptest! {
     fn lettering_or_not_what_is_drawn_is_kept(strokes in strokes(60, 80)) {
         let drawing = drawing_of(&strokes, 1.0);
         let ordered = Order { lettering: Some(Lettering::default()), ..exactly_meeting() }.apply(&drawing);
+        let ordered = unsplit(&ordered, &drawing);
         prop_assert_eq!(ink(&ordered), ink(&drawing));
     }
 

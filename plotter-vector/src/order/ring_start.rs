@@ -1,0 +1,258 @@
+//! [`start_rings_well`]: where closed strokes begin, once their order is found.
+//!
+//! ```text
+//!   before ──────►  ●  ──────► after        ● the place of the ring with the least sum of both ways:
+//!                 (   )                       a vertex, or within a line, an arc or a cubic curve
+//!                  ‾‾‾
+//! ```
+
+use super::Ends;
+use super::plan::{Parts, Trail, parts_of, share_of};
+use super::sites::number;
+use crate::curve::{Piece, whole_chords};
+use crate::{Curve, PxPoint};
+
+/// Travel that counts as equal, px.
+const SAME_PX: f64 = 1e-9;
+
+/// Difference of the cosines of two bends that counts as one being sharper.
+const SHARPER_COS: f64 = 0.05;
+
+/// Most passes over the rings' starts. Each depends on its neighbours': three passes settle nearly all, and only rings next to one
+/// that has moved are looked at again.
+const RING_PASSES: usize = 20;
+
+/// How far a start has to move for its neighbours to be looked at again, px: less gains no tenth of a pixel.
+const MOVED_PX: f64 = 0.05;
+
+/// Least travel that a start within a piece saves over one at a vertex, px: a tenth of a millimetre of a sheet, some
+/// milliseconds. It costs a vertex, and at a corner the pen's coming and going is not seen.
+const LEAST_SAVED_PX: f64 = 1.0;
+
+/// Greatest angle of an arc over which the sum of the distances from two places is taken to have one least value, rad.
+const ARC_STEP_RAD: f64 = core::f64::consts::FRAC_PI_8;
+
+/// Stretches of a cubic curve over which it is taken to have one least value.
+const CUBIC_STRETCHES: u32 = 16;
+
+/// Steps of the search within a stretch, each to the golden section of what is left: to 10⁻⁶ of it.
+const SEARCH_STEPS: u32 = 28;
+
+/// The golden section: (√5 − 1) / 2.
+const GOLDEN: f64 = 0.618_033_988_749_894_8;
+
+/// Lets each ring begin at the place that is on the way from the stroke before to the one after; of equally good
+/// vertices at the sharpest corner, where the pen's coming and going is not seen.
+pub(super) fn start_rings_well(parts: &Parts<'_>, trails: &mut [Trail], ends: &mut [Ends]) {
+    if !trails.iter().any(|trail| trail.closed) {
+        return;
+    }
+    let mut is_due: Vec<bool> = trails.iter().map(|trail| trail.closed).collect();
+    for _ in 0..RING_PASSES {
+        let mut settled = true;
+        for (index, trail) in trails.iter_mut().enumerate().filter(|(_, trail)| trail.closed) {
+            if !is_due.get_mut(index).is_some_and(std::mem::take) {
+                continue;
+            }
+            let before = index.checked_sub(1).and_then(|before| ends.get(before)).map(|ends| ends.1);
+            let after = ends.get(index + 1).map(|ends| ends.0);
+            (trail.start, trail.share) = (0, 0);
+            let mut ring = parts.curve(*trail);
+            ring.vertices.pop();
+            let start = Ways { before, after }.best_start(&ring);
+            (trail.start, trail.share) = (number(start.vertex), start.parts);
+            let Some(slot) = ends.get_mut(index) else { continue };
+            if std::mem::replace(slot, (start.at, start.at)).0.distance(start.at) > MOVED_PX {
+                settled = false;
+                let beside = [index.checked_sub(1), Some(index + 1)].into_iter().flatten();
+                beside.for_each(|index| {
+                    if let Some(due) = is_due.get_mut(index) {
+                        *due = true;
+                    }
+                });
+            }
+        }
+        if settled {
+            break;
+        }
+    }
+}
+
+/// Where a ring begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Start {
+    /// Vertex with which the piece begins.
+    vertex: usize,
+    /// Share of that piece: see [`Trail::share`].
+    parts: u32,
+    at: PxPoint,
+}
+
+/// What the pen draws before a ring ends here, and what it draws after it begins there.
+#[derive(Clone, Copy, Debug)]
+struct Ways {
+    before: Option<PxPoint>,
+    after: Option<PxPoint>,
+}
+
+impl Ways {
+    /// Travel to and from a place, px.
+    fn travel(&self, at: PxPoint) -> f64 {
+        let way = |end: Option<PxPoint>| end.map_or(0.0, |end| end.distance(at));
+        way(self.before) + way(self.after)
+    }
+
+    /// By how much the travel changes at most for each pixel that the place moves.
+    fn slope(&self) -> f64 {
+        let way = |end: Option<PxPoint>| if end.is_some() { 1.0 } else { 0.0 };
+        way(self.before) + way(self.after)
+    }
+
+    /// The place of a ring, whose first vertex is not repeated, from which it is drawn.
+    fn best_start(&self, ring: &Curve) -> Start {
+        let (mut start, least_px) = self.best_vertex(ring);
+        let mut most_px = least_px - LEAST_SAVED_PX;
+        let ends = ring.vertices.iter().zip(ring.vertices.iter().cycle().skip(1));
+        let slope = self.slope();
+        for (vertex, (from, to)) in ends.enumerate() {
+            // Nowhere on it is there less than this: the other pieces are not asked for.
+            let least_px =
+                0.5 * (self.travel(*from) + self.travel(*to) - slope * ring.course().longest_px(vertex));
+            if least_px >= most_px {
+                continue;
+            }
+            let Some(piece) = ring.course().piece(vertex) else { continue };
+            if let Some((share, px)) = self.best_share(&piece, most_px) {
+                let parts = parts_of(share);
+                (start, most_px) = (Start { vertex, parts, at: piece.at(share_of(parts)) }, px);
+            }
+        }
+        start
+    }
+
+    /// The vertex of a ring from which it is drawn, and the travel there.
+    fn best_vertex(&self, ring: &Curve) -> (Start, f64) {
+        let mut best = (f64::INFINITY, f64::INFINITY, Start::default());
+        for (vertex, at) in ring.vertices.iter().enumerate() {
+            let far = self.travel(*at);
+            if far > best.0 + SAME_PX {
+                continue;
+            }
+            let count = ring.vertices.len();
+            let piece = |index: usize| ring.course().piece(index).unwrap_or(Piece::Line(*at, *at));
+            // Of what is not straight the directions at the vertex count.
+            let from = match piece(vertex.checked_sub(1).unwrap_or(count - 1)) {
+                Piece::Line(previous, _) => previous,
+                bent => at.along(bent.heading(true), -1.0),
+            };
+            let to = match piece(vertex) {
+                Piece::Line(_, next) => next,
+                bent => at.along(bent.heading(false), 1.0),
+            };
+            let bend = bend_cos(from, *at, to);
+            if far < best.0 - SAME_PX || bend < best.1 - SHARPER_COS {
+                best = (far, bend, Start { vertex, parts: 0, at: *at });
+            }
+        }
+        (best.2, best.0)
+    }
+
+    /// The share of a piece at which the travel is least, and how much it is there, if that is less than `most_px`.
+    fn best_share(&self, piece: &Piece, most_px: f64) -> Option<(f64, f64)> {
+        let stretches = match piece {
+            // The sum of two distances is convex along a line.
+            Piece::Line(..) => 1,
+            Piece::Arc(arc) => whole_chords(libm::ceil(arc.sweep_rad.abs() / ARC_STEP_RAD)),
+            Piece::Cubic(_) => CUBIC_STRETCHES,
+        };
+        let share = |stretch: u32| f64::from(stretch) / f64::from(stretches);
+        let travel = |share: f64| self.travel(piece.at(share));
+        let steep_px = self.slope() * piece.longest_part_px(share(1));
+        let mut best: Option<(f64, f64)> = None;
+        let mut begins_px = travel(0.0);
+        for stretch in 0..stretches {
+            let ends_px = travel(share(stretch + 1));
+            let least_px = best.map_or(most_px, |(_, px)| px);
+            // Nowhere on it is there less than this.
+            if 0.5 * (begins_px + ends_px - steep_px) < least_px {
+                let (at, px) = least(share(stretch), share(stretch + 1), travel);
+                if px < least_px {
+                    best = Some((at, px));
+                }
+            }
+            begins_px = ends_px;
+        }
+        best
+    }
+}
+
+/// Where a function with one least value between two places has it, and how much it is (J. Kiefer, "Sequential minimax search for a
+/// maximum", 1953).
+fn least(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
+    let sections = |low: f64, high: f64| (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+    let (one, other) = sections(low, high);
+    let (mut one, mut other) = ((one, value(one)), (other, value(other)));
+    for _ in 0..SEARCH_STEPS {
+        if one.1 <= other.1 {
+            (high, other) = (other.0, one);
+            let at = sections(low, high).0;
+            one = (at, value(at));
+        } else {
+            (low, one) = (one.0, other);
+            let at = sections(low, high).1;
+            other = (at, value(at));
+        }
+    }
+    if one.1 <= other.1 { one } else { other }
+}
+
+/// Cosine of the change of direction at a vertex: 1 straight on, −1 back.
+fn bend_cos(from: PxPoint, at: PxPoint, to: PxPoint) -> f64 {
+    let lengths = from.distance(at) * at.distance(to);
+    let dot = (at.x - from.x) * (to.x - at.x) + (at.y - from.y) * (to.y - at.y);
+    if lengths > 0.0 { dot / lengths } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, y: f64) -> PxPoint {
+        PxPoint::new(x, y)
+    }
+
+    #[test]
+    fn of_equally_near_vertices_a_ring_begins_at_the_sharpest() {
+        let ring = [(0.0, 0.0), (2.0, 0.0), (4.0, 0.0), (2.0, 9.0)].map(|(x, y)| at(x, y));
+        let ring = Curve::from(ring.to_vec());
+        let start = |before| Ways { before, after: None }.best_start(&ring).vertex;
+        assert_eq!(start(None), 3);
+        assert_eq!(start(Some(at(2.0, -1.0))), 1);
+    }
+
+    #[test]
+    fn a_ring_begins_within_a_line_an_arc_or_a_curve_where_both_ways_are_least() {
+        // A square whose left side is an arc that bulges to the left, and whose right one is a curve.
+        let ring = Curve {
+            vertices: [(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0)]
+                .map(|(x, y)| at(x, y))
+                .to_vec(),
+            bulges: vec![0.0, 0.0, 0.0, 1.0],
+            handles: vec![None, Some([at(180.0, 10.0), at(140.0, 90.0)]), None, None],
+        };
+        let ends =
+            [(30.0, -50.0), (60.0, -20.0), (-200.0, 30.0), (300.0, 200.0), (210.0, -20.0), (20.0, 500.0)];
+        let ends = ends.map(|(x, y)| at(x, y));
+        for (before, after) in ends.iter().flat_map(|one| ends.map(|other| (*one, other))) {
+            let ways = Ways { before: Some(before), after: Some(after) };
+            let start = ways.best_start(&ring);
+            let pieces: Vec<Piece> = (0..4).filter_map(|vertex| ring.course().piece(vertex)).collect();
+            let places = pieces.iter().flat_map(|piece| (0..2000).map(|k| piece.at(f64::from(k) / 2000.0)));
+            let least = places.map(|at| ways.travel(at)).fold(f64::INFINITY, f64::min);
+            let px = ways.travel(start.at);
+            // A vertex stands where it costs no more than a pixel.
+            let most = least + if start.parts == 0 { LEAST_SAVED_PX } else { 1e-3 };
+            assert!(px <= most, "{before:?} {after:?}: {start:?}, {px} px of {least}");
+        }
+    }
+}
