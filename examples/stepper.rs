@@ -27,8 +27,8 @@ use plotter_examples::{
 };
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{
-    Estimator, Machine, MachineConfig, MachineKind, PathMode, Pen, PlanError, PlannerSettings, PlotOp, Point,
-    StepGenSettings,
+    AccelChoice, AccelLimit, Estimator, Machine, MachineConfig, MachineKind, PathMode, Pen, PlanError,
+    PlannerSettings, PlotOp, Point, StepGenSettings,
 };
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -89,9 +89,12 @@ struct Arguments {
     /// Greatest speed with the pen down and up, mm/s [default: the machine's, 45 and 90]
     #[arg(long, value_name = "V", value_parser = positive, allow_negative_numbers = true)]
     max_speed: Option<f64>,
-    /// Greatest acceleration, mm/s² [default: the machine's, 250]
+    /// Greatest acceleration of the pen, as a vector, mm/s² [default: the machine's, 250]
     #[arg(long, value_name = "A", value_parser = positive, allow_negative_numbers = true)]
     accel: Option<f64>,
+    /// Greatest acceleration of each motor instead, mm/s²; of a belt machine mm of the belt
+    #[arg(long, value_names = ["X", "Y"], num_args = 2, value_parser = positive, allow_negative_numbers = true, conflicts_with = "accel")]
+    accel_axes: Option<Vec<f64>>,
     /// How far from a corner the circle passes whose speed the corner is taken with, mm [default: the machine's, 0.01]
     #[arg(long, value_name = "D", value_parser = not_negative, allow_negative_numbers = true)]
     junction_deviation: Option<f64>,
@@ -281,6 +284,15 @@ fn machine(arguments: &Arguments, said: &mut Diagnostics) -> Result<(Machine, Pl
     };
     let config = machine.config();
     let mut settings = PlannerSettings::of(&machine);
+    if let Some([x, y]) = arguments.accel_axes.as_deref() {
+        let mut limited = *config;
+        let planner = &mut limited.planner;
+        (planner.accel_limit, planner.accel_x_mm_s2, planner.accel_y_mm_s2) = (AccelChoice::Axes, *x, *y);
+        settings = PlannerSettings::of(&Machine::new(limited).map_err(|error| error.to_string())?);
+    }
+    if arguments.accel.is_some() {
+        settings.accel_limit = AccelLimit::Vector;
+    }
     let tolerance_mm = arguments.tolerance_mm.unwrap_or(config.planner.path_tolerance_mm);
     match (arguments.mode, arguments.tolerance_mm) {
         (Some(Mode::Exact), _) => settings.path = PathMode::Exact,

@@ -52,7 +52,10 @@ fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn 
         text,
         "use plotter_motion::{{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotionLimits, MotorConfig, TransmissionConfig}};"
     )?;
-    writeln!(text, "use plotter_motion::{{PublishedConfig, SafetyGate, StepPoint, StepperConfig, SyncStop}};")?;
+    writeln!(
+        text,
+        "use plotter_motion::{{PublishedConfig, SafetyGate, StepPoint, StepperConfig, SyncStop}};"
+    )?;
     writeln!(text, "/// Bits a second of the gantry's line.\npub const BAUD: u32 = {};", config.serial.baud)?;
     writeln!(
         text,
@@ -111,7 +114,7 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
     )?;
     writeln!(text, "use plotter_motion::gcode::{{LaserCommand, PenConvention, ServoCommand}};")?;
     writeln!(text, "use plotter_motion::kinematics::Backlash;")?;
-    writeln!(text, "use plotter_motion::{{HomingAxis, PathMode, PlannerSettings}};")?;
+    writeln!(text, "use plotter_motion::{{AccelLimit, HomingAxis, PathMode, PlannerSettings}};")?;
     let baud = machine.config().serial.baud;
     writeln!(
         text,
@@ -123,9 +126,13 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
         literal = literal
             .replace(&format!("{name}: {duration:?}"), &format!("{name}: Duration::from_nanos({nanos})"));
     }
-    for (field, name) in
-        [("dialect", "Dialect"), ("path", "PathMode"), ("pen", "PenConvention"), ("command", "LaserCommand")]
-    {
+    for (field, name) in [
+        ("dialect", "Dialect"),
+        ("path", "PathMode"),
+        ("accel_limit", "AccelLimit"),
+        ("pen", "PenConvention"),
+        ("command", "LaserCommand"),
+    ] {
         literal = literal.replace(&format!(" {field}: "), &format!(" {field}: {name}::"));
     }
     writeln!(

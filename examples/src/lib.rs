@@ -97,7 +97,7 @@ use report::escaped;
 pub use report::{Figure, html_page};
 pub use simulated_board::{SimulatedBoard, board_header, simulate_board};
 pub use simulated_plot::{PlotOutcome, simulate};
-pub use speed_audit::{Moment, SpeedAudit};
+pub use speed_audit::{Moment, MostAccel, SpeedAudit};
 pub use speed_chart::SpeedChart;
 pub use speed_trial::{deviation_mm, speed_trial, test_figure};
 pub use step_file::StepFile;

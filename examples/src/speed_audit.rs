@@ -52,14 +52,29 @@ pub struct SpeedAudit {
     /// Sums of the means of the bins up to each of the last ones.
     sums: VecDeque<Vec2>,
     most_speed_mm_s: f64,
-    most_along_mm_s2: f64,
-    most_across_mm_s2: f64,
+    most_accel: MostAccel,
+    /// Whether velocities may jump, in corners.
+    has_corners: bool,
+}
+
+/// The greatest accelerations, mm/s². Each is a mean over a window, so what was felt is at least that.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MostAccel {
+    /// As a vector: what speeds up and what turns, together.
+    pub vector_mm_s2: f64,
+    /// Along x and along y.
+    pub axes_mm_s2: [f64; 2],
+    /// Along the path, and across it.
+    pub along_mm_s2: f64,
+    /// See above.
+    pub across_mm_s2: f64,
 }
 
 impl SpeedAudit {
-    /// A pen that stands at `at`, of a machine with steps of this length that is to keep to this acceleration.
+    /// A pen that stands at `at`, of a machine with steps of this length that is to keep to this acceleration. If its velocity may jump in
+    /// corners, windows with a sharp turn say nothing; else nothing is left out.
     #[must_use]
-    pub fn new(at: Point, step_mm: f64, accel_mm_s2: f64) -> Self {
+    pub fn new(at: Point, step_mm: f64, accel_mm_s2: f64, has_corners: bool) -> Self {
         let window_s = (step_mm / (STEP_SHARE * accel_mm_s2)).sqrt();
         let bins = (window_s / BIN_S).round().clamp(ACCEL_BINS.0, ACCEL_BINS.1);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
@@ -72,8 +87,8 @@ impl SpeedAudit {
             sum: Vec2::default(),
             sums: VecDeque::new(),
             most_speed_mm_s: 0.0,
-            most_along_mm_s2: 0.0,
-            most_across_mm_s2: 0.0,
+            most_accel: MostAccel::default(),
+            has_corners,
         };
         audit.stand();
         audit
@@ -91,10 +106,10 @@ impl SpeedAudit {
         self.most_speed_mm_s
     }
 
-    /// Greatest acceleration so far, mm/s²: along the path, and across it. Corners are left out.
+    /// The greatest accelerations so far.
     #[must_use]
-    pub fn most_accel_mm_s2(&self) -> (f64, f64) {
-        (self.most_along_mm_s2, self.most_across_mm_s2)
+    pub fn most_accel(&self) -> MostAccel {
+        self.most_accel
     }
 
     /// The pen goes to `to` at a tick of a microsecond. Each moment that this makes known is given to `each`.
@@ -163,14 +178,21 @@ impl SpeedAudit {
         let dt_s = BIN_S * ticks(window as u64);
         let slow = before.length().min(after.length()) < SLOW_MM_S;
         let mut along_mm_s2 = 0.0;
+        let most = &mut self.most_accel;
+        if !self.has_corners || slow || turn_rad < SHARP_RAD {
+            let accel = (after + -before) * (1.0 / dt_s);
+            most.vector_mm_s2 = most.vector_mm_s2.max(accel.length());
+            let [x, y] = most.axes_mm_s2;
+            most.axes_mm_s2 = [x.max(accel.x.abs()), y.max(accel.y.abs())];
+        }
         if slow || turn_rad < SHARP_RAD {
             along_mm_s2 = (after.length() - before.length()) / dt_s;
-            self.most_along_mm_s2 = self.most_along_mm_s2.max(along_mm_s2.abs());
+            most.along_mm_s2 = most.along_mm_s2.max(along_mm_s2.abs());
         }
         if !slow && turn_rad < SHARP_RAD {
             // The mean of v²/r is that of the speed times the turning.
             let across = 0.5 * (before.length() + after.length()) * turn_rad / dt_s;
-            self.most_across_mm_s2 = self.most_across_mm_s2.max(across);
+            most.across_mm_s2 = most.across_mm_s2.max(across);
         }
         let behind_ticks = BIN_TICKS * (SPEED_BINS as u64 * 3 / 4);
         let time_s = ticks((self.bin_end - BIN_TICKS).saturating_sub(behind_ticks)) * 1e-6;
@@ -202,7 +224,7 @@ mod tests {
 
     /// Steps of 0.01 mm along x by a law of the way, mm, over the time, s.
     fn audited(law: impl Fn(f64) -> f64, end_s: f64) -> SpeedAudit {
-        let mut audit = SpeedAudit::new(Point::ORIGIN, 0.01, 1000.0);
+        let mut audit = SpeedAudit::new(Point::ORIGIN, 0.01, 1000.0, true);
         let (mut step, mut tick) = (0.0, 0);
         while ticks(tick) * 1e-6 < end_s {
             if law(ticks(tick) * 1e-6) >= (step + 0.5) * 0.01 {
@@ -228,16 +250,17 @@ mod tests {
             if t < 0.1 { 500.0 * t * t } else { 5.0 + 100.0 * (t - 0.1) - 500.0 * (t - 0.1).powi(2) }
         };
         let audit = audited(law, 0.2);
-        let (along, across) = audit.most_accel_mm_s2();
-        assert!((along - 1000.0).abs() < 50.0, "{along}");
-        assert!(across < 1e-9, "{across}");
+        let most = audit.most_accel();
+        assert!((most.along_mm_s2 - 1000.0).abs() < 50.0, "{most:?}");
+        assert!(most.across_mm_s2 < 1e-9, "{most:?}");
+        assert_eq!((most.vector_mm_s2, most.axes_mm_s2), (most.along_mm_s2, [most.along_mm_s2, 0.0]));
         assert!((audit.most_speed_mm_s() - 97.0).abs() < 2.0, "{}", audit.most_speed_mm_s());
     }
 
     #[test]
     fn a_circle_accelerates_across() {
         // 30 mm/s on a radius of 10 mm: 90 mm/s²
-        let mut audit = SpeedAudit::new(Point::new(10.0, 0.0), 0.01, 90.0);
+        let mut audit = SpeedAudit::new(Point::new(10.0, 0.0), 0.01, 90.0, false);
         let mut at = (1000.0, 0.0);
         for tick in 0..2_000_000_u64 {
             let angle = 3.0 * ticks(tick) * 1e-6;
@@ -247,13 +270,15 @@ mod tests {
                 audit.step(tick, Point::new(at.0 * 0.01, at.1 * 0.01), |_| {});
             }
         }
-        let (_, across) = audit.most_accel_mm_s2();
-        assert!((across - 90.0).abs() < 5.0, "{across}");
+        let most = audit.most_accel();
+        assert!((most.across_mm_s2 - 90.0).abs() < 5.0, "{most:?}");
+        // Turning from the first moment on, 90 and a jump of 30 mm/s from rest.
+        assert!(most.vector_mm_s2 >= most.across_mm_s2, "{most:?}");
     }
 
     #[test]
     fn an_hour_of_rest_is_passed_over() {
-        let mut audit = SpeedAudit::new(Point::ORIGIN, 0.01, 1000.0);
+        let mut audit = SpeedAudit::new(Point::ORIGIN, 0.01, 1000.0, true);
         let mut moments = 0;
         audit.step(3_600_000_000, Point::new(0.01, 0.0), |_| moments += 1);
         audit.finish(3_600_000_000, |_| moments += 1);

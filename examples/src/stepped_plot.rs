@@ -1,6 +1,6 @@
 //! [`SteppedPlot`]: a drawing as a machine with stepper motors plots it, walked through step by step.
 
-use crate::{Moment, PathDeviation, SpeedAudit};
+use crate::{Moment, MostAccel, PathDeviation, SpeedAudit};
 use plotter_motion::kinematics::{Cartesian, Kinematics as _, MotorScale};
 use plotter_motion::{
     Action, MotorEvent, Pen, PlanError, Planner, PlannerSettings, PlotOp, PlotTime, Point, StepGen,
@@ -36,10 +36,8 @@ pub struct SteppedFigures {
     pub pen_lifts: u64,
     /// Greatest speed, mm/s.
     pub max_speed_mm_s: f64,
-    /// Greatest acceleration along the path, and across it, mm/s².
-    pub max_accel_mm_s2: f64,
-    /// See above.
-    pub max_accel_across_mm_s2: f64,
+    /// Greatest accelerations.
+    pub max_accel: MostAccel,
     /// Time over which accelerations are the differences of speeds, ms.
     pub accel_window_ms: usize,
     /// Farthest that a step with the pen down is from the drawing, mm.
@@ -121,7 +119,12 @@ impl SteppedPlot {
             kinematics,
             steps: StepGen::new(kinematics, timing),
             deviation: PathDeviation::new(reach_mm.max(2.0 / coarsest)),
-            audit: SpeedAudit::new(Point::ORIGIN, 1.0 / coarsest, settings.accel_mm_s2),
+            audit: SpeedAudit::new(
+                Point::ORIGIN,
+                1.0 / coarsest,
+                settings.accel_mm_s2,
+                settings.path == plotter_motion::PathMode::Exact,
+            ),
             figures: SteppedFigures::default(),
             drawn_to: Point::ORIGIN,
             at: StepPoint::default(),
@@ -189,11 +192,9 @@ impl SteppedPlot {
         let pen = self.pen;
         self.audit.finish(self.steps.tick(), |moment| each(Happening::Moment(moment, pen)));
         let (from_drawing_mm, from_steps_mm) = self.deviation.most_mm();
-        let (along, across) = self.audit.most_accel_mm_s2();
         Ok(SteppedFigures {
             max_speed_mm_s: self.audit.most_speed_mm_s(),
-            max_accel_mm_s2: along,
-            max_accel_across_mm_s2: across,
+            max_accel: self.audit.most_accel(),
             accel_window_ms: self.audit.window_ms(),
             from_drawing_mm,
             from_steps_mm,
@@ -313,7 +314,7 @@ mod tests {
         assert!((found.draw_mm - 100.0).abs() < 1e-9 && (found.travel_mm - 100.0).abs() < 1e-9);
         assert_eq!((found.strokes, found.pen_lifts, found.steps), (1, 1, 16_000));
         assert!((found.max_speed_mm_s - 100.0).abs() < 1.0, "{found:?}");
-        assert!((found.max_accel_mm_s2 - 1000.0).abs() < 50.0, "{found:?}");
+        assert!((found.max_accel.along_mm_s2 - 1000.0).abs() < 50.0, "{found:?}");
         assert!(found.from_drawing_mm <= 0.0051 && found.from_steps_mm <= 0.0051, "{found:?}");
     }
 

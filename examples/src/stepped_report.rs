@@ -45,6 +45,9 @@ struct Measured {
     steps: u64,
     max_speed_mm_s: f64,
     max_accel_mm_s2: f64,
+    max_accel_x_mm_s2: f64,
+    max_accel_y_mm_s2: f64,
+    max_accel_along_mm_s2: f64,
     max_accel_across_mm_s2: f64,
     accel_window_ms: usize,
     max_deviation_mm: f64,
@@ -57,8 +60,11 @@ impl Measured {
         Self {
             steps: figures.steps,
             max_speed_mm_s: figures.max_speed_mm_s,
-            max_accel_mm_s2: figures.max_accel_mm_s2,
-            max_accel_across_mm_s2: figures.max_accel_across_mm_s2,
+            max_accel_mm_s2: figures.max_accel.vector_mm_s2,
+            max_accel_x_mm_s2: figures.max_accel.axes_mm_s2[0],
+            max_accel_y_mm_s2: figures.max_accel.axes_mm_s2[1],
+            max_accel_along_mm_s2: figures.max_accel.along_mm_s2,
+            max_accel_across_mm_s2: figures.max_accel.across_mm_s2,
             accel_window_ms: figures.accel_window_ms,
             max_deviation_mm: figures.from_drawing_mm.max(figures.from_steps_mm),
             max_steps_from_drawing_mm: figures.from_drawing_mm,
@@ -174,7 +180,8 @@ impl SteppedReport {
             rows.extend([
                 ("steps", measured.steps.to_string(), ""),
                 ("greatest speed", format!("{:.1}", measured.max_speed_mm_s), "mm/s"),
-                ("acceleration along", format!("{:.0}", measured.max_accel_mm_s2), "mm/s²"),
+                ("acceleration", format!("{:.0}", measured.max_accel_mm_s2), "mm/s²"),
+                ("along the path", format!("{:.0}", measured.max_accel_along_mm_s2), "mm/s²"),
                 ("across, in curves", format!("{:.0}", measured.max_accel_across_mm_s2), "mm/s²"),
                 ("from the drawing", format!("{:.4}", measured.max_deviation_mm), "mm"),
             ]);

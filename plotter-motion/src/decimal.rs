@@ -74,7 +74,7 @@ impl Decimal {
 /// use plotter_motion::gcode::Reader;
 /// let mut reader = Reader::new();
 /// let error = b"G1 X-99999999999999999999999999\n".iter().find_map(|byte| reader.push(*byte)).unwrap().unwrap_err();
-/// assert!(error.to_string().starts_with("line 1, column 4: X with -999999999999999999…: "));
+/// assert!(error.to_string().starts_with("line 1, column 4 (byte 3): X with -999999999999999999…: "));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrittenNumber {

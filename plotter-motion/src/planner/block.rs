@@ -72,7 +72,7 @@ const ARC_PIECE_RAD: f32 = 0.2;
 /// The same of a parabola, of which a curve in short chords has one after the other. With parts of 0.1 rad such drawings take 0.3 % longer.
 const PARABOLA_PIECE_RAD: f32 = 0.05;
 /// Most parts of a parabola: sharp corners are passed at nearly one speed.
-const MOST_PARABOLA_PIECES: u16 = 4;
+const MOST_PARABOLA_PIECES: u16 = 6;
 
 impl Block {
     pub(super) fn path(

@@ -90,7 +90,8 @@ impl Vertex {
             limits.turning(direction(inwards), single(lean))
         };
         let room = Room {
-            deviation_mm: reach_mm(moved - asked, inwards, within_mm),
+            // The way back is reached at its very end: there is nothing to gain by less.
+            deviation_mm: reach_mm(moved - asked, inwards, within_mm * (4.0 * level_of(lean)).min(1.0)),
             tangent_mm,
             cruise2: cruise2.into(),
             accel_mm_s2: accel.into(),
@@ -721,11 +722,16 @@ impl<M: Modes> Front<M> {
     }
 }
 
-/// How far from a place that is `off` from the corner asked for, in a direction, one stays within this of the corner, mm.
-fn reach_mm(off: Vec2, direction: Vec2, within_mm: f64) -> f64 {
+/// How far from a place that is `off` from the corner asked for, in a direction, one comes to where it is no farther than this behind the
+/// corner, mm.
+fn reach_mm(off: Vec2, direction: Vec2, behind_mm: f64) -> f64 {
     let (along, across) = (off.dot(direction), off.cross(direction));
-    let room2 = within_mm * within_mm - across * across;
-    if room2 > 0.0 { libm::sqrt(room2) - along } else { 0.0 }
+    (libm::sqrt((behind_mm * behind_mm - across * across).max(0.0)) - along).max(0.0)
+}
+
+/// Cosine of half of a turn whose sine that is.
+fn level_of(lean: f64) -> f64 {
+    libm::sqrt((1.0 - lean * lean).max(0.0))
 }
 
 /// Where the lines that are drawn in place of a corner, which comes from one place and goes to another, meet: outside of it, so that the
@@ -743,7 +749,7 @@ fn moved(vertex: &Vertex, from: &Point, to: &Point, limits: &Limits) -> Point {
     let room = Room { deviation_mm: f64::INFINITY, tangent_mm, cruise2: cruise2.into(), accel_mm_s2 };
     let wanted_mm = 0.5 * lean * Blend::new(lean, room).tangent_mm - within_mm;
     // The lines may be off by as much across their way.
-    let level = libm::sqrt((1.0 - lean * lean).max(0.0)).max(LEAST_LEVEL);
+    let level = level_of(lean).max(LEAST_LEVEL);
     let off_mm = wanted_mm.min(within_mm / level).max(0.0);
     asked - inwards * off_mm
 }

@@ -97,7 +97,7 @@ impl Law {
     /// Square of the greatest speed after a way, mm, with one acceleration all along it; and of the greatest one before it, for who brakes.
     pub(super) fn reach2(&self, from2: f32, way_mm: f32) -> f32 {
         match *self {
-            Self::Line(accel) => from2 + twice(accel) * way_mm,
+            Self::Line(accel) => from2 + 2.0 * accel * way_mm,
             Self::Curve { accel, per_form2, lean } => {
                 let across = from2 * per_form2;
                 if across >= 1.0 {

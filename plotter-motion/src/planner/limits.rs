@@ -36,7 +36,7 @@ pub(super) struct Limits {
 impl Limits {
     pub(super) fn of<M: Modes>(settings: &PlannerSettings) -> Self {
         /// What the pen does of a belt's way along its diagonal: √½, rounded down.
-        const OF_BELT: f32 = 0.707_106_7;
+        const OF_BELT: f32 = FRAC_1_SQRT_2.next_down();
         let PlannerSettings { speed_mm_s, travel_speed_mm_s, accel_mm_s2, accel_limit, .. } = *settings;
         let (motors, belts) = match accel_limit {
             AccelLimit::Vector => (None, false),

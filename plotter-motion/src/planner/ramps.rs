@@ -1,7 +1,7 @@
 //! [`Ramps`]: the phases of a block with constant accelerations.
 
 use super::Phase;
-use super::block::Block;
+use super::block::{Block, Kind};
 use super::law::Law;
 use super::limits::Limits;
 use super::modes::Modes;
@@ -112,7 +112,10 @@ impl Ramps {
         }
         self.law = block.law(limits);
         (self.length_mm, self.rest_mm) = (block.length(), block.length());
-        self.parts = block.pieces();
+        // Most sharp corners are passed at one speed. An arc may be long: whoever holds the machine wants to brake harder as it gets slower.
+        let cruise2 = block.cruise2;
+        let is_even = block.kind == Kind::Parabola && block.entry2 == cruise2 && exit2 == cruise2;
+        self.parts = if is_even { 1 } else { block.pieces() };
         self.part_mm = self.length_mm / f32::from(self.parts);
         (self.exit2, self.stops) = (exit2, false);
         self.plan_part::<M>(block.entry2);

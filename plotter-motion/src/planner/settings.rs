@@ -83,7 +83,8 @@ pub struct PlannerSettings {
     /// What that is a limit of. It holds at every instant but in a corner of [`PathMode::Exact`], which is a jump of the velocity.
     pub accel_limit: AccelLimit,
     /// Greatest jerk along the path, mm/s³; `None` lets the acceleration change at once (trapezoidal profiles), a limit makes
-    /// them S-curves.
+    /// them S-curves. As a vector the jerk is not limited: the acceleration across begins and ends at once with a curve. With a limit 0.9 of the
+    /// acceleration is used along the path in exact mode and 0.7 within a tolerance; what that leaves is for turning.
     pub jerk_mm_s3: Option<f64>,
     /// How far a machine that rounds a corner by itself may miss its vertex, mm: see [`junction_speed`](super::junction_speed).
     pub junction_deviation_mm: f64,

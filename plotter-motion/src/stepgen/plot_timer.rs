@@ -26,7 +26,7 @@ pub struct PlotTime {
     pub draw_mm: f64,
     /// With the pen up, mm.
     pub travel_mm: f64,
-    /// Lines, arcs and spirals that were planned, and dots.
+    /// Lines, arcs and parabolas that were planned, and dots.
     pub courses: u64,
     /// Times that the pen was lowered.
     pub strokes: u64,

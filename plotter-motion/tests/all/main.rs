@@ -95,5 +95,6 @@ mod sim_stop;
 mod sim_testbed;
 mod sim_thesis_step;
 mod sim_tuning;
+mod sim_vector_optimum;
 mod stepper_bench;
 mod tuning_bench;

@@ -25,6 +25,8 @@ const MEASURED: f64 = 1.05;
 /// By how much the times of planner and steps may differ.
 const TIME_SHARE: f64 = 0.01;
 const TOLERANCE_MM: f64 = 0.05;
+/// Of the simulated motors.
+const MICROSTEPS: f64 = 16.0;
 
 fn modes() -> [(&'static str, PlannerSettings); 4] {
     let exact = PlannerSettings::default();
@@ -103,6 +105,9 @@ fn whole_drawings_lose_no_step() {
             let clock = StepGenSettings::default();
             let mut fastest_hz = 0.0_f64;
             let mut last = [0; 2];
+            // How far the rotor is behind its field at any step, full steps: beyond two it falls to another place of rest, and two such
+            // falls may cancel each other.
+            let mut most_lag = 0.0_f64;
             auditor::run::<16>(
                 settings,
                 clock,
@@ -116,6 +121,9 @@ fn whole_drawings_lose_no_step() {
                         if step != 0 {
                             let direction = if step > 0 { Direction::Plus } else { Direction::Minus };
                             plant.pulse(Duration::from_secs_f64(at_s), axis, direction);
+                            let motor = if axis == Axis::X { &plant.x } else { &plant.y };
+                            let behind = motor.commanded_steps() as f64 - motor.position_steps();
+                            most_lag = most_lag.max(behind.abs() / MICROSTEPS);
                             let last = &mut last[axis as usize];
                             fastest_hz =
                                 fastest_hz.max(f64::from(clock.clock_hz) / (tick - *last).max(1) as f64);
@@ -126,7 +134,11 @@ fn whole_drawings_lose_no_step() {
             );
             plant.x.settle();
             plant.y.settle();
-            println!("{} {mode}: up to {fastest_hz:.0} pulses/s", drawing.name);
+            println!(
+                "{} {mode}: up to {fastest_hz:.0} pulses/s, {most_lag:.3} full steps behind",
+                drawing.name
+            );
+            assert!(most_lag < 2.0, "{} {mode}: {most_lag} full steps behind", drawing.name);
             assert_eq!((plant.x.lost_steps(), plant.y.lost_steps()), (0, 0), "{} {mode}", drawing.name);
         }
     }
@@ -152,7 +164,8 @@ fn table_of_times() {
                 drawing.name
             );
         }
-        let saved = |less: ((f64, usize), f64), more: ((f64, usize), f64)| less.0.0 <= more.0.0;
+        // In exact mode the short chords of a curve are corners, and what jumps there counts for nothing: that saves up to a thousandth.
+        let saved = |less: ((f64, usize), f64), more: ((f64, usize), f64)| less.0.0 <= 1.001 * more.0.0;
         assert!(
             saved(tolerance, exact) && saved(exact, curved) && saved(tolerance, curved_tolerance),
             "{}",

@@ -11,8 +11,8 @@ use cortex_m_rt::entry;
 use plotter_firmware::board::{self, Event, Notice};
 use plotter_firmware::machine;
 use plotter_hal::{DcAxes, EstopChange, EstopInput, HBridge, Quadrature, SwitchSettings};
-use plotter_motion::{Axis, LimitSwitches, SafetyGate};
 use plotter_motion::protocol::SUBSTITUTE;
+use plotter_motion::{Axis, LimitSwitches, SafetyGate};
 
 /// How often the buttons are looked at, and the watchdog is fed.
 const LOOK: Duration = Duration::from_millis(1);

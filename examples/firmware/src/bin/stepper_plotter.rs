@@ -12,8 +12,8 @@ use plotter_firmware::board::{self, Event, Notice, Wire};
 use plotter_firmware::machine::{CHECKED_PLOTTER, LASER, PLOTTER, StepperPlotter};
 use plotter_hal::a4988::Timing;
 use plotter_hal::{
-    A4988, CheckedPenServo, EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo, PenServoSettings,
-    StepperAxes, SwitchSettings,
+    A4988, CheckedPenServo, EstopChange, EstopInput, Laser, LimitSwitch, LimitSwitchGroup, PenServo,
+    PenServoSettings, StepperAxes, SwitchSettings,
 };
 use plotter_motion::firmware::stepper_plotter::SettingsError;
 use plotter_motion::protocol::SUBSTITUTE;
@@ -28,7 +28,8 @@ const BUTTONS_KNOWN: Duration = Duration::from_millis(25);
 
 /// The servo of the pen, looked at by the compiler: one that cannot be right does not get this far.
 const PEN: CheckedPenServo =
-    match (PenServoSettings { settle: PLOTTER.pen_settle, ..PenServoSettings::DEFAULT }).checked(SERVO_STEPS) {
+    match (PenServoSettings { settle: PLOTTER.pen_settle, ..PenServoSettings::DEFAULT }).checked(SERVO_STEPS)
+    {
         Ok(checked) => checked,
         Err(_) => panic!("no servo can be driven with them"),
     };
