@@ -36,8 +36,9 @@ pub struct Arrangement {
     /// Turns left into right (x) or above into below (y)
     #[arg(long, value_enum, value_name = "AXIS")]
     pub mirror: Option<Mirror>,
-    /// Cuts off what lies outside of a rectangle: x and y of its lower left corner, width and height, mm; or of a polygon: x and y of
-    /// three corners or more, as 10,10,60,10,35,60. One that crosses itself keeps what lies in it an odd number of times
+    /// Cuts off what lies outside of a rectangle: x and y of its lower left corner, width and height, mm; or
+    /// of a polygon: x and y of three corners or more, as 10,10,60,10,35,60. One that crosses itself keeps
+    /// what lies in it an odd number of times
     #[arg(long, value_name = "X,Y,W,H|X,Y,X,Y,X,Y,...", allow_negative_numbers = true)]
     pub crop: Option<Crop>,
     /// Draws nothing twice with one pen, not even a part of a line
@@ -263,7 +264,8 @@ impl Arrangement {
         places || cuts || bends || merge_mm.is_some() || order.is_some() || from_layer.is_some()
     }
 
-    /// The operations of a drawing with all that is asked for; `hides` says whether closed strokes hide what is below them.
+    /// The operations of a drawing with all that is asked for; `hides` says whether closed strokes hide what
+    /// is below them.
     ///
     /// # Errors
     ///

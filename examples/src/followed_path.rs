@@ -64,6 +64,9 @@ pub fn slowed(machine: &Machine, budget: &Budget) -> Result<Machine, String> {
     let planner = &mut config.planner;
     (planner.speed_mm_s, planner.accel_mm_s2, planner.jerk_mm_s3) =
         budget.slowed(planner.speed_mm_s, planner.accel_mm_s2, planner.jerk_mm_s3);
+    for of_motor in [&mut planner.accel_x_mm_s2, &mut planner.accel_y_mm_s2] {
+        (_, *of_motor, _) = budget.slowed(0.0, *of_motor, 0.0);
+    }
     Machine::new(config).map_err(|error| error.to_string())
 }
 

@@ -71,8 +71,9 @@ pub struct MostAccel {
 }
 
 impl SpeedAudit {
-    /// A pen that stands at `at`, of a machine with steps of this length that is to keep to this acceleration. If its velocity may jump in
-    /// corners, windows with a sharp turn say nothing; else nothing is left out.
+    /// A pen that stands at `at`, of a machine with steps of this length that is to keep to this
+    /// acceleration. If its velocity may jump in corners, windows with a sharp turn say nothing; else nothing
+    /// is left out.
     #[must_use]
     pub fn new(at: Point, step_mm: f64, accel_mm_s2: f64, has_corners: bool) -> Self {
         let window_s = (step_mm / (STEP_SHARE * accel_mm_s2)).sqrt();

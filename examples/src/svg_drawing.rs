@@ -43,8 +43,8 @@ impl fmt::Debug for SvgOps {
 /// What an SVG picture has to draw; [`read_svg_with_fonts`] says what becomes of it. Arcs stay arcs.
 ///
 /// Each colour is a pen, in the order in which they come, unless `how` says otherwise; in a picture that was written here, of which
-/// each pen is a group, the pens are those that they were. Where a layer asks for it, the pen waits before it. `hatch` fills closed
-/// shapes, as large as the file has them.
+/// each pen is a group, the pens are those that they were. Where a layer asks for it, the pen waits before
+/// it. `hatch` fills closed shapes, as large as the file has them.
 ///
 /// # Errors
 ///

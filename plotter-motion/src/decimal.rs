@@ -68,7 +68,8 @@ impl Decimal {
     }
 }
 
-/// A number as it was written, for messages: its first 18 digits without leading zeros, and `…` where more stand before the point.
+/// A number as it was written, for messages: its first 18 digits without leading zeros, and `…` where more
+/// stand before the point.
 ///
 /// ```
 /// use plotter_motion::gcode::Reader;

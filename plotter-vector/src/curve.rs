@@ -149,7 +149,8 @@ impl Curve {
         rotated(&mut self.handles, pieces, start);
     }
 
-    /// Lets a closed one begin and end within its first piece, a share of it on: the piece becomes two, the first and the last.
+    /// Lets a closed one begin and end within its first piece, a share of it on: the piece becomes two, the
+    /// first and the last.
     pub(crate) fn begin_within(&mut self, share: f64) {
         let Some(whole) = self.course().piece(0).filter(|_| share > 0.0 && share < 1.0) else { return };
         let (at, pieces) = (whole.at(share), self.vertices.len().saturating_sub(1));
@@ -245,8 +246,9 @@ impl Course<'_> {
         Some(cubic.map(Piece::Cubic).or_else(|| arc().map(Piece::Arc)).unwrap_or(Piece::Line(from, to)))
     }
 
-    /// No shorter than the piece that begins at a vertex, px, in fewer sums than its length: of a cubic curve the sides of its polygon;
-    /// of an arc with the chord c and the bulge b its length is c (1 + b²) atan(b) / b.
+    /// No shorter than the piece that begins at a vertex, px, in fewer sums than its length: of a cubic curve
+    /// the sides of its polygon; of an arc with the chord c and the bulge b its length is c (1 + b²) atan(b)
+    /// / b.
     pub(crate) fn longest_px(&self, index: usize) -> f64 {
         let Some(from) = self.vertices.get(index) else { return 0.0 };
         let Some(to) = self.vertices.get(index + 1).or(self.vertices.first()) else { return 0.0 };

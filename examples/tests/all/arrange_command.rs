@@ -221,7 +221,8 @@ fn closed_strokes_are_filled_and_hide_what_is_below() {
 
 #[test]
 fn what_is_seen_of_a_hidden_shape_is_hatched() {
-    // Two squares of 40 mm: the second one, of another pen, hides the right half of the first one. A third is drawn in the second, a hole.
+    // Two squares of 40 mm: the second one, of another pen, hides the right half of the first one. A third is
+    // drawn in the second, a hole.
     let square = |pen: u32, x: u32, y: u32, side: u32| {
         let (right, upper) = (x + side, y + side);
         format!("SP{pen};PU{x},{y};PD{right},{y},{right},{upper},{x},{upper},{x},{y};PU;")

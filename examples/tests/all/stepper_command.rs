@@ -68,7 +68,8 @@ fn a_line_takes_the_time_of_the_book() {
         (&exact["segments"], &exact["steps"], &exact["pen_lifts"]),
         (&1.into(), &10_000.into(), &1.into())
     );
-    // With 20 m/s³ 0.9 of the acceleration is used: the ramps take 100 mm/s / 900 mm/s² + 900 mm/s² / 20000 mm/s³ = 0.156 s.
+    // With 20 m/s³ 0.9 of the acceleration is used: the ramps take 100 mm/s / 900 mm/s² + 900 mm/s² / 20000
+    // mm/s³ = 0.156 s.
     let options = ["--s-curve", "--jerk", "20000"];
     let s_curve = folder.stepper_report(&[&[line.as_str()][..], &MEASURED, &options].concat());
     assert!((number(&s_curve, "time_s") - 1.1561).abs() < 1e-3, "{s_curve}");
@@ -226,11 +227,12 @@ fn every_real_file_is_plotted_within_its_limits() {
                 let name = file.file_name().unwrap().to_string_lossy();
                 assert_eq!(report["language"], language, "{name}");
                 assert!(number(&report, "time_s") > 1.0 && number(&report, "draw_mm") > 50.0, "{name}");
-                // 1 % and 10 % are what a step more or less of either motor makes of the windows that are compared.
+                // 1 % and 8 % are what a step more or less of either motor makes of the windows that are
+                // compared.
                 assert!(number(&report, "max_speed_mm_s") < 101.5, "{name}: {}", report["max_speed_mm_s"]);
                 // In exact mode a slight corner is a jump that no window leaves out.
                 let kind = if tolerance_mm > 0.0 { "max_accel_mm_s2" } else { "max_accel_along_mm_s2" };
-                assert!(number(&report, kind) < 1100.0, "{name}: {}", report[kind]);
+                assert!(number(&report, kind) < 1080.0, "{name}: {}", report[kind]);
                 let deviation = number(&report, "max_deviation_mm");
                 let allowance_mm = report["allowance_mm"].as_f64().unwrap_or(0.0);
                 assert!(deviation < tolerance_mm + allowance_mm + 0.0135, "{name}: {deviation}");

@@ -97,7 +97,8 @@ pub struct PlannerConfig {
     pub accel_limit: AccelChoice,
     /// Greatest acceleration of the pen with [`AccelChoice::Vector`], mm/s^2.
     pub accel_mm_s2: f64,
-    /// Greatest acceleration of the motor `x` with [`AccelChoice::Axes`], mm/s^2; of a motor of a belt, mm of the belt.
+    /// Greatest acceleration of the motor `x` with [`AccelChoice::Axes`], mm/s^2; of a motor of a belt, mm of
+    /// the belt.
     pub accel_x_mm_s2: f64,
     /// The same of the motor `y`.
     pub accel_y_mm_s2: f64,

@@ -16,8 +16,9 @@ pub enum HatchTogether {
     /// All of them: what lies within an odd number of them. The lines stand behind the last one.
     #[default]
     All,
-    /// Each by itself. One that is drawn later and lies in it wholly, without touching it, is its hole, and one in that is filled again.
-    /// The lines stand directly behind their stroke, so that [`Drawing::occlude`] hides them as it hides the stroke: hatch first then.
+    /// Each by itself. One that is drawn later and lies in it wholly, without touching it, is its hole, and
+    /// one in that is filled again. The lines stand directly behind their stroke, so that
+    /// [`Drawing::occlude`] hides them as it hides the stroke: hatch first then.
     Within,
 }
 
@@ -106,8 +107,8 @@ impl Drawing {
     ///
     /// # Errors
     ///
-    /// A distance that is not above 0, an angle that is not finite, more than 100,000 rows or 1,000,000 lines in strokes that are filled
-    /// together, or 1,000,000 lines in all. Nothing is hatched then.
+    /// A distance that is not above 0, an angle that is not finite, more than 100,000 rows or 1,000,000 lines
+    /// in strokes that are filled together, or 1,000,000 lines in all. Nothing is hatched then.
     ///
     /// ```
     /// use plotter_motion::{Point, drawing::{Bounds, Drawing, Hatching, Stroke}};
@@ -205,8 +206,8 @@ impl Shapes {
         Some(Self { outlines: shapes.into_iter().map(|(_, outline)| outline).collect(), first, behind })
     }
 
-    /// Each outline that is filled with its holes. The last of the earlier ones that an outline lies in tells: within a filled one it
-    /// is a hole, within a hole it is filled.
+    /// Each outline that is filled with its holes. The last of the earlier ones that an outline lies in
+    /// tells: within a filled one it is a hole, within a hole it is filled.
     fn within(shapes: Vec<Numbered>) -> Vec<Self> {
         let bounds: Vec<Bounds> = shapes.iter().map(|(_, outline)| round(outline)).collect();
         let tree = BoxTree::new(bounds.iter().copied());

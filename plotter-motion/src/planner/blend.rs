@@ -8,22 +8,24 @@
 //!          ╱ │       │ ╲        from one tangent point to the other the curve leaves the segments
 //! ```
 //!
-//! Of all motions that turn one velocity into another of the same size, the quickest has one acceleration, of the greatest size, from the
-//! difference of both velocities: its path is a parabola, whose control point is the vertex. With the tangent points the way L from the
-//! vertex, a turn by φ and h = φ/2, and with d and d′ the directions before and after it,
+//! Of all motions that turn one velocity into another of the same size, the quickest has one acceleration, of
+//! the greatest size, from the difference of both velocities: its path is a parabola, whose control point is
+//! the vertex. With the tangent points the way L from the vertex, a turn by φ and h = φ/2, and with d and d′
+//! the directions before and after it,
 //!
 //! ```text
 //! p(s) = p₀ + d s + (d′ − d) s² / 4L        s from 0 to 2L
 //! deviation = L sin h / 2                   |p″| = sin h / L
 //! ```
 //!
-//! At an even ṡ = v the acceleration is v² sin h / L towards the inside, everywhere; so the greatest v² is A L / sin h, with the deviation δ
-//! 2 A δ / sin² h. An arc with the same deviation is passed at a half to two thirds of that. The least time of any motion that stays within
-//! the tolerance on the inner side of the corner is less by at most a fiftieth of the time that the corner takes (found by a convex program
-//! for turns of 20 to 170 degrees).
+//! At an even ṡ = v the acceleration is v² sin h / L towards the inside, everywhere; so the greatest v² is A
+//! L / sin h, with the deviation δ 2 A δ / sin² h. An arc with the same deviation is passed at a half to two
+//! thirds of that. The least time of any motion that stays within the tolerance on the inner side of the
+//! corner is less by at most a fiftieth of the time that the corner takes (found by a convex program for
+//! turns of 20 to 170 degrees).
 //!
-//! [`Course::length_mm`](super::Course::length_mm) of a parabola is 2L, and its speeds are ṡ: they are true at its ends, and between them
-//! somewhat more than the true ones.
+//! [`Course::length_mm`](super::Course::length_mm) of a parabola is 2L, and its speeds are ṡ: they are true
+//! at its ends, and between them somewhat more than the true ones.
 
 use super::law::MOST_FORM_SHARE;
 use crate::Vec2;
@@ -33,8 +35,6 @@ use crate::Vec2;
 pub(super) struct Blend {
     /// From the vertex to the tangent points, mm.
     pub(super) tangent_mm: f64,
-    /// sin h.
-    pub(super) lean: f64,
     /// Square of the speed at which all of the acceleration turns it, mm²/s².
     pub(super) form2: f64,
 }
@@ -58,11 +58,17 @@ impl Blend {
         let Room { deviation_mm, tangent_mm, cruise2, accel_mm_s2 } = room;
         let of_speed_mm = cruise2 * lean / (accel_mm_s2 * f64::from(MOST_FORM_SHARE));
         let tangent_mm = (2.0 * deviation_mm / lean).min(tangent_mm).min(of_speed_mm);
-        Self { tangent_mm, lean, form2: accel_mm_s2 * tangent_mm / lean }
+        Self { tangent_mm, form2: accel_mm_s2 * tangent_mm / lean }
+    }
+
+    /// From the vertex to the apex, mm.
+    pub(super) fn deviation_mm(self, lean: f64) -> f64 {
+        0.5 * lean * self.tangent_mm
     }
 }
 
-/// An arc in place of a corner, where the jerk is limited along the path: all along it its speed is the true one.
+/// An arc in place of a corner, where the jerk is limited along the path: all along it its speed is the true
+/// one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BlendArc {
     /// As of a [`Blend`].
@@ -73,7 +79,8 @@ pub(super) struct BlendArc {
 }
 
 impl BlendArc {
-    /// The widest that there is room for: of radius r it touches the lines at r tan h, and its apex is r (1/cos h − 1) from the vertex.
+    /// The widest that there is room for: of radius r it touches the lines at r tan h, and its apex is r
+    /// (1/cos h − 1) from the vertex.
     pub(super) fn new(lean: f64, room: Room) -> Self {
         let Room { deviation_mm, tangent_mm, cruise2, accel_mm_s2 } = room;
         let half_rad = libm::asin(lean.min(1.0));

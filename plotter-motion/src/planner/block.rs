@@ -28,9 +28,11 @@ pub(super) enum Kind {
 pub(super) enum Bend {
     /// Greatest acceleration along it, mm/s².
     Line { accel: f32 },
-    /// How far it turns, rad, and the square of the speed at which that takes all of the acceleration, mm²/s².
+    /// How far it turns, rad, and the square of the speed at which that takes all of the acceleration,
+    /// mm²/s².
     Arc { sweep_rad: f32, form2: f32 },
-    /// Sine of half of its turn, the part along the first motor's axis of the direction towards its inside, and as of an arc.
+    /// Sine of half of its turn, the part along the first motor's axis of the direction towards its inside,
+    /// and as of an arc.
     Parabola { lean: f32, inwards: f32, form2: f32 },
 }
 
@@ -40,16 +42,18 @@ pub(super) enum Bend {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Block {
     to: Point,
-    /// From its end to the centre of an arc, or to the control point of a parabola, mm. What `f32` rounds is small against the way along it.
+    /// From its end to the centre of an arc, or to the control point of a parabola, mm. What `f32` rounds is
+    /// small against the way along it.
     to_centre: Vec2Single,
     /// mm; seconds of a dwell. In f32 a metre is right to 60 nm.
     length: f32,
     /// Speed that was asked for, mm/s.
     feed_mm_s: f32,
-    /// Of an arc how far it turns, rad; f32 says ±2π to 5e-7, and the end is said by `to`. Of a parabola the sine of half of that.
+    /// Of an arc how far it turns, rad; f32 says ±2π to 5e-7, and the end is said by `to`. Of a parabola the
+    /// sine of half of that.
     form: f32,
-    /// Of a line the greatest acceleration along it, mm/s². Of a parabola the part along the first motor's axis of the direction towards its
-    /// inside.
+    /// Of a line the greatest acceleration along it, mm/s². Of a parabola the part along the first motor's
+    /// axis of the direction towards its inside.
     accel: f32,
     /// One over the square of the greatest speed of its form, s²/mm²; 0 on a line. See [`Law`].
     per_form2: f32,
@@ -66,10 +70,12 @@ pub(super) struct Block {
     power: u16,
 }
 
-/// Greatest part of an arc that is passed with one acceleration, rad. From rest to the greatest speed of a circle the machine needs an eighth
-/// of it at least; in parts of so much it comes within 1 % of that speed after a sixth.
+/// Greatest part of an arc that is passed with one acceleration, rad. From rest to the greatest speed of a
+/// circle the machine needs an eighth of it at least; in parts of so much it comes within 1 % of that speed
+/// after a sixth.
 const ARC_PIECE_RAD: f32 = 0.2;
-/// The same of a parabola, of which a curve in short chords has one after the other. With parts of 0.1 rad such drawings take 0.3 % longer.
+/// The same of a parabola, of which a curve in short chords has one after the other. With parts of 0.1 rad
+/// such drawings take 0.3 % longer.
 const PARABOLA_PIECE_RAD: f32 = 0.05;
 /// Most parts of a parabola: sharp corners are passed at nearly one speed.
 const MOST_PARABOLA_PIECES: u16 = 6;
@@ -172,8 +178,8 @@ impl Block {
         (whole + 1).min(most)
     }
 
-    /// Square of the greatest speed at its end if it is entered with this one; and at its start, if it is left with this one. What is at
-    /// least `enough2` may be any such number.
+    /// Square of the greatest speed at its end if it is entered with this one; and at its start, if it is
+    /// left with this one. What is at least `enough2` may be any such number.
     pub(super) fn reach2(&self, from2: f32, enough2: f32, limits: &Limits) -> f32 {
         let (law, pieces) = (self.law(limits), self.pieces());
         let piece_mm = self.length / f32::from(pieces);
@@ -195,7 +201,8 @@ impl Block {
         (self.per_form2 <= 0.0).then(|| twice(self.accel) * self.length)
     }
 
-    /// Square of the speed with which it is left at the least if it is entered with this one: however hard the machine brakes.
+    /// Square of the speed with which it is left at the least if it is entered with this one: however hard
+    /// the machine brakes.
     pub(super) fn forced2(&self, from2: f32, limits: &Limits) -> f32 {
         let (law, pieces) = (self.law(limits), self.pieces());
         let twice_mm = 2.0 * self.length / f32::from(pieces);

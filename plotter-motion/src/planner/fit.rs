@@ -61,6 +61,13 @@ struct Circle {
     curvature: f32,
 }
 
+impl Circle {
+    /// The direction in which it passes a place that is on it.
+    fn tangent_at(self, x: f32, y: f32) -> Vec2Single {
+        Vec2Single { x: 1.0 - self.curvature * y, y: self.slope + self.curvature * x }
+    }
+}
+
 /// The circles with `slope · t + curvature · k ≤ most`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct HalfPlane {
@@ -252,7 +259,8 @@ pub(super) struct Fitter {
     /// Direction against which slopes are reckoned; none before a vertex is so far from the start that this does not pass it.
     along: Option<Vec2Single>,
     circles: Polygon,
-    /// Greatest distance of a vertex, mm.
+    /// The vertex that is farthest along, and the greatest distance of one, mm.
+    farthest: Vec2Single,
     farthest_mm: f32,
     /// The last vertices, the newest last, and the one before them.
     last: [Vec2Single; GIVEN_BACK + 1],
@@ -322,7 +330,12 @@ impl Fitter {
         };
         if let Some(along) = self.along {
             let left = passing(along, &self.circles);
-            if left.count > 0 {
+            // Beside an arc that has turned, a vertex is farther from the start without being farther along.
+            let ahead = left.middle().tangent_at(along.dot(way), along.cross(way));
+            let step = way.plus(self.farthest.times(-1.0));
+            let step_mm = ahead.dot(Vec2Single { x: along.dot(step), y: along.cross(step) });
+            let goes_back = step_mm < -BACK_SHARE * allowance_mm * ahead.length_near();
+            if left.count > 0 && (is_free || !goes_back) {
                 return Some(left);
             }
             if !is_free {
@@ -342,7 +355,9 @@ impl Fitter {
 
     fn add(&mut self, way: Vec2Single, distance_mm: f32) {
         self.count = self.count.saturating_add(1);
-        self.farthest_mm = greatest(self.farthest_mm, distance_mm);
+        if distance_mm >= self.farthest_mm {
+            (self.farthest, self.farthest_mm) = (way, distance_mm);
+        }
         self.last.rotate_left(1);
         if let Some(newest) = self.last.last_mut() {
             *newest = way;

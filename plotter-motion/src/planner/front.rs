@@ -1,34 +1,26 @@
 //! [`Front`]: plot operations in, blocks out. Finds the corners, and in tolerance mode rounds them.
 
-use super::blend::{Blend, BlendArc, Room, half_turn};
 use super::block::{Bend, Block, Kind};
 use super::fit::{Fitter, Piece};
 use super::junction::corner_speed2;
 use super::limits::{Limits, Share, Shares};
-use super::merge::{Merged, Merger, Pace};
-use super::modes::{Keep, Modes};
+use super::merge::{Merged, Pace};
+use super::modes::{Keep as _, Modes};
 use super::ring::{Ring, narrow};
+use super::rounding::{CHORD_SHARE, MERGED_SHARE, PutOff, SHORTEST_MM, Vertex, Waiting as _};
+use super::stretch::{Stretch, Way, direction};
 use super::{PathMode, PlanError, PlannerSettings, Shape};
 use crate::chords::DividedArc;
 use crate::extremes::least;
 use crate::geom::{Vec2Single, single};
-use crate::root::root;
 use crate::whole::nearest;
-use crate::{Pen, PlotOp, Point, Vec2};
+use crate::{Pen, PlotOp, Point};
 use core::f32::consts::TAU;
 
 /// Farthest place, mm.
 const FARTHEST_MM: f32 = 1e7;
-/// Share of the path tolerance that vertices may be left out for; corners are rounded within the rest.
-const MERGED_SHARE: f64 = 0.5;
-/// Share of the path tolerance that the chords of an arc may be from it.
-const CHORD_SHARE: f64 = 1.0 / 32.0;
 /// What the radius of an arc, and the product with it, may have been rounded by, as a share.
 const RADIUS_ROUNDING: f32 = 5e-7;
-/// A corner is moved outwards by at most the tolerance over this.
-const LEAST_LEVEL: f64 = 0.5;
-/// A line that is shorter is left out between two curves, mm.
-const SHORTEST_MM: f64 = 1e-9;
 
 /// The end of the last block of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,149 +37,6 @@ struct Run {
     /// The end of the blocks given so far.
     at: Point,
     exit: Option<Exit>,
-}
-
-/// What becomes a block.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Stretch {
-    shape: Shape,
-    to: Point,
-    length_mm: f32,
-    /// Directions at its ends.
-    entry: [f32; 2],
-    exit: [f32; 2],
-    /// Square of the speed that was asked for.
-    feed2: f32,
-    bend: Bend,
-}
-
-/// A corner of the path, and where the corner of the lines is that are drawn in its place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Vertex {
-    asked: Point,
-    moved: Point,
-    /// How far the path may be from it, mm.
-    within_mm: f64,
-    /// What holds before it, and the square of the greatest speed on the curve there.
-    before: Pace,
-    cruise2: f32,
-}
-
-impl Vertex {
-    /// The curve between two directions, and how far from the corner it touches the lines; none where there is no room for one.
-    fn blend(
-        &self,
-        (along, after): (Vec2, Vec2),
-        tangent_mm: f64,
-        limits: &Limits,
-    ) -> Option<(f64, Stretch)> {
-        let Self { asked, moved, within_mm, cruise2, .. } = *self;
-        let (lean, inwards) = half_turn(along, after);
-        // An arc is accelerated towards every side in turn.
-        let accel = if limits.has_jerk {
-            limits.turning_round()
-        } else {
-            limits.turning(direction(inwards), single(lean))
-        };
-        let room = Room {
-            // The way back is reached at its very end: there is nothing to gain by less.
-            deviation_mm: reach_mm(moved - asked, inwards, within_mm * (4.0 * level_of(lean)).min(1.0)),
-            tangent_mm,
-            cruise2: cruise2.into(),
-            accel_mm_s2: accel.into(),
-        };
-        let (tangent_mm, length_mm, shape, bend);
-        if limits.has_jerk {
-            let arc = BlendArc::new(lean, room);
-            (tangent_mm, length_mm) = (arc.tangent_mm, arc.length_mm());
-            let side = if along.cross(after) > 0.0 { 1.0 } else { -1.0 };
-            let centre = moved - along * tangent_mm + along.perpendicular() * (side * arc.radius_mm);
-            let sweep_rad = single(side * arc.turn_rad);
-            shape = Shape::Arc { centre, sweep_rad };
-            bend = Bend::Arc { sweep_rad, form2: narrow(arc.form2) };
-        } else {
-            let parabola = Blend::new(lean, room);
-            (tangent_mm, length_mm) = (parabola.tangent_mm, 2.0 * parabola.tangent_mm);
-            shape = Shape::Parabola { control: moved };
-            let inwards = limits.of_motors(direction(inwards))[0];
-            bend = Bend::Parabola { lean: single(lean), inwards, form2: narrow(parabola.form2) };
-        }
-        let curve = Stretch {
-            shape,
-            to: moved + after * tangent_mm,
-            length_mm: single(length_mm),
-            entry: direction(along),
-            exit: direction(after),
-            feed2: cruise2,
-            bend,
-        };
-        (tangent_mm > SHORTEST_MM && length_mm > SHORTEST_MM).then_some((tangent_mm, curve))
-    }
-}
-
-/// What is put off where corners are rounded.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Rounding {
-    merger: Merger,
-    /// The last corner, from which the direction is not known yet.
-    corner: Option<Vertex>,
-    /// The segment after it, whose end may still be a corner.
-    held: Option<Merged>,
-    /// An arc whose chords have not all come, and the square of its greatest speed.
-    arc: Option<(DividedArc, f32)>,
-    /// Whether the run has had chords of arcs, which have used up their share of the tolerance.
-    has_arcs: bool,
-}
-
-impl Rounding {
-    /// What is left of the tolerance for lines, mm.
-    fn within_mm(&self, path_tolerance_mm: f64) -> f64 {
-        if self.has_arcs { (1.0 - CHORD_SHARE) * path_tolerance_mm } else { path_tolerance_mm }
-    }
-}
-
-/// What is put off to see what follows, as the way to follow the path wants it.
-#[derive(Clone, Debug, PartialEq)]
-enum PutOff {
-    Exact(Fitter),
-    Tolerance(Rounding),
-}
-
-impl Default for PutOff {
-    fn default() -> Self {
-        Self::Exact(Fitter::default())
-    }
-}
-
-/// What is put off, if the modes do that at all.
-trait Waiting {
-    fn fitter(&self) -> Option<&Fitter>;
-    fn fitter_mut(&mut self) -> Option<&mut Fitter>;
-    fn rounding(&self) -> Option<&Rounding>;
-    fn rounding_mut(&mut self) -> Option<&mut Rounding>;
-}
-
-impl<K: Keep<PutOff>> Waiting for K {
-    fn fitter(&self) -> Option<&Fitter> {
-        if let Some(PutOff::Exact(fitter)) = self.get() { Some(fitter) } else { None }
-    }
-
-    fn fitter_mut(&mut self) -> Option<&mut Fitter> {
-        if let Some(PutOff::Exact(fitter)) = self.get_mut() { Some(fitter) } else { None }
-    }
-
-    fn rounding(&self) -> Option<&Rounding> {
-        if let Some(PutOff::Tolerance(rounding)) = self.get() { Some(rounding) } else { None }
-    }
-
-    /// The first time there is none yet.
-    fn rounding_mut(&mut self) -> Option<&mut Rounding> {
-        let put_off = self.get_mut()?;
-        if let PutOff::Exact(_) = put_off {
-            *put_off = PutOff::Tolerance(Rounding::default());
-        }
-        if let PutOff::Tolerance(rounding) = put_off { Some(rounding) } else { None }
-    }
 }
 
 /// Makes blocks of plot operations.
@@ -266,8 +115,8 @@ impl<M: Modes> Front<M> {
     }
 
     /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; with an allowance an arc,
-    /// the rest of the way to its last vertex and the new one; else what ends a run (twice a line and a parabola, the line held back) and
-    /// the new one.
+    /// the rest of the way to its last vertex and the new one; else what ends a run (twice a line and a
+    /// parabola, the line held back) and the new one.
     pub(super) const fn most_blocks(settings: &PlannerSettings) -> usize {
         match settings.path_of::<M>() {
             PathMode::Exact if settings.allowance_of::<M>() > 0.0 => 3,
@@ -370,6 +219,11 @@ impl<M: Modes> Front<M> {
     pub(super) fn end_run<const N: usize>(&mut self, limits: &Limits, ring: &mut Ring<N>) {
         self.flush(limits, ring);
         self.run = None;
+        if let PathMode::Tolerance { .. } = limits.settings.path_of::<M>()
+            && let Some(rounding) = self.put_off.rounding_mut()
+        {
+            rounding.has_arcs = false;
+        }
     }
 
     /// Lifts the pen where it stands, if it is down.
@@ -602,7 +456,7 @@ impl<M: Modes> Front<M> {
             }
             let last = self.put_off.rounding_mut().and_then(|rounding| rounding.held.take());
             if let Some(held) = last {
-                self.round(&held.to, limits, ring);
+                self.round(&held.to, 0.0, limits, ring);
                 let power = core::mem::replace(&mut self.power, held.pace.power);
                 self.emit_line(&held.to, held.pace.cruise2, limits, ring);
                 self.power = power;
@@ -610,7 +464,8 @@ impl<M: Modes> Front<M> {
         }
     }
 
-    /// Takes the next segment in tolerance mode: the corner before it may now be moved, so the one before that is rounded.
+    /// Takes the next segment in tolerance mode: the corner before it may now be moved, so the one before
+    /// that is rounded.
     fn blend<const N: usize>(
         &mut self,
         next: Merged,
@@ -620,24 +475,29 @@ impl<M: Modes> Front<M> {
     ) {
         let (Some(run), Some(rounding)) = (self.run, self.put_off.rounding_mut()) else { return };
         let Some(held) = rounding.held.replace(next) else { return };
-        let from = rounding.corner.map_or(run.at, |corner| corner.asked);
-        let vertex = Vertex {
-            asked: held.to,
-            moved: held.to,
-            within_mm: rounding.within_mm(path_tolerance_mm)
-                - f64::from(held.deviation_mm.max(next.deviation_mm)),
-            before: held.pace,
-            cruise2: least(held.pace.cruise2, next.pace.cruise2),
+        let within_mm = rounding.within_mm(path_tolerance_mm);
+        let (asked, moved) = rounding.corner.map_or((run.at, run.at), |corner| (corner.asked, corner.moved));
+        let before = rounding.corner;
+        // There must be room for the curve there, and for the one before.
+        let may_be = |vertex: &Vertex| {
+            let in_mm = (vertex.moved - moved).length_near();
+            let tangent_mm = if before.is_some() { 0.5 * in_mm } else { in_mm };
+            vertex.is_passed(&moved, &next.to, tangent_mm, limits)
+                && before.is_none_or(|before| {
+                    let in_mm = (before.moved - run.at).length_near();
+                    before.is_passed(&run.at, &vertex.moved, in_mm, limits)
+                })
         };
-        let vertex = Vertex { moved: moved(&vertex, &from, &next.to, limits), ..vertex };
-        self.round(&vertex.moved, limits, ring);
+        let vertex = Vertex::new(&asked, (&held, &next), within_mm, limits, may_be);
+        self.round(&vertex.moved, vertex.most_tangent_mm(&asked, &next.to), limits, ring);
         if let Some(rounding) = self.put_off.rounding_mut() {
             rounding.corner = Some(vertex);
         }
     }
 
-    /// Rounds the last corner, from which the path goes on to `to`.
-    fn round<const N: usize>(&mut self, to: &Point, limits: &Limits, ring: &mut Ring<N>) {
+    /// Rounds the last corner, from which the path goes on to `to`: the next one, which can use no more than
+    /// `next_mm` of the line between.
+    fn round<const N: usize>(&mut self, to: &Point, next_mm: f64, limits: &Limits, ring: &mut Ring<N>) {
         let corner = self.put_off.rounding_mut().and_then(|rounding| rounding.corner.take());
         let (Some(corner), Some(run)) = (corner, self.run) else { return };
         let power = core::mem::replace(&mut self.power, corner.before.power);
@@ -646,8 +506,8 @@ impl<M: Modes> Front<M> {
         let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
         let (along, after) = (way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
         let blend = if in_mm > 0.0 && out_mm > 0.0 {
-            // The next corner is left its half of the segment between.
-            corner.blend((along, after), in_mm.min(0.5 * out_mm), limits)
+            // The next corner is left its half of the line between, or what it can use.
+            corner.blend((along, after), in_mm.min((0.5 * out_mm).max(out_mm - next_mm)), limits)
         } else {
             None
         };
@@ -722,72 +582,9 @@ impl<M: Modes> Front<M> {
     }
 }
 
-/// How far from a place that is `off` from the corner asked for, in a direction, one comes to where it is no farther than this behind the
-/// corner, mm.
-fn reach_mm(off: Vec2, direction: Vec2, behind_mm: f64) -> f64 {
-    let (along, across) = (off.dot(direction), off.cross(direction));
-    (libm::sqrt((behind_mm * behind_mm - across * across).max(0.0)) - along).max(0.0)
-}
-
-/// Cosine of half of a turn whose sine that is.
-fn level_of(lean: f64) -> f64 {
-    libm::sqrt((1.0 - lean * lean).max(0.0))
-}
-
-/// Where the lines that are drawn in place of a corner, which comes from one place and goes to another, meet: outside of it, so that the
-/// curve begins on the outer side of the path and passes the corner on the inner one, where there is room for that and the speed gains by it.
-fn moved(vertex: &Vertex, from: &Point, to: &Point, limits: &Limits) -> Point {
-    let Vertex { asked, within_mm, cruise2, .. } = *vertex;
-    let (way_in, way_out) = (asked - *from, *to - asked);
-    let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
-    if !(in_mm > 0.0 && out_mm > 0.0) {
-        return asked;
-    }
-    let (lean, inwards) = half_turn(way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
-    let tangent_mm = 0.5 * in_mm.min(out_mm);
-    let accel_mm_s2 = limits.turning(direction(inwards), single(lean)).into();
-    let room = Room { deviation_mm: f64::INFINITY, tangent_mm, cruise2: cruise2.into(), accel_mm_s2 };
-    let wanted_mm = 0.5 * lean * Blend::new(lean, room).tangent_mm - within_mm;
-    // The lines may be off by as much across their way.
-    let level = level_of(lean).max(LEAST_LEVEL);
-    let off_mm = wanted_mm.min(within_mm / level).max(0.0);
-    asked - inwards * off_mm
-}
-
 /// Whether a place is near enough.
 #[cfg_attr(target_os = "none", inline(never))]
 fn check(place: &Point) -> Result<(), PlanError> {
     let near = single(place.x).abs() <= FARTHEST_MM && single(place.y).abs() <= FARTHEST_MM;
     if near { Ok(()) } else { Err(PlanError::Place { place: *place }) }
-}
-
-/// A straight way as the look-ahead reckons with it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Way {
-    length_mm: f32,
-    direction: [f32; 2],
-}
-
-impl Way {
-    fn new(way: Vec2Single) -> Self {
-        /// Shorter ways have squares with few bits, mm².
-        const LEAST_SQUARE: f32 = 1e-24;
-        /// By how much they are longer for it.
-        const LONGER: f32 = 1e15;
-        let square = way.dot(way);
-        if square >= LEAST_SQUARE {
-            let length_mm = root(square);
-            let share = 1.0 / length_mm;
-            return Self { length_mm, direction: [way.x * share, way.y * share] };
-        }
-        let longer = way.times(LONGER);
-        let length = longer.length_near();
-        let share = if length > 0.0 { 1.0 / length } else { 0.0 };
-        Self { length_mm: length / LONGER, direction: [longer.x * share, longer.y * share] }
-    }
-}
-
-/// As the look-ahead reckons with it.
-fn direction(way: Vec2) -> [f32; 2] {
-    [single(way.x), single(way.y)]
 }

@@ -1,32 +1,36 @@
 //! [`Law`]: how hard the machine may speed up and brake along a stretch of path at a speed.
 //!
-//! What is felt is one vector: along the path the change of the speed, across it what the turning takes. With A the limit, w = v² and
-//! W the square of the speed at which the turning takes all of A, u = w / W of it goes across, and what is left along an arc is
+//! What is felt is one vector: along the path the change of the speed, across it what the turning takes. With
+//! A the limit, w = v² and W the square of the speed at which the turning takes all of A, u = w / W of it
+//! goes across, and what is left along an arc is
 //!
 //! ```text
 //! a = A √(1 − u²)
 //! ```
 //!
-//! On a parabola that turns by 2h both are not at right angles: at a share ξ of the way from its apex to its end what turns leans forwards by
-//! λ = ξ sin h, which is below 0 before the apex, and
+//! On a parabola that turns by 2h both are not at right angles: at a share ξ of the way from its apex to its
+//! end what turns leans forwards by λ = ξ sin h, which is below 0 before the apex, and
 //!
 //! ```text
 //! a² (cos² h + λ²) + 2 a A u λ + A² u² = A²        no less than with        a = A (√(1 − u² (1 − λ²)) − u λ)
 //! ```
 //!
-//! Where each motor is limited for itself, with A, it may move the path along by b = A / |p′| of its axis, less what the turning takes of it:
-//! a = b (1 − u) with u of that axis; of both the lesser one holds.
+//! Where each motor is limited for itself, with A, it may move the path along by b = A / |p′| of its axis,
+//! less what the turning takes of it: a = b (1 − u) with u of that axis; of both the lesser one holds.
 //!
-//! A change of speed along a stretch is made with one acceleration: the one for the faster of its ends. From w₀ to w₁ = w₀ + 2 a l, with
-//! a at w₁, is a quadratic equation in a, so no step forwards or backwards in the look-ahead takes more than a root.
+//! A change of speed along a stretch is made with one acceleration: the one for the faster of its ends. From
+//! w₀ to w₁ = w₀ + 2 a l, with a at w₁, is a quadratic equation in a, so no step forwards or backwards in the
+//! look-ahead takes more than a root.
 
 use crate::extremes::{greatest, least};
 use crate::root::root;
 
-/// Share of the square of the greatest speed of a form that the machine goes at. At 1 all of the acceleration would go across, nothing were left to
-/// begin braking with, and a feed hold would not end. 0.998 leaves a sixteenth, and costs a thousandth of the speed on tight curves.
+/// Share of the square of the greatest speed of a form that the machine goes at. At 1 all of the acceleration
+/// would go across, nothing were left to begin braking with, and a feed hold would not end. 0.998 leaves a
+/// sixteenth, and costs a thousandth of the speed on tight curves.
 pub(super) const MOST_FORM_SHARE: f32 = 0.998;
-/// Least share of the acceleration that is reckoned with: rounding may put a speed on the very limit of its form.
+/// Least share of the acceleration that is reckoned with: rounding may put a speed on the very limit of its
+/// form.
 const LEAST_SHARE: f32 = 1e-3;
 /// What the roots and quotients below may have been rounded up by.
 const ROUNDING: f32 = 1e-6;
@@ -49,18 +53,14 @@ pub(super) enum Law {
     Motors { along: [f32; 2], per_form2: [f32; 2] },
 }
 
-impl Default for Law {
-    fn default() -> Self {
-        Self::Line(0.0)
-    }
-}
-
 impl Law {
-    /// On one of the parts of equal length that a curve is passed in, counted from where the speed is least. For who brakes that is its end.
+    /// On one of the parts of equal length that a curve is passed in, counted from where the speed is least.
+    /// For who brakes that is its end.
     pub(super) fn on_part(self, index: u16, parts: u16) -> Self {
         match self {
             Self::Curve { accel, per_form2, lean } if parts > 1 => {
-                // Where it leans backwards it would take from the part along, but less so at a part's slow end.
+                // Where it leans backwards it would take from the part along, but less so at a part's slow
+                // end.
                 let share = 2.0 * (f32::from(index) + 1.0) / f32::from(parts) - 1.0;
                 Self::Curve { accel, per_form2, lean: greatest(lean * share, 0.0) }
             }
@@ -94,7 +94,8 @@ impl Law {
         }
     }
 
-    /// Square of the greatest speed after a way, mm, with one acceleration all along it; and of the greatest one before it, for who brakes.
+    /// Square of the greatest speed after a way, mm, with one acceleration all along it; and of the greatest
+    /// one before it, for who brakes.
     pub(super) fn reach2(&self, from2: f32, way_mm: f32) -> f32 {
         match *self {
             Self::Line(accel) => from2 + 2.0 * accel * way_mm,
@@ -137,7 +138,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The greatest vector on a parabola or an arc, as a share of A, by the definition: at both ends and between them.
+    /// The greatest vector on a parabola or an arc, as a share of A, by the definition: at both ends and
+    /// between them.
     fn felt((accel, form2, lean): (f32, f32, f32), speed2: f32, along: f32) -> f64 {
         let (across, along) = (f64::from(speed2 / form2), f64::from(along / accel));
         let most_lean = f64::from(lean);
@@ -180,7 +182,8 @@ mod tests {
 
     #[test]
     fn an_arc_from_rest() {
-        // Radius 10 mm, 1000 mm/s²: W = 10,000 mm²/s². 1 mm: w² + (w / 2)² · 10,000² / 1000² ... = w² (1 + 25) = 10,000².
+        // Radius 10 mm, 1000 mm/s²: W = 10,000 mm²/s². After 1 mm a = w / 2 and a² + (w / 10)² = 1000², so
+        // 0.26 w² = 1000².
         let law = Law::Curve { accel: 1000.0, per_form2: 1e-4, lean: 0.0 };
         assert!((law.reach2(0.0, 1.0) - 1e4 / libm::sqrtf(26.0)).abs() < 0.1);
         // Half of the limit across leaves √¾ along.

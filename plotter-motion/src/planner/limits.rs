@@ -71,7 +71,8 @@ impl Limits {
         greatest(self.accel, (1.0 - ROUNDING) / greatest(one.abs() / most_one, other.abs() / most_other))
     }
 
-    /// How hard the machine may be sped up and braked along an arc: see [`Block`](super::block::Block) for what it is told by.
+    /// How hard the machine may be sped up and braked along an arc: see [`Block`](super::block::Block) for
+    /// what it is told by.
     pub(super) fn arc(&self, per_form2: f32) -> Law {
         let accel = self.accel;
         if self.motors.is_some() {
@@ -85,7 +86,8 @@ impl Limits {
         let Some(motors) = self.motors else {
             return Law::Curve { accel: self.accel, per_form2, lean };
         };
-        // Its directions are cos h along the middle, less or more sin h inwards; it bends by sin h / L inwards.
+        // Its directions are cos h along the middle, less or more sin h inwards; it bends by sin h / L
+        // inwards.
         let one = inwards.abs();
         let inwards = [one, root(greatest(1.0 - one * one, 0.0))];
         let (cos, bend) = (root(greatest(1.0 - lean * lean, 0.0)), 2.0 * lean / length_mm);
@@ -104,7 +106,8 @@ impl Limits {
         self.along_share() * self.accel
     }
 
-    /// Greatest acceleration that turns the path towards the inside of a curve, mm/s². See [`Law`] for what leans.
+    /// Greatest acceleration that turns the path towards the inside of a curve, mm/s². See [`Law`] for what
+    /// leans.
     pub(super) fn turning(&self, inwards: [f32; 2], lean: f32) -> f32 {
         self.along(inwards) * if self.has_jerk { self.across_share(lean) / MOST_FORM_SHARE } else { 1.0 }
     }
@@ -114,8 +117,9 @@ impl Limits {
         self.accel * if self.has_jerk { self.across_share(0.0) / MOST_FORM_SHARE } else { 1.0 }
     }
 
-    /// Share of the acceleration that motion with a limited jerk uses along the path. What it leaves for turning is the same at every speed,
-    /// since such a motion looks ahead with one limit. Within a tolerance a path is curves for the most part, in exact mode lines.
+    /// Share of the acceleration that motion with a limited jerk uses along the path. What it leaves for
+    /// turning is the same at every speed, since such a motion looks ahead with one limit. Within a tolerance
+    /// a path is curves for the most part, in exact mode lines.
     const fn along_share(&self) -> f32 {
         match self.settings.path {
             PathMode::Exact => 0.9,
@@ -123,7 +127,8 @@ impl Limits {
         }
     }
 
-    /// What is left for turning where the acceleration along the path is [`Limits::along_share`] of its limit.
+    /// What is left for turning where the acceleration along the path is [`Limits::along_share`] of its
+    /// limit.
     fn across_share(&self, lean: f32) -> f32 {
         let along = self.along_share();
         if self.motors.is_some() {

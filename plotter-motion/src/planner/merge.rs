@@ -6,8 +6,9 @@ use crate::{Point, Segment};
 /// Most vertices that one segment stands for.
 const MOST: usize = 8;
 
-/// Least share of a segment's length by which it is made longer within the line that ends it. A smooth curve allows more, so that segments
-/// along it are equally long and not a whole number of its chords; behind a corner there is less, and the segment ends in the corner.
+/// Least share of a segment's length by which it is made longer within the line that ends it. A smooth curve
+/// allows more, so that segments along it are equally long and not a whole number of its chords; behind a
+/// corner there is less, and the segment ends in the corner.
 const LONGER_SHARE: f64 = 0.1;
 /// Halvings of that line in the search for the place: to a 32nd.
 const HALVINGS: u32 = 5;

@@ -24,8 +24,10 @@ mod modes;
 mod phase;
 mod ramps;
 mod ring;
+mod rounding;
 mod s_curve;
 mod settings;
+mod stretch;
 mod sum_down;
 
 pub use error::PlanError;

@@ -17,8 +17,8 @@ pub enum Shape {
         /// How far round, rad; counter-clockwise above 0.
         sweep_rad: f32,
     },
-    /// A parabola with a control point, the vertex that it rounds: it touches the lines from there to both of its ends, which are equally
-    /// far away.
+    /// A parabola with a control point, the vertex that it rounds: it touches the lines from there to both of
+    /// its ends, which are equally far away.
     Parabola {
         /// The control point, mm.
         control: Point,
@@ -35,9 +35,9 @@ pub struct Course {
     pub shape: Shape,
     /// Where it ends, mm.
     pub to: Point,
-    /// How long it is, mm; 0 for a dot. Of a parabola the length of both its tangents, and its phases are told by that: s of it is the
-    /// share s / `length_mm` of its parameter. Speeds are true at its ends, and between them less than is said, at the apex by the
-    /// cosine of half of its turn.
+    /// How long it is, mm; 0 for a dot. Of a parabola the length of both its tangents, and its phases are
+    /// told by that: s of it is the share s / `length_mm` of its parameter. Speeds are true at its ends, and
+    /// between them less than is said, at the apex by the cosine of half of its turn.
     pub length_mm: f32,
     /// The pen on it.
     pub pen: Pen,

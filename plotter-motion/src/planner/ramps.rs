@@ -30,8 +30,8 @@ struct Ramp {
 
 /// Speeding up, cruising, braking: what is left of a block.
 ///
-/// An arc is passed in several parts, each with the acceleration that the greatest speed on it leaves: see [`Law`]. A part is planned when
-/// the one before it is over.
+/// An arc is passed in several parts, each with the acceleration that the greatest speed on it leaves: see
+/// [`Law`]. A part is planned when the one before it is over.
 ///
 /// Places are told by what is left of the block behind them, so that they are right to the last bit where the least of it is left: there
 /// a speed is right for no other place.
@@ -112,7 +112,8 @@ impl Ramps {
         }
         self.law = block.law(limits);
         (self.length_mm, self.rest_mm) = (block.length(), block.length());
-        // Most sharp corners are passed at one speed. An arc may be long: whoever holds the machine wants to brake harder as it gets slower.
+        // Most sharp corners are passed at one speed. An arc may be long: whoever holds the machine wants to
+        // brake harder as it gets slower.
         let cruise2 = block.cruise2;
         let is_even = block.kind == Kind::Parabola && block.entry2 == cruise2 && exit2 == cruise2;
         self.parts = if is_even { 1 } else { block.pieces() };
@@ -140,7 +141,8 @@ impl Ramps {
         (self.law.on_part(before, self.parts), self.law.on_part(parts_left, self.parts))
     }
 
-    /// Square of the greatest speed with which the last so many parts can be entered, for who leaves the block as it should be.
+    /// Square of the greatest speed with which the last so many parts can be entered, for who leaves the
+    /// block as it should be.
     fn before2(&self, parts: u16) -> f32 {
         let mut speed2 = self.exit2;
         for part in 0..parts {
@@ -227,7 +229,8 @@ impl Ramps {
         let (peak2, peak) = if peak2 >= cruise2 { (cruise2, self.cruise) } else { (peak2, root(peak2)) };
         let split = match law {
             Law::Line(_) => steepness,
-            // What is left along a curve where it is fast is known to some hundred thousandths: from the way that there is.
+            // What is left along a curve where it is fast is known to some hundred thousandths: from the way
+            // that there is.
             _ => Steepness::new((2.0 * peak2 - entry2 - exit2) / (2.0 * way_mm)),
         };
         let up_mm = least(greatest(split.way_mm(peak2 - entry2), 0.0), way_mm);
@@ -265,8 +268,9 @@ impl Ramps {
         way_mm > ROUNDING * self.rest_mm
     }
 
-    /// Puts a change of speed all the way to the end of the part: a little less hard than could be, and never harder. Where rounding would
-    /// have it so, the place is left some last bits of the braking way before the end, or after it.
+    /// Puts a change of speed all the way to the end of the part: a little less hard than could be, and never
+    /// harder. Where rounding would have it so, the place is left some last bits of the braking way before
+    /// the end, or after it.
     fn put_through(&mut self, exit: f32, end_mm: f32, steepness: Steepness) {
         let change = exit - self.speed;
         let even_s = self.even_s(self.rest_mm - end_mm, (self.speed, exit));
@@ -284,10 +288,12 @@ impl Ramps {
         2.0 * way_mm / (from + speed)
     }
 
-    /// The same on a curve. A change as small as rounding may take all of a part there: its way is known better than its acceleration. Only
-    /// of a time so short that rounding makes more than a thousandth of an acceleration the latter holds.
+    /// The same on a curve. A change as small as rounding may take all of a part there: its way is known
+    /// better than its acceleration. Only of a time so short that rounding makes more than a thousandth of an
+    /// acceleration the latter holds.
     fn curve_s(&self, way_mm: f32, (from, speed): (f32, f32), steepness: Steepness) -> f32 {
-        /// Share of the time for all of the speed, and of what is left of the block: the last bits of two of them, a thousand times.
+        /// Share of the time for all of the speed, and of what is left of the block: the last bits of two of
+        /// them, a thousand times.
         const SHORT: f32 = 1.2e-4;
         let even_s = self.even_s(way_mm, (from, speed));
         let is_long = even_s * self.law.accel_at(0.0) > SHORT * greatest(from, speed);
@@ -298,7 +304,8 @@ impl Ramps {
         }
     }
 
-    /// Puts a change of speed at full acceleration before those put so far: along so much of the block, to a place with so much left of it.
+    /// Puts a change of speed at full acceleration before those put so far: along so much of the block, to a
+    /// place with so much left of it.
     fn put_ramp(&mut self, way_mm: f32, rest_mm: f32, (from, speed): (f32, f32), steepness: Steepness) {
         let change = speed - from;
         let changes = change.abs() > ROUNDING * greatest(from, speed);

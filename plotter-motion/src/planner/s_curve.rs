@@ -28,6 +28,9 @@ const TIGHT_MM: f64 = 1e-6;
 const DONE_MM: f64 = 1e-9;
 /// A phase that is no longer than this is rounding, s.
 const SHORTEST_PHASE_S: f64 = 1e-9;
+/// The acceleration rises to its greatest in no less than this, s, whatever jerk is allowed: a thousand of
+/// the phases above.
+const SHORTEST_RISE_S: f64 = 1e-6;
 /// Slower than this is a standstill, mm/s.
 const STANDSTILL_MM_S: f64 = 1e-7;
 
@@ -305,7 +308,7 @@ impl SCurveState {
         if !self.begun {
             return None;
         }
-        let limits = Limits { accel: accel_mm_s2, jerk: jerk_mm_s3 };
+        let limits = Limits { accel: accel_mm_s2, jerk: jerk_mm_s3.min(accel_mm_s2 / SHORTEST_RISE_S) };
         let length_mm = ring.get(0).map_or(0.0, |head| f64::from(head.length()));
         loop {
             if hold && (self.taken > 0 || self.taken_s > 0.0) {

@@ -22,20 +22,20 @@ pub enum PathMode {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum AccelLimit {
-    /// The acceleration as a vector: what speeds up along the path and what turns across it, together, are at most
-    /// [`PlannerSettings::accel_mm_s2`].
+    /// The acceleration as a vector: what speeds up along the path and what turns across it, together, are at
+    /// most [`PlannerSettings::accel_mm_s2`].
     #[default]
     Vector,
-    /// Each axis for itself, where a motor moves each: `accel_mm_s2` is not looked at. Along a diagonal of two like axes the machine
-    /// speeds up √2 times as hard as along either.
+    /// Each axis for itself, where a motor moves each: `accel_mm_s2` is not looked at. Along a diagonal of
+    /// two like axes the machine speeds up √2 times as hard as along either.
     Axes {
         /// Greatest acceleration along x, mm/s².
         x_mm_s2: f64,
         /// Greatest acceleration along y, mm/s².
         y_mm_s2: f64,
     },
-    /// Each motor of a belt machine for itself, in mm of the belt: one motor moves x + y, the other x − y. Along a diagonal one of them does
-    /// all of it, √2 times what the pen does.
+    /// Each motor of a belt machine for itself, in mm of the belt: one motor moves x + y, the other x − y.
+    /// Along a diagonal one of them does all of it, √2 times what the pen does.
     Belts {
         /// Greatest acceleration of x + y, mm/s².
         sum_mm_s2: f64,
@@ -80,11 +80,13 @@ pub struct PlannerSettings {
     pub travel_speed_mm_s: f64,
     /// Greatest acceleration, mm/s², as [`PlannerSettings::accel_limit`] says.
     pub accel_mm_s2: f64,
-    /// What that is a limit of. It holds at every instant but in a corner of [`PathMode::Exact`], which is a jump of the velocity.
+    /// What that is a limit of. It holds at every instant but in a corner of [`PathMode::Exact`], which is a
+    /// jump of the velocity.
     pub accel_limit: AccelLimit,
     /// Greatest jerk along the path, mm/s³; `None` lets the acceleration change at once (trapezoidal profiles), a limit makes
-    /// them S-curves. As a vector the jerk is not limited: the acceleration across begins and ends at once with a curve. With a limit 0.9 of the
-    /// acceleration is used along the path in exact mode and 0.7 within a tolerance; what that leaves is for turning.
+    /// them S-curves. As a vector the jerk is not limited: the acceleration across begins and ends at once
+    /// with a curve. With a limit 0.9 of the acceleration is used along the path in exact mode and 0.7 within
+    /// a tolerance; what that leaves is for turning.
     pub jerk_mm_s3: Option<f64>,
     /// How far a machine that rounds a corner by itself may miss its vertex, mm: see [`junction_speed`](super::junction_speed).
     pub junction_deviation_mm: f64,

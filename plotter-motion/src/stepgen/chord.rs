@@ -38,7 +38,8 @@ impl Chords {
                 chord_count(radius_mm, sweep_rad, tolerance_mm)
             }
             Shape::Parabola { control } => {
-                // Between two places a share u of the parameter apart it is at most u² / 4 of both tangents' difference from its chord.
+                // Between two places a share u of the parameter apart it is at most u² / 4 of both tangents'
+                // difference from its chord.
                 let bend = from.way_to(&control).plus(course.to.way_to(&control));
                 let parts = root(0.25 * bend.length_near() / tolerance_mm);
                 #[expect(

@@ -28,8 +28,8 @@ fn stepped<const N: usize>(
         timing,
         STEPS_PER_MM,
         ops,
-        |action, steps| {
-            take(steps.tick(), matches!(action, Action::Phase(_)));
+        |action, tick, _| {
+            take(tick, matches!(action, Action::Phase(_)));
             let now = match action {
                 Action::Course(course) => course.pen,
                 Action::SelectPen(_) | Action::NewPage => Pen::Up,
@@ -172,7 +172,7 @@ fn a_line_of_centuries_is_told_at_once() {
 #[test]
 fn an_estimator_has_all_its_memory_in_itself() {
     // 64 blocks of 64 bytes, and what holds at its ends.
-    assert!(size_of::<Estimator<64>>() <= 5 * 1024, "{}", size_of::<Estimator<64>>());
+    assert!(size_of::<Estimator<64>>() < 5 * 1024, "{}", size_of::<Estimator<64>>());
 }
 
 #[test]

@@ -417,7 +417,8 @@ fn hatches_keep_to_their_pen_layer_and_sheet() {
 
 #[test]
 fn rings_in_rings_are_hatched_as_rings_whether_hidden_or_not() {
-    // A ring with an island in its hole, and the same square once more on top of all: nothing of the others is seen.
+    // A ring with an island in its hole, and the same square once more on top of all: nothing of the others
+    // is seen.
     let rings = || [square(0.0, 12.0), square(2.0, 10.0), square(4.0, 8.0)];
     let mut hatching = Hatching::default();
     hatching.angle_rad = 0.0;

@@ -60,7 +60,7 @@ fn drawn(take_up: bool) -> (f64, Point) {
         StepGenSettings::default(),
         STEPS_PER_MM,
         &drawings::circle().ops,
-        |_, _| {},
+        |_, _, _| {},
         |tick, event| {
             assert_eq!(steps.push(TimedEvent { tick, event }), Ok(()));
             while let Some(event) = steps.next_event() {

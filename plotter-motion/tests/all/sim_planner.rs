@@ -8,11 +8,14 @@
 use crate::auditor;
 use crate::drawings;
 
-use auditor::{Audit, Lens, audit, planned};
+use auditor::{Audit, Lens, audit, audit_touched, planned};
 use core::time::Duration;
 use drawings::Drawing;
 use plotter_motion::plant::{StepperPlant, StepperSettings};
-use plotter_motion::{Axis, Direction, MotorEvent, PathMode, PlannerSettings, StepGenSettings};
+use plotter_motion::{
+    AccelLimit, Axis, Direction, Machine, MachineConfig, MotorEvent, PathMode, PlannerSettings,
+    StepGenSettings,
+};
 
 /// A hundred times as fine as a motor, so that differences of places are accelerations and not roundings.
 const FINE: Lens =
@@ -94,6 +97,78 @@ fn whole_drawings_keep_every_limit() {
     }
 }
 
+/// How a job of chance is run: settings, and the lens for its acceleration. Presets, and speeds and
+/// accelerations of chance, in every mode and with every kind of limit.
+fn chance(random: &mut impl FnMut() -> f64) -> (PlannerSettings, Lens) {
+    let preset = |config| PlannerSettings::of(&Machine::new(config).unwrap());
+    let chosen = PlannerSettings {
+        speed_mm_s: 20.0 + 280.0 * random(),
+        travel_speed_mm_s: 150.0,
+        accel_mm_s2: 500.0 * 20.0_f64.powf(random()),
+        ..PlannerSettings::default()
+    };
+    let chosen = match random() {
+        ..0.17 => preset(MachineConfig::stepper_plotter()),
+        ..0.33 => PlannerSettings { accel_mm_s2: 5_000.0, ..preset(MachineConfig::textile_plotter()) },
+        _ => chosen,
+    };
+    let (strong, weak) = (chosen.accel_mm_s2, chosen.accel_mm_s2 * (0.2 + 0.8 * random()));
+    let accel_limit = match random() {
+        ..0.2 => AccelLimit::Axes { x_mm_s2: weak, y_mm_s2: strong },
+        ..0.4 => AccelLimit::Belts { sum_mm_s2: strong, difference_mm_s2: weak },
+        _ => AccelLimit::Vector,
+    };
+    let path = if random() < 0.75 {
+        PathMode::Tolerance { path_tolerance_mm: 0.01 + 0.19 * random() }
+    } else {
+        PathMode::Exact
+    };
+    let jerk_mm_s3 = (random() < 0.2).then_some(30.0 * strong);
+    // A step more or less looks like s / t²: a hundredth of the lesser limit.
+    let window_s = (1.0 / (FINE.steps_per_mm * 0.01 * weak)).sqrt();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some hundred")]
+    let window = (window_s / FINE.bin_s).ceil() as usize;
+    (PlannerSettings { path, accel_limit, jerk_mm_s3, ..chosen }, Lens { window, ..FINE })
+}
+
+/// Jobs of chance with lines, arcs and feeds, which a person slows down, speeds up and holds.
+fn check_jobs(seeds: core::ops::Range<u64>) {
+    let mut worst = 0.0_f64;
+    for seed in seeds {
+        let mut random = drawings::chance(seed);
+        let (settings, lens) = chance(&mut random);
+        let job = drawings::job(&mut random);
+        let touched = random() < 0.5;
+        let seen = audit_touched::<16>(settings, lens, &job, |planner| {
+            if touched && random() < 0.03 {
+                if random() < 0.33 {
+                    planner.hold();
+                } else {
+                    planner.override_speeds(0.3 + random(), 0.3 + random());
+                }
+            }
+        });
+        worst = worst.max(seen.vector_share);
+        assert!(seen.vector_share <= MEASURED, "{seed}: {} of the limit, {settings:?}", seen.vector_share);
+        assert!(
+            (seen.time_s - seen.planned_s).abs() <= TIME_SHARE * seen.planned_s + 1e-3,
+            "{seed}: {seen:?}"
+        );
+    }
+    println!("jobs of chance: at most {worst:.3} of the limit");
+}
+
+#[test]
+fn a_few_jobs_of_chance_keep_the_limit() {
+    check_jobs(0..8);
+}
+
+#[test]
+#[ignore = "minutes in a release build: .ci/run runs it"]
+fn whole_jobs_of_chance_keep_the_limit() {
+    check_jobs(1000..1200);
+}
+
 /// The documented machine: 87.58 steps/mm, so up to 8758 pulses/s, and simulated motors that lose steps.
 #[test]
 #[ignore = "half a minute in a release build: .ci/run runs it"]
@@ -105,15 +180,15 @@ fn whole_drawings_lose_no_step() {
             let clock = StepGenSettings::default();
             let mut fastest_hz = 0.0_f64;
             let mut last = [0; 2];
-            // How far the rotor is behind its field at any step, full steps: beyond two it falls to another place of rest, and two such
-            // falls may cancel each other.
+            // How far the rotor is behind its field at any step, full steps: beyond two it falls to another
+            // place of rest, and two such falls may cancel each other.
             let mut most_lag = 0.0_f64;
             auditor::run::<16>(
                 settings,
                 clock,
                 87.58,
                 &drawing.ops,
-                |_, _| {},
+                |_, _, _| {},
                 |tick, event| {
                     let MotorEvent::Step { x, y } = event else { return };
                     let at_s = tick as f64 / f64::from(clock.clock_hz);
@@ -164,7 +239,8 @@ fn table_of_times() {
                 drawing.name
             );
         }
-        // In exact mode the short chords of a curve are corners, and what jumps there counts for nothing: that saves up to a thousandth.
+        // In exact mode the short chords of a curve are corners, and what jumps there counts for nothing:
+        // that saves up to a thousandth.
         let saved = |less: ((f64, usize), f64), more: ((f64, usize), f64)| less.0.0 <= 1.001 * more.0.0;
         assert!(
             saved(tolerance, exact) && saved(exact, curved) && saved(tolerance, curved_tolerance),

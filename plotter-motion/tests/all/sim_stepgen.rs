@@ -30,7 +30,7 @@ fn line(settings: PlannerSettings, clock_hz: u32, to: Point) -> (f64, Vec<Steppe
         step_settings,
         STEPS_PER_MM,
         &[PlotOp::Travel { to }],
-        |action, _| {
+        |action, _, _| {
             if let Action::Phase(phase) = action {
                 let mut phases = phases.borrow_mut();
                 let begin = phases.last().map_or(0.0, |(begin, phase, _)| {
@@ -105,7 +105,7 @@ fn a_roll_of_ten_metres_is_stepped_to_the_last_step_and_in_time() {
             StepGenSettings::default(),
             STEPS_PER_MM,
             &[PlotOp::Travel { to }],
-            |action, _| {
+            |action, _, _| {
                 if let Action::Phase(phase) = action {
                     planned_s.set(planned_s.get() + f64::from(phase.duration_s));
                 }
@@ -153,7 +153,7 @@ fn a_lasers_power_follows_its_speed_and_is_none_at_rest() {
         step_settings,
         STEPS_PER_MM,
         &ops,
-        |_, _| {},
+        |_, _, _| {},
         |tick, event| match event {
             MotorEvent::Laser(now) => {
                 power = now;

@@ -51,9 +51,9 @@ pub enum OrderEffort {
 ///    crossing is whole again: the straightest pairs first, one partner an end;
 /// 2. with `one_stroke`, ends in exactly one place are joined whatever the angle, so that each connected part of the
 ///    drawing takes the fewest strokes it can (Hierholzer 1873);
-/// 3. the pen goes from each end to the nearest stroke, entering lines at either end and closed strokes anywhere,
-///    then changes of the order that shorten the travel are made (2-opt: Croes 1958; Or-opt: Or 1976; Johnson and
-///    McGeoch 1997).
+/// 3. the pen goes from each end to the nearest stroke, entering lines at either end and closed strokes
+///    anywhere, then changes of the order that shorten the travel are made (2-opt: Croes 1958; Or-opt: Or 1976;
+///    Johnson and McGeoch 1997).
 ///
 /// The travel, with `lift_px` for each stroke, is never longer than that of the given order; where there are
 /// several pens or lettering, than that of the given order with the strokes of each pen and of each block
@@ -283,8 +283,8 @@ fn add_site(sites: &mut Sites, parts: &Parts<'_>, unit: &[Trail], rings: usize) 
     }
 }
 
-/// Places at which a closed trail may be entered, each with the vertex before: the vertices, and where these are few, those that divide
-/// what is not straight evenly.
+/// Places at which a closed trail may be entered, each with the vertex before: the vertices, and where these
+/// are few, those that divide what is not straight evenly.
 fn ring_places(ring: &Curve) -> Vec<(PxPoint, u32)> {
     let pieces = ring.vertices.len().saturating_sub(1).max(1);
     let parts = number(RING_PLACES.div_ceil(pieces));

@@ -191,7 +191,8 @@ fn bridge(like: Option<&PathSegment>, to: plotter_motion::Point) -> PathSegment 
     PathSegment { feed_mm_s: like.feed_mm_s, power: like.power, ..PathSegment::line(to) }
 }
 
-/// Lets a closed stroke begin within its first segment, a share of it on: that becomes the first and the last one.
+/// Lets a closed stroke begin within its first segment, a share of it on: that becomes the first and the last
+/// one.
 fn begin_within(stroke: &mut Stroke, share: f64) {
     let from = stroke.from;
     if let Some(first) = stroke.segments.first_mut().filter(|_| share > 0.0) {

@@ -8,7 +8,8 @@ use crate::{Curve, Drawing, PxPoint};
 /// Way along a stroke over which the direction of its end is taken, px: enough for one stair of a gentle slope.
 const END_REACH_PX: f64 = 4.0;
 
-/// Fewest vertices of a closed stroke of lines: there, back, and the first one again. A loop of one curve has two.
+/// Fewest vertices of a closed stroke of lines: there, back, and the first one again. A loop of one curve has
+/// two.
 const MIN_CLOSED: usize = 3;
 
 /// A stroke as the search sees it.
@@ -101,7 +102,8 @@ pub(crate) struct Trail {
     range: (u32, u32),
     /// Vertex of the closed trail with which it begins and ends.
     pub(crate) start: u32,
-    /// Share of the piece from that vertex on, in parts of 2³², at which it begins and ends instead; 0 is the vertex.
+    /// Share of the piece from that vertex on, in parts of 2³², at which it begins and ends instead; 0 is the
+    /// vertex.
     pub(crate) share: u32,
     /// Whether it comes back to where it began.
     pub(crate) closed: bool,

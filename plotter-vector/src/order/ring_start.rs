@@ -18,18 +18,19 @@ const SAME_PX: f64 = 1e-9;
 /// Difference of the cosines of two bends that counts as one being sharper.
 const SHARPER_COS: f64 = 0.05;
 
-/// Most passes over the rings' starts. Each depends on its neighbours': three passes settle nearly all, and only rings next to one
-/// that has moved are looked at again.
+/// Most passes over the rings' starts. Each depends on its neighbours': three passes settle nearly all, and
+/// only rings next to one that has moved are looked at again.
 const RING_PASSES: usize = 20;
 
 /// How far a start has to move for its neighbours to be looked at again, px: less gains no tenth of a pixel.
 const MOVED_PX: f64 = 0.05;
 
-/// Least travel that a start within a piece saves over one at a vertex, px: a tenth of a millimetre of a sheet, some
-/// milliseconds. It costs a vertex, and at a corner the pen's coming and going is not seen.
+/// Least travel that a start within a piece saves over one at a vertex, px: a tenth of a millimetre of a
+/// sheet, some milliseconds. It costs a vertex, and at a corner the pen's coming and going is not seen.
 const LEAST_SAVED_PX: f64 = 1.0;
 
-/// Greatest angle of an arc over which the sum of the distances from two places is taken to have one least value, rad.
+/// Greatest angle of an arc over which the sum of the distances from two places is taken to have one least
+/// value, rad.
 const ARC_STEP_RAD: f64 = core::f64::consts::FRAC_PI_8;
 
 /// Stretches of a cubic curve over which it is taken to have one least value.
@@ -41,8 +42,8 @@ const SEARCH_STEPS: u32 = 28;
 /// The golden section: (√5 − 1) / 2.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// Lets each ring begin at the place that is on the way from the stroke before to the one after; of equally good
-/// vertices at the sharpest corner, where the pen's coming and going is not seen.
+/// Lets each ring begin at the place that is on the way from the stroke before to the one after; of equally
+/// good vertices at the sharpest corner, where the pen's coming and going is not seen.
 pub(super) fn start_rings_well(parts: &Parts<'_>, trails: &mut [Trail], ends: &mut [Ends]) {
     if !trails.iter().any(|trail| trail.closed) {
         return;
@@ -121,7 +122,8 @@ impl Ways {
             if least_px >= most_px {
                 continue;
             }
-            // Within a straight side the pen would stop where it otherwise goes on, and a polygon would have a vertex more.
+            // Within a straight side the pen would stop where it otherwise goes on, and a polygon would have
+            // a vertex more.
             let Some(piece @ (Piece::Arc(_) | Piece::Cubic(_))) = ring.course().piece(vertex) else {
                 continue;
             };
@@ -160,7 +162,8 @@ impl Ways {
         (best.2, best.0)
     }
 
-    /// The share of a piece at which the travel is least, and how much it is there, if that is less than `most_px`.
+    /// The share of a piece at which the travel is least, and how much it is there, if that is less than
+    /// `most_px`.
     fn best_share(&self, piece: &Piece, most_px: f64) -> Option<(f64, f64)> {
         let stretches = match piece {
             // The sum of two distances is convex along a line.
@@ -189,8 +192,8 @@ impl Ways {
     }
 }
 
-/// Where a function with one least value between two places has it, and how much it is (J. Kiefer, "Sequential minimax search for a
-/// maximum", 1953).
+/// Where a function with one least value between two places has it, and how much it is (J. Kiefer,
+/// "Sequential minimax search for a maximum", 1953).
 fn least(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> (f64, f64) {
     let sections = |low: f64, high: f64| (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
     let (one, other) = sections(low, high);

@@ -66,7 +66,8 @@ impl Sites {
         self.add(Site::OneWay, [(from, 0), (to, 0)].into_iter());
     }
 
-    /// Adds one of so many rings (or dots); its places are some of these, evenly chosen, each with the vertex before.
+    /// Adds one of so many rings (or dots); its places are some of these, evenly chosen, each with the vertex
+    /// before.
     pub(crate) fn push_ring(&mut self, ring: &[(PxPoint, u32)], rings: usize) {
         let few = (ALL_RING_PLACES / rings.max(1)).clamp(2, RING_PLACES).min(ring.len());
         let places = (0..few).filter_map(|k| ring.get(k * ring.len() / few.max(1)).copied());

@@ -640,7 +640,8 @@ fn an_element_with_a_number_that_is_no_place_is_left_out_and_told_and_the_rest_i
 
 #[test]
 fn what_is_seen_of_each_shape_is_hatched() {
-    // Squares of 50 px, the second over the right half of the first, a third in the second with the paper's colour, and a clipped one.
+    // Squares of 50 px, the second over the right half of the first, a third in the second with the paper's
+    // colour, and a clipped one.
     let shapes = "<clipPath id='c'><path d='M0 60H25V100H0'/></clipPath>\
         <path d='M0 0H50V50H0Z' fill='#f00'/><path d='M25 0H75V50H25Z' fill='#00f'/><path d='M30 10H70V40H30Z' fill='#fff'/>\
         <path d='M0 60H50V100H0Z' fill='#f00' clip-path='url(#c)'/><path d='M80 0H99V50Z' stroke='#000' fill='none' stroke-dasharray='3'/>";

@@ -96,9 +96,10 @@ pub struct SvgOptions {
     /// Whether filled shapes hide what lies below them, also those in the colour of the paper; those that are less than half
     /// opaque do not.
     pub occludes: bool,
-    /// Fills each closed shape with lines, which fills that are drawn later hide with [`occludes`](Self::occludes), and clip paths cut. The
-    /// distance is in mm of the sheet, the angle counter-clockwise as on the sheet; the lines of all shapes lie at odd multiples of half
-    /// the distance from the sheet's upper left corner. Dashed shapes are left as they are.
+    /// Fills each closed shape with lines, which fills that are drawn later hide with
+    /// [`occludes`](Self::occludes), and clip paths cut. The distance is in mm of the sheet, the angle
+    /// counter-clockwise as on the sheet; the lines of all shapes lie at odd multiples of half the distance
+    /// from the sheet's upper left corner. Dashed shapes are left as they are.
     pub hatch: Option<Hatching>,
     /// Pixels to the inch: 96 in the standard, 72 and 90 in files of older programs. Lengths in mm and inches are what they are.
     pub px_per_inch: f64,
@@ -382,8 +383,8 @@ impl core::error::Error for SvgError {}
 ///
 /// Coordinates are parsed in single precision: to 0.001 px or 0.0003 mm up to 4 m from the origin. Arcs are first
 /// made into cubic curves that are 0.03 % of the radius off at most, and no more than 0.1 of the file's units; that
-/// adds to the tolerance, which is kept between those curves and the chords. A path is read up to its first error. Another element with a
-/// number that is no place on a sheet, beyond 10¹², is left out.
+/// adds to the tolerance, which is kept between those curves and the chords. A path is read up to its first
+/// error. Another element with a number that is no place on a sheet, beyond 10¹², is left out.
 ///
 /// # Errors
 /// [`SvgError`].

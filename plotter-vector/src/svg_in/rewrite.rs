@@ -402,8 +402,8 @@ impl<'a> Rewriter<'a> {
         }
     }
 
-    /// An attribute with a number that is no place on a sheet: what draws something is left out, with all that is in it. Else it is as
-    /// if the attribute were not there. The sheet's own are not asked for.
+    /// An attribute with a number that is no place on a sheet: what draws something is left out, with all
+    /// that is in it. Else it is as if the attribute were not there. The sheet's own are not asked for.
     fn huge(
         &mut self,
         node: Node<'a, 'a>,

@@ -8,7 +8,8 @@ use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::time::Duration;
 
-/// What the lengths of a curve's parts differ from its own, mm of each: lengths of lines within a nanometre of them.
+/// What the lengths of a curve's parts differ from its own, mm of each: lengths of lines within a nanometre
+/// of them.
 const CURVE_MM: f64 = 1e-6;
 
 /// Places of a coarse grid, so that ends meet.
@@ -183,8 +184,8 @@ proptest! {
     }
 }
 
-/// Greatest travel that a better start of one closed stroke may save, mm: a start at a vertex may cost a tenth, and its neighbours may
-/// have moved by a two hundredth each since.
+/// Greatest travel that a better start of one closed stroke may save, mm: a start at a vertex may cost a
+/// tenth, and its neighbours may have moved by a two hundredth each since.
 const SAVED_MM: f64 = 0.1 + 0.01 + 1e-3;
 
 /// The travel before and after each closed stroke, and the least that there is anywhere on it, mm.

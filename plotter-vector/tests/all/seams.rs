@@ -1,5 +1,5 @@
-//! A closed stroke may begin within one of its pieces. Here it begins at a vertex again, so that what is drawn can be
-//! compared piece by piece.
+//! A closed stroke may begin within one of its pieces. Here it begins at a vertex again, so that what is
+//! drawn can be compared piece by piece.
 
 use plotter_motion::Point;
 use plotter_motion::drawing::{self, PathSegment, Shape, Stroke};
@@ -72,7 +72,8 @@ impl Piece {
     }
 }
 
-/// The piece of `given`, or the bridge, whose parts these two are; `None` where both are pieces themselves, or where there is none.
+/// The piece of `given`, or the bridge, whose parts these two are; `None` where both are pieces themselves,
+/// or where there is none.
 fn whole_of(before: Piece, after: Piece, given: &[Piece]) -> Option<(Piece, Option<usize>)> {
     let own = || given.iter().flat_map(|piece| [*piece, piece.reversed()]);
     let is_one = |part: Piece| own().any(|piece| (piece.from, piece.to) == (part.from, part.to));
@@ -87,8 +88,8 @@ fn whole_of(before: Piece, after: Piece, given: &[Piece]) -> Option<(Piece, Opti
     found.map(|(index, piece)| (piece, Some(index))).or(bridged)
 }
 
-/// The drawing with every closed stroke that begins within a piece of `given`, or within a bridge, beginning at its next
-/// vertex, and that piece whole.
+/// The drawing with every closed stroke that begins within a piece of `given`, or within a bridge, beginning
+/// at its next vertex, and that piece whole.
 pub(crate) fn unsplit(ordered: &Drawing, given: &Drawing) -> Drawing {
     let curves = (0..given.strokes().len()).map(|index| given.curve(index));
     let given: Vec<Piece> = curves.flat_map(|curve| Piece::all(&curve).collect::<Vec<_>>()).collect();

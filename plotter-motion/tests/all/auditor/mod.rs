@@ -43,7 +43,8 @@ pub(crate) struct Audit {
     /// Square of the speed at a corner as a share of what is allowed there: the greatest; and how many corners there were.
     pub(crate) corner_share: f64,
     pub(crate) corners: usize,
-    /// The acceleration as a vector, as a share of its limit, in every window; in exact mode in those without a corner.
+    /// The acceleration as a vector, as a share of its limit, in every window; in exact mode in those without
+    /// a corner.
     pub(crate) vector_share: f64,
     /// Farthest place of the pen from the drawing, and of the drawing from the pen's way, mm.
     pub(crate) from_drawing_mm: f64,
@@ -57,17 +58,13 @@ pub(crate) struct Audit {
     pub(crate) least_interval_s: f64,
 }
 
-/// Runs a drawing through planner and step generator; gives the tick at which it ends.
-pub(crate) fn run<const N: usize>(
+/// Every action of a drawing. `each` may touch the planner; one that it holds goes on when the machine
+/// stands.
+pub(crate) fn actions<const N: usize>(
     settings: PlannerSettings,
-    step_settings: StepGenSettings,
-    steps_per_mm: f64,
     ops: &[PlotOp],
-    mut each: impl FnMut(Action, &StepGen<Cartesian>),
-    mut event: impl FnMut(u64, MotorEvent),
-) -> u64 {
-    let motor = MotorScale { steps_per_mm, inverted: false };
-    let mut steps = StepGen::new(Cartesian::new(motor, motor).unwrap(), step_settings);
+    mut each: impl FnMut(Action, &mut Planner<N>),
+) {
     let mut planner = Planner::<N>::new(settings).unwrap();
     let mut ops = ops.iter().copied();
     let mut finished = false;
@@ -81,40 +78,48 @@ pub(crate) fn run<const N: usize>(
                 }
             }
         }
-        let Some(action) = planner.next_action() else {
-            assert!(finished, "a planner with room for more has actions or is done");
-            return steps.tick();
-        };
-        each(action, &steps);
-        steps.push(action).unwrap();
-        while let Some(timed) = steps.next_event() {
-            event(timed.tick, timed.event);
+        match planner.next_action() {
+            Some(action) => each(action, &mut planner),
+            None if planner.is_held() => planner.resume(),
+            None => {
+                assert!(finished, "a planner with room for more has actions or is done");
+                return;
+            }
         }
     }
 }
 
+/// Runs a drawing through planner and step generator; gives the tick at which it ends. `each` is told at
+/// which tick an action begins.
+pub(crate) fn run<const N: usize>(
+    settings: PlannerSettings,
+    step_settings: StepGenSettings,
+    steps_per_mm: f64,
+    ops: &[PlotOp],
+    mut each: impl FnMut(Action, u64, &mut Planner<N>),
+    mut event: impl FnMut(u64, MotorEvent),
+) -> u64 {
+    let motor = MotorScale { steps_per_mm, inverted: false };
+    let mut steps = StepGen::new(Cartesian::new(motor, motor).unwrap(), step_settings);
+    actions::<N>(settings, ops, |action, planner| {
+        each(action, steps.tick(), planner);
+        steps.push(action).unwrap();
+        while let Some(timed) = steps.next_event() {
+            event(timed.tick, timed.event);
+        }
+    });
+    steps.tick()
+}
+
 /// The time that a drawing takes by the planner's own account, s, and how many courses it has.
 pub(crate) fn planned<const N: usize>(settings: PlannerSettings, ops: &[PlotOp]) -> (f64, usize) {
-    let mut planner = Planner::<N>::new(settings).unwrap();
-    let mut ops = ops.iter().copied();
-    let (mut time_s, mut courses, mut finished) = (0.0, 0, false);
-    loop {
-        while !finished && planner.has_room() {
-            match ops.next() {
-                Some(op) => planner.push(op).unwrap(),
-                None => {
-                    planner.finish().unwrap();
-                    finished = true;
-                }
-            }
-        }
-        match planner.next_action() {
-            Some(Action::Phase(phase)) => time_s += f64::from(phase.duration_s),
-            Some(Action::Course(_)) => courses += 1,
-            Some(_) => {}
-            None => return (time_s, courses),
-        }
-    }
+    let (mut time_s, mut courses) = (0.0, 0);
+    actions::<N>(settings, ops, |action, _| match action {
+        Action::Phase(phase) => time_s += f64::from(phase.duration_s),
+        Action::Course(_) => courses += 1,
+        _ => {}
+    });
+    (time_s, courses)
 }
 
 /// Mean positions over bins of time.
@@ -248,6 +253,16 @@ fn allowed2(turn_rad: f64, shorter_mm: f64, settings: &PlannerSettings) -> f64 {
 
 /// Runs a drawing and audits its steps. The pen's delay separates what is drawn without a stop.
 pub(crate) fn audit<const N: usize>(settings: PlannerSettings, lens: Lens, ops: &[PlotOp]) -> Audit {
+    audit_touched::<N>(settings, lens, ops, |_| {})
+}
+
+/// The same of a machine that a person touches, after any of its actions.
+pub(crate) fn audit_touched<const N: usize>(
+    settings: PlannerSettings,
+    lens: Lens,
+    ops: &[PlotOp],
+    mut touch: impl FnMut(&mut Planner<N>),
+) -> Audit {
     let settle_s = lens.bin_s * (4 * lens.wide_window) as f64;
     let step_settings = StepGenSettings {
         clock_hz: lens.clock_hz as u32,
@@ -266,14 +281,17 @@ pub(crate) fn audit<const N: usize>(settings: PlannerSettings, lens: Lens, ops: 
         step_settings,
         lens.steps_per_mm,
         ops,
-        |action, _| match action {
-            Action::Phase(phase) => planned_s.set(planned_s.get() + f64::from(phase.duration_s)),
-            Action::Course(course) => {
-                let mut stretches = stretches.borrow_mut();
-                let from = stretches.last().map_or(Point::ORIGIN, |before| before.course.to);
-                stretches.push(Stretch::new(course, from));
+        |action, _, planner| {
+            match action {
+                Action::Phase(phase) => planned_s.set(planned_s.get() + f64::from(phase.duration_s)),
+                Action::Course(course) => {
+                    let mut stretches = stretches.borrow_mut();
+                    let from = stretches.last().map_or(Point::ORIGIN, |before| before.course.to);
+                    stretches.push(Stretch::new(course, from));
+                }
+                _ => {}
             }
-            _ => {}
+            touch(planner);
         },
         |tick, event| match event {
             MotorEvent::Step { x, y } => {
@@ -447,8 +465,8 @@ fn narrow_windows(means: &[Point], corners: &[usize], lens: Lens, seen: &mut Aud
     }
 }
 
-/// The second difference of places is an average of the acceleration with weights above 0: where it is above the limit, the acceleration is
-/// somewhere.
+/// The second difference of places is an average of the acceleration with weights above 0: where it is above
+/// the limit, the acceleration is somewhere.
 fn vectors(means: &[Point], corners: &[usize], settings: PlannerSettings, lens: Lens, seen: &mut Audit) {
     let (window, smooth) = (lens.window, smooth(means, lens.window));
     let dt = window as f64 * lens.bin_s;
@@ -538,4 +556,32 @@ impl Nearness {
     fn farthest(&self) -> f64 {
         self.nearest_mm.iter().copied().fold(0.0, f64::max)
     }
+}
+
+/// What turns as sharply as the limit allows while it speeds up as hard as it allows is felt as √2 of the
+/// limit: the auditor sees it. On a circle of radius r, v² / r comes to the limit A at 45 degrees of turn
+/// from rest with the acceleration A.
+#[test]
+fn what_is_within_the_limit_along_and_across_apart_is_seen_to_be_beyond_it_together() {
+    const RADIUS_MM: f64 = 10.0;
+    const LENS: Lens =
+        Lens { steps_per_mm: 10_000.0, clock_hz: 1e8, bin_s: 0.000_05, window: 50, wide_window: 560 };
+    let path = PathMode::Tolerance { path_tolerance_mm: 0.05 };
+    let settings = PlannerSettings { path, ..PlannerSettings::default() };
+    let share = |along: fn(f64) -> f64, end_s: f64| {
+        let bins = (end_s / LENS.bin_s) as u32;
+        let places = (0..bins).map(|bin| {
+            let angle = along(f64::from(bin) * LENS.bin_s) / RADIUS_MM;
+            let step = |mm: f64| (mm * LENS.steps_per_mm).round() / LENS.steps_per_mm;
+            Point::new(step(RADIUS_MM * angle.cos()), step(RADIUS_MM * angle.sin()))
+        });
+        let mut seen = Audit::default();
+        vectors(&places.collect::<Vec<_>>(), &[], settings, LENS, &mut seen);
+        seen.vector_share
+    };
+    // 1000 mm/s² to 100 mm/s, and 100 mm/s all along.
+    let both = share(|t| 500.0 * t * t, 0.1);
+    assert!((1.35..1.45).contains(&both), "{both}");
+    let turning = share(|t| 100.0 * t, 0.1);
+    assert!((0.95..1.05).contains(&turning), "{turning}");
 }

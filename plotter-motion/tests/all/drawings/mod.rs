@@ -39,10 +39,11 @@ pub(crate) fn hatch(lines: u32) -> Drawing {
     Drawing { name: "hatch", ops: polyline(points) }
 }
 
-/// Seeded segments of 0.1 to 5 mm in any direction, within 100 mm.
-pub(crate) fn zigzag(segments: u32) -> Drawing {
-    let mut state = 0x2545_F491_4F6C_DD1D_u64;
-    let mut random = move || {
+/// Numbers from 0 to 1 by a seed.
+pub(crate) fn chance(seed: u64) -> impl FnMut() -> f64 {
+    // Any number but 0 is the state of the generator.
+    let mut state = 0x2545_F491_4F6C_DD1D_u64 ^ seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    move || {
         // Marsaglia's xorshift: the same row of numbers everywhere.
         state ^= state << 13;
         state ^= state >> 7;
@@ -50,7 +51,37 @@ pub(crate) fn zigzag(segments: u32) -> Drawing {
         #[expect(clippy::cast_precision_loss, reason = "53 bits")]
         let share = (state >> 11) as f64 / (1_u64 << 53) as f64;
         share
-    };
+    }
+}
+
+/// A job of some thirty lines and arcs, with travels between and a feed now and then.
+pub(crate) fn job(random: &mut impl FnMut() -> f64) -> Vec<PlotOp> {
+    let mut at = Point::ORIGIN;
+    let mut heading = 0.0;
+    let mut ops = Vec::new();
+    for _ in 0..30 {
+        let kind = random();
+        // Slight turns and any.
+        heading += if random() < 0.6 { random() - 0.5 } else { TAU * random() };
+        let ahead = |length: f64| plotter_motion::Vec2::new(length, 0.0).rotated(heading);
+        let feed_mm_s = (random() < 0.2).then(|| 5.0 + 100.0 * random());
+        let op = if kind < 0.1 {
+            PlotOp::Travel { to: at + ahead(2.0 * random()) }
+        } else if kind < 0.35 {
+            let (centre, sweep_rad) = (at + ahead(0.1 + 3.0 * random()), 8.0 * random() - 4.0);
+            PlotOp::DrawArc { centre, sweep_rad, to: centre + (at - centre).rotated(sweep_rad), feed_mm_s }
+        } else {
+            PlotOp::Draw { to: at + ahead(3.0 * random().powi(3)), feed_mm_s }
+        };
+        at = op.target().unwrap_or(at);
+        ops.push(op);
+    }
+    ops
+}
+
+/// Seeded segments of 0.1 to 5 mm in any direction, within 100 mm.
+pub(crate) fn zigzag(segments: u32) -> Drawing {
+    let mut random = chance(0);
     let mut at = Point::new(50.0, 50.0);
     let mut points = vec![at];
     for _ in 0..segments {

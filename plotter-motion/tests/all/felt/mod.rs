@@ -14,7 +14,8 @@ pub(crate) fn share(accel: Vec2, settings: &PlannerSettings) -> f64 {
     }
 }
 
-/// The first and the second derivative of the place along a course that begins at `from`, by the length that its phases are told by.
+/// The first and the second derivative of the place along a course that begins at `from`, by the length that
+/// its phases are told by.
 pub(crate) fn derivatives(course: &Course, from: Point, along_mm: f64) -> (Vec2, Vec2) {
     let length_mm = f64::from(course.length_mm);
     match course.shape {
@@ -31,4 +32,14 @@ pub(crate) fn derivatives(course: &Course, from: Point, along_mm: f64) -> (Vec2,
             (begin + bend * along_mm, bend)
         }
     }
+}
+
+/// Places along a course that begins at `from`, with both ends.
+pub(crate) fn places(course: &Course, from: Point, parts: u32) -> Vec<Point> {
+    let place = |share: f64| match course.shape {
+        Shape::Line => from.lerp(course.to, share),
+        Shape::Arc { centre, sweep_rad } => centre + (from - centre).rotated(share * f64::from(sweep_rad)),
+        Shape::Parabola { control } => from.lerp(control, share).lerp(control.lerp(course.to, share), share),
+    };
+    (0..=parts).map(|part| place(f64::from(part) / f64::from(parts))).collect()
 }
