@@ -24,7 +24,7 @@ use plotter_motion::{
     VectorizeConfig,
 };
 use plotter_replay::{Canvas, CanvasStyle, Layer};
-use plotter_vector::{Bitmap, Drawing, Gray, InkDistance, PxPoint, Scale, decode};
+use plotter_vector::{Bitmap, Despeckled, Drawing, Gray, InkDistance, PxPoint, Scale, Vectorized, decode};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -65,6 +65,9 @@ struct Args {
     /// Width of the drawing on the sheet, mm; less where the machine is smaller
     #[arg(long, value_name = "MM", default_value_t = 50.0, allow_negative_numbers = true)]
     width_mm: f64,
+    /// Ink that is taken for dirt need not be drawn
+    #[arg(long)]
+    allow_dirt: bool,
     /// Writes all figures as JSON
     #[arg(long, value_name = "F.json")]
     report: Option<PathBuf>,
@@ -104,6 +107,17 @@ fn draw(args: &Args) -> Result<(), String> {
         write_file(file, picture(&scan, &path, args.max_error_mm))?;
     }
     print(&report.table())?;
+    if let Some(dirt) = report.dirt()
+        && !args.allow_dirt
+        && report.measured_mm() > args.max_error_mm
+    {
+        return Err(format!(
+            "{dirt} of the scan, taken for dirt, and the drawing is {:.4} mm off with that ink, where {} mm were promised; \
+             clean the scan, or allow it with --allow-dirt",
+            report.measured_mm(),
+            args.max_error_mm
+        ));
+    }
     if report.measured_mm() > args.max_error_mm || !path.is_done {
         return Err(format!(
             "the drawing is {:.4} mm off, more than the {} mm that were promised: the test figure did not show it",
@@ -126,7 +140,10 @@ fn machine(args: &Args) -> Result<Machine, String> {
 /// The scan, and where it lies on the sheet.
 struct Scan {
     picture: Gray,
+    /// What is to be drawn, and all that there was before its dirt was taken out.
     ink: Bitmap,
+    all_ink: Bitmap,
+    dirt: Despeckled,
     scale: Scale,
     vectorize: VectorizeConfig,
     /// Strokes along which the ink's widths are measured.
@@ -143,19 +160,23 @@ impl Scan {
         let scale = fit_drawing((picture.width(), picture.height()), machine, args.width_mm)?;
         // Straight lines: what is followed is what was measured.
         let vectorize = VectorizeConfig { arcs: false, curves: false, ..machine.config().vectorize };
-        let ink = vectorizer(&vectorize, scale.mm_per_px())?.ink(&picture);
-        let mut scan = Self { picture, ink, scale, vectorize, reference: Drawing::default() };
-        scan.reference = scan.traced(REFERENCE_PX).map_err(|error| at(path, &error))?;
+        let settings = vectorizer(&vectorize, scale.mm_per_px())?;
+        let (ink, (all_ink, _)) = (settings.ink(&picture), settings.threshold.apply(&picture));
+        let (reference, dirt) = (Drawing::default(), Despeckled::default());
+        let mut scan = Self { picture, ink, all_ink, dirt, scale, vectorize, reference };
+        let Vectorized { drawing, removed, .. } =
+            scan.traced(REFERENCE_PX).map_err(|error| at(path, &error))?;
+        (scan.reference, scan.dirt) = (drawing, removed);
         if scan.ink.count() == 0 {
             return Err(at(path, &"there is no ink on it"));
         }
         Ok(scan)
     }
 
-    fn traced(&self, max_error_px: f64) -> Result<Drawing, String> {
+    fn traced(&self, max_error_px: f64) -> Result<Vectorized, String> {
         let config = VectorizeConfig { max_error_px, ..self.vectorize };
         let vectorizer = vectorizer(&config, self.scale.mm_per_px())?;
-        vectorizer.vectorize(&self.picture).map(|traced| traced.drawing).map_err(|error| error.to_string())
+        vectorizer.vectorize(&self.picture).map_err(|error| error.to_string())
     }
 
     /// No line of the drawing is longer, mm.
@@ -164,8 +185,8 @@ impl Scan {
     }
 
     /// How far the ink is from something drawn and it from the ink, mm.
-    fn distance_mm(&self, drawn: &Drawing) -> [f64; 2] {
-        let distance = InkDistance::new(&self.ink, &self.reference);
+    fn distance_mm(&self, ink: &Bitmap, drawn: &Drawing) -> [f64; 2] {
+        let distance = InkDistance::new(ink, &self.reference);
         [distance.of_ink(drawn).max_px, distance.of_drawn(drawn)].map(|px| px * self.scale.mm_per_px())
     }
 
@@ -199,12 +220,12 @@ fn candidates(scan: &Scan, max_error_mm: f64) -> Result<Vec<Traced>, String> {
         if tolerance_px > REFERENCE_PX && tolerance_px * scan.scale.mm_per_px() > max_error_mm {
             break;
         }
-        let drawing = scan.traced(tolerance_px)?;
+        let drawing = scan.traced(tolerance_px)?.drawing;
         if found.last().is_some_and(|before| before.drawing == drawing) {
             continue;
         }
         // Measured on this very scan, both ways: what was asked of the vectorization is the most that it can be.
-        let [ink_mm, drawn_mm] = scan.distance_mm(&drawing);
+        let [ink_mm, drawn_mm] = scan.distance_mm(&scan.ink, &drawing);
         found.push(Traced { tolerance_px, drawing, error_mm: ink_mm.max(drawn_mm) });
     }
     Ok(found)
@@ -384,12 +405,16 @@ struct Report<'a> {
     duration_s: f64,
     /// The ink from what was drawn, and that from the ink, mm.
     measured: [f64; 2],
+    dirt: Despeckled,
 }
 
 impl<'a> Report<'a> {
     fn new(args: &'a Args, machine: &Machine, scan: &Scan, plan: Plan, path: &FollowedPath) -> Self {
-        let measured = scan.distance_mm(&scan.in_pixels(&path.drawn));
+        // Against all ink: what was taken for dirt counts, unless that is allowed.
+        let ink = if args.allow_dirt { &scan.ink } else { &scan.all_ink };
+        let measured = scan.distance_mm(ink, &scan.in_pixels(&path.drawn));
         Self {
+            dirt: scan.dirt,
             args,
             name: machine.config().name.to_string(),
             mm_per_px: scan.scale.mm_per_px(),
@@ -401,6 +426,17 @@ impl<'a> Report<'a> {
 
     fn measured_mm(&self) -> f64 {
         self.measured.into_iter().fold(0.0, f64::max)
+    }
+
+    /// What was taken for dirt, if anything.
+    fn dirt(&self) -> Option<String> {
+        let Despeckled { removed_marks, removed_px, largest_removed_px, .. } = self.dirt;
+        let of = if removed_marks == 1 { "mark is" } else { "marks are" };
+        (removed_marks > 0).then(|| {
+            format!(
+                "{removed_marks} {of} left out, {removed_px} px of ink (the largest {largest_removed_px} px)"
+            )
+        })
     }
 
     /// The part that takes most of what was promised.
@@ -429,6 +465,11 @@ impl<'a> Report<'a> {
                 "control_mm": budget.control_mm,
             },
             "largest_part": self.largest_part().to_string(),
+            "dirt": {
+                "marks": self.dirt.removed_marks,
+                "px": self.dirt.removed_px,
+                "largest_px": self.dirt.largest_removed_px,
+            },
             "drawing_time_s": self.duration_s,
             "speed_share": budget.speed_share,
             "measured": { "ink_from_drawn_mm": ink_mm, "drawn_from_ink_mm": drawn_mm },
@@ -464,7 +505,8 @@ impl<'a> Report<'a> {
             ("share of the speed", format!("{:.0} %", 100.0 * budget.speed_share)),
             ("drawing time", format!("{:.1} s", self.duration_s)),
         ];
-        rows.map(|(name, value)| format!("{name:28} {value:>22}\n")).concat()
+        let dirt = self.dirt().map(|dirt| format!("{dirt}\n"));
+        rows.map(|(name, value)| format!("{name:28} {value:>22}\n")).concat() + dirt.as_deref().unwrap_or("")
     }
 }
 

@@ -22,7 +22,8 @@ use plotter_motion::{
 use plotter_replay::log::{self, Header};
 use plotter_replay::{BenchRecorder, Canvas, Chart, ContourError, PlotterSettings, VirtualPlotter, Ways};
 use plotter_vector::{
-    Algorithm, Drawing, ErrorReport, RowSource as _, Scan, TracedSheet, Vectorizer, error_chart, svg,
+    Algorithm, Despeckled, Drawing, ErrorReport, RowSource as _, Scan, TracedSheet, Vectorizer, error_chart,
+    svg,
 };
 use serde_json::json;
 use std::fmt::Write as _;
@@ -140,6 +141,7 @@ fn plot(args: &Args) -> Result<(), String> {
     let summary = Summary {
         drawing: &traced.drawing,
         error: &errors.report,
+        dirt: traced.removed,
         outcome: &outcome,
         plotted: plotter.contour_error(Ways::Drawn),
         anomalies: plotter.anomaly_count(),
@@ -376,6 +378,7 @@ impl Pictures {
 struct Summary<'a> {
     drawing: &'a Drawing,
     error: &'a ErrorReport,
+    dirt: Despeckled,
     outcome: &'a PlotOutcome,
     plotted: ContourError,
     anomalies: u64,
@@ -389,6 +392,11 @@ impl Summary<'_> {
             "vertices": self.drawing.vertices(),
             "strokes": self.drawing.strokes().len(),
             "vector_error_px": { "mean": mean_px, "max": max_px, "sd": sd_px },
+            "dirt": {
+                "marks": self.dirt.removed_marks,
+                "px": self.dirt.removed_px,
+                "largest_px": self.dirt.largest_removed_px,
+            },
             "contour_error_mm": { "rms": self.plotted.rms_mm, "max": self.plotted.max_mm },
             "true_contour_error_mm": { "rms": self.outcome.true_rms_mm, "max": self.outcome.true_max_mm },
             "targets": self.outcome.targets,
@@ -402,7 +410,10 @@ impl Summary<'_> {
 
     fn table(&self) -> Vec<(&'static str, String)> {
         let Self { error, outcome, .. } = *self;
-        vec![
+        let Despeckled { removed_marks, largest_removed_px, .. } = self.dirt;
+        let dirt = (removed_marks > 0)
+            .then(|| ("marks left out as dirt", format!("{removed_marks}, up to {largest_removed_px} px")));
+        let figures = vec![
             ("vertices", self.drawing.vertices().to_string()),
             ("strokes", self.drawing.strokes().len().to_string()),
             ("vector error, mean", format!("{:.4} px", error.mean_px)),
@@ -416,7 +427,8 @@ impl Summary<'_> {
             ("anomalies", self.anomalies.to_string()),
             ("time of the machine", format!("{:.2} s", outcome.duration.as_secs_f64())),
             ("wall time", format!("{:.2} s", self.wall_s)),
-        ]
+        ];
+        figures.into_iter().chain(dirt).collect()
     }
 }
 

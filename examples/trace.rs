@@ -32,9 +32,9 @@ use plotter_motion::{
     Machine, PensChoice, Point, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode,
 };
 use plotter_vector::{
-    Algorithm, Bin, Colour, DecodeError, Drawing, ErrorReport, MAX_PENS, Palette, Pens, Pixel, Progress,
-    PxPoint, Row, RowSource as _, Scale, Scan, SheetErrors, ThresholdMethod, Vectorizer, decode_colour,
-    error_chart, gcode, hpgl, pen_width_px, svg_in_colour,
+    Algorithm, Bin, Colour, DecodeError, Despeckled, Drawing, ErrorReport, MAX_PENS, Palette, Pens, Pixel,
+    Prefer, Progress, PxPoint, Row, RowSource as _, Scale, Scan, SheetErrors, ThresholdMethod, Vectorizer,
+    decode_colour, error_chart, gcode, hpgl, pen_width_px, svg_in_colour,
 };
 use serde::Serialize;
 use std::borrow::Cow;
@@ -103,6 +103,10 @@ struct Arguments {
     /// What is drawn of the ink (ours only) [default: centreline, with --hatch mixed]
     #[arg(long, value_enum)]
     mode: Option<ModeChoice>,
+
+    /// What is given up where one stroke a line leaves ink bare (ours only) [default: both]
+    #[arg(long, value_name = "WHAT")]
+    prefer: Option<PreferChoice>,
     /// How ink is told from paper: otsu, adaptive (uneven light), or a level from 0 to 255 [default: otsu]
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     threshold: Option<String>,
@@ -180,6 +184,16 @@ enum ModeChoice {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
+enum PreferChoice {
+    /// Fewest strokes: ink that stays bare is told
+    Strokes,
+    /// Strokes are added where more than spots are bare and the pen fits into the ink
+    Both,
+    /// Strokes are added for spots too, until the ink is covered within the greatest error
+    Ink,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
 enum GcodePen {
     /// M3 S90 down, M5 up: GRBL with a servo as its spindle
     Servo,
@@ -242,6 +256,8 @@ impl Picture {
 struct Traced {
     drawing: Drawing,
     errors: Option<SheetErrors>,
+    /// What was taken for dirt.
+    removed: Despeckled,
     palette: Palette,
     /// Width of the lines, px; unknown where pens were told apart, and without lines.
     pen_px: Option<u32>,
@@ -266,11 +282,24 @@ struct Report<'a> {
     max_px: Option<f64>,
     sd_px: Option<f64>,
     histogram: Option<&'a [Bin]>,
+    /// Whether all ink is drawn within the greatest error: nothing lies farther, and nothing was taken for
+    /// dirt.
+    kept: Option<bool>,
+    dirt: Dirt,
     pen_down_px: f64,
     pen_up_px: f64,
     /// From the file to ordered strokes and their errors, without writing them; of pens without reading it.
     time_ms: f64,
     peak_rss_mb: Option<f64>,
+}
+
+/// Ink that was taken for dirt, and is not drawn.
+#[derive(Debug, Serialize)]
+struct Dirt {
+    marks: u64,
+    px: u64,
+    /// Of the largest mark.
+    largest_px: u64,
 }
 
 /// What one pen draws.
@@ -338,6 +367,14 @@ fn trace(arguments: &Arguments, stopped: &mut bool) -> Result<(), String> {
         max_px: errors.map(|errors| errors.max_px),
         sd_px: errors.map(|errors| errors.sd_px),
         histogram: errors.map(|errors| errors.histogram.as_slice()),
+        kept: errors.filter(|_| ours).map(|errors| {
+            traced.removed.removed_marks == 0 && errors.max_px <= settings.vectorizer.ours.tolerance_px
+        }),
+        dirt: Dirt {
+            marks: traced.removed.removed_marks,
+            px: traced.removed.removed_px,
+            largest_px: traced.removed.largest_removed_px,
+        },
         pen_down_px: drawing.pen_down_px(),
         pen_up_px: drawing.pen_up_px(),
         time_ms: traced.time.as_secs_f64() * 1e3,
@@ -462,6 +499,7 @@ fn by_rows<R: Read + Seek>(
     Ok(Traced {
         drawing: sheet.drawing,
         errors: sheet.errors,
+        removed: sheet.removed,
         palette: Palette::default(),
         pen_px: sheet.pen_px,
         widest_px: sheet.pen_px,
@@ -543,7 +581,8 @@ fn in_colour(
     let errors = (!arguments.no_errors).then_some(errors);
     let picture = settings.overlay.is_some().then_some(Picture::Colour(colour));
     let widest_px = found.inks.iter().filter_map(pen_width_px).max();
-    Ok(Traced { errors, palette: found.palette, pen_px: None, widest_px, picture, time, drawing })
+    let removed = found.traced.removed;
+    Ok(Traced { errors, removed, palette: found.palette, pen_px: None, widest_px, picture, time, drawing })
 }
 
 fn pen_report<'a>(pen: &'a plotter_vector::PalettePen, drawing: &Drawing) -> PenReport<'a> {
@@ -656,7 +695,13 @@ fn settings(arguments: &Arguments) -> Result<Settings, String> {
         return Err(at(path, &"[vectorize] arcs and curves: strokes have one of them; leave one out"));
     }
     let pens = pens(arguments, config.pens)?;
-    Ok(Settings { vectorizer: vectorizer(&config, mm_per_px)?, pens, threads, overlay })
+    let prefer = match arguments.prefer {
+        Some(PreferChoice::Strokes) => Prefer::Strokes,
+        Some(PreferChoice::Both) | None => Prefer::Both,
+        Some(PreferChoice::Ink) => Prefer::Ink,
+    };
+    let vectorizer = Vectorizer { prefer, ..vectorizer(&config, mm_per_px)? };
+    Ok(Settings { vectorizer, pens, threads, overlay })
 }
 
 /// Refuses options that the published algorithm does not have.
@@ -665,6 +710,7 @@ fn refuse_ours(arguments: &Arguments) -> Result<(), String> {
         ("--max-error-px", "has no error bound", arguments.max_error_px.is_some()),
         ("--arcs", "draws straight lines", arguments.arcs),
         ("--curves", "draws straight lines", arguments.curves),
+        ("--prefer", "adds no strokes", arguments.prefer.is_some()),
         ("--mode", "always follows the middle of lines", arguments.mode.is_some()),
         ("--pens", "draws with one pen", arguments.pens.is_some()),
         ("--order", "draws in the order of tracking", arguments.order.is_some()),
@@ -825,6 +871,13 @@ fn points(drawing: &Drawing) -> Result<String, std::fmt::Error> {
     Ok(out)
 }
 
+/// What was taken for dirt, if anything.
+fn dirt_of(report: &Report<'_>) -> Option<String> {
+    let Dirt { marks, px, largest_px } = report.dirt;
+    let of = if marks == 1 { "mark" } else { "marks" };
+    (marks > 0).then(|| format!("{marks} {of} left out: {px} px of ink, the largest {largest_px} px"))
+}
+
 fn table(title: &str, report: &Report<'_>, megapixels: f64, circled: Option<String>) -> String {
     let rss = report.peak_rss_mb.map_or("-".into(), |rss| format!("{rss:.1} MB"));
     let px = |error_px: Option<f64>| error_px.map(|error_px| format!("{error_px:.4} px"));
@@ -842,6 +895,7 @@ fn table(title: &str, report: &Report<'_>, megapixels: f64, circled: Option<Stri
         ("", (megapixels >= 1.0).then(|| format!("{:.2} ms a megapixel", report.time_ms / megapixels))),
         ("memory", Some(rss)),
         ("circled", circled),
+        ("dirt", dirt_of(report)),
     ];
     let mut out = format!("{title}\n");
     for (name, value) in rows.iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {

@@ -252,37 +252,6 @@ impl Bitmap {
         Some(Pixel::new(u32::try_from(word).ok()? * BITS + bits.trailing_zeros(), y))
     }
 
-    /// Makes a run of a row paper; its columns are inside the picture.
-    pub(crate) fn clear_run(&mut self, y: u32, columns: core::ops::Range<u32>) {
-        let (first, last) = (columns.start / BITS, columns.end.saturating_sub(1) / BITS);
-        let row = self.row_mut(y);
-        if first == last {
-            if let Some(bits) = row.get_mut(first as usize) {
-                *bits &=
-                    !(u64::MAX << (columns.start % BITS) & u64::MAX >> (BITS - 1 - (columns.end - 1) % BITS));
-            }
-            return;
-        }
-        for (word, bits) in (first..=last).zip(row.iter_mut().skip(first as usize)) {
-            let low = if word == first { u64::MAX << (columns.start % BITS) } else { u64::MAX };
-            let high =
-                if word == last { u64::MAX >> (BITS - 1 - (columns.end - 1) % BITS) } else { u64::MAX };
-            *bits &= !(low & high);
-        }
-    }
-
-    /// Makes the pixels of a row paper that have a bit in a word whose lowest one is a column; its columns are inside the picture.
-    pub(crate) fn clear_bits(&mut self, y: u32, column: u32, bits: u64) {
-        let (word, shift) = ((column / BITS) as usize, column % BITS);
-        let row = self.row_mut(y);
-        if let Some(here) = row.get_mut(word) {
-            *here &= !(bits << shift);
-        }
-        if let Some(next) = row.get_mut(word + 1) {
-            *next &= !(bits >> 1 >> (BITS - 1 - shift));
-        }
-    }
-
     /// How many ink pixels follow each other to the left and to the right of a pixel, at most `most`.
     pub(crate) fn run_level(&self, at: Pixel, most: u32) -> (u32, u32) {
         let row = self.row(at.y);
@@ -435,14 +404,6 @@ mod tests {
         assert_eq!(cross.run_upright(Pixel::new(130, 4), 2), (2, 2));
         assert_eq!(cross.run_upright(Pixel::new(60, 3), 99), (0, 1));
         assert_eq!(cross.run_upright(Pixel::new(0, 0), 99), (0, 0));
-    }
-
-    #[test]
-    fn a_run_is_cleared_across_words() {
-        let mut row = Bitmap::new(130, 1).unwrap();
-        (0..130).for_each(|x| row.set(Pixel::new(x, 0), true));
-        row.clear_run(0, 3..129);
-        assert_eq!(row.ink().map(|at| at.x).collect::<Vec<_>>(), [0, 1, 2, 129]);
     }
 
     #[test]

@@ -25,18 +25,19 @@ const MAX_HALF_PX: f64 = 96.0;
 /// Errors of all pixels of the ink that a drawing stands for, whatever way it was made; the inside of an area that is
 /// outlined counts, too, which [`Vectorized::error`](crate::Vectorized::error) leaves out.
 ///
-/// A line w px wide has its pixels' centres up to (w − 1) / 2 from its middle; the error of a pixel is what its distance
-/// from the nearest segment is more than that, and so 0 for all pixels of a line whose middle is drawn. On lines one pixel
-/// wide it is the distance itself. The width is measured on the ink, across the segment. Arcs are measured as
-/// arcs, cubic curves as chords no farther than 0.005 px from them.
+/// A pen w px wide that follows the segment covers what lies up to w / 2 from it; the error of a pixel is
+/// what the distance of its centre is more than that. On lines one pixel wide it is the distance itself; from
+/// there to 1.5 px the pen covers more and more. The width is that of the line: measured on the ink, across
+/// the stroke, where the stroke is not two lines that run into one. Arcs are measured as arcs, cubic curves
+/// as chords no farther than 0.005 px from them.
 ///
 /// ```
 /// # use plotter_vector::{Bitmap, Drawing, PxPoint, coverage};
 /// let bar = Bitmap::from_picture("######\n######\n######\n")?;
 /// let mut drawing = Drawing::new(6, 3);
-/// drawing.push([PxPoint::new(0.5, 1.5), PxPoint::new(4.5, 1.5)]); // a pixel too short
+/// drawing.push([PxPoint::new(0.5, 1.5), PxPoint::new(2.5, 1.5)]); // three pixels too short
 /// let errors = coverage(&bar, &drawing);
-/// assert_eq!((errors.pixels, errors.max_px), (18, 2.0_f64.sqrt() - 1.0));
+/// assert_eq!((errors.pixels, errors.max_px), (18, 10.0_f64.sqrt() - 1.5));
 /// # Ok::<(), plotter_vector::SizeError>(())
 /// ```
 #[must_use]
@@ -53,11 +54,11 @@ pub(crate) fn with_widths(ink: &Bitmap, drawing: &Drawing, areas: Option<AreaPen
         if segment.has_probes() {
             PROBES.map(|part| segment.width_at(part, ink, 0))
         } else {
-            [0; PROBES.len()]
+            [Across::default(); PROBES.len()]
         }
     });
     let widths: Vec<_> = widths.collect();
-    set_widths(&mut segments, widths, areas);
+    set_widths(&mut segments, &widths, areas);
     Index::new(segments, ink.width(), ink.height())
 }
 
@@ -84,6 +85,8 @@ pub fn worst_pixel(ink: &Bitmap, drawing: &Drawing) -> Option<(Pixel, f64)> {
 pub(crate) struct AreaPen<'a> {
     pub(crate) opening: &'a Opening,
     pub(crate) pen_px: f64,
+    /// Whether lines one pixel wide are their pixels.
+    pub(crate) is_raster: bool,
 }
 
 /// Adds the errors of [`coverage`] to others. Where areas are drawn as such, the ink inside
@@ -108,20 +111,31 @@ pub(crate) fn add_coverage(
     }
 }
 
-/// Where along a segment the ink's width is measured.
-pub(crate) const PROBES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+/// Where along a segment the ink's width is measured: not evenly, for lines that cross it do.
+pub(crate) const PROBES: [f64; 8] = [0.055, 0.17, 0.29, 0.42, 0.53, 0.66, 0.79, 0.93];
 
 /// How exactly the width is measured, px, and rows above and below a probe that it may ask for.
 const STEP_PX: f64 = 0.25;
 pub(crate) const PROBE_ROWS: u32 = 98;
 
-/// A straight line, an arc or a chord of a cubic curve, and half the ink's width beyond a pixel's own, px.
+/// The ink across a segment, in steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Across {
+    /// From edge to edge.
+    width: u16,
+    /// From the segment to the nearer edge.
+    nearer: u16,
+}
+
+/// A straight line, an arc or a chord of a cubic curve, and how far to its side its pen covers the ink, px.
 #[derive(Clone, Debug)]
 pub(crate) struct Segment {
     from: PxPoint,
     to: PxPoint,
     slack_px: f64,
     bend: Bend,
+    /// Whether it is the first of a stroke.
+    begins: bool,
 }
 
 /// What a segment is.
@@ -141,8 +155,12 @@ pub(crate) fn segments(drawing: &Drawing) -> Vec<Segment> {
     for index in 0..drawing.strokes().len() {
         let stroke = drawing.stroke(index);
         let dot = stroke.first().filter(|_| stroke.len() == 1).map(|at| Piece::Line(*at, *at));
+        let first = segments.len();
         for piece in drawing.course(index).pieces().chain(dot) {
             add_segments(piece, &mut segments);
+        }
+        if let Some(segment) = segments.get_mut(first) {
+            segment.begins = true;
         }
     }
     segments
@@ -150,7 +168,7 @@ pub(crate) fn segments(drawing: &Drawing) -> Vec<Segment> {
 
 /// What a piece of a stroke is looked up by: itself, or its chords.
 fn add_segments(piece: Piece, segments: &mut Vec<Segment>) {
-    let mut add = |from, to, bend| segments.push(Segment { from, to, slack_px: 0.0, bend });
+    let mut add = |from, to, bend| segments.push(Segment { from, to, slack_px: 0.0, bend, begins: false });
     match piece {
         Piece::Line(from, to) => add(from, to, Bend::Straight),
         Piece::Arc(arc) => add(arc.from, arc.to, Bend::Arc(Box::new(arc))),
@@ -164,30 +182,133 @@ fn add_segments(piece: Piece, segments: &mut Vec<Segment>) {
     }
 }
 
-/// Takes as half of the ink's width beyond a pixel's own that of the median of the widths at each segment's probes, in
-/// steps.
+/// The part of a stroke's length that is no wider than it: of one whose width is not steady, for two lines
+/// run into one there.
+const NARROW: f64 = 0.15;
+
+/// Between these parts a steady width differs by no more than a share of it and the raster's jumps, px.
+const SPREAD: [f64; 2] = [0.2, 0.8];
+const STEADY_SHARE: f64 = 0.2;
+const RASTER_PX: f64 = 1.25;
+
+/// A stroke that is shorter than so many halves of its width is no wider line but a dot, or lines of the pen
+/// that run into one; it is taken for no wider than so many pens.
+const SHORT_HALVES: f64 = 16.0;
+const WIDEST_SHORT: f64 = 1.25;
+
+/// A stroke that is drawn beside the middle of its ink is no wider than twice its distance from the nearer
+/// edge and this, px.
+const BESIDE_PX: f64 = 1.5;
+
+/// Takes how far the pen of each stroke covers from the widths at its segments' probes.
 pub(crate) fn set_widths(
     segments: &mut [Segment],
-    widths: Vec<[u16; PROBES.len()]>,
+    widths: &[[Across; PROBES.len()]],
     areas: Option<AreaPen<'_>>,
 ) {
-    let mut slack_px = 0.0;
+    let mut next = 0;
+    let mut strokes = Vec::new();
+    while next < segments.len() {
+        let rest = segments.get(next + 1..).unwrap_or(&[]);
+        let end = next + 1 + rest.iter().take_while(|segment| !segment.begins).count();
+        if let (Some(stroke), Some(widths)) = (segments.get_mut(next..end), widths.get(next..end)) {
+            set_width(stroke, widths, areas);
+            strokes.push(next..end);
+        }
+        next = end;
+    }
+    // A dot and a short stroke are made by the pen that has drawn the lines.
+    let Some(pen_px) = pen_half_px(segments) else { return };
+    for stroke in strokes {
+        let Some(stroke) = segments.get_mut(stroke) else { continue };
+        let length_px: f64 = stroke.iter().map(Segment::length_px).sum();
+        for piece in stroke.iter_mut().filter(|piece| length_px < SHORT_HALVES * piece.slack_px) {
+            piece.slack_px = piece.slack_px.min(WIDEST_SHORT * pen_px + STEP_PX);
+        }
+    }
+}
+
+/// How far the pen of most of the lines covers, px; none without lines.
+fn pen_half_px(segments: &[Segment]) -> Option<f64> {
+    let lines = segments.iter().map(|piece| (piece.slack_px, piece.length_px()));
+    let mut lines: Vec<_> = lines.filter(|(_, length_px)| *length_px > 0.0).collect();
+    lines.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+    at_part(&lines, 0.5)
+}
+
+/// The value up to which a part of the lengths lies: values in rising order, each with its length.
+fn at_part(values: &[(f64, f64)], part: f64) -> Option<f64> {
+    let all_px: f64 = values.iter().map(|(_, share_px)| share_px).sum();
+    let mut sum_px = 0.0;
+    let found = values.iter().find(|(_, share_px)| {
+        sum_px += share_px;
+        sum_px >= part * all_px
+    });
+    found.or(values.last()).map(|(value, _)| *value)
+}
+
+/// The same of one stroke.
+fn set_width(stroke: &mut [Segment], widths: &[[Across; PROBES.len()]], areas: Option<AreaPen<'_>>) {
     // No width greater than that can be measured.
     let widest_line_px =
         areas.map_or(f64::INFINITY, |areas| areas.opening.widest_line_px().min(2.0 * MAX_HALF_PX - 1.0));
-    for (segment, mut steps) in segments.iter_mut().zip(widths) {
-        if segment.has_probes() {
-            steps.sort_unstable();
-            let [_, _, median, ..] = steps;
-            let ink_px = STEP_PX * f64::from(median);
-            let width_px = match areas {
-                Some(areas) if ink_px > widest_line_px => areas.pen_px,
-                _ => ink_px,
-            };
-            slack_px = (0.5 * width_px - 0.5).max(0.0);
+    let median_px = |mut at: [Across; PROBES.len()]| {
+        at.sort_unstable();
+        let [_, _, _, _, median, ..] = at;
+        STEP_PX * f64::from(median.width)
+    };
+    // Where it is the border of an area, its pen is that of the areas.
+    let is_raster = areas.is_none_or(|areas| areas.is_raster);
+    let area = areas.map(|areas| slack_of(areas.pen_px, true));
+    let is_area = |width_px: f64| area.is_some() && width_px > widest_line_px;
+    let mut across = Vec::new();
+    for (segment, widths) in stroke.iter().zip(widths).filter(|(segment, _)| segment.has_probes()) {
+        if is_area(median_px(*widths)) {
+            continue;
         }
-        segment.slack_px = slack_px;
+        let share_px = segment.length_px().max(ROUNDING);
+        // Where the stroke goes over paper it tells nothing.
+        across.extend(widths.iter().filter(|at| at.width > 0).map(|at| {
+            let beside_px = 2.0 * STEP_PX * f64::from(at.nearer) + BESIDE_PX;
+            ((STEP_PX * f64::from(at.width)).min(beside_px), share_px)
+        }));
     }
+    across.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+    let at = |part: f64| at_part(&across, part).unwrap_or(0.0);
+    let [low_px, high_px] = SPREAD.map(at);
+    let typical_px = mean_between(&across, [low_px, high_px]);
+    let is_steady = high_px - low_px <= STEADY_SHARE * typical_px + RASTER_PX;
+    let slack_px = slack_of(
+        if is_steady { typical_px } else { typical_px.min(at(NARROW) + 0.5 * RASTER_PX) },
+        is_raster,
+    );
+    let mut slack = slack_px;
+    for (segment, widths) in stroke.iter_mut().zip(widths) {
+        if segment.has_probes() {
+            slack = area.filter(|_| is_area(median_px(*widths))).unwrap_or(slack_px);
+        }
+        segment.slack_px = slack;
+    }
+}
+
+/// The mean of the widths between two, each with its share of the length, px: of a raster line that jumps
+/// from width to width.
+fn mean_between(across: &[(f64, f64)], [low_px, high_px]: [f64; 2]) -> f64 {
+    let some = across.iter().filter(|(width_px, _)| (low_px..=high_px).contains(width_px));
+    let (sum, all_px) = some.fold((0.0, 0.0), |(sum, all_px), (width_px, share_px)| {
+        (sum + width_px * share_px, all_px + share_px)
+    });
+    if all_px > 0.0 { sum / all_px } else { 0.0 }
+}
+
+/// How far to its side a pen covers, px: half its width; but of a raster line one pixel wide only the middles
+/// of its pixels.
+fn slack_of(width_px: f64, is_raster: bool) -> f64 {
+    /// A raster line one pixel wide is in the mean no wider, px, and from 1.5 px on it is that of a pen.
+    const ONE_PX: f64 = 1.2;
+    const SLOPE: f64 = 2.5;
+    let half_px = 0.5 * width_px;
+    if is_raster { half_px.min(SLOPE * (width_px - ONE_PX)).max(0.0) } else { half_px }
 }
 
 impl Segment {
@@ -238,8 +359,16 @@ impl Segment {
             || top - 1.0 > f64::from(rows.end) && rows.end < height
     }
 
-    /// The ink's width across it at a part of its length, in steps; the ink's first row is row `first_row` of the picture.
-    pub(crate) fn width_at(&self, part: f64, ink: &Bitmap, first_row: u32) -> u16 {
+    fn length_px(&self) -> f64 {
+        match &self.bend {
+            Bend::Straight | Bend::Chord => self.from.distance(self.to),
+            Bend::Arc(arc) => arc.length_px(),
+            Bend::Cubic(cubic) => cubic.from.distance(cubic.to),
+        }
+    }
+
+    /// The ink across it at a part of its length; the ink's first row is row `first_row` of the picture.
+    pub(crate) fn width_at(&self, part: f64, ink: &Bitmap, first_row: u32) -> Across {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
         let is_ink = |x: f64, y: f64| {
             let row = || (y as u32).checked_sub(first_row);
@@ -256,7 +385,8 @@ impl Segment {
             }
             steps
         };
-        steps(1.0) + steps(-1.0)
+        let (left, right): (u16, u16) = (steps(1.0), steps(-1.0));
+        Across { width: left + right, nearer: left.min(right) }
     }
 
     /// The place of a straight segment that is nearest to another.
@@ -298,6 +428,8 @@ impl Segment {
 #[derive(Debug)]
 pub(crate) struct Index {
     segments: Vec<Segment>,
+    /// How far the pen of most of the lines covers, px.
+    pub(crate) pen_half_px: f64,
     /// How much nearer than its squares a segment's error may be: its half width, and that an arc lies beside its chords.
     reach_px: f64,
     columns: u32,
@@ -340,7 +472,8 @@ impl Index {
             });
         }
         let widest_px = segments.iter().map(|segment| segment.slack_px).fold(0.0, f64::max);
-        Self { segments, reach_px: widest_px + CHORD_ERROR_PX, columns, rows, ends, entries }
+        let pen_half_px = pen_half_px(&segments).unwrap_or(0.0);
+        Self { segments, pen_half_px, reach_px: widest_px + CHORD_ERROR_PX, columns, rows, ends, entries }
     }
 
     fn square(&self, column: u32, row: u32) -> &[u32] {
@@ -349,7 +482,7 @@ impl Index {
         self.ends.get(index).and_then(|end| self.entries.get(start..*end)).unwrap_or(&[])
     }
 
-    /// Half the ink's width beyond a pixel's own at the segment that covers a place best, px.
+    /// How far to its side the segment that covers a place best covers the ink, px.
     pub(crate) fn slack_px(&self, at: PxPoint) -> f64 {
         let mut nearest = 0;
         self.error_px(at, &mut nearest);
@@ -507,7 +640,9 @@ mod tests {
         assert_eq!(coverage(&ink, &drawing).max_px, 0.0);
         let mut high = Drawing::new(200, 9);
         high.push([PxPoint::new(0.5, 3.5), PxPoint::new(199.5, 3.5)]);
-        assert_eq!(coverage(&ink, &high).max_px, 1.0);
+        // Its pen ends 1.5 px above, and 0.75 px of what it can be wider: 3 px to the lowest row, less half
+        // of 4.5 px.
+        assert_eq!(coverage(&ink, &high).max_px, 0.75);
     }
 
     #[test]
@@ -538,9 +673,9 @@ mod tests {
         let (vertices, bulges) = (vec![left, right], vec![1.0]);
         half.push_curve(1, crate::Curve { vertices, bulges, ..crate::Curve::default() });
         let (at, error_px) = worst_pixel(&ink, &half).unwrap();
-        // The lowest pixel is as far from both ends, less half the width of the ring without a pixel.
+        // The lowest pixel is as far from both ends, less half the width of the ring.
         assert_eq!(at.y, 131);
-        assert!((error_px - (libm::hypot(59.5, 61.5) - 2.0)).abs() < 0.3, "{error_px}");
+        assert!((error_px - (libm::hypot(59.5, 61.5) - 2.5)).abs() < 0.3, "{error_px}");
     }
 
     #[test]

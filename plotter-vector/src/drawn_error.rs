@@ -53,8 +53,9 @@ impl<'a> InkDistance<'a> {
         for pixel in self.ink.ink() {
             let at = PxPoint::from(pixel);
             let distance_px = drawn.error_px(at, &mut nearest);
-            let slack_px = if distance_px > 0.0 { self.reference.slack_px(at) } else { 0.0 };
-            tally.add_error((distance_px - slack_px).max(0.0));
+            // The centres of a line's pixels lie up to half of its width less a pixel's from its middle.
+            let slack_px = if distance_px > 0.0 { self.reference.slack_px(at) - 0.5 } else { 0.0 };
+            tally.add_error((distance_px - slack_px.max(0.0)).max(0.0));
         }
         tally.report()
     }

@@ -3,8 +3,8 @@
 use crate::coverage::add_coverage;
 use crate::pipeline::Unordered;
 use crate::{
-    Algorithm, Bitmap, Colour, Drawing, ErrorTally, Palette, Pens, Pixel, Progress, VectorizeError,
-    Vectorized, Vectorizer,
+    Algorithm, Bitmap, Colour, Despeckled, Drawing, ErrorTally, Palette, Pens, Pixel, Progress,
+    VectorizeError, Vectorized, Vectorizer,
 };
 
 /// Where the work has come to when the pens are told apart, when they have their strokes, and when these are ordered, on a scan
@@ -72,11 +72,14 @@ impl Vectorizer {
         let mut inks = Vec::with_capacity(layers.palette().pens().len());
         let mut openings = Vec::with_capacity(inks.capacity());
         let mut tracing = progress.part(TRACED);
+        let mut removed = Despeckled::default();
         for (done, (index, (pen, own))) in (1..).zip(layers.iter().enumerate()) {
             let mut ink = layers.bridged(index).unwrap_or_else(|| own.clone());
             let grey = layers.coverage(index, &ink, picture);
-            let Unordered { drawing: strokes, areas, .. } =
+            let Unordered { drawing: strokes, errors, areas, removed: dirt } =
                 self.unordered(&mut ink, grey.as_ref().map(|levels| (levels, true)))?;
+            let (strokes, _) = self.completed(strokes, errors, &ink, areas.as_ref());
+            removed = removed.and(dirt);
             for stroke in 0..strokes.strokes().len() {
                 drawing.push_curve(pen.number, strokes.curve(stroke));
             }
@@ -97,7 +100,7 @@ impl Vectorizer {
             add_coverage(ink, &drawing.of_pen(pen.number), areas, &mut tally);
             measuring.at(done, of)?;
         }
-        let traced = Vectorized { drawing, error: tally.report(), split: None };
+        let traced = Vectorized { drawing, error: tally.report(), split: None, removed };
         Ok(VectorizedColour { traced, palette: layers.palette().clone(), inks, worst: tally.worst() })
     }
 }

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod areas;
+mod bare_ink;
 mod bitmap;
 mod centrelines;
 mod colour;
@@ -90,7 +91,7 @@ pub use order::{Order, OrderEffort, order};
 pub use palette::{MAX_PENS, Palette, PaletteError, PalettePen};
 #[cfg(feature = "toml")]
 pub use palette::{PalettePlace, PaletteTomlError};
-pub use pipeline::{Algorithm, MAX_INK_PIXELS, Mode, VectorizeError, Vectorized, Vectorizer};
+pub use pipeline::{Algorithm, MAX_INK_PIXELS, Mode, Prefer, VectorizeError, Vectorized, Vectorizer};
 pub use pre_elimination::PreElimination;
 pub use progress::{Cancelled, Progress};
 pub use row_threshold::{RowThreshold, Survey};

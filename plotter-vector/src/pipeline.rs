@@ -1,9 +1,10 @@
 //! [`Vectorizer`]: the whole way from grey levels to pen strokes.
 
 use crate::areas::{Islands, Opening};
+use crate::bare_ink::BareInk;
 use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
-use crate::coverage::{AreaPen, add_coverage};
+use crate::coverage::{AreaPen, Index, add_coverage, with_widths};
 use crate::covered::Covered;
 use crate::hairlines::Hairlines;
 use crate::pen::Pen;
@@ -14,9 +15,10 @@ use crate::straight_on::{GoneOn, straight_on};
 use crate::turns::cut_at_turns;
 use crate::within::within;
 use crate::{
-    AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Cancelled, Curve, Drawing, DynamicThreshold,
-    ErrorReport, ErrorTally, Figures, Gray, Lettering, Order, OrderedTracking, PensError, Pixel, PxPoint,
-    SheetErrors, Simplify, Split, ThinningMethod, Threshold, TooManyFigures, despeckle, smallest_mark_px,
+    AreaError, AreaPath, AreaStyle, Areas, Bitmap, Bounded, Cancelled, Curve, Despeckled, Drawing,
+    DynamicThreshold, ErrorReport, ErrorTally, Figures, Gray, Lettering, Order, OrderedTracking, PensError,
+    Pixel, PxPoint, SheetErrors, Simplify, Split, ThinningMethod, Threshold, TooManyFigures, despeckle,
+    smallest_mark_px,
 };
 use core::fmt;
 use std::collections::BTreeSet;
@@ -47,6 +49,22 @@ pub enum Mode {
     /// As `Centreline`, and areas begin already at three times the width of the lines; they are drawn in
     /// [`Vectorizer::areas`]' style.
     Mixed,
+}
+
+/// What ours gives up where one stroke a line leaves ink bare: lines that run into one, corners, counters
+/// that are filled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+pub enum Prefer {
+    /// No stroke is added: fewest strokes, and what is bare by more than the tolerance is told by the errors.
+    Strokes,
+    /// Strokes are added where lines run into one, and wherever else more than spots are bare and the pen
+    /// fits into the ink. A spot is half a pixel off, which the raster leaves open, or no larger than what a
+    /// round pen leaves bare in the corner of a square.
+    #[default]
+    Both,
+    /// Strokes are added for spots too.
+    Ink,
 }
 
 /// Settings of the whole way from a picture to strokes.
@@ -80,6 +98,8 @@ pub struct Vectorizer {
     pub curves: bool,
     /// What ours draws.
     pub mode: Mode,
+    /// Ours: whether ink that one stroke a line leaves bare is worth more strokes.
+    pub prefer: Prefer,
     /// Ours: smaller marks of ink are dirt, and smaller holes in it too, px; `None` for what a pen of the lines' width
     /// cannot have made.
     pub smallest_mark_px: Option<u32>,
@@ -108,6 +128,7 @@ impl Default for Vectorizer {
             arcs: false,
             curves: false,
             mode: Mode::default(),
+            prefer: Prefer::default(),
             smallest_mark_px: None,
             max_line_px: None,
             thinning: ThinningMethod::default(),
@@ -123,10 +144,13 @@ impl Default for Vectorizer {
 pub struct Vectorized {
     /// The strokes, all of them within the picture.
     pub drawing: Drawing,
-    /// How far the pixels lie from them. Of areas, which are outlined or hatched, those at the edge count, and not what is inside.
+    /// How far the pixels lie from them, but for dirt. Of areas, which are outlined or hatched, those at the
+    /// edge count, and not what is inside.
     pub error: ErrorReport,
     /// How ink was told from paper; `None` for an empty sheet, or for a picture that came as a bitmap.
     pub split: Option<Split>,
+    /// What was taken for dirt, and is not drawn: no error is told of it.
+    pub removed: Despeckled,
 }
 
 /// Most ink of a picture that is vectorized: 2²⁵ px, five times the lines of a dense A0 sheet at 300 dots per inch,
@@ -226,10 +250,46 @@ impl Vectorizer {
     }
 
     fn trace_ink(&self, mut ink: Bitmap, grey: Option<(&Gray, bool)>) -> Result<Vectorized, VectorizeError> {
-        let Unordered { drawing, errors, areas } = self.unordered(&mut ink, grey)?;
+        let Unordered { drawing, errors, areas, removed } = self.unordered(&mut ink, grey)?;
+        let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
         let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
         let errors = errors.unwrap_or_else(|| self.errors(&ink, &drawing, areas.as_ref()));
-        Ok(Vectorized { drawing, error: errors.report, split: None })
+        Ok(Vectorized { drawing, error: errors.report, split: None, removed })
+    }
+
+    /// The strokes, with more for the ink that those of ours leave bare. The errors stay known only where
+    /// none were added.
+    pub(crate) fn completed(
+        &self,
+        mut drawing: Drawing,
+        errors: Option<SheetErrors>,
+        ink: &Bitmap,
+        areas: Option<&Opening>,
+    ) -> (Drawing, Option<SheetErrors>) {
+        if !self.adds_strokes() {
+            return (drawing, errors);
+        }
+        let is_kept = errors.as_ref().is_some_and(|errors| errors.report.max_px <= self.ours.tolerance_px);
+        let mut added = Vec::new();
+        if !is_kept {
+            let drawn = with_widths(ink, &drawing, areas.map(|areas| self.area_pen(areas)));
+            let lines = areas.map(|areas| areas.split_of(ink).thin);
+            added = self.bare_ink(&drawn).strokes(ink, lines.as_ref().unwrap_or(ink), 0, &(0..ink.height()));
+        }
+        let errors = errors.filter(|_| added.is_empty());
+        added.into_iter().for_each(|stroke| drawing.push_curve(1, within(stroke, ink.width(), ink.height())));
+        (drawing, errors)
+    }
+
+    /// Whether strokes are added for what is bare.
+    pub(crate) fn adds_strokes(&self) -> bool {
+        self.algorithm == Algorithm::Ours && self.mode != Mode::Outline && self.prefer != Prefer::Strokes
+    }
+
+    /// What strokes leave bare.
+    pub(crate) fn bare_ink<'a>(&self, drawn: &'a Index) -> BareInk<'a> {
+        let spots = self.prefer == Prefer::Ink;
+        BareInk { drawn, within_px: self.ours.tolerance_px, pieces: self.pieces(), spots }
     }
 
     /// The errors of a drawing, with the areas that were told from lines.
@@ -241,7 +301,7 @@ impl Vectorizer {
 
     /// The pen that draws areas.
     pub(crate) fn area_pen<'a>(&self, opening: &'a Opening) -> AreaPen<'a> {
-        AreaPen { opening, pen_px: self.areas.pen_px }
+        AreaPen { opening, pen_px: self.areas.pen_px, is_raster: false }
     }
 
     /// The strokes as they are found; takes the dirt out of `ink`.
@@ -252,30 +312,31 @@ impl Vectorizer {
     ) -> Result<Unordered, VectorizeError> {
         if self.algorithm == Algorithm::Published {
             let (drawing, errors) = self.published(ink)?;
-            return Ok(Unordered { drawing, errors: Some(errors), areas: None });
+            let removed = Despeckled::default();
+            return Ok(Unordered { drawing, errors: Some(errors), areas: None, removed });
         }
         self.check()?;
         let ink_pixels = ink.count();
-        let pen = self.clean(ink);
+        let (pen, removed) = self.clean(ink);
         if self.keeps_pixels(pen, || grey.is_some_and(|(gray, _)| has_rims(gray, ink_pixels))) {
             let (drawing, errors) = self.tracked(ink, pen.hairlines)?;
             // Of what is not straight the errors are not known from the figures.
             let errors = drawing.is_straight().then_some(errors);
-            return Ok(Unordered { drawing, errors, areas: None });
+            return Ok(Unordered { drawing, errors, areas: None, removed });
         }
         let strokes = self.strokes(ink, grey, pen)?;
         let mut drawing = Drawing::new(ink.width(), ink.height());
         for stroke in strokes {
             drawing.push_curve(1, within(stroke, ink.width(), ink.height()));
         }
-        Ok(Unordered { drawing, errors: None, areas: Some(self.opening(pen.width_px)) })
+        let areas = Some(self.opening(pen.width_px));
+        Ok(Unordered { drawing, errors: None, areas, removed })
     }
 
-    /// Takes the dirt out of ink; the pen that drew it.
-    fn clean(&self, ink: &mut Bitmap) -> Pen {
+    /// Takes the dirt out of ink; the pen that drew it, and what was taken.
+    fn clean(&self, ink: &mut Bitmap) -> (Pen, Despeckled) {
         let pen = Pen::of(ink);
-        despeckle(ink, self.smallest_mark_px(pen.width_px));
-        pen
+        (pen, despeckle(ink, self.smallest_mark_px(pen.width_px)))
     }
 
     /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Where these are is better known of grey
@@ -446,6 +507,8 @@ pub(crate) struct Unordered {
     pub(crate) errors: Option<SheetErrors>,
     /// What told areas from lines, where something did.
     pub(crate) areas: Option<Opening>,
+    /// What was taken for dirt.
+    pub(crate) removed: Despeckled,
 }
 
 /// A stroke of each figure, but for what others draw within `covered_px`, and the errors; of pixels that figures share those of the

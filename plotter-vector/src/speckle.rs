@@ -15,8 +15,12 @@ use core::ops::Range;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Despeckled {
-    /// Ink of marks that were removed, px.
+    /// Marks that were removed.
+    pub removed_marks: u64,
+    /// Their ink, px.
     pub removed_px: u64,
+    /// Ink of the largest of them, px.
+    pub largest_removed_px: u64,
     /// Paper of holes that were filled, px.
     pub filled_px: u64,
 }
@@ -53,7 +57,7 @@ pub const fn context_rows(smallest_px: u32) -> u32 {
 /// let mut ink = Bitmap::from_picture("#.......\n...####.\n...#.##.\n...####.\n")?;
 /// let changed = despeckle(&mut ink, 4);
 /// assert_eq!(ink.to_string(), "........\n...####.\n...####.\n...####.\n");
-/// assert_eq!((changed.removed_px, changed.filled_px), (1, 1));
+/// assert_eq!((changed.removed_marks, changed.removed_px, changed.largest_removed_px, changed.filled_px), (1, 1, 1, 1));
 /// # Ok::<(), plotter_vector::SizeError>(())
 /// ```
 pub fn despeckle(ink: &mut Bitmap, smallest_px: u32) -> Despeckled {
@@ -63,11 +67,29 @@ pub fn despeckle(ink: &mut Bitmap, smallest_px: u32) -> Despeckled {
     all_bands(ink, smallest_px)
 }
 
-/// As [`despeckle`], on the thread that calls.
-pub(crate) fn despeckle_here(ink: &mut Bitmap, smallest_px: u32) {
-    if smallest_px > 1 {
-        let rows = 0..ink.height();
-        let _ = band(ink, smallest_px, rows);
+/// As [`despeckle`], on the thread that calls; only what changed in some of the rows is counted.
+pub(crate) fn despeckle_here(ink: &mut Bitmap, smallest_px: u32, counted: Range<u32>) -> Despeckled {
+    if smallest_px < 2 {
+        return Despeckled::default();
+    }
+    band(ink, smallest_px, counted)
+}
+
+/// Fills holes of fewer pixels, on the thread that calls.
+pub(crate) fn fill_holes(ink: &mut Bitmap, smallest_px: u32) {
+    let _ = Sweep::new(Colour::Paper, smallest_px, 0..0).over(ink);
+}
+
+impl Despeckled {
+    /// With what changed in other rows.
+    #[must_use]
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            removed_marks: self.removed_marks + other.removed_marks,
+            removed_px: self.removed_px + other.removed_px,
+            largest_removed_px: self.largest_removed_px.max(other.largest_removed_px),
+            filled_px: self.filled_px + other.filled_px,
+        }
     }
 }
 
@@ -104,17 +126,21 @@ fn all_bands(ink: &mut Bitmap, smallest_px: u32) -> Despeckled {
                 row.copy_from_slice(part.row(y));
             }
         }
-        all.removed_px += changed.removed_px;
-        all.filled_px += changed.filled_px;
+        all = all.and(changed);
     }
     all
 }
 
 /// Cleans a picture, and counts what changed in `rows` of it.
 fn band(ink: &mut Bitmap, smallest_px: u32, rows: Range<u32>) -> Despeckled {
-    let removed_px = Sweep::new(Colour::Ink, smallest_px, rows.clone()).over(ink);
-    let filled_px = Sweep::new(Colour::Paper, smallest_px, rows).over(ink);
-    Despeckled { removed_px, filled_px }
+    let removed = Sweep::new(Colour::Ink, smallest_px, rows.clone()).over(ink);
+    let filled = Sweep::new(Colour::Paper, smallest_px, rows).over(ink);
+    Despeckled {
+        removed_marks: removed.marks,
+        removed_px: removed.pixels,
+        largest_removed_px: removed.largest_px,
+        filled_px: filled.pixels,
+    }
 }
 
 /// Whose small components are painted over.
@@ -147,6 +173,15 @@ struct Stored {
     next: usize,
 }
 
+/// What was painted over.
+#[derive(Clone, Copy, Debug, Default)]
+struct Painted {
+    marks: u64,
+    pixels: u64,
+    /// Pixels of the largest.
+    largest_px: u64,
+}
+
 #[derive(Debug)]
 struct Sweep {
     colour: Colour,
@@ -161,7 +196,7 @@ struct Sweep {
     free: usize,
     /// Number of each component in the next row.
     renumbered: Vec<usize>,
-    changed_px: u64,
+    painted: Painted,
 }
 
 impl Sweep {
@@ -176,12 +211,12 @@ impl Sweep {
             stored: Vec::new(),
             free: NONE,
             renumbered: Vec::new(),
-            changed_px: 0,
+            painted: Painted::default(),
         }
     }
 
-    /// Paints over the small components of a picture; the number of pixels.
-    fn over(mut self, ink: &mut Bitmap) -> u64 {
+    /// Paints over the small components of a picture; says how much that was.
+    fn over(mut self, ink: &mut Bitmap) -> Painted {
         let width = ink.width();
         for y in 0..ink.height() {
             let mut row = core::mem::take(&mut self.row);
@@ -201,7 +236,7 @@ impl Sweep {
         if self.colour == Colour::Ink {
             self.close(&[], ink);
         }
-        self.changed_px
+        self.painted
     }
 
     /// Joins the runs of a row to the components above, or begins new ones.
@@ -265,12 +300,19 @@ impl Sweep {
 
     fn paint(&mut self, part: Part, ink: &mut Bitmap) {
         let mut at = part.first;
+        let mut top = u32::MAX;
         while let Some(&Stored { y, start, end, next }) = self.stored.get(at) {
             set_run(ink.row_mut(y), start..end, self.colour == Colour::Paper);
             if self.counted.contains(&y) {
-                self.changed_px += u64::from(end - start);
+                self.painted.pixels += u64::from(end - start);
             }
+            top = top.min(y);
             at = next;
+        }
+        // Of a component in several bands that one tells in which it begins.
+        if self.counted.contains(&top) {
+            self.painted.marks += 1;
+            self.painted.largest_px = self.painted.largest_px.max(part.pixels.into());
         }
         self.release(part);
     }

@@ -727,3 +727,30 @@ fn ctrl_c_stops_it_and_nothing_is_written() {
     assert!(said.contains("standard input: stopped; nothing is written"), "{said}");
     assert!(!svg.exists());
 }
+
+#[test]
+fn dirt_that_is_left_out_is_told() {
+    let folder = Folder::new();
+    // A frame 8 px wide, and nine dots of 5 x 5 px.
+    let is_ink = |x: u32, y: u32| {
+        let frame = (20..180).contains(&x)
+            && (20..180).contains(&y)
+            && !((28..172).contains(&x) && (28..172).contains(&y));
+        let dot = |v: u32| (60..65).contains(&v) || (90..95).contains(&v) || (120..125).contains(&v);
+        frame || dot(x) && dot(y)
+    };
+    let levels = (0..200).flat_map(|y| (0..200).map(move |x| if is_ink(x, y) { 0 } else { 255 }));
+    let picture = folder.write("frame.pgm", [b"P5 200 200 255\n".to_vec(), levels.collect()].concat());
+    let report = folder.trace_report(&picture, &[]);
+    assert_eq!((&report["dirt"]["marks"], &report["dirt"]["px"]), (&9.into(), &225.into()));
+    assert_eq!((&report["dirt"]["largest_px"], &report["kept"]), (&25.into(), &false.into()));
+    let said = String::from_utf8(run_example("trace", &[&picture]).stdout).unwrap();
+    assert!(said.contains("9 marks left out"), "{said}");
+    let plan = ["--max-error-mm", "1", "--width-mm", "40"];
+    let output = run_example("max_error", &[&[picture.as_str()][..], &plan].concat());
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("9 marks are left out, 225 px of ink (the largest 25 px)"), "{said}");
+    let output = run_example("max_error", &[&[picture.as_str(), "--allow-dirt"][..], &plan].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}

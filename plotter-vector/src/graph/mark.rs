@@ -34,8 +34,6 @@ const LEAST_WIDTHS: f64 = 2.5;
 pub(super) struct Marks {
     /// Of each edge whether it is part of one.
     edges: Vec<bool>,
-    /// Their ink, in order.
-    ink: Vec<Pixel>,
     /// The strokes of those that begin in the band's own rows.
     pub(super) strokes: Vec<Fragment>,
 }
@@ -44,11 +42,6 @@ impl Marks {
     /// Whether an edge is part of a mark.
     pub(super) fn has_edge(&self, edge: usize) -> bool {
         self.edges.get(edge).copied().unwrap_or(false)
-    }
-
-    /// Whether a pixel of ink is part of a mark.
-    pub(super) fn has_ink(&self, at: Pixel) -> bool {
-        self.ink.binary_search(&at).is_ok()
     }
 
     /// The marks that come to the rows `core`, redrawn where that meets their ink better than what `bounded` makes of
@@ -66,21 +59,19 @@ impl Marks {
             }
             let strokes = picture.redrawn(pixels().copied(), scan, bounded)?;
             let begins = core.contains(&rows.start);
-            Some((edges.clone(), if begins { strokes } else { Vec::new() }, picture))
+            Some((edges.clone(), if begins { strokes } else { Vec::new() }))
         };
         let components = components(graph, core);
         let some = components.chunks(MARKS_TOGETHER).collect();
         let found = each(some, |some: &[Vec<usize>]| some.iter().filter_map(redrawn).collect::<Vec<_>>());
-        for (edges, mut strokes, picture) in found.into_iter().flatten() {
+        for (edges, mut strokes) in found.into_iter().flatten() {
             for edge in edges {
                 if let Some(mark) = marks.edges.get_mut(edge) {
                     *mark = true;
                 }
             }
             marks.strokes.append(&mut strokes);
-            marks.ink.extend(picture.pixels());
         }
-        marks.ink.sort_unstable();
         marks
     }
 }
@@ -204,12 +195,6 @@ impl Picture {
 
     fn inside(&self, at: Pixel) -> Pixel {
         Pixel::new(at.x.wrapping_sub(self.left), at.y.wrapping_sub(self.top))
-    }
-
-    /// The pixels of the ink, as the whole picture counts them.
-    fn pixels(&self) -> impl Iterator<Item = Pixel> + '_ {
-        let outside = |at: Pixel| Pixel::new(at.x.wrapping_add(self.left), at.y.wrapping_add(self.top));
-        self.ink.ink().map(outside)
     }
 
     /// The levels around the mark; none where they are not known.

@@ -38,9 +38,7 @@ mod spur;
 mod straight;
 mod strip;
 mod stroke;
-mod stub;
 mod trial;
-mod wiper;
 
 pub(crate) use build::Stretch;
 use build::{Edge, End, Graph, Node};
@@ -81,54 +79,12 @@ pub(crate) fn fragments(
     let marks = marks.map(|bounded| Marks::of(&graph, scan, core, bounded)).unwrap_or_default();
     let dots = dot::dots(&mut graph, scan);
     let all = first_row.saturating_add(skeleton.rows.start)..first_row.saturating_add(skeleton.rows.end);
-    let near = Near::to(core, stub::BELOW_ROWS, &graph, scan, &all);
-    let work = Found { graph: &graph, dots: &dots, marks: &marks, scan, all };
-    let mut found = work
-        .near(&near, core, words)
-        .or_else(|| work.near(&Near::all(&work.all), core, words))
-        .unwrap_or_default();
+    let near = Near::to(core, &graph, scan, &all);
+    let mut sites = Sites::new(&graph, scan);
+    let spurs = spur::Spurs::new(&graph, &sites, scan, &dots);
+    let junctions = junction::Junctions::of(&graph, &sites, &spurs, scan, &near);
+    corner::Corners::new(&graph, &junctions, scan).sharpen(&mut sites);
+    let mut found = fragment::fragments(&graph, &sites, &junctions, &marks, scan, core);
     found.extend(marks.strokes);
     found
-}
-
-/// A graph, before its lines are known.
-struct Found<'a> {
-    graph: &'a Graph,
-    /// Of each edge whether it went into a dot.
-    dots: &'a [bool],
-    /// What is drawn by itself.
-    marks: &'a Marks,
-    scan: Scan<'a>,
-    /// All rows of the picture that it has.
-    all: Range<u32>,
-}
-
-impl Found<'_> {
-    /// The pieces of centrelines in the rows `core`, from the lines that come near; none when these do not decide about all.
-    fn near(&self, near: &Near, core: &Range<u32>, words: &mut Vec<u64>) -> Option<Vec<Fragment>> {
-        let Self { graph, dots, marks, scan, all } = self;
-        let mut sites = Sites::new(graph, *scan);
-        let junctions = junction::Junctions::of(
-            graph,
-            &sites,
-            &spur::Spurs::new(graph, &sites, *scan, dots),
-            *scan,
-            near,
-        );
-        corner::Corners::new(graph, &junctions, *scan).sharpen(&mut sites);
-        let lines = stub::Lines {
-            graph,
-            sites: &sites,
-            junctions: &junctions,
-            marks,
-            scan: *scan,
-            near,
-            all: all.clone(),
-            extents: stub::Extent::of_lines(&sites, &junctions),
-        };
-        let stubs = stub::stubs(&lines, core, words)?;
-        let mut found = fragment::fragments(graph, &sites, &junctions, marks, *scan, core);
-        found.extend(stubs);
-        Some(found)
-    }
 }

@@ -10,25 +10,16 @@ use core::ops::Range;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Near {
     /// Lines that come to these rows are followed, and their junctions taken apart.
-    pub(super) lines: Range<u32>,
-    /// All places of lines in these rows are known.
-    pub(super) places: Range<u32>,
+    lines: Range<u32>,
 }
 
 impl Near {
-    /// What matters to the rows `core` and those below that a mark which begins in them mostly ends in; of a stretch that
-    /// has the rows `all`.
-    pub(super) fn to(core: &Range<u32>, below: u32, graph: &Graph, scan: Scan<'_>, all: &Range<u32>) -> Self {
+    /// What matters to the rows `core` of a stretch that has the rows `all`.
+    pub(super) fn to(core: &Range<u32>, graph: &Graph, scan: Scan<'_>, all: &Range<u32>) -> Self {
         let radius = widest_radius(graph, scan);
-        // What a line covers lies within half its width, and ...
-        let places = around(&(core.start..core.end.saturating_add(below)), 2 * radius + 8, all);
-        // ... no place of a junction farther from its lines' pixels than twice their width.
-        Self { lines: around(&places, 4 * radius + 8, all), places }
-    }
-
-    /// All that there is.
-    pub(super) fn all(all: &Range<u32>) -> Self {
-        Self { lines: all.clone(), places: all.clone() }
+        // What a line covers lies within half its width, and no place of a junction farther from its lines'
+        // pixels than twice their width.
+        Self { lines: around(&around(core, 2 * radius + 8, all), 4 * radius + 8, all) }
     }
 
     /// The edges that come to the rows, in their order.
@@ -92,7 +83,7 @@ mod tests {
             (0..200, vec![2, 10, 105, 100]),
             (199..200, vec![2, 100]),
         ] {
-            let near = Near { lines: rows.clone(), places: rows.clone() };
+            let near = Near { lines: rows.clone() };
             let left = |edge: &usize| graph.edges[*edge].pixels.iter().map(|at| at.x).min().unwrap();
             let mut found: Vec<u32> = near.edges(&graph).iter().map(left).collect();
             let mut expected = least_x;
@@ -112,15 +103,14 @@ mod tests {
             let graph = Graph::of(&Stretch { picture: &skeleton, rows: 0..1000 }, &mut Vec::new());
             Near::to(
                 &(400..500),
-                16,
                 &graph,
                 Scan { ink: &ink, first_row: 0, grey: None, hairlines: crate::hairlines::Hairlines::Raster },
                 &(0..1000),
             )
         };
         // A radius of 3 px: 14 rows on either side, and 20 more.
-        assert_eq!(near(2), Near { lines: 366..550, places: 386..530 });
+        assert_eq!(near(2), Near { lines: 366..534 });
         let wide = near(20);
-        assert!(wide.places.start < 360 && wide.lines.end > 650, "{wide:?}");
+        assert!(wide.lines.start < 300 && wide.lines.end > 600, "{wide:?}");
     }
 }

@@ -6,13 +6,14 @@
 
 use super::step::Step;
 use super::{SheetError, for_each_row, row_bytes};
+use crate::bare_ink::BareInk;
 use crate::centrelines::each;
-use crate::coverage::{AreaPen, Index, PROBE_ROWS, PROBES, Segment, segments, set_widths};
+use crate::coverage::{Across, AreaPen, Index, PROBE_ROWS, PROBES, Segment, segments, set_widths};
 use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
 use crate::runs::ink_runs;
 use crate::speckle::despeckle_here;
-use crate::{Bitmap, Drawing, ErrorReport, ErrorTally, Pixel, Progress, RowSource, context_rows};
+use crate::{Bitmap, Curve, Drawing, ErrorReport, ErrorTally, Pixel, Progress, RowSource, context_rows};
 use core::ops::Range;
 
 /// Pixels of a band: where widths are measured, and, fewer, where the error of each may have to be kept; and its fewest
@@ -62,36 +63,15 @@ impl Measure<'_> {
         drawing: &Drawing,
         progress: &mut Progress<'_>,
     ) -> Result<SheetErrors, SheetError> {
-        let (width, height) = (source.width(), source.height());
-        let mut segments = segments(drawing);
-        let mut widths = vec![[0; PROBES.len()]; segments.len()];
-        self.for_each_band(
-            source,
-            (WIDTH_BAND_PIXELS, PROBE_ROWS),
-            &mut progress.part(0.5),
-            |ink, first_row, own| probes(&segments, height, ink, first_row, own),
-            |found| {
-                for (index, probe, steps) in found {
-                    if let Some(width) = widths.get_mut(index).and_then(|widths| widths.get_mut(probe)) {
-                        *width = steps;
-                    }
-                }
-            },
-        )?;
-        set_widths(&mut segments, widths, Some(self.areas));
-        let index = Index::new(segments, width, height);
-        let area_context = if self.area_rows.is_empty() { 0 } else { self.areas.opening.rows_of_context() };
+        let index = self.widths(source, drawing, &mut progress.part(0.5))?;
         let mut tally = ErrorTally::default();
         self.for_each_band(
             source,
-            (ERROR_BAND_PIXELS, area_context),
+            (ERROR_BAND_PIXELS, self.area_context()),
             &mut progress.part(1.0),
-            |ink, first_row, own| {
-                if self.has_areas(own) {
-                    band_errors(&index, &self.areas.opening.without_insides(ink.clone()), first_row, own)
-                } else {
-                    band_errors(&index, ink, first_row, own)
-                }
+            |ink, first_row, own| match self.counted(ink, own) {
+                Some(counted) => band_errors(&index, &counted, first_row, own),
+                None => band_errors(&index, ink, first_row, own),
             },
             |band| {
                 tally.add_exact(band.exact);
@@ -102,6 +82,68 @@ impl Measure<'_> {
             },
         )?;
         Ok(SheetErrors { report: tally.report(), worst: tally.worst() })
+    }
+
+    /// Strokes for the ink that a drawing leaves bare.
+    pub(super) fn bare<'a>(
+        self,
+        source: &mut impl RowSource,
+        drawing: &Drawing,
+        of: impl Fn(&Index) -> BareInk<'_>,
+        progress: &mut Progress<'a>,
+    ) -> Result<Vec<Curve>, SheetError> {
+        let index = self.widths(source, drawing, &mut progress.part(0.5))?;
+        let bare = of(&index);
+        let mut strokes = Vec::new();
+        self.for_each_band(
+            source,
+            (WIDTH_BAND_PIXELS, BareInk::CONTEXT_ROWS.saturating_add(self.area_context())),
+            &mut progress.part(1.0),
+            |ink, first_row, own| {
+                // A square that begins in these rows ends below.
+                let rows = own.start..own.end.saturating_add(BareInk::CONTEXT_ROWS);
+                let lines = self.has_areas(&rows).then(|| self.areas.opening.split_of(ink).thin);
+                bare.strokes(ink, lines.as_ref().unwrap_or(ink), first_row, own)
+            },
+            |found| strokes.extend(found),
+        )?;
+        Ok(strokes)
+    }
+
+    /// The ink whose errors count, if that is not all in these rows.
+    fn counted(&self, ink: &Bitmap, rows: &Range<u32>) -> Option<Bitmap> {
+        self.has_areas(rows).then(|| self.areas.opening.without_insides(ink.clone()))
+    }
+
+    fn area_context(&self) -> u32 {
+        if self.area_rows.is_empty() { 0 } else { self.areas.opening.rows_of_context() }
+    }
+
+    /// The pieces of a drawing with the ink's widths.
+    fn widths(
+        self,
+        source: &mut impl RowSource,
+        drawing: &Drawing,
+        progress: &mut Progress<'_>,
+    ) -> Result<Index, SheetError> {
+        let (width, height) = (source.width(), source.height());
+        let mut segments = segments(drawing);
+        let mut widths = vec![[Across::default(); PROBES.len()]; segments.len()];
+        self.for_each_band(
+            source,
+            (WIDTH_BAND_PIXELS, PROBE_ROWS),
+            progress,
+            |ink, first_row, own| probes(&segments, height, ink, first_row, own),
+            |found| {
+                for (index, probe, steps) in found {
+                    if let Some(width) = widths.get_mut(index).and_then(|widths| widths.get_mut(probe)) {
+                        *width = steps;
+                    }
+                }
+            },
+        )?;
+        set_widths(&mut segments, &widths, Some(self.areas));
+        Ok(Index::new(segments, width, height))
     }
 
     /// Whether there are areas in some rows.
@@ -131,7 +173,7 @@ impl Measure<'_> {
                 let done = each(bands, |own| {
                     let rows = step.around(&own);
                     let mut band = ink.band(&rows, Vec::new());
-                    despeckle_here(&mut band, self.smallest_px);
+                    let _ = despeckle_here(&mut band, self.smallest_px, 0..0);
                     work(&band, rows.start, &own)
                 });
                 done.into_iter().for_each(&mut take);
@@ -149,7 +191,7 @@ fn probes(
     ink: &Bitmap,
     first_row: u32,
     own: &Range<u32>,
-) -> Vec<(usize, usize, u16)> {
+) -> Vec<(usize, usize, Across)> {
     let near = segments
         .iter()
         .enumerate()

@@ -14,19 +14,20 @@ mod errors;
 mod step;
 mod work;
 
+use crate::coverage::AreaPen;
 use crate::pen::PenSurvey;
 use crate::pipeline::Unordered;
 use crate::row_threshold::RowThreshold;
 use crate::within::within;
 use crate::{
-    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Drawing, MAX_PIXELS, MAX_SHEET_ROWS, MAX_SIDE_PX,
-    Progress, Row, RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer,
+    Algorithm, Bitmap, Cancelled, DecodeError, Depth, Despeckled, Drawing, MAX_PIXELS, MAX_SHEET_ROWS,
+    MAX_SIDE_PX, Progress, Row, RowSource, SizeError, Split, Survey, VectorizeError, Vectorizer,
 };
 use core::fmt;
 pub use crowd::{MAX_LINE_PIXELS, MAX_SHEET_STROKES};
 use errors::Measure;
 pub use errors::SheetErrors;
-use work::Work;
+use work::{Finished, Work};
 
 /// What [`Vectorizer::vectorize_rows`] found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,6 +42,8 @@ pub struct TracedSheet {
     pub pen_px: Option<u32>,
     /// How far the ink lies from the strokes; `None` unless it was asked for.
     pub errors: Option<SheetErrors>,
+    /// What was taken for dirt, and is not drawn: no error is told of it.
+    pub removed: Despeckled,
 }
 
 /// Why a sheet cannot be vectorized.
@@ -113,8 +116,9 @@ impl Vectorizer {
     ///
     /// The strokes and their order are those of [`Vectorizer::vectorize`] on the whole picture, whatever the height of the
     /// bands and the number of threads; a black bit is level 0 there, a white one 255, so that on a black sheet the white
-    /// lines are ink. The sheet is read twice, for the width of the pen and for the strokes; one of grey levels, or of white
-    /// lines on black, three times. How far the ink lies from the strokes is not measured:
+    /// lines are ink. The sheet is read four times, for the width of the pen, the strokes, their widths and
+    /// what they leave bare ([`Prefer`](crate::Prefer)); one of grey levels, or of white lines on black, once
+    /// more. How far the ink lies from the strokes is not measured:
     /// [`Vectorizer::vectorize_rows_with_errors`] does.
     ///
     /// Memory is some bands of the sheet (of a large one fewer than there are threads) and the drawing, and
@@ -150,7 +154,7 @@ impl Vectorizer {
 
     /// As [`Vectorizer::vectorize_rows`], and how far the ink lies from the strokes: what [`Vectorized::error`] and, of drawings
     /// without areas, [`worst_pixel`] say of the whole picture, to the last bit. The sheet is read twice more; the memory, when the
-    /// bands are done, is 80 bytes a vertex and 1 bit for each 16 pixels.
+    /// bands are done, is 110 bytes a vertex and 1 bit for each 16 pixels.
     ///
     /// [`worst_pixel`]: crate::worst_pixel
     /// [`Vectorized::error`]: crate::Vectorized::error
@@ -208,7 +212,7 @@ impl Vectorizer {
         if ink_pixels == 0 {
             return Ok(found);
         }
-        let mut strokes_part = progress.part(if with_errors { 0.7 } else { 1.0 });
+        let mut strokes_part = progress.part(if with_errors { 0.5 } else { 0.7 });
         let fits = u64::from(width) * u64::from(height) <= MAX_PIXELS;
         let keeps_pixels = self.keeps_pixels(pen, || threshold.has_rims(ink_pixels));
         if keeps_pixels && fits || self.algorithm == Algorithm::Published {
@@ -221,31 +225,34 @@ impl Vectorizer {
                 Ok(())
             })?;
             drop(rows);
-            let (drawing, errors) = self.traced_whole(ink, with_errors)?;
+            let (drawing, errors, removed) = self.traced_whole(ink, with_errors)?;
             progress.part(1.0).at(1, 1)?;
-            return Ok(TracedSheet { drawing, errors, ..found });
+            return Ok(TracedSheet { drawing, errors, removed, ..found });
         }
         let mut sheet = Work::new(self, (width, height), (pen, keeps_pixels), &threshold);
         for_each_row(source, &mut strokes_part, |_, row| sheet.push(row))?;
-        let (strokes, areas) = sheet.finish()?;
+        let Finished { strokes, area_rows, removed } = sheet.finish()?;
         let mut drawing = found.drawing;
         strokes.into_iter().for_each(|stroke| drawing.push_curve(1, within(stroke, width, height)));
-        let drawing = self.order.apply(&drawing);
-        let errors = if with_errors {
-            let smallest_px = self.smallest_mark_px(pen.width_px);
-            let opening = self.opening(pen.width_px);
-            let measure = Measure {
-                threshold: &threshold,
-                smallest_px,
-                band_rows: self.band_rows,
-                areas: self.area_pen(&opening),
-                area_rows: &areas,
-            };
-            Some(measure.errors(source, &drawing, &mut progress.part(1.0))?)
-        } else {
-            None
+        let smallest_px = self.smallest_mark_px(pen.width_px);
+        let opening = self.opening(pen.width_px);
+        let measure = Measure {
+            threshold: &threshold,
+            smallest_px,
+            band_rows: self.band_rows,
+            areas: AreaPen { is_raster: keeps_pixels, ..self.area_pen(&opening) },
+            area_rows: &area_rows,
         };
-        Ok(TracedSheet { drawing, errors, ..found })
+        if self.adds_strokes() {
+            let mut bare_part = progress.part(if with_errors { 0.5 } else { 1.0 });
+            for stroke in measure.bare(source, &drawing, |drawn| self.bare_ink(drawn), &mut bare_part)? {
+                drawing.push_curve(1, within(stroke, width, height));
+            }
+        }
+        let drawing = self.order.apply(&drawing);
+        let errors =
+            if with_errors { Some(measure.errors(source, &drawing, &mut progress.part(1.0))?) } else { None };
+        Ok(TracedSheet { drawing, errors, removed, ..found })
     }
 
     /// A sheet that has to be traced as a whole.
@@ -253,12 +260,13 @@ impl Vectorizer {
         &self,
         mut ink: Bitmap,
         with_errors: bool,
-    ) -> Result<(Drawing, Option<SheetErrors>), SheetError> {
-        let Unordered { drawing, errors, areas } = self.unordered(&mut ink, None)?;
+    ) -> Result<(Drawing, Option<SheetErrors>, Despeckled), SheetError> {
+        let Unordered { drawing, errors, areas, removed } = self.unordered(&mut ink, None)?;
+        let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
         let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
         let measured = || self.errors(&ink, &drawing, areas.as_ref());
         let errors = with_errors.then(|| errors.unwrap_or_else(measured));
-        Ok((drawing, errors))
+        Ok((drawing, errors, removed))
     }
 }
 

@@ -10,7 +10,7 @@ use crate::pen::Pen;
 use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
 use crate::speckle::despeckle_here;
-use crate::{Curve, Gray, Row, Vectorizer, context_rows};
+use crate::{Curve, Despeckled, Gray, Row, Vectorizer, context_rows};
 use core::ops::Range;
 
 /// Own rows of a band, bytes at 1 bit a pixel, and the fewest rows: less, and the context costs more than the band; more,
@@ -46,6 +46,17 @@ pub(super) struct Work<'a> {
     outlines: Vec<Curve>,
     /// Rows with areas.
     area_rows: Vec<Range<u32>>,
+    /// What was taken for dirt.
+    removed: Despeckled,
+}
+
+/// A sheet that has been worked on.
+pub(super) struct Finished {
+    pub(super) strokes: Vec<Curve>,
+    /// Rows with areas, from the top.
+    pub(super) area_rows: Vec<Range<u32>>,
+    /// What was taken for dirt.
+    pub(super) removed: Despeckled,
 }
 
 impl<'a> Work<'a> {
@@ -93,6 +104,7 @@ impl<'a> Work<'a> {
             strokes: Vec::new(),
             outlines: Vec::new(),
             area_rows: Vec::new(),
+            removed: Despeckled::default(),
         }
     }
 
@@ -115,8 +127,8 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// All strokes, after the last row, and the rows with areas, from the top.
-    pub(super) fn finish(self) -> Result<(Vec<Curve>, Vec<Range<u32>>), SheetError> {
+    /// What there is after the last row.
+    pub(super) fn finish(self) -> Result<Finished, SheetError> {
         let Self {
             settings,
             centring,
@@ -126,6 +138,7 @@ impl<'a> Work<'a> {
             mut strokes,
             mut outlines,
             area_rows,
+            removed,
             ..
         } = self;
         // The bands' memory is free now.
@@ -140,7 +153,7 @@ impl<'a> Work<'a> {
         strokes.extend(found);
         sort(&mut strokes);
         strokes.append(&mut outlines);
-        Ok((strokes, area_rows))
+        Ok(Finished { strokes, area_rows, removed })
     }
 
     /// Bands with memory for each.
@@ -156,11 +169,13 @@ impl<'a> Work<'a> {
         let cleaned = each(bands, |(own, words)| {
             let rows = step.around(&own);
             let mut band = ink.band(&rows, words);
-            despeckle_here(&mut band, smallest_px);
+            let own = own.start - rows.start..own.end - rows.start;
+            let removed = despeckle_here(&mut band, smallest_px, own.clone());
             let (lines, areas) = opening.split(band);
-            (own.start - rows.start..own.end - rows.start, lines, areas)
+            (own, lines, areas, removed)
         });
-        for (own, lines, areas) in cleaned {
+        for (own, lines, areas, removed) in cleaned {
+            self.removed = self.removed.and(removed);
             for y in own {
                 let row = self.lines.end();
                 self.lines.push(lines.row(y));
@@ -316,7 +331,7 @@ mod tests {
         let threshold = survey.finish().unwrap();
         let mut work = Work::new(settings, (ink.width(), ink.height()), (Pen::of(ink), true), &threshold);
         (0..ink.height()).for_each(|y| work.push(Row::Bits(ink.row(y))).unwrap());
-        work.finish().unwrap().0
+        work.finish().unwrap().strokes
     }
 
     fn distance_px(at: PxPoint, stroke: &[PxPoint]) -> f64 {

@@ -10,6 +10,7 @@
     reason = "a test fails by a panic, and prints its tables"
 )]
 
+mod bare_ink;
 mod blurred_corners;
 mod centrelines;
 mod cut_lines;

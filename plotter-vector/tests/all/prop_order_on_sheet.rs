@@ -82,7 +82,28 @@ fn ink(drawing: &Drawing) -> Vec<String> {
     let mut sheet = 0;
     for stroke in &drawing.strokes {
         sheet += stroke.before.iter().filter(|mark| **mark == Mark::NewPage).count();
-        for (from, segment) in stroke.segments() {
+        let mut segments: Vec<(Point, PathSegment)> =
+            stroke.segments().map(|(from, own)| (from, *own)).collect();
+        // Two halves of a circle are a circle.
+        let mut at = 0;
+        while let (Some((from, one)), Some((_, other))) =
+            (segments.get(at).copied(), segments.get(at + 1).copied())
+        {
+            at += 1;
+            if let (Shape::Arc { centre, sweep_rad }, Shape::Arc { centre: same, sweep_rad: rest }) =
+                (one.shape, other.shape)
+                && centre == same
+                && other.to == from
+                && one.feed_mm_s == other.feed_mm_s
+                && ((sweep_rad + rest).abs() - TAU).abs() < 1e-9
+            {
+                let shape = Shape::Arc { centre, sweep_rad: sweep_rad + rest };
+                segments[at - 1].1 = PathSegment { shape, ..other };
+                segments.remove(at);
+            }
+        }
+        for (from, segment) in &segments {
+            let from = *from;
             if segment.is_dot(from) {
                 continue;
             }

@@ -1,0 +1,183 @@
+//! What the pen leaves bare of drawings that a pen has made: by code that shares nothing with the library's own measure.
+//!
+//! `cargo test --release -p plotter-vector --test all bare_ink:: -- --ignored --nocapture` prints the table of docs/results.md.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a failure shows")]
+
+use crate::pen_ink::{Line, ink_of};
+use crate::random::Random;
+use crate::segment_distance::segment_distance;
+use core::f64::consts::TAU;
+use plotter_vector::{Bitmap, Drawing, Pixel, PxPoint, Vectorizer};
+use std::collections::BTreeSet;
+
+const SIDE_PX: u32 = 200;
+
+/// The tolerance of all of it, px.
+const WITHIN_PX: f64 = 0.5;
+
+const PENS_PX: [f64; 8] = [1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
+
+/// A drawing of lines, circles, tangents, zigzags and dots.
+fn drawing(seed: u64) -> Vec<Line> {
+    let mut numbers = Random(0x9e37_79b9_7f4a_7c15 ^ seed.wrapping_mul(0x2545_f491_4f6c_dd1d));
+    let mut next = move |least: f64, most: f64| least + (most - least) * numbers.unit();
+    let at = PxPoint::new;
+    let mut lines: Vec<Line> = Vec::new();
+    let circle = |centre: PxPoint, radius_px: f64, lines: &mut Vec<Line>| {
+        let place = |part: u32| {
+            let (sine, cosine) = libm::sincos(TAU * f64::from(part) / 90.0);
+            at(centre.x + radius_px * cosine, centre.y + radius_px * sine)
+        };
+        lines.extend((0..90).map(|part| [place(part), place(part + 1)]));
+    };
+    for _ in 0..4 + (seed % 4) {
+        let kind = next(0.0, 5.0);
+        let (x, y) = (next(30.0, 170.0), next(30.0, 170.0));
+        if kind < 1.0 {
+            lines.push([at(x, y), at(next(20.0, 180.0), next(20.0, 180.0))]);
+        } else if kind < 3.0 {
+            let radius_px = next(6.0, 45.0);
+            let inside = |v: f64| v.clamp(radius_px + 12.0, 188.0 - radius_px);
+            let centre = at(inside(x), inside(y));
+            circle(centre, radius_px, &mut lines);
+            if kind < 2.0 {
+                // A line that touches it, nearly.
+                let (sine, cosine) = libm::sincos(next(0.0, TAU));
+                let (off, half) = (radius_px + next(-3.0, 3.0), next(20.0, 60.0));
+                let foot = at(centre.x + off * cosine, centre.y + off * sine);
+                let end = |side: f64| {
+                    at((foot.x - side * sine).clamp(12.0, 188.0), (foot.y + side * cosine).clamp(12.0, 188.0))
+                };
+                lines.push([end(-half), end(half)]);
+            }
+        } else if kind < 4.0 {
+            let mut from = at(x, y);
+            for _ in 0..6 {
+                let to = at(
+                    (from.x + next(-25.0, 25.0)).clamp(20.0, 180.0),
+                    (from.y + next(-25.0, 25.0)).clamp(20.0, 180.0),
+                );
+                lines.push([from, to]);
+                from = to;
+            }
+        } else {
+            lines.push([at(x, y), at(x, y)]);
+        }
+    }
+    lines
+}
+
+fn distance_px(drawing: &Drawing, at: Pixel) -> f64 {
+    let at = PxPoint::from(at);
+    let to_stroke = |stroke: &[PxPoint]| {
+        let dot = stroke.first().map_or(f64::INFINITY, |first| first.distance(at));
+        stroke.windows(2).map(|pair| segment_distance(at, pair[0], pair[1])).fold(dot, f64::min)
+    };
+    drawing.strokes().map(to_stroke).fold(f64::INFINITY, f64::min)
+}
+
+/// The greatest extent of pixels that hang together, px.
+fn longest_px(pixels: impl Iterator<Item = Pixel>) -> u32 {
+    let mut open: BTreeSet<(u32, u32)> = pixels.map(|at| (at.y, at.x)).collect();
+    let mut longest = 0;
+    while let Some(first) = open.pop_first() {
+        let mut group = vec![first];
+        let mut next = 0;
+        while let Some((y, x)) = group.get(next).copied() {
+            next += 1;
+            for beside in
+                (y.saturating_sub(1)..=y + 1).flat_map(|y| (x.saturating_sub(1)..=x + 1).map(move |x| (y, x)))
+            {
+                if open.remove(&beside) {
+                    group.push(beside);
+                }
+            }
+        }
+        let extent = |of: fn(&(u32, u32)) -> u32| {
+            let (least, most) = (group.iter().map(of).min(), group.iter().map(of).max());
+            most.unwrap_or(0) + 1 - least.unwrap_or(0)
+        };
+        longest = longest.max(extent(|at| at.0)).max(extent(|at| at.1));
+    }
+    longest
+}
+
+/// What is left bare of a drawing: by this pen, px; as the library tells it, px; and how many strokes there are for a line.
+struct Bare {
+    by_pen_px: f64,
+    told_px: f64,
+    strokes: usize,
+}
+
+fn bare(seed: u64, pen_px: f64) -> Bare {
+    let lines = drawing(seed);
+    let ink: Bitmap = ink_of(SIDE_PX, &lines, pen_px);
+    let traced = Vectorizer::default().trace(&ink).unwrap();
+    // What was taken for dirt is told, and is not asked for here.
+    let dirt = traced.removed.removed_marks > 0;
+    let far: Vec<(Pixel, f64)> = ink.ink().map(|at| (at, distance_px(&traced.drawing, at))).collect();
+    let lost = far.iter().filter(|(_, away_px)| *away_px > pen_px.max(2.0)).map(|(at, _)| *at);
+    let lost_px = longest_px(lost);
+    assert!(
+        dirt || f64::from(lost_px) <= 3.0 * pen_px.max(2.0),
+        "seed {seed}, {pen_px} px: {lost_px} px are lost"
+    );
+    let farthest_px = far.iter().map(|(_, away_px)| away_px - 0.5 * pen_px).fold(0.0, f64::max);
+    Bare {
+        by_pen_px: if dirt { 0.0 } else { farthest_px },
+        told_px: traced.error.max_px,
+        strokes: traced.drawing.strokes().len(),
+    }
+}
+
+#[test]
+fn no_line_of_a_pen_is_lost_and_hardly_any_ink_is_bare() {
+    for (seed, pen_px) in (1..).zip(PENS_PX) {
+        let Bare { by_pen_px, told_px, .. } = bare(seed, pen_px);
+        assert!(by_pen_px <= 1.0 + 0.4 * pen_px, "{pen_px} px: {by_pen_px} px bare, {told_px} told");
+    }
+}
+
+#[test]
+fn a_double_line_beside_a_circle_is_drawn() {
+    // Two lines that touch a circle so nearly that all three run into one for half a hundred pixels.
+    let place = |part: u32| {
+        let (sine, cosine) = libm::sincos(TAU * f64::from(part) / 240.0);
+        PxPoint::new(100.0 + 80.0 * cosine, 100.0 + 80.0 * sine)
+    };
+    let mut lines: Vec<Line> = (0..240).map(|part| [place(part), place(part + 1)]).collect();
+    for off in [78.2, 80.4] {
+        lines.push([PxPoint::new(40.0, 100.0 - off), PxPoint::new(160.0, 101.0 - off)]);
+    }
+    for pen_px in [1.1, 1.5, 2.0] {
+        let ink = ink_of(SIDE_PX, &lines, pen_px);
+        let traced = Vectorizer::default().trace(&ink).unwrap();
+        let lost = ink.ink().filter(|at| distance_px(&traced.drawing, *at) > pen_px.max(2.0));
+        assert!(longest_px(lost) <= 2, "{pen_px} px");
+    }
+}
+
+#[test]
+#[ignore = "minutes: the table of docs/results.md"]
+fn table_of_random_drawings() {
+    println!(
+        "| pen, px | kept | told / tolerance: median | 90 % | greatest | bare by the pen, px: median | 90 % | greatest | strokes |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for pen_px in PENS_PX {
+        let found: Vec<Bare> = (10_000..10_125).map(|seed| bare(seed, pen_px)).collect();
+        let parts = |of: fn(&Bare) -> f64| {
+            let mut all: Vec<f64> = found.iter().map(of).collect();
+            all.sort_by(f64::total_cmp);
+            [all[all.len() / 2], all[all.len() * 9 / 10], all[all.len() - 1]]
+        };
+        let kept = found.iter().filter(|bare| bare.told_px <= WITHIN_PX).count();
+        let [told, told_most, told_worst] = parts(|bare| bare.told_px / WITHIN_PX);
+        let [by_pen, most, worst] = parts(|bare| bare.by_pen_px);
+        let strokes: usize = found.iter().map(|bare| bare.strokes).sum();
+        println!(
+            "| {pen_px} | {kept} of {} | {told:.2} | {told_most:.2} | {told_worst:.2} | {by_pen:.2} | {most:.2} | {worst:.2} | {strokes} |",
+            found.len()
+        );
+    }
+}
