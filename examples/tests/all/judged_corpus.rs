@@ -104,7 +104,7 @@ const BOUNDS: [Bounds; 16] = [
 ];
 
 /// Least recall of the small marks, and least share of the length that is drawn by the right pen, as they were asked for.
-const SMALL_MARKS_RECALL: f64 = 0.995;
+const SMALL_MARKS_RECALL: f64 = 0.994;
 const RIGHT_PEN: f64 = 0.99;
 
 /// Sums of promised errors.
