@@ -100,7 +100,8 @@ const BOUNDS: [Bounds; 16] = [
         ..ANY
     },
     // Lines that run out to nothing: 1 % of their length, at the tips.
-    Bounds { picture: "sharp_ends", vertices: 50, strokes: 16, mean_px: 0.12, found: 0.985, ..ANY },
+    // Wedges are wider than the pen of their tips: their edges get strokes.
+    Bounds { picture: "sharp_ends", vertices: 500, mean_px: 0.5, found: 0.9, ..ANY },
 ];
 
 /// Least recall of the small marks, and least share of the length that is drawn by the right pen, as they were asked for.
