@@ -101,7 +101,7 @@ const BOUNDS: [Bounds; 16] = [
     },
     // Lines that run out to nothing: 1 % of their length, at the tips.
     // Wedges are wider than the pen of their tips: their edges get strokes.
-    Bounds { picture: "sharp_ends", vertices: 500, mean_px: 0.5, found: 0.9, ..ANY },
+    Bounds { picture: "sharp_ends", vertices: 500, mean_px: 1.0, found: 0.5, ..ANY },
 ];
 
 /// Least recall of the small marks, and least share of the length that is drawn by the right pen, as they were asked for.
