@@ -1,15 +1,16 @@
 //! A contest of controllers on simulated machines: table, CSV and a page with pictures.
 
-use crate::{at, escaped, lost_ink, print, read_file, run, vectorized, write_file};
+use crate::{at, escaped, fit_drawing, lost_ink, print, read_file, run, vectorized, vectorizer, write_file};
 use clap::Parser;
 use core::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use plotter_motion::testbed::{Drawing, Entry, Figures, Moment, Ranking, Score, TestBed, TestBedSettings};
 use plotter_motion::{Machine, MachineKind, Pen, PenMove, PlotOp, Point, hpgl};
 use plotter_replay::{Chart, Curve, Panel, Role, Run};
-use plotter_vector::{Scale, Vectorizer};
+use plotter_vector::{RowSource as _, Scan};
 use rayon::prelude::*;
 use std::fmt::Write as _;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -204,25 +205,15 @@ fn drawing(args: &Args, path: &Path, bed: &TestBed) -> Result<Drawing, String> {
     Drawing::from_ops(&name, bed, ops).map_err(|error| at(path, &error))
 }
 
-/// A picture as HPGL, as the example `plot` makes it with ours.
+/// A picture as HPGL, as the example `plot` makes it with ours on this machine.
 fn traced(args: &Args, path: &Path, bytes: &[u8], bed: &TestBed) -> Result<String, String> {
-    const MARGIN_MM: f64 = 5.0;
-    if !(args.width_mm > 0.0 && args.width_mm.is_finite()) {
-        return Err(format!("--width-mm {}: give a width above 0 mm", args.width_mm));
-    }
-    let vectorizer = Vectorizer::default();
+    let scan = Scan::new(Cursor::new(bytes)).map_err(|error| at(path, &error))?;
+    let scale = fit_drawing((scan.width(), scan.height()), bed.machine(), args.width_mm)?;
+    let vectorizer =
+        vectorizer(&bed.machine().config().vectorize, scale.mm_per_px()).map_err(|error| at(path, &error))?;
     let traced = vectorized(&vectorizer, bytes.to_vec()).map_err(|error| at(path, &error))?;
     let errors = traced.errors.unwrap_or_default();
     lost_ink(&vectorizer, &errors, traced.pen_px).map_err(|error| at(path, &error))?;
-    let (width_px, height_px) = (traced.drawing.width_px().max(1), traced.drawing.height_px().max(1));
-    let area = bed.machine().config().area;
-    let height_mm = args.width_mm * f64::from(height_px) / f64::from(width_px);
-    let corner = Point::new(
-        area.width_mm.min(args.width_mm + 2.0 * MARGIN_MM),
-        area.height_mm.min(height_mm + 2.0 * MARGIN_MM),
-    );
-    let scale = Scale::fit(width_px, height_px, Point::ORIGIN, corner, MARGIN_MM)
-        .map_err(|error| error.to_string())?;
     let mut text = String::new();
     plotter_vector::hpgl(&traced.drawing, scale, &mut text).map_err(|error| error.to_string())?;
     Ok(text)

@@ -10,26 +10,29 @@
 //!
 //! The picture is looked at in squares that lie where they lie, so that what is found depends on no band.
 
-use crate::coverage::Index;
+use crate::coverage::{Index, JUMP_PX};
 use crate::runs::ink_runs;
 use crate::simplify::Pieces;
 use crate::speckle::fill_holes;
 use crate::{Bitmap, Bounded, Curve, OrderedTracking, Pixel, PxPoint, inset_outlines};
 use core::ops::Range;
 
-/// Side of the squares, px: some letters fit into it, and its pixels are few enough to be looked at one by one.
+/// Side of the squares, px: some letters fit into it, and its pixels are few enough to be looked at one by
+/// one.
 const SQUARE_PX: u32 = 128;
 
 /// Pixels of bare ink that are no farther from each other belong together, px.
 const TOGETHER_PX: u32 = 2;
 
-/// The pen may go so far beyond the ink where its line is no wider than itself, px: the raster says no more of where the edge is.
+/// The pen may go so far beyond the ink where its line is no wider than itself, px: the raster says no more
+/// of where the edge is.
 const RASTER_PX: f64 = 0.5;
 
-/// Pixels that the raster may add to those that a round pen leaves bare in a square corner.
-const CORNER_PIXELS: f64 = 5.0;
+/// Pixels that the raster may add to those of a dot of the pen.
+const DOT_PIXELS: f64 = 5.0;
 
-/// Part of the promise that is left for what simplifying moves the new strokes by, and part that is used for it.
+/// Part of the promise that is left for what simplifying moves the new strokes by, and part that is used for
+/// it.
 const LEFT_SHARE: f64 = 0.5;
 
 /// Rows of the pen, one inside of the other, that are drawn at most in a place: as wide as a line may be.
@@ -44,8 +47,8 @@ const MUCH_THINNER: f64 = 0.75;
 /// Pens as parts of that of the line, where that is too wide.
 const THINNER: [f64; 3] = [0.75, 0.5, 0.25];
 
-/// How far from what is drawn ink must be to have been drawn by such a pen, px, and as a part of half the pen's width: nearer it is
-/// what runs together between two lines.
+/// How far from what is drawn ink must be to have been drawn by such a pen, px, and as a part of half the
+/// pen's width: nearer it is what runs together between two lines.
 const LEAST_PX: f64 = 1.5;
 const LEAST_OF_HALF: f64 = 0.5;
 
@@ -68,10 +71,12 @@ pub(crate) struct BareInk<'a> {
 }
 
 impl BareInk<'_> {
-    /// Rows above and below its own that a band needs: a square begins in it, and what is beside that decides where the pen fits.
+    /// Rows above and below its own that a band needs: a square begins in it, and what is beside that decides
+    /// where the pen fits.
     pub(crate) const CONTEXT_ROWS: u32 = SQUARE_PX + 104;
 
-    /// Strokes for what is bare of `lines`, which are the ink without its areas, in the squares that begin in the rows `own`; the ink's first row is row `first_row` of the picture.
+    /// Strokes for what is bare of `lines`, which are the ink without its areas, in the squares that begin in
+    /// the rows `own`; the ink's first row is row `first_row` of the picture.
     pub(crate) fn strokes(
         &self,
         ink: &Bitmap,
@@ -95,27 +100,94 @@ impl BareInk<'_> {
                     });
                 }
             }
-            for bare in squares.iter().flat_map(|square| together(square)) {
-                self.cover(ink, first_row, bare, &mut strokes);
+            for square in squares {
+                let mut found = Vec::new();
+                for bare in together(&square) {
+                    self.cover(ink, first_row, bare, &mut found);
+                }
+                self.join(ink, first_row, &mut found);
+                strokes.append(&mut found);
             }
         }
         strokes
     }
 
-    /// Whether pixels are a spot that is worth no stroke of its own: farther off than allowed by no more than the raster leaves open; or as
-    /// small as what a round pen, so wide, leaves bare in a square corner, and no farther off than that.
-    fn is_spot(&self, bare: &[Pixel], half_px: f64) -> bool {
+    /// Joins strokes where the pen goes from the end of one to that of another over ink, no farther than it
+    /// is wide.
+    fn join(&self, ink: &Bitmap, first_row: u32, strokes: &mut Vec<Curve>) {
+        let mut one = 0;
+        while let Some(stroke) = strokes.get(one) {
+            let joined = (one + 1..strokes.len()).find_map(|other| {
+                let joint = self.joint(ink, first_row, stroke, strokes.get(other)?)?;
+                Some((other, joint))
+            });
+            let Some((other, [turn_one, turn_other])) = joined else {
+                one += 1;
+                continue;
+            };
+            let mut next = strokes.remove(other);
+            if turn_other {
+                next.reverse();
+            }
+            if let Some(stroke) = strokes.get_mut(one) {
+                if turn_one {
+                    stroke.reverse();
+                }
+                stroke.append(next);
+            }
+        }
+    }
+
+    /// Which of two strokes to turn, that the other begins where the one ends; none if they do not meet.
+    fn joint(&self, ink: &Bitmap, first_row: u32, one: &Curve, other: &Curve) -> Option<[bool; 2]> {
+        let ends = |curve: &Curve| {
+            let ends = [*curve.vertices.first()?, *curve.vertices.last()?];
+            (curve.vertices.len() == 1 || ends[0] != ends[1]).then_some(ends)
+        };
+        let ([a, b], [c, d]) = (ends(one)?, ends(other)?);
+        let ways =
+            [(b, c, [false, false]), (b, d, [false, true]), (a, c, [true, false]), (a, d, [true, true])];
+        let shorter = |x: &(PxPoint, PxPoint, _), y: &(PxPoint, PxPoint, _)| {
+            x.0.distance(x.1).total_cmp(&y.0.distance(y.1))
+        };
+        let (from, to, turns) = ways.into_iter().min_by(shorter)?;
+        let far_px = from.distance(to);
+        let is_ink = |part: f64| {
+            let at = PxPoint::new(from.x + part * (to.x - from.x), from.y + part * (to.y - from.y));
+            let at = at.minus(PxPoint::new(0.0, f64::from(first_row)));
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a float cast saturates"
+            )]
+            let pixel = Pixel::new(at.0 as u32, at.1 as u32);
+            at.0 >= 0.0 && at.1 >= 0.0 && ink.get(pixel)
+        };
+        // Every pixel of the way and more.
+        let parts = 32;
+        let meets = far_px <= 2.0 * self.drawn.slack_px(from) + 2.0 * RASTER_PX
+            && (0..=parts).all(|part| is_ink(f64::from(part) / f64::from(parts)));
+        meets.then_some(turns)
+    }
+
+    /// Whether pixels are a spot that is worth no stroke of its own: farther off than allowed by no more than the raster
+    /// leaves open; or no larger than a dot of the pen, so wide, and no farther off than what is bare in a square corner;
+    /// or on the rim of the picture, where a line that goes on beyond it would cover them.
+    fn is_spot(&self, bare: &[Pixel], half_px: f64, last: Pixel) -> bool {
         let farthest_px = bare.iter().map(|at| self.drawn.error_px((*at).into(), &mut 0)).fold(0.0, f64::max);
         let corner_px = (core::f64::consts::SQRT_2 - 1.0) * half_px;
-        let area_px = (1.0 - core::f64::consts::FRAC_PI_4) * half_px * half_px + CORNER_PIXELS;
+        let dot_px = core::f64::consts::PI * half_px * half_px + DOT_PIXELS;
         #[expect(clippy::cast_precision_loss, reason = "pixels of a square")]
-        let is_small = bare.len() as f64 <= area_px;
-        let most_px = if is_small {
-            (self.within_px + 2.0 * RASTER_PX).max(corner_px + RASTER_PX)
+        let is_small = bare.len() as f64 <= dot_px;
+        let is_on_rim = |at: &Pixel| at.x == 0 || at.y == 0 || at.x == last.x || at.y == last.y;
+        let more_px = if bare.iter().any(is_on_rim) {
+            half_px.max(JUMP_PX)
+        } else if is_small {
+            corner_px + JUMP_PX
         } else {
-            self.within_px + RASTER_PX
+            RASTER_PX
         };
-        farthest_px <= most_px
+        farthest_px <= self.within_px + more_px
     }
 
     /// Strokes for pixels that lie together.
@@ -123,10 +195,8 @@ impl BareInk<'_> {
         let mut halves_px: Vec<f64> = bare.iter().map(|at| self.drawn.slack_px((*at).into())).collect();
         halves_px.sort_unstable_by(f64::total_cmp);
         let half_px = halves_px.get(halves_px.len() / 2).copied().unwrap_or(0.0);
-        // Lines go on beyond the rim of the picture.
-        let (last_column, last_row) = (ink.width() - 1, first_row + ink.height() - 1);
-        let is_on_rim = |at: &Pixel| at.x == 0 || at.y == 0 || at.x == last_column || at.y == last_row;
-        if !self.spots && self.is_spot(&bare, half_px) || bare.iter().any(is_on_rim) && half_px >= RASTER_PX {
+        let last = Pixel::new(ink.width() - 1, first_row + ink.height() - 1);
+        if !self.spots && self.is_spot(&bare, half_px, last) {
             return;
         }
         let pen_px = self.drawn.pen_half_px;
@@ -153,7 +223,8 @@ impl BareInk<'_> {
         }
     }
 
-    /// Draws rows of a pen, one inside of the other; each as far inside of the ink as it fits, then as the promise allows.
+    /// Draws rows of a pen, one inside of the other; each as far inside of the ink as it fits, then as the
+    /// promise allows.
     fn fill(&self, window: &Window, half_px: f64, bare: &mut Vec<Pixel>, strokes: &mut Vec<Curve>) {
         let half_px = half_px.min(WIDEST_PX);
         for row in 0..MOST_ROWS {
@@ -169,7 +240,8 @@ impl BareInk<'_> {
         }
     }
 
-    /// Draws so far inside of the ink, with a pen that covers so far; whether there is a place for it. What it covers is bare no more.
+    /// Draws so far inside of the ink, with a pen that covers so far; whether there is a place for it. What
+    /// it covers is bare no more.
     fn inside(
         &self,
         window: &Window,
@@ -183,7 +255,7 @@ impl BareInk<'_> {
             for border in inset_outlines(&window.ink, inset_px) {
                 let border: Vec<PxPoint> = border.iter().map(|at| window.in_picture(*at)).collect();
                 found = true;
-                *bare = self.along(&border, core::mem::take(bare), reach_px, strokes);
+                *bare = self.along(window, &border, core::mem::take(bare), (half_px, reach_px), strokes);
             }
         }
         found
@@ -192,9 +264,10 @@ impl BareInk<'_> {
     /// Draws the parts of a border from which a pen covers something, and gives the pixels that it does not.
     fn along(
         &self,
+        window: &Window,
         border: &[PxPoint],
         bare: Vec<Pixel>,
-        reach_px: f64,
+        (half_px, reach_px): (f64, f64),
         strokes: &mut Vec<Curve>,
     ) -> Vec<Pixel> {
         let mut needed = vec![Vec::new(); border.len()];
@@ -216,6 +289,9 @@ impl BareInk<'_> {
                 run.clone().filter_map(|index| border.get(index % border.len())).copied().collect();
             let covers: Vec<Pixel> =
                 run.clone().filter_map(|index| needed.get(index % border.len())).flatten().copied().collect();
+            if !self.spots && self.is_spot(&covers, half_px, window.last) {
+                continue;
+            }
             let closed = run.len() >= border.len().max(DOT_SITES);
             let sites = if closed { &sites[..] } else { shortest(&sites, &covers, reach_px) };
             self.draw(sites, closed, strokes);
@@ -253,6 +329,8 @@ struct Window {
     ink: Bitmap,
     left: u32,
     top: u32,
+    /// The last pixel of the picture that is known: its last row is the picture's, if a square reaches it.
+    last: Pixel,
 }
 
 impl Window {
@@ -283,7 +361,8 @@ impl Window {
         )]
         let hole_px = ((2.0 * half_px + 1.0) * (2.0 * half_px + 1.0)) as u32;
         fill_holes(&mut window, hole_px);
-        Self { ink: window, left: columns.start, top: rows.start }
+        let last = Pixel::new(ink.width() - 1, first_row + ink.height() - 1);
+        Self { ink: window, left: columns.start, top: rows.start, last }
     }
 
     fn in_picture(&self, at: PxPoint) -> PxPoint {
@@ -314,7 +393,8 @@ fn together(pixels: &[Pixel]) -> Vec<Vec<Pixel>> {
     groups
 }
 
-/// The runs of sites, round and round, from the first that is needed to the last, with gaps of up to twice the reach.
+/// The runs of sites, round and round, from the first that is needed to the last, with gaps of up to twice
+/// the reach.
 fn runs(needed: &[Vec<Pixel>], reach_px: f64) -> Vec<Range<usize>> {
     let count = needed.len();
     let marked: Vec<usize> =
@@ -322,7 +402,7 @@ fn runs(needed: &[Vec<Pixel>], reach_px: f64) -> Vec<Range<usize>> {
     let Some(first) = marked.first().copied() else { return Vec::new() };
     // Sites are about a pixel apart.
     let is_gap = |from: usize, to: usize| {
-        f64::from(u32::try_from(to - from).unwrap_or(u32::MAX)) > 2.0 * reach_px + 2.0
+        f64::from(u32::try_from(to - from).unwrap_or(u32::MAX)) > 4.0 * reach_px + 2.0
     };
     let next = |at: usize| marked.get(at + 1).copied().unwrap_or(first + count);
     let gaps: Vec<usize> =

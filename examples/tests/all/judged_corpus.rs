@@ -100,12 +100,11 @@ const BOUNDS: [Bounds; 16] = [
         ..ANY
     },
     // Lines that run out to nothing: 1 % of their length, at the tips.
-    // Wedges are wider than the pen of their tips: their edges get strokes.
-    Bounds { picture: "sharp_ends", vertices: 500, mean_px: 1.0, found: 0.5, ..ANY },
+    Bounds { picture: "sharp_ends", vertices: 50, strokes: 16, mean_px: 0.12, found: 0.985, ..ANY },
 ];
 
 /// Least recall of the small marks, and least share of the length that is drawn by the right pen, as they were asked for.
-const SMALL_MARKS_RECALL: f64 = 0.994;
+const SMALL_MARKS_RECALL: f64 = 0.995;
 const RIGHT_PEN: f64 = 0.99;
 
 /// Sums of promised errors.

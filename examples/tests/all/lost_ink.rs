@@ -9,48 +9,45 @@ use plotter_examples::{lost_ink, vectorized};
 use plotter_vector::Vectorizer;
 use std::io::Cursor;
 
-/// Half of the width of the pen that draws the picture here.
-const HALF_PEN_PX: f64 = 0.85;
-
-/// A circle of 21 px and two lines 2.2 px apart, of which the nearer one touches it, at 1 bit: by one stroke
-/// a line a part of the lines is not drawn, up to 7.5 px from the nearest stroke.
-fn nearly_tangent() -> Vec<u8> {
-    const CENTRE: [f64; 2] = [119.5, 99.5];
-    const RADIUS: f64 = 21.0;
-    const ANGLE_RAD: f64 = 0.4;
-    const LINES_FROM_CENTRE: [f64; 2] = [21.0, 23.2];
-    const HALF_LENGTH: f64 = 70.0;
-    let is_ink = |x: u32, y: u32| {
-        let (x, y) = (f64::from(x) - CENTRE[0], f64::from(y) - CENTRE[1]);
-        let (along, across) =
-            (x * ANGLE_RAD.cos() - y * ANGLE_RAD.sin(), -x * ANGLE_RAD.sin() - y * ANGLE_RAD.cos());
-        let beyond = (along.abs() - HALF_LENGTH).max(0.0);
-        let line = LINES_FROM_CENTRE.map(|from| beyond.hypot(across - from));
-        let circle = (x.hypot(y) - RADIUS).abs();
-        circle.min(line[0]).min(line[1]) <= HALF_PEN_PX
+/// A disc of 60 px, which is too wide to be filled by a pen of the 3 px of the lines beside it.
+fn blot_and_lines() -> Vec<u8> {
+    let is_ink = |x: i32, y: i32| {
+        let (away_x, away_y) = (x - 90, y - 100);
+        let line = [30, 70, 110, 150].iter().any(|row| (y - row).abs() <= 1) && (180..310).contains(&x);
+        line || away_x * away_x + away_y * away_y <= 60 * 60
     };
     let levels =
-        (0..200).flat_map(|y| (0..260).map(move |x| (x, y))).map(|(x, y)| u8::from(!is_ink(x, y)) * 255);
-    [b"P5 260 200 255\n".to_vec(), levels.collect()].concat()
+        (0..220).flat_map(|y| (0..320).map(move |x| (x, y))).map(|(x, y)| u8::from(!is_ink(x, y)) * 255);
+    [b"P5 320 220 255\n".to_vec(), levels.collect()].concat()
 }
 
 #[test]
-fn lost_ink_is_said_with_its_place_after_the_file_is_written() {
+fn lost_ink_is_said_with_its_place_after_the_files_are_written() {
     let folder = Folder::new();
-    let picture = folder.write("tangent.pgm", nearly_tangent());
-    let svg = folder.file("a.svg");
-    let output = run_example("trace", &[picture.as_str(), "--prefer", "strokes", "--svg", &svg]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    for part in ["tangent.pgm: ink at (", "from the nearest stroke", "0.5 px were promised"] {
-        assert!(said.contains(part), "{said}");
+    let picture = folder.write("blot.pgm", blot_and_lines());
+    // The disc is a line by that, and no area.
+    let machine =
+        folder.write("machine.toml", "schema = 1\nname = \"wide\"\n[vectorize]\nmax_line_px = 192\n");
+    let (svg, out) = (folder.file("a.svg"), folder.file("out"));
+    for (name, options) in [
+        ("trace", vec![picture.as_str(), "--config", &machine, "--svg", &svg]),
+        ("plot", vec![picture.as_str(), "--machine", &machine, "--out", &out]),
+        ("compare_controllers", vec!["--drawing", picture.as_str(), "--machine", &machine]),
+    ] {
+        let output = run_example(name, &options);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{name}: {said}");
+        for part in ["blot.pgm: ink at (", "from the nearest stroke", "0.5 px were promised"] {
+            assert!(said.contains(part), "{name}: {said}");
+        }
     }
     assert!(std::fs::read_to_string(svg).unwrap().contains("</svg>"));
+    assert!(std::fs::read_to_string(folder.file("out/report.json")).unwrap().contains("vertices"));
     // Nothing is known of the errors then.
-    assert!(run_example("trace", &[&picture, "--prefer", "strokes", "--no-errors"]).status.success());
-    // Usually it is drawn.
-    assert!(run_example("trace", &[&picture]).status.success());
+    assert!(run_example("trace", &[&picture, "--config", &machine, "--no-errors"]).status.success());
     assert!(run_example("trace", &[&picture, "--algorithm", "published"]).status.success());
+    // Usually it is an area.
+    assert!(run_example("trace", &[&picture]).status.success());
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! [`Rounding`]: what is put off where corners are rounded within a tolerance, and where the lines meet that are drawn in a corner's place.
+//! [`Rounding`]: what is put off where corners are rounded within a tolerance, and where the lines meet that
+//! are drawn in a corner's place.
 //!
 //! ```text
 //!            moved
@@ -31,8 +32,9 @@ pub(super) const SHORTEST_MM: f64 = 1e-9;
 const LEAST_LEVEL: f64 = 0.5;
 /// How often it is tried half as far, where there is no room for the curve to come back to the corner.
 const TRIALS: u32 = 4;
-/// What a level is multiplied by for the share of the tolerance that a corner takes: all of it for turns of up to 151 degrees, none for a way
-/// straight back, which is drawn to its end. There is nothing to gain there by less.
+/// What a level is multiplied by for the share of the tolerance that a corner takes: all of it for turns of
+/// up to 151 degrees, none for a way straight back, which is drawn to its end. There is nothing to gain there
+/// by less.
 const SHARP: f64 = 4.0;
 
 /// A corner of the path, and where the corner of the lines is that are drawn in its place.
@@ -48,8 +50,9 @@ pub(super) struct Vertex {
 }
 
 impl Vertex {
-    /// Between two segments, of which the first begins at `from`; `within_mm` is what the tolerance is before any vertex is left out. It is
-    /// moved as far as is useful and as `may_be`, which is true of a corner that is not moved.
+    /// Between two segments, of which the first begins at `from`; `within_mm` is what the tolerance is before
+    /// any vertex is left out. It is moved as far as is useful and as `may_be`, which is true of a corner
+    /// that is not moved.
     pub(super) fn new(
         from: &Point,
         (held, next): (&Merged, &Merged),
@@ -72,8 +75,9 @@ impl Vertex {
         vertex
     }
 
-    /// Where the lines that are drawn in place of the corner, which comes from one place and goes to another, should meet: outside of it, so
-    /// that the curve begins on the outer side of the path and passes the corner on the inner one, where the speed gains by that.
+    /// Where the lines that are drawn in place of the corner, which comes from one place and goes to another,
+    /// should meet: outside of it, so that the curve begins on the outer side of the path and passes the
+    /// corner on the inner one, where the speed gains by that.
     fn off(&self, from: &Point, to: &Point, limits: &Limits) -> Vec2 {
         let Self { asked, within_mm, .. } = *self;
         let (way_in, way_out) = (asked - *from, *to - asked);
@@ -101,8 +105,8 @@ impl Vertex {
         2.0 * (self.moved.distance(self.asked) + self.within_mm) / lean
     }
 
-    /// Whether the curve there, from lines that come from one place and go to another, comes back to the corner asked for. `tangent_mm` is the
-    /// room on the first line; on the second it is the half.
+    /// Whether the curve there, from lines that come from one place and go to another, comes back to the
+    /// corner asked for. `tangent_mm` is the room on the first line; on the second it is the half.
     pub(super) fn is_passed(&self, from: &Point, to: &Point, tangent_mm: f64, limits: &Limits) -> bool {
         let (way_in, way_out) = (self.moved - *from, *to - self.moved);
         let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
@@ -133,7 +137,8 @@ impl Vertex {
         Room { deviation_mm, tangent_mm, cruise2: self.cruise2.into(), accel_mm_s2: accel.into() }
     }
 
-    /// The curve between two directions, and how far from the corner it touches the lines; none where there is no room for one.
+    /// The curve between two directions, and how far from the corner it touches the lines; none where there
+    /// is no room for one.
     pub(super) fn blend(
         &self,
         (along, after): (Vec2, Vec2),
@@ -238,8 +243,8 @@ impl<K: Keep<PutOff>> Waiting for K {
     }
 }
 
-/// How far from a place that is `off` from the corner asked for, in a direction, one comes to where it is no farther than this behind the
-/// corner, mm.
+/// How far from a place that is `off` from the corner asked for, in a direction, one comes to where it is no
+/// farther than this behind the corner, mm.
 fn reach_mm(off: Vec2, direction: Vec2, behind_mm: f64) -> f64 {
     let (along, across) = (off.dot(direction), off.cross(direction));
     (libm::sqrt((behind_mm * behind_mm - across * across).max(0.0)) - along).max(0.0)

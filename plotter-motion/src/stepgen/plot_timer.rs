@@ -22,8 +22,8 @@ pub struct PlotTime {
     pub pen: Duration,
     /// The pauses that the drawing asks for.
     pub dwell: Duration,
-    /// Length of the planned path with the pen down, mm; a rounded corner counts as long as both its tangents: more than the
-    /// curve by 1 % at a turn of 20 degrees, 7 % at 50, 23 % at a right angle.
+    /// Length of the planned path with the pen down, mm; a rounded corner counts as long as both its
+    /// tangents: more than the curve by 1 % at a turn of 20 degrees, 7 % at 50, 23 % at a right angle.
     pub draw_mm: f64,
     /// With the pen up, mm.
     pub travel_mm: f64,

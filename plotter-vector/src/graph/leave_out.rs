@@ -159,8 +159,12 @@ impl Redrawn<'_> {
                 if let Some(stroke) = strokes.get_mut(index) {
                     stroke.remove(vertex);
                 }
-                let beside = [(index, vertex.saturating_sub(1)), (index, vertex)];
-                if closed && is_end || !self.try_others(strokes, &beside, most) {
+                // An end stays: it may meet another stroke where the ink does not show it.
+                let last = stroke.len() - 2;
+                let beside = [vertex.saturating_sub(1), vertex].map(|vertex| (index, vertex));
+                let moved: Vec<_> =
+                    beside.into_iter().filter(|(_, at)| is_end || closed || *at > 0 && *at < last).collect();
+                if closed && is_end || !self.try_others(strokes, &moved, most) {
                     vertex += 1;
                 }
             }

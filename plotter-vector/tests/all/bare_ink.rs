@@ -1,6 +1,8 @@
-//! What the pen leaves bare of drawings that a pen has made: by code that shares nothing with the library's own measure.
+//! What the pen leaves bare of drawings that a pen has made: by code that shares nothing with the library's
+//! own measure.
 //!
-//! `cargo test --release -p plotter-vector --test all bare_ink:: -- --ignored --nocapture` prints the table of docs/results.md.
+//! `cargo test --release -p plotter-vector --test all bare_ink:: -- --ignored --nocapture` prints the table
+//! of docs/results.md.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a failure shows")]
 
 use crate::pen_ink::{Line, ink_of};
@@ -102,7 +104,8 @@ fn longest_px(pixels: impl Iterator<Item = Pixel>) -> u32 {
     longest
 }
 
-/// What is left bare of a drawing: by this pen, px; as the library tells it, px; and how many strokes there are for a line.
+/// What is left bare of a drawing: by this pen, px; as the library tells it, px; and how many strokes there
+/// are for a line.
 struct Bare {
     by_pen_px: f64,
     told_px: f64,

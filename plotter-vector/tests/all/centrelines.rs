@@ -3,9 +3,7 @@
 
 use crate::segment_distance;
 
-use plotter_vector::{
-    Bitmap, Drawing, Gray, GrayRows, Pixel, Prefer, Progress, PxPoint, Vectorizer, coverage,
-};
+use plotter_vector::{Bitmap, Drawing, Gray, GrayRows, Pixel, Progress, PxPoint, Vectorizer, coverage};
 use segment_distance::segment_distance;
 
 /// Distance of what is found from what was drawn that a raster of one bit explains: half a pixel, and half a pixel of
@@ -131,8 +129,7 @@ fn what_sticks_out_of_a_wide_pens_end_is_no_stroke() {
         for at in (0..200).flat_map(|y| (0..200).map(move |x| Pixel::new(x, y))) {
             both.set(at, both.get(at) || thick.get(at));
         }
-        let found =
-            Vectorizer { prefer: Prefer::Strokes, ..Vectorizer::default() }.trace(&both).unwrap().drawing;
+        let found = Vectorizer::default().trace(&both).unwrap().drawing;
         let off_px = hausdorff(&[&wide[..], &narrow[..]].concat(), &found);
         assert_eq!(found.strokes().len(), 2, "{first}, {second} and {third} degrees");
         assert!(off_px <= 1.5 * NEAR_PX, "{first}, {second} and {third} degrees: {off_px} px");

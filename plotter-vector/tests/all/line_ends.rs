@@ -63,10 +63,9 @@ fn a_line_with_square_ends_is_one_stroke_that_ends_half_its_width_before_them() 
                 wrong.push((number, off_px, found));
             }
         }
-        // The raster of one bit makes a fork of a single end, leaves one too short, and makes a bend of some
-        // lines.
-        assert!(wrong.len() <= 2, "{width_px} px wide: {wrong:?}");
-        assert!(vertices <= usize::from(ANGLES) * 5 / 2, "{width_px} px wide: {vertices} vertices");
+        // The raster of one bit makes a fork of a single end, and a bend of some lines.
+        assert!(wrong.len() <= 1, "{width_px} px wide: {wrong:?}");
+        assert!(vertices <= usize::from(ANGLES) * 9 / 4, "{width_px} px wide: {vertices} vertices");
     }
 }
 
