@@ -28,8 +28,8 @@ const TOGETHER_PX: u32 = 2;
 /// of where the edge is.
 const RASTER_PX: f64 = 0.5;
 
-/// Pixels that the raster may add to those of a dot of the pen.
-const DOT_PIXELS: f64 = 5.0;
+/// Pixels that the raster may add to those that a round pen leaves bare in square corners.
+const CORNER_PIXELS: f64 = 8.0;
 
 /// Part of the promise that is left for what simplifying moves the new strokes by, and part that is used for
 /// it.
@@ -170,20 +170,21 @@ impl BareInk<'_> {
         meets.then_some(turns)
     }
 
-    /// Whether pixels are a spot that is worth no stroke of its own: farther off than allowed by no more than the raster
-    /// leaves open; or no larger than a dot of the pen, so wide, and no farther off than what is bare in a square corner;
-    /// or on the rim of the picture, where a line that goes on beyond it would cover them.
+    /// Whether pixels are a spot that is worth no stroke of its own: farther off than allowed by no more than
+    /// the raster leaves open; or as small as what a round pen, so wide, leaves bare in square corners, and
+    /// hardly farther; or on the rim of the picture, where a line that goes on beyond it would cover them.
     fn is_spot(&self, bare: &[Pixel], half_px: f64, last: Pixel) -> bool {
         let farthest_px = bare.iter().map(|at| self.drawn.error_px((*at).into(), &mut 0)).fold(0.0, f64::max);
         let corner_px = (core::f64::consts::SQRT_2 - 1.0) * half_px;
-        let dot_px = core::f64::consts::PI * half_px * half_px + DOT_PIXELS;
+        // The two corners of a square end.
+        let area_px = 2.0 * (1.0 - core::f64::consts::FRAC_PI_4) * half_px * half_px + CORNER_PIXELS;
         #[expect(clippy::cast_precision_loss, reason = "pixels of a square")]
-        let is_small = bare.len() as f64 <= dot_px;
+        let is_small = bare.len() as f64 <= area_px;
         let is_on_rim = |at: &Pixel| at.x == 0 || at.y == 0 || at.x == last.x || at.y == last.y;
         let more_px = if bare.iter().any(is_on_rim) {
             half_px.max(JUMP_PX)
         } else if is_small {
-            corner_px + JUMP_PX
+            corner_px.min(RASTER_PX) + JUMP_PX
         } else {
             RASTER_PX
         };
@@ -290,6 +291,7 @@ impl BareInk<'_> {
             let covers: Vec<Pixel> =
                 run.clone().filter_map(|index| needed.get(index % border.len())).flatten().copied().collect();
             if !self.spots && self.is_spot(&covers, half_px, window.last) {
+                left.extend(covers);
                 continue;
             }
             let closed = run.len() >= border.len().max(DOT_SITES);

@@ -8,9 +8,8 @@ use super::segment::{Across, MAX_HALF_PX, PROBES, ROUNDING, STEP_PX, Segment};
 use core::ops::Range;
 
 /// The part of a stroke's length that is no wider than its pen, of one whose width is not steady, for two
-/// lines run into one there; and the part that is hardly wider if it is such a one.
+/// lines run into one there.
 const NARROW: f64 = 0.15;
-const MOST: f64 = 0.6;
 
 /// Between these parts a steady width differs by no more than a share of it and the raster's jumps.
 const SPREAD: [f64; 2] = [0.2, 0.8];
@@ -24,8 +23,11 @@ pub(crate) const JUMP_PX: f64 = 1.25;
 const SHORT_HALVES: f64 = 16.0;
 const WIDEST_SHORT: f64 = 1.25;
 
-/// A piece of a line of another pen is at least so many of its widths long; where lines run into one the
-/// pieces are short.
+/// Two lines that run into one are no wider than so many pens: what is wider is a line of another pen, or a
+/// wedge.
+const TWO_PENS: f64 = 2.5;
+
+/// A piece of a line of another pen is at least so many of its widths long.
 const LINE_WIDTHS: f64 = 3.0;
 
 /// Takes how far the pen of each stroke covers from the widths at its segments' probes.
@@ -55,7 +57,9 @@ pub(crate) fn set_widths(
         let (Some(stroke), Some(widths)) = (segments.get_mut(stroke.clone()), widths.get(stroke)) else {
             continue;
         };
-        if width.pen_px.is_none() && is_steady(width.narrow_px, 2.0 * pen_px) {
+        // A wedge is thinner somewhere than what the pen draws.
+        let is_wedge = width.narrow_px < 2.0 * pen_px && !is_steady(width.narrow_px, 2.0 * pen_px);
+        if width.pen_px.is_none() && !is_wedge {
             Width { pen_px: Some(2.0 * pen_px), ..width }.set(stroke, widths, areas);
         }
         // A dot and a short stroke are made by that pen.
@@ -73,13 +77,15 @@ fn is_steady(one_px: f64, other_px: f64) -> bool {
 
 /// How far the pen of most of the lines covers, px; none without lines.
 pub(super) fn pen_half_px<'a>(segments: impl Iterator<Item = &'a Segment>) -> Option<f64> {
-    let lines = segments.map(|piece| (piece.slack_px, piece.length_px()));
-    let mut lines: Vec<_> = lines.filter(|(_, length_px)| *length_px > 0.0).collect();
+    // Wide ink that is filled has as many more strokes as it is wider: each counts the less.
+    let weight = |piece: &Segment| piece.length_px() / piece.slack_px.max(0.5);
+    let lines = segments.map(|piece| (piece.slack_px, weight(piece)));
+    let mut lines: Vec<_> = lines.filter(|(_, weight)| *weight > 0.0).collect();
     lines.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
     at_part(&lines, 0.5)
 }
 
-/// The value up to which a part of the lengths lies: values in rising order, each with its length.
+/// The value up to which a part of the weights lies: values in rising order, each with its weight.
 fn at_part(values: &[(f64, f64)], part: f64) -> Option<f64> {
     let all_px: f64 = values.iter().map(|(_, share_px)| share_px).sum();
     let mut sum_px = 0.0;
@@ -117,41 +123,40 @@ impl Width {
         let pen_px = if is_steady(low_px, high_px) {
             Some(typical_px)
         } else {
-            // Of a line that is not steady that of half of it, if that is; a wedge has none.
-            is_steady(narrow_px, at(MOST)).then(|| typical_px.min(narrow_px + 0.5 * JUMP_PX))
+            (high_px <= TWO_PENS * narrow_px).then(|| typical_px.min(narrow_px + 0.5 * JUMP_PX))
         };
         Self { pen_px, narrow_px }
     }
 
-    /// Takes how far the pen covers: of a stroke without one, and where it is a line of another pen, the ink
-    /// itself.
+    /// Takes how far the pen covers; where it is a line of another pen as far as the ink, and of a stroke
+    /// without a pen as far as that in each place.
     fn set(self, stroke: &mut [Segment], widths: &[[Across; PROBES.len()]], areas: Option<AreaPen<'_>>) {
         let is_raster = areas.is_none_or(|areas| areas.is_raster);
         let mut slack_px = 0.0;
         for (segment, widths) in stroke.iter_mut().zip(widths) {
             if segment.has_probes() {
-                let own_px = median_px(*widths);
-                let of_pen = self.pen_px.filter(|_| !is_line(segment, *widths));
-                slack_px = match area_of(*widths, areas) {
-                    Some(pen_px) => slack_of(pen_px, true),
-                    None => slack_of(of_pen.unwrap_or(own_px), is_raster),
+                segment.taper = None;
+                slack_px = match (area_of(*widths, areas), self.pen_px) {
+                    (Some(pen_px), _) => slack_of(pen_px, true),
+                    (None, Some(pen_px)) if !is_line(segment, *widths, pen_px) => slack_of(pen_px, is_raster),
+                    (None, None) if segment.is_straight() => {
+                        let taper = widths.map(|at| slack_of(at.width_px(), is_raster));
+                        segment.taper = Some(Box::new(taper));
+                        taper.into_iter().fold(0.0, f64::max)
+                    }
+                    (None, _) => slack_of(median_px(*widths), is_raster),
                 };
-                let is_taper = segment.is_straight() && self.pen_px.is_none() && !is_line(segment, *widths);
-                segment.taper = (is_taper && area_of(*widths, areas).is_none())
-                    .then(|| Box::new(widths.map(|at| slack_of(at.width_px(), is_raster))));
-                slack_px =
-                    segment.taper.iter().flat_map(|taper| taper.iter().copied()).fold(slack_px, f64::max);
             }
             segment.slack_px = slack_px;
         }
     }
 }
 
-/// Whether a segment is a line by itself: longer than wide, and of one width.
-fn is_line(segment: &Segment, mut at: [Across; PROBES.len()]) -> bool {
+/// Whether a segment is a line by itself, of one width, and wider than two lines of a pen that run into one.
+fn is_line(segment: &Segment, mut at: [Across; PROBES.len()], pen_px: f64) -> bool {
     at.sort_unstable();
     let [_, low, .., high, _] = at.map(Across::width_px);
-    is_steady(low, high) && segment.length_px() >= LINE_WIDTHS * high
+    is_steady(low, high) && segment.length_px() >= LINE_WIDTHS * high && low > TWO_PENS * pen_px
 }
 
 /// The width of the ink across a segment, px.
