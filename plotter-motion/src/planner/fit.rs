@@ -401,6 +401,17 @@ impl Fitter {
         Some(piece)
     }
 
+    /// Where no arc ends at the last vertex: ends the piece some vertices earlier, so that one of the next does. With its
+    /// greatest speed's square.
+    pub(super) fn shorten_to_end(&mut self, allowance_mm: f32) -> Option<(Piece, f32)> {
+        let (along, end, cruise2) = (self.along?, self.newest(), self.cruise2);
+        let half_square = 0.5 * end.dot(end);
+        if self.circles.through(along.dot(end), along.cross(end), half_square).is_some() {
+            return None;
+        }
+        self.shorten(end, allowance_mm).map(|piece| (piece, cruise2))
+    }
+
     /// Ends the piece at its last vertex, and begins anew there.
     pub(super) fn end(&mut self, allowance_mm: f32) -> Option<Piece> {
         let Self { count, along, circles, .. } = *self;

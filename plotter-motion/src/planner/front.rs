@@ -114,12 +114,12 @@ impl<M: Modes> Front<M> {
         *self = Self { power: self.power, shares, ..Self::at(position) };
     }
 
-    /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; with an allowance an arc,
-    /// the rest of the way to its last vertex and the new one; else what ends a run (twice a line and a
+    /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; with an allowance two
+    /// arcs, the rest of the way to the last vertex and the new one; else what ends a run (twice a line and a
     /// parabola, the line held back) and the new one.
     pub(super) const fn most_blocks(settings: &PlannerSettings) -> usize {
         match settings.path_of::<M>() {
-            PathMode::Exact if settings.allowance_of::<M>() > 0.0 => 3,
+            PathMode::Exact if settings.allowance_of::<M>() > 0.0 => 4,
             PathMode::Exact => 2,
             PathMode::Tolerance { .. } => 6,
         }
@@ -443,6 +443,13 @@ impl<M: Modes> Front<M> {
             self.emit_line(&at, cruise2, limits, ring);
         }
         let at = self.position;
+        let allowance_mm = narrow(limits.settings.allowance_of::<M>());
+        if let (Some(run), Some(fitter)) = (self.run, self.put_off.fitter_mut())
+            && let Some((piece, cruise2)) = fitter.shorten_to_end(allowance_mm)
+        {
+            let end = run.at + piece.way;
+            self.emit_piece(piece, &end, cruise2, limits, ring);
+        }
         if let Some(cruise2) = self.end_fit(&at, limits, ring) {
             // Where no arc within the allowance ends there, the last bit.
             self.emit_line(&at, cruise2, limits, ring);
@@ -573,7 +580,11 @@ impl<M: Modes> Front<M> {
         }
         if let Some(before) = run.exit {
             let shorter_mm = least(before.length_mm, length_mm);
-            block.corner2 = corner_speed2(before.direction, entry, shorter_mm, limits);
+            let ([x, y], [u, v]) = (before.direction, entry);
+            // A way nearly straight back has no room for a curve: within a tolerance, where no velocity jumps, it is a stop.
+            let is_stop = limits.settings.path_of::<M>() != PathMode::Exact && x * u + y * v < 0.0;
+            let corner2 = corner_speed2(before.direction, entry, shorter_mm, limits);
+            block.corner2 = if is_stop { 0.0 } else { corner2 };
             block.max_entry2 = least(block.corner2, least(before.cruise2, cruise2));
         }
         run.at = to;
