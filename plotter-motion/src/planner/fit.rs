@@ -401,8 +401,8 @@ impl Fitter {
         Some(piece)
     }
 
-    /// Where no arc ends at the last vertex: ends the piece some vertices earlier, so that one of the next does. With its
-    /// greatest speed's square.
+    /// Where no arc ends at the last vertex: ends the piece some vertices earlier, so that one of the next
+    /// does. With its greatest speed's square.
     pub(super) fn shorten_to_end(&mut self, allowance_mm: f32) -> Option<(Piece, f32)> {
         let (along, end, cruise2) = (self.along?, self.newest(), self.cruise2);
         let half_square = 0.5 * end.dot(end);

@@ -114,9 +114,9 @@ impl<M: Modes> Front<M> {
         *self = Self { power: self.power, shares, ..Self::at(position) };
     }
 
-    /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one; with an allowance two
-    /// arcs, the rest of the way to the last vertex and the new one; else what ends a run (twice a line and a
-    /// parabola, the line held back) and the new one.
+    /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one;
+    /// with an allowance two arcs, the rest of the way to the last vertex and the new one; else what ends a
+    /// run (twice a line and a parabola, the line held back) and the new one.
     pub(super) const fn most_blocks(settings: &PlannerSettings) -> usize {
         match settings.path_of::<M>() {
             PathMode::Exact if settings.allowance_of::<M>() > 0.0 => 4,
@@ -581,7 +581,8 @@ impl<M: Modes> Front<M> {
         if let Some(before) = run.exit {
             let shorter_mm = least(before.length_mm, length_mm);
             let ([x, y], [u, v]) = (before.direction, entry);
-            // A way nearly straight back has no room for a curve: within a tolerance, where no velocity jumps, it is a stop.
+            // A way nearly straight back has no room for a curve: within a tolerance, where no velocity
+            // jumps, it is a stop.
             let is_stop = limits.settings.path_of::<M>() != PathMode::Exact && x * u + y * v < 0.0;
             let corner2 = corner_speed2(before.direction, entry, shorter_mm, limits);
             block.corner2 = if is_stop { 0.0 } else { corner2 };

@@ -140,7 +140,8 @@ fn a_small_program_takes_every_vertex() {
     assert_eq!(actions, planned(by_vertex(MACHINES[0])));
 }
 
-/// Most that a drawing may take longer with an allowance: the way that the pen goes is a little longer than its chords.
+/// Most that a drawing may take longer with an allowance: the way that the pen goes is a little longer than
+/// its chords.
 const LONGER: f64 = 1.003;
 
 /// The table of docs/results.md, with blocks enough for the best: no row takes longer than Grbl's rule, and no drawing longer
