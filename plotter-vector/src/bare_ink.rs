@@ -28,7 +28,8 @@ const TOGETHER_PX: u32 = 2;
 /// of where the edge is.
 const RASTER_PX: f64 = 0.5;
 
-/// Pixels that the raster may add to those that a round pen leaves bare in square corners.
+/// Pixels that the raster may add to those that a round pen leaves bare in square corners: four a corner,
+/// which are its tip and what a slope's steps leave beside it.
 const CORNER_PIXELS: f64 = 8.0;
 
 /// Part of the promise that is left for what simplifying moves the new strokes by, and part that is used for
@@ -163,8 +164,9 @@ impl BareInk<'_> {
             let pixel = Pixel::new(at.0 as u32, at.1 as u32);
             at.0 >= 0.0 && at.1 >= 0.0 && ink.get(pixel)
         };
-        // Every pixel of the way and more.
-        let parts = 32;
+        // Twice for each pixel of the way: none is left out.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a way within a square")]
+        let parts = 2 * (far_px as u32 + 1);
         let meets = far_px <= 2.0 * self.drawn.slack_px(from) + 2.0 * RASTER_PX
             && (0..=parts).all(|part| is_ink(f64::from(part) / f64::from(parts)));
         meets.then_some(turns)
@@ -196,8 +198,7 @@ impl BareInk<'_> {
         let mut halves_px: Vec<f64> = bare.iter().map(|at| self.drawn.slack_px((*at).into())).collect();
         halves_px.sort_unstable_by(f64::total_cmp);
         let half_px = halves_px.get(halves_px.len() / 2).copied().unwrap_or(0.0);
-        let last = Pixel::new(ink.width() - 1, first_row + ink.height() - 1);
-        if !self.spots && self.is_spot(&bare, half_px, last) {
+        if !self.spots && self.is_spot(&bare, half_px, last_pixel(ink, first_row)) {
             return;
         }
         let pen_px = self.drawn.pen_half_px;
@@ -363,13 +364,17 @@ impl Window {
         )]
         let hole_px = ((2.0 * half_px + 1.0) * (2.0 * half_px + 1.0)) as u32;
         fill_holes(&mut window, hole_px);
-        let last = Pixel::new(ink.width() - 1, first_row + ink.height() - 1);
-        Self { ink: window, left: columns.start, top: rows.start, last }
+        Self { ink: window, left: columns.start, top: rows.start, last: last_pixel(ink, first_row) }
     }
 
     fn in_picture(&self, at: PxPoint) -> PxPoint {
         PxPoint::new(at.x + f64::from(self.left), at.y + f64::from(self.top))
     }
+}
+
+/// The last pixel of ink whose first row is row `first_row` of the picture.
+fn last_pixel(ink: &Bitmap, first_row: u32) -> Pixel {
+    Pixel::new(ink.width() - 1, first_row + ink.height() - 1)
 }
 
 /// Pixels in groups of those that lie near each other.
@@ -404,7 +409,7 @@ fn runs(needed: &[Vec<Pixel>], reach_px: f64) -> Vec<Range<usize>> {
     let Some(first) = marked.first().copied() else { return Vec::new() };
     // Sites are about a pixel apart.
     let is_gap = |from: usize, to: usize| {
-        f64::from(u32::try_from(to - from).unwrap_or(u32::MAX)) > 4.0 * reach_px + 2.0
+        f64::from(u32::try_from(to - from).unwrap_or(u32::MAX)) > 2.0 * reach_px + 2.0
     };
     let next = |at: usize| marked.get(at + 1).copied().unwrap_or(first + count);
     let gaps: Vec<usize> =

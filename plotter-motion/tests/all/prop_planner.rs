@@ -381,6 +381,26 @@ fn touch() -> impl Strategy<Value = Touch> {
     ]
 }
 
+#[test]
+fn a_way_nearly_straight_back_is_a_stop_within_a_tolerance() {
+    // The second line goes back 3e-5 rad beside the first one: by junction deviation it began with 0.0024
+    // mm/s.
+    let draw = |x: f64, y: f64| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
+    let ops = [draw(-1.243_405_506, 0.843_971_4), draw(-0.279_678_093, 0.189_825_512)];
+    let settings = PlannerSettings {
+        path: PathMode::Tolerance { path_tolerance_mm: 0.001 },
+        speed_mm_s: 1.0,
+        travel_speed_mm_s: 1.5,
+        accel_mm_s2: 10.0,
+        accel_limit: AccelLimit::Axes { x_mm_s2: 10.0, y_mm_s2: 10.0 },
+        jerk_mm_s3: Some(100.0),
+        junction_deviation_mm: 0.039_348_899,
+        resolution_mm: 0.0,
+        allowance_mm: 0.0,
+    };
+    check(settings, &ops, &[]).unwrap();
+}
+
 proptest! {
     #[test]
     fn any_path_is_walked_to_its_end_within_the_limits(

@@ -140,6 +140,37 @@ fn a_small_program_takes_every_vertex() {
     assert_eq!(actions, planned(by_vertex(MACHINES[0])));
 }
 
+/// Curves in chords that end in many places, and go on from there as an arc of the file: hardly longer than
+/// with the arc in chords, too.
+#[test]
+fn chords_end_on_the_arc_that_follows_them() {
+    const RADIUS_MM: f64 = 10.0;
+    const SWEEP_RAD: f64 = 2.0;
+    let settings = PlannerSettings { allowance_mm: 0.01, ..by_vertex(MACHINES[0]) };
+    let (mut arcs_s, mut chords_s, mut worst) = (0.0, 0.0, 0.0_f64);
+    for curve in [Curve::Free, Curve::Spiral] {
+        let places = curve.written(0.2, 2);
+        for count in (40..600).step_by(7) {
+            let Some(chords) = places.get(..count) else { break };
+            let (before, at) = (chords[count - 4], chords[count - 1]);
+            let ahead = (at - before) * (1.0 / at.distance(before));
+            let centre = at + ahead.perpendicular() * RADIUS_MM;
+            let on_arc = |part: f64| centre + (at - centre).rotated(SWEEP_RAD * part);
+            let mut with_arc = stroke(chords);
+            with_arc.push(PlotOp::DrawArc { centre, sweep_rad: SWEEP_RAD, to: on_arc(1.0), feed_mm_s: None });
+            let mut in_chords = stroke(chords);
+            in_chords.extend(
+                (1..=100_u32)
+                    .map(|part| PlotOp::Draw { to: on_arc(f64::from(part) / 100.0), feed_mm_s: None }),
+            );
+            let [arc_s, chord_s] = [with_arc, in_chords].map(|ops| planned::<256>(settings, &ops).0);
+            (arcs_s, chords_s, worst) = (arcs_s + arc_s, chords_s + chord_s, worst.max(arc_s / chord_s));
+        }
+    }
+    println!("with arcs {arcs_s:.3} s, in chords {chords_s:.3} s, at worst {worst:.4}");
+    assert!(arcs_s <= 1.001 * chords_s && worst <= 1.005, "{arcs_s} s, in chords {chords_s} s, {worst}");
+}
+
 /// Most that a drawing may take longer with an allowance: the way that the pen goes is a little longer than
 /// its chords.
 const LONGER: f64 = 1.003;

@@ -119,6 +119,68 @@ mod tests {
         assert_eq!(coverage(&ink, &high).max_px, 0.75);
     }
 
+    /// Ink 300 x 80 px.
+    fn inked(is_ink: impl Fn(f64, f64) -> bool) -> Bitmap {
+        let mut ink = Bitmap::new(300, 80).unwrap();
+        for (x, y) in (0..80).flat_map(|y| (0..300).map(move |x| (x, y))) {
+            ink.set(Pixel::new(x, y), is_ink(f64::from(x) + 0.5, f64::from(y) + 0.5));
+        }
+        ink
+    }
+
+    #[test]
+    fn a_needle_is_covered_where_it_is_thin_and_where_it_is_thick() {
+        // From 12 px to nothing within 240 px.
+        let needle = inked(|x, y| x > 20.0 && (y - 40.0).abs() <= 6.0 * (260.0 - x) / 240.0);
+        let mut drawing = Drawing::new(300, 80);
+        drawing.push([PxPoint::new(20.5, 40.0), PxPoint::new(259.5, 40.0)]);
+        let errors = coverage(&needle, &drawing);
+        assert!(errors.max_px <= 0.5, "{errors:?}");
+        // Half of it drawn leaves the other half: its far end is 119.5 px away, less half of what is left of
+        // the width.
+        let mut half = Drawing::new(300, 80);
+        half.push([PxPoint::new(139.5, 40.0), PxPoint::new(259.5, 40.0)]);
+        let (at, error_px) = worst_pixel(&needle, &half).unwrap();
+        assert!(at.x == 20 && (error_px - 116.0).abs() < 1.5, "{error_px} at {at:?}");
+    }
+
+    #[test]
+    fn two_lines_that_run_into_one_are_no_wide_line() {
+        // Lines of 4 px that are 3 px apart for a third of their way, and then leave each other.
+        let off = |x: f64| 1.5 + (x - 120.0).max(0.0) * 0.15;
+        let both = inked(|x, y| {
+            (20.0..280.0).contains(&x) && (y - 40.0).abs() <= off(x) + 2.0 && (y - 40.0).abs() >= off(x) - 2.0
+        });
+        let line = |side: f64| [20.5, 120.0, 279.5].map(|x| PxPoint::new(x, 40.0 + side * off(x)));
+        let mut whole = Drawing::new(300, 80);
+        whole.push(line(-1.0));
+        whole.push(line(1.0));
+        assert!(coverage(&both, &whole).max_px <= 1.0, "{:?}", coverage(&both, &whole));
+        // The middle of both, and one of them: of the other its outer edge is bare.
+        let mut one = Drawing::new(300, 80);
+        one.push(line(-1.0));
+        one.push([PxPoint::new(140.0, 40.0 + off(140.0)), PxPoint::new(279.5, 40.0 + off(279.5))]);
+        let error_px = coverage(&both, &one).max_px;
+        assert!(error_px >= 2.0, "{error_px}");
+    }
+
+    #[test]
+    fn a_blot_is_not_covered_by_a_line_beside_thin_ones() {
+        let ink = inked(|x, y| {
+            (x - 60.0).hypot(y - 40.0) <= 35.0
+                || x > 120.0 && [20.5, 40.5, 60.5].iter().any(|at| (y - at).abs() <= 1.5)
+        });
+        let mut drawing = Drawing::new(300, 80);
+        [20.5, 40.5, 60.5]
+            .iter()
+            .for_each(|y| drawing.push([PxPoint::new(121.5, *y), PxPoint::new(298.5, *y)]));
+        drawing.push([PxPoint::new(30.0, 40.0), PxPoint::new(90.0, 40.0)]);
+        // From the line to the top of the disc are 35 px, less half of the pen of 3 px and what short strokes
+        // may be wider.
+        let error_px = coverage(&ink, &drawing).max_px;
+        assert!((32.0..=33.5).contains(&error_px), "{error_px}");
+    }
+
     #[test]
     fn a_line_one_pixel_wide_is_measured_by_distance() {
         let ink = Bitmap::from_picture("#..\n.#.\n..#\n").unwrap();

@@ -15,7 +15,8 @@ const NARROW: f64 = 0.15;
 const SPREAD: [f64; 2] = [0.2, 0.8];
 const STEADY_SHARE: f64 = 0.2;
 
-/// By so much the width of a line jumps on the raster, px.
+/// By so much the width of a line jumps on the raster, px: each of its edges lies up to half a pixel off, and
+/// what is measured across a slope goes in steps of a quarter.
 pub(crate) const JUMP_PX: f64 = 1.25;
 
 /// A stroke that is shorter than so many halves of its width is no wider line but a dot, or lines of the pen
@@ -23,11 +24,12 @@ pub(crate) const JUMP_PX: f64 = 1.25;
 const SHORT_HALVES: f64 = 16.0;
 const WIDEST_SHORT: f64 = 1.25;
 
-/// Two lines that run into one are no wider than so many pens: what is wider is a line of another pen, or a
-/// wedge.
+/// Two lines that run into one are no wider than so many pens, px a px: twice one, and half of one more where
+/// the paper between them has run full. What is wider is a line of another pen, or a wedge.
 const TWO_PENS: f64 = 2.5;
 
-/// A piece of a line of another pen is at least so many of its widths long.
+/// A piece of a line of another pen is at least so many of its widths long: where three lines meet, their ink
+/// is no longer than that.
 const LINE_WIDTHS: f64 = 3.0;
 
 /// Takes how far the pen of each stroke covers from the widths at its segments' probes.
@@ -78,6 +80,7 @@ fn is_steady(one_px: f64, other_px: f64) -> bool {
 /// How far the pen of most of the lines covers, px; none without lines.
 pub(super) fn pen_half_px<'a>(segments: impl Iterator<Item = &'a Segment>) -> Option<f64> {
     // Wide ink that is filled has as many more strokes as it is wider: each counts the less.
+    // A line one pixel wide covers only the middles of its pixels.
     let weight = |piece: &Segment| piece.length_px() / piece.slack_px.max(0.5);
     let lines = segments.map(|piece| (piece.slack_px, weight(piece)));
     let mut lines: Vec<_> = lines.filter(|(_, weight)| *weight > 0.0).collect();
@@ -85,15 +88,20 @@ pub(super) fn pen_half_px<'a>(segments: impl Iterator<Item = &'a Segment>) -> Op
     at_part(&lines, 0.5)
 }
 
-/// The value up to which a part of the weights lies: values in rising order, each with its weight.
+/// The value up to which a part of the weights lies, between those of two values where it lies between their
+/// middles: values in rising order, each with its weight.
 fn at_part(values: &[(f64, f64)], part: f64) -> Option<f64> {
-    let all_px: f64 = values.iter().map(|(_, share_px)| share_px).sum();
-    let mut sum_px = 0.0;
-    let found = values.iter().find(|(_, share_px)| {
-        sum_px += share_px;
-        sum_px >= part * all_px
-    });
-    found.or(values.last()).map(|(value, _)| *value)
+    let wanted = part * values.iter().map(|(_, weight)| weight).sum::<f64>();
+    let (mut sum, mut before) = (0.0, None);
+    for (value, weight) in values {
+        let middle = sum + 0.5 * weight;
+        if middle >= wanted {
+            let Some((low, from)) = before else { return Some(*value) };
+            return Some(low + (value - low) * (wanted - from) / (middle - from));
+        }
+        (sum, before) = (sum + weight, Some((*value, middle)));
+    }
+    before.map(|(value, _)| value)
 }
 
 /// How wide a stroke is.
