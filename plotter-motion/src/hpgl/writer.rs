@@ -166,9 +166,9 @@ impl<W: fmt::Write> Writer<W> {
     ///
     /// The circle is the one about `centre` through `to`; where the pen stands ought to be on it. `AA` has its centre in
     /// whole units and begins where the pen is, so each piece of at most a quarter takes the centre for which both its
-    /// middle and its end come out best, never more than one unit off, and the pen is sent to the end as it should be:
-    /// errors do not add up. Chord angles are as with [`Writer::circle`]. Arcs that rise less than a quarter of a unit over
-    /// their chord are lines, and those of more than 819 mm radius are chords within half a unit of them.
+    /// middle and its end come out best, and the pen is sent to the end as it should be: errors do not add up. Chord angles
+    /// are as with [`Writer::circle`]. Arcs that rise less than a quarter of a unit over their chord are lines; those of more
+    /// than 819 mm radius, and pieces that no centre brings within one unit, are chords within half a unit of them.
     ///
     /// ```
     /// # use plotter_motion::{PlotOp, Point, hpgl};
@@ -226,7 +226,7 @@ impl<W: fmt::Write> Writer<W> {
             let end = if part < parts { self.units(index, place(back(part)))? } else { units };
             let middle = place(back(part - 0.5));
             if by_plotter {
-                self.quarter(centre, middle, sweep_rad, end, radius)?;
+                self.quarter(centre, middle, sweep_rad / parts, end, radius)?;
             } else {
                 self.draw(end, self.speed)?;
             }
@@ -277,7 +277,7 @@ impl<W: fmt::Write> Writer<W> {
         if core::mem::take(&mut self.encoded_points) > 0 { self.out.write_str(";\n") } else { Ok(()) }
     }
 
-    /// One `AA`, and the line to where it should have ended.
+    /// One `AA` of at most a quarter about `centre` with its `middle` there, and the line to where it should have ended.
     fn quarter(
         &mut self,
         centre: Point,
@@ -289,9 +289,15 @@ impl<W: fmt::Write> Writer<W> {
         let from = self.from()?;
         let arc = ArcUnits::nearest(from, to, centre, middle, sweep_rad > 0.0);
         let Some(arc) = arc.filter(|arc| arc.error_units <= GREATEST_UNITS) else {
-            // Of a few units only: by its middle.
-            let middle = StepPoint::new(from_mm(middle.x, UNITS_PER_MM), from_mm(middle.y, UNITS_PER_MM));
-            self.draw(middle, self.speed)?;
+            // Of a few units, or so short a part of a large circle that no centre on the grid is as far from both of its
+            // rounded ends: as chords.
+            let lines = chords(radius_units, sweep_rad);
+            for line in 1..lines {
+                let turn = sweep_rad * (f64::from(line) / f64::from(lines) - 0.5);
+                let place = centre + (middle - centre).rotated(turn);
+                let place = StepPoint::new(from_mm(place.x, UNITS_PER_MM), from_mm(place.y, UNITS_PER_MM));
+                self.draw(place, self.speed)?;
+            }
             return self.draw(to, self.speed);
         };
         self.end_encoded()?;

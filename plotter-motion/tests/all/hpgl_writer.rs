@@ -1,7 +1,7 @@
 //! Written HPGL for people to look at.
 
-use plotter_motion::hpgl::write_ops;
-use plotter_motion::{PlotOp, Point, circle, rectangle};
+use plotter_motion::hpgl::{Writer, plot_ops, write_ops};
+use plotter_motion::{PlotOp, Point, Vec2, circle, rectangle};
 
 #[test]
 fn a_small_sheet_reads_like_a_drawing() {
@@ -38,4 +38,26 @@ fn a_small_sheet_reads_like_a_drawing() {
     PU;
     SP0;
     ");
+}
+
+/// No centre in whole units is as far from where the pen stands as from where it should end, and a single corner half way
+/// is 1.85 units off.
+#[test]
+fn a_short_arc_of_a_large_circle_that_no_centre_fits_is_chords() {
+    let (from, to_centre) = (Point::new(101.4870, 35.2088), Vec2::new(83.0421, 114.0791));
+    let (centre, sweep) = (from + to_centre, -0.113_13);
+    let mut writer = Writer::new(String::new());
+    writer.push(PlotOp::Travel { to: from }).unwrap();
+    writer.arc(centre, sweep, centre + (-to_centre).rotated(sweep), None).unwrap();
+    let text = writer.finish().unwrap();
+    assert!(!text.contains("AA"), "{text}");
+    let drawn: Vec<Point> =
+        plot_ops(text.as_bytes()).map(Result::unwrap).filter_map(PlotOp::target).collect();
+    for pair in drawn[1..].windows(2) {
+        for place in [pair[1], pair[0] + (pair[1] - pair[0]) * 0.5] {
+            // Half a unit for the chords, and the rounding of both directions.
+            let off = (place.distance(centre) - to_centre.length()).abs() * 40.0;
+            assert!(off <= 1.21, "{off} units off\n{text}");
+        }
+    }
 }
