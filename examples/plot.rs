@@ -22,8 +22,8 @@ use plotter_motion::{
 use plotter_replay::log::{self, Header};
 use plotter_replay::{BenchRecorder, Canvas, Chart, ContourError, PlotterSettings, VirtualPlotter, Ways};
 use plotter_vector::{
-    Algorithm, Despeckled, Drawing, ErrorReport, RowSource as _, Scan, TracedSheet, Vectorizer, error_chart,
-    svg,
+    Algorithm, Beyond, Despeckled, Drawing, ErrorReport, RowSource as _, Scan, TracedSheet, Vectorizer,
+    error_chart, svg,
 };
 use serde_json::json;
 use std::fmt::Write as _;
@@ -141,6 +141,7 @@ fn plot(args: &Args) -> Result<(), String> {
     let summary = Summary {
         drawing: &traced.drawing,
         error: &errors.report,
+        beyond: errors.beyond,
         dirt: traced.removed,
         outcome: &outcome,
         plotted: plotter.contour_error(Ways::Drawn),
@@ -378,6 +379,7 @@ impl Pictures {
 struct Summary<'a> {
     drawing: &'a Drawing,
     error: &'a ErrorReport,
+    beyond: Beyond,
     dirt: Despeckled,
     outcome: &'a PlotOutcome,
     plotted: ContourError,
@@ -392,6 +394,7 @@ impl Summary<'_> {
             "vertices": self.drawing.vertices(),
             "strokes": self.drawing.strokes().len(),
             "vector_error_px": { "mean": mean_px, "max": max_px, "sd": sd_px },
+            "beyond_ink": { "px": self.beyond.pixels, "max_px": self.beyond.max_px },
             "dirt": {
                 "marks": self.dirt.removed_marks,
                 "px": self.dirt.removed_px,
@@ -419,6 +422,7 @@ impl Summary<'_> {
             ("vector error, mean", format!("{:.4} px", error.mean_px)),
             ("vector error, max", format!("{:.4} px", error.max_px)),
             ("vector error, sd", format!("{:.4} px", error.sd_px)),
+            ("drawn beyond ink, max", format!("{:.4} px", self.beyond.max_px)),
             ("contour error counted, rms", format!("{:.4} mm", self.plotted.rms_mm)),
             ("contour error counted, max", format!("{:.4} mm", self.plotted.max_mm)),
             ("contour error true, rms", known_mm(outcome.true_rms_mm)),

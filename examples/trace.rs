@@ -65,6 +65,9 @@ const MAX_PEN_MM: f64 = 100.0;
 const UNIT_MM: f64 = 1.0 / UNITS_PER_MM;
 const GCODE_MM: f64 = 0.001;
 
+/// Part of a pixel that a raster leaves open: the border of ink passes anywhere between the middles of two pixels.
+const RASTER_PX: f64 = 0.5;
+
 /// Drawings up to this side are dots, px.
 const DOT_PX: f64 = 3.0;
 
@@ -282,8 +285,10 @@ struct Report<'a> {
     max_px: Option<f64>,
     sd_px: Option<f64>,
     histogram: Option<&'a [Bin]>,
-    /// Whether all ink is drawn within the greatest error: nothing lies farther, and nothing was taken for
-    /// dirt.
+    /// What the pens draw beside the ink.
+    beyond_ink: Option<BeyondReport>,
+    /// Whether all ink is drawn within the greatest error, and nothing else: no ink lies farther from the strokes, nothing
+    /// drawn farther from the ink than that or the half pixel that the raster leaves open, and nothing was taken for dirt.
     kept: Option<bool>,
     dirt: Dirt,
     pen_down_px: f64,
@@ -291,6 +296,16 @@ struct Report<'a> {
     /// From the file to ordered strokes and their errors, without writing them; of pens without reading it.
     time_ms: f64,
     peak_rss_mb: Option<f64>,
+}
+
+/// What is drawn and is no ink.
+#[derive(Debug, Serialize)]
+struct BeyondReport {
+    px: u64,
+    /// Greatest distance from ink.
+    max_px: f64,
+    /// Where that is.
+    at: Option<[u32; 2]>,
 }
 
 /// Ink that was taken for dirt, and is not drawn.
@@ -367,8 +382,16 @@ fn trace(arguments: &Arguments, stopped: &mut bool) -> Result<(), String> {
         max_px: errors.map(|errors| errors.max_px),
         sd_px: errors.map(|errors| errors.sd_px),
         histogram: errors.map(|errors| errors.histogram.as_slice()),
-        kept: errors.filter(|_| ours).map(|errors| {
-            traced.removed.removed_marks == 0 && errors.max_px <= settings.vectorizer.ours.tolerance_px
+        beyond_ink: traced.errors.as_ref().map(|SheetErrors { beyond, .. }| BeyondReport {
+            px: beyond.pixels,
+            max_px: beyond.max_px,
+            at: beyond.worst.map(|at| [at.x, at.y]),
+        }),
+        kept: traced.errors.as_ref().filter(|_| ours).map(|errors| {
+            let tolerance_px = settings.vectorizer.ours.tolerance_px;
+            traced.removed.removed_marks == 0
+                && errors.report.max_px <= tolerance_px
+                && errors.beyond.max_px <= tolerance_px.max(RASTER_PX)
         }),
         dirt: Dirt {
             marks: traced.removed.removed_marks,
@@ -577,7 +600,7 @@ fn in_colour(
     let found = found.map_err(|error| error.to_string())?;
     let time = start.elapsed();
     let drawing = found.traced.drawing;
-    let errors = SheetErrors { report: found.traced.error, worst: found.worst };
+    let errors = SheetErrors { report: found.traced.error, worst: found.worst, beyond: found.traced.beyond };
     let errors = (!arguments.no_errors).then_some(errors);
     let picture = settings.overlay.is_some().then_some(Picture::Colour(colour));
     let widest_px = found.inks.iter().filter_map(pen_width_px).max();
@@ -888,6 +911,7 @@ fn table(title: &str, report: &Report<'_>, megapixels: f64, circled: Option<Stri
         ("mean error", px(report.mean_px)),
         ("max error", px(report.max_px)),
         ("sd", px(report.sd_px)),
+        ("beyond ink", px(report.beyond_ink.as_ref().map(|beyond| beyond.max_px))),
         ("pen down", Some(format!("{:.1} px", report.pen_down_px))),
         ("pen up", Some(format!("{:.1} px", report.pen_up_px))),
         ("time", Some(format!("{:.2} ms", report.time_ms))),

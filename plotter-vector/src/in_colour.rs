@@ -1,6 +1,6 @@
 //! [`Vectorizer::vectorize_colour`]: the whole way from a picture in colour to the strokes of each pen.
 
-use crate::coverage::add_coverage;
+use crate::coverage::{Beyond, add_coverage};
 use crate::pipeline::Unordered;
 use crate::{
     Algorithm, Bitmap, Colour, Despeckled, Drawing, ErrorTally, Palette, Pens, Pixel, Progress,
@@ -91,16 +91,17 @@ impl Vectorizer {
             drawing = self.order.apply(&drawing);
         }
         progress.part(ORDERED).at(1, 1)?;
-        let mut tally = ErrorTally::default();
+        let (mut tally, mut beyond) = (ErrorTally::default(), Beyond::default());
         let mut measuring = progress.part(1.0);
         for (done, (pen, (ink, areas))) in
             (1..).zip(layers.palette().pens().iter().zip(inks.iter().zip(&openings)))
         {
             let areas = areas.as_ref().map(|areas| self.area_pen(areas));
-            add_coverage(ink, &drawing.of_pen(pen.number), areas, &mut tally);
+            let of_pen = add_coverage(ink, &drawing.of_pen(pen.number), areas, &mut tally);
+            beyond = beyond.and(of_pen);
             measuring.at(done, of)?;
         }
-        let traced = Vectorized { drawing, error: tally.report(), split: None, removed };
+        let traced = Vectorized { drawing, error: tally.report(), beyond, split: None, removed };
         Ok(VectorizedColour { traced, palette: layers.palette().clone(), inks, worst: tally.worst() })
     }
 }

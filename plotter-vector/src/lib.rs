@@ -67,7 +67,7 @@ pub use areas::{
 pub use bitmap::{Bitmap, MAX_PIXELS, MAX_SIDE_PX, Pixel, SizeError};
 pub use colour::{Colour, ColourError, colour_on_white};
 pub use continuity::{Joined, is_closed, join, link};
-pub use coverage::{coverage, worst_pixel};
+pub use coverage::{Beyond, beyond_ink, coverage, worst_pixel};
 pub use cubic::Cubic;
 pub use curve::{Arc, Curve};
 #[cfg(feature = "image")]

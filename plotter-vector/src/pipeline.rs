@@ -4,7 +4,7 @@ use crate::areas::{Islands, Opening};
 use crate::bare_ink::BareInk;
 use crate::centrelines::Centring;
 use crate::continuity::{Joined, join, link};
-use crate::coverage::{AreaPen, Index, add_coverage, with_widths};
+use crate::coverage::{AreaPen, Beyond, Index, add_coverage, beyond_hairlines, with_widths};
 use crate::covered::Covered;
 use crate::hairlines::Hairlines;
 use crate::pen::Pen;
@@ -147,6 +147,8 @@ pub struct Vectorized {
     /// How far the pixels lie from them, but for dirt. Of areas, which are outlined or hatched, those at the
     /// edge count, and not what is inside.
     pub error: ErrorReport,
+    /// What the pens draw beside the ink.
+    pub beyond: Beyond,
     /// How ink was told from paper; `None` for an empty sheet, or for a picture that came as a bitmap.
     pub split: Option<Split>,
     /// What was taken for dirt, and is not drawn: no error is told of it.
@@ -254,7 +256,7 @@ impl Vectorizer {
         let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
         let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
         let errors = errors.unwrap_or_else(|| self.errors(&ink, &drawing, areas.as_ref()));
-        Ok(Vectorized { drawing, error: errors.report, split: None, removed })
+        Ok(Vectorized { drawing, error: errors.report, beyond: errors.beyond, split: None, removed })
     }
 
     /// The strokes, with more for the ink that those of ours leave bare. The errors stay known only where
@@ -295,8 +297,8 @@ impl Vectorizer {
     /// The errors of a drawing, with the areas that were told from lines.
     pub(crate) fn errors(&self, ink: &Bitmap, drawing: &Drawing, areas: Option<&Opening>) -> SheetErrors {
         let mut tally = ErrorTally::default();
-        add_coverage(ink, drawing, areas.map(|areas| self.area_pen(areas)), &mut tally);
-        SheetErrors { report: tally.report(), worst: tally.worst() }
+        let beyond = add_coverage(ink, drawing, areas.map(|areas| self.area_pen(areas)), &mut tally);
+        SheetErrors { report: tally.report(), worst: tally.worst(), beyond }
     }
 
     /// The pen that draws areas.
@@ -543,7 +545,8 @@ fn simplify(
             tally.add_pixel(*at, off_px.unwrap_or_default());
         }
     }
-    (drawing, SheetErrors { report: tally.report(), worst: tally.worst() })
+    let beyond = beyond_hairlines(ink, &drawing);
+    (drawing, SheetErrors { report: tally.report(), worst: tally.worst(), beyond })
 }
 
 #[cfg(test)]

@@ -34,6 +34,7 @@ fn the_flag_is_plotted_and_its_recording_replays() {
     assert!(number("/vertices") > 0.0 && number("/strokes") > 0.0);
     assert!(number("/vector_error_px/mean") <= 0.12 && number("/vector_error_px/sd") <= 0.25);
     assert!(number("/vector_error_px/max") <= 0.5);
+    assert!(number("/beyond_ink/max_px") <= 0.71, "{}", number("/beyond_ink/max_px"));
     assert_eq!(number("/reached"), number("/targets"));
     assert_eq!(number("/anomalies"), 0.0);
     assert!(number("/contour_error_mm/rms") <= GRAIN_MM);

@@ -6,7 +6,7 @@ use crate::{Pixel, PxPoint};
 use core::ops::Range;
 
 /// Side of the squares in which segments are looked up, px.
-const CELL_PX: u32 = 32;
+pub(super) const CELL_PX: u32 = 32;
 
 /// Farthest that the chords by which an arc is looked up lie from it, px: far less than a square.
 const CHORD_ERROR_PX: f64 = 1.0;
@@ -14,7 +14,7 @@ const CHORD_ERROR_PX: f64 = 1.0;
 /// The segments of a drawing by squares of the picture.
 #[derive(Debug)]
 pub(crate) struct Index {
-    segments: Vec<Segment>,
+    pub(super) segments: Vec<Segment>,
     /// How far the pen of most of the lines covers, px.
     pub(crate) pen_half_px: f64,
     /// How much nearer than its squares a segment's error may be: its half width, and that an arc lies beside
@@ -68,6 +68,24 @@ impl Index {
         let index = row as usize * self.columns as usize + column as usize;
         let start = index.checked_sub(1).and_then(|before| self.ends.get(before)).copied().unwrap_or(0);
         self.ends.get(index).and_then(|end| self.entries.get(start..*end)).unwrap_or(&[])
+    }
+
+    /// The segments whose pens may reach into some rows of the picture, within one row of squares.
+    pub(super) fn near(&self, rows: &Range<u32>) -> Vec<&Segment> {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "of half widths of at most 96 px"
+        )]
+        let reach = (self.reach_px / f64::from(CELL_PX)) as u32 + 1;
+        let (first, last) = (rows.start / CELL_PX, rows.end.saturating_sub(1) / CELL_PX);
+        let squares = first.saturating_sub(reach)..=last.saturating_add(reach).min(self.rows - 1);
+        let entries =
+            squares.flat_map(|row| (0..self.columns).flat_map(move |column| self.square(column, row)));
+        let mut near: Vec<u32> = entries.copied().collect();
+        near.sort_unstable();
+        near.dedup();
+        near.into_iter().filter_map(|index| self.segments.get(index as usize)).collect()
     }
 
     /// How far to its side the segment that covers a place best covers the ink, px.

@@ -1,5 +1,6 @@
 //! [`coverage`]: how far every pixel of the ink lies from the drawing.
 
+mod beyond;
 mod index;
 mod segment;
 mod width;
@@ -7,6 +8,8 @@ mod width;
 use crate::areas::Opening;
 use crate::runs::ink_runs;
 use crate::{Bitmap, Drawing, ErrorReport, ErrorTally, Pixel};
+pub use beyond::{Beyond, beyond_ink};
+pub(crate) use beyond::{FARTHEST_PX, beyond_hairlines};
 pub(crate) use index::Index;
 pub(crate) use segment::{Across, PROBE_ROWS, PROBES, Segment, segments};
 pub(crate) use width::{JUMP_PX, set_widths};
@@ -78,15 +81,16 @@ pub(crate) struct AreaPen<'a> {
     pub(crate) is_raster: bool,
 }
 
-/// Adds the errors of [`coverage`] to others. Where areas are drawn as such, the ink inside
+/// Adds the errors of [`coverage`] to others, and tells what is drawn beside the ink. Where areas are drawn as such, the ink inside
 /// of them does not count, only that at their edge, and their outline is as wide as its pen.
 pub(crate) fn add_coverage(
     ink: &Bitmap,
     drawing: &Drawing,
     areas: Option<AreaPen<'_>>,
     tally: &mut ErrorTally,
-) {
+) -> Beyond {
     let index = with_widths(ink, drawing, areas);
+    let beyond = index.beyond(ink, 0, &(0..ink.height()));
     let counted = areas.map(|areas| areas.opening.without_insides(ink.clone()));
     let ink = counted.as_ref().unwrap_or(ink);
     let mut covering = 0;
@@ -98,6 +102,7 @@ pub(crate) fn add_coverage(
             tally.add_exact(exact);
         }
     }
+    beyond
 }
 
 #[cfg(test)]

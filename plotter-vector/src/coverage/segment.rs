@@ -200,6 +200,18 @@ impl Segment {
         if matches!(self.bend, Bend::Arc(_)) { self.slack_px } else { self.nearest(at).1 }
     }
 
+    /// Parts of its length between which its pen gets thinner or wider evenly, and how far it covers there, px; none where it is the same
+    /// all along.
+    pub(super) fn knots(&self) -> Option<[(f64, f64); PROBES.len() + 2]> {
+        let taper = self.taper.as_deref()?;
+        let mut knots = [(0.0, taper[0]); PROBES.len() + 2];
+        for (knot, probe) in knots.iter_mut().skip(1).zip(PROBES.into_iter().zip(*taper)) {
+            *knot = probe;
+        }
+        knots[PROBES.len() + 1] = (1.0, taper[PROBES.len() - 1]);
+        Some(knots)
+    }
+
     /// Lets its pen cover no farther than so far, px.
     pub(super) fn limit(&mut self, most_px: f64) {
         let taper = self.taper.iter_mut().flat_map(|taper| taper.iter_mut());

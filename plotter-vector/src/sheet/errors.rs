@@ -8,12 +8,16 @@ use super::step::Step;
 use super::{SheetError, for_each_row, row_bytes};
 use crate::bare_ink::BareInk;
 use crate::centrelines::each;
-use crate::coverage::{Across, AreaPen, Index, PROBE_ROWS, PROBES, Segment, segments, set_widths};
+use crate::coverage::{
+    Across, AreaPen, FARTHEST_PX, Index, PROBE_ROWS, PROBES, Segment, segments, set_widths,
+};
 use crate::rolling::Rolling;
 use crate::row_threshold::RowThreshold;
 use crate::runs::ink_runs;
 use crate::speckle::despeckle_here;
-use crate::{Bitmap, Curve, Drawing, ErrorReport, ErrorTally, Pixel, Progress, RowSource, context_rows};
+use crate::{
+    Beyond, Bitmap, Curve, Drawing, ErrorReport, ErrorTally, Pixel, Progress, RowSource, context_rows,
+};
 use core::ops::Range;
 
 /// Pixels of a band: where widths are measured, and, fewer, where the error of each may have to be kept; and its fewest
@@ -30,6 +34,8 @@ pub struct SheetErrors {
     /// The pixel with the greatest error, the first of several in reading order, and its error, px, as
     /// [`worst_pixel`](crate::worst_pixel) finds it, of lines one pixel wide from their figures; none without ink.
     pub worst: Option<(Pixel, f64)>,
+    /// What is drawn beside the ink.
+    pub beyond: Beyond,
 }
 
 /// What the errors of a sheet are measured on.
@@ -53,6 +59,7 @@ struct BandErrors {
     /// Those of the other pixels, in reading order, px.
     errors: Vec<f64>,
     worst: Option<(Pixel, f64)>,
+    beyond: Beyond,
 }
 
 impl Measure<'_> {
@@ -64,16 +71,18 @@ impl Measure<'_> {
         progress: &mut Progress<'_>,
     ) -> Result<SheetErrors, SheetError> {
         let index = self.widths(source, drawing, &mut progress.part(0.5))?;
-        let mut tally = ErrorTally::default();
+        let (mut tally, mut beyond) = (ErrorTally::default(), Beyond::default());
         self.for_each_band(
             source,
-            (ERROR_BAND_PIXELS, self.area_context()),
+            (ERROR_BAND_PIXELS, self.area_context().max(FARTHEST_PX)),
             &mut progress.part(1.0),
-            |ink, first_row, own| match self.counted(ink, own) {
-                Some(counted) => band_errors(&index, &counted, first_row, own),
-                None => band_errors(&index, ink, first_row, own),
+            |ink, first_row, own| {
+                let counted = self.counted(ink, own);
+                let band = band_errors(&index, counted.as_ref().unwrap_or(ink), first_row, own);
+                BandErrors { beyond: index.beyond(ink, first_row, own), ..band }
             },
             |band| {
+                beyond = beyond.and(band.beyond);
                 tally.add_exact(band.exact);
                 band.errors.iter().for_each(|error_px| tally.add_error(*error_px));
                 if let Some((at, error_px)) = band.worst {
@@ -81,7 +90,7 @@ impl Measure<'_> {
                 }
             },
         )?;
-        Ok(SheetErrors { report: tally.report(), worst: tally.worst() })
+        Ok(SheetErrors { report: tally.report(), worst: tally.worst(), beyond })
     }
 
     /// Strokes for the ink that a drawing leaves bare.
@@ -209,7 +218,7 @@ fn band_errors(index: &Index, ink: &Bitmap, first_row: u32, own: &Range<u32>) ->
     let mut covering = 0;
     for y in own.clone() {
         for run in ink_runs(ink.row(y - first_row)) {
-            let BandErrors { exact, errors, worst } = &mut band;
+            let BandErrors { exact, errors, worst, .. } = &mut band;
             // The first of several in reading order, if none has an error.
             worst.get_or_insert((Pixel::new(run.start, y), 0.0));
             *exact += index.run_errors(run, y, &mut covering, |at, error_px| {

@@ -70,6 +70,7 @@ fn assert_as_whole(vectorizer: Vectorizer, whole: &Gray, source: &mut impl RowSo
     assert_eq!(sheet.split, expected.split);
     let errors = sheet.errors.clone().unwrap();
     assert_eq!(errors.report, expected.error, "{vectorizer:?}");
+    assert_eq!(errors.beyond, expected.beyond, "{vectorizer:?}");
     let one_band = Vectorizer { band_rows: u32::MAX, ..vectorizer };
     let at_once = one_band.vectorize_rows_with_errors(source, &mut Progress::silent()).unwrap();
     // Of ink that is wider than any line the strokes depend on the bands.
