@@ -18,6 +18,10 @@ pub struct Faults {
     pub delay: f64,
     /// For how long.
     pub held_for: Duration,
+    /// Noise begins with it, as of a motor or a relay that is switched: this byte and those behind it come as other ones.
+    pub burst: f64,
+    /// How many bytes the noise changes in all, one after the other.
+    pub burst_bytes: u32,
     /// When the cable is out: nothing comes.
     pub cut: Vec<Range<Duration>>,
 }
@@ -39,6 +43,8 @@ impl Faults {
             insert: each,
             delay: each,
             held_for: Duration::from_millis(20),
+            burst: 0.0,
+            burst_bytes: 0,
             cut: Vec::new(),
         }
     }
@@ -59,6 +65,8 @@ pub struct FaultCounts {
     pub inserted: u64,
     /// Held back.
     pub delayed: u64,
+    /// Changed by noise that lasts.
+    pub burst: u64,
     /// Lost while the cable was out.
     pub cut: u64,
 }
@@ -67,7 +75,7 @@ impl FaultCounts {
     /// Bytes that did not come as they were sent, or not at once.
     #[must_use]
     pub const fn damaged(&self) -> u64 {
-        self.dropped + self.flipped + self.duplicated + self.inserted + self.delayed + self.cut
+        self.dropped + self.flipped + self.duplicated + self.inserted + self.delayed + self.burst + self.cut
     }
 }
 
@@ -85,6 +93,8 @@ pub struct FaultInjector {
     faults: Faults,
     random: u64,
     held_until: Duration,
+    /// Bytes that the noise of now still changes.
+    burst_left: u32,
     counts: FaultCounts,
 }
 
@@ -96,6 +106,7 @@ impl FaultInjector {
             faults,
             random: seed,
             held_until: Duration::ZERO,
+            burst_left: 0,
             counts: FaultCounts {
                 bytes: 0,
                 dropped: 0,
@@ -103,6 +114,7 @@ impl FaultInjector {
                 duplicated: 0,
                 inserted: 0,
                 delayed: 0,
+                burst: 0,
                 cut: 0,
             },
         }
@@ -121,7 +133,7 @@ impl FaultInjector {
         self.counts.bytes += 1;
         let lot = self.share();
         let [other, ..] = self.next().to_be_bytes();
-        let Faults { drop, flip, duplicate, insert, delay, .. } = self.faults;
+        let Faults { drop, flip, duplicate, insert, delay, burst, burst_bytes, .. } = self.faults;
         let mut below = 0.0;
         let mut falls = |probability: f64| {
             let fell = (below..below + probability).contains(&lot);
@@ -131,6 +143,10 @@ impl FaultInjector {
         let counts = &mut self.counts;
         if self.faults.cut.iter().any(|cut| cut.contains(&time)) {
             counts.cut += 1;
+        } else if let Some(left) = self.burst_left.checked_sub(1) {
+            self.burst_left = left;
+            counts.burst += 1;
+            came = [Some(byte ^ (other % 255 + 1)), None];
         } else if falls(drop) {
             counts.dropped += 1;
         } else if falls(flip) {
@@ -143,11 +159,15 @@ impl FaultInjector {
         } else if falls(insert) {
             counts.inserted += 1;
             came = [Some(other), Some(byte)];
+        } else if falls(delay) {
+            counts.delayed += 1;
+            self.held_until = self.held_until.max(time.saturating_add(self.faults.held_for));
+            came = [Some(byte), None];
+        } else if burst_bytes > 0 && falls(burst) {
+            self.burst_left = burst_bytes - 1;
+            counts.burst += 1;
+            came = [Some(byte ^ (other % 255 + 1)), None];
         } else {
-            if falls(delay) {
-                counts.delayed += 1;
-                self.held_until = self.held_until.max(time.saturating_add(self.faults.held_for));
-            }
             came = [Some(byte), None];
         }
         let time = time.max(self.held_until);
@@ -191,6 +211,22 @@ mod tests {
         assert!(came.is_sorted_by_key(|&(at, _)| at));
         assert_eq!(run(1).0, came);
         assert_ne!(run(2).0, came);
+    }
+
+    #[test]
+    fn a_burst_changes_as_many_bytes_as_it_lasts() {
+        let faults = Faults { burst: 0.001, burst_bytes: 20, ..Faults::default() };
+        let mut line = FaultInjector::new(faults, 1);
+        let came: Vec<u8> = (0..100_000)
+            .flat_map(|n| line.pass(Duration::from_micros(39 * n), 7))
+            .map(|(_, byte)| byte)
+            .collect();
+        let changed = came.iter().filter(|byte| **byte != 7).count();
+        assert_eq!((came.len(), changed as u64), (100_000, line.counts().burst));
+        // A hundred bursts in what is not burst: 100,000 / 1.02 of a thousandth, 20 bytes each.
+        assert!((1500..2500).contains(&changed), "{changed}");
+        let runs = came.chunk_by(|a, b| (*a == 7) == (*b == 7)).filter(|run| run[0] != 7);
+        assert!(runs.map(<[u8]>::len).all(|length| length % 20 == 0 || length == changed % 20));
     }
 
     #[test]

@@ -251,13 +251,18 @@ fn assert_drawn(line: &Connection<ByLink, Machine<Linked>>, moves: &[PenMove], w
     );
 }
 
-fn drawings_by_frames(count: u64) {
+/// As noisy as [`Faults::mixed`] with a hundredth, and bursts of up to a frame's length beside.
+fn bursts(burst_bytes: u32) -> Faults {
+    Faults { burst: 0.02 / f64::from(burst_bytes), burst_bytes, ..Faults::mixed(0.01) }
+}
+
+fn drawings_by_frames(count: u64, faults: &Faults) {
     let (mut bytes, mut damaged, mut time) = (0, 0, Duration::ZERO);
     for number in 0..count {
         let moves = drawing(number, 60);
-        let mut line = linked_line(&Faults::mixed(0.01), number, &moves, 3);
+        let mut line = linked_line(faults, number, &moves, 3);
         assert!(
-            line.run(60 * SECOND, |host, _| host.host.is_done()),
+            line.run(120 * SECOND, |host, _| host.host.is_done()),
             "drawing {number}: {:?}",
             line.host.told.notices
         );
@@ -277,13 +282,23 @@ fn drawings_by_frames(count: u64) {
 
 #[test]
 fn drawings_by_frames_come_whole_over_a_bad_line() {
-    drawings_by_frames(50);
+    drawings_by_frames(50, &Faults::mixed(0.01));
+}
+
+/// Damage that comes in bursts: two bytes of a hundred, from a few at a time to more than a frame has.
+#[test]
+fn drawings_by_frames_come_whole_through_bursts() {
+    for burst_bytes in [3, 10, 40, 150] {
+        drawings_by_frames(10, &bursts(burst_bytes));
+    }
 }
 
 #[test]
 #[ignore = "a thousand drawings, half a minute in a release build: .ci/run"]
 fn a_thousand_drawings_by_frames_come_whole_over_a_bad_line() {
-    drawings_by_frames(1000);
+    drawings_by_frames(1000, &Faults::mixed(0.01));
+    drawings_by_frames(200, &bursts(10));
+    drawings_by_frames(200, &bursts(60));
 }
 
 /// The published controller, which takes ten bytes for a target whatever they are, at once.
