@@ -26,6 +26,8 @@ mod lost_ink;
 #[path = "../../../plotter-vector/tests/all/made_font/mod.rs"]
 mod made_font;
 mod max_error_command;
+#[path = "../../../plotter-motion/tests/all/papers.rs"]
+mod papers;
 mod plot_command;
 #[path = "../../../plotter-motion/tests/all/real_files/mod.rs"]
 mod real_files;

@@ -1,5 +1,6 @@
 //! Published and ours on the two drawings, beside the published figures.
 
+use crate::papers::{assert_in, row_of};
 use plotter_vector::{
     Algorithm, Bounded, ErrorTally, OrderedTracking, Pixel, Simplify, Threshold, Vectorized, Vectorizer,
     decode,
@@ -48,6 +49,22 @@ fn compare(name: &str, picture: &[u8], paper: Figures, order: Figures) {
     assert!(ours.drawing.vertices() <= published.drawing.vertices());
     assert!(ours.drawing.pen_up_px() <= published.drawing.pen_up_px());
     assert_eq!(ours.error.pixels, published.error.pixels);
+    for (who, traced) in [("published", &published), ("ours", &ours)] {
+        let [mean, max, sd] = figures(traced).map(|px| format!("{px:.4}"));
+        let drawing = &traced.drawing;
+        let counts = [drawing.vertices(), drawing.strokes().len()].map(|count| count.to_string());
+        let cells = [mean, max, sd].into_iter().chain(counts).chain([format!("{:.0}", drawing.pen_up_px())]);
+        let cells: Vec<String> = cells.collect();
+        for paper in ["docs/results.md", "plotter-vector/README.md"] {
+            assert_in(paper, &format!("{name}, {who}"), &cells);
+        }
+        if name == "flag" {
+            let row = row_of("README.md", "vectorization error of a flag: mean, max").unwrap();
+            let found = row.iter().any(|cell| cell.starts_with(&format!("{}, {} px", cells[0], cells[1])));
+            assert!(found, "README.md: {row:?}, measured {cells:?}");
+            assert_in("README.md", "its vertices", &cells[3..4]);
+        }
+    }
 }
 
 #[test]

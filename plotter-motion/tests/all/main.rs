@@ -49,6 +49,7 @@ mod link_session;
 mod loaded_gantry;
 mod marking;
 mod messages;
+mod papers;
 mod pen_ends_up;
 mod planner_ends;
 mod profile_many;

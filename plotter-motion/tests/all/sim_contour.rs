@@ -3,9 +3,11 @@
 //! `cargo test -p plotter-motion --test all sim_contour:: -- --nocapture` prints the tables of docs/results.md.
 
 use crate::closed_loop;
+use crate::papers;
 
 use closed_loop::{LineResult, Loop, draw_line, machine};
 use core::time::Duration;
+use papers::{assert_in, row_of};
 use plotter_motion::{
     ControllerChoice, Decoding, EncoderConfig, LoadConfig, MachineConfig, StepPoint, from_mm,
 };
@@ -60,6 +62,8 @@ fn ours_has_less_than_a_hundredth_of_the_published_contour_error() {
     let ratio = total_rms_mm(&theirs) / total_rms_mm(&own);
     println!("published / contouring: {ratio:.0}");
     assert!(ratio >= TIMES_BETTER, "{ratio}");
+    let shown = [format!("{:.4} mm", total_rms_mm(&theirs)), format!("{:.5} mm", total_rms_mm(&own))];
+    assert_in("README.md", "eight lines of 60 mm: distance from the line, rms", &shown);
     for line in &own {
         assert!(line.arrived_s.is_some() && line.settled_s.is_some(), "{line:?}");
         assert!(line.max_mm <= EVERY_LINE_MM && line.drift_mm <= EVERY_LINE_MM, "{line:?}");
@@ -102,6 +106,9 @@ fn the_published_rule_never_ends_on_steep_lines_with_unloaded_motors_and_ours_do
     let stuck = theirs.iter().filter(|r| r.arrived_s.is_none() && r.short_mm > STUCK_MM).count();
     println!("published: {stuck} of {} never end", theirs.len());
     assert!(stuck >= 1, "{theirs:?}");
+    if let Some(row) = row_of("README.md", "steep lines, unloaded motors") {
+        assert_eq!((stuck, row[1].as_str()), (2, "two of 15 never end"));
+    }
     assert!(own.iter().all(|r| r.arrived_s.is_some() && r.short_mm < closed_loop::SETTLED_MM), "{own:?}");
 }
 
@@ -143,6 +150,10 @@ fn a_motor_that_differs_from_its_description_stays_within_its_counts() {
         let theirs = run(&format!("published, motors {share} off"), &published, &plant, &HEADINGS_DEG);
         println!("published / contouring: {:.1}", total_rms_mm(&theirs) / total_rms_mm(&lines));
         assert!(total_rms_mm(&lines) < total_rms_mm(&theirs));
+        if share == 0.1 {
+            let shown = [&theirs, &lines].map(|lines| format!("{:.4} mm", total_rms_mm(lines)));
+            assert_in("README.md", "the same, motors 10 % off their description", &shown);
+        }
         for line in &lines {
             assert!(line.arrived_s.is_some() && line.max_mm <= allowed_max_mm, "{line:?}");
             assert!(line.drift_mm <= 0.025, "{line:?}"); // less than a count: none was miscounted

@@ -6,9 +6,10 @@
 
 use crate::auditor;
 use crate::drawings;
+use crate::papers::assert_in;
 
 use auditor::planned;
-use plotter_motion::{PlannerSettings, PlotOp, Point, Vec2};
+use plotter_motion::{PathMode, PlannerSettings, PlotOp, Point, Vec2};
 
 /// By how much the times may differ: the planner's corners are reckoned in single precision and rounded to the safe side.
 const ROUNDING_SHARE: f64 = 1e-5;
@@ -73,6 +74,10 @@ fn drawing_s(ops: &[PlotOp], settings: &PlannerSettings) -> Option<f64> {
 fn the_exact_mode_takes_as_long_as_klippers_formulas() {
     let settings = PlannerSettings::default();
     let every = PlannerSettings { resolution_mm: 0.0, ..settings };
+    let within = PlannerSettings { path: PathMode::Tolerance { path_tolerance_mm: 0.05 }, ..settings };
+    // The drawings that README.md names, in its order; without the real files only the first.
+    let named = ["hatch", "owl", "curves", "Cassini"];
+    let mut shown = [const { Vec::new() }; 3];
     println!(
         "drawing: Klipper's formulas, exact mode with 1024 blocks and every vertex, and without those nearer than half a step, s"
     );
@@ -86,5 +91,13 @@ fn the_exact_mode_takes_as_long_as_klippers_formulas() {
             drawing.name
         );
         assert!(ours_s <= klipper_s * (1.0 + ROUNDING_SHARE), "{}: {ours_s} {klipper_s}", drawing.name);
+        if named.contains(&drawing.name) {
+            let (within_s, _) = planned::<1024>(within, &drawing.ops);
+            for (shown, time_s) in shown.iter_mut().zip([klipper_s, ours_s, within_s]) {
+                shown.push(format!("{time_s:.1}"));
+            }
+        }
     }
+    let rows = ["Klipper's rules", "ours, through every vertex", "ours, within 0.05 mm"];
+    rows.iter().zip(&shown).for_each(|(row, shown)| assert_in("README.md", row, shown));
 }

@@ -6,6 +6,7 @@
 #![cfg(feature = "alloc")]
 
 use crate::loaded_gantry;
+use crate::papers::row_of;
 
 use loaded_gantry::loaded_gantry;
 use plotter_motion::testbed::{Drawing, Entry, Ranking, Score, TestBed, TestBedSettings};
@@ -38,6 +39,23 @@ fn ranking(decoding: Decoding, share: f64, names: &[&str]) -> Ranking {
 
 fn score<'a>(ranking: &'a Ranking, name: &str) -> &'a Score {
     ranking.scores().iter().find(|score| score.entry == name).unwrap()
+}
+
+/// Asserts the figures of README.md: `place` is 0 for x1 and 1 for x4.
+fn assert_shown(ranking: &Ranking, place: usize) {
+    let Some(row) = row_of("README.md", "the same with ten times the inertia, described 25 % wrong") else {
+        return;
+    };
+    let figures = |text: &str| {
+        let pair = text.trim_end_matches(" mm").split(", ");
+        pair.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let ours = row[2].strip_prefix("cross-coupled ").unwrap();
+    let (ours, learning) = ours.split_once("; with learning ").unwrap();
+    let rms = |name| score(ranking, name).total().rms_mm();
+    assert_eq!(figures(&row[1])[place], format!("{:.3}", rms("published")));
+    assert_eq!(figures(ours)[place], format!("{:.4}", rms("cross-coupled")));
+    assert_eq!(figures(learning)[place], format!("{:.4}", rms("learning")));
 }
 
 fn um(mm: f64) -> f64 {
@@ -75,6 +93,9 @@ fn with_x1_encoders_and_a_wrong_description_ours_has_less_than_a_hundredth() {
             share,
             &["published", "contouring", "planned-pid", "feed-forward", "cross-coupled", "learning"],
         );
+        if share == 0.25 {
+            assert_shown(&ranking, 0);
+        }
         let published = score(&ranking, "published").total().rms_mm();
         for name in ["contouring", "planned-pid", "feed-forward", "cross-coupled", "learning"] {
             // the trial's 3.0 um rms; its 15 um at most are a share of what its published controller had
@@ -90,6 +111,9 @@ fn with_x4_encoders_ours_has_less_than_a_three_hundredth_and_with_learning_an_ei
     for share in [0.25, -0.25] {
         let names = ["published", "contouring", "planned-pid", "feed-forward", "cross-coupled", "learning"];
         let ranking = ranking(Decoding::X4, share, &names);
+        if share == 0.25 {
+            assert_shown(&ranking, 1);
+        }
         let published = score(&ranking, "published").total().rms_mm();
         // the trial's figures for each
         for (name, rms_um, max_um, times) in [
