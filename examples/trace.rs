@@ -65,7 +65,8 @@ const MAX_PEN_MM: f64 = 100.0;
 const UNIT_MM: f64 = 1.0 / UNITS_PER_MM;
 const GCODE_MM: f64 = 0.001;
 
-/// Part of a pixel that a raster leaves open: the border of ink passes anywhere between the middles of two pixels.
+/// Part of a pixel that a raster leaves open: the border of ink passes anywhere between the middles of two
+/// pixels.
 const RASTER_PX: f64 = 0.5;
 
 /// Drawings up to this side are dots, px.
@@ -287,8 +288,9 @@ struct Report<'a> {
     histogram: Option<&'a [Bin]>,
     /// What the pens draw beside the ink.
     beyond_ink: Option<BeyondReport>,
-    /// Whether all ink is drawn within the greatest error, and nothing else: no ink lies farther from the strokes, nothing
-    /// drawn farther from the ink than that or the half pixel that the raster leaves open, and nothing was taken for dirt.
+    /// Whether all ink is drawn within the greatest error, and nothing else: no ink lies farther from the
+    /// strokes, nothing drawn farther from the ink than that or the half pixel that the raster leaves open,
+    /// and nothing was taken for dirt.
     kept: Option<bool>,
     dirt: Dirt,
     pen_down_px: f64,

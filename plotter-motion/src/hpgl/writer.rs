@@ -164,11 +164,12 @@ impl<W: fmt::Write> Writer<W> {
     /// Draws an arc about `centre` from where the pen stands to `to`, counter-clockwise for a sweep above 0: as `AA`, which
     /// the plotter itself divides into chords.
     ///
-    /// The circle is the one about `centre` through `to`; where the pen stands ought to be on it. `AA` has its centre in
-    /// whole units and begins where the pen is, so each piece of at most a quarter takes the centre for which both its
-    /// middle and its end come out best, and the pen is sent to the end as it should be: errors do not add up. Chord angles
-    /// are as with [`Writer::circle`]. Arcs that rise less than a quarter of a unit over their chord are lines; those of more
-    /// than 819 mm radius, and pieces that no centre brings within one unit, are chords within half a unit of them.
+    /// The circle is the one about `centre` through `to`; where the pen stands ought to be on it. `AA` has
+    /// its centre in whole units and begins where the pen is, so each piece of at most a quarter takes the
+    /// centre for which both its middle and its end come out best, and the pen is sent to the end as it
+    /// should be: errors do not add up. Chord angles are as with [`Writer::circle`]. Arcs that rise less than
+    /// a quarter of a unit over their chord are lines; those of more than 819 mm radius, and pieces that no
+    /// centre brings within one unit, are chords within half a unit of them.
     ///
     /// ```
     /// # use plotter_motion::{PlotOp, Point, hpgl};
@@ -277,7 +278,8 @@ impl<W: fmt::Write> Writer<W> {
         if core::mem::take(&mut self.encoded_points) > 0 { self.out.write_str(";\n") } else { Ok(()) }
     }
 
-    /// One `AA` of at most a quarter about `centre` with its `middle` there, and the line to where it should have ended.
+    /// One `AA` of at most a quarter about `centre` with its `middle` there, and the line to where it should
+    /// have ended.
     fn quarter(
         &mut self,
         centre: Point,
@@ -289,8 +291,8 @@ impl<W: fmt::Write> Writer<W> {
         let from = self.from()?;
         let arc = ArcUnits::nearest(from, to, centre, middle, sweep_rad > 0.0);
         let Some(arc) = arc.filter(|arc| arc.error_units <= GREATEST_UNITS) else {
-            // Of a few units, or so short a part of a large circle that no centre on the grid is as far from both of its
-            // rounded ends: as chords.
+            // Of a few units, or so short a part of a large circle that no centre on the grid is as far from
+            // both of its rounded ends: as chords.
             let lines = chords(radius_units, sweep_rad);
             for line in 1..lines {
                 let turn = sweep_rad * (f64::from(line) / f64::from(lines) - 0.5);

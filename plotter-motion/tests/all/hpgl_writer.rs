@@ -40,8 +40,8 @@ fn a_small_sheet_reads_like_a_drawing() {
     ");
 }
 
-/// No centre in whole units is as far from where the pen stands as from where it should end, and a single corner half way
-/// is 1.85 units off.
+/// No centre in whole units is as far from where the pen stands as from where it should end, and a single
+/// corner half way is 1.85 units off.
 #[test]
 fn a_short_arc_of_a_large_circle_that_no_centre_fits_is_chords() {
     let (from, to_centre) = (Point::new(101.4870, 35.2088), Vec2::new(83.0421, 114.0791));

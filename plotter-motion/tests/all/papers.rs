@@ -1,7 +1,7 @@
 //! What papers claim in tables, so that the tests that measure it can say that it is still so.
 
-/// The cells of the row of a paper that begins with these words, without the first; `None` in a package, which has no papers of the
-/// family, with a word.
+/// The cells of the row of a paper that begins with these words, without the first; `None` in a package,
+/// which has no papers of the family, with a word.
 pub(crate) fn row_of(paper: &str, begins: &str) -> Option<Vec<String>> {
     let Ok(text) = std::fs::read_to_string(format!("{}/../{paper}", env!("CARGO_MANIFEST_DIR"))) else {
         println!("skipped: {paper} of the family is not here");

@@ -11,7 +11,8 @@ use crate::papers::assert_in;
 use auditor::planned;
 use plotter_motion::{PathMode, PlannerSettings, PlotOp, Point, Vec2};
 
-/// By how much the times may differ: the planner's corners are reckoned in single precision and rounded to the safe side.
+/// By how much the times may differ: the planner's corners are reckoned in single precision and rounded to
+/// the safe side.
 const ROUNDING_SHARE: f64 = 1e-5;
 
 /// Squares of speeds at the ends of a segment and on it make its time, s.

@@ -18,7 +18,8 @@ pub struct Faults {
     pub delay: f64,
     /// For how long.
     pub held_for: Duration,
-    /// Noise begins with it, as of a motor or a relay that is switched: this byte and those behind it come as other ones.
+    /// Noise begins with it, as of a motor or a relay that is switched: this byte and those behind it come as
+    /// other ones.
     pub burst: f64,
     /// How many bytes the noise changes in all, one after the other.
     pub burst_bytes: u32,

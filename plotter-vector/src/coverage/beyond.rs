@@ -6,19 +6,23 @@ use super::{Index, segments, with_widths};
 use crate::{Bitmap, Drawing, Pixel, PxPoint};
 use core::ops::Range;
 
-/// Ink is looked for no farther, px: strokes are made of ink, and what a pen draws this far from any is as wrong as what lies farther.
+/// Ink is looked for no farther, px: strokes are made of ink, and what a pen draws this far from any is as
+/// wrong as what lies farther.
 pub(crate) const FARTHEST_PX: u32 = 16;
 
-/// Half of the thinnest pen, px. Lines one pixel wide are measured without one, but drawn they are as wide as their pixels.
+/// Half of the thinnest pen, px. Lines one pixel wide are measured without one, but drawn they are as wide as
+/// their pixels.
 const THINNEST_HALF_PX: f64 = 0.5;
 
-/// Farthest that chords lie from an arc, and that steps of a pen that gets wider lie from it, px: a fifth of what the raster leaves open.
+/// Farthest that chords lie from an arc, and that steps of a pen that gets wider lie from it, px: a fifth of
+/// what the raster leaves open.
 const CHORD_PX: f64 = 0.1;
 
 /// What the pens of a drawing draw where there is no ink, by the pixels whose middle they cover.
 ///
-/// The distance of a pixel is that of its middle from the nearest pixel of ink, a square: a pixel beside ink is half a one off, and what
-/// lies only beside a corner of ink 0.71. So half a pixel is what the raster leaves open on any slope. No more than 16 px are told.
+/// The distance of a pixel is that of its middle from the nearest pixel of ink, a square: a pixel beside ink
+/// is half a one off, and what lies only beside a corner of ink 0.71. So half a pixel is what the raster
+/// leaves open on any slope. No more than 16 px are told.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Beyond {
@@ -65,8 +69,8 @@ pub(crate) fn beyond_hairlines(ink: &Bitmap, drawing: &Drawing) -> Beyond {
 }
 
 impl Index {
-    /// What is drawn beside the ink in some rows of the picture. The first row of `ink` is row `first_row` of it; it has
-    /// [`FARTHEST_PX`] rows more, above and below, where the picture has.
+    /// What is drawn beside the ink in some rows of the picture. The first row of `ink` is row `first_row` of
+    /// it; it has [`FARTHEST_PX`] rows more, above and below, where the picture has.
     pub(crate) fn beyond(&self, ink: &Bitmap, first_row: u32, rows: &Range<u32>) -> Beyond {
         let mut beyond = Beyond::default();
         let mut top = rows.start;

@@ -81,8 +81,9 @@ pub(crate) struct AreaPen<'a> {
     pub(crate) is_raster: bool,
 }
 
-/// Adds the errors of [`coverage`] to others, and tells what is drawn beside the ink. Where areas are drawn as such, the ink inside
-/// of them does not count, only that at their edge, and their outline is as wide as its pen.
+/// Adds the errors of [`coverage`] to others, and tells what is drawn beside the ink. Where areas are drawn
+/// as such, the ink inside of them does not count, only that at their edge, and their outline is as wide as
+/// its pen.
 pub(crate) fn add_coverage(
     ink: &Bitmap,
     drawing: &Drawing,

@@ -200,8 +200,8 @@ impl Segment {
         if matches!(self.bend, Bend::Arc(_)) { self.slack_px } else { self.nearest(at).1 }
     }
 
-    /// Parts of its length between which its pen gets thinner or wider evenly, and how far it covers there, px; none where it is the same
-    /// all along.
+    /// Parts of its length between which its pen gets thinner or wider evenly, and how far it covers there,
+    /// px; none where it is the same all along.
     pub(super) fn knots(&self) -> Option<[(f64, f64); PROBES.len() + 2]> {
         let taper = self.taper.as_deref()?;
         let mut knots = [(0.0, taper[0]); PROBES.len() + 2];

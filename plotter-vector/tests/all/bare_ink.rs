@@ -117,8 +117,8 @@ fn beyond_px(ink: &Bitmap, drawing: &Drawing, pen_px: f64) -> f64 {
     drawn.map(|at| from_ink_px(ink, at)).fold(0.0, f64::max)
 }
 
-/// What is left bare of a drawing: by this pen, px; as the library tells it, px; how far the pen draws beside the ink, px, and as
-/// it is told; and how many strokes there are for a line.
+/// What is left bare of a drawing: by this pen, px; as the library tells it, px; how far the pen draws beside
+/// the ink, px, and as it is told; and how many strokes there are for a line.
 struct Bare {
     by_pen_px: f64,
     told_px: f64,

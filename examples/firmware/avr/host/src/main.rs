@@ -4,10 +4,11 @@
 //! avr-host SIMULATOR gantry.elf steps.elf
 //! ```
 //!
-//! Both draw a square and one that is turned by 30 degrees. What the gantry tells is never more than the counts of this millisecond
-//! away from where the simulated shafts stand, and at rest one at most; every reached target is a corner, and the way between them lies within 3 counts of
-//! the line. The step firmware makes one step of the longer side at a time, and stands within half a step of the line after each:
-//! that says all of Bresenham's line but which way halves are rounded, without his algorithm.
+//! Both draw a square and one that is turned by 30 degrees. What the gantry tells is never more than the
+//! counts of this millisecond away from where the simulated shafts stand, and at rest one at most; every
+//! reached target is a corner, and the way between them lies within 3 counts of the line. The step firmware
+//! makes one step of the longer side at a time, and stands within half a step of the line after each: that
+//! says all of Bresenham's line but which way halves are rounded, without his algorithm.
 
 use plotter_motion::protocol::digits::{Reply, Sender};
 use plotter_motion::{Axis, StepPoint};
@@ -108,12 +109,12 @@ impl Drop for Simulator {
     }
 }
 
-/// Farthest from the line, counts: the published rule holds one motor where a place is more than 10 |m| + 10 off, measured along y, and
-/// speeds in the ratio of the sides keep far within that.
+/// Farthest from the line, counts: the published rule holds one motor where a place is more than 10 |m| + 10
+/// off, measured along y, and speeds in the ratio of the sides keep far within that.
 const MOST_OFF: f64 = 3.0;
 
-/// Farthest that the shafts are ahead of what is told, counts: at full duty a motor makes two in a millisecond, and one more is on the
-/// line. At rest one: the shaft may stand on the border of two.
+/// Farthest that the shafts are ahead of what is told, counts: at full duty a motor makes two in a
+/// millisecond, and one more is on the line. At rest one: the shaft may stand on the border of two.
 const MOST_BEHIND: i32 = 3;
 const MOST_BEHIND_AT_REST: i32 = 1;
 /// Long enough for what is on the line, ms.
@@ -199,8 +200,8 @@ fn square(side: f64, turned_deg: f64) -> Vec<StepPoint> {
     [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side), (0.0, 0.0)].map(|(x, y)| turned(x, y)).into()
 }
 
-/// The first step after which a motor is not where the line asks for: as many steps as the longer side, after each within half
-/// a step of it. The count of the steps where there are too few or too many.
+/// The first step after which a motor is not where the line asks for: as many steps as the longer side, after
+/// each within half a step of it. The count of the steps where there are too few or too many.
 fn wrong_step(from: StepPoint, to: StepPoint, made: &[[i64; 2]]) -> Option<usize> {
     let sides = [i64::from(to.x) - i64::from(from.x), i64::from(to.y) - i64::from(from.y)];
     let longer = sides.map(i64::abs).into_iter().max().unwrap_or_default();
