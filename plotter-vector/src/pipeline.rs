@@ -255,7 +255,7 @@ impl Vectorizer {
         let Unordered { drawing, errors, areas, removed } = self.unordered(&mut ink, grey)?;
         let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
         let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
-        let errors = errors.unwrap_or_else(|| self.errors(&ink, &drawing, areas.as_ref()));
+        let errors = self.known_or_measured(errors, &ink, &drawing, areas.as_ref());
         Ok(Vectorized { drawing, error: errors.report, beyond: errors.beyond, split: None, removed })
     }
 
@@ -294,8 +294,22 @@ impl Vectorizer {
         BareInk { drawn, within_px: self.ours.tolerance_px, pieces: self.pieces(), spots }
     }
 
+    /// The errors of a drawing: what is known of lines one pixel wide from their figures, or measured.
+    pub(crate) fn known_or_measured(
+        &self,
+        known: Option<SheetErrors>,
+        ink: &Bitmap,
+        drawing: &Drawing,
+        areas: Option<&Opening>,
+    ) -> SheetErrors {
+        match known {
+            Some(errors) => SheetErrors { beyond: beyond_hairlines(ink, drawing), ..errors },
+            None => self.errors(ink, drawing, areas),
+        }
+    }
+
     /// The errors of a drawing, with the areas that were told from lines.
-    pub(crate) fn errors(&self, ink: &Bitmap, drawing: &Drawing, areas: Option<&Opening>) -> SheetErrors {
+    fn errors(&self, ink: &Bitmap, drawing: &Drawing, areas: Option<&Opening>) -> SheetErrors {
         let mut tally = ErrorTally::default();
         let beyond = add_coverage(ink, drawing, areas.map(|areas| self.area_pen(areas)), &mut tally);
         SheetErrors { report: tally.report(), worst: tally.worst(), beyond }
@@ -505,7 +519,7 @@ impl Vectorizer {
 /// The strokes of a picture as they are found.
 pub(crate) struct Unordered {
     pub(crate) drawing: Drawing,
-    /// The errors, where they are known from the figures.
+    /// The errors, where they are known from the figures, but for what is drawn beside the ink.
     pub(crate) errors: Option<SheetErrors>,
     /// What told areas from lines, where something did.
     pub(crate) areas: Option<Opening>,
@@ -545,8 +559,7 @@ fn simplify(
             tally.add_pixel(*at, off_px.unwrap_or_default());
         }
     }
-    let beyond = beyond_hairlines(ink, &drawing);
-    (drawing, SheetErrors { report: tally.report(), worst: tally.worst(), beyond })
+    (drawing, SheetErrors { report: tally.report(), worst: tally.worst(), ..SheetErrors::default() })
 }
 
 #[cfg(test)]

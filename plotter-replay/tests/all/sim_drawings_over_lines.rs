@@ -285,8 +285,8 @@ fn drawings_by_frames_come_whole_over_a_bad_line() {
     drawings_by_frames(50, &Faults::mixed(0.01));
 }
 
-/// Damage that comes in bursts: two bytes of a hundred, from a few at a time to more than a frame has. Noise of so many
-/// bytes may be a stop by itself, three bytes, once in some hundred drawings; none of these is.
+/// Damage that comes in bursts: two bytes of a hundred, from a few at a time to more than a frame has. Noise of
+/// so many bytes may be a stop by itself, three bytes, once in some hundred drawings; none of these is.
 #[test]
 fn drawings_by_frames_come_whole_through_bursts() {
     for burst_bytes in [3, 10, 40, 150] {

@@ -264,8 +264,7 @@ impl Vectorizer {
         let Unordered { drawing, errors, areas, removed } = self.unordered(&mut ink, None)?;
         let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
         let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
-        let measured = || self.errors(&ink, &drawing, areas.as_ref());
-        let errors = with_errors.then(|| errors.unwrap_or_else(measured));
+        let errors = with_errors.then(|| self.known_or_measured(errors, &ink, &drawing, areas.as_ref()));
         Ok((drawing, errors, removed))
     }
 }
