@@ -7,6 +7,10 @@
 //! Look at `--picture`: the pale band is as wide as the error that you allowed, and the ink stays in it. Ask for less and less:
 //! it takes longer and longer, until you are told what is in the way, and what the smallest error is.
 //!
+//! Near some ink is not enough: each line of the scan, from where it meets others to where it meets others again, is followed from
+//! its beginning to its end by something drawn that stands for no other line. Where lines closer together than the error may
+//! become one, say so with `--allow-merged-lines`; how many did is told.
+//!
 //! ```text
 //! cargo run --release --example max_error
 //! cargo run --release --example max_error -- scan.png --max-error-mm 0.2 --picture drawn.svg
@@ -24,7 +28,10 @@ use plotter_motion::{
     VectorizeConfig,
 };
 use plotter_replay::{Canvas, CanvasStyle, Layer};
-use plotter_vector::{Bitmap, Despeckled, Drawing, Gray, InkDistance, PxPoint, Scale, Vectorized, decode};
+use plotter_vector::{
+    Bitmap, Despeckled, Drawing, FollowedLines, Gray, InkDistance, PxPoint, Scale, Vectorized, decode,
+    followed_lines,
+};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -68,6 +75,9 @@ struct Args {
     /// Ink that is taken for dirt need not be drawn
     #[arg(long)]
     allow_dirt: bool,
+    /// Lines closer together than the error may be drawn as one: each is near something drawn, not along a line of its own
+    #[arg(long)]
+    allow_merged_lines: bool,
     /// Writes all figures as JSON
     #[arg(long, value_name = "F.json")]
     report: Option<PathBuf>,
@@ -117,6 +127,9 @@ fn draw(args: &Args) -> Result<(), String> {
             report.measured_mm(),
             args.max_error_mm
         ));
+    }
+    if report.followed.broken() > 0 && !args.allow_merged_lines {
+        return Err(broken_lines(&report.followed));
     }
     if report.measured_mm() > args.max_error_mm || !path.is_done {
         return Err(format!(
@@ -188,6 +201,11 @@ impl Scan {
     fn distance_mm(&self, ink: &Bitmap, drawn: &Drawing) -> [f64; 2] {
         let distance = InkDistance::new(ink, &self.reference);
         [distance.of_ink(drawn).max_px, distance.of_drawn(drawn)].map(|px| px * self.scale.mm_per_px())
+    }
+
+    /// How each line of the scan is followed, in order, no farther off than this.
+    fn followed(&self, drawn: &Drawing, bound_mm: f64) -> FollowedLines {
+        followed_lines(&self.reference, drawn, bound_mm / self.scale.mm_per_px() + REFERENCE_PX)
     }
 
     /// What was drawn on the sheet as a drawing in pixels of the scan.
@@ -327,6 +345,8 @@ fn plan(args: &Args, machine: &Machine, scan: &Scan, bar: &ProgressBar) -> Resul
     bar.set_message("tracing");
     let mut best: Option<(f64, Budget, Traced)> = None;
     let mut refusal: Option<BudgetError> = None;
+    // Of those with lines that run together, the one with the fewest.
+    let mut broken: Option<FollowedLines> = None;
     for traced in candidates(scan, asked_mm)? {
         let limits = BudgetLimits {
             vectorization_least_mm: traced.error_mm,
@@ -339,14 +359,26 @@ fn plan(args: &Args, machine: &Machine, scan: &Scan, bar: &ProgressBar) -> Resul
                 let ops: Vec<PlotOp> = traced.drawing.plot_ops(scan.scale).collect();
                 let budget = Budget { speed_share: control.most_share * budget.speed_share, ..budget };
                 let time_s = predicted_s(&slowed(machine, &budget)?, &ops, budget.blend_mm)?;
-                if best.as_ref().is_none_or(|(least_s, ..)| time_s < *least_s) {
+                if best.as_ref().is_some_and(|(least_s, ..)| time_s >= *least_s) {
+                    continue;
+                }
+                let followed = scan.followed(&traced.drawing, traced.error_mm);
+                if args.allow_merged_lines || followed.broken() == 0 {
                     best = Some((time_s, budget, traced));
+                } else if broken.as_ref().is_none_or(|least| followed.broken() < least.broken()) {
+                    broken = Some(followed);
                 }
             }
             Err(error) => refusal = Some(least(refusal, error)),
         }
     }
     let Some((_, budget, traced)) = best else {
+        if let Some(broken) = broken {
+            return Err(Refusal::Other(format!(
+                "{}; ask for another error, or allow it with --allow-merged-lines",
+                broken_lines(&broken)
+            )));
+        }
         return Err(refusal.map_or_else(|| Refusal::Other("nothing to draw".into()), Refusal::Budget));
     };
     bar.set_message("trying the machine as it is to draw");
@@ -396,6 +428,19 @@ fn least(before: Option<BudgetError>, error: BudgetError) -> BudgetError {
     before.filter(|before| smallest(before) <= smallest(&error)).unwrap_or(error)
 }
 
+/// Which lines of the scan nothing drawn follows, in words.
+fn broken_lines(followed: &FollowedLines) -> String {
+    let at = followed.dropped.iter().chain(&followed.merged).next();
+    let at = at.map_or_else(String::new, |at| format!(", the first at ({:.0}, {:.0}) px", at.x, at.y));
+    format!(
+        "{} of {} lines of the scan are not drawn as lines of their own ({} merged, {} dropped{at})",
+        followed.broken(),
+        followed.lines,
+        followed.merged.len(),
+        followed.dropped.len()
+    )
+}
+
 /// What was asked, promised and measured.
 struct Report<'a> {
     args: &'a Args,
@@ -405,6 +450,8 @@ struct Report<'a> {
     duration_s: f64,
     /// The ink from what was drawn, and that from the ink, mm.
     measured: [f64; 2],
+    /// Line by line.
+    followed: FollowedLines,
     dirt: Despeckled,
 }
 
@@ -412,8 +459,10 @@ impl<'a> Report<'a> {
     fn new(args: &'a Args, machine: &Machine, scan: &Scan, plan: Plan, path: &FollowedPath) -> Self {
         // Against all ink: what was taken for dirt counts, unless that is allowed.
         let ink = if args.allow_dirt { &scan.ink } else { &scan.all_ink };
-        let measured = scan.distance_mm(ink, &scan.in_pixels(&path.drawn));
+        let drawn = scan.in_pixels(&path.drawn);
+        let measured = scan.distance_mm(ink, &drawn);
         Self {
+            followed: scan.followed(&drawn, args.max_error_mm),
             dirt: scan.dirt,
             args,
             name: machine.config().name.to_string(),
@@ -470,6 +519,12 @@ impl<'a> Report<'a> {
                 "px": self.dirt.removed_px,
                 "largest_px": self.dirt.largest_removed_px,
             },
+            "lines": {
+                "of_scan": self.followed.lines,
+                "followed": self.followed.followed(),
+                "merged": self.followed.merged.len(),
+                "dropped": self.followed.dropped.len(),
+            },
             "drawing_time_s": self.duration_s,
             "speed_share": budget.speed_share,
             "measured": { "ink_from_drawn_mm": ink_mm, "drawn_from_ink_mm": drawn_mm },
@@ -501,6 +556,8 @@ impl<'a> Report<'a> {
             ("measured", mm(self.measured_mm())),
             ("  ink from what was drawn", mm(self.measured[0])),
             ("  what was drawn from ink", mm(self.measured[1])),
+            ("lines followed", format!("{} of {}", self.followed.followed(), self.followed.lines)),
+            ("  merged, dropped", format!("{}, {}", self.followed.merged.len(), self.followed.dropped.len())),
             ("vertices", traced.drawing.vertices().to_string()),
             ("share of the speed", format!("{:.0} %", 100.0 * budget.speed_share)),
             ("drawing time", format!("{:.1} s", self.duration_s)),

@@ -39,6 +39,9 @@ fn keeps_its_promise(report: &Value, asked_mm: f64) {
     assert_eq!(number(report, "/asked_mm"), asked_mm);
     assert!((parts - promised_mm).abs() < ROUNDING_MM && promised_mm <= asked_mm, "{report}");
     assert!(number(report, "/measured_mm") <= promised_mm, "{report}");
+    // Line by line, too.
+    let lines = number(report, "/lines/of_scan");
+    assert!(lines >= 14.0 && number(report, "/lines/followed") == lines, "{report}");
     assert!(number(report, "/drawing_time_s") > 1.0);
 }
 
@@ -95,6 +98,39 @@ fn what_cannot_be_promised_is_refused_with_the_part_and_the_smallest_error() {
     let (drawn, kept) = report(&data("flag.png"), &stepper, smallest_mm);
     assert!(drawn, "{kept}");
     keeps_its_promise(&kept, smallest_mm);
+}
+
+/// Within 1 mm the technical drawing has lines enough that lie closer together: those stay lines, unless the user allows less.
+#[test]
+#[ignore = "two searches over twenty vectorizations: seconds in release, run by .ci/run"]
+fn lines_run_together_only_where_that_is_allowed() {
+    const ASKED_MM: &str = "1";
+    let directory = tempfile::tempdir().unwrap();
+    let run = |options: &[&str]| {
+        let file = directory.path().join("report.json");
+        let image = data("technical.png");
+        let fixed =
+            [&image, "--max-error-mm", ASKED_MM, "--width-mm", "30", "--report", file.to_str().unwrap()];
+        let output = run_example("max_error", &[&fixed[..], options].concat());
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let report: Value = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
+        (output.status.success(), said, report)
+    };
+    let (drawn, said, report) = run(&[]);
+    let lines = number(&report, "/lines/of_scan");
+    assert!(drawn && lines > 200.0, "{said}");
+    assert!(said.contains(&format!("{lines} of {lines}")), "{said}");
+    let (drawn, said, merged) = run(&["--allow-merged-lines"]);
+    assert!(drawn, "{said}");
+    let count = |report: &Value, key: &str| number(report, &format!("/lines/{key}"));
+    assert_eq!(count(&merged, "of_scan"), lines);
+    assert_eq!(
+        count(&merged, "followed") + count(&merged, "merged") + count(&merged, "dropped"),
+        lines,
+        "{merged}"
+    );
+    assert!(count(&merged, "merged") > 20.0, "{merged}");
+    assert!(number(&merged, "/vectorization/strokes") < 0.7 * number(&report, "/vectorization/strokes"));
 }
 
 #[test]

@@ -36,6 +36,7 @@ mod prop_bounded;
 mod prop_cubics;
 mod prop_follow;
 mod prop_follow_bad_input;
+mod prop_followed;
 mod prop_ink;
 mod prop_inside;
 mod prop_layers;
