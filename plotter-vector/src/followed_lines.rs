@@ -495,7 +495,7 @@ impl Ways {
         let is_end = |state: usize, leaves: bool| {
             let ends = layer.near.get(state / 2).and_then(|sample| self.ends.get(*sample as usize));
             // A stroke is left at its last sample, or at its first when it is passed against its sense.
-            ends.is_some_and(|ends| if leaves == (state % 2 == 0) { ends[1] } else { ends[0] })
+            ends.is_some_and(|ends| if leaves == state.is_multiple_of(2) { ends[1] } else { ends[0] })
         };
         let states = 0..layer.cost_px.len();
         let left = states
