@@ -30,9 +30,9 @@ const LEAST_STEP_PX: f64 = 0.1;
 /// Samples of a drawing: bounds memory at about 200 MB. Beyond that they lie farther apart, which is the strict side.
 const MOST_SAMPLES: f64 = 4e6;
 
-/// So many lines in a row may each take another way, so that one more finds its own. Where lines are drawn each beside
-/// itself, by more than they are apart, that many run side by side; with fewer some of them are said to be merged.
-const MOST_MOVED: u32 = 16;
+/// So many ways are tried for a line, its own and those of lines that make room for it, one for the other: bounds the time.
+/// Where more lines than that are drawn each beside itself, by more than they are apart, some are said to be merged.
+const MOST_TRIED: u32 = 8;
 
 /// How the lines of a scan were drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -83,22 +83,23 @@ impl FollowedLines {
 pub fn followed_lines(lines: &Drawing, drawn: &Drawing, bound_px: f64) -> FollowedLines {
     let lines = lines_from_meeting_to_meeting(lines);
     let ways = Ways::new(drawn, bound_px);
-    let mut nearest: Vec<_> = lines
-        .iter()
-        .enumerate()
-        .map(|(line, places)| (ways.along(places, |_| false).map(|way| way.mean_px), line))
-        .collect();
+    let mut nearest: Vec<_> =
+        lines.iter().enumerate().map(|(line, places)| (ways.along(places, |_| false), line)).collect();
     // Those that are nearest first: of two that want the same, mostly the one whose it is.
-    let mean_px = |mean_px: Option<f64>| mean_px.unwrap_or(f64::INFINITY);
-    nearest.sort_by(|a, b| mean_px(a.0).total_cmp(&mean_px(b.0)).then(a.1.cmp(&b.1)));
+    let mean_px = |way: &Option<Way>| way.as_ref().map_or(f64::INFINITY, |way| way.mean_px);
+    nearest.sort_by(|a, b| mean_px(&a.0).total_cmp(&mean_px(&b.0)).then(a.1.cmp(&b.1)));
     let mut shares = Shares::new(&lines, &ways);
     let mut result = FollowedLines { lines: lines.len(), ..FollowedLines::default() };
-    for (round, (mean_px, line)) in (1..).zip(nearest) {
+    for (round, (way, line)) in (1..).zip(nearest) {
         let start = lines.get(line).and_then(|places| places.first()).copied();
-        if mean_px.is_none() {
-            result.dropped.extend(start);
-        } else if !shares.find(line, round, MOST_MOVED) {
-            result.merged.extend(start);
+        match way {
+            None => result.dropped.extend(start),
+            Some(way) => {
+                shares.tries = MOST_TRIED;
+                if !shares.give_if_free(line, &way) && !shares.find(line, round) {
+                    result.merged.extend(start);
+                }
+            }
         }
     }
     result
@@ -114,6 +115,8 @@ struct Shares<'a> {
     owned: Vec<Vec<u32>>,
     /// In which round a way over each sample was last asked for.
     asked: Vec<usize>,
+    /// Ways that may still be tried for a line.
+    tries: u32,
 }
 
 impl<'a> Shares<'a> {
@@ -125,12 +128,13 @@ impl<'a> Shares<'a> {
             owners: vec![None; samples],
             owned: vec![Vec::new(); lines.len()],
             asked: vec![0; samples],
+            tries: MOST_TRIED,
         }
     }
 
     /// A way of its own for a line: a free one, or one whose owners can take another. These are the augmenting paths of
     /// Kuhn's assignment (1955), with a way of many samples in place of one partner. Whether there is one.
-    fn find(&mut self, line: usize, round: usize, moves: u32) -> bool {
+    fn find(&mut self, line: usize, round: usize) -> bool {
         let (lines, ways) = (self.lines, self.ways);
         let Some(places) = lines.get(line) else { return false };
         let Some(shared) = Shared::new(places, ways.bound_px) else { return false };
@@ -143,7 +147,11 @@ impl<'a> Shares<'a> {
                 self.give(line, &way, &shared);
                 return true;
             }
-            let Some(way) = ways.along(places, is_asked).filter(|_| moves > 0) else { return false };
+            if self.tries == 0 {
+                return false;
+            }
+            let Some(way) = ways.along(places, is_asked) else { return false };
+            self.tries -= 1;
             let wanted: Vec<u32> =
                 way.samples.iter().copied().filter(|at| !ways.is_shared(&shared, *at)).collect();
             let mut owners: Vec<usize> = wanted.iter().filter_map(|at| owner(*at)).collect();
@@ -158,11 +166,24 @@ impl<'a> Shares<'a> {
             if !is_new {
                 return false;
             }
-            if owners.into_iter().all(|owner| owner == line || self.find(owner, round, moves - 1)) {
+            if owners.into_iter().all(|owner| owner == line || self.find(owner, round)) {
                 self.give(line, &way, &shared);
                 return true;
             }
         }
+    }
+
+    /// Gives a line this way, if it is no other's.
+    fn give_if_free(&mut self, line: usize, way: &Way) -> bool {
+        let places = self.lines.get(line).map_or(&[][..], Vec::as_slice);
+        let Some(shared) = Shared::new(places, self.ways.bound_px) else { return false };
+        let is_free = way.samples.iter().all(|sample| {
+            self.owners.get(*sample as usize) == Some(&None) || self.ways.is_shared(&shared, *sample)
+        });
+        if is_free {
+            self.give(line, way, &shared);
+        }
+        is_free
     }
 
     /// What a line has from now on, instead of what it had.

@@ -98,4 +98,5 @@ mod sim_thesis_step;
 mod sim_tuning;
 mod sim_vector_optimum;
 mod stepper_bench;
+mod switches;
 mod tuning_bench;

@@ -1,5 +1,6 @@
 //! Laws of the gate of a belt machine, and of the marking board's controller under any sequence of inputs.
 
+use crate::switches::stands_in_the_way;
 use core::time::Duration;
 use plotter_motion::control::{EqualizerSettings, LineController, PointToPoint, PointToPointSettings};
 use plotter_motion::firmware::{MarkingBoard, MarkingBoardSettings};
@@ -40,10 +41,10 @@ fn into_switches(drive: Drive, signs: BeltSigns, pressed: LimitSwitches, speeds:
     let (x, y) = signs.twice_axes(drive.x().value() * speeds[0], drive.y().value() * speeds[1]);
     let mut worst = 0.0_f32;
     for (axis, speed) in [(Axis::X, x), (Axis::Y, y)] {
-        if pressed.blocks(axis, Direction::Plus) {
+        if stands_in_the_way(pressed, axis, Direction::Plus) {
             worst = worst.max(speed);
         }
-        if pressed.blocks(axis, Direction::Minus) {
+        if stands_in_the_way(pressed, axis, Direction::Minus) {
             worst = worst.max(-speed);
         }
     }

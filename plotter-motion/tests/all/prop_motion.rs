@@ -1,5 +1,6 @@
 //! Laws that hold for any input.
 
+use crate::switches::stands_in_the_way;
 use core::time::Duration;
 use plotter_motion::control::ShaftEstimator;
 use plotter_motion::firmware::Gantry;
@@ -92,7 +93,7 @@ proptest! {
                     prop_assert_eq!(duty, Duty::ZERO);
                 }
                 if let Some(direction) = duty.direction() {
-                    prop_assert!(!limits.blocks(axis, direction));
+                    prop_assert!(!stands_in_the_way(limits, axis, direction));
                 }
             }
             if !latched && limits == LimitSwitches::default() {
@@ -265,7 +266,7 @@ proptest! {
             for axis in Axis::BOTH {
                 let duty = gantry.drive().axis(axis);
                 prop_assert!(!latched || duty == Duty::ZERO);
-                prop_assert!(!duty.direction().is_some_and(|direction| limits.blocks(axis, direction)));
+                prop_assert!(!duty.direction().is_some_and(|direction| stands_in_the_way(limits, axis, direction)));
             }
             while gantry.take_notice().is_some() {}
         }

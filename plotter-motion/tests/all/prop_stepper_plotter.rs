@@ -1,6 +1,7 @@
 //! Laws of the stepper plotter's controller, whatever is sent and pressed.
 
 use crate::stepper_bench;
+use crate::switches::stands_in_the_way;
 
 use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
@@ -175,7 +176,10 @@ impl Watch {
             prop_assert!(moves.iter().any(|(_, sign)| *sign != 0));
             for (axis, sign) in moves.into_iter().filter(|(_, sign)| *sign != 0) {
                 let direction = if sign > 0 { Direction::Plus } else { Direction::Minus };
-                prop_assert!(!self.limits.blocks(axis, direction), "into a switch: {moves:?} at {at:?}");
+                prop_assert!(
+                    !stands_in_the_way(self.limits, axis, direction),
+                    "into a switch: {moves:?} at {at:?}"
+                );
             }
             // Grbl's $X ends an emergency stop, once the button has been released.
             self.latched &= self.button || self.plotter.status(self.now).emergency_stop;
