@@ -7,9 +7,10 @@
 //! Look at `--picture`: the pale band is as wide as the error that you allowed, and the ink stays in it. Ask for less and less:
 //! it takes longer and longer, until you are told what is in the way, and what the smallest error is.
 //!
-//! Near some ink is not enough: each line of the scan, from where it meets others to where it meets others again, is followed from
-//! its beginning to its end by something drawn that stands for no other line. Where lines closer together than the error may
-//! become one, say so with `--allow-merged-lines`; how many did is told.
+//! Near some ink is not enough: each line of the scan, from where it meets others to where it meets others
+//! again, is followed from its beginning to its end by something drawn that stands for no other line. Where
+//! lines closer together than the error may become one, say so with `--allow-merged-lines`; how many did is
+//! told.
 //!
 //! ```text
 //! cargo run --release --example max_error
@@ -75,7 +76,8 @@ struct Args {
     /// Ink that is taken for dirt need not be drawn
     #[arg(long)]
     allow_dirt: bool,
-    /// Lines closer together than the error may be drawn as one: each is near something drawn, not along a line of its own
+    /// Lines closer together than the error may be drawn as one: each is near something drawn, not along a
+    /// line of its own
     #[arg(long)]
     allow_merged_lines: bool,
     /// Writes all figures as JSON
@@ -374,10 +376,7 @@ fn plan(args: &Args, machine: &Machine, scan: &Scan, bar: &ProgressBar) -> Resul
     }
     let Some((_, budget, traced)) = best else {
         if let Some(broken) = broken {
-            return Err(Refusal::Other(format!(
-                "{}; ask for another error, or allow it with --allow-merged-lines",
-                broken_lines(&broken)
-            )));
+            return Err(Refusal::Other(broken_lines(&broken)));
         }
         return Err(refusal.map_or_else(|| Refusal::Other("nothing to draw".into()), Refusal::Budget));
     };
@@ -428,12 +427,13 @@ fn least(before: Option<BudgetError>, error: BudgetError) -> BudgetError {
     before.filter(|before| smallest(before) <= smallest(&error)).unwrap_or(error)
 }
 
-/// Which lines of the scan nothing drawn follows, in words.
+/// Which lines of the scan nothing drawn follows, and what can be done, in words.
 fn broken_lines(followed: &FollowedLines) -> String {
     let at = followed.dropped.iter().chain(&followed.merged).next();
     let at = at.map_or_else(String::new, |at| format!(", the first at ({:.0}, {:.0}) px", at.x, at.y));
     format!(
-        "{} of {} lines of the scan are not drawn as lines of their own ({} merged, {} dropped{at})",
+        "{} of {} lines of the scan are not drawn as lines of their own ({} merged, {} dropped{at}); ask for another \
+         error, or allow it with --allow-merged-lines",
         followed.broken(),
         followed.lines,
         followed.merged.len(),

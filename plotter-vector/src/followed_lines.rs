@@ -1,15 +1,15 @@
 //! [`followed_lines`]: whether each line of a scan was drawn, as a line of its own and in its order.
 //!
-//! Distances to the nearest ink say nothing of which line it is: where two lines lie closer together than the bound, one stroke
-//! is near all ink of both, and so is a stroke that runs to and fro. Here each line asks for a way of its own along what was
-//! drawn:
+//! Distances to the nearest ink say nothing of which line it is: where two lines lie closer together than the
+//! bound, one stroke is near all ink of both, and so is a stroke that runs to and fro. Here each line asks
+//! for a way of its own along what was drawn:
 //!
 //! ```text
-//!   line      ●━━━●━━━●━━━●━━━●        a place of the line and one of the way lie within the bound, and neither goes back
-//!              \   \   |   |  |        (the discrete Fréchet distance: Eiter and Mannila, 1994, section 3); of all such
-//!   drawn   ────○───○──○───○──○───     ways the one that is nearest on average
+//!   line      ●━━━●━━━●━━━●━━━●      place by place within the bound, and neither goes back: the discrete
+//!              \   \   |   |  |      Fréchet distance (Eiter and Mannila, 1994, section 3); of all such
+//!   drawn   ────○───○──○───○──○───   ways the one that is nearest on average
 //!
-//!   line      ●━━━●━━━●━━━●━━━●        its way is used up: merged
+//!   line      ●━━━●━━━●━━━●━━━●      its way is used up: merged
 //!   line      ●━━━●━━━●━━━●━━━●
 //! ```
 
@@ -17,21 +17,24 @@ use crate::curve::CHORD_ERROR_PX;
 use crate::{Drawing, PxPoint};
 use std::collections::BTreeMap;
 
-/// Strokes of the scan's lines that come as near to each other as this meet there, px: their common place is found within
-/// half a pixel along each of them.
+/// Strokes of the scan's lines that come as near to each other as this meet there, px: their common place is
+/// found within half a pixel along each of them.
 const MEETING_PX: f64 = 1.0;
 
-/// Share of the bound from sample to sample: a way that keeps the bound is missed where it uses more than 0.998 of it.
+/// Share of the bound from sample to sample: a way that keeps the bound is missed where it uses more than
+/// 0.998 of it.
 const STEP_SHARE: f64 = 0.125;
 
 /// Samples lie no closer than this, px; a bound below eight of them is judged more strictly than asked.
 const LEAST_STEP_PX: f64 = 0.1;
 
-/// Samples of a drawing: bounds memory at about 200 MB. Beyond that they lie farther apart, which is the strict side.
+/// Samples of either drawing; they take some 60 bytes each, and the states of one line at a time come to
+/// that. Longer drawings have samples that lie farther apart, which is the strict side.
 const MOST_SAMPLES: f64 = 4e6;
 
-/// So many ways are tried for a line, its own and those of lines that make room for it, one for the other: bounds the time.
-/// Where more lines than that are drawn each beside itself, by more than they are apart, some are said to be merged.
+/// So many ways are tried for a line, its own and those of lines that make room for it, one for the other:
+/// bounds the time. Where more lines than that are drawn each beside itself, by more than they are apart,
+/// some are said to be merged.
 const MOST_TRIED: u32 = 8;
 
 /// How the lines of a scan were drawn.
@@ -59,11 +62,13 @@ impl FollowedLines {
     }
 }
 
-/// How `drawn` follows `lines`, which are best a vectorization of the scan within half a pixel: each of them, from where it
-/// meets others to where it meets others again, by strokes end to end, either way round, no farther than `bound_px` from it.
+/// How `drawn` follows `lines`, which are best a vectorization of the scan within half a pixel: each of them,
+/// from where it meets others to where it meets others again, by strokes end to end, either way round, no
+/// farther than `bound_px` from it.
 ///
-/// No part of what was drawn stands for two lines, but near their ends, where they meet: within the bound, or a quarter of
-/// their length if that is less.
+/// No part of what was drawn stands for two lines, but near their ends, where they meet: within the bound, or
+/// a quarter of their length if that is less. A bound below 0, or that is no number, drops every line. The
+/// time grows with how much is drawn within the bound of a line.
 ///
 /// ```
 /// # use plotter_vector::{Drawing, PxPoint, followed_lines};
@@ -82,7 +87,9 @@ impl FollowedLines {
 #[must_use]
 pub fn followed_lines(lines: &Drawing, drawn: &Drawing, bound_px: f64) -> FollowedLines {
     let lines = lines_from_meeting_to_meeting(lines);
-    let ways = Ways::new(drawn, bound_px);
+    let step_px = step_px(drawn, (STEP_SHARE * bound_px).max(LEAST_STEP_PX));
+    let length_px = lines.iter().map(|line| length_px(line)).sum::<f64>();
+    let ways = Ways::new(drawn, bound_px, step_px.max(length_px / MOST_SAMPLES));
     let mut nearest: Vec<_> =
         lines.iter().enumerate().map(|(line, places)| (ways.along(places, |_| false), line)).collect();
     // Those that are nearest first: of two that want the same, mostly the one whose it is.
@@ -132,8 +139,9 @@ impl<'a> Shares<'a> {
         }
     }
 
-    /// A way of its own for a line: a free one, or one whose owners can take another. These are the augmenting paths of
-    /// Kuhn's assignment (1955), with a way of many samples in place of one partner. Whether there is one.
+    /// A way of its own for a line: a free one, or one whose owners can take another. These are the
+    /// augmenting paths of Kuhn's assignment (1955), with a way of many samples in place of one partner.
+    /// Whether there is one.
     fn find(&mut self, line: usize, round: usize) -> bool {
         let (lines, ways) = (self.lines, self.ways);
         let Some(places) = lines.get(line) else { return false };
@@ -292,7 +300,8 @@ struct Meetings {
 }
 
 impl Meetings {
-    /// Of one stroke, what is this far along it from a place is another line, px: nearer it is the turn of a corner.
+    /// Of one stroke, what is this far along it from a place is another line, px: nearer it is the turn of a
+    /// corner.
     const OTHER_PX: f64 = 4.0 * MEETING_PX;
 
     fn new(strokes: &[Vec<PxPoint>]) -> Self {
@@ -367,8 +376,8 @@ enum CameFrom {
     Before(usize),
 }
 
-/// All states at one place of the line. State 2 k is sample `near[k]`, passed in its stroke's sense; state 2 k + 1 the same
-/// sample passed against it.
+/// All states at one place of the line. State 2 k is sample `near[k]`, passed in its stroke's sense; state 2
+/// k + 1 the same sample passed against it.
 #[derive(Clone, Debug, Default)]
 struct Layer {
     /// Ascending.
@@ -408,8 +417,7 @@ impl Layer {
 }
 
 impl Ways {
-    fn new(drawn: &Drawing, bound_px: f64) -> Self {
-        let step_px = step_px(drawn, (STEP_SHARE * bound_px).max(LEAST_STEP_PX));
+    fn new(drawn: &Drawing, bound_px: f64, step_px: f64) -> Self {
         let (mut places, mut ends) = (Vec::new(), Vec::new());
         for stroke in drawn.chords(CHORD_ERROR_PX).strokes() {
             let samples = sampled(stroke, step_px);
@@ -511,7 +519,8 @@ impl Ways {
         }
     }
 
-    /// The line stays where it is, and the way goes over from a stroke's end to one of another, or of the same.
+    /// The line stays where it is, and the way goes over from a stroke's end to one of another, or of the
+    /// same.
     fn go_over(&self, layer: &mut Layer) {
         let is_end = |state: usize, leaves: bool| {
             let ends = layer.near.get(state / 2).and_then(|sample| self.ends.get(*sample as usize));
@@ -605,7 +614,8 @@ mod tests {
 
     #[test]
     fn out_of_order_is_not_followed_though_all_of_it_is_near() {
-        // A hairpin, 4 px from way to way, and a stroke that runs across its ways: within 5 px of each other, place by place.
+        // A hairpin, 4 px from way to way, and a stroke that runs across its ways: within 5 px of each other,
+        // place by place.
         let ways: Vec<(f64, f64)> = (0..10)
             .flat_map(|way| {
                 let y = 20.0 + 4.0 * f64::from(way);
@@ -628,7 +638,8 @@ mod tests {
         };
         let scan = rows(&[50.0, 53.0, 56.0, 59.0]);
         assert_eq!(counts(&scan, &rows(&[53.0, 59.0]), 8.0), [4, 2, 0]);
-        // All of them moved by more than the way from one to the next: each within the bound has one of its own.
+        // All of them moved by more than the way from one to the next: each within the bound has one of its
+        // own.
         assert_eq!(counts(&scan, &rows(&[54.0, 57.0, 60.0, 63.0]), 8.0), [4, 0, 0]);
     }
 
@@ -640,7 +651,8 @@ mod tests {
         assert_eq!(counts(&dot, &nothing, 1.0), [1, 0, 1]);
         assert_eq!(counts(&dot, &dot, 1.0), [1, 0, 0]);
         for bound_px in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300] {
-            let _ = followed_lines(&dot, &dot, bound_px);
+            let dropped = usize::from(bound_px.is_nan() || bound_px < 0.0);
+            assert_eq!(counts(&dot, &dot, bound_px), [1, 0, dropped], "{bound_px}");
         }
     }
 }

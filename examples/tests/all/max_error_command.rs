@@ -101,7 +101,8 @@ fn what_cannot_be_promised_is_refused_with_the_part_and_the_smallest_error() {
     keeps_its_promise(&kept, smallest_mm);
 }
 
-/// Within 1 mm the technical drawing has lines enough that lie closer together: those stay lines, unless the user allows less.
+/// Within 1 mm the technical drawing has lines enough that lie closer together: those stay lines, unless the
+/// user allows less.
 #[test]
 #[ignore = "two searches over twenty vectorizations: seconds in release, run by .ci/run"]
 fn lines_run_together_only_where_that_is_allowed() {

@@ -4,7 +4,8 @@ use crate::random::Random;
 use plotter_vector::{Drawing, PxPoint, followed_lines};
 use proptest::prelude::*;
 
-/// From sample to sample a way within the bound is judged an eighth of it apart: what uses nearly all of it may be missed.
+/// From sample to sample a way within the bound is judged an eighth of it apart: what uses nearly all of it
+/// may be missed.
 const SURE: f64 = 0.99;
 
 /// A wavy line from left to right at this height; the same waves for all.
@@ -21,7 +22,8 @@ fn wavy(y: f64, is_reversed: bool) -> Vec<PxPoint> {
     places
 }
 
-/// So many of these rows can have one of those each, none farther than the bound: by trying each row's alternatives.
+/// So many of these rows can have one of those each, none farther than the bound: by trying each row's
+/// alternatives.
 fn most_matched(rows: &[f64], drawn: &[f64], bound: f64) -> usize {
     fn seek(
         row: usize,
@@ -70,8 +72,9 @@ proptest! {
         }
         let followed = followed_lines(&scan, &ink, bound_px);
         prop_assert_eq!(followed.lines, rows.len());
-        // Lines of one shape at two heights are nearer than the heights are apart, where they are steep: by 1 / sqrt(1 + 0.6^2)
-        // at most, so what is matched by height at the bound is sure, and what is not even so is out.
+        // Lines of one shape at two heights are nearer than the heights are apart, where they are steep: by 1
+        // / sqrt(1 + 0.6^2) at most, so what is matched by height at the bound is sure, and what is not even
+        // so is out.
         let least = most_matched(&rows, &heights, SURE * bound_px);
         let most = most_matched(&rows, &heights, bound_px * 1.0_f64.hypot(0.6));
         let told = format!("{rows:?} {heights:?}");
@@ -82,8 +85,8 @@ proptest! {
         }
     }
 
-    /// A drawing whose vertices each move by less than the bound is followed, in whatever order and sense it is drawn; of
-    /// strokes that are left out each breaks a line.
+    /// A drawing whose vertices each move by less than the bound is followed, in whatever order and sense it
+    /// is drawn; of strokes that are left out each breaks a line.
     #[test]
     fn what_is_drawn_is_followed_and_what_is_left_out_is_missed(seed in 1_u64.., left_out in 0_usize..4) {
         const BOUND_PX: f64 = 3.0;
