@@ -87,9 +87,8 @@ fn a_line_of_a_pen_is_drawn_once_unless_the_published_algorithm_is_asked_for() {
 
 #[test]
 fn the_marking_board_plots_with_both_controllers_and_shows_its_response() {
-    /// A count of a motor is 0.0108 mm of the pen, and the target is rounded to one: seen in the counts are up to two, and one more while
-    /// motors that a belt couples are found out.
-    const COUNTED_MM: f64 = 0.033;
+    /// A count of a motor is 0.0108 mm of the pen, and the target is rounded to one: seen in the counts are up to two.
+    const COUNTED_MM: f64 = 0.0216;
     let board = machine("marking-board.toml");
     let plot = |controller: &str| {
         let directory = tempfile::tempdir().unwrap();

@@ -1,6 +1,6 @@
 //! [`ChosenController`]: the one that a machine's description asks for.
 
-use super::{AxisTrouble, Contouring, LineController, LineTracking, PointToPoint, PointToPointSettings};
+use super::{Contouring, LineController, LineTracking, PointToPoint, PointToPointSettings};
 use crate::{Axis, ControllerChoice, Demand, Direction, Drive, KinematicsChoice, Machine, StepPoint};
 use core::time::Duration;
 
@@ -86,10 +86,6 @@ impl LineController for ChosenController {
 
     fn has_arrived(&self) -> bool {
         self.get().has_arrived()
-    }
-
-    fn trouble(&self) -> Option<AxisTrouble> {
-        self.get().trouble()
     }
 
     fn reference(&self) -> Option<[f64; 2]> {

@@ -1,6 +1,6 @@
 //! The semi-virtual gantry's controller: the published protocol on one side, two DC motors on the other.
 
-use crate::control::{AxisTrouble, ChosenController, LineController};
+use crate::control::{ChosenController, LineController};
 use crate::protocol::Order;
 use crate::protocol::digits::{Dropped, Receiver, Reply};
 use crate::{Axis, Demand, Direction, Drive, LimitSwitches, Machine, SafetyGate, StepPoint};
@@ -20,15 +20,12 @@ pub enum Notice {
         /// Greatest coordinates, encoder counts.
         most: StepPoint,
     },
-    /// A motor or its encoder does what it should not.
-    Trouble(AxisTrouble),
 }
 
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Dropped(dropped) => dropped.fmt(f),
-            Self::Trouble(trouble) => trouble.fmt(f),
             Self::OutOfArea { target, most } => write!(
                 f,
                 "target ({}, {}) counts lies outside (0, 0)..=({}, {}): refused it",
@@ -61,8 +58,8 @@ const MOST_NOTICES: usize = 8;
 /// for byte in digits::encode(StepPoint::new(400, 0))? {
 ///     gantry.receive(Duration::ZERO, byte);
 /// }
-/// // a hundredth of a second later the motor is on its way
-/// while let Some(now) = gantry.next_tick().filter(|&at| at < Duration::from_millis(10)) {
+/// // half a tenth of a second later the motor is on its way
+/// while let Some(now) = gantry.next_tick().filter(|&at| at < Duration::from_millis(50)) {
 ///     gantry.tick(now);
 /// }
 /// assert!(gantry.drive().x().value() > 0.0);
@@ -104,8 +101,6 @@ pub struct Gantry<C = ChosenController> {
     /// The host waits to be told whether the motors are stopped.
     tell_stopped: bool,
     next_tick: Option<Duration>,
-    /// What was told last of a trouble.
-    trouble: Option<AxisTrouble>,
     notices: [Option<Notice>; MOST_NOTICES],
 }
 
@@ -194,7 +189,6 @@ impl<C: LineController> Gantry<C> {
             told: StepPoint::default(),
             tell_reached: false,
             tell_stopped: false,
-            trouble: None,
             notices: [None; MOST_NOTICES],
         }
     }
@@ -255,13 +249,6 @@ impl<C: LineController> Gantry<C> {
             due.checked_add(period).filter(|&next| next > now).or_else(|| now.checked_add(period));
         let demand = self.controller.tick(now);
         self.apply(demand);
-        let trouble = self.controller.trouble();
-        if trouble != self.trouble {
-            self.trouble = trouble;
-            if let Some(trouble) = trouble {
-                self.notice(Notice::Trouble(trouble));
-            }
-        }
     }
 
     /// Takes the state of a limit switch.

@@ -126,28 +126,6 @@ impl AxisPlant {
             - f64::from(decoding.rest_offset_counts())
     }
 
-    /// By how many whole counts `count` is wrong about where the shaft truly stands: 0 for one that a decoder may rightly have, which
-    /// with x1 may be either of two, as the edge of a count backwards lies half a count beyond that forwards.
-    ///
-    /// ```
-    /// # use plotter_motion::{AxisConfig, plant::AxisPlant};
-    /// let axis = AxisPlant::new(&AxisConfig::default(), 1e-5);
-    /// assert_eq!([-2, -1, 0, 1, 2].map(|count| axis.counts_from(count)), [2, 1, 0, 1, 2]);
-    /// ```
-    #[must_use]
-    pub fn counts_from(&self, count: i32) -> u32 {
-        let decoding = self.config.encoder.decoding;
-        // The places of a count reach so far on both sides of where a shaft rests in it: x1 -0.5 to 1.0 about 0.25, else 0 to 1 about 0.5.
-        let reach = match decoding {
-            Decoding::X1 => 0.75,
-            Decoding::X2 | Decoding::X4 => 0.5,
-        };
-        let beyond = (self.position_counts() - f64::from(count)).abs() - reach;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
-        let whole = libm::ceil(beyond).max(0.0) as u32;
-        whole
-    }
-
     /// Where the pen truly stands, mm from its start: where the shaft is, less what play and belt keep back.
     ///
     /// ```

@@ -86,18 +86,11 @@ impl TestBed {
     /// move an axis.
     pub fn new(machine: &Machine, settings: TestBedSettings) -> Result<Self, ConfigError> {
         machine.require(MachineKind::Gantry, "the control test bed")?;
-        let described = misjudged(machine, settings.wrong_share)?;
-        Ok(Self::with_description(machine, &described, settings))
-    }
-
-    /// A bench with a description of one's own, wrong in whichever way; `settings.wrong_share` is not used.
-    #[must_use]
-    pub fn with_description(machine: &Machine, described: &Machine, settings: TestBedSettings) -> Self {
         const SHORTEST: Duration = Duration::from_micros(1);
         const LONGEST: Duration = Duration::from_millis(1);
         let time_step = settings.time_step.clamp(SHORTEST, LONGEST);
-        let settings = TestBedSettings { time_step, ..settings };
-        Self { machine: *machine, described: *described, settings }
+        let described = misjudged(machine, settings.wrong_share)?;
+        Ok(Self { machine: *machine, described, settings: TestBedSettings { time_step, ..settings } })
     }
 
     /// The machine as it is.
@@ -159,7 +152,6 @@ impl TestBed {
             figures.note(&moment, self.settings.settled_mm);
             watch(&moment);
         }
-        figures.lost_counts = run.lost_counts();
         figures
     }
 
@@ -268,13 +260,6 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
             self.apply(demand);
             self.next_tick = Some(due + period.max(Duration::from_micros(1)));
         }
-    }
-
-    /// By how many whole counts the controller is wrong about where the worse shaft is.
-    fn lost_counts(&self) -> u32 {
-        let told = self.controller.position();
-        let [x, y] = &self.axes;
-        x.counts_from(told.x).max(y.counts_from(told.y))
     }
 
     fn moment(&self, moved: &Move, is_under_way: bool) -> Moment {

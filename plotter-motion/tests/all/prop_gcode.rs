@@ -299,10 +299,8 @@ proptest! {
         let lines = text.iter().filter(|byte| matches!(byte, b'\n' | b'\r')).count() + 1;
         for options in [read, Detection::of(text.iter().copied()).options()] {
             let ops: Vec<_> = PlotOps::with_options(text.iter().copied(), options).collect();
-            // A line gives ten operations at most, besides the thousand turns that the P of an arc may ask for, and the end a dot with its
-            // power.
-            let turns = 1000 * text.iter().filter(|byte| byte.eq_ignore_ascii_case(&b'P')).count();
-            prop_assert!(ops.len() <= 10 * lines + turns + 2);
+            // A line gives ten operations at most, and the end a dot with its power.
+            prop_assert!(ops.len() <= 10 * lines + 2);
             for op in &ops {
                 match op {
                     Ok(PlotOp::LaserPower { share }) => prop_assert!(*share > 0.0 && *share <= 1.0),

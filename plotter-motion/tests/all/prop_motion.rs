@@ -211,9 +211,7 @@ proptest! {
                 let distance = estimator.distance_from(estimator.count());
                 prop_assert!((-0.76..=0.76).contains(&distance), "{distance}");
             }
-            let model = estimator.model();
-            prop_assert!(estimator.speed_counts_s().is_finite() && estimator.disturbance_counts_s2().is_finite());
-            prop_assert!(model.accel_per_volt > 0.0 && model.damping_per_s > 0.0 && model.dry_friction >= 0.0);
+            prop_assert!(estimator.speed_counts_s().is_finite() && estimator.friction_counts_s2().is_finite());
         }
     }
 

@@ -370,7 +370,7 @@ fn an_axis_that_is_held_on_the_way_ends_the_experiment() {
 /// whose supply is so much stronger than described that the loop has more gain. The encoder is fine, so that there is an edge in
 /// every run, and none is miscounted where the shaft swings back.
 #[test]
-fn contouring_keeps_the_line_within_its_gain_margin_and_finds_out_a_motor_beyond_it() {
+fn contouring_keeps_the_line_within_its_gain_margin_and_swings_beyond_it() {
     let mut described = MachineConfig::default();
     for axis in [&mut described.x, &mut described.y] {
         axis.encoder = EncoderConfig { lines_per_turn: 2000, decoding: Decoding::X4 };
@@ -395,8 +395,7 @@ fn contouring_keeps_the_line_within_its_gain_margin_and_finds_out_a_motor_beyond
     };
     let (within, beyond) = (run(0.9), run(1.3));
     assert!(within.arrived_s.is_some() && within.max_mm < 0.01, "{within:?}");
-    // three and a half times as strong as described, it would swing for ever if it were believed to be as described
-    assert!(beyond.arrived_s.is_some() && beyond.max_mm < 0.05, "{beyond:?}");
+    assert!(beyond.arrived_s.is_none() && beyond.max_mm > 5.0 * within.max_mm, "{beyond:?}");
 }
 
 #[test]
@@ -436,9 +435,9 @@ fn eight_lines(described: &MachineConfig, plant: &MachineConfig) -> (usize, f64)
     (lines.iter().filter(|line| line.arrived_s.is_some()).count(), (square / samples).sqrt())
 }
 
-/// Why the default is not below 1.7: with motors off their description, loops that are softer draw worse.
+/// Why 1.7 is the default: with motors off their description, loops that are softer or stiffer draw worse.
 #[test]
-fn contouring_draws_worse_below_the_sensitivity_that_is_the_default() {
+fn contouring_draws_best_near_the_sensitivity_that_is_the_default() {
     let off = |share: f64| {
         let mut plant = MachineConfig::default();
         for (axis, sign) in [(&mut plant.x, share), (&mut plant.y, -share)] {
@@ -471,7 +470,7 @@ fn contouring_draws_worse_below_the_sensitivity_that_is_the_default() {
     let default = rows.iter().find(|row| row.0 == Simc::default().max_sensitivity).unwrap();
     for row in rows {
         assert_eq!(row.1, 8, "{row:?}");
-        assert!(default.2 <= row.2 || row.0 > default.0, "{row:?} beside {default:?}");
+        assert!(default.2 <= row.2, "{row:?} beside {default:?}");
     }
 }
 
