@@ -6,10 +6,10 @@
 
 use clap::Parser;
 use core::time::Duration;
-use plotter_examples::{
-    BenchSwitches, Recorded, StreamedSteps, built_firmware, plot_in_emulator, print, run,
-    streamed_in_emulator,
+use plotter_examples::machine::{
+    BenchSwitches, Recorded, StreamedSteps, built_firmware, plot_in_emulator, streamed_in_emulator,
 };
+use plotter_examples::shared::{print, run};
 use plotter_motion::{Machine, MachineConfig, Pen, PenMove, StepPoint};
 use plotter_replay::BenchRecorder;
 use plotter_replay::log::{Event, Header, Reader, Record, Writer};

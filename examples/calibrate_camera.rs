@@ -10,7 +10,7 @@
 //! ```
 
 use clap::Parser;
-use plotter_examples::{at, print, read_file, run, write_file};
+use plotter_examples::shared::{at, print, read_file, run, write_file};
 use plotter_vector::follow::{CameraSettings, Correction, Lens, Paper, SimulatedCamera};
 use plotter_vector::{PxPoint, decode};
 use std::fmt::Write as _;

@@ -10,5 +10,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    plotter_examples::compare_controllers(Vec::new())
+    plotter_examples::compare::compare_controllers(Vec::new())
 }

@@ -15,13 +15,14 @@
 //! ```
 
 use clap::{Parser, ValueEnum};
-use plotter_examples::{
+use plotter_examples::drawings::{
     Arrangement, Diagnostic, Diagnostics, DrawingFile, Language, PenLines, Reading, Severity, SvgReading,
-    SvgText, at, print, run,
+    SvgText,
 };
+use plotter_examples::shared::{at, print, run};
 use plotter_motion::gcode::{self, LaserCommand, PenControl, PenConvention, ServoCommand};
 use plotter_motion::hpgl::{self, thesis_text};
-use plotter_motion::{PenMove, PlotOp, Point, StepPoint, chords};
+use plotter_motion::{PenMove, PlotOp, Point, StepPoint, toolpath::chords};
 use std::cell::RefCell;
 use std::fmt;
 use std::fs::File;

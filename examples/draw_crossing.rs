@@ -10,7 +10,7 @@
 //! ```
 
 use clap::Parser;
-use plotter_examples::{print, run};
+use plotter_examples::shared::{print, run};
 use plotter_vector::{Bitmap, Gray, Pixel, PxPoint, Threshold, Vectorizer};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -18,16 +18,16 @@
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use plotter_examples::{
-    FollowFrame, FollowGif, FollowMachine, FollowOutcome, MovesFile, WindowSource, at, follow_page,
-    follow_svg, print, read_file, run, write_file,
+use plotter_examples::follow::{
+    FollowFrame, FollowGif, FollowMachine, FollowOutcome, MovesFile, WindowSource, follow_page, follow_svg,
 };
-use plotter_motion::{Machine, MachineKind};
+use plotter_examples::shared::{at, print, read_file, run, write_file};
+use plotter_motion::{Machine, config::MachineKind};
 use plotter_vector::follow::{
     CameraSettings, Correction, End, Hand, Lens, LineFollower, MappingFollower, MappingSettings, Paper,
     PublishedFollower, PublishedSettings, SimulatedCamera, SimulatedTable, Step, TableError, Tool, judge,
 };
-use plotter_vector::{Bounded, Gray, PxPoint, Vectorizer, decode};
+use plotter_vector::{Gray, PxPoint, Vectorizer, decode, stroke::Bounded};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

@@ -10,7 +10,8 @@
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-use plotter_examples::{WrongChoices, print, run, write_file, wrong_choices};
+use plotter_examples::follow::{WrongChoices, wrong_choices};
+use plotter_examples::shared::{print, run, write_file};
 use plotter_vector::PxPoint;
 use plotter_vector::follow::{
     CameraSettings, End, Judged, LineFollower, MappingFollower, MappingSettings, Paper, PublishedFollower,

@@ -20,13 +20,16 @@
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use plotter_examples::{
-    Arrangement, CrossingSet, Diagnostics, DrawingFile, JointFigures, Language, LongSheetMachine,
-    LongSheetReport, LongSheetRun, PenLines, Reading, Severity, SvgReading, TextilePattern, at,
-    long_sheet_svg, print, read_file, run, told_joints, write_file,
+use plotter_examples::drawings::{
+    Arrangement, Diagnostics, DrawingFile, Language, PenLines, Reading, Severity, SvgReading,
 };
-use plotter_motion::{Machine, MachineConfig, MachineKind, PlotOp};
-use plotter_stitch::{FramePasses, JoinFrames};
+use plotter_examples::long_sheet::{
+    CrossingSet, JointFigures, LongSheetMachine, LongSheetReport, LongSheetRun, TextilePattern,
+    long_sheet_svg, told_joints,
+};
+use plotter_examples::shared::{at, print, read_file, run, write_file};
+use plotter_motion::{Machine, MachineConfig, PlotOp, config::MachineKind};
+use plotter_stitch::{sheet::JoinFrames, split::FramePasses};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -81,6 +84,10 @@ struct Arguments {
     /// Seed of the paper, its marks and the head
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Paper of that width somewhere on the table: the x of both edges, mm. The head finds it, and the
+    /// drawing goes in its middle [default: as wide as the head can see]
+    #[arg(long, value_name = "LEFT,RIGHT", value_parser = edges, allow_hyphen_values = true)]
+    paper_edges: Option<[f64; 2]>,
     /// Share of the frame changes at which the paper folds
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share, allow_negative_numbers = true)]
     folds: f64,
@@ -93,11 +100,17 @@ struct Arguments {
     /// Writes the joints, magnified, and charts of discrepancy and drift
     #[arg(long, value_name = "F.svg")]
     svg: Option<PathBuf>,
+    /// Writes the table from above at one frame change: both frames, marks, scans and the probe for a fold
+    #[arg(long, value_name = "F.svg")]
+    change: Option<PathBuf>,
+    /// The frame whose change that is, from 1
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..), requires = "change")]
+    change_frame: u32,
     /// Writes all figures as JSON, joint by joint
     #[arg(long, value_name = "F.json")]
     report: Option<PathBuf>,
     /// Recorded scans, in place of a drawing
-    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["file", "frames", "method", "svg", "report", "machine"])]
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["file", "frames", "method", "svg", "change", "report", "machine", "paper_edges"])]
     traces: Vec<PathBuf>,
     /// Which crossings of the traces are used, and by which method
     #[arg(long, value_enum, default_value = "strip16", requires = "traces")]
@@ -126,6 +139,17 @@ enum Method {
 fn in_range(text: &str, least: f64, most: f64) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| String::from("give a number"))?;
     if (least..=most).contains(&number) { Ok(number) } else { Err(format!("give {least} to {most}")) }
+}
+
+fn edges(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|number| number.trim().parse().map_err(|_| String::from("give two numbers, as 300,1500")))
+        .collect::<Result<_, _>>()?;
+    match numbers[..] {
+        [left, right] if left.is_finite() && right.is_finite() && left < right => Ok([left, right]),
+        _ => Err("give two numbers, the smaller one first, as 300,1500".into()),
+    }
 }
 
 fn share(text: &str) -> Result<f64, String> {
@@ -161,12 +185,17 @@ fn main() -> ExitCode {
 fn draw_sheet(arguments: &Arguments) -> Result<(), String> {
     let machine = machine(arguments)?;
     let mut sheet = LongSheetMachine::new(&machine)?;
+    if let Some(edges_mm) = arguments.paper_edges {
+        /// As a roll lies that was mounted by hand, rad.
+        const TURN_RAD: f64 = 0.0005;
+        sheet = sheet.on_paper(edges_mm, TURN_RAD, arguments.seed)?;
+    }
     sheet.sheet.feed.folds = arguments.folds;
     match &arguments.file {
         None => {
             let pattern = TextilePattern {
                 length_mm: 1e3 * arguments.length_m,
-                height_mm: sheet.layout.height_mm,
+                width_mm: sheet.layout.width_mm,
                 chord_mm: arguments.chord_mm,
             };
             let name = format!("textile pattern of {} m", arguments.length_m);
@@ -243,6 +272,9 @@ fn draw_with<M: JoinFrames, I: Iterator<Item = PlotOp>>(
     if let Ok(style) = ProgressStyle::with_template("{spinner} frame {pos}, {elapsed}") {
         bar.set_style(style);
     }
+    if arguments.change.is_some() {
+        sheet.shown.0 = arguments.change_frame;
+    }
     let in_file = |error: plotter_stitch::SplitError| format!("{name}: {error}");
     let first = frames.next().transpose().map_err(in_file)?;
     sheet.first(first.as_ref())?;
@@ -263,6 +295,12 @@ fn draw_with<M: JoinFrames, I: Iterator<Item = PlotOp>>(
     if let Some(path) = &arguments.svg {
         let title = format!("{name}, {method}: {:.3} mm at the worst joint", report.joint_worst_mm);
         write_file(path, long_sheet_svg(&title, &joints, &sheet.frames))?;
+    }
+    if let Some(path) = &arguments.change {
+        let change = sheet.shown.1.as_ref().ok_or_else(|| {
+            format!("--change-frame {}: the drawing has {} frames", arguments.change_frame, joints.len() + 1)
+        })?;
+        write_file(path, change.svg())?;
     }
     if let Some(path) = &arguments.report {
         let text = serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?;

@@ -20,18 +20,20 @@
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-use plotter_examples::{
-    FollowedPath, TruePath, at, fit_drawing, follow, predicted_s, print, read_file, rounding_mm, run, slowed,
-    speed_trial, vectorizer, write_file,
+use plotter_examples::max_error::{
+    FollowedPath, TruePath, follow, predicted_s, rounding_mm, slowed, speed_trial,
 };
+use plotter_examples::shared::{at, fit_drawing, print, read_file, run, vectorizer, write_file};
 use plotter_motion::{
-    Budget, BudgetError, BudgetLimits, BudgetPart, Machine, MachineConfig, MachineKind, PlotOp, Point,
-    VectorizeConfig,
+    Machine, MachineConfig, PlotOp, Point,
+    budget::{Budget, BudgetError, BudgetLimits, BudgetPart},
+    config::{MachineKind, VectorizeConfig},
 };
-use plotter_replay::{Canvas, CanvasStyle, Layer};
+use plotter_replay::{Canvas, CanvasStyle, draw::Layer};
 use plotter_vector::{
-    Bitmap, Despeckled, Drawing, FollowedLines, Gray, InkDistance, PxPoint, Scale, Vectorized, decode,
-    followed_lines,
+    Bitmap, Drawing, Gray, PxPoint, Scale, Vectorized, decode,
+    ink::Despeckled,
+    report::{FollowedLines, InkDistance, followed_lines},
 };
 use serde_json::json;
 use std::path::{Path, PathBuf};

@@ -4,7 +4,7 @@
 
 use plotter_motion::control::{AxisController, AxisState, ShaftModel, TwoAxes};
 use plotter_motion::testbed::Entry;
-use plotter_motion::{AxisConfig, Duty};
+use plotter_motion::{Duty, config::AxisConfig};
 use std::process::ExitCode;
 
 /// PI on the position and P on the speed, in shares of the supply.
@@ -35,7 +35,7 @@ impl AxisController for Mine {
 }
 
 fn main() -> ExitCode {
-    plotter_examples::compare_controllers(vec![Entry::contour("mine", |machine| {
+    plotter_examples::compare::compare_controllers(vec![Entry::contour("mine", |machine| {
         let config = machine.config();
         TwoAxes { x: Mine::of(&config.x), y: Mine::of(&config.y) }
     })])

@@ -10,20 +10,32 @@
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use plotter_examples::{
-    BenchSwitches, Figure, PlotOutcome, PortLanguage, Recorded, at, board_header, built_firmware,
-    fit_drawing, html_page, lost_ink, plot_in_emulator, plot_on_port, print, read_file, run, simulate,
-    simulate_board, vectorized, vectorizer, write_file,
+use plotter_examples::machine::{
+    BenchSwitches, PlotOutcome, Recorded, board_header, built_firmware, plot_in_emulator, simulate,
+    simulate_board,
+};
+use plotter_examples::plot::{PortLanguage, plot_on_port};
+use plotter_examples::shared::{
+    Figure, at, fit_drawing, html_page, lost_ink, print, read_file, run, vectorized, vectorizer, write_file,
 };
 use plotter_motion::firmware::MarkingBoardSettings;
 use plotter_motion::{
-    ControllerChoice, Machine, MachineConfig, MachineKind, OutOfReach, PenMove, PlotOp, hpgl, targets,
+    Machine, MachineConfig, PenMove, PlotOp,
+    config::{ControllerChoice, MachineKind},
+    hpgl,
+    toolpath::{OutOfReach, targets},
 };
 use plotter_replay::log::{self, Header};
-use plotter_replay::{BenchRecorder, Canvas, Chart, ContourError, PlotterSettings, VirtualPlotter, Ways};
+use plotter_replay::{
+    BenchRecorder, Canvas, Chart, PlotterSettings, VirtualPlotter,
+    compare::{ContourError, Ways},
+};
 use plotter_vector::{
-    Algorithm, Beyond, Despeckled, Drawing, ErrorReport, RowSource as _, Scan, TracedSheet, Vectorizer,
-    error_chart, svg,
+    Algorithm, Drawing, ErrorReport, FileRows, TracedSheet, Vectorizer,
+    ink::Despeckled,
+    picture::RowSource as _,
+    report::{Beyond, error_chart},
+    svg,
 };
 use serde_json::json;
 use std::fmt::Write as _;
@@ -246,7 +258,7 @@ fn trace(args: &Args, machine: &Machine) -> Result<(Vectorizer, TracedSheet), St
         AlgorithmArg::Published => Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
         // One pen, whatever the file says: this machine has no carousel.
         AlgorithmArg::Ours => {
-            let scan = Scan::new(Cursor::new(&bytes)).map_err(|error| at(path, &error))?;
+            let scan = FileRows::new(Cursor::new(&bytes)).map_err(|error| at(path, &error))?;
             let scale = fit_drawing((scan.width(), scan.height()), machine, args.width_mm)?;
             vectorizer(&machine.config().vectorize, scale.mm_per_px())?
         }

@@ -20,15 +20,20 @@
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use plotter_examples::{
-    Arrangement, BLOCKS, Diagnostic, Diagnostics, DrawingFile, DrawnExtent, Happening, Language, Ops,
-    PenLines, PlotFigures, Reading, Severity, SpeedChart, StepFile, SteppedPlot, SteppedPreview,
-    SteppedReport, SvgReading, at, print, read_file, run, write_file,
+use plotter_examples::drawings::{
+    Arrangement, Diagnostic, Diagnostics, DrawingFile, Language, Ops, PenLines, Reading, Severity, SvgReading,
+};
+use plotter_examples::machine::{BLOCKS, Happening, SteppedPlot};
+use plotter_examples::shared::{at, print, read_file, run, write_file};
+use plotter_examples::stepper::{
+    DrawnExtent, PlotFigures, SpeedChart, StepFile, SteppedPreview, SteppedReport,
 };
 use plotter_motion::kinematics::MotorScale;
 use plotter_motion::{
-    AccelChoice, AccelLimit, Estimator, Machine, MachineConfig, MachineKind, PathMode, Pen, PlanError,
-    PlannerSettings, PlotOp, Point, StepGenSettings,
+    Machine, MachineConfig, PathMode, Pen, PlannerSettings, PlotOp, Point,
+    config::{AccelChoice, MachineKind},
+    planner::{AccelLimit, PlanError},
+    stepgen::{Estimator, StepGenSettings},
 };
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -186,7 +191,7 @@ fn plot(arguments: &Arguments) -> Result<(), String> {
     let mut said = Diagnostics::default();
     let (machine, settings) = machine(arguments, &mut said)?;
     let config = machine.config();
-    let motor = |stepper: &plotter_motion::StepperConfig| MotorScale {
+    let motor = |stepper: &plotter_motion::config::StepperConfig| MotorScale {
         steps_per_mm: arguments.steps_per_mm.unwrap_or(stepper.steps_per_mm),
         // Which way a motor turns does not matter to the picture.
         inverted: false,

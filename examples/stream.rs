@@ -9,11 +9,11 @@
 use clap::Parser;
 use core::f64::consts::TAU;
 use core::time::Duration;
-use plotter_examples::{
-    BenchSwitches, StreamedSteps, at, built_firmware, print, read_file, run, streamed_in_emulator,
-    streamed_on_the_desk,
+use plotter_examples::machine::{
+    BenchSwitches, StreamedSteps, built_firmware, streamed_in_emulator, streamed_on_the_desk,
 };
-use plotter_motion::{Machine, MachineConfig, MachineKind, StepPoint};
+use plotter_examples::shared::{at, print, read_file, run};
+use plotter_motion::{Machine, MachineConfig, StepPoint, config::MachineKind};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -22,19 +22,24 @@
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use plotter_examples::{
-    INTERRUPTED, Interrupt, Overlay, at, is_standard, lost_ink, overlay_png, overlay_step, print, read_file,
-    read_input, run, vectorizer, write_output,
+use plotter_examples::shared::{
+    at, is_standard, lost_ink, print, read_file, read_input, run, vectorizer, write_output,
 };
+use plotter_examples::trace::{INTERRUPTED, Interrupt, Overlay, overlay_png, overlay_step};
 use plotter_motion::gcode::{PenControl, WriteOptions};
 use plotter_motion::hpgl::UNITS_PER_MM;
 use plotter_motion::{
-    Machine, PensChoice, Point, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode,
+    Machine, Point,
+    config::{PensChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode},
 };
 use plotter_vector::{
-    Algorithm, Bin, Colour, DecodeError, Despeckled, Drawing, ErrorReport, MAX_PENS, Palette, Pens, Pixel,
-    Prefer, Progress, PxPoint, Row, RowSource as _, Scale, Scan, SheetErrors, ThresholdMethod, Vectorizer,
-    decode_colour, error_chart, gcode, hpgl, pen_width_px, svg_in_colour,
+    Algorithm, Colour, DecodeError, Drawing, ErrorReport, FileRows, Palette, Pixel, Prefer, Progress,
+    PxPoint, Scale, ThresholdMethod, Vectorizer, decode_colour, gcode, hpgl,
+    ink::{Despeckled, MAX_PENS, Pens, pen_width_px},
+    picture::{Row, RowSource as _},
+    report::{Bin, error_chart},
+    trace::SheetErrors,
+    write::svg_in_colour,
 };
 use serde::Serialize;
 use std::borrow::Cow;
@@ -505,7 +510,7 @@ fn by_rows<R: Read + Seek>(
     interrupt: Interrupt,
 ) -> Result<Traced, String> {
     let start = Instant::now();
-    let mut scan = Scan::new(file).map_err(|error| error.to_string())?;
+    let mut scan = FileRows::new(file).map_err(|error| error.to_string())?;
     let bar = progress_bar();
     let mut report = |done: f64| {
         bar.set_position(steps(done));
@@ -551,7 +556,7 @@ fn steps(share: f64) -> u64 {
 }
 
 /// What the overlay shows of a scan.
-fn thumbnail<R: Read + Seek>(scan: &mut Scan<R>) -> Result<Picture, String> {
+fn thumbnail<R: Read + Seek>(scan: &mut FileRows<R>) -> Result<Picture, String> {
     let step = overlay_step(scan.width(), scan.height()) as usize;
     let columns = (scan.width() as usize).div_ceil(step);
     let mut levels = Vec::new();
@@ -610,7 +615,7 @@ fn in_colour(
     Ok(Traced { errors, removed, palette: found.palette, pen_px: None, widest_px, picture, time, drawing })
 }
 
-fn pen_report<'a>(pen: &'a plotter_vector::PalettePen, drawing: &Drawing) -> PenReport<'a> {
+fn pen_report<'a>(pen: &'a plotter_vector::ink::PalettePen, drawing: &Drawing) -> PenReport<'a> {
     let own = drawing.of_pen(pen.number);
     PenReport {
         number: pen.number,
@@ -707,11 +712,11 @@ fn settings(arguments: &Arguments) -> Result<Settings, String> {
         None => {}
     }
     if let Some(given) = arguments.max_line_px {
-        let fits = u32::try_from(given).ok().filter(|px| *px <= plotter_vector::MAX_LINE_PX);
+        let fits = u32::try_from(given).ok().filter(|px| *px <= plotter_vector::areas::MAX_LINE_PX);
         config.max_line_px = fits.ok_or_else(|| {
             format!(
                 "--max-line-px: {given} px lies outside 0..={} px; 0 finds it from the picture",
-                plotter_vector::MAX_LINE_PX
+                plotter_vector::areas::MAX_LINE_PX
             )
         })?;
     }

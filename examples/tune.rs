@@ -15,11 +15,11 @@
 //! ```
 
 use clap::{Parser, ValueEnum};
-use plotter_examples::{
-    TunedAxis, TuningMethod, TuningReport, TuningSettings, at, loop_charts_svg, print, read_file, run,
-    tuned_lines, write_file,
+use plotter_examples::shared::{at, print, read_file, run, write_file};
+use plotter_examples::tune::{
+    TunedAxis, TuningMethod, TuningReport, TuningSettings, loop_charts_svg, tuned_lines,
 };
-use plotter_motion::{Axis, Machine, MachineConfig, MachineKind};
+use plotter_motion::{Axis, Machine, MachineConfig, config::MachineKind};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -5,7 +5,10 @@ use plotter_motion::control::{ContouringSettings, LineTrackingSettings};
 use plotter_motion::firmware::GantrySettings;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use plotter_motion::gcode::PenConvention;
-use plotter_motion::{AxisConfig, ControllerChoice, Machine, MachineKind};
+use plotter_motion::{
+    Machine,
+    config::{AxisConfig, ControllerChoice, MachineKind},
+};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -50,11 +53,11 @@ fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn 
     writeln!(text, "use plotter_motion::firmware::GantrySettings;")?;
     writeln!(
         text,
-        "use plotter_motion::{{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotionLimits, MotorConfig, TransmissionConfig}};"
+        "use plotter_motion::{{MotionLimits, config::{{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotorConfig, TransmissionConfig}}}};"
     )?;
     writeln!(
         text,
-        "use plotter_motion::{{PublishedConfig, SafetyGate, StepPoint, StepperConfig, SyncStop}};"
+        "use plotter_motion::{{SafetyGate, StepPoint, config::{{PublishedConfig, StepperConfig}}, control::SyncStop}};"
     )?;
     writeln!(text, "/// Bits a second of the gantry's line.\npub const BAUD: u32 = {};", config.serial.baud)?;
     writeln!(
@@ -84,6 +87,9 @@ fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn 
         _ => {
             let settings = format!("{:?}", ContouringSettings::of(machine))
                 .replace("decoding: ", "decoding: Decoding::");
+            if settings.contains("CoastingBridge") {
+                writeln!(text, "use plotter_motion::control::CoastingBridge;")?;
+            }
             writeln!(text, "const LINE: ContouringSettings = {settings};")?;
             "Contouring"
         }
@@ -114,7 +120,10 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
     )?;
     writeln!(text, "use plotter_motion::gcode::{{LaserCommand, PenConvention, ServoCommand}};")?;
     writeln!(text, "use plotter_motion::kinematics::Backlash;")?;
-    writeln!(text, "use plotter_motion::{{AccelLimit, HomingAxis, PathMode, PlannerSettings}};")?;
+    writeln!(
+        text,
+        "use plotter_motion::{{PathMode, PlannerSettings, homing::HomingAxis, planner::AccelLimit}};"
+    )?;
     let baud = machine.config().serial.baud;
     writeln!(
         text,
@@ -154,11 +163,11 @@ fn plotter_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn
     writeln!(
         text,
         "/// The stepper plotter's controller, with what its settings need.\npub type StepperPlotter = \
-         plotter_motion::firmware::StepperPlotter<Grbl<{pens}>, plotter_motion::{modes}>;"
+         plotter_motion::firmware::StepperPlotter<Grbl<{pens}>, plotter_motion::planner::{modes}>;"
     )?;
     writeln!(
         text,
-        "/// The same, looked at by the compiler.\npub static CHECKED_PLOTTER: CheckedSettings<plotter_motion::{modes}> = \
+        "/// The same, looked at by the compiler.\npub static CHECKED_PLOTTER: CheckedSettings<plotter_motion::planner::{modes}> = \
          match PLOTTER.checked() {{ Ok(checked) => checked, Err(_) => panic!(\"no machine can be driven with them\") }};"
     )?;
     Ok(())

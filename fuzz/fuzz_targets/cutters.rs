@@ -8,9 +8,9 @@ use plotter_motion::hpgl::cutter::{Dialect, PlotOps, ReadOptions};
 const MOST_OPS: usize = 20_000;
 
 fuzz_target!(|bytes: &[u8]| {
-    let found = Dialect::of(bytes).map(|(dialect, _)| dialect);
+    let found = Dialect::detect(bytes).map(|(dialect, _)| dialect);
     for dialect in [Dialect::CammGl, Dialect::GpGl].into_iter().chain(found) {
-        for item in PlotOps::with_options(bytes.iter().copied(), ReadOptions::of(dialect)).take(MOST_OPS) {
+        for item in PlotOps::with_options(bytes.iter().copied(), ReadOptions::for_dialect(dialect)).take(MOST_OPS) {
             match item {
                 Ok(op) => assert!(op.target().is_none_or(|to| to.is_finite()), "{op:?}"),
                 Err(error) => {

@@ -18,7 +18,7 @@ fuzz_target!(|bytes: &[u8]| {
         4 => PenConvention::Laser { command: LaserCommand::M4, full: 255.0 },
         5 => PenConvention::Servo { command: ServoCommand::Z, up: 90.0, down: 130.0 },
         6 => PenConvention::Motion,
-        _ => Detection::of(text.iter().copied()).pen(),
+        _ => Detection::from_bytes(text.iter().copied()).pen(),
     };
     // Curves, turns and cycles are many operations, and loops repeat lines: `gcode_program` is for them.
     let is_plain = !text.iter().any(|byte| matches!(byte, b'O' | b'o' | b'P' | b'p' | b'5' | b'8' | b'7'));

@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use plotter_replay::log::{Reader, Record, Writer};
-use plotter_replay::{CompareSettings, PlotterSettings, VirtualPlotter, compare, export};
+use plotter_replay::{CompareSettings, PlotterSettings, VirtualPlotter, export, compare::compare};
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(mut reader) = Reader::new(bytes) else { return };

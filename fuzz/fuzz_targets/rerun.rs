@@ -6,7 +6,7 @@ use plotter_motion::protocol::Hello;
 use plotter_motion::protocol::frame::{Frame, Kind};
 use plotter_motion::{Machine, MachineConfig};
 use plotter_replay::log::{Event, Header, Record};
-use plotter_replay::{AnyController, Decoder, Player, PlayerSettings, RecordingTraits};
+use plotter_replay::{AnyController, Player, PlayerSettings, compare::Decoder, player::RecordingTraits};
 use std::time::Duration;
 
 // Three bytes make a record: who says it, how long after the last, and what. A host's call and greeting come first, so that frames of
@@ -59,13 +59,13 @@ fuzz_target!(|bytes: &[u8]| {
     let player = Player::new(settings);
     let rerun = || -> Vec<_> {
         let controller =
-            AnyController::of_recording(&header, &traits, Some(&machine)).map_err(|error| error.to_string());
+            AnyController::for_recording(&header, &traits, Some(&machine)).map_err(|error| error.to_string());
         controller.into_iter().flat_map(|controller| player.rerun_iter(records.clone(), controller)).collect()
     };
     assert_eq!(rerun(), rerun());
     let mut decoder = Decoder::new(&player.header(&header));
     player.inputs(records.clone()).for_each(|record| drop(decoder.words(&record)));
-    if let Ok(controller) = AnyController::of_recording(&header, &traits, Some(&machine)) {
+    if let Ok(controller) = AnyController::for_recording(&header, &traits, Some(&machine)) {
         let _ = player.check(records, controller).to_string();
     }
 });

@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use plotter_vector::{DecodeError, Row, RowSource, Scan, decode, decode_colour, gray_on_white};
+use plotter_vector::{DecodeError, FileRows, decode, decode_colour, picture::{Row, RowSource, gray_on_white}};
 use std::io::Cursor;
 
 /// The levels of all rows, and the error that ended them.
@@ -27,7 +27,7 @@ fuzz_target!(|bytes: &[u8]| {
     if !plotter_fuzz::is_small(bytes) {
         return;
     }
-    let Ok(mut scan) = Scan::new(Cursor::new(bytes)) else { return };
+    let Ok(mut scan) = FileRows::new(Cursor::new(bytes)) else { return };
     let size = (scan.width(), scan.height());
     let (levels, error) = {
         let once = levels(&mut scan);

@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use plotter_vector::{Bounded, Curve, PxPoint};
+use plotter_vector::{Curve, PxPoint, stroke::Bounded};
 
 /// Most sites: what is slow for a few is not found with many.
 const MOST_SITES: usize = 400;

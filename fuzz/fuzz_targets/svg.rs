@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use plotter_vector::{SvgOptions, SvgPens, read_svg};
+use plotter_vector::{SvgOptions, read_svg, svg_in::SvgPens};
 
 /// Vertices after which a file has shown what it can do.
 const MOST_VERTICES: usize = 20_000;

@@ -10,7 +10,7 @@ pub fn is_small(bytes: &[u8]) -> bool {
         let dimensions = reader.ok().and_then(|reader| reader.into_dimensions().ok());
         return dimensions.is_none_or(|dimensions| size(dimensions) <= MOST_PIXELS);
     }
-    use plotter_vector::{RowSource, Scan};
-    let scan = Scan::new(std::io::Cursor::new(bytes));
+    use plotter_vector::{FileRows, picture::RowSource};
+    let scan = FileRows::new(std::io::Cursor::new(bytes));
     scan.map_or(true, |scan| size((scan.width(), scan.height())) <= MOST_PIXELS)
 }

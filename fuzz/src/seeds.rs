@@ -1,6 +1,6 @@
 //! Writes small pictures of every kind, and texts with every command, into `corpus/`, for each target.
 
-#[path = "../../plotter-vector/tests/all/scan/pictures.rs"]
+#[path = "../../plotter-vector/tests/all/file_rows/pictures.rs"]
 mod pictures;
 
 fn main() -> std::io::Result<()> {

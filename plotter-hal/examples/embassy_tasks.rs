@@ -50,8 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let time = Time::default();
     let clock = time.clock.clone();
     let pwm = Pwm { clock: clock.clone(), name: "servo", full: 20_000, duty: None, least_change: 1 };
-    let pen = PenServo::new(pwm, PenServoSettings { lowering_deg_s: 600.0, ..PenServoSettings::default() })
-        .map_err(|(refused, _)| refused)?;
+    let pen = PenServo::new(pwm, PenServoSettings { lowering_deg_s: 600.0, ..PenServoSettings::default() })?;
     let settings = StepperPlotterSettings {
         dialect: Dialect::Grbl,
         pen_settle: pen.lowering_time(), // the controller waits for as long as the pen takes

@@ -33,7 +33,7 @@ use crate::NoPin;
 use core::time::Duration;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{OutputPin, PinState};
-use plotter_motion::{Axis, Direction, Pulse};
+use plotter_motion::{Axis, Direction, safety::Pulse};
 
 /// One stepper motor. It steps by nothing but a [`Pulse`], which only a safety gate makes.
 ///

@@ -65,6 +65,11 @@ pub trait Bridge {
 /// that is being driven, and both inputs are never high together. (A timer that buffers its compare value takes
 /// the zero over at the end of its period; a PWM that must stop at once has to be set up without that buffer.)
 ///
+/// Between the pulses, and at rest, the motor coasts. A controller must know that: write the PWM's frequency
+/// as [`enable_pwm_hz`](plotter_motion::config::MotorConfig::enable_pwm_hz) into the machine's file, and let
+/// it be at least that of the control loop. A motor that brakes in between, as the mean of its voltage would
+/// turn it, takes a bridge with the PWM on its inputs: [`Drv8871`] with [`Decay::Slow`].
+///
 /// Whatever pin fails, the motor does not run on: see [`Error`]. Dropping the driver leaves the pins as they are;
 /// [`coast`](Self::coast) first.
 ///

@@ -17,7 +17,7 @@
 use core::fmt;
 use core::time::Duration;
 use embedded_hal::pwm::{self, SetDutyCycle};
-use plotter_motion::Beam;
+use plotter_motion::safety::Beam;
 
 /// A laser. Dark unless it was given a [`Beam`] and the machine moves.
 ///

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 #![forbid(unsafe_code)]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod a4988;
 pub mod axis;
@@ -26,6 +27,7 @@ pub use laser::{Laser, power_at_speed};
 pub use limit_switch::{LimitSwitch, LimitSwitchGroup};
 pub use no_pin::NoPin;
 pub use pen_servo::{CheckedPenServo, PenServo, PenServoSettings, ServoPoint};
+pub use plotter_motion;
 pub use pulse_counter::{CounterDelta, PulseInput};
 pub use quadrature::Quadrature;
 pub use serial_line::SerialLine;

@@ -229,7 +229,7 @@ pub struct CheckedPenServo {
 ///     SetDuty::max_duty_cycle(20_000),
 ///     SetDuty::set_duty_cycle(1500), // down: 90 degrees
 /// ]);
-/// let mut pen = PenServo::new(pwm, PenServoSettings::default()).map_err(|(refused, _)| refused)?;
+/// let mut pen = PenServo::new(pwm, PenServoSettings::default())?;
 /// pen.tick(Duration::ZERO)?;
 /// assert_eq!(pen.due(), Some(Duration::from_millis(200)));
 /// pen.tick(Duration::from_millis(200))?;
@@ -268,11 +268,11 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
     ///
     /// # Errors
     ///
-    /// [`SettingsError`] for a servo that cannot be right, with what would be; the PWM comes back with it.
-    pub fn new(pwm: Pwm, settings: PenServoSettings) -> Result<Self, (SettingsError, Pwm)> {
+    /// [`Refused`] for a servo that cannot be right, with what would be; the PWM comes back with it.
+    pub fn new(pwm: Pwm, settings: PenServoSettings) -> Result<Self, Refused<Pwm>> {
         match settings.checked(pwm.max_duty_cycle()) {
             Ok(checked) => Ok(Self::with(pwm, checked)),
-            Err(refused) => Err((refused, pwm)),
+            Err(why) => Err(Refused { why, pwm }),
         }
     }
 
@@ -281,7 +281,7 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
     /// # Errors
     ///
     /// The PWM, if it has another number of steps than they were looked at for.
-    pub fn of(pwm: Pwm, checked: CheckedPenServo) -> Result<Self, Pwm> {
+    pub fn from_checked(pwm: Pwm, checked: CheckedPenServo) -> Result<Self, Pwm> {
         if pwm.max_duty_cycle() == checked.pwm_steps { Ok(Self::with(pwm, checked)) } else { Err(pwm) }
     }
 
@@ -542,6 +542,34 @@ impl fmt::Display for SettingsError {
 }
 
 impl core::error::Error for SettingsError {}
+
+/// Settings that cannot be right, and the PWM that came with them.
+#[derive(Clone, Copy, PartialEq)]
+pub struct Refused<Pwm> {
+    /// What is wrong with them.
+    pub why: SettingsError,
+    /// The PWM, untouched.
+    pub pwm: Pwm,
+}
+
+// A PWM need not be shown for the rest to be.
+impl<Pwm> fmt::Debug for Refused<Pwm> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Refused").field("why", &self.why).finish_non_exhaustive()
+    }
+}
+
+impl<Pwm> fmt::Display for Refused<Pwm> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.why.fmt(f)
+    }
+}
+
+impl<Pwm> core::error::Error for Refused<Pwm> {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        Some(&self.why)
+    }
+}
 
 /// The PWM of a pen's servo failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -6,7 +6,7 @@
 
 use core::fmt;
 use embedded_hal::digital::{self, InputPin};
-use plotter_motion::{Axis, Drive, PulseCounter};
+use plotter_motion::{Axis, Drive, encoder::PulseCounter};
 
 /// One input pin and the counter behind it. A pulse is a rising edge.
 ///
@@ -78,7 +78,7 @@ impl<Pin: InputPin> PulseInput<Pin> {
 ///
 /// ```
 /// # use plotter_hal::CounterDelta;
-/// # use plotter_motion::{Duty, PulseCounter};
+/// # use plotter_motion::{Duty, encoder::PulseCounter};
 /// let mut delta = CounterDelta::new(65_530_u16);
 /// let mut counter = PulseCounter::default();
 /// counter.driven(Duty::FULL);

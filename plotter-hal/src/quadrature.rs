@@ -24,14 +24,18 @@
 
 use core::fmt;
 use embedded_hal::digital::{self, InputPin};
-use plotter_motion::{Decoding, Direction, Phases, QuadratureX1, QuadratureX2, QuadratureX4};
+use plotter_motion::{
+    Direction,
+    config::Decoding,
+    encoder::{Phases, QuadratureX1, QuadratureX2, QuadratureX4},
+};
 
 /// Two input pins and the decoder behind them.
 ///
 /// ```
 /// use embedded_hal_mock::eh1::digital::{Mock as Pin, State::{High, Low}, Transaction as Read};
 /// use plotter_hal::Quadrature;
-/// use plotter_motion::{Decoding, Direction, Phases};
+/// use plotter_motion::{Direction, config::Decoding, encoder::Phases};
 ///
 /// let a = Pin::new(&[Read::get(Low), Read::get(High), Read::get(High)]);
 /// let b = Pin::new(&[Read::get(High), Read::get(High), Read::get(Low)]);

@@ -69,10 +69,10 @@ use plotter_motion::protocol::SUBSTITUTE;
 ///     gantry.receive(now, received.byte);
 /// }
 /// line.send(|| gantry.transmit())?;
-/// # while let Some(now) = gantry.next_tick().filter(|&at| at < Duration::from_millis(50)) {
+/// # while let Some(now) = gantry.next_tick().filter(|&at| at < Duration::from_millis(10)) {
 /// #     gantry.tick(now);
 /// # }
-/// assert!(gantry.drive().x().value() > 0.0); // half a tenth of a second later it is on its way
+/// assert!(gantry.drive().x().value() > 0.0); // ten milliseconds later it is on its way
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]

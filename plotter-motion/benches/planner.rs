@@ -13,7 +13,9 @@ mod real_files;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use drawings::Drawing;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
-use plotter_motion::{Action, PathMode, Planner, PlannerSettings, PlotOp, StepGen, StepGenSettings};
+use plotter_motion::{
+    PathMode, Planner, PlannerSettings, PlotOp, StepGen, planner::Action, stepgen::StepGenSettings,
+};
 use std::hint::black_box;
 
 fn modes() -> [(&'static str, PlannerSettings); 3] {

@@ -125,7 +125,7 @@ impl core::error::Error for BudgetError {}
 /// How an error is divided. The parts make no more than what was asked.
 ///
 /// ```
-/// # use plotter_motion::{Budget, BudgetLimits};
+/// # use plotter_motion::budget::{Budget, BudgetLimits};
 /// // 0.2 mm for a machine that is 0.02 mm off in slow motion and 0.06 mm more at its own speed.
 /// let limits = BudgetLimits {
 ///     vectorization_least_mm: 0.03,
@@ -147,7 +147,7 @@ impl core::error::Error for BudgetError {}
 ///
 /// let refused = Budget::split(0.05, &limits).unwrap_err().to_string();
 /// assert!(refused.starts_with("0.05 mm cannot be promised: control alone needs 0.035"));
-/// # Ok::<(), plotter_motion::BudgetError>(())
+/// # Ok::<(), plotter_motion::budget::BudgetError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
@@ -285,7 +285,7 @@ impl Budget {
     /// A machine's greatest speed, acceleration and jerk, slowed down as a whole: `k v`, `k² a` and `k³ j`.
     ///
     /// ```
-    /// # use plotter_motion::Budget;
+    /// # use plotter_motion::budget::Budget;
     /// let half = Budget { vectorization_mm: 0.1, blend_mm: 0.0, control_mm: 0.1, speed_share: 0.5 };
     /// assert_eq!(half.slowed(150.0, 3000.0, 80_000.0), (75.0, 750.0, 10_000.0));
     /// ```

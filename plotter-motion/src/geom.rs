@@ -277,6 +277,37 @@ impl Segment {
         }
     }
 
+    /// Between which shares of its way, 0 to 1, it lies in a rectangle, whose sides along the axes belong to
+    /// it; `None` where it does not come into it.
+    ///
+    /// Source: Y.-D. Liang, B. A. Barsky, "A new concept and method for line clipping" (1984).
+    ///
+    /// ```
+    /// # use plotter_motion::{Point, Segment};
+    /// let line = Segment::new(Point::new(-5.0, 1.0), Point::new(15.0, 1.0));
+    /// // from 5 mm on its way of 20 mm to 15 mm
+    /// assert_eq!(line.shares_in(Point::ORIGIN, Point::new(10.0, 2.0)), Some((0.25, 0.75)));
+    /// assert_eq!(line.shares_in(Point::ORIGIN, Point::new(10.0, 0.5)), None);
+    /// ```
+    #[must_use]
+    pub fn shares_in(self, least: Point, most: Point) -> Option<(f64, f64)> {
+        let (way, low, high) = (self.to - self.from, least - self.from, most - self.from);
+        let (mut first, mut last) = (0.0_f64, 1.0_f64);
+        for (step, low, high) in [(way.x, low.x, high.x), (way.y, low.y, high.y)] {
+            if step == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let (enters, leaves) =
+                if step > 0.0 { (low / step, high / step) } else { (high / step, low / step) };
+            first = libm::fmax(first, enters);
+            last = libm::fmin(last, leaves);
+        }
+        (first <= last).then_some((first, last))
+    }
+
     /// Distance of `point` from the nearest place of the segment, mm.
     ///
     /// ```

@@ -15,13 +15,14 @@
 //! axis is known to be longer, and slow after that, as in the source (spec 5.3).
 
 use crate::decimal_text::{Plain, Whole};
-use crate::{Axis, Direction, LimitSwitches, Machine, StepperConfig};
+use crate::{Axis, Direction, LimitSwitches, Machine, StepPair, config::StepperConfig};
 use core::fmt;
 
 /// How one axis is homed. Rates are pulses a second, lengths steps of the motor.
 ///
 /// The default is an axis of the documented stepper plotter: more than 26,000 steps long, fast below 24,000.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct HomingAxis {
     /// Rate at which the motor may start and stop at once, pulses/s.
     pub start_hz: u32,
@@ -62,7 +63,7 @@ impl HomingAxis {
     /// An axis of a checked machine with stepper motors; rates and lengths in whole pulses, rounded down.
     ///
     /// ```
-    /// # use plotter_motion::{Axis, HomingAxis, Machine, MachineConfig};
+    /// # use plotter_motion::{Axis, Machine, MachineConfig, homing::HomingAxis};
     /// let x = HomingAxis::of(&Machine::new(MachineConfig::stepper_plotter())?, Axis::X);
     /// assert_eq!((x.start_hz, x.fast_hz, x.known_steps), (2_000, 8_000, 23_996)); // 274 mm of 87.58 steps
     /// # Ok::<(), plotter_motion::ConfigError>(())
@@ -109,6 +110,24 @@ pub struct HomingStep {
     pub direction: Direction,
     /// Pulses a second: the step takes 1/`rate_hz` s.
     pub rate_hz: u32,
+}
+
+impl From<HomingStep> for StepPair {
+    /// ```
+    /// # use plotter_motion::{Axis, Direction, StepPair, homing::HomingStep};
+    /// let back = HomingStep { axis: Axis::Y, direction: Direction::Minus, rate_hz: 400 };
+    /// assert_eq!(StepPair::from(back), StepPair { x: 0, y: -1 });
+    /// ```
+    fn from(step: HomingStep) -> Self {
+        let one = match step.direction {
+            Direction::Plus => 1,
+            Direction::Minus => -1,
+        };
+        match step.axis {
+            Axis::X => Self { x: one, y: 0 },
+            Axis::Y => Self { x: 0, y: one },
+        }
+    }
 }
 
 /// Where homing is.
@@ -256,7 +275,7 @@ enum Phase {
 /// The state machine of homing.
 ///
 /// ```
-/// # use plotter_motion::{Axis, Direction, Homed, Homing, HomingAxis, HomingStatus, LimitSwitches};
+/// # use plotter_motion::{Axis, Direction, LimitSwitches, homing::{Homed, Homing, HomingAxis, HomingStatus}};
 /// // a machine whose axes are 3000 steps long, and stand anywhere
 /// let (mut x, mut y) = (1_200, 2_950);
 /// let short = HomingAxis { known_steps: 2_500, ..HomingAxis::default() };

@@ -256,6 +256,12 @@ impl Pulse<'_> {
     }
 }
 
+impl From<Pulse<'_>> for StepPair {
+    fn from(pulse: Pulse<'_>) -> Self {
+        Self { x: pulse.x, y: pulse.y }
+    }
+}
+
 const fn pulse(step: StepPair) -> Pulse<'static> {
     Pulse { x: step.x, y: step.y, gate: PhantomData }
 }
@@ -286,6 +292,7 @@ impl Beam<'_> {
 
 /// Why a step may not be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Blocked {
     /// The emergency stop is latched, or the host has stopped the machine.
     Stopped,
@@ -297,6 +304,20 @@ pub enum Blocked {
         end: Direction,
     },
 }
+
+impl fmt::Display for Blocked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (axis, end) = match self {
+            Self::Stopped => return f.write_str("the machine is stopped: reset the emergency stop first"),
+            Self::Limit { axis: Axis::X, end } => ("x", end),
+            Self::Limit { axis: Axis::Y, end } => ("y", end),
+        };
+        let end = if *end == Direction::Plus { "upper" } else { "lower" };
+        write!(f, "the limit switch at the {end} end of {axis} is pressed: step the other way")
+    }
+}
+
+impl core::error::Error for Blocked {}
 
 /// Which limit switches are pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -394,7 +415,7 @@ impl SafetyGate {
     /// [`LimitSwitches::RELEASED`] and `false`.
     ///
     /// ```
-    /// # use plotter_motion::{Blocked, LimitSwitches, SafetyGate, StepPair};
+    /// # use plotter_motion::{LimitSwitches, SafetyGate, StepPair, safety::Blocked};
     /// let gate = SafetyGate::new(LimitSwitches::RELEASED, true);
     /// assert_eq!(gate.pass_step(StepPair { x: 1, y: 0 }), Err(Blocked::Stopped));
     /// ```
@@ -491,7 +512,7 @@ impl SafetyGate {
     /// and nothing is let through.
     ///
     /// ```
-    /// # use plotter_motion::{kinematics::BeltSigns, Demand, Duty, LimitSwitches, SafetyGate};
+    /// # use plotter_motion::{Demand, Duty, LimitSwitches, SafetyGate, kinematics::BeltSigns};
     /// let gate = SafetyGate::new(LimitSwitches { x_max: true, ..LimitSwitches::RELEASED }, false);
     /// let right_and_up = Demand { x: Duty::saturating(0.5), y: Duty::saturating(0.5) };
     /// let drive = gate.pass_belt(right_and_up, BeltSigns::DirectionTable, 0.0);
@@ -530,7 +551,7 @@ impl SafetyGate {
     /// would leave its line.
     ///
     /// ```
-    /// # use plotter_motion::{Axis, Blocked, Direction, LimitSwitches, SafetyGate, StepPair};
+    /// # use plotter_motion::{Axis, Direction, LimitSwitches, SafetyGate, StepPair, safety::Blocked};
     /// let gate = SafetyGate::new(LimitSwitches { x_max: true, ..LimitSwitches::RELEASED }, false);
     /// let end = Direction::Plus;
     /// assert_eq!(gate.pass_step(StepPair { x: 1, y: 1 }), Err(Blocked::Limit { axis: Axis::X, end }));

@@ -32,7 +32,7 @@ impl StepPoint {
 /// the ends of `i32`; a NaN gives 0.
 ///
 /// ```
-/// # use plotter_motion::from_mm;
+/// # use plotter_motion::toolpath::from_mm;
 /// assert_eq!(from_mm(60.0, 40.0), 2400);
 /// assert_eq!(from_mm(-0.0125, 40.0), -1); // a half, away from zero
 /// ```

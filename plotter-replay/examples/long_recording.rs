@@ -85,7 +85,7 @@ fn rosette(step: u64) -> StepPoint {
     #[expect(clippy::cast_precision_loss, reason = "far fewer steps than 2^53")]
     let turn = step as f64 * 0.021;
     let radius = RADIUS * libm::cos(turn * 7.003) * (0.6 + 0.4 * libm::sin(turn * 0.000_37));
-    let count = |share: f64| plotter_motion::from_mm(CENTRE + radius * share, 1.0);
+    let count = |share: f64| plotter_motion::toolpath::from_mm(CENTRE + radius * share, 1.0);
     StepPoint::new(count(libm::cos(turn)), count(libm::sin(turn)))
 }
 

@@ -2,7 +2,7 @@
 //!
 //! ```no_run
 //! # use plotter_motion::{Machine, MachineConfig};
-//! use plotter_replay::{MachineController, golden};
+//! use plotter_replay::{golden, player::MachineController};
 //!
 //! // in a test
 //! let machine = Machine::new(MachineConfig::default()).unwrap();
@@ -11,10 +11,16 @@
 //!
 //! With `UPDATE_GOLDEN=1` in the environment the recording is renewed: the same inputs, and what the controller
 //! answers now.
+//!
+//! A first recording comes from a machine (`plotter-replay live -o session.plog`), from a simulated one
+//! (`plotter-replay simulate`), or from a list of inputs and the controller itself: [`record`]. Look through
+//! what is in it before you keep it: from then on that is right.
 
 use crate::log::{self, Damage, Header, ReadError, Record, WriteError};
 use crate::{
-    CompareSettings, Controller, Difference, EdgeSource, Outcome, Player, PlayerSettings, Stuck, compare,
+    CompareSettings, Controller, Outcome, Player, PlayerSettings,
+    compare::compare,
+    player::{Difference, EdgeSource, Stuck},
 };
 use core::fmt;
 use std::path::{Path, PathBuf};
@@ -86,9 +92,46 @@ impl Mode {
     }
 }
 
-/// Re-runs the recording at `path` with a new controller. Edges come from the log, and times must be exact; or, if it has none, from
-/// what the machine told of its motors ([`crate::RecordingTraits::settings`]). If the controller does something else, that is written beside the recording
-/// as `.actual`, and what is different as `.diff`.
+/// Makes a first recording at `path`: these inputs, in the order of their times, and what the controller
+/// answers.
+///
+/// ```
+/// use plotter_motion::{Machine, MachineConfig};
+/// use plotter_replay::log::{Event, Header, Record};
+/// use plotter_replay::{golden, player::MachineController};
+/// use std::time::Duration;
+///
+/// # let folder = std::env::temp_dir().join(format!("golden-record-{}", std::process::id()));
+/// # std::fs::create_dir_all(&folder)?;
+/// let path = folder.join("hello.plog");
+/// let machine = Machine::new(MachineConfig::default())?;
+/// let header = Header::new().with_number("baud", 256_000);
+/// let controller = || MachineController::new(&machine);
+/// let line = Record { time: Duration::from_millis(1), event: Event::Host(b"1".to_vec()) };
+/// golden::record(&path, &header, &[line], controller())?;
+/// golden::assert_replays(&path, controller);
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+///
+/// [`GoldenError::Stuck`], [`GoldenError::NoEdges`] or [`GoldenError::Unwritable`]; nothing is written but
+/// with the last.
+pub fn record<C: Controller>(
+    path: &Path,
+    header: &Header,
+    inputs: &[Record],
+    controller: C,
+) -> Result<(), GoldenError> {
+    let settings = settings_for(header, inputs, &controller);
+    renew(path, header, inputs, settings, controller)
+}
+
+/// Re-runs the recording at `path` with a new controller. Edges come from the log, and times must be exact;
+/// or, if it has none, from what the machine told of its motors
+/// ([`crate::player::RecordingTraits::settings`]). If the controller does something else, that is written
+/// beside the recording as `.actual`, and what is different as `.diff`.
 ///
 /// # Errors
 ///
@@ -103,26 +146,8 @@ pub fn check<C: Controller>(path: &Path, controller: impl Fn() -> C, mode: Mode)
         .map_err(|damage| GoldenError::Damaged { path: path.to_owned(), damage })?;
     let settings = settings_for(&header, &records, &controller());
     let player = Player::new(settings);
-    let rerun = || -> Result<Vec<Record>, GoldenError> {
-        player
-            .rerun_iter(records.iter().cloned(), controller())
-            .collect::<Result<_, _>>()
-            .map_err(GoldenError::Stuck)
-    };
-    let written_header = player.header(&header);
-    let write = |path: &Path, records: &[Record]| -> Result<(), GoldenError> {
-        let unwritable = |error| GoldenError::Unwritable { path: path.to_owned(), error };
-        let mut writer = log::create(path, &written_header).map_err(unwritable)?;
-        for record in records {
-            writer.write(record).map_err(unwritable)?;
-        }
-        writer.finish().map_err(unwritable).map(drop)
-    };
     if mode == Mode::Renew {
-        if settings.edges == EdgeSource::Messages {
-            return Err(GoldenError::NoEdges { path: path.to_owned() });
-        }
-        return write(path, &rerun()?);
+        return renew(path, &header, &records, settings, controller());
     }
     let outcome = player.check(records.iter().cloned(), controller());
     let (actual, written) = (beside(path, "actual"), beside_text(path));
@@ -133,8 +158,9 @@ pub fn check<C: Controller>(path: &Path, controller: impl Fn() -> C, mode: Mode)
         }
         return Ok(());
     };
-    let now = rerun()?;
-    write(&actual, &now)?;
+    let now = rerun(&player, &records, controller())?;
+    let written_header = player.header(&header);
+    write(&actual, &written_header, &now)?;
     let wanted = CompareSettings { tolerance: settings.tolerance, ..CompareSettings::default() };
     let recorded = || player.inputs(records.iter().cloned());
     let comparison = compare(&written_header, recorded, || now.iter().cloned(), wanted);
@@ -148,8 +174,44 @@ pub fn check<C: Controller>(path: &Path, controller: impl Fn() -> C, mode: Mode)
     Err(GoldenError::Differs { path: path.to_owned(), actual, written, difference })
 }
 
+/// Writes a recording with what the controller answers now.
+fn renew(
+    path: &Path,
+    header: &Header,
+    records: &[Record],
+    settings: PlayerSettings,
+    controller: impl Controller,
+) -> Result<(), GoldenError> {
+    if settings.edges == EdgeSource::Messages {
+        return Err(GoldenError::NoEdges { path: path.to_owned() });
+    }
+    let player = Player::new(settings);
+    let now = rerun(&player, records, controller)?;
+    write(path, &player.header(header), &now)
+}
+
+fn rerun(
+    player: &Player,
+    records: &[Record],
+    controller: impl Controller,
+) -> Result<Vec<Record>, GoldenError> {
+    player
+        .rerun_iter(records.iter().cloned(), controller)
+        .collect::<Result<_, _>>()
+        .map_err(GoldenError::Stuck)
+}
+
+fn write(path: &Path, header: &Header, records: &[Record]) -> Result<(), GoldenError> {
+    let unwritable = |error| GoldenError::Unwritable { path: path.to_owned(), error };
+    let mut writer = log::create(path, header).map_err(unwritable)?;
+    for record in records {
+        writer.write(record).map_err(unwritable)?;
+    }
+    writer.finish().map_err(unwritable).map(drop)
+}
+
 fn settings_for(header: &Header, records: &[Record], controller: &impl Controller) -> PlayerSettings {
-    let settings = PlayerSettings::of(header, records);
+    let settings = PlayerSettings::for_recording(header, records);
     if controller.makes_steps() {
         PlayerSettings { edges: EdgeSource::Records, ..settings }
     } else {
@@ -206,7 +268,16 @@ impl fmt::Display for GoldenError {
     }
 }
 
-impl core::error::Error for GoldenError {}
+impl core::error::Error for GoldenError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Unreadable { error, .. } => Some(error),
+            Self::Stuck(error) => Some(error),
+            Self::Unwritable { error, .. } => Some(error),
+            _ => None,
+        }
+    }
+}
 
 #[cfg(test)]
 mod tests {

@@ -14,7 +14,7 @@ static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 ///
 /// ```
 /// # use plotter_motion::{Pen, PenMove, StepPoint};
-/// # use plotter_replay::DrawingMark;
+/// # use plotter_replay::resume::DrawingMark;
 /// let (mut one, mut other) = (DrawingMark::default(), DrawingMark::default());
 /// one.push(PenMove { pen: Pen::Down, target: StepPoint::new(40, 20) });
 /// other.push(PenMove { pen: Pen::Up, target: StepPoint::new(40, 20) });
@@ -79,7 +79,14 @@ impl fmt::Display for ResumeError {
     }
 }
 
-impl core::error::Error for ResumeError {}
+impl core::error::Error for ResumeError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Unreadable(error) => Some(error),
+            _ => None,
+        }
+    }
+}
 
 impl ResumePoint {
     /// What a log says: of the drawing's begin, if it goes on with one already, else the first word of its machine. Damaged lines

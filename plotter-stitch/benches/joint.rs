@@ -7,8 +7,10 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use plotter_motion::Vec2;
 use plotter_stitch::{
-    Crossing, Found, FrameReadings, FrameTransform, MOST_CROSSINGS, Mark, MarkSearch, Optics, Reading,
-    ReferenceLines, RigidFit, SearchSettings, SensedJoint, SensorNoise,
+    Crossing, FrameReadings, FrameTransform, Mark, MarkSearch, Optics, Reading, ReferenceLines, RigidFit,
+    marks::MOST_CROSSINGS,
+    sense::{Found, SearchSettings},
+    sheet::{SensedJoint, SensorNoise},
 };
 use std::hint::black_box;
 

@@ -6,7 +6,7 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use plotter_motion::{PlotOp, Point};
-use plotter_stitch::{FrameLayout, FramePasses, Frames};
+use plotter_stitch::{FrameLayout, Frames, split::FramePasses};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
@@ -19,7 +19,7 @@ fn waves(count: u32, strokes: u32) -> impl Iterator<Item = PlotOp> + Clone {
         let (begin_mm, row) = (f64::from(stroke / ROWS) * STROKE_MM, f64::from(stroke % ROWS));
         (0..=each).map(move |number| {
             let way_mm = STROKE_MM * f64::from(number) / f64::from(each);
-            let to = Point::new(begin_mm + way_mm, 10.0 + 19.0 * row + 8.0 * libm::sin(TAU * way_mm / 60.0));
+            let to = Point::new(10.0 + 19.0 * row + 8.0 * libm::sin(TAU * way_mm / 60.0), begin_mm + way_mm);
             if number == 0 { PlotOp::Travel { to } } else { PlotOp::Draw { to, feed_mm_s: None } }
         })
     })

@@ -1,38 +1,40 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 #![forbid(unsafe_code)]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
+#[cfg(feature = "alloc")]
 extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
-mod anchor;
-mod chain;
-mod crossing;
-mod detector;
-mod fold;
-mod frame_transform;
-mod readings;
-mod reference_lines;
-mod residual;
-mod rigid;
-mod search;
-mod sheet;
-mod split;
+mod field;
 
-pub use anchor::{Anchor, AnchorSettings, JointSigma};
-pub use chain::{Chain, Drift};
-pub use crossing::{Crossing, Found, Passed, found_at};
-pub use detector::{BothEdges, FindLine, Optics, PublishedRule, ScanError, Sighting, Tact, disc_over_line};
-pub use fold::{EmptySquare, FoldDirection, FoldProbe, FoldTest, FoldVerdict, ProbeScan, Seen};
-pub use frame_transform::{FrameTransform, TransformError};
-pub use readings::{FrameReadings, Mark, Reading};
-pub use reference_lines::{LayoutError, MOST_CROSSINGS, MarkGroup, ReferenceLines};
-pub use residual::Residual;
-pub use rigid::{FitError, JointEstimate, RigidFit};
-pub use search::{Ask, MarkSearch, PublishedSearch, Search, SearchError, SearchSettings};
-pub use sheet::{
-    Feed, FeedSettings, JoinError, JoinFrames, Joined, JointReport, LongSheet, PaperEdge, PaperMove,
-    PublishedJoin, SensedJoint, SensedProbe, SensorNoise, SheetSettings, StripJoin,
+pub mod fold;
+pub mod joint;
+pub mod marks;
+pub mod paper;
+pub mod sense;
+#[cfg(feature = "alloc")]
+#[cfg_attr(docsrs, doc(cfg(feature = "alloc")))]
+pub mod sheet;
+#[cfg(feature = "alloc")]
+#[cfg_attr(docsrs, doc(cfg(feature = "alloc")))]
+pub mod split;
+
+pub use field::Field;
+pub use fold::{FoldProbe, FoldTest, FoldVerdict};
+pub use joint::{
+    Anchor, Chain, FitError, FrameReadings, FrameTransform, JointEstimate, Mark, Reading, RigidFit,
 };
-pub use split::{Frame, FrameLayout, FramePasses, Frames, SplitError};
+#[cfg(feature = "alloc")]
+pub use marks::{MarkGroup, MarkPlacer, ReferenceLines};
+pub use paper::{Paper, PaperSearch};
+pub use plotter_motion;
+#[cfg(feature = "alloc")]
+pub use sense::MarkSearch;
+pub use sense::{Crossing, FindLine, Optics, ScanError, Search, Sighting};
+#[cfg(feature = "alloc")]
+pub use sheet::{JoinError, LongSheet, SheetSettings, StripJoin};
+#[cfg(feature = "alloc")]
+pub use split::{Frame, FrameLayout, Frames, SplitError};

@@ -3,7 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a benchmark may stop at once")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use plotter_vector::{AreaStyle, Areas, Bitmap, Hatch, Outlines, Pixel, split_by_width};
+use plotter_vector::{
+    Bitmap, Pixel,
+    areas::{AreaStyle, Areas, Hatch, Outlines, split_by_width},
+};
 
 /// Width and height of the sheet, px: 4 megapixels of an A1 sheet at 600 dots per inch.
 const SIDE_PX: u32 = 2048;

@@ -7,7 +7,11 @@ mod drawn_sheet;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use drawn_sheet::{SIDES_PX, colour, gray};
-use plotter_vector::{GrayRows, Pens, Progress, RowSource as _, Vectorizer};
+use plotter_vector::{
+    Progress, Vectorizer,
+    ink::Pens,
+    picture::{GrayRows, RowSource as _},
+};
 
 fn chain(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("chain");

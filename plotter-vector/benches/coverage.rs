@@ -6,7 +6,7 @@ mod drawn_sheet;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use drawn_sheet::{SIDES_PX, gray};
-use plotter_vector::{Vectorizer, coverage};
+use plotter_vector::{Vectorizer, report::coverage};
 
 #[expect(clippy::expect_used, reason = "a benchmark without its strokes measures nothing")]
 fn errors(criterion: &mut Criterion) {

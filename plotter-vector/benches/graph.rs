@@ -7,7 +7,7 @@ mod drawn_sheet;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use drawn_sheet::{SIDES_PX, ink};
-use plotter_vector::{BitmapRows, Order, OrderEffort, Progress, Vectorizer};
+use plotter_vector::{Order, Progress, Vectorizer, order::OrderEffort, picture::BitmapRows};
 
 fn graph(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("graph");

@@ -6,7 +6,7 @@ mod drawn_sheet;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use drawn_sheet::{SIDES_PX, colour};
-use plotter_vector::Pens;
+use plotter_vector::ink::Pens;
 
 fn layers(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("layers");

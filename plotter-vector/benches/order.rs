@@ -1,7 +1,10 @@
 //! Time of ordering random short strokes, by effort, over three sizes.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use plotter_vector::{Drawing, Lettering, Order, OrderEffort, PxPoint};
+use plotter_vector::{
+    Drawing, Order, PxPoint,
+    order::{Lettering, OrderEffort},
+};
 
 const SIDE_PX: f64 = 2000.0;
 

@@ -3,7 +3,10 @@
 //! `cargo bench -p plotter-vector --bench rows`; the throughput is in pixels, so Gelem/s are thousand megapixels.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use plotter_vector::{Row, RowSource, Scan};
+use plotter_vector::{
+    FileRows,
+    picture::{Row, RowSource},
+};
 use std::hint::black_box;
 use std::io::{Cursor, Write};
 use std::time::Duration;
@@ -96,7 +99,7 @@ fn zlib(bytes: &[u8]) -> Vec<u8> {
 
 /// Reads all rows; the sum is there so that they are wanted.
 fn read(bytes: &[u8]) -> u64 {
-    let Ok(mut scan) = Scan::new(Cursor::new(bytes)) else { return 0 };
+    let Ok(mut scan) = FileRows::new(Cursor::new(bytes)) else { return 0 };
     let mut sum = 0;
     while let Ok(Some(row)) = scan.next_row() {
         sum += match row {

@@ -1,7 +1,7 @@
 //! Time of the simplification a site: straight lines, curves and noise, over three lengths.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use plotter_vector::{Bounded, PxPoint};
+use plotter_vector::{PxPoint, stroke::Bounded};
 use std::hint::black_box;
 
 /// Seeded noise between −1 and 1.

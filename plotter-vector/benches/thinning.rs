@@ -3,7 +3,10 @@
 //! The largest picture has the width of an A1 sheet at 600 dots per inch, and a quarter of its height.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use plotter_vector::{Bitmap, Pixel, Thinning, ThinningMethod};
+use plotter_vector::{
+    Bitmap, Pixel,
+    raster::{Thinning, ThinningMethod},
+};
 
 /// Straight lines at all angles until a twentieth of the sheet is ink.
 #[expect(clippy::expect_used, reason = "a benchmark without its picture measures nothing")]

@@ -5,7 +5,9 @@
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use plotter_vector::{
-    Gray, Histogram, Survey, Threshold, ThresholdMethod, despeckle, pen_width_px, smallest_mark_px,
+    Gray, Threshold, ThresholdMethod,
+    ink::{despeckle, pen_width_px, smallest_mark_px},
+    picture::Histogram,
 };
 use std::hint::black_box;
 use std::time::Duration;
@@ -40,11 +42,6 @@ fn stages(criterion: &mut Criterion) {
         });
         for method in [ThresholdMethod::Otsu, ThresholdMethod::Adaptive] {
             let threshold = Threshold { method, ..Threshold::default() };
-            stage(&format!("{method}, survey"), &mut || {
-                let mut survey = Survey::new(threshold, width, height).unwrap();
-                gray.rows().for_each(|levels| survey.push(levels));
-                black_box(survey.finish());
-            });
             stage(&format!("{method}, whole"), &mut || drop(black_box(threshold.apply(&gray))));
         }
         let (ink, _) = Threshold::default().apply(&gray);

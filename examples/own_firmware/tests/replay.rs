@@ -7,7 +7,6 @@
 
 use own_firmware::OwnFirmware;
 use plotter_motion::{Axis, Direction};
-use plotter_replay::log::SwitchName;
 use plotter_replay::{Controller, golden};
 use std::time::Duration;
 
@@ -29,12 +28,6 @@ impl Controller for Player {
         self.0.duty(axis)
     }
     // It has neither switches nor a control loop with a period.
-    fn switch(&mut self, _: Duration, _: &SwitchName, _: bool) {}
-    fn emergency_stop(&mut self, _: Duration, _: bool) {}
-    fn next_tick(&self) -> Option<Duration> {
-        None
-    }
-    fn tick(&mut self, _: Duration) {}
 }
 
 #[test]
@@ -62,12 +55,6 @@ fn a_change_of_the_firmware_is_found() {
                 duty => duty,
             }
         }
-        fn switch(&mut self, _: Duration, _: &SwitchName, _: bool) {}
-        fn emergency_stop(&mut self, _: Duration, _: bool) {}
-        fn next_tick(&self) -> Option<Duration> {
-            None
-        }
-        fn tick(&mut self, _: Duration) {}
     }
     let directory = std::env::temp_dir().join(format!("own-firmware-{}", std::process::id()));
     std::fs::create_dir_all(&directory).unwrap();

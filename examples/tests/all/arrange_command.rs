@@ -1,7 +1,7 @@
 //! What `convert` and `stepper` do with a drawing on its way: place, crop, order, begin in the middle.
 
 use crate::built_example::{Folder, complaint, run_example};
-use plotter_examples::{DrawingFile, Reading};
+use plotter_examples::drawings::{DrawingFile, Reading};
 use plotter_motion::Point;
 use plotter_motion::drawing::Drawing;
 use std::path::Path;

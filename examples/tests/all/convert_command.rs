@@ -6,8 +6,8 @@ use crate::made_font;
 use crate::real_files::all;
 use built_example::{Folder, complaint, data, run_example, run_with_input};
 use made_font::made_font;
-use plotter_examples::{DrawingFile, Reading};
-use plotter_motion::{PlotOp, Point, chords};
+use plotter_examples::drawings::{DrawingFile, Reading};
+use plotter_motion::{PlotOp, Point, toolpath::chords};
 use std::path::Path;
 
 /// A plotter unit, mm.

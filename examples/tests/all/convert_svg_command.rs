@@ -1,7 +1,7 @@
 //! The command `convert` on SVG pictures: what their authors meant by layers, paper, clip paths and the size of the page.
 
 use crate::built_example::{Folder, complaint, run_example};
-use plotter_examples::{DrawingFile, Reading, SvgReading};
+use plotter_examples::drawings::{DrawingFile, Reading, SvgReading};
 use plotter_motion::PlotOp;
 use std::path::Path;
 

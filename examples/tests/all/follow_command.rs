@@ -3,7 +3,7 @@
 use crate::built_example;
 
 use built_example::{complaint, data, run_example};
-use plotter_examples::FollowMachine;
+use plotter_examples::follow::FollowMachine;
 use plotter_motion::Machine;
 use plotter_vector::PxPoint;
 use plotter_vector::follow::{

@@ -4,9 +4,13 @@ use crate::built_example;
 
 use crate::real_files::{name_of, other, ours};
 use built_example::{complaint, data, run_example};
-use plotter_examples::{CrossingSet, JointAnswer, answer_traces};
+use plotter_examples::long_sheet::{CrossingSet, JointAnswer, answer_traces};
 use plotter_motion::{Axis, Vec2};
-use plotter_stitch::{Crossing, FrameTransform, Optics, ReferenceLines, SensedJoint, SensorNoise, Tact};
+use plotter_stitch::{
+    Crossing, FrameTransform, Optics, ReferenceLines,
+    sense::Tact,
+    sheet::{SensedJoint, SensorNoise},
+};
 use serde_json::{Value, json};
 
 /// One scan of a simulated joint.
@@ -91,7 +95,7 @@ fn recorded(sheet: &FrameTransform, noise: SensorNoise, seed: u64) -> (Value, Va
     let trace = json!({
         "format": "stitch-trace/1", "case": format!("seed {seed}"), "tact_s": 0.002, "led_offset_s": [-0.0005, 0.0005],
         "disc_mm": 0.6, "line_mm": 0.5, "threshold": 0.1, "adc_full_scale": 1000, "search_half_window_mm": 12.0,
-        "crossings": crossings,
+        "feed_axis": "y", "crossings": crossings,
     });
     (trace, batch.into())
 }
@@ -103,7 +107,7 @@ fn batch(joints: &[Value]) -> Value {
     let published: Vec<Crossing> = ReferenceLines::published().crossings().collect();
     let strip: Vec<Crossing> = ReferenceLines::strip16().crossings().collect();
     json!({
-        "format": "stitch-batch/1", "tact_s": 0.002, "led_offset_s": [-0.0005, 0.0005], "threshold": 0.1,
+        "format": "stitch-batch/1", "feed_axis": "y", "tact_s": 0.002, "led_offset_s": [-0.0005, 0.0005], "threshold": 0.1,
         "layout_paper": layout(&[published[0], published[2], published[3]]), "layout_strip16": layout(&strip),
         "joints": joints,
     })
@@ -287,7 +291,7 @@ fn a_recording_on_file_is_told() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/stitch");
         std::fs::create_dir_all(&folder).unwrap();
         let trace = recorded(&lie, SensorNoise::default(), 7).0;
-        std::fs::write(folder.join("simulated.json"), format!("{trace}\n")).unwrap();
+        std::fs::write(folder.join("simulated_along_y.json"), format!("{trace}\n")).unwrap();
     }
     let truth = Truth { angle_rad: lie.angle_rad(), shift_mm: lie.shift() };
     for file in ours("stitch") {

@@ -16,21 +16,22 @@ mod compare_controllers_command;
 mod convert_command;
 mod convert_dxf_command;
 mod convert_svg_command;
+mod first_programs;
 mod follow_command;
-mod judge_command;
-mod judged_corpus;
 mod licences;
 mod long_sheet_command;
 mod long_sheet_drawing;
 mod lost_ink;
 #[path = "../../../plotter-vector/tests/all/made_font/mod.rs"]
 mod made_font;
+mod marks_files;
 mod max_error_command;
 #[path = "../../../plotter-motion/tests/all/papers.rs"]
 mod papers;
 mod plot_command;
 #[path = "../../../plotter-motion/tests/all/real_files/mod.rs"]
 mod real_files;
+mod rooms;
 mod round_trip;
 mod stepper_command;
 mod trace_command;

@@ -45,7 +45,7 @@ fn the_flag_is_plotted_and_its_recording_replays() {
     let machine = plotter_motion::Machine::new(plotter_motion::MachineConfig::default()).unwrap();
     let outcome = plotter_replay::golden::check(
         &directory.path().join("session.plog"),
-        || plotter_replay::MachineController::new(&machine),
+        || plotter_replay::player::MachineController::new(&machine),
         plotter_replay::golden::Mode::Compare,
     );
     assert!(outcome.is_ok(), "{outcome:?}");
@@ -87,8 +87,11 @@ fn a_line_of_a_pen_is_drawn_once_unless_the_published_algorithm_is_asked_for() {
 
 #[test]
 fn the_marking_board_plots_with_both_controllers_and_shows_its_response() {
-    /// A count of a motor is 0.0108 mm of the pen, and the target is rounded to one: seen in the counts are up to two.
-    const COUNTED_MM: f64 = 0.0216;
+    /// A count of a motor is 0.0108 mm of the pen, and the target is rounded to one; one and a half more
+    /// while motors that a belt couples are found out.
+    const TRUE_MM: f64 = 0.027;
+    /// In the counts three of them, and some hundredths by which pulses come late.
+    const COUNTED_MM: f64 = 0.0335;
     let board = machine("marking-board.toml");
     let plot = |controller: &str| {
         let directory = tempfile::tempdir().unwrap();
@@ -112,7 +115,7 @@ fn the_marking_board_plots_with_both_controllers_and_shows_its_response() {
         (number("/contour_error_mm/max"), number("/true_contour_error_mm/max"))
     };
     let (counted_mm, true_mm) = plot("contouring");
-    assert!(counted_mm < COUNTED_MM && true_mm < COUNTED_MM, "{counted_mm}, {true_mm}");
+    assert!(true_mm < TRUE_MM && counted_mm < COUNTED_MM, "{counted_mm}, {true_mm}");
     let (_, true_mm) = plot("published");
     assert!(true_mm > 0.45, "{true_mm}");
     let out = tempfile::tempdir().unwrap();

@@ -1,8 +1,8 @@
 //! Drawings through all languages and back: SVG, G-code, SVG, HPGL, SVG.
 
 use crate::built_example::{Folder, run_example};
-use plotter_examples::{DrawingFile, Reading};
-use plotter_motion::{PlotOp, Point, Segment, chords};
+use plotter_examples::drawings::{DrawingFile, Reading};
+use plotter_motion::{PlotOp, Point, Segment, toolpath::chords};
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -116,7 +116,7 @@ fn curves_reach_every_file() {
 #[test]
 fn the_help_names_the_greatest_error_that_is_taken() {
     let help = String::from_utf8(run_example("trace", &["--help"]).stdout).unwrap();
-    let default = plotter_vector::Bounded::default().tolerance_px;
+    let default = plotter_vector::stroke::Bounded::default().tolerance_px;
     assert!(help.contains(&format!("(ours only) [default: {default}]")), "{help}");
 }
 

@@ -2,8 +2,10 @@
 
 use crate::papers::{assert_in, row_of};
 use plotter_vector::{
-    Algorithm, Bounded, ErrorTally, OrderedTracking, Pixel, Simplify, Threshold, Vectorized, Vectorizer,
-    decode,
+    Algorithm, Pixel, Threshold, Vectorized, Vectorizer, decode,
+    raster::OrderedTracking,
+    report::ErrorTally,
+    stroke::{Bounded, Simplify},
 };
 
 /// Mean, greatest error and standard deviation, px.

@@ -8,7 +8,7 @@ use embedded_hal::digital::OutputPin;
 #[cfg(doc)]
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::Drivers;
-use plotter_motion::{Direction, Pulse, StepPair};
+use plotter_motion::{Direction, StepPair, safety::Pulse};
 
 /// Two stepper motors on chips of the A4988 kind, fed by a [`Pulse`].
 ///

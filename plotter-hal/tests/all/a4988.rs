@@ -8,7 +8,10 @@ use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Set};
 use logic_analyser::{Analyser, Broken, Fault, Wire};
 use plotter_hal::NoPin;
 use plotter_hal::a4988::{A4988, Chip, Error, MicrostepPins, Timing};
-use plotter_motion::{Axis, Blocked, Direction, LimitSwitches, Pulse, SafetyGate, StepPair};
+use plotter_motion::{
+    Axis, Direction, LimitSwitches, SafetyGate, StepPair,
+    safety::{Blocked, Pulse},
+};
 use std::io::ErrorKind;
 use std::time::Duration;
 

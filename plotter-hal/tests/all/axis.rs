@@ -8,7 +8,8 @@ use plotter_hal::axis::Error;
 use plotter_hal::h_bridge;
 use plotter_hal::{DcAxes, HBridge, StepperAxes};
 use plotter_motion::{
-    Axis, Blocked, Bresenham, Demand, Drive, Duty, LimitSwitches, Pulse, SafetyGate, StepPair, StepPoint,
+    Axis, Bresenham, Demand, Drive, Duty, LimitSwitches, SafetyGate, StepPair, StepPoint,
+    safety::{Blocked, Pulse},
 };
 use std::time::Duration;
 

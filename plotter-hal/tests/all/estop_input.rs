@@ -8,7 +8,7 @@ use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Read};
 use faulty::Levels;
 use plotter_hal::estop_input::Error;
 use plotter_hal::{EstopChange, EstopInput, SwitchSettings};
-use plotter_motion::{Beam, Demand, Drive, Duty, LimitSwitches, SafetyGate, StepPair};
+use plotter_motion::{Demand, Drive, Duty, LimitSwitches, SafetyGate, StepPair, safety::Beam};
 use proptest::prelude::*;
 use std::io::ErrorKind;
 

@@ -9,7 +9,7 @@ use faulty::{Broken, Output};
 use plotter_hal::Laser;
 use plotter_hal::laser::Error;
 use plotter_motion::firmware::stepper_plotter::{Dialect, Drivers, StepperPlotter, StepperPlotterSettings};
-use plotter_motion::{Beam, LimitSwitches, SafetyGate};
+use plotter_motion::{LimitSwitches, SafetyGate, safety::Beam};
 use proptest::prelude::*;
 use std::io::ErrorKind;
 

@@ -8,7 +8,7 @@ use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::delay::{CheckedDelay, Transaction as Wait};
 use embedded_hal_mock::eh1::pwm::{Mock as Pwm, Transaction as SetDuty};
 use faulty::{Broken, Output};
-use plotter_hal::pen_servo::{Error, SettingsError};
+use plotter_hal::pen_servo::{Error, Refused, SettingsError};
 use plotter_hal::{PenServo, PenServoSettings, ServoPoint};
 use proptest::prelude::*;
 use std::fmt::Write;
@@ -178,7 +178,7 @@ fn settings_that_cannot_be_are_refused_with_what_would_be_right() {
     let mut text = String::new();
     for (settings, full) in cases {
         let output = Output::default();
-        let (refused, pwm) = PenServo::new(output.pwm(full), settings).unwrap_err();
+        let Refused { why: refused, pwm } = PenServo::new(output.pwm(full), settings).unwrap_err();
         writeln!(text, "{refused}").unwrap();
         assert_eq!(pwm.max_duty_cycle(), full); // it came back
         assert_eq!(output.accesses(), 0);
@@ -197,7 +197,7 @@ fn settings_that_cannot_be_are_refused_with_what_would_be_right() {
     pen servo: with 0 steps of the pwm in a frame, pen up and pen down are 0 steps apart; at least 4 are needed: give the timer more steps, or choose angles farther apart
     ");
     assert!(matches!(
-        PenServo::new(Output::default().pwm(40), good).map(|_| ()).unwrap_err().0,
+        PenServo::new(Output::default().pwm(40), good).map(|_| ()).unwrap_err().why,
         SettingsError::Coarse { pwm_steps: 40, pen_steps: 1 }
     ));
 }

@@ -5,7 +5,7 @@ use crate::faulty;
 use faulty::{Broken, Levels};
 use plotter_hal::pulse_counter::Error;
 use plotter_hal::{CounterDelta, PulseInput};
-use plotter_motion::{Axis, Demand, Drive, Duty, LimitSwitches, PulseCounter, SafetyGate};
+use plotter_motion::{Axis, Demand, Drive, Duty, LimitSwitches, SafetyGate, encoder::PulseCounter};
 use proptest::prelude::*;
 
 fn drive(gate: &SafetyGate, y: f32) -> Drive<'_> {

@@ -7,7 +7,9 @@ use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Read};
 use faulty::{Broken, Levels};
 use plotter_hal::Quadrature;
 use plotter_hal::quadrature::{Error, Phase};
-use plotter_motion::{Decoding, Demand, Direction, Drive, Duty, LimitSwitches, Phases, SafetyGate};
+use plotter_motion::{
+    Demand, Direction, Drive, Duty, LimitSwitches, SafetyGate, config::Decoding, encoder::Phases,
+};
 use proptest::prelude::*;
 use std::io::ErrorKind;
 

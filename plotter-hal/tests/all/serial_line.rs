@@ -94,7 +94,8 @@ fn target(to: StepPoint, broken: impl Fn(usize) -> Option<ErrorKind>) -> Vec<Res
     bytes.into_iter().enumerate().map(|(place, byte)| broken(place).map_or(Ok(byte), Err)).collect()
 }
 
-/// Runs the gantry up to `end`; it sees no edges, so its motors stand.
+/// Runs the gantry up to `end`; it sees no edges, so its motors stand; `end` is before it tells that they are
+/// held.
 fn run(gantry: &mut Gantry, end: Duration) {
     while let Some(now) = gantry.next_tick().filter(|&at| at <= end) {
         gantry.tick(now);
@@ -133,7 +134,7 @@ fn a_target_with_a_broken_byte_is_not_drawn_and_the_host_can_send_it_again() {
             }
             let notices = core::iter::from_fn(|| gantry.take_notice()).count();
             assert_eq!(notices, usize::from(broken < 9), "the rest of the first one is dropped too");
-            run(&mut gantry, Duration::from_millis(350));
+            run(&mut gantry, Duration::from_millis(310));
             assert!(gantry.drive().x().value() > 0.0 && gantry.drive().y().value() > 0.0);
         }
     }

@@ -30,6 +30,13 @@ fn check_motors(config: &MachineConfig) -> Result<(), ConfigError> {
                      write \"x2\", and half the pulses of a turn as lines_per_turn",
         });
     }
+    for (key, hz) in [
+        ("x.motor.enable_pwm_hz", config.x.motor.enable_pwm_hz),
+        ("y.motor.enable_pwm_hz", config.y.motor.enable_pwm_hz),
+    ] {
+        let remedy = "the simulated motors of a belt brake between their pulses";
+        demand(key, hz, (Bound::AtMost, 0.0), "Hz", remedy)?;
+    }
     let lines = |axis: &super::AxisConfig| f64::from(axis.encoder.lines_per_turn);
     for (key, value, of_x, unit) in [
         ("y.counts_per_mm", config.y.counts_per_mm, config.x.counts_per_mm, "counts/mm"),
@@ -92,7 +99,7 @@ fn check_rails(config: &MachineConfig) -> Result<(), ConfigError> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{ConfigError, DriveChoice, Machine, MachineConfig};
+    use crate::{ConfigError, Machine, MachineConfig, config::DriveChoice};
     use std::string::ToString;
 
     fn refusal(change: fn(&mut MachineConfig)) -> ConfigError {
@@ -106,7 +113,7 @@ mod tests {
         // 99999 counts at 46.3 counts/mm are 2159.8 mm: 1959.8 mm beside a height of 200 mm.
         assert!(
             Machine::new(MachineConfig {
-                area: crate::AreaConfig { width_mm: 1_959.0, height_mm: 200.0 },
+                area: crate::config::AreaConfig { width_mm: 1_959.0, height_mm: 200.0 },
                 ..MachineConfig::marking_board()
             })
             .is_ok()
@@ -131,7 +138,10 @@ mod tests {
             "kinematics.type: \"corexy\" does not go with drive = \"stepper\", whose controller moves each axis by its own \
              motor: write \"cartesian\", or drive = \"dc\" for the motors of a belt"
         );
-        assert_eq!(refusal(|c| c.x.encoder.decoding = crate::Decoding::X4).key(), "x.encoder.decoding");
+        assert_eq!(
+            refusal(|c| c.x.encoder.decoding = crate::config::Decoding::X4).key(),
+            "x.encoder.decoding"
+        );
     }
 
     #[test]

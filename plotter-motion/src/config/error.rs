@@ -8,7 +8,7 @@ use core::fmt;
 /// Keys are written as in the TOML file, with dots: `x.motor.resistance_ohm`.
 ///
 /// ```
-/// # use plotter_motion::{Machine, MachineConfig, SerialConfig};
+/// # use plotter_motion::{Machine, MachineConfig, config::SerialConfig};
 /// let serial = SerialConfig { baud: 25, ..SerialConfig::default() };
 /// let refused = Machine::new(MachineConfig { serial, ..MachineConfig::default() }).unwrap_err();
 /// assert_eq!(

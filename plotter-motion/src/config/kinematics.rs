@@ -4,7 +4,7 @@
 //! `[point_to_point]`.
 
 use super::{AxisConfig, MachineConfig, MotorConfig};
-use crate::LoadConfig;
+use crate::config::LoadConfig;
 use crate::kinematics::BeltSigns;
 
 /// How the two motors move the pen.

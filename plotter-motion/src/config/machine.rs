@@ -9,7 +9,7 @@ use super::{AxisConfig, ConfigError, ControllerChoice, DriveChoice, KinematicsCh
 /// A machine whose description has been checked: the only thing that the rest of the crate accepts.
 ///
 /// ```
-/// # use plotter_motion::{AreaConfig, Machine, MachineConfig};
+/// # use plotter_motion::{Machine, MachineConfig, config::AreaConfig};
 /// let a3 = AreaConfig { width_mm: 420.0, height_mm: 297.0 };
 /// let machine = Machine::new(MachineConfig { area: a3, ..MachineConfig::default() })?;
 /// assert_eq!(machine.config().area.width_mm, 420.0);
@@ -155,9 +155,9 @@ fn check_sheet(config: &MachineConfig) -> Result<(), ConfigError> {
     demand(
         "sheet.frame_mm",
         sheet.frame_mm,
-        (Bound::AtMost, config.area.width_mm - sheet.begin_mm - sheet.cut_window_mm),
+        (Bound::AtMost, config.area.height_mm - sheet.begin_mm - sheet.cut_window_mm),
         "mm",
-        "the frame ends within the area: area.width_mm less sheet.begin_mm and sheet.cut_window_mm",
+        "the frame ends within the area: area.height_mm less sheet.begin_mm and sheet.cut_window_mm",
     )
 }
 
@@ -194,6 +194,7 @@ fn check_control(config: &MachineConfig) -> Result<(), ConfigError> {
 struct AxisKeys {
     static_friction: &'static str,
     supply: &'static str,
+    enable_pwm: &'static str,
     start_rate: &'static str,
     area: &'static str,
 }
@@ -201,12 +202,14 @@ struct AxisKeys {
 const X: AxisKeys = AxisKeys {
     static_friction: "x.load.static_n_m",
     supply: "x.motor.supply_v",
+    enable_pwm: "x.motor.enable_pwm_hz",
     start_rate: "x.stepper.start_rate_hz",
     area: "area.width_mm",
 };
 const Y: AxisKeys = AxisKeys {
     static_friction: "y.load.static_n_m",
     supply: "y.motor.supply_v",
+    enable_pwm: "y.motor.enable_pwm_hz",
     start_rate: "y.stepper.start_rate_hz",
     area: "area.height_mm",
 };
@@ -228,6 +231,15 @@ fn check_axis(axis: &AxisConfig, keys: &AxisKeys, config: &MachineConfig) -> Res
         "the torque of the stalled motor (torque_n_m_per_a * supply_v / resistance_ohm), or it never starts",
     )?;
     if config.control.controller == ControllerChoice::Contouring {
+        if motor.enable_pwm_hz > 0.0 {
+            demand(
+                keys.enable_pwm,
+                motor.enable_pwm_hz,
+                (Bound::AtLeast, config.control.contouring.loop_hz),
+                "Hz",
+                "control.contouring.loop_hz, or a run's drive has no pulse: run the loop less often or the PWM faster",
+            )?;
+        }
         let counts_per_rad = axis.counts_per_turn() / core::f64::consts::TAU;
         let motor_mm_s = config.control.contouring.feed_mm_s * config.motor_mm_per_mm();
         let shaft_rad_s = motor_mm_s * axis.counts_per_mm / counts_per_rad;
@@ -323,7 +335,7 @@ fn check_stepper(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{AreaConfig, ContouringConfig, ControlConfig, LoadConfig};
+    use crate::config::{AreaConfig, ContouringConfig, ControlConfig, LoadConfig};
     use std::string::ToString;
 
     fn refusal(config: MachineConfig) -> ConfigError {
@@ -409,7 +421,8 @@ mod tests {
         // 1e5 steps/mm: 2146 million steps are 21.46 m, and 8e9 pulses/s would be no rate
         assert_eq!(
             key_of(|c| {
-                c.x.stepper = crate::StepperConfig { steps_per_mm: 1e5, max_rate_hz: 1e6, ..c.x.stepper };
+                c.x.stepper =
+                    crate::config::StepperConfig { steps_per_mm: 1e5, max_rate_hz: 1e6, ..c.x.stepper };
                 (c.planner.speed_mm_s, c.planner.travel_speed_mm_s) = (10.0, 10.0);
                 (c.area.width_mm, c.homing.max_travel_mm) = (22_000.0, 50_000.0);
             }),

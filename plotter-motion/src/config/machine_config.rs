@@ -271,6 +271,10 @@ pub struct MotorConfig {
     pub supply_v: f64,
     /// Steps of the duty from 0 to full (255 for an 8 bit timer).
     pub pwm_steps: u32,
+    /// Frequency of a PWM on the bridge's enable pin, Hz: the motor coasts between its pulses. 0 for a bridge
+    /// that brakes in between, as with the PWM on its inputs: that one does what the mean of its voltage
+    /// does.
+    pub enable_pwm_hz: f64,
     /// Armature resistance R, ohm.
     pub resistance_ohm: f64,
     /// Armature inductance L, H.
@@ -301,12 +305,17 @@ pub struct LoadConfig {
     pub viscous_n_m_s: f64,
 }
 
+/// What the current of a motor with the PWM on its bridge's enable pin overcomes beside the supply between
+/// two pulses, when it flows back through the clamp diodes, V: 1.3 V above the supply and 1.3 V below ground.
+/// Source: Texas Instruments, SLRS008D, "Electrical characteristics", `V_OKH` and `V_OKL` of the L293D.
+pub(crate) const CLAMPS_V: f64 = 2.6;
+
 impl AxisConfig {
     /// Encoder counts in one turn of the motor's shaft: one a line with x1 decoding, two with x2, four with
     /// x4.
     ///
     /// ```
-    /// # use plotter_motion::{AxisConfig, Decoding, EncoderConfig};
+    /// # use plotter_motion::config::{AxisConfig, Decoding, EncoderConfig};
     /// let encoder = EncoderConfig { lines_per_turn: 100, decoding: Decoding::X4 };
     /// assert_eq!(AxisConfig { encoder, ..AxisConfig::default() }.counts_per_turn(), 400.0);
     /// ```
@@ -320,7 +329,7 @@ impl MachineConfig {
     /// The documented stepper plotter: a Makeblock XY plotter of 380 x 310 mm, driven by mDraw over 115200 baud.
     ///
     /// ```
-    /// # use plotter_motion::{DriveChoice, Machine, MachineConfig};
+    /// # use plotter_motion::{Machine, MachineConfig, config::DriveChoice};
     /// let machine = Machine::new(MachineConfig::stepper_plotter())?;
     /// assert_eq!(machine.config().drive, DriveChoice::Stepper);
     /// assert_eq!(machine.config().x.stepper.steps_per_mm, 87.58);
@@ -344,7 +353,7 @@ impl MachineConfig {
     /// # use plotter_motion::{Machine, MachineConfig};
     /// let machine = Machine::new(MachineConfig::textile_plotter())?;
     /// assert_eq!(machine.config().planner.travel_speed_mm_s, 10_000.0);
-    /// assert_eq!(machine.config().sheet.frame_mm, 1800.0);
+    /// assert_eq!(machine.config().sheet.frame_mm, 950.0);
     /// # Ok::<(), plotter_motion::ConfigError>(())
     /// ```
     #[must_use]
@@ -401,7 +410,7 @@ impl MachineConfig {
     /// tenth more field, as with weaker and stronger magnets, and half as much friction again.
     ///
     /// ```
-    /// # use plotter_motion::{KinematicsChoice, Machine, MachineConfig};
+    /// # use plotter_motion::{Machine, MachineConfig, config::KinematicsChoice};
     /// let machine = Machine::new(MachineConfig::marking_board())?;
     /// assert_eq!(machine.config().kinematics.kind, KinematicsChoice::CoreXy);
     /// assert_eq!(machine.config().x.counts_per_mm, 46.3);
@@ -558,6 +567,7 @@ impl Default for MotorConfig {
         Self {
             supply_v: 12.0,
             pwm_steps: 255,
+            enable_pwm_hz: 0.0,
             resistance_ohm: 1.9,
             inductance_h: 6.5e-5,
             back_emf_v_s: 13.369e-3,

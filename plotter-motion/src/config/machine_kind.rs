@@ -83,7 +83,7 @@ impl Machine {
     /// [`ConfigError::OtherKind`].
     ///
     /// ```
-    /// # use plotter_motion::{Machine, MachineConfig, MachineKind};
+    /// # use plotter_motion::{Machine, MachineConfig, config::MachineKind};
     /// let board = Machine::new(MachineConfig::marking_board())?;
     /// assert_eq!(board.kind(), MachineKind::Belt);
     /// let refused = board.require(MachineKind::Gantry, "live").unwrap_err();

@@ -29,6 +29,7 @@ mod vectorize;
 pub use error::{Bound, ConfigError};
 pub use kinematics::{BeltConfig, KinematicsChoice, KinematicsConfig, KnownMotors, PointToPointConfig};
 pub use machine::Machine;
+pub(crate) use machine_config::CLAMPS_V;
 pub use machine_config::{
     AreaConfig, AxisConfig, ContouringConfig, ControlConfig, ControllerChoice, Decoding, EncoderConfig,
     LoadConfig, MachineConfig, MotorConfig, PublishedConfig, SerialConfig, SyncStopConfig,

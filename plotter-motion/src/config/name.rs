@@ -3,7 +3,7 @@
 /// Up to `MOST` bytes of text, 255 at most. Empty for none.
 ///
 /// ```
-/// # use plotter_motion::{FileName, MachineName};
+/// # use plotter_motion::config::{FileName, MachineName};
 /// assert_eq!(FileName::new("pens.toml").unwrap().as_str(), "pens.toml");
 /// assert!(FileName::new("").unwrap().is_none() && FileName::new(&"x".repeat(128)).is_none());
 /// assert_eq!((MachineName::MAX_BYTES, FileName::MAX_BYTES), (31, 127));

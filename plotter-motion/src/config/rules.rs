@@ -517,6 +517,13 @@ macro_rules! axis_rules {
                 "an 8 bit timer has 255",
             ),
             number(
+                concat!(stringify!($axis), ".motor.enable_pwm_hz"),
+                |c| c.$axis.motor.enable_pwm_hz,
+                (0.0, 100_000.0),
+                "Hz",
+                "0 for a PWM on the bridge's inputs; on its enable pin the thesis has 2500",
+            ),
+            number(
                 concat!(stringify!($axis), ".motor.resistance_ohm"),
                 |c| c.$axis.motor.resistance_ohm,
                 (1.0e-3, 1.0e5),
@@ -612,8 +619,8 @@ macro_rules! axis_rules {
     };
 }
 
-static X: [Rule; 19] = axis_rules!(x);
-static Y: [Rule; 19] = axis_rules!(y);
+static X: [Rule; 20] = axis_rules!(x);
+static Y: [Rule; 20] = axis_rules!(y);
 
 /// All keys, in the order of the documentation.
 pub(super) fn rules() -> impl Iterator<Item = &'static Rule> {

@@ -14,9 +14,9 @@ use super::rules::{Rule, number};
     serde(deny_unknown_fields, default)
 )]
 pub struct SheetConfig {
-    /// By how much the sheet is moved at a time, mm; 0 if the machine cannot move it.
+    /// By how much the sheet is moved along y at a time, mm; 0 if the machine cannot move it.
     pub frame_mm: f64,
-    /// The machine's x at which every frame begins, mm.
+    /// The machine's y at which every frame begins, mm: the sheet is moved along y, towards smaller y.
     pub begin_mm: f64,
     /// How far from the border between two frames a line may be cut, mm.
     pub cut_window_mm: f64,
@@ -29,9 +29,9 @@ pub struct SheetConfig {
 }
 
 impl SheetConfig {
-    /// The documented textile plotter: frames of 1800 mm on a table of 2000 mm.
+    /// The documented textile plotter: frames of 950 mm on a table that takes 1000 mm of the paper's length.
     pub(super) const TEXTILE_PLOTTER: Self = Self {
-        frame_mm: 1_800.0,
+        frame_mm: 950.0,
         begin_mm: 20.0,
         cut_window_mm: 5.0,
         cut_clear_mm: 1.0,
@@ -54,7 +54,7 @@ pub(super) static RULES: [Rule; 6] = [
         |c| c.sheet.frame_mm,
         (0.0, 100_000.0),
         "mm",
-        "the documented textile plotter has 1800 on a table of 2000; 0 if the sheet cannot be moved",
+        "the documented textile plotter takes 900 to 1000, along y; 0 if the sheet cannot be moved",
     ),
     number(
         "sheet.begin_mm",

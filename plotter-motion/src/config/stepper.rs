@@ -187,7 +187,7 @@ impl Default for LaserConfig {
     }
 }
 
-/// How the ends of the axes are found: `[homing]`. See [`Homing`](crate::Homing).
+/// How the ends of the axes are found: `[homing]`. See [`Homing`](crate::homing::Homing).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -36,7 +36,7 @@ impl MachineConfig {
     ///     slip.to_string(),
     ///     "line 3, column 1: unknown key `area.width_cm`; the unit here is mm: write `width_mm = 420`"
     /// );
-    /// # Ok::<(), plotter_motion::TomlError>(())
+    /// # Ok::<(), plotter_motion::config::TomlError>(())
     /// ```
     ///
     /// # Errors

@@ -31,7 +31,7 @@ impl AxisConfig {
     /// How far the pen goes for a radian of the motor's shaft, mm.
     ///
     /// ```
-    /// # use plotter_motion::AxisConfig;
+    /// # use plotter_motion::config::AxisConfig;
     /// // 500 counts a turn at 40 counts/mm: 12.5 mm a turn
     /// assert!((AxisConfig::default().mm_per_rad() - 12.5 / core::f64::consts::TAU).abs() < 1e-12);
     /// ```

@@ -88,7 +88,7 @@ impl PensChoice {
     /// The choice that a text names: `"auto"`, or a path that ends in `.toml`; `None` for another.
     ///
     /// ```
-    /// # use plotter_motion::PensChoice;
+    /// # use plotter_motion::config::PensChoice;
     /// assert_eq!(PensChoice::from_text("auto"), Some(PensChoice::Auto));
     /// assert_eq!(PensChoice::from_text("three"), None);
     /// ```
@@ -178,7 +178,7 @@ impl ThresholdChoice {
     /// The choice that a text names; `None` if it names none.
     ///
     /// ```
-    /// # use plotter_motion::ThresholdChoice;
+    /// # use plotter_motion::config::ThresholdChoice;
     /// assert_eq!(ThresholdChoice::from_text("128"), Some(ThresholdChoice::Level(128)));
     /// assert_eq!(ThresholdChoice::from_text("256"), None);
     /// ```

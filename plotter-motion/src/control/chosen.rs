@@ -1,7 +1,10 @@
 //! [`ChosenController`]: the one that a machine's description asks for.
 
-use super::{Contouring, LineController, LineTracking, PointToPoint, PointToPointSettings};
-use crate::{Axis, ControllerChoice, Demand, Direction, Drive, KinematicsChoice, Machine, StepPoint};
+use super::{AxisTrouble, Contouring, LineController, LineTracking, PointToPoint, PointToPointSettings};
+use crate::{
+    Axis, Demand, Direction, Drive, Machine, StepPoint,
+    config::{ControllerChoice, KinematicsChoice},
+};
 use core::time::Duration;
 
 /// Any of the controllers, for programs that learn only from a file which one it is.
@@ -86,6 +89,10 @@ impl LineController for ChosenController {
 
     fn has_arrived(&self) -> bool {
         self.get().has_arrived()
+    }
+
+    fn trouble(&self) -> Option<AxisTrouble> {
+        self.get().trouble()
     }
 
     fn reference(&self) -> Option<[f64; 2]> {

@@ -6,7 +6,7 @@ use crate::{Demand, Duty};
 ///
 /// There are two answers to where the axis is. [`count`](Self::count) is the plain one: the middle of the interval that the
 /// encoder shows, up to half a count wrong. [`position`](Self::position) and [`speed`](Self::speed) are those of a
-/// [`ShaftObserver`](super::ShaftObserver), which knows from the times of the edges where the shaft is between them.
+/// [`ShaftEstimator`](super::ShaftEstimator), which knows from the times of the edges where the shaft is between them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AxisState {
     /// Where the axis should be now, counts.

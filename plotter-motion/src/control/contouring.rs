@@ -1,9 +1,13 @@
 //! Contouring control: a planned speed along the line, and the errors along and across it led to zero.
 
-use super::last_counts::LastCounts;
-use super::rounded_duty::RoundedDuty;
-use super::{LineController, ShaftEstimator, ShaftModel};
-use crate::{Axis, AxisConfig, Decoding, Demand, Direction, Drive, Machine, MotionLimits, SCurve, StepPoint};
+use super::coasting_bridge::CoastingBridge;
+use super::led_axis::{LedAxis, trouble_of};
+use super::line_plan::{LinePlan, Wait};
+use super::{AxisTrouble, LineController, ShaftModel};
+use crate::{
+    Axis, Demand, Direction, Drive, Machine, MachineConfig, MotionLimits, StepPoint,
+    config::{AxisConfig, Decoding},
+};
 use core::f64::consts::TAU;
 use core::time::Duration;
 
@@ -19,12 +23,16 @@ use core::time::Duration;
 /// ```
 ///
 /// There is no slope in it, so vertical and steep lines are like any other. Position and speed between the
-/// encoder's edges come from a [`ShaftEstimator`] for each axis; the voltage that the plan needs comes from
+/// encoder's edges come from a [`ShaftEstimator`](super::ShaftEstimator) for each axis; the voltage that the plan needs comes from
 /// the motor's equation, solved for it (spec 1.8). When the pen lags behind the reference, the reference slows
 /// down and finally waits: if one motor stalls, the other waits, and both go on when it is freed.
 ///
 /// The pen arrives when both shafts have stood within the arrival tolerance of the middle of the target's
 /// counts for the settling time; resting there, no trembling can reach an edge.
+///
+/// It is told what its motors are, and finds out how they differ ([`ShaftEstimator`](super::ShaftEstimator)). A shaft is braked only while
+/// it surely turns, so that it does not turn round on its way: where it does, no x1 encoder tells a new edge from the last one met again.
+/// What no shaft does, crossed wires or a lost phase, it notices and tells ([`LineController::trouble`]).
 ///
 /// Every line ends, on motors far from their description too. A shaft that stands while the reference waits for it is pushed harder and
 /// harder until it moves; and with the plan over, one that has not come to rest goes the last counts one by one. Only a shaft that
@@ -34,7 +42,7 @@ use core::time::Duration;
 /// Manufacturing Systems" (1980).
 ///
 /// ```
-/// # use plotter_motion::{Machine, MachineConfig, StepPoint, control::{LineController, Contouring}};
+/// # use plotter_motion::{Machine, MachineConfig, StepPoint, control::{Contouring, LineController}};
 /// # use core::time::Duration;
 /// let machine = Machine::new(MachineConfig::default())?;
 /// let mut controller = Contouring::new(&machine);
@@ -48,25 +56,15 @@ use core::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contouring {
     settings: ContouringSettings,
-    x: ContouredAxis,
-    y: ContouredAxis,
-    start: StepPoint,
-    target: StepPoint,
-    /// Unit vector of the line in counts.
-    direction: [f32; 2],
-    plan: SCurve,
-    /// Time along the plan, s; it stands still while the reference waits.
-    plan_s: f64,
-    estimated_at: Duration,
-    /// How long the plan has been over, us.
-    over_us: u32,
-    /// How long both shafts have rested at the target; `None` while they do not.
-    settled_for: Option<Duration>,
+    x: LedAxis,
+    y: LedAxis,
+    line: LinePlan,
 }
 
 /// What [`Contouring`] must know of a machine: numbers that a firmware keeps in its program memory. A plan is made
 /// in `f64`, so its limits are; what the loop reckons with is `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ContouringSettings {
     /// Limits of the plan, in encoder counts of the coarser axis where the names say mm, so that no axis exceeds them.
     pub limits: MotionLimits,
@@ -92,6 +90,7 @@ pub struct ContouringSettings {
 
 /// What [`Contouring`] must know of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ShaftSettings {
     /// Motor and load.
     pub model: ShaftModel,
@@ -101,10 +100,15 @@ pub struct ShaftSettings {
     pub observer_rad_s: f32,
     /// Steps of the duty from 0 to full.
     pub pwm_steps: u16,
+    /// The bridge, if the motor coasts between its pulses.
+    pub coasting: Option<CoastingBridge>,
+    /// Whether play or a belt lies between shaft and pen: the shaft may then be pulled on by what it moves.
+    pub is_loose: bool,
 }
 
 /// Gains of a critically damped position loop: `w^2` and `2 w` for its natural frequency `w`, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct PositionGains {
     /// Acceleration by a position error, 1/s^2.
     pub position: f32,
@@ -148,7 +152,7 @@ impl ContouringSettings {
         Self {
             limits: MotionLimits {
                 speed_mm_s: contouring.feed_mm_s * counts_per_mm,
-                accel_mm_s2: contouring.accel_mm_s2 * counts_per_mm,
+                accel_mm_s2: contouring.accel_mm_s2.min(most_accel_mm_s2(config)) * counts_per_mm,
                 jerk_mm_s3: contouring.jerk_mm_s3 * counts_per_mm,
             },
             period_us: libm::round(period_us).max(1.0) as u32,
@@ -169,6 +173,20 @@ impl ContouringSettings {
     }
 }
 
+/// The greatest deceleration at which a carriage on a belt follows its motor, mm/s^2: what its rail's
+/// friction brakes it with. Braked harder it runs ahead, through the play and against the other side of its
+/// belt, swings there, and pulls on a shaft that is to stand.
+fn most_accel_mm_s2(config: &MachineConfig) -> f64 {
+    // Friction may be less than described, and mass more, by a tenth each.
+    const SHARE: f64 = 0.8;
+    let of = |axis: &AxisConfig| {
+        let belt = &axis.transmission;
+        let is_driven = belt.carriage_kg > 0.0 && belt.rail_friction_n > 0.0;
+        if is_driven { SHARE * belt.rail_friction_n / belt.carriage_kg * 1e3 } else { f64::INFINITY }
+    };
+    of(&config.x).min(of(&config.y))
+}
+
 impl ShaftSettings {
     fn new(axis: &AxisConfig, observer_hz: f64) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
@@ -178,16 +196,10 @@ impl ShaftSettings {
             decoding: axis.encoder.decoding,
             observer_rad_s,
             pwm_steps: u16::try_from(axis.motor.pwm_steps).unwrap_or(u16::MAX),
+            coasting: CoastingBridge::of(axis),
+            is_loose: axis.transmission.backlash_mm > 0.0 || axis.transmission.stiffness_n_per_mm > 0.0,
         }
     }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct ContouredAxis {
-    estimator: ShaftEstimator,
-    applied_v: f32,
-    duty: RoundedDuty,
-    last: LastCounts,
 }
 
 impl Contouring {
@@ -200,133 +212,84 @@ impl Contouring {
     /// The same from settings.
     #[must_use]
     pub fn with_settings(settings: ContouringSettings) -> Self {
-        let axis = |ShaftSettings { model, decoding, observer_rad_s, pwm_steps }| ContouredAxis {
-            estimator: ShaftEstimator::with_model(model, decoding, observer_rad_s),
-            applied_v: 0.0,
-            duty: RoundedDuty::none(pwm_steps),
-            last: LastCounts::AT_REST,
-        };
         Self {
             settings,
-            x: axis(settings.x),
-            y: axis(settings.y),
-            start: StepPoint::default(),
-            target: StepPoint::default(),
-            direction: [1.0, 0.0],
-            plan: SCurve::default(),
-            plan_s: 0.0,
-            estimated_at: Duration::ZERO,
-            over_us: 0,
-            settled_for: None,
+            x: LedAxis::new(settings.x),
+            y: LedAxis::new(settings.y),
+            line: LinePlan::at_rest(settings.limits),
         }
     }
 
     /// Brings both estimates up to `now`.
     fn predict(&mut self, now: Duration) {
-        let dt_s = now.saturating_sub(self.estimated_at).as_secs_f32();
-        self.estimated_at = self.estimated_at.max(now);
-        for axis in [&mut self.x, &mut self.y] {
-            axis.estimator.predict(dt_s, axis.applied_v);
-        }
+        self.x.predict(now);
+        self.y.predict(now);
     }
 
     fn demand(&self) -> Demand {
-        Demand { x: self.x.duty.get(), y: self.y.duty.get() }
+        Demand { x: self.x.duty(), y: self.y.duty() }
     }
 
     /// One run of the control law.
     fn control(&mut self) {
-        let ContouringSettings { along, across, wait_from_counts, wait_counts, .. } = self.settings;
-        let (period, period_us) = (self.settings.period(), self.settings.period_us);
-        let [ux, uy] = self.direction;
-        let point = self.plan.at(self.plan_s);
+        if trouble_of(&self.x, &self.y).is_some_and(|found| found.trouble.stops()) {
+            self.x.stop();
+            self.y.stop();
+            return;
+        }
+        let ContouringSettings { along, across, tolerance_counts, period_us, .. } = self.settings;
+        let wait = Wait { from_counts: self.settings.wait_from_counts, counts: self.settings.wait_counts };
+        let period = self.settings.period();
+        let (start, target, [ux, uy]) = (self.line.start(), self.line.target(), self.line.direction());
+        let point = self.line.at(self.line.plan_s());
 
         // Errors against the reference, in counts; the distance along the line is kept in f64 until here.
-        let reference = |axis: &ContouredAxis, start: i32, unit: f32| {
+        let error = |axis: &LedAxis, start: i32, unit: f32| {
             let distance = point.distance_mm * f64::from(unit);
             let whole = libm::round(distance);
             #[expect(clippy::cast_possible_truncation, reason = "a checked machine has at most 99999 counts")]
             let (count, rest) = (start.saturating_add(whole as i32), (distance - whole) as f32);
             rest - axis.estimator.distance_from(count)
         };
-        let (ex, ey) = (reference(&self.x, self.start.x, ux), reference(&self.y, self.start.y, uy));
-        let (vx, vy) = (self.x.estimator.speed_counts_s(), self.y.estimator.speed_counts_s());
-        let (e_along, e_across) = (ex * ux + ey * uy, ey * ux - ex * uy);
-        let (v_along, v_across) = (vx * ux + vy * uy, vy * ux - vx * uy);
-
-        // How fast the reference goes on: 1 as planned, 0 waiting for a pen that does not follow.
-        let lag = libm::hypotf(ex, ey);
-        let rate =
-            (1.0 - (lag - wait_from_counts).max(0.0) / (wait_counts - wait_from_counts)).clamp(0.0, 1.0);
+        let (ex, ey) = (error(&self.x, start.x, ux), error(&self.y, start.y, uy));
+        let rate = self.line.rate([ex, ey], wait);
 
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let (speed, accel) = (point.speed_mm_s as f32 * rate, point.accel_mm_s2 as f32 * rate * rate);
-        let a_along = accel + along.position * e_along + along.speed * (speed - v_along);
-        let a_across = across.position * e_across - across.speed * v_across;
+        let (dx, dy) =
+            (speed * ux - self.x.estimator.speed_counts_s(), speed * uy - self.y.estimator.speed_counts_s());
+        let a_along = accel + along.position * (ex * ux + ey * uy) + along.speed * (dx * ux + dy * uy);
+        let a_across = across.position * (ey * ux - ex * uy) + across.speed * (dy * ux - dx * uy);
 
-        self.plan_s = (self.plan_s + period.as_secs_f64() * f64::from(rate)).min(self.plan.duration_s());
-        let finished = self.plan_s >= self.plan.duration_s();
-        self.over_us = if finished { self.over_us.saturating_add(period_us) } else { 0 };
-        let tolerance = self.settings.tolerance_counts;
-        let (rest_x, rest_y) = (
-            self.x.rests(finished || ux == 0.0, self.target.x, tolerance, period_us),
-            self.y.rests(finished || uy == 0.0, self.target.y, tolerance, period_us),
-        );
-        let (target, over_us, waits) = (self.target, self.over_us, rate < 1.0);
-        for (axis, target, rests, accel, speed, error) in [
-            (&mut self.x, target.x, rest_x, a_along * ux - a_across * uy, speed * ux, ex),
-            (&mut self.y, target.y, rest_y, a_along * uy + a_across * ux, speed * uy, ey),
+        self.line.go_on(rate, period);
+        let (finished, over_us, waits) = (self.line.is_over(), self.line.over_us(), rate < 1.0);
+        let rest_x = self.x.rests(finished || ux == 0.0, target.x, tolerance_counts, period_us);
+        let rest_y = self.y.rests(finished || uy == 0.0, target.y, tolerance_counts, period_us);
+        for (axis, target, rests, accel, unit, error) in [
+            (&mut self.x, target.x, rest_x, a_along * ux - a_across * uy, ux, ex),
+            (&mut self.y, target.y, rest_y, a_along * uy + a_across * ux, uy, ey),
         ] {
-            if rests {
+            if rests || axis.coasts(target) || (finished && axis.inches(target, over_us, period_us)) {
                 continue;
             }
-            if finished && axis.last.is_near(axis.estimator.motion(), target, over_us) {
-                axis.inch(target, period_us);
-            } else {
-                // A whole count behind while the reference waits for it: it is stuck.
-                let leaning = axis.last.lean(waits && error.abs() >= 1.0, error, period_us);
-                axis.drive(accel, speed, error, leaning);
-            }
+            // A whole count behind while the reference waits for it: it is stuck.
+            let leaning = axis.lean(waits && error.abs() >= 1.0, error, period_us);
+            let model = axis.estimator.model();
+            let speed = speed * unit;
+            let friction = libm::copysignf(model.dry_friction, if speed == 0.0 { error } else { speed });
+            let push =
+                accel + model.damping_per_s * speed + friction - axis.estimator.disturbance_counts_s2();
+            let duty = push / (model.accel_per_volt * model.supply_v) + leaning;
+            axis.drive(duty, if unit == 0.0 { error } else { unit });
         }
-        let settled_for = self.settled_for.unwrap_or_default().saturating_add(period);
-        self.settled_for = (finished && rest_x && rest_y).then_some(settled_for);
-    }
-}
-
-impl ContouredAxis {
-    fn edge(&mut self, direction: Direction) {
-        if self.last.is_leaning() {
-            self.estimator.broke_loose(self.applied_v);
+        self.line.settles(rest_x && rest_y, period);
+        // Shafts that came to stand far beside the target are led there along a line of their own.
+        if let (true, Some(far_x), Some(far_y)) =
+            (finished, self.x.stands_far(target.x), self.y.stands_far(target.y))
+            && (far_x || far_y)
+        {
+            self.line.from(self.position());
         }
-        self.estimator.edge(direction);
-        self.last.edge();
-    }
-
-    /// Whether the shaft is left alone where it stands, with its motor short-circuited.
-    fn rests(&mut self, may_rest: bool, target: i32, tolerance_counts: f32, period_us: u32) -> bool {
-        self.last.wait(period_us);
-        let rests = may_rest && self.last.rests(self.estimator.motion(), target, tolerance_counts);
-        if rests {
-            self.duty.stop();
-        }
-        rests
-    }
-
-    /// Goes towards the target count by count.
-    fn inch(&mut self, target: i32, period_us: u32) {
-        if self.last.stands() {
-            self.estimator.stands();
-        }
-        self.duty.set(self.last.inch(self.estimator.distance_from(target), period_us));
-    }
-
-    /// Chooses the duty that gives the acceleration `accel` at the planned `speed`, and `leaning` beyond it.
-    fn drive(&mut self, accel: f32, speed: f32, error: f32, leaning: f32) {
-        let model = self.estimator.model();
-        let sense = if speed != 0.0 { speed } else { error };
-        let friction = libm::copysignf(self.estimator.friction_counts_s2().max(0.0), sense);
-        let push = accel + model.damping_per_s * speed + friction;
-        self.duty.set(push / (model.accel_per_volt * model.supply_v) + leaning);
     }
 }
 
@@ -337,37 +300,21 @@ impl LineController for Contouring {
 
     fn start(&mut self, now: Duration, target: StepPoint) -> Demand {
         self.predict(now);
-        if target == self.target && !self.has_arrived() {
+        if target == self.line.target() && !self.has_arrived() {
             return self.demand(); // the host said it twice
         }
-        // A pen that was called away from a target it had not reached begins where it is.
-        let stands = self.has_arrived() || self.position() == self.target;
-        self.start = if stands { self.target } else { self.position() };
-        self.target = target;
-        let dx = f64::from(target.x) - f64::from(self.start.x);
-        let dy = f64::from(target.y) - f64::from(self.start.y);
-        let length = libm::hypot(dx, dy);
-        if length > 0.0 {
-            #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
-            let direction = [(dx / length) as f32, (dy / length) as f32];
-            self.direction = direction;
-        }
-        self.plan = SCurve::plan(length, self.settings.limits).unwrap_or_default();
-        self.plan_s = 0.0;
-        self.over_us = 0;
-        self.settled_for = None;
-        for axis in [&mut self.x, &mut self.y] {
-            axis.last.start();
-        }
+        let (position, has_arrived) = (self.position(), self.has_arrived());
+        self.line.to(target, position, has_arrived);
+        self.x.start();
+        self.y.start();
         self.demand()
     }
 
     fn edge(&mut self, now: Duration, axis: Axis, direction: Direction) -> Demand {
-        self.predict(now);
         match axis {
-            Axis::X => self.x.edge(direction),
-            Axis::Y => self.y.edge(direction),
-        }
+            Axis::X => self.x.edge(now, direction),
+            Axis::Y => self.y.edge(now, direction),
+        };
         self.demand()
     }
 
@@ -380,9 +327,8 @@ impl LineController for Contouring {
     }
 
     fn applied(&mut self, drive: Drive) {
-        for (axis, duty) in [(&mut self.x, drive.x()), (&mut self.y, drive.y())] {
-            axis.applied_v = duty.value() * axis.estimator.model().supply_v;
-        }
+        self.x.applied(drive.x());
+        self.y.applied(drive.y());
     }
 
     fn position(&self) -> StepPoint {
@@ -390,14 +336,14 @@ impl LineController for Contouring {
     }
 
     fn has_arrived(&self) -> bool {
-        self.settled_for.is_some_and(|settled_for| {
-            settled_for >= Duration::from_micros(u64::from(self.settings.settle_us))
-        })
+        self.line.has_settled(self.settings.settle_us)
+    }
+
+    fn trouble(&self) -> Option<AxisTrouble> {
+        trouble_of(&self.x, &self.y)
     }
 
     fn reference(&self) -> Option<[f64; 2]> {
-        let [ux, uy] = self.direction.map(f64::from);
-        let distance = self.plan.at(self.plan_s).distance_mm;
-        Some([f64::from(self.start.x) + distance * ux, f64::from(self.start.y) + distance * uy])
+        Some(self.line.reference(self.line.plan_s()))
     }
 }

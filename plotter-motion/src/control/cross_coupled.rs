@@ -24,6 +24,7 @@ pub struct CrossCoupled<C> {
 
 /// How stiffly [`CrossCoupled`] holds the line.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct CrossCoupledSettings {
     /// Acceleration by the distance from the line, 1/s^2.
     pub position: f32,

@@ -13,6 +13,7 @@ use core::time::Duration;
 /// assert_eq!(at(100_000), 0.45);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct DriveRamp {
     /// Drive at once, 0 to 1.
     pub start: f32,

@@ -46,6 +46,11 @@ pub struct Equalizer {
 
 /// What an [`Equalizer`] must know.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct EqualizerSettings {
     /// Time constant of the motors with what they move, s.
     pub time_constant_s: f32,
@@ -123,7 +128,7 @@ mod tests {
                 speed[i] += (FULL[i] * 0.35 * factor - speed[i]) * (DT_S / TIME_CONSTANT_S);
                 place[i] += speed[i] * DT_S;
             }
-            let now = place.map(|p| crate::from_mm(f64::from(p), 1.0));
+            let now = place.map(|p| crate::toolpath::from_mm(f64::from(p), 1.0));
             trims = equalizer.update([now[0] - last[0], now[1] - last[1]], [0.35, 0.35], DT_S);
             last = now;
         }

@@ -1,7 +1,7 @@
 //! [`LastCounts`]: how a shaft gets to rest in its target's count, whatever holds it.
 
 use super::shaft_motion::ShaftMotion;
-use crate::Decoding;
+use crate::config::Decoding;
 
 /// The end of a line on one axis.
 ///
@@ -28,6 +28,9 @@ pub(super) struct LastCounts {
 /// A shaft without an edge for so long, at the end of a line, stands.
 const STANDS_US: u32 = 5_000;
 
+/// So near to its target a shaft goes count by count, counts.
+const NEAR_COUNTS: u32 = 4;
+
 /// After so many turns a count more is near enough.
 const TURNS_A_COUNT: u16 = 4;
 
@@ -45,9 +48,9 @@ impl LastCounts {
         self.still_us = 0;
     }
 
-    /// Whether the shaft was pushed harder and harder when it moved last.
-    pub(super) fn is_leaning(&self) -> bool {
-        self.leaning != 0.0
+    /// A push that did not move it ends.
+    pub(super) const fn let_go(&mut self) {
+        self.leaning = 0.0;
     }
 
     /// Time passes.
@@ -82,9 +85,13 @@ impl LastCounts {
 
     /// Whether, with the plan over for so long, the last counts are better gone one by one than by the control law.
     pub(super) const fn is_near(&self, motion: &ShaftMotion, target: i32, over_us: u32) -> bool {
-        const NEAR_COUNTS: u32 = 4;
         const LATE_US: u32 = 100_000;
         over_us >= LATE_US || (over_us >= STANDS_US && motion.count.abs_diff(target) <= NEAR_COUNTS)
+    }
+
+    /// Whether it is so far from its target that a line there is sooner gone than single counts.
+    pub(super) const fn is_far(&self, motion: &ShaftMotion, target: i32) -> bool {
+        motion.count.abs_diff(target) > NEAR_COUNTS
     }
 
     /// The duty for a shaft that is `away` counts beyond its target: one that stands is pushed there, and let go at the first edge.

@@ -26,6 +26,7 @@ impl LearnedBin {
 
 /// How [`Learning`] learns.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct LearningSettings {
     /// Length of a bin, s.
     pub bin_s: f32,

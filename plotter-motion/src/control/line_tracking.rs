@@ -2,7 +2,9 @@
 
 use super::LineController;
 use crate::{
-    Axis, Demand, Direction, Drive, Duty, Machine, PublishedConfig, StepPoint, SumPid, SumPidState, SyncStop,
+    Axis, Demand, Direction, Drive, Duty, Machine, StepPoint,
+    config::PublishedConfig,
+    control::{SumPid, SumPidState, SyncStop},
 };
 use core::time::Duration;
 
@@ -55,6 +57,7 @@ pub struct LineTracking {
 
 /// What [`LineTracking`] must know of a machine: a few numbers that a firmware keeps in its program memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct LineTrackingSettings {
     /// Gains and limits.
     pub published: PublishedConfig,

@@ -4,7 +4,12 @@
 //! description chooses between them ([`ChosenController`]); a firmware that has but one names it. [`PointToPoint`] is that of
 //! the marking board, whose axes are not its motors; [`Contouring`] leads the motors of a belt as it leads any two.
 
+mod pid;
+mod sync_stop;
+pub use pid::{Pid, PidState, SumPid, SumPidState};
+pub use sync_stop::SyncStop;
 mod chosen;
+mod coasting_bridge;
 mod contour_controller;
 mod contouring;
 mod cross_coupled;
@@ -12,6 +17,8 @@ mod drive_ramp;
 mod equalizer;
 mod last_counts;
 mod learning;
+mod led_axis;
+mod line_plan;
 mod line_tracking;
 mod per_axis;
 mod planned_line;
@@ -19,12 +26,14 @@ mod planned_pid;
 mod point_to_point;
 mod rounded_duty;
 mod shaft_estimator;
+mod shaft_fit;
 mod shaft_motion;
-mod shaft_observer;
 mod speed_meter;
 pub mod tuning;
+mod watch;
 
 pub use chosen::ChosenController;
+pub use coasting_bridge::CoastingBridge;
 pub use contour_controller::{AxisController, AxisState, ContourController, ContourState, TwoAxes};
 pub use contouring::{Contouring, ContouringSettings, PositionGains, ShaftSettings};
 pub use cross_coupled::{CrossCoupled, CrossCoupledSettings};
@@ -37,8 +46,8 @@ pub use planned_line::PlannedLine;
 pub use planned_pid::PlannedPid;
 pub use point_to_point::{PointToPoint, PointToPointSettings};
 pub use shaft_estimator::{ShaftEstimator, ShaftModel};
-pub use shaft_observer::ShaftObserver;
 pub use speed_meter::SpeedMeter;
+pub use watch::{AxisTrouble, Trouble};
 
 use crate::{Axis, Demand, Direction, Drive, StepPoint};
 use core::time::Duration;
@@ -68,6 +77,11 @@ pub trait LineController {
 
     /// Whether the motors stand at the target.
     fn has_arrived(&self) -> bool;
+
+    /// What is wrong with a motor or its encoder, as far as it can tell; `None` also for one that cannot. A new target is tried all the same.
+    fn trouble(&self) -> Option<AxisTrouble> {
+        None
+    }
 
     /// Where it wants the motors to be now, encoder counts; `None` for a controller that knows but the target.
     fn reference(&self) -> Option<[f64; 2]> {

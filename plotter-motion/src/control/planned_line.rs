@@ -1,12 +1,9 @@
 //! [`PlannedLine`]: a reference that moves along the line as planned, and a controller that follows it.
 
-use super::last_counts::LastCounts;
-use super::rounded_duty::RoundedDuty;
-use super::{
-    AxisState, ContourController, ContourState, ContouringSettings, LineController, ShaftObserver,
-    ShaftSettings,
-};
-use crate::{Axis, Demand, Direction, Drive, Duty, Machine, SCurve, StepPoint};
+use super::led_axis::{LedAxis, trouble_of};
+use super::line_plan::{LinePlan, Wait};
+use super::{AxisState, AxisTrouble, ContourController, ContourState, ContouringSettings, LineController};
+use crate::{Axis, Demand, Direction, Drive, Machine, StepPoint};
 use core::time::Duration;
 
 /// Makes a [`LineController`] of a [`ContourController`]: everything but the control law.
@@ -14,7 +11,7 @@ use core::time::Duration;
 /// ```text
 ///  targets ──▶ SCurve along the line ──▶ reference ─┐
 ///                                                   ├─▶ ContourController ──▶ Demand ──▶ whole steps of the duty
-///  edges and applied drive ──▶ ShaftObserver ──────┘
+///  edges and applied drive ──▶ ShaftEstimator ──────┘
 /// ```
 ///
 /// The plan has the limits of the machine's `[control.contouring]`, and the control law runs `loop_hz` times a second. While the
@@ -41,29 +38,16 @@ pub struct PlannedLine<C> {
     controller: C,
     x: PlannedAxis,
     y: PlannedAxis,
-    start: StepPoint,
-    target: StepPoint,
-    direction: [f32; 2],
-    plan: SCurve,
-    /// Time along the plan, s; it stands still while the reference waits.
-    plan_s: f64,
+    line: LinePlan,
     /// When the loop ran last, how far along the plan it was then, and how fast the reference goes on since.
     run_at: Duration,
     run_plan_s: f64,
     rate: f32,
-    estimated_at: Duration,
-    /// How long the plan has been over, us.
-    over_us: u32,
-    /// How long both shafts have rested at the target; `None` while they do not.
-    settled_for: Option<Duration>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PlannedAxis {
-    observer: ShaftObserver,
-    applied_v: f32,
-    duty: RoundedDuty,
-    last: LastCounts,
+    led: LedAxis,
     /// How far it was behind at the last edge since the last run, counts.
     edge_error: Option<f32>,
 }
@@ -89,29 +73,16 @@ impl<C: ContourController> PlannedLine<C> {
     /// The same from settings; the gains among them are not used.
     #[must_use]
     pub fn with_settings(settings: ContouringSettings, controller: C) -> Self {
-        let axis = |ShaftSettings { model, decoding, observer_rad_s, pwm_steps }| PlannedAxis {
-            observer: ShaftObserver::new(model, decoding, observer_rad_s),
-            applied_v: 0.0,
-            duty: RoundedDuty::none(pwm_steps),
-            last: LastCounts::AT_REST,
-            edge_error: None,
-        };
+        let axis = |settings| PlannedAxis { led: LedAxis::new(settings), edge_error: None };
         Self {
             settings,
             controller,
             x: axis(settings.x),
             y: axis(settings.y),
-            start: StepPoint::default(),
-            target: StepPoint::default(),
-            direction: [1.0, 0.0],
-            plan: SCurve::default(),
-            plan_s: 0.0,
+            line: LinePlan::at_rest(settings.limits),
             run_at: Duration::ZERO,
             run_plan_s: 0.0,
             rate: 1.0,
-            estimated_at: Duration::ZERO,
-            over_us: 0,
-            settled_for: None,
         }
     }
 
@@ -122,28 +93,26 @@ impl<C: ContourController> PlannedLine<C> {
     }
 
     fn predict(&mut self, now: Duration) {
-        let dt_s = now.saturating_sub(self.estimated_at).as_secs_f32();
-        self.estimated_at = self.estimated_at.max(now);
-        for axis in [&mut self.x, &mut self.y] {
-            axis.observer.predict(dt_s, axis.applied_v);
-        }
+        self.x.led.predict(now);
+        self.y.led.predict(now);
     }
 
     fn demand(&self) -> Demand {
-        Demand { x: self.x.duty.get(), y: self.y.duty.get() }
+        Demand { x: self.x.led.duty(), y: self.y.led.duty() }
     }
 
     /// What the control law is told. Speed and acceleration of the reference are smaller while it waits.
     fn state(&self, rate: f32) -> ContourState {
-        let point = self.plan.at(self.plan_s);
+        let point = self.line.at(self.line.plan_s());
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let (distance, speed, accel, plan_s) = (
             point.distance_mm,
             point.speed_mm_s as f32 * rate,
             point.accel_mm_s2 as f32 * rate * rate,
-            self.plan_s as f32,
+            self.line.plan_s() as f32,
         );
         let axis = |axis: &PlannedAxis, start: i32, target: i32, unit: f32| {
+            let estimator = &axis.led.estimator;
             #[expect(
                 clippy::cast_possible_truncation,
                 clippy::cast_precision_loss,
@@ -152,7 +121,7 @@ impl<C: ContourController> PlannedLine<C> {
             let (reference, target, count) = (
                 (distance * f64::from(unit)) as f32,
                 target.saturating_sub(start) as f32,
-                axis.observer.count().saturating_sub(start) as f32,
+                estimator.count().saturating_sub(start) as f32,
             );
             AxisState {
                 reference,
@@ -160,91 +129,82 @@ impl<C: ContourController> PlannedLine<C> {
                 reference_accel: accel * unit,
                 target,
                 count,
-                position: axis.observer.distance_from(start),
-                speed: axis.observer.speed_counts_s(),
-                disturbance: axis.observer.disturbance_counts_s2(),
+                position: estimator.distance_from(start),
+                speed: estimator.speed_counts_s(),
+                disturbance: estimator.disturbance_counts_s2(),
                 edge_error: axis.edge_error,
             }
         };
-        let [ux, uy] = self.direction;
+        let (start, target, [ux, uy]) = (self.line.start(), self.line.target(), self.line.direction());
         ContourState {
-            x: axis(&self.x, self.start.x, self.target.x, ux),
-            y: axis(&self.y, self.start.y, self.target.y, uy),
-            direction: self.direction,
+            x: axis(&self.x, start.x, target.x, ux),
+            y: axis(&self.y, start.y, target.y, uy),
+            direction: [ux, uy],
             plan_s,
             dt_s: self.settings.period().as_secs_f32(),
         }
     }
 
     /// One run of the loop.
-    fn run(&mut self) {
-        let ContouringSettings { wait_from_counts, wait_counts, tolerance_counts, .. } = self.settings;
-        let (period, period_us) = (self.settings.period(), self.settings.period_us);
-        let [ux, uy] = self.direction;
+    fn run(&mut self, now: Duration) {
+        if trouble_of(&self.x.led, &self.y.led).is_some_and(|found| found.trouble.stops()) {
+            self.x.led.stop();
+            self.y.led.stop();
+            return;
+        }
+        let ContouringSettings { tolerance_counts, period_us, .. } = self.settings;
+        let wait = Wait { from_counts: self.settings.wait_from_counts, counts: self.settings.wait_counts };
+        let period = self.settings.period();
+        let (target, [ux, uy]) = (self.line.target(), self.line.direction());
         let state = self.state(1.0);
-        let (ex, ey) = (state.x.error(), state.y.error());
-        // How fast the reference goes on: 1 as planned, 0 waiting for a pen that does not follow.
-        let lag = libm::hypotf(ex, ey);
-        let rate =
-            (1.0 - (lag - wait_from_counts).max(0.0) / (wait_counts - wait_from_counts)).clamp(0.0, 1.0);
+        let rate = self.line.rate([state.x.error(), state.y.error()], wait);
         let state = if rate < 1.0 { self.state(rate) } else { state };
         let demand = self.controller.update(&state);
         (self.x.edge_error, self.y.edge_error) = (None, None);
 
-        (self.run_plan_s, self.rate) = (self.plan_s, rate);
-        self.plan_s = (self.plan_s + period.as_secs_f64() * f64::from(rate)).min(self.plan.duration_s());
-        let finished = self.plan_s >= self.plan.duration_s();
-        self.over_us = if finished { self.over_us.saturating_add(period_us) } else { 0 };
-        for axis in [&mut self.x, &mut self.y] {
-            axis.last.wait(period_us);
-        }
-        let rest_x = (finished || ux == 0.0) && self.x.rests(self.target.x, tolerance_counts);
-        let rest_y = (finished || uy == 0.0) && self.y.rests(self.target.y, tolerance_counts);
-        let (target, over_us) = (self.target, self.over_us);
-        for (axis, target, rests, duty) in
-            [(&mut self.x, target.x, rest_x, demand.x), (&mut self.y, target.y, rest_y, demand.y)]
+        (self.run_plan_s, self.rate) = (self.line.plan_s(), rate);
+        self.line.go_on(rate, period);
+        let (finished, over_us, waits) = (self.line.is_over(), self.line.over_us(), rate < 1.0);
+        let (x, y) = (&mut self.x.led, &mut self.y.led);
+        let rest_x = x.rests(finished || ux == 0.0, target.x, tolerance_counts, period_us);
+        let rest_y = y.rests(finished || uy == 0.0, target.y, tolerance_counts, period_us);
+        for (axis, target, rests, duty, unit, state) in
+            [(x, target.x, rest_x, demand.x, ux, &state.x), (y, target.y, rest_y, demand.y, uy, &state.y)]
         {
-            let is_near = finished && axis.last.is_near(axis.observer.motion(), target, over_us);
-            let duty = if is_near { axis.inch(target, period_us) } else { duty };
-            axis.drive((!rests).then_some(duty));
+            if rests || axis.coasts(target) || (finished && axis.inches(target, over_us, period_us)) {
+                continue;
+            }
+            let leaning = axis.lean(waits && state.error().abs() >= 1.0, state.error(), period_us);
+            let duty = axis.as_described(duty.value(), state.reference_speed) + leaning;
+            axis.drive(duty, if unit == 0.0 { state.error() } else { unit });
         }
-        let settled_for = self.settled_for.unwrap_or_default().saturating_add(period);
-        self.settled_for = (finished && rest_x && rest_y).then_some(settled_for);
+        self.line.settles(rest_x && rest_y, period);
+        // Shafts that came to stand far beside the target are led there along a line of their own.
+        if let (true, Some(far_x), Some(far_y)) =
+            (finished, self.x.led.stands_far(target.x), self.y.led.stands_far(target.y))
+            && (far_x || far_y)
+        {
+            self.line.from(self.position());
+            self.begin(now);
+        }
+    }
+
+    /// The control law begins with a line that is planned.
+    fn begin(&mut self, now: Duration) {
+        (self.run_plan_s, self.run_at) = (0.0, now);
+        #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
+        self.controller.start(self.line.duration_s() as f32);
     }
 }
 
 impl PlannedAxis {
     /// Takes an edge while the reference is `reference` counts beyond `start`.
-    fn edge(&mut self, direction: Direction, start: i32, reference: f64, planned: Option<Direction>) {
-        let place = self.observer.edge(direction, planned);
-        self.last.edge();
-        let counted = self.observer.count().saturating_sub(start);
+    fn edge(&mut self, now: Duration, direction: Direction, start: i32, reference: f64) {
+        let place = self.led.edge(now, direction);
+        let counted = self.led.estimator.count().saturating_sub(start);
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let error = (reference - f64::from(counted)) as f32 - place;
         self.edge_error = Some(error);
-    }
-
-    fn rests(&mut self, target: i32, tolerance_counts: f32) -> bool {
-        self.last.rests(self.observer.motion(), target, tolerance_counts)
-    }
-
-    fn inch(&mut self, target: i32, period_us: u32) -> Duty {
-        if self.last.stands() {
-            self.observer.stands();
-        }
-        Duty::saturating(self.last.inch(self.observer.distance_from(target), period_us))
-    }
-
-    /// Drives the shaft, or leaves it alone.
-    fn drive(&mut self, wanted: Option<Duty>) {
-        if let Some(wanted) = wanted {
-            self.duty.set(wanted.value());
-            return;
-        }
-        if self.last.stands() {
-            self.observer.rests();
-        }
-        self.duty.stop();
     }
 }
 
@@ -255,80 +215,58 @@ impl<C: ContourController> LineController for PlannedLine<C> {
 
     fn start(&mut self, now: Duration, target: StepPoint) -> Demand {
         self.predict(now);
-        if target == self.target && !self.has_arrived() {
+        if target == self.line.target() && !self.has_arrived() {
             return self.demand(); // the host said it twice
         }
-        // A pen that was called away from a target it had not reached begins where it is.
-        let stands = self.has_arrived() || self.position() == self.target;
-        self.start = if stands { self.target } else { self.position() };
-        self.target = target;
-        let dx = f64::from(target.x) - f64::from(self.start.x);
-        let dy = f64::from(target.y) - f64::from(self.start.y);
-        let length = libm::hypot(dx, dy);
-        if length > 0.0 {
-            #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
-            let direction = [(dx / length) as f32, (dy / length) as f32];
-            self.direction = direction;
+        let (position, has_arrived) = (self.position(), self.has_arrived());
+        self.line.to(target, position, has_arrived);
+        for axis in [&mut self.x.led, &mut self.y.led] {
+            axis.estimator.forget();
+            axis.start();
         }
-        self.plan = SCurve::plan(length, self.settings.limits).unwrap_or_default();
-        (self.plan_s, self.run_plan_s, self.run_at) = (0.0, 0.0, now);
-        self.settled_for = None;
-        self.over_us = 0;
-        for axis in [&mut self.x, &mut self.y] {
-            axis.observer.forget();
-            axis.last.start();
-        }
-        #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
-        self.controller.start(self.plan.duration_s() as f32);
+        self.begin(now);
         self.demand()
     }
 
     fn edge(&mut self, now: Duration, axis: Axis, direction: Direction) -> Demand {
-        self.predict(now);
         let since_run = now.saturating_sub(self.run_at).min(self.settings.period());
         let plan_s = self.run_plan_s + since_run.as_secs_f64() * f64::from(self.rate);
-        let reference = self.plan.at(plan_s).distance_mm;
-        let [ux, uy] = self.direction.map(f64::from);
-        let is_over = self.plan_s >= self.plan.duration_s();
-        let planned = |unit: f64| {
-            let sense = if unit > 0.0 { Direction::Plus } else { Direction::Minus };
-            (unit != 0.0 && !is_over).then_some(sense)
-        };
+        let reference = self.line.at(plan_s).distance_mm;
+        let (start, [ux, uy]) = (self.line.start(), self.line.direction().map(f64::from));
         match axis {
-            Axis::X => self.x.edge(direction, self.start.x, reference * ux, planned(ux)),
-            Axis::Y => self.y.edge(direction, self.start.y, reference * uy, planned(uy)),
+            Axis::X => self.x.edge(now, direction, start.x, reference * ux),
+            Axis::Y => self.y.edge(now, direction, start.y, reference * uy),
         }
         self.demand()
     }
 
     fn tick(&mut self, now: Duration) -> Demand {
         self.predict(now);
-        self.x.observer.no_edge();
-        self.y.observer.no_edge();
+        self.x.led.estimator.no_edge();
+        self.y.led.estimator.no_edge();
         self.run_at = now;
-        self.run();
+        self.run(now);
         self.demand()
     }
 
     fn applied(&mut self, drive: Drive) {
-        for (axis, duty) in [(&mut self.x, drive.x()), (&mut self.y, drive.y())] {
-            axis.applied_v = duty.value() * axis.observer.model().supply_v;
-        }
+        self.x.led.applied(drive.x());
+        self.y.led.applied(drive.y());
     }
 
     fn position(&self) -> StepPoint {
-        StepPoint::new(self.x.observer.count(), self.y.observer.count())
+        StepPoint::new(self.x.led.estimator.count(), self.y.led.estimator.count())
     }
 
     fn has_arrived(&self) -> bool {
-        self.settled_for.is_some_and(|settled_for| {
-            settled_for >= Duration::from_micros(u64::from(self.settings.settle_us))
-        })
+        self.line.has_settled(self.settings.settle_us)
+    }
+
+    fn trouble(&self) -> Option<AxisTrouble> {
+        trouble_of(&self.x.led, &self.y.led)
     }
 
     fn reference(&self) -> Option<[f64; 2]> {
-        let [ux, uy] = self.direction.map(f64::from);
-        let distance = self.plan.at(self.run_plan_s).distance_mm;
-        Some([f64::from(self.start.x) + distance * ux, f64::from(self.start.y) + distance * uy])
+        Some(self.line.reference(self.run_plan_s))
     }
 }

@@ -1,7 +1,7 @@
 //! [`PlannedPid`]: one axis after its reference, with or without a model of the motor.
 
 use super::{AxisController, AxisState, ShaftModel, TwoAxes};
-use crate::{AxisConfig, Duty, Machine};
+use crate::{Duty, Machine, config::AxisConfig};
 use core::f64::consts::TAU;
 
 /// Ours for one axis: PID on the error against a planned reference, and, with a model, the duty that the plan itself needs.

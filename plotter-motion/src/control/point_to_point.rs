@@ -47,6 +47,11 @@ pub struct PointToPoint {
 
 /// What [`PointToPoint`] must know.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct PointToPointSettings {
     /// Which way the motors turn.
     pub signs: BeltSigns,

@@ -1,7 +1,7 @@
 //! [`ShaftMotion`]: place and speed of a shaft from the edges of its encoder, for estimators that differ in what else they
 //! believe of it.
 
-use crate::{Decoding, Direction};
+use crate::{Direction, config::Decoding};
 
 /// The first two states of an estimator, and what an edge, or none, says of them. The third is its owner's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,10 +13,16 @@ pub(super) struct ShaftMotion {
     /// Place relative to `count`, in counts.
     pub(super) offset: f32,
     pub(super) speed: f32,
-    /// Least and greatest `offset` since the last edge.
-    pub(super) least: f32,
-    pub(super) most: f32,
     since_correction_s: f32,
+    /// How far beyond an edge it was thought to be that has not come, counts.
+    overrun: f32,
+    /// How far `speed` may be off, counts/s, since the last edge said how fast it was.
+    speed_doubt: f32,
+    /// Where it was when that was last known, relative to `count`: at an edge, or at rest.
+    from: f32,
+    /// Whether it may have gone up or down from there.
+    up: bool,
+    down: bool,
 }
 
 /// How much of a difference a filter takes, by the time since it took the last.
@@ -38,9 +44,12 @@ impl ShaftMotion {
             count: 0,
             offset,
             speed: 0.0,
-            least: offset,
-            most: offset,
             since_correction_s: 0.0,
+            overrun: 0.0,
+            speed_doubt: 0.0,
+            from: offset,
+            up: false,
+            down: false,
         }
     }
 
@@ -70,79 +79,124 @@ impl ShaftMotion {
             self.offset += last * dt_s + (self.speed - last) * ((1.0 - decay) / damping_per_s);
             self.speed = next;
         }
-        self.least = self.least.min(self.offset);
-        self.most = self.most.max(self.offset);
     }
 
-    /// Goes into the interval that an edge leads into; gives the edge's place there. What is corrected then
-    /// ends with [`stands_at`](Self::stands_at).
+    /// Whether it turns towards `sense` for certain.
+    pub(super) fn surely_turns(&self, sense: f32) -> bool {
+        self.speed * sense > self.speed_doubt * sense.abs()
+    }
+
+    /// Takes note of a drive of `accel` counts/s^2 against a dry friction; says whether it may have turned the shaft round.
+    pub(super) fn may_turn_under(&mut self, accel: f32, dry_friction: f32) -> bool {
+        // A push of less than this share of the friction as it is known moves no shaft.
+        const SHARE: f32 = 0.5;
+        if accel.abs() > SHARE * dry_friction && !self.surely_turns(-accel) {
+            self.up |= accel > 0.0;
+            self.down |= accel < 0.0;
+        }
+        self.up && self.down
+    }
+
+    /// Its acceleration may be off by so much, counts/s^2, for `dt_s`.
+    pub(super) fn doubts(&mut self, accel: f32, dt_s: f32) {
+        self.speed_doubt += accel * dt_s;
+    }
+
+    /// Whether an edge in this direction is the next one for certain.
+    pub(super) fn goes_on(&self, direction: Direction) -> bool {
+        match direction {
+            Direction::Plus => self.up && !self.down,
+            Direction::Minus => self.down && !self.up,
+        }
+    }
+
+    /// Goes into the interval that an edge leads into; gives the edge's place there.
     pub(super) fn enter(&mut self, direction: Direction) -> f32 {
         let (count, place) = self.edge_place(direction);
+        (self.up, self.down) = (direction == Direction::Plus, direction == Direction::Minus);
         #[expect(clippy::cast_precision_loss, reason = "0, 1 or -1")]
-        let moved = count.saturating_sub(self.count) as f32;
-        self.count = count;
-        self.offset -= moved;
+        let counts = count.saturating_sub(self.count) as f32;
+        (self.count, self.from) = (count, place);
+        self.offset -= counts;
         place
     }
 
-    /// The place nearest to where it is thought to be at which no edge would have come; `None` if it is there.
-    pub(super) fn without_edge(&self) -> Option<f32> {
+    /// No edge has come: it is still between those next to it. Says whether it was thought to be beyond one.
+    ///
+    /// That it is late says that it was slower since the last edge, by what it is short of over that time. That it has not come where
+    /// the shaft should have long been far beyond it says that something holds the shaft.
+    pub(super) fn without_edge(&mut self) -> bool {
+        // So far beyond the edge it would have to be, counts, if nothing held it.
+        const HELD_COUNTS: f32 = 1.5;
         let (least, most) = match self.decoding {
+            // up from below A's high half there is an edge at its start, down from above it one at its end
+            Decoding::X1 if self.up && !self.down => (self.from, if self.from < 0.0 { 0.0 } else { 1.0 }),
+            Decoding::X1 if self.down && !self.up => (if self.from > 0.5 { 0.5 } else { -0.5 }, self.from),
             Decoding::X1 => (-0.5, 1.0),
             Decoding::X2 | Decoding::X4 => (0.0, 1.0),
         };
         let inside = self.offset.clamp(least, most);
-        (inside != self.offset).then_some(inside)
-    }
-
-    /// From here on it is known to have been at `place` only.
-    pub(super) const fn stands_at(&mut self, place: f32) {
-        (self.least, self.most) = (place, place);
+        let beyond = self.offset - inside;
+        if beyond == 0.0 {
+            return false;
+        }
+        self.offset = inside;
+        self.overrun += beyond.abs();
+        if self.overrun > HELD_COUNTS + self.speed.abs() / self.observer_rad_s {
+            self.overrun = 0.0;
+            self.stands();
+        } else {
+            let (_, speed_gain, _) = self.gains();
+            self.speed -= speed_gain * beyond;
+        }
+        true
     }
 
     /// From here on it stands where it is thought to be.
     pub(super) const fn stands(&mut self) {
-        self.speed = 0.0;
-        self.stands_at(self.offset);
-    }
-
-    /// The same, in A's high half if its encoder is an x1.
-    pub(super) fn rests(&mut self) {
-        if self.decoding == Decoding::X1 {
-            self.offset = self.offset.clamp(0.0, 0.5);
-        }
-        self.stands();
+        (self.speed, self.speed_doubt) = (0.0, 0.0);
+        (self.from, self.up, self.down) = (self.offset, false, false);
     }
 
     /// The count after an edge, and the edge's place relative to it.
     fn edge_place(&self, direction: Direction) -> (i32, f32) {
-        // How far beyond an edge the estimate must have been for it to be met a second time.
-        const BEYOND_COUNTS: f32 = 0.1;
         let next = self.count.saturating_add(direction.sign());
-        match (self.decoding, direction) {
-            (Decoding::X2 | Decoding::X4, Direction::Plus) => (next, 0.0),
-            (Decoding::X2 | Decoding::X4, Direction::Minus) => (next, 1.0),
-            // Forwards the counted edge is the start of A's high half, backwards its end.
-            (Decoding::X1, Direction::Plus) => {
-                let again = self.least < -BEYOND_COUNTS && self.offset < 0.5;
-                (if again { self.count } else { next }, 0.0)
-            }
-            (Decoding::X1, Direction::Minus) => {
-                let again = self.most > 0.5 + BEYOND_COUNTS && self.offset > 0.0;
-                (if again { self.count } else { next }, 0.5)
-            }
-        }
+        let place = match direction {
+            Direction::Plus => 0.0,
+            Direction::Minus => match self.decoding {
+                Decoding::X1 => 0.5,
+                Decoding::X2 | Decoding::X4 => 1.0,
+            },
+        };
+        // One way only, it met the first edge on its way; else the one that is nearer to where it is thought to be.
+        let is_next = match (self.decoding, direction) {
+            (Decoding::X2 | Decoding::X4, _) => true,
+            (Decoding::X1, Direction::Plus) if !self.down => self.from >= 0.0,
+            (Decoding::X1, Direction::Minus) if !self.up => self.from <= 0.5,
+            (Decoding::X1, Direction::Plus) => self.offset >= 0.5,
+            (Decoding::X1, Direction::Minus) => self.offset <= 0.0,
+        };
+        (if is_next { next } else { self.count }, place)
     }
 
     /// Takes a measured difference into place and speed; says what the third state may take of it.
-    pub(super) fn correct(&mut self, difference: f32) -> Fading {
-        const SHORTEST_S: f32 = 2e-5; // below a few timer ticks a difference says nothing of the speed
+    pub(super) fn correct(&mut self, difference: f32, share: f32) -> Fading {
+        let (place_gain, speed_gain, fading) = self.gains();
+        self.offset += difference * place_gain;
+        self.speed += share * difference * speed_gain;
+        (self.since_correction_s, self.overrun) = (0.0, 0.0);
+        self.speed_doubt *= 0.5;
+        fading
+    }
+
+    /// What of a difference place and speed take, and what an acceleration may take of it.
+    fn gains(&self) -> (f32, f32, Fading) {
         let t = self.since_correction_s.max(SHORTEST_S);
         let z = libm::expf(-self.observer_rad_s * t);
         let fade = 1.0 - z;
-        self.offset += difference * (1.0 - z * z * z);
-        self.speed += difference * 1.5 * fade * fade * (1.0 + z) / t;
-        self.since_correction_s = 0.0;
-        Fading { fade, t }
+        (1.0 - z * z * z, 1.5 * fade * fade * (1.0 + z) / t, Fading { fade, t })
     }
 }
+
+/// Below a few timer ticks a difference says nothing of the speed, s.
+const SHORTEST_S: f32 = 2e-5;

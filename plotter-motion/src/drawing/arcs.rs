@@ -3,6 +3,11 @@
 //! From each place the longest arc is sought: its length is doubled until it does not fit, and then halved in (so a run of n lines takes n log n
 //! looks at most). An arc that fits goes through both its ends, so only where on the chord's bisector its centre lies is free: least squares of
 //! |q − c|² − r² is linear in it, and where that misses, the middle of all centres that are possible for every place is tried.
+//!
+//! Places that are rounded, to units of HPGL as an example, are off by less than the tolerance, but an arc
+//! goes exactly through two of them. So where one end does not fit, ends little before it are tried; and a
+//! closed run is first looked at as a circle, whose centre is free in both directions, with the one that
+//! keeps the farthest place nearest.
 
 use super::{Drawing, PathSegment, Shape, Stroke};
 use crate::{Point, Segment, Vec2};
@@ -14,6 +19,14 @@ const FEWEST_LINES: usize = 4;
 
 /// Most of a turn that one line of an arc takes, rad: a polygon of fewer than 12 sides is meant as one.
 const MOST_STEP_RAD: f64 = PI / 6.0 + 1e-6;
+
+/// Ends that are tried for an arc, one before the other: of places rounded by chance four in a row are seldom
+/// all at the wrong side. With one, circles of HPGL are up to four arcs.
+const ENDS: usize = 4;
+
+/// Rounds of the search for the best centre of a circle. With 16 the farthest place is within some per cent
+/// of the best.
+const ROUNDS: usize = 16;
 
 /// Share of the tolerance within which curves are looked at as lines.
 const CURVES: f64 = 0.125;
@@ -136,11 +149,23 @@ impl<'a> Run<'a> {
         if rest.len() < least {
             return best;
         }
+        let is_closed = self.begins.get(begin).and_then(|at| self.places.get(*at)) == self.places.last();
+        if is_closed && let fit @ Fit::Arc { .. } = self.fit(begin, self.segments.len()) {
+            return (rest.len(), fit);
+        }
         let (mut count, mut too_long) = (least, rest.len() + 1);
         while too_long - best.0 > 1 {
-            match self.fit(begin, begin + count) {
-                Fit::Neither => too_long = count,
-                fit => best = (count, fit),
+            let lowest = least.max(best.0 + 1).max((count + 1).saturating_sub(ENDS));
+            let fits = (lowest..=count).rev().map(|count| (count, self.fit(begin, begin + count)));
+            let found = fits.into_iter().find(|(_, fit)| !matches!(fit, Fit::Neither));
+            if let Some(found) = found {
+                best = found;
+                if found.0 < count {
+                    // All between both have been tried.
+                    break;
+                }
+            } else {
+                too_long = count;
             }
             if best.0 == 0 {
                 break;
@@ -165,9 +190,10 @@ impl<'a> Run<'a> {
         let half_mm = 0.5 * chord.length();
         let along = (*to - *from).normalized();
         let Some(along) = along else {
-            return circle_through(places)
-                .and_then(|centre| self.check(begin, end, centre))
-                .unwrap_or(Fit::Neither);
+            let centre = circle_through(places);
+            let fit = centre.and_then(|centre| self.check(begin, end, centre));
+            let best = || best_circle(places, centre?).and_then(|centre| self.check(begin, end, centre));
+            return fit.or_else(best).unwrap_or(Fit::Neither);
         };
         let middle = from.lerp(*to, 0.5);
         let up = along.perpendicular();
@@ -253,6 +279,49 @@ impl<'a> Run<'a> {
         };
         sweep_rad.map(|sweep_rad| Fit::Arc { centre, sweep_rad })
     }
+}
+
+/// The centre of the circle through the first of places from which the farthest of the others, and of the
+/// middles between them, is nearest; from a centre that is near it.
+///
+/// By least squares whose weights grow with what is left (C. Lawson, "Contributions to the theory of linear
+/// least maximum approximation", 1961). How far a place is off changes with the centre by the difference of
+/// both directions from it.
+fn best_circle(places: &[Point], mut centre: Point) -> Option<Point> {
+    let first = *places.first()?;
+    let middles = places.windows(2).filter_map(|pair| Some(pair.first()?.lerp(*pair.last()?, 0.5)));
+    let all: Vec<Point> = places.iter().copied().chain(middles).collect();
+    let mut weights = alloc::vec![1.0_f64; all.len()];
+    let mut best = (f64::INFINITY, centre);
+    for _ in 0..ROUNDS {
+        let out = first - centre;
+        let (radius_mm, towards) = (out.length(), out.normalized()?);
+        let off_mm = |place: &Point| place.distance(centre) - radius_mm;
+        let farthest_mm = all.iter().map(|place| libm::fabs(off_mm(place))).fold(0.0, libm::fmax);
+        if farthest_mm < best.0 {
+            best = (farthest_mm, centre);
+        }
+        let (mut xx, mut xy, mut yy, mut right, mut sum) = (0.0, 0.0, 0.0, Vec2::default(), 0.0);
+        for (place, weight) in all.iter().zip(&mut weights) {
+            let off_mm = off_mm(place);
+            let Some(direction) = (*place - centre).normalized() else { continue };
+            let way = direction - towards;
+            xx += *weight * way.x * way.x;
+            xy += *weight * way.x * way.y;
+            yy += *weight * way.y * way.y;
+            right = right + way * (*weight * off_mm);
+            *weight *= libm::fabs(off_mm) / farthest_mm;
+            sum += *weight;
+        }
+        let area = xx * yy - xy * xy;
+        let step = Vec2::new(yy * right.x - xy * right.y, xx * right.y - xy * right.x) * (1.0 / area);
+        centre += step;
+        if !centre.is_finite() || sum <= 0.0 {
+            break;
+        }
+        weights.iter_mut().for_each(|weight| *weight /= sum);
+    }
+    best.1.is_finite().then_some(best.1)
 }
 
 /// The centre of the circle through the first of places that fits the others best, by least squares of |q|² − 2 q·c, with q from the first.

@@ -21,14 +21,14 @@ impl Default for Bounds {
 impl Bounds {
     /// Round one place.
     #[must_use]
-    pub const fn of(place: Point) -> Self {
+    pub const fn at(place: Point) -> Self {
         Self { least: place, most: place }
     }
 
     /// Between two corners.
     #[must_use]
     pub fn between(a: Point, b: Point) -> Self {
-        let mut bounds = Self::of(a);
+        let mut bounds = Self::at(a);
         bounds.grow(b);
         bounds
     }

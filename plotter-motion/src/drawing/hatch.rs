@@ -12,6 +12,7 @@ use core::f64::consts::FRAC_PI_4;
 
 /// Which closed strokes are filled together, of one pen, layer and sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum HatchTogether {
     /// All of them: what lies within an odd number of them. The lines stand behind the last one.
     #[default]
@@ -29,6 +30,11 @@ pub enum HatchTogether {
 /// hatching.distance_mm = 0.4; // the width of a fineliner's line: the area is solid
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 #[non_exhaustive]
 pub struct Hatching {
     /// From line to line, mm; above 0.

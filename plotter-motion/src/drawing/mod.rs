@@ -13,7 +13,7 @@
 //! what later closed strokes hide, and [`Drawing::hatch`] fills closed strokes with lines. Arcs stay arcs and curves curves.
 //!
 //! ```
-//! use plotter_motion::{drawing::{Affine, Drawing}, gcode, hpgl};
+//! use plotter_motion::{gcode, hpgl, drawing::{Affine, Drawing}};
 //!
 //! let mut drawing: Drawing = hpgl::plot_ops(b"IN;SP1;PU0,0;PD400,0,400,400;PU;").filter_map(Result::ok).collect();
 //! drawing.map(&Affine::scaled(2.0, 2.0));

@@ -2,7 +2,7 @@
 
 use super::{Affine, Bounds};
 use crate::bezier::Bezier;
-use crate::{PlotOp, Point, chords};
+use crate::{PlotOp, Point, toolpath::chords};
 use alloc::vec::Vec;
 use core::f64::consts::{FRAC_PI_8, PI, TAU};
 
@@ -218,7 +218,7 @@ impl PathSegment {
 
     /// The box round it.
     pub(super) fn bounds(&self, from: Point) -> Bounds {
-        let mut bounds = Bounds::of(from);
+        let mut bounds = Bounds::at(from);
         self.extremes(from, &mut |at| bounds.grow(at));
         bounds
     }

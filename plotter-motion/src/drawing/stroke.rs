@@ -92,7 +92,7 @@ impl Stroke {
     /// The box round it.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        let mut bounds = Bounds::of(self.from);
+        let mut bounds = Bounds::at(self.from);
         for (from, segment) in self.segments() {
             segment.extremes(from, &mut |at| bounds.grow(at));
         }
@@ -107,11 +107,13 @@ impl Stroke {
 
     /// Draws it from its end to its start.
     pub fn reverse(&mut self) {
-        let mut segments: Vec<PathSegment> =
-            self.segments().map(|(from, segment)| segment.reversed(from)).collect();
-        segments.reverse();
-        self.from = self.to();
-        self.segments = segments;
+        let mut at = self.from;
+        for segment in &mut self.segments {
+            let from = core::mem::replace(&mut at, segment.to);
+            *segment = segment.reversed(from);
+        }
+        self.segments.reverse();
+        self.from = at;
     }
 
     /// It as `map` shows it.

@@ -12,7 +12,7 @@ impl Drawing {
     /// What HPGL cannot say, or an error of `out`.
     ///
     /// ```
-    /// # use plotter_motion::{Point, drawing::{Drawing, Stroke}, hpgl};
+    /// # use plotter_motion::{Point, hpgl, drawing::{Drawing, Stroke}};
     /// let line = Stroke::through([Point::new(1.0, 2.0), Point::new(3.0, 2.0)]).unwrap();
     /// let mut text = String::new();
     /// Drawing { strokes: vec![line], ..Drawing::default() }.write_hpgl(0.01, hpgl::WriteOptions::default(), &mut text)?;
@@ -50,7 +50,7 @@ impl Drawing {
 /// Text into a file or a port: what takes bytes takes what the writers here write.
 ///
 /// ```
-/// use plotter_motion::{PlotOp, Point, drawing::{Drawing, IoText}, hpgl};
+/// use plotter_motion::{PlotOp, Point, hpgl, drawing::{Drawing, IoText}};
 /// let drawing: Drawing = [PlotOp::Draw { to: Point::new(1.0, 0.0), feed_mm_s: None }].into_iter().collect();
 /// let mut file = IoText::new(Vec::new());
 /// drawing.write_hpgl(0.01, hpgl::WriteOptions::default(), &mut file)?;

@@ -4,6 +4,7 @@ use crate::Vec2;
 
 /// What is a pen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Pens {
     /// Each layer, in the order in which they draw. Beyond the 255th, layers share the last pen.
@@ -17,6 +18,11 @@ pub enum Pens {
 
 /// How a drawing is put on the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct ReadOptions {
     /// Farthest that lines may be from the curves that they stand for, mm; above 0.
     pub tolerance_mm: f64,

@@ -1,6 +1,7 @@
 //! [`Spline`]: a NURBS curve as lines.
 
 use super::frame::Vec3;
+use crate::rational::{Weighted, bezier_point};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -17,26 +18,6 @@ pub(super) struct Spline {
     pub(super) points: Vec<Vec3>,
     /// As many as there are points, or none.
     pub(super) weights: Vec<f64>,
-}
-
-/// A place and its weight, the place multiplied by it: of these a rational curve is made like any other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Weighted {
-    place: Vec3,
-    weight: f64,
-}
-
-impl Weighted {
-    fn mixed(self, other: Self, share: f64) -> Self {
-        Self {
-            place: self.place + (other.place - self.place) * share,
-            weight: self.weight + (other.weight - self.weight) * share,
-        }
-    }
-
-    fn projected(self) -> Vec3 {
-        self.place * (1.0 / self.weight)
-    }
 }
 
 impl Spline {
@@ -69,11 +50,11 @@ impl Spline {
     /// curves", 1980), and halved until its points lie near enough to its chord: the curve is a mean of them.
     pub(super) fn places(&self, tolerance: f64) -> Vec<Vec3> {
         let weight = |index: usize| self.weights.get(index).copied().unwrap_or(1.0);
-        let points: Vec<Weighted> = self
+        let points: Vec<Weighted<Vec3>> = self
             .points
             .iter()
             .enumerate()
-            .map(|(index, place)| Weighted { place: *place * weight(index), weight: weight(index) })
+            .map(|(index, place)| Weighted::new(*place, weight(index)))
             .collect();
         let mut places = Vec::new();
         let inner = self.degree..self.points.len();
@@ -82,7 +63,7 @@ impl Spline {
             if from >= to {
                 continue;
             }
-            let piece = self.bezier(&points, span, *from, *to);
+            let piece = self.bezier(&points, span);
             if places.is_empty() {
                 places.extend(piece.first().map(|point| point.projected()));
             }
@@ -91,33 +72,21 @@ impl Spline {
         places
     }
 
-    /// The Bézier points of the stretch between knots `span` and `span + 1`: its polar form at (from, …, from, to, …, to).
-    fn bezier(&self, points: &[Weighted], span: usize, from: f64, to: f64) -> Vec<Weighted> {
+    /// The Bézier points of the stretch between knots `span` and `span + 1`.
+    fn bezier(&self, points: &[Weighted<Vec3>], span: usize) -> Vec<Weighted<Vec3>> {
+        let first = span - self.degree;
+        let knot = |number: usize| self.knots.get(first + number).copied().unwrap_or_default();
         (0..=self.degree)
-            .map(|count| {
-                // De Boor's triangle, with `count` of its arguments at the end and the others at the start.
-                let first = span - self.degree;
-                let mut row: Vec<Weighted> = points.get(first..=span).map(<[_]>::to_vec).unwrap_or_default();
-                for level in 1..=self.degree {
-                    let at = if level <= count { to } else { from };
-                    for index in (level..=self.degree).rev() {
-                        let left = self.knots.get(first + index).copied().unwrap_or(from);
-                        let right =
-                            self.knots.get(first + index + self.degree + 1 - level).copied().unwrap_or(to);
-                        let share = if right > left { (at - left) / (right - left) } else { 0.0 };
-                        if let Some([before, point]) = row.get_mut(index - 1..=index) {
-                            *point = before.mixed(*point, share);
-                        }
-                    }
-                }
-                row.last().copied().unwrap_or_default()
+            .map(|ends| {
+                let mut row = points.get(first..=span).map(<[_]>::to_vec).unwrap_or_default();
+                bezier_point(&mut row, ends, knot)
             })
             .collect()
     }
 }
 
 /// Appends the places of a Bézier curve, without its first.
-fn flatten(piece: &[Weighted], tolerance: f64, halvings: u32, places: &mut Vec<Vec3>) {
+fn flatten(piece: &[Weighted<Vec3>], tolerance: f64, halvings: u32, places: &mut Vec<Vec3>) {
     let (Some(first), Some(last)) = (piece.first(), piece.last()) else { return };
     let (from, to) = (first.projected(), last.projected());
     let far = piece.iter().map(|point| distance(point.projected(), from, to)).fold(0.0, libm::fmax);
@@ -141,7 +110,7 @@ fn flatten(piece: &[Weighted], tolerance: f64, halvings: u32, places: &mut Vec<V
 
 /// Most that the points between the ends count in any place of a Bézier curve: 1 − t^p − (1 − t)^p is at most 1 − 2^(1 − p), and more
 /// where their weights are greater.
-fn inner_share(piece: &[Weighted]) -> f64 {
+fn inner_share(piece: &[Weighted<Vec3>]) -> f64 {
     let [first, inner @ .., last] = piece else { return 0.0 };
     let ends = libm::exp2(-f64::from(u8::try_from(inner.len()).unwrap_or(u8::MAX)));
     let inner = inner.iter().map(|point| point.weight).fold(0.0, libm::fmax) * (1.0 - ends);

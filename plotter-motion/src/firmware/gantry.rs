@@ -1,6 +1,6 @@
 //! The semi-virtual gantry's controller: the published protocol on one side, two DC motors on the other.
 
-use crate::control::{ChosenController, LineController};
+use crate::control::{AxisTrouble, ChosenController, LineController};
 use crate::protocol::Order;
 use crate::protocol::digits::{Dropped, Receiver, Reply};
 use crate::{Axis, Demand, Direction, Drive, LimitSwitches, Machine, SafetyGate, StepPoint};
@@ -20,12 +20,15 @@ pub enum Notice {
         /// Greatest coordinates, encoder counts.
         most: StepPoint,
     },
+    /// A motor or its encoder does what it should not.
+    Trouble(AxisTrouble),
 }
 
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Dropped(dropped) => dropped.fmt(f),
+            Self::Trouble(trouble) => trouble.fmt(f),
             Self::OutOfArea { target, most } => write!(
                 f,
                 "target ({}, {}) counts lies outside (0, 0)..=({}, {}): refused it",
@@ -50,7 +53,9 @@ const MOST_NOTICES: usize = 8;
 /// motors stood already with nothing at all, and so stopped for ever, this one answers at once.
 ///
 /// ```
-/// # use plotter_motion::{firmware::Gantry, LimitSwitches, Machine, MachineConfig, SafetyGate, protocol::digits, StepPoint};
+/// # use plotter_motion::{LimitSwitches, Machine, MachineConfig, SafetyGate, StepPoint};
+/// # use plotter_motion::firmware::Gantry;
+/// # use plotter_motion::protocol::digits;
 /// # use core::time::Duration;
 /// let machine = Machine::new(MachineConfig::default())?;
 /// let gate = SafetyGate::new(LimitSwitches::RELEASED, false); // what switches and button say
@@ -58,8 +63,8 @@ const MOST_NOTICES: usize = 8;
 /// for byte in digits::encode(StepPoint::new(400, 0))? {
 ///     gantry.receive(Duration::ZERO, byte);
 /// }
-/// // half a tenth of a second later the motor is on its way
-/// while let Some(now) = gantry.next_tick().filter(|&at| at < Duration::from_millis(50)) {
+/// // a hundredth of a second later the motor is on its way
+/// while let Some(now) = gantry.next_tick().filter(|&at| at < Duration::from_millis(10)) {
 ///     gantry.tick(now);
 /// }
 /// assert!(gantry.drive().x().value() > 0.0);
@@ -69,7 +74,7 @@ const MOST_NOTICES: usize = 8;
 /// A drive ends when the gantry is told anything, and there is no copy of a gantry, because its gate has none:
 ///
 /// ```compile_fail,E0502
-/// # use plotter_motion::{firmware::Gantry, LimitSwitches, Machine, MachineConfig, SafetyGate};
+/// # use plotter_motion::{LimitSwitches, Machine, MachineConfig, SafetyGate, firmware::Gantry};
 /// # use core::time::Duration;
 /// # let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
 /// # let mut gantry = Gantry::new(&Machine::new(MachineConfig::default()).unwrap(), gate);
@@ -79,7 +84,7 @@ const MOST_NOTICES: usize = 8;
 /// ```
 ///
 /// ```compile_fail,E0599
-/// # use plotter_motion::{firmware::Gantry, LimitSwitches, Machine, MachineConfig, SafetyGate};
+/// # use plotter_motion::{LimitSwitches, Machine, MachineConfig, SafetyGate, firmware::Gantry};
 /// # let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
 /// # let gantry = Gantry::new(&Machine::new(MachineConfig::default()).unwrap(), gate);
 /// let copy = gantry.clone();
@@ -101,11 +106,14 @@ pub struct Gantry<C = ChosenController> {
     /// The host waits to be told whether the motors are stopped.
     tell_stopped: bool,
     next_tick: Option<Duration>,
+    /// What was told last of a trouble.
+    trouble: Option<AxisTrouble>,
     notices: [Option<Notice>; MOST_NOTICES],
 }
 
 /// What the controller of the gantry must know of a machine besides what its [`LineController`] does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct GantrySettings {
     /// A silence inside a target after which what came of it is dropped, us.
     pub resync_gap_us: u32,
@@ -117,7 +125,7 @@ impl GantrySettings {
     /// Those of a machine.
     ///
     /// ```
-    /// # use plotter_motion::{firmware::GantrySettings, Machine, MachineConfig, StepPoint};
+    /// # use plotter_motion::{Machine, MachineConfig, StepPoint, firmware::GantrySettings};
     /// let settings = GantrySettings::of(&Machine::new(MachineConfig::default())?);
     /// assert_eq!(settings.resync_gap_us, 100_000);
     /// assert_eq!(settings.most, StepPoint::new(594 * 40, 420 * 40));
@@ -135,8 +143,8 @@ impl GantrySettings {
         Self {
             resync_gap_us,
             most: StepPoint::new(
-                crate::from_mm(config.area.width_mm, config.x.counts_per_mm),
-                crate::from_mm(config.area.height_mm, config.y.counts_per_mm),
+                crate::toolpath::from_mm(config.area.width_mm, config.x.counts_per_mm),
+                crate::toolpath::from_mm(config.area.height_mm, config.y.counts_per_mm),
             ),
         }
     }
@@ -157,7 +165,9 @@ impl<C: LineController> Gantry<C> {
     /// ```
     /// # use plotter_motion::control::{LineTracking, LineTrackingSettings};
     /// # use plotter_motion::firmware::{Gantry, GantrySettings};
-    /// # use plotter_motion::{LimitSwitches, PublishedConfig, SafetyGate, StepPoint, SyncStop};
+    /// # use plotter_motion::{LimitSwitches, SafetyGate, StepPoint};
+    /// # use plotter_motion::config::PublishedConfig;
+    /// # use plotter_motion::control::SyncStop;
     /// const GANTRY: GantrySettings = GantrySettings { resync_gap_us: 100_000, most: StepPoint::new(23_760, 16_800) };
     /// const TRACKING: LineTrackingSettings = LineTrackingSettings {
     ///     published: PublishedConfig {
@@ -189,6 +199,7 @@ impl<C: LineController> Gantry<C> {
             told: StepPoint::default(),
             tell_reached: false,
             tell_stopped: false,
+            trouble: None,
             notices: [None; MOST_NOTICES],
         }
     }
@@ -249,6 +260,13 @@ impl<C: LineController> Gantry<C> {
             due.checked_add(period).filter(|&next| next > now).or_else(|| now.checked_add(period));
         let demand = self.controller.tick(now);
         self.apply(demand);
+        let trouble = self.controller.trouble();
+        if trouble != self.trouble {
+            self.trouble = trouble;
+            if let Some(trouble) = trouble {
+                self.notice(Notice::Trouble(trouble));
+            }
+        }
     }
 
     /// Takes the state of a limit switch.
@@ -361,7 +379,7 @@ impl<C: LineController> Gantry<C> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Blocked, Duty, MachineConfig, StepPair};
+    use crate::{Duty, MachineConfig, StepPair, safety::Blocked};
 
     /// What the gate lets through of the whole supply and of a step.
     fn flows(gantry: &Gantry) -> bool {

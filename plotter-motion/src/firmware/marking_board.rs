@@ -3,13 +3,17 @@
 use crate::control::{ChosenController, LineController, SpeedMeter};
 use crate::kinematics::{CoreXy, Kinematics};
 use crate::{
-    Axis, ControllerChoice, Demand, Direction, Drive, Duty, LimitSwitches, Machine, OutOfReach, Pen, PenMove,
-    PlotOp, Point, PulseCounter, SafetyGate, StepPoint, chords,
+    Axis, Demand, Direction, Drive, Duty, LimitSwitches, Machine, Pen, PenMove, PlotOp, Point, SafetyGate,
+    StepPoint,
+    config::ControllerChoice,
+    encoder::PulseCounter,
+    toolpath::{OutOfReach, chords},
 };
 use core::time::Duration;
 
 /// What the controller of a marking board must know besides what its [`LineController`] does.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MarkingBoardSettings {
     /// Directions and encoder pulses to the millimetre.
     pub belt: CoreXy,
@@ -17,7 +21,9 @@ pub struct MarkingBoardSettings {
     pub start: Point,
     /// Greatest coordinates, mm.
     pub most: Point,
-    /// By how much the speed of either motor may differ from their mean, 0 to 1: see [`SafetyGate::pass_belt`].
+    /// By how much the speed of either motor may differ from their mean, 0 to 1: see
+    /// [`SafetyGate::pass_belt`]. If the counts say that the carriage goes towards a pressed switch all the
+    /// same, 1 is taken until no switch is pressed.
     pub unequal_share: f32,
     /// How long no pulse must have come from a motor until it is driven the other way. Before that it may still run down, and its
     /// pulses would be counted the wrong way. 0 for the published controller, which did not wait.
@@ -63,7 +69,7 @@ impl MarkingBoardSettings {
     ///
     /// ```
     /// # use plotter_motion::firmware::MarkingBoardSettings;
-    /// # use plotter_motion::{rectangle, Machine, MachineConfig, Point, StepPoint};
+    /// # use plotter_motion::{Machine, MachineConfig, Point, StepPoint, toolpath::rectangle};
     /// let board = MarkingBoardSettings::of(&Machine::new(MachineConfig::marking_board())?);
     /// let corners = board.moves(rectangle(board.start, 10.0, 20.0)).filter_map(Result::ok);
     /// let targets: Vec<StepPoint> = corners.map(|corner| corner.target).collect();
@@ -132,7 +138,8 @@ impl BoardMotor {
 ///
 /// ```
 /// # use plotter_motion::firmware::MarkingBoard;
-/// # use plotter_motion::{ControllerChoice, LimitSwitches, Machine, MachineConfig, Pen, PenMove, SafetyGate, StepPoint};
+/// # use plotter_motion::{LimitSwitches, Machine, MachineConfig, Pen, PenMove, SafetyGate, StepPoint};
+/// # use plotter_motion::config::ControllerChoice;
 /// # use core::time::Duration;
 /// let mut config = MachineConfig::marking_board();
 /// config.control.controller = ControllerChoice::Published;
@@ -154,6 +161,10 @@ pub struct MarkingBoard<C> {
     /// What the controller asked of both motors last.
     demand: Demand,
     drive: Drive<'static>,
+    /// The move since a switch was noted last, in counts of both motors.
+    since_switch: [i16; 2],
+    /// Whether the carriage has gone towards a switch while it was pressed.
+    goes_into_switch: bool,
     pen: Pen,
     under_way: bool,
     points_done: u32,
@@ -188,6 +199,8 @@ impl<C: LineController> MarkingBoard<C> {
             motors: [motor; 2],
             demand: Demand::NONE,
             drive: Drive::default(),
+            since_switch: [0; 2],
+            goes_into_switch: false,
             pen: Pen::Up,
             under_way: false,
             points_done: 0,
@@ -215,9 +228,27 @@ impl<C: LineController> MarkingBoard<C> {
         pulsed.counter.pulses(1);
         pulsed.last_pulse = Some(now);
         if let Some(direction) = pulsed.counter.direction() {
+            if self.gate.limits().any() {
+                self.watch_switches(motor, direction);
+            }
             let demand = self.controller.edge(now, motor, direction);
             self.apply(now, demand);
         }
+    }
+
+    /// Notes a pulse while a switch is pressed, and whether the carriage has gone towards it by now. The gate
+    /// was told how unequal the motors are; motors that differ by more would creep into the switch for as
+    /// long as the carriage moves along it.
+    fn watch_switches(&mut self, motor: Axis, direction: Direction) {
+        let [first, second] = &mut self.since_switch;
+        let moved = match motor {
+            Axis::X => &mut *first,
+            Axis::Y => &mut *second,
+        };
+        *moved = moved.saturating_add(if direction == Direction::Plus { 1 } else { -1 });
+        let (x, y) = self.settings.belt.signs().twice_axes(i32::from(*first), i32::from(*second));
+        let LimitSwitches { x_min, x_max, y_min, y_max } = self.gate.limits();
+        self.goes_into_switch |= x_min && x < 0 || x_max && x > 0 || y_min && y < 0 || y_max && y > 0;
     }
 
     /// When [`tick`](Self::tick) is to be called next.
@@ -249,6 +280,8 @@ impl<C: LineController> MarkingBoard<C> {
     pub fn limit_switches(&mut self, now: Duration, pressed: LimitSwitches) {
         if pressed != self.gate.limits() {
             self.gate.set_limits(pressed);
+            self.since_switch = [0; 2];
+            self.goes_into_switch &= pressed.any();
             self.apply(now, self.demand);
         }
     }
@@ -275,6 +308,7 @@ impl<C: LineController> MarkingBoard<C> {
         let (x, y) =
             belt.signs().twice_axes(unless_it_waits(first, demand.x), unless_it_waits(second, demand.y));
         let axes = Demand { x: Duty::saturating(0.5 * x), y: Duty::saturating(0.5 * y) };
+        let unequal_share = if self.goes_into_switch { 1.0 } else { unequal_share };
         let drive = self.gate.pass_belt(axes, belt.signs(), unequal_share).kept();
         // What the gate took of one axis may have left a motor to be reversed. To take the drive of that motor alone could lead
         // into the switch, so neither gets any until it stands.

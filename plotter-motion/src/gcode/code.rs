@@ -30,8 +30,8 @@ pub(super) enum Code {
     Absolute,
     AbsoluteCentres = 0x40,
     RelativeCentres,
-    Sheet = 0x50,
-    OtherPlane,
+    /// `G17` to `G19`: in which plane arcs lie.
+    Plane = 0x50,
     InverseTime = 0x60,
     FeedPerMinute,
     /// `G95`, which is not carried out.
@@ -63,6 +63,10 @@ pub(super) enum Code {
     QuietWithWords = 0xD0,
     /// Nothing for a pen plotter to do.
     Quiet = 0xE0,
+    /// `G43.1`: how long the tool is.
+    Length = 0xF0,
+    /// `G49`: as long as none.
+    NoLength,
 }
 
 /// The groups that a line is asked for as a whole.
@@ -73,6 +77,8 @@ pub(super) enum Group {
     Motion,
     /// What is done once with the words of the line.
     Action,
+    /// In which plane arcs lie.
+    Plane = 5,
     /// What `F` counts.
     Feed = 6,
     Spindle = 7,
@@ -81,10 +87,12 @@ pub(super) enum Group {
     Told = 9,
     /// A coordinate system.
     System = 11,
+    /// The length of a tool.
+    Length = 15,
 }
 
 /// How many groups there are, and how many of them allow one word only.
-pub(super) const GROUPS: usize = Code::Quiet.group() + 1;
+pub(super) const GROUPS: usize = Code::Length.group() + 1;
 pub(super) const EXCLUSIVE: usize = Code::System.group() + 1;
 
 /// Words whose numbers lie from `first` to `last`, and the digits behind the point within `tenths`.
@@ -124,7 +132,7 @@ static GENERAL: &[Range] = &[
     one(92, Code::Offset),
     tenths(92, 1, 0, Code::NoOffset),
     one(53, Code::MachineCoordinates),
-    one(17, Code::Sheet),
+    one(17, Code::Plane),
     one(20, Code::Inches),
     one(21, Code::Millimetres),
     one(90, Code::Absolute),
@@ -140,8 +148,13 @@ static GENERAL: &[Range] = &[
     one(61, Code::Quiet),
 ];
 
+/// Those that a small program leaves out.
+static GENERAL_FURTHER: &[Range] =
+    &[words(18, 19, Code::Plane), tenths(43, 1, 0, Code::Length), one(49, Code::NoLength)];
+
 /// `G` words of other machines: what is done.
 static GENERAL_OTHERS: &[Range] = &[
+    words(18, 19, Code::Plane),
     tenths(92, 2, 0, Code::NoOffset),
     tenths(90, 1, 0, Code::AbsoluteCentres),
     // Cancelling what was never on; path control; what machines and lathes differ in.
@@ -164,7 +177,6 @@ static GENERAL_UNDONE: &[Range] = &[
     tenths(59, 1, 2, Code::Quiet),
     one(29, Code::Other),
     tenths(92, 3, 0, Code::Other),
-    words(18, 19, Code::OtherPlane),
     one(95, Code::FeedPerRevolution),
     words(41, 43, Code::Quiet),
     tenths(43, 1, 0, Code::Other),
@@ -240,8 +252,10 @@ impl Code {
         let find = |ranges: &[Range]| ranges.iter().find(fits).map(|range| range.code);
         let of_grbl =
             || find(if is_general { GENERAL } else { MISCELLANEOUS }).map(|code| (code, code != Self::Other));
-        if known == Words::Grbl {
-            return of_grbl();
+        if known.is_grbl() {
+            let knows_further = is_general && known == Words::Grbl;
+            let further = if knows_further { find(GENERAL_FURTHER) } else { None };
+            return further.map(|code| (code, true)).or_else(of_grbl);
         }
         let others = find(if is_general { GENERAL_OTHERS } else { MISCELLANEOUS_OTHERS });
         let undone =
@@ -274,8 +288,6 @@ pub(super) fn meaning(command: Word) -> &'static str {
         100 | 591..=593 => "another coordinate system",
         290 => "bed levelling",
         923 => "restore the offset",
-        180 => "plane XZ",
-        190 => "plane YZ",
         950 => "feed rate per revolution",
         410 | 420 => "cutter compensation",
         430 | 431 => "tool length",

@@ -221,7 +221,7 @@ impl Detection {
     }
 
     /// What a whole text says.
-    pub fn of(bytes: impl IntoIterator<Item = u8>) -> Self {
+    pub fn from_bytes(bytes: impl IntoIterator<Item = u8>) -> Self {
         let (mut lines, mut detection) = (Lines::new(bytes.into_iter()), Self::new());
         while let Some(line) = lines.advance() {
             if line.is_ok() {
@@ -402,7 +402,7 @@ impl Detection {
     ///
     /// ```
     /// # use plotter_motion::gcode::Detection;
-    /// let digit_mm = |text: &[u8]| Detection::of(text.iter().copied()).digit_mm();
+    /// let digit_mm = |text: &[u8]| Detection::from_bytes(text.iter().copied()).digit_mm();
     /// assert_eq!(digit_mm(b"G21\nG1 X10.5 Y20.123\nG1 X11 Y20.1\n"), Some(0.001));
     /// assert_eq!(digit_mm(b"G20\nG1 X1.25 Y2\n"), Some(0.254)); // hundredths of an inch
     /// assert_eq!(digit_mm(b"G1 X10 Y20 F1000.5\n"), None);
@@ -423,5 +423,5 @@ impl Detection {
 
 /// By which words a text lifts its pen, by the rules of [`Detection`].
 pub fn detect(bytes: impl IntoIterator<Item = u8>) -> PenConvention {
-    Detection::of(bytes).pen()
+    Detection::from_bytes(bytes).pen()
 }

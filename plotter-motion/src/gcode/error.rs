@@ -2,7 +2,7 @@
 
 use super::code::meaning;
 use super::{Position, Text, Word};
-use crate::WrittenNumber;
+use crate::gcode::WrittenNumber;
 use core::fmt;
 
 /// Something in a text that could not be carried out. Reading goes on with the next line.
@@ -92,6 +92,20 @@ pub enum Problem {
         /// What it takes.
         expected: &'static str,
     },
+    /// A formula whose value is no number, or a greater one than there is.
+    NoValue {
+        /// What stands before the operator; none for a function.
+        left: Option<f64>,
+        /// The operator or function.
+        name: &'static str,
+        /// What stands behind it.
+        right: f64,
+    },
+    /// A number in a formula that is greater than any there is, as it was written.
+    NumberTooGreat {
+        /// The number.
+        written: WrittenNumber,
+    },
     /// A loop, a condition or a subprogram that cannot be carried out.
     Program {
         /// What is wrong with it, and what would be right.
@@ -156,8 +170,6 @@ pub enum Problem {
     },
     /// Coordinates after `G80`.
     NoMotion,
-    /// An arc while `G18` or `G19` holds.
-    Plane,
     /// An arc with a centre and a radius, or with neither.
     ArcForm,
     /// An arc with a radius that ends where it begins: any circle would do.
@@ -274,7 +286,7 @@ impl fmt::Display for Problem {
                 let letter = Letter(letter);
                 match written {
                     Some(written) => write!(f, "{letter} with {written}")?,
-                    None => write!(f, "{letter} with {value}")?,
+                    None => write!(f, "{letter} with {}", Shown(value))?,
                 }
                 f.write_str(": numbers reach from -1000000000 to 1000000000")
             }
@@ -300,8 +312,15 @@ impl fmt::Display for Problem {
             Self::Expression { what } | Self::Program { what } => f.write_str(what),
             Self::Undefined { name } => write!(f, "#<{name}> has no value: set it before, as in `#<{name}> = 5`"),
             Self::OutOfDomain { function, value, expected } => {
-                write!(f, "{function} of {value} is no number: it takes {expected}")
+                write!(f, "{function} of {} is no number: it takes {expected}", Shown(value))
             }
+            Self::NoValue { left: Some(left), name, right } => {
+                write!(f, "`{} {name} {}` is no number, or one beyond {LARGEST}", Shown(left), Shown(right))
+            }
+            Self::NoValue { left: None, name, right } => {
+                write!(f, "{name} of {} is a number beyond {LARGEST}", Shown(right))
+            }
+            Self::NumberTooGreat { written } => write!(f, "{written} lies beyond {LARGEST}"),
             Self::NoSubprogram { name } => write!(
                 f,
                 "there is no subprogram `{name}`: LinuxCNC's begins with `O{name} sub`, before its call, and Fanuc's with `O{name}` in a \
@@ -329,7 +348,6 @@ impl fmt::Display for Problem {
             Self::BadParameter { word, expected } => write!(f, "{word} is wrong: {expected}"),
             Self::Missing { expected } => f.write_str(expected),
             Self::NoMotion => f.write_str("coordinates that no command asks for: put G0 or G1 before them"),
-            Self::Plane => f.write_str("an arc out of the sheet: put G17 before it"),
             Self::ArcForm => f.write_str("an arc needs its centre, I and J, or its radius, R, and not both"),
             Self::ArcWithoutEnd => f.write_str(
                 "an arc that ends where it begins needs its centre, I and J: a radius does not tell it",
@@ -343,6 +361,23 @@ impl fmt::Display for Problem {
                 f,
                 "an arc of a radius of {radius_mm:.3} mm does not reach its end: it needs {least_mm:.3} mm or more"
             ),
+        }
+    }
+}
+
+/// The greatest number that a formula can have, in words.
+const LARGEST: &str = "1.8e308: write the formula so that smaller numbers come of it";
+
+/// A number of a formula: a long one with an exponent, which tells more than three hundred digits.
+struct Shown(f64);
+
+impl fmt::Display for Shown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let magnitude = self.0.abs();
+        if magnitude != 0.0 && !(1e-6..1e15).contains(&magnitude) {
+            write!(f, "{:e}", self.0)
+        } else {
+            write!(f, "{}", self.0)
         }
     }
 }

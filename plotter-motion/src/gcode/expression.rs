@@ -99,11 +99,7 @@ impl<'a> Expression<'a> {
         }
         let value = self.value_here()?;
         self.depth -= 1;
-        if value.is_finite() {
-            Ok(value)
-        } else {
-            Err(Problem::Expression { what: "its value is too great" })
-        }
+        Ok(value)
     }
 
     fn value_here(&mut self) -> Result<f64, Problem> {
@@ -142,7 +138,8 @@ impl<'a> Expression<'a> {
         while self.text.get(self.at).is_some_and(|byte| number.push(*byte)) {
             self.at += 1;
         }
-        number.value().ok_or(missing)
+        let value = number.value().ok_or(missing)?;
+        if value.is_finite() { Ok(value) } else { Err(Problem::NumberTooGreat { written: number.written() }) }
     }
 
     /// `[…]`.
@@ -174,6 +171,7 @@ impl<'a> Expression<'a> {
     fn binary(&mut self, least: u8) -> Result<f64, Problem> {
         let mut left = self.value()?;
         loop {
+            self.peek();
             let before = self.at;
             let operator = OPERATORS.into_iter().find(|(name, _)| self.takes_word(name));
             let Some((name, binds)) = operator.filter(|(_, binds)| *binds >= least) else {
@@ -188,12 +186,28 @@ impl<'a> Expression<'a> {
             }
             let right = self.binary(binds + 1)?;
             self.depth -= 1;
-            left = combined(name, left, right)?;
+            let value = combined(name, left, right).inspect_err(|_| self.at = before)?;
+            if !value.is_finite() {
+                self.at = before;
+                return Err(Problem::NoValue { left: Some(left), name, right });
+            }
+            left = value;
         }
     }
 
     fn call(&mut self, name: &'static str) -> Result<f64, Problem> {
-        let value = self.brackets()?;
+        let from = self.at;
+        let argument = self.brackets()?;
+        match self.called(name, argument) {
+            Ok(value) if value.is_finite() => Ok(value),
+            wrong => {
+                self.at = from;
+                Err(wrong.err().unwrap_or(Problem::NoValue { left: None, name, right: argument }))
+            }
+        }
+    }
+
+    fn called(&mut self, name: &'static str, value: f64) -> Result<f64, Problem> {
         let outside = |expected| Problem::OutOfDomain { function: name, value, expected };
         Ok(match name {
             "ATAN" => {

@@ -5,7 +5,7 @@ use crate::{PlotOp, Point, Vec2};
 /// `G51` and `G68`: first what is scaled, then what is turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Frame {
-    /// About where, and by how much along each axis; both are equal but for their signs.
+    /// About where, and by how much along each axis.
     scaling: Option<(Point, f64, f64)>,
     /// About where, and sine and cosine of the angle.
     turning: Option<(Point, f64, f64)>,
@@ -46,6 +46,12 @@ impl Frame {
             point = centre + Vec2::new(out.x / x, out.y / y);
         }
         point
+    }
+
+    /// The greater factor, if both axes have another one: arcs are no arcs then.
+    pub(super) fn unequal(&self) -> Option<f64> {
+        let (_, x, y) = self.scaling?;
+        (x.abs() != y.abs()).then_some(x.abs().max(y.abs()))
     }
 
     pub(super) fn apply_to(&self, op: PlotOp) -> PlotOp {

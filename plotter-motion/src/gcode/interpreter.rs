@@ -38,10 +38,10 @@ impl<C: Complaint> Outcomes<C> {
         }
     }
 
-    /// Puts a complaint before what has been given.
-    pub(super) fn give_first(&mut self, complaint: C) {
+    /// Puts something before what has been given.
+    pub(super) fn give_first(&mut self, outcome: Result<PlotOp, C>) {
         let count = usize::from(self.count);
-        self.give(Err(complaint));
+        self.give(outcome);
         if let Some(slots) = self.slots.get_mut(..=count) {
             slots.rotate_right(1);
         }
@@ -182,7 +182,7 @@ impl Interpreter {
 
     fn carry_out(&mut self, block: &Block) -> Result<(), Error> {
         let (line, options, out) = (&mut self.line, &self.options, &mut self.outcomes);
-        if options.words == Words::Grbl {
+        if options.words.is_grbl() {
             return line.carry_out(block, options, out);
         }
         if block.is_deleted() && options.block_delete == BlockDelete::LeaveOut {
@@ -200,11 +200,7 @@ impl Interpreter {
         self.expansion.forget();
         let is_arc = matches!(
             error.problem,
-            Problem::Plane
-                | Problem::ArcForm
-                | Problem::ArcWithoutEnd
-                | Problem::ArcRadii { .. }
-                | Problem::ArcRadius { .. }
+            Problem::ArcForm | Problem::ArcWithoutEnd | Problem::ArcRadii { .. } | Problem::ArcRadius { .. }
         );
         if let (true, Some(block)) = (is_arc && self.options.words == Words::Any, block) {
             let before = self.line;
@@ -212,7 +208,7 @@ impl Interpreter {
                 (self.line, self.outcomes) = (before, Outcomes::none());
             }
         }
-        self.outcomes.give_first(error);
+        self.outcomes.give_first(Err(error));
     }
 
     /// The line in which the program has ended, by `M2` or `M30`.
@@ -228,6 +224,9 @@ impl Interpreter {
     /// As [`Interpreter::push`].
     pub fn finish(&mut self) -> Result<(), Undrained> {
         self.drained()?;
+        if let Some(error) = self.expansion.cut_off() {
+            self.outcomes.give(Err(error));
+        }
         self.line.machine.leave_dot(&self.options, &mut self.outcomes);
         self.line.machine.lift(&mut self.outcomes);
         Ok(())
@@ -236,8 +235,15 @@ impl Interpreter {
     /// The next operation, or what could not be carried out; `None` when the next line is wanted.
     pub fn next_op(&mut self) -> Option<Result<PlotOp, Error>> {
         loop {
+            if let Some(op) = self.expansion.next_of_arc() {
+                return Some(Ok(op));
+            }
             if let Some(outcome) = self.outcomes.take() {
-                return Some(outcome.map(|op| self.expansion.frame.apply_to(op)));
+                match outcome.map(|op| self.expansion.placed(op)) {
+                    Ok(Some(op)) => return Some(Ok(op)),
+                    Ok(None) => continue,
+                    Err(error) => return Some(Err(error)),
+                }
             }
             let block = self.expansion.next_block(&self.line, &self.options)?;
             let before = self.line;
@@ -358,7 +364,7 @@ impl LineInterpreter {
     /// Where a line would have the pen travel, if it names a place, and its speed in mm/s: what a movement by hand is told. Nothing of it
     /// holds afterwards.
     pub(crate) fn travel<C: Complaint>(mut self, block: &Block) -> Result<(Option<Point>, Option<f64>), C> {
-        let to = self.machine.travel(&Line::read(block, Words::Grbl)?)?;
+        let to = self.machine.travel(&Line::read(block, Words::GrblOnSheet)?)?;
         Ok((to, self.machine.modes().feed_mm_s))
     }
 

@@ -50,7 +50,7 @@ impl<'b> Line<'b> {
             let after = core::mem::replace(&mut before, word.letter);
             if !matches!(word.letter, b'G' | b'M') {
                 let bit = bit(word.letter);
-                if known == Words::Grbl {
+                if known.is_grbl() {
                     if GRBL_LETTERS & bit == 0 {
                         return Err(Problem::Unknown { command: word }.at(block.place(word)));
                     }
@@ -176,6 +176,11 @@ impl<'b> Line<'b> {
         self.block.words().get(usize::from(place).wrapping_sub(1)).copied()
     }
 
+    /// The whole number after the `G` of a group.
+    pub(super) fn whole_of(&self, group: Group) -> Option<u8> {
+        self.word_of(group as usize).and_then(Word::tenths).and_then(|tenths| u8::try_from(tenths / 10).ok())
+    }
+
     /// Whether the words belong to a command that means nothing to a plotter.
     pub(super) fn owned(&self) -> bool {
         self.is(Code::QuietWithWords)
@@ -200,16 +205,18 @@ impl<'b> Line<'b> {
 
     /// Whether the words of the line are there for its motion.
     pub(super) fn may_move(&self) -> bool {
+        if self.of(Group::Length).is_some() {
+            return false;
+        }
         self.of(Group::Motion).is_some()
             || (!self.owned() && matches!(self.of(Group::Action), None | Some(Code::Dwell)))
     }
 
     /// The first word that nothing in this line uses, of those that are worth a notice.
-    pub(super) fn unused(&self, is_arc: bool) -> Option<Word> {
+    pub(super) fn unused(&self, used: &[u8]) -> Option<Word> {
         if self.owned() || !matches!(self.of(Group::Action), None | Some(Code::Dwell | Code::NoOffset)) {
             return None;
         }
-        let used: &[u8] = if is_arc { b"IJR" } else { b"" };
         let is_unused = |word: &&Word| is_among(word.letter, NOTEWORTHY) && !is_among(word.letter, used);
         self.block.words().iter().find(is_unused).copied()
     }

@@ -82,6 +82,7 @@
 //! | `G1` | X Y Z F | goes there at the speed F |
 //! | `G2`, `G3` | X Y, and I J or R | an arc, clockwise or counter-clockwise; R below 0 for more than half a turn; a whole circle by I J where it ends as it begins; P turns of it |
 //! | `G5`, `G5.1` | X Y, I J, P Q | a cubic or quadratic curve, as chords within 0.01 mm |
+//! | `G5.2` … `G5.3` | X Y, P, L | a NURBS curve: each line in between is a control point, P its weight, L the order up to 6; as chords within 0.01 mm |
 //! | `G15`, `G16` | | X and Y are places; or a radius and an angle |
 //! | `G17`, `G18`, `G19` | | arcs lie in the sheet; or stand on it, and are lines to their ends |
 //! | `G4` | P or S | waits: P as [`ReadOptions::dwell_unit`] says, S seconds |
@@ -93,7 +94,7 @@
 //! | `G92` | X Y Z | here is that place; without words, the origin |
 //! | `G92.1`, `G92.2`, `G92.3` | | that no longer; after `G92.2`, `G92.3` has it again |
 //! | `G52` | X Y | coordinates count from there, in place of `G92` |
-//! | `G50`, `G51` | X Y, P or I J | what is drawn is scaled about X Y, by a factor, from 100 on in thousandths; or by X and Y alone about the origin. Both axes by the same one, or mirrored |
+//! | `G50`, `G51` | X Y, P or I J | what is drawn is scaled about X Y, by a factor, from 100 on in thousandths; or by X and Y alone about the origin. Arcs of unequal factors are chords within 0.01 mm |
 //! | `G68`, `G69` | X Y R | it is turned about X Y by degrees, counter-clockwise |
 //! | `G54` … `G59`, `G59.1` … `G59.3` | | coordinates count from the origin that `G10` has set for this one; `G54` at first |
 //! | `G10` | L2 or L20, P0 to P9, X Y | its origin is there; or here is that place, as the button *zero* of most programs has it. P1 is that of `G54`, P6 that of `G59`, P0 the one in force |
@@ -133,6 +134,7 @@
 //!
 //! Sources: the `LinuxCNC` project's G-code and O-code reference; NIST, *The NIST RS274NGC Interpreter, Version 3* (2000); the GRBL project's wiki on version 1.1.
 
+pub use crate::decimal::WrittenNumber;
 mod arc;
 mod block;
 mod code;
@@ -147,6 +149,7 @@ mod line;
 mod lines;
 mod machine;
 mod modes;
+mod nurbs;
 mod pen_convention;
 #[cfg(feature = "alloc")]
 mod pen_words;
@@ -156,6 +159,7 @@ mod program;
 mod read_options;
 mod reader;
 mod remark;
+mod stretched_arc;
 mod text;
 #[cfg(feature = "alloc")]
 mod variables;

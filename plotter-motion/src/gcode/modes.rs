@@ -29,6 +29,10 @@ pub struct Modes {
     pub origin: Vec2,
     /// Which coordinate system that is: 0 for `G54` to 5 for `G59`.
     pub system: u8,
+    /// In which plane arcs lie: 17, 18 or 19, the number of its `G`.
+    pub plane: u8,
+    /// What `G43.1` adds to the height of the pen, mm; `G49` ends it.
+    pub length_mm: f64,
     /// `G20`, not `G21`.
     pub inches: bool,
     /// `G91`, not `G90`.

@@ -15,7 +15,7 @@ use alloc::vec::Vec;
 /// use plotter_motion::{PlotOp, Point, gcode};
 /// let words = gcode::PenWords::new(["PEN_UP", "M42 P4 S0"], ["PEN_DOWN", "M42 P4 S255"])?;
 /// let text = b"PEN_UP\nG1 X5\nPEN_DOWN\nG1 X9\nM42 P4 S0\nG1 X0\n";
-/// let options = gcode::Detection::of(text.iter().copied()).options();
+/// let options = gcode::Detection::from_bytes(text.iter().copied()).options();
 /// let ops = gcode::PlotOps::with_options(text.iter().copied(), options).with_pen_words(words);
 /// let ops: Vec<PlotOp> = ops.collect::<Result<_, _>>()?;
 /// assert_eq!(

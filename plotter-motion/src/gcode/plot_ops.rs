@@ -162,5 +162,5 @@ impl<I: Iterator<Item = u8>> core::iter::FusedIterator for PlotOps<I> {}
 /// # Ok::<(), gcode::Error>(())
 /// ```
 pub fn plot_ops(text: &[u8]) -> PlotOps<Copied<Iter<'_, u8>>> {
-    PlotOps::with_options(text.iter().copied(), super::Detection::of(text.iter().copied()).options())
+    PlotOps::with_options(text.iter().copied(), super::Detection::from_bytes(text.iter().copied()).options())
 }

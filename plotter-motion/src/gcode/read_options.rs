@@ -20,6 +20,11 @@ use core::time::Duration;
 /// # Ok::<(), plotter_motion::gcode::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct ReadOptions {
     /// How the pen is lifted and lowered.
     pub pen: PenConvention,
@@ -48,6 +53,7 @@ impl Default for ReadOptions {
 
 /// What becomes of lines that begin with `/`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum BlockDelete {
     /// They are left out, without a word: a machine whose switch for it is on; and Makeblock's, to which they are comments.
     #[default]
@@ -58,6 +64,7 @@ pub enum BlockDelete {
 
 /// Which words are known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Words {
     /// Those of every machine: a text is read for what it draws.
     #[default]
@@ -65,4 +72,13 @@ pub enum Words {
     /// Those of GRBL, of which a plotter carries out all that move it, and `M6`; any other, and a number below 0 where GRBL takes none,
     /// is an error: a program that finds out what it talks to is to be told.
     Grbl,
+    /// The same without `G18`, `G19`, `G43.1` and `G49`, for a small program: arcs lie in the sheet.
+    GrblOnSheet,
+}
+
+impl Words {
+    /// Whether the machine is GRBL: other words than its own are errors.
+    pub(crate) const fn is_grbl(self) -> bool {
+        !matches!(self, Self::Any)
+    }
 }

@@ -18,8 +18,14 @@ use core::time::Duration;
 /// # Ok::<(), gcode::WriteError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct WriteOptions<'a> {
     /// How the pen is lifted and lowered.
+    #[cfg_attr(feature = "serde", serde(borrow))]
     pub pen: PenControl<'a>,
     /// How another pen comes into the holder.
     pub pen_change: PenChange,
@@ -52,6 +58,7 @@ impl Default for WriteOptions<'_> {
 
 /// How a pen is lifted and lowered.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum PenControl<'a> {
     /// `M5` lifts, `M3 S…` lowers: a servo or a laser where GRBL has its spindle.
     Spindle {
@@ -94,6 +101,7 @@ pub enum PenControl<'a> {
 
 /// How another pen comes into the holder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum PenChange {
     /// `M0 (pen 2)`: the machine waits until somebody has changed it. The first is named only, `(pen 1)`.
     #[default]
@@ -104,6 +112,7 @@ pub enum PenChange {
 
 /// What the number of a `G4` counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum DwellUnit {
     /// Seconds, with decimals: GRBL.
     #[default]

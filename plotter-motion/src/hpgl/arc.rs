@@ -1,7 +1,7 @@
 //! [`ArcUnits`]: an arc on the grid of plotter units, with the error that the rounding makes.
 
 use super::UNITS_PER_MM;
-use crate::{Point, StepPoint, Vec2, from_mm};
+use crate::{Point, StepPoint, Vec2, toolpath::from_mm};
 
 /// Farthest that an arc as written may be from the one meant, plotter units; and farthest that the plotter's chords may be
 /// from the arc as written.

@@ -1,7 +1,7 @@
 //! [`Error`]: what is wrong with a text, where, and what would be right.
 
 use super::{Extension, Mnemonic, Position, Syntax};
-use crate::WrittenNumber;
+use crate::gcode::WrittenNumber;
 use core::fmt;
 
 /// Something in an HPGL text that could not be carried out. Reading goes on after it.

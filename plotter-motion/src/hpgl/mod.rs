@@ -100,6 +100,7 @@
 //! been read of the command stands, the rest of it is skipped, and reading goes on with the next one;
 //! [`PlotOps::strict`] stops instead.
 
+pub use crate::decimal::WrittenNumber;
 mod arc;
 mod character_set;
 mod command;

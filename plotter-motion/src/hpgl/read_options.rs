@@ -22,6 +22,11 @@
 /// assert_eq!(ops, [PlotOp::Travel { to: Point::new(250.0, 0.0) }]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct ReadOptions {
     /// How far lines may be from the curves `BZ` and `BR`, and from circles stretched to ellipses, mm, above 0. A curve has
     /// at most 4096 lines all the same.

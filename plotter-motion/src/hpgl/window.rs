@@ -1,7 +1,7 @@
 //! [`Window`]: the part of the sheet that is drawn on, and what of a piece lies within it: `IW`.
 
 use super::piece::{Arc, Piece};
-use crate::Vec2;
+use crate::{Point, Segment, Vec2};
 
 /// A rectangle with sides along the axes, plotter units. Its edges belong to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,30 +30,6 @@ impl Window {
 
     pub(super) fn holds(self, at: Vec2) -> bool {
         (self.low.x..=self.high.x).contains(&at.x) && (self.low.y..=self.high.y).contains(&at.y)
-    }
-
-    /// The shares of the way between which a line lies within.
-    ///
-    /// Source: Y.-D. Liang, B. A. Barsky, "A new concept and method for line clipping" (1984).
-    fn line(self, from: Vec2, to: Vec2) -> Option<(f64, f64)> {
-        let way = to - from;
-        let (mut first, mut last) = (0.0_f64, 1.0_f64);
-        for (step, low, high) in [
-            (way.x, self.low.x - from.x, self.high.x - from.x),
-            (way.y, self.low.y - from.y, self.high.y - from.y),
-        ] {
-            if step == 0.0 {
-                if low > 0.0 || high < 0.0 {
-                    return None;
-                }
-                continue;
-            }
-            let (enters, leaves) =
-                if step > 0.0 { (low / step, high / step) } else { (high / step, low / step) };
-            first = libm::fmax(first, enters);
-            last = libm::fmin(last, leaves);
-        }
-        (first <= last).then_some((first, last))
     }
 
     /// The next share of an arc's way, above `after`, at which it crosses a side; 1 if it does no more.
@@ -107,7 +83,9 @@ impl Visible {
             }
             Piece::Line { from, to } => {
                 self.done = 1.0;
-                let (first, last) = window.line(from, to)?;
+                let at = |place: Vec2| Point::ORIGIN + place;
+                let line = Segment::new(at(from), at(to));
+                let (first, last) = line.shares_in(at(window.low), at(window.high))?;
                 // A line that only touches the window leaves no mark but where it is a dot itself.
                 (first < last || from == to).then(|| self.piece.part(first, last))
             }

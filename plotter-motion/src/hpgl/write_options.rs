@@ -11,6 +11,11 @@
 /// assert!(writer.push(PlotOp::Travel { to: Point::new(900.0, 0.0) }).is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct WriteOptions {
     /// Greatest number of points in one `PD`, at least 1 (a 0 counts as 1). Old plotters keep a whole
     /// command in a buffer of a few hundred bytes: 20 points are never more than 483 bytes.
@@ -28,6 +33,7 @@ pub struct WriteOptions {
 
 /// How a drawing begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Opening {
     /// `IN;`: a plotter starts afresh with it, defaults and all.
     #[default]
@@ -38,6 +44,7 @@ pub enum Opening {
 
 /// How the points of a stroke are given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Coordinates {
     /// Places on the sheet.
     #[default]

@@ -6,7 +6,7 @@
 //!              play
 //! ```
 
-use crate::{Direction, Machine, StepPoint, StepperConfig, from_mm};
+use crate::{Direction, Machine, StepPoint, config::StepperConfig, toolpath::from_mm};
 
 /// The play of both axes, in steps of their motors; 0 for none.
 ///
@@ -26,6 +26,7 @@ use crate::{Direction, Machine, StepPoint, StepperConfig, from_mm};
 /// assert_eq!((back.extra, back.motor), (StepPoint::new(-5, 0), StepPoint::new(80, 0)));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Backlash {
     /// Of the first motor, steps.
     pub x_steps: u16,

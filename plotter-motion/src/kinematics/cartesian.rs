@@ -1,7 +1,7 @@
 //! [`Cartesian`]: each motor moves one axis.
 
 use super::{Kinematics, MotorPoint};
-use crate::{Axis, Machine, Point, StepperConfig};
+use crate::{Axis, Machine, Point, config::StepperConfig};
 use core::fmt;
 
 /// How one motor moves its axis.

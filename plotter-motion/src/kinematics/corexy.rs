@@ -69,9 +69,28 @@ impl BeltSigns {
 /// # Ok::<(), plotter_motion::kinematics::ScaleError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "Unchecked"))]
 pub struct CoreXy {
     signs: BeltSigns,
     steps_per_mm: f64,
+}
+
+/// What a file says of one.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Unchecked {
+    signs: BeltSigns,
+    steps_per_mm: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for CoreXy {
+    type Error = ScaleError;
+
+    fn try_from(said: Unchecked) -> Result<Self, ScaleError> {
+        Self::new(said.signs, said.steps_per_mm)
+    }
 }
 
 impl CoreXy {

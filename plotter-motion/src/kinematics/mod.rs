@@ -26,7 +26,8 @@ pub struct MotorPoint {
 }
 
 impl MotorPoint {
-    /// The nearest whole steps, halves away from zero, saturating; a NaN gives 0, as in [`from_mm`](crate::from_mm).
+    /// The nearest whole steps, halves away from zero, saturating; a NaN gives 0, as in
+    /// [`from_mm`](crate::toolpath::from_mm).
     #[must_use]
     pub fn rounded(self) -> StepPoint {
         StepPoint::new(whole_steps(self.x), whole_steps(self.y))

@@ -28,7 +28,7 @@ use crate::root::root;
 /// Source: S. K. Jeon, "Improving Grbl's cornering algorithm" (2011).
 ///
 /// ```
-/// # use plotter_motion::junction_speed;
+/// # use plotter_motion::planner::junction_speed;
 /// // a right angle: s = 0.7071, r = 0.05 * 2.4142 = 0.1207 mm, v = sqrt(1000 * 0.1207)
 /// let right_angle = junction_speed(0.0, 1000.0, 0.05);
 /// assert!((right_angle - 10.987).abs() < 1e-3);
@@ -94,7 +94,7 @@ pub(super) fn corner_speed2(before: [f32; 2], after: [f32; 2], shorter_mm: f32, 
 mod tests {
     use super::*;
     use crate::geom::single;
-    use crate::{AllModes, PlannerSettings};
+    use crate::{PlannerSettings, planner::AllModes};
 
     #[test]
     fn straight_on_is_unlimited_and_straight_back_is_a_stop() {

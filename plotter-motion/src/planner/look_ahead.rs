@@ -4,9 +4,8 @@ use super::block::Kind;
 use super::front::Front;
 use super::limits::{Limits, Shares, Wish};
 use super::modes::{AllModes, Keep as _, Modes};
-use super::ramps::Ramps;
 use super::ring::{Ring, narrow};
-use super::s_curve::SCurveState;
+use super::time_law::TimeLaw;
 use super::{Action, PlanError, PlannerSettings};
 use crate::extremes::smaller;
 use crate::seconds::duration;
@@ -30,7 +29,7 @@ const MOST_SHARE: f64 = 100.0;
 /// planner (2011).
 ///
 /// ```
-/// # use plotter_motion::{Action, Planner, PlannerSettings, PlotOp, Point};
+/// # use plotter_motion::{Planner, PlannerSettings, PlotOp, Point, planner::Action};
 /// // 10 mm at 1000 mm/s²: 0.1 s up to 100 mm/s and 0.1 s down
 /// let mut planner = Planner::<16>::new(PlannerSettings::default())?;
 /// planner.push(PlotOp::Travel { to: Point::new(10.0, 0.0) })?;
@@ -42,7 +41,7 @@ const MOST_SHARE: f64 = 100.0;
 ///     }
 /// }
 /// assert!((time_s - 0.2).abs() < 1e-6);
-/// # Ok::<(), plotter_motion::PlanError>(())
+/// # Ok::<(), plotter_motion::planner::PlanError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planner<const N: usize, M: Modes = AllModes> {
@@ -52,10 +51,9 @@ pub struct Planner<const N: usize, M: Modes = AllModes> {
     /// Whether blocks have come since the ring was planned.
     stale: bool,
     /// What is left of the course given last.
-    ramps: Ramps,
+    time_law: TimeLaw<M>,
     /// Whether the machine is to stop on the path.
     hold: bool,
-    s_curve: M::Kept<SCurveState>,
     /// The course given last, for its greatest speed at other shares.
     under_way: M::Kept<Wish>,
 }
@@ -78,7 +76,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// As [`Planner::new`], with the modes of its type.
     ///
     /// ```
-    /// # use plotter_motion::{ExactOnly, PlanError, Planner, PlannerSettings};
+    /// # use plotter_motion::{Planner, PlannerSettings, planner::{ExactOnly, PlanError}};
     /// let settings = PlannerSettings { jerk_mm_s3: Some(20_000.0), ..PlannerSettings::default() };
     /// let refused = Planner::<16, ExactOnly>::with_modes(settings);
     /// assert_eq!(refused.err(), Some(PlanError::Mode { quantity: "jerk_mm_s3" }));
@@ -102,9 +100,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             front: Front::new(),
             ring: Ring::new(),
             stale: false,
-            ramps: Ramps::OVER,
+            time_law: TimeLaw::over(),
             hold: false,
-            s_curve: M::Kept::default(),
             under_way: M::Kept::default(),
         }
     }
@@ -125,10 +122,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// [`Planner::finish`].
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.ring.len() == 0
-            && !self.front.has_chords()
-            && self.ramps.is_over()
-            && self.ramps.rest_mm() <= 0.0
+        self.ring.len() == 0 && !self.front.has_chords() && self.time_law.is_over()
     }
 
     /// How many blocks are known and not begun.
@@ -175,7 +169,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// Without [`AllModes`] nothing changes.
     ///
     /// ```
-    /// # use plotter_motion::{Action, PlanError, Planner, PlannerSettings, PlotOp, Point};
+    /// # use plotter_motion::{Planner, PlannerSettings, PlotOp, Point, planner::{Action, PlanError}};
     /// // 100 mm at 100 mm/s², 10 mm/s: 0.1 s up, 9.9 s, 0.1 s down
     /// let settings = PlannerSettings { speed_mm_s: 50.0, accel_mm_s2: 100.0, ..PlannerSettings::default() };
     /// let mut planner = Planner::<16>::new(settings)?;
@@ -200,38 +194,23 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         let shares = Shares { draw2: square(draw_share), travel2: square(travel_share) };
         let limits = self.limits;
         let under_way2 = under_way.cruise2(&shares, &limits);
-        if self.limits.settings.jerk_of::<M>().is_some() {
+        if self.time_law.choose_anew(&limits) {
             self.front.rescale(shares, f32::INFINITY, 0.0, &limits, &mut self.ring);
-            if let Some(s_curve) = self.s_curve.get_mut() {
-                s_curve.choose_anew();
-            }
             return;
         }
         if self.stale {
             self.plan();
         }
-        let rest_mm = self.ramps.rest_mm();
-        let next2 = self.ring.get(0).map_or(0.0, |head| head.entry2);
-        let forced2 = if rest_mm > 0.0 { self.ramps.forced2() } else { next2 };
+        let (forced2, next2) = self.time_law.forced2(&self.ring);
         self.front.rescale(shares, under_way2, forced2, &limits, &mut self.ring);
-        if rest_mm <= 0.0 {
-            self.ring.enter_with(next2, &limits);
-            return;
-        }
-        self.ramps.cruise_at(under_way2);
-        if self.hold {
-            self.brake();
-            return;
-        }
-        let exit2 = self.ring.enter_at_most(self.ramps.most_exit2(), &limits);
-        self.ramps.plan::<M>(exit2);
+        self.time_law.change_speed((under_way2, next2), self.hold, &mut self.ring, &limits);
     }
 
     /// The drawing is over: what has been put off to see what follows is planned, the machine stops at its end, and the pen is lifted
     /// where it stands. Another drawing may be pushed afterwards.
     ///
     /// ```
-    /// # use plotter_motion::{Action, Pen, PlanError, Planner, PlannerSettings, PlotOp, Point};
+    /// # use plotter_motion::{Pen, Planner, PlannerSettings, PlotOp, Point, planner::{Action, PlanError}};
     /// let mut planner = Planner::<16>::new(PlannerSettings::default())?;
     /// planner.push(PlotOp::Draw { to: Point::new(10.0, 0.0), feed_mm_s: None })?;
     /// planner.finish()?;
@@ -273,9 +252,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     pub fn clear(&mut self, position: Point) {
         self.front.restart(position);
         self.ring.clear();
-        self.ramps = Ramps::OVER;
+        self.time_law = TimeLaw::over();
         self.hold = false;
-        self.s_curve = M::Kept::default();
     }
 
     /// Feed hold: the machine brakes within its limits, along the path, and stands as soon as it can. Actions go on to come until
@@ -284,28 +262,20 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     /// What has been taken is still carried out; a phase lasts 47 ms at the most, on a line that takes six years a little more.
     pub fn hold(&mut self) {
         self.hold = true;
-        self.brake();
+        self.time_law.brake(&mut self.ring, &self.limits);
     }
 
     /// Whether a feed hold is in force and the machine stands.
     #[must_use]
     pub fn is_held(&self) -> bool {
-        self.hold && self.stands()
+        self.hold && self.time_law.stands(&self.ring, &self.limits)
     }
 
     /// Ends a feed hold: the machine goes on from where it is.
     pub fn resume(&mut self) {
-        if !core::mem::take(&mut self.hold) || self.jerk_mm_s3().is_some() {
-            return;
+        if core::mem::take(&mut self.hold) {
+            self.time_law.go_on(&mut self.ring, &self.limits);
         }
-        if self.ramps.rest_mm() > 0.0 {
-            let exit2 = self.ring.enter_at_most(self.ramps.most_exit2(), &self.limits);
-            self.ramps.plan::<M>(exit2);
-        }
-    }
-
-    const fn jerk_mm_s3(&self) -> Option<f64> {
-        self.limits.settings.jerk_of::<M>()
     }
 
     /// Plans what has come.
@@ -314,28 +284,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.ring.plan(&self.limits);
     }
 
-    /// Whether the machine is at rest after what has been taken.
-    fn stands(&self) -> bool {
-        if self.jerk_mm_s3().is_some() {
-            self.s_curve.get().is_none_or(SCurveState::stands)
-        } else if self.ramps.rest_mm() > 0.0 {
-            self.ramps.speed2() <= 0.0
-        } else {
-            self.ring.get(0).is_none_or(|next| next.entry2 <= 0.0)
-        }
-    }
-
-    /// Brakes on what is left of the course, and with what speed is left on the next.
-    fn brake(&mut self) {
-        if self.jerk_mm_s3().is_none() && self.ramps.rest_mm() > 0.0 {
-            let exit2 = self.ring.enter_at_most(self.ramps.forced2(), &self.limits);
-            self.ramps.brake(exit2);
-        }
-    }
-
     /// The next thing for the motors to do; `None` when nothing is known, or the machine is held.
     pub fn next_action(&mut self) -> Option<Action> {
-        if let Some(phase) = self.ramps.next::<M>() {
+        if let Some(phase) = self.time_law.next_ramp() {
             return Some(Action::Phase(phase));
         }
         self.after_ramps()
@@ -343,7 +294,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
 
     /// As [`Planner::next_action`], for who does not want to hold the machine: a phase, and how many like it make the ramp.
     pub(crate) fn next_ramp(&mut self) -> Option<(Action, u32)> {
-        if let Some((phase, count)) = self.ramps.next_whole::<M>() {
+        if let Some((phase, count)) = self.time_law.next_whole_ramp() {
             return Some((Action::Phase(phase), count));
         }
         self.after_ramps().map(|action| (action, 1))
@@ -351,14 +302,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
 
     /// The next thing that is no phase with a constant acceleration.
     fn after_ramps(&mut self) -> Option<Action> {
-        if let (Some(jerk_mm_s3), Some(s_curve)) = (self.jerk_mm_s3(), self.s_curve.get_mut())
-            && let Some(phase) = s_curve.next_phase(
-                &mut self.ring,
-                self.limits.along_with_jerk().into(),
-                jerk_mm_s3,
-                self.hold,
-            )
-        {
+        if let Some(phase) = self.time_law.next_s_curve(&mut self.ring, &self.limits, self.hold) {
             return Some(Action::Phase(phase));
         }
         if self.is_held() {
@@ -374,12 +318,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             Kind::SelectPen => Action::SelectPen(head.number()),
             Kind::NewPage => Action::NewPage,
         };
-        if self.jerk_mm_s3().is_some()
-            && head.is_path()
-            && let Some(s_curve) = self.s_curve.get_mut()
-        {
-            s_curve.begin();
-        } else {
+        if !self.time_law.begin_s_curve(head, &self.limits) {
             if let Some(under_way) = self.under_way.get_mut() {
                 *under_way = head.wish();
             }
@@ -387,11 +326,9 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             if self.stale && head.is_path() && !self.ring.next_is_settled() {
                 self.plan();
             }
-            let Some(head) = self.ring.get(0) else { return Some(action) };
-            self.ramps.begin::<M>(head, self.ring.next_entry2(), &self.limits);
-            self.ring.pop();
+            self.time_law.begin_ramps(&mut self.ring, &self.limits);
             if self.hold {
-                self.brake();
+                self.time_law.brake(&mut self.ring, &self.limits);
             }
         }
         Some(action)

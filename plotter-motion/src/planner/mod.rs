@@ -29,11 +29,13 @@ mod s_curve;
 mod settings;
 mod stretch;
 mod sum_down;
+mod time_law;
 
 pub use error::PlanError;
 pub use junction::junction_speed;
 pub use look_ahead::Planner;
 pub(crate) use modes::Keep;
 pub use modes::{AllModes, ExactOnly, ExactPen, Modes};
+pub(crate) use modes::{Here, Nowhere, Part};
 pub use phase::{Action, Course, Phase, Shape};
 pub use settings::{AccelLimit, PathMode, PlannerSettings};

@@ -6,6 +6,7 @@ use core::time::Duration;
 
 /// The form of a stretch of path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Shape {
     /// Straight.
     #[default]
@@ -68,17 +69,17 @@ impl Phase {
     /// Distance from the start of the course, speed and acceleration after `time_s` of it.
     ///
     /// ```
-    /// # use plotter_motion::{Phase, ProfilePoint};
+    /// # use plotter_motion::{planner::Phase, profile::ProfilePoint};
     /// let phase = Phase { duration_s: 2.0, from_mm: 1.0, speed_mm_s: 3.0, accel_mm_s2: 4.0, jerk_mm_s3: 0.0 };
     /// // 1 + 3 * 0.5 + 4 * 0.25 / 2
     /// assert_eq!(phase.at(0.5), ProfilePoint { distance_mm: 3.0, speed_mm_s: 5.0, accel_mm_s2: 4.0 });
     /// ```
     #[must_use]
-    pub fn at(&self, time_s: f64) -> crate::ProfilePoint {
+    pub fn at(&self, time_s: f64) -> crate::profile::ProfilePoint {
         let [from_mm, v, a, j] =
             [self.from_mm, self.speed_mm_s, self.accel_mm_s2, self.jerk_mm_s3].map(f64::from);
         let t = time_s;
-        crate::ProfilePoint {
+        crate::profile::ProfilePoint {
             distance_mm: from_mm + t * (v + t * (a / 2.0 + t * j / 6.0)),
             speed_mm_s: v + t * (a + t * j / 2.0),
             accel_mm_s2: a + t * j,

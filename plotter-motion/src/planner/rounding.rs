@@ -17,9 +17,9 @@ use super::merge::{Merged, Merger, Pace};
 use super::modes::Keep;
 use super::ring::narrow;
 use super::stretch::{Stretch, direction};
-use crate::chords::DividedArc;
 use crate::extremes::least;
 use crate::geom::single;
+use crate::toolpath::chords::DividedArc;
 use crate::{Point, Vec2};
 
 /// Share of the path tolerance that vertices may be left out for; corners are rounded within the rest.

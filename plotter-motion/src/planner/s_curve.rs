@@ -8,7 +8,7 @@
 use super::Phase;
 use super::ring::Ring;
 use crate::geom::single;
-use crate::{MotionLimits, SCurve};
+use crate::{MotionLimits, profile::SCurve};
 
 /// Longest phase, s.
 const LONGEST_S: f64 = 3.0 / 64.0;

@@ -1,11 +1,15 @@
 //! [`PlannerSettings`]: the limits of a machine's motion, and how its path is followed.
 
 use super::{Modes, PlanError};
-use crate::{AccelChoice, KinematicsChoice, Machine, MachineConfig, PathChoice};
+use crate::{
+    Machine, MachineConfig,
+    config::{AccelChoice, KinematicsChoice, PathChoice},
+};
 
 /// How nearly a path is followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[non_exhaustive]
 pub enum PathMode {
     /// Through every vertex, give or take [`PlannerSettings::allowance_mm`]. Corners are taken at the speed of junction deviation.
     #[default]
@@ -66,11 +70,11 @@ impl AccelLimit {
     }
 }
 
-/// The limits that a [`Planner`](super::Planner) keeps.
+/// The limits that a [`Planner`](super::Planner) keeps. Read by serde, they are those that it takes.
 ///
-/// The default suits a light pen plotter with belts: 100 mm/s, 1000 mm/s², 20,000 mm/s³.
+/// The default suits a light pen plotter with belts: 100 mm/s, 1000 mm/s².
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PlannerSettings {
     /// How nearly the path is followed.
     pub path: PathMode,
@@ -115,6 +119,22 @@ impl Default for PlannerSettings {
         }
     }
 }
+
+#[cfg(feature = "serde")]
+crate::checked_serde::checked_deserialize!(
+    PlannerSettings {
+        path: PathMode,
+        speed_mm_s: f64,
+        travel_speed_mm_s: f64,
+        accel_mm_s2: f64,
+        accel_limit: AccelLimit,
+        jerk_mm_s3: Option<f64>,
+        junction_deviation_mm: f64,
+        resolution_mm: f64,
+        allowance_mm: f64,
+    },
+    PlannerSettings::check::<super::AllModes>
+);
 
 /// Least and greatest limit that a motion is planned with: a micrometre a second to ten kilometres a second.
 const LIMITS: (f64, f64) = (1e-3, 1e7);

@@ -2,8 +2,11 @@
 
 use super::belt_drive::{BeltDrive, BeltDriveState};
 use super::dc_motor::{DcMotor, DcMotorState};
+use super::enable_pwm::EnablePwm;
 use crate::{
-    AxisConfig, Decoding, Direction, Duty, LoadConfig, Phases, QuadratureX1, QuadratureX2, QuadratureX4,
+    Direction, Duty,
+    config::{AxisConfig, Decoding, LoadConfig},
+    encoder::{Phases, QuadratureX1, QuadratureX2, QuadratureX4},
 };
 use core::f64::consts::TAU;
 
@@ -11,13 +14,15 @@ use core::f64::consts::TAU;
 ///
 /// Friction is Coulomb's: constant against the motion, and at rest as much as is needed up to the static
 /// friction. The voltage is the mean of the pulse width modulation, `duty * supply` in whole steps of the
-/// timer, as in the thesis' transfer function (spec 1.8).
+/// timer, as in the thesis' transfer function (spec 1.8); or pulse by pulse, where they are on the bridge's
+/// enable pin ([`MotorConfig::enable_pwm_hz`](crate::config::MotorConfig::enable_pwm_hz)) and the motor
+/// coasts in between.
 ///
 /// Positions are counted as the encoder counts them, with the shaft in the middle of the interval that
 /// belongs to count 0 at the start (see [`Decoding::rest_offset_counts`]).
 ///
 /// ```
-/// # use plotter_motion::{AxisConfig, Duty, plant::AxisPlant};
+/// # use plotter_motion::{Duty, config::AxisConfig, plant::AxisPlant};
 /// let mut axis = AxisPlant::new(&AxisConfig::default(), 1e-5);
 /// let mut count = 0;
 /// for _ in 0..20_000 {
@@ -30,6 +35,9 @@ use core::f64::consts::TAU;
 pub struct AxisPlant {
     motor: DcMotor,
     state: DcMotorState,
+    pulses: Option<EnablePwm>,
+    /// Into how many steps of its own a step is cut.
+    cuts: u32,
     config: AxisConfig,
     quarters_per_rad: f64,
     decoder: Decoder,
@@ -87,6 +95,8 @@ impl AxisPlant {
         let start_quarters = f64::from(decoding.rest_offset_counts()) * quarters_per_count(decoding);
         let phases = Phases::of_quarter(floor(start_quarters));
         let load = rigid_load(config);
+        let cuts = EnablePwm::steps_in(&config.motor, dt_s);
+        let dt_s = dt_s / f64::from(cuts);
         let transmission = &config.transmission;
         let train = if transmission.stiffness_n_per_mm > 0.0 {
             let start_mm = start_quarters / quarters_per_rad * config.mm_per_rad();
@@ -99,6 +109,8 @@ impl AxisPlant {
         };
         Self {
             motor: DcMotor::new(&config.motor, &load, dt_s),
+            pulses: EnablePwm::of(&config.motor, dt_s),
+            cuts,
             state: DcMotorState { angle_rad: start_quarters / quarters_per_rad, ..DcMotorState::default() },
             config: *config,
             quarters_per_rad,
@@ -126,10 +138,32 @@ impl AxisPlant {
             - f64::from(decoding.rest_offset_counts())
     }
 
+    /// By how many whole counts `count` is wrong about where the shaft truly stands: 0 for one that a decoder may rightly have, which
+    /// with x1 may be either of two, as the edge of a count backwards lies half a count beyond that forwards.
+    ///
+    /// ```
+    /// # use plotter_motion::{config::AxisConfig, plant::AxisPlant};
+    /// let axis = AxisPlant::new(&AxisConfig::default(), 1e-5);
+    /// assert_eq!([-2, -1, 0, 1, 2].map(|count| axis.counts_from(count)), [2, 1, 0, 1, 2]);
+    /// ```
+    #[must_use]
+    pub fn counts_from(&self, count: i32) -> u32 {
+        let decoding = self.config.encoder.decoding;
+        // The places of a count reach so far on both sides of where a shaft rests in it: x1 -0.5 to 1.0 about 0.25, else 0 to 1 about 0.5.
+        let reach = match decoding {
+            Decoding::X1 => 0.75,
+            Decoding::X2 | Decoding::X4 => 0.5,
+        };
+        let beyond = (self.position_counts() - f64::from(count)).abs() - reach;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float cast saturates")]
+        let whole = libm::ceil(beyond).max(0.0) as u32;
+        whole
+    }
+
     /// Where the pen truly stands, mm from its start: where the shaft is, less what play and belt keep back.
     ///
     /// ```
-    /// # use plotter_motion::{AxisConfig, Duty, TransmissionConfig, plant::AxisPlant};
+    /// # use plotter_motion::{Duty, config::{AxisConfig, TransmissionConfig}, plant::AxisPlant};
     /// let worn = TransmissionConfig { backlash_mm: 0.4, ..TransmissionConfig::default() };
     /// let mut axis = AxisPlant::new(&AxisConfig { transmission: worn, ..AxisConfig::default() }, 1e-5);
     /// for _ in 0..20_000 {
@@ -160,7 +194,7 @@ impl AxisPlant {
     /// What the motor takes from its supply under `duty` now, W; below 0 while it brakes and gives back.
     ///
     /// ```
-    /// # use plotter_motion::{AxisConfig, Duty, plant::AxisPlant};
+    /// # use plotter_motion::{Duty, config::AxisConfig, plant::AxisPlant};
     /// let mut axis = AxisPlant::new(&AxisConfig::default(), 1e-3);
     /// axis.stall(true);
     /// axis.step(Duty::FULL, |_| ());
@@ -168,7 +202,11 @@ impl AxisPlant {
     /// ```
     #[must_use]
     pub fn power_w(&self, duty: Duty) -> f64 {
-        self.voltage_v(duty) * self.state.current_a
+        let (share, current_a) = (self.share(duty), self.state.current_a);
+        match &self.pulses {
+            Some(pulses) => pulses.power_w(share, current_a),
+            None => share * self.config.motor.supply_v * current_a,
+        }
     }
 
     /// The levels on the encoder's pins.
@@ -196,8 +234,19 @@ impl AxisPlant {
     /// As [`step`](Self::step), for a decoder elsewhere: `change` is told of every change on the encoder's pins, in
     /// order, and nothing is counted here.
     pub fn turn(&mut self, duty: Duty, mut change: impl FnMut(PhaseChange)) {
+        let cuts = self.cuts;
+        for cut in 0..cuts {
+            self.turn_once(duty, |PhaseChange { share_of_step, phases }| {
+                let share_of_step = (f64::from(cut) + share_of_step) / f64::from(cuts);
+                change(PhaseChange { share_of_step, phases });
+            });
+        }
+    }
+
+    fn turn_once(&mut self, duty: Duty, mut change: impl FnMut(PhaseChange)) {
         let before = self.state.angle_rad * self.quarters_per_rad;
-        self.move_on(self.voltage_v(duty));
+        let voltage_v = self.voltage_v(duty);
+        self.move_on(voltage_v);
         let after = self.state.angle_rad * self.quarters_per_rad;
 
         let (first, last) = (floor(before), floor(after));
@@ -213,9 +262,18 @@ impl AxisPlant {
         }
     }
 
-    fn voltage_v(&self, duty: Duty) -> f64 {
+    fn voltage_v(&mut self, duty: Duty) -> f64 {
+        let share = self.share(duty);
+        match &mut self.pulses {
+            Some(pulses) => pulses.voltage_v(share, self.state),
+            None => share * self.config.motor.supply_v,
+        }
+    }
+
+    /// A duty as the timer makes it.
+    fn share(&self, duty: Duty) -> f64 {
         let steps = u16::try_from(self.config.motor.pwm_steps).unwrap_or(u16::MAX);
-        f64::from(duty.steps(steps)) / f64::from(steps) * self.config.motor.supply_v
+        f64::from(duty.steps(steps)) / f64::from(steps)
     }
 
     /// Goes on by one step, with what lies between shaft and pen.
@@ -298,7 +356,7 @@ fn floor(value: f64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::LoadConfig;
+    use crate::config::LoadConfig;
 
     const DT_S: f64 = 1e-5;
 

@@ -11,7 +11,7 @@
 
 use super::dc_motor::DcMotorState;
 use super::matrix::{Matrix, exponential};
-use crate::{AxisConfig, MotorConfig};
+use crate::config::{AxisConfig, MotorConfig};
 
 /// A DC motor, its belt and its carriage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,7 +28,7 @@ pub struct BeltDriveState {
 /// the motor crosses the play; so the stiffest belt cannot become unstable.
 ///
 /// ```
-/// # use plotter_motion::{AxisConfig, TransmissionConfig};
+/// # use plotter_motion::config::{AxisConfig, TransmissionConfig};
 /// # use plotter_motion::plant::{BeltDrive, BeltDriveState};
 /// let belt = TransmissionConfig { stiffness_n_per_mm: 50.0, carriage_kg: 1.0, ..TransmissionConfig::default() };
 /// let drive = BeltDrive::new(&AxisConfig { transmission: belt, ..AxisConfig::default() }, 0.01);

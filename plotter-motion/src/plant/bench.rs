@@ -10,6 +10,11 @@ use core::time::Duration;
 
 /// How a machine is simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct BenchSettings {
     /// Time step of the motors, 10 us by default; the drive changes between steps only. Taken as the nearest
     /// of 1 us to 1 ms, without what is below a microsecond.
@@ -172,7 +177,8 @@ impl<I: Iterator<Item = PenMove>, C: BenchController> Bench<I, C> {
         )]
         let byte_gap = Duration::from_micros(libm::round(config.serial.byte_gap_ms * 1e3) as u64);
         let axis = |axis| AxisPlant::new(axis, time_step.as_secs_f64());
-        let pwm_steps = |axis: &crate::AxisConfig| u16::try_from(axis.motor.pwm_steps).unwrap_or(u16::MAX);
+        let pwm_steps =
+            |axis: &crate::config::AxisConfig| u16::try_from(axis.motor.pwm_steps).unwrap_or(u16::MAX);
         Self {
             now: Duration::ZERO,
             time_step,

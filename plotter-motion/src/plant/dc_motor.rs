@@ -11,7 +11,7 @@
 //! the system's matrix, so a long step is as right as a short one and nothing can become unstable.
 
 use super::matrix::{Matrix, exponential};
-use crate::{LoadConfig, MotorConfig};
+use crate::config::{LoadConfig, MotorConfig};
 
 /// Current, speed and angle of a motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,7 +27,7 @@ pub struct DcMotorState {
 /// A motor's equations over one fixed time step.
 ///
 /// ```
-/// # use plotter_motion::{LoadConfig, MotorConfig, plant::{DcMotor, DcMotorState}};
+/// # use plotter_motion::{config::{LoadConfig, MotorConfig}, plant::{DcMotor, DcMotorState}};
 /// let alone = LoadConfig { inertia_kg_m2: 0.0, coulomb_n_m: 0.0, static_n_m: 0.0, viscous_n_m_s: 0.0 };
 /// let motor = DcMotor::new(&MotorConfig::default(), &alone, 1.0); // a step of one second
 /// let state = motor.step(DcMotorState::default(), 12.0, 0.0);

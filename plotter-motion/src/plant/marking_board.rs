@@ -2,11 +2,15 @@
 
 use super::dc_motor::{DcMotor, DcMotorState};
 use crate::kinematics::{CoreXy, Kinematics, MotorPoint};
-use crate::{Axis, Duty, LimitSwitches, LoadConfig, Machine, MotorConfig, Point};
+use crate::{
+    Axis, Duty, LimitSwitches, Machine, Point,
+    config::{LoadConfig, MotorConfig},
+};
 use core::f64::consts::TAU;
 
 /// What a simulated board is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MarkingBoardPlantSettings {
     /// Directions and encoder pulses to the millimetre.
     pub belt: CoreXy,
@@ -50,9 +54,10 @@ impl MarkingBoardPlantSettings {
 
 /// A board moved on in fixed time steps.
 ///
-/// Its encoders only count up: a pulse comes whenever a mark passes, whichever way ([`PulseCounter`](crate::PulseCounter)). Without
-/// drive the motors run down, short-circuited, against the friction of their gears and of the rails; the rails pull at both
-/// motors, so one that runs can drag the other.
+/// Its encoders only count up: a pulse comes whenever a mark passes, whichever way
+/// ([`PulseCounter`](crate::encoder::PulseCounter)), by a hundredth of a pulse: no comparator switches at
+/// every tremble. Without drive the motors run down, short-circuited, against the friction of their gears and
+/// of the rails; the rails pull at both motors, so one that runs can drag the other.
 ///
 /// Friction is Coulomb's, at four places: both gears and both rails. In each time step the friction forces are those,
 /// within their limits, that bring each place to rest or slow it down; found by going round the four places until none
@@ -89,6 +94,8 @@ struct BoardMotor {
     config: MotorConfig,
     /// Speed lost in a step by a torque, rad/s per N m.
     loss: f64,
+    /// The mark that the encoder saw last on the way up: the shaft is between it and the next one.
+    mark: f64,
 }
 
 /// A place that rubs: what each motor's speed makes of its speed, and the friction sliding and at rest.
@@ -106,6 +113,11 @@ impl Contact {
     }
 }
 
+/// So far beyond a mark the encoder's comparator switches, pulses: a shaft that stands at a mark and trembles
+/// there by less makes no pulses. Comparators for such sensors have some hundredths of a period; this is at
+/// the small end.
+const HYSTERESIS_PULSES: f64 = 0.01;
+
 /// Below this a shaft stands, rad/s: what the rounding of a friction that stops it leaves over.
 const AT_REST_RAD_S: f64 = 1e-9;
 
@@ -120,7 +132,7 @@ impl MarkingBoardPlant {
             let loss = -motor.step(DcMotorState::default(), 0.0, 1.0).speed_rad_s;
             let angle_rad = phase / settings.pulses_per_turn * TAU;
             let state = DcMotorState { angle_rad, ..DcMotorState::default() };
-            BoardMotor { motor, state, config, loss }
+            BoardMotor { motor, state, config, loss, mark: libm::floor(phase) }
         };
         let motors = [board_motor(config_1, load_1, phase_1), board_motor(config_2, load_2, phase_2)];
         let m_per_rad = settings.pulses_per_turn / TAU / settings.belt.steps_per_mm() / 1000.0;
@@ -151,18 +163,12 @@ impl MarkingBoardPlant {
         for (axis, (motor, (volts, torque))) in
             Axis::BOTH.into_iter().zip([first, second].into_iter().zip(volts.into_iter().zip(torques)))
         {
-            let before = motor.state.angle_rad;
             motor.state = motor.motor.step(motor.state, volts, torque);
             if motor.state.speed_rad_s.abs() < AT_REST_RAD_S {
                 motor.state.speed_rad_s = 0.0;
             }
-            let marks = |angle_rad: f64| libm::floor(angle_rad / TAU * self.settings.pulses_per_turn);
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a few marks in a step; saturates"
-            )]
-            let passed = (marks(motor.state.angle_rad) - marks(before)).abs() as u16;
+            let pulses = motor.state.angle_rad / TAU * self.settings.pulses_per_turn;
+            let passed = motor.passes(pulses);
             for _ in 0..passed {
                 pulse(axis);
             }
@@ -199,6 +205,20 @@ impl MarkingBoardPlant {
 }
 
 impl BoardMotor {
+    /// How many marks pass its encoder when it turns to a place, in pulses.
+    fn passes(&mut self, pulses: f64) -> u16 {
+        let before = self.mark;
+        self.mark =
+            before.max(libm::floor(pulses - HYSTERESIS_PULSES)).min(libm::floor(pulses + HYSTERESIS_PULSES));
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a few marks in a step; saturates"
+        )]
+        let passed = (self.mark - before).abs() as u16;
+        passed
+    }
+
     fn voltage_v(&self, duty: Duty) -> f64 {
         let steps = u16::try_from(self.config.pwm_steps).unwrap_or(u16::MAX);
         f64::from(duty.steps(steps)) / f64::from(steps) * self.config.supply_v

@@ -6,6 +6,7 @@ mod belt_drive;
 mod bench;
 mod dc_motor;
 mod drive_delay;
+mod enable_pwm;
 mod marking_board;
 mod matrix;
 #[cfg(feature = "alloc")]

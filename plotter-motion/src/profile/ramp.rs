@@ -9,13 +9,13 @@ use super::{GREATEST, LEAST_LIMIT, ProfileError, ProfilePoint, within};
 /// ```
 ///
 /// ```
-/// # use plotter_motion::Ramp;
+/// # use plotter_motion::profile::Ramp;
 /// // from 20 to 80 mm/s at 600 mm/s²: 60/600 = 0.1 s, at 50 mm/s on the mean
 /// let ramp = Ramp::between(20.0, 80.0, 600.0)?;
 /// assert!((ramp.duration_s() - 0.1).abs() < 1e-15);
 /// assert!((ramp.length_mm() - 5.0).abs() < 1e-12);
 /// assert!((ramp.at(0.05).speed_mm_s - 50.0).abs() < 1e-12);
-/// # Ok::<(), plotter_motion::ProfileError>(())
+/// # Ok::<(), plotter_motion::profile::ProfileError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ramp {

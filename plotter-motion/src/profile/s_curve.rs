@@ -15,6 +15,7 @@ use super::{GREATEST, LEAST_LIMIT, ProfileError, ProfilePoint, within};
 
 /// Limits of a motion along a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MotionLimits {
     /// Greatest speed, mm/s.
     pub speed_mm_s: f64,
@@ -27,14 +28,14 @@ pub struct MotionLimits {
 /// A planned motion from rest to rest.
 ///
 /// ```
-/// # use plotter_motion::{MotionLimits, SCurve};
+/// # use plotter_motion::{MotionLimits, profile::SCurve};
 /// let limits = MotionLimits { speed_mm_s: 10.0, accel_mm_s2: 100.0, jerk_mm_s3: 1000.0 };
 /// // 0.1 s of each jerk phase reach 100 mm/s^2 and 10 mm/s; 0.2 s up and 0.2 s down cover 2 mm;
 /// // the other 8 mm take 0.8 s
 /// let motion = SCurve::plan(10.0, limits)?;
 /// assert!((motion.duration_s() - 1.2).abs() < 1e-12);
 /// assert!((motion.at(0.6).distance_mm - 5.0).abs() < 1e-12);
-/// # Ok::<(), plotter_motion::ProfileError>(())
+/// # Ok::<(), plotter_motion::profile::ProfileError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SCurve {

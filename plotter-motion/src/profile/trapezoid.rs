@@ -35,7 +35,7 @@ pub struct TrapezoidMove {
 /// however short the motion.
 ///
 /// ```
-/// # use plotter_motion::{Trapezoid, TrapezoidMove};
+/// # use plotter_motion::profile::{Trapezoid, TrapezoidMove};
 /// let asked = TrapezoidMove { length_mm: 30.0, entry_mm_s: 0.0, exit_mm_s: 50.0, speed_mm_s: 100.0, accel_mm_s2: 500.0 };
 /// // up to 100 mm/s in 10 mm and 0.2 s, down to 50 mm/s in 7.5 mm and 0.1 s; 12.5 mm between them take 0.125 s
 /// let motion = Trapezoid::plan(asked)?;
@@ -43,7 +43,7 @@ pub struct TrapezoidMove {
 /// // over 2 mm it becomes no faster than sqrt(2 * 500 * 2) = 44.72 mm/s
 /// let short = Trapezoid::plan(TrapezoidMove { length_mm: 2.0, ..asked })?;
 /// assert!((short.exit_mm_s() - 44.721).abs() < 1e-3);
-/// # Ok::<(), plotter_motion::ProfileError>(())
+/// # Ok::<(), plotter_motion::profile::ProfileError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trapezoid {

@@ -187,7 +187,7 @@ pub struct Received {
 /// is always silent for longer than that after a target that came short.)
 ///
 /// ```
-/// # use plotter_motion::{StepPoint, protocol::digits::{self, Receiver}};
+/// # use plotter_motion::{StepPoint, protocol::digits::{Receiver, self}};
 /// # use core::time::Duration;
 /// let mut receiver = Receiver::new(Duration::from_millis(100));
 /// let mut now = Duration::ZERO;

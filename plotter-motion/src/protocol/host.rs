@@ -8,6 +8,11 @@ use core::time::Duration;
 
 /// How patient a host is. Both times count from the last byte of a target at the earliest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct HostSettings {
     /// Silence of the controller after which a target is sent again, 2 s by default.
     pub silence: Duration,

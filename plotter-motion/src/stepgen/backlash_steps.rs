@@ -1,8 +1,8 @@
 //! [`BacklashSteps`]: the extra steps of axes with play, between the steps of a path.
 
 use super::{MotorEvent, TimedEvent};
-use crate::Machine;
 use crate::kinematics::Backlash;
+use crate::{Machine, StepPair};
 
 /// Inserts the steps that take up the play of an axis where it turns round.
 ///
@@ -11,18 +11,18 @@ use crate::kinematics::Backlash;
 ///
 /// ```
 /// # use plotter_motion::kinematics::Backlash;
-/// # use plotter_motion::{BacklashSteps, MotorEvent, TimedEvent};
+/// # use plotter_motion::{StepPair, stepgen::{BacklashSteps, MotorEvent, TimedEvent}};
 /// let mut play = BacklashSteps::new(Backlash { x_steps: 2, y_steps: 0 }, 500);
 /// let mut given = Vec::new();
 /// // forwards, as both axes are taken to have been driven backwards before; then two more steps
 /// for tick in [1000, 2000, 3000] {
-///     play.push(TimedEvent { tick, event: MotorEvent::Step { x: 1, y: 0 } })?;
+///     play.push(TimedEvent { tick, event: MotorEvent::Step(StepPair { x: 1, y: 0 }) })?;
 ///     while let Some(event) = play.next_event() {
 ///         given.push(event.tick);
 ///     }
 /// }
 /// assert_eq!(given, [1000, 1500, 2000, 2000, 3000]); // the step, two extra ones, two steps
-/// # Ok::<(), plotter_motion::Busy>(())
+/// # Ok::<(), plotter_motion::stepgen::Busy>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BacklashSteps {
@@ -48,7 +48,8 @@ impl BacklashSteps {
     #[must_use]
     pub fn of(machine: &Machine, clock_hz: f64) -> Self {
         let (x, y) = (&machine.config().x.stepper, &machine.config().y.stepper);
-        let steps = |mm: f64, per_mm: f64| u16::try_from(crate::from_mm(mm, per_mm)).unwrap_or(u16::MAX);
+        let steps =
+            |mm: f64, per_mm: f64| u16::try_from(crate::toolpath::from_mm(mm, per_mm)).unwrap_or(u16::MAX);
         let play = Backlash {
             x_steps: steps(x.backlash_mm, x.steps_per_mm),
             y_steps: steps(y.backlash_mm, y.steps_per_mm),
@@ -79,7 +80,7 @@ impl BacklashSteps {
             return self.rest();
         }
         self.waiting = None;
-        if let MotorEvent::Step { x, y } = waiting.event {
+        if let MotorEvent::Step(StepPair { x, y }) = waiting.event {
             let before = self.owed;
             self.owed.0 += turn(&mut self.taken_up.0, x, self.play.x_steps);
             self.owed.1 += turn(&mut self.taken_up.1, y, self.play.y_steps);
@@ -107,7 +108,7 @@ impl BacklashSteps {
             *owed -= sign;
             i8::try_from(sign).unwrap_or(0)
         };
-        let event = MotorEvent::Step { x: step(&mut self.owed.0), y: step(&mut self.owed.1) };
+        let event = MotorEvent::Step(StepPair { x: step(&mut self.owed.0), y: step(&mut self.owed.1) });
         let tick = self.next_tick;
         self.next_tick = tick.saturating_add(self.interval_ticks);
         Some(TimedEvent { tick, event })

@@ -1,13 +1,16 @@
 //! [`Chords`]: a course as chords on the grid of the motors.
 
 use super::slice::{FRACTION_BITS, fixed};
-use crate::chords::chord_count;
 use crate::extremes::greatest;
 use crate::kinematics::Kinematics;
 use crate::planner::Modes;
 use crate::root::root;
+use crate::toolpath::chords::chord_count;
 use crate::turn::sin_cos;
-use crate::{Course, Point, Shape, StepPoint};
+use crate::{
+    Point, StepPoint,
+    planner::{Course, Shape},
+};
 
 /// A straight way between two whole steps, and where along the course it ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use super::{PlotTime, PlotTimer, StepGenSettings};
 use crate::planner::{AllModes, Modes};
-use crate::{PlanError, Planner, PlannerSettings, PlotOp};
+use crate::{Planner, PlannerSettings, PlotOp, planner::PlanError};
 
 /// How long a drawing takes, told as it comes in: a [`Planner`] with `N` blocks of look-ahead, and a [`PlotTimer`].
 ///
@@ -13,14 +13,14 @@ use crate::{PlanError, Planner, PlannerSettings, PlotOp};
 /// Where a machine has other motors or other kinematics makes no difference to its time, but by [`PlannerSettings::resolution_mm`].
 ///
 /// ```
-/// # use plotter_motion::{Estimator, PlannerSettings, PlotOp, Point, StepGenSettings};
+/// # use plotter_motion::{PlannerSettings, PlotOp, Point, stepgen::{Estimator, StepGenSettings}};
 /// # use std::time::Duration;
 /// let mut estimator = Estimator::<16>::new(PlannerSettings::default(), StepGenSettings::default())?;
 /// // 100 mm at 100 mm/s and 1000 mm/s²: 1 s, and 0.1 s for the ramps; 200 ms for the pen down and up
 /// estimator.push(PlotOp::Draw { to: Point::new(100.0, 0.0), feed_mm_s: None })?;
 /// let time = estimator.finish()?;
 /// assert!(time.total.abs_diff(Duration::from_millis(1500)) < Duration::from_micros(2));
-/// # Ok::<(), plotter_motion::PlanError>(())
+/// # Ok::<(), plotter_motion::planner::PlanError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimator<const N: usize, M: Modes = AllModes> {

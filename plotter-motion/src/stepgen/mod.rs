@@ -9,7 +9,8 @@
 //! as Bresenham's line: at each step of the motor that has the longer way, the other one steps or does not. Steps are due half
 //! way between the grid's lines, so that the motors are never farther than half a step from the path.
 //!
-//! [`Estimator`] tells the time without the steps: a [`PlotTimer`] adds up the same phases by the same clock.
+//! [`timed_events`] is both in one call, for a desktop. [`Estimator`] tells the time without the steps: a
+//! [`PlotTimer`] adds up the same phases by the same clock.
 //!
 //! When a phase or a chord begins, floats are turned into whole numbers. From step to step there are only whole numbers.
 
@@ -21,9 +22,11 @@ mod plot_timer;
 mod slice;
 mod step_gen;
 mod step_queue;
+mod timed_events;
 
 pub use backlash_steps::BacklashSteps;
 pub use estimator::Estimator;
 pub use plot_timer::{PlotTime, PlotTimer};
 pub use step_gen::{Busy, MotorEvent, StepGen, StepGenSettings, TimedEvent};
 pub use step_queue::{QueuedEvent, StepQueue};
+pub use timed_events::timed_events;

@@ -3,7 +3,7 @@
 use super::StepGenSettings;
 use super::moment::Moment;
 use crate::planner::{AllModes, Modes};
-use crate::{Action, Pen};
+use crate::{Pen, planner::Action};
 use core::time::Duration;
 
 /// How long a plot takes, and what on.
@@ -45,7 +45,7 @@ pub struct PlotTime {
 /// planner already; [`Estimator`](super::Estimator) has one of its own.
 ///
 /// ```
-/// # use plotter_motion::{Planner, PlannerSettings, PlotOp, PlotTimer, Point, StepGenSettings};
+/// # use plotter_motion::{Planner, PlannerSettings, PlotOp, Point, stepgen::{PlotTimer, StepGenSettings}};
 /// # use std::time::Duration;
 /// // 10 mm at 1000 mm/s²: 0.1 s up to 100 mm/s and 0.1 s down; 200 ms for the pen down and up
 /// let mut planner = Planner::<16>::new(PlannerSettings::default())?;
@@ -57,7 +57,7 @@ pub struct PlotTime {
 /// }
 /// assert_eq!(timer.time().total, Duration::from_millis(600));
 /// assert_eq!((timer.time().motion, timer.time().strokes), (Duration::from_millis(200), 1));
-/// # Ok::<(), plotter_motion::PlanError>(())
+/// # Ok::<(), plotter_motion::planner::PlanError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlotTimer {

@@ -1,7 +1,7 @@
 //! [`Slice`]: a short time of a phase in whole numbers.
 
-use crate::Phase;
 use crate::planner::Modes;
+use crate::planner::Phase;
 
 /// Bits of the fraction of a distance in mm.
 pub(super) const FRACTION_BITS: u32 = 32;

@@ -7,7 +7,10 @@ use crate::extremes::greatest;
 use crate::geom::single;
 use crate::kinematics::Kinematics;
 use crate::planner::{AllModes, Modes};
-use crate::{Action, Bresenham, Course, Machine, Pen, Phase, Point, StepPair, StepPoint};
+use crate::{
+    Bresenham, Machine, Pen, Point, StepPair, StepPoint,
+    planner::{Action, Course, Phase},
+};
 use core::fmt;
 use core::marker::PhantomData;
 use core::time::Duration;
@@ -23,6 +26,11 @@ const STANDSTILL_MM_S: f32 = 1e-3;
 
 /// How steps are timed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct StepGenSettings {
     /// Ticks of the clock in a second: 1000 to 10⁹. The default is a microsecond.
     pub clock_hz: u32,
@@ -66,13 +74,8 @@ impl StepGenSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum MotorEvent {
-    /// A step of either motor or of both: -1, 0 or 1 each.
-    Step {
-        /// First motor.
-        x: i8,
-        /// Second motor.
-        y: i8,
-    },
+    /// A step of either motor or of both.
+    Step(StepPair),
     /// The pen is lowered or lifted.
     Pen(Pen),
     /// The laser's power from here on, in 65535ths.
@@ -124,7 +127,8 @@ struct Running {
 ///
 /// ```
 /// # use plotter_motion::kinematics::{Cartesian, MotorScale};
-/// # use plotter_motion::{MotorEvent, Planner, PlannerSettings, PlotOp, Point, StepGen, StepGenSettings};
+/// # use plotter_motion::{Planner, PlannerSettings, PlotOp, Point, StepGen};
+/// # use plotter_motion::stepgen::{MotorEvent, StepGenSettings};
 /// let mut planner = Planner::<16>::new(PlannerSettings::default())?;
 /// let motor = MotorScale { steps_per_mm: 100.0, inverted: false };
 /// let mut steps = StepGen::new(Cartesian::new(motor, motor)?, StepGenSettings::default());
@@ -365,7 +369,7 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         if !left {
             self.next_chord();
         }
-        Some(TimedEvent { tick, event: MotorEvent::Step { x, y } })
+        Some(TimedEvent { tick, event: MotorEvent::Step(StepPair { x, y }) })
     }
 
     /// The chord after the one that has been stepped, if it is not shorter than a step.

@@ -1,6 +1,7 @@
 //! [`StepQueue`]: events between the main loop, which reckons them, and the timer's interrupt, which makes them.
 
 use super::{Busy, MotorEvent, TimedEvent};
+use crate::StepPair;
 
 /// An event that waits for its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -21,14 +22,14 @@ pub struct QueuedEvent {
 /// (`StepperAxes::drivers` of `plotter-hal`): what has been taken out is gone, what has not stays the next one.
 ///
 /// ```
-/// # use plotter_motion::{MotorEvent, StepQueue, TimedEvent};
+/// # use plotter_motion::{StepPair, stepgen::{MotorEvent, StepQueue, TimedEvent}};
 /// let mut queue = StepQueue::<16>::new();
-/// queue.push(TimedEvent { tick: 1000, event: MotorEvent::Step { x: 1, y: 0 } })?;
-/// queue.push(TimedEvent { tick: 1250, event: MotorEvent::Step { x: 1, y: 1 } })?;
+/// queue.push(TimedEvent { tick: 1000, event: MotorEvent::Step(StepPair { x: 1, y: 0 }) })?;
+/// queue.push(TimedEvent { tick: 1250, event: MotorEvent::Step(StepPair { x: 1, y: 1 }) })?;
 /// assert_eq!(queue.next_after_ticks(), Some(1000)); // since the start
-/// assert_eq!(queue.pop().map(|queued| queued.event), Some(MotorEvent::Step { x: 1, y: 0 }));
+/// assert_eq!(queue.pop().map(|queued| queued.event), Some(MotorEvent::Step(StepPair { x: 1, y: 0 })));
 /// assert_eq!(queue.next_after_ticks(), Some(250));
-/// # Ok::<(), plotter_motion::Busy>(())
+/// # Ok::<(), plotter_motion::stepgen::Busy>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepQueue<const N: usize> {
@@ -47,7 +48,7 @@ impl<const N: usize> StepQueue<N> {
     #[must_use]
     pub const fn new() -> Self {
         () = Self::POWER_OF_TWO;
-        let none = QueuedEvent { after_ticks: 0, event: MotorEvent::Step { x: 0, y: 0 } };
+        let none = QueuedEvent { after_ticks: 0, event: MotorEvent::Step(StepPair { x: 0, y: 0 }) };
         Self { events: [none; N], head: 0, len: 0, last_tick: 0 }
     }
 
@@ -131,7 +132,7 @@ mod tests {
     use super::*;
 
     fn step(tick: u64) -> TimedEvent {
-        TimedEvent { tick, event: MotorEvent::Step { x: 1, y: -1 } }
+        TimedEvent { tick, event: MotorEvent::Step(StepPair { x: 1, y: -1 }) }
     }
 
     #[test]

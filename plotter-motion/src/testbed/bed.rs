@@ -1,16 +1,21 @@
 //! [`TestBed`]: a controller on simulated motors, and how far from the line the pen truly was.
 
-use super::{Figures, misjudged};
+use super::{Figures, LateLoop, misjudged};
 use crate::control::LineController;
 use crate::plant::{AxisPlant, DriveDelay};
 use crate::{
-    Axis, ConfigError, Demand, Direction, Drive, LimitSwitches, Machine, MachineKind, Pen, PenMove, Point,
-    SafetyGate, Segment, StepPoint,
+    Axis, ConfigError, Demand, Direction, Drive, LimitSwitches, Machine, Pen, PenMove, Point, SafetyGate,
+    Segment, StepPoint, config::MachineKind,
 };
 use core::time::Duration;
 
 /// How a run on the test bed is made and measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct TestBedSettings {
     /// Time step of the motors; the nearest of 1 us to 1 ms counts.
     pub time_step: Duration,
@@ -22,6 +27,8 @@ pub struct TestBedSettings {
     pub settled_mm: f64,
     /// By which share the description that controllers are given is wrong ([`misjudged`]).
     pub wrong_share: f64,
+    /// By how much the runs of the controller's loop are late.
+    pub late_loop: LateLoop,
 }
 
 impl Default for TestBedSettings {
@@ -34,6 +41,7 @@ impl Default for TestBedSettings {
             watch_on: Duration::from_millis(100),
             settled_mm: 0.05,
             wrong_share: 0.25,
+            late_loop: LateLoop::default(),
         }
     }
 }
@@ -86,11 +94,18 @@ impl TestBed {
     /// move an axis.
     pub fn new(machine: &Machine, settings: TestBedSettings) -> Result<Self, ConfigError> {
         machine.require(MachineKind::Gantry, "the control test bed")?;
+        let described = misjudged(machine, settings.wrong_share)?;
+        Ok(Self::with_description(machine, &described, settings))
+    }
+
+    /// A bench with a description of one's own, wrong in whichever way; `settings.wrong_share` is not used.
+    #[must_use]
+    pub fn with_description(machine: &Machine, described: &Machine, settings: TestBedSettings) -> Self {
         const SHORTEST: Duration = Duration::from_micros(1);
         const LONGEST: Duration = Duration::from_millis(1);
         let time_step = settings.time_step.clamp(SHORTEST, LONGEST);
-        let described = misjudged(machine, settings.wrong_share)?;
-        Ok(Self { machine: *machine, described, settings: TestBedSettings { time_step, ..settings } })
+        let settings = TestBedSettings { time_step, ..settings };
+        Self { machine: *machine, described: *described, settings }
     }
 
     /// The machine as it is.
@@ -110,8 +125,8 @@ impl TestBed {
     pub fn counts(&self, at: Point) -> StepPoint {
         let config = self.machine.config();
         StepPoint::new(
-            crate::from_mm(at.x, config.x.counts_per_mm),
-            crate::from_mm(at.y, config.y.counts_per_mm),
+            crate::toolpath::from_mm(at.x, config.x.counts_per_mm),
+            crate::toolpath::from_mm(at.y, config.y.counts_per_mm),
         )
     }
 
@@ -152,6 +167,7 @@ impl TestBed {
             figures.note(&moment, self.settings.settled_mm);
             watch(&moment);
         }
+        figures.lost_counts = run.lost_counts();
         figures
     }
 
@@ -175,7 +191,9 @@ struct Run<'a, C: ?Sized> {
     drive: Drive<'static>,
     delay: DriveDelay,
     now: Duration,
-    next_tick: Option<Duration>,
+    /// The next run of the loop: when it should come, and when it does.
+    next_tick: Option<(Duration, Duration)>,
+    ticks: u64,
 }
 
 /// More edges than this of one axis in a time step are no motor any more.
@@ -187,7 +205,8 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
         let dt_s = bed.settings.time_step.as_secs_f64();
         Self {
             bed,
-            next_tick: controller.period(),
+            next_tick: controller.period().map(|due| (due, due + bed.settings.late_loop.delay(0))),
+            ticks: 0,
             controller,
             axes: [AxisPlant::new(&config.x, dt_s), AxisPlant::new(&config.y, dt_s)],
             gate: SafetyGate::new(LimitSwitches::RELEASED, false),
@@ -252,14 +271,26 @@ impl<'a, C: LineController + ?Sized> Run<'a, C> {
     }
 
     fn ticks_until(&mut self, end: Duration) {
-        while let (Some(due), Some(period)) = (self.next_tick, self.controller.period()) {
-            if due > end {
+        while let (Some((due, at)), Some(period)) = (self.next_tick, self.controller.period()) {
+            if at > end {
                 return;
             }
-            let demand = self.controller.tick(due);
+            let demand = self.controller.tick(at);
             self.apply(demand);
-            self.next_tick = Some(due + period.max(Duration::from_micros(1)));
+            self.ticks += 1;
+            let period = period.max(Duration::from_micros(1));
+            let missed =
+                u32::try_from(at.saturating_sub(due).as_micros() / period.as_micros()).unwrap_or(u32::MAX);
+            let due = due.saturating_add(period.saturating_mul(missed.saturating_add(1)));
+            self.next_tick = Some((due, (due + self.bed.settings.late_loop.delay(self.ticks)).max(at)));
         }
+    }
+
+    /// By how many whole counts the controller is wrong about where the worse shaft is.
+    fn lost_counts(&self) -> u32 {
+        let told = self.controller.position();
+        let [x, y] = &self.axes;
+        x.counts_from(told.x).max(y.counts_from(told.y))
     }
 
     fn moment(&self, moved: &Move, is_under_way: bool) -> Moment {

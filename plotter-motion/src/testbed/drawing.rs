@@ -1,7 +1,10 @@
 //! [`Drawing`]: what is drawn on the test bed.
 
 use super::TestBed;
-use crate::{OutOfReach, Pen, PenMove, PlotOp, Point, targets};
+use crate::{
+    Pen, PenMove, PlotOp, Point,
+    toolpath::{OutOfReach, targets},
+};
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;

@@ -154,7 +154,7 @@ pub struct Score {
 impl Score {
     /// Lets an entry make all drawings.
     #[must_use]
-    pub fn of(entry: &Entry, bed: &TestBed, drawings: &[Drawing]) -> Self {
+    pub fn run(entry: &Entry, bed: &TestBed, drawings: &[Drawing]) -> Self {
         let run = |drawing: &Drawing| (drawing.name.clone(), entry.run(bed, drawing, |_| ()));
         Self { entry: entry.name().into(), drawings: drawings.iter().map(run).collect() }
     }
@@ -204,8 +204,8 @@ impl Ranking {
 
     /// Lets all entries make all drawings on one machine, and ranks them.
     #[must_use]
-    pub fn of(entries: &[Entry], bed: &TestBed, drawings: &[Drawing]) -> Self {
-        Self::new(entries.iter().map(|entry| Score::of(entry, bed, drawings)).collect())
+    pub fn run(entries: &[Entry], bed: &TestBed, drawings: &[Drawing]) -> Self {
+        Self::new(entries.iter().map(|entry| Score::run(entry, bed, drawings)).collect())
     }
 
     /// The scores, best first.

@@ -22,6 +22,8 @@ pub struct Figures {
     pub targets: u32,
     /// Targets that the controller reached within the limit.
     pub reached: u32,
+    /// By how many whole counts the controller's place of an axis was off in the end, of the worse axis.
+    pub lost_counts: u32,
 }
 
 impl Figures {
@@ -60,8 +62,8 @@ impl Figures {
 }
 
 impl core::iter::Sum for Figures {
-    /// Several runs as one: the distances of all of them together, times and energies added. They have settled if each of
-    /// them has.
+    /// Several runs as one: the distances of all of them together, times and energies added, the most lost counts. They have
+    /// settled if each of them has.
     fn sum<I: Iterator<Item = Self>>(runs: I) -> Self {
         let none = Self { settled: Some(Duration::ZERO), ..Self::default() };
         runs.fold(none, |sum, run| Self {
@@ -73,6 +75,7 @@ impl core::iter::Sum for Figures {
             energy_j: sum.energy_j + run.energy_j,
             targets: sum.targets + run.targets,
             reached: sum.reached + run.reached,
+            lost_counts: sum.lost_counts.max(run.lost_counts),
         })
     }
 }

@@ -18,7 +18,7 @@ use crate::{ConfigError, Machine};
 /// acceleration, R J / Kt, comes out at 0.63 of the right one for x and at 1.56 for y. Encoders, gears and supplies are known.
 ///
 /// ```
-/// # use plotter_motion::{testbed::misjudged, Machine, MachineConfig};
+/// # use plotter_motion::{Machine, MachineConfig, testbed::misjudged};
 /// let described = misjudged(&Machine::new(MachineConfig::default())?, 0.25)?;
 /// let config = described.config();
 /// assert!((config.x.motor.torque_n_m_per_a / 13.4e-3 - 1.2).abs() < 1e-12);

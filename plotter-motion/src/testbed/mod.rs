@@ -21,7 +21,7 @@
 //! let bed = TestBed::new(&Machine::new(MachineConfig::default())?, TestBedSettings::default())?;
 //! let mut entries = Entry::standard();
 //! entries.retain(|entry| ["published", "feed-forward"].contains(&entry.name()));
-//! let ranking = Ranking::of(&entries, &bed, &[Drawing::line(&bed, 30.0, 60.0)]);
+//! let ranking = Ranking::run(&entries, &bed, &[Drawing::line(&bed, 30.0, 60.0)]);
 //! assert_eq!(ranking.place("feed-forward"), Some(1));
 //! assert_eq!(ranking.scores()[0].finished(), 1);
 //! # Ok::<(), plotter_motion::ConfigError>(())
@@ -33,6 +33,7 @@ mod drawing;
 #[cfg(feature = "alloc")]
 mod entry;
 mod figures;
+mod late_loop;
 mod misjudged;
 
 pub use bed::{Moment, TestBed, TestBedSettings};
@@ -41,4 +42,5 @@ pub use drawing::Drawing;
 #[cfg(feature = "alloc")]
 pub use entry::{Entry, Ranking, Score};
 pub use figures::Figures;
+pub use late_loop::LateLoop;
 pub use misjudged::misjudged;

@@ -2,7 +2,7 @@
 #![cfg(feature = "toml")]
 
 use insta::assert_snapshot;
-use plotter_motion::{Machine, TomlError};
+use plotter_motion::{Machine, config::TomlError};
 
 /// The refusal of a file with `schema = 1` in line 1 and `rest` below.
 fn message(rest: &str) -> String {

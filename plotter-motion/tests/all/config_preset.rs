@@ -1,7 +1,7 @@
 //! The presets of the documented machines against the values in code.
 #![cfg(feature = "toml")]
 
-use plotter_motion::{Machine, MachineConfig, MachineName};
+use plotter_motion::{Machine, MachineConfig, config::MachineName};
 use std::{fs, path::Path};
 
 /// What a preset must be.
@@ -17,7 +17,7 @@ struct Preset {
 const GANTRY: Preset = Preset {
     file: "semi-virtual-gantry.toml",
     config: MachineConfig::default,
-    keys: (39, 19),
+    keys: (39, 20),
     repeats: "[y]",
 };
 const STEPPER_PLOTTER: Preset = Preset {

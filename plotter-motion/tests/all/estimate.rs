@@ -3,7 +3,9 @@
 use crate::{auditor, drawings, real_files};
 use core::time::Duration;
 use plotter_motion::{
-    Action, Estimator, PathMode, Pen, PlannerSettings, PlotOp, PlotTime, Point, StepGenSettings, gcode, hpgl,
+    PathMode, Pen, PlannerSettings, PlotOp, Point, gcode, hpgl,
+    planner::Action,
+    stepgen::{Estimator, PlotTime, StepGenSettings},
 };
 use proptest::prelude::*;
 use std::time::Instant;

@@ -2,8 +2,8 @@
 //! Taylor series, scaled and squared).
 
 use nalgebra::{SMatrix, SVector};
+use plotter_motion::config::{AxisConfig, LoadConfig, MotorConfig, TransmissionConfig};
 use plotter_motion::plant::{BeltDrive, BeltDriveState, DcMotor, DcMotorState};
-use plotter_motion::{AxisConfig, LoadConfig, MotorConfig, TransmissionConfig};
 use proptest::prelude::*;
 
 /// Share of the greatest value that each state takes for the given inputs: rounding of some ten products.

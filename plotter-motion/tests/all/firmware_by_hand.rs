@@ -9,7 +9,11 @@ use plotter_motion::firmware::stepper_plotter::{
     Activity, Dialect, Drivers, Grbl, Host, SpindlePen, StepperPlotterSettings,
 };
 use plotter_motion::kinematics::Backlash;
-use plotter_motion::{ExactOnly, ExactPen, LimitSwitches, Modes, Point, SafetyGate, StepPoint, from_mm};
+use plotter_motion::{
+    LimitSwitches, Point, SafetyGate, StepPoint,
+    planner::{ExactOnly, ExactPen, Modes},
+    toolpath::from_mm,
+};
 use stepper_bench::Bench;
 
 const STEPS_PER_MM: f64 = 87.58;
@@ -463,6 +467,10 @@ fn a_small_controller_makes_the_steps_of_a_great_one() {
     for hold_after in [0, 500, 1_700, 3_000] {
         let small = steps_of::<Grbl<SpindlePen>, ExactPen>(text, hold_after);
         assert!(small.len() > 5_000, "{}", small.len());
-        assert_eq!(small, steps_of::<Grbl, plotter_motion::AllModes>(text, hold_after), "{hold_after}");
+        assert_eq!(
+            small,
+            steps_of::<Grbl, plotter_motion::planner::AllModes>(text, hold_after),
+            "{hold_after}"
+        );
     }
 }

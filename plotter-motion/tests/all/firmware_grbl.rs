@@ -3,8 +3,12 @@
 use crate::stepper_bench;
 
 use core::time::Duration;
-use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings, StoredSettings};
-use plotter_motion::{Axis, Direction, Point, StepPoint};
+use plotter_motion::firmware::StepperPlotter;
+use plotter_motion::firmware::stepper_plotter::{
+    Dialect, Grbl, SpindlePen, StartupLines, StepperPlotterSettings, StoredSettings,
+};
+use plotter_motion::gcode::PenConvention;
+use plotter_motion::{Axis, Direction, LimitSwitches, Point, SafetyGate, StepPoint, planner::ExactPen};
 use stepper_bench::Bench;
 
 fn settings() -> StepperPlotterSettings {
@@ -357,4 +361,112 @@ fn a_line_with_a_broken_byte_is_refused_and_the_next_one_is_drawn() {
     > G1 X4 F600\n
     < ok
     ");
+}
+
+/// What a firmware has kept is carried out at each start, as `$N` tells it.
+#[test]
+fn startup_lines_are_carried_out_once_the_machine_may_move() {
+    let lines = StartupLines::new(["G1X2F6000", "G55"]).unwrap();
+    let mut bench = Bench::new(settings());
+    bench.plotter.set_startup_lines(&lines);
+    let hello = "\r\nGrbl 1.1h ['$' for help]\r\n>G1X2F6000:ok\r\n>G55:ok\r\n";
+    assert_eq!(bench.ask(""), hello);
+    assert_eq!(bench.plotter.position(), StepPoint::new(175, 0), "2 mm of 87.58 steps");
+    assert_eq!(bench.ask("\x18"), hello);
+    assert_eq!(bench.plotter.startup_lines(), lines);
+    bench.plotter.restart(bench.now);
+    assert_eq!(bench.ask(""), hello, "the port has been opened anew");
+
+    // One that homes: not before it has, and then before `$H` is answered.
+    let mut bench = Bench::new(StepperPlotterSettings { homing: true, ..settings() });
+    bench.plotter.set_startup_lines(&lines);
+    assert_eq!(bench.ask(""), "\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n");
+    assert_eq!(
+        bench.ask("$H\n$G\n"),
+        ">G1X2F6000:ok\r\n>G55:ok\r\nok\r\n[GC:G1 G55 G17 G21 G90 G94 M5 M9 T0 F6000 S0]\r\nok\r\n"
+    );
+    // Locked, it looks at a line and does not move.
+    let mut bench = Bench::new(StepperPlotterSettings { homing: true, ..settings() });
+    let _ = bench.ask("");
+    let asked = bench.ask("$N0=G0X5\n$N1=G99\n$N\n$X\n$G\n");
+    assert_eq!(
+        asked,
+        "ok\r\nerror:20\r\n$N0=G0X5\r\n$N1=\r\nok\r\n[MSG:Caution: Unlocked]\r\nok\r\n\
+         [GC:G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0]\r\nok\r\n"
+    );
+    assert_eq!(bench.plotter.position(), StepPoint::new(0, 0));
+
+    // What leads out of the area is an alarm, and the next line is not carried out.
+    let mut bench = Bench::new(settings());
+    bench.plotter.set_startup_lines(&StartupLines::new(["G0X999", "G0X5"]).unwrap());
+    assert_eq!(bench.ask(""), "\r\nGrbl 1.1h ['$' for help]\r\nALARM:2\r\n>G0X999:error:33\r\n");
+    assert_eq!(bench.ask("G0X1\n"), "error:9\r\n");
+    assert_eq!(bench.plotter.position(), StepPoint::new(0, 0));
+}
+
+#[test]
+fn settings_are_restored_on_both_sides_and_the_place_stays() {
+    let mut bench = bench();
+    assert_eq!(bench.ask("G0 X10\n"), "ok\r\n");
+    for line in ["$100=100\n", "$130=50\n", "$22=1\n", "$27=3\n", "$120=77\n"] {
+        assert_eq!(bench.ask(line), "ok\r\n", "{line}");
+    }
+    assert_ne!(bench.plotter.settings(), settings());
+    let steps = bench.plotter.position();
+    assert_eq!(bench.ask("$RST=$\n"), "[MSG:Restoring defaults]\r\nok\r\n\r\nGrbl 1.1h ['$' for help]\r\n");
+    assert_eq!(bench.plotter.settings(), settings());
+    assert_eq!(bench.plotter.position(), steps);
+    assert_eq!(bench.ask("G0 X100\n"), "ok\r\n", "the area is the old one");
+    assert_eq!(bench.plotter.position(), StepPoint::new(8758, 0), "and so are the steps to the millimetre");
+}
+
+/// Seen from above an arc that stands on the sheet is a line to its end; a tool's length is added to a
+/// height.
+#[test]
+fn arcs_that_stand_on_the_sheet_are_lines_there_and_a_length_is_added_to_a_height() {
+    let pen = PenConvention::Height { threshold_mm: 0.0 };
+    let mut bench = Bench::new(StepperPlotterSettings { pen, ..settings() });
+    let _ = bench.ask("");
+    let down = bench.plotter.settings().stored.pen_down_deg;
+    let drawn = |bench: &mut Bench, lines: &[&str]| {
+        bench.made.clear();
+        for line in lines {
+            assert_eq!(bench.ask(&format!("{line}\n")), "ok\r\n", "{line}");
+        }
+        let marks: Vec<_> = bench.made.iter().filter(|made| made.pen_deg == down).collect();
+        (marks.len(), bench.plotter.position())
+    };
+    // Down into the sheet in the air, then 8 mm on it, and up again.
+    let eased =
+        drawn(&mut bench, &["G0 Z5", "G18 G2 X5 Z0 I5 K0 F6000", "G1 X13", "G3 X18 Z5 I0 K5", "G17 G0 X20"]);
+    assert_eq!(eased, (1139 - 438, StepPoint::new(1752, 0)), "from 5 to 13 mm");
+    // A pen that is one millimetre longer does not reach the sheet at 0, but at -1.
+    let longer = drawn(&mut bench, &["G0 X0 Z5", "G43.1 Z1", "G1 Z0 F6000", "G1 X10", "G0 Z5"]);
+    assert_eq!(longer.0, 0);
+    let reached = drawn(&mut bench, &["G1 Z-1", "G1 X0", "G0 Z5", "G49"]);
+    assert_eq!(reached, (876, StepPoint::new(0, 0)));
+    let without = drawn(&mut bench, &["G1 Z0", "G1 X10", "G0 Z5"]);
+    assert_eq!(without.0, 876);
+}
+
+/// A small program leaves them out, and says so by the number of what is not there.
+#[test]
+fn a_small_grbl_names_what_it_leaves_out() {
+    let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
+    let mut small = StepperPlotter::<Grbl<SpindlePen>, ExactPen>::with_modes(settings(), gate).unwrap();
+    let mut said = String::new();
+    for line in ["$I", "G18", "G43.1 Z1", "G49", "$N0=G55", "$N0=", "$N", "$RST=$", "$RST=*", "$RST=#"] {
+        for byte in line.bytes().chain([b'\n']) {
+            small.receive(Duration::ZERO, byte);
+            while let Some(byte) = small.transmit(Duration::ZERO) {
+                said.push(byte.into());
+            }
+        }
+    }
+    let said: Vec<_> = said.lines().filter(|line| !line.is_empty()).collect();
+    assert_eq!(
+        said.join("|"),
+        "Grbl 1.1h ['$' for help]|[VER:1.1h.20190830:plotter-motion]|[OPT:VZT*$IEW,15,128]|ok|error:20|error:20|ok|error:3|ok|\
+         $N0=|$N1=|ok|error:3|error:3|[MSG:Restoring defaults]|ok|Grbl 1.1h ['$' for help]"
+    );
 }

@@ -239,7 +239,8 @@ fn each_coordinate_system_has_its_origin_and_g92_counts_in_all() {
 fn what_follows_a_spline_begins_where_it_ends() {
     assert_eq!(
         ops("M3\nG1 X1\nG5.2 X5 Y5 P1 L3\nG1 Y9").replace("> ", ">\n"),
-        "D1,0 U5,5 <line 3, column 1 (byte 9): G5.2 (spline) is not supported and is left out>\nD5,9"
+        "D1,0 <line 3, column 1 (byte 9): the curve of G5.2 needs a G5.3 behind its last point: what of it has not been drawn by \
+         then is left out>\nU5,5 D5,9"
     );
 }
 

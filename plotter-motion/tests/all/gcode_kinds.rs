@@ -174,6 +174,117 @@ fn splines_are_curves() {
     );
 }
 
+/// `G5.2` takes a control point a line, weights them by `P`, and is drawn as far as they are known.
+#[test]
+fn a_nurbs_curve_is_drawn_from_its_control_points() {
+    let places = |text: &str| -> Vec<(f64, f64)> {
+        let ops: Vec<_> = plot_ops(text.as_bytes()).collect::<Result<_, _>>().unwrap();
+        let drawn = ops.iter().filter(|op| matches!(op, PlotOp::Draw { .. }));
+        drawn.filter_map(|op| op.target()).map(|to| (to.x, to.y)).collect()
+    };
+    let weight = std::f64::consts::FRAC_1_SQRT_2;
+    // A quarter of a circle of 10 mm, as places, as ways in inches, and scaled to half.
+    for (text, radius) in [
+        (format!("G0 X10\nM3\nG5.2 P1 L3\nX10 Y10 P{weight}\nX0 Y10\nG5.3\nM5"), 10.0),
+        (format!("G20\nG0 X1\nM3\nG91\nG5.2 X0 Y1 P{weight} L2\nX-1 Y1\nG5.3\nM5"), 25.4),
+        (format!("G0 X10\nG51 X0 Y0 P0.5\nM3\nG5.2 X20 Y20 P{weight}\nX0 Y20\nG5.3\nG50\nM5"), 10.0),
+    ] {
+        let places = places(&text);
+        assert!(places.len() > 10 && places.len() < 80, "{text}: {}", places.len());
+        for (x, y) in &places {
+            assert!((x.hypot(*y) - radius).abs() < 1e-9, "{text}: {x} {y}");
+        }
+        assert!(places.last().is_some_and(|end| (end.0.hypot(end.1 - radius)) < 1e-9), "{text}");
+    }
+    // Of many points most are drawn before the last one comes; coordinates alone are none afterwards.
+    let many: String = (1..200).map(|at| format!("X{at} Y{}\n", at % 2)).collect();
+    let text = format!("M3\nG5.2 L4\n{many}G5.3\nX300\nM5");
+    assert_eq!(places(&text.replace("X300\n", "")).last(), Some(&(199.0, 1.0)));
+    assert!(
+        drawn(&text)
+            .ends_with(" 199,1 <203: coordinates that no command asks for: put G0 or G1 before them>"),
+        "{text}"
+    );
+    draw(&[
+        (
+            "M3\nG1 X1\nG5.2 X5 Y5\nG5.3\nG1 X7 Y5\nM5",
+            "[0 0] 1,0 <4: G5.2 needs as many control points, with its beginning, as its order L says, 3 without L> [5 5] 7,5",
+        ),
+        (
+            "M3\nG5.2 X5 Y5\nX6 Y6\nG1 X9 Y9\nM5",
+            "<2: the curve of G5.2 needs a G5.3 behind its last point: what of it has not been drawn by then is left out> [6 6] 9,9",
+        ),
+        (
+            "M3\nG1 X1\nG5.2 X5 Y5",
+            "[0 0] 1,0 <3: the curve of G5.2 needs a G5.3 behind its last point: what of it has not been drawn by then is left out>",
+        ),
+        ("M3\nG1 X1\nG5.3\nM5", "[0 0] 1,0 <3: G5.3 needs the curve of a G5.2 before it>"),
+        (
+            "M3\nG1 X1\nG5.2 X5 Y5 P0\nM5",
+            "[0 0] 1,0 <3: P0 is wrong: the weight of a control point is above 0>",
+        ),
+        ("M3\nG1 X1\nG5.2 X5 Y5 L7\nM5", "[0 0] 1,0 <3: L7 is wrong: the order of a curve is at most 6>"),
+        ("M3\nG1 X1\nG5.2 X5\nM5", "[0 0] 1,0 <3: G5.2 is wrong: a control point of G5.2 has both X and Y>"),
+    ]);
+}
+
+/// Where both axes are scaled by other factors an arc is part of an ellipse, and drawn as one.
+#[test]
+fn arcs_that_are_scaled_unequally_are_parts_of_ellipses() {
+    for (text, turned) in [
+        ("G0 X20\nM3\nG51 X0 Y0 I2 J0.5\nG2 I-10\nG50\nM5", false),
+        ("G0 X20\nM3\nG51 X0 Y0 I-2 J0.5\nG3 I10\nG50\nM5", false),
+        ("G0 Y20\nM3\nG51 X0 Y0 I2 J0.5\nG68 X0 Y0 R90\nG3 I-10\nG69 G50\nM5", true),
+    ] {
+        let ops: Vec<_> = plot_ops(text.as_bytes()).collect::<Result<_, _>>().unwrap();
+        let draws: Vec<_> = ops.iter().filter(|op| matches!(op, PlotOp::Draw { .. })).collect();
+        assert!(draws.len() > 50 && draws.len() < 200, "{text}: {}", draws.len());
+        let places: Vec<_> = draws.iter().filter_map(|op| op.target()).collect();
+        let share =
+            |x: f64, y: f64| if turned { (y / 20.0).hypot(x / 5.0) } else { (x / 20.0).hypot(y / 5.0) };
+        for pair in places.windows(2) {
+            assert!((share(pair[0].x, pair[0].y) - 1.0).abs() < 1e-9, "{text}: {:?}", pair[0]);
+            // Half way a chord is no farther inside than 0.01 mm, which is most of 5 mm.
+            let half = share((pair[0].x + pair[1].x) / 2.0, (pair[0].y + pair[1].y) / 2.0);
+            assert!(half < 1.0 && half > 1.0 - 0.01 / 5.0, "{text}: {half}");
+        }
+    }
+    draw(&[
+        ("M3\nG51 X0 Y0 I2 J3\nG1 X1 Y1\nG50\nG1 X10 Y0\nM5", "[0 0] 2,3 10,0"),
+        (
+            "M3\nG1 X1\nG51 I0 J1\nG1 X2\nM5",
+            "[0 0] 1,0 <3: I0 is wrong: an axis is scaled by a number from 0.000001 to 1000000, or by its negative> 2,0",
+        ),
+    ]);
+}
+
+/// What a formula comes to is told as a number, where it stands, however great it is.
+#[test]
+fn great_values_of_formulas_are_told_with_their_numbers_and_places() {
+    for (text, told) in [
+        (
+            "G1 X[2 + 10 ** 999]",
+            "line 1, column 13 (byte 12): `10 ** 999` is no number, or one beyond 1.8e308",
+        ),
+        ("#1 = [1e0]", "line 1, column 8 (byte 7): "),
+        ("G1 X[10 ** 300]", "line 1, column 5 (byte 4): X with 1e300: numbers reach from -1000000000"),
+        ("G1 X[-2000000000]", "line 1, column 5 (byte 4): X with -2000000000: numbers reach"),
+        ("#2 = EXP[1000]", "line 1, column 9 (byte 8): EXP of 1000 is a number beyond 1.8e308"),
+        ("G1 X[SQRT[0 - 10 ** 200]]", "line 1, column 10 (byte 9): SQRT of -1e200 is no number"),
+        ("G1 X[[0 - 8] ** 0.5]", "line 1, column 14 (byte 13): `-8 ** 0.5` is no number"),
+        ("G1 X[1 / [1 - 1]]", "line 1, column 8 (byte 7): a division by 0"),
+    ] {
+        let error = plot_ops(text.as_bytes()).find_map(Result::err).map(|error| error.to_string());
+        assert!(error.as_ref().is_some_and(|error| error.starts_with(told)), "{text}: {error:?}");
+    }
+    let long = format!("G1 X[1{}]", "0".repeat(400));
+    let error = plot_ops(long.as_bytes()).find_map(Result::err).unwrap().to_string();
+    assert!(
+        error.starts_with("line 1, column ") && error.contains("100000000000000000… lies beyond 1.8e308"),
+        "{error}"
+    );
+}
+
 #[test]
 fn coordinates_are_scaled_turned_and_polar() {
     draw(&[
@@ -287,7 +398,7 @@ fn calls_of_what_is_not_there_cost_no_more_than_others() {
 fn a_person_says_which_lines_move_the_pen() {
     let words = |up: &[&str], down: &[&str], text: &str| {
         let words = PenWords::new(up.iter().copied(), down.iter().copied()).unwrap();
-        let options = Detection::of(text.bytes()).options();
+        let options = Detection::from_bytes(text.bytes()).options();
         strokes(PlotOps::with_options(text.bytes(), options).with_pen_words(words).collect())
     };
     let klipper = "START_PLOT PEN=1\nG28\nG21\nG90\nPEN_UP\nG1 X10 Y10 F6000\nPEN_DOWN\nG1 X40 Y10 F3000\npen_up\nG1 X10 Y20\n\

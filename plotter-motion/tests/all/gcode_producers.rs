@@ -34,7 +34,7 @@ fn read(text: &str) -> (PenConvention, String) {
         }
         at = place;
     }
-    (Detection::of(text.bytes()).pen(), strokes)
+    (Detection::from_bytes(text.bytes()).pen(), strokes)
 }
 
 fn is_read_as(text: &str, pen: PenConvention, strokes: &str) {
@@ -90,7 +90,7 @@ fn juicy_gcode() {
     let text = "G17\nG90\nG0 Z10\nG0 X0 Y0\nM3\nG4 P2000.000000\nG00 X5.00000000 Y5.00000000\nG01 Z0 F10.00\n\
         G01 X10.00000000 Y5.00000000\nG03 X5.00000000 Y10.00000000 I-5.00000000 J0.00000000\nG00 Z1\nG0 Z10\nM5\nM2\n";
     is_read_as(text, PenConvention::Height { threshold_mm: 0.0 }, "[5 5]-10 5~5 10");
-    assert_eq!(Detection::of(text.bytes()).options().dwell_unit, DwellUnit::Milliseconds);
+    assert_eq!(Detection::from_bytes(text.bytes()).options().dwell_unit, DwellUnit::Milliseconds);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::real_files::{all, other, ours};
 use plotter_motion::gcode::{Detection, DwellUnit, Error, PenConvention, plot_ops};
-use plotter_motion::{PlotOp, Point, Segment, chords};
+use plotter_motion::{PlotOp, Point, Segment, toolpath::chords};
 use std::path::PathBuf;
 use std::{fs, io};
 
@@ -26,7 +26,7 @@ fn every_real_file_is_read_without_an_error() -> io::Result<()> {
         println!(
             "{}: {:?}: {} travels, {} lines, {} arcs, {} dwells, reports {:#?}",
             file.display(),
-            Detection::of(text.iter().copied()).options().pen,
+            Detection::from_bytes(text.iter().copied()).options().pen,
             count(|op| matches!(op, PlotOp::Travel { .. })),
             count(|op| matches!(op, PlotOp::Draw { .. })),
             count(|op| matches!(op, PlotOp::DrawArc { .. })),
@@ -49,7 +49,7 @@ fn a_unicorns_drawing_has_all_its_strokes() -> io::Result<()> {
 
 /// `line` and `byte` are where it waits after its test of the pen.
 fn has_all_its_strokes(text: &[u8], line: usize, byte: usize) {
-    let options = Detection::of(text.iter().copied()).options();
+    let options = Detection::from_bytes(text.iter().copied()).options();
     assert_eq!((options.pen, options.dwell_unit), (PenConvention::UNICORN, DwellUnit::Milliseconds));
     let (ops, reports) = split(text);
     // The pause after the test of the pen is not made; nothing else is missing.

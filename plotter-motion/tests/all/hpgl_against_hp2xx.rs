@@ -17,7 +17,7 @@
 
 use crate::real_files::{all, name_of};
 use plotter_motion::hpgl::{Coordinates, Event, Reader, UNITS_PER_MM, WriteOptions, Writer, plot_ops};
-use plotter_motion::{PlotOp, Point, Segment, chords};
+use plotter_motion::{PlotOp, Point, Segment, toolpath::chords};
 use std::collections::HashMap;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

@@ -133,17 +133,17 @@ fn a_step_is_as_long_as_it_is_said_to_be() {
         let last = PlotOps::with_options(*b"M0,0;D100,0", options).flatten().last();
         last.and_then(PlotOp::target).unwrap().x
     };
-    assert_eq!(far(ReadOptions::of(Dialect::CammGl)), 2.5);
-    assert_eq!(far(ReadOptions::of(Dialect::GpGl)), 10.0);
-    assert_eq!(far(ReadOptions::of(Dialect::Silhouette)), 5.0);
-    let mut coarse = ReadOptions::of(Dialect::CammGl);
+    assert_eq!(far(ReadOptions::for_dialect(Dialect::CammGl)), 2.5);
+    assert_eq!(far(ReadOptions::for_dialect(Dialect::GpGl)), 10.0);
+    assert_eq!(far(ReadOptions::for_dialect(Dialect::Silhouette)), 5.0);
+    let mut coarse = ReadOptions::for_dialect(Dialect::CammGl);
     coarse.step_mm = 0.01;
     assert_eq!(far(coarse), 1.0);
 }
 
 #[test]
 fn the_language_is_told_by_what_a_text_begins_with() {
-    let told = |text: &[u8]| Dialect::of(text).map(|(dialect, _)| dialect);
+    let told = |text: &[u8]| Dialect::detect(text).map(|(dialect, _)| dialect);
     for (text, expected) in [
         (&b"H\nM100,100\nD200,200\n"[..], Some(Dialect::CammGl)),
         (b"J1\r\nM100,100\r\nI200,200,300,300\r\n", Some(Dialect::CammGl)),
@@ -194,7 +194,7 @@ proptest! {
             // At most a curve's lines, or a circle's chords, for each byte.
             prop_assert!(outcomes <= 4100 * (text.len() + 1));
         }
-        let _ = Dialect::of(&text);
+        let _ = Dialect::detect(&text);
     }
 
     #[test]

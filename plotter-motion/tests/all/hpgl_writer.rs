@@ -1,7 +1,11 @@
 //! Written HPGL for people to look at.
 
+use crate::figure::Figure;
 use plotter_motion::hpgl::{Writer, plot_ops, write_ops};
-use plotter_motion::{PlotOp, Point, Vec2, circle, rectangle};
+use plotter_motion::{
+    PlotOp, Point, Vec2,
+    toolpath::{circle, rectangle},
+};
 
 #[test]
 fn a_small_sheet_reads_like_a_drawing() {
@@ -40,6 +44,8 @@ fn a_small_sheet_reads_like_a_drawing() {
     ");
 }
 
+static OFF: Figure = Figure::of("units off");
+
 /// No centre in whole units is as far from where the pen stands as from where it should end, and a single
 /// corner half way is 1.85 units off.
 #[test]
@@ -57,6 +63,7 @@ fn a_short_arc_of_a_large_circle_that_no_centre_fits_is_chords() {
         for place in [pair[1], pair[0] + (pair[1] - pair[0]) * 0.5] {
             // Half a unit for the chords, and the rounding of both directions.
             let off = (place.distance(centre) - to_centre.length()).abs() * 40.0;
+            OFF.note(off);
             assert!(off <= 1.21, "{off} units off\n{text}");
         }
     }

@@ -4,7 +4,7 @@ use core::time::Duration;
 use plotter_motion::firmware::Notice;
 use plotter_motion::protocol::HostNotice;
 use plotter_motion::protocol::digits::{self, Dropped};
-use plotter_motion::{Duty, MotionLimits, SCurve, StepPoint};
+use plotter_motion::{Duty, MotionLimits, StepPoint, profile::SCurve};
 
 #[test]
 fn messages_name_place_value_and_remedy() {

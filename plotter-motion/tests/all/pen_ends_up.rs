@@ -10,8 +10,9 @@ use plotter_motion::hpgl;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::protocol::{Link, LinkSettings, Message};
 use plotter_motion::{
-    Axis, LimitSwitches, Machine, MachineConfig, MotorEvent, PathMode, Pen, PenMove, Planner,
-    PlannerSettings, PlotOp, Point, SafetyGate, StepGen, StepGenSettings, StepPoint,
+    Axis, LimitSwitches, Machine, MachineConfig, PathMode, Pen, PenMove, Planner, PlannerSettings, PlotOp,
+    Point, SafetyGate, StepGen, StepPoint,
+    stepgen::{MotorEvent, StepGenSettings},
 };
 use stepper_bench::Bench;
 
@@ -30,8 +31,8 @@ fn done(settings: PlannerSettings, ops: &[PlotOp]) -> String {
         steps.push(action).unwrap();
         while let Some(event) = steps.next_event() {
             let letter = match event.event {
-                MotorEvent::Step { .. } if done.ends_with('-') => continue,
-                MotorEvent::Step { .. } => '-',
+                MotorEvent::Step(_) if done.ends_with('-') => continue,
+                MotorEvent::Step(_) => '-',
                 MotorEvent::Pen(Pen::Down) => 'd',
                 MotorEvent::Pen(Pen::Up) => 'u',
                 MotorEvent::SelectPen(_) => 'P',
@@ -157,7 +158,11 @@ fn a_drawing_that_rests_goes_on_with_its_pen_down_and_one_that_is_over_does_not(
         let actions = core::iter::from_fn(|| planner.next_action());
         let pens: Vec<Pen> = actions
             .filter_map(|action| {
-                if let plotter_motion::Action::Course(course) = action { Some(course.pen) } else { None }
+                if let plotter_motion::planner::Action::Course(course) = action {
+                    Some(course.pen)
+                } else {
+                    None
+                }
             })
             .collect();
         pens

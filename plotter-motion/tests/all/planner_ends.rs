@@ -1,6 +1,9 @@
 //! Lines end where and when they should, however long they last and whatever is done near their ends.
 
-use plotter_motion::{Action, Phase, Planner, PlannerSettings, PlotOp, Point};
+use plotter_motion::{
+    Planner, PlannerSettings, PlotOp, Point,
+    planner::{Action, Phase},
+};
 
 const ACCEL_MM_S2: f64 = 360.0;
 /// What rounding may add to a limit: some last bits of an `f32`.

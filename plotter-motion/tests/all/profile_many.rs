@@ -2,7 +2,10 @@
 //!
 //! `PROFILE_CASES` sets how many (200,000 by default, ten million in `.ci/run`).
 
-use plotter_motion::{MotionLimits, Ramp, SCurve, Trapezoid, TrapezoidMove};
+use plotter_motion::{
+    MotionLimits,
+    profile::{Ramp, SCurve, Trapezoid, TrapezoidMove},
+};
 
 /// How far a limit may be passed and a length or an end missed, as a share: rounding, and nothing else.
 const ROUNDING: f64 = 1e-9;

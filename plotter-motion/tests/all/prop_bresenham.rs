@@ -1,7 +1,10 @@
 //! Laws of the steps along a straight line.
 
+use crate::figure::Figure;
 use plotter_motion::{Bresenham, StepPoint};
 use proptest::prelude::*;
+
+static OFF: Figure = Figure::of("steps off");
 
 /// A position anywhere, and one near it or at one of the ends of the range.
 fn ends() -> impl Strategy<Value = (StepPoint, StepPoint)> {
@@ -38,6 +41,7 @@ proptest! {
         for point in Bresenham::new(from, to).points() {
             let (px, py) = (i128::from(point.x) - i128::from(from.x), i128::from(point.y) - i128::from(from.y));
             // |dx py - dy px| / major is the distance along the minor axis.
+            OFF.note((dx * py - dy * px).abs() as f64 / dx.abs().max(dy.abs()).max(1) as f64);
             prop_assert!(2 * (dx * py - dy * px).abs() <= dx.abs().max(dy.abs()));
         }
     }

@@ -1,6 +1,6 @@
 //! Laws of dividing an error.
 
-use plotter_motion::{Budget, BudgetError, BudgetLimits, BudgetPart};
+use plotter_motion::budget::{Budget, BudgetError, BudgetLimits, BudgetPart};
 use proptest::prelude::*;
 
 fn mm() -> impl Strategy<Value = f64> {

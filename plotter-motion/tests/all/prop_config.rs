@@ -1,7 +1,7 @@
 //! Laws of the machine's description.
 #![cfg(feature = "toml")]
 
-use plotter_motion::{ConfigError, Machine, MachineConfig, TomlError};
+use plotter_motion::{ConfigError, Machine, MachineConfig, config::TomlError};
 use proptest::prelude::*;
 
 /// A file with every kind of key and value, so that a mutation meets them all.
@@ -290,7 +290,7 @@ proptest! {
 
 #[test]
 fn pens_are_a_number_auto_or_a_palettes_file() {
-    use plotter_motion::{FileName, PensChoice};
+    use plotter_motion::config::{FileName, PensChoice};
     let pens = |value: &str| with("vectorize.pens", value).map(|machine| machine.config().vectorize.pens);
     assert_eq!(pens("3"), Ok(PensChoice::Count(3)));
     assert_eq!(pens("\"auto\""), Ok(PensChoice::Auto));

@@ -4,8 +4,9 @@ use core::time::Duration;
 use plotter_motion::control::{Contouring, LineController, LineTracking};
 use plotter_motion::plant::AxisPlant;
 use plotter_motion::{
-    Axis, AxisConfig, ControllerChoice, Decoding, Demand, Direction, Duty, LimitSwitches, Machine,
-    MachineConfig, Pid, PidState, SafetyGate, StepPoint,
+    Axis, Demand, Direction, Duty, LimitSwitches, Machine, MachineConfig, SafetyGate, StepPoint,
+    config::{AxisConfig, ControllerChoice, Decoding},
+    control::{Pid, PidState},
 };
 use proptest::prelude::*;
 

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 use core::time::Duration;
 use plotter_motion::drawing::{Affine, Drawing, Mark, PathSegment, Shape, Stroke};
-use plotter_motion::{PlotOp, Point, chords};
+use plotter_motion::{PlotOp, Point, toolpath::chords};
 use proptest::prelude::*;
 
 fn place() -> impl Strategy<Value = Point> {

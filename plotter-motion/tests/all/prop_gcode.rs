@@ -254,8 +254,8 @@ proptest! {
             [PlotOp::Travel { to: from }, PlotOp::Draw { to, feed_mm_s: None }]
         }).collect();
         let text = written(&ops, WriteOptions { pen, ..Default::default() }).unwrap();
-        prop_assert_eq!(Detection::of(text.bytes()).options().dwell_unit, DwellUnit::Seconds);
-        prop_assert_eq!(Detection::of(text.bytes()).pen(), read, "{}", text);
+        prop_assert_eq!(Detection::from_bytes(text.bytes()).options().dwell_unit, DwellUnit::Seconds);
+        prop_assert_eq!(Detection::from_bytes(text.bytes()).pen(), read, "{}", text);
         prop_assert_eq!(plot_ops(text.as_bytes()).filter(|op| matches!(op, Ok(PlotOp::Draw { .. }))).count(), strokes.len());
     }
 }
@@ -297,10 +297,12 @@ proptest! {
     #[test]
     fn no_text_does_harm(text in prop_oneof![likely_text(), proptest::collection::vec(any::<u8>(), 0..300)], read in any_options()) {
         let lines = text.iter().filter(|byte| matches!(byte, b'\n' | b'\r')).count() + 1;
-        for options in [read, Detection::of(text.iter().copied()).options()] {
+        for options in [read, Detection::from_bytes(text.iter().copied()).options()] {
             let ops: Vec<_> = PlotOps::with_options(text.iter().copied(), options).collect();
-            // A line gives ten operations at most, and the end a dot with its power.
-            prop_assert!(ops.len() <= 10 * lines + 2);
+            // A line gives ten operations at most, besides the thousand turns that the P of an arc may ask for, and the end a dot with its
+            // power.
+            let turns = 1000 * text.iter().filter(|byte| byte.eq_ignore_ascii_case(&b'P')).count();
+            prop_assert!(ops.len() <= 10 * lines + turns + 2);
             for op in &ops {
                 match op {
                     Ok(PlotOp::LaserPower { share }) => prop_assert!(*share > 0.0 && *share <= 1.0),

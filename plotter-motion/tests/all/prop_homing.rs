@@ -4,7 +4,8 @@ use crate::switches::stands_in_the_way;
 use core::time::Duration;
 use plotter_motion::plant::{StepperPlant, StepperSettings};
 use plotter_motion::{
-    Axis, Direction, Homed, Homing, HomingAxis, HomingError, HomingStatus, HomingStep, LimitSwitches,
+    Axis, Direction, LimitSwitches,
+    homing::{Homed, Homing, HomingAxis, HomingError, HomingStatus, HomingStep},
 };
 use proptest::prelude::*;
 

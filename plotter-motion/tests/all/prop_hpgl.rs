@@ -1,11 +1,14 @@
 //! Laws of HPGL: what is written is read back, whatever the layout; and no text, however broken, does harm.
 
+use crate::figure::Figure;
 use plotter_motion::hpgl::{
     Coordinates, Error, Event, Interpreter, Opening, PlotOps, Reader, WriteError, WriteOptions, Writer,
     plot_ops, write_ops,
 };
-use plotter_motion::{PlotOp, Point, Vec2, chords};
+use plotter_motion::{PlotOp, Point, Vec2, toolpath::chords};
 use proptest::prelude::*;
+
+static OFF: Figure = Figure::of("mm off");
 
 /// Half a plotter unit, mm, and the rounding of a coordinate near 1000 mm.
 const HALF_UNIT_MM: f64 = 0.0125 + 1e-12;
@@ -281,6 +284,9 @@ proptest! {
         let meant = with_frame(&ops);
         prop_assert_eq!(read.len(), meant.len());
         for (read, meant) in read.iter().zip(&meant) {
+            if let (Some(at), Some(to)) = (read.target(), meant.target()) {
+                OFF.note((at.x - to.x).abs().max((at.y - to.y).abs()));
+            }
             prop_assert!(near(read, meant, HALF_UNIT_MM, HALF_SPEED_STEP_MM_S), "{:?} for {:?}", read, meant);
         }
     }

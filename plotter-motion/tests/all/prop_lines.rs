@@ -471,6 +471,24 @@ proptest! {
     }
 }
 
+proptest! {
+    /// HPGL rounds places to 0.025 mm: up to 0.018 mm beside the circle, at the ends of its arcs as well.
+    #[test]
+    fn a_circle_rounded_to_units_is_two_arcs_at_most(x in 60.0..61.0_f64, y in 60.0..61.0_f64, radius in 2.0..30.0_f64, begin in 0.0..TAU, lines in 120..400_u16) {
+        let round = |mm: f64| (mm / 0.025).round() * 0.025;
+        let at = |line: u16| begin + TAU * f64::from(line % lines) / f64::from(lines);
+        let mut places: Vec<Point> =
+            (0..=lines).map(|line| p(round(x + radius * at(line).cos()), round(y + radius * at(line).sin()))).collect();
+        places.dedup();
+        let before = of([Stroke::through(places).unwrap()]);
+        let mut after = before.clone();
+        prop_assert!(after.fit_arcs(0.03) <= 2);
+        prop_assert!(after.strokes[0].segments.len() <= 2);
+        let (old, new) = (pieces(&before, 0), pieces(&after, 0));
+        prop_assert!(farthest_mm(&old, &new) <= 0.03 + ROUNDING_MM && farthest_mm(&new, &old) <= 0.03 + ROUNDING_MM);
+    }
+}
+
 #[test]
 fn circles_and_rounded_corners_are_arcs_and_corners_are_none() {
     let polygon = |sides: i32, radius: f64| {

@@ -6,9 +6,13 @@ use plotter_motion::control::ShaftEstimator;
 use plotter_motion::firmware::Gantry;
 use plotter_motion::protocol::digits::{self, Receiver, Reply};
 use plotter_motion::{
-    Axis, AxisConfig, ControllerChoice, Decoding, Demand, Direction, Duty, LimitSwitches, Machine,
-    MachineConfig, MotionLimits, Phases, Pid, PidState, QuadratureX1, QuadratureX4, SCurve, SafetyGate,
-    StepPoint, from_mm,
+    Axis, Demand, Direction, Duty, LimitSwitches, Machine, MachineConfig, MotionLimits, SafetyGate,
+    StepPoint,
+    config::{AxisConfig, ControllerChoice, Decoding},
+    control::{Pid, PidState},
+    encoder::{Phases, QuadratureX1, QuadratureX4},
+    profile::SCurve,
+    toolpath::from_mm,
 };
 use proptest::prelude::*;
 
@@ -211,7 +215,9 @@ proptest! {
                 let distance = estimator.distance_from(estimator.count());
                 prop_assert!((-0.76..=0.76).contains(&distance), "{distance}");
             }
-            prop_assert!(estimator.speed_counts_s().is_finite() && estimator.friction_counts_s2().is_finite());
+            let model = estimator.model();
+            prop_assert!(estimator.speed_counts_s().is_finite() && estimator.disturbance_counts_s2().is_finite());
+            prop_assert!(model.accel_per_volt > 0.0 && model.damping_per_s > 0.0 && model.dry_friction >= 0.0);
         }
     }
 

@@ -1,13 +1,19 @@
 //! Laws of planner and step generator over any tool path.
 
 use crate::felt;
+use crate::figure::Figure;
 use core::time::Duration;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::{
-    AccelLimit, Action, Course, MotorEvent, PathMode, Pen, Phase, PlanError, Planner, PlannerSettings,
-    PlotOp, Point, ProfilePoint, Shape, StepGen, StepGenSettings, StepPoint, Vec2, from_mm, junction_speed,
+    PathMode, Pen, Planner, PlannerSettings, PlotOp, Point, StepGen, StepPair, StepPoint, Vec2,
+    planner::{AccelLimit, Action, Course, Phase, PlanError, Shape, junction_speed},
+    profile::ProfilePoint,
+    stepgen::{MotorEvent, StepGenSettings},
+    toolpath::from_mm,
 };
 use proptest::prelude::*;
+
+static OF_LIMIT: Figure = Figure::of("of the limit");
 
 const STEPS_PER_MM: f64 = 80.0;
 /// What rounding may add to a limit.
@@ -313,6 +319,7 @@ fn check(settings: PlannerSettings, ops: &[PlotOp], touches: &[(usize, Touch)]) 
                         // The speeds at its ends are rounded too.
                         let rounding_mm_s2 = SPEED_SHARE * speed / duration_s;
                         let rounding = felt::share(along * rounding_mm_s2, &settings);
+                        OF_LIMIT.note((share - rounding).max(0.0));
                         prop_assert!(
                             share <= 1.0 + FELT + rounding,
                             "{share} of the limit: {phase:?} on {course:?} from {from:?}"
@@ -361,7 +368,7 @@ fn check(settings: PlannerSettings, ops: &[PlotOp], touches: &[(usize, Touch)]) 
         while let Some(event) = steps.next_event() {
             prop_assert!(event.tick >= tick, "time goes on");
             tick = event.tick;
-            if let MotorEvent::Step { x, y } = event.event {
+            if let MotorEvent::Step(StepPair { x, y }) = event.event {
                 motors = StepPoint::new(motors.x + i32::from(x), motors.y + i32::from(y));
             }
         }

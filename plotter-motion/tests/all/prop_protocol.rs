@@ -4,7 +4,9 @@ use core::time::Duration;
 use plotter_motion::protocol::digits::{GREATEST, Receiver};
 use plotter_motion::protocol::{Host, HostEvent, HostNotice, HostSettings, Wire};
 use plotter_motion::{
-    Machine, MachineConfig, Pen, PenMove, PlotOp, Point, SCurve, StepPoint, from_mm, targets,
+    Machine, MachineConfig, Pen, PenMove, PlotOp, Point, StepPoint,
+    profile::SCurve,
+    toolpath::{from_mm, targets},
 };
 use proptest::prelude::*;
 

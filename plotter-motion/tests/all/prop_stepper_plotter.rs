@@ -7,7 +7,7 @@ use core::time::Duration;
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::{Activity, Dialect, Drivers, StepperPlotterSettings};
 use plotter_motion::kinematics::Backlash;
-use plotter_motion::{Axis, Direction, LimitSwitches, SafetyGate, StepPoint, from_mm};
+use plotter_motion::{Axis, Direction, LimitSwitches, SafetyGate, StepPoint, toolpath::from_mm};
 use proptest::prelude::*;
 use std::collections::VecDeque;
 use stepper_bench::Bench;

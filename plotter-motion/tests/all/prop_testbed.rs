@@ -8,8 +8,8 @@ use plotter_motion::control::{
 };
 use plotter_motion::plant::{AxisPlant, DriveDelay};
 use plotter_motion::{
-    Axis, AxisConfig, Demand, Direction, Duty, LimitSwitches, LoadConfig, Machine, MachineConfig, SafetyGate,
-    StepPoint, TransmissionConfig,
+    Axis, Demand, Direction, Duty, LimitSwitches, Machine, MachineConfig, SafetyGate, StepPoint,
+    config::{AxisConfig, LoadConfig, TransmissionConfig},
 };
 use proptest::prelude::*;
 

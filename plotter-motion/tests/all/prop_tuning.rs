@@ -7,7 +7,11 @@ use plotter_motion::control::tuning::{
     Compensator, ExperimentSettings, IntegratingProcess, LoopMargins, RelayExperiment, SampledLoop, Simc,
     StepExperiment,
 };
-use plotter_motion::{Axis, AxisConfig, Decoding, Demand, EncoderConfig, LoadConfig, MotorConfig, Pid};
+use plotter_motion::{
+    Axis, Demand,
+    config::{AxisConfig, Decoding, EncoderConfig, LoadConfig, MotorConfig},
+    control::Pid,
+};
 use proptest::prelude::*;
 use tuning_bench::{Bench, margins, relay_experiment, step_experiment};
 
@@ -40,6 +44,7 @@ fn axis() -> impl Strategy<Value = AxisConfig> {
             motor: MotorConfig {
                 supply_v,
                 pwm_steps,
+                enable_pwm_hz: 0.0,
                 resistance_ohm: r,
                 inductance_h: electrical_s * r,
                 back_emf_v_s: k,
@@ -157,7 +162,7 @@ proptest! {
         let process = IntegratingProcess { gain_counts_s, time_constant_s, second_time_constant_s, dead_time_s };
         let [kp, ki, kd, derivative_filter_s] = gains;
         let pid = Pid { kp, ki, kd, derivative_filter_s, output_min: -1.0, output_max: 1.0 };
-        let reached = LoopMargins::of(&SampledLoop { process, compensator: Compensator::Pid(pid), tick_s });
+        let reached = LoopMargins::from_loop(&SampledLoop { process, compensator: Compensator::Pid(pid), tick_s });
         prop_assert!(!reached.stable || reached.gain_margin >= 1.0, "{reached:?}");
     }
 
@@ -173,7 +178,7 @@ proptest! {
         let factor = factor as f32;
         let pid = Pid { kp: pid.kp * factor, ki: pid.ki * factor, kd: pid.kd * factor, ..pid };
         let cut = SampledLoop { process, compensator: Compensator::Pid(pid), tick_s };
-        let reached = LoopMargins::of(&cut);
+        let reached = LoopMargins::from_loop(&cut);
         prop_assert!(!reached.gain_margin.is_nan() && !reached.max_sensitivity.is_nan() && reached.max_sensitivity >= 1.0 - 1e-9);
         if reached.stable {
             prop_assert!(reached.gain_margin > 1.0 && reached.gain_reduction < 1.0, "{reached:?}");

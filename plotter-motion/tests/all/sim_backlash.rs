@@ -5,7 +5,10 @@ use crate::drawings;
 
 use auditor::run;
 use plotter_motion::kinematics::Backlash;
-use plotter_motion::{BacklashSteps, MotorEvent, Pen, PlannerSettings, Point, StepGenSettings, TimedEvent};
+use plotter_motion::{
+    Pen, PlannerSettings, Point, StepPair,
+    stepgen::{BacklashSteps, MotorEvent, StepGenSettings, TimedEvent},
+};
 
 const STEPS_PER_MM: f64 = 100.0;
 /// 0.2 mm, as belts of a cheap plotter have.
@@ -38,7 +41,7 @@ fn drawn(take_up: bool) -> (f64, Point) {
     let mut drawing = false;
     let (x_play, y_play) = (i32::from(PLAY.x_steps), i32::from(PLAY.y_steps));
     let mut apply = |event: TimedEvent| match event.event {
-        MotorEvent::Step { x: dx, y: dy } => {
+        MotorEvent::Step(StepPair { x: dx, y: dy }) => {
             x.step(dx, x_play);
             y.step(dy, y_play);
             let place = Point::new(f64::from(x.at) / STEPS_PER_MM, f64::from(y.at) / STEPS_PER_MM);

@@ -7,7 +7,9 @@ use plotter_motion::firmware::Notice;
 use plotter_motion::plant::{Bench, BenchEvent, BenchSettings};
 use plotter_motion::protocol::digits::Dropped;
 use plotter_motion::protocol::{HostEvent, HostNotice};
-use plotter_motion::{Axis, ControllerChoice, Direction, Machine, MachineConfig, Pen, PenMove, StepPoint};
+use plotter_motion::{
+    Axis, Direction, Machine, MachineConfig, Pen, PenMove, StepPoint, config::ControllerChoice,
+};
 
 /// A square of 10 mm with one diagonal.
 fn square() -> Vec<PenMove> {

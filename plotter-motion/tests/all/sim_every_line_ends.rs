@@ -13,7 +13,10 @@ use crate::loaded_gantry;
 use closed_loop::Loop;
 use core::time::Duration;
 use loaded_gantry::{decoded, loaded_gantry};
-use plotter_motion::{AxisConfig, Decoding, Duty, MachineConfig, StepPoint};
+use plotter_motion::{
+    Duty, MachineConfig, StepPoint,
+    config::{AxisConfig, Decoding},
+};
 
 /// Numbers by chance, the same on every machine (xorshift64*).
 struct Chance(u64);

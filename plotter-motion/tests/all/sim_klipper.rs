@@ -6,6 +6,7 @@
 
 use crate::auditor;
 use crate::drawings;
+use crate::figure::Figure;
 use crate::papers::assert_in;
 
 use auditor::planned;
@@ -14,6 +15,8 @@ use plotter_motion::{PathMode, PlannerSettings, PlotOp, Point, Vec2};
 /// By how much the times may differ: the planner's corners are reckoned in single precision and rounded to
 /// the safe side.
 const ROUNDING_SHARE: f64 = 1e-5;
+
+static APART: Figure = Figure::of("millionths apart");
 
 /// Squares of speeds at the ends of a segment and on it make its time, s.
 fn segment_s(length_mm: f64, [entry2, exit2, cruise2]: [f64; 3], accel: f64) -> f64 {
@@ -86,6 +89,7 @@ fn the_exact_mode_takes_as_long_as_klippers_formulas() {
         let Some(klipper_s) = drawing_s(&drawing.ops, &settings) else { continue };
         let [(every_s, _), (ours_s, _)] = [every, settings].map(|of| planned::<1024>(of, &drawing.ops));
         println!("{}: {klipper_s:.4} {every_s:.4} {ours_s:.4}", drawing.name);
+        APART.note(1e6 * (every_s / klipper_s - 1.0).abs());
         assert!(
             (every_s / klipper_s - 1.0).abs() <= ROUNDING_SHARE,
             "{}: {every_s} {klipper_s}",

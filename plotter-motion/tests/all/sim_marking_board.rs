@@ -11,8 +11,8 @@ use plotter_motion::firmware::MarkingBoardSettings;
 use plotter_motion::kinematics::{BeltSigns, CoreXy};
 use plotter_motion::plant::{MarkingBoardPlant, MarkingBoardPlantSettings};
 use plotter_motion::{
-    Demand, Drive, Duty, LimitSwitches, Pen, PenMove, PlotOp, Point, SafetyGate, StepPoint, Vec2, circle,
-    rectangle,
+    Demand, Drive, Duty, LimitSwitches, Pen, PenMove, PlotOp, Point, SafetyGate, StepPoint, Vec2,
+    toolpath::{circle, rectangle},
 };
 
 /// Where the encoders' marks are when the board is switched on: in the middle, right at a mark, and odd ones.

@@ -13,8 +13,9 @@ use core::time::Duration;
 use drawings::Drawing;
 use plotter_motion::plant::{StepperPlant, StepperSettings};
 use plotter_motion::{
-    AccelLimit, Axis, Direction, Machine, MachineConfig, MotorEvent, PathMode, PlannerSettings,
-    StepGenSettings,
+    Axis, Direction, Machine, MachineConfig, PathMode, PlannerSettings, StepPair,
+    planner::AccelLimit,
+    stepgen::{MotorEvent, StepGenSettings},
 };
 
 /// A hundred times as fine as a motor, so that differences of places are accelerations and not roundings.
@@ -77,7 +78,7 @@ fn check(drawing: &Drawing, lens: Lens) {
         let most_s = TIME_SHARE * seen.planned_s + last_s(&settings, step_mm);
         assert!((seen.time_s - seen.planned_s).abs() <= most_s, "{what}");
         let end = drawing.ops.iter().rev().find_map(|op| op.target()).unwrap_or_default();
-        let steps = |mm: f64| plotter_motion::from_mm(mm, lens.steps_per_mm);
+        let steps = |mm: f64| plotter_motion::toolpath::from_mm(mm, lens.steps_per_mm);
         assert_eq!((seen.end.x, seen.end.y), (steps(end.x), steps(end.y)), "{what}");
     }
 }
@@ -198,7 +199,7 @@ fn whole_drawings_lose_no_step() {
                 &drawing.ops,
                 |_, _, _| {},
                 |tick, event| {
-                    let MotorEvent::Step { x, y } = event else { return };
+                    let MotorEvent::Step(StepPair { x, y }) = event else { return };
                     let at_s = tick as f64 / f64::from(clock.clock_hz);
                     for (axis, step) in [(Axis::X, x), (Axis::Y, y)] {
                         if step != 0 {

@@ -13,7 +13,7 @@ use crate::drawings;
 
 use auditor::planned;
 use drawings::Drawing;
-use plotter_motion::{Action, MotionLimits, PathMode, Planner, PlannerSettings, SCurve};
+use plotter_motion::{MotionLimits, PathMode, Planner, PlannerSettings, planner::Action, profile::SCurve};
 
 const JERK: f64 = 20_000.0;
 /// Cells of the acceleration, from -A to A.

@@ -3,7 +3,7 @@
 use crate::auditor::{Lens, audit, planned};
 use crate::drawings;
 use crate::short_chords::{CHORDS_MM, CURVES, Curve, Rule, rule_s, stroke};
-use plotter_motion::{ExactOnly, PathMode, Planner, PlannerSettings, PlotOp, Point};
+use plotter_motion::{PathMode, Planner, PlannerSettings, PlotOp, Point, planner::ExactOnly};
 
 /// By how much what is measured may exceed a limit.
 const MEASURED: f64 = 1.05;

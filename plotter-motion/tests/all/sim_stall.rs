@@ -4,7 +4,11 @@ use crate::closed_loop;
 
 use closed_loop::{Loop, SETTLED_MM, draw_line, machine};
 use core::time::Duration;
-use plotter_motion::{Axis, ControllerChoice, StepPoint, SyncStop, SyncStopConfig};
+use plotter_motion::{
+    Axis, StepPoint,
+    config::{ControllerChoice, SyncStopConfig},
+    control::SyncStop,
+};
 
 const HELD_FROM: Duration = Duration::from_millis(200);
 const HELD_UNTIL: Duration = Duration::from_millis(700);

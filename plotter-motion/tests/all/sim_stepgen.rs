@@ -5,7 +5,10 @@ use crate::auditor;
 use auditor::run;
 use core::cell::{Cell, RefCell};
 use plotter_motion::{
-    Action, MotorEvent, Phase, PlannerSettings, PlotOp, Point, StepGenSettings, StepPoint, from_mm,
+    PlannerSettings, PlotOp, Point, StepPair, StepPoint,
+    planner::{Action, Phase},
+    stepgen::{MotorEvent, StepGenSettings},
+    toolpath::from_mm,
 };
 
 const STEPS_PER_MM: f64 = 100.0;
@@ -40,7 +43,7 @@ fn line(settings: PlannerSettings, clock_hz: u32, to: Point) -> (f64, Vec<Steppe
             }
         },
         |tick, event| {
-            if matches!(event, MotorEvent::Step { .. })
+            if matches!(event, MotorEvent::Step(_))
                 && let Some(last) = phases.borrow_mut().last_mut()
             {
                 last.2.push(tick);
@@ -111,7 +114,7 @@ fn a_roll_of_ten_metres_is_stepped_to_the_last_step_and_in_time() {
                 }
             },
             |tick, event| {
-                if let MotorEvent::Step { x, y } = event {
+                if let MotorEvent::Step(StepPair { x, y }) = event {
                     at = StepPoint::new(at.x + i32::from(x), at.y + i32::from(y));
                     ticks.push(tick);
                 }
@@ -159,7 +162,7 @@ fn a_lasers_power_follows_its_speed_and_is_none_at_rest() {
                 power = now;
                 highest = highest.max(now);
             }
-            MotorEvent::Step { .. } => {
+            MotorEvent::Step(_) => {
                 let speed = 1e6 / STEPS_PER_MM / (tick - last) as f64;
                 last = tick;
                 if power > 0 {

@@ -2,7 +2,10 @@
 
 use core::time::Duration;
 use plotter_motion::plant::{StepperAxis, StepperPlant, StepperSettings};
-use plotter_motion::{Axis, Direction, Trapezoid, TrapezoidMove};
+use plotter_motion::{
+    Axis, Direction,
+    profile::{Trapezoid, TrapezoidMove},
+};
 
 /// Rest position of a rotor in friction, as a part of the holding torque: asin(0.04/0.28) of a quarter turn of the spring
 /// is 0.091 full steps, here 1.5 pulses; and the last swing leaves it anywhere within.

@@ -6,7 +6,10 @@ use crate::stepper_bench;
 use core::time::Duration;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use plotter_motion::plant::{StepperAxis, StepperSettings};
-use plotter_motion::{Direction, PlannerSettings, PlotOp, Point, StepPoint, circle, gcode, rectangle};
+use plotter_motion::{
+    Direction, PlannerSettings, PlotOp, Point, StepPoint, gcode,
+    toolpath::{circle, rectangle},
+};
 use proptest::prelude::*;
 use stepper_bench::{Bench, Made, distance_mm};
 

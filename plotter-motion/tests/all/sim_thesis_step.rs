@@ -1,8 +1,8 @@
 //! The thesis' claim for its motor under PID with Kp = 15, Kd = 10, Ki = 0.0001 (section 4.6.2): a unit step
 //! of the position has settled after 0.001 s.
 
+use plotter_motion::config::{LoadConfig, MotorConfig};
 use plotter_motion::plant::{DcMotor, DcMotorState};
-use plotter_motion::{LoadConfig, MotorConfig};
 
 #[test]
 fn the_linear_loop_of_the_thesis_settles_within_its_millisecond() {

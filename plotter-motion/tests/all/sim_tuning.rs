@@ -15,8 +15,12 @@ use plotter_motion::control::tuning::{
 };
 use plotter_motion::plant::{DcMotor, DcMotorState};
 use plotter_motion::{
-    AxisConfig, ControllerChoice, Decoding, EncoderConfig, LimitSwitches, LoadConfig, MachineConfig,
-    MotorConfig, Pid, PidState, PublishedConfig, StepPoint, SumPid, SumPidState, from_mm,
+    LimitSwitches, MachineConfig, StepPoint,
+    config::{
+        AxisConfig, ControllerChoice, Decoding, EncoderConfig, LoadConfig, MotorConfig, PublishedConfig,
+    },
+    control::{Pid, PidState, SumPid, SumPidState},
+    toolpath::from_mm,
 };
 use tuning_bench::{Bench, margins, relay_experiment, settings, step_experiment, step_response};
 
@@ -244,7 +248,7 @@ fn the_loop_of_the_thesis_needs_what_no_machine_has() {
     let at = |tick_s: f64| {
         #[expect(clippy::cast_possible_truncation, reason = "f32 gains")]
         let gains = SumPid { kp: 15.0, ki: (1e-4 * tick_s) as f32, kd: (10.0 / tick_s) as f32 };
-        LoopMargins::of(&SampledLoop {
+        LoopMargins::from_loop(&SampledLoop {
             process,
             compensator: Compensator::SumPid { gains, full_output: 1.0 / 2.4 },
             tick_s,
@@ -295,7 +299,11 @@ fn sum_form_gains_do_what_the_gains_in_time_do() {
     #[expect(clippy::cast_possible_truncation, reason = "f32 loop")]
     let sum = pid.sum_form(TICK_S as f32, 255.0);
     let reached = |compensator| {
-        LoopMargins::of(&SampledLoop { process: IntegratingProcess::of(&axis), compensator, tick_s: TICK_S })
+        LoopMargins::from_loop(&SampledLoop {
+            process: IntegratingProcess::of(&axis),
+            compensator,
+            tick_s: TICK_S,
+        })
     };
     let (a, b) =
         (reached(Compensator::Pid(pid)), reached(Compensator::SumPid { gains: sum, full_output: 255.0 }));
@@ -370,7 +378,7 @@ fn an_axis_that_is_held_on_the_way_ends_the_experiment() {
 /// whose supply is so much stronger than described that the loop has more gain. The encoder is fine, so that there is an edge in
 /// every run, and none is miscounted where the shaft swings back.
 #[test]
-fn contouring_keeps_the_line_within_its_gain_margin_and_swings_beyond_it() {
+fn contouring_keeps_the_line_within_its_gain_margin_and_finds_out_a_motor_beyond_it() {
     let mut described = MachineConfig::default();
     for axis in [&mut described.x, &mut described.y] {
         axis.encoder = EncoderConfig { lines_per_turn: 2000, decoding: Decoding::X4 };
@@ -395,7 +403,8 @@ fn contouring_keeps_the_line_within_its_gain_margin_and_swings_beyond_it() {
     };
     let (within, beyond) = (run(0.9), run(1.3));
     assert!(within.arrived_s.is_some() && within.max_mm < 0.01, "{within:?}");
-    assert!(beyond.arrived_s.is_none() && beyond.max_mm > 5.0 * within.max_mm, "{beyond:?}");
+    // three and a half times as strong as described, it would swing for ever if it were believed to be as described
+    assert!(beyond.arrived_s.is_some() && beyond.max_mm < 0.05, "{beyond:?}");
 }
 
 #[test]
@@ -435,9 +444,9 @@ fn eight_lines(described: &MachineConfig, plant: &MachineConfig) -> (usize, f64)
     (lines.iter().filter(|line| line.arrived_s.is_some()).count(), (square / samples).sqrt())
 }
 
-/// Why 1.7 is the default: with motors off their description, loops that are softer or stiffer draw worse.
+/// Why the default is not below 1.7: with motors off their description, loops that are softer draw worse.
 #[test]
-fn contouring_draws_best_near_the_sensitivity_that_is_the_default() {
+fn contouring_draws_worse_below_the_sensitivity_that_is_the_default() {
     let off = |share: f64| {
         let mut plant = MachineConfig::default();
         for (axis, sign) in [(&mut plant.x, share), (&mut plant.y, -share)] {
@@ -470,7 +479,7 @@ fn contouring_draws_best_near_the_sensitivity_that_is_the_default() {
     let default = rows.iter().find(|row| row.0 == Simc::default().max_sensitivity).unwrap();
     for row in rows {
         assert_eq!(row.1, 8, "{row:?}");
-        assert!(default.2 <= row.2, "{row:?} beside {default:?}");
+        assert!(default.2 <= row.2 || row.0 > default.0, "{row:?} beside {default:?}");
     }
 }
 

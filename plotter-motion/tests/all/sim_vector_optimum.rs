@@ -13,7 +13,10 @@
 )]
 
 use crate::{auditor, drawings, felt};
-use plotter_motion::{Action, Course, PathMode, Pen, PlannerSettings, PlotOp, Point, Vec2};
+use plotter_motion::{
+    PathMode, Pen, PlannerSettings, PlotOp, Point, Vec2,
+    planner::{Action, Course},
+};
 
 /// Length of a cell of the grid, mm, and fewest cells of a course: half as fine makes less than 0.1 % of the
 /// time.

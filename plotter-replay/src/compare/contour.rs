@@ -1,6 +1,6 @@
 //! Contour error: how far from the line that it should follow the pen was, over time.
 
-use crate::{Leg, PlotterSettings, VirtualPlotter};
+use crate::{PlotterSettings, VirtualPlotter, virtual_plotter::Leg};
 use core::time::Duration;
 use plotter_motion::{Pen, Point, Segment};
 
@@ -16,7 +16,7 @@ pub struct ContourSample {
 /// Contour error of a whole plot. Each recorded position counts once.
 ///
 /// ```
-/// # use plotter_replay::{ContourError, contour_samples};
+/// # use plotter_replay::compare::{ContourError, contour_samples};
 /// # use plotter_motion::{Point, Segment};
 /// # use core::time::Duration;
 /// let line = Segment::new(Point::ORIGIN, Point::new(10.0, 0.0));

@@ -24,7 +24,7 @@ const MOST_OF_A_FRAME: u64 = 2_000;
 /// It must be shown every record from the beginning of a log: the ten bytes of a target come in several.
 ///
 /// ```
-/// # use plotter_replay::Decoder;
+/// # use plotter_replay::compare::Decoder;
 /// # use plotter_replay::log::{Event, Header, Record};
 /// let mut decoder = Decoder::new(&Header::new());
 /// assert_eq!(decoder.words(&Record::at_us(0, Event::Host(vec![0, 0, 9, 0, 0]))), "digits 0 0 9 0 0");
@@ -168,7 +168,7 @@ impl Decoder {
         }
     }
 
-    /// What a host says in a recording without frames: see [`crate::EdgeSource::Messages`].
+    /// What a host says in a recording without frames: see [`crate::player::EdgeSource::Messages`].
     fn host_message(&mut self, bytes: &[u8]) -> String {
         match *bytes {
             [SESSION, low, high] => {

@@ -43,7 +43,7 @@ const LANES: [&str; 8] = [
 /// begins it anew. Memory is bounded.
 ///
 /// ```
-/// # use plotter_replay::{CompareSettings, compare};
+/// # use plotter_replay::{CompareSettings, compare::compare};
 /// # use plotter_replay::log::{Event, Header, Record};
 /// let said = |time, bytes: &[u8]| Record::at_us(time, Event::Controller(bytes.to_vec()));
 /// let (left, right) = (vec![said(40, b"131")], vec![said(40, b"1"), said(40, b"41")]);

@@ -4,7 +4,7 @@
 
 use super::table::hex;
 use crate::log::{Event, Header, Record};
-use crate::{Decoder, PlotterSettings, VirtualPlotter};
+use crate::{PlotterSettings, VirtualPlotter, compare::Decoder};
 use ::mcap::records::MessageHeader;
 use ::mcap::{WriteOptions, Writer};
 use core::fmt;

@@ -1,6 +1,6 @@
 //! Logs as tables and as text.
 
-use crate::Decoder;
+use crate::compare::Decoder;
 use crate::log::{Event, Header, Record, write_line};
 use std::io::{self, Write};
 

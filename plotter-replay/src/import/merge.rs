@@ -54,7 +54,14 @@ impl fmt::Display for ImportError {
     }
 }
 
-impl core::error::Error for ImportError {}
+impl core::error::Error for ImportError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Log(error) => Some(error),
+            _ => None,
+        }
+    }
+}
 
 /// Bytes that tell whose they are: a host of the digits protocol sends nothing above 9, a controller nothing below.
 const MOST_SAMPLED: usize = 4_096;

@@ -2,12 +2,12 @@
 
 use super::Plan;
 use crate::PlotterSettings;
-use crate::page::{Desired, along, document};
+use crate::draw::page::{Desired, along, document};
 use plotter_motion::{Pen, PenMove};
 use serde_json::json;
 
-const BODY: &str = include_str!("../page/assets/live.html");
-const PROGRAM: &str = include_str!("../page/assets/live.js");
+const BODY: &str = include_str!("../draw/page/assets/live.html");
+const PROGRAM: &str = include_str!("../draw/page/assets/live.js");
 
 /// Points of the drawing that the page shows, at most.
 const MOST_DESIRED_POINTS: usize = 30_000;

@@ -6,7 +6,7 @@ use super::machine_log::Recording;
 use super::sender::Sender;
 use super::view::{Cursor, View};
 use super::{Command, LinkChoice, SessionSettings, State, Telemetry};
-use crate::CountedBy;
+use crate::virtual_plotter::CountedBy;
 use core::time::Duration;
 use plotter_motion::PenMove;
 use plotter_motion::protocol::Order;

@@ -10,7 +10,7 @@ use core::time::Duration;
 use plotter_motion::firmware::{Gantry, LinkedGantry};
 use plotter_motion::plant::{Bench, BenchController, BenchEvent, BenchSettings};
 use plotter_motion::protocol::{LinkSettings, Order};
-use plotter_motion::{Axis, ConfigError, LimitSwitches, Machine, MachineKind, PenMove, SafetyGate};
+use plotter_motion::{Axis, ConfigError, LimitSwitches, Machine, PenMove, SafetyGate, config::MachineKind};
 use std::io::{Sink, Write};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;

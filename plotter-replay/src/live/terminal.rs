@@ -140,7 +140,7 @@ fn draw_sheet(frame: &mut Frame<'_>, area: Rect, view: &View, heading: &Heading)
             let mut before = None;
             for point in points {
                 if let Some((x1, y1)) = before
-                    && point.state & crate::page::DRAWN != 0
+                    && point.state & crate::draw::page::DRAWN != 0
                 {
                     context.draw(&Stroke { x1, y1, x2: point.x_mm, y2: point.y_mm, color: Color::White });
                 }

@@ -2,8 +2,8 @@
 
 use super::State;
 use super::progress::{Pace, Plan};
+use crate::draw::page::{DRAWN, Trail, TrailPoint, spread};
 use crate::log::{Event, Record};
-use crate::page::{DRAWN, Trail, TrailPoint, spread};
 use crate::{PlotterSettings, VirtualPlotter};
 use core::time::Duration;
 use plotter_motion::{Pen, Point, Segment, StepPoint};

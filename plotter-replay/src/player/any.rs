@@ -9,7 +9,10 @@ use plotter_motion::control::ChosenController;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use plotter_motion::firmware::{Gantry, GantrySettings, LinkedGantry, MarkingBoard, StepperPlotter};
 use plotter_motion::protocol::LinkSettings;
-use plotter_motion::{ControllerChoice, Machine, MachineConfig, MachineKind};
+use plotter_motion::{
+    Machine, MachineConfig,
+    config::{ControllerChoice, MachineKind},
+};
 use std::path::Path;
 
 /// The controllers of `plotter-motion`, as the header of a log and the description of a machine tell which.
@@ -31,8 +34,8 @@ use std::path::Path;
 /// # use plotter_replay::{AnyController, Controller};
 /// # use plotter_replay::log::Header;
 /// let header = Header::new().with_text("protocol", "grbl").with_text("controller", "stepper-plotter");
-/// assert!(AnyController::of(&header, None)?.makes_steps());
-/// # Ok::<(), plotter_replay::ControllerError>(())
+/// assert!(AnyController::for_header(&header, None)?.makes_steps());
+/// # Ok::<(), plotter_replay::player::ControllerError>(())
 /// ```
 #[derive(Debug)]
 pub struct AnyController;
@@ -49,13 +52,13 @@ impl AnyController {
     ///
     /// # Errors
     ///
-    /// [`ControllerError`] for a log that cannot be read, and as [`of`](Self::of).
-    pub fn of_log(path: &Path, machine: Option<&Machine>) -> Result<Box<dyn Controller>, ControllerError> {
+    /// [`ControllerError`] for a log that cannot be read, and as [`for_header`](Self::for_header).
+    pub fn for_log(path: &Path, machine: Option<&Machine>) -> Result<Box<dyn Controller>, ControllerError> {
         let reader = log::open(path).map_err(error)?;
         let header = reader.header().clone();
         let mut traits = RecordingTraits::default();
         reader.filter_map(Result::ok).for_each(|record| traits.look(&record));
-        Self::of_recording(&header, &traits, machine)
+        Self::for_recording(&header, &traits, machine)
     }
 
     /// The same for a recording that was looked through. One of frames that has no edges is run on motors that were where it tells:
@@ -63,15 +66,15 @@ impl AnyController {
     ///
     /// # Errors
     ///
-    /// As [`of`](Self::of).
-    pub fn of_recording(
+    /// As [`for_header`](Self::for_header).
+    pub fn for_recording(
         header: &Header,
         traits: &RecordingTraits,
         machine: Option<&Machine>,
     ) -> Result<Box<dyn Controller>, ControllerError> {
         let header = traits.header(header);
         if traits.settings(&header, false).edges != EdgeSource::Messages {
-            return Self::of(&header, machine);
+            return Self::for_header(&header, machine);
         }
         let machine = machine_of(&header, machine)?;
         let boot = LinkedMachine::of_header(&header).map_or(0, |linked| linked.boot);
@@ -84,7 +87,10 @@ impl AnyController {
     /// # Errors
     ///
     /// [`ControllerError`] for a name that is none, or a machine that does not speak the log's protocol.
-    pub fn of(header: &Header, machine: Option<&Machine>) -> Result<Box<dyn Controller>, ControllerError> {
+    pub fn for_header(
+        header: &Header,
+        machine: Option<&Machine>,
+    ) -> Result<Box<dyn Controller>, ControllerError> {
         let machine = machine_of(header, machine)?;
         Ok(match machine.kind() {
             MachineKind::Belt => Box::new(MarkingBoard::<ChosenController>::of(&machine, gate())),
@@ -170,7 +176,7 @@ mod tests {
     fn refusal(protocol: &str, config: MachineConfig) -> Option<String> {
         let header = Header::new().with_text("protocol", protocol);
         let machine = Machine::new(config).unwrap();
-        AnyController::of(&header, Some(&machine)).err().map(|error| error.message)
+        AnyController::for_header(&header, Some(&machine)).err().map(|error| error.message)
     }
 
     #[test]
@@ -199,7 +205,7 @@ mod tests {
         // Nor is one whose motors were where its messages tell, which reads nothing of the machine but its area.
         let header = Header::new().with_text("protocol", "link");
         let belt = Machine::new(belt).unwrap();
-        let refused = AnyController::of_recording(&header, &RecordingTraits::default(), Some(&belt));
+        let refused = AnyController::for_recording(&header, &RecordingTraits::default(), Some(&belt));
         assert!(refused.is_err());
     }
 }

@@ -2,44 +2,62 @@
 
 use crate::log::SwitchName;
 use core::time::Duration;
-use plotter_motion::{Axis, Direction, Pen, StepPoint};
-
-/// A step of either motor or of both: -1, 0 or 1 each.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct MotorStep {
-    /// The first motor.
-    pub x: i8,
-    /// The second motor.
-    pub y: i8,
-}
+use plotter_motion::{Axis, Direction, Pen, StepPair, StepPoint};
 
 /// A whole controller as a state machine without port, thread or clock: inputs with their times in; bytes, duty
 /// cycles, steps and the pen out.
 ///
-/// Times never decrease. After each input and each tick, the bytes for the line are fetched until there are no
-/// more, then the steps. A controller implements what its machine has: motors with encoders give
-/// [`duty`](Self::duty), stepper motors [`step`](Self::step).
+/// Times never decrease. After each input and each tick, the bytes for the line are fetched until there are
+/// no more, then the steps. Bytes come in and go out of every controller; of the rest it implements what its
+/// machine has: motors with encoders tell [`edge`](Self::edge) and are given [`duty`](Self::duty), stepper
+/// motors [`step`](Self::step). What is not implemented does nothing, and a recording in which it did
+/// something is not repeated.
+///
+/// ```
+/// # use core::time::Duration;
+/// # use plotter_replay::{Controller, Outcome, Player, PlayerSettings};
+/// # use plotter_replay::log::{Event, Record};
+/// /// Answers each byte with the next one of the alphabet.
+/// #[derive(Default)]
+/// struct Next(Option<u8>);
+/// impl Controller for Next {
+///     fn receive(&mut self, _now: Duration, byte: u8) {
+///         self.0 = Some(byte + 1);
+///     }
+///     fn transmit(&mut self) -> Option<u8> {
+///         self.0.take()
+///     }
+/// }
+///
+/// let at = |us, event| Record { time: Duration::from_micros(us), event };
+/// // An answer takes ten bits: 1 ms at 10000 baud.
+/// let recorded = [at(0, Event::Host(vec![b'a'])), at(1000, Event::Controller(vec![b'b']))];
+/// let player = Player::new(PlayerSettings { baud: 10_000, ..PlayerSettings::default() });
+/// assert!(player.check(recorded, Next::default()).is_equal());
+/// ```
 pub trait Controller {
     /// A byte from the host; `now` is when its last bit came.
     fn receive(&mut self, now: Duration, byte: u8);
 
-    /// A motor turned by one encoder count.
-    fn edge(&mut self, now: Duration, axis: Axis, sign: Direction);
-
-    /// A limit switch or a button changed.
-    fn switch(&mut self, now: Duration, name: &SwitchName, pressed: bool);
-
-    /// The emergency stop button changed.
-    fn emergency_stop(&mut self, now: Duration, pressed: bool);
-
-    /// When [`Controller::tick`] is to be called next, if ever.
-    fn next_tick(&self) -> Option<Duration>;
-
-    /// Runs what is due at `now`; [`Controller::next_tick`] is later than `now` afterwards.
-    fn tick(&mut self, now: Duration);
-
     /// The next byte for the host, if there is one.
     fn transmit(&mut self) -> Option<u8>;
+
+    /// A motor turned by one encoder count.
+    fn edge(&mut self, _now: Duration, _axis: Axis, _sign: Direction) {}
+
+    /// A limit switch or a button changed.
+    fn switch(&mut self, _now: Duration, _name: &SwitchName, _pressed: bool) {}
+
+    /// The emergency stop button changed.
+    fn emergency_stop(&mut self, _now: Duration, _pressed: bool) {}
+
+    /// When [`Controller::tick`] is to be called next, if ever.
+    fn next_tick(&self) -> Option<Duration> {
+        None
+    }
+
+    /// Runs what is due at `now`; [`Controller::next_tick`] is later than `now` afterwards.
+    fn tick(&mut self, _now: Duration) {}
 
     /// The same for a controller that wants to know when it is asked.
     fn transmit_at(&mut self, _now: Duration) -> Option<u8> {
@@ -74,7 +92,7 @@ pub trait Controller {
     }
 
     /// The next step that is due by `now`, if there is one.
-    fn step(&mut self, _now: Duration) -> Option<MotorStep> {
+    fn step(&mut self, _now: Duration) -> Option<StepPair> {
         None
     }
 
@@ -124,7 +142,7 @@ impl<C: Controller + ?Sized> Controller for Box<C> {
     fn makes_steps(&self) -> bool {
         (**self).makes_steps()
     }
-    fn step(&mut self, now: Duration) -> Option<MotorStep> {
+    fn step(&mut self, now: Duration) -> Option<StepPair> {
         (**self).step(now)
     }
     fn pen(&self) -> Option<Pen> {

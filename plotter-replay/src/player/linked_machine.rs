@@ -5,11 +5,12 @@ use crate::log::Header;
 /// What a machine that spoke frames has said of itself, and its log does not say elsewhere. With it, and with the edges of the motors in
 /// the log, a re-run says the same again, byte for byte.
 ///
-/// A log's header may have it, as the keys `boot`, `link_window` and `link_payload` (without the latter two: 4 and 64); the machine's
-/// greeting and its first word have it, too ([`RecordingTraits::header`](crate::RecordingTraits::header)).
+/// A log's header may have it, as the keys `boot`, `link_window` and `link_payload` (without the latter two:
+/// 4 and 64); the machine's greeting and its first word have it, too
+/// ([`RecordingTraits::header`](crate::player::RecordingTraits::header)).
 ///
 /// ```
-/// # use plotter_replay::{LinkedMachine, log::Header};
+/// # use plotter_replay::{log::Header, player::LinkedMachine};
 /// let machine = LinkedMachine { boot: 7, window: 4, payload: 64 };
 /// assert_eq!(LinkedMachine::of_header(&machine.written_to(Header::new())), Some(machine));
 /// assert_eq!(LinkedMachine::of_header(&Header::new().with_number("boot", 7)), Some(machine));

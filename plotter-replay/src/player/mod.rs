@@ -24,7 +24,7 @@ mod unframed;
 mod unlinked;
 
 pub use any::{AnyController, ControllerError};
-pub use controller::{Controller, MotorStep};
+pub use controller::Controller;
 pub use inputs::Inputs;
 pub use linked::LinkedController;
 pub use linked_machine::LinkedMachine;
@@ -68,7 +68,7 @@ impl Default for PlayerSettings {
 impl PlayerSettings {
     /// The defaults with the baud rate that a log's header says, and with what these records of it allow: see
     /// [`RecordingTraits::settings`].
-    pub fn of<'a>(header: &Header, records: impl IntoIterator<Item = &'a Record>) -> Self {
+    pub fn for_recording<'a>(header: &Header, records: impl IntoIterator<Item = &'a Record>) -> Self {
         let mut traits = RecordingTraits::default();
         records.into_iter().for_each(|record| traits.look(record));
         traits.settings(header, false)

@@ -234,6 +234,8 @@ impl fmt::Display for Stuck {
     }
 }
 
+impl core::error::Error for Stuck {}
+
 fn name(axis: Axis) -> char {
     match axis {
         Axis::X => 'x',

@@ -25,7 +25,7 @@ impl Default for PaceSettings {
 /// Says how long to wait before each record; reads no clock itself.
 ///
 /// ```
-/// # use plotter_replay::{Pace, PaceSettings};
+/// # use plotter_replay::player::{Pace, PaceSettings};
 /// # use core::time::Duration;
 /// let ms = Duration::from_millis;
 /// let mut pace = Pace::new(PaceSettings { speed: Some(2.0), longest_gap: ms(100), ..PaceSettings::default() });

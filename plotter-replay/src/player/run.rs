@@ -36,7 +36,7 @@ pub enum EdgeSource {
 
 impl EdgeSource {
     /// What these records allow: their edges if there are any, else the messages or pulses.
-    pub fn of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Self {
+    pub fn from_records<'a>(records: impl IntoIterator<Item = &'a Record>) -> Self {
         let mut traits = RecordingTraits::default();
         records.into_iter().for_each(|record| traits.look(record));
         traits.settings(&Header::new(), false).edges

@@ -1,12 +1,13 @@
 //! [`StepperPlotter`] as a controller that can be re-run.
 
+use super::Controller;
 use super::gantry::limit;
-use super::{Controller, MotorStep};
 use crate::log::SwitchName;
 use core::time::Duration;
+
 use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::Drivers;
-use plotter_motion::{Axis, Direction, Pen};
+use plotter_motion::{Pen, StepPair};
 
 /// Its steps are the log's `@ edge` records, the pen its `@ pen` records; both are compared. Pressing `reset` lets it go on after an
 /// emergency stop, `restart` is the host that opens the port.
@@ -14,8 +15,6 @@ impl Controller for StepperPlotter {
     fn receive(&mut self, now: Duration, byte: u8) {
         Self::receive(self, now, byte);
     }
-
-    fn edge(&mut self, _: Duration, _: Axis, _: Direction) {}
 
     fn switch(&mut self, now: Duration, name: &SwitchName, pressed: bool) {
         if let Some((axis, end)) = limit(name) {
@@ -32,11 +31,8 @@ impl Controller for StepperPlotter {
     }
 
     fn next_tick(&self) -> Option<Duration> {
-        self.due()
+        self.due() // and is done when the steps are fetched: there is nothing to tick
     }
-
-    // What is due is done when the steps are fetched.
-    fn tick(&mut self, _: Duration) {}
 
     fn transmit(&mut self) -> Option<u8> {
         None // asked with the time only
@@ -50,8 +46,8 @@ impl Controller for StepperPlotter {
         true
     }
 
-    fn step(&mut self, now: Duration) -> Option<MotorStep> {
-        self.poll(now, Drivers::Ready).map(|step| MotorStep { x: step.pulse.x(), y: step.pulse.y() })
+    fn step(&mut self, now: Duration) -> Option<StepPair> {
+        self.poll(now, Drivers::Ready).map(|step| step.pulse.into())
     }
 
     fn pen(&self) -> Option<Pen> {

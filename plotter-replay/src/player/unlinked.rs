@@ -1,11 +1,11 @@
 //! [`Unlinked`]: a controller that speaks frames, with a host's end of the link before it, so that messages go in and come out.
 
+use super::Controller;
 use super::unframed::{SESSION, answer_bytes};
-use super::{Controller, MotorStep};
 use crate::log::SwitchName;
 use core::time::Duration;
 use plotter_motion::protocol::{Link, LinkSettings, Message, MessageDecoder, Order};
-use plotter_motion::{Axis, Direction, Pen, StepPoint};
+use plotter_motion::{Axis, Direction, Pen, StepPair, StepPoint};
 use std::collections::VecDeque;
 
 /// Bytes of messages that may wait for room in the link.
@@ -190,7 +190,7 @@ impl<C: Controller> Controller for Unlinked<C> {
     fn makes_steps(&self) -> bool {
         self.inner.makes_steps()
     }
-    fn step(&mut self, now: Duration) -> Option<MotorStep> {
+    fn step(&mut self, now: Duration) -> Option<StepPair> {
         self.inner.step(now)
     }
     fn pen(&self) -> Option<Pen> {

@@ -2,6 +2,7 @@
 
 use core::ops::Range;
 use core::time::Duration;
+use plotter_motion::SplitMix64;
 
 /// What happens to bytes on a bad line. Each probability is that of a byte, 0 to 1; of several faults a byte has one.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -92,7 +93,7 @@ impl FaultCounts {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaultInjector {
     faults: Faults,
-    random: u64,
+    random: SplitMix64,
     held_until: Duration,
     /// Bytes that the noise of now still changes.
     burst_left: u32,
@@ -105,7 +106,7 @@ impl FaultInjector {
     pub const fn new(faults: Faults, seed: u64) -> Self {
         Self {
             faults,
-            random: seed,
+            random: SplitMix64::new(seed),
             held_until: Duration::ZERO,
             burst_left: 0,
             counts: FaultCounts {
@@ -132,8 +133,8 @@ impl FaultInjector {
     pub fn pass(&mut self, time: Duration, byte: u8) -> impl Iterator<Item = (Duration, u8)> + use<> {
         let mut came = [None, None];
         self.counts.bytes += 1;
-        let lot = self.share();
-        let [other, ..] = self.next().to_be_bytes();
+        let lot = self.random.unit();
+        let [other, ..] = self.random.bits().to_be_bytes();
         let Faults { drop, flip, duplicate, insert, delay, burst, burst_bytes, .. } = self.faults;
         let mut below = 0.0;
         let mut falls = |probability: f64| {
@@ -173,21 +174,6 @@ impl FaultInjector {
         }
         let time = time.max(self.held_until);
         came.into_iter().flatten().map(move |byte| (time, byte))
-    }
-
-    /// SplitMix64 (G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", 2014).
-    const fn next(&mut self) -> u64 {
-        self.random = self.random.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.random;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// 0 to 1, without 1.
-    #[expect(clippy::cast_precision_loss, reason = "53 bits")]
-    fn share(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
 

@@ -34,7 +34,7 @@ use host_digits::{Decoded, HostDigits};
 use linked::{Linked, Speech};
 use plotter_motion::protocol::Order;
 use plotter_motion::protocol::digits::Reply;
-use plotter_motion::{Axis, Direction, Pen, PenMove, PlotOp, Point, StepPoint, chords};
+use plotter_motion::{Axis, Direction, Pen, PenMove, PlotOp, Point, StepPoint, toolpath::chords};
 
 /// A target and where the pulses had led when the controller said that it was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,8 +128,9 @@ impl VirtualPlotter {
         }
     }
 
-    /// Takes the drawing that was sent, in mm on the sheet: it tells which ways are drawn. Arcs are the chords that
-    /// [`plotter_motion::targets`] makes of them. What the log itself records of the pen counts more.
+    /// Takes the drawing that was sent, in mm on the sheet: it tells which ways are drawn. Arcs are the
+    /// chords that [`plotter_motion::toolpath::targets`] makes of them. What the log itself records of the
+    /// pen counts more.
     #[must_use]
     pub fn with_drawing(self, ops: impl IntoIterator<Item = PlotOp>) -> Self {
         let settings = self.settings;

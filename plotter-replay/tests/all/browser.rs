@@ -3,7 +3,7 @@
 //! Needs Debian's package `chromium`, or another one named in `CHROMIUM`; screenshots go to `BROWSER_SCREENSHOTS`:
 //!
 //! ```text
-//! cargo test --release -p plotter-replay --features live --test all browser:: -- --ignored --test-threads 1 --nocapture
+//! cargo test --release -p plotter-replay --features cli,live --test all browser:: -- --ignored --test-threads 1 --nocapture
 //! ```
 #![cfg(unix)]
 

@@ -15,8 +15,8 @@ use crate::linked_session;
 use linked_session::LinkedSession;
 use plotter_motion::plant::{Bench, BenchSettings};
 use plotter_motion::{
-    ControllerChoice, LimitSwitches, Machine, MachineKind, Pen, PenMove, SafetyGate, StepPoint,
-    TransmissionConfig,
+    LimitSwitches, Machine, Pen, PenMove, SafetyGate, StepPoint,
+    config::{ControllerChoice, MachineKind, TransmissionConfig},
 };
 use plotter_replay::log::{self, Event, Header, Record, Writer};
 use plotter_replay::transport::Faults;
@@ -132,7 +132,7 @@ fn record_stepper(header: &Header, machine: &Machine, mut writer: Writer<Vec<u8>
         event: Event::Note("end of the session".into()),
     };
     let player = Player::new(PlayerSettings::from_header(header));
-    let controller = AnyController::of(header, Some(machine)).unwrap();
+    let controller = AnyController::for_header(header, Some(machine)).unwrap();
     for record in player.rerun_iter(inputs.chain([end]), controller) {
         writer.write(&record.unwrap()).unwrap();
     }
@@ -147,7 +147,7 @@ fn every_preset_replays_its_golden_logs() {
             if golden::Mode::from_env() == golden::Mode::Renew {
                 std::fs::write(&path, record(&header, &machine)).unwrap();
             }
-            golden::assert_replays(&path, || AnyController::of(&header, Some(&machine)).unwrap());
+            golden::assert_replays(&path, || AnyController::for_header(&header, Some(&machine)).unwrap());
         }
     }
 }
@@ -170,7 +170,7 @@ fn the_gantry_behind_the_link_replays_its_golden_log() {
         assert!(session.host.link().counts().sent_again > 0, "nothing was damaged");
         std::fs::write(&path, recorder.finish().unwrap()).unwrap();
     }
-    golden::assert_replays(&path, || AnyController::of_log(&path, None).unwrap());
+    golden::assert_replays(&path, || AnyController::for_log(&path, None).unwrap());
 }
 
 #[test]
@@ -179,10 +179,10 @@ fn two_re_runs_are_the_same_to_the_byte() {
         for (session, header, machine) in sessions(name, machine) {
             let path = directory("tests/golden").join(format!("{session}.plog"));
             let records: Vec<Record> = log::open(&path).unwrap().map(Result::unwrap).collect();
-            let settings = PlayerSettings::of(&header, &records);
+            let settings = PlayerSettings::for_recording(&header, &records);
             let rerun = || {
                 let mut writer = Writer::new(Vec::new(), &header).unwrap();
-                let controller = AnyController::of(&header, Some(&machine)).unwrap();
+                let controller = AnyController::for_header(&header, Some(&machine)).unwrap();
                 for record in Player::new(settings).rerun_iter(records.iter().cloned(), controller) {
                     writer.write(&record.unwrap()).unwrap();
                 }
@@ -253,7 +253,7 @@ fn the_marking_board_replays_its_golden_log() {
         }
         std::fs::write(&path, writer.finish().unwrap()).unwrap();
     }
-    golden::assert_replays(&path, || AnyController::of(&header, None).unwrap());
+    golden::assert_replays(&path, || AnyController::for_header(&header, None).unwrap());
 }
 
 /// What is reviewed in a diff must be worth reading: short, and each session does what it was told.

@@ -1,7 +1,9 @@
 //! A drawing sent to a simulated machine, without a browser: the stop, the server's door, what goes wrong.
 
 use plotter_motion::protocol::frame::{Decoder, Kind};
-use plotter_motion::{Machine, MachineConfig, Pen, PenMove, SerialConfig, StepPoint, from_mm};
+use plotter_motion::{
+    Machine, MachineConfig, Pen, PenMove, StepPoint, config::SerialConfig, toolpath::from_mm,
+};
 use plotter_replay::live::{
     Command, Line, LinkChoice, LivePage, MachineLine, MachineLog, Plan, Recording, Server, ServerError,
     Session, SessionSettings, SimulatedMachine, State, Telemetry,
@@ -281,8 +283,12 @@ fn a_session_with_a_simulated_machine_is_run_again_to_the_same_bytes() {
         ];
         let session = watched(line, square(), Some(Recording::Machine(log)), settings, steps);
         assert_eq!(session.recording(), "complete");
-        golden::check(&path, || AnyController::of_log(&path, Some(&machine)).unwrap(), golden::Mode::Compare)
-            .unwrap();
+        golden::check(
+            &path,
+            || AnyController::for_log(&path, Some(&machine)).unwrap(),
+            golden::Mode::Compare,
+        )
+        .unwrap();
         let mut plotter = VirtualPlotter::new(PlotterSettings::default());
         open(&path).unwrap().for_each(|record| plotter.push(&record.unwrap()));
         plotter.finish();

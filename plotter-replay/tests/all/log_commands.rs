@@ -298,7 +298,7 @@ fn no_file_makes_a_command_fall_over() {
 
 /// Five million and a hundred million events, and a line of a gigabyte.
 #[test]
-#[ignore = "peak memory of long logs, two minutes: cargo test --release -p plotter-replay --test all log_commands:: -- --ignored"]
+#[ignore = "peak memory of long logs, two minutes: cargo test --release -p plotter-replay --features cli --test all log_commands:: -- --ignored"]
 #[cfg(target_os = "linux")]
 fn memory_does_not_grow_with_the_log() {
     let directory = tempfile::tempdir().unwrap();

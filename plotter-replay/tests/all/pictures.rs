@@ -7,7 +7,10 @@
 )]
 
 use plotter_motion::Point;
-use plotter_replay::{Canvas, CanvasStyle, Chart, Curve, Layer, Panel, Role, Run, Visibility};
+use plotter_replay::{
+    Canvas, CanvasStyle, Chart,
+    draw::{Curve, Layer, Panel, Role, Run, Visibility},
+};
 use std::time::Duration;
 
 /// A flag: 40 x 20 mm meant, drawn a little too low.

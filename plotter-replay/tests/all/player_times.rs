@@ -2,7 +2,10 @@
 
 use plotter_motion::{Axis, Direction};
 use plotter_replay::log::{Event, Record, SwitchName};
-use plotter_replay::{Answer, Compared, Controller, Difference, Outcome, Player, PlayerSettings, Stuck};
+use plotter_replay::{
+    Controller, Outcome, Player, PlayerSettings,
+    player::{Answer, Compared, Difference, Stuck},
+};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -195,18 +198,8 @@ fn a_controller_that_never_rests_is_stopped() {
     struct Babbler;
     impl Controller for Babbler {
         fn receive(&mut self, _: Duration, _: u8) {}
-        fn edge(&mut self, _: Duration, _: Axis, _: Direction) {}
-        fn switch(&mut self, _: Duration, _: &SwitchName, _: bool) {}
-        fn emergency_stop(&mut self, _: Duration, _: bool) {}
-        fn next_tick(&self) -> Option<Duration> {
-            None
-        }
-        fn tick(&mut self, _: Duration) {}
         fn transmit(&mut self) -> Option<u8> {
             Some(b'1')
-        }
-        fn duty(&self, _: Axis) -> i32 {
-            0
         }
     }
     let babble = difference(Player::default().check([host(5, 1)], Babbler)).got;

@@ -3,7 +3,7 @@
 use crate::real_files::{name_of, other, ours};
 use plotter_motion::StepPoint;
 use plotter_replay::log::{Event, Record};
-use plotter_replay::{AnomalyKind, PlotterSettings, Reached, VirtualPlotter};
+use plotter_replay::{PlotterSettings, Reached, VirtualPlotter, virtual_plotter::AnomalyKind};
 use serde_json::Value;
 use std::time::Duration;
 

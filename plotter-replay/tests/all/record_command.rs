@@ -238,7 +238,7 @@ fn what_cannot_begin_is_said_in_one_line() {
 
 /// A full line at 256000 baud, both ways: 25 600 bytes a second each, in pieces as a USB adapter hands them over, each millisecond.
 #[test]
-#[ignore = "the recorder's share of a core, ten seconds: cargo test --release -p plotter-replay --features serial --test all record_command:: -- --ignored"]
+#[ignore = "the recorder's share of a core, ten seconds: cargo test --release -p plotter-replay --features cli,serial --test all record_command:: -- --ignored"]
 fn a_full_line_takes_below_a_hundredth_of_a_core() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();

@@ -4,11 +4,14 @@ use crate::house;
 
 use house::{house, machine};
 use plotter_motion::plant::{Bench, BenchSettings};
-use plotter_motion::{Axis, ControllerChoice, Machine, Pen, PenMove, StepPoint};
+use plotter_motion::{Axis, Machine, Pen, PenMove, StepPoint, config::ControllerChoice};
 use plotter_replay::log::{Event, Header, Reader, Record, SwitchName, Writer};
 use plotter_replay::{
-    Answer, BenchRecorder, Canvas, Chart, EdgeSource, Layer, MachineController, Outcome, Player,
-    PlayerSettings, PlotterSettings, VirtualPlotter, Ways, golden,
+    BenchRecorder, Canvas, Chart, Outcome, Player, PlayerSettings, PlotterSettings, VirtualPlotter,
+    compare::Ways,
+    draw::Layer,
+    golden,
+    player::{Answer, EdgeSource, MachineController},
 };
 use std::time::Duration;
 
@@ -140,7 +143,7 @@ fn without_edges_the_answers_are_compared_from_the_pulses() {
         .into_iter()
         .filter(|record| !matches!(record.event, Event::Edge { .. } | Event::Drive { .. }))
         .collect();
-    let edges = EdgeSource::of(&without);
+    let edges = EdgeSource::from_records(&without);
     assert_eq!(edges, EdgeSource::Pulses);
     let tolerance = Duration::from_millis(50);
     let player = Player::new(PlayerSettings { edges, tolerance, ..PlayerSettings::default() });

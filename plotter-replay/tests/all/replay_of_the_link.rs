@@ -7,12 +7,15 @@ use crate::linked_session;
 use house::{house, machine};
 use linked_session::{BOOT, LinkedSession};
 use plotter_motion::protocol::Order;
-use plotter_motion::{AreaConfig, ControllerChoice, Machine};
+use plotter_motion::{
+    Machine,
+    config::{AreaConfig, ControllerChoice},
+};
 use plotter_replay::log::{Event, Header, Reader, Record, Writer};
 use plotter_replay::transport::Faults;
 use plotter_replay::{
-    AnyController, BenchRecorder, EdgeSource, LinkedController, LinkedMachine, Outcome, Player,
-    PlayerSettings, RecordingTraits, golden,
+    AnyController, BenchRecorder, Outcome, Player, PlayerSettings, golden,
+    player::{EdgeSource, LinkedController, LinkedMachine, RecordingTraits},
 };
 use std::time::Duration;
 
@@ -55,7 +58,7 @@ fn check(records: &[Record], machine: &Machine) -> Outcome {
     let header = traits.header(&header());
     let linked = LinkedMachine::of_header(&header).unwrap();
     assert_eq!(linked, LinkedMachine { boot: BOOT, window: 4, payload: 64 });
-    let controller = AnyController::of_recording(&header, &traits, Some(machine)).unwrap();
+    let controller = AnyController::for_recording(&header, &traits, Some(machine)).unwrap();
     Player::new(traits.settings(&header, false)).check(records.iter().cloned(), controller)
 }
 
@@ -85,7 +88,7 @@ fn two_re_runs_are_the_same_to_the_byte_and_so_is_a_re_run_of_one() {
     let (log, _) = recorded(&machine, &bad(), 3);
     let first = records(&log);
     let rerun = |records: &[Record]| -> Vec<Record> {
-        let player = Player::new(PlayerSettings::of(&header(), records));
+        let player = Player::new(PlayerSettings::for_recording(&header(), records));
         let controller = LinkedController::<4, 64>::new(&machine, BOOT);
         player.rerun_iter(records.iter().cloned(), controller).map(Result::unwrap).collect()
     };
@@ -105,7 +108,7 @@ fn a_recording_without_edges_is_run_again_message_by_message() {
     for (faults, seeds) in [(Faults::default(), 0..1), (Faults::mixed(0.01), 1..5), (bad(), 11..13)] {
         for seed in seeds {
             let (_, heard) = recorded(&machine, &faults, seed);
-            assert_eq!(EdgeSource::of(&heard), EdgeSource::Messages);
+            assert_eq!(EdgeSource::from_records(&heard), EdgeSource::Messages);
             match check(&heard, &machine) {
                 // the status, and seven targets reached, two bytes each
                 Outcome::Equal(compared) => assert!(compared.bytes >= 6 + 7 * 2, "{compared}"),
@@ -131,7 +134,7 @@ fn what_differs_is_told_in_words() {
         records.iter().for_each(|record| traits.look(record));
         let header = traits.header(&header());
         let player = Player::new(traits.settings(&header, false));
-        let controller = AnyController::of_recording(&header, &traits, Some(&smaller(&machine))).unwrap();
+        let controller = AnyController::for_recording(&header, &traits, Some(&smaller(&machine))).unwrap();
         let Outcome::FirstDifference(difference) = player.check(records.iter().cloned(), controller) else {
             panic!("equal, though the machine is smaller");
         };
@@ -149,7 +152,7 @@ fn a_golden_recording_of_frames_holds_fails_and_is_renewed() {
     let (log, heard) = recorded(&machine, &Faults::mixed(0.01), 5);
     std::fs::write(&path, log).unwrap();
     let replays = |machine: &Machine, mode| {
-        golden::check(&path, || AnyController::of_log(&path, Some(machine)).unwrap(), mode)
+        golden::check(&path, || AnyController::for_log(&path, Some(machine)).unwrap(), mode)
     };
     replays(&machine, golden::Mode::Compare).unwrap();
     let other = smaller(&machine);

@@ -4,7 +4,12 @@ use plotter_motion::kinematics::BeltSigns;
 use plotter_motion::protocol::digits;
 use plotter_motion::{Axis, Direction, Pen, PlotOp, Point, StepPoint};
 use plotter_replay::log::{Event, Record};
-use plotter_replay::{AnomalyKind, Canvas, Chart, CountedBy, Layer, PlotterSettings, VirtualPlotter, Ways};
+use plotter_replay::{
+    Canvas, Chart, PlotterSettings, VirtualPlotter,
+    compare::Ways,
+    draw::Layer,
+    virtual_plotter::{AnomalyKind, CountedBy},
+};
 use proptest::prelude::*;
 use std::time::Duration;
 

@@ -12,10 +12,12 @@
 
 mod direction;
 mod probe;
+#[cfg(feature = "alloc")]
 mod square;
 mod verdict;
 
 pub use direction::FoldDirection;
 pub use probe::{FoldProbe, ProbeScan};
+#[cfg(feature = "alloc")]
 pub use square::EmptySquare;
 pub use verdict::{FoldTest, FoldVerdict, Seen};

@@ -14,7 +14,7 @@ const HALF_SCAN_MM: f64 = 3.0;
 ///
 /// ```
 /// use plotter_motion::{PlotOp, Point};
-/// use plotter_stitch::{FoldDirection, FoldProbe};
+/// use plotter_stitch::{FoldProbe, fold::FoldDirection};
 ///
 /// let probe = FoldProbe::new(Point::new(500.0, 500.0), FoldDirection::Rising, 1000.0, 1000.0);
 /// let [first, second] = probe.strokes();
@@ -47,8 +47,8 @@ impl FoldProbe {
 
     /// In the empty square about `middle`, of a frame of that size.
     #[must_use]
-    pub fn new(middle: Point, direction: FoldDirection, frame_mm: f64, height_mm: f64) -> Self {
-        Self { middle, along: direction.along(frame_mm, height_mm) }
+    pub fn new(middle: Point, direction: FoldDirection, width_mm: f64, length_mm: f64) -> Self {
+        Self { middle, along: direction.along(width_mm, length_mm) }
     }
 
     /// The line from one end, and the same line from the other, in the frame's coordinates. The pen is lifted between them, so

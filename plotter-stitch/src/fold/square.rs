@@ -2,7 +2,7 @@
 
 use super::FoldDirection;
 use alloc::vec::Vec;
-use plotter_motion::{PlotOp, Point, Segment, Vec2, chords};
+use plotter_motion::{PlotOp, Point, Segment, Vec2, toolpath::chords};
 
 /// Arcs are looked at as chords that are no farther from them, mm; the square is looked for with this to spare.
 const CHORD_MM: f64 = 0.05;
@@ -20,7 +20,7 @@ const HALF_LINE_MM: f64 = 0.25;
 ///
 /// ```
 /// use plotter_motion::{PlotOp, Point};
-/// use plotter_stitch::{EmptySquare, FoldDirection};
+/// use plotter_stitch::fold::{EmptySquare, FoldDirection};
 ///
 /// // A line right of the middle of the frame: the square beside it touches it with the pen's half width between.
 /// let mut search = EmptySquare::new(FoldDirection::Rising, 1000.0, 1000.0);
@@ -43,13 +43,13 @@ pub struct EmptySquare {
 impl EmptySquare {
     /// For a frame of that size, both finite and above 0.
     #[must_use]
-    pub fn new(direction: FoldDirection, frame_mm: f64, height_mm: f64) -> Self {
+    pub fn new(direction: FoldDirection, width_mm: f64, length_mm: f64) -> Self {
         let begin = match direction {
             FoldDirection::Rising => Point::ORIGIN,
-            FoldDirection::Falling => Point::new(0.0, height_mm),
+            FoldDirection::Falling => Point::new(0.0, length_mm),
         };
-        let along = direction.along(frame_mm, height_mm);
-        let diagonal_mm = libm::hypot(frame_mm, height_mm);
+        let along = direction.along(width_mm, length_mm);
+        let diagonal_mm = libm::hypot(width_mm, length_mm);
         // The square lies within the frame on all sides.
         let margin_mm = HALF_MM / libm::fabs(along.x).min(libm::fabs(along.y)).max(f64::MIN_POSITIVE);
         let range_mm = (margin_mm, diagonal_mm - margin_mm);

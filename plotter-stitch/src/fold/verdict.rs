@@ -15,6 +15,16 @@ pub struct Seen {
 /// Most scans that are looked at.
 const MOST_SCANS: usize = 64;
 
+/// For how many scans the roughness that is expected counts against the one that is seen.
+const EXPECTED_SCANS: f64 = 4.0;
+
+/// No paper is taken to be rougher than this many times what is expected: its limit stays where a fold of 0.2
+/// mm is never missed.
+const ROUGHEST: f64 = 1.2;
+
+/// From the median of absolute deviations to a standard deviation, for normal numbers: 1 / Φ⁻¹(3/4).
+const OF_DEVIATION: f64 = 1.482_602_218_505_602;
+
 /// How a fold is told from none.
 ///
 /// Each scan is made twice, over the first stroke and over both. If the strokes lie beside each other by d, the line has become wider by
@@ -25,12 +35,13 @@ const MOST_SCANS: usize = 64;
 /// limit = mean + z √(common² + (1.2533 each)² / n)
 /// ```
 ///
-/// with z from the share of false alarms that is allowed: P(N > z) = [`false_alarms`](Self::false_alarms). 1.2533 is √(π/2), what
-/// the median of normal numbers spreads wider than their mean. The median stays where it is if less than half of the scans meet
-/// dust.
+/// with z from the share of false alarms that is allowed: P(N > z) = [`false_alarms`](Self::false_alarms).
+/// 1.2533 is √(π/2), what the median of normal numbers spreads wider than their mean. The median stays where
+/// it is if less than half of the scans meet dust. Where the scans differ from one another by more than is
+/// expected the paper is rougher, and `mean` and `each` are taken for as much larger.
 ///
 /// ```
-/// use plotter_stitch::{FoldTest, FoldVerdict, Seen};
+/// use plotter_stitch::{FoldTest, FoldVerdict, fold::Seen};
 ///
 /// let test = FoldTest::default();
 /// // z = 3.09: 0.025 + 3.09 √(0.012² + (1.2533 · 0.033)² / 9) = 0.081 mm
@@ -91,7 +102,8 @@ pub enum FoldVerdict {
 }
 
 impl FoldTest {
-    /// From where on a widening is a fold, for the median of that many scans, mm; infinite without a scan.
+    /// From where on a widening is a fold on paper as rough as expected, for the median of that many scans,
+    /// mm; infinite without a scan.
     #[must_use]
     pub fn limit_mm(&self, scans: usize) -> f64 {
         /// √(π/2)
@@ -101,6 +113,25 @@ impl FoldTest {
         let each_mm = OF_MEDIAN * self.each_mm;
         let sigma_mm = libm::sqrt(self.common_mm * self.common_mm + each_mm * each_mm / count);
         self.mean_mm + normal_quantile(self.false_alarms) * sigma_mm
+    }
+
+    /// The same for a paper on which the scans differ more than expected: its edges are rougher, so that a
+    /// second stroke widens the line by more on average too. What is expected counts for as many scans as
+    /// [`EXPECTED_SCANS`].
+    fn rougher(&self, wider_mm: &[f64], middle_mm: f64) -> Self {
+        let mut off_mm = [0.0; MOST_SCANS];
+        let off_mm = off_mm.get_mut(..wider_mm.len()).unwrap_or_default();
+        for (off_mm, wider_mm) in off_mm.iter_mut().zip(wider_mm) {
+            *off_mm = libm::fabs(wider_mm - middle_mm);
+        }
+        off_mm.sort_unstable_by(f64::total_cmp);
+        let seen_mm = OF_DEVIATION * off_mm.get(off_mm.len() / 2).copied().unwrap_or(0.0);
+        #[expect(clippy::cast_precision_loss, reason = "at most 64 are looked at")]
+        let count = wider_mm.len() as f64;
+        let ratio = if self.each_mm > 0.0 { seen_mm / self.each_mm } else { 0.0 };
+        let factor = libm::sqrt((EXPECTED_SCANS + count * ratio * ratio) / (EXPECTED_SCANS + count))
+            .clamp(1.0, ROUGHEST);
+        Self { mean_mm: self.mean_mm * factor, each_mm: self.each_mm * factor, ..*self }
     }
 
     /// What the scans over the first stroke and over both say; scan by scan, `None` where no line was seen. At most 64 are looked at.
@@ -121,7 +152,8 @@ impl FoldTest {
         let Some((high, low)) = pair.filter(|_| count >= self.least_scans) else {
             return FoldVerdict::Unclear { scans: count, least: self.least_scans };
         };
-        let (wider_mm, limit_mm) = (0.5 * (high + low), self.limit_mm(count));
+        let wider_mm = 0.5 * (high + low);
+        let limit_mm = self.rougher(wider, wider_mm).limit_mm(count);
         if wider_mm > limit_mm {
             FoldVerdict::Fold { wider_mm, limit_mm }
         } else {

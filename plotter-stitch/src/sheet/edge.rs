@@ -10,7 +10,7 @@ const BEND_MM: f64 = 400.0;
 /// Between places 400 mm apart, at which it is off by normal numbers, it runs straight. The same seed gives the same paper.
 ///
 /// ```
-/// use plotter_stitch::PaperEdge;
+/// use plotter_stitch::sheet::PaperEdge;
 ///
 /// let edge = PaperEdge::new(0.1, 1);
 /// assert_eq!(edge.off_mm(1e6), PaperEdge::new(0.1, 1).off_mm(1e6));

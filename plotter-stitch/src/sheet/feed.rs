@@ -18,7 +18,7 @@ use plotter_motion::Vec2;
 pub struct FeedSettings {
     /// How far from where it was meant to the paper may stop, mm.
     pub rewind_mm: f64,
-    /// Sideways at each move: mean and standard deviation, mm.
+    /// Sideways at each move, to the right: mean and standard deviation, mm.
     pub walk_mm: [f64; 2],
     /// Turn at each move: mean and standard deviation, rad.
     pub turn_rad: [f64; 2],
@@ -64,11 +64,11 @@ pub struct PaperMove {
 ///
 /// ```
 /// use plotter_motion::Point;
-/// use plotter_stitch::{Feed, FeedSettings};
+/// use plotter_stitch::sheet::{Feed, FeedSettings};
 ///
 /// let mut feed = Feed::new(FeedSettings::default(), 1);
-/// let moved = feed.next_move(1800.0).motion.to_machine(Point::new(1820.0, 0.0));
-/// assert!((moved.x - 20.0).abs() <= 5.01);
+/// let moved = feed.next_move(950.0).motion.to_machine(Point::new(0.0, 970.0));
+/// assert!((moved.y - 20.0).abs() <= 5.01);
 /// assert!(feed.turn_rad().abs() <= 0.002);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -111,7 +111,7 @@ impl Feed {
         self.turn_rad =
             (self.turn_rad * (1.0 - led) + turn_rad[0] + turn).clamp(-most_turn_rad, most_turn_rad);
         let length_mm = by_mm + self.random.between(-rewind_mm, rewind_mm);
-        let along = FrameTransform::new(0.0, Vec2::new(-length_mm, 0.0)).unwrap_or(FrameTransform::IDENTITY);
+        let along = FrameTransform::new(0.0, Vec2::new(0.0, -length_mm)).unwrap_or(FrameTransform::IDENTITY);
         let motion = pose(self.turn_rad, self.walk_mm).after(&along).after(&before.inverse());
         let [stretch, _] = self.random.normals(self.settings.stretch);
         let folds = self.random.unit() < self.settings.folds;
@@ -119,11 +119,21 @@ impl Feed {
         let fold_mm = self.random.between(least_mm, most_mm);
         PaperMove { motion, stretch, fold_mm: folds.then_some(fold_mm) }
     }
+
+    /// Somebody fits the paper by hand, so that it lies straight up to a first move's walk and turn. Gives
+    /// where what lay under a place of the machine lies now.
+    pub fn fit(&mut self) -> FrameTransform {
+        let before = pose(self.turn_rad, self.walk_mm);
+        [self.walk_mm, _] = self.random.normals(self.settings.walk_mm[1]);
+        let [turn_rad, _] = self.random.normals(self.settings.turn_rad[1]);
+        self.turn_rad = turn_rad.clamp(-self.settings.most_turn_rad, self.settings.most_turn_rad);
+        pose(self.turn_rad, self.walk_mm).after(&before.inverse())
+    }
 }
 
 /// Paper that is turned and has walked sideways; numbers that are none leave it straight.
 fn pose(turn_rad: f64, walk_mm: f64) -> FrameTransform {
-    FrameTransform::new(turn_rad, Vec2::new(0.0, walk_mm)).unwrap_or(FrameTransform::IDENTITY)
+    FrameTransform::new(turn_rad, Vec2::new(walk_mm, 0.0)).unwrap_or(FrameTransform::IDENTITY)
 }
 
 #[cfg(test)]
@@ -141,8 +151,8 @@ mod tests {
             ..FeedSettings::default()
         };
         let mut feed = Feed::new(perfect, 3);
-        let moved = feed.next_move(1_800.0);
-        assert_eq!(moved.motion.to_machine(Point::new(1_820.0, 500.0)), Point::new(20.0, 500.0));
+        let moved = feed.next_move(950.0);
+        assert_eq!(moved.motion.to_machine(Point::new(500.0, 970.0)), Point::new(500.0, 20.0));
         assert_eq!((moved.stretch, moved.fold_mm), (0.0, None));
     }
 
@@ -151,7 +161,7 @@ mod tests {
         let mut feed = Feed::new(FeedSettings { folds: 0.1, ..FeedSettings::default() }, 1);
         let (mut most_walk_mm, mut most_turn_rad, mut folds) = (0.0_f64, 0.0_f64, 0);
         for _ in 0..1_000 {
-            folds += u32::from(feed.next_move(1_800.0).fold_mm.is_some());
+            folds += u32::from(feed.next_move(950.0).fold_mm.is_some());
             most_walk_mm = most_walk_mm.max(feed.walk_mm().abs());
             most_turn_rad = most_turn_rad.max(feed.turn_rad().abs());
         }

@@ -1,20 +1,26 @@
 //! [`LongSheet`]: a sheet of any length, simulated from frame to frame.
 
 use super::noise::Noise;
-use super::{Feed, FeedSettings, JoinError, JoinFrames, Joined, PaperEdge, SensedJoint, SensorNoise};
-use crate::{Anchor, AnchorSettings, Chain, Crossing, Drift, FrameTransform, JointSigma, Optics};
+use super::{
+    Feed, FeedSettings, JoinError, JoinFrames, Joined, PaperEdge, PaperMove, SensedJoint, SensorNoise,
+};
+use crate::field::EDGE_BESIDE_MM;
+use crate::{
+    Anchor, Chain, Crossing, Field, FrameTransform, Optics,
+    joint::{AnchorSettings, Drift, JointSigma},
+    marks::{DrawnStrip, frame_ops},
+};
 use alloc::vec::Vec;
-use plotter_motion::{Axis, Point, Vec2};
+use core::f64::consts::FRAC_1_SQRT_2;
+use plotter_motion::{Axis, PlotOp, Point, Vec2};
 
-/// The edge of the paper lies this far below the drawing, mm.
-const EDGE_BELOW_MM: f64 = 30.0;
-
-/// Where in a frame the edge is looked for, as shares of its length: near both ends, where it tells a turn best.
+/// Where in a frame both edges are looked for, as shares of its length: near both ends, where it tells a turn
+/// best.
 const EDGE_SCANS: [f64; 8] = [0.02, 0.13, 0.24, 0.35, 0.74, 0.85, 0.96, 1.07];
 
 /// What the joint of a method that does not say how well it knows it is taken for by the anchor: a tact's way, evenly spread, over the
 /// distance of both Y scans.
-const PUBLISHED_SIGMA: JointSigma = JointSigma { lateral_mm: 0.17, angle_rad: 1.4e-4 };
+const PUBLISHED_SIGMA: JointSigma = JointSigma { lateral_mm: 0.17, angle_rad: 1.2e-4 };
 
 /// What a simulated sheet is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,29 +36,23 @@ pub struct SheetSettings {
     pub optics: Optics,
     /// How far its sensing is from an ideal one.
     pub noise: SensorNoise,
-    /// Standard deviation of the bends of the paper's edge, mm.
+    /// Standard deviation of the bends of the paper's edges, mm.
     pub edge_mm: f64,
-    /// Length of a frame along the sheet, mm.
-    pub frame_mm: f64,
-    /// Where on the table each frame begins, mm.
-    pub begin_mm: f64,
-    /// Height of the frame, which is the length of a joint, mm.
-    pub height_mm: f64,
+    /// Where on the table each frame lies.
+    pub field: Field,
     /// The most that lines may be moved at a joint to keep the drawing along the edge, mm; 0 for a sheet without an anchor.
     pub anchor_mm: f64,
 }
 
 impl Default for SheetSettings {
-    /// The documented textile plotter with the paper's edge as anchor.
+    /// The documented textile plotter with the paper's edges as anchor.
     fn default() -> Self {
         Self {
             feed: FeedSettings::default(),
             optics: Optics::default(),
             noise: SensorNoise::default(),
             edge_mm: 0.1,
-            frame_mm: 1_800.0,
-            begin_mm: 20.0,
-            height_mm: 1_000.0,
+            field: Field::default(),
             anchor_mm: 0.01,
         }
     }
@@ -89,7 +89,7 @@ impl JointReport {
 /// tells how the next frame lies. An endless row of joints; the same seed gives the same ones.
 ///
 /// ```
-/// use plotter_stitch::{LongSheet, ReferenceLines, SearchSettings, SheetSettings, StripJoin};
+/// use plotter_stitch::{LongSheet, ReferenceLines, SheetSettings, StripJoin, sense::SearchSettings};
 ///
 /// let join = StripJoin::new(&ReferenceLines::strip16(), SearchSettings::default());
 /// let mut sheet = LongSheet::new(SheetSettings::default(), join, 1)?;
@@ -101,16 +101,44 @@ impl JointReport {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LongSheet<M> {
-    settings: SheetSettings,
-    method: M,
-    feed: Feed,
-    edge: PaperEdge,
-    random: Noise,
+    pub(super) settings: SheetSettings,
+    pub(super) method: M,
+    pub(super) feed: Feed,
+    edges: [PaperEdge; 2],
+    pub(super) random: Noise,
     anchor: Option<Anchor>,
     /// How the last frame was drawn on the table.
-    drawn: FrameTransform,
+    pub(super) drawn: FrameTransform,
     /// Where it lies on the sheet.
     chain: Chain,
+    /// The lines of the frame before the joint, at its end.
+    strip: DrawnStrip,
+    /// Whether the last frame has been drawn; a blank one has no lines.
+    is_drawn: bool,
+    /// The frame change under way.
+    pub(super) change: Option<Change>,
+    /// How far to the right of its place the right border was at the joint before, and at this one, mm.
+    pub(super) x_border2_mm: [f64; 2],
+    /// The marks' greatest residual, mm, where the procedure tells it.
+    pub(super) residual_mm: Option<f64>,
+    /// Probes drawn in the coming frame, in its coordinates.
+    pub(super) probes: Vec<[Point; 2]>,
+    /// Whether the paper must be fitted before anything else is drawn.
+    pub(super) is_stopped: bool,
+    /// Whether it is known how the coming frame lies.
+    is_joined: bool,
+}
+
+/// A frame change, and what was before it, so that it can be measured again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Change {
+    /// How the lines of the frame before lie now.
+    pub(super) truth: FrameTransform,
+    stretch: f64,
+    pub(super) fold_mm: Option<f64>,
+    drawn: FrameTransform,
+    chain: Chain,
+    anchor: Option<Anchor>,
 }
 
 impl<M: JoinFrames> LongSheet<M> {
@@ -122,26 +150,35 @@ impl<M: JoinFrames> LongSheet<M> {
     pub fn new(settings: SheetSettings, method: M, seed: u64) -> Result<Self, JoinError> {
         let mut random = Noise::new(seed);
         let feed = Feed::new(settings.feed, random.bits());
-        let edge = PaperEdge::new(settings.edge_mm, random.bits());
+        let edges = [0, 1].map(|_| PaperEdge::new(settings.edge_mm, random.bits()));
         let mut sheet = Self {
             settings,
             method,
             feed,
-            edge,
+            edges,
             random,
             anchor: None,
             drawn: FrameTransform::IDENTITY,
             chain: Chain::new(),
+            strip: DrawnStrip::new(&settings.field),
+            is_drawn: false,
+            change: None,
+            x_border2_mm: [0.0; 2],
+            residual_mm: None,
+            probes: Vec::new(),
+            is_stopped: false,
+            is_joined: true,
         };
         if settings.anchor_mm > 0.0 {
             let anchoring = AnchorSettings {
-                frame_mm: settings.frame_mm,
+                frame_mm: settings.field.frame_mm,
                 joint: sheet.joint(),
                 most_mm: settings.anchor_mm,
-                // Bends, and the head's own reading of them.
-                edge_sigma_mm: libm::hypot(settings.edge_mm, settings.noise.texture_mm).max(1e-3),
+                // Bends, and the head's own reading of them; the middle of both edges is off by less.
+                edge_sigma_mm: (libm::hypot(settings.edge_mm, settings.noise.texture_mm) * FRAC_1_SQRT_2)
+                    .max(1e-3),
             };
-            let seen = sheet.see_edge(&FrameTransform::IDENTITY);
+            let seen = sheet.see_middle(&FrameTransform::IDENTITY);
             let (anchor, first) = Anchor::new(anchoring, &seen).map_err(JoinError::Transform)?;
             sheet.anchor = Some(anchor);
             sheet.drawn = first;
@@ -153,8 +190,7 @@ impl<M: JoinFrames> LongSheet<M> {
     /// Both ends of the joint, in the frame's own place on the table, mm.
     #[must_use]
     pub fn joint(&self) -> [Point; 2] {
-        let SheetSettings { begin_mm, height_mm, .. } = self.settings;
-        [Point::new(begin_mm, 0.0), Point::new(begin_mm, height_mm)]
+        self.settings.field.joint()
     }
 
     /// How the last frame was drawn.
@@ -163,46 +199,139 @@ impl<M: JoinFrames> LongSheet<M> {
         self.drawn
     }
 
-    /// Moves the paper on, looks for the marks, and draws the next frame.
+    /// Draws the last frame: finds places for its marks among its lines, which are given in the frame's
+    /// coordinates, and tells what the machine does, in order: marks with their pen, if any, then the frame.
+    /// A frame for which this is not called is blank.
     ///
     /// # Errors
     ///
-    /// [`JoinError`]: the marks were not found or do not agree. Nothing is drawn then, and the paper has moved: no line can be
-    /// joined to this sheet any more.
+    /// [`JoinError::Marks`]: a mark has no place; [`JoinError::Stopped`]: the paper has folded;
+    /// [`JoinError::Unjoined`]: it is not known how it lies. Nothing must be drawn.
+    pub fn draw<I: Iterator<Item = PlotOp>, F: Fn() -> I>(
+        &mut self,
+        pen: Option<u8>,
+        frame: F,
+    ) -> Result<impl Iterator<Item = PlotOp> + use<I, F, M>, JoinError> {
+        self.may_go_on()?;
+        self.method = self.marks_of(&frame)?;
+        self.strip = DrawnStrip::new(&self.settings.field);
+        frame().for_each(|op| self.strip.push(op));
+        self.is_drawn = true;
+        Ok(frame_ops(&self.settings.field, &self.drawn, self.method.strokes(), pen, frame()))
+    }
+
+    /// The procedure with its marks at the end of a frame.
+    pub(super) fn marks_of<I: Iterator<Item = PlotOp>>(
+        &self,
+        frame: &impl Fn() -> I,
+    ) -> Result<M, JoinError> {
+        let mut strip = DrawnStrip::new(&self.settings.field);
+        frame().for_each(|op| strip.push(op));
+        let mut method = self.method.clone();
+        method.place(&strip).map_err(JoinError::Marks)?;
+        Ok(method)
+    }
+
+    /// The scans over the last frame's marks, as if the paper were moved as it should be.
+    #[must_use]
+    pub fn crossings(&self) -> &[Crossing] {
+        self.method.crossings()
+    }
+
+    /// The strokes of the last frame's marks, where they are looked for, in the machine's coordinates.
+    #[must_use]
+    pub fn strokes(&self) -> Vec<[Point; 2]> {
+        self.method.strokes()
+    }
+
+    /// Moves the paper on, looks for the marks, and tells how the next frame lies.
+    ///
+    /// # Errors
+    ///
+    /// [`JoinError`]: the marks were not found or do not agree. The paper has moved, and nothing more is
+    /// drawn or moved until [`measure_anew`](Self::measure_anew) tells how it lies. [`JoinError::Stopped`]
+    /// and [`JoinError::Unjoined`]: it was so before, and the paper has not moved.
     pub fn next_joint(&mut self) -> Result<JointReport, JoinError> {
-        let frame_mm = self.settings.frame_mm;
+        self.may_go_on()?;
+        let frame_mm = self.settings.field.frame_mm;
         // The machine knows how far off the last frame was, and moves the paper by as much more.
-        let moved = self.feed.next_move(frame_mm + self.drawn.shift().x);
+        let moved = self.feed.next_move(frame_mm + self.drawn.shift().y);
         let before = moved.motion.after(&self.drawn);
         let truth = FrameTransform::new(
             before.angle_rad(),
-            before.to_machine(Point::new(frame_mm, 0.0)) - Point::ORIGIN,
+            before.to_machine(Point::new(0.0, frame_mm)) - Point::ORIGIN,
         )
         .map_err(JoinError::Transform)?;
+        if !core::mem::take(&mut self.is_drawn) {
+            self.strip = DrawnStrip::new(&self.settings.field);
+        }
+        self.probes.clear();
+        self.x_border2_mm[0] = self.x_border2_mm[1];
+        let Self { drawn, chain, anchor, .. } = *self;
+        let PaperMove { stretch, fold_mm, .. } = moved;
+        self.change = Some(Change { truth, stretch, fold_mm, drawn, chain, anchor });
+        self.measure()
+    }
 
+    /// Refuses where nothing must be drawn or moved.
+    pub(super) const fn may_go_on(&self) -> Result<(), JoinError> {
+        match (self.is_stopped, self.is_joined) {
+            (true, _) => Err(JoinError::Stopped),
+            (false, false) => Err(JoinError::Unjoined),
+            (false, true) => Ok(()),
+        }
+    }
+
+    /// Looks for the marks anew, after a search that failed or was broken off: somebody has cleaned the
+    /// sensor or drawn a mark after.
+    ///
+    /// # Errors
+    ///
+    /// As [`next_joint`](Self::next_joint); [`JoinError::NoJoint`] before the first one.
+    pub fn measure_anew(&mut self) -> Result<JointReport, JoinError> {
+        self.measure()
+    }
+
+    /// Looks for the marks, as often as is asked, and tells how the frame lies.
+    pub(super) fn measure(&mut self) -> Result<JointReport, JoinError> {
+        self.is_joined = self.change.is_none();
+        let Change { truth, stretch, fold_mm, drawn, chain, anchor } =
+            self.change.ok_or(JoinError::NoJoint)?;
+        (self.drawn, self.chain, self.anchor) = (drawn, chain, anchor);
+        let frame_mm = self.settings.field.frame_mm;
         // The head looks where the last frame lay across the table.
-        let view = Vec2::new(0.0, self.drawn.shift().y);
+        let view = Vec2::new(self.drawn.shift().x, 0.0);
         let seen =
             FrameTransform::new(truth.angle_rad(), truth.shift() - view).map_err(JoinError::Transform)?;
         let stretched: Vec<Crossing> =
-            self.method.crossings().iter().map(|crossing| self.stretched(*crossing, moved.stretch)).collect();
+            self.method.crossings().iter().map(|crossing| self.stretched(*crossing, stretch)).collect();
         let SheetSettings { optics, noise, .. } = self.settings;
-        let mut joint = SensedJoint::new(&stretched, &seen, optics, noise, self.random.bits());
+        let mut joint = SensedJoint::new(&stretched, &seen, optics, noise, self.random.bits()).with_drawing(
+            &stretched,
+            &seen,
+            self.strip.lines(),
+        );
         let joined = self.method.join(&mut joint)?;
         let transform = FrameTransform::new(joined.transform.angle_rad(), joined.transform.shift() + view)
             .map_err(JoinError::Transform)?;
-        let joined = Joined { transform, ..joined };
+        let [_, corner] = self.joint();
+        // On the table, not from where the head looked.
+        let x_border2_mm =
+            joined.x_border2_mm.map_or(transform.to_machine(corner).x - corner.x, |mm| mm + view.x);
+        let joined = Joined { transform, x_border2_mm: Some(x_border2_mm), ..joined };
+        (self.x_border2_mm[1], self.residual_mm) = (x_border2_mm, joined.residual_mm);
 
-        let offset = FrameTransform::new(0.0, Vec2::new(frame_mm, 0.0)).map_err(JoinError::Transform)?;
-        let edge = self.see_edge(&truth.after(&offset.inverse()).after(&self.chain.pose().inverse()));
+        let offset = FrameTransform::new(0.0, Vec2::new(0.0, frame_mm)).map_err(JoinError::Transform)?;
+        let middle = self.see_middle(&truth.after(&offset.inverse()).after(&self.chain.pose().inverse()));
         let drawn = self.anchor.as_mut().map_or(transform, |anchor| {
-            anchor.steer(&transform, joined.sigma.unwrap_or(PUBLISHED_SIGMA), &edge)
+            anchor.steer(&transform, joined.sigma.unwrap_or(PUBLISHED_SIGMA), &middle)
         });
         let moved_by = |place: Point| drawn.to_machine(place).distance(transform.to_machine(place));
         let anchored_mm = self.joint().map(moved_by).into_iter().fold(0.0, f64::max);
         // On the sheet the frame lies where it was drawn, seen from the lines of the one before.
         self.chain.push(&offset.after(&truth.inverse().after(&drawn)));
         self.drawn = drawn;
+        self.is_joined = true;
         Ok(JointReport {
             frame: self.chain.frames(),
             joined,
@@ -210,32 +339,37 @@ impl<M: JoinFrames> LongSheet<M> {
             truth,
             anchored_mm,
             drift: self.chain.drift(frame_mm),
-            fold_mm: moved.fold_mm,
+            fold_mm,
         })
     }
 
-    /// Places of the edge as the head finds them, in the machine's coordinates.
-    fn see_edge(&mut self, sheet_to_machine: &FrameTransform) -> Vec<Point> {
+    /// The paper's middle as the head finds it between both edges, in the machine's coordinates.
+    fn see_middle(&mut self, sheet_to_machine: &FrameTransform) -> Vec<Point> {
+        let Field { left_mm, begin_mm, frame_mm, .. } = self.settings.field;
+        let at_mm = [left_mm - EDGE_BESIDE_MM, self.settings.field.right_mm() + EDGE_BESIDE_MM];
         EDGE_SCANS
             .iter()
             .map(|share| {
-                let x_mm = self.settings.begin_mm + share * self.settings.frame_mm;
-                let along_mm = sheet_to_machine.to_sketch(Point::new(x_mm, -EDGE_BELOW_MM)).x;
-                let edge = Point::new(along_mm, self.edge.off_mm(along_mm) - EDGE_BELOW_MM);
-                let [noise_mm, _] = self.random.normals(self.settings.noise.texture_mm);
-                sheet_to_machine.to_machine(edge) + Vec2::new(0.0, noise_mm)
+                let y_mm = begin_mm + share * frame_mm;
+                let [left, right] = [0, 1].map(|side: usize| {
+                    let along_mm = sheet_to_machine.to_sketch(Point::new(at_mm[side], y_mm)).y;
+                    let edge = Point::new(at_mm[side] + self.edges[side].off_mm(along_mm), along_mm);
+                    let [noise_mm, _] = self.random.normals(self.settings.noise.texture_mm);
+                    sheet_to_machine.to_machine(edge) + Vec2::new(noise_mm, 0.0)
+                });
+                left.lerp(right, 0.5)
             })
             .collect()
     }
 
-    /// A mark as it lies on paper that has become longer along x, from the joint on.
+    /// A mark as it lies on paper that has become longer along y, from the joint on.
     fn stretched(&self, crossing: Crossing, stretch: f64) -> Crossing {
-        let begin_mm = self.settings.begin_mm;
+        let begin_mm = self.settings.field.begin_mm;
         match crossing.axis {
-            Axis::X => {
+            Axis::Y => {
                 Crossing { mark_mm: begin_mm + (crossing.mark_mm - begin_mm) * (1.0 + stretch), ..crossing }
             }
-            Axis::Y => crossing,
+            Axis::X => crossing,
         }
     }
 }

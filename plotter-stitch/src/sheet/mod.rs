@@ -2,14 +2,16 @@
 
 mod edge;
 mod feed;
+mod fold_check;
 mod long_sheet;
 mod method;
-mod noise;
+pub(crate) mod noise;
 mod probe;
 mod sensor;
 
 pub use edge::PaperEdge;
 pub use feed::{Feed, FeedSettings, PaperMove};
+pub use fold_check::FoldCheck;
 pub use long_sheet::{JointReport, LongSheet, SheetSettings};
 pub use method::{JoinError, JoinFrames, Joined, PublishedJoin, StripJoin};
 pub use probe::SensedProbe;

@@ -1,41 +1,34 @@
 //! Random numbers that are the same everywhere.
 
-/// `SplitMix64`: small, fast, and any seed is a good one.
-///
-/// Source: Steele, Lea, Flood, "Fast splittable pseudorandom number generators" (2014).
+use plotter_motion::SplitMix64;
+
+/// Noise of a seed, any of which is a good one.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Noise {
-    state: u64,
+pub(crate) struct Noise {
+    random: SplitMix64,
 }
 
 impl Noise {
-    pub(super) const fn new(seed: u64) -> Self {
-        Self { state: seed }
+    pub(crate) const fn new(seed: u64) -> Self {
+        Self { random: SplitMix64::new(seed) }
     }
 
-    pub(super) fn bits(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+    pub(crate) fn bits(&mut self) -> u64 {
+        self.random.bits()
     }
 
     /// Evenly spread from 0 up to but without 1.
-    pub(super) fn unit(&mut self) -> f64 {
-        // 53 bits: as many as a float has.
-        #[allow(clippy::cast_precision_loss, reason = "53 bits fit exactly")]
-        let bits = (self.bits() >> 11) as f64;
-        bits / 9_007_199_254_740_992.0
+    pub(crate) fn unit(&mut self) -> f64 {
+        self.random.unit()
     }
 
     /// Evenly spread between two numbers.
-    pub(super) fn between(&mut self, from: f64, to: f64) -> f64 {
+    pub(crate) fn between(&mut self, from: f64, to: f64) -> f64 {
         from + (to - from) * self.unit()
     }
 
     /// Two independent normal numbers with that standard deviation (Marsaglia's polar method).
-    pub(super) fn normals(&mut self, sigma: f64) -> [f64; 2] {
+    pub(crate) fn normals(&mut self, sigma: f64) -> [f64; 2] {
         if sigma <= 0.0 {
             return [0.0; 2];
         }

@@ -2,7 +2,11 @@
 
 use super::SensorNoise;
 use super::noise::Noise;
-use crate::{BothEdges, FindLine, Optics, Seen, Sighting, Tact, disc_over_line};
+use crate::{
+    FindLine, Optics, Sighting,
+    fold::Seen,
+    sense::{BothEdges, Tact, disc_over_line},
+};
 
 /// Speed of the scans, mm/s.
 const SPEED_MM_S: f64 = 15.0;
@@ -15,7 +19,7 @@ const REACH_MM: f64 = 3.0;
 /// [`SensorNoise::pen_mm`], and dust lies on the share [`SensorNoise::dust`] of the scans.
 ///
 /// ```
-/// use plotter_stitch::{FoldTest, FoldVerdict, Optics, SensedProbe, SensorNoise};
+/// use plotter_stitch::{FoldTest, FoldVerdict, Optics, sheet::{SensedProbe, SensorNoise}};
 ///
 /// let (optics, noise) = (Optics::default(), SensorNoise::default());
 /// let (once, twice) = SensedProbe::new(0.5, optics, noise, 1).scans();

@@ -1,10 +1,13 @@
 //! What the optical head would see at one joint: rough ink, an unsteady head, dust, marks that are not there.
 
 use super::noise::Noise;
-use crate::{Ask, Crossing, FrameTransform, Optics, Search, SearchError, Tact, disc_over_line};
+use crate::{
+    Crossing, FrameTransform, Optics, Search,
+    sense::{Ask, SearchError, Tact, disc_over_line},
+};
 use alloc::vec::Vec;
 use core::f64::consts::PI;
-use plotter_motion::{Axis, Vec2};
+use plotter_motion::{Axis, Point, Segment, Vec2};
 
 /// How far the simulated sensing is from an ideal one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,9 +71,9 @@ impl SensorNoise {
 ///
 /// ```
 /// use plotter_motion::Vec2;
-/// use plotter_stitch::{
-///     FrameTransform, MarkSearch, Optics, ReferenceLines, RigidFit, SearchSettings, SensedJoint, SensorNoise,
-/// };
+/// use plotter_stitch::{FrameTransform, MarkSearch, Optics, ReferenceLines, RigidFit};
+/// use plotter_stitch::sense::SearchSettings;
+/// use plotter_stitch::sheet::{SensedJoint, SensorNoise};
 ///
 /// let crossings: Vec<_> = ReferenceLines::strip16().crossings().collect();
 /// let sheet = FrameTransform::new(0.0015, Vec2::new(-3.0, 4.0))?;
@@ -88,8 +91,22 @@ pub struct SensedJoint {
     optics: Optics,
     noise: SensorNoise,
     places: Vec<Place>,
+    /// The drawing's own lines near each scan; empty where there is no drawing.
+    ways: Vec<Way>,
+    pen: Vec2,
     random: Noise,
 }
+
+/// Lines of the drawing near a scan, in the machine's coordinates.
+#[derive(Clone, Debug, PartialEq)]
+struct Way {
+    axis: Axis,
+    scan_at_mm: f64,
+    lines: Vec<Segment>,
+}
+
+/// Lines this near to a mark along its scan are kept: a search begins 50 mm before it, mm.
+const WAY_MM: f64 = 120.0;
 
 /// What lies on the way of one scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,7 +160,48 @@ impl SensedJoint {
             Place { ink_mm: (!is_missed).then_some(ink_mm), dust: has_dust.then_some(dust) }
         });
         let places = places.collect();
-        Self { optics, noise, places, random }
+        Self { optics, noise, places, ways: Vec::new(), pen, random }
+    }
+
+    /// The same joint with the frame's own lines on the sheet, as [`DrawnStrip`](crate::marks::DrawnStrip)
+    /// has them.
+    #[must_use]
+    pub fn with_drawing(mut self, crossings: &[Crossing], sheet: &FrameTransform, lines: &[Segment]) -> Self {
+        let near_mm = self.optics.disc_mm + self.optics.line_mm;
+        self.ways = crossings
+            .iter()
+            .map(|crossing| {
+                let place = |along_mm: f64| match crossing.axis {
+                    Axis::X => Point::new(along_mm, crossing.scan_at_mm),
+                    Axis::Y => Point::new(crossing.scan_at_mm, along_mm),
+                };
+                let scan = Segment::new(place(crossing.mark_mm - WAY_MM), place(crossing.mark_mm + WAY_MM));
+                let on_machine = lines.iter().map(|line| {
+                    Segment::new(sheet.to_machine(line.from) + self.pen, sheet.to_machine(line.to) + self.pen)
+                });
+                let lines = on_machine.filter(|line| is_near(line, &scan, near_mm)).collect();
+                Way { axis: crossing.axis, scan_at_mm: crossing.scan_at_mm, lines }
+            })
+            .collect();
+        self
+    }
+
+    /// Share of the disc that the drawing's lines cover.
+    fn drawn(&self, crossing: usize, at_mm: f64) -> f64 {
+        let Some(way) = self.ways.get(crossing) else { return 0.0 };
+        let head = match way.axis {
+            Axis::X => Point::new(at_mm, way.scan_at_mm),
+            Axis::Y => Point::new(way.scan_at_mm, at_mm),
+        };
+        let half_mm = self.optics.line_mm / 2.0;
+        let covered = way.lines.iter().map(|line| {
+            // A short line is taken for a long one where the head is beside it; beyond its ends its round cap
+            // is a strip as well.
+            let apart_mm = line.distance(head);
+            disc_over_line(self.optics.disc_mm, apart_mm - half_mm, apart_mm + half_mm)
+        });
+        // Pieces of one stroke meet: what one covers the next one does not cover again.
+        covered.fold(0.0, f64::max)
     }
 
     /// What the head sees in a tact over one of the crossings; at one that is not there it sees blank paper.
@@ -154,7 +212,8 @@ impl SensedJoint {
         let covered = [0, 1].map(|led: usize| {
             // The noted position is that of a moment later.
             let delay_s = self.optics.led_offset_s[led] - self.optics.latency_s;
-            self.covered(&place, position_mm + servo_mm + velocity_mm_s * delay_s) + signal[led]
+            let at_mm = position_mm + servo_mm + velocity_mm_s * delay_s;
+            (self.covered(&place, at_mm) + self.drawn(crossing, at_mm)).min(1.0) + signal[led]
         });
         let hits = covered.map(|covered| u8::from(covered > self.optics.seen_above));
         Tact { position_mm, hits: hits[0] + hits[1], covered: self.noise.gives_signal.then_some(covered) }
@@ -202,6 +261,18 @@ impl SensedJoint {
             search.arrived()?;
         }
     }
+}
+
+/// Whether two lines come so near to each other that the boxes around them do.
+fn is_near(line: &Segment, scan: &Segment, near_mm: f64) -> bool {
+    let apart = |a: [f64; 2], b: [f64; 2]| a[0].min(a[1]) - b[0].max(b[1]);
+    let ([ax, ay], [bx, by]) = (ends(line), ends(scan));
+    apart(ax, bx).max(apart(bx, ax)).max(apart(ay, by)).max(apart(by, ay)) <= near_mm
+}
+
+/// Both ends' x, and both ends' y.
+fn ends(line: &Segment) -> [[f64; 2]; 2] {
+    [[line.from.x, line.to.x], [line.from.y, line.to.y]]
 }
 
 /// Area that two discs have in common, mm².

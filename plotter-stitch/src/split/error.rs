@@ -24,21 +24,21 @@ pub enum SplitError {
         /// The number.
         value: f64,
     },
-    /// The drawing is wider than the table.
+    /// The drawing is wider than the frame.
     TooWide {
         /// Number of the operation.
         op: u64,
         /// How far to the side, mm.
-        y_mm: f64,
-        /// As far as the table reaches, mm.
-        height_mm: f64,
+        x_mm: f64,
+        /// As far as the frame reaches, mm.
+        width_mm: f64,
     },
     /// Something lies before the first frame.
     BeforeBegin {
         /// Number of the operation.
         op: u64,
         /// How far along the sheet, mm.
-        x_mm: f64,
+        y_mm: f64,
         /// Where the first frame begins, mm.
         begin_mm: f64,
     },
@@ -75,14 +75,14 @@ impl fmt::Display for SplitError {
                     "operation {op}: {value} is no place on a sheet; coordinates must be finite and within ±1e9 mm"
                 )
             }
-            Self::TooWide { op, y_mm, height_mm } => write!(
+            Self::TooWide { op, x_mm, width_mm } => write!(
                 f,
-                "operation {op}: y = {y_mm} mm lies beside the table, which takes 0..={height_mm} mm; turn, move or \
-                 shrink the drawing"
+                "operation {op}: x = {x_mm} mm lies beside the frame, which takes 0..={width_mm} mm, and the paper moves \
+                 along y; turn, move or shrink the drawing"
             ),
-            Self::BeforeBegin { op, x_mm, begin_mm } => write!(
+            Self::BeforeBegin { op, y_mm, begin_mm } => write!(
                 f,
-                "operation {op}: x = {x_mm} mm lies before the first frame, which begins at {begin_mm} mm; let it \
+                "operation {op}: y = {y_mm} mm lies before the first frame, which begins at {begin_mm} mm; let it \
                  begin there"
             ),
             Self::OutOfOrder { op, frame } => write!(

@@ -21,14 +21,14 @@ use plotter_motion::PlotOp;
 ///
 /// // A line of 25 mm over frames of 10 mm.
 /// let layout = FrameLayout { frame_mm: 10.0, window_mm: 0.0, ..FrameLayout::default() };
-/// let line = [PlotOp::Draw { to: Point::new(25.0, 5.0), feed_mm_s: None }];
+/// let line = [PlotOp::Draw { to: Point::new(5.0, 25.0), feed_mm_s: None }];
 /// let frames: Vec<_> = Frames::new(line, layout).collect::<Result<_, _>>()?;
 /// assert_eq!(frames.len(), 3);
 ///
-/// // It is at y = 2 where it crosses x = 10; the second frame has its own coordinates.
+/// // It is at x = 2 where it crosses y = 10; the second frame has its own coordinates.
 /// let ops: Vec<PlotOp> = frames[1].ops().collect();
-/// assert_eq!(ops[0], PlotOp::Travel { to: Point::new(0.0, 2.0) });
-/// assert_eq!(ops[1], PlotOp::Draw { to: Point::new(10.0, 4.0), feed_mm_s: None });
+/// assert_eq!(ops[0], PlotOp::Travel { to: Point::new(2.0, 0.0) });
+/// assert_eq!(ops[1], PlotOp::Draw { to: Point::new(4.0, 10.0), feed_mm_s: None });
 /// assert_eq!(frames[0].end_breaks(), frames[1].begin_breaks());
 /// # Ok::<(), plotter_stitch::SplitError>(())
 /// ```
@@ -108,11 +108,11 @@ impl<I: Iterator<Item = PlotOp>> Iterator for Frames<I> {
 ///
 /// ```
 /// use plotter_motion::{PlotOp, Point};
-/// use plotter_stitch::{FrameLayout, FramePasses};
+/// use plotter_stitch::{FrameLayout, split::FramePasses};
 ///
 /// // From the third frame back into the first: no order to stream in.
 /// let layout = FrameLayout { frame_mm: 10.0, window_mm: 0.0, ..FrameLayout::default() };
-/// let ops = [PlotOp::Travel { to: Point::new(25.0, 5.0) }, PlotOp::Draw { to: Point::new(5.0, 1.0), feed_mm_s: None }];
+/// let ops = [PlotOp::Travel { to: Point::new(5.0, 25.0) }, PlotOp::Draw { to: Point::new(1.0, 5.0), feed_mm_s: None }];
 /// let passes = FramePasses::new(|| ops, layout);
 /// let lengths: Vec<usize> = passes.map(|frame| Ok(frame?.ops().count())).collect::<Result<_, plotter_stitch::SplitError>>()?;
 /// assert_eq!(lengths, [2, 2, 2]); // in each a travel and a line

@@ -226,19 +226,19 @@ impl Gatherer {
         };
         for t in [part.t0, part.t1].into_iter().filter(|t| *t > 0.0 && *t < 1.0) {
             let place = span.at(t);
-            note(frame, place, place.x > middle_mm);
+            note(frame, place, place.y > middle_mm);
         }
         if let Some(Zone::Frame(before)) =
             comes_from.filter(|zone| *zone != Zone::Frame(frame) && part.t0 <= 0.0)
         {
             let place = span.at(0.0);
-            note(frame, place, place.x > middle_mm);
-            note(before, place, place.x <= middle_mm);
+            note(frame, place, place.y > middle_mm);
+            note(before, place, place.y <= middle_mm);
         }
     }
 
     fn side(&self, border: u32, place: Point) -> Side {
-        if place.x < self.layout.border_mm(border) { Side::Before } else { Side::After }
+        if place.y < self.layout.border_mm(border) { Side::Before } else { Side::After }
     }
 
     /// Whether the frame takes something; an error if it comes too late.
@@ -257,7 +257,7 @@ impl Gatherer {
     /// A pause belongs to the frame over which the pen stands, or the nearest one that is still open and drawn in.
     fn pause(&mut self, op: PlotOp) {
         self.order += 1;
-        let frame = self.layout.frame_at(self.at.x).min(self.last.unwrap_or(0));
+        let frame = self.layout.frame_at(self.at.y).min(self.last.unwrap_or(0));
         let frame = match self.wanted {
             Wanted::From(first) => frame.max(first),
             Wanted::Only(only) if only != frame => return,
@@ -300,28 +300,28 @@ impl Gatherer {
             }
             _ => {}
         }
-        let (begin_mm, height_mm) = (self.layout.begin_mm, self.layout.height_mm);
+        let (begin_mm, width_mm) = (self.layout.begin_mm, self.layout.width_mm);
         let lies_on_table =
-            |(least, most): &(Point, Point)| least.y >= 0.0 && most.y <= height_mm && least.x >= begin_mm;
+            |(least, most): &(Point, Point)| least.x >= 0.0 && most.x <= width_mm && least.y >= begin_mm;
         let mut bounds = span.bounds();
         let end_mm = self.last.map_or(f64::NEG_INFINITY, |last| self.layout.border_mm(last + 1));
-        if !lies_on_table(&bounds) || bounds.1.x >= end_mm {
+        if !lies_on_table(&bounds) || bounds.1.y >= end_mm {
             bounds = span.exact_bounds();
         }
         if !lies_on_table(&bounds) {
             /// What an arc's rounded ends let its bulge reach beyond an edge, mm.
             const ROUNDING_MM: f64 = 1e-6;
             let (least, most) = bounds;
-            if least.y < -ROUNDING_MM || most.y > height_mm + ROUNDING_MM {
-                let y_mm = if most.y > height_mm { most.y } else { least.y };
-                return Err(SplitError::TooWide { op, y_mm, height_mm });
+            if least.x < -ROUNDING_MM || most.x > width_mm + ROUNDING_MM {
+                let x_mm = if most.x > width_mm { most.x } else { least.x };
+                return Err(SplitError::TooWide { op, x_mm, width_mm });
             }
-            if least.x < begin_mm - ROUNDING_MM {
-                return Err(SplitError::BeforeBegin { op, x_mm: least.x, begin_mm });
+            if least.y < begin_mm - ROUNDING_MM {
+                return Err(SplitError::BeforeBegin { op, y_mm: least.y, begin_mm });
             }
         }
-        if bounds.1.x >= end_mm {
-            self.last = Some(self.layout.frame_at(bounds.1.x));
+        if bounds.1.y >= end_mm {
+            self.last = Some(self.layout.frame_at(bounds.1.y));
         }
         Ok(())
     }

@@ -8,18 +8,23 @@ const FARTHEST_MM: f64 = 1e9;
 /// Shortest frame, mm: a shorter one is shorter than what is read at its change.
 const SHORTEST_FRAME_MM: f64 = 10.0;
 
-/// How a sheet is divided into frames along x.
+/// How a sheet is divided into frames along y, the way of the paper.
 ///
 /// ```text
-///     y
-///     ▲ frame 0        ┊ frame 1        ┊ frame 2
-///     │              ░░┊░░            ░░┊░░            ░ the window: here a break point may lie
-///     └──────────────░░┼░░────────────░░┼░░─────────▶ x
-///     begin_mm         begin_mm + frame_mm
+///  y ▲
+///    │   frame 2
+///    ├─────────────── begin_mm + 2 frame_mm
+///    │░░░░░░░░░░░░░░░                          ░ the window around a border: here a break point may lie
+///    │   frame 1
+///    │░░░░░░░░░░░░░░░
+///    ├─────────────── begin_mm + frame_mm
+///    │░░░░░░░░░░░░░░░
+///    │   frame 0
+///    └─────────────── begin_mm        ▶ x, 0 to width_mm
 /// ```
 ///
-/// The default suits the documented textile plotter: 1800 x 1000 mm on a table of 2000 x 1000 mm. So 200 mm of the frame
-/// before stay in reach after the sheet has moved on, with the reference lines in it.
+/// The default suits the documented textile plotter, whose table is 2000 mm wide and takes 1000 mm of the
+/// paper's length: fields of 1980 x 950 mm. So the head still reaches the last 70 mm of the frame before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FrameLayout {
@@ -27,8 +32,8 @@ pub struct FrameLayout {
     pub begin_mm: f64,
     /// Length of each frame along the sheet, mm; 10 or more.
     pub frame_mm: f64,
-    /// What is drawn lies between y = 0 and this, mm.
-    pub height_mm: f64,
+    /// What is drawn lies between x = 0 and this, mm: any width that the paper has.
+    pub width_mm: f64,
     /// How far from the border a line may be cut, mm, up to a quarter of the frame; 0 cuts at the border itself. The table
     /// must reach this far beyond the frame on both sides.
     pub window_mm: f64,
@@ -38,7 +43,7 @@ pub struct FrameLayout {
 
 impl Default for FrameLayout {
     fn default() -> Self {
-        Self { begin_mm: 0.0, frame_mm: 1_800.0, height_mm: 1_000.0, window_mm: 5.0, clear_mm: 1.0 }
+        Self { begin_mm: 0.0, frame_mm: 950.0, width_mm: 1_980.0, window_mm: 5.0, clear_mm: 1.0 }
     }
 }
 
@@ -47,7 +52,7 @@ impl FrameLayout {
     ///
     /// ```
     /// # use plotter_stitch::FrameLayout;
-    /// assert_eq!(FrameLayout::default().border_mm(1000), 1_800_000.0); // 1.8 km
+    /// assert_eq!(FrameLayout::default().border_mm(2000), 1_900_000.0); // 1.9 km
     /// ```
     #[must_use]
     pub fn border_mm(&self, index: u32) -> f64 {
@@ -60,7 +65,7 @@ impl FrameLayout {
         for (quantity, value, least, most) in [
             ("begin_mm", self.begin_mm, -FARTHEST_MM, FARTHEST_MM),
             ("frame_mm", self.frame_mm, SHORTEST_FRAME_MM, FARTHEST_MM),
-            ("height_mm", self.height_mm, f64::MIN_POSITIVE, FARTHEST_MM),
+            ("width_mm", self.width_mm, f64::MIN_POSITIVE, FARTHEST_MM),
             ("window_mm", self.window_mm, 0.0, quarter_mm),
             ("clear_mm", self.clear_mm, 0.0, quarter_mm),
         ] {
@@ -72,14 +77,14 @@ impl FrameLayout {
         Ok(())
     }
 
-    /// The greatest x that is taken, mm.
+    /// The greatest coordinate that is taken, mm.
     pub(super) fn farthest_mm(&self) -> f64 {
         FARTHEST_MM
     }
 
-    /// The frame in which x lies without regard to the window; a border belongs to the frame that it begins.
-    pub(super) fn frame_at(&self, x_mm: f64) -> u32 {
-        let share = libm::floor((x_mm - self.begin_mm) / self.frame_mm);
+    /// The frame in which y lies without regard to the window; a border belongs to the frame that it begins.
+    pub(super) fn frame_at(&self, y_mm: f64) -> u32 {
+        let share = libm::floor((y_mm - self.begin_mm) / self.frame_mm);
         // What is divided rounds; the borders themselves decide.
         #[expect(
             clippy::cast_possible_truncation,
@@ -87,9 +92,9 @@ impl FrameLayout {
             reason = "clamped to what u32 holds"
         )]
         let guess = share.clamp(0.0, f64::from(u32::MAX - 1)) as u32;
-        if guess > 0 && x_mm < self.border_mm(guess) {
+        if guess > 0 && y_mm < self.border_mm(guess) {
             guess - 1
-        } else if x_mm >= self.border_mm(guess + 1) {
+        } else if y_mm >= self.border_mm(guess + 1) {
             guess + 1
         } else {
             guess

@@ -90,9 +90,9 @@ impl Pieces {
 
 /// What is drawn in one frame.
 ///
-/// Its operations are in *the frame's coordinates*: x from its left border, y from the edge of the table. They can be
-/// taken to the machine by a [`FrameTransform`](crate::FrameTransform). Pens, powers and speeds are those of the drawing, chosen
-/// again in each frame; strokes are in the order of the drawing.
+/// Its operations are in *the frame's coordinates*: x from the left of its field, y from its beginning. They
+/// can be taken to the machine by a [`FrameTransform`](crate::FrameTransform). Pens, powers and speeds are
+/// those of the drawing, chosen again in each frame; strokes are in the order of the drawing.
 #[derive(Clone, Debug)]
 pub struct Frame {
     index: u32,
@@ -107,7 +107,7 @@ impl Frame {
         self.index
     }
 
-    /// Where its left border lies on the sheet, mm.
+    /// Where its beginning lies on the sheet, mm along the paper.
     #[must_use]
     pub const fn begin_mm(&self) -> f64 {
         self.begin_mm
@@ -134,7 +134,7 @@ impl Frame {
 
     /// The operations, in the frame's coordinates, from the pen lifted at the frame's origin.
     pub fn ops(&self) -> impl Iterator<Item = PlotOp> + '_ {
-        let by = Vec2::new(-self.begin_mm, 0.0);
+        let by = Vec2::new(0.0, -self.begin_mm);
         self.sheet_ops().map(move |op| moved(op, by))
     }
 

@@ -150,13 +150,14 @@ impl Span {
         (least, most)
     }
 
-    /// Between two of these, and between 0 and the first, x rises or falls throughout: ends with 1.
+    /// Between two of these, and between 0 and the first, y rises or falls throughout: ends with 1.
     pub(super) fn turning_points(&self) -> TurningPoints {
         let mut points = TurningPoints { at: [1.0; MOST_TURNS], len: 0 };
         if let Shape::Arc(arc) = self.shape {
             let begin_rad = libm::atan2(arc.out.y, arc.out.x);
-            // Quarter turns: those of a half turn are the circle's own extremes, and between two of them a spiral has
-            // one at most (tan φ (1 + g t) s = g has one root, since the left side is monotone where its sign fits).
+            // Quarter turns: those of a half turn are the circle's own extremes, and between two of them a
+            // spiral has one at most (cot φ (1 + g t) s = -g has one root, since the left side is monotone
+            // where its sign fits).
             let first = libm::ceil(begin_rad.min(begin_rad + arc.sweep_rad) / FRAC_PI_2);
             let mut quarters = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
                 .map(|quarter: f64| ((first + quarter) * FRAC_PI_2 - begin_rad) / arc.sweep_rad);
@@ -180,24 +181,24 @@ impl Span {
         points
     }
 
-    /// Where, between `t0` and `t1`, x is `x_mm`: x rises or falls throughout between them, past `x_mm`.
-    pub(super) fn crossing(&self, t0: f64, t1: f64, x_mm: f64) -> f64 {
+    /// Where, between `t0` and `t1`, y is `y_mm`: y rises or falls throughout between them, past `y_mm`.
+    pub(super) fn crossing(&self, t0: f64, t1: f64, y_mm: f64) -> f64 {
         match self.shape {
-            Shape::Line { to } => ((x_mm - self.from.x) / (to.x - self.from.x)).clamp(t0, t1),
+            Shape::Line { to } => ((y_mm - self.from.y) / (to.y - self.from.y)).clamp(t0, t1),
             Shape::Arc(_) => {
-                let rises = self.at(t1).x > self.at(t0).x;
-                bisect(t0, t1, |t| (self.at(t).x < x_mm) == rises)
+                let rises = self.at(t1).y > self.at(t0).y;
+                bisect(t0, t1, |t| (self.at(t).y < y_mm) == rises)
             }
         }
     }
 }
 
 impl Arc {
-    /// Where between `t0` and `t1` the derivative of x changes its sign.
+    /// Where between `t0` and `t1` the derivative of y changes its sign.
     fn extreme_between(&self, t0: f64, t1: f64) -> Option<f64> {
         let slope = |t: f64| {
             let out = self.out.rotated(self.sweep_rad * t);
-            self.growth * out.x - (1.0 + self.growth * t) * self.sweep_rad * out.y
+            self.growth * out.y + (1.0 + self.growth * t) * self.sweep_rad * out.x
         };
         let (begins, ends) = (slope(t0) > 0.0, slope(t1) > 0.0);
         (begins != ends).then(|| bisect(t0, t1, |t| (slope(t) > 0.0) == begins))
@@ -259,19 +260,19 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_turns_where_it_is_farthest_left_and_right() {
-        // From the top, counter-clockwise: left at a quarter, right at three quarters.
-        let circle = arc(Point::new(0.0, 5.0), Point::ORIGIN, TAU, 0.0);
+    fn a_circle_turns_where_it_is_highest_and_lowest() {
+        // From the right, counter-clockwise: highest at a quarter, lowest at three quarters.
+        let circle = arc(Point::new(5.0, 0.0), Point::ORIGIN, TAU, 0.0);
         let extremes: std::vec::Vec<f64> = circle.turning_points().iter().collect();
         for t in [0.25, 0.75] {
             assert!(extremes.iter().any(|found| (found - t).abs() < 1e-12), "{extremes:?}");
         }
         let (least, most) = circle.exact_bounds();
-        assert!((least.x + 5.0).abs() < 1e-12 && (most.x - 5.0).abs() < 1e-12);
+        assert!((least.y + 5.0).abs() < 1e-12 && (most.y - 5.0).abs() < 1e-12);
     }
 
     #[test]
-    fn between_turning_points_x_is_monotone() {
+    fn between_turning_points_y_is_monotone() {
         for (sweep_rad, growth) in [(TAU, 0.0), (-TAU, 3.0), (5.0, -0.9), (-4.0, 0.5), (0.3, 2.0)] {
             for begin in 0..24 {
                 let from = Point::new(10.0, 0.0) - Point::ORIGIN;
@@ -279,14 +280,14 @@ mod tests {
                 let span = arc(from, Point::ORIGIN, sweep_rad, growth);
                 let mut before = 0.0;
                 for end in span.turning_points().iter() {
-                    let rises = span.at(end).x > span.at(before).x;
-                    let mut x = span.at(before).x;
+                    let rises = span.at(end).y > span.at(before).y;
+                    let mut y = span.at(before).y;
                     for step in 1..=50 {
-                        let next = span.at(before + (end - before) * f64::from(step) / 50.0).x;
+                        let next = span.at(before + (end - before) * f64::from(step) / 50.0).y;
                         /// What the root of the derivative is off by shows squared.
                         const ROUNDING_MM: f64 = 1e-12;
-                        assert!(if rises { next >= x - ROUNDING_MM } else { next <= x + ROUNDING_MM });
-                        x = next;
+                        assert!(if rises { next >= y - ROUNDING_MM } else { next <= y + ROUNDING_MM });
+                        y = next;
                     }
                     before = end;
                 }
@@ -310,7 +311,7 @@ mod tests {
 
     #[test]
     fn half_a_half_turn_is_a_quarter() {
-        let half = arc(Point::new(2.0, 0.0), Point::ORIGIN, PI, 0.0);
+        let half = arc(Point::new(0.0, 2.0), Point::ORIGIN, PI, 0.0);
         assert!((half.crossing(0.0, 1.0, 0.0) - 0.5).abs() < 1e-15);
         let PlotOp::DrawArc { sweep_rad, .. } = half.part(0.0, 0.5) else { panic!("an arc stays one") };
         assert!((sweep_rad - FRAC_PI_2).abs() < 1e-15);

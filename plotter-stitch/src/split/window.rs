@@ -132,7 +132,7 @@ impl Window {
             let Some(first) = parts.first() else { continue };
             let begins_before = match (run.entry, run.exit) {
                 (Some(side), _) | (None, Some(side)) => side == Side::Before,
-                (None, None) => first.span.at(first.t0).x < border_mm,
+                (None, None) => first.span.at(first.t0).y < border_mm,
             };
             let cut =
                 if needs_cut(run) { best_cut(layout, border_mm, parts, index, &neighbours) } else { None };
@@ -207,8 +207,8 @@ fn best_cut(
         let mut consider = |t: f64| {
             let way_mm = begin_mm + part.span.length_mm(part.t0, t);
             let place = part.span.at(t);
-            let far = libm::fabs(place.x - border_mm) / layout.window_mm;
-            let across = part.span.heading(t).map_or(1.0, |heading| libm::fabs(heading.x));
+            let far = libm::fabs(place.y - border_mm) / layout.window_mm;
+            let across = part.span.heading(t).map_or(1.0, |heading| libm::fabs(heading.y));
             let mut cost = FAR_COST * far + SHALLOW_COST * (1.0 - across);
             let is_worse = |cost: f64| best.is_some_and(|best| cost >= best.cost);
             if is_worse(cost) {
@@ -233,8 +233,8 @@ fn best_cut(
         while number <= steps {
             let next = if number + 1.0 < steps { part.t0 + step * (number + 1.0) } else { part.t1 };
             consider(t);
-            let (x, next_x) = (part.span.at(t).x, part.span.at(next).x);
-            if (x < border_mm) != (next_x < border_mm) {
+            let (y, next_y) = (part.span.at(t).y, part.span.at(next).y);
+            if (y < border_mm) != (next_y < border_mm) {
                 consider(part.span.crossing(t, next, border_mm));
             }
             t = next;

@@ -3,7 +3,7 @@
 use super::FrameLayout;
 use super::span::Span;
 
-/// A stretch of the sheet along x: the inside of a frame, or the window around a border.
+/// A stretch of the sheet along y: the inside of a frame, or the window around a border.
 ///
 /// ```text
 ///      frame 0      ░ 1 ░      frame 1      ░ 2 ░      frame 2
@@ -82,10 +82,10 @@ impl Zones {
         if window > 0.0 { Zone::Border(next) } else { Zone::Frame(last) }
     }
 
-    /// Whether a span reaches beyond a zone to the right.
+    /// Whether a span reaches beyond a zone towards larger y.
     pub(super) fn goes_beyond(&self, span: &Span, zone: Zone) -> bool {
         let (_, end) = self.ends(zone);
-        span.bounds().1.x >= end && span.exact_bounds().1.x >= end
+        span.bounds().1.y >= end && span.exact_bounds().1.y >= end
     }
 
     /// Gives the parts of a span from its start to its end, each as long as it can be.
@@ -96,11 +96,11 @@ impl Zones {
     ) -> Result<(), E> {
         let (least, most) = span.bounds();
         let (zone, low, high) = self.last;
-        if least.x > low && most.x < high {
+        if least.y > low && most.y < high {
             return each(Part { zone, t0: 0.0, t1: 1.0 });
         }
         let (wanted_low, wanted_high) = self.wanted;
-        if most.x < wanted_low || least.x > wanted_high {
+        if most.y < wanted_low || least.y > wanted_high {
             return Ok(());
         }
         let mut pending: Option<Part> = None;
@@ -122,19 +122,19 @@ impl Zones {
     /// The zone in which a span ends that has no part at its end, though that lies where something is wanted: it came as far, and
     /// no farther.
     pub(super) fn end_zone(&self, span: &Span) -> Option<Zone> {
-        let x = span.at(1.0).x;
+        let y = span.at(1.0).y;
         let (wanted_low, wanted_high) = self.wanted;
-        if x < wanted_low || x > wanted_high {
+        if y < wanted_low || y > wanted_high {
             return None;
         }
         let mut before = (0.0, 0.0);
         span.turning_points().iter().for_each(|t| before = (before.1, t));
-        let rises = x > span.at(before.0).x;
-        let (zone, low, _) = self.locate(x, x);
-        Some(if rises && x <= low { self.next(zone, false) } else { zone })
+        let rises = y > span.at(before.0).y;
+        let (zone, low, _) = self.locate(y, y);
+        Some(if rises && y <= low { self.next(zone, false) } else { zone })
     }
 
-    /// The parts of a stretch on which x rises or falls throughout.
+    /// The parts of a stretch on which y rises or falls throughout.
     fn monotone<E>(
         &mut self,
         span: &Span,
@@ -142,24 +142,24 @@ impl Zones {
         t1: f64,
         give: &mut impl FnMut(Part) -> Result<(), E>,
     ) -> Result<(), E> {
-        let (begin_x, end_x) = (span.at(t0).x, span.at(t1).x);
+        let (begin_y, end_y) = (span.at(t0).y, span.at(t1).y);
         let (wanted_low, wanted_high) = self.wanted;
-        let rises = end_x > begin_x;
-        let (entry_x, exit_x) = if rises { (wanted_low, wanted_high) } else { (wanted_high, wanted_low) };
-        let is_past = |x: f64, limit: f64| if rises { x > limit } else { x < limit };
-        if is_past(begin_x, exit_x) || is_past(entry_x, end_x) {
+        let rises = end_y > begin_y;
+        let (entry_y, exit_y) = if rises { (wanted_low, wanted_high) } else { (wanted_high, wanted_low) };
+        let is_past = |y: f64, limit: f64| if rises { y > limit } else { y < limit };
+        if is_past(begin_y, exit_y) || is_past(entry_y, end_y) {
             return Ok(());
         }
         let mut from = t0;
-        let mut x = begin_x;
-        if is_past(entry_x, begin_x) {
-            from = span.crossing(t0, t1, entry_x);
-            x = entry_x;
+        let mut y = begin_y;
+        if is_past(entry_y, begin_y) {
+            from = span.crossing(t0, t1, entry_y);
+            y = entry_y;
         }
-        let (mut zone, mut low, mut high) = self.locate(x, end_x);
+        let (mut zone, mut low, mut high) = self.locate(y, end_y);
         loop {
             let end = if rises { high } else { low };
-            if !is_past(end_x, end) {
+            if !is_past(end_y, end) {
                 self.last = (zone, low, high);
                 // One that ends where the wanted begins has no length there.
                 return if from < t1 { give(Part { zone, t0: from, t1 }) } else { Ok(()) };
@@ -170,7 +170,7 @@ impl Zones {
                 give(Part { zone, t0: from, t1: to })?;
             }
             from = to;
-            if !is_past(exit_x, end) {
+            if !is_past(exit_y, end) {
                 return Ok(());
             }
             zone = self.next(zone, rises);
@@ -178,19 +178,19 @@ impl Zones {
         }
     }
 
-    /// The zone at x on the way towards another x, with its ends.
-    fn locate(&self, x: f64, towards: f64) -> (Zone, f64, f64) {
-        let frame = self.layout.frame_at(x);
+    /// The zone at y on the way towards another y, with its ends.
+    fn locate(&self, y: f64, towards: f64) -> (Zone, f64, f64) {
+        let frame = self.layout.frame_at(y);
         let window = self.layout.window_mm;
-        let mut zone = if frame > 0 && x < self.layout.border_mm(frame) + window {
+        let mut zone = if frame > 0 && y < self.layout.border_mm(frame) + window {
             Zone::Border(frame)
-        } else if window > 0.0 && x >= self.layout.border_mm(frame + 1) - window {
+        } else if window > 0.0 && y >= self.layout.border_mm(frame + 1) - window {
             Zone::Border(frame + 1)
         } else {
             Zone::Frame(frame)
         };
         let (mut low, mut high) = self.ends(zone);
-        if towards < x && x <= low {
+        if towards < y && y <= low {
             zone = self.next(zone, false);
             (low, high) = self.ends(zone);
         }
@@ -211,7 +211,7 @@ impl Zones {
         }
     }
 
-    /// The zone after one, to the right or to the left. Without a window frames follow on frames.
+    /// The zone after one, towards larger or smaller y. Without a window frames follow on frames.
     fn next(&self, zone: Zone, rises: bool) -> Zone {
         let has_window = self.layout.window_mm > 0.0;
         match (zone, rises) {
@@ -246,8 +246,8 @@ mod tests {
         FrameLayout { frame_mm: 100.0, window_mm, ..FrameLayout::default() }
     }
 
-    fn line(x: f64) -> PlotOp {
-        PlotOp::Draw { to: Point::new(x, 0.0), feed_mm_s: None }
+    fn line(y: f64) -> PlotOp {
+        PlotOp::Draw { to: Point::new(0.0, y), feed_mm_s: None }
     }
 
     #[test]
@@ -259,7 +259,7 @@ mod tests {
             there,
             [(Frame(0), 0.0, 0.45), (Border(1), 0.45, 0.55), (Frame(1), 0.55, 0.95), (Border(2), 0.95, 1.0)]
         );
-        let back = parts(zones, Point::new(110.0, 0.0), line(10.0));
+        let back = parts(zones, Point::new(0.0, 110.0), line(10.0));
         assert_eq!(back, [(Border(1), 0.0, 0.2), (Frame(0), 0.2, 1.0)]);
         assert_eq!(
             parts(Zones::all(layout(0.0)), Point::ORIGIN, line(200.0)),
@@ -277,14 +277,15 @@ mod tests {
 
     #[test]
     fn an_arc_that_bulges_over_a_border_comes_back() {
-        // A half circle of radius 20 about (90, 0), from below to above: within x > 100 for 60 degrees either side.
+        // A half circle of radius 20 about (0, 90), from right to left: within y > 100 for 60 degrees either
+        // side.
         let op = PlotOp::DrawArc {
-            centre: Point::new(90.0, 0.0),
+            centre: Point::new(0.0, 90.0),
             sweep_rad: core::f64::consts::PI,
-            to: Point::new(90.0, 20.0),
+            to: Point::new(-20.0, 90.0),
             feed_mm_s: None,
         };
-        let found = parts(Zones::all(layout(0.0)), Point::new(90.0, -20.0), op);
+        let found = parts(Zones::all(layout(0.0)), Point::new(20.0, 90.0), op);
         let zones: Vec<Zone> = found.iter().map(|part| part.0).collect();
         assert_eq!(zones, [Zone::Frame(0), Zone::Frame(1), Zone::Frame(0)]);
         assert!(

@@ -97,14 +97,14 @@ fn steps() -> impl Iterator<Item = FrameTransform> {
         (state >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
     };
     std::iter::repeat_with(move || {
-        FrameTransform::new(0.002 * unit(), Vec2::new(1_800.0 + 5.0 * unit(), 5.0 * unit())).unwrap()
+        FrameTransform::new(0.002 * unit(), Vec2::new(5.0 * unit(), 950.0 + 5.0 * unit())).unwrap()
     })
 }
 
 #[test]
 fn ten_thousand_frames_end_within_a_millionth_of_a_millimetre() {
     const ALLOWED_MM: f64 = 1e-6;
-    let corner = Point::new(1_800.0, 1_000.0);
+    let corner = Point::new(1_980.0, 950.0);
     let (mut chain, mut exact) = (Chain::new(), Exact::FIRST);
     let mut plain = FrameTransform::IDENTITY;
     let (mut worst_mm, mut worst_plain_mm) = (0.0_f64, 0.0_f64);
@@ -120,7 +120,7 @@ fn ten_thousand_frames_end_within_a_millionth_of_a_millimetre() {
         worst_mm = worst_mm.max(off_mm(chain.to_sheet(corner)));
         worst_plain_mm = worst_plain_mm.max(off_mm(plain.to_machine(corner)));
     }
-    println!("after 10000 frames (18 km): chain {worst_mm:.2e} mm, plain products {worst_plain_mm:.2e} mm");
+    println!("after 10000 frames (9.5 km): chain {worst_mm:.2e} mm, plain products {worst_plain_mm:.2e} mm");
     assert!(worst_mm < ALLOWED_MM, "{worst_mm:e} mm");
     // The yardstick itself tells more than f64 does: the plain products are seen to be off.
     assert!(worst_plain_mm > worst_mm);

@@ -1,16 +1,17 @@
 //! A small drawing in its frames, as a picture that one can look at: `tests/golden/split.svg`.
 
 use plotter_motion::{PlotOp, Point};
-use plotter_stitch::{FrameLayout, FramePasses};
+use plotter_stitch::{FrameLayout, split::FramePasses};
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
-/// Across borders at x = 100 and 200: a zigzag with a corner on one, a line that crosses it there, circles, a dot on a border, a
-/// stroke that ends just behind one.
+/// Across borders at y = 100 and 200: a zigzag with a corner on one, a line that crosses it there, circles, a
+/// dot on a border, a stroke that ends just behind one.
 fn drawing() -> Vec<PlotOp> {
-    let travel = |x, y| PlotOp::Travel { to: Point::new(x, y) };
-    let line = |x, y| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
-    let arc = |cx, cy, sweep_rad, x, y| PlotOp::DrawArc {
+    // Written as it lies along the paper: way, then place across it.
+    let travel = |y, x| PlotOp::Travel { to: Point::new(x, y) };
+    let line = |y, x| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
+    let arc = |cy, cx, sweep_rad, y, x| PlotOp::DrawArc {
         centre: Point::new(cx, cy),
         sweep_rad,
         to: Point::new(x, y),
@@ -38,11 +39,11 @@ fn drawing() -> Vec<PlotOp> {
 }
 
 fn picture() -> String {
-    let layout = FrameLayout { frame_mm: 100.0, height_mm: 140.0, window_mm: 8.0, ..FrameLayout::default() };
+    let layout = FrameLayout { frame_mm: 100.0, width_mm: 140.0, window_mm: 8.0, ..FrameLayout::default() };
     let mut svg = String::from(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 -140 300 140\" width=\"900\" height=\"420\">\n\
-         <rect y=\"-140\" width=\"300\" height=\"140\" fill=\"#fff\"/>\n\
-         <path d=\"M100 0V-140M200 0V-140\" stroke=\"#ccc\" stroke-dasharray=\"2 2\"/>\n",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 -300 140 300\" width=\"420\" height=\"900\">\n\
+         <rect y=\"-300\" width=\"140\" height=\"300\" fill=\"#fff\"/>\n\
+         <path d=\"M0 -100H140M0 -200H140\" stroke=\"#ccc\" stroke-dasharray=\"2 2\"/>\n",
     );
     let drawing = drawing();
     for (frame, colour) in

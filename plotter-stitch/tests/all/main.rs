@@ -2,6 +2,7 @@
 //!
 //! `cargo test -p plotter-stitch --test all SUBJECT::` runs those of one.
 
+#![cfg(feature = "alloc")]
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -13,11 +14,16 @@
 mod chain_precision;
 mod golden_split;
 mod joints;
+mod judge;
 mod prop_fold;
 mod prop_frame_transform;
 mod prop_rigid;
 mod prop_split;
 mod serde_readings;
 mod sim_fold;
+mod sim_fold_stop;
 mod sim_joints;
+mod sim_judge;
 mod sim_long_sheet;
+mod sim_marks;
+mod sim_paper;

@@ -1,7 +1,10 @@
 //! Laws of the search for an empty square: none that is found is drawn in, and one is found wherever there is one.
 
 use plotter_motion::{PlotOp, Point, Segment};
-use plotter_stitch::{EmptySquare, FoldDirection, FoldProbe};
+use plotter_stitch::{
+    FoldProbe,
+    fold::{EmptySquare, FoldDirection},
+};
 use proptest::prelude::*;
 
 const FRAME_MM: f64 = 400.0;

@@ -1,7 +1,10 @@
 //! Laws of the transform of a frame: it finds the sheet again, and can be undone.
 
 use plotter_motion::{Point, Vec2};
-use plotter_stitch::{FrameReadings, FrameTransform, Reading, Residual, TransformError};
+use plotter_stitch::{
+    FrameReadings, FrameTransform, Reading,
+    joint::{Residual, TransformError},
+};
 use proptest::prelude::*;
 
 /// Greatest rotation of a sheet that the source met, rad.
@@ -94,9 +97,9 @@ proptest! {
     #[test]
     fn the_residual_of_the_true_transform_is_zero(sheet in sheets()) {
         let readings = read(&sheet);
-        prop_assert!(Residual::of(&sheet, &readings).max_mm() < ROUNDING_MM);
+        prop_assert!(Residual::between(&sheet, &readings).max_mm() < ROUNDING_MM);
         let found = FrameTransform::from_readings(&readings).unwrap();
-        prop_assert!(Residual::of(&found, &readings).max_mm() <= stated_error_mm() + ROUNDING_MM);
+        prop_assert!(Residual::between(&found, &readings).max_mm() <= stated_error_mm() + ROUNDING_MM);
     }
 
     /// One line misread by `wrong_mm` shows in the residual: the second border with all of it.
@@ -105,7 +108,7 @@ proptest! {
         let mut readings = read(&sheet);
         readings.x_border2.found_mm += wrong_mm;
         let found = FrameTransform::from_readings(&readings).unwrap();
-        let residual = Residual::of(&found, &readings);
+        let residual = Residual::between(&found, &readings);
         prop_assert!((residual.x_border2_mm - wrong_mm).abs() <= stated_error_mm() + ROUNDING_MM);
     }
 

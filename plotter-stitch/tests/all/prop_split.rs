@@ -1,15 +1,15 @@
 //! Laws of dividing a drawing into frames, on drawings made by chance.
 
 use plotter_motion::{PlotOp, Point, Vec2};
-use plotter_stitch::{Frame, FrameLayout, FramePasses, Frames, SplitError};
+use plotter_stitch::{Frame, FrameLayout, Frames, SplitError, split::FramePasses};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-const HEIGHT_MM: f64 = 300.0;
+const WIDTH_MM: f64 = 300.0;
 
 fn layout(window_mm: f64) -> FrameLayout {
-    FrameLayout { begin_mm: 0.0, frame_mm: 100.0, height_mm: HEIGHT_MM, window_mm, clear_mm: 1.0 }
+    FrameLayout { begin_mm: 0.0, frame_mm: 100.0, width_mm: WIDTH_MM, window_mm, clear_mm: 1.0 }
 }
 
 /// What a stroke does next, relative to where it is.
@@ -41,7 +41,7 @@ fn steps() -> impl Strategy<Value = Step> {
 /// Strokes with their pens. The places are on multiples of a quarter millimetre, so that many lie on borders.
 fn strokes() -> impl Strategy<Value = Vec<(u8, Point, Vec<Step>)>> {
     let begin =
-        (0_u32..3_600, 0_u32..1_200).prop_map(|(x, y)| Point::new(f64::from(x) / 4.0, f64::from(y) / 4.0));
+        (0_u32..1_200, 0_u32..3_600).prop_map(|(x, y)| Point::new(f64::from(x) / 4.0, f64::from(y) / 4.0));
     prop::collection::vec((1_u8..4, begin, prop::collection::vec(steps(), 1..12)), 1..12)
 }
 
@@ -56,7 +56,7 @@ fn ops_of(strokes: &[(u8, Point, Vec<Step>)]) -> Vec<PlotOp> {
         for step in steps {
             count += 1;
             let feed_mm_s = Some(f64::from(count));
-            let is_on_table = |place: Point| place.x >= 0.0 && (0.0..=HEIGHT_MM).contains(&place.y);
+            let is_on_table = |place: Point| place.y >= 0.0 && (0.0..=WIDTH_MM).contains(&place.x);
             match *step {
                 Step::Line(by) => {
                     let to = at + by;
@@ -197,14 +197,14 @@ proptest! {
             let mut at = Point::ORIGIN;
             for (op, local) in frame.sheet_ops().zip(frame.ops()) {
                 if let (Some(to), Some(local)) = (op.target(), local.target()) {
-                    prop_assert_eq!(Point::new(local.x + frame.begin_mm(), local.y), to);
+                    prop_assert_eq!(Point::new(local.x, local.y + frame.begin_mm()), to);
                     let mut places = vec![to];
                     if let PlotOp::DrawArc { centre, sweep_rad, .. } = op {
                         places.extend((1..20).map(|n| centre + (at - centre).rotated(sweep_rad * f64::from(n) / 20.0)));
                     }
                     for place in places {
                         prop_assert!(
-                            place.x >= low - ROUNDING_MM && place.x <= high + ROUNDING_MM,
+                            place.y >= low - ROUNDING_MM && place.y <= high + ROUNDING_MM,
                             "frame {} at {:?}", index, place
                         );
                     }
@@ -233,7 +233,7 @@ proptest! {
     /// borders and on the ends of windows.
     #[test]
     fn a_stroke_goes_over_at_break_points_only(
-        places in prop::collection::vec((0_u32..80, 0_u32..60), 2..20),
+        places in prop::collection::vec((0_u32..60, 0_u32..80), 2..20),
         window_mm in windows(),
     ) {
         let places: Vec<Point> =
@@ -282,7 +282,7 @@ proptest! {
     /// Strokes that go back by no more than a frame's length give the same frames in one pass as in many.
     #[test]
     fn one_pass_gives_the_frames_of_many(mut strokes in strokes(), window_mm in windows()) {
-        strokes.sort_by(|a, b| a.1.x.total_cmp(&b.1.x));
+        strokes.sort_by(|a, b| a.1.y.total_cmp(&b.1.y));
         let layout = layout(window_mm);
         let mut farthest_mm = f64::NEG_INFINITY;
         strokes.retain(|stroke| {
@@ -290,14 +290,14 @@ proptest! {
             let mut at = Point::ORIGIN;
             for op in ops_of(std::slice::from_ref(stroke)) {
                 if let PlotOp::DrawArc { centre, .. } = op {
-                    let reach = Vec2::new(at.distance(centre), 0.0);
+                    let reach = Vec2::new(0.0, at.distance(centre));
                     places.extend([centre + reach, centre - reach]);
                 }
                 at = op.target().unwrap_or(at);
                 places.push(at);
             }
-            let least_mm = places[1..].iter().map(|place| place.x).fold(f64::INFINITY, f64::min);
-            let most_mm = places.iter().map(|place| place.x).fold(f64::NEG_INFINITY, f64::max);
+            let least_mm = places[1..].iter().map(|place| place.y).fold(f64::INFINITY, f64::min);
+            let most_mm = places.iter().map(|place| place.y).fold(f64::NEG_INFINITY, f64::max);
             let is_near = least_mm > farthest_mm.max(most_mm) - layout.frame_mm;
             if is_near {
                 farthest_mm = farthest_mm.max(most_mm);

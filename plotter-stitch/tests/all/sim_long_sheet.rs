@@ -1,7 +1,9 @@
 //! Whole sheets, frame by frame, with both procedures: what is left at the joints, and how far the drawing drifts.
 
 use plotter_stitch::{
-    JoinFrames, LongSheet, PublishedJoin, ReferenceLines, SearchSettings, SheetSettings, StripJoin,
+    LongSheet, ReferenceLines, SheetSettings, StripJoin,
+    sense::SearchSettings,
+    sheet::{JoinFrames, PublishedJoin},
 };
 
 /// What became of a sheet.
@@ -84,10 +86,10 @@ fn the_same_seed_draws_the_same_sheet() {
 }
 
 #[test]
-#[ignore = "12 sheets of 1.8 km with each procedure, for the table in docs/results.md; run by .ci/run"]
+#[ignore = "12 sheets of 1.8 km, 1895 joints each, with each procedure, for the table in docs/results.md; run by .ci/run"]
 fn sheets_of_1800_m() {
     const SHEETS: u64 = 12;
-    const JOINTS: u32 = 1_000;
+    const JOINTS: u32 = 1_895;
     println!("procedure            joint rms   worst   drift rms    worst   added at a joint   failed");
     let print = |name: &str, outcomes: &[Outcome]| {
         let mean =
@@ -108,7 +110,8 @@ fn sheets_of_1800_m() {
     print("ours, no anchor", &all(&|seed| ours(0.0, seed, JOINTS)));
     let anchored = all(&|seed| ours(0.01, seed, JOINTS));
     print("ours", &anchored);
-    assert!(
-        anchored.iter().all(|o| o.worst_drift_mm <= 3.0 && o.worst_anchored_mm <= 0.01 && o.failures == 0)
-    );
+    // A sheet begins in a direction that a metre of edge tells, and is turned from it by 1e-5 rad a frame:
+    // that is where it is off most.
+    assert!(anchored.iter().all(|o| o.last_drift_mm.abs() <= 3.0 && o.worst_drift_mm <= 3.0));
+    assert!(anchored.iter().all(|o| o.worst_anchored_mm <= 0.01 && o.failures == 0));
 }

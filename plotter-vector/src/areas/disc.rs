@@ -4,7 +4,7 @@
 //! for the same run of rows, so the rows are joined once and shifted once a column. Words that a vertical run
 //! already rules out, or that lie deep inside black, are not looked at any further.
 
-use crate::Bitmap;
+use crate::picture::Bitmap;
 use core::ops::Range;
 
 /// Pixels in a word.
@@ -24,14 +24,14 @@ pub(super) struct Disc {
 
 /// Where a disc fits: the upper left pixel of its box, for every place at which all its pixels are ink.
 #[derive(Clone, Debug)]
-pub(super) struct Places {
+pub(super) struct Erosion {
     /// Upper left pixels.
     pub(super) corners: Bitmap,
     /// Rows with a place in them.
     rows: Vec<bool>,
 }
 
-impl Places {
+impl Erosion {
     fn row(&self, y: usize) -> &[u64] {
         if self.rows.get(y) == Some(&true) { self.corners.row(index(y)) } else { &[] }
     }
@@ -125,9 +125,9 @@ impl Disc {
     }
 
     /// Where the disc fits into the ink (erosion). Outside the picture is paper.
-    pub(super) fn places(&self, ink: &Bitmap) -> Places {
+    pub(super) fn places(&self, ink: &Bitmap) -> Erosion {
         let height = ink.height() as usize;
-        let mut places = Places { corners: empty_like(ink), rows: vec![false; height] };
+        let mut places = Erosion { corners: empty_like(ink), rows: vec![false; height] };
         let words = ink.row(0).len();
         let (mut out, mut scratch) = (vec![0; words], Vec::new());
         vertical_runs(ink, self.side, |y, run| {
@@ -195,7 +195,7 @@ impl Disc {
     }
 
     /// The ink that discs at these places cover (opening: dilation of the erosion).
-    pub(super) fn cover(&self, ink: &Bitmap, places: &Places) -> Bitmap {
+    pub(super) fn cover(&self, ink: &Bitmap, places: &Erosion) -> Bitmap {
         let mut covered = empty_like(ink);
         let words = ink.row(0).len();
         // For each word how many of the last `side` rows have a place in it.
@@ -223,7 +223,7 @@ impl Disc {
     fn cover_row(
         &self,
         ink: &[u64],
-        places: &Places,
+        places: &Erosion,
         y: usize,
         near: &[u32],
         out: &mut [u64],
@@ -251,7 +251,7 @@ impl Disc {
     fn cover_words(
         &self,
         ink: &[u64],
-        places: &Places,
+        places: &Erosion,
         y: usize,
         from: usize,
         out: &mut [u64],
@@ -396,7 +396,7 @@ fn vertical_runs(ink: &Bitmap, side: usize, mut found: impl FnMut(usize, &[u64])
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Pixel;
+    use crate::picture::Pixel;
 
     fn picture(disc: &Disc) -> String {
         let mut picture = Bitmap::new(index(disc.side), index(disc.side)).unwrap();

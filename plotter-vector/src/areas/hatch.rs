@@ -6,7 +6,7 @@
 //!    └┐ └────┘ ┌┘   between neighbouring lines lead from one line to the next without leaving the area.
 //! ```
 
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// How an area is hatched. The lines' distance from the picture's corner is the same in all areas, so that bands and
 /// neighbours fit together.
@@ -70,7 +70,7 @@ impl Hatch {
         let angles = [Some(self.angle_rad), self.cross.then_some(self.angle_rad + right_angle)];
         let sets = angles.into_iter().flatten().map(|angle_rad| {
             let axes = Axes { sin: libm::sin(angle_rad), cos: libm::cos(angle_rad), pitch_px: self.pitch_px };
-            Lines::new(axes, borders).strokes(self, pen_px)
+            HatchLines::new(axes, borders).strokes(self, pen_px)
         });
         sets.flatten().collect()
     }
@@ -107,7 +107,7 @@ impl Axes {
 }
 
 /// All crossings of one set of lines with the borders.
-struct Lines<'a> {
+struct HatchLines<'a> {
     axes: Axes,
     borders: &'a [Vec<PxPoint>],
     crossings: Vec<Crossing>,
@@ -121,7 +121,7 @@ struct Lines<'a> {
     uncrossed: Vec<usize>,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> HatchLines<'a> {
     fn new(axes: Axes, borders: &'a [Vec<PxPoint>]) -> Self {
         let mut crossings = Vec::new();
         let mut border_of = Vec::new();
@@ -281,7 +281,7 @@ impl<'a> Lines<'a> {
 
 /// The lines while they are joined to strokes.
 struct Zigzag<'a> {
-    lines: &'a Lines<'a>,
+    lines: &'a HatchLines<'a>,
     max_join_px: f64,
     /// By pair of crossings in sorted order.
     is_drawn: Vec<bool>,

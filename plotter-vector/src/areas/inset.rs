@@ -2,7 +2,10 @@
 
 use super::disc::Disc;
 use super::outline::Outlines;
-use crate::{Bitmap, Pixel, PxPoint};
+use crate::{
+    picture::{Bitmap, Pixel},
+    stroke::PxPoint,
+};
 use std::borrow::Cow;
 
 /// From the centre of a paper pixel to its edge, px.
@@ -11,23 +14,23 @@ const TO_EDGE_PX: f64 = 0.5;
 /// The outlines of all ink moved inwards by `inset_px`: dense sites about a pixel apart, closed (the first is not
 /// repeated), outer borders clockwise as seen and holes the other way round.
 ///
-/// A pen of width 2 · `inset_px` whose centre follows them inks the rim of the area and no centre of a paper pixel: every
-/// site is `inset_px` + ½ px away from the nearest one (to within ¼ px, by linear interpolation between pixels). Parts
-/// narrower than that pen have no such path and are left out;
-/// [`split_by_width`](crate::split_by_width()) with `max_line_px` of at least the pen's width keeps them apart, and a
-/// [`Vectorizer`](crate::Vectorizer) draws them along their middle. With 0
-/// (or less, or NaN) the sites are the middles of the pixels' edges, and nothing is left out.
+/// A pen of width 2 · `inset_px` whose centre follows them inks the rim of the area and no centre of a paper
+/// pixel: every site is `inset_px` + ½ px away from the nearest one (to within ¼ px, by linear interpolation
+/// between pixels). Parts narrower than that pen have no such path and are left out;
+/// [`split_by_width`](crate::areas::split_by_width()) with `max_line_px` of at least the pen's width keeps
+/// them apart, and a [`Vectorizer`](crate::trace::Vectorizer) draws them along their middle. With 0 (or less,
+/// or NaN) the sites are the middles of the pixels' edges, and nothing is left out.
 ///
 /// Sources: erosion by a disc for the shape, then the distance to the nearest paper (P.-E. Danielsson, "Euclidean
 /// distance mapping", 1980) at the pixels along its border only.
 ///
 /// ```
-/// # use plotter_vector::{Bitmap, inset_outlines};
+/// # use plotter_vector::{Bitmap, areas::inset_outlines};
 /// let square = Bitmap::from_picture(&"########\n".repeat(8))?;
 /// let [path] = inset_outlines(&square, 2.0).collect::<Vec<_>>().try_into().unwrap();
 /// let left = path.iter().map(|at| at.x).fold(8.0, f64::min);
 /// assert_eq!((path.len(), left), (16, 2.0)); // 4 x 4 px are left
-/// # Ok::<(), plotter_vector::SizeError>(())
+/// # Ok::<(), plotter_vector::picture::SizeError>(())
 /// ```
 pub fn inset_outlines(ink: &Bitmap, inset_px: f64) -> impl Iterator<Item = Vec<PxPoint>> + '_ {
     let radius = pen_radius_px(inset_px);

@@ -1,6 +1,6 @@
 //! [`Islands`]: the rows that areas lie in, a stretch of them at a time.
 
-use crate::{Bitmap, MAX_PIXELS};
+use crate::picture::{Bitmap, MAX_PIXELS};
 
 /// Cuts a picture at its empty rows: what lies in between is drawn by itself, as soon as it is complete.
 ///

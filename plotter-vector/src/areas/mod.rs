@@ -12,9 +12,9 @@ pub use inset::inset_outlines;
 pub(crate) use islands::Islands;
 pub use outline::{Outline, Outlines};
 pub(crate) use split::Opening;
-pub use split::{MAX_LINE_PX, WidthSplit, rows_of_width_context, split_by_width};
+pub use split::{MAX_LINE_PX, WidthSplit, split_by_width};
 
-use crate::{Bitmap, PxPoint};
+use crate::{picture::Bitmap, stroke::PxPoint};
 use core::fmt;
 
 /// What is drawn of an area.
@@ -33,7 +33,7 @@ pub enum AreaStyle {
 /// Draws areas with a pen that has a width.
 ///
 /// ```
-/// # use plotter_vector::{AreaStyle, Areas, Bitmap, Hatch};
+/// # use plotter_vector::{Bitmap, areas::{AreaStyle, Areas, Hatch}};
 /// let square = Bitmap::from_picture(&"############\n".repeat(12))?;
 /// let hatch = Hatch { pitch_px: 2.0, angle_rad: 0.0, ..Hatch::default() };
 /// let areas = Areas { style: AreaStyle::OutlineAndHatch(hatch), pen_px: 2.0 };
@@ -219,9 +219,9 @@ mod tests {
         let hatch = Hatch { angle_rad: 0.5, max_join_px: 0.0, ..Hatch::default() };
         let areas = Areas { style: AreaStyle::Hatch(hatch), pen_px: 2.0 };
         for path in areas.paths(&square).unwrap().filter(|path| path.sites.len() == 2) {
-            let (x, y) = path.sites[1].minus(path.sites[0]);
+            let way = path.sites[1] - path.sites[0];
             // Up is where y falls.
-            assert!((libm::tan(0.5) * x + y).abs() < 1e-6, "{x} {y}");
+            assert!((libm::tan(0.5) * way.x + way.y).abs() < 1e-6, "{way:?}");
         }
     }
 

@@ -10,7 +10,10 @@
 //!
 //! Ink is 8-connected and paper 4-connected: where two ink pixels meet at a corner only, one path goes through both.
 
-use crate::{Bitmap, Gray, Pixel, PxPoint};
+use crate::{
+    picture::{Bitmap, Gray, Pixel},
+    stroke::PxPoint,
+};
 use std::borrow::Cow;
 
 /// Direction of a step along a crack.
@@ -179,11 +182,11 @@ impl Outline {
 /// for starting every border once in a single scan.
 ///
 /// ```
-/// # use plotter_vector::{Bitmap, Outlines};
+/// # use plotter_vector::{Bitmap, areas::Outlines};
 /// let ring = Bitmap::from_picture("###\n#.#\n###\n")?;
 /// let borders: Vec<_> = Outlines::new(&ring).map(|outline| (outline.cracks(), outline.enclosed_px())).collect();
 /// assert_eq!(borders, [(12, 9), (4, -1)]);
-/// # Ok::<(), plotter_vector::SizeError>(())
+/// # Ok::<(), plotter_vector::picture::SizeError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Outlines<'a> {

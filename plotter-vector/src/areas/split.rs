@@ -2,7 +2,7 @@
 
 use super::disc::{Disc, empty_like, index};
 use super::inset::pen_radius_px;
-use crate::Bitmap;
+use crate::picture::Bitmap;
 
 /// Widest line that can be asked for, px: 10.8 mm at 1200 dots per inch. Wider ones act as this one.
 pub const MAX_LINE_PX: u32 = 512;
@@ -14,18 +14,6 @@ pub struct WidthSplit {
     pub thick: Bitmap,
     /// Lines: to be drawn along their centres. One that runs into an area touches it.
     pub thin: Bitmap,
-}
-
-/// Rows above and below a band of a picture that [`split_by_width`] must see for the band to come out as it does in
-/// the whole picture: some 3 · `max_line_px`.
-///
-/// ```
-/// # use plotter_vector::rows_of_width_context;
-/// assert_eq!(rows_of_width_context(24), 76); // 24 for the disc of 25 px, 4 x 13 for what is left beside it
-/// ```
-#[must_use]
-pub fn rows_of_width_context(max_line_px: u32) -> u32 {
-    Opening::of_lines(max_line_px).rows_of_context()
 }
 
 /// Longest leftover that an area keeps, px: half a side of the disc, so that corners down to 60° stay whole.
@@ -47,14 +35,14 @@ const fn absorbed_px(line_px: u32) -> u32 {
 /// Where lines cross, the ink is wider than each of them (1.41 times at a right angle): to keep crossings out of the
 /// areas, ask for 1.5 times the widest line. With 0, all ink is thick.
 ///
-/// Each row depends on [`rows_of_width_context`] rows above and below it only, so bands can be split one by one.
+/// Each row depends on a few rows above and below it only, so bands can be split one by one.
 /// About 20 operations per word of 64 px where nothing is thick, and a few hundred per word along the edge of areas.
 ///
 /// Sources: opening, J. Serra, *Image Analysis and Mathematical Morphology* (1982), ch. II; keeping the shape by growing
 /// back inside the ink, L. Vincent, "Morphological grayscale reconstruction in image analysis" (1993).
 ///
 /// ```
-/// # use plotter_vector::{Bitmap, split_by_width};
+/// # use plotter_vector::{Bitmap, areas::split_by_width};
 /// let ink = Bitmap::from_picture(
 ///     ".#####........\n\
 ///      .#############\n\
@@ -62,7 +50,7 @@ const fn absorbed_px(line_px: u32) -> u32 {
 ///      .#####........\n")?;
 /// let split = split_by_width(&ink, 2);
 /// assert_eq!((split.thick.count(), split.thin.count()), (20, 8));
-/// # Ok::<(), plotter_vector::SizeError>(())
+/// # Ok::<(), plotter_vector::picture::SizeError>(())
 /// ```
 #[must_use]
 pub fn split_by_width(ink: &Bitmap, max_line_px: u32) -> WidthSplit {
@@ -90,8 +78,8 @@ impl Opening {
         }
     }
 
-    /// Areas are what [`inset_outlines`](crate::inset_outlines()) goes around with half of `pen_px`, with leftovers up to
-    /// half a side of the disc; what it leaves out is lines.
+    /// Areas are what [`inset_outlines`](crate::areas::inset_outlines()) goes around with half of `pen_px`,
+    /// with leftovers up to half a side of the disc; what it leaves out is lines.
     pub(crate) fn of_pen(pen_px: f64) -> Self {
         let disc = Disc::of_radius(pen_radius_px(pen_px / 2.0).unwrap_or(0.0));
         let absorbed_px = disc.half();
@@ -188,7 +176,7 @@ impl WidthSplit {
             }
         }
         // A pixel at a line's side may have none behind it; with only line before it, it is no part of the area.
-        let stayed = |layer: &Vec<(Place, u64)>| -> Vec<_> {
+        let stayed = |layer: &Vec<(WordIndex, u64)>| -> Vec<_> {
             layer.iter().map(|(place, bits)| (*place, bits & place.of(&self.thick))).collect()
         };
         let stayed: Vec<_> = layers.iter().skip(1).map(stayed).collect();
@@ -200,7 +188,7 @@ impl WidthSplit {
     }
 
     /// Makes pixels thick.
-    fn take(&mut self, pixels: &[(Place, u64)]) {
+    fn take(&mut self, pixels: &[(WordIndex, u64)]) {
         for (place, bits) in pixels {
             place.add(&mut self.thick, *bits);
             place.remove(&mut self.thin, *bits);
@@ -208,7 +196,7 @@ impl WidthSplit {
     }
 
     /// Makes pixels thin.
-    fn give_back(&mut self, pixels: &[(Place, u64)]) {
+    fn give_back(&mut self, pixels: &[(WordIndex, u64)]) {
         for (place, bits) in pixels {
             place.add(&mut self.thin, *bits);
             place.remove(&mut self.thick, *bits);
@@ -216,7 +204,7 @@ impl WidthSplit {
     }
 
     /// Words with thin ink in rows at most one from a row with areas: the first step cannot reach others.
-    fn thin_words_beside_areas(&self) -> Vec<Place> {
+    fn thin_words_beside_areas(&self) -> Vec<WordIndex> {
         let height = self.thin.height();
         let is_thick: Vec<bool> =
             (0..height).map(|y| self.thick.row(y).iter().any(|bits| *bits != 0)).collect();
@@ -225,8 +213,9 @@ impl WidthSplit {
             let near = is_thick.get(y.saturating_sub(1)..(y + 2).min(is_thick.len())).unwrap_or(&[]);
             if near.contains(&true) {
                 let row = self.thin.row(index(y)).iter().enumerate();
-                words
-                    .extend(row.filter(|(_, bits)| **bits != 0).map(|(word, _)| Place { y: index(y), word }));
+                words.extend(
+                    row.filter(|(_, bits)| **bits != 0).map(|(word, _)| WordIndex { y: index(y), word }),
+                );
             }
         }
         words
@@ -235,12 +224,12 @@ impl WidthSplit {
 
 /// A word of a picture.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct WordIndex {
     y: u32,
     word: usize,
 }
 
-impl Place {
+impl WordIndex {
     fn of(self, picture: &Bitmap) -> u64 {
         picture.row(self.y).get(self.word).copied().unwrap_or(0)
     }
@@ -271,12 +260,12 @@ impl Spread {
     }
 
     /// The pixels of `mask`, in the given words, that touch a pixel of `set`.
-    fn step(words: &[Place], set: &Bitmap, mask: &Bitmap) -> Vec<(Place, u64)> {
+    fn step(words: &[WordIndex], set: &Bitmap, mask: &Bitmap) -> Vec<(WordIndex, u64)> {
         words.iter().filter_map(|place| Self::touching((*place, place.of(mask)), set)).collect()
     }
 
     /// Those of some pixels in a word that touch a pixel of `set`.
-    fn touching((place, pixels): (Place, u64), set: &Bitmap) -> Option<(Place, u64)> {
+    fn touching((place, pixels): (WordIndex, u64), set: &Bitmap) -> Option<(WordIndex, u64)> {
         if pixels == 0 {
             return None;
         }
@@ -292,7 +281,7 @@ impl Spread {
     }
 
     /// The changed words and their neighbours, each once.
-    fn around(&mut self, changed: &[(Place, u64)]) -> Vec<Place> {
+    fn around(&mut self, changed: &[(WordIndex, u64)]) -> Vec<WordIndex> {
         self.round += 1;
         let mut around = Vec::new();
         for (place, _) in changed {
@@ -301,7 +290,7 @@ impl Spread {
                     let listed = self.listed.get_mut(y as usize * self.words + word);
                     if let Some(listed) = listed.filter(|listed| **listed != self.round) {
                         *listed = self.round;
-                        around.push(Place { y, word });
+                        around.push(WordIndex { y, word });
                     }
                 }
             }
@@ -313,6 +302,8 @@ impl Spread {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::Pixel;
+    use proptest::prelude::*;
 
     fn split(text: &str, max_line_px: u32) -> (String, String) {
         let split = split_by_width(&Bitmap::from_picture(text).unwrap(), max_line_px);
@@ -403,6 +394,39 @@ mod tests {
         for (width, height) in [(0, 0), (0, 3), (3, 0), (1, 1)] {
             let split = split_by_width(&Bitmap::new(width, height).unwrap(), u32::MAX);
             assert_eq!((split.thick.count(), split.thin.count()), (0, 0));
+        }
+    }
+
+    /// Bars of all widths, some of them scratched out again.
+    fn bars() -> impl Strategy<Value = Bitmap> {
+        let bar = (0_u32..140, 0_u32..160, 1_u32..60, 1_u32..60, 0..4_u8);
+        proptest::collection::vec(bar, 1..9).prop_map(|bars| {
+            let mut ink = Bitmap::new(140, 160).unwrap();
+            for (left, top, width, height, paper) in bars {
+                for y in top..(top + height).min(160) {
+                    (left..(left + width).min(140)).for_each(|x| ink.set(Pixel::new(x, y), paper != 0));
+                }
+            }
+            ink
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn a_band_with_its_context_is_split_as_in_the_whole(
+            ink in bars(),
+            max_line_px in 0_u32..16,
+            start in 0_u32..140,
+            count in 1_u32..60,
+        ) {
+            let whole = split_by_width(&ink, max_line_px);
+            prop_assert_eq!(Opening::of_lines(24).rows_of_context(), 76); // 24 for the disc of 25 px, 4 x 13 for what is left beside it
+            let context = Opening::of_lines(max_line_px).rows_of_context();
+            let end = (start + count).min(ink.height());
+            let (from, to) = (start.saturating_sub(context), (end + context).min(ink.height()));
+            let band = split_by_width(&ink.band(from..to), max_line_px);
+            prop_assert_eq!(band.thick.band(start - from..end - from), whole.thick.band(start..end));
+            prop_assert_eq!(band.thin.band(start - from..end - from), whole.thin.band(start..end));
         }
     }
 }

@@ -7,7 +7,7 @@ use super::flat::Flat;
 use super::line_map::{LineMap, State};
 use super::lines::{Piece, cosine};
 use super::paper::nearest;
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// Farther than this a line is another one, px.
 const FARTHEST_PX: f64 = 7.0;
@@ -28,13 +28,13 @@ pub(super) fn aligned(
     camera: PxPoint,
     margin_px: f64,
 ) {
-    let dark_at = |at: PxPoint| flat.at(middle.along(at.minus(camera), 1.0));
+    let dark_at = |at: PxPoint| flat.at(middle + (at - camera));
     let mut darks: Vec<f32> =
         pieces.iter().flat_map(|piece| &piece.places).step_by(7).map(|at| dark_at(*at)).collect();
     darks.sort_by(f32::total_cmp);
     let Some(typical) = darks.get(darks.len() / 2).copied() else { return };
     let near = map.near(camera, libm::hypot(middle.x, middle.y));
-    let inside = |id: &u32| flat.holds(middle.along(map.at(*id).minus(camera), 1.0), margin_px + 2.0);
+    let inside = |id: &u32| flat.holds(middle + (map.at(*id) - camera), margin_px + 2.0);
     let vacant: Vec<u32> =
         near.into_iter().filter(inside).filter(|id| dark_at(map.at(*id)) < VACANT * typical).collect();
     let mut moves = Vec::new();
@@ -47,7 +47,7 @@ pub(super) fn aligned(
         let at = map.at(id);
         let beside = pieces.iter().flat_map(|piece| piece.places.windows(2)).filter_map(|pair| {
             let [a, b] = pair else { return None };
-            if a.distance(at) > FARTHEST_PX + 3.0 || cosine(b.minus(*a), direction).abs() < SAME_COS {
+            if a.distance(at) > FARTHEST_PX + 3.0 || cosine(*b - *a, direction).abs() < SAME_COS {
                 return None;
             }
             let foot = nearest(at, *a, *b);

@@ -1,7 +1,7 @@
 //! [`Axes`]: both axes of the table, each with its play: where commands lead, and which commands lead somewhere.
 
 use super::play::Play;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 
 /// An axis that goes back by more has to cross its play, px.
 const TURN_PX: f64 = 0.3;
@@ -40,7 +40,7 @@ impl Axes {
     }
 
     /// All places of the map are found to be so much farther, x first, px.
-    pub(super) fn shift(&mut self, (x, y): (f64, f64)) {
+    pub(super) fn shift(&mut self, PxVec { x, y }: PxVec) {
         self.0[0].shift(x);
         self.0[1].shift(y);
     }
@@ -52,7 +52,7 @@ impl Axes {
 
     /// Whether an axis goes back on the way from one place to another.
     pub(super) fn turns(&self, from: PxPoint, to: PxPoint) -> bool {
-        let (dx, dy) = to.minus(from);
+        let PxVec { x: dx, y: dy } = to - from;
         [dx, dy].iter().zip(&self.0).any(|(way, play)| way * play.side() < -TURN_PX)
     }
 

@@ -4,7 +4,7 @@ use super::centred::BENT_COS;
 use super::corners::{CORNER_COS, SHARP_COS, SQUARE_DARK, crossing, is_bent, reaches, runs, straight};
 use super::flat::Flat;
 use super::lines::cosine;
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 use core::ops::Range;
 
 /// Places of an arm that tell its direction: at least, at most, and how far they may be off a straight line, px.
@@ -63,6 +63,7 @@ mod tests {
     use crate::follow::lines::Lines;
     use crate::follow::paper::nearest;
     use crate::follow::{CameraSettings, Paper, SimulatedCamera};
+    use crate::stroke::PxVec;
 
     /// How far the lines that a window shows are from those that were drawn, at most, px.
     fn off_px(lines: &[(Vec<PxPoint>, f64)], at: PxPoint) -> f64 {
@@ -83,7 +84,7 @@ mod tests {
         let middle = PxPoint::new(150.3, 149.6);
         let ray = |k: u8| {
             let (sin, cos) = f64::sin_cos(0.12 + f64::from(k) * std::f64::consts::TAU / 7.0);
-            (vec![middle, middle.along((cos, sin), 140.0)], 4.0)
+            (vec![middle, middle + PxVec::new(cos, sin) * 140.0], 4.0)
         };
         let off_px = off_px(&(0..7).map(ray).collect::<Vec<_>>(), PxPoint::new(150.0, 150.0));
         assert!(off_px < 0.4, "{off_px}");
@@ -109,8 +110,8 @@ mod tests {
         for turn in [80.0_f64, 90.0, 110.0] {
             let (sin, cos) = f64::sin_cos(turn.to_radians());
             let lines = [
-                (vec![corner, corner.along((cos, sin), 120.0)], 7.0),
-                (vec![corner, corner.along((1.0, 0.0), 120.0)], 3.0),
+                (vec![corner, corner + PxVec::new(cos, sin) * 120.0], 7.0),
+                (vec![corner, corner + PxVec::new(1.0, 0.0) * 120.0], 3.0),
             ];
             let off_px = off_px(&lines, PxPoint::new(160.0, 155.0));
             assert!(off_px < 0.5, "{off_px} at {turn} degrees");

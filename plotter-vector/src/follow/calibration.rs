@@ -8,7 +8,7 @@
 use super::flat::Flat;
 use super::lines::Lines;
 use super::whole::floor;
-use crate::{Gray, PxPoint};
+use crate::{PxVec, picture::Gray, stroke::PxPoint};
 use core::fmt;
 
 /// Terms of a polynomial of the third degree in two variables.
@@ -118,12 +118,13 @@ impl Correction {
         central.sort_by(|a, b| a.1.distance(middle).total_cmp(&b.1.distance(middle)));
         central.truncate(25);
         let affine = |part: &dyn Fn(PxPoint) -> f64| {
-            solved::<3>(central.iter().map(|((i, j), at)| ([1.0, *i, *j], part(*at))))
+            solved::<3>(central.iter().map(|(PxVec { x: i, y: j }, at)| ([1.0, *i, *j], part(*at))))
         };
         let (Some(ax), Some(ay)) = (affine(&|at| at.x), affine(&|at| at.y)) else { return Err(no_grid) };
         let half = 0.5 * f64::from(window.width());
-        let straight =
-            |(i, j): (f64, f64)| PxPoint::new(ax[0] + ax[1] * i + ax[2] * j, ay[0] + ay[1] * i + ay[2] * j);
+        let straight = |PxVec { x: i, y: j }: PxVec| {
+            PxPoint::new(ax[0] + ax[1] * i + ax[2] * j, ay[0] + ay[1] * i + ay[2] * j)
+        };
         let scaled = |at: PxPoint| terms((at.x - middle.x) / half, (at.y - middle.y) / half);
         let fit = |part: &dyn Fn(PxPoint) -> f64| {
             solved::<TERMS>(in_grid.iter().map(|(number, at)| (scaled(straight(*number)), part(*at))))
@@ -245,16 +246,16 @@ fn crossings(lines: &Lines) -> Vec<PxPoint> {
     let steep: Vec<&[PxPoint; 2]> = segments.iter().filter(|segment| !is_level(segment)).collect();
     for [a, b] in segments.iter().filter(is_level) {
         for [c, d] in steep.iter().filter(|[c, _]| c.distance(*a) < 10.0) {
-            let (one, other) = (b.minus(*a), d.minus(*c));
-            let cross = one.0 * other.1 - one.1 * other.0;
-            let between = c.minus(*a);
+            let (one, other) = (*b - *a, *d - *c);
+            let cross = one.cross(other);
+            let between = *c - *a;
             if cross.abs() < 1e-9 {
                 continue;
             }
-            let s = (between.0 * other.1 - between.1 * other.0) / cross;
-            let t = (between.0 * one.1 - between.1 * one.0) / cross;
+            let s = between.cross(other) / cross;
+            let t = between.cross(one) / cross;
             let on = -0.01..=1.01;
-            let at = a.along(one, s);
+            let at = *a + one * s;
             if on.contains(&s) && on.contains(&t) && found.iter().all(|known| known.distance(at) > 4.0) {
                 found.push(at);
             }
@@ -264,7 +265,7 @@ fn crossings(lines: &Lines) -> Vec<PxPoint> {
 }
 
 /// Crossings with their column and row in the grid, from the one nearest to the middle outwards.
-fn numbered(found: &[PxPoint], middle: PxPoint) -> Vec<((f64, f64), PxPoint)> {
+fn numbered(found: &[PxPoint], middle: PxPoint) -> Vec<(PxVec, PxPoint)> {
     let nearest_to = |at: PxPoint, apart: f64| {
         let candidates = found.iter().enumerate().filter(|(_, other)| other.distance(at) > apart);
         candidates.min_by(|(_, a), (_, b)| a.distance(at).total_cmp(&b.distance(at)))
@@ -282,7 +283,7 @@ fn numbered(found: &[PxPoint], middle: PxPoint) -> Vec<((f64, f64), PxPoint)> {
             continue;
         };
         for (next, other) in found.iter().enumerate() {
-            let (dx, dy) = other.minus(*at);
+            let PxVec { x: dx, y: dy } = *other - *at;
             let is_free = numbers.get(next).is_some_and(Option::is_none);
             let near = (0.65 * pitch..1.4 * pitch).contains(&libm::hypot(dx, dy));
             let straight = dx.abs().min(dy.abs()) < 0.5 * dx.abs().max(dy.abs());
@@ -303,7 +304,9 @@ fn numbered(found: &[PxPoint], middle: PxPoint) -> Vec<((f64, f64), PxPoint)> {
         }
     }
     let pairs = numbers.into_iter().zip(found);
-    pairs.filter_map(|(number, at)| number.map(|(i, j)| ((f64::from(i), f64::from(j)), *at))).collect()
+    pairs
+        .filter_map(|(number, at)| number.map(|(i, j)| (PxVec::new(f64::from(i), f64::from(j)), *at)))
+        .collect()
 }
 
 /// Least squares: the coefficients of rows of terms that come nearest to the values; none where the rows do not tell.

@@ -3,13 +3,18 @@
 use super::random::Random;
 use super::whole::level;
 use super::{Lens, Paper};
-use crate::{Gray, PxPoint};
+use crate::{picture::Gray, stroke::PxPoint};
 
 /// Random levels that are drawn from; a power of two.
 const NOISE: usize = 1 << 14;
 
 /// A camera that looks at a drawing: its window, and all that is wrong with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct CameraSettings {
     /// Width of the window, px.
     pub width_px: u32,
@@ -56,7 +61,7 @@ impl Default for CameraSettings {
 /// let window = camera.window(PxPoint::new(200.0, 50.0));
 /// let level = |x, y| window.get(plotter_vector::Pixel::new(x, y)).unwrap();
 /// assert!(level(150, 150) < 20 && level(150, 100) > 200);
-/// # Ok::<(), plotter_vector::GrayError>(())
+/// # Ok::<(), plotter_vector::picture::GrayError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct SimulatedCamera {

@@ -9,7 +9,7 @@ use super::flat::Flat;
 use super::lines::cosine;
 use super::profile::across;
 use super::tips::fitted;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 
 /// A place that moves farther than this, as a share of the line's width, is on another line.
 const FARTHEST_SHARE: f64 = 0.5;
@@ -68,9 +68,9 @@ pub(super) fn widths_px(flat: &Flat, lines: &[Vec<PxPoint>], most_px: f64) -> Ve
 /// The width of the ink across the middle one of three places, px, if it is one line.
 fn width_at(flat: &Flat, three: &[PxPoint], most_px: f64) -> Option<f64> {
     let &[a, at, b] = three else { return None };
-    let (x, y) = b.minus(a);
+    let PxVec { x, y } = b - a;
     let length = libm::hypot(x, y);
-    let cut = across(flat, at, (-y / length.max(1e-9), x / length.max(1e-9)), most_px)?;
+    let cut = across(flat, at, PxVec::new(-y / length.max(1e-9), x / length.max(1e-9)), most_px)?;
     (!cut.is_lopsided).then_some(cut.width_px)
 }
 
@@ -84,18 +84,18 @@ fn centre(flat: &Flat, places: &mut [PxPoint], beside: &[bool], width_px: f64) {
         let before = places.to_vec();
         for (i, three) in before.windows(3).enumerate() {
             let &[a, at, b] = three else { continue };
-            let (x, y) = b.minus(a);
+            let PxVec { x, y } = b - a;
             let length = libm::hypot(x, y);
-            let turns = cosine(at.minus(a), b.minus(at)) < CORNER_COS;
+            let turns = cosine(at - a, b - at) < CORNER_COS;
             if length < 1.0 || turns || stays(i + 1) {
                 continue;
             }
-            let normal = (-y / length, x / length);
+            let normal = PxVec::new(-y / length, x / length);
             let Some(cut) = across(flat, at, normal, width_px) else { continue };
             let is_one = cut.width_px < ONE_LINE * width_px + 0.8 && !cut.is_lopsided;
             if is_one && cut.middle_px.abs() < FARTHEST_SHARE * width_px {
                 if let Some(place) = places.get_mut(i + 1) {
-                    *place = at.along(normal, 0.8 * cut.middle_px);
+                    *place = at + normal * (0.8 * cut.middle_px);
                 }
                 if let Some(sound) = is_sound.get_mut(i + 1) {
                     *sound = true;
@@ -173,9 +173,9 @@ fn between(places: &[PxPoint], first: usize, last: usize) -> Between {
     let are_straight = [before, behind].iter().all(|arm| straight(arm, LONG, STRAIGHT_OFF_PX).is_some());
     let met = crossing(one, other);
     let (Some(from), Some(to)) = (places.get(first), places.get(last)) else { return Between::Straight };
-    let way = to.minus(*from);
-    let off = met.minus(*from);
-    let share = (off.0 * way.0 + off.1 * way.1) / (way.0 * way.0 + way.1 * way.1);
+    let way = *to - *from;
+    let off = met - *from;
+    let share = off.dot(way) / way.length_squared();
     if are_straight && (0.1..0.9).contains(&share) { Between::Corner(met) } else { Between::Straight }
 }
 
@@ -186,7 +186,7 @@ fn curvature_between(arms: [&[PxPoint]; 2]) -> Option<f64> {
     if turn_cos > BENT_COS || !is_bent(arms, [one, other], turn_cos) {
         return None;
     }
-    let side = libm::copysign(1.0, one.1.0 * other.1.1 - one.1.1 * other.1.0);
+    let side = libm::copysign(1.0, one.1.cross(other.1));
     Some(side * libm::acos(turn_cos.clamp(-1.0, 1.0)) / one.0.distance(other.0))
 }
 
@@ -208,30 +208,29 @@ fn bridge(places: &mut [PxPoint], is_sound: &[bool], width_px: f64) {
             places.get(last).copied(),
             places.get(last + 3).copied(),
         ) {
-            let (way, length) = (to.minus(from), from.distance(to));
+            let (way, length) = (to - from, from.distance(to));
             let course = between(places, first, last);
             let least_cos = if let Between::Curve(_) = course { CURVE_COS } else { STRAIGHT_COS };
-            let agree =
-                cosine(from.minus(before), way) > least_cos && cosine(behind.minus(to), way) > least_cos;
+            let agree = cosine(from - before, way) > least_cos && cosine(behind - to, way) > least_cos;
             if agree && length < 8.0 * width_px + 20.0 {
-                let bend = if let Between::Corner(met) = course { met } else { from.along(way, 0.5) };
+                let bend = if let Between::Corner(met) = course { met } else { from + way * 0.5 };
                 let parts = [from.distance(bend), bend.distance(to)];
                 // The middle of a curve is off the straight way by an eighth of its length squared and its curvature.
                 let beside = match course {
                     Between::Curve(curvature) => {
-                        (0.5 * curvature * length * way.1, -0.5 * curvature * length * way.0)
+                        PxVec::new(0.5 * curvature * length * way.y, -0.5 * curvature * length * way.x)
                     }
-                    _ => (0.0, 0.0),
+                    _ => PxVec::default(),
                 };
                 for (k, place) in places.iter_mut().enumerate().take(last).skip(first + 1) {
                     let share = super::lines::count_f64(k - first) / super::lines::count_f64(last - first);
                     let gone = share * (parts[0] + parts[1]);
                     let at = if gone < parts[0] {
-                        from.along(bend.minus(from), gone / parts[0])
+                        from + (bend - from) * (gone / parts[0])
                     } else {
-                        bend.along(to.minus(bend), (gone - parts[0]) / parts[1].max(1e-9))
+                        bend + (to - bend) * ((gone - parts[0]) / parts[1].max(1e-9))
                     };
-                    *place = at.along(beside, share * (1.0 - share));
+                    *place = at + beside * (share * (1.0 - share));
                 }
             }
         }

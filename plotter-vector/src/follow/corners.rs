@@ -2,7 +2,7 @@
 
 use super::flat::Flat;
 use super::lines::cosine;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 use core::ops::Range;
 
 /// A corner turns by more: cosine of 35 degrees.
@@ -53,7 +53,7 @@ pub(super) fn turn(flat: &Flat, places: &mut [PxPoint], in_turn: &[bool], width_
             let (other, parts) =
                 if k < corner { (from, corner + 1 - run.start) } else { (to, run.end - corner) };
             let share = super::lines::count_f64(k.abs_diff(corner)) / super::lines::count_f64(parts);
-            *place = met.along(other.unwrap_or(met).minus(met), share);
+            *place = met + (other.unwrap_or(met) - met) * share;
         }
     }
 }
@@ -72,7 +72,7 @@ fn meeting(
     let before = places.get(first.saturating_sub(fit)..first)?;
     let behind = places.get(end..(end + fit).min(places.len()))?;
     let (one, other) = (straight(before, 4, 0.35)?, straight(behind, 4, 0.35)?);
-    let cross = one.1.0 * other.1.1 - one.1.1 * other.1.0;
+    let cross = one.1.cross(other.1);
     let turn_cos = cosine(one.1, other.1);
     if cross.abs() < 0.05 || turn_cos > CORNER_COS {
         return None;
@@ -80,16 +80,15 @@ fn meeting(
     let mut met = crossing(one, other);
     if turn_cos < SHARP_COS {
         // Where along the middle of the arms they meet is better told by the end of their ink.
-        let way = (one.1.0 - other.1.0, one.1.1 - other.1.1);
-        let length = libm::hypot(way.0, way.1);
-        let way = (way.0 / length, way.1 / length);
+        let way = one.1 - other.1;
+        let way = way / way.length();
         // From beside the tip that thinning left: arms of a narrow curve meet far behind it.
-        let along = |at: &PxPoint| at.minus(met).0 * way.0 + at.minus(met).1 * way.1;
+        let along = |at: &PxPoint| (*at - met).dot(way);
         let tip_px =
             run.iter().map(along).max_by(f64::total_cmp).filter(|tip_px| tip_px.abs() < 2.0 * width_px)?;
-        let from = met.along(way, tip_px);
+        let from = met + way * tip_px;
         if let Some(end_px) = ink_end_px(flat, from, way, width_px) {
-            met = from.along(way, end_px - 0.5 * width_px + BLURRED_END_PX);
+            met = from + way * (end_px - 0.5 * width_px + BLURRED_END_PX);
         }
     }
     let cut_px = cut_px(flat, (met, one.0), turn_cos, width_px);
@@ -115,21 +114,22 @@ pub(super) fn reaches(
     flat: &Flat,
     curve: PxPoint,
     met: PxPoint,
-    arms: [(PxPoint, (f64, f64)); 2],
+    arms: [(PxPoint, PxVec); 2],
     width_px: f64,
 ) -> bool {
     let cut_px = curve.distance(met);
     if cut_px < f64::min(0.2 * width_px, 1.0) {
         return true;
     }
-    let [(one, (x, y)), (other, (u, v))] = arms;
+    let [(one, PxVec { x, y }), (other, PxVec { x: u, y: v })] = arms;
     let out = (x - u, y - v);
     let length = libm::hypot(out.0, out.1);
     let side = libm::copysign(1.0, y * u - x * v);
     let half = 0.25 * (flat.at(one) + flat.at(other));
-    let rim = |at: PxPoint, way: (f64, f64)| rim_px(flat, at, way, half, 2.0 * width_px);
-    let beside = [rim(one, (-side * y, side * x)), rim(other, (-side * v, side * u))];
-    let (Some(around), [Some(one_px), Some(other_px)]) = (rim(met, (out.0 / length, out.1 / length)), beside)
+    let rim = |at: PxPoint, way: PxVec| rim_px(flat, at, way, half, 2.0 * width_px);
+    let beside = [rim(one, PxVec::new(-side * y, side * x)), rim(other, PxVec::new(-side * v, side * u))];
+    let (Some(around), [Some(one_px), Some(other_px)]) =
+        (rim(met, PxVec::new(out.0 / length, out.1 / length)), beside)
     else {
         return true;
     };
@@ -137,20 +137,20 @@ pub(super) fn reaches(
 }
 
 /// From a place to the rim of its ink, as dark as `half`, along a direction of length 1, px; none farther than `most_px`.
-pub(super) fn rim_px(flat: &Flat, at: PxPoint, way: (f64, f64), half: f32, most_px: f64) -> Option<f64> {
+pub(super) fn rim_px(flat: &Flat, at: PxPoint, way: PxVec, half: f32, most_px: f64) -> Option<f64> {
     let steps = super::whole::count(2.0 * most_px);
-    let dark = |step: usize| flat.at(at.along(way, 0.5 * super::lines::count_f64(step)));
+    let dark = |step: usize| flat.at(at + way * (0.5 * super::lines::count_f64(step)));
     let Some(step) = (0..=steps).find(|step| dark(*step) < half)?.checked_sub(1) else { return Some(0.0) };
     let (inner, outer) = (dark(step), dark(step + 1));
     Some(0.5 * (super::lines::count_f64(step) + f64::from((inner - half) / (inner - outer))))
 }
 
 /// How far from a place in ink, along a direction of length 1, the ink ends: where it is half as dark as at its darkest.
-pub(super) fn ink_end_px(flat: &Flat, at: PxPoint, way: (f64, f64), width_px: f64) -> Option<f64> {
+pub(super) fn ink_end_px(flat: &Flat, at: PxPoint, way: PxVec, width_px: f64) -> Option<f64> {
     let steps = 2 * super::whole::count(4.0 * width_px + 8.0);
     let first_px = -2.0 * width_px - 4.0;
     let dark: Vec<f32> = (0..=steps)
-        .map(|step| flat.at(at.along(way, first_px + 0.5 * super::lines::count_f64(step))))
+        .map(|step| flat.at(at + way * (first_px + 0.5 * super::lines::count_f64(step))))
         .collect();
     let half = 0.5 * dark.iter().copied().fold(0.0, f32::max);
     let first = dark.iter().position(|dark| *dark >= half)?;
@@ -181,7 +181,7 @@ pub(super) fn square(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
         {
             let count = super::lines::count_f64(end - begin);
             for (k, place) in places.iter_mut().enumerate().take(end + 1).skip(begin) {
-                *place = a.along(b.minus(a), super::lines::count_f64(k - begin) / count);
+                *place = a + (b - a) * (super::lines::count_f64(k - begin) / count);
             }
         }
         i = j + 1;
@@ -200,8 +200,7 @@ fn corners(flat: &Flat, places: &[PxPoint], i: usize, j: usize, width_px: f64) -
     let before = clear(places.get((i - LONG).saturating_sub(DRAWN)..=i - DRAWN)).unwrap_or(before);
     let behind = clear(places.get(j + DRAWN..=j + DRAWN + LONG)).unwrap_or(behind);
     let ((at, along), (other, back)) = (before, behind);
-    let (x, y) = other.minus(at);
-    let apart_px = (x * along.1 - y * along.0).abs();
+    let apart_px = (other - at).cross(along).abs();
     let is_turn = cosine(along, back) < -0.9 && apart_px > 1.2 * width_px && apart_px < 4.0 * width_px;
     // The arms end here: behind them the line is bent.
     let goes_on = straight(places.get(i + 1 - LONG..=i + 1)?, LONG, 0.3).is_some()
@@ -210,23 +209,16 @@ fn corners(flat: &Flat, places: &[PxPoint], i: usize, j: usize, width_px: f64) -
         return None;
     }
     let run = places.get(i..=j)?;
-    let far = |place: &PxPoint| {
-        let (x, y) = place.minus(at);
-        x * along.0 + y * along.1
-    };
+    let far = |place: &PxPoint| (*place - at).dot(along);
     let top = run.iter().max_by(|a, b| far(a).total_cmp(&far(b)))?;
-    let out = (along.0 - back.0, along.1 - back.1);
-    let side = top.along(along, third_side(flat, *top, [before, behind], width_px)? - far(top));
-    let meet = |(from, way): (PxPoint, (f64, f64))| {
-        let (x, y) = side.minus(from);
-        from.along(way, (x * out.0 + y * out.1) / (way.0 * out.0 + way.1 * out.1))
-    };
+    let out = along - back;
+    let side = *top + along * (third_side(flat, *top, [before, behind], width_px)? - far(top));
+    let meet = |(from, way): (PxPoint, PxVec)| from + way * ((side - from).dot(out) / way.dot(out));
     let corners = [meet(before), meet(behind)];
     let is_near = corners.iter().all(|corner| run.iter().any(|at| at.distance(*corner) < width_px));
     // In a round turn it does not reach as far.
-    let third = (side, corners[1].minus(corners[0]));
-    let length = libm::hypot(third.1.0, third.1.1).max(1e-9);
-    let third = (third.0, (third.1.0 / length, third.1.1 / length));
+    let third = (side, corners[1] - corners[0]);
+    let third = (third.0, third.1 / third.1.length().max(1e-9));
     let all_reach = corners.iter().zip([[before, third], [third, behind]]).all(|(corner, arms)| {
         let cut = run.iter().min_by(|a, b| a.distance(*corner).total_cmp(&b.distance(*corner)));
         cut.is_some_and(|cut| reaches(flat, *cut, *corner, arms, width_px))
@@ -238,30 +230,25 @@ fn corners(flat: &Flat, places: &[PxPoint], i: usize, j: usize, width_px: f64) -
 fn third_side(
     flat: &Flat,
     top: PxPoint,
-    [(at, along), (other, back)]: [(PxPoint, (f64, f64)); 2],
+    [(at, along), (other, back)]: [(PxPoint, PxVec); 2],
     width_px: f64,
 ) -> Option<f64> {
-    let (x, y) = other.minus(at);
-    let apart_px = x * -along.1 + y * along.0;
+    let PxVec { x, y } = other - at;
+    let apart_px = x * -along.y + y * along.x;
     // To the side of the other arm.
-    let over = (-along.1, along.0);
+    let over = along.perpendicular();
     let outer = libm::copysign(1.0, apart_px);
     let rim_of = |at: PxPoint, way| rim_px(flat, at, way, 0.5 * flat.at(at), 2.0 * width_px);
-    let rim = |at: PxPoint, (u, v): (f64, f64)| rim_of(at, (u * outer, v * outer));
-    let beside_px = 0.5 * (rim(at, (along.1, -along.0))? + rim(other, (back.1, -back.0))?);
-    let far = |place: PxPoint| {
-        let (x, y) = place.minus(at);
-        x * along.0 + y * along.1
-    };
-    let across = |place: PxPoint| {
-        let (x, y) = place.minus(at);
-        x * over.0 + y * over.1
-    };
+    let rim = |at: PxPoint, PxVec { x: u, y: v }: PxVec| rim_of(at, PxVec::new(u * outer, v * outer));
+    let beside_px =
+        0.5 * (rim(at, PxVec::new(along.y, -along.x))? + rim(other, PxVec::new(back.y, -back.x))?);
+    let far = |place: PxPoint| (place - at).dot(along);
+    let across = |place: PxPoint| (place - at).dot(over);
     let mut rims = 0.0;
     for share in [0.3, 0.5, 0.7] {
-        let level = top.along(over, share * apart_px - across(top));
+        let level = top + over * (share * apart_px - across(top));
         // From the darkest place there outwards.
-        let steps = (-4..=4).map(|k| level.along(along, 0.25 * f64::from(k) * width_px));
+        let steps = (-4..=4).map(|k| level + along * (0.25 * f64::from(k) * width_px));
         let ink = steps.max_by(|a, b| flat.at(*a).total_cmp(&flat.at(*b)))?;
         rims += (far(ink) + rim_of(ink, along)?) / 3.0;
     }
@@ -322,7 +309,7 @@ pub(super) fn sharpen(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
             for (k, place) in places.iter_mut().enumerate().skip(i - skip).take(2 * skip + 1) {
                 let end = old.get(if k < i { i - skip } else { i + skip }).copied().unwrap_or(met);
                 let share = super::lines::count_f64(k.abs_diff(i)) / super::lines::count_f64(skip);
-                *place = met.along(end.minus(met), share);
+                *place = met + (end - met) * share;
             }
             done_till = i + skip;
         }
@@ -334,9 +321,9 @@ pub(super) fn sharpen(flat: &Flat, places: &mut [PxPoint], width_px: f64) {
 }
 
 /// Whether a turn is that of a curve, whose arms are bent as well: their bends go on over as much of it.
-pub(super) fn is_bent(arms: [&[PxPoint]; 2], lines: [(PxPoint, (f64, f64)); 2], turn_cos: f64) -> bool {
+pub(super) fn is_bent(arms: [&[PxPoint]; 2], lines: [(PxPoint, PxVec); 2], turn_cos: f64) -> bool {
     let [(at, way), (other, other_way)] = lines;
-    let side = libm::copysign(1.0, way.0 * other_way.1 - way.1 * other_way.0);
+    let side = libm::copysign(1.0, way.cross(other_way));
     let [one_curve, other_curve] = [curvature(arms[0], at, way), curvature(arms[1], other, other_way)];
     let bent = 0.5 * (one_curve + other_curve) * side * at.distance(other);
     bent > CURVE_SHARE * libm::acos(turn_cos.clamp(-1.0, 1.0))
@@ -352,14 +339,14 @@ pub(super) fn is_curve(places: &[PxPoint]) -> bool {
 }
 
 /// The curvature of the parabola that is nearest to places along a direction, 1/px.
-fn curvature(places: &[PxPoint], middle: PxPoint, along: (f64, f64)) -> f64 {
+fn curvature(places: &[PxPoint], middle: PxPoint, along: PxVec) -> f64 {
     2.0 * Parabola::of(places, middle, along).bend
 }
 
 /// A place along a direction and beside it.
-fn local(at: PxPoint, middle: PxPoint, along: (f64, f64)) -> (f64, f64) {
-    let (x, y) = at.minus(middle);
-    (x * along.0 + y * along.1, y * along.0 - x * along.1)
+fn local(at: PxPoint, middle: PxPoint, along: PxVec) -> (f64, f64) {
+    let PxVec { x, y } = at - middle;
+    (x * along.x + y * along.y, y * along.x - x * along.y)
 }
 
 /// The parabola that is nearest to places whose nearest straight line is known.
@@ -371,7 +358,7 @@ struct Parabola {
 }
 
 impl Parabola {
-    fn of(places: &[PxPoint], middle: PxPoint, along: (f64, f64)) -> Self {
+    fn of(places: &[PxPoint], middle: PxPoint, along: PxVec) -> Self {
         let sum =
             |power: fn(f64) -> f64| places.iter().map(|at| power(local(*at, middle, along).0)).sum::<f64>();
         let (squares, cubes) = (sum(|s| s * s), sum(|s| s * s * s));
@@ -396,21 +383,17 @@ impl Parabola {
 }
 
 /// Where two lines cross that are not parallel, each a place and its direction of length 1.
-pub(super) fn crossing(one: (PxPoint, (f64, f64)), other: (PxPoint, (f64, f64))) -> PxPoint {
-    let cross = one.1.0 * other.1.1 - one.1.1 * other.1.0;
-    let between = other.0.minus(one.0);
-    one.0.along(one.1, (between.0 * other.1.1 - between.1 * other.1.0) / cross)
+pub(super) fn crossing(one: (PxPoint, PxVec), other: (PxPoint, PxVec)) -> PxPoint {
+    let cross = one.1.cross(other.1);
+    one.0 + one.1 * ((other.0 - one.0).cross(other.1) / cross)
 }
 
 /// Middle and direction of places that are on a straight line.
-pub(super) fn straight(places: &[PxPoint], least: usize, most_off_px: f64) -> Option<(PxPoint, (f64, f64))> {
+pub(super) fn straight(places: &[PxPoint], least: usize, most_off_px: f64) -> Option<(PxPoint, PxVec)> {
     if places.len() < least {
         return None;
     }
     let (middle, direction) = super::tips::fitted(places)?;
-    let off = |at: &PxPoint| {
-        let (x, y) = at.minus(middle);
-        (x * direction.1 - y * direction.0).abs()
-    };
+    let off = |at: &PxPoint| (*at - middle).cross(direction).abs();
     places.iter().all(|at| off(at) < most_off_px).then_some((middle, direction))
 }

@@ -1,6 +1,6 @@
 //! [`Crowd`]: which lines are so near to each other that they are one piece of ink.
 
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// Where lines are, in cells as wide as the thickest must be apart.
 pub(super) struct Crowd<'a> {

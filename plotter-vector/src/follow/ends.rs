@@ -6,7 +6,7 @@ use super::corners::{crossing, rim_px, straight};
 use super::crowd::Crowd;
 use super::flat::Flat;
 use super::lines::{SPACING_PX, cosine};
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 
 /// Places of a line before its end that tell where it goes on.
 const ARM: usize = 7;
@@ -69,10 +69,10 @@ pub(super) fn straight_ends(
 }
 
 /// Whether there is ink behind the line along `way` that one meets at a place, farther than that line's own.
-fn sticks_out(flat: &Flat, met: PxPoint, way: (f64, f64), back: (f64, f64), width_px: f64) -> bool {
+fn sticks_out(flat: &Flat, met: PxPoint, way: PxVec, back: PxVec, width_px: f64) -> bool {
     let half = 0.5 * flat.at(met);
     let rim = |at: PxPoint| rim_px(flat, at, back, half, 3.0 * width_px + 4.0);
-    let beside = [-1.0, 1.0].map(|side| rim(met.along(way, side * (1.5 * width_px + 3.0))));
+    let beside = [-1.0, 1.0].map(|side| rim(met + way * (side * (1.5 * width_px + 3.0))));
     match (rim(met), beside) {
         (Some(behind_px), [Some(one_px), Some(other_px)]) => behind_px > one_px.max(other_px) + STICKS_PX,
         _ => true,
@@ -98,11 +98,8 @@ fn tail(
         straight(long, 4, (MOST_OFF_PX * share * share).max(LEAST_OFF_PX))?;
     }
     let (foot, end) = (*arm.first()?, *places.first()?);
-    let back = (-own.1.0, -own.1.1);
-    let along = |at: PxPoint| {
-        let off = at.minus(own.0);
-        off.0 * back.0 + off.1 * back.1
-    };
+    let back = -own.1;
+    let along = |at: PxPoint| (at - own.0).dot(back);
     // The other line: the piece that is met first.
     let others = lines.iter().enumerate().filter(|(other, _)| *other != line);
     let width_of = |line: usize| widths_px.get(line).copied().unwrap_or(0.0);
@@ -116,26 +113,26 @@ fn tail(
             if b.distance(end) > 1.5 * width_px + 2.0 {
                 return None;
             }
-            let way = c.minus(*a);
-            let length = libm::hypot(way.0, way.1);
+            let way = *c - *a;
+            let length = way.length();
             if length < 1e-9 || cosine(way, back).abs() > ALONG_COS {
                 return None;
             }
-            let way = (way.0 / length, way.1 / length);
+            let way = way / length;
             let met = crossing(own, (*b, way));
             (met.distance(*b) < SPACING_PX && along(met) > along(foot)).then_some((met, way, width_px))
         })
         .min_by(|a, b| along(a.0).total_cmp(&along(b.0)))?;
     let is_behind = along(end) > along(met) + BEHIND_PX && sticks_out(flat, met, way, back, width_px);
     let end_px = if is_behind { along(end) } else { along(met) };
-    let foot = own.0.along(back, along(foot));
-    let tip = own.0.along(back, end_px);
+    let foot = own.0 + back * along(foot);
+    let tip = own.0 + back * end_px;
     // It ends before the other line where paper is between them.
-    let is_ink = |part: f64| flat.at(end.along(tip.minus(end), part)) > 0.5 * flat.at(own.0);
+    let is_ink = |part: f64| flat.at(end + (tip - end) * part) > 0.5 * flat.at(own.0);
     if end_px > along(end) && ![0.2, 0.4, 0.6, 0.8].into_iter().all(is_ink) {
         return None;
     }
     let parts = super::whole::count(libm::ceil(foot.distance(tip) / SPACING_PX)).max(1);
     let part = |k: usize| super::lines::count_f64(k) / super::lines::count_f64(parts);
-    Some((0..parts).map(|k| tip.along(foot.minus(tip), part(k))).collect())
+    Some((0..parts).map(|k| tip + (foot - tip) * part(k)).collect())
 }

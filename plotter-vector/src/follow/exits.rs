@@ -1,7 +1,7 @@
 //! Exits: where lines leave a circle.
 
 use super::circle::ring;
-use crate::{Bitmap, Pixel};
+use crate::picture::{Bitmap, Pixel};
 
 /// The pixel at an offset, if it is in the picture.
 pub(super) fn offset(at: Pixel, (dx, dy): (i32, i32), ink: &Bitmap) -> Option<Pixel> {
@@ -71,7 +71,7 @@ pub(super) fn middles(ring: &[Pixel], lines: &[bool]) -> Vec<Pixel> {
 /// let lines = Bitmap::from_picture(&[&corner, ".........\n", "#########\n", &".........\n".repeat(4)].concat())?;
 /// let exits = connected_exits(&lines, Pixel::new(4, 4), 4);
 /// assert_eq!(exits, [Pixel::new(8, 4), Pixel::new(0, 4)]);
-/// # Ok::<(), plotter_vector::SizeError>(())
+/// # Ok::<(), plotter_vector::picture::SizeError>(())
 /// ```
 #[must_use]
 pub fn connected_exits(ink: &Bitmap, at: Pixel, radius_px: u32) -> Vec<Pixel> {

@@ -1,6 +1,6 @@
 //! [`Explored`]: where lines leave what was seen, and was gone to once to see how they go on.
 
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// A place as near to one that was gone to is the same, and one that is reached, px.
 const SAME_PX: f64 = 20.0;

@@ -3,7 +3,7 @@
 use super::Correction;
 use super::paper::transposed;
 use super::whole::{floor, inside};
-use crate::{Gray, PxPoint};
+use crate::{picture::Gray, stroke::PxPoint};
 
 /// Side of the tiles in which the paper's level is found, px: wider than any line that is followed but its rims.
 const TILE_PX: usize = 25;

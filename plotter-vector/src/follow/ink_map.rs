@@ -4,7 +4,7 @@ use super::flat::Flat;
 use super::lines::count_f64;
 use super::paper::each_covered;
 use super::whole::{floor, inside};
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// Blur of a web camera, px: standard deviation.
 pub(super) const BLUR_PX: f64 = 1.5;

@@ -1,7 +1,7 @@
 //! [`judge`]: how well a tool followed the lines that it should.
 
 use super::paper::nearest;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 use std::collections::HashMap;
 
 /// Side of the cells of the index, px.
@@ -114,14 +114,14 @@ impl Route {
 }
 
 /// Places along a polyline, half a pixel from each other, each with the way there.
-fn places(line: &[PxPoint]) -> impl Iterator<Item = (PxPoint, (f64, f64))> {
+fn places(line: &[PxPoint]) -> impl Iterator<Item = (PxPoint, PxVec)> {
     line.windows(2).flat_map(|pair| {
         let (a, b) = if let [a, b] = pair { (*a, *b) } else { (PxPoint::default(), PxPoint::default()) };
         let parts = super::whole::count(libm::ceil(a.distance(b) / STEP_PX)).clamp(1, 1 << 20);
         (0..parts).map(move |i| {
             #[expect(clippy::cast_precision_loss, reason = "a small number")]
             let part = (i as f64 + 0.5) / parts as f64;
-            (a.along(b.minus(a), part), b.minus(a))
+            (a + (b - a) * part, b - a)
         })
     })
 }
@@ -174,7 +174,7 @@ pub fn judge(truth: &[Vec<PxPoint>], path: &[Vec<PxPoint>], reach_px: f64) -> Ju
             let is_passed = tool.near(at, reach_px).into_iter().any(|index| {
                 let Some([a, b]) = tool.pieces.get(index) else { return false };
                 let near = at.distance(nearest(at, *a, *b)) <= reach_px;
-                near && (any || super::lines::cosine(b.minus(*a), way).abs() > 0.866 || a.distance(*b) < 2.0)
+                near && (any || super::lines::cosine(*b - *a, way).abs() > 0.866 || a.distance(*b) < 2.0)
             });
             if is_passed {
                 passed += 1.0;
@@ -195,7 +195,7 @@ fn corners(line: &[PxPoint]) -> Vec<PxPoint> {
     let mut found: Vec<PxPoint> = line.first().into_iter().chain(line.last()).copied().collect();
     for three in line.windows(3) {
         if let [a, b, c] = three
-            && super::lines::cosine(b.minus(*a), c.minus(*b)) < 0.8
+            && super::lines::cosine(*b - *a, *c - *b) < 0.8
         {
             found.push(*b);
         }

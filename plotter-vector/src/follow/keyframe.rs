@@ -15,7 +15,7 @@
 use super::flat::Flat;
 use super::poses::Poses;
 use super::prior::{Information, Prior, moved};
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 
 /// Most places that are compared.
 const MOST_PLACES: usize = 2000;
@@ -98,7 +98,7 @@ impl Keyframe {
                 let mean = 0.25 * b1 + 0.125 * (a1 + b0 + b2 + c1) + 0.0625 * (a0 + a2 + c0 + c2);
                 #[expect(clippy::cast_precision_loss, reason = "a window is small")]
                 let seen = PxPoint::new((left + x + 1) as f64 + 0.5, (top + y) as f64 + 0.5);
-                let (dx, dy) = seen.minus(middle);
+                let PxVec { x: dx, y: dy } = seen - middle;
                 #[expect(clippy::cast_possible_truncation, reason = "a window is small")]
                 places.push(([dx as f32, dy as f32], mean, [gx, gy]));
             }
@@ -120,8 +120,8 @@ impl Keyframe {
             (-most..=most).map(|i| GUESS_PX * f64::from(i))
         };
         let from = guesses(one_sd_px).flat_map(|along| {
-            let from = prior.place.along(one, along);
-            guesses(other_sd_px).map(move |across| from.along(other, across))
+            let from = prior.place + one * along;
+            guesses(other_sd_px).map(move |across| from + other * across)
         });
         let found = from.filter_map(|from| {
             let fit = self.fit(flat, middle, from)?;
@@ -139,9 +139,9 @@ impl Keyframe {
         for _ in 0..12 {
             let (mut xx, mut xy, mut yy, mut bx, mut by) = (0.0, 0.0, 0.0, 0.0, 0.0);
             let (mut count, mut squares) = (0.0, 0.0);
-            let from = middle.along(self.camera.minus(fit.camera), 1.0);
+            let from = middle + (self.camera - fit.camera);
             for ([dx, dy], dark, [gx, gy]) in &self.places {
-                let seen = from.along((f64::from(*dx), f64::from(*dy)), 1.0);
+                let seen = from + PxVec::new(f64::from(*dx), f64::from(*dy));
                 if !flat.holds(seen, MARGIN_PX) {
                     continue;
                 }
@@ -162,10 +162,9 @@ impl Keyframe {
             fit.misfit = libm::sqrt(squares / count);
             let seen = Information { xx: xx - count * self.noise, xy, yy: yy - count * self.noise };
             let shift;
-            (shift, fit.told) = seen.told((bx, by), LEAST_TOLD, SYSTEMATIC_PX);
-            let length = libm::hypot(shift.0, shift.1);
-            fit.camera =
-                fit.camera.along(shift, if length > MOST_SHIFT_PX { MOST_SHIFT_PX / length } else { 1.0 });
+            (shift, fit.told) = seen.told(PxVec::new(bx, by), LEAST_TOLD, SYSTEMATIC_PX);
+            let length = shift.length();
+            fit.camera += shift * (if length > MOST_SHIFT_PX { MOST_SHIFT_PX / length } else { 1.0 });
             if length < 0.01 {
                 break;
             }
@@ -186,14 +185,15 @@ fn chosen(places: Vec<Place>) -> Vec<Place> {
         let (x, y) = (f64::from(*x), f64::from(*y));
         sum.plus(Information { xx: x * x, xy: x * y, yy: y * y })
     });
-    let (u, v) = told.least_told();
-    let rise = |(_, _, [x, y]): &Place, (u, v): (f64, f64)| (f64::from(*x) * u + f64::from(*y) * v).abs();
-    let mut rises: Vec<f64> = places.iter().map(|place| rise(place, (-v, u))).collect();
+    let PxVec { x: u, y: v } = told.least_told();
+    let rise =
+        |(_, _, [x, y]): &Place, PxVec { x: u, y: v }: PxVec| (f64::from(*x) * u + f64::from(*y) * v).abs();
+    let mut rises: Vec<f64> = places.iter().map(|place| rise(place, PxVec::new(-v, u))).collect();
     let middle = rises.len() / 2;
     let (_, usual, _) = rises.select_nth_unstable_by(middle, f64::total_cmp);
     let least = ACROSS_SHARE * *usual;
     let (ends, others): (Vec<Place>, Vec<Place>) =
-        places.into_iter().partition(|place| rise(place, (u, v)) > least);
+        places.into_iter().partition(|place| rise(place, PxVec::new(u, v)) > least);
     let few = ends.len().min(MOST_PLACES / 2);
     let evenly = |places: Vec<Place>, most: usize| {
         let step = places.len().div_ceil(most.max(1)).max(1);
@@ -250,12 +250,12 @@ pub(super) struct Keyframes {
 pub(super) struct Shifts {
     /// Number of the first keyframe.
     first: u32,
-    px: Vec<(f64, f64)>,
+    px: Vec<PxVec>,
 }
 
 impl Shifts {
     /// That of a keyframe by its number, px.
-    pub(super) fn of(&self, number: u32) -> (f64, f64) {
+    pub(super) fn of(&self, number: u32) -> PxVec {
         let i = number.checked_sub(self.first).and_then(|i| self.px.get(i as usize));
         i.copied().unwrap_or_default()
     }
@@ -315,10 +315,10 @@ impl Keyframes {
         let Some((from, one)) = self.active.and_then(|i| Some((i, self.kept.get(i)?.camera))) else { return };
         let Some(other) = self.kept.get(to).map(|frame| frame.camera) else { return };
         let told = told.plus(moved(camera.distance(one)));
-        let seen = found.information.minus(prior.information).plus(moved(camera.distance(other)));
-        let (x, y) = camera.minus(one);
-        let (u, v) = found.place.minus(other);
-        self.poses.add([from, to], (x - u, y - v), told.inverse().plus(seen.inverse()).inverse());
+        let seen = (found.information.minus(prior.information)).plus(moved(camera.distance(other)));
+        let PxVec { x, y } = camera - one;
+        let PxVec { x: u, y: v } = found.place - other;
+        self.poses.add([from, to], PxVec::new(x - u, y - v), told.inverse().plus(seen.inverse()).inverse());
         self.is_unsettled |= camera.distance(found.place) > SETTLED_PX;
     }
 
@@ -378,7 +378,7 @@ impl Keyframes {
         // After a way without lines, from the one before.
         let from = self.active.or(new.checked_sub(1));
         if let Some((i, before)) = from.and_then(|i| Some((i, self.kept.get(i)?.camera))) {
-            let (way, told) = (frame.camera.minus(before), told.plus(moved(frame.camera.distance(before))));
+            let (way, told) = (frame.camera - before, told.plus(moved(frame.camera.distance(before))));
             self.poses.add([i, new], way, told);
         }
         self.kept.push(frame);
@@ -402,7 +402,7 @@ impl Keyframes {
         let places: Vec<PxPoint> = self.kept.iter().map(|frame| frame.camera).collect();
         let px = self.poses.shifts(&places);
         for (frame, shift) in self.kept.iter_mut().zip(&px) {
-            frame.camera = frame.camera.along(*shift, 1.0);
+            frame.camera += *shift;
         }
         Some(Shifts { first: self.first, px })
     }
@@ -418,14 +418,14 @@ mod tests {
     }
 
     /// The prior's standard deviation is 1 px in both axes.
-    fn found(strokes: &[(Vec<PxPoint>, f64)], moved: (f64, f64)) -> Option<Prior> {
+    fn found(strokes: &[(Vec<PxPoint>, f64)], moved: PxVec) -> Option<Prior> {
         let paper = Paper::drawn(300, 300, strokes).unwrap();
         let settings = CameraSettings { width_px: 200, height_px: 200, ..CameraSettings::default() };
         let mut camera = SimulatedCamera::new(&paper, settings);
         let (at, middle) = (PxPoint::new(150.0, 150.0), PxPoint::new(100.0, 100.0));
         let mut flat = |at: PxPoint| Flat::of(&camera.window(at), None, None);
         let frame = Keyframe::of(&flat(at), middle, at);
-        let next = flat(at.along(moved, 1.0));
+        let next = flat(at + moved);
         frame.place(&next, middle, &Prior { place: at, information: Information::of_axes([1.0; 2]) }, 0.0)
     }
 
@@ -442,12 +442,12 @@ mod tests {
             let settings = CameraSettings { seed: seed.into(), ..CameraSettings::default() };
             let mut camera = SimulatedCamera::new(&paper, settings);
             let from = PxPoint::new(165.0 + 1.5 * way, 320.0 + 4.5 * way);
-            let to = from.along((-0.224, -0.974), 5.0 + 4.0 * way);
+            let to = from + PxVec::new(-0.224, -0.974) * (5.0 + 4.0 * way);
             let frame = Keyframe::of(&Flat::of(&camera.window(from), None, None), middle, from);
             let flat = Flat::of(&camera.window(to), None, None);
             let prior =
-                Prior { place: to.along((-0.3, 0.35), 1.0), information: Information::of_axes([0.5; 2]) };
-            let (x, y) = frame.place(&flat, middle, &prior, 0.0).unwrap().place.minus(to);
+                Prior { place: to + PxVec::new(-0.3, 0.35), information: Information::of_axes([0.5; 2]) };
+            let PxVec { x, y } = frame.place(&flat, middle, &prior, 0.0).unwrap().place - to;
             let along = 0.224 * x + 0.974 * y;
             assert!(along.abs() < 0.25 && (0.974 * x - 0.224 * y).abs() < 0.06, "{seed}: {x} {y}");
             squares += along * along;
@@ -457,13 +457,13 @@ mod tests {
 
     #[test]
     fn the_end_of_a_line_tells_both_directions() {
-        let place = found(&[line((100.0, 150.0), (400.0, 150.0))], (1.7, -1.2)).unwrap().place;
+        let place = found(&[line((100.0, 150.0), (400.0, 150.0))], PxVec::new(1.7, -1.2)).unwrap().place;
         assert!(place.distance(PxPoint::new(151.7, 148.8)) < 0.1, "{place:?}");
     }
 
     #[test]
     fn a_line_that_goes_on_tells_one_direction_only() {
-        let found = found(&[line((-50.0, 150.0), (400.0, 150.0))], (1.7, -1.2)).unwrap();
+        let found = found(&[line((-50.0, 150.0), (400.0, 150.0))], PxVec::new(1.7, -1.2)).unwrap();
         assert!((found.place.y - 148.8).abs() < 0.1 && (found.place.x - 150.0).abs() < 0.1, "{found:?}");
         assert!(found.information.xx < 1.1 && found.information.yy > 100.0, "{found:?}");
     }
@@ -472,7 +472,7 @@ mod tests {
     fn of_parallel_lines_the_nearest_is_the_same() {
         let rows = (0..12).map(|i| 100.0 + 8.0 * f64::from(i));
         let lines: Vec<_> = rows.map(|y| line((100.0, y), (200.0, y))).collect();
-        let place = found(&lines, (0.0, 2.0)).unwrap().place;
+        let place = found(&lines, PxVec::new(0.0, 2.0)).unwrap().place;
         assert!(place.distance(PxPoint::new(150.0, 152.0)) < 0.1, "{place:?}");
     }
 }

@@ -1,10 +1,11 @@
 //! [`Lens`]: radial distortion.
 
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// A lens that shows straight lines bent: what is seen at the distance r from the middle lies at r (1 + k (r / R)²), where R
 /// is the distance of the window's corner. The first term of D. C. Brown, "Decentering distortion of lenses" (1966).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Lens {
     /// How much farther the paper at the corner is than it seems, as a share: positive for a barrel (cheap wide lenses
     /// have 0.02 to 0.1), negative for a pincushion.

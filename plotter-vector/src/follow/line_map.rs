@@ -7,7 +7,7 @@
 use super::keyframe::Shifts;
 use super::lines::{Piece, cosine};
 use super::paper::nearest;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 use std::collections::HashMap;
 
 /// Side of a cell, px.
@@ -149,7 +149,7 @@ impl LineMap {
 
     /// Direction of the line at a node, of length 1, over a few nodes to either side; none near a corner or a junction, or
     /// where the line is short.
-    pub(super) fn direction(&self, id: u32) -> Option<(f64, f64)> {
+    pub(super) fn direction(&self, id: u32) -> Option<PxVec> {
         let is_line = |link: &Link| !link.contact && link.state != State::Ghost;
         let mut ways = self.links_of(id).filter(|(_, link, _)| is_line(link)).map(|(_, _, other)| other);
         let (one, two) = (ways.next()?, ways.next());
@@ -168,12 +168,12 @@ impl LineMap {
         let here = self.at(id);
         let a = walk(one);
         let b = two.map_or(here, walk);
-        if two.is_some() && cosine(here.minus(a), b.minus(here)) < 0.85 {
+        if two.is_some() && cosine(here - a, b - here) < 0.85 {
             return None;
         }
-        let way = b.minus(a);
-        let length = libm::hypot(way.0, way.1);
-        (length > 3.0).then(|| (way.0 / length, way.1 / length))
+        let way = b - a;
+        let length = way.length();
+        (length > 3.0).then(|| way / length)
     }
 
     /// Whether another part of a line, or the other arm of a sharp turn, is so near that both are one piece of ink.
@@ -251,8 +251,8 @@ impl LineMap {
         for id in 0..u32::try_from(self.nodes.len()).unwrap_or(u32::MAX) {
             let Some(node) = self.node(id) else { continue };
             let by = shifts.of(node.keyframe);
-            if by != (0.0, 0.0) {
-                self.put(id, node.at.along(by, 1.0));
+            if by != PxVec::default() {
+                self.put(id, node.at + by);
             }
         }
     }
@@ -295,7 +295,7 @@ impl LineMap {
     }
 
     /// The node of the map that a place of a line is, among the first `known`.
-    fn same(&self, at: PxPoint, ways: [(f64, f64); 2], known: usize, reach_px: f64) -> Option<u32> {
+    fn same(&self, at: PxPoint, ways: [PxVec; 2], known: usize, reach_px: f64) -> Option<u32> {
         let agrees = |id: u32| {
             if self.at(id).distance(at) < SAME_PLACE_PX {
                 return true;
@@ -303,7 +303,7 @@ impl LineMap {
             let mut links = self.links_of(id).filter(|(_, link, _)| !link.contact).peekable();
             links.peek().is_none()
                 || links.any(|(_, _, other)| {
-                    let way = self.at(other).minus(self.at(id));
+                    let way = self.at(other) - self.at(id);
                     ways.iter().any(|along| cosine(way, *along).abs() > SAME_COS)
                 })
         };
@@ -346,7 +346,7 @@ impl LineMap {
         if self.node(id).is_none_or(|node| !node.open) {
             return 0.0;
         }
-        let ((x, y), (u, v)) = (at.minus(self.at(id)), self.at(id).minus(self.at(inside)));
+        let (PxVec { x, y }, PxVec { x: u, y: v }) = (at - self.at(id), self.at(id) - self.at(inside));
         (x * u + y * v) / libm::hypot(u, v).max(1e-9)
     }
 
@@ -392,10 +392,10 @@ impl LineMap {
         let mut nodes: Vec<Option<u32>> = (0..)
             .zip(places)
             .map(|(i, at)| {
-                let ways = [at.minus(near(i, false)), near(i, true).minus(*at)];
-                let ways = if ways[0] == (0.0, 0.0) {
+                let ways = [*at - near(i, false), near(i, true) - *at];
+                let ways = if ways[0] == PxVec::default() {
                     [ways[1]; 2]
-                } else if ways[1] == (0.0, 0.0) {
+                } else if ways[1] == PxVec::default() {
                     [ways[0]; 2]
                 } else {
                     ways
@@ -559,8 +559,7 @@ impl LineMap {
     /// Where a line ends on another one, with nothing but ink between them, they touch.
     fn join_end(&mut self, end: u32, width_px: f64, is_ink: &dyn Fn(PxPoint) -> bool) {
         let at = self.at(end);
-        let over_ink =
-            |to: PxPoint| [0.25, 0.5, 0.75].iter().all(|part| is_ink(at.along(to.minus(at), *part)));
+        let over_ink = |to: PxPoint| [0.25, 0.5, 0.75].iter().all(|part| is_ink(at + (to - at) * *part));
         let apart = |id: &u32| *id != end && over_ink(self.at(*id)) && !self.connected(end, *id, 6);
         let found = self.near(at, 0.6 * width_px + 2.5).into_iter().filter(apart);
         let nearest =
@@ -623,8 +622,8 @@ impl LineMap {
 /// Whether two pieces of straight lines cross.
 fn cross(a: PxPoint, b: PxPoint, c: PxPoint, d: PxPoint) -> bool {
     let side = |p: PxPoint, q: PxPoint, r: PxPoint| {
-        let (one, other) = (q.minus(p), r.minus(p));
-        one.0 * other.1 - one.1 * other.0
+        let (one, other) = (q - p, r - p);
+        one.cross(other)
     };
     side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
 }
@@ -653,7 +652,7 @@ mod tests {
         let on = |at: PxPoint| (at.x - 50.0).abs() < 1e-9 || (at.y - 49.5).abs() < 1e-9;
         let shortcut = map.links.iter().find(|link| {
             let [a, b] = link.ends.map(|end| map.at(end));
-            !on(a.along(b.minus(a), 0.5))
+            !on(a + (b - a) * 0.5)
         });
         assert!(shortcut.is_none(), "{shortcut:?}");
         assert!(map.links.iter().all(|link| !link.contact) && map.links.len() == map.nodes.len() - 1);

@@ -7,7 +7,13 @@ use super::flat::Flat;
 use super::loops::{begun_straight, joined};
 use super::ribbons::fitted;
 use super::tips::{sharpened, without_crumbs, without_rungs};
-use crate::{Bitmap, Bounded, Gray, Pixel, PxPoint, Vectorizer, despeckle, pen_width_px, split_by_width};
+use crate::{
+    areas::split_by_width,
+    ink::{despeckle, pen_width_px},
+    picture::{Bitmap, Gray, Pixel},
+    stroke::{Bounded, PxPoint, PxVec},
+    trace::Vectorizer,
+};
 
 /// Side of the blocks in which the darkest and the lightest place are found, px.
 const BLOCK_PX: usize = 4;
@@ -129,7 +135,7 @@ impl Lines {
     pub(super) fn of(flat: &Flat, max_line_px: u32) -> Self {
         let Some(mut ink) = ink(flat) else { return Self::default() };
         let pen_px = pen_width_px(&ink).unwrap_or(max_line_px).max(1);
-        despeckle(&mut ink, 4 + crate::smallest_mark_px(pen_px) / 2);
+        despeckle(&mut ink, 4 + crate::ink::smallest_mark_px(pen_px) / 2);
         if ink.count() == 0 {
             return Self::default();
         }
@@ -234,7 +240,7 @@ pub(super) fn resampled(vertices: &[PxPoint], spacing_px: f64) -> Vec<PxPoint> {
         let next = vertices.get(i + 1);
         let corner = next.is_none_or(|next| {
             let before = vertices.get(i - 1).copied().unwrap_or(*vertex);
-            cosine(vertex.minus(before), next.minus(*vertex)) < CORNER_COS
+            cosine(*vertex - before, *next - *vertex) < CORNER_COS
         });
         if corner {
             divide(&stretch, spacing_px, &mut places);
@@ -257,7 +263,7 @@ fn divide(stretch: &[PxPoint], spacing_px: f64, places: &mut Vec<PxPoint>) {
         let [a, b] = pair else { continue };
         let way = a.distance(*b);
         while next <= passed + way && next < length - 0.5 * step {
-            places.push(a.along(b.minus(*a), (next - passed) / way));
+            places.push(*a + (*b - *a) * ((next - passed) / way));
             next += step;
         }
         passed += way;
@@ -266,9 +272,9 @@ fn divide(stretch: &[PxPoint], spacing_px: f64, places: &mut Vec<PxPoint>) {
 }
 
 /// Cosine of the angle between two ways; 1 where one has no length.
-pub(super) fn cosine(one: (f64, f64), other: (f64, f64)) -> f64 {
-    let lengths = libm::hypot(one.0, one.1) * libm::hypot(other.0, other.1);
-    if lengths > 0.0 { (one.0 * other.0 + one.1 * other.1) / lengths } else { 1.0 }
+pub(super) fn cosine(one: PxVec, other: PxVec) -> f64 {
+    let lengths = one.length() * other.length();
+    if lengths > 0.0 { one.dot(other) / lengths } else { 1.0 }
 }
 
 /// A small number as a float.

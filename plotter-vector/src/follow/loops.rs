@@ -1,7 +1,7 @@
 //! [`joined`] and [`begun_straight`]: a corner is inside of a line, not where lines end.
 
 use super::lines::cosine;
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// How far to both sides the direction at a place is looked at, places about 2 px from each other.
 const NEAR: usize = 3;
@@ -18,8 +18,7 @@ pub(super) fn begun_straight(places: Vec<PxPoint>) -> Vec<PxPoint> {
         return places;
     }
     let at = |i: usize| places.get(i % once).copied().unwrap_or_default();
-    let turn_cos =
-        |i: usize, reach: usize| cosine(at(i).minus(at(i + once - reach)), at(i + reach).minus(at(i)));
+    let turn_cos = |i: usize, reach: usize| cosine(at(i) - (at(i + once - reach)), at(i + reach) - at(i));
     if turn_cos(0, NEAR) > CORNER_COS {
         return places;
     }
@@ -48,7 +47,7 @@ pub(super) fn joined(mut lines: Vec<Vec<PxPoint>>, width_px: f64) -> Vec<Vec<PxP
             line.reverse();
         }
         let meeting = line.pop().zip(if to_last { more.last() } else { more.first() });
-        let middle = meeting.map(|(end, begin)| end.along(begin.minus(end), 0.5));
+        let middle = meeting.map(|(end, begin)| end + (*begin - end) * 0.5);
         line.extend(middle);
         if to_last {
             line.extend(more.iter().rev().skip(1));

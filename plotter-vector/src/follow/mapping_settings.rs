@@ -1,10 +1,15 @@
 //! [`MappingSettings`] and [`FollowReport`]: what ours is told, and what it tells.
 
 use super::Correction;
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// What the follower is told; everything else it finds out.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct MappingSettings {
     /// What the machine can reach, as commanded places: the upper left and the lower right corner. Without it, it follows anywhere,
     /// and looks only where lines lead.

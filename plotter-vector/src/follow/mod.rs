@@ -72,7 +72,7 @@ pub use paper::Paper;
 pub use published::{Hand, PixelScale, PublishedFollower, PublishedSettings, merged};
 pub use table::{ERROR_WAY_PX, SimulatedTable, TableError};
 
-use crate::{Gray, PxPoint};
+use crate::{picture::Gray, stroke::PxPoint};
 use core::fmt;
 
 /// Whether the tool (pen, torch) works or is lifted.

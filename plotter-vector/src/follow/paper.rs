@@ -1,7 +1,11 @@
 //! [`Paper`]: the drawing under the simulated camera.
 
 use super::whole::{count, floor, inside, level};
-use crate::{Gray, GrayError, PxPoint};
+use crate::{
+    PxVec,
+    picture::{Gray, GrayError},
+    stroke::PxPoint,
+};
 
 /// A drawing on white paper, as shares of the light that each place reflects. A camera pixel sees a pixel of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,7 +57,7 @@ impl Paper {
     /// let line = vec![PxPoint::new(0.0, 2.0), PxPoint::new(8.0, 2.0)];
     /// let paper = Paper::drawn(8, 4, &[(line, 2.0)])?;
     /// assert_eq!(paper.picture()?.pixels()[..32].chunks(8).map(|row| row[4]).collect::<Vec<_>>(), [255, 0, 0, 255]);
-    /// # Ok::<(), plotter_vector::GrayError>(())
+    /// # Ok::<(), plotter_vector::picture::GrayError>(())
     /// ```
     pub fn drawn(width: u32, height: u32, strokes: &[(Vec<PxPoint>, f64)]) -> Result<Self, GrayError> {
         let mut paper = Self::of(&Gray::new(width, height, vec![255; width as usize * height as usize])?);
@@ -180,7 +184,7 @@ pub(super) fn each_covered(
             #[expect(clippy::cast_precision_loss, reason = "a pixel's number is small")]
             let at = PxPoint::new(x as f64 + 0.5, y as f64 + 0.5);
             let nearest = nearest(at, from, to);
-            let (dx, dy) = at.minus(nearest);
+            let PxVec { x: dx, y: dy } = at - nearest;
             let off = dx * dx + dy * dy;
             if off < inner {
                 found(y * width + x, 1.0);
@@ -216,11 +220,11 @@ pub(super) fn transposed(levels: &[f32], width: usize, height: usize) -> Vec<f32
 
 /// The point of a piece of a straight line that is nearest.
 pub(super) fn nearest(at: PxPoint, from: PxPoint, to: PxPoint) -> PxPoint {
-    let (dx, dy) = to.minus(from);
+    let PxVec { x: dx, y: dy } = to - from;
     let length2 = dx * dx + dy * dy;
-    let (px, py) = at.minus(from);
+    let PxVec { x: px, y: py } = at - from;
     let part = if length2 > 0.0 { ((px * dx + py * dy) / length2).clamp(0.0, 1.0) } else { 0.0 };
-    from.along((dx, dy), part)
+    from + PxVec::new(dx, dy) * part
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@
 //! (M. R. Hestenes, E. Stiefel, "Methods of conjugate gradients for solving linear systems", 1952), each place by its own 2 x 2 block.
 
 use super::prior::Information;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -24,7 +24,7 @@ const SOLVED: f64 = 1e-9;
 #[derive(Clone, Copy, Debug)]
 struct Way {
     ends: [usize; 2],
-    px: Px,
+    px: PxVec,
     told: Information,
 }
 
@@ -34,20 +34,13 @@ pub(super) struct Poses {
     ways: Vec<Way>,
 }
 
-/// A shift in both axes, px.
-type Px = (f64, f64);
-
-fn plus(one: Px, other: Px, share: f64) -> Px {
-    (one.0 + share * other.0, one.1 + share * other.1)
-}
-
-fn dot(a: &[Px], b: &[Px]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.0 * b.0 + a.1 * b.1).sum()
+fn dot(a: &[PxVec], b: &[PxVec]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
 }
 
 impl Poses {
     /// Adds a way; one that is known already stays as it was seen first.
-    pub(super) fn add(&mut self, ends: [usize; 2], px: Px, told: Information) {
+    pub(super) fn add(&mut self, ends: [usize; 2], px: PxVec, told: Information) {
         let is_known = |way: &Way| way.ends == ends || way.ends == [ends[1], ends[0]];
         if ends[0] != ends[1] && self.ways.len() < MOST_WAYS && !self.ways.iter().any(is_known) {
             self.ways.push(Way { ends, px, told });
@@ -100,28 +93,29 @@ impl Poses {
     }
 
     /// How far each place should go, px; the first stays where it is.
-    pub(super) fn shifts(&self, places: &[PxPoint]) -> Vec<Px> {
+    pub(super) fn shifts(&self, places: &[PxPoint]) -> Vec<PxVec> {
         let count = places.len();
-        let (mut rest, mut own) = (vec![(0.0, 0.0); count], vec![Information::default(); count]);
+        let (mut rest, mut own) = (vec![PxVec::default(); count], vec![Information::default(); count]);
         for way in &self.ways {
             let [Some(from), Some(to)] = way.ends.map(|end| places.get(end).copied()) else { continue };
-            let missing = way.told.times(plus(way.px, to.minus(from), -1.0));
+            let missing = way.told.times(way.px - (to - from));
             for (end, sign) in way.ends.into_iter().zip([-1.0, 1.0]) {
                 if let (Some(rest), Some(own)) = (rest.get_mut(end), own.get_mut(end)) {
-                    *rest = plus(*rest, missing, sign);
+                    *rest += missing * sign;
                     *own = own.plus(way.told);
                 }
             }
         }
         let own: Vec<Information> = own.into_iter().map(Information::inverse).collect();
-        let held = |mut all: Vec<Px>| {
+        let held = |mut all: Vec<PxVec>| {
             if let Some(first) = all.first_mut() {
-                *first = (0.0, 0.0);
+                *first = PxVec::default();
             }
             all
         };
-        let alone = |rest: &[Px]| held(rest.iter().zip(&own).map(|(rest, own)| own.times(*rest)).collect());
-        let mut shifts = vec![(0.0, 0.0); count];
+        let alone =
+            |rest: &[PxVec]| held(rest.iter().zip(&own).map(|(rest, own)| own.times(*rest)).collect());
+        let mut shifts = vec![PxVec::default(); count];
         let mut ahead = alone(&rest);
         let mut left = dot(&rest, &ahead);
         let enough = SOLVED * SOLVED * left;
@@ -135,26 +129,26 @@ impl Poses {
             for ((shift, rest), (ahead, told)) in
                 shifts.iter_mut().zip(&mut rest).zip(ahead.iter().zip(&told))
             {
-                *shift = plus(*shift, *ahead, share);
-                *rest = plus(*rest, *told, -share);
+                *shift += *ahead * share;
+                *rest -= *told * share;
             }
             let next = alone(&rest);
             let before = left;
             left = dot(&rest, &next);
-            ahead = next.iter().zip(&ahead).map(|(next, ahead)| plus(*next, *ahead, left / before)).collect();
+            ahead = next.iter().zip(&ahead).map(|(next, ahead)| *next + *ahead * (left / before)).collect();
         }
         shifts
     }
 
     /// What shifts of all places do to the equations.
-    fn times(&self, shifts: &[Px]) -> Vec<Px> {
-        let mut sums = vec![(0.0, 0.0); shifts.len()];
+    fn times(&self, shifts: &[PxVec]) -> Vec<PxVec> {
+        let mut sums = vec![PxVec::default(); shifts.len()];
         for way in &self.ways {
             let [Some(from), Some(to)] = way.ends.map(|end| shifts.get(end).copied()) else { continue };
-            let told = way.told.times(plus(to, from, -1.0));
+            let told = way.told.times(to - from);
             for (end, sign) in way.ends.into_iter().zip([-1.0, 1.0]) {
                 if let Some(sum) = sums.get_mut(end) {
-                    *sum = plus(*sum, told, sign);
+                    *sum += told * sign;
                 }
             }
         }
@@ -176,13 +170,13 @@ mod tests {
         let along = Information::of_axes([2.0, 0.1]);
         for (i, told) in [along, along, good, good].into_iter().enumerate() {
             let [from, to] = [i, i + 1].map(|i| places[i]);
-            poses.add([i, i + 1], to.minus(from), told);
+            poses.add([i, i + 1], to - from, told);
         }
-        poses.add([4, 0], (0.0, 0.0), good);
+        poses.add([4, 0], PxVec::new(0.0, 0.0), good);
         let shifts = poses.shifts(&places);
         // By the variances on the way: 4, 4, .01, .01 and .01 along x, five of .01 along y.
         let wanted = [(0.0, 0.0), (-1.995, -0.4), (-3.9900, -0.8), (-3.995, -1.2), (-4.0, -1.6)];
-        for ((x, y), (u, v)) in shifts.iter().zip(wanted) {
+        for (PxVec { x, y }, (u, v)) in shifts.iter().zip(wanted) {
             assert!((x - u).abs() < 0.01 && (y - v).abs() < 1e-6, "{shifts:?}");
         }
     }
@@ -190,10 +184,10 @@ mod tests {
     #[test]
     fn doubts_add_up_on_the_best_known_way() {
         let mut poses = Poses::default();
-        poses.add([0, 1], (45.0, 0.0), Information::of_axes([1.0, 0.1]));
-        poses.add([1, 2], (45.0, 0.0), Information::of_axes([2.0, 0.1]));
-        poses.add([3, 0], (0.0, 45.0), Information::of_axes([0.1, 0.1]));
-        poses.add([3, 2], (90.0, 0.0), Information::of_axes([0.1, 1.5]));
+        poses.add([0, 1], PxVec::new(45.0, 0.0), Information::of_axes([1.0, 0.1]));
+        poses.add([1, 2], PxVec::new(45.0, 0.0), Information::of_axes([2.0, 0.1]));
+        poses.add([3, 0], PxVec::new(0.0, 45.0), Information::of_axes([0.1, 0.1]));
+        poses.add([3, 2], PxVec::new(90.0, 0.0), Information::of_axes([0.1, 1.5]));
         let doubts = poses.doubts(0, 5);
         let near = |i: usize, xx: f64, yy: f64| {
             let doubt = doubts[i].unwrap();
@@ -212,12 +206,12 @@ mod tests {
         let mut poses = Poses::default();
         for i in 1..2000 {
             let sd = if i % 7 == 0 { 1.0 } else { 0.06 };
-            poses.add([i - 1, i], (45.0, 0.0), Information::of_axes([sd, 0.06]));
+            poses.add([i - 1, i], PxVec::new(45.0, 0.0), Information::of_axes([sd, 0.06]));
         }
-        poses.add([0, 1999], (45.0 * 1999.0 - 20.0, 0.0), Information::of_axes([0.06; 2]));
+        poses.add([0, 1999], PxVec::new(45.0 * 1999.0 - 20.0, 0.0), Information::of_axes([0.06; 2]));
         let shifts = poses.shifts(&places);
         assert!(
-            (shifts[1999].0 + 20.0).abs() < 0.01 && (shifts[1000].0 + 10.0).abs() < 0.1,
+            (shifts[1999].x + 20.0).abs() < 0.01 && (shifts[1000].x + 10.0).abs() < 0.1,
             "{:?}",
             shifts[1999]
         );
@@ -227,8 +221,8 @@ mod tests {
     fn places_that_agree_stay() {
         let places: Vec<PxPoint> = (0..5).map(|i| PxPoint::new(f64::from(i), 0.0)).collect();
         let mut poses = Poses::default();
-        (1..5).for_each(|i| poses.add([i - 1, i], (1.0, 0.0), Information::of_axes([1.0; 2])));
-        assert_eq!(poses.shifts(&places), [(0.0, 0.0); 5]);
+        (1..5).for_each(|i| poses.add([i - 1, i], PxVec::new(1.0, 0.0), Information::of_axes([1.0; 2])));
+        assert_eq!(poses.shifts(&places), [PxVec::default(); 5]);
         assert!(Poses::default().shifts(&[]).is_empty());
     }
 }

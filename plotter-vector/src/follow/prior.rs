@@ -1,6 +1,6 @@
 //! [`Prior`]: where the camera should be, and how well that is known.
 
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 
 /// Standard deviations beyond which a place is excluded.
 const EXCLUDED: f64 = 5.0;
@@ -45,8 +45,8 @@ impl Information {
         Self { xx: by * self.xx, xy: by * self.xy, yy: by * self.yy }
     }
 
-    pub(super) fn times(self, (x, y): (f64, f64)) -> (f64, f64) {
-        (self.xx * x + self.xy * y, self.xy * x + self.yy * y)
+    pub(super) fn times(self, PxVec { x, y }: PxVec) -> PxVec {
+        PxVec::new(self.xx * x + self.xy * y, self.xy * x + self.yy * y)
     }
 
     /// The inverse matrix: information from a covariance, or a covariance; diagonal where there is none.
@@ -69,47 +69,48 @@ impl Information {
         let (one, most, least) = if most >= least { (one, most, least) } else { (other, least, most) };
         // As much is told of both: then no direction is that of the lines.
         let across_px = if least > 0.8 * most { f64::max(across_px, 1.0) } else { across_px };
-        let (u, v) = one;
+        let PxVec { x: u, y: v } = one;
         let (a, b) = (1.0 / (across_px * across_px), 1.0 / (along_px * along_px));
         Self { xx: a * u * u + b * v * v, xy: (a - b) * u * v, yy: a * v * v + b * u * u }
     }
 
     /// Both directions of which most and least is known, each with its standard deviation, px.
-    pub(super) fn known(self) -> [((f64, f64), f64); 2] {
+    pub(super) fn known(self) -> [(PxVec, f64); 2] {
         self.directions().map(|(way, known)| (way, 1.0 / libm::sqrt(known.max(1e-6))))
     }
 
     /// The direction of which least is told, of length 1.
-    pub(super) fn least_told(self) -> (f64, f64) {
+    pub(super) fn least_told(self) -> PxVec {
         let [(one, most), (other, least)] = self.directions();
         if most < least { one } else { other }
     }
 
     /// What solves the normal equations; no shift where nothing is told.
-    pub(super) fn solve(self, (bx, by): (f64, f64)) -> (f64, f64) {
+    pub(super) fn solve(self, PxVec { x: bx, y: by }: PxVec) -> PxVec {
         let determinant = self.xx * self.yy - self.xy * self.xy;
         if determinant <= 1e-12 * (self.xx + self.yy) * (self.xx + self.yy) {
-            return (0.0, 0.0);
+            return PxVec::default();
         }
-        ((self.yy * bx - self.xy * by) / determinant, (self.xx * by - self.xy * bx) / determinant)
+        PxVec::new((self.yy * bx - self.xy * by) / determinant, (self.xx * by - self.xy * bx) / determinant)
     }
 
     /// Both directions of which most and least is told, and how much.
-    fn directions(self) -> [((f64, f64), f64); 2] {
+    fn directions(self) -> [(PxVec, f64); 2] {
         let angle = 0.5 * libm::atan2(2.0 * self.xy, self.xx - self.yy);
         let (u, v) = (libm::cos(angle), libm::sin(angle));
-        [(u, v), (-v, u)].map(|(u, v)| ((u, v), u * u * self.xx + 2.0 * u * v * self.xy + v * v * self.yy))
+        [(u, v), (-v, u)]
+            .map(|(u, v)| (PxVec::new(u, v), u * u * self.xx + 2.0 * u * v * self.xy + v * v * self.yy))
     }
 
     /// What equations along unit vectors tell, the sum of whose weights is `sum`, and their right side, without what noise of those
     /// vectors across themselves pretends to tell; `noise` is its variance.
-    pub(super) fn without_noise(self, (bx, by): (f64, f64), noise: f64, sum: f64) -> (Self, (f64, f64)) {
-        let (mut told, mut right) = (Self::default(), (0.0, 0.0));
-        for ((u, v), all) in self.directions() {
+    pub(super) fn without_noise(self, PxVec { x: bx, y: by }: PxVec, noise: f64, sum: f64) -> (Self, PxVec) {
+        let (mut told, mut right) = (Self::default(), PxVec::default());
+        for (PxVec { x: u, y: v }, all) in self.directions() {
             let share = (1.0 - noise * (sum - all) / all.max(1e-12)).max(0.0);
             let (kept, along) = (share * all, share * (u * bx + v * by));
             told = told.plus(Self { xx: kept * u * u, xy: kept * u * v, yy: kept * v * v });
-            right = (right.0 + along * u, right.1 + along * v);
+            right += PxVec::new(along * u, along * v);
         }
         (told, right)
     }
@@ -119,9 +120,9 @@ impl Information {
     /// lines would be the only one that fits both.
     pub(super) fn turned(self, told: Self, most: f64) -> Self {
         let strongest_first =
-            |[one, other]: [((f64, f64), f64); 2]| if one.1 < other.1 { [other, one] } else { [one, other] };
-        let [((u, v), all), (_, least)] = strongest_first(told.directions());
-        let [((x, y), known), (_, weak)] = strongest_first(self.directions());
+            |[one, other]: [(PxVec, f64); 2]| if one.1 < other.1 { [other, one] } else { [one, other] };
+        let [(PxVec { x: u, y: v }, all), (_, least)] = strongest_first(told.directions());
+        let [(PxVec { x, y }, known), (_, weak)] = strongest_first(self.directions());
         if all <= 0.0 || least > 1e-6 * all || (u * y - v * x).abs() > most {
             return self;
         }
@@ -134,14 +135,14 @@ impl Information {
 
     /// The solution in the directions of which at least `least` is told, and the information it carries when its standard
     /// deviation is `sd_px` where much is told.
-    pub(super) fn told(self, (bx, by): (f64, f64), least: f64, sd_px: f64) -> ((f64, f64), Self) {
-        let (mut shift, mut sum) = ((0.0, 0.0), Self::default());
-        for ((u, v), told) in self.directions() {
+    pub(super) fn told(self, PxVec { x: bx, y: by }: PxVec, least: f64, sd_px: f64) -> (PxVec, Self) {
+        let (mut shift, mut sum) = (PxVec::default(), Self::default());
+        for (PxVec { x: u, y: v }, told) in self.directions() {
             if told < least {
                 continue;
             }
             let along = (u * bx + v * by) / told;
-            shift = (shift.0 + along * u, shift.1 + along * v);
+            shift += PxVec::new(along * u, along * v);
             let weight = told / (told + 4.0 * least) / (sd_px * sd_px);
             sum = sum.plus(Self { xx: weight * u * u, xy: weight * u * v, yy: weight * v * v });
         }
@@ -174,9 +175,9 @@ impl Prior {
 
     /// How far off a place is, in standard deviations.
     pub(super) fn off(&self, at: PxPoint) -> f64 {
-        let off = at.minus(self.place);
-        let (x, y) = self.information.times(off);
-        libm::sqrt((off.0 * x + off.1 * y).max(0.0))
+        let off = at - self.place;
+        let PxVec { x, y } = self.information.times(off);
+        libm::sqrt((off.x * x + off.y * y).max(0.0))
     }
 
     /// Whether a place is not excluded.
@@ -187,9 +188,9 @@ impl Prior {
     /// Both together.
     pub(super) fn fused(&self, other: &Self) -> Self {
         let information = self.information.plus(other.information);
-        let off = other.place.minus(self.place);
+        let off = other.place - self.place;
         let shift = information.solve(other.information.times(off));
-        Self { place: self.place.along(shift, 1.0), information }
+        Self { place: self.place + shift, information }
     }
 }
 
@@ -210,10 +211,10 @@ mod tests {
     #[test]
     fn lines_that_are_nearly_one_direction_tell_one_only() {
         let line = |nx: f64| Information { xx: nx * nx, xy: nx, yy: 1.0 };
-        let (told, right) = line(0.0).plus(line(0.02)).without_noise((0.01, 0.5), 6e-4, 2.0);
-        assert!(told.xx < 3e-4 && (told.yy - 2.0).abs() < 1e-3 && right.0.abs() < 6e-3, "{told:?} {right:?}");
-        let (told, right) = line(0.0).plus(line(0.5)).without_noise((0.1, 0.5), 6e-4, 2.25);
-        assert!((told.xx - 0.25).abs() < 5e-3 && (right.0 - 0.1).abs() < 5e-3, "{told:?} {right:?}");
+        let (told, right) = line(0.0).plus(line(0.02)).without_noise(PxVec::new(0.01, 0.5), 6e-4, 2.0);
+        assert!(told.xx < 3e-4 && (told.yy - 2.0).abs() < 1e-3 && right.x.abs() < 6e-3, "{told:?} {right:?}");
+        let (told, right) = line(0.0).plus(line(0.5)).without_noise(PxVec::new(0.1, 0.5), 6e-4, 2.25);
+        assert!((told.xx - 0.25).abs() < 5e-3 && (right.x - 0.1).abs() < 5e-3, "{told:?} {right:?}");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! [`across`]: where a line's two rims are, to a fraction of a pixel.
 
 use super::flat::Flat;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 
 /// Distance of the samples, px.
 const STEP_PX: f64 = 0.5;
@@ -28,13 +28,13 @@ pub(super) struct Cut {
 
 /// Cuts through the line at a place, along a direction of length 1: both rims are where the darkness is half way between the
 /// line's and that beside it. `None` where there is no line within half of its width, or no end of it within a width and 8 px.
-pub(super) fn across(flat: &Flat, at: PxPoint, normal: (f64, f64), width_px: f64) -> Option<Cut> {
+pub(super) fn across(flat: &Flat, at: PxPoint, normal: PxVec, width_px: f64) -> Option<Cut> {
     let reach = super::whole::count((width_px + 8.0) / STEP_PX).min(300);
     let samples: Vec<f32> = (0..=2 * reach)
         .map(|i| {
             #[expect(clippy::cast_precision_loss, reason = "a few samples")]
             let along = (i as f64 - reach as f64) * STEP_PX;
-            flat.at(at.along(normal, along))
+            flat.at(at + normal * along)
         })
         .collect();
     let near = super::whole::count((0.5 * width_px).max(1.5) / STEP_PX).min(reach);
@@ -89,10 +89,10 @@ mod tests {
         let mut camera = SimulatedCamera::new(&paper, CameraSettings::default());
         let flat = Flat::of(&camera.window(PxPoint::new(150.0, 30.0)), None, None);
         for x in [100.0, 150.0, 200.0] {
-            let cut = across(&flat, PxPoint::new(x, 151.5), (0.0, 1.0), 4.0).unwrap();
+            let cut = across(&flat, PxPoint::new(x, 151.5), PxVec::new(0.0, 1.0), 4.0).unwrap();
             assert!((cut.middle_px - (150.3 - 151.5)).abs() < 0.15, "{cut:?}");
             assert!((cut.width_px - 5.0).abs() < 0.6, "{cut:?}");
         }
-        assert_eq!(across(&flat, PxPoint::new(150.0, 100.0), (0.0, 1.0), 4.0), None);
+        assert_eq!(across(&flat, PxPoint::new(150.0, 100.0), PxVec::new(0.0, 1.0), 4.0), None);
     }
 }

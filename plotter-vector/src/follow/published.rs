@@ -3,10 +3,15 @@
 use super::circle::ring;
 use super::exits::{circumference, connected, low_pass, middles, offset};
 use super::{End, LineFollower, Lost, Step, Tool};
-use crate::{Bitmap, Gray, Pixel, PxPoint};
+use crate::{
+    PxVec,
+    picture::{Bitmap, Gray, Pixel},
+    stroke::PxPoint,
+};
 
 /// The hand on which a follower turns off at a junction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Hand {
     /// Always the leftmost way.
     Left,
@@ -17,6 +22,11 @@ pub enum Hand {
 
 /// The parameters of the published follower.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct PublishedSettings {
     /// Darker levels are line (section 4.8).
     pub level: u8,
@@ -31,7 +41,7 @@ pub struct PublishedSettings {
     /// On which side it turns off.
     pub hand: Hand,
     /// The way that it came before the first window.
-    pub heading: (f64, f64),
+    pub heading: PxVec,
     /// Whether only exits count that ink inside of the circle joins to the current place: proposed in section 4.12, and not built
     /// there, so not as published. See [`connected_exits`](super::connected_exits).
     pub only_connected: bool,
@@ -53,7 +63,7 @@ impl Default for PublishedSettings {
             thinnest_px: 4,
             max_points: 40,
             hand: Hand::Right,
-            heading: (1.0, 0.0),
+            heading: PxVec::new(1.0, 0.0),
             only_connected: false,
             area: None,
             max_tries: 8,
@@ -97,13 +107,13 @@ impl PublishedSettings {
 /// let Step::Move { path, .. } = follower.observe(&Gray::new(100, 100, levels)?, PxPoint::new(0.0, 0.0)) else { panic!() };
 /// let end = path.last().unwrap();
 /// assert!(end.x > 40.0 && end.y.abs() <= 1.0, "to the right, along the line: {end:?}");
-/// # Ok::<(), plotter_vector::GrayError>(())
+/// # Ok::<(), plotter_vector::picture::GrayError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct PublishedFollower {
     settings: PublishedSettings,
     /// Direction of the last move along the line.
-    heading: (f64, f64),
+    heading: PxVec,
     tries: u32,
     ended: Option<End>,
 }
@@ -135,7 +145,7 @@ impl PublishedFollower {
     }
 
     /// The next place, if the circle stays inside of the window.
-    fn next(&self, ink: &Bitmap, at: Pixel, heading: (f64, f64)) -> Option<Pixel> {
+    fn next(&self, ink: &Bitmap, at: Pixel, heading: PxVec) -> Option<Pixel> {
         let least = i32::try_from(self.settings.thinnest_px.clamp(1, 1 << 14)).ok()?;
         for radius in least.. {
             let around = if self.settings.only_connected {
@@ -160,19 +170,19 @@ impl PublishedFollower {
 }
 
 /// Angle from the way back to an exit, 0 up to 360 degrees, growing to the right hand first (section 4.4).
-fn angle_deg(back: (f64, f64), way: (f64, f64)) -> f64 {
-    let dot = back.0 * way.0 + back.1 * way.1;
+fn angle_deg(back: PxVec, way: PxVec) -> f64 {
+    let dot = back.dot(way);
     // On a picture, y down, this turns against the clock: from behind over the right hand.
-    let cross = back.1 * way.0 - back.0 * way.1;
+    let cross = back.y * way.x - back.x * way.y;
     let angle = libm::atan2(cross, dot).to_degrees();
     if angle < 0.0 { angle + 360.0 } else { angle }
 }
 
 /// The exit on the wanted hand; the way back only when there is no other.
-fn choose(at: Pixel, heading: (f64, f64), exits: &[Pixel], hand: Hand) -> Option<Pixel> {
-    let back = (-heading.0, -heading.1);
+fn choose(at: Pixel, heading: PxVec, exits: &[Pixel], hand: Hand) -> Option<Pixel> {
+    let back = -heading;
     let mut angles: Vec<(f64, Pixel)> =
-        exits.iter().map(|exit| (angle_deg(back, exit.minus(at)), *exit)).collect();
+        exits.iter().map(|exit| (angle_deg(back, *exit - at), *exit)).collect();
     if angles.len() < 2 {
         return exits.first().copied();
     }
@@ -206,7 +216,7 @@ impl LineFollower for PublishedFollower {
             return Step::Done(end);
         }
         let centre = PxPoint::new(0.5 * f64::from(window.width()), 0.5 * f64::from(window.height()));
-        let to_paper = |pixel: Pixel| pose.along(PxPoint::from(pixel).minus(centre), 1.0);
+        let to_paper = |pixel: Pixel| pose + (PxPoint::from(pixel) - centre);
         let Some(ink) = self.threshold(window, to_paper) else { return self.lost(pose, Lost::WindowSize) };
         let middle = Pixel::new(window.width() / 2, window.height() / 2);
         // A circle larger than the picture means that there is no line.
@@ -223,10 +233,10 @@ impl LineFollower for PublishedFollower {
             let Some(next) = self.next(&ink, at, self.heading) else { break };
             if next == at {
                 // No exit at all: a dead end, where one turns round.
-                self.heading = (-self.heading.0, -self.heading.1);
+                self.heading = -self.heading;
                 break;
             }
-            self.heading = next.minus(at);
+            self.heading = next - at;
             places.push(next);
             at = next;
         }
@@ -252,9 +262,8 @@ pub fn merged(path: &[PxPoint]) -> Vec<PxPoint> {
     let mut kept: Vec<PxPoint> = Vec::new();
     for place in path {
         if let [.., before, last] = kept.as_slice() {
-            let (one, other) = (last.minus(*before), place.minus(*last));
-            let straight =
-                one.0 * other.1 - one.1 * other.0 == 0.0 && one.0 * other.0 + one.1 * other.1 > 0.0;
+            let (one, other) = (*last - *before, *place - *last);
+            let straight = one.cross(other) == 0.0 && one.dot(other) > 0.0;
             if straight {
                 kept.pop();
             }
@@ -304,7 +313,7 @@ mod tests {
         // On a picture y is down: came going up.
         let at = Pixel::new(10, 10);
         let exits = [Pixel::new(10, 13), Pixel::new(9, 7), Pixel::new(10, 7)];
-        let going_up = (0.0, -3.0);
+        let going_up = PxVec::new(0.0, -3.0);
         assert_eq!(choose(at, going_up, &exits, Hand::Right), Some(Pixel::new(10, 7)));
         assert_eq!(choose(at, going_up, &exits, Hand::Left), Some(Pixel::new(9, 7)));
         assert_eq!(choose(at, going_up, &exits[..1], Hand::Left), Some(Pixel::new(10, 13)), "a dead end");

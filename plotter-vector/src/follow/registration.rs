@@ -9,7 +9,7 @@ use super::flat::Flat;
 use super::line_map::LineMap;
 use super::prior::{Information, Prior};
 use super::profile::{Cut, across};
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 
 /// Most places that are cut.
 const MOST_CUTS: usize = 64;
@@ -62,7 +62,7 @@ impl Fix {
 /// One equation: a node, the normal of its line, and how far the line lies along it.
 struct Equation {
     node: u32,
-    normal: (f64, f64),
+    normal: PxVec,
     off_px: f64,
     /// 1, or 0 where another line is so near that it moves the rim.
     weight: f64,
@@ -80,35 +80,35 @@ pub(super) struct View<'a> {
 
 impl View<'_> {
     fn seen_at(&self, camera: PxPoint, place: PxPoint) -> PxPoint {
-        self.middle.along(place.minus(camera), 1.0)
+        self.middle + (place - camera)
     }
 
     /// Some of the places that the window should show.
-    fn places(&self, map: &LineMap, camera: PxPoint) -> Vec<(u32, (f64, f64))> {
+    fn places(&self, map: &LineMap, camera: PxPoint) -> Vec<(u32, PxVec)> {
         let margin = 0.5 * self.width_px + 6.0;
-        let near: Vec<(u32, (f64, f64))> = map
+        let near: Vec<(u32, PxVec)> = map
             .near(camera, self.reach_px)
             .into_iter()
             .filter(|id| self.flat.holds(self.seen_at(camera, map.at(*id)), margin))
-            .filter_map(|id| map.direction(id).map(|(x, y)| (id, (-y, x))))
+            .filter_map(|id| map.direction(id).map(|way| (id, way.perpendicular())))
             .filter(|(id, _)| !map.is_crowded(*id, 1.2 * self.width_px + 1.0))
             .collect();
         let step = near.len().div_ceil(MOST_CUTS).max(1);
         near.into_iter().step_by(step).collect()
     }
 
-    fn equations(&self, map: &LineMap, places: &[(u32, (f64, f64))], camera: PxPoint) -> Vec<Equation> {
+    fn equations(&self, map: &LineMap, places: &[(u32, PxVec)], camera: PxPoint) -> Vec<Equation> {
         let plausible = |cut: &Cut| {
             cut.width_px < 2.5 * self.width_px + 3.0
                 && cut.width_px > 0.3 * self.width_px
                 && cut.middle_px.abs() < 0.5 * self.width_px + 2.5
         };
         let cut = |at: PxPoint, normal| across(self.flat, at, normal, self.width_px).filter(plausible);
-        let equation = |(node, normal): &(u32, (f64, f64))| {
+        let equation = |(node, normal): &(u32, PxVec)| {
             let at = self.seen_at(camera, map.at(*node));
             let middle = cut(at, *normal)?;
-            let (x, y) = *normal;
-            let beside = [-ASIDE_PX, ASIDE_PX].map(|way| cut(at.along((y, -x), way), *normal));
+            let PxVec { x, y } = *normal;
+            let beside = [-ASIDE_PX, ASIDE_PX].map(|way| cut(at + PxVec::new(y, -x) * way, *normal));
             // The line's own direction: where the map has a step its nodes have another one.
             let slope = match beside {
                 [Some(one), Some(other)] => (other.middle_px - one.middle_px) / (2.0 * ASIDE_PX),
@@ -117,7 +117,7 @@ impl View<'_> {
             let length = libm::hypot(1.0, slope);
             Some(Equation {
                 node: *node,
-                normal: ((x - slope * y) / length, (y + slope * x) / length),
+                normal: PxVec::new((x - slope * y) / length, (y + slope * x) / length),
                 off_px: middle.middle_px,
                 weight: if middle.is_lopsided { 0.0 } else { 1.0 },
             })
@@ -127,14 +127,14 @@ impl View<'_> {
 
     /// Of the camera's places so many whole pixels around, that at which most places of the map are dark; of alike ones the most
     /// probable.
-    fn coarse(&self, map: &LineMap, places: &[(u32, (f64, f64))], prior: &Prior, reach: i32) -> PxPoint {
+    fn coarse(&self, map: &LineMap, places: &[(u32, PxVec)], prior: &Prior, reach: i32) -> PxPoint {
         let step = usize::try_from((reach / 20).max(1)).unwrap_or(1);
         let count = f64::from(u32::try_from(places.len().max(1)).unwrap_or(u32::MAX));
         let mut best = (f64::NEG_INFINITY, prior.place);
         for dy in (-reach..=reach).step_by(step) {
             for dx in (-reach..=reach).step_by(step) {
-                let off = (f64::from(dx), f64::from(dy));
-                let moved = prior.place.along(off, 1.0);
+                let off = PxVec::new(f64::from(dx), f64::from(dy));
+                let moved = prior.place + off;
                 let dark: f64 = places
                     .iter()
                     .map(|(id, _)| f64::from(self.flat.at(self.seen_at(moved, map.at(*id)))).clamp(0.0, 1.0))
@@ -179,8 +179,8 @@ pub(super) fn registered(map: &mut LineMap, view: &View<'_>, prior: &Prior, reac
         };
         let shift;
         (shift, told) = solved(&equations, camera, &known);
-        camera = camera.along(shift, 1.0);
-        if pass > 0 && libm::hypot(shift.0, shift.1) < 0.02 {
+        camera += shift;
+        if pass > 0 && shift.length() < 0.02 {
             break;
         }
     }
@@ -196,14 +196,14 @@ pub(super) fn registered(map: &mut LineMap, view: &View<'_>, prior: &Prior, reac
 }
 
 /// The most probable shift, and the information on it that the lines carry.
-fn solved(equations: &[Equation], camera: PxPoint, prior: &Prior) -> ((f64, f64), Information) {
-    let off = prior.place.minus(camera);
-    let (mut shift, mut told) = ((0.0, 0.0), Information::default());
+fn solved(equations: &[Equation], camera: PxPoint, prior: &Prior) -> (PxVec, Information) {
+    let off = prior.place - camera;
+    let (mut shift, mut told) = (PxVec::default(), Information::default());
     for _ in 0..5 {
         let (mut bx, mut by, mut sum) = (0.0, 0.0, 0.0);
         told = Information::default();
-        for Equation { normal: (nx, ny), off_px, weight, .. } in equations {
-            let rest = off_px + nx * shift.0 + ny * shift.1;
+        for Equation { normal: PxVec { x: nx, y: ny }, off_px, weight, .. } in equations {
+            let rest = off_px + nx * shift.x + ny * shift.y;
             let weight = weight * if rest.abs() > HUBER_PX { HUBER_PX / rest.abs() } else { 1.0 };
             told =
                 told.plus(Information { xx: weight * nx * nx, xy: weight * nx * ny, yy: weight * ny * ny });
@@ -212,11 +212,12 @@ fn solved(equations: &[Equation], camera: PxPoint, prior: &Prior) -> ((f64, f64)
             sum += weight;
         }
         let scale = (INDEPENDENT / f64::max(sum, 1e-9)).min(1.0) / (CUT_PX * CUT_PX);
-        (told, (bx, by)) = told.without_noise((bx, by), DIRECTION_SD * DIRECTION_SD, sum);
+        (told, PxVec { x: bx, y: by }) =
+            told.without_noise(PxVec::new(bx, by), DIRECTION_SD * DIRECTION_SD, sum);
         told = told.scaled(scale);
         let before = prior.information.turned(told, MOST_TURNED);
-        let (px, py) = before.times(off);
-        shift = told.plus(before).solve((scale * bx + px, scale * by + py));
+        let PxVec { x: px, y: py } = before.times(off);
+        shift = told.plus(before).solve(PxVec::new(scale * bx + px, scale * by + py));
     }
     (shift, told)
 }
@@ -227,7 +228,7 @@ pub(super) fn sure(told: Information) -> [bool; 2] {
 }
 
 /// Moves a node to where its line is seen, the less the more often it was seen.
-fn refine(map: &mut LineMap, view: &View<'_>, node: u32, normal: (f64, f64), camera: PxPoint) {
+fn refine(map: &mut LineMap, view: &View<'_>, node: u32, normal: PxVec, camera: PxPoint) {
     let Some((at, seen)) = map.node(node).map(|node| (node.at, node.seen)) else { return };
     let is_ahead = map.links_of(node).any(|(_, link, _)| link.state == super::line_map::State::Ahead);
     // What goes on from an end that no window has shown may turn there, and its ink is then beside this line's.
@@ -240,9 +241,9 @@ fn refine(map: &mut LineMap, view: &View<'_>, node: u32, normal: (f64, f64), cam
     }
     // Ink as wide as the line is one line: then it is where it is seen.
     if cut.width_px < 1.2 * view.width_px + 0.6 && at.distance(camera) < NEAR_TOOL_PX {
-        map.shift(node, at.along(normal, NEAR_GAIN * cut.middle_px));
+        map.shift(node, at + normal * (NEAR_GAIN * cut.middle_px));
     } else if cut.width_px < 1.6 * view.width_px + 1.5 {
-        map.shift(node, at.along(normal, cut.middle_px / f64::from(seen.min(8) + 1)));
+        map.shift(node, at + normal * (cut.middle_px / f64::from(seen.min(8) + 1)));
     }
 }
 
@@ -256,8 +257,9 @@ mod tests {
     fn a_line_that_goes_on_unseen_stays_straight_up_to_there() {
         // A tip of 40 degrees at (100, 100), of which windows have shown one arm up to 2 px before it.
         let tip = PxPoint::new(100.0, 100.0);
-        let arm = |(x, y): (f64, f64)| (vec![tip, tip.along((x, y), 90.0)], 5.0);
-        let paper = Paper::drawn(200, 200, &[arm((-1.0, 0.0)), arm((-0.766, 0.643))]).unwrap();
+        let arm = |PxVec { x, y }: PxVec| (vec![tip, tip + PxVec::new(x, y) * 90.0], 5.0);
+        let paper =
+            Paper::drawn(200, 200, &[arm(PxVec::new(-1.0, 0.0)), arm(PxVec::new(-0.766, 0.643))]).unwrap();
         let settings = CameraSettings { width_px: 200, height_px: 200, ..CameraSettings::default() };
         let mut camera = SimulatedCamera::new(&paper, settings);
         let places = (0..40).map(|i| PxPoint::new(20.0 + 2.0 * f64::from(i), 100.0)).collect();
@@ -290,7 +292,7 @@ mod tests {
             let flat = Flat::of(&camera.window(at), None, None);
             let view = View { flat: &flat, middle, width_px: 5.0, reach_px: 92.0 };
             let prior =
-                Prior { place: at.along((off, 0.1), 1.0), information: Information::of_axes([1.8, 0.06]) };
+                Prior { place: at + PxVec::new(off, 0.1), information: Information::of_axes([1.8, 0.06]) };
             off = registered(&mut map.clone(), &view, &prior, 0).unwrap().place.x - at.x;
             greatest = greatest.max(off.abs());
         }

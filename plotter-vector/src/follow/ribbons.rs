@@ -14,7 +14,7 @@ use super::crowd::Crowd;
 use super::flat::Flat;
 use super::ink_map::{BLUR_PX, InkMap};
 use super::lines::{SPACING_PX, cosine, count_f64};
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 use core::ops::Range;
 use std::f64::consts::{PI, SQRT_2};
 
@@ -199,8 +199,7 @@ impl Work<'_> {
             let before = all.get(k.saturating_sub(1)).copied();
             let behind = all.get(k + 1).or(all.last()).copied();
             let (Some(before), Some(at), Some(behind)) = (before, all.get(k).copied(), behind) else { break };
-            let turns =
-                before != at && at != behind && cosine(at.minus(before), behind.minus(at)) < CORNER_COS;
+            let turns = before != at && at != behind && cosine(at - before, behind - at) < CORNER_COS;
             if let Some(corner) = is_corner.get_mut(k) {
                 *corner = turns;
             }
@@ -209,15 +208,15 @@ impl Work<'_> {
                 *weight = STAYS;
                 continue;
             }
-            let (x, y) = behind.minus(before);
+            let PxVec { x, y } = behind - before;
             let length = libm::hypot(x, y);
             if turns || length < 1e-9 || self.ends.is_near(line, at) {
                 continue;
             }
-            let normal = (-y / length, x / length);
+            let normal = PxVec::new(-y / length, x / length);
             let half_px = ribbon.half_px(*number);
             let shared = libm::exp(-(half_px * half_px) / (BLUR_PX * BLUR_PX));
-            let rims = [1.0, -1.0].map(|side| at.along(normal, side * half_px));
+            let rims = [1.0, -1.0].map(|side| at + normal * (side * half_px));
             let [one, other] =
                 rims.map(|rim| self.seen(rim, (line, *number), half_px, is_loop.then_some(once)));
             let [darker, other_darker] = rims.map(|rim| self.missing.at(rim));
@@ -232,7 +231,7 @@ impl Work<'_> {
             let by = ((one * darker - other * other_darker) / stiffness).clamp(-MOST_PX, MOST_PX);
             *weight = BLIND + RIM * both;
             if let Some(target) = targets.get_mut(k) {
-                *target = at.along(normal, by);
+                *target = at + normal * by;
             }
         }
         let is_hidden: Vec<bool> = weights.iter().map(|weight| *weight < BLIND + HIDDEN).collect();
@@ -293,7 +292,7 @@ mod tests {
             let middle = PxPoint::new(150.2, 149.7);
             let ring = |radius_px: f64| -> Vec<PxPoint> {
                 let on = |k: u8| TAU * f64::from(k % 120) / 120.0;
-                let at = |k| middle.along((libm::cos(on(k)), libm::sin(on(k))), radius_px);
+                let at = |k| middle + PxVec::new(libm::cos(on(k)), libm::sin(on(k))) * radius_px;
                 (0..=120).map(at).collect()
             };
             let paper = Paper::drawn(300, 300, &[(ring(radius_px), 5.0)]).unwrap();

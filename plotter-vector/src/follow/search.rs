@@ -1,7 +1,7 @@
 //! [`Search`]: places of the reachable area that no window has shown yet.
 
 use super::whole::{count, floor};
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// Most tiles: beyond, the tiles are larger, and something may be overlooked between windows.
 const MAX_TILES: f64 = 4e6;

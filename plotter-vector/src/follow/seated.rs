@@ -12,7 +12,7 @@ use super::corners::CORNER_COS;
 use super::line_map::{LineMap, Link, State};
 use super::lines::{Piece, cosine};
 use super::paper::nearest;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 use std::collections::HashMap;
 
 /// What goes farther must be seen twice, as near to the first time, px.
@@ -130,7 +130,7 @@ fn corner_moves(map: &LineMap, piece: &Piece, i: usize, camera: PxPoint) -> Move
     let Some((id, others)) = fits.min_by(|a, b| distance(a.0).total_cmp(&distance(b.0))) else {
         return Moves::new();
     };
-    let is_tip = cosine(before.minus(at), behind.minus(at)) > TIP_COS;
+    let is_tip = cosine(before - at, behind - at) > TIP_COS;
     let most = if is_tip { TIP_HIDDEN + 2 } else { HIDDEN + 4 };
     let back: Vec<PxPoint> = piece.places.iter().take(i + 1).rev().take(most).copied().collect();
     let on: Vec<PxPoint> = piece.places.iter().skip(i).take(most).copied().collect();
@@ -146,14 +146,14 @@ fn corner_moves(map: &LineMap, piece: &Piece, i: usize, camera: PxPoint) -> Move
 
 /// Whether a line has a corner in the middle one of three places.
 fn turns([before, at, behind]: [PxPoint; 3]) -> bool {
-    cosine(at.minus(before), behind.minus(at)) < CORNER_COS
+    cosine(at - before, behind - at) < CORNER_COS
 }
 
 /// Both neighbours of a node if the lines that meet in a corner go over them, that to `ways[0]` first.
 fn arms(map: &LineMap, id: u32, corner: PxPoint, ways: [PxPoint; 2]) -> Option<[u32; 2]> {
     let [one, other] = neighbours(map, id)?;
     let is_on = |id: u32, to: PxPoint| {
-        let ((x, y), (dx, dy)) = (map.at(id).minus(corner), to.minus(corner));
+        let (PxVec { x, y }, PxVec { x: dx, y: dy }) = (map.at(id) - corner, to - corner);
         let length = libm::hypot(dx, dy).max(1e-9);
         let (along, across) = ((x * dx + y * dy) / length, (x * dy - y * dx) / length);
         along > ALONG_PX && across.abs() < BESIDE_PX
@@ -237,7 +237,7 @@ fn tip_moves(map: &LineMap, tip: (u32, PxPoint), beside: [u32; 2], arms: [&[PxPo
         let [Some(back), Some(on)] = runs else { continue };
         let spread = |(run, to): (Vec<u32>, PxPoint)| {
             let parts = super::lines::count_f64(run.len() + 1);
-            let place = move |i: usize| tip.1.along(to.minus(tip.1), super::lines::count_f64(i + 1) / parts);
+            let place = move |i: usize| tip.1 + (to - tip.1) * (super::lines::count_f64(i + 1) / parts);
             run.into_iter().enumerate().map(move |(i, id)| (id, place(i)))
         };
         return spread(back).chain(spread(on)).collect();
@@ -287,7 +287,7 @@ fn end_moves(map: &LineMap, pieces: &[Piece], camera: PxPoint, width_px: f64) ->
             let mut others = pieces.iter().enumerate().filter(|(other, _)| *other != i);
             let is_free = others.all(|(_, other)| other.places.iter().all(|at| at.distance(*end) > width_px));
             if !open && is_free && end.distance(camera) <= MIDDLE_PX {
-                all.push(beyond_end(map, *end, end.minus(*inside)));
+                all.push(beyond_end(map, *end, *end - *inside));
             }
         }
     }
@@ -295,11 +295,11 @@ fn end_moves(map: &LineMap, pieces: &[Piece], camera: PxPoint, width_px: f64) ->
 }
 
 /// What is beyond a line's end goes to its end; the line comes to it in the direction `way`.
-fn beyond_end(map: &LineMap, end: PxPoint, way: (f64, f64)) -> Moves {
-    let length = libm::hypot(way.0, way.1).max(1e-9);
+fn beyond_end(map: &LineMap, end: PxPoint, way: PxVec) -> Moves {
+    let length = way.length().max(1e-9);
     let beyond = |at: PxPoint| {
-        let (x, y) = at.minus(end);
-        let (along, across) = ((x * way.0 + y * way.1) / length, (x * way.1 - y * way.0) / length);
+        let away = at - end;
+        let (along, across) = (away.dot(way) / length, away.cross(way) / length);
         if across.abs() < BESIDE_PX { along } else { 0.0 }
     };
     let is_end = |id: &u32| {
@@ -379,7 +379,7 @@ mod tests {
         let off = |at: PxPoint| foot(at, &seen[0].places).unwrap().distance(at);
         let along = |link: &Link, part: f64| {
             let [a, b] = link.ends.map(|end| map.at(end));
-            off(a.along(b.minus(a), part))
+            off(a + (b - a) * part)
         };
         let parts = [0.0, 0.25, 0.5, 0.75];
         let most = map.links.iter().flat_map(|link| parts.map(|part| along(link, part))).fold(0.0, f64::max);

@@ -1,6 +1,6 @@
 //! [`stiff`]: a smooth line near places that are more or less sure.
 
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 
 /// The weight of a line's third differences against that of a place that is sure.
 const STIFFNESS: f64 = 20.0;
@@ -33,7 +33,8 @@ pub(super) fn stiff(targets: &[PxPoint], weights: &[f64], is_corner: &[bool]) ->
             }
         }
     }
-    let mut sums: Vec<(f64, f64)> = targets.iter().zip(weights).map(|(at, w)| (w * at.x, w * at.y)).collect();
+    let mut sums: Vec<PxVec> =
+        targets.iter().zip(weights).map(|(at, w)| PxVec::new(w * at.x, w * at.y)).collect();
     // Each row takes its part out of those that it reaches.
     for i in 0..count {
         let Some((row, sum)) = rows.get(i).copied().zip(sums.get(i).copied()) else { break };
@@ -45,7 +46,7 @@ pub(super) fn stiff(targets: &[PxPoint], weights: &[f64], is_corner: &[bool]) ->
                 }
             }
             if let Some(later) = sums.get_mut(i + j) {
-                *later = (later.0 - factor * sum.0, later.1 - factor * sum.1);
+                *later = PxVec::new(later.x - factor * sum.x, later.y - factor * sum.y);
             }
         }
     }
@@ -53,7 +54,8 @@ pub(super) fn stiff(targets: &[PxPoint], weights: &[f64], is_corner: &[bool]) ->
     for i in (0..count).rev() {
         let Some((row, sum)) = rows.get(i).zip(sums.get(i)) else { break };
         let behind = row.iter().zip(found.get(i..).unwrap_or(&[])).skip(1);
-        let (x, y) = behind.fold(*sum, |(x, y), (cell, at)| (x - cell * at.x, y - cell * at.y));
+        let PxVec { x, y } =
+            behind.fold(*sum, |PxVec { x, y }, (cell, at)| PxVec::new(x - cell * at.x, y - cell * at.y));
         if let Some(place) = found.get_mut(i) {
             *place = PxPoint::new(x / row[0], y / row[0]);
         }

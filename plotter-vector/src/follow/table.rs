@@ -2,7 +2,7 @@
 
 use super::Tool;
 use super::random::Random;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 
 /// The way over which the random error of a table is given, px: from the middle of a window of 300 px to its border, what the
 /// published follower moves between two pictures.
@@ -73,8 +73,8 @@ impl SimulatedTable {
         for piece in 1..=pieces {
             #[expect(clippy::cast_precision_loss, reason = "a few pixels")]
             let part = piece as f64 / pieces as f64;
-            let (dx, dy) = to.minus(from);
-            let command = from.along((dx, dy), part);
+            let PxVec { x: dx, y: dy } = to - from;
+            let command = from + PxVec::new(dx, dy) * part;
             self.pushed.x = self.pushed.x.clamp(command.x - half, command.x + half);
             self.pushed.y = self.pushed.y.clamp(command.y - half, command.y + half);
             if sd > 0.0 {

@@ -13,7 +13,7 @@ use super::corners::{BLURRED_END_PX, SHARP_COS, ink_end_px};
 use super::flat::Flat;
 use super::lines::cosine;
 use super::paper::nearest;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 
 /// A straight arm deviates by less, px.
 const STRAIGHT_PX: f64 = 0.5;
@@ -42,7 +42,7 @@ struct Arm {
     behind: bool,
     /// Places from the foot on.
     places: Vec<PxPoint>,
-    direction: (f64, f64),
+    direction: PxVec,
     middle: PxPoint,
 }
 
@@ -78,7 +78,7 @@ fn unfold(stroke: &mut Vec<PxPoint>, width_px: f64) {
         let Some(&[before, _, at, _, behind]) = i.checked_sub(2).and_then(|i| stroke.get(i..i + 5)) else {
             return false;
         };
-        cosine(at.minus(before), behind.minus(at)) < BACK_COS
+        cosine(at - before, behind - at) < BACK_COS
     };
     let is_one = |there: &[PxPoint], again: &[PxPoint]| {
         there.iter().all(|at| again.iter().any(|place| place.distance(*at) < 0.5 * width_px))
@@ -113,7 +113,7 @@ fn unhook(stroke: &mut Vec<PxPoint>, width_px: f64) {
         let turns = |i: &usize| {
             let ways = (stroke.get(*i), stroke.get(i.saturating_sub(LOOK)), stroke.get((i + LOOK).min(last)));
             let (Some(at), Some(before), Some(behind)) = ways else { return false };
-            cosine(at.minus(*before), behind.minus(*at)) < 0.0
+            cosine(*at - *before, *behind - *at) < 0.0
         };
         let first = last.saturating_sub(super::whole::count(width_px) + 1).max(stroke.len() / 2).max(LOOK);
         if let Some(turn) = (first..last).find(turns) {
@@ -316,8 +316,8 @@ fn tip(
     if one.stroke == other.stroke && one.behind == other.behind {
         return None;
     }
-    let out = free.minus(foot);
-    let mean = (one.direction.0 + other.direction.0, one.direction.1 + other.direction.1);
+    let out = free - foot;
+    let mean = one.direction + other.direction;
     // The way of a short stub is mostly noise.
     let least = if foot.distance(free) < 1.2 * width_px { -0.5 } else { -0.85 };
     let between = cosine(one.direction, other.direction);
@@ -326,24 +326,20 @@ fn tip(
     if between < -0.3 || foot.distance(free) > longest || cosine(out, mean) > least {
         return None;
     }
-    let cross = one.direction.0 * other.direction.1 - one.direction.1 * other.direction.0;
-    let apart = other.middle.minus(one.middle);
-    let along = (apart.0 * other.direction.1 - apart.1 * other.direction.0) / cross;
-    let met = one.middle.along(one.direction, along);
+    let cross = one.direction.cross(other.direction);
+    let along = (other.middle - one.middle).cross(other.direction) / cross;
+    let met = one.middle + one.direction * along;
     // The ink ends about half a width behind the tip, the more the sharper it is.
     let sound = cross.abs() > 0.03 && met.distance(free) < 1.5 * width_px + 0.4 * foot.distance(free) + 2.0;
     let mut at = if sound { met } else { free };
     // Arms that meet at a small angle hardly tell where, and those that are short or bent not at all; the end of their ink does.
-    let length = libm::hypot(mean.0, mean.1);
-    let way = (-mean.0 / length, -mean.1 / length);
-    let off = free.minus(at);
-    let ahead = off.0 * way.0 + off.1 * way.1;
+    let way = -mean / mean.length();
+    let ahead = (free - at).dot(way);
     let is_sharp = between > -SHARP_COS;
-    let from = if is_sharp { at.along(way, ahead) } else { free };
+    let from = if is_sharp { at + way * ahead } else { free };
     if let Some(end_px) = ink_end_px(flat, from, way, width_px) {
-        let end = from.along(way, end_px - 0.5 * width_px + BLURRED_END_PX);
-        let (x, y) = end.minus(at);
-        if is_sharp || (x * way.0 + y * way.1 > BENT_PX && is_round(flat, end, way, width_px)) {
+        let end = from + way * (end_px - 0.5 * width_px + BLURRED_END_PX);
+        if is_sharp || ((end - at).dot(way) > BENT_PX && is_round(flat, end, way, width_px)) {
             at = end;
         }
     }
@@ -351,17 +347,17 @@ fn tip(
 }
 
 /// Whether ink is as wide as the line at a place that a round pen would end at.
-fn is_round(flat: &Flat, end: PxPoint, (x, y): (f64, f64), width_px: f64) -> bool {
-    let beside = |side: f64| flat.at(end.along((-y, x), side * ROUND_SHARE * width_px));
+fn is_round(flat: &Flat, end: PxPoint, PxVec { x, y }: PxVec, width_px: f64) -> bool {
+    let beside = |side: f64| flat.at(end + PxVec::new(-y, x) * (side * ROUND_SHARE * width_px));
     beside(-1.0).min(beside(1.0)) > ROUND_DARK * flat.at(end)
 }
 
 /// The straight line through an arm's places, over as long a part of it as is straight.
-fn arm(own: &[PxPoint], width_px: f64) -> Option<(PxPoint, (f64, f64))> {
-    let is_straight = |part: &[PxPoint], (middle, (x, y)): (PxPoint, (f64, f64))| {
+fn arm(own: &[PxPoint], width_px: f64) -> Option<(PxPoint, PxVec)> {
+    let is_straight = |part: &[PxPoint], (middle, PxVec { x, y }): (PxPoint, PxVec)| {
         part.iter().all(|at| {
-            let off = at.minus(middle);
-            (off.0 * y - off.1 * x).abs() < STRAIGHT_PX
+            let off = *at - middle;
+            (off.x * y - off.y * x).abs() < STRAIGHT_PX
         })
     };
     // Next to the foot blur draws the arms together.
@@ -383,22 +379,22 @@ fn arm(own: &[PxPoint], width_px: f64) -> Option<(PxPoint, (f64, f64))> {
 }
 
 /// The straight line through places, by least squares across it: its middle, and its direction from the first on.
-pub(super) fn fitted(places: &[PxPoint]) -> Option<(PxPoint, (f64, f64))> {
+pub(super) fn fitted(places: &[PxPoint]) -> Option<(PxPoint, PxVec)> {
     let count = f64::from(u32::try_from(places.len()).ok()?);
     let sum = places.iter().fold((0.0, 0.0), |sum, at| (sum.0 + at.x, sum.1 + at.y));
     let middle = PxPoint::new(sum.0 / count, sum.1 / count);
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
     for at in places {
-        let (dx, dy) = at.minus(middle);
+        let PxVec { x: dx, y: dy } = *at - middle;
         xx += dx * dx;
         xy += dx * dy;
         yy += dy * dy;
     }
     let angle = 0.5 * libm::atan2(2.0 * xy, xx - yy);
-    let direction = (libm::cos(angle), libm::sin(angle));
-    let way = places.last()?.minus(*places.first()?);
-    let sign = if way.0 * direction.0 + way.1 * direction.1 < 0.0 { -1.0 } else { 1.0 };
-    Some((middle, (sign * direction.0, sign * direction.1)))
+    let direction = PxVec::new(libm::cos(angle), libm::sin(angle));
+    let way = *places.last()? - *places.first()?;
+    let sign = if way.dot(direction) < 0.0 { -1.0 } else { 1.0 };
+    Some((middle, direction * sign))
 }
 
 #[cfg(test)]
@@ -410,12 +406,12 @@ mod tests {
     const TIP: PxPoint = PxPoint { x: 40.0, y: 60.0 };
 
     /// An arm of the tip along this way: its places, a pixel apart, from one of them on.
-    fn arm((x, y): (f64, f64), from: u8) -> Vec<PxPoint> {
-        (from..80).map(|i| TIP.along((x, y), f64::from(i))).collect()
+    fn arm(way: PxVec, from: u8) -> Vec<PxPoint> {
+        (from..80).map(|i| TIP + way * f64::from(i)).collect()
     }
 
     /// What a camera shows of the tip with arms along these ways.
-    fn picture(ways: [(f64, f64); 2], width_px: f64) -> Flat {
+    fn picture(ways: [PxVec; 2], width_px: f64) -> Flat {
         let paper = Paper::drawn(160, 160, &ways.map(|way| (arm(way, 0), width_px))).unwrap();
         let settings = CameraSettings { width_px: 160, height_px: 160, ..CameraSettings::default() };
         Flat::of(&SimulatedCamera::new(&paper, settings).window(PxPoint::new(80.0, 80.0)), None, None)
@@ -429,7 +425,7 @@ mod tests {
     #[test]
     fn a_stub_with_two_arms_becomes_a_tip() {
         // A tip of about 23 degrees; the arms part at 20 px from it.
-        let ways = [(1.0, 0.2), (1.0, -0.2)];
+        let ways = [PxVec::new(1.0, 0.2), PxVec::new(1.0, -0.2)];
         let mut one = arm(ways[0], 20);
         one.reverse();
         one.push(PxPoint::new(58.0, 60.0));
@@ -443,8 +439,8 @@ mod tests {
     #[test]
     fn a_stub_that_is_folded_is_a_tip() {
         // A tip of 18 degrees: one arm goes on to its end, the other as far, back and again to the end.
-        let ways = [(-0.152, -0.988), (0.152, -0.988)];
-        let one = [&[TIP.along((0.0, -2.0), 1.0)], &*arm(ways[0], 14)].concat();
+        let ways = [PxVec::new(-0.152, -0.988), PxVec::new(0.152, -0.988)];
+        let one = [&[TIP + PxVec::new(0.0, -2.0)], &*arm(ways[0], 14)].concat();
         let stub = [-3.1, -6.8, -1.9].map(|y| PxPoint::new(TIP.x, TIP.y + y));
         let mut other = arm(ways[1], 9);
         other.reverse();
@@ -453,7 +449,7 @@ mod tests {
         let strokes = sharpened(&picture(ways, 5.0), strokes.into(), 5.0);
         assert_eq!(strokes.len(), 1);
         assert!(off_px(&strokes[0]) < 0.5, "{}", off_px(&strokes[0]));
-        let back = strokes[0].windows(5).filter(|w| cosine(w[2].minus(w[0]), w[4].minus(w[2])) < BACK_COS);
+        let back = strokes[0].windows(5).filter(|w| cosine(w[2] - w[0], w[4] - w[2]) < BACK_COS);
         assert!(back.count() <= 1);
     }
 
@@ -503,9 +499,9 @@ mod tests {
     #[test]
     fn a_crumb_beside_a_stub_hides_no_tip() {
         // A tip of 40 degrees as thinning left it: both arms have the stub for their last piece, and a crumb lies beside it.
-        let ways = [(0.868, 0.496), (0.351, 0.936)];
-        let from_tip = |(x, y): (f64, f64)| PxPoint::new(TIP.x + x, TIP.y + y);
-        let whole = |stub: [(f64, f64); 3], way: (f64, f64)| {
+        let ways = [PxVec::new(0.868, 0.496), PxVec::new(0.351, 0.936)];
+        let from_tip = |(x, y): (f64, f64)| TIP + PxVec::new(x, y);
+        let whole = |stub: [(f64, f64); 3], way: PxVec| {
             let mut places: Vec<PxPoint> = stub.map(from_tip).into();
             places.extend(arm(way, 15));
             resampled(&places, 1.0)

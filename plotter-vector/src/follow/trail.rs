@@ -6,7 +6,7 @@
 use super::line_map::{LineMap, Link, State};
 use super::lines::{SPACING_PX, cosine};
 use super::paper::nearest;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 use std::collections::HashSet;
 
 /// Most nodes that are visited to tell a bridge.
@@ -38,14 +38,14 @@ fn cluster(map: &LineMap, node: u32) -> Vec<u32> {
 }
 
 /// The way of a line behind a link, over a few nodes.
-fn course(map: &LineMap, from: u32, to: u32) -> (f64, f64) {
+fn course(map: &LineMap, from: u32, to: u32) -> PxVec {
     let (mut before, mut at) = (from, to);
     for _ in 1..AHEAD {
         let mut rest = map.links_of(at).filter(|(_, link, other)| !link.contact && *other != before);
         let (Some((_, _, next)), None) = (rest.next(), rest.next()) else { break };
         (before, at) = (at, next);
     }
-    map.at(at).minus(map.at(from))
+    map.at(at) - map.at(from)
 }
 
 /// Whether the places `here` can be reached again from the other end of a link without it.
@@ -67,7 +67,7 @@ fn returns(map: &LineMap, link: u32, from: u32, here: &[u32]) -> bool {
 }
 
 /// The link to follow from a node, with its near and its far end.
-pub(super) fn next(map: &LineMap, node: u32, heading: (f64, f64)) -> Option<(u32, u32, u32)> {
+pub(super) fn next(map: &LineMap, node: u32, heading: PxVec) -> Option<(u32, u32, u32)> {
     let here = cluster(map, node);
     let mut ways: Vec<(u32, u32, u32)> = Vec::new();
     for near in &here {

@@ -6,7 +6,8 @@
 //!               meet, joined  rings anywhere    Or-opt        than the given order
 //! ```
 
-pub(crate) mod forest;
+mod chains;
+pub(crate) mod lettering;
 mod on_sheet;
 pub(crate) mod plan;
 pub(crate) mod point_tree;
@@ -17,12 +18,13 @@ mod sites;
 mod trails;
 mod units;
 
-use crate::curve::Piece as Segment;
-use crate::{Curve, Drawing, Lettering, PxPoint, TextBlock};
-use plan::{Parts, Piece, Stroke, Trail, rebuild, strokes_of};
+use crate::stroke::curve::Segment;
+use crate::stroke::{Curve, Drawing, PxPoint};
+pub use lettering::{Lettering, TextBlock, TextLine};
+use plan::{Legs, Stroke, Trail, all_vertices, rebuild, strokes_of};
 use ring_start::start_rings_well;
 use search::shorten;
-use sites::{RING_PLACES, Sites, number};
+use sites::{RING_PLACES, Sites, Stop, number};
 use units::{Units, mark_letters};
 
 /// Greatest coordinate of a drawing that is ordered, px: squares of distances stay far from infinity.
@@ -34,7 +36,7 @@ const FARTHEST_PX: f64 = 1e12;
 pub enum OrderEffort {
     /// The given strokes in the given order.
     None,
-    /// Strokes joined, each where the first of its pieces was, pen by pen.
+    /// Strokes joined, each where the first of its legs was, pen by pen.
     Join,
     /// Strokes joined, then from each end to the nearest stroke.
     Fast,
@@ -137,12 +139,18 @@ impl Order {
             None => Vec::new(),
         };
         mark_letters(&mut strokes, &blocks);
-        let (parts, trails) = self.plan(&strokes, &blocks);
-        rebuild(drawing, &parts, &trails)
+        let (legs, trails) = self.plan(&strokes, &blocks, None);
+        rebuild(drawing, &legs, &trails)
     }
 
-    /// What is drawn as one, in order.
-    fn plan<'a>(&self, strokes: &'a [Stroke<'a>], blocks: &[TextBlock]) -> (Parts<'a>, Vec<Trail>) {
+    /// What is drawn as one, in order; `given_px` is the way between the strokes in the order of their ranks,
+    /// where that is known.
+    fn plan<'a>(
+        &self,
+        strokes: &'a [Stroke<'a>],
+        blocks: &[TextBlock],
+        given_px: Option<f64>,
+    ) -> (Legs<'a>, Vec<Trail>) {
         if !strokes.iter().all(is_within) {
             return as_given(strokes, &[], self.across_pens);
         }
@@ -151,115 +159,148 @@ impl Order {
             one_stroke: self.one_stroke,
             at_corners: self.bridges_corners,
         };
-        let (parts, joined) = trails::trails(strokes, &joining);
-        let units = Units::new(&parts, joined, blocks);
+        let (legs, joined) = trails::trails(strokes, &joining);
+        let units = Units::new(&legs, joined, blocks);
         if self.effort == OrderEffort::Join {
-            let joined = self.as_joined(&parts, &units);
-            return (parts, joined);
+            let joined = self.as_joined(&legs, &units);
+            return (legs, joined);
         }
-        let (mut trails, mut ends) = self.sequence(&parts, &units);
-        let mut least_px = self.well_begun(&parts, &mut trails, &mut ends);
-        let cost_px = |parts: &Parts<'_>, trails: &mut [Trail]| {
-            if trails.iter().any(|trail| trail.closed) {
-                let mut ends: Vec<Ends> = trails.iter().map(|trail| parts.ends(*trail)).collect();
-                return self.well_begun(parts, trails, &mut ends);
-            }
-            // A million lines are not noted once more.
-            self.cost_px(trails.len(), trails.iter().map(|trail| parts.ends(*trail)))
-        };
-        // Where nothing is joined, this is the given order.
-        if trails.len() < strokes.len() {
-            let mut joined = self.as_joined(&parts, &units);
-            let joined_px = cost_px(&parts, &mut joined);
-            if joined_px < least_px {
-                (trails, least_px) = (joined, joined_px);
-            }
+        // Where nothing is joined, this is the given order. Of two answers only the cost is kept.
+        let is_joined = units.trails() < strokes.len();
+        let joined_px = is_joined.then(|| self.cost_px(&legs, &mut self.as_joined(&legs, &units), None));
+        let (mut trails, way_px) = self.sequence(&legs, &units);
+        let mut least_px = self.cost_px(&legs, &mut trails, Some(way_px));
+        if let Some(joined_px) = joined_px.filter(|joined_px| *joined_px < least_px) {
+            trails = self.as_joined(&legs, &units);
+            least_px = joined_px;
+            self.cost_px(&legs, &mut trails, None);
         }
         drop(units);
+        // Pens that take turns in the given order, and blocks, are brought together.
+        let is_one_pen = || strokes.windows(2).all(|two| matches!(two, [a, b] if a.pen == b.pen));
+        let is_as_known = blocks.is_empty()
+            && (self.across_pens || is_one_pen())
+            && !strokes.iter().any(|stroke| stroke.closed);
+        let given_px = given_px.filter(|_| is_as_known).map(|way_px| way_px + self.lifts_px(strokes.len()));
+        if given_px.is_some_and(|given_px| least_px <= given_px) {
+            return (legs, trails);
+        }
         let (as_given, mut given) = as_given(strokes, blocks, self.across_pens);
-        if least_px <= cost_px(&as_given, &mut given) { (parts, trails) } else { (as_given, given) }
+        if least_px <= self.cost_px(&as_given, &mut given, None) { (legs, trails) } else { (as_given, given) }
     }
 
-    /// Lets closed trails begin where that is best, and gives what all of them cost.
-    fn well_begun(&self, parts: &Parts<'_>, trails: &mut [Trail], ends: &mut [Ends]) -> f64 {
-        start_rings_well(parts, trails, ends);
-        self.cost_px(trails.len(), ends.iter().copied())
+    /// Lets closed trails begin where that is best, and gives what all of them cost besides the ink: the way
+    /// between them, which may be known where none is closed, and the lifts.
+    fn cost_px(&self, legs: &Legs<'_>, trails: &mut [Trail], known_px: Option<f64>) -> f64 {
+        let way_px = match known_px {
+            Some(way_px) if !trails.iter().any(|trail| trail.closed) => way_px,
+            _ => start_rings_well(legs, trails),
+        };
+        way_px + self.lifts_px(trails.len())
     }
 
-    /// What so many trails cost besides the ink: the way between them, and the lifts.
-    fn cost_px(&self, trails: usize, ends: impl IntoIterator<Item = Ends>) -> f64 {
+    /// What so many lifts cost, px.
+    fn lifts_px(&self, lifts: usize) -> f64 {
         let lift_px = if self.lift_px > 0.0 { self.lift_px.min(FARTHEST_PX) } else { 0.0 };
         #[expect(clippy::cast_precision_loss, reason = "fewer than 2^32")]
-        let lifts = trails as f64;
-        travel_px(ends) + lifts * lift_px
+        let lifts = lifts as f64;
+        lifts * lift_px
     }
 
     /// The trails of the units in the given order, pen by pen.
-    fn as_joined(&self, parts: &Parts<'_>, units: &Units) -> Vec<Trail> {
+    fn as_joined(&self, legs: &Legs<'_>, units: &Units) -> Vec<Trail> {
         let rank = |trail: &Trail| {
-            let strokes =
-                trail.pieces(&parts.pieces).filter_map(|piece| parts.strokes.get(piece.stroke as usize));
+            let strokes = trail.legs(&legs.all).filter_map(|leg| legs.strokes.get(leg.stroke as usize));
             strokes.map(|stroke| stroke.rank).min()
         };
-        let key = |unit: u32| {
-            let own = units.of(unit);
-            let pen = own.first().filter(|_| !self.across_pens).map_or(0, |trail| parts.pen(*trail));
-            (pen, own.iter().filter_map(rank).min(), unit)
+        let pen = |unit: &u32| {
+            units.of(*unit).first().filter(|_| !self.across_pens).map_or(0, |trail| legs.pen(*trail))
         };
-        let mut order: Vec<_> = (0..number(units.len())).map(key).collect();
-        order.sort_unstable();
-        order.into_iter().flat_map(|(_, _, unit)| units.of(unit).iter().copied()).collect()
+        // Each unit where the first of its strokes was.
+        let mut order = vec![u32::MAX; legs.strokes.len()];
+        for unit in 0..number(units.len()) {
+            let first = units.of(unit).iter().filter_map(rank).min();
+            if let Some(slot) = first.and_then(|first| order.get_mut(first as usize)) {
+                *slot = unit;
+            }
+        }
+        order.retain(|unit| *unit != u32::MAX);
+        order.sort_by_key(pen);
+        let mut joined = Vec::with_capacity(order.len());
+        joined.extend(order.iter().flat_map(|unit| units.of(*unit).iter().copied()));
+        joined
     }
 
-    /// The trails of the units in order, pen by pen, and where each begins and ends.
-    fn sequence(&self, parts: &Parts<'_>, units: &Units) -> (Vec<Trail>, Vec<Ends>) {
+    /// The trails of the units in order, pen by pen, and the way between them, px.
+    fn sequence(&self, legs: &Legs<'_>, units: &Units) -> (Vec<Trail>, f64) {
         let pen = |unit: &u32| match units.of(*unit).first() {
-            Some(trail) if !self.across_pens => parts.pen(*trail),
+            Some(trail) if !self.across_pens => legs.pen(*trail),
             _ => 0,
         };
-        let mut by_pen: Vec<u32> = (0..number(units.len())).collect();
-        by_pen.sort_by_key(pen);
+        // Of one pen they stay as they are.
+        let mut by_pen: Vec<u32> = Vec::new();
+        let mut of_pens: Vec<usize> = vec![units.len()];
+        if (0..number(units.len())).any(|unit| pen(&unit) != pen(&0)) {
+            by_pen.extend(0..number(units.len()));
+            by_pen.sort_unstable_by_key(|unit| (pen(unit), *unit));
+            of_pens = by_pen.chunk_by(|a, b| pen(a) == pen(b)).map(<[u32]>::len).collect();
+        }
         let all = units.len().max(1) as u64;
-        let mut ordered: Vec<Trail> = Vec::with_capacity(units.len());
-        let mut ends: Vec<Ends> = Vec::with_capacity(units.len());
-        for same_pen in by_pen.chunk_by(|a, b| pen(a) == pen(b)) {
-            let from = ends.last().map(|ends| ends.1);
-            let mut sites = Sites::default();
-            let rings = same_pen.iter().flat_map(|unit| units.of(*unit)).filter(|trail| trail.closed).count();
-            same_pen.iter().for_each(|unit| add_site(&mut sites, parts, units.of(*unit), rings));
-            let mut visits = sites.nearest_first(from);
+        let mut ordered: Vec<Trail> = Vec::new();
+        let mut travel = Travel::default();
+        let mut first = 0;
+        for count in of_pens {
+            let unit_of = |site: u32| {
+                let index = first + site as usize;
+                units.of(by_pen.get(index).copied().unwrap_or_else(|| number(index)))
+            };
+            let same_pen = || (0..number(count)).map(unit_of);
+            let mut sites = Sites::new(all_vertices(legs.strokes));
+            sites.reserve(count);
+            let rings = same_pen().flatten().filter(|trail| trail.closed).count();
+            same_pen().for_each(|unit| add_site(&mut sites, legs, unit, rings));
+            let mut entries = sites.nearest_first(travel.at);
             if self.effort == OrderEffort::Best {
-                let share = (self.budget / all).min(LOOKS_PER_STROKE) * same_pen.len() as u64;
-                visits = shorten(&sites, &visits, from, share);
+                let share = (self.budget / all).min(LOOKS_PER_STROKE) * count as u64;
+                entries = shorten(&sites, entries, travel.at, share);
             }
-            for visit in visits {
-                let Some(unit) = same_pen.get(visit.site as usize) else { continue };
+            ordered.reserve(entries.len());
+            for visit in entries.into_iter().filter_map(|entry| sites.enter(entry)) {
+                let unit = unit_of(visit.site);
                 let from = ordered.len();
-                ordered.extend(units.of(*unit));
+                ordered.extend(unit);
                 if let Some([trail]) = ordered.get_mut(from..) {
-                    ends.push((sites.place(visit.entry), sites.place(visit.exit)));
+                    travel.go_on((sites.place(visit.entry), sites.place(visit.exit)));
                     if trail.closed {
-                        trail.start = sites.vertices.get(visit.entry as usize).map_or(0, |vertex| *vertex);
+                        trail.start = sites.ring_vertex(visit.entry);
                     } else if visit.entry > visit.exit {
                         trail.reversed = !trail.reversed;
                     }
                 } else {
-                    ends.extend(units.of(*unit).iter().map(|trail| parts.ends(*trail)));
+                    unit.iter().for_each(|trail| travel.go_on(legs.ends(*trail)));
                 }
             }
+            first += count;
         }
-        (ordered, ends)
+        (ordered, travel.px)
     }
 }
 
 /// Where a trail begins and ends.
 type Ends = (PxPoint, PxPoint);
 
-/// Way from trail to trail, px; the way to the first is not known.
-fn travel_px(ends: impl IntoIterator<Item = Ends>) -> f64 {
-    let mut at: Option<PxPoint> = None;
-    let way = |(from, to): Ends| at.replace(to).map_or(0.0, |at| at.distance(from));
-    ends.into_iter().map(way).fold(0.0, |sum, px| sum + px)
+/// The travel of the pen between trails.
+#[derive(Clone, Copy, Debug, Default)]
+struct Travel {
+    /// Where the pen is.
+    at: Option<PxPoint>,
+    px: f64,
+}
+
+impl Travel {
+    fn go_on(&mut self, (from, to): Ends) {
+        self.px += self.at.replace(to).map_or(0.0, |at| at.distance(from));
+    }
 }
 
 /// Whether a stroke can be ordered by distances.
@@ -268,30 +309,35 @@ fn is_within(stroke: &Stroke<'_>) -> bool {
 }
 
 /// Where the pen may enter and leave a unit, one of so many rings if it is one.
-fn add_site(sites: &mut Sites, parts: &Parts<'_>, unit: &[Trail], rings: usize) {
+fn add_site(sites: &mut Sites<'_>, legs: &Legs<'_>, unit: &[Trail], rings: usize) {
+    let ends = |trail: &Trail| {
+        if trail.closed {
+            let (from, to) = legs.ends(*trail);
+            return (Stop::Between(from), Stop::Between(to));
+        }
+        let (from, to) = legs.end_vertices(*trail);
+        (Stop::Vertex(from), Stop::Vertex(to))
+    };
     match unit {
         [trail] if trail.closed => {
-            sites.push_ring(&ring_places(&parts.curve(*trail)), rings);
+            sites.push_ring(&ring_places(&legs.curve(*trail)), rings);
         }
-        [trail] if parts.is_dot(*trail) => sites.push_ring(&[(parts.ends(*trail).0, 0)], rings),
-        [trail] => sites.push_line(parts.ends(*trail)),
-        trails => {
-            let from = trails.first().map(|trail| parts.ends(*trail).0);
-            let to = trails.last().map(|trail| parts.ends(*trail).1);
-            sites.push_one_way((from.unwrap_or_default(), to.unwrap_or_default()));
-        }
+        [trail] if legs.is_dot(*trail) => sites.push_ring(&[(ends(trail).0, 0)], rings),
+        [trail] => sites.push_line(ends(trail)),
+        [first, .., last] => sites.push_one_way((ends(first).0, ends(last).1)),
+        [] => sites.push_one_way((PxPoint::default(), PxPoint::default())),
     }
 }
 
 /// Places at which a closed trail may be entered, each with the vertex before: the vertices, and where these
 /// are few, those that divide what is not straight evenly.
 fn ring_places(ring: &Curve) -> Vec<(PxPoint, u32)> {
-    let pieces = ring.vertices.len().saturating_sub(1).max(1);
-    let parts = number(RING_PLACES.div_ceil(pieces));
-    let mut places = Vec::with_capacity(pieces);
-    for (vertex, piece) in ring.course().pieces().enumerate() {
-        let parts = if matches!(piece, Segment::Line(..)) { 1 } else { parts };
-        let place = |part: u32| (piece.at(f64::from(part) / f64::from(parts)), number(vertex));
+    let segments = ring.vertices.len().saturating_sub(1).max(1);
+    let parts = number(RING_PLACES.div_ceil(segments));
+    let mut places = Vec::with_capacity(segments);
+    for (vertex, segment) in ring.course().segments().enumerate() {
+        let parts = if matches!(segment, Segment::Line(..)) { 1 } else { parts };
+        let place = |part: u32| (segment.at(f64::from(part) / f64::from(parts)), number(vertex));
         places.extend((0..parts).map(place));
     }
     places
@@ -309,29 +355,43 @@ fn as_given<'a>(
     strokes: &'a [Stroke<'a>],
     blocks: &[TextBlock],
     across_pens: bool,
-) -> (Parts<'a>, Vec<Trail>) {
+) -> (Legs<'a>, Vec<Trail>) {
     let pen = |stroke: &Stroke<'_>| if across_pens { 0 } else { stroke.pen };
-    // The pen, where its block begins, its place in the block, and which it is.
-    let mut order: Vec<(u8, u32, u32, u32)> =
-        strokes.iter().zip(0..).map(|(stroke, index)| (pen(stroke), stroke.rank, 0, index)).collect();
+    // Of each stroke of a block where that begins, and its place in it.
+    let mut read: Vec<(u32, u32)> = Vec::new();
+    if !blocks.is_empty() {
+        read.extend(strokes.iter().map(|stroke| (stroke.rank, 0)));
+    }
     for block in blocks {
         let own = || block.letters().flatten().copied();
         let least =
             own().filter_map(|stroke| strokes.get(stroke)).map(|stroke| stroke.rank).min().unwrap_or(0);
-        for (stroke, read) in own().zip(0..) {
-            if let Some(slot) = order.get_mut(stroke) {
-                (slot.1, slot.2) = (least, read);
+        for (stroke, place) in own().zip(0..) {
+            if let Some(slot) = read.get_mut(stroke) {
+                *slot = (least, place);
             }
         }
     }
-    order.sort_unstable();
-    let mut parts = Parts::new(strokes);
+    let key = |index: &u32| {
+        let stroke = strokes.get(*index as usize);
+        let read = read.get(*index as usize).copied();
+        stroke.map(|stroke| (pen(stroke), read.unwrap_or((stroke.rank, 0)), *index))
+    };
+    let mut order: Vec<u32> = vec![0; strokes.len()];
+    for (stroke, index) in strokes.iter().zip(0..) {
+        if let Some(slot) = order.get_mut(stroke.rank as usize) {
+            *slot = index;
+        }
+    }
+    // Of one pen without lettering that is all.
+    if !order.is_sorted_by_key(key) {
+        order.sort_unstable_by_key(key);
+    }
     let alone = |stroke: u32| {
         let closed = strokes.get(stroke as usize).is_some_and(|stroke| stroke.closed);
-        parts.push([Piece { stroke, reversed: false, start: 0 }], closed)
+        Trail::of_stroke(stroke, closed)
     };
-    let trails = order.into_iter().map(|(_, _, _, stroke)| stroke).map(alone).collect();
-    (parts, trails)
+    (Legs::new(strokes), order.into_iter().map(alone).collect())
 }
 
 #[cfg(test)]
@@ -355,11 +415,11 @@ mod tests {
             stroke.pen = pen;
         }
         let order = Order::default();
-        let (parts, joined) = trails::trails(&strokes, &JOINING);
-        let (trails, _) = order.sequence(&parts, &Units::new(&parts, joined, &[]));
+        let (legs, joined) = trails::trails(&strokes, &JOINING);
+        let (trails, _) = order.sequence(&legs, &Units::new(&legs, joined, &[]));
         let drawn: Vec<u32> =
-            trails.iter().flat_map(|trail| trail.pieces(&parts.pieces)).map(|piece| piece.stroke).collect();
-        let pens: Vec<u8> = trails.iter().map(|trail| parts.pen(*trail)).collect();
+            trails.iter().flat_map(|trail| trail.legs(&legs.all)).map(|leg| leg.stroke).collect();
+        let pens: Vec<u8> = trails.iter().map(|trail| legs.pen(*trail)).collect();
         assert_eq!(pens, [1, 1, 1, 2, 2, 2, 3, 3, 3]);
         // Each pen begins on the side where the one before ended.
         assert!(drawn == [1, 4, 7, 6, 3, 0, 2, 5, 8] || drawn == [7, 4, 1, 0, 3, 6, 8, 5, 2], "{drawn:?}");

@@ -1,9 +1,9 @@
 //! [`Order`] for drawings of the sheet: pens, layers, speeds and what happens between strokes stay with them.
 
-use super::plan::{Parts, Piece, Trail, share_of, strokes_of};
+use super::plan::{Leg, Trail, share_of, strokes_of};
 use super::sites::number;
 use super::{Order, OrderEffort};
-use crate::{Drawing, PxPoint};
+use crate::stroke::{Drawing, PxPoint};
 use core::f64::consts::TAU;
 use plotter_motion::drawing::{self, Bounds, Mark, PathSegment, Shape, Stroke};
 use std::collections::BTreeMap;
@@ -31,40 +31,36 @@ impl Order {
     /// ```
     #[must_use]
     pub fn apply_to(&self, drawing: drawing::Drawing) -> drawing::Drawing {
-        let mut ordered =
-            drawing::Drawing { strokes: Vec::new(), after: drawing.after, layers: drawing.layers };
+        let drawing::Drawing { mut strokes, after, layers } = drawing;
+        if self.effort == OrderEffort::None {
+            return drawing::Drawing { strokes, after, layers };
+        }
+        // Of each sheet how many strokes it had, and how many it has.
+        let mut counts: Vec<(usize, usize)> = Vec::new();
         let parts = |stroke: &Stroke| stroke.before.iter().any(|mark| !matches!(mark, Mark::Dwell(_)));
-        let mut rest = drawing.strokes.into_iter().peekable();
-        while let Some(mut first) = rest.next() {
+        for sheet in strokes.chunk_by_mut(|_, next| !parts(next)) {
             // What begins the sheet begins it whatever is drawn first.
-            let begins = if parts(&first) { std::mem::take(&mut first.before) } else { Vec::new() };
-            let mut sheet = vec![first];
-            while let Some(stroke) = rest.next_if(|stroke| !parts(stroke)) {
-                sheet.push(stroke);
-            }
-            let mut strokes = self.ordered(sheet);
-            if let Some(first) = strokes.first_mut() {
+            let first = sheet.first_mut().filter(|first| parts(first));
+            let begins = first.map(|first| std::mem::take(&mut first.before)).unwrap_or_default();
+            counts.push((sheet.len(), self.put_in_order(sheet)));
+            if let Some(first) = sheet.first_mut() {
                 first.before.splice(0..0, begins);
             }
-            ordered.strokes.append(&mut strokes);
         }
-        ordered
+        let mut is_kept = counts.into_iter().flat_map(|(had, has)| (0..had).map(move |index| index < has));
+        strokes.retain(|_| is_kept.next().unwrap_or(true));
+        drawing::Drawing { strokes, after, layers }
     }
 
-    fn ordered(&self, given: Vec<Stroke>) -> Vec<Stroke> {
-        if self.effort == OrderEffort::None {
-            return given;
-        }
-        let px = |at: plotter_motion::Point| PxPoint::new(at.x * PX_PER_MM, at.y * PX_PER_MM);
-        let (ranks, mut given) = side_by_side(given);
-        let mut picture = Drawing::new(0, 0);
-        for stroke in given.iter().flatten() {
-            picture.push_curve(stroke.pen, crate::on_sheet::curve(stroke, px, 1.0));
-        }
+    /// Puts the strokes of a sheet in order, joined, and gives how many they are now; behind them are empty
+    /// ones.
+    fn put_in_order(&self, given: &mut [Stroke]) -> usize {
+        let (picture, ranks, given_px) = side_by_side(given);
         let mut strokes = strokes_of(&picture);
         let mut groups = BTreeMap::new();
-        for ((known, stroke), rank) in strokes.iter_mut().zip(given.iter().flatten()).zip(ranks) {
+        for (known, rank) in strokes.iter_mut().zip(ranks) {
             known.rank = rank;
+            let Some(stroke) = given.get(rank as usize) else { continue };
             // Pens are told apart here, so that pen 0 is one too.
             known.pen = stroke.pen;
             let next = number(groups.len() + 1);
@@ -74,26 +70,70 @@ impl Order {
                 *groups.entry((0, 0, Some(next))).or_insert(next)
             };
         }
-        let (Parts { pieces, .. }, trails) = self.plan(&strokes, &[]);
+        let (legs, mut trails) = self.plan(&strokes, &[], Some(given_px));
+        let all = legs.in_given_numbers(&mut trails);
         // What was needed for the search is given free before the answer is built.
         drop(strokes);
         drop(picture);
-        trails.iter().filter_map(|trail| joined(*trail, &pieces, &mut given)).collect()
+        // Where each stroke comes to: that which begins a trail where that is, all others behind. So nothing
+        // is there twice, and memory is walked along as it was given.
+        let count = trails.len();
+        let mut standing: Vec<u32> = vec![u32::MAX; given.len()];
+        for (trail, place) in trails.iter().zip(0..) {
+            let first = trail.legs(&all).next();
+            if let Some(slot) = first.and_then(|first| standing.get_mut(first.stroke as usize)) {
+                *slot = place;
+            }
+        }
+        for index in 0..given.len() {
+            let trail = standing.get(index).and_then(|place| trails.get(*place as usize));
+            let stroke = trail.and_then(|trail| joined(*trail, &all, given));
+            if let (Some(stroke), Some(slot)) = (stroke, given.get_mut(index)) {
+                *slot = stroke;
+            }
+        }
+        let behind = standing.iter_mut().filter(|place| **place == u32::MAX);
+        behind.zip(number(count)..).for_each(|(place, free)| *place = free);
+        bring_to_places(given, &mut standing);
+        count
     }
 }
 
-/// The strokes along a Z-order curve (G. M. Morton, "A computer oriented geodetic data base", 1966), each
-/// with its number before: what is near on the sheet is near in memory, where the search needs it next.
-fn side_by_side(given: Vec<Stroke>) -> (Vec<u32>, Vec<Option<Stroke>>) {
+/// Moves all to the places that are said for them, each once.
+fn bring_to_places(all: &mut [Stroke], places: &mut [u32]) {
+    for index in 0..all.len() {
+        while let Some(place) = places.get(index).map(|place| *place as usize) {
+            // Each exchange brings one to its place.
+            if place == index || place >= all.len() {
+                break;
+            }
+            all.swap(index, place);
+            places.swap(index, place);
+        }
+    }
+}
+
+/// The strokes as curves along a Z-order curve (G. M. Morton, "A computer oriented geodetic data base",
+/// 1966), and the number that each was given: what is near on the sheet is near in memory, where the search
+/// needs it next. And the way between the strokes as given, px.
+fn side_by_side(given: &[Stroke]) -> (Drawing, Vec<u32>, f64) {
+    let px = |at: plotter_motion::Point| PxPoint::new(at.x * PX_PER_MM, at.y * PX_PER_MM);
     let mut all = Bounds::default();
-    given.iter().for_each(|stroke| all.grow(stroke.from));
+    let mut as_given = Drawing::new(0, 0);
+    for stroke in given {
+        all.grow(stroke.from);
+        as_given.push_curve(stroke.pen, crate::stroke::on_sheet::curve(stroke, px, 1.0));
+    }
     let mut along: Vec<(u32, u32)> = Vec::with_capacity(given.len());
     along.extend(given.iter().zip(0..).map(|(stroke, rank)| (z_order(stroke.from, all), rank)));
     along.sort_unstable();
     let ranks: Vec<u32> = along.into_iter().map(|(_, rank)| rank).collect();
-    let mut given: Vec<Option<Stroke>> = given.into_iter().map(Some).collect();
-    let sorted = ranks.iter().map(|rank| given.get_mut(*rank as usize).and_then(Option::take)).collect();
-    (ranks, sorted)
+    let mut picture = Drawing::new(0, 0);
+    picture.reserve_for(&as_given);
+    for rank in &ranks {
+        picture.push_again(&as_given, *rank as usize);
+    }
+    (picture, ranks, as_given.pen_up_px())
 }
 
 /// Where a place comes on the curve through the box: the bits of its two coordinates by turns, y first.
@@ -114,22 +154,29 @@ fn z_order(at: plotter_motion::Point, all: Bounds) -> u32 {
 }
 
 /// The strokes of a trail as one. Each stroke is of one trail only.
-fn joined(trail: Trail, pieces: &[Piece], given: &mut [Option<Stroke>]) -> Option<Stroke> {
+fn joined(trail: Trail, legs: &[Leg], given: &mut [Stroke]) -> Option<Stroke> {
     let mut all: Option<Stroke> = None;
-    let mut has_halves = false;
-    for piece in trail.pieces(pieces) {
-        let mut stroke = given.get_mut(piece.stroke as usize)?.take()?;
+    let mut turns: Vec<plotter_motion::Point> = Vec::new();
+    for leg in trail.legs(legs) {
+        let mut stroke = std::mem::take(given.get_mut(leg.stroke as usize)?);
         // As the search knows it.
-        let halves: Vec<PathSegment> =
-            stroke.segments().flat_map(|(from, segment)| crate::on_sheet::halved(from, segment)).collect();
-        if halves.len() > stroke.segments.len() {
-            stroke.segments = halves;
-            has_halves = true;
+        let given_turns = turns.len();
+        let whole = stroke
+            .segments()
+            .filter(|(from, segment)| crate::stroke::on_sheet::is_whole_turn(*from, segment));
+        turns.extend(whole.filter_map(|(_, segment)| match segment.shape {
+            Shape::Arc { centre, .. } => Some(centre),
+            Shape::Line | Shape::Cubic { .. } => None,
+        }));
+        if turns.len() > given_turns {
+            let halves =
+                stroke.segments().flat_map(|(from, segment)| crate::stroke::on_sheet::halved(from, segment));
+            stroke.segments = halves.collect();
         }
-        if piece.start > 0 && stroke.is_closed() {
-            begin_at(&mut stroke, piece.start as usize);
+        if leg.start > 0 && stroke.is_closed() {
+            begin_at(&mut stroke, leg.start as usize);
         }
-        if piece.reversed {
+        if leg.reversed {
             stroke.reverse();
         }
         match &mut all {
@@ -155,14 +202,16 @@ fn joined(trail: Trail, pieces: &[Piece], given: &mut [Option<Stroke>]) -> Optio
         begin_at(&mut all, trail.start as usize);
         begin_within(&mut all, share_of(trail.share));
     }
-    if has_halves {
-        join_arcs(&mut all.segments);
+    if !turns.is_empty() {
+        turns.sort_unstable_by(by_place);
+        join_arcs(&mut all.segments, &turns);
     }
     Some(all)
 }
 
-/// Makes one of arcs of one circle that go on in each other, up to a whole turn.
-fn join_arcs(segments: &mut Vec<PathSegment>) {
+/// Makes one of arcs that go on in each other, up to a whole turn, where a whole turn about their centre was
+/// given and halved. Arcs that came as parts stay parts. The centres of the turns are sorted by their place.
+fn join_arcs(segments: &mut Vec<PathSegment>, turns: &[plotter_motion::Point]) {
     segments.dedup_by(|next, last| {
         let (Shape::Arc { centre, sweep_rad }, Shape::Arc { centre: own, sweep_rad: before }) =
             (next.shape, last.shape)
@@ -171,6 +220,7 @@ fn join_arcs(segments: &mut Vec<PathSegment>) {
         };
         let sum_rad = before + sweep_rad;
         let goes_on = own == centre
+            && turns.binary_search_by(|turn| by_place(turn, &centre)).is_ok()
             && before * sweep_rad > 0.0
             && sum_rad.abs() <= TAU + ROUNDING_RAD
             && (last.feed_mm_s, last.power) == (next.feed_mm_s, next.power);
@@ -180,6 +230,10 @@ fn join_arcs(segments: &mut Vec<PathSegment>) {
         }
         goes_on
     });
+}
+
+fn by_place(one: &plotter_motion::Point, other: &plotter_motion::Point) -> std::cmp::Ordering {
+    one.x.total_cmp(&other.x).then(one.y.total_cmp(&other.y))
 }
 
 /// What the sum of the parts of a turn may be off, rad.

@@ -6,11 +6,11 @@
 //!                  ‾‾‾
 //! ```
 
-use super::Ends;
-use super::plan::{Parts, Trail, parts_of, share_of};
+use super::plan::{Legs, Trail, parts_of, share_of};
 use super::sites::number;
-use crate::curve::{Piece, whole_chords};
-use crate::{Curve, PxPoint};
+use super::{Ends, Travel};
+use crate::stroke::curve::{Segment, whole_chords};
+use crate::stroke::{Curve, PxPoint};
 
 /// Travel that counts as equal, px.
 const SAME_PX: f64 = 1e-9;
@@ -18,14 +18,16 @@ const SAME_PX: f64 = 1e-9;
 /// Difference of the cosines of two bends that counts as one being sharper.
 const SHARPER_COS: f64 = 0.05;
 
-/// Most passes over the rings' starts. Each depends on its neighbours': three passes settle nearly all, and
-/// only rings next to one that has moved are looked at again.
-const RING_PASSES: usize = 20;
+/// Most looks at rings, of all of them: for each, and besides. A start depends on its neighbours': three
+/// looks settle nearly all, as only rings next to one that has moved are looked at again, but two circles
+/// that nearly touch take hundreds.
+const LOOKS_PER_RING: usize = 20;
+const LOOKS: usize = 1000;
 
 /// How far a start has to move for its neighbours to be looked at again, px: less gains no tenth of a pixel.
 const MOVED_PX: f64 = 0.05;
 
-/// Least travel that a start within a piece saves over one at a vertex, px: a tenth of a millimetre of a
+/// Least travel that a start within a segment saves over one at a vertex, px: a tenth of a millimetre of a
 /// sheet, some milliseconds. It costs a vertex, and at a corner the pen's coming and going is not seen.
 const LEAST_SAVED_PX: f64 = 1.0;
 
@@ -43,38 +45,99 @@ const SEARCH_STEPS: u32 = 28;
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// Lets each ring begin at the place that is on the way from the stroke before to the one after; of equally
-/// good vertices at the sharpest corner, where the pen's coming and going is not seen.
-pub(super) fn start_rings_well(parts: &Parts<'_>, trails: &mut [Trail], ends: &mut [Ends]) {
-    if !trails.iter().any(|trail| trail.closed) {
-        return;
-    }
-    let mut is_due: Vec<bool> = trails.iter().map(|trail| trail.closed).collect();
-    for _ in 0..RING_PASSES {
+/// good vertices at the sharpest corner, where the pen's coming and going is not seen. Gives the way between
+/// all trails, px; that to the first is not known.
+pub(super) fn start_rings_well(legs: &Legs<'_>, trails: &mut [Trail]) -> f64 {
+    let mut rings = Rings::new(legs, trails);
+    let mut looks_left = LOOKS + LOOKS_PER_RING * rings.0.len();
+    while looks_left > 0 {
         let mut settled = true;
-        for (index, trail) in trails.iter_mut().enumerate().filter(|(_, trail)| trail.closed) {
-            if !is_due.get_mut(index).is_some_and(std::mem::take) {
-                continue;
+        for ring in 0..rings.0.len() {
+            if looks_left == 0 {
+                break;
             }
-            let before = index.checked_sub(1).and_then(|before| ends.get(before)).map(|ends| ends.1);
-            let after = ends.get(index + 1).map(|ends| ends.0);
+            let Some(Ring { index, at, .. }) = rings.take_due(ring) else { continue };
+            looks_left -= 1;
+            let before =
+                index.checked_sub(1).and_then(|before| trails.get(before).map(|trail| (before, *trail)));
+            let after = trails.get(index + 1).copied();
+            let ways = RingNeighbours {
+                before: before.map(|(index, trail)| rings.ends(legs, trail, index).1),
+                after: after.map(|trail| rings.ends(legs, trail, index + 1).0),
+            };
+            let Some(trail) = trails.get_mut(index) else { continue };
             (trail.start, trail.share) = (0, 0);
-            let mut ring = parts.curve(*trail);
-            ring.vertices.pop();
-            let start = Ways { before, after }.best_start(&ring);
+            let mut curve = legs.curve(*trail);
+            curve.vertices.pop();
+            let start = ways.best_start(&curve);
             (trail.start, trail.share) = (number(start.vertex), start.parts);
-            let Some(slot) = ends.get_mut(index) else { continue };
-            if std::mem::replace(slot, (start.at, start.at)).0.distance(start.at) > MOVED_PX {
+            if at.distance(start.at) > MOVED_PX {
                 settled = false;
-                let beside = [index.checked_sub(1), Some(index + 1)].into_iter().flatten();
-                beside.for_each(|index| {
-                    if let Some(due) = is_due.get_mut(index) {
-                        *due = true;
-                    }
-                });
+                rings.make_due_beside(ring);
             }
+            rings.begin_at(ring, start.at);
         }
         if settled {
             break;
+        }
+    }
+    let mut way = Travel::default();
+    let mut own = rings.0.iter().map(|ring| (ring.at, ring.at));
+    for trail in trails.iter() {
+        let ends = if trail.closed { own.next() } else { None };
+        way.go_on(ends.unwrap_or_else(|| legs.ends(*trail)));
+    }
+    way.px
+}
+
+/// A closed trail.
+#[derive(Clone, Copy, Debug)]
+struct Ring {
+    /// Which of the trails.
+    index: usize,
+    /// Where it begins.
+    at: PxPoint,
+    /// Whether it is to be looked at again.
+    is_due: bool,
+}
+
+/// The closed trails in order.
+struct Rings(Vec<Ring>);
+
+impl Rings {
+    fn new(legs: &Legs<'_>, trails: &[Trail]) -> Self {
+        let closed = trails.iter().enumerate().filter(|(_, trail)| trail.closed);
+        Self(closed.map(|(index, trail)| Ring { index, at: legs.ends(*trail).0, is_due: true }).collect())
+    }
+
+    fn take_due(&mut self, ring: usize) -> Option<Ring> {
+        let ring = self.0.get_mut(ring)?;
+        std::mem::take(&mut ring.is_due).then_some(*ring)
+    }
+
+    /// Where a trail with this index begins and ends.
+    fn ends(&self, legs: &Legs<'_>, trail: Trail, index: usize) -> Ends {
+        let known = || {
+            let ring = self.0.binary_search_by_key(&index, |ring| ring.index).ok()?;
+            self.0.get(ring).map(|ring| (ring.at, ring.at))
+        };
+        if trail.closed { known().unwrap_or_default() } else { legs.ends(trail) }
+    }
+
+    fn begin_at(&mut self, ring: usize, at: PxPoint) {
+        if let Some(ring) = self.0.get_mut(ring) {
+            ring.at = at;
+        }
+    }
+
+    /// Lets the rings before and after one be looked at again.
+    fn make_due_beside(&mut self, ring: usize) {
+        let index = self.0.get(ring).map_or(0, |ring| ring.index);
+        let beside = [ring.checked_sub(1), Some(ring + 1)].into_iter().flatten();
+        for ring in beside {
+            if let Some(ring) = self.0.get_mut(ring).filter(|ring| ring.index.abs_diff(index) == 1) {
+                ring.is_due = true;
+            }
         }
     }
 }
@@ -82,21 +145,21 @@ pub(super) fn start_rings_well(parts: &Parts<'_>, trails: &mut [Trail], ends: &m
 /// Where a ring begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Start {
-    /// Vertex with which the piece begins.
+    /// Vertex with which the segment begins.
     vertex: usize,
-    /// Share of that piece: see [`Trail::share`].
+    /// Share of that segment: see [`Trail::share`].
     parts: u32,
     at: PxPoint,
 }
 
 /// What the pen draws before a ring ends here, and what it draws after it begins there.
 #[derive(Clone, Copy, Debug)]
-struct Ways {
+struct RingNeighbours {
     before: Option<PxPoint>,
     after: Option<PxPoint>,
 }
 
-impl Ways {
+impl RingNeighbours {
     /// Travel to and from a place, px.
     fn travel(&self, at: PxPoint) -> f64 {
         let way = |end: Option<PxPoint>| end.map_or(0.0, |end| end.distance(at));
@@ -116,7 +179,7 @@ impl Ways {
         let ends = ring.vertices.iter().zip(ring.vertices.iter().cycle().skip(1));
         let slope = self.slope();
         for (vertex, (from, to)) in ends.enumerate() {
-            // Nowhere on it is there less than this: the other pieces are not asked for.
+            // Nowhere on it is there less than this: the other segments are not asked for.
             let least_px =
                 0.5 * (self.travel(*from) + self.travel(*to) - slope * ring.course().longest_px(vertex));
             if least_px >= most_px {
@@ -124,12 +187,12 @@ impl Ways {
             }
             // Within a straight side the pen would stop where it otherwise goes on, and a polygon would have
             // a vertex more.
-            let Some(piece @ (Piece::Arc(_) | Piece::Cubic(_))) = ring.course().piece(vertex) else {
+            let Some(segment @ (Segment::Arc(_) | Segment::Cubic(_))) = ring.course().segment(vertex) else {
                 continue;
             };
-            if let Some((share, px)) = self.best_share(&piece, most_px) {
+            if let Some((share, px)) = self.best_share(&segment, most_px) {
                 let parts = parts_of(share);
-                (start, most_px) = (Start { vertex, parts, at: piece.at(share_of(parts)) }, px);
+                (start, most_px) = (Start { vertex, parts, at: segment.at(share_of(parts)) }, px);
             }
         }
         start
@@ -144,15 +207,15 @@ impl Ways {
                 continue;
             }
             let count = ring.vertices.len();
-            let piece = |index: usize| ring.course().piece(index).unwrap_or(Piece::Line(*at, *at));
+            let segment = |index: usize| ring.course().segment(index).unwrap_or(Segment::Line(*at, *at));
             // Of what is not straight the directions at the vertex count.
-            let from = match piece(vertex.checked_sub(1).unwrap_or(count - 1)) {
-                Piece::Line(previous, _) => previous,
-                bent => at.along(bent.heading(true), -1.0),
+            let from = match segment(vertex.checked_sub(1).unwrap_or(count - 1)) {
+                Segment::Line(previous, _) => previous,
+                bent => *at - bent.heading(true),
             };
-            let to = match piece(vertex) {
-                Piece::Line(_, next) => next,
-                bent => at.along(bent.heading(false), 1.0),
+            let to = match segment(vertex) {
+                Segment::Line(_, next) => next,
+                bent => *at + bent.heading(false),
             };
             let bend = bend_cos(from, *at, to);
             if far < best.0 - SAME_PX || bend < best.1 - SHARPER_COS {
@@ -162,18 +225,18 @@ impl Ways {
         (best.2, best.0)
     }
 
-    /// The share of a piece at which the travel is least, and how much it is there, if that is less than
+    /// The share of a segment at which the travel is least, and how much it is there, if that is less than
     /// `most_px`.
-    fn best_share(&self, piece: &Piece, most_px: f64) -> Option<(f64, f64)> {
-        let stretches = match piece {
+    fn best_share(&self, segment: &Segment, most_px: f64) -> Option<(f64, f64)> {
+        let stretches = match segment {
             // The sum of two distances is convex along a line.
-            Piece::Line(..) => 1,
-            Piece::Arc(arc) => whole_chords(libm::ceil(arc.sweep_rad.abs() / ARC_STEP_RAD)),
-            Piece::Cubic(_) => CUBIC_STRETCHES,
+            Segment::Line(..) => 1,
+            Segment::Arc(arc) => whole_chords(libm::ceil(arc.sweep_rad.abs() / ARC_STEP_RAD)),
+            Segment::Cubic(_) => CUBIC_STRETCHES,
         };
         let share = |stretch: u32| f64::from(stretch) / f64::from(stretches);
-        let travel = |share: f64| self.travel(piece.at(share));
-        let steep_px = self.slope() * piece.longest_part_px(share(1));
+        let travel = |share: f64| self.travel(segment.at(share));
+        let steep_px = self.slope() * segment.longest_part_px(share(1));
         let mut best: Option<(f64, f64)> = None;
         let mut begins_px = travel(0.0);
         for stretch in 0..stretches {
@@ -231,7 +294,7 @@ mod tests {
     fn of_equally_near_vertices_a_ring_begins_at_the_sharpest() {
         let ring = [(0.0, 0.0), (2.0, 0.0), (4.0, 0.0), (2.0, 9.0)].map(|(x, y)| at(x, y));
         let ring = Curve::from(ring.to_vec());
-        let start = |before| Ways { before, after: None }.best_start(&ring).vertex;
+        let start = |before| RingNeighbours { before, after: None }.best_start(&ring).vertex;
         assert_eq!(start(None), 3);
         assert_eq!(start(Some(at(2.0, -1.0))), 1);
     }
@@ -250,12 +313,13 @@ mod tests {
             [(30.0, -50.0), (60.0, -20.0), (-200.0, 30.0), (300.0, 200.0), (210.0, -20.0), (20.0, 500.0)];
         let ends = ends.map(|(x, y)| at(x, y));
         for (before, after) in ends.iter().flat_map(|one| ends.map(|other| (*one, other))) {
-            let ways = Ways { before: Some(before), after: Some(after) };
+            let ways = RingNeighbours { before: Some(before), after: Some(after) };
             let start = ways.best_start(&ring);
-            let pieces: Vec<Piece> = (0..4).filter_map(|vertex| ring.course().piece(vertex)).collect();
-            let parts = |piece: &Piece| if matches!(piece, Piece::Line(..)) { 1 } else { 2000 };
-            let places =
-                pieces.iter().flat_map(|piece| (0..parts(piece)).map(|k| piece.at(f64::from(k) / 2000.0)));
+            let segments: Vec<Segment> = (0..4).filter_map(|vertex| ring.course().segment(vertex)).collect();
+            let parts = |segment: &Segment| if matches!(segment, Segment::Line(..)) { 1 } else { 2000 };
+            let places = segments
+                .iter()
+                .flat_map(|segment| (0..parts(segment)).map(|k| segment.at(f64::from(k) / 2000.0)));
             let least = places.map(|at| ways.travel(at)).fold(f64::INFINITY, f64::min);
             let px = ways.travel(start.at);
             // A vertex stands where it costs no more than a pixel.

@@ -1,7 +1,7 @@
 //! [`Route`]: an order of things that can be changed and changed back cheaply.
 
 use super::sites::{Site, Sites, Visit, number};
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// Things in a cycle, one more than there are: the last one is where the pen comes from and goes to. The way from its
 /// entry is free, so the way round the cycle is the way that is looked for.
@@ -50,9 +50,10 @@ impl Reading {
 }
 
 impl Route {
-    /// The route of these visits, each thing once, from a place or from anywhere.
-    pub(crate) fn new(sites: &Sites, visits: &[Visit], from: Option<PxPoint>) -> Self {
-        let mut places = sites.places.clone();
+    /// The route of the visits that enter at these places, each thing once, from a place or from anywhere.
+    pub(crate) fn new(sites: &Sites<'_>, entries: &[u32], from: Option<PxPoint>) -> Self {
+        let visits: Vec<Visit> = entries.iter().filter_map(|entry| sites.enter(*entry)).collect();
+        let mut places: Vec<PxPoint> = (0..sites.places()).map(|place| sites.place(place)).collect();
         let (start, end) = (number(places.len()), number(places.len() + 1));
         places.extend([from.unwrap_or_default(), PxPoint::default()]);
         let home = number(visits.len());
@@ -283,8 +284,8 @@ mod tests {
     }
 
     /// Lines of 1 px, 10 px apart; the third one is one-way.
-    fn row() -> (Sites, Route) {
-        let mut sites = Sites::default();
+    fn row() -> (Sites<'static>, Route) {
+        let mut sites = Sites::new(&[]);
         for k in 0..6 {
             let (from, to) = (at(10 * k), at(10 * k + 1));
             if k == 2 { sites.push_one_way((from, to)) } else { sites.push_line((from, to)) }
@@ -324,6 +325,7 @@ mod tests {
         }
         route.undo_to(0);
         assert_eq!(route.length(), before);
-        assert_eq!(route.visits(), sites.nearest_first(None));
+        let entries: Vec<u32> = route.visits().iter().map(|visit| visit.entry).collect();
+        assert_eq!(entries, sites.nearest_first(None));
     }
 }

@@ -17,8 +17,9 @@
 //! shaking with the double bridge, kept local.
 
 use super::route::{Reading, Route};
-use super::sites::{NEIGHBOURS, Site, Sites, Visit};
-use crate::PxPoint;
+use super::sites::{NEIGHBOURS, Site, Sites};
+use crate::stroke::PxPoint;
+use plotter_motion::SplitMix64;
 use std::collections::VecDeque;
 
 /// Gain below which nothing is changed, px: far below any pen, far above the rounding of a sum of four ways.
@@ -38,16 +39,17 @@ const SHAKEN: usize = 30;
 const SHAKES: u64 = 30;
 const FEWEST_SHAKES: u64 = 300;
 
-/// A shorter order of the visits. `budget` counts what is looked at and what is moved.
-pub(super) fn shorten(sites: &Sites, visits: &[Visit], from: Option<PxPoint>, budget: u64) -> Vec<Visit> {
-    if visits.len() != sites.len() || visits.len() < 2 {
-        return visits.to_vec();
+/// A shorter order of the visits, by the places where they are entered. `budget` counts what is looked at and
+/// what is moved.
+pub(super) fn shorten(sites: &Sites<'_>, entries: Vec<u32>, from: Option<PxPoint>, budget: u64) -> Vec<u32> {
+    if entries.len() != sites.len() || entries.len() < 2 {
+        return entries;
     }
-    let mut search = Search::new(sites, visits, from, budget);
+    let mut search = Search::new(sites, &entries, from, budget);
     search.settle();
     search.turned = TURNED_LATER;
     search.shake();
-    search.route.visits()
+    search.route.visits().into_iter().map(|visit| visit.entry).collect()
 }
 
 /// A change of the route, as read in a direction.
@@ -62,7 +64,7 @@ enum Change {
 }
 
 struct Search<'a> {
-    sites: &'a Sites,
+    sites: &'a Sites<'a>,
     near: Vec<[u32; NEIGHBOURS]>,
     route: Route,
     /// Things near which something was changed, each once.
@@ -78,18 +80,18 @@ type Best = Option<(f64, Reading, Change)>;
 
 impl<'a> Search<'a> {
     /// Before the first change; everything is queued.
-    fn new(sites: &'a Sites, visits: &[Visit], from: Option<PxPoint>, budget: u64) -> Self {
+    fn new(sites: &'a Sites<'a>, entries: &[u32], from: Option<PxPoint>, budget: u64) -> Self {
         let mut search = Self {
             sites,
             near: sites.neighbours(),
-            route: Route::new(sites, visits, from),
+            route: Route::new(sites, entries, from),
             queue: VecDeque::new(),
-            queued: vec![false; visits.len() + 1],
+            queued: vec![false; entries.len() + 1],
             looked: 0,
             budget,
             turned: TURNED_AT_FIRST,
         };
-        visits.iter().for_each(|visit| search.enqueue(visit.site));
+        entries.iter().for_each(|entry| search.enqueue(sites.owner(*entry)));
         search
     }
 
@@ -278,22 +280,22 @@ impl<'a> Search<'a> {
         let Some(most) = all.checked_sub(3).filter(|most| *most > 0) else { return };
         // The last thing may turn where all may.
         let turnable = self.route.may_turn(self.route.home());
-        let mut random = 0;
+        let mut random = SplitMix64::new(0);
         for _ in 0..FEWEST_SHAKES.max(SHAKES.saturating_mul(all as u64)) {
             if self.spent() {
                 break;
             }
             self.route.keep();
-            let after = self.route.at(draw(&mut random, all));
-            let moved = 1 + draw(&mut random, most.min(SHAKEN));
-            let passed = 1 + draw(&mut random, (all - 2 - moved).min(SHAKEN));
+            let after = self.route.at(random.below(all));
+            let moved = 1 + random.below(most.min(SHAKEN));
+            let passed = 1 + random.below((all - 2 - moved).min(SHAKEN));
             let step =
                 |from: u32, steps: usize| (0..steps).fold(from, |site, _| self.route.next(Reading::Up, site));
             let first = step(after, 1);
             let last = step(first, moved - 1);
             let target = step(last, passed);
             self.looked += (moved + passed) as u64 / 4;
-            let reversed = draw(&mut random, 2) == 0 && turnable;
+            let reversed = random.below(2) == 0 && turnable;
             let growth = growth_of_move(&self.route, Reading::Up, (first, last), target, reversed);
             let touched = move_after(&mut self.route, Reading::Up, (first, last), target, reversed);
             touched.iter().for_each(|site| self.enqueue(*site));
@@ -418,20 +420,9 @@ fn move_after(
     [before, first, last, next, after, beyond]
 }
 
-/// A number below `limit` from a sequence that is always the same (SplitMix64: G. L. Steele, D. Lea, C. H. Flood,
-/// "Fast splittable pseudorandom number generators", 2014).
-fn draw(state: &mut u64, limit: usize) -> usize {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut mixed = *state;
-    mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    mixed ^= mixed >> 31;
-    // The upper half of the product is evenly spread enough, and always below the limit.
-    usize::try_from((u128::from(mixed) * limit as u128) >> 64).unwrap_or(0)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::sites::Visit;
     use super::*;
 
     fn at(x: i32, y: i32) -> PxPoint {
@@ -439,19 +430,19 @@ mod tests {
     }
 
     /// Lines in the order in which they are drawn, each from its first place to its second one.
-    fn lines(ends: impl IntoIterator<Item = ((i32, i32), (i32, i32))>) -> (Sites, Vec<Visit>) {
-        let mut sites = Sites::default();
+    fn lines(ends: impl IntoIterator<Item = ((i32, i32), (i32, i32))>) -> (Sites<'static>, Vec<u32>) {
+        let mut sites = Sites::new(&[]);
         let mut visits = Vec::new();
         for ((from, to), site) in ends.into_iter().zip(0..) {
             sites.push_line((at(from.0, from.1), at(to.0, to.1)));
-            visits.push(Visit { site, entry: 2 * site, exit: 2 * site + 1 });
+            visits.push(2 * site);
         }
         (sites, visits)
     }
 
     /// What is left when no small change gains any more, before anything is shaken: the things in order, negative less
     /// one where drawn from their second place, and the way.
-    fn settled((sites, visits): &(Sites, Vec<Visit>)) -> (Vec<i64>, f64) {
+    fn settled((sites, visits): &(Sites<'_>, Vec<u32>)) -> (Vec<i64>, f64) {
         let mut search = Search::new(sites, visits, None, u64::MAX);
         search.settle();
         let name = |visit: &Visit| {
@@ -490,15 +481,15 @@ mod tests {
 
     #[test]
     fn a_ring_is_drawn_on_the_way_from_the_place_that_is_near() {
-        let mut sites = Sites::default();
+        let mut sites = Sites::new(&[]);
         let mut visits = Vec::new();
         for (x, site) in (0..200).step_by(10).zip(0..) {
             sites.push_line((at(x, 0), at(x + 8, 0)));
-            visits.push(Visit { site, entry: 2 * site, exit: 2 * site + 1 });
+            visits.push(2 * site);
         }
         // A square beside the middle of the row, drawn last and from its far corner.
         sites.push_ring(&[(99, 61), (69, 31), (99, 1), (129, 31)].map(|(x, y)| (at(x, y), 0)), 1);
-        visits.push(Visit { site: 20, entry: 40, exit: 40 });
+        visits.push(40);
         let (order, length) = settled(&(sites, visits));
         assert_eq!(order.iter().position(|site| *site == 20), Some(10), "{order:?}");
         assert!(length < 18.0 * 2.0 + 3.0, "{length}");

@@ -1,8 +1,8 @@
 //! [`Sites`]: what the search of a short way orders, each thing with the places where the pen can enter and leave it.
 
 use super::point_tree::PointTree;
-use crate::PxPoint;
-use crate::centrelines::each;
+use crate::parallel::each;
+use crate::stroke::PxPoint;
 
 /// Nearest things that each place knows: with more the search finds little more (D. S. Johnson and L. A. McGeoch,
 /// "The traveling salesman problem: a case study in local optimization", 1997, section 3.3).
@@ -16,7 +16,7 @@ const ALL_RING_PLACES: usize = 240_000;
 const PLACES_TOGETHER: usize = 1024;
 
 /// No place.
-const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 
 /// How a thing is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,15 +39,32 @@ pub(crate) struct Visit {
 
 /// Things to be ordered, with their places and the neighbours of those.
 #[derive(Debug, Default)]
-pub(crate) struct Sites {
+pub(crate) struct Sites<'a> {
     kinds: Vec<Site>,
-    /// One past the last place of each thing.
+    /// One past the last place of each thing; nothing as long as each has two.
     ends: Vec<u32>,
-    pub(crate) places: Vec<PxPoint>,
-    /// Thing of each place.
+    /// Vertices of the drawing, and places that are none.
+    vertices: &'a [PxPoint],
+    between: Vec<PxPoint>,
+    /// Each place by its number among the vertices, or beyond them among the others.
+    places: Vec<u32>,
+    /// Thing of each place; nothing as long as each has two.
     owners: Vec<u32>,
-    /// Vertex of the ring that a place is, or lies behind.
-    pub(crate) vertices: Vec<u32>,
+    /// Vertex of the ring that a place is, or lies behind; nothing as long as there is no ring.
+    ring_vertices: Vec<u32>,
+}
+
+/// A place of the drawing: one of its vertices by number, or one between them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Stop {
+    Vertex(u32),
+    Between(PxPoint),
+}
+
+impl From<PxPoint> for Stop {
+    fn from(at: PxPoint) -> Self {
+        Self::Between(at)
+    }
 }
 
 /// A number that fits, as every number of a drawing in memory does.
@@ -55,33 +72,64 @@ pub(crate) fn number(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(NONE)
 }
 
-impl Sites {
+impl<'a> Sites<'a> {
+    /// Nothing yet of a drawing with these vertices.
+    pub(crate) fn new(vertices: &'a [PxPoint]) -> Self {
+        Self { vertices, ..Self::default() }
+    }
+
+    /// Makes room for so many lines.
+    pub(crate) fn reserve(&mut self, lines: usize) {
+        self.kinds.reserve_exact(lines);
+        self.places.reserve_exact(2 * lines);
+    }
+
     /// Adds a line; its places are its ends.
-    pub(crate) fn push_line(&mut self, (from, to): (PxPoint, PxPoint)) {
-        self.add(Site::Line, [(from, 0), (to, 0)].into_iter());
+    pub(crate) fn push_line<P: Into<Stop>>(&mut self, (from, to): (P, P)) {
+        self.add(Site::Line, [(from.into(), 0), (to.into(), 0)].into_iter());
     }
 
     /// Adds what is drawn from the first place to the second one only.
-    pub(crate) fn push_one_way(&mut self, (from, to): (PxPoint, PxPoint)) {
-        self.add(Site::OneWay, [(from, 0), (to, 0)].into_iter());
+    pub(crate) fn push_one_way<P: Into<Stop>>(&mut self, (from, to): (P, P)) {
+        self.add(Site::OneWay, [(from.into(), 0), (to.into(), 0)].into_iter());
     }
 
     /// Adds one of so many rings (or dots); its places are some of these, evenly chosen, each with the vertex
     /// before.
-    pub(crate) fn push_ring(&mut self, ring: &[(PxPoint, u32)], rings: usize) {
+    pub(crate) fn push_ring<P: Into<Stop> + Copy>(&mut self, ring: &[(P, u32)], rings: usize) {
         let few = (ALL_RING_PLACES / rings.max(1)).clamp(2, RING_PLACES).min(ring.len());
         let places = (0..few).filter_map(|k| ring.get(k * ring.len() / few.max(1)).copied());
-        self.add(Site::Ring, places);
+        self.add(Site::Ring, places.map(|(place, vertex)| (place.into(), vertex)));
     }
 
-    fn add(&mut self, kind: Site, places: impl Iterator<Item = (PxPoint, u32)>) {
+    fn add(&mut self, kind: Site, places: impl Iterator<Item = (Stop, u32)>) {
+        let site = number(self.kinds.len());
         for (place, vertex) in places {
-            self.places.push(place);
-            self.vertices.push(vertex);
-            self.owners.push(number(self.kinds.len()));
+            self.places.push(match place {
+                Stop::Vertex(vertex) => vertex,
+                Stop::Between(at) => {
+                    self.between.push(at);
+                    number(self.vertices.len() + self.between.len() - 1)
+                }
+            });
+            if vertex > 0 || !self.ring_vertices.is_empty() {
+                self.ring_vertices.reserve_exact(self.places.capacity() - self.ring_vertices.len());
+                self.ring_vertices.resize(self.places.len() - 1, 0);
+                self.ring_vertices.push(vertex);
+            }
         }
         self.kinds.push(kind);
-        self.ends.push(number(self.places.len()));
+        let (places, two) = (number(self.places.len()), 2 * site);
+        if places != two + 2 || !self.ends.is_empty() {
+            if self.ends.is_empty() {
+                self.ends.reserve_exact(self.kinds.capacity());
+                self.owners.reserve_exact(self.places.capacity());
+                self.ends.extend((1..=site).map(|site| 2 * site));
+                self.owners.extend((0..two).map(|place| place / 2));
+            }
+            self.ends.push(places);
+            self.owners.resize(self.places.len(), site);
+        }
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -94,23 +142,46 @@ impl Sites {
 
     /// The places of a thing.
     pub(crate) fn of(&self, site: u32) -> core::ops::Range<u32> {
+        if site as usize >= self.len() {
+            return 0..0;
+        }
+        if self.ends.is_empty() {
+            return 2 * site..2 * site + 2;
+        }
         let from =
             (site as usize).checked_sub(1).and_then(|before| self.ends.get(before)).copied().unwrap_or(0);
         from..self.ends.get(site as usize).copied().unwrap_or(from)
     }
 
+    /// Number of places.
+    pub(crate) fn places(&self) -> u32 {
+        number(self.places.len())
+    }
+
     /// Where a place lies.
     pub(crate) fn place(&self, place: u32) -> PxPoint {
-        self.places.get(place as usize).copied().unwrap_or_default()
+        let Some(place) = self.places.get(place as usize).map(|place| *place as usize) else {
+            return PxPoint::default();
+        };
+        let between = || self.between.get(place - self.vertices.len());
+        self.vertices.get(place).or_else(between).copied().unwrap_or_default()
     }
 
     pub(crate) fn owner(&self, place: u32) -> u32 {
-        self.owners.get(place as usize).copied().unwrap_or(NONE)
+        if place as usize >= self.places.len() {
+            return NONE;
+        }
+        self.owners.get(place as usize).copied().unwrap_or(place / 2)
+    }
+
+    /// Vertex of the ring that a place is, or lies behind.
+    pub(crate) fn ring_vertex(&self, place: u32) -> u32 {
+        self.ring_vertices.get(place as usize).copied().unwrap_or(0)
     }
 
     /// The visit that enters at a place; `None` for the end of a one-way line.
-    fn enter(&self, place: u32) -> Option<Visit> {
-        let site = self.owner(place);
+    pub(crate) fn enter(&self, place: u32) -> Option<Visit> {
+        let site = Some(self.owner(place)).filter(|site| *site != NONE)?;
         let own = self.of(site);
         let exit = match self.kind(site) {
             Site::Ring => place,
@@ -121,30 +192,34 @@ impl Sites {
     }
 
     /// From each exit to the nearest thing not yet drawn, from a place if there is one, else with the first thing first.
-    pub(crate) fn nearest_first(&self, from: Option<PxPoint>) -> Vec<Visit> {
-        let mut tree = PointTree::new(self.places.iter().copied());
-        for place in (0..number(self.places.len())).filter(|place| self.enter(*place).is_none()) {
-            tree.remove(place);
+    /// Each by the place where it is entered.
+    pub(crate) fn nearest_first(&self, from: Option<PxPoint>) -> Vec<u32> {
+        let place = |place: u32| self.place(place);
+        let mut tree = PointTree::new(self.places.len(), &place);
+        for end in (0..self.places()).filter(|place| self.enter(*place).is_none()) {
+            tree.remove(end, &place);
         }
-        let mut visits = Vec::with_capacity(self.len());
-        let mut next = from.map_or_else(|| self.enter(0), |pen| self.enter(tree.nearest(pen)?));
+        let mut entries = Vec::with_capacity(self.len());
+        let mut next = from.map_or_else(|| self.enter(0), |pen| self.enter(tree.nearest(pen, &place)?));
         while let Some(visit) = next {
-            self.of(visit.site).for_each(|place| tree.remove(place));
-            visits.push(visit);
-            next = tree.nearest(self.place(visit.exit)).and_then(|place| self.enter(place));
+            self.of(visit.site).for_each(|own| tree.remove(own, &place));
+            entries.push(visit.entry);
+            next = tree.nearest(self.place(visit.exit), &place).and_then(|place| self.enter(place));
         }
-        visits
+        entries
     }
 
     /// For each place the nearest place of each of the nearest other things, nearest first; `NONE` where there are
     /// no more.
     pub(crate) fn neighbours(&self) -> Vec<[u32; NEIGHBOURS]> {
-        let tree = PointTree::new(self.places.iter().copied());
-        let near = |(at, owner): (&PxPoint, &u32)| {
+        let place = |place: u32| self.place(place);
+        let tree = PointTree::new(self.places.len(), &place);
+        let near = |own: u32| {
+            let owner = self.owner(own);
             let mut found = [(f64::INFINITY, NONE); NEIGHBOURS];
-            tree.visit(*at, f64::INFINITY, &mut |place, squared| {
+            tree.visit(self.place(own), f64::INFINITY, &place, &mut |place, squared| {
                 let other = self.owner(place);
-                if other != *owner {
+                if other != owner {
                     insert(&mut found, (squared, place), |kept| self.owner(kept) == other);
                 }
                 found.last().map_or(0.0, |(far, _)| *far)
@@ -152,9 +227,9 @@ impl Sites {
             found.map(|(_, place)| place)
         };
         let mut all = vec![[NONE; NEIGHBOURS]; self.places.len()];
-        let places = self.places.chunks(PLACES_TOGETHER).zip(self.owners.chunks(PLACES_TOGETHER));
-        each(places.zip(all.chunks_mut(PLACES_TOGETHER)).collect(), |((places, owners), found)| {
-            for (own, found) in places.iter().zip(owners).zip(found) {
+        let chunks = (0..).step_by(PLACES_TOGETHER).zip(all.chunks_mut(PLACES_TOGETHER));
+        each(chunks.collect(), |(from, found): (u32, &mut [[u32; NEIGHBOURS]])| {
+            for (own, found) in (from..).zip(found) {
                 *found = near(own);
             }
         });
@@ -187,7 +262,7 @@ mod tests {
 
     #[test]
     fn a_place_knows_each_near_thing_once_by_its_nearest_place() {
-        let mut sites = Sites::default();
+        let mut sites = Sites::new(&[]);
         sites.push_line((at(0), at(1)));
         sites.push_ring(&[(at(7), 0), (at(5), 1), (at(6), 2)], 1);
         sites.push_one_way((at(9), at(30)));
@@ -198,10 +273,11 @@ mod tests {
 
     #[test]
     fn a_one_way_line_is_never_entered_at_its_end() {
-        let mut sites = Sites::default();
+        let mut sites = Sites::new(&[]);
         sites.push_line((at(0), at(10)));
         sites.push_one_way((at(30), at(11)));
-        let visits = sites.nearest_first(None);
-        assert_eq!(visits[1], Visit { site: 1, entry: 2, exit: 3 });
+        assert_eq!(sites.nearest_first(None), [0, 2]);
+        assert_eq!(sites.enter(2), Some(Visit { site: 1, entry: 2, exit: 3 }));
+        assert_eq!(sites.enter(3), None);
     }
 }

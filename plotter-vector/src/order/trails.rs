@@ -14,11 +14,15 @@
 //! Wiederholung und ohne Unterbrechung zu umfahren", Mathematische Annalen 6, 1873). A connected component with 2k
 //! ends in odd nodes then is max(1, k) trails, fewer is impossible.
 
-use super::forest::Forest;
-use super::plan::{Parts, Piece, Stroke, Trail};
+use super::chains::Chains;
+use super::plan::{Legs, Stroke, Trail, all_vertices};
 use super::point_tree::PointTree;
-use super::sites::number;
-use crate::PxPoint;
+use super::sites::{NONE, number};
+use crate::disjoint_sets::DisjointSets;
+use crate::parallel::each;
+use crate::stroke::curve::unit;
+use crate::stroke::{PxPoint, PxVec};
+use core::ops::Range;
 
 /// Greatest cosine between the outward directions of two ends that go on in each other: they bend by 45° at most.
 const STRAIGHT_COS: f64 = -core::f64::consts::FRAC_1_SQRT_2;
@@ -27,6 +31,7 @@ const STRAIGHT_COS: f64 = -core::f64::consts::FRAC_1_SQRT_2;
 /// a node of which all pairs are looked at: limits for drawings that meet in few places.
 const NEAR_NODES: usize = 16;
 const OFFERS: usize = 2;
+const OFFERED: usize = 2 * OFFERS + 2;
 const ALL_PAIRS: usize = 24;
 
 /// Fewest gaps' lengths of a stroke that is closed with itself.
@@ -43,43 +48,52 @@ pub(crate) struct Joining {
 }
 
 /// Joins strokes end to end. Trails come in the order of their first strokes.
-pub(crate) fn trails<'a>(strokes: &'a [Stroke<'a>], joining: &Joining) -> (Parts<'a>, Vec<Trail>) {
+pub(crate) fn trails<'a>(strokes: &'a [Stroke<'a>], joining: &Joining) -> (Legs<'a>, Vec<Trail>) {
     let mut meeting = Meeting::new(strokes, joining.one_stroke);
     let gap_px = if joining.gap_px > 0.0 { joining.gap_px } else { 0.0 };
-    let searched = if gap_px > 0.0 { meeting.places.len() } else { 0 };
-    let tree = PointTree::new(meeting.places.iter().copied().take(searched));
+    let tree = meeting.tree(gap_px);
     meeting.go_on_straight(&tree, gap_px);
     if joining.one_stroke {
         meeting.pair_the_rest();
-        if joining.at_corners {
+        if joining.at_corners && gap_px > 0.0 {
             meeting.bridge_the_rest(&tree, gap_px);
         }
+        drop(tree);
         meeting.splice();
     }
-    drop(tree);
-    meeting.assemble()
+    meeting.into_chains().assemble()
 }
 
 /// Where the strokes' ends meet, and which goes on in which. An end is twice its stroke's number, and 1 more for the
 /// last vertex.
 struct Meeting<'a> {
     strokes: &'a [Stroke<'a>],
-    /// First vertex of each closed stroke.
+    /// Vertices of the whole drawing.
+    vertices: &'a [PxPoint],
+    /// First vertex of each closed stroke; nothing where there is none.
     starts: Vec<u32>,
+    /// Strokes that are more than one line, and in which directions these end.
+    bent: Vec<(u32, [PxVec; 2])>,
     /// Ends by node, and in a node by direction.
     ends: Vec<u32>,
     /// One past the last end of each node, in `ends`.
     nodes: Vec<u32>,
-    /// Where each node lies.
-    places: Vec<PxPoint>,
     /// Node of each end; `NONE` of a dot's.
     node_of: Vec<u32>,
+    /// Whether an end is the first of its node, by number: strokes that are near on the sheet are near in
+    /// memory too, where nodes are not.
+    is_first: Vec<bool>,
     /// What each end goes on in; `NONE` where it ends.
     partners: Vec<u32>,
 }
 
-/// No end, and no node.
-const NONE: u32 = u32::MAX;
+/// Ends for whose nodes pairs are looked for in one go: some milliseconds of work. And such parts before what
+/// was found is put together, so that it is not there twice.
+const ENDS_TOGETHER: u32 = 4096;
+const PARTS_TOGETHER: usize = 32;
+
+/// Two ends that go on in each other, after the cosine between their directions.
+type StraightPair = (f64, u32, u32);
 
 /// What joins: the pen and the letter, and the place.
 type Key = (u64, u64, u64);
@@ -91,47 +105,103 @@ fn key(stroke: &Stroke<'_>, at: PxPoint) -> Key {
 
 impl<'a> Meeting<'a> {
     fn new(strokes: &'a [Stroke<'a>], one_stroke: bool) -> Self {
-        let starts = if one_stroke { starts_at_nodes(strokes) } else { vec![0; strokes.len()] };
-        let mut keyed: Vec<(Key, u32)> = Vec::with_capacity(2 * strokes.len());
+        let starts = if one_stroke { starts_at_nodes(strokes) } else { Vec::new() };
+        let start = |stroke: usize| starts.get(stroke).copied().unwrap_or(0);
+        // By one coordinate first, since most ends differ in it: the whole keys of a million lines are 50 MB.
+        let whole_key = |end: u32| {
+            strokes
+                .get(end as usize / 2)
+                .map(|stroke| key(stroke, end_place(stroke, start(end as usize / 2), end % 2 == 1)))
+        };
+        let mut keyed: Vec<(u64, u32)> = Vec::with_capacity(2 * strokes.len());
         for (stroke, index) in strokes.iter().zip(0_u32..).filter(|(stroke, _)| stroke.vertices().len() > 1) {
             for last in [false, true] {
-                let (at, _) = tip(stroke, starts.get(index as usize).copied().unwrap_or(0), last);
-                keyed.push((key(stroke, at), 2 * index + u32::from(last)));
+                let (_, x, _) = key(stroke, end_place(stroke, start(index as usize), last));
+                keyed.push((x, 2 * index + u32::from(last)));
             }
         }
-        keyed.sort_unstable();
+        keyed.sort_unstable_by(|a, b| {
+            a.0.cmp(&b.0).then_with(|| whole_key(a.1).cmp(&whole_key(b.1))).then(a.1.cmp(&b.1))
+        });
+        let mut nodes: Vec<u32> = Vec::with_capacity(keyed.len());
+        for same in keyed.chunk_by(|a, b| a.0 == b.0 && whole_key(a.1) == whole_key(b.1)) {
+            nodes.push(nodes.last().copied().unwrap_or(0) + number(same.len()));
+        }
+        let ends: Vec<u32> = keyed.iter().map(|(_, end)| *end).collect();
+        drop(keyed);
+        let is_bent = |(stroke, _): &(&Stroke<'_>, u32)| !stroke.is_line;
+        let bent = strokes.iter().zip(0..).filter(is_bent).map(|(stroke, index)| (index, stroke.outward()));
         let mut meeting = Self {
             strokes,
-            starts,
-            ends: keyed.iter().map(|(_, end)| *end).collect(),
-            nodes: Vec::new(),
-            places: Vec::new(),
+            vertices: all_vertices(strokes),
+            bent: bent.collect(),
+            ends,
+            nodes,
             node_of: vec![NONE; 2 * strokes.len()],
+            is_first: vec![false; 2 * strokes.len()],
             partners: vec![NONE; 2 * strokes.len()],
+            starts,
         };
+        let mut by_angle: Vec<(f64, u32)> = Vec::new();
         let mut from = 0;
-        for same in keyed.chunk_by(|a, b| a.0 == b.0) {
-            for (_, end) in same {
+        for node in 0..meeting.nodes.len() {
+            let to = meeting.nodes.get(node).map_or(from, |to| *to as usize);
+            let same = meeting.ends.get(from..to).unwrap_or(&[]);
+            for end in same {
                 if let Some(slot) = meeting.node_of.get_mut(*end as usize) {
-                    *slot = number(meeting.nodes.len());
+                    *slot = number(node);
                 }
             }
+            let first = same.first().and_then(|end| meeting.is_first.get_mut(*end as usize));
+            first.into_iter().for_each(|first| *first = true);
             if same.len() > 1 {
-                let mut by_angle: Vec<(f64, u32)> =
-                    same.iter().map(|(_, end)| (meeting.angle(*end), *end)).collect();
+                by_angle.clear();
+                by_angle.extend(same.iter().map(|end| (meeting.angle(*end), *end)));
                 by_angle.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
                 let slots = meeting.ends.iter_mut().skip(from);
-                slots.zip(by_angle).for_each(|(slot, (_, end))| *slot = end);
+                slots.zip(&by_angle).for_each(|(slot, (_, end))| *slot = *end);
             }
-            from += same.len();
-            meeting.nodes.push(number(from));
-            let at = same.first().map(|((_, x, y), _)| PxPoint::new(f64::from_bits(*x), f64::from_bits(*y)));
-            meeting.places.extend(at);
+            from = to;
         }
         for (_, index) in strokes.iter().zip(0_u32..).filter(|(stroke, _)| stroke.closed) {
             meeting.connect(2 * index, 2 * index + 1);
         }
         meeting
+    }
+
+    /// The nodes, each by the vertex of its first end; none where nothing is joined across a gap.
+    fn tree(&self, gap_px: f64) -> PointTree {
+        let searched = if gap_px > 0.0 { self.is_first.len() } else { 0 };
+        let vertices = self.firsts(0..number(searched)).map(|end| self.vertex(end)).collect();
+        PointTree::of(vertices, &|vertex| self.vertex_place(vertex))
+    }
+
+    /// The vertex of the drawing at which an end lies.
+    fn vertex(&self, end: u32) -> u32 {
+        let stroke = self.strokes.get(end as usize / 2);
+        stroke.map_or(NONE, |stroke| stroke.end_vertex(self.start(end / 2), end % 2 == 1))
+    }
+
+    /// Where a vertex lies.
+    fn vertex_place(&self, vertex: u32) -> PxPoint {
+        self.vertices.get(vertex as usize).copied().unwrap_or_default()
+    }
+
+    /// The node at a vertex with which a stroke ends.
+    fn node_at_vertex(&self, vertex: u32) -> u32 {
+        let stroke = self.strokes.partition_point(|stroke| stroke.end_vertices().1 < vertex);
+        let last = self.strokes.get(stroke).is_some_and(|stroke| stroke.end_vertices().1 == vertex);
+        self.node_at(number(2 * stroke + usize::from(last)))
+    }
+
+    /// The first ends of nodes among some ends.
+    fn firsts(&self, ends: Range<u32>) -> impl Iterator<Item = u32> {
+        ends.filter(|end| self.is_first.get(*end as usize) == Some(&true))
+    }
+
+    /// The node of an end.
+    fn node_at(&self, end: u32) -> u32 {
+        self.node_of.get(end as usize).copied().unwrap_or(NONE)
     }
 
     fn node(&self, index: u32) -> &[u32] {
@@ -152,73 +222,101 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    fn tip(&self, end: u32) -> (PxPoint, (f64, f64)) {
-        let start = self.start(end / 2);
-        self.strokes.get(end as usize / 2).map(|stroke| tip(stroke, start, end % 2 == 1)).unwrap_or_default()
-    }
-
     fn start(&self, stroke: u32) -> u32 {
         self.starts.get(stroke as usize).copied().unwrap_or(0)
     }
 
     fn place(&self, end: u32) -> PxPoint {
-        self.tip(end).0
+        let stroke = self.strokes.get(end as usize / 2);
+        stroke.map(|stroke| end_place(stroke, self.start(end / 2), end % 2 == 1)).unwrap_or_default()
     }
 
-    fn outward(&self, end: u32) -> (f64, f64) {
-        self.tip(end).1
+    /// The unit vector in which a stroke would go on beyond its end; (0, 0) for a dot.
+    fn outward(&self, end: u32) -> PxVec {
+        let (index, last) = (end / 2, end % 2 == 1);
+        let Some(stroke) = self.strokes.get(index as usize) else { return PxVec::default() };
+        if let (Some(before), true) = (self.start(index).checked_sub(1), stroke.closed) {
+            let segment = stroke.course().segment(if last { before } else { self.start(index) } as usize);
+            let heading = segment.map_or(PxVec::default(), |segment| segment.heading(last));
+            return if last { heading } else { -heading };
+        }
+        if stroke.is_line {
+            return unit(stroke.end(!last), stroke.end(last));
+        }
+        let known = self.bent.binary_search_by_key(&index, |(bent, _)| *bent);
+        let [first_outward, last_outward] =
+            known.ok().and_then(|at| self.bent.get(at)).map(|(_, outward)| *outward).unwrap_or_default();
+        if last { last_outward } else { first_outward }
     }
 
     /// Direction in which an end points.
     fn angle(&self, end: u32) -> f64 {
-        let (x, y) = self.outward(end);
+        let PxVec { x, y } = self.outward(end);
         libm::atan2(y, x)
     }
 
     /// Cosine between the directions in which two ends point: −1 when the line goes straight on, 1 for a hairpin.
     fn hairpin(&self, a: u32, b: u32) -> f64 {
         let (a, b) = (self.outward(a), self.outward(b));
-        a.0 * b.0 + a.1 * b.1
+        a.dot(b)
     }
 
     /// Pairs ends within the gap that go on in each other, the straightest first.
     fn go_on_straight(&mut self, tree: &PointTree, gap_px: f64) {
-        let mut pairs: Vec<(f64, f64, u32, u32)> = Vec::new();
-        let mut near: Vec<u32> = Vec::new();
-        for (node, at) in (0..).zip(&self.places) {
-            let own = self.node(node);
-            if own.iter().all(|end| self.partner(*end).is_some()) {
-                continue;
-            }
-            nodes_near(tree, (node, *at), gap_px, &mut near);
-            for end in own.iter().filter(|end| self.partner(**end).is_none()) {
-                for other in core::iter::once(node).chain(near.iter().copied()) {
-                    for partner in self.offers(*end, other).filter(|partner| partner != end) {
-                        let cos = self.hairpin(*end, partner);
-                        if cos <= STRAIGHT_COS && self.may_join(*end, partner, gap_px) {
-                            let far = self.place(*end).distance(self.place(partner));
-                            pairs.push((cos, far, (*end).min(partner), (*end).max(partner)));
-                        }
-                    }
-                }
-            }
+        let mut pairs: Vec<StraightPair> = Vec::new();
+        let all = number(self.is_first.len());
+        let parts: Vec<u32> = (0..all).step_by(ENDS_TOGETHER as usize).collect();
+        for parts in parts.chunks(PARTS_TOGETHER) {
+            let of_part = |from: u32| {
+                self.straight_pairs(tree, gap_px, from..all.min(from.saturating_add(ENDS_TOGETHER)))
+            };
+            each(parts.to_vec(), of_part).into_iter().for_each(|mut own| pairs.append(&mut own));
         }
+        let far = |pair: &StraightPair| self.place(pair.1).distance(self.place(pair.2));
         // Ends in one place come before ends across a gap only where they are as straight.
         pairs.sort_unstable_by(|a, b| {
-            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then((a.2, a.3).cmp(&(b.2, b.3)))
+            let nearer = || far(a).total_cmp(&far(b));
+            a.0.total_cmp(&b.0).then_with(nearer).then((a.1, a.2).cmp(&(b.1, b.2)))
         });
-        for (_, _, a, b) in pairs {
+        for (_, a, b) in pairs {
             if self.partner(a).is_none() && self.partner(b).is_none() {
                 self.connect(a, b);
             }
         }
     }
 
+    /// Pairs of free ends that go on in each other, one of them at a node that begins with one of these ends.
+    fn straight_pairs(&self, tree: &PointTree, gap_px: f64, ends: Range<u32>) -> Vec<StraightPair> {
+        let mut pairs = Vec::new();
+        let mut near: Vec<u32> = Vec::new();
+        for first in self.firsts(ends) {
+            let node = self.node_at(first);
+            let own = self.node(node);
+            if (gap_px <= 0.0 && own.len() < 2) || own.iter().all(|end| self.partner(*end).is_some()) {
+                continue;
+            }
+            self.nodes_near(tree, first, gap_px, &mut near);
+            for end in own.iter().filter(|end| self.partner(**end).is_none()) {
+                for other in core::iter::once(node).chain(near.iter().copied()) {
+                    for partner in self.offers(*end, other).filter(|partner| partner != end) {
+                        let cos = self.hairpin(*end, partner);
+                        // Within a node of few ends each pair is come by from both of them.
+                        let is_known = other == node && own.len() <= OFFERED && partner < *end;
+                        if !is_known && cos <= STRAIGHT_COS && self.may_join(*end, partner, gap_px) {
+                            pairs.push((cos, (*end).min(partner), (*end).max(partner)));
+                        }
+                    }
+                }
+            }
+        }
+        pairs
+    }
+
     /// The ends of a node nearest to straight on from `end`.
     fn offers(&self, end: u32, node: u32) -> impl Iterator<Item = u32> {
         let ends = self.node(node);
         // Round the node, a few on either side; a small node is looked at whole, each end once.
-        let few = (2 * OFFERS + 2).min(ends.len());
+        let few = OFFERED.min(ends.len());
         let turn = core::f64::consts::PI;
         let opposite = |angle: f64| if angle > 0.0 { angle - turn } else { angle + turn };
         let from = if few < ends.len() {
@@ -270,9 +368,10 @@ impl<'a> Meeting<'a> {
         let mut pairs: Vec<(f64, u32, u32)> = Vec::new();
         let mut near: Vec<u32> = Vec::new();
         let free = |node: u32| self.node(node).iter().copied().find(|end| self.partner(*end).is_none());
-        for (node, at) in (0..).zip(&self.places) {
-            let Some(end) = free(node) else { continue };
-            nodes_near(tree, (node, *at), gap_px, &mut near);
+        for first in self.firsts(0..number(self.is_first.len())) {
+            let Some(end) = free(self.node_at(first)) else { continue };
+            let at = self.place(first);
+            self.nodes_near(tree, first, gap_px, &mut near);
             for partner in near.iter().filter_map(|other| free(*other)) {
                 if self.may_join(end, partner, gap_px) {
                     pairs.push((at.distance(self.place(partner)), end.min(partner), end.max(partner)));
@@ -350,6 +449,11 @@ impl<'a> Meeting<'a> {
         }
     }
 
+    /// What its trails are put together of; the rest is given free.
+    fn into_chains(self) -> Chains<'a> {
+        Chains { strokes: self.strokes, starts: self.starts, partners: self.partners }
+    }
+
     /// All ends with their partners.
     fn pairs(&self) -> impl Iterator<Item = (u32, Option<u32>)> {
         (0..)
@@ -358,8 +462,8 @@ impl<'a> Meeting<'a> {
     }
 
     /// The strokes by trail, and whether the trail of each root is open.
-    fn chains(&self) -> (Forest, Vec<bool>) {
-        let mut chains = Forest::new(self.strokes.len());
+    fn chains(&self) -> (DisjointSets, Vec<bool>) {
+        let mut chains = DisjointSets::new(self.strokes.len());
         for (end, partner) in self.pairs() {
             if let Some(partner) = partner {
                 chains.join(end as usize / 2, partner as usize / 2);
@@ -374,65 +478,35 @@ impl<'a> Meeting<'a> {
         (chains, open)
     }
 
-    /// The trails: those with free ends from the free end, then the rings from their first stroke.
-    fn assemble(&self) -> (Parts<'a>, Vec<Trail>) {
-        let mut done = vec![false; self.strokes.len()];
-        let mut parts = Parts::new(self.strokes);
-        let mut found: Vec<(u32, Trail)> = Vec::with_capacity(self.strokes.len());
-        let free = self.pairs().filter(|(_, partner)| partner.is_none()).map(|(end, _)| end);
-        let rings = (0..number(self.strokes.len())).map(|stroke| 2 * stroke);
-        for entry in free.chain(rings) {
-            let mut next = Some(entry);
-            let mut least = NONE;
-            let pieces = core::iter::from_fn(|| {
-                let end = next?;
-                let flag = done.get_mut(end as usize / 2).filter(|done| !**done)?;
-                *flag = true;
-                least = least.min(end / 2);
-                next = self.partner(end ^ 1);
-                Some(Piece { stroke: end / 2, reversed: end % 2 == 1, start: self.start(end / 2) })
-            });
-            let trail = parts.push(pieces, self.partner(entry).is_some());
-            if least != NONE {
-                found.push((least, trail));
+    /// The nodes within the gap of one, besides itself, which is told by its first end; not all where there
+    /// are very many.
+    fn nodes_near(&self, tree: &PointTree, first: u32, gap_px: f64, near: &mut Vec<u32>) {
+        // A little more, for the rounding of the differences.
+        let reach = gap_px * gap_px * (1.0 + 1e-9);
+        near.clear();
+        let own = self.vertex(first);
+        tree.visit(self.vertex_place(own), reach, &|vertex| self.vertex_place(vertex), &mut |other, _| {
+            if other != own {
+                near.push(self.node_at_vertex(other));
             }
-        }
-        found.sort_by_key(|(least, _)| *least);
-        (parts, found.into_iter().map(|(_, trail)| trail).collect())
+            if near.len() < NEAR_NODES { reach } else { -1.0 }
+        });
     }
 }
 
-/// The nodes within the gap of one, besides itself; not all where there are very many.
-fn nodes_near(tree: &PointTree, (node, at): (u32, PxPoint), gap_px: f64, near: &mut Vec<u32>) {
-    // A little more, for the rounding of the differences.
-    let reach = gap_px * gap_px * (1.0 + 1e-9);
-    near.clear();
-    tree.visit(at, reach, &mut |other, squared| {
-        if other != node {
-            near.push(other);
-        }
-        if near.len() < NEAR_NODES { reach } else { -squared }
-    });
-}
-
-/// Where a stroke ends, and in which direction; a closed stroke ends at its vertex `start`.
-fn tip(stroke: &Stroke<'_>, start: u32, last: bool) -> (PxPoint, (f64, f64)) {
-    let [first_outward, last_outward] = stroke.outward;
-    if let (Some(before), true) = (start.checked_sub(1), stroke.closed) {
-        let at = stroke.vertices().get(start as usize).copied().unwrap_or_default();
-        let heading = |index: u32| {
-            stroke.course().piece(index as usize).map_or((0.0, 0.0), |piece| piece.heading(last))
-        };
-        let (x, y) = heading(if last { before } else { start });
-        return (at, if last { (x, y) } else { (-x, -y) });
+/// Where a stroke ends; a closed one ends at its vertex `start`.
+fn end_place(stroke: &Stroke<'_>, start: u32, last: bool) -> PxPoint {
+    if start > 0 && stroke.closed {
+        stroke.vertices().get(start as usize).copied().unwrap_or_default()
+    } else {
+        stroke.end(last)
     }
-    (stroke.end(last), if last { last_outward } else { first_outward })
 }
 
 /// The first vertex of each closed stroke at which another stroke ends; 0 where there is none.
 fn starts_at_nodes(strokes: &[Stroke<'_>]) -> Vec<u32> {
     if strokes.iter().all(|stroke| !stroke.closed) {
-        return vec![0; strokes.len()];
+        return Vec::new();
     }
     let mut nodes: Vec<(Key, usize)> = Vec::with_capacity(2 * strokes.len());
     for (index, stroke) in strokes.iter().enumerate().filter(|(_, stroke)| stroke.vertices().len() > 1) {
@@ -455,8 +529,8 @@ fn starts_at_nodes(strokes: &[Stroke<'_>]) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Drawing;
-    use crate::order::plan::strokes_of;
+    use crate::order::plan::{Leg, strokes_of};
+    use crate::stroke::Drawing;
 
     const TIGHT: Joining = Joining { gap_px: 0.5, one_stroke: true, at_corners: false };
 
@@ -471,11 +545,10 @@ mod tests {
     /// Strokes of each trail, one more than their numbers, negative where drawn backwards; `o` for a ring.
     fn joined(drawing: &Drawing, gap_px: f64, one_stroke: bool) -> Vec<String> {
         let strokes = strokes_of(drawing);
-        let (parts, trails) = trails(&strokes, &Joining { gap_px, one_stroke, at_corners: false });
+        let (legs, trails) = trails(&strokes, &Joining { gap_px, one_stroke, at_corners: false });
         let name = |trail: Trail| {
-            let name =
-                |piece: Piece| format!("{}{}", if piece.reversed { "-" } else { "" }, piece.stroke + 1);
-            let names: Vec<String> = trail.pieces(&parts.pieces).map(name).collect();
+            let name = |leg: Leg| format!("{}{}", if leg.reversed { "-" } else { "" }, leg.stroke + 1);
+            let names: Vec<String> = trail.legs(&legs.all).map(name).collect();
             format!("{}{}", if trail.closed { "o " } else { "" }, names.join(" "))
         };
         trails.into_iter().map(name).collect()
@@ -568,10 +641,10 @@ mod tests {
             &[(0.0, 0.0), (0.0, 5.0), (5.0, 5.0), (0.0, 0.0)],
         ]);
         let strokes = strokes_of(&eight);
-        let (parts, trails) = trails(&strokes, &Joining { gap_px: 0.0, ..TIGHT });
+        let (legs, trails) = trails(&strokes, &Joining { gap_px: 0.0, ..TIGHT });
         assert_eq!(trails.len(), 1);
         assert!(trails[0].closed);
-        let vertices = parts.vertices(trails[0]);
+        let vertices = legs.vertices(trails[0]);
         assert_eq!(vertices.len(), 7);
         assert_eq!(vertices.iter().filter(|at| **at == PxPoint::new(5.0, 5.0)).count(), 3);
     }
@@ -594,8 +667,8 @@ mod tests {
         ]);
         let strokes = strokes_of(&square);
         assert_eq!(trails(&strokes, &TIGHT).1.len(), 4);
-        let (parts, trails) = trails(&strokes, &Joining { at_corners: true, ..TIGHT });
-        assert_eq!((trails.len(), trails[0].closed, parts.vertices(trails[0]).len()), (1, true, 9));
+        let (legs, trails) = trails(&strokes, &Joining { at_corners: true, ..TIGHT });
+        assert_eq!((trails.len(), trails[0].closed, legs.vertices(trails[0]).len()), (1, true, 9));
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! [`Units`]: what is drawn in one go: a trail, or a block of lettering with its trails in reading order.
 
-use super::plan::{Parts, Stroke, Trail};
+use super::plan::{Legs, Stroke, Trail};
 use super::sites::{RING_PLACES, number};
-use crate::PxPoint;
-use crate::lettering::TextBlock;
+use crate::order::lettering::TextBlock;
+use crate::stroke::PxPoint;
 
 /// Marks the strokes of each letter with its number: 1 for the first one read, and so on.
 pub(crate) fn mark_letters(strokes: &mut [Stroke<'_>], blocks: &[TextBlock]) {
@@ -20,37 +20,43 @@ pub(crate) fn mark_letters(strokes: &mut [Stroke<'_>], blocks: &[TextBlock]) {
 #[derive(Debug)]
 pub(crate) struct Units {
     trails: Vec<Trail>,
-    /// One past the last trail of each unit.
+    /// One past the last trail of each unit; nothing as long as each trail is one.
     ends: Vec<u32>,
 }
 
 impl Units {
     /// The trails by unit, in the order in which units come first; those of a block in reading order, each
     /// from the end that makes the block's travel least.
-    pub(crate) fn new(parts: &Parts<'_>, trails: Vec<Trail>, blocks: &[TextBlock]) -> Self {
-        let mut units = Self { ends: (1..=number(trails.len())).collect(), trails };
+    pub(crate) fn new(legs: &Legs<'_>, trails: Vec<Trail>, blocks: &[TextBlock]) -> Self {
+        let mut units = Self { ends: Vec::new(), trails };
         if !blocks.is_empty() {
-            units.gather(parts, blocks);
+            units.gather(legs, blocks);
         }
         units
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.ends.len()
+        if self.ends.is_empty() { self.trails.len() } else { self.ends.len() }
+    }
+
+    /// Number of all trails.
+    pub(crate) fn trails(&self) -> usize {
+        self.trails.len()
     }
 
     /// The trails of a unit.
     pub(crate) fn of(&self, unit: u32) -> &[Trail] {
-        let end = |unit: usize| self.ends.get(unit).map_or(0, |end| *end as usize);
+        let each = |unit: usize| if self.ends.is_empty() { unit + 1 } else { 0 };
+        let end = |unit: usize| self.ends.get(unit).map_or_else(|| each(unit), |end| *end as usize);
         let from = (unit as usize).checked_sub(1).map_or(0, end);
         self.trails.get(from..end(unit as usize)).unwrap_or(&[])
     }
 
     /// Makes a unit of the trails of each block.
-    fn gather(&mut self, parts: &Parts<'_>, blocks: &[TextBlock]) {
+    fn gather(&mut self, legs: &Legs<'_>, blocks: &[TextBlock]) {
         // Of each letter its block; of each stroke its place in the letter.
         let mut block_of = vec![None];
-        let mut rank = vec![0; parts.strokes.len()];
+        let mut rank = vec![0; legs.strokes.len()];
         for (index, block) in blocks.iter().enumerate() {
             for letter in block.letters() {
                 block_of.push(Some(index));
@@ -61,9 +67,9 @@ impl Units {
                 }
             }
         }
-        let letter = |trail: Trail| parts.first(trail).map_or(0, |stroke| stroke.letter);
+        let letter = |trail: Trail| legs.first(trail).map_or(0, |stroke| stroke.letter);
         let place = |trail: &Trail| {
-            let places = trail.pieces(&parts.pieces).filter_map(|piece| rank.get(piece.stroke as usize));
+            let places = trail.legs(&legs.all).filter_map(|leg| rank.get(leg.stroke as usize));
             (letter(*trail), places.min().copied().unwrap_or(0))
         };
         let mut of_block: Vec<Option<u32>> = vec![None; blocks.len()];
@@ -85,15 +91,16 @@ impl Units {
             self.ends.push(number(self.trails.len()));
             if let Some(unit @ [_, _, ..]) = self.trails.get_mut(from..) {
                 unit.sort_by_key(place);
-                turn_well(parts, unit);
+                turn_well(legs, unit);
             }
         }
     }
 }
 
-/// A way to draw a trail: where it begins and ends, and its first vertex if it is closed, else whether it is reversed.
+/// A traversal of a trail: where it begins and ends, and its first vertex if it is closed, else whether it is
+/// reversed.
 #[derive(Clone, Copy)]
-struct Way {
+struct Traversal {
     from: PxPoint,
     to: PxPoint,
     start: u32,
@@ -105,13 +112,13 @@ struct Way {
 
 /// Turns the trails of a fixed order so that the travel between them is least: the shortest path through the ways to
 /// draw them, trail by trail (R. Bellman, "Dynamic programming", 1957).
-fn turn_well(parts: &Parts<'_>, trails: &mut [Trail]) {
-    let mut layers: Vec<Vec<Way>> = Vec::with_capacity(trails.len());
+fn turn_well(legs: &Legs<'_>, trails: &mut [Trail]) {
+    let mut layers: Vec<Vec<Traversal>> = Vec::with_capacity(trails.len());
     for trail in trails.iter() {
-        let mut ways = ways(parts, *trail);
+        let mut ways = ways(legs, *trail);
         if let Some(last) = layers.last() {
             for way in &mut ways {
-                let travel = |before: &Way| before.travel + before.to.distance(way.from);
+                let travel = |before: &Traversal| before.travel + before.to.distance(way.from);
                 let best = (0..last.len()).zip(last.iter().map(travel)).min_by(|a, b| a.1.total_cmp(&b.1));
                 (way.before, way.travel) = best.unwrap_or((0, 0.0));
             }
@@ -129,15 +136,15 @@ fn turn_well(parts: &Parts<'_>, trails: &mut [Trail]) {
     }
 }
 
-fn ways(parts: &Parts<'_>, trail: Trail) -> Vec<Way> {
-    let way = |from, to, start, reversed| Way { from, to, start, reversed, travel: 0.0, before: 0 };
+fn ways(legs: &Legs<'_>, trail: Trail) -> Vec<Traversal> {
+    let way = |from, to, start, reversed| Traversal { from, to, start, reversed, travel: 0.0, before: 0 };
     if !trail.closed {
-        let (from, to) = parts.ends(trail);
+        let (from, to) = legs.ends(trail);
         return vec![way(from, to, 0, false), way(to, from, 0, true)];
     }
     let mut from_first = trail;
     from_first.start = 0;
-    let vertices = parts.vertices(from_first);
+    let vertices = legs.vertices(from_first);
     let ring = vertices.len().saturating_sub(1);
     let places = ring.min(RING_PLACES);
     let starts = (0..places).map(|k| k * ring / places.max(1));
@@ -146,7 +153,10 @@ fn ways(parts: &Parts<'_>, trail: Trail) -> Vec<Way> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Drawing, Lettering, Order, PxPoint};
+    use crate::{
+        order::{Lettering, Order},
+        stroke::{Drawing, PxPoint},
+    };
 
     #[test]
     fn each_letter_is_drawn_from_the_end_that_makes_the_travel_of_its_block_least() {

@@ -1,7 +1,7 @@
 //! [`bulge`]: whether a cubic curve stands for an arc of a circle.
 
 use super::curve::Cubic;
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 use core::f64::consts::FRAC_PI_2;
 
 /// How far a cubic that stands for a quarter of a circle is from it, as a share of the radius, and a little more. One that stands for
@@ -22,10 +22,9 @@ const SAMPLES: [f64; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
 /// arcs are parsed into, within what such a curve is off.
 pub(super) fn bulge(curve: Cubic, tolerance_px: f64) -> Option<f64> {
     let Cubic([from, first, second, to]) = curve;
-    let (chord, into, out) = (to.minus(from), first.minus(from), to.minus(second));
-    let length = |(x, y): (f64, f64)| libm::hypot(x, y);
-    let (chord_px, into_px) = (length(chord), length(into));
-    if !(chord_px > 0.0 && into_px > 0.0) || (length(out) - into_px).abs() > UNLIKE_SHARE * into_px {
+    let (chord, into, out) = (to - from, first - from, to - second);
+    let (chord_px, into_px) = (chord.length(), into.length());
+    if !(chord_px > 0.0 && into_px > 0.0) || (out.length() - into_px).abs() > UNLIKE_SHARE * into_px {
         return None;
     }
     let (begins, ends) = (turn(into, chord), turn(chord, out));
@@ -36,8 +35,8 @@ pub(super) fn bulge(curve: Cubic, tolerance_px: f64) -> Option<f64> {
     let radius_px = 0.5 * chord_px / libm::sin(half_rad).abs();
     let beside = 0.5 / libm::tan(half_rad);
     let centre = PxPoint::new(
-        f64::midpoint(from.x, to.x) - chord.1 * beside,
-        f64::midpoint(from.y, to.y) + chord.0 * beside,
+        f64::midpoint(from.x, to.x) - chord.y * beside,
+        f64::midpoint(from.y, to.y) + chord.x * beside,
     );
     let share = (half_rad.abs() / (0.5 * FRAC_PI_2)).min(1.0);
     let near_px = tolerance_px.max(QUARTER_SHARE * libm::pow(share, 6.0) * radius_px);
@@ -46,8 +45,8 @@ pub(super) fn bulge(curve: Cubic, tolerance_px: f64) -> Option<f64> {
 }
 
 /// Angle from one direction to the other, rad; above 0 from x towards y.
-fn turn((x, y): (f64, f64), (u, v): (f64, f64)) -> f64 {
-    libm::atan2(x * v - y * u, x * u + y * v)
+fn turn(from: PxVec, to: PxVec) -> f64 {
+    libm::atan2(from.cross(to), from.dot(to))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Clip paths and masks of the parser's tree as [`Region`]s, and fills as what hides the lines below.
 
 use super::SvgError;
-use super::boxes::Steps;
+use super::box_tree::Steps;
 use super::mask::{Colour, Item, Painted};
 use super::region::{Region, Shape};
 use usvg::tiny_skia_path::{Path, PathBuilder, PathStroker, Transform};

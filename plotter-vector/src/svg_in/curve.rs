@@ -10,7 +10,7 @@
 //! ones few. Source of the bound: D. Filip, R. Magedson, R. Markot, "Surface algorithms using bounds on derivatives",
 //! Computer Aided Geometric Design 3 (1986), theorem 1.
 
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// Halvings that find the end of a piece: finer than any piece of a curve of 2²⁰ px.
 const HALVINGS: usize = 40;
@@ -33,6 +33,16 @@ impl Cubic {
         let [p0, p1, p2, p3] = self.0;
         let (a, b, c) = (mix(p0, p1, t), mix(p1, p2, t), mix(p2, p3, t));
         mix(mix(a, b, t), mix(b, c, t), t)
+    }
+
+    /// Its two halves, by the same rule.
+    pub(super) fn halves(&self) -> [Self; 2] {
+        let [p0, p1, p2, p3] = self.0;
+        let half = |one, other| mix(one, other, 0.5);
+        let (a, b, c) = (half(p0, p1), half(p1, p2), half(p2, p3));
+        let (ab, bc) = (half(a, b), half(b, c));
+        let middle = half(ab, bc);
+        [Self([p0, a, ab, middle]), Self([middle, bc, c, p3])]
     }
 
     /// The ends of the chords, without the curve's start: every place of the curve is within `tolerance_px` of its
@@ -91,10 +101,10 @@ fn mix(from: PxPoint, to: PxPoint, share: f64) -> PxPoint {
 
 /// Distance of a place from a segment.
 pub(super) fn distance_to_segment(at: PxPoint, start: PxPoint, end: PxPoint) -> f64 {
-    let ((x, y), (dx, dy)) = (at.minus(start), end.minus(start));
-    let squared = dx * dx + dy * dy;
-    let share = if squared > 0.0 { ((x * dx + y * dy) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    libm::hypot(x - share * dx, y - share * dy)
+    let (away, way) = (at - start, end - start);
+    let squared = way.length_squared();
+    let share = if squared > 0.0 { (away.dot(way) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    (away - way * share).length()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! [`Dashes`]: a dashed stroke as the strokes that a pen draws.
 
 use super::SvgError;
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// The pattern of a dashed stroke: lengths in the shape's own unit, drawn and left out by turns.
 #[derive(Clone, Debug)]
@@ -48,13 +48,13 @@ impl Dashes {
         let (mut index, mut left) = (self.index, self.left);
         let mut dash: Vec<PxPoint> = stroke.first().copied().into_iter().collect();
         for (from, to) in stroke.iter().zip(stroke.iter().skip(1)) {
-            let (dx, dy) = to.minus(*from);
-            let length = own_length(dx, dy);
+            let way = *to - *from;
+            let length = own_length(way.x, way.y);
             let mut done = 0.0;
             // Each turn of the pattern draws something, so that `draw` sees to it that this ends.
             while length - done > left {
                 done += left;
-                let at = from.along((dx, dy), done / length);
+                let at = *from + way * (done / length);
                 if is_drawn(index) {
                     if dash.last() != Some(&at) {
                         dash.push(at);

@@ -20,7 +20,7 @@ const ANY_FAMILY: &str = "";
 /// The fonts that the texts of an SVG file may be set in.
 ///
 /// ```no_run
-/// # use plotter_vector::{SvgFonts, SvgOptions, read_svg_with_fonts};
+/// # use plotter_vector::{SvgOptions, svg_in::{SvgFonts, read_svg_with_fonts}};
 /// let mut fonts = SvgFonts::default();
 /// fonts.add(std::fs::read("DejaVuSans.ttf")?)?;
 /// let read = read_svg_with_fonts(&std::fs::read("plan.svg")?, &SvgOptions::default(), &fonts)?;
@@ -69,14 +69,14 @@ impl SvgFonts {
     /// font wants it used.
     ///
     /// ```
-    /// # use plotter_vector::{SvgFonts, SvgOptions, read_svg_with_fonts};
+    /// # use plotter_vector::{SvgOptions, svg_in::{SvgFonts, read_svg_with_fonts}};
     /// let file = r#"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="50">
     ///     <text x="10" y="40" font-size="24">L</text></svg>"#;
     /// let read = read_svg_with_fonts(file.as_bytes(), &SvgOptions::default(), &SvgFonts::single_stroke())?;
     /// let letter = read.drawing.stroke(0); // down, and to the right
     /// assert_eq!(letter.len(), 3);
     /// assert!((letter[1].y - letter[0].y - 0.7 * 24.0).abs() < 1e-3);
-    /// # Ok::<(), plotter_vector::SvgError>(())
+    /// # Ok::<(), plotter_vector::svg_in::SvgError>(())
     /// ```
     #[must_use]
     pub fn single_stroke() -> Self {
@@ -260,14 +260,14 @@ fn resolver<'a>(fonts: &'a SvgFonts, wanted: &'a Mutex<Wanted>) -> FontResolver<
     }
 }
 
-/// Reads a drawing from the text of an SVG file as [`read_svg`](crate::read_svg) does, and draws its texts, too: along the
-/// outlines of their letters, or along their strokes. Letters that are lines and not areas, as those of
-/// [`SvgFonts::single_stroke`] and of fonts for pens are, are drawn once.
+/// Reads a drawing from the text of an SVG file as [`read_svg`](crate::svg_in::read_svg) does, and draws its
+/// texts, too: along the outlines of their letters, or along their strokes. Letters that are lines and not
+/// areas, as those of [`SvgFonts::single_stroke`] and of fonts for pens are, are drawn once.
 ///
 /// A text is set in the first family of its list that is among `fonts`, in the weight and style that are nearest; a kind of
 /// fonts as `sans-serif`, or none at all, takes the first font. Letters that this one lacks are taken from the others. A text
 /// is drawn whole or not at all: where its families or one of its letters are in no font, or a letter is a picture or has
-/// several colours, it is counted in [`SvgLeftOut::texts`](crate::SvgLeftOut::texts), and
+/// several colours, it is counted in [`SvgLeftOut::texts`](crate::svg_in::SvgLeftOut::texts), and
 /// [`SvgDrawing::missing_fonts`] tells what it needs. Anchors, `tspan`, `textPath`, spacing, decoration, kerning and ligatures
 /// are done as the format and the font say.
 ///

@@ -1,15 +1,20 @@
 //! [`Ink`]: the parser's tree as strokes, each with its pen.
 
 use super::arc::bulge;
-use super::boxes::Boxes;
+use super::box_tree::BoxTree;
 use super::clip::{Regions, is_even_odd};
 use super::curve::Cubic;
+use super::cut_far;
 use super::dash::Dashes;
 use super::one_line;
 use super::region::{Keep, Region, bounds_of};
 use super::survey::without_spaces;
-use super::{DrawWhole, MAX_PX, SvgError, SvgLayer, SvgLeftOut, SvgOptions, SvgPens};
-use crate::{Curve, Drawing, MAX_PENS, PalettePen, PxPoint, Rgb};
+use super::{DrawWhole, SvgError, SvgLayer, SvgLeftOut, SvgOptions, SvgPens};
+use crate::{
+    ink::{MAX_PENS, PalettePen},
+    picture::Rgb,
+    stroke::{Curve, Drawing, PxPoint},
+};
 use plotter_motion::drawing::Stroke;
 use std::collections::{BTreeMap, BTreeSet};
 use usvg::tiny_skia_path::{Path, PathSegment, Point, Transform};
@@ -47,7 +52,7 @@ pub(super) struct Ink<'a> {
 
 /// What the pen follows on a shape.
 #[derive(Clone, Copy)]
-enum Way<'a> {
+enum PenPath<'a> {
     /// Its stroke.
     Line(&'a usvg::Stroke),
     /// The border of its fill.
@@ -166,7 +171,7 @@ impl<'a> Ink<'a> {
             self.path(path, &outlines, matrix, layer)?;
         }
         match self.inked(path) {
-            Some((_, colour)) => self.trace(&lines, matrix, Way::Letters(path.stroke()), colour, layer),
+            Some((_, colour)) => self.trace(&lines, matrix, PenPath::Letters(path.stroke()), colour, layer),
             None => Ok(()),
         }
     }
@@ -183,22 +188,23 @@ impl<'a> Ink<'a> {
             self.cover(outline, matrix, fill)?;
         }
         match self.inked(looks) {
-            Some((way, colour)) => self.trace(outline, matrix, way, colour, layer),
+            Some((pen_path, colour)) => self.trace(outline, matrix, pen_path, colour, layer),
             None => Ok(()),
         }
     }
 
     /// What leaves ink of a shape, its stroke or else its fill, and in which colour; what is in that of the paper is counted.
-    fn inked<'p>(&mut self, path: &'p usvg::Path) -> Option<(Way<'p>, Rgb)> {
+    fn inked<'p>(&mut self, path: &'p usvg::Path) -> Option<(PenPath<'p>, Rgb)> {
         if !path.is_visible() {
             return None;
         }
-        let line = path
-            .stroke()
-            .and_then(|stroke| Some((Way::Line(stroke), colour_of(stroke.paint(), stroke.opacity().get())?)));
-        let border =
-            path.fill().and_then(|fill| Some((Way::Border, colour_of(fill.paint(), fill.opacity().get())?)));
-        let seen = |(_, colour): &(Way<'_>, Rgb)| Some(*colour) != self.options.paper;
+        let line = path.stroke().and_then(|stroke| {
+            Some((PenPath::Line(stroke), colour_of(stroke.paint(), stroke.opacity().get())?))
+        });
+        let border = path
+            .fill()
+            .and_then(|fill| Some((PenPath::Border, colour_of(fill.paint(), fill.opacity().get())?)));
+        let seen = |(_, colour): &(PenPath<'_>, Rgb)| Some(*colour) != self.options.paper;
         let inked = line.filter(seen).or_else(|| border.filter(seen));
         self.left_out.paper += usize::from(inked.is_none() && (line.is_some() || border.is_some()));
         inked
@@ -229,7 +235,7 @@ impl<'a> Ink<'a> {
             return Ok(());
         }
         let covers = core::mem::take(&mut self.covers);
-        let index = Boxes::new(covers.iter().map(|(region, _)| region.bounds()).collect());
+        let index = BoxTree::new(covers.iter().map(|(region, _)| region.bounds()).collect());
         let edge_px = self.edge_px();
         let mut seen = Drawing::new(self.drawing.width_px(), self.drawing.height_px());
         let mut first_strokes: Vec<usize> = Vec::new();
@@ -290,27 +296,22 @@ impl<'a> Ink<'a> {
         &mut self,
         path: &Path,
         matrix: Transform,
-        way: Way<'_>,
+        pen_path: PenPath<'_>,
         colour: Rgb,
         layer: Option<usize>,
     ) -> Result<(), SvgError> {
         let [a, b, c, d] = [matrix.sx, matrix.ky, matrix.kx, matrix.sy].map(f64::from);
         let [e, f] = [matrix.tx, matrix.ty].map(f64::from);
         let mm_per_px = self.options.mm_per_px();
-        let place = |at: Point| -> Result<PxPoint, SvgError> {
+        let place = |at: Point| {
             let (x, y) = (f64::from(at.x), f64::from(at.y));
-            let at = PxPoint::new(a * x + c * y + e, b * x + d * y + f);
-            if at.x.abs() <= MAX_PX && at.y.abs() <= MAX_PX {
-                Ok(at)
-            } else {
-                Err(SvgError::TooFar { x_mm: at.x * mm_per_px, y_mm: at.y * mm_per_px })
-            }
+            cut_far::held(PxPoint::new(a * x + c * y + e, b * x + d * y + f))
         };
         let determinant = a * d - b * c;
         let own_length =
             |dx: f64, dy: f64| libm::hypot((d * dx - c * dy) / determinant, (a * dy - b * dx) / determinant);
-        let dashes = match way {
-            Way::Line(line) | Way::Letters(Some(line)) if determinant != 0.0 => {
+        let dashes = match pen_path {
+            PenPath::Line(line) | PenPath::Letters(Some(line)) if determinant != 0.0 => {
                 line.dasharray().and_then(|lengths| Dashes::new(lengths, line.dashoffset()))
             }
             _ => None,
@@ -321,11 +322,17 @@ impl<'a> Ink<'a> {
         let hatches = self.options.hatch.is_some() && dashes.is_none();
         let mut outlines = Vec::new();
         let mut stroke = Curve::default();
-        let mut pen = None;
+        let (mut pen, mut goes_far) = (None, false);
         let mut draw = |ink: &mut Self, stroke: &mut Curve, closed: bool| -> Result<(), SvgError> {
             let mut stroke = core::mem::take(stroke);
-            ready(&mut stroke, way, closed);
-            if hatches && stroke.vertices.len() > 2 && stroke.vertices.first() == stroke.vertices.last() {
+            ready(&mut stroke, pen_path, closed);
+            let parts = cut_far::near_parts(&stroke);
+            goes_far |= parts.is_some();
+            if hatches
+                && parts.is_none()
+                && stroke.vertices.len() > 2
+                && stroke.vertices.first() == stroke.vertices.last()
+            {
                 outlines.push(stroke.chords(tolerance_px));
             }
             if !stroke.vertices.is_empty() {
@@ -337,11 +344,13 @@ impl<'a> Ink<'a> {
                     }
                     Ok(())
                 };
-                match &dashes {
-                    Some(dashes) => {
-                        dashes.draw(&stroke.vertices, own_length, |dash| push(dash.to_vec().into()))?;
+                for part in parts.unwrap_or_else(|| vec![stroke]) {
+                    match &dashes {
+                        Some(dashes) => {
+                            dashes.draw(&part.vertices, own_length, |dash| push(dash.to_vec().into()))?;
+                        }
+                        None => push(part)?,
                     }
-                    None => push(stroke)?,
                 }
             }
             Ok(())
@@ -351,25 +360,26 @@ impl<'a> Ink<'a> {
             match (segment, last) {
                 (PathSegment::MoveTo(to), _) => {
                     draw(self, &mut stroke, false)?;
-                    stroke.vertices.push(place(to)?);
+                    stroke.vertices.push(place(to));
                 }
-                (PathSegment::LineTo(to), _) => stroke.vertices.push(place(to)?),
+                (PathSegment::LineTo(to), _) => stroke.vertices.push(place(to)),
                 (PathSegment::QuadTo(handle, to), Some(from)) => {
-                    let curve = Cubic::from_quadratic([from, place(handle)?, place(to)?]);
+                    let curve = Cubic::from_quadratic([from, place(handle), place(to)]);
                     self.curve(&mut stroke, curve, tolerance_px, arcs)?;
                 }
                 (PathSegment::CubicTo(first, second, to), Some(from)) => {
-                    let curve = Cubic([from, place(first)?, place(second)?, place(to)?]);
+                    let curve = Cubic([from, place(first), place(second), place(to)]);
                     self.curve(&mut stroke, curve, tolerance_px, arcs)?;
                 }
                 (PathSegment::Close, _) => draw(self, &mut stroke, true)?,
                 (PathSegment::QuadTo(_, to) | PathSegment::CubicTo(_, _, to), None) => {
-                    stroke.vertices.push(place(to)?);
+                    stroke.vertices.push(place(to));
                 }
             }
             self.check_vertices(stroke.vertices.len())?;
         }
         draw(self, &mut stroke, false)?;
+        self.left_out.far += usize::from(goes_far);
         self.hatch(outlines, |ink| pen.unwrap_or_else(|| ink.pen(colour, layer)), layer)
     }
 
@@ -403,6 +413,12 @@ impl<'a> Ink<'a> {
     }
 
     fn curve(&self, stroke: &mut Curve, curve: Cubic, tolerance_px: f64, arcs: bool) -> Result<(), SvgError> {
+        if curve.0.iter().any(|at| cut_far::is_far(*at)) {
+            return cut_far::chords(&curve, tolerance_px, &mut |at| {
+                stroke.vertices.push(at);
+                self.check_vertices(stroke.vertices.len())
+            });
+        }
         if let Some(bulge) = arcs.then(|| bulge(curve, tolerance_px)).flatten() {
             // That of the piece which begins at the last vertex.
             stroke.bulges.resize(stroke.vertices.len().saturating_sub(1), 0.0);
@@ -511,21 +527,23 @@ fn sheet_drawing(strokes: Vec<Stroke>) -> plotter_motion::drawing::Drawing {
 }
 
 /// Brings the places of a part of a shape into the form in which they are drawn; none when nothing is.
-fn ready(stroke: &mut Curve, way: Way<'_>, closed: bool) {
+fn ready(stroke: &mut Curve, pen_path: PenPath<'_>, closed: bool) {
     let is_straight = stroke.bulges.is_empty();
     let stroke = &mut stroke.vertices;
     let Some(first) = stroke.first().copied() else { return };
     let dot = stroke.iter().all(|at| *at == first);
-    match way {
+    match pen_path {
         // A line that goes nowhere shows its caps, and flat ones are none.
-        Way::Line(line) if dot => {
+        PenPath::Line(line) if dot => {
             stroke
                 .truncate(usize::from((stroke.len() > 1 || closed) && line.linecap() != usvg::LineCap::Butt));
         }
-        Way::Letters(_) => stroke.truncate(if dot { 1 } else { stroke.len() }),
+        PenPath::Letters(_) => stroke.truncate(if dot { 1 } else { stroke.len() }),
         // Fewer than three places have nothing between them.
-        Way::Border if stroke.len() < 3 && is_straight => stroke.clear(),
-        _ if (closed || matches!(way, Way::Border)) && stroke.last() != Some(&first) => stroke.push(first),
+        PenPath::Border if stroke.len() < 3 && is_straight => stroke.clear(),
+        _ if (closed || matches!(pen_path, PenPath::Border)) && stroke.last() != Some(&first) => {
+            stroke.push(first)
+        }
         _ => {}
     }
 }

@@ -7,7 +7,7 @@
 /// it, `+S` with a share of the speed and `+H` with a share of the pen's height, both in percent.
 ///
 /// ```
-/// # use plotter_vector::SvgLayer;
+/// # use plotter_vector::svg_in::SvgLayer;
 /// let layer = SvgLayer::of_name("!5+S50 +D300 contours");
 /// assert_eq!((layer.number, layer.pauses, layer.is_left_out), (Some(5), true, false));
 /// assert_eq!((layer.speed_percent, layer.delay_ms, layer.height_percent), (Some(50), Some(300), None));

@@ -3,9 +3,9 @@
 //! A mask shows where luminance times alpha is at least one half (CSS Masking Level 1, section 6.1, "mask-type"): a pen draws or
 //! does not. What is painted is put together place by place, each colour over those before it.
 
-use super::boxes::Steps;
+use super::box_tree::Steps;
 use super::region::{Region, Shape};
-use crate::PxPoint;
+use crate::stroke::{PxPoint, PxVec};
 use usvg::tiny_skia_path::Transform;
 
 /// Least luminance times alpha that shows.
@@ -44,7 +44,7 @@ pub(super) type Rgba = [f64; 4];
 pub(super) struct Gradient {
     /// From the sheet to the gradient's own places.
     to_own: [f64; 6],
-    way: Way,
+    axis: GradientAxis,
     spread: usvg::SpreadMethod,
     /// Offset and colour of each, ascending.
     stops: Vec<(f64, Rgba)>,
@@ -52,9 +52,9 @@ pub(super) struct Gradient {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Way {
+enum GradientAxis {
     /// From a place, this far.
-    Linear { from: PxPoint, way: (f64, f64) },
+    Linear { from: PxPoint, way: PxVec },
     /// From the focus to the circle.
     Radial { focus: PxPoint, centre: PxPoint, radius: f64 },
 }
@@ -127,21 +127,21 @@ fn times_alpha(colour: usvg::Color, alpha: f64) -> Rgba {
 impl Colour {
     /// That of a paint in a place of this matrix; a pattern is taken for black.
     pub(super) fn new(paint: &usvg::Paint, opacity: f64, matrix: Transform) -> Self {
-        let (base, way) = match paint {
+        let (base, axis) = match paint {
             usvg::Paint::Color(colour) => return Self::Solid(times_alpha(*colour, opacity)),
             usvg::Paint::Pattern(_) => return Self::Solid([0.0, 0.0, 0.0, opacity]),
             usvg::Paint::LinearGradient(gradient) => {
                 let [x, y] = [gradient.x1(), gradient.y1()].map(f64::from);
-                let way = (f64::from(gradient.x2()) - x, f64::from(gradient.y2()) - y);
+                let way = PxVec::new(f64::from(gradient.x2()) - x, f64::from(gradient.y2()) - y);
                 let base: &usvg::BaseGradient = gradient;
-                (base, Way::Linear { from: PxPoint::new(x, y), way })
+                (base, GradientAxis::Linear { from: PxPoint::new(x, y), way })
             }
             usvg::Paint::RadialGradient(gradient) => {
                 let place = |x: f32, y: f32| PxPoint::new(f64::from(x), f64::from(y));
                 let base: &usvg::BaseGradient = gradient;
                 let (focus, centre) =
                     (place(gradient.fx(), gradient.fy()), place(gradient.cx(), gradient.cy()));
-                (base, Way::Radial { focus, centre, radius: f64::from(gradient.r().get()) })
+                (base, GradientAxis::Radial { focus, centre, radius: f64::from(gradient.r().get()) })
             }
         };
         let stop = |stop: &usvg::Stop| {
@@ -154,7 +154,7 @@ impl Colour {
             );
         };
         let to_own = [to_own.sx, to_own.ky, to_own.kx, to_own.sy, to_own.tx, to_own.ty].map(f64::from);
-        Self::Gradient(Box::new(Gradient { to_own, way, spread: base.spread_method(), stops, opacity }))
+        Self::Gradient(Box::new(Gradient { to_own, axis, spread: base.spread_method(), stops, opacity }))
     }
 
     fn at(&self, at: PxPoint) -> Rgba {
@@ -169,16 +169,13 @@ impl Gradient {
     fn at(&self, at: PxPoint) -> Rgba {
         let [a, b, c, d, e, f] = self.to_own;
         let own = PxPoint::new(a * at.x + c * at.y + e, b * at.x + d * at.y + f);
-        let along = match self.way {
-            Way::Linear { from, way: (dx, dy) } => {
-                let (x, y) = own.minus(from);
-                (x * dx + y * dy) / (dx * dx + dy * dy)
-            }
-            Way::Radial { focus, centre, radius } => {
+        let along = match self.axis {
+            GradientAxis::Linear { from, way } => (own - from).dot(way) / way.length_squared(),
+            GradientAxis::Radial { focus, centre, radius } => {
                 // |F + (P − F) / t − C| = r, of which the greatest t; with the focus in the centre |P − C| / r.
-                let ((px, py), (fx, fy)) = (own.minus(focus), focus.minus(centre));
-                let (square, half) = (px * px + py * py, px * fx + py * fy);
-                let inside = radius * radius - fx * fx - fy * fy;
+                let (out, off) = (own - focus, focus - centre);
+                let (square, half) = (out.length_squared(), out.dot(off));
+                let inside = radius * radius - off.x * off.x - off.y * off.y;
                 if inside <= 0.0 {
                     own.distance(centre) / radius
                 } else {

@@ -1,15 +1,18 @@
 //! [`read_svg`]: a drawing from an SVG file.
 //!
-//! `usvg` resolves what the format allows (styles, units, `use`, shapes, arcs) into paths with one matrix each; here
-//! they become strokes: curves are cut into chords, dashes into strokes, and colours or layers become pens. What `usvg` would leave
-//! out without a word is put into its words before ([`Rewritten`]), and clip paths and masks cut the strokes ([`region::Region`]).
+//! `usvg` resolves what the format allows (styles, units, `use`, shapes, arcs) into paths with one matrix
+//! each; here they become strokes: curves are cut into chords, dashes into strokes, and colours or layers
+//! become pens. What `usvg` would leave out without a word is put into its words before (`rewrite`), and clip
+//! paths and masks cut the strokes (`region`).
 
 mod arc;
-mod blanks;
-mod boxes;
+mod blank_nodes;
+mod box_tree;
+mod chunks;
 mod clip;
 mod css_transform;
 mod curve;
+mod cut_far;
 mod dash;
 mod font_size;
 #[cfg(feature = "svg-text")]
@@ -20,15 +23,18 @@ mod mask;
 mod moves;
 mod one_line;
 mod paint;
-mod pieces;
 mod region;
 mod rewrite;
 #[cfg(feature = "svg-text")]
 mod single_stroke;
 mod survey;
 
-use crate::{Drawing, PalettePen, Rgb, Scale};
-use blanks::without_blank_nodes;
+use crate::{
+    ink::PalettePen,
+    picture::Rgb,
+    stroke::{Drawing, Scale},
+};
+use blank_nodes::without_blank_nodes;
 use core::fmt;
 #[cfg(feature = "svg-text")]
 pub use fonts::{SvgFontError, SvgFonts, read_svg_with_fonts};
@@ -62,14 +68,15 @@ const MAX_DEPTH_ON_CALLERS_STACK: usize = 48;
 
 /// Which strokes are of one pen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum SvgPens {
     /// Those of one colour. Pens are numbered in the order in which they draw first; when there are more than
-    /// [`MAX_PENS`](crate::MAX_PENS) colours, the others are drawn by the pen of the nearest one.
+    /// [`MAX_PENS`](crate::ink::MAX_PENS) colours, the others are drawn by the pen of the nearest one.
     #[default]
     ByColour,
     /// Those of one [`SvgLayer`]: the pen is the number that its name begins with. Layers without a number have the next free
     /// one each, in the order of the file, and so has what is in no layer: its pen has no name. When there are more than
-    /// [`MAX_PENS`](crate::MAX_PENS), the others are drawn by the pen of the nearest colour.
+    /// [`MAX_PENS`](crate::ink::MAX_PENS), the others are drawn by the pen of the nearest colour.
     ByLayer,
     /// Those of one layer, whatever its name: the first that draws something is pen 1.
     ByOrder,
@@ -79,6 +86,11 @@ pub enum SvgPens {
 
 /// How an SVG file is read. The default keeps curves within 0.025 mm, the unit of HPGL, and takes white for the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct SvgOptions {
     /// Greatest distance of a curve from its chords, both ways, mm; 0.001 to 10.
     pub tolerance_mm: f64,
@@ -136,7 +148,7 @@ pub struct SvgLeftOut {
     pub texts: usize,
     /// Line of the first of them in the file, from 1, where it can be told.
     pub text_line: Option<u32>,
-    /// Pictures: [`Vectorizer`](crate::Vectorizer) traces them.
+    /// Pictures: [`Vectorizer`](crate::trace::Vectorizer) traces them.
     pub images: usize,
     /// Line of the first of them in the file, from 1.
     pub image_line: Option<u32>,
@@ -151,6 +163,9 @@ pub struct SvgLeftOut {
     pub occluded: usize,
     /// Shapes in the colour of the paper.
     pub paper: usize,
+    /// Shapes of which a part lies farther than 277 m from the corner of the sheet, where it is cut off. They
+    /// are not hatched.
+    pub far: usize,
 }
 
 /// What the texts that are left out need. Without fonts, and without feature `svg-text`, it is not looked into which letters.
@@ -187,7 +202,7 @@ pub struct SvgDrawing {
     /// Height of the sheet, mm.
     pub height_mm: f64,
     /// The pens that draw something, from 1, with the colour of their first stroke. By colour, they are a
-    /// [`Palette`](crate::Palette).
+    /// [`Palette`](crate::ink::Palette).
     pub pens: Vec<PalettePen>,
     /// What is not drawn.
     pub left_out: SvgLeftOut,
@@ -251,13 +266,6 @@ pub enum SvgError {
         attribute: String,
         /// What it holds.
         value: String,
-    },
-    /// A place far outside of any sheet.
-    TooFar {
-        /// To the right, mm.
-        x_mm: f64,
-        /// Down, mm.
-        y_mm: f64,
     },
     /// An element refers to itself.
     Circular {
@@ -327,11 +335,6 @@ impl fmt::Display for SvgError {
                 f,
                 "svg, line {line}: {attribute} holds {value}, which is no place on a sheet; correct it"
             ),
-            Self::TooFar { x_mm, y_mm } => write!(
-                f,
-                "svg: a place at ({x_mm:.0}, {y_mm:.0}) mm lies farther out than {:.0} mm; correct its transform",
-                MAX_PX * MM_PER_INCH / PX_PER_INCH
-            ),
             Self::Circular { id } => {
                 write!(f, "svg: element {id:?} refers to itself; unlink the clones in it")
             }
@@ -364,7 +367,14 @@ impl fmt::Display for SvgError {
     }
 }
 
-impl core::error::Error for SvgError {}
+impl core::error::Error for SvgError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Hatch(error) => Some(error),
+            _ => None,
+        }
+    }
+}
 
 /// Reads a drawing from the text of an SVG file.
 ///
@@ -381,10 +391,11 @@ impl core::error::Error for SvgError {}
 ///
 /// A text that is given away (`Vec<u8>`) is dropped as soon as it has been parsed: a large file takes less memory then.
 ///
-/// Coordinates are parsed in single precision: to 0.001 px or 0.0003 mm up to 4 m from the origin. Arcs are first
-/// made into cubic curves that are 0.03 % of the radius off at most, and no more than 0.1 of the file's units; that
-/// adds to the tolerance, which is kept between those curves and the chords. A path is read up to its first
-/// error. Another element with a number that is no place on a sheet, beyond 10¹², is left out.
+/// Coordinates are parsed in single precision: to 0.001 px or 0.0003 mm up to 4 m from the origin. Arcs are
+/// first made into cubic curves that are 0.03 % of the radius off at most, and no more than 0.1 of the file's
+/// units; that adds to the tolerance, which is kept between those curves and the chords. What lies farther
+/// than 277 m from the corner of the sheet is cut off, and counted. A path is read up to its first error.
+/// Another element with a number that is no place on a sheet, beyond 10¹², is left out.
 ///
 /// # Errors
 /// [`SvgError`].
@@ -509,18 +520,18 @@ fn parse(
         };
         ink.group(tree.root(), None)
     };
-    match pieces::pieces(&document, &text) {
+    match chunks::chunks(&document, &text) {
         None => {
             let tree = tree_of(&document, parser)?;
             drop(document);
             drop(text);
             draw(&tree)?;
         }
-        Some(pieces) => {
+        Some(chunks) => {
             drop(document);
-            for piece in &pieces {
-                let piece = pieces::text_of(&text, piece);
-                draw(&tree_of(&document_of(&piece)?, parser)?)?;
+            for chunk in &chunks {
+                let chunk = chunks::text_of(&text, chunk);
+                draw(&tree_of(&document_of(&chunk)?, parser)?)?;
             }
             drop(text);
         }
@@ -634,7 +645,16 @@ fn whole_px(px: f64) -> Option<u32> {
 mod tests;
 
 #[cfg(test)]
+mod cut_far_tests;
+
+#[cfg(test)]
+mod clip_tests;
+
+#[cfg(test)]
 mod kind_tests;
+
+#[cfg(test)]
+mod move_tests;
 
 #[cfg(test)]
 #[cfg(feature = "svg-text")]

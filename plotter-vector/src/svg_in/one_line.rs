@@ -1,7 +1,7 @@
 //! [`parted`]: contours of letters that go along a line and back on it: the letters of fonts for pens, which are lines, and not areas.
 //!
 //! A font has closed contours only, so one for pens and cutters goes back where it came, and a pen that follows it draws every line
-//! twice. Each piece that the next one, or what is left of those before it, takes back again is one line:
+//! twice. Each segment that the next one, or what is left of those before it, takes back again is one line:
 //!
 //! ```text
 //!   a ──▶ b ──▶ c ──▶ b ──▶ d ──▶ b ──▶ a        lines: a b c, b d
@@ -17,15 +17,15 @@ use usvg::tiny_skia_path::{Path, PathBuilder, PathSegment, Point};
 #[cfg(feature = "svg-text")]
 pub(super) const SLACK_EM: f32 = 0.001;
 
-/// A piece of a contour: its ends and handles.
+/// A segment of a contour: its ends and handles.
 #[derive(Clone, Copy)]
-struct Piece {
+struct ContourSegment {
     from: Point,
     handles: [Option<Point>; 2],
     to: Point,
 }
 
-impl Piece {
+impl ContourSegment {
     /// Whether it is the other one backwards.
     fn takes_back(&self, other: &Self, slack: f32) -> bool {
         let near = |a: Option<Point>, b: Option<Point>| match (a, b) {
@@ -61,26 +61,26 @@ impl Piece {
 /// length in the path's own unit.
 pub(super) fn parted(path: &Path, slack: f32) -> Option<(Option<Path>, Path)> {
     let (mut outlines, mut lines) = (PathBuilder::new(), PathBuilder::new());
-    let mut contour: Vec<Piece> = Vec::new();
+    let mut contour: Vec<ContourSegment> = Vec::new();
     let mut start = None;
-    let mut end = |contour: &mut Vec<Piece>| {
-        let Some(first) = contour.first().map(|piece| piece.from) else { return };
+    let mut end = |contour: &mut Vec<ContourSegment>| {
+        let Some(first) = contour.first().map(|segment| segment.from) else { return };
         if let Some(closing) =
-            contour.last().map(|last| Piece { from: last.to, handles: [None; 2], to: first })
+            contour.last().map(|last| ContourSegment { from: last.to, handles: [None; 2], to: first })
         {
             contour.push(closing);
         }
         if !add_lines(contour, slack, &mut lines) {
             outlines.move_to(first.x, first.y);
             contour.pop();
-            contour.iter().for_each(|piece| piece.add_to(&mut outlines));
+            contour.iter().for_each(|segment| segment.add_to(&mut outlines));
             outlines.close();
         }
         contour.clear();
     };
     for segment in path.segments() {
-        let from = contour.last().map(|piece| piece.to).or(start);
-        let piece = match (segment, from) {
+        let from = contour.last().map(|segment| segment.to).or(start);
+        let segment = match (segment, from) {
             (PathSegment::MoveTo(to), _) => {
                 end(&mut contour);
                 start = Some(to);
@@ -90,46 +90,46 @@ pub(super) fn parted(path: &Path, slack: f32) -> Option<(Option<Path>, Path)> {
                 end(&mut contour);
                 continue;
             }
-            (PathSegment::LineTo(to), Some(from)) => Piece { from, handles: [None; 2], to },
+            (PathSegment::LineTo(to), Some(from)) => ContourSegment { from, handles: [None; 2], to },
             (PathSegment::QuadTo(handle, to), Some(from)) => {
-                Piece { from, handles: [Some(handle), None], to }
+                ContourSegment { from, handles: [Some(handle), None], to }
             }
             (PathSegment::CubicTo(first, second, to), Some(from)) => {
-                Piece { from, handles: [Some(first), Some(second)], to }
+                ContourSegment { from, handles: [Some(first), Some(second)], to }
             }
         };
-        contour.push(piece);
+        contour.push(segment);
     }
     end(&mut contour);
     Some((outlines.finish(), lines.finish()?))
 }
 
 /// Adds the lines of a closed contour that has no area; of one that has, nothing.
-fn add_lines(contour: &[Piece], slack: f32, lines: &mut PathBuilder) -> bool {
-    let mut forth: Vec<Piece> = Vec::new();
-    // The pieces that are lines, and whether each goes on where the one before it ended.
-    let mut found: Vec<(Piece, bool)> = Vec::new();
+fn add_lines(contour: &[ContourSegment], slack: f32, lines: &mut PathBuilder) -> bool {
+    let mut forth: Vec<ContourSegment> = Vec::new();
+    // The segments that are lines, and whether each goes on where the one before it ended.
+    let mut found: Vec<(ContourSegment, bool)> = Vec::new();
     let mut goes_on = false;
-    for piece in contour.iter().filter(|piece| !piece.is_short(slack)) {
-        if forth.last().is_some_and(|last| piece.takes_back(last, slack)) {
+    for segment in contour.iter().filter(|segment| !segment.is_short(slack)) {
+        if forth.last().is_some_and(|last| segment.takes_back(last, slack)) {
             forth.pop();
             goes_on = false;
         } else {
-            forth.push(*piece);
-            found.push((*piece, goes_on));
+            forth.push(*segment);
+            found.push((*segment, goes_on));
             goes_on = true;
         }
     }
     if !forth.is_empty() {
         return false;
     }
-    for (piece, goes_on) in &found {
+    for (segment, goes_on) in &found {
         if !goes_on {
-            lines.move_to(piece.from.x, piece.from.y);
+            lines.move_to(segment.from.x, segment.from.y);
         }
-        piece.add_to(lines);
+        segment.add_to(lines);
     }
-    if let (true, Some(dot)) = (found.is_empty(), contour.first().map(|piece| piece.from)) {
+    if let (true, Some(dot)) = (found.is_empty(), contour.first().map(|segment| segment.from)) {
         lines.move_to(dot.x, dot.y);
         lines.line_to(dot.x, dot.y);
     }

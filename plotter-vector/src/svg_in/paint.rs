@@ -1,7 +1,7 @@
 //! [`known`]: paints as the parser knows them. For a plotter any paint but `none` is ink: one that is not understood draws the line
 //! all the same, in black.
 
-use crate::Rgb;
+use crate::picture::Rgb;
 use std::str::FromStr;
 use svgtypes::Color;
 

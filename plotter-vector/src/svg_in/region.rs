@@ -1,28 +1,28 @@
 //! [`Region`]: the part of the sheet that clip paths and masks leave, and strokes cut along its border.
 //!
 //! ```text
-//!        ┌──────┐         a piece of a stroke is cut wherever it meets an edge; each part between two cuts
+//!        ┌──────┐         a segment of a stroke is cut wherever it meets an edge; each part between two cuts
 //!   ─────┼──────┼─────    lies wholly inside or outside, so that its middle tells
 //!        └──────┘
 //! ```
 //!
 //! The part on an edge is kept: half of the stroke's width shows there.
 
-use super::boxes::{Bounds, Boxes, Steps};
+use super::box_tree::{Bounds, BoxTree, Steps};
 use super::curve::{Cubic, distance_to_segment};
 use super::mask::Painted;
 use super::{MAX_PX, SvgError};
-use crate::curve::Piece;
-use crate::{Arc, Curve, PxPoint};
+use crate::stroke::curve::Segment;
+use crate::stroke::{Arc, Curve, PxPoint};
 use usvg::tiny_skia_path::{Path, PathSegment, Point, Transform};
 
-/// How far beyond its ends an edge or a piece still meets another, in parts of it: what rounding takes.
+/// How far beyond its ends an edge or a segment still meets another, in parts of it: what rounding takes.
 const BEYOND: f64 = 1e-9;
-/// Parts of a piece shorter than this are none, in parts of it.
+/// Parts of a segment shorter than this are none, in parts of it.
 const SHORTEST: f64 = 1e-9;
-/// Step along a piece in which what changes without an edge, a gradient, is looked for, px: 0.13 mm.
+/// Step along a segment in which what changes without an edge, a gradient, is looked for, px: 0.13 mm.
 const GRADIENT_STEP_PX: f64 = 0.5;
-/// Most such steps of one piece.
+/// Most such steps of one segment.
 const MAX_GRADIENT_STEPS: f64 = 65_536.0;
 /// Halvings of such a step: to 10⁻⁴ px.
 const HALVINGS: usize = 13;
@@ -145,23 +145,23 @@ impl Region {
         }
         let (mut parts, mut part, mut whole) = (Vec::new(), Curve::default(), true);
         let mut cuts = Vec::new();
-        for piece in stroke.course().pieces() {
+        for segment in stroke.course().segments() {
             steps.check()?;
             cuts.clear();
             cuts.extend([0.0, 1.0]);
-            self.shapes(&mut |shape| shape.meet(&piece, &mut cuts, steps));
+            self.shapes(&mut |shape| shape.meet(&segment, &mut cuts, steps));
             if gradients {
-                let length = chord_length(&piece);
+                let length = chord_length(&segment);
                 let count = libm::ceil(length / GRADIENT_STEP_PX).clamp(1.0, MAX_GRADIENT_STEPS);
-                let mut before = (0.0, is_kept(at(&piece, 0.0), steps));
+                let mut before = (0.0, is_kept(at(&segment, 0.0), steps));
                 let mut step = 1.0;
                 while step <= count {
-                    let after = (step / count, is_kept(at(&piece, step / count), steps));
+                    let after = (step / count, is_kept(at(&segment, step / count), steps));
                     if before.1 != after.1 {
                         let (mut low, mut high) = (before.0, after.0);
                         for _ in 0..HALVINGS {
                             let middle = f64::midpoint(low, high);
-                            if is_kept(at(&piece, middle), steps) == before.1 {
+                            if is_kept(at(&segment, middle), steps) == before.1 {
                                 low = middle
                             } else {
                                 high = middle
@@ -180,19 +180,19 @@ impl Region {
                 if cut - last <= SHORTEST {
                     continue;
                 }
-                if is_kept(at(&piece, f64::midpoint(last, cut)), steps) {
+                if is_kept(at(&segment, f64::midpoint(last, cut)), steps) {
                     since = since.or(Some(last));
                 } else {
                     whole = false;
                     if let Some(start) = since.take() {
-                        add(&mut part, &piece, start, last);
+                        add(&mut part, &segment, start, last);
                     }
                     parts.extend(taken(&mut part));
                 }
                 last = cut;
             }
             if let Some(start) = since {
-                add(&mut part, &piece, start, 1.0);
+                add(&mut part, &segment, start, 1.0);
             }
         }
         if whole {
@@ -225,7 +225,7 @@ pub(super) enum Keep {
 #[derive(Clone, Debug)]
 pub(super) struct Shape {
     lines: Vec<[PxPoint; 2]>,
-    edges: Boxes,
+    edges: BoxTree,
     is_even_odd: bool,
 }
 
@@ -233,7 +233,7 @@ impl Shape {
     /// That of a path, its curves in chords within the tolerance.
     ///
     /// # Errors
-    /// [`SvgError::TooManyVertices`], [`SvgError::TooFar`].
+    /// [`SvgError::TooManyVertices`].
     pub(super) fn new(
         path: &Path,
         matrix: Transform,
@@ -288,7 +288,7 @@ impl Shape {
         }
         lines.push([last, start]);
         lines.retain(|[from, to]| from != to);
-        let edges = Boxes::new(lines.iter().map(|line| Bounds::of(*line)).collect());
+        let edges = BoxTree::new(lines.iter().map(|line| Bounds::of(*line)).collect());
         Ok(Self { lines, edges, is_even_odd })
     }
 
@@ -322,8 +322,7 @@ impl Shape {
         self.edges.find(&ray, steps, |edge| {
             if let Some([from, to]) = self.lines.get(edge) {
                 let (down, up) = (from.y <= at.y && to.y > at.y, to.y <= at.y && from.y > at.y);
-                let ((dx, dy), (x, y)) = (to.minus(*from), at.minus(*from));
-                let turn = dx * y - dy * x;
+                let turn = (*to - *from).cross(at - *from);
                 if (down && turn > 0.0) || (up && turn < 0.0) {
                     winding += if down { 1 } else { -1 };
                     crossed += 1;
@@ -343,14 +342,14 @@ impl Shape {
         touches
     }
 
-    /// Adds where a piece meets the edges, in parts of the piece.
-    fn meet(&self, piece: &Piece, cuts: &mut Vec<f64>, steps: &mut Steps) {
-        let area = piece_bounds(piece);
+    /// Adds where a segment meets the edges, in parts of the segment.
+    fn meet(&self, segment: &Segment, cuts: &mut Vec<f64>, steps: &mut Steps) {
+        let area = segment_bounds(segment);
         self.edges.find(&area, steps, |edge| {
             if let Some(line) = self.lines.get(edge) {
-                match piece {
-                    Piece::Arc(arc) => meet_arc(arc, *line, cuts),
-                    piece => meet_line([at(piece, 0.0), at(piece, 1.0)], *line, cuts),
+                match segment {
+                    Segment::Arc(arc) => meet_arc(arc, *line, cuts),
+                    segment => meet_line([at(segment, 0.0), at(segment, 1.0)], *line, cuts),
                 }
             }
             true
@@ -358,46 +357,38 @@ impl Shape {
     }
 }
 
-fn cross(a: (f64, f64), b: (f64, f64)) -> f64 {
-    a.0 * b.1 - a.1 * b.0
-}
-
-fn dot(a: (f64, f64), b: (f64, f64)) -> f64 {
-    a.0 * b.0 + a.1 * b.1
-}
-
 fn meet_line([from, to]: [PxPoint; 2], [start, end]: [PxPoint; 2], cuts: &mut Vec<f64>) {
-    let (way, edge, between) = (to.minus(from), end.minus(start), start.minus(from));
-    let turn = cross(way, edge);
-    let (along, on_edge) = (cross(between, edge) / turn, cross(between, way) / turn);
+    let (way, edge, between) = (to - from, end - start, start - from);
+    let turn = way.cross(edge);
+    let (along, on_edge) = (between.cross(edge) / turn, between.cross(way) / turn);
     let within = |part: f64| (-BEYOND..=1.0 + BEYOND).contains(&part);
     if within(along) && within(on_edge) {
         cuts.push(along.clamp(0.0, 1.0));
     }
     // Beside each other, or nearly: the ends of the edge are cuts.
-    let length = dot(way, way);
-    if length > 0.0 && turn.abs() <= 1e-3 * libm::sqrt(length * dot(edge, edge)) {
-        let ends = [start, end].map(|end| dot(end.minus(from), way) / length);
+    let length = way.length_squared();
+    if length > 0.0 && turn.abs() <= 1e-3 * libm::sqrt(length * edge.length_squared()) {
+        let ends = [start, end].map(|end| (end - from).dot(way) / length);
         cuts.extend(ends.into_iter().filter(|end| (0.0..=1.0).contains(end)));
     }
 }
 
 /// Of the circle |C + R| = r and the edge S + u E: |S − C + u E|² = r².
 fn meet_arc(arc: &Arc, [start, end]: [PxPoint; 2], cuts: &mut Vec<f64>) {
-    let (edge, out) = (end.minus(start), start.minus(arc.centre));
-    let (square, half) = (dot(edge, edge), dot(edge, out));
-    let root = half * half - square * (dot(out, out) - arc.radius_px * arc.radius_px);
+    let (edge, out) = (end - start, start - arc.centre);
+    let (square, half) = (edge.length_squared(), edge.dot(out));
+    let root = half * half - square * (out.length_squared() - arc.radius_px * arc.radius_px);
     if square == 0.0 || root < 0.0 {
         return;
     }
-    let from = arc.from.minus(arc.centre);
+    let from = arc.from - arc.centre;
     for sign in [-1.0, 1.0] {
         let on_edge = (-half + sign * libm::sqrt(root)) / square;
         if !(-BEYOND..=1.0 + BEYOND).contains(&on_edge) {
             continue;
         }
-        let place = (out.0 + on_edge * edge.0, out.1 + on_edge * edge.1);
-        let turned = libm::atan2(cross(from, place), dot(from, place));
+        let place = out + edge * on_edge;
+        let turned = libm::atan2(from.cross(place), from.dot(place));
         let turn = core::f64::consts::TAU;
         for angle in [turned - turn, turned, turned + turn] {
             let along = angle / arc.sweep_rad;
@@ -408,22 +399,22 @@ fn meet_arc(arc: &Arc, [start, end]: [PxPoint; 2], cuts: &mut Vec<f64>) {
     }
 }
 
-/// A place of a piece, a part of the way along it. No cubic curves are made here.
-fn at(piece: &Piece, part: f64) -> PxPoint {
-    match piece {
-        Piece::Arc(arc) if part > 0.0 && part < 1.0 => arc.at(part),
-        Piece::Arc(arc) => {
+/// A place of a segment, a part of the way along it. No cubic curves are made here.
+fn at(segment: &Segment, part: f64) -> PxPoint {
+    match segment {
+        Segment::Arc(arc) if part > 0.0 && part < 1.0 => arc.at(part),
+        Segment::Arc(arc) => {
             if part <= 0.0 {
                 arc.from
             } else {
                 arc.to
             }
         }
-        Piece::Line(from, to) => {
+        Segment::Line(from, to) => {
             let rest = 1.0 - part;
             PxPoint::new(rest * from.x + part * to.x, rest * from.y + part * to.y)
         }
-        Piece::Cubic(cubic) => {
+        Segment::Cubic(cubic) => {
             if part <= 0.5 {
                 cubic.from
             } else {
@@ -433,20 +424,20 @@ fn at(piece: &Piece, part: f64) -> PxPoint {
     }
 }
 
-fn chord_length(piece: &Piece) -> f64 {
-    match piece {
-        Piece::Arc(arc) => arc.length_px(),
-        piece => at(piece, 0.0).distance(at(piece, 1.0)),
+fn chord_length(segment: &Segment) -> f64 {
+    match segment {
+        Segment::Arc(arc) => arc.length_px(),
+        segment => at(segment, 0.0).distance(at(segment, 1.0)),
     }
 }
 
-fn piece_bounds(piece: &Piece) -> Bounds {
-    match piece {
-        Piece::Arc(arc) => {
+fn segment_bounds(segment: &Segment) -> Bounds {
+    match segment {
+        Segment::Arc(arc) => {
             let circle = Bounds { least: arc.centre, most: arc.centre };
             circle.grown(arc.radius_px)
         }
-        piece => Bounds::of([at(piece, 0.0), at(piece, 1.0)]),
+        segment => Bounds::of([at(segment, 0.0), at(segment, 1.0)]),
     }
     .grown(1e-6)
 }
@@ -456,19 +447,19 @@ pub(super) fn bounds_of(stroke: &Curve) -> Bounds {
     if stroke.bulges.is_empty() {
         return vertices;
     }
-    stroke.course().pieces().fold(vertices, |bounds, piece| bounds.with(piece_bounds(&piece)))
+    stroke.course().segments().fold(vertices, |bounds, segment| bounds.with(segment_bounds(&segment)))
 }
 
-/// Goes on with a part of a piece.
-fn add(part: &mut Curve, piece: &Piece, start: f64, end: f64) {
+/// Goes on with a part of a segment.
+fn add(part: &mut Curve, segment: &Segment, start: f64, end: f64) {
     if part.vertices.is_empty() {
-        part.vertices.push(at(piece, start));
+        part.vertices.push(at(segment, start));
     }
-    if let Piece::Arc(arc) = piece {
+    if let Segment::Arc(arc) = segment {
         part.bulges.resize(part.vertices.len() - 1, 0.0);
         part.bulges.push(libm::tan(0.25 * arc.sweep_rad * (end - start)));
     }
-    part.vertices.push(at(piece, end));
+    part.vertices.push(at(segment, end));
 }
 
 fn taken(part: &mut Curve) -> Option<Curve> {

@@ -4,7 +4,7 @@
 //! a place holds is written anew before it reads the file, in attributes, `style` and style sheets alike; all lines stay where they
 //! were. What has no other words is told.
 
-use super::blanks::moved_by;
+use super::blank_nodes::moved_by;
 use super::css_transform::{self, Plain};
 use super::font_size;
 use super::layers::SvgLayer;
@@ -102,7 +102,7 @@ struct Rewriter<'a> {
 
 impl Rewritten {
     /// `parser` finds the boxes of elements, which may be nested this deep; `has_moved_blanks` says that ends
-    /// of elements stand where [`without_blank_nodes`](super::blanks::without_blank_nodes) puts them.
+    /// of elements stand where [`without_blank_nodes`](super::blank_nodes::without_blank_nodes) puts them.
     ///
     /// # Errors
     /// Where a box is asked for, and the references in the file are not safe to follow.

@@ -2,7 +2,7 @@
 
 use super::tests::file;
 use super::*;
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 use plotter_motion::hpgl::letter_strokes;
 use std::sync::LazyLock;
 
@@ -221,6 +221,6 @@ fn a_text_in_hpgl() {
                 <text x='30' y='15' text-anchor='middle' font-size='10'>Grüße 1:2</text></svg>";
     let read = read_svg_with_fonts(text.as_bytes(), &SvgOptions::default(), &FONTS).unwrap();
     let mut written = String::new();
-    crate::hpgl(&read.drawing, read.scale, &mut written).unwrap();
+    crate::write::hpgl(&read.drawing, read.scale, &mut written).unwrap();
     insta::assert_snapshot!(written);
 }

@@ -5,6 +5,7 @@
 //! of docs/results.md.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a failure shows")]
 
+use crate::figure::Figure;
 use crate::pen_ink::{Line, ink_of};
 use crate::random::Random;
 use crate::segment_distance::segment_distance;
@@ -172,6 +173,8 @@ fn no_line_of_a_pen_is_lost_and_hardly_any_ink_is_bare() {
     }
 }
 
+static LOST: Figure = Figure::of("px in a row");
+
 #[test]
 fn a_double_line_beside_a_circle_is_drawn() {
     // Two lines that touch a circle so nearly that all three run into one for half a hundred pixels.
@@ -187,7 +190,9 @@ fn a_double_line_beside_a_circle_is_drawn() {
         let ink = ink_of(SIDE_PX, &lines, pen_px);
         let traced = Vectorizer::default().trace(&ink).unwrap();
         let lost = ink.ink().filter(|at| distance_px(&traced.drawing, *at) > pen_px.max(2.0));
-        assert!(longest_px(lost) <= 2, "{pen_px} px");
+        let longest_px = longest_px(lost);
+        LOST.note(f64::from(longest_px));
+        assert!(longest_px <= 2, "{pen_px} px");
     }
 }
 
@@ -236,7 +241,7 @@ fn two_lines_that_leave_the_picture_as_one_are_both_drawn() {
 }
 
 #[test]
-#[ignore = "minutes: the table of docs/results.md"]
+#[ignore = "minutes, the table of docs/results.md: cargo test --release -p plotter-vector --test all bare_ink::table -- --ignored --nocapture"]
 fn table_of_random_drawings() {
     println!(
         "| pen, px | kept | told / tolerance: median | 90 % | greatest | bare by the pen, px: median | 90 % | greatest | beyond ink, px: median | 90 % | greatest | strokes | `Prefer::Ink`: kept | strokes |"

@@ -3,7 +3,9 @@
 
 use crate::segment_distance;
 
-use plotter_vector::{Bitmap, Drawing, Gray, GrayRows, Pixel, Progress, PxPoint, Vectorizer, coverage};
+use plotter_vector::{
+    Bitmap, Drawing, Gray, Pixel, Progress, PxPoint, Vectorizer, picture::GrayRows, report::coverage,
+};
 use segment_distance::segment_distance;
 
 /// Distance of what is found from what was drawn that a raster of one bit explains: half a pixel, and half a pixel of

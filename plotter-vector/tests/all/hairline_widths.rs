@@ -14,7 +14,7 @@ use crate::random;
 use crate::segment_distance;
 
 use pen_ink::{Line, ink_of};
-use plotter_vector::{BitmapRows, Drawing, Progress, PxPoint, Vectorized, Vectorizer};
+use plotter_vector::{Drawing, Progress, PxPoint, Vectorized, Vectorizer, picture::BitmapRows};
 use random::Random;
 use segment_distance::segment_distance;
 

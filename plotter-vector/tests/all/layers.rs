@@ -5,7 +5,10 @@
     reason = "a test fails by a panic, and its pictures are small"
 )]
 
-use plotter_vector::{Bitmap, Colour, Layers, Palette, PalettePen, Pens, Pixel, Rgb};
+use plotter_vector::{
+    Bitmap, Colour, Palette, Pixel, Rgb,
+    ink::{Layers, PalettePen, Pens},
+};
 
 const BLACK: Rgb = Rgb([0, 0, 0]);
 const RED: Rgb = Rgb([208, 24, 24]);

@@ -14,6 +14,12 @@ mod bare_ink;
 mod blurred_corners;
 mod centrelines;
 mod cut_lines;
+#[cfg(feature = "image")]
+mod fewest_vertices;
+#[path = "../../../plotter-motion/tests/all/figure.rs"]
+mod figure;
+mod file_rows;
+mod file_rows_memory;
 mod follow_drawings;
 mod follow_figures;
 mod follow_kinds;
@@ -26,6 +32,10 @@ mod lines;
 #[cfg(feature = "svg-text")]
 mod made_font;
 mod off_lines;
+#[cfg(feature = "image")]
+mod order_against_vpype;
+#[cfg(target_os = "linux")]
+mod order_memory;
 mod outline_mode;
 #[cfg(target_os = "linux")]
 mod own_process;
@@ -37,7 +47,6 @@ mod prop_cubics;
 mod prop_follow;
 mod prop_follow_bad_input;
 mod prop_followed;
-mod prop_ink;
 mod prop_inside;
 mod prop_layers;
 mod prop_order;
@@ -48,10 +57,10 @@ mod prop_svg;
 mod prop_thinning;
 mod prop_tracking;
 mod random;
-mod scan;
-mod scan_memory;
 mod seams;
 mod segment_distance;
+#[cfg(all(feature = "serde", feature = "svg-in", feature = "toml"))]
+mod serde_settings;
 mod sharp_points;
 mod sheet_cancelled;
 mod sheet_memory;

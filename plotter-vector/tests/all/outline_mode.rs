@@ -4,7 +4,9 @@
 use crate::segment_distance;
 
 use plotter_vector::{
-    AreaStyle, Areas, Bitmap, BitmapRows, Drawing, Mode, Pixel, Progress, PxPoint, Vectorizer,
+    Bitmap, Drawing, Mode, Pixel, Progress, PxPoint, Vectorizer,
+    areas::{AreaStyle, Areas},
+    picture::BitmapRows,
 };
 use segment_distance::segment_distance;
 

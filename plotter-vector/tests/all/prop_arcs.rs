@@ -12,7 +12,9 @@ use crate::seams::unsplit;
 use core::f64::consts::TAU;
 use frechet::{some_start_is_within, within};
 use lines::{arcs_and_lines, ellipse, random, sampled, sine, spiral, wild};
-use plotter_vector::{Bitmap, Bounded, Curve, Drawing, Order, OrderEffort, Pixel, PxPoint, Vectorizer};
+use plotter_vector::{
+    Bitmap, Curve, Drawing, Order, Pixel, PxPoint, Vectorizer, order::OrderEffort, stroke::Bounded,
+};
 use proptest::prelude::*;
 
 /// What the tolerance may be missed by, px: the library adds 1e-9 so that "exactly on it" passes.
@@ -123,7 +125,7 @@ fn pieces(drawing: &Drawing) -> Vec<String> {
         for (at, ends) in curve.vertices.windows(2).enumerate() {
             let bulge = curve.bulges.get(at).copied().unwrap_or(0.0);
             let one = Curve { vertices: ends.to_vec(), bulges: vec![bulge], ..Curve::default() };
-            let middle = plotter_vector::Arc::new(ends[0], ends[1], bulge)
+            let middle = plotter_vector::stroke::Arc::new(ends[0], ends[1], bulge)
                 .map_or(PxPoint::new((ends[0].x + ends[1].x) / 2.0, (ends[0].y + ends[1].y) / 2.0), |arc| {
                     arc.at(0.5)
                 });

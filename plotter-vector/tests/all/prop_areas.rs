@@ -8,8 +8,8 @@
 use crate::segment_distance;
 
 use plotter_vector::{
-    AreaPath, AreaStyle, Areas, Bitmap, Hatch, Outlines, Pixel, PxPoint, inset_outlines,
-    rows_of_width_context, split_by_width,
+    Bitmap, Pixel, PxPoint,
+    areas::{AreaPath, AreaStyle, Areas, Hatch, Outlines, inset_outlines, split_by_width},
 };
 use proptest::prelude::*;
 use segment_distance::segment_distance;
@@ -73,11 +73,6 @@ fn noise(width: u32, height: u32) -> impl Strategy<Value = Bitmap> {
     })
 }
 
-/// Some rows of a picture.
-fn rows(whole: &Bitmap, from: u32, to: u32) -> Bitmap {
-    picture(whole.width(), to - from, |at| whole.get(Pixel::new(at.x as u32, at.y as u32 + from)))
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
@@ -91,22 +86,6 @@ proptest! {
             prop_assert_eq!(split.thick.get(at) || split.thin.get(at), ink.get(at));
             prop_assert!(!(split.thick.get(at) && split.thin.get(at)));
         }
-    }
-
-    #[test]
-    fn a_band_with_its_context_is_split_as_in_the_whole(
-        ink in drawings(140, 160, 25.0),
-        max_line_px in 0_u32..16,
-        start in 0_u32..140,
-        count in 1_u32..60,
-    ) {
-        let whole = split_by_width(&ink, max_line_px);
-        let context = rows_of_width_context(max_line_px);
-        let end = (start + count).min(ink.height());
-        let (from, to) = (start.saturating_sub(context), (end + context).min(ink.height()));
-        let band = split_by_width(&rows(&ink, from, to), max_line_px);
-        prop_assert_eq!(rows(&band.thick, start - from, end - from), rows(&whole.thick, start, end));
-        prop_assert_eq!(rows(&band.thin, start - from, end - from), rows(&whole.thin, start, end));
     }
 
     #[test]

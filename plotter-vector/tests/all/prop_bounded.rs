@@ -1,7 +1,14 @@
 //! Laws of the simplification with a promised error.
 
-use plotter_vector::{Bounded, DynamicThreshold, ErrorTally, Pixel, Simplify};
+use crate::figure::Figure;
+use plotter_vector::{
+    Pixel,
+    report::ErrorTally,
+    stroke::{Bounded, DynamicThreshold, Simplify},
+};
 use proptest::prelude::*;
+
+static OF_TOLERANCE: Figure = Figure::of("of the tolerance");
 
 /// What the tolerance may be missed by, px: the library adds as much so that "exactly on it" passes.
 const ROUNDING_PX: f64 = 1e-8;
@@ -105,6 +112,7 @@ proptest! {
         for pair in kept.windows(2) {
             for pixel in &walk[pair[0]..pair[1]] {
                 let error = distance(*pixel, walk[pair[0]], walk[pair[1]]);
+                OF_TOLERANCE.note(if tolerance_px > 0.0 { error / tolerance_px } else { 0.0 });
                 prop_assert!(error <= tolerance_px + ROUNDING_PX, "{error} px off");
             }
         }

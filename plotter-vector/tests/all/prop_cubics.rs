@@ -6,7 +6,11 @@ use crate::seams::unsplit;
 
 use frechet::{some_start_is_within, within};
 use lines::{arcs_and_lines, circle, ellipse, handwriting, random, sampled, sine, spiral, turning, wild};
-use plotter_vector::{Bounded, Cubic, Curve, Drawing, Order, OrderEffort, PxPoint};
+use plotter_vector::{
+    Curve, Drawing, Order, PxPoint,
+    order::OrderEffort,
+    stroke::{Bounded, Cubic},
+};
 use proptest::prelude::*;
 
 /// What the tolerance may be missed by, px: the library adds 1e-9 so that "exactly on it" passes.

@@ -1,7 +1,7 @@
 //! Laws of lines that are followed one by one.
 
 use crate::random::Random;
-use plotter_vector::{Drawing, PxPoint, followed_lines};
+use plotter_vector::{Drawing, PxPoint, report::followed_lines};
 use proptest::prelude::*;
 
 /// From sample to sample a way within the bound is judged an eighth of it apart: what uses nearly all of it

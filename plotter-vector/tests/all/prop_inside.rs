@@ -1,8 +1,11 @@
 //! What is drawn lies within the picture, whatever the picture.
 
 use plotter_vector::{
-    Algorithm, AreaStyle, Areas, Bounded, Colour, Drawing, Gray, GrayRows, Hatch, Mode, Pens, Progress,
-    PxPoint, Vectorizer,
+    Algorithm, Colour, Drawing, Gray, Mode, Progress, PxPoint, Vectorizer,
+    areas::{AreaStyle, Areas, Hatch},
+    ink::Pens,
+    picture::GrayRows,
+    stroke::Bounded,
 };
 use proptest::prelude::*;
 

@@ -1,6 +1,9 @@
 //! Laws of sharing ink out among pens, on any picture.
 
-use plotter_vector::{Bitmap, Colour, Layers, Palette, PalettePen, Pens, Pixel, Rgb};
+use plotter_vector::{
+    Bitmap, Colour, Palette, Pixel, Rgb,
+    ink::{Layers, PalettePen, Pens},
+};
 use proptest::prelude::*;
 
 /// Few colours, as on a drawing, or any, as in noise.

@@ -5,7 +5,10 @@ use crate::lines;
 
 use frechet::{some_start_is_within, within};
 use lines::{circle, handwriting, sampled, sine, spiral, turning, wild};
-use plotter_vector::{Bounded, Pixel, PxPoint, Simplify};
+use plotter_vector::{
+    Pixel, PxPoint,
+    stroke::{Bounded, Simplify},
+};
 use proptest::prelude::*;
 
 /// What the tolerance may be missed by, px: the library adds 1e-9 so that "exactly on it" passes.

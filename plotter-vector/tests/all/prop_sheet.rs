@@ -6,8 +6,12 @@
 )]
 
 use plotter_vector::{
-    Algorithm, AreaStyle, Areas, Bitmap, BitmapRows, Bounded, Depth, Drawing, Gray, GrayRows, Hatch, Mode,
-    Pixel, Polarity, Progress, RowSource, Threshold, ThresholdMethod, Vectorizer, coverage, worst_pixel,
+    Algorithm, Bitmap, Drawing, Gray, Mode, Pixel, Progress, Threshold, ThresholdMethod, Vectorizer,
+    areas::{AreaStyle, Areas, Hatch},
+    ink::Polarity,
+    picture::{BitmapRows, Depth, GrayRows, RowSource},
+    report::{coverage, worst_pixel},
+    stroke::Bounded,
 };
 use proptest::prelude::*;
 

@@ -5,7 +5,8 @@ use crate::frechet;
 
 use frechet::{some_start_is_within, within};
 use plotter_vector::{
-    Curve, Drawing, Palette, PalettePen, PxPoint, Rgb, SvgOptions, SvgPens, read_svg, svg, svg_in_colour,
+    Curve, Drawing, Palette, PxPoint, Rgb, SvgOptions, ink::PalettePen, read_svg, svg, svg_in::SvgPens,
+    write::svg_in_colour,
 };
 use proptest::prelude::*;
 

@@ -1,6 +1,9 @@
 //! Laws of thinning: topology, width, idempotence, and how far a pixel's influence reaches.
 
-use plotter_vector::{Bitmap, Pixel, Thinned, Thinning, ThinningMethod};
+use plotter_vector::{
+    Bitmap, Pixel,
+    raster::{Thinned, Thinning, ThinningMethod},
+};
 use proptest::prelude::*;
 
 /// More than any picture below needs.

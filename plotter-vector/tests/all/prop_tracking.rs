@@ -1,8 +1,10 @@
-//! Laws of tracking, linking and joining.
+//! Laws of tracking.
 
 use plotter_motion::{Point, Segment};
 use plotter_vector::{
-    Algorithm, Bitmap, Figures, OrderedTracking, Pixel, PxPoint, Thinning, Vectorizer, join, link,
+    Algorithm, Bitmap, Pixel, PxPoint, Vectorizer,
+    picture::Figures,
+    raster::{OrderedTracking, Thinning},
 };
 use proptest::prelude::*;
 
@@ -44,28 +46,8 @@ proptest! {
     #[test]
     fn a_figure_is_a_chain_of_touching_pixels(ink in pictures()) {
         let figures = OrderedTracking::default().track(&ink).unwrap();
-        for figure in figures.iter().chain(link(&figures).iter()) {
+        for figure in figures.iter() {
             prop_assert!(figure.windows(2).all(|pair| pair[0].touches(pair[1])));
-        }
-    }
-
-    #[test]
-    fn linking_keeps_every_pixel_and_never_adds_figures(ink in pictures()) {
-        let figures = OrderedTracking::default().track(&ink).unwrap();
-        let linked = link(&figures);
-        prop_assert_eq!(sorted(&linked), sorted(&figures));
-        prop_assert!(linked.len() <= figures.len());
-    }
-
-    #[test]
-    fn joining_only_borrows_ink_that_touches(ink in pictures()) {
-        let figures = link(&OrderedTracking::default().track(&ink).unwrap());
-        let joined = join(&figures, &ink);
-        for ((figure, whole), (head, tail)) in figures.iter().zip(joined.figures.iter()).zip(&joined.borrowed) {
-            let own = usize::from(*head)..whole.len() - usize::from(*tail);
-            prop_assert_eq!(&whole[own], figure);
-            prop_assert!(whole.windows(2).all(|pair| pair[0].touches(pair[1])));
-            prop_assert!(whole.iter().all(|pixel| ink.get(*pixel)));
         }
     }
 

@@ -3,7 +3,10 @@
 
 use plotter_motion::Point;
 use plotter_motion::drawing::{self, PathSegment, Shape, Stroke};
-use plotter_vector::{Arc, Cubic, Curve, Drawing, PxPoint};
+use plotter_vector::{
+    Curve, Drawing, PxPoint,
+    stroke::{Arc, Cubic},
+};
 use std::f64::consts::TAU;
 
 /// How far a place on a piece may be off it, and how much the lengths of its parts may differ from its own.
@@ -63,6 +66,11 @@ impl Piece {
                 && first.distance(along(self.from, b)) < ROUNDING_PX
                 && last.distance(along(c, self.to)) < ROUNDING_PX;
         }
+        // A straight curve of two handles has parts that lie on a line between its ends, but is not that
+        // line.
+        if before.handles.is_some() || after.handles.is_some() {
+            return false;
+        }
         let off = match Arc::new(self.from, self.to, self.bulge) {
             Some(arc) => arc.distance(at),
             None => self.from.distance(at) + at.distance(self.to) - self.from.distance(self.to),
@@ -81,8 +89,12 @@ fn whole_of(before: Piece, after: Piece, given: &[Piece]) -> Option<(Piece, Opti
         return None;
     }
     let ends = |piece: &Piece| piece.from == before.from && piece.to == after.to;
-    let found = own().enumerate().find(|(_, piece)| ends(piece) && piece.is_parted(before, after));
     let is_vertex = given.iter().any(|piece| piece.from == after.from || piece.to == after.from);
+    // At a vertex lines meet: there a side that lies on one with its bridge would pass for one side.
+    let is_curve = |piece: &Piece| piece.bulge != 0.0 || piece.handles.is_some();
+    let found = own()
+        .enumerate()
+        .find(|(_, piece)| ends(piece) && (is_curve(piece) || !is_vertex) && piece.is_parted(before, after));
     let bridge = Piece { from: before.from, to: after.to, bulge: 0.0, handles: None };
     let bridged = (!is_vertex && bridge.is_parted(before, after)).then_some((bridge, None));
     found.map(|(index, piece)| (piece, Some(index))).or(bridged)

@@ -2,7 +2,9 @@
 
 use core::ops::ControlFlow;
 use plotter_vector::{
-    Bitmap, BitmapRows, DecodeError, Depth, Progress, Row, RowSource, SheetError, TracedSheet, Vectorizer,
+    Bitmap, DecodeError, Progress, TracedSheet, Vectorizer,
+    picture::{BitmapRows, Depth, Row, RowSource},
+    trace::SheetError,
 };
 
 /// Rows of the sheet; a band has 40 of them, so that there are many bands.

@@ -2,7 +2,10 @@
 #![cfg(target_os = "linux")]
 
 use crate::own_process::{is_alone, peak_kib};
-use plotter_vector::{DecodeError, Depth, Progress, Row, RowSource, Vectorizer};
+use plotter_vector::{
+    DecodeError, Progress, Vectorizer,
+    picture::{Depth, Row, RowSource},
+};
 
 /// Width of the sheets, px, and from one line to the next; the pen is 4 px wide.
 const WIDTH_PX: u32 = 1024;

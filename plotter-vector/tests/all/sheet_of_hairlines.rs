@@ -1,6 +1,9 @@
 //! Lines one pixel wide on a sheet too large for one bitmap.
 
-use plotter_vector::{DecodeError, Depth, MAX_PIXELS, Progress, Row, RowSource, Vectorizer};
+use plotter_vector::{
+    DecodeError, Progress, Vectorizer,
+    picture::{Depth, MAX_PIXELS, Row, RowSource},
+};
 
 const WIDTH_PX: u32 = 1 << 17;
 const HEIGHT_PX: u32 = 2100;

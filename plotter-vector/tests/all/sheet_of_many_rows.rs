@@ -1,8 +1,10 @@
 //! A banner far longer than a picture may be wide: what is drawn on it is the same wherever it lies.
 
 use plotter_vector::{
-    DecodeError, Depth, MAX_SHEET_ROWS, MAX_SIDE_PX, Order, OrderEffort, Progress, PxPoint, Row, RowSource,
-    SheetError, Vectorizer,
+    DecodeError, Order, Progress, PxPoint, Vectorizer,
+    order::OrderEffort,
+    picture::{Depth, MAX_SHEET_ROWS, MAX_SIDE_PX, Row, RowSource},
+    trace::SheetError,
 };
 
 const WIDTH_PX: u32 = 64;

@@ -5,7 +5,8 @@ use crate::made_font;
 
 use made_font::{font_with_blank, made_font};
 use plotter_vector::{
-    SvgDrawing, SvgFontError, SvgFonts, SvgOptions, SvgPens, read_svg, read_svg_with_fonts,
+    SvgOptions, read_svg,
+    svg_in::{SvgDrawing, SvgFontError, SvgFonts, SvgPens, read_svg_with_fonts},
 };
 
 /// A sheet of 100 x 50 mm in units of a millimetre, with this on it.

@@ -1,7 +1,10 @@
 //! Where skeletons end: straight strokes with square and round ends, and wedges that taper to a point, at many angles.
 //! `cargo test -p plotter-vector --test all thinning_ends:: -- --nocapture` prints the tables.
 
-use plotter_vector::{Bitmap, Pixel, PxPoint, Thinning, ThinningMethod};
+use plotter_vector::{
+    Bitmap, Pixel, PxPoint,
+    raster::{Thinning, ThinningMethod},
+};
 use std::collections::BTreeSet;
 
 const METHODS: [ThinningMethod; 2] = [ThinningMethod::GuoHall, ThinningMethod::ZhangSuen];

@@ -2,7 +2,9 @@
 #![cfg(feature = "rayon")]
 #![allow(clippy::cast_possible_truncation, reason = "a failure shows, and levels are made to fit")]
 
-use plotter_vector::{Bitmap, BitmapRows, Gray, Progress, Threshold, ThresholdMethod, Vectorizer, despeckle};
+use plotter_vector::{
+    Bitmap, Gray, Progress, Threshold, ThresholdMethod, Vectorizer, ink::despeckle, picture::BitmapRows,
+};
 
 #[test]
 fn the_number_of_threads_changes_nothing() {
@@ -25,11 +27,6 @@ fn the_number_of_threads_changes_nothing() {
                 (ink, split, changed)
             })
         });
-        // And row by row, where there are no threads.
-        let mut survey = plotter_vector::Survey::new(threshold, width, height).unwrap();
-        gray.rows().for_each(|levels| survey.push(levels));
-        let rows = survey.finish().unwrap();
-        assert_eq!(results[0].1.map(|split| split.level), Some(rows.level()));
         assert!(results[0].2.removed_px > 0);
         results.rotate_left(1);
         assert!(results.windows(2).all(|pair| pair[0] == pair[1]));

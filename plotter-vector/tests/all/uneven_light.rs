@@ -6,7 +6,8 @@
 )]
 
 use plotter_vector::{
-    Bitmap, Gray, Pixel, Polarity, Threshold, ThresholdMethod, despeckle, pen_width_px, smallest_mark_px,
+    Bitmap, Gray, Pixel, Threshold, ThresholdMethod,
+    ink::{Polarity, despeckle, pen_width_px, smallest_mark_px},
 };
 
 const WIDTH: u32 = 480;

@@ -11,7 +11,7 @@
 
 use core::ptr::{read_volatile, write_volatile};
 use core::time::Duration;
-use plotter_motion::{Axis, Drive, Phases, Pulse};
+use plotter_motion::{Axis, Drive, encoder::Phases, safety::Pulse};
 
 /// A register of this microcontroller by its address in data space.
 #[derive(Clone, Copy)]

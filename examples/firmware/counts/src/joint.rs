@@ -3,15 +3,15 @@
 use crate::counter::{Counter, Tally};
 use core::hint::black_box;
 use plotter_motion::{Axis, Vec2};
-use plotter_stitch::{Crossing, FitError, Found, FrameTransform, JointEstimate, RigidFit};
+use plotter_stitch::{Crossing, FitError, FrameTransform, JointEstimate, RigidFit, sense::Found};
 
 /// The layout of `ReferenceLines::strip16`, without a heap.
 fn crossings() -> [Crossing; 16] {
     core::array::from_fn(|index| {
         let (axis, mark_mm, scan_at_mm) = if index < 10 {
-            (Axis::X, [20.0, 180.0][index / 5], [60.0, 280.0, 500.0, 720.0, 940.0][index % 5])
+            (Axis::Y, [-34.0, -8.0, 18.0, 44.0, 70.0][index / 2], [-32.0, 2032.0][index % 2])
         } else {
-            (Axis::Y, [90.0, 510.0, 910.0][(index - 10) / 2], [45.0, 155.0][index % 2])
+            (Axis::X, [-10.0, 2010.0][(index - 10) / 3], [-21.0, 31.0, 57.0][(index - 10) % 3])
         };
         Crossing { axis, mark_mm, scan_at_mm }
     })

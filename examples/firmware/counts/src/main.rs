@@ -22,10 +22,7 @@ use plotter_motion::firmware::{Gantry, GantrySettings};
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::plant::AxisPlant;
 use plotter_motion::protocol::digits;
-use plotter_motion::{
-    Action, Axis, Direction, Machine, MachineConfig, MotorEvent, PathMode, Planner, PlannerSettings, PlotOp,
-    LimitSwitches, SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, StepQueue,
-};
+use plotter_motion::{Axis, Direction, LimitSwitches, Machine, MachineConfig, PathMode, Planner, PlannerSettings, PlotOp, SafetyGate, StepGen, StepPoint, planner::Action, stepgen::{MotorEvent, StepGenSettings, StepQueue}};
 use vcell::VolatileCell;
 
 fn print(what: impl Display, tally: Tally) {
@@ -179,8 +176,8 @@ fn interrupt(queue: &mut StepQueue<64>, gate: &SafetyGate, registers: &Registers
     if let Some(after_ticks) = queue.next_after_ticks() {
         registers.compare.set(registers.compare.get().wrapping_add(after_ticks));
     }
-    let MotorEvent::Step { x, y } = due.event else { return Some(due.event) };
-    if let Ok(pulse) = gate.pass_step(StepPair { x, y }) {
+    let MotorEvent::Step(step) = due.event else { return Some(due.event) };
+    if let Ok(pulse) = gate.pass_step(step) {
         registers.direction.set(u32::from(pulse.x() < 0) | u32::from(pulse.y() < 0) << 1);
         registers.step.set(u32::from(pulse.x() != 0) | u32::from(pulse.y() != 0) << 1);
     }
@@ -245,20 +242,6 @@ fn main() -> ! {
     debug::exit(debug::EXIT_SUCCESS);
     loop {}
 }
-
-/// `plotter-stitch` needs a heap for its layouts and searches, but none to tell a joint: here nothing may be asked for.
-struct NoHeap;
-
-// SAFETY: it never gives memory.
-unsafe impl core::alloc::GlobalAlloc for NoHeap {
-    unsafe fn alloc(&self, _: core::alloc::Layout) -> *mut u8 {
-        core::ptr::null_mut()
-    }
-    unsafe fn dealloc(&self, _: *mut u8, _: core::alloc::Layout) {}
-}
-
-#[global_allocator]
-static HEAP: NoHeap = NoHeap;
 
 #[panic_handler]
 fn panic(info: &core::panic::PanicInfo<'_>) -> ! {

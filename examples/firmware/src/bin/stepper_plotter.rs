@@ -47,7 +47,7 @@ type Controller = Result<StepperPlotter, SettingsError>;
 /// The controller, where it stays. By itself, so that the stack is free again of what it takes to put it there.
 #[inline(never)]
 fn controller(gate: SafetyGate) -> Option<&'static mut StepperPlotter> {
-    singleton!(CELL: Controller = StepperPlotter::of(&CHECKED_PLOTTER, gate))?.as_mut().ok()
+    singleton!(CELL: Controller = StepperPlotter::from_checked(&CHECKED_PLOTTER, gate))?.as_mut().ok()
 }
 
 #[entry]
@@ -65,7 +65,7 @@ fn main() -> ! {
     );
     // Off from here on, also where there is none.
     let mut laser = Laser::new(parts.laser, STANDSTILL);
-    let Ok(mut servo) = PenServo::of(parts.servo, PEN) else { board::halt() };
+    let Ok(mut servo) = PenServo::from_checked(parts.servo, PEN) else { board::halt() };
     let switch = SwitchSettings::default();
     let [x_min, x_max, y_min, y_max] = parts.limits.map(|pin| LimitSwitch::new(pin, switch));
     let mut limits = LimitSwitchGroup { x_min, x_max, y_min, y_max };

@@ -28,6 +28,7 @@ pub fn complaint(name: &str, arguments: &[&str]) -> String {
 }
 
 /// A file that comes with the examples.
+#[allow(dead_code, reason = "not every command takes a file of these")]
 pub fn data(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name).to_str().unwrap().to_owned()
 }

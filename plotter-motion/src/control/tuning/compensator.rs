@@ -2,7 +2,7 @@
 
 use super::sample_point::SamplePoint;
 use super::{Complex, ContouringFeedback};
-use crate::{Pid, SumPid};
+use crate::control::{Pid, SumPid};
 
 /// A controller as a linear filter from the error, in counts, to the duty. Limits and rounding are no part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +75,7 @@ fn integral(gain: f64, at: &SamplePoint) -> Complex {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{PidState, SumPidState};
+    use crate::control::{PidState, SumPidState};
     use core::f64::consts::TAU;
 
     const TICK_S: f64 = 1e-3;

@@ -1,7 +1,7 @@
 //! [`ContouringBandwidth`]: how stiff the contouring controller may be.
 
 use super::{Compensator, ContouringFeedback, IntegratingProcess, LoopMargins, SampledLoop, TuningError};
-use crate::AxisConfig;
+use crate::config::AxisConfig;
 use crate::control::{PositionGains, ShaftModel};
 use core::f64::consts::TAU;
 
@@ -32,7 +32,7 @@ impl ContouringBandwidth {
     /// `believed` is what the controller takes the axis to be, its description; `process` is the motor as it is.
     ///
     /// ```
-    /// # use plotter_motion::AxisConfig;
+    /// # use plotter_motion::config::AxisConfig;
     /// # use plotter_motion::control::tuning::{ContouringBandwidth, IntegratingProcess};
     /// let axis = AxisConfig::default();
     /// let process = IntegratingProcess::of(&axis);
@@ -95,7 +95,7 @@ impl ContouringBandwidth {
         let feedback =
             ContouringFeedback { model: ShaftModel::new(believed), gains, observer_rad_s: observer_hz * TAU };
         let compensator = Compensator::Contouring(feedback);
-        let margins = LoopMargins::of(&SampledLoop { process: *process, compensator, tick_s });
+        let margins = LoopMargins::from_loop(&SampledLoop { process: *process, compensator, tick_s });
         Self { bandwidth_hz, observer_hz, margins }
     }
 }

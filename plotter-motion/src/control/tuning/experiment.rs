@@ -1,6 +1,6 @@
 //! [`ExperimentSettings`]: what both experiments may do to an axis.
 
-use crate::{Axis, AxisConfig, Demand, Duty};
+use crate::{Axis, Demand, Duty, config::AxisConfig};
 
 /// On which axis an experiment runs, and its bounds.
 ///
@@ -8,6 +8,7 @@ use crate::{Axis, AxisConfig, Demand, Duty};
 /// it, or it goes so far in a tick or two; then the experiment ends. The demands go through the [`SafetyGate`](crate::SafetyGate) like every other: a limit switch or the emergency stop ends
 /// the experiment as a motor that stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ExperimentSettings {
     /// The motor to drive; the other one gets nothing.
     pub axis: Axis,
@@ -28,7 +29,7 @@ impl ExperimentSettings {
     /// most 60 s.
     ///
     /// ```
-    /// # use plotter_motion::{Axis, AxisConfig, control::tuning::ExperimentSettings};
+    /// # use plotter_motion::{Axis, config::AxisConfig, control::tuning::ExperimentSettings};
     /// let settings = ExperimentSettings::of(&AxisConfig::default(), Axis::X, 2500.0, 30.0);
     /// assert_eq!(settings.travel_counts, 1200); // 30 mm at 40 counts/mm
     /// ```

@@ -2,7 +2,7 @@
 
 use super::Complex;
 use super::sample_point::SamplePoint;
-use crate::AxisConfig;
+use crate::config::AxisConfig;
 use core::f64::consts::TAU;
 
 /// A motor with its load and its encoder, from duty to counts: an integrator behind a lag, with a dead time.
@@ -23,7 +23,7 @@ use core::f64::consts::TAU;
 /// ([`dry_friction_duty`](Self::dry_friction_duty)), which a step does not see once the shaft turns.
 ///
 /// ```
-/// # use plotter_motion::{AxisConfig, control::tuning::IntegratingProcess};
+/// # use plotter_motion::{config::AxisConfig, control::tuning::IntegratingProcess};
 /// let motor = IntegratingProcess::of(&AxisConfig::default());
 /// // c = 13.4e-3 * 13.369e-3 + 1.9 * 1e-6 = 1.81045e-4; 12 * 13.4e-3 / c = 888.2 rad/s, 500 counts a turn
 /// assert!((motor.gain_counts_s - 70_679.0).abs() < 1.0);
@@ -63,7 +63,7 @@ impl IntegratingProcess {
     /// The share of the duty that the Coulomb friction of an axis takes, from its description: `Tc R / (Kt V)`.
     ///
     /// ```
-    /// # use plotter_motion::{AxisConfig, control::tuning::IntegratingProcess};
+    /// # use plotter_motion::{config::AxisConfig, control::tuning::IntegratingProcess};
     /// let share = IntegratingProcess::dry_friction_duty(&AxisConfig::default());
     /// assert!((share - 0.01536).abs() < 1e-5); // 1.3e-3 * 1.9 / (13.4e-3 * 12)
     /// ```
@@ -135,8 +135,8 @@ impl IntegratingProcess {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::{LoadConfig, MotorConfig};
     use crate::plant::{DcMotor, DcMotorState};
-    use crate::{LoadConfig, MotorConfig};
 
     /// What a motor under a sine does after a while is size and angle of its transfer function; the simulated motor knows
     /// nothing of partial fractions.

@@ -17,13 +17,14 @@ use core::f64::consts::PI;
 /// An integrator that runs every millisecond, with a gain of one count a count:
 ///
 /// ```
-/// # use plotter_motion::Pid;
+/// # use plotter_motion::control::Pid;
 /// # use plotter_motion::control::tuning::{Compensator, IntegratingProcess, LoopMargins, SampledLoop};
 /// let process = IntegratingProcess {
 ///     gain_counts_s: 1000.0, time_constant_s: 0.0, second_time_constant_s: 0.0, dead_time_s: 0.0,
 /// };
 /// let pid = Pid { kp: 1.0, ki: 0.0, kd: 0.0, derivative_filter_s: 0.0, output_min: -1.0, output_max: 1.0 };
-/// let margins = LoopMargins::of(&SampledLoop { process, compensator: Compensator::Pid(pid), tick_s: 1e-3 });
+/// let cut = SampledLoop { process, compensator: Compensator::Pid(pid), tick_s: 1e-3 };
+/// let margins = LoopMargins::from_loop(&cut);
 /// // L = 1 / (z - 1): -1/2 at z = -1; of size 1 at 60 degrees, where it has the angle -120 degrees
 /// assert!((margins.gain_margin - 2.0).abs() < 1e-9);
 /// assert!((margins.phase_margin_deg - 60.0).abs() < 1e-6);
@@ -80,7 +81,7 @@ impl Crossings {
 impl LoopMargins {
     /// The margins of a loop, by a sweep over all frequencies and halving where something is crossed.
     #[must_use]
-    pub fn of(cut: &SampledLoop) -> Self {
+    pub fn from_loop(cut: &SampledLoop) -> Self {
         let stable = cut.is_stable(1.0);
         let mut crossings = Crossings::default();
         let mut phase_margin_rad = PI;
@@ -192,7 +193,10 @@ fn refined_distance(cut: &SampledLoop, near_rad_s: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::control::tuning::{Compensator, IntegratingProcess};
-    use crate::{AxisConfig, Pid, SumPid};
+    use crate::{
+        config::AxisConfig,
+        control::{Pid, SumPid},
+    };
 
     const PI_ONLY: Pid =
         Pid { kp: 1.0, ki: 0.0, kd: 0.0, derivative_filter_s: 0.0, output_min: -1.0, output_max: 1.0 };
@@ -210,7 +214,7 @@ mod tests {
     #[test]
     fn an_integrator_with_a_ticks_delay_has_the_margins_of_the_book() {
         // L = k / (z (z - 1)), k = 1/2: real at 60 degrees, where it is -k; so k may double.
-        let margins = LoopMargins::of(&cut(500.0, 1e-3, PI_ONLY, 1e-3));
+        let margins = LoopMargins::from_loop(&cut(500.0, 1e-3, PI_ONLY, 1e-3));
         assert!(margins.stable);
         assert!((margins.gain_margin - 2.0).abs() < 1e-9, "{margins:?}");
         assert!((margins.swing_hz - 1000.0 / 6.0).abs() < 1e-6, "{margins:?}");
@@ -225,7 +229,7 @@ mod tests {
     fn simc_on_an_integrator_has_its_published_margins() {
         let theta = 0.1;
         let pid = Pid { kp: 5.0, ki: 5.0 / 0.8, ..PI_ONLY }; // 1 / (k' 2 theta), tau_I = 8 theta
-        let margins = LoopMargins::of(&cut(1.0, theta - 0.5e-5, pid, 1e-5));
+        let margins = LoopMargins::from_loop(&cut(1.0, theta - 0.5e-5, pid, 1e-5));
         assert!((margins.gain_margin - 2.96).abs() < 0.01, "{margins:?}");
         assert!((margins.phase_margin_deg - 46.9).abs() < 0.1, "{margins:?}");
         assert!((margins.max_sensitivity - 1.70).abs() < 0.01, "{margins:?}");
@@ -235,13 +239,13 @@ mod tests {
 
     #[test]
     fn a_loop_that_is_not_stable_says_what_gain_it_would_need() {
-        let margins = LoopMargins::of(&cut(4000.0, 1e-3, PI_ONLY, 1e-3));
+        let margins = LoopMargins::from_loop(&cut(4000.0, 1e-3, PI_ONLY, 1e-3));
         assert!(!margins.stable);
         assert!((margins.gain_margin - 0.25).abs() < 1e-9, "{margins:?}");
         assert!(margins.phase_margin_deg < 0.0 && margins.max_sensitivity == f64::INFINITY);
         assert_eq!(margins.delay_margin_s, 0.0);
         // a controller with the wrong sign
-        assert_eq!(LoopMargins::of(&cut(-10.0, 0.0, PI_ONLY, 1e-3)).gain_margin, 0.0);
+        assert_eq!(LoopMargins::from_loop(&cut(-10.0, 0.0, PI_ONLY, 1e-3)).gain_margin, 0.0);
     }
 
     /// Kp = 15 and Kd = 0 for x, 10 for y, in steps of 255 a count, with the gantry's motor.
@@ -251,7 +255,7 @@ mod tests {
             let gains = SumPid { kp: 15.0, ki: 1e-5, kd };
             let compensator = Compensator::SumPid { gains, full_output: 255.0 };
             let process = IntegratingProcess::of(&AxisConfig::default());
-            LoopMargins::of(&SampledLoop { process, compensator, tick_s: 1.0 / hz })
+            LoopMargins::from_loop(&SampledLoop { process, compensator, tick_s: 1.0 / hz })
         };
         let (x, y) = (published(0.0, 2500.0), published(10.0, 2500.0));
         assert!(x.stable && x.phase_margin_deg < 0.5 && x.gain_margin < 1.04, "{x:?}");

@@ -11,8 +11,8 @@
 //! | the motor's data (spec 1.8) | its transfer function | [`IntegratingProcess`] |
 //! | steps of the duty | [`StepExperiment`]: lag, dead time, gain and friction fitted to the counts | [`IdentifiedMotor`] |
 //! | a relay that swings the axis | [`RelayExperiment`] (Åström and Hägglund, 1984) | [`RelayPoint`] |
-//! | a process | [`Simc`]: lambda tuning to a stated sensitivity (Skogestad, 2003) | [`Pid`](crate::Pid) |
-//! | a relay's point | Åström and Hägglund to a stated phase margin; Tyreus and Luyben | [`Pid`](crate::Pid) |
+//! | a process | [`Simc`]: lambda tuning to a stated sensitivity (Skogestad, 2003) | [`Pid`](crate::control::Pid) |
+//! | a relay's point | Åström and Hägglund to a stated phase margin; Tyreus and Luyben | [`Pid`](crate::control::Pid) |
 //! | a process | [`ContouringBandwidth`]: the stiffest loop of a stated sensitivity | `bandwidth_hz`, `observer_hz` |
 //! | any loop, the published gains too | [`LoopMargins`] of a [`SampledLoop`] | gain, phase, delay margin, sensitivity |
 //!

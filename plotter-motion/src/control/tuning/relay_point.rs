@@ -2,7 +2,7 @@
 
 use super::sample_point::SamplePoint;
 use super::{Compensator, Complex, TuningError};
-use crate::Pid;
+use crate::control::Pid;
 use core::f64::consts::{PI, TAU};
 
 /// How a motor answers, counts to the duty, at the frequency at which a relay swings it.
@@ -174,7 +174,7 @@ fn pid(gain: f64, integral_s: f64, derivative_s: f64) -> Pid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::AxisConfig;
+    use crate::config::AxisConfig;
     use crate::control::tuning::{IntegratingProcess, LoopMargins, SampledLoop};
 
     #[test]
@@ -196,7 +196,7 @@ mod tests {
             };
             for asked in [30.0, 45.0] {
                 let compensator = Compensator::Pid(point.astrom_hagglund(asked).unwrap());
-                let margins = LoopMargins::of(&SampledLoop { process, compensator, tick_s });
+                let margins = LoopMargins::from_loop(&SampledLoop { process, compensator, tick_s });
                 assert!(
                     (margins.phase_margin_deg - asked).abs() < ROUNDING_DEG,
                     "{rad_s} {asked} {margins:?}"

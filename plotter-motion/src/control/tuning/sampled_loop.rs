@@ -41,7 +41,7 @@ impl SampledLoop {
     /// The response of the cut loop, L = compensator times process, at an angular frequency from above 0 to `pi / tick_s`.
     ///
     /// ```
-    /// # use plotter_motion::Pid;
+    /// # use plotter_motion::control::Pid;
     /// # use plotter_motion::control::tuning::{Compensator, IntegratingProcess, SampledLoop};
     /// let process = IntegratingProcess {
     ///     gain_counts_s: 1000.0, time_constant_s: 0.0, second_time_constant_s: 0.0, dead_time_s: 0.0,
@@ -153,7 +153,7 @@ fn wrapped(angle_rad: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Pid;
+    use crate::control::Pid;
 
     fn integrator(kp: f32, delay_ticks: f64) -> SampledLoop {
         SampledLoop {

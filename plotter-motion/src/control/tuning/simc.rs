@@ -1,7 +1,7 @@
 //! [`Simc`]: gains from a model, by lambda tuning.
 
 use super::{Compensator, IntegratingProcess, LoopMargins, SampledLoop, TuningError};
-use crate::Pid;
+use crate::control::Pid;
 
 /// Gains by lambda tuning (internal model control) in Skogestad's form: the lag is cancelled by the derivative, and what is
 /// left, an integrator with a delay, is led with the closed loop's time constant lambda.
@@ -97,7 +97,7 @@ impl Simc {
         let tuned = |lambda_s: f64| {
             let pid = Self::gains(process, tick_s, lambda_s);
             let compensator = Compensator::Pid(pid);
-            let margins = LoopMargins::of(&SampledLoop { process: *process, compensator, tick_s });
+            let margins = LoopMargins::from_loop(&SampledLoop { process: *process, compensator, tick_s });
             TunedPid { pid, lambda_s, margins }
         };
         let is_good = |tuned: &TunedPid| {
@@ -138,7 +138,7 @@ fn leap(pid: &Pid, tick_s: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::AxisConfig;
+    use crate::config::AxisConfig;
 
     #[test]
     fn the_quickest_loop_within_both_bounds_is_taken() {

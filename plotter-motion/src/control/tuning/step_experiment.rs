@@ -29,7 +29,7 @@ use crate::Demand;
 /// ```
 /// # use plotter_motion::control::tuning::{ExperimentSettings, StepExperiment};
 /// # use plotter_motion::plant::AxisPlant;
-/// # use plotter_motion::{Axis, AxisConfig, LimitSwitches, SafetyGate};
+/// # use plotter_motion::{Axis, LimitSwitches, SafetyGate, config::AxisConfig};
 /// let config = AxisConfig::default();
 /// let mut plant = AxisPlant::new(&config, 1e-4);
 /// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);

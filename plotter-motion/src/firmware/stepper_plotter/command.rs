@@ -2,7 +2,10 @@
 
 use super::{Activity, Setting};
 use crate::decimal_text::Plain;
-use crate::{Axis, Direction, Homed, HomingError, PlotOp, Point};
+use crate::{
+    Axis, Direction, PlotOp, Point,
+    homing::{Homed, HomingError},
+};
 use core::fmt;
 
 /// What the receive side asks of the motion side, one after the other: through the queue.
@@ -20,6 +23,8 @@ pub enum Command {
     },
     /// From here on this holds of the machine; it changes at a standstill. [`Report::Set`] follows.
     Set(Setting),
+    /// As [`Command::Set`], but all of it becomes what the machine was switched on with.
+    Restore,
     /// Waits until all before is done, then turns the pen's servo there, degrees. What follows waits until the pen has settled.
     Servo(u8),
     /// From here on these are the servo's degrees with the pen up and down.
@@ -118,7 +123,7 @@ pub enum Report {
         /// Where the pen is now, mm.
         at: Point,
     },
-    /// What came of [`Command::Set`].
+    /// What came of [`Command::Set`] or [`Command::Restore`].
     Set {
         /// Where the pen is now, mm.
         at: Point,

@@ -81,6 +81,7 @@ impl CommandQueue {
             Command::Jog { to, speed_mm_s } => self.put(14, [0; 2], &[to.x, to.y, speed_mm_s]),
             Command::Set(Setting { number, value }) => self.put(15, [number, 0], &[value]),
             Command::End => self.put(16, [0; 2], &[]),
+            Command::Restore => self.put(17, [0; 2], &[]),
         };
         if is_taken { Ok(()) } else { Err(command) }
     }
@@ -196,6 +197,7 @@ impl Packed {
             14 => Command::Jog { to, speed_mm_s: c },
             15 => Command::Set(Setting { number: low, value: a }),
             16 => Command::End,
+            17 => Command::Restore,
             _ => Command::Unlock,
         }
     }

@@ -1,7 +1,10 @@
 //! [`HomingRun`]: homing with the times of its steps.
 
 use super::StepperPlotterSettings;
-use crate::{Axis, Homed, HomingError, HomingProgress, HomingStatus, LimitSwitches, StepPair};
+use crate::{
+    LimitSwitches, StepPair,
+    homing::{Homed, HomingError, HomingProgress, HomingStatus},
+};
 use core::time::Duration;
 
 /// Homing in progress.
@@ -28,13 +31,8 @@ impl HomingRun {
             HomingStatus::Done(homed) => Err(Ok(homed)),
             HomingStatus::Failed(error) => Err(Err(error)),
             HomingStatus::Step(step) => {
-                let sign = if step.direction.sign() > 0 { 1 } else { -1 };
-                let pair = match step.axis {
-                    Axis::X => StepPair { x: sign, y: 0 },
-                    Axis::Y => StepPair { x: 0, y: sign },
-                };
                 let interval = Duration::from_secs(1) / step.rate_hz.max(1);
-                Ok((self.last.saturating_add(interval), pair))
+                Ok((self.last.saturating_add(interval), step.into()))
             }
         }
     }

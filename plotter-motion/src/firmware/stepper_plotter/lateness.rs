@@ -1,6 +1,6 @@
 //! [`Drivers`], [`Lateness`]: a main loop that is slower than the steps.
 
-use crate::MotorEvent;
+use crate::stepgen::MotorEvent;
 use core::time::Duration;
 
 /// Whether the drivers of both motors can take a step now: what a controller is told before it gives one.
@@ -18,7 +18,7 @@ pub enum Drivers {
 impl Drivers {
     /// Whether this waits for them.
     pub(super) fn keep_back(self, event: MotorEvent) -> bool {
-        self == Self::Busy && matches!(event, MotorEvent::Step { .. })
+        self == Self::Busy && matches!(event, MotorEvent::Step(_))
     }
 }
 

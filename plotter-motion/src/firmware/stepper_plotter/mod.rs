@@ -93,41 +93,54 @@
 //! answer. Blanks and comments take no room in a line of 80 characters. A machine at rest gathers lines for
 //! [`StepperPlotterSettings::gather`] before it starts.
 //!
-//! - The receive buffer has 128 bytes. As in Grbl 1.1h a line that has ended leaves it, also one that waits for room in the queue: all
-//!   of the buffer is there for what comes behind that. While a line waits for its answer below, nothing more is read.
-//! - What finds no room in the buffer is lost. Grbl loses single bytes, and draws what is left of a line if it still is one. Here whole lines
-//!   are lost, and each is answered by `error:11` in its turn; of lines in a row that are sent without waiting for any answer the first 127
-//!   are.
-//! - `G4` is answered when all before it and the pause are over, `M2` and `M30` when all before them is over, after `[MSG:Pgm End]`; a
-//!   program waits for the machine by `G4 P0`. What lies in the receive buffer by then starts at once. `M3` and `M5` are answered when
-//!   they lie in the queue; Grbl waits there, too.
-//! - `Bf` tells how many of 15 blocks are free, those in progress among the others, and how many bytes the receive buffer takes.
-//! - `?` is answered by `<Run|MPos:…|Bf:…|FS:…>` (`Pn` for pressed switches, `WCO` now and then), `!` brakes along the path and lifts the
-//!   pen where it stands, `~` lowers it again and goes on, ctrl-X stops at once; the place stays known, as it is counted by steps really
-//!   made.
-//! - Overrides act on the way, as soon as the phase in progress is over: feeds (`0x90` to `0x94`, 10 to 200 %), travels (`0x95` to
-//!   `0x97`: 100, 50, 25 %), the laser's power (`0x99` to `0x9D`). The machine's limits hold whatever they say. They are told as `Ov`
-//!   when they have changed, and now and then; a reset ends them. A
-//!   controller with [`ExactOnly`](crate::ExactOnly) overrides the laser only, and tells so.
-//! - `$J=` moves by hand at its own `F`, from rest or after another jog, while G-code is locked out (`error:9`); `0x85` or `!` brakes
-//!   along the path and forgets the jogs that wait, and the place stays known.
-//! - `$$ $# $I $G $N $X $H` are answered. In the check mode (`$C`) lines are answered as if they were carried out; asleep (`$SLP`), with
-//!   the pen lifted, the machine takes nothing until a reset; `$RST=#` forgets the places that `G10`, `G28.1` and `G30.1` have set.
-//! - With `$22=1` a machine that is switched on is locked until `$H` or `$X`; without it `$H` is `error:5`. `$n=value` changes what [`Setting`] lists, at rest: out of range it is `error:52`
-//!   (grblHAL's), beyond 100,000 steps/s `error:12`, for what cannot be changed `error:3`, unless it says what is so already. What is to be
-//!   kept is [`StepperPlotter::settings`].
-//! - Errors and alarms have Grbl's numbers. A target outside the area is `ALARM:2` and `error:33`: what was accepted is drawn to its
-//!   end, and then the pen goes up. A limit switch is `ALARM:1`, the emergency stop `ALARM:10` (grblHAL's, Grbl has none). In an alarm
-//!   lines get `error:9` until `$X` or `$H`.
-//! - `M0` waits for `~`, with the pen lifted as by `!`; `M1` is no stop. Pens are lifted by `M5` and lowered by `M3`, or as [`StepperPlotterSettings::pen`]
-//!   says; `M2` and `M30` lift them too. `M5` acts when its line comes, `M3` with the line or the dot that follows. A `G4` leaves the pen
-//!   as it is. With the pen up the machine travels at its own speed, whatever `F` says.
-//! - `G54` to `G59` have an origin each, set by `G10`, and `G28` and `G30` a place, set by `G28.1` and `G30.1`; a reset keeps them,
-//!   switching off does not. By `G93` the `F` of a line is one of its time.
-//! - Words that Grbl does not know are errors ([`Words::Grbl`](crate::gcode::Words::Grbl)), unless the pen is lifted by those of another
-//!   firmware.
-//! - Arcs in other planes, probes, `G43.1`, start-up lines and the safety door are not there; a line that needs one is `error:20` or
-//!   `error:3`.
+//! - The receive buffer has 128 bytes. As in Grbl 1.1h a line that has ended leaves it, also one that waits
+//!   for room in the queue: all of the buffer is there for what comes behind that. While a line waits for its
+//!   answer below, nothing more is read.
+//! - What finds no room in the buffer is lost. Grbl loses single bytes, and draws what is left of a line if
+//!   it still is one. Here whole lines are lost, and each is answered by `error:11` in its turn; of lines in
+//!   a row that are sent without waiting for any answer the first 127 are.
+//! - `G4` is answered when all before it and the pause are over, `M2` and `M30` when all before them is over,
+//!   after `[MSG:Pgm End]`; a program waits for the machine by `G4 P0`. What lies in the receive buffer by
+//!   then starts at once. `M3` and `M5` are answered when they lie in the queue; Grbl waits there, too.
+//! - `Bf` tells how many of 15 blocks are free, those in progress among the others, and how many bytes the
+//!   receive buffer takes.
+//! - `?` is answered by `<Run|MPos:…|Bf:…|FS:…>` (`Pn` for pressed switches, `WCO` now and then), `!` brakes
+//!   along the path and lifts the pen where it stands, `~` lowers it again and goes on, ctrl-X stops at once;
+//!   the place stays known, as it is counted by steps really made.
+//! - Overrides act on the way, as soon as the phase in progress is over: feeds (`0x90` to `0x94`, 10 to 200
+//!   %), travels (`0x95` to `0x97`: 100, 50, 25 %), the laser's power (`0x99` to `0x9D`). The machine's
+//!   limits hold whatever they say. They are told as `Ov` when they have changed, and now and then; a reset
+//!   ends them. A controller with [`ExactOnly`](crate::planner::ExactOnly) overrides the laser only, and tells so.
+//! - `$J=` moves by hand at its own `F`, from rest or after another jog, while G-code is locked out
+//!   (`error:9`); `0x85` or `!` brakes along the path and forgets the jogs that wait, and the place stays
+//!   known.
+//! - `$$ $# $I $G $N $X $H` are answered. In the check mode (`$C`) lines are answered as if they were carried
+//!   out; asleep (`$SLP`), with the pen lifted, the machine takes nothing until a reset; `$RST=#` forgets the
+//!   places that `G10`, `G28.1` and `G30.1` have set, `$RST=$` sets back what `$n=` has changed, `$RST=*`
+//!   does both and forgets the start-up lines.
+//! - `$N0=` and `$N1=` keep a line each ([`StepperPlotter::startup_lines`]), which is carried out at once,
+//!   and from then on whenever the machine has been switched on, reset or homed: `>G55:ok`. In an alarm it is
+//!   only looked at.
+//! - An arc in the plane of `G18` or `G19` is looked at as Grbl does, and is drawn as what it is seen from
+//!   above, a line to its end. `G43.1` adds to a height, until `G49`.
+//! - With `$22=1` a machine that is switched on is locked until `$H` or `$X`; without it `$H` is `error:5`.
+//!   `$n=value` changes what [`Setting`] lists, at rest: out of range it is `error:52` (grblHAL's), beyond
+//!   100,000 steps/s `error:12`, for what cannot be changed `error:3`, unless it says what is so already.
+//!   What is to be kept is [`StepperPlotter::settings`].
+//! - Errors and alarms have Grbl's numbers. A target outside the area is `ALARM:2` and `error:33`: what was
+//!   accepted is drawn to its end, and then the pen goes up. A limit switch is `ALARM:1`, the emergency stop
+//!   `ALARM:10` (grblHAL's, Grbl has none). In an alarm lines get `error:9` until `$X` or `$H`.
+//! - `M0` waits for `~`, with the pen lifted as by `!`; `M1` is no stop. Pens are lifted by `M5` and lowered
+//!   by `M3`, or as [`StepperPlotterSettings::pen`] says; `M2` and `M30` lift them too. `M5` acts when its
+//!   line comes, `M3` with the line or the dot that follows. A `G4` leaves the pen as it is. With the pen up
+//!   the machine travels at its own speed, whatever `F` says.
+//! - `G54` to `G59` have an origin each, set by `G10`, and `G28` and `G30` a place, set by `G28.1` and
+//!   `G30.1`; a reset keeps them, switching off does not. By `G93` the `F` of a line is one of its time.
+//! - Words that Grbl does not know are errors ([`Words::Grbl`](crate::gcode::Words::Grbl)), unless the pen is
+//!   lifted by those of another firmware.
+//! - Probes and the safety door are not there; a line that needs one is `error:20` or `error:3`.
+//!   [`SpindlePen`] leaves out start-up lines, `$RST=$`, `$RST=*`, other planes and lengths as well,
+//!   [`ExactOnly`](crate::planner::ExactOnly) `$RST=$` and `$RST=*`.
 //!
 //! # Late steps
 //!
@@ -172,6 +185,7 @@ mod queue;
 mod receive;
 mod setting;
 mod settings;
+mod startup_lines;
 mod status;
 
 pub use command::{Command, Report, Signal, Stop};
@@ -186,4 +200,5 @@ pub use queue::Queue;
 pub use receive::{Host, Receive};
 pub use setting::{Setting, SettingProblem};
 pub use settings::{CheckedSettings, Dialect, SettingsError, StepperPlotterSettings, StoredSettings};
+pub use startup_lines::StartupLines;
 pub use status::{Activity, Percents, Status};

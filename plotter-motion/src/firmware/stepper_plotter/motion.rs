@@ -1,6 +1,7 @@
 //! [`Motion`]: the task that moves: commands in, steps out, each at its time.
 
 mod by_hand;
+mod work;
 
 use super::homing_run::HomingRun;
 use super::play::{CLOCK_HZ, Play};
@@ -13,8 +14,10 @@ use crate::kinematics::{Cartesian, Kinematics};
 use crate::planner::{AllModes, Keep as _, Modes};
 use crate::seconds::has_come;
 use crate::{
-    Action, Axis, Beam, Blocked, Direction, LimitSwitches, MotorEvent, Pen, Phase, Planner, PlotOp, Point,
-    Pulse, SafetyGate, StepGen, StepGenSettings, StepPair, StepPoint, TimedEvent,
+    Axis, Direction, LimitSwitches, Pen, Planner, PlotOp, Point, SafetyGate, StepGen, StepPoint,
+    planner::Phase,
+    safety::{Beam, Pulse},
+    stepgen::{StepGenSettings, TimedEvent},
 };
 use core::time::Duration;
 
@@ -48,6 +51,8 @@ pub struct Motion<M: Modes = AllModes> {
     planner: Planner<BLOCKS, M>,
     steps: StepGen<Cartesian, M>,
     play: M::Kept<Play>,
+    /// What it was switched on with.
+    built: M::Kept<StepperPlotterSettings>,
     gate: SafetyGate,
     state: State,
     /// Steps really made.
@@ -99,12 +104,12 @@ impl<M: Modes> Motion<M> {
     ///
     /// [`SettingsError`] for limits that no motion can be planned with, and for a mode that is not among them.
     pub fn with_modes(settings: StepperPlotterSettings, gate: SafetyGate) -> Result<Self, SettingsError> {
-        Ok(Self::of(&settings.checked()?, gate))
+        Ok(Self::from_checked(&settings.checked()?, gate))
     }
 
     /// The same, with settings that have been looked at.
     #[must_use]
-    pub fn of(checked: &CheckedSettings<M>, gate: SafetyGate) -> Self {
+    pub fn from_checked(checked: &CheckedSettings<M>, gate: SafetyGate) -> Self {
         let settings = checked.settings();
         let mut planner = Planner::of_checked(&checked.limits);
         darken(&mut planner);
@@ -113,11 +118,16 @@ impl<M: Modes> Motion<M> {
         if let Some(play) = play.get_mut() {
             *play = Play::new(settings);
         }
+        let mut built = M::Kept::<StepperPlotterSettings>::default();
+        if let Some(built) = built.get_mut() {
+            *built = *settings;
+        }
         Self {
             settings: *settings,
             planner,
             steps,
             play,
+            built,
             gate,
             state: State::Ready,
             position: StepPoint::default(),
@@ -166,7 +176,7 @@ impl<M: Modes> Motion<M> {
                         self.gate.reset();
                         self.make_ready();
                     }
-                    Some(command @ Command::Set(_)) => self.stand(command, now, link),
+                    Some(command @ (Command::Set(_) | Command::Restore)) => self.stand(command, now, link),
                     Some(command) => self.leave_out(command),
                 },
                 State::Homing(_) => {
@@ -352,6 +362,7 @@ impl<M: Modes> Motion<M> {
             limits: self.gate.limits(),
             emergency_stop: self.gate.is_latched(),
             emergency_button: self.gate.is_button_pressed(),
+            restores: M::ALL,
         }
     }
 
@@ -390,54 +401,6 @@ impl<M: Modes> Motion<M> {
         self.planner.hold();
     }
 
-    /// Carries out what is due.
-    fn give(&mut self, event: MotorEvent, link: &mut Link) -> Option<Pulse<'static>> {
-        match event {
-            MotorEvent::Step { x, y } => return self.pass(StepPair { x, y }, link),
-            // A gate that was stopped when the machine was made is noticed by what moves first.
-            MotorEvent::Pen(_) if self.gate.is_stopped() => self.stop(Stop::Emergency, link),
-            MotorEvent::Pen(pen) => {
-                if self.settings.dialect == Dialect::Grbl {
-                    self.put_pen(pen);
-                }
-            }
-            MotorEvent::Laser(power) => {
-                self.laser = power;
-                self.shine();
-            }
-            // A person does that, and says when it is done.
-            MotorEvent::SelectPen(_) | MotorEvent::NewPage => self.hold(),
-        }
-        None
-    }
-
-    /// The one way of a step to the motors.
-    fn pass(&mut self, step: StepPair, link: &mut Link) -> Option<Pulse<'static>> {
-        match self.gate.pass_step(step).map(Pulse::kept) {
-            Ok(pulse) => {
-                self.position.x = self.position.x.saturating_add(pulse.x().into());
-                self.position.y = self.position.y.saturating_add(pulse.y().into());
-                if let Some(play) = self.play.get_mut() {
-                    play.made(pulse);
-                }
-                Some(pulse)
-            }
-            Err(Blocked::Stopped) => {
-                self.stop(Stop::Emergency, link);
-                None
-            }
-            Err(Blocked::Limit { axis, end }) => {
-                self.stop(Stop::Limit { axis, end }, link);
-                None
-            }
-        }
-    }
-
-    fn put_pen(&mut self, pen: Pen) {
-        let StoredSettings { pen_up_deg, pen_down_deg, .. } = self.settings.stored;
-        self.pen_deg = if pen == Pen::Up { pen_up_deg } else { pen_down_deg };
-    }
-
     /// Everything ceases, and the machine stands where it has been stepped to.
     fn halt(&mut self, link: &mut Link) {
         let at = self.position_mm();
@@ -465,6 +428,7 @@ impl<M: Modes> Motion<M> {
                 self.settings.stored.pen_down_deg = down_deg;
             }
             Command::Set(setting) => self.set(setting),
+            Command::Restore => self.restore(),
             _ => {}
         }
     }
@@ -480,218 +444,6 @@ impl<M: Modes> Motion<M> {
         self.state = State::Stopped;
         // A full queue has a stop in it already.
         let _ = link.reports.push(Report::Stopped { at: self.position_mm(), why });
-    }
-
-    /// Gets the next event, or does what is to be done at rest; says whether there may be more.
-    #[cfg_attr(target_os = "none", inline(never))]
-    fn go_on(&mut self, now: Duration, link: &mut Link) -> bool {
-        if let Some(event) = self.next_event() {
-            self.next = Some(event);
-            return true;
-        }
-        self.fill(now, link);
-        if self.at_rest
-            && let Some(start_at) = self.start_at.filter(|&at| !has_come(at, now))
-            && self.planner.has_room()
-            && link.commands.is_empty()
-        {
-            self.due = Some(start_at);
-            return false;
-        }
-        if let Some(action) = self.planner.next_action() {
-            self.start_at = None;
-            if core::mem::take(&mut self.at_rest) {
-                self.begin(now);
-            }
-            if let Action::Phase(phase) = action {
-                self.phase = Some((self.time_of(self.steps.tick()), phase));
-            }
-            let pushed = self.steps.push(action);
-            debug_assert!(pushed.is_ok(), "all events have been taken");
-            return true;
-        }
-        if !self.unfinished || self.held || self.cancelling {
-            // The carriage too comes to where it should be.
-            if let Some(event) = self.play.get_mut().and_then(Play::rest) {
-                self.next = Some(event);
-                return true;
-            }
-        }
-        if self.held {
-            self.at_rest = true;
-            // A pen that stands on the sheet leaves a blot.
-            self.steps.lift();
-            if self.settings.dialect == Dialect::Grbl {
-                self.put_pen(Pen::Up);
-            }
-            return false;
-        }
-        if self.unfinished && !self.cancelling && self.planner.rest().is_ok() {
-            self.unfinished = false;
-            return true;
-        }
-        (self.at_rest, self.start_at) = (true, None);
-        // The last phase may last beyond its last step, and a pause has no step.
-        let end = self.time_of(self.steps.tick());
-        if !has_come(end, now) {
-            self.due = Some(end);
-            return false;
-        }
-        self.phase = None;
-        if self.cancelling {
-            self.jogged(link);
-            return true;
-        }
-        if core::mem::take(&mut self.jogs) {
-            return true;
-        }
-        match link.commands.pop() {
-            // What was sent before the stop was heard of.
-            Some(Command::Servo(_) | Command::Home) if self.gate.is_stopped() => {
-                self.stop(Stop::Emergency, link);
-            }
-            Some(command) => self.stand(command, now, link),
-            None => return false,
-        }
-        true
-    }
-
-    /// The next event of what has been planned, and of the play on its way.
-    fn next_event(&mut self) -> Option<TimedEvent> {
-        loop {
-            if let Some(event) = self.play.get_mut().and_then(Play::next_event) {
-                return Some(event);
-            }
-            let event = self.steps.next_event()?;
-            match self.play.get_mut() {
-                Some(play) => {
-                    if let Some(event) = play.push(event) {
-                        return Some(event);
-                    }
-                }
-                None => return Some(event),
-            }
-        }
-    }
-
-    /// Plans what the queue has and the planner takes.
-    fn fill(&mut self, now: Duration, link: &mut Link) {
-        while self.planner.has_room()
-            && !self.cancelling
-            && let Some(Command::Jog { to, speed_mm_s }) = link.commands.first()
-            && (self.jogs || (!self.unfinished && self.planner.is_empty()))
-        {
-            link.commands.pop();
-            let planned = self.planner.push_jog(to, speed_mm_s);
-            debug_assert!(planned.is_ok(), "the receive side has looked at it: {planned:?}");
-            self.taken(now);
-            self.jogs = true;
-        }
-        while self.planner.has_room()
-            && !self.jogs
-            && let Some(Command::Plot(op)) = link.commands.first()
-        {
-            link.commands.pop();
-            if op == (PlotOp::LaserPower { share: 0.0 }) {
-                self.dark = false;
-            }
-            let planned = self.planner.push(op);
-            debug_assert!(planned.is_ok(), "the receive side has looked at {op:?}: {planned:?}");
-            self.taken(now);
-        }
-        // What comes next waits for a standstill: nothing more is planned together with this.
-        let jogs = self.jogs;
-        let waits = |next| match next {
-            Command::Plot(_) => jogs,
-            Command::Jog { .. } => !jogs,
-            _ => true,
-        };
-        if self.unfinished && !self.cancelling && link.commands.first().is_some_and(waits) {
-            self.unfinished = self.planner.rest().is_err();
-        }
-    }
-
-    /// Something has been planned.
-    fn taken(&mut self, now: Duration) {
-        self.unfinished = true;
-        if self.at_rest && self.start_at.is_none() {
-            // Lines that have been waiting are gathered already.
-            let gather = if self.told_at == Some(now) { Duration::ZERO } else { self.settings.gather };
-            self.start_at = now.checked_add(gather);
-        }
-    }
-
-    /// Carries out what waits for a standstill, at a standstill.
-    fn stand(&mut self, command: Command, now: Duration, link: &mut Link) {
-        match command {
-            Command::Plot(_) | Command::Jog { .. } => debug_assert!(false, "an empty planner has room"),
-            Command::Set(setting) => {
-                self.set(setting);
-                let _ = link.reports.push(Report::Set { at: self.position_mm() });
-            }
-            Command::Servo(deg) => {
-                if deg != self.pen_deg {
-                    self.pen_deg = deg;
-                    self.wait(now, self.settings.pen_settle);
-                }
-            }
-            Command::PenAngles { .. } => self.leave_out(command),
-            Command::Home => {
-                let up_deg = self.settings.stored.pen_up_deg;
-                let settle = if core::mem::replace(&mut self.pen_deg, up_deg) == up_deg {
-                    Duration::ZERO
-                } else {
-                    self.settings.pen_settle
-                };
-                let run = HomingRun::new(now.saturating_add(settle));
-                self.state = State::Homing(run);
-            }
-            Command::Pause => self.hold(),
-            Command::Finish | Command::End => {
-                if command == Command::End {
-                    self.end_overrides();
-                }
-                self.told_at = Some(now);
-                let _ = link.reports.push(Report::Done);
-            }
-            Command::GoOn => {}
-            Command::Unlock => {
-                self.gate.reset();
-            }
-        }
-    }
-
-    fn wait(&mut self, now: Duration, duration: Duration) {
-        self.begin(now);
-        let pushed = self.steps.push(Action::Dwell(duration));
-        debug_assert!(pushed.is_ok(), "all events have been taken");
-    }
-
-    /// One turn of homing.
-    fn home(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step<'static>> {
-        let State::Homing(run) = &mut self.state else { return None };
-        let result = match run.next(&self.settings, self.gate.limits()) {
-            Ok((at, _)) if !has_come(at, now) || drivers == Drivers::Busy => {
-                self.due = Some(at);
-                return None;
-            }
-            Ok((at, step)) => {
-                let is_late = self.lateness.given(at, now, &mut self.base);
-                run.made(if is_late { now } else { at });
-                return self.pass(step, link).map(|pulse| Step { at, pulse });
-            }
-            Err(result) => result,
-        };
-        if result.is_ok() {
-            self.position = StepPoint::default();
-            if let Some(play) = self.play.get_mut() {
-                play.homed();
-            }
-        }
-        self.halt(link);
-        self.state = State::Ready;
-        let _ = link.reports.push(Report::Homed { at: self.position_mm(), result });
-        None
     }
 }
 
@@ -716,57 +468,4 @@ fn darken<M: Modes>(planner: &mut Planner<BLOCKS, M>) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const STEP: StepPair = StepPair { x: 1, y: 1 };
-    const TRAVEL: PlotOp = PlotOp::Travel { to: Point::new(1.0, 0.0) };
-
-    fn motion(gate: SafetyGate) -> Motion {
-        let settings = StepperPlotterSettings { dialect: Dialect::Grbl, ..StepperPlotterSettings::default() };
-        let Ok(motion) = Motion::new(settings, gate) else { panic!("the default can be planned with") };
-        motion
-    }
-
-    /// How many steps come of a command.
-    fn steps_of(motion: &mut Motion, link: &mut Link, command: Command) -> usize {
-        assert_eq!(link.commands.push(command), Ok(()));
-        let mut steps = 0;
-        for ms in 0..2_000 {
-            while motion.poll(Duration::from_millis(ms), Drivers::Ready, link).is_some() {
-                steps += 1;
-            }
-        }
-        steps
-    }
-
-    #[test]
-    fn the_gate_refuses_what_is_demanded_between_the_hosts_reset_and_its_going_on() {
-        let mut link = Link::default();
-        let mut motion = motion(SafetyGate::new(LimitSwitches::RELEASED, false));
-        assert!(motion.gate.pass_step(STEP).is_ok());
-        motion.signal(Duration::ZERO, Signal::Reset, &mut link);
-        assert_eq!(motion.gate.pass_step(STEP), Err(Blocked::Stopped));
-        assert_eq!(motion.gate.pass_laser(u16::MAX), Beam::OFF);
-        // It is no emergency, for which a person must come to the machine.
-        assert!(!motion.status(Duration::ZERO).emergency_stop);
-        assert_eq!(steps_of(&mut motion, &mut link, Command::Plot(TRAVEL)), 0);
-        assert_eq!(motion.gate.pass_step(STEP), Err(Blocked::Stopped));
-        assert_eq!(steps_of(&mut motion, &mut link, Command::GoOn), 0);
-        assert!(motion.gate.pass_step(STEP).is_ok());
-        assert!(steps_of(&mut motion, &mut link, Command::Plot(TRAVEL)) > 0);
-    }
-
-    #[test]
-    fn a_button_that_was_pressed_before_the_start_lets_nothing_move() {
-        for op in [TRAVEL, PlotOp::Draw { to: Point::ORIGIN, feed_mm_s: None }] {
-            let mut link = Link::default();
-            let mut motion = motion(SafetyGate::new(LimitSwitches::RELEASED, true));
-            let pen_deg = motion.pen_deg();
-            assert_eq!(steps_of(&mut motion, &mut link, Command::Plot(op)), 0);
-            assert_eq!(motion.pen_deg(), pen_deg, "{op:?}");
-            let reported = link.reports.pop();
-            assert!(matches!(reported, Some(Report::Stopped { why: Stop::Emergency, .. })), "{reported:?}");
-        }
-    }
-}
+mod tests;

@@ -2,7 +2,11 @@
 
 use super::StepperPlotterSettings;
 use crate::kinematics::Backlash;
-use crate::{BacklashSteps, Pulse, StepPoint, TimedEvent};
+use crate::{
+    StepPoint,
+    safety::Pulse,
+    stepgen::{BacklashSteps, TimedEvent},
+};
 
 /// Ticks of the step generator in a second.
 pub(super) const CLOCK_HZ: u32 = 1_000_000;

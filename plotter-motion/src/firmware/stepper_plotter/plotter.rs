@@ -1,11 +1,11 @@
 //! [`StepperPlotter`]: both sides in one.
 
 use super::{
-    CheckedSettings, Drivers, Host, Lateness, Link, Motion, Receive, SettingsError, Status, Step,
-    StepperPlotterSettings, StoredSettings,
+    CheckedSettings, Drivers, Host, Lateness, Link, Motion, Receive, SettingsError, StartupLines, Status,
+    Step, StepperPlotterSettings, StoredSettings,
 };
 use crate::planner::{AllModes, Modes};
-use crate::{Axis, Beam, Direction, Point, SafetyGate, StepPoint};
+use crate::{Axis, Direction, Point, SafetyGate, StepPoint, safety::Beam};
 use core::time::Duration;
 
 /// The whole controller of a stepper plotter, sans-IO: the receive side and the motion side joined by their queues.
@@ -18,7 +18,7 @@ use core::time::Duration;
 /// For a small processor it is built for one language and fewer ways of planning:
 ///
 /// ```
-/// # use plotter_motion::{ExactOnly, LimitSwitches, SafetyGate};
+/// # use plotter_motion::{LimitSwitches, SafetyGate, planner::ExactOnly};
 /// # use plotter_motion::firmware::StepperPlotter;
 /// # use plotter_motion::firmware::stepper_plotter::{Dialect, Grbl, SettingsError, StepperPlotterSettings};
 /// let settings = StepperPlotterSettings { dialect: Dialect::Grbl, ..StepperPlotterSettings::default() };
@@ -55,7 +55,7 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     ///
     /// [`SettingsError`] for a language or a mode that is not among them, and as [`StepperPlotter::new`].
     pub fn with_modes(settings: StepperPlotterSettings, gate: SafetyGate) -> Result<Self, SettingsError> {
-        Self::of(&settings.checked()?, gate)
+        Self::from_checked(&settings.checked()?, gate)
     }
 
     /// The same, with settings that have been looked at.
@@ -63,10 +63,11 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     /// # Errors
     ///
     /// [`SettingsError`] for a language that is not among them.
-    pub fn of(checked: &CheckedSettings<M>, gate: SafetyGate) -> Result<Self, SettingsError> {
+    pub fn from_checked(checked: &CheckedSettings<M>, gate: SafetyGate) -> Result<Self, SettingsError> {
         H::check(checked.settings())?;
         let receive = H::new(*checked.settings());
-        let mut plotter = Self { receive, motion: Motion::of(checked, gate), link: Link::default() };
+        let mut plotter =
+            Self { receive, motion: Motion::from_checked(checked, gate), link: Link::default() };
         plotter.motion.begin_stopped(&mut plotter.link);
         Ok(plotter)
     }
@@ -152,6 +153,19 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
     #[must_use]
     pub fn stored(&self) -> StoredSettings {
         self.receive.stored()
+    }
+
+    /// The lines that Grbl's host has had kept for the start, to be kept by the firmware.
+    #[must_use]
+    pub fn startup_lines(&self) -> StartupLines {
+        self.receive.startup_lines()
+    }
+
+    /// Takes the lines that a firmware has kept: right after the controller is made, before anything else.
+    /// They are carried out as soon as the host has been greeted, or once the machine has been homed if it
+    /// begins locked.
+    pub fn set_startup_lines(&mut self, lines: &StartupLines) {
+        self.receive.set_startup_lines(lines);
     }
 
     /// The settings as they hold now, also those that the host has changed in Grbl's dialect: to be kept by the firmware, for the next

@@ -2,7 +2,9 @@
 
 use super::grbl::{Grbl, Pens};
 use super::mdraw::MDraw;
-use super::{Dialect, Link, SettingsError, Signal, Status, StepperPlotterSettings, StoredSettings};
+use super::{
+    Dialect, Link, SettingsError, Signal, StartupLines, Status, StepperPlotterSettings, StoredSettings,
+};
 use crate::Point;
 
 /// A receive side: bytes from the host in, commands for the motion side out, and answers.
@@ -33,6 +35,14 @@ pub trait Host: Clone + core::fmt::Debug + PartialEq + Sized {
 
     /// Begins anew with what has been stored, the pen at `at`.
     fn restart(&mut self, at: Point);
+
+    /// The lines that it carries out at its start, to be kept: none, if it knows no such lines.
+    fn startup_lines(&self) -> StartupLines {
+        StartupLines::default()
+    }
+
+    /// Takes those that have been kept, before it does anything else.
+    fn set_startup_lines(&mut self, _: &StartupLines) {}
 }
 
 /// The receive side for either dialect, as the settings say. See [`Host`] for what it does.
@@ -42,6 +52,10 @@ pub struct Receive {
 }
 
 #[derive(Clone, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one of it, for as long as the machine runs, and no heap"
+)]
 enum Either {
     MDraw(MDraw),
     Grbl(Grbl),
@@ -93,6 +107,17 @@ impl Receive {
     pub fn restart(&mut self, at: Point) {
         either!(&mut self.host, restart(at));
     }
+
+    /// See [`Host::startup_lines`].
+    #[must_use]
+    pub fn startup_lines(&self) -> StartupLines {
+        either!(&self.host, startup_lines())
+    }
+
+    /// See [`Host::set_startup_lines`].
+    pub fn set_startup_lines(&mut self, lines: &StartupLines) {
+        either!(&mut self.host, set_startup_lines(lines));
+    }
 }
 
 /// All of them call the type's own, which are there without the trait.
@@ -129,6 +154,14 @@ macro_rules! host {
 
             fn restart(&mut self, at: Point) {
                 self.restart(at);
+            }
+
+            fn startup_lines(&self) -> StartupLines {
+                self.startup_lines()
+            }
+
+            fn set_startup_lines(&mut self, lines: &StartupLines) {
+                self.set_startup_lines(lines);
             }
         }
     };

@@ -23,9 +23,9 @@ const SIDES_MM: RangeInclusive<f64> = 1.0..=65_535.0;
 /// | 100, 101 | steps/mm of x and y | 0.01 to 10,000 |
 /// | 110, 111 | greatest speed along the path, mm/min: one for both axes | 0.1 to 600,000; up to 100,000 pulses/s |
 /// | 120, 121 | greatest acceleration, mm/s²: that of each axis with
-/// [`AccelLimit::Axes`](crate::AccelLimit::Axes), of each motor with
-/// [`AccelLimit::Belts`](crate::AccelLimit::Belts) (of the sum, of the difference), else of the pen: one for
-/// both | 1 to 1,000,000 |
+/// [`AccelLimit::Axes`](crate::planner::AccelLimit::Axes), of each motor with
+/// [`AccelLimit::Belts`](crate::planner::AccelLimit::Belts) (of the sum, of the difference), else of the pen:
+/// one for both | 1 to 1,000,000 |
 /// | 130, 131 | width and height of the area, whole mm | 1 to 65,535 |
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {

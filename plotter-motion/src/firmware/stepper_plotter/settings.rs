@@ -3,7 +3,10 @@
 use crate::gcode::PenConvention;
 use crate::kinematics::{Backlash, Cartesian, MotorScale, ScaleError};
 use crate::planner::{AllModes, Modes};
-use crate::{Axis, HomingAxis, Machine, PathMode, PenLift, PlanError, PlannerSettings, StepGenSettings};
+use crate::{
+    Axis, Machine, PathMode, PlannerSettings, config::PenLift, homing::HomingAxis, planner::PlanError,
+    stepgen::StepGenSettings,
+};
 use core::fmt;
 use core::marker::PhantomData;
 use core::time::Duration;
@@ -13,6 +16,7 @@ pub(super) const FULL_POWER: u16 = 1000;
 
 /// Which language the host speaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Dialect {
     /// That of Makeblock's mDraw: one line at a time, each answered by `OK` when it is done.
     #[default]
@@ -25,6 +29,7 @@ pub enum Dialect {
 ///
 /// The default is what mDraw's firmware begins with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct StoredSettings {
     /// Width of the area, mm.
     pub width_mm: u16,
@@ -75,6 +80,7 @@ impl StoredSettings {
 /// The default is the documented machine: 87.58 steps/mm, up to 8000 pulses/s (91.3 mm/s), reached within 1375 steps
 /// (21,818 pulses/s², 249 mm/s²), 200 ms for the pen.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StepperPlotterSettings {
     /// The host's language.
     pub dialect: Dialect,
@@ -95,7 +101,7 @@ pub struct StepperPlotterSettings {
     /// How long a machine at rest waits for more lines before it starts, so that it knows more than the first: it would stop at its
     /// end otherwise.
     pub gather: Duration,
-    /// Play of both axes, in steps of their motors. It takes [`AllModes`](crate::AllModes).
+    /// Play of both axes, in steps of their motors. It takes [`AllModes`](crate::planner::AllModes).
     pub backlash: Backlash,
     /// Grbl's `$22`: `$H` homes, and a machine that is switched on takes no G-code until it has been homed or unlocked by `$X`. mDraw's
     /// `G28` homes in any case.
@@ -105,6 +111,26 @@ pub struct StepperPlotterSettings {
     /// How y is homed.
     pub home_y: HomingAxis,
 }
+
+#[cfg(feature = "serde")]
+crate::checked_serde::checked_deserialize!(
+    StepperPlotterSettings {
+        dialect: Dialect,
+        stored: StoredSettings,
+        x_steps_per_mm: f64,
+        y_steps_per_mm: f64,
+        planner: PlannerSettings,
+        pen_settle: Duration,
+        laser: bool,
+        pen: PenConvention,
+        gather: Duration,
+        backlash: Backlash,
+        homing: bool,
+        home_x: HomingAxis,
+        home_y: HomingAxis,
+    },
+    |settings: &StepperPlotterSettings| settings.checked::<AllModes>().map(|_| ())
+);
 
 impl Default for StepperPlotterSettings {
     fn default() -> Self {
@@ -141,11 +167,11 @@ impl StepperPlotterSettings {
     /// compiler, and needs no memory for it.
     ///
     /// ```
-    /// # use plotter_motion::{ExactOnly, LimitSwitches, SafetyGate};
+    /// # use plotter_motion::{LimitSwitches, SafetyGate, planner::ExactOnly};
     /// # use plotter_motion::firmware::stepper_plotter::{Motion, SettingsError, StepperPlotterSettings};
     /// let checked = StepperPlotterSettings::default().checked::<ExactOnly>()?;
     /// let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
-    /// assert_eq!(Motion::of(&checked, gate).settings().x_steps_per_mm, 87.58);
+    /// assert_eq!(Motion::from_checked(&checked, gate).settings().x_steps_per_mm, 87.58);
     /// let wrong = StepperPlotterSettings { x_steps_per_mm: 0.0, ..StepperPlotterSettings::default() };
     /// assert!(wrong.checked::<ExactOnly>().is_err());
     /// # Ok::<(), SettingsError>(())
@@ -217,8 +243,9 @@ impl StepperPlotterSettings {
         }
     }
 
-    /// Whether [`ExactOnly`](crate::ExactOnly) is enough for them: the path is exact, the jerk has no limit, and there is no play. Such a
-    /// controller takes every vertex as it is, whatever [`PlannerSettings::allowance_mm`] says.
+    /// Whether [`ExactOnly`](crate::planner::ExactOnly) is enough for them: the path is exact, the jerk has
+    /// no limit, and there is no play. Such a controller takes every vertex as it is, whatever
+    /// [`PlannerSettings::allowance_mm`] says.
     ///
     /// ```
     /// # use plotter_motion::firmware::stepper_plotter::StepperPlotterSettings;
@@ -305,4 +332,12 @@ impl fmt::Display for SettingsError {
     }
 }
 
-impl core::error::Error for SettingsError {}
+impl core::error::Error for SettingsError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Scale(error) => Some(error),
+            Self::Planner(error) => Some(error),
+            _ => None,
+        }
+    }
+}

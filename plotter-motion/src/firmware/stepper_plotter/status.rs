@@ -61,4 +61,7 @@ pub struct Status {
     pub emergency_stop: bool,
     /// Whether its button is pressed.
     pub emergency_button: bool,
+    /// Whether [`Command::Restore`](super::Command::Restore) is there: not with
+    /// [`ExactOnly`](crate::planner::ExactOnly).
+    pub restores: bool,
 }

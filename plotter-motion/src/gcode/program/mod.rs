@@ -365,9 +365,9 @@ impl Program {
                 break;
             } else if byte == b'#' {
                 let mut expression = Expression::new(line, at, &self.variables);
-                let failed = |problem| (at, problem);
-                let variable = expression.variable().map_err(failed)?;
-                let value = expression.assigned().map_err(failed)?;
+                // Where it went wrong.
+                let variable = expression.variable().map_err(|problem| (expression.at(), problem))?;
+                let value = expression.assigned().map_err(|problem| (expression.at(), problem))?;
                 let end = expression.at();
                 set.push((at, variable, value));
                 reader.pass_over(line.get(at..end).unwrap_or_default());
@@ -383,7 +383,7 @@ impl Program {
                 && Expression::new(line, at, &self.variables).begins()
             {
                 let mut expression = Expression::new(line, at, &self.variables);
-                let value = expression.value().map_err(|problem| (at, problem))?;
+                let value = expression.value().map_err(|problem| (expression.at(), problem))?;
                 let end = expression.at();
                 reader.pass_over(line.get(at..end).unwrap_or_default());
                 reader.give_number(value).map_err(|error| (at, error.problem))?;

@@ -5,6 +5,7 @@ use super::ReadOptions;
 
 /// A one-letter language and the size of its steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Dialect {
     /// Roland's CAMM-GL mode 1, and DXY-GL, from which it comes.
@@ -54,12 +55,12 @@ impl Dialect {
     ///
     /// ```
     /// # use plotter_motion::hpgl::cutter::Dialect;
-    /// assert_eq!(Dialect::of(b"M0,0\nD400,0\nI0,400\n"), Some((Dialect::CammGl, 1.0)));
-    /// assert_eq!(Dialect::of(b"M0,0\x03D400,0\x03"), Some((Dialect::GpGl, 1.0)));
-    /// assert_eq!(Dialect::of(b"IN;SP1;PU0,0;PD400,0;"), None);
+    /// assert_eq!(Dialect::detect(b"M0,0\nD400,0\nI0,400\n"), Some((Dialect::CammGl, 1.0)));
+    /// assert_eq!(Dialect::detect(b"M0,0\x03D400,0\x03"), Some((Dialect::GpGl, 1.0)));
+    /// assert_eq!(Dialect::detect(b"IN;SP1;PU0,0;PD400,0;"), None);
     /// ```
     #[must_use]
-    pub fn of(head: &[u8]) -> Option<(Self, f64)> {
+    pub fn detect(head: &[u8]) -> Option<(Self, f64)> {
         // Their commands are a letter, but for those of GP-GL that begin with F; HPGL's are two.
         if let [first, second, ..] = head.trim_ascii_start()
             && first.is_ascii_alphabetic()
@@ -85,7 +86,7 @@ impl Dialect {
 /// Share of the operations among operations and errors.
 fn sense(head: &[u8], dialect: Dialect) -> f64 {
     let (mut good, mut bad) = (0_u32, 0_u32);
-    for outcome in PlotOps::with_options(head.iter().copied(), ReadOptions::of(dialect)) {
+    for outcome in PlotOps::with_options(head.iter().copied(), ReadOptions::for_dialect(dialect)) {
         match outcome {
             Ok(_) => good = good.saturating_add(1),
             Err(error) if error.is_notice() => {}

@@ -27,6 +27,7 @@ const TENTHS: f64 = 10.0;
 
 /// What a text of a cutter does not say.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct ReadOptions {
     /// Which language it is.
@@ -40,7 +41,7 @@ pub struct ReadOptions {
 impl ReadOptions {
     /// A text in this language for a machine as it is delivered: steps of [`Dialect::step_mm`], curves to 0.01 mm.
     #[must_use]
-    pub const fn of(dialect: Dialect) -> Self {
+    pub const fn for_dialect(dialect: Dialect) -> Self {
         Self { dialect, step_mm: dialect.step_mm(), tolerance_mm: 0.01 }
     }
 }
@@ -533,5 +534,5 @@ impl<I: Iterator<Item = u8>> core::iter::FusedIterator for PlotOps<I> {}
 /// # Ok::<(), plotter_motion::hpgl::cutter::Error>(())
 /// ```
 pub fn plot_ops(text: &[u8], dialect: Dialect) -> PlotOps<Copied<Iter<'_, u8>>> {
-    PlotOps::with_options(text.iter().copied(), ReadOptions::of(dialect))
+    PlotOps::with_options(text.iter().copied(), ReadOptions::for_dialect(dialect))
 }

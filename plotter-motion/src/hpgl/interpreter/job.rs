@@ -7,7 +7,7 @@ use super::super::scaling::Scaling;
 use super::text_job::TextJob;
 use crate::Vec2;
 use crate::bezier::Bezier;
-use crate::shapes::unit_circle;
+use crate::toolpath::shapes::unit_circle;
 
 /// What is being drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -4,7 +4,7 @@ mod round;
 
 use super::encoded::write_number;
 use super::{Coordinates, Opening, UNITS_PER_MM, WriteError, WriteOptions};
-use crate::{PlotOp, Point, StepPoint, from_mm};
+use crate::{PlotOp, Point, StepPoint, toolpath::from_mm};
 use core::fmt;
 
 /// Thousandths of a cm/s in one mm/s: the grid on which `VS` is written is 0.01 mm/s.

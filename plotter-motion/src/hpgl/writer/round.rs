@@ -2,7 +2,7 @@
 
 use super::super::arc::{ArcUnits, FLAT_UNITS, GREATEST_UNITS, chord_angle_deg, chords};
 use super::{Coordinates, Stroke, UNITS_PER_MM, WriteError, Writer, speed_steps};
-use crate::{Point, StepPoint, from_mm};
+use crate::{Point, StepPoint, toolpath::from_mm};
 use core::f64::consts::{FRAC_PI_2, TAU};
 use core::fmt;
 

@@ -4,6 +4,11 @@ use core::time::Duration;
 
 /// Times of a [`Link`](super::Link), and what its side can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct LinkSettings {
     /// Time between two calls or greetings that are not answered, 100 ms by default.
     pub call_again: Duration,

@@ -10,8 +10,9 @@ use crate::felt;
 use core::time::Duration;
 use plotter_motion::kinematics::{Cartesian, MotorScale};
 use plotter_motion::{
-    Action, Course, MotorEvent, PathMode, Planner, PlannerSettings, PlotOp, Point, Segment, Shape, StepGen,
-    StepGenSettings, StepPoint, Vec2,
+    PathMode, Planner, PlannerSettings, PlotOp, Point, Segment, StepGen, StepPair, StepPoint, Vec2,
+    planner::{Action, Course, Shape},
+    stepgen::{MotorEvent, StepGenSettings},
 };
 use std::collections::VecDeque;
 
@@ -239,6 +240,7 @@ impl Stretch {
                 (along(self.from - centre, sweep_rad), along(self.course.to - centre, sweep_rad))
             }
             Shape::Parabola { control } => (control - self.from, self.course.to - control),
+            shape => panic!("{shape:?} is not audited"),
         }
     }
 }
@@ -294,7 +296,7 @@ pub(crate) fn audit_touched<const N: usize>(
             touch(planner);
         },
         |tick, event| match event {
-            MotorEvent::Step { x, y } => {
+            MotorEvent::Step(StepPair { x, y }) => {
                 assert!(tick >= last, "steps come in order of time");
                 bins.until(tick, 1.0 / lens.steps_per_mm);
                 if seen.steps > 0 {
@@ -507,7 +509,7 @@ impl Nearness {
     fn new(ops: &[PlotOp]) -> Self {
         let (cell_mm, mut at) = (2.0, Point::ORIGIN);
         let mut segments = Vec::new();
-        for op in plotter_motion::chords(ops.iter().copied(), 1e-4) {
+        for op in plotter_motion::toolpath::chords(ops.iter().copied(), 1e-4) {
             if let Some(to) = op.target() {
                 segments.push(Segment::new(at, to));
                 at = to;

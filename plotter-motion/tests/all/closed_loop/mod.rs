@@ -6,8 +6,8 @@ use core::time::Duration;
 use plotter_motion::control::{Contouring, LineController, LineTracking};
 use plotter_motion::plant::AxisPlant;
 use plotter_motion::{
-    Axis, ControllerChoice, Demand, Direction, LimitSwitches, Machine, MachineConfig, Point, SafetyGate,
-    Segment, StepPoint,
+    Axis, Demand, Direction, LimitSwitches, Machine, MachineConfig, Point, SafetyGate, Segment, StepPoint,
+    config::ControllerChoice,
 };
 
 pub const TIME_STEP: Duration = Duration::from_micros(10);

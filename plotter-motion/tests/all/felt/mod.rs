@@ -1,7 +1,10 @@
 //! What the motors feel of a motion: its acceleration as a vector, against the limit.
 #![allow(dead_code, reason = "each test takes what it needs")]
 
-use plotter_motion::{AccelLimit, Course, PlannerSettings, Point, Shape, Vec2};
+use plotter_motion::{
+    PlannerSettings, Point, Vec2,
+    planner::{AccelLimit, Course, Shape},
+};
 
 /// An acceleration as a share of what is allowed.
 pub(crate) fn share(accel: Vec2, settings: &PlannerSettings) -> f64 {
@@ -31,6 +34,7 @@ pub(crate) fn derivatives(course: &Course, from: Point, along_mm: f64) -> (Vec2,
             let bend = (end - begin) * (1.0 / length_mm);
             (begin + bend * along_mm, bend)
         }
+        shape => panic!("{shape:?} is not felt"),
     }
 }
 
@@ -40,6 +44,7 @@ pub(crate) fn places(course: &Course, from: Point, parts: u32) -> Vec<Point> {
         Shape::Line => from.lerp(course.to, share),
         Shape::Arc { centre, sweep_rad } => centre + (from - centre).rotated(share * f64::from(sweep_rad)),
         Shape::Parabola { control } => from.lerp(control, share).lerp(control.lerp(course.to, share), share),
+        shape => panic!("{shape:?} is not felt"),
     };
     (0..=parts).map(|part| place(f64::from(part) / f64::from(parts))).collect()
 }

@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test uses its part of this")]
 #![expect(unreachable_pub, reason = "shared by tests, not an interface")]
 
-use plotter_motion::{Decoding, MachineConfig};
+use plotter_motion::{MachineConfig, config::Decoding};
 
 /// The loaded gantry, with encoders decoded so.
 pub fn loaded_gantry(decoding: Decoding) -> MachineConfig {

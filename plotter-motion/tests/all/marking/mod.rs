@@ -8,8 +8,8 @@ use plotter_motion::firmware::{MarkingBoard, MarkingBoardSettings};
 use plotter_motion::kinematics::CoreXy;
 use plotter_motion::plant::{MarkingBoardPlant, MarkingBoardPlantSettings};
 use plotter_motion::{
-    ControllerChoice, LimitSwitches, Machine, MachineConfig, PenMove, PlotOp, Point, PointToPointConfig,
-    SafetyGate,
+    LimitSwitches, Machine, MachineConfig, PenMove, PlotOp, Point, SafetyGate,
+    config::{ControllerChoice, PointToPointConfig},
 };
 
 pub const TIME_STEP: Duration = Duration::from_micros(100);

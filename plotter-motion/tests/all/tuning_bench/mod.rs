@@ -7,7 +7,11 @@ use plotter_motion::control::tuning::{
     RelayPoint, SampledLoop, StepExperiment, TuningError,
 };
 use plotter_motion::plant::AxisPlant;
-use plotter_motion::{Axis, AxisConfig, Demand, Duty, LimitSwitches, Pid, PidState, SafetyGate};
+use plotter_motion::{
+    Axis, Demand, Duty, LimitSwitches, SafetyGate,
+    config::AxisConfig,
+    control::{Pid, PidState},
+};
 
 /// Steps of the plant in a tick.
 const STEPS: u32 = 8;
@@ -108,7 +112,7 @@ pub fn step_response(axis: &AxisConfig, pid: &Pid, tick_s: f64, counts: i32, wat
 /// The margins of a controller on an axis as it is.
 pub fn margins(axis: &AxisConfig, pid: &Pid, tick_s: f64) -> LoopMargins {
     let process = IntegratingProcess::of(axis);
-    LoopMargins::of(&SampledLoop { process, compensator: Compensator::Pid(*pid), tick_s })
+    LoopMargins::from_loop(&SampledLoop { process, compensator: Compensator::Pid(*pid), tick_s })
 }
 
 pub fn settings(axis: &AxisConfig, loop_hz: f64, travel_mm: f64) -> ExperimentSettings {

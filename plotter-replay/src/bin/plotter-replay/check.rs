@@ -6,8 +6,9 @@ use clap::Args;
 use plotter_motion::Machine;
 use plotter_replay::log::{Header, Record};
 use plotter_replay::{
-    AnyController, CompareSettings, Controller, Decoder, EdgeSource, Outcome, Player, PlayerSettings,
-    RecordingTraits, compare,
+    AnyController, CompareSettings, Controller, Outcome, Player, PlayerSettings,
+    compare::{Decoder, compare},
+    player::{EdgeSource, RecordingTraits},
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -61,7 +62,7 @@ impl Rerunnable {
 
     /// A new controller of its machine.
     pub(crate) fn controller(&self) -> Result<Box<dyn Controller>, String> {
-        AnyController::of_recording(&self.header, &self.traits, self.machine.as_ref())
+        AnyController::for_recording(&self.header, &self.traits, self.machine.as_ref())
             .map_err(|error| format!("{}: {error} (--machine)", self.log.display()))
     }
 

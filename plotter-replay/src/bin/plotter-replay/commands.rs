@@ -112,7 +112,7 @@ impl Command {
             Self::Simulate(simulate) => simulate.run(out),
             #[cfg(not(feature = "live"))]
             Self::Live { .. } => Err(String::from(
-                "this program was built without the feature live: cargo install plotter-replay --features live",
+                "this program was built without the feature live: cargo install plotter-replay --features cli,live",
             )),
         }
     }

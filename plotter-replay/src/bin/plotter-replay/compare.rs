@@ -2,7 +2,7 @@
 
 use crate::commands::{Done, Verdict, open, read, say, say_damage};
 use clap::Args;
-use plotter_replay::{CompareSettings, compare};
+use plotter_replay::{CompareSettings, compare::compare};
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Duration;

@@ -66,7 +66,7 @@ impl DrawingFile {
             Self { path: path.to_owned(), language, gcode: gcode::ReadOptions::default(), held };
         if language == Language::Gcode {
             let bytes = drawing.bytes()?;
-            drawing.gcode = gcode::Detection::of(bytes).options();
+            drawing.gcode = gcode::Detection::from_bytes(bytes).options();
         }
         Ok(drawing)
     }

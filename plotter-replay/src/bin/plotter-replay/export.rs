@@ -92,5 +92,5 @@ fn write_mcap(
     _: impl Iterator<Item = Record>,
     _: BufWriter<File>,
 ) -> Result<(), String> {
-    Err(String::from("this program was built without MCAP: cargo install plotter-replay --features mcap"))
+    Err(String::from("this program was built without MCAP: cargo install plotter-replay --features cli,mcap"))
 }

@@ -3,7 +3,10 @@
 use crate::commands::{Done, Verdict, open, read, say, say_damage, say_first};
 use clap::Args;
 use plotter_replay::log::{Event, Record};
-use plotter_replay::{ContourTally, PlotterSettings, VirtualPlotter, Ways};
+use plotter_replay::{
+    PlotterSettings, VirtualPlotter,
+    compare::{ContourTally, Ways},
+};
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Duration;

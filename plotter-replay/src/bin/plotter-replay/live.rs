@@ -4,14 +4,14 @@ use crate::commands::{Done, Verdict, say, say_first};
 use crate::drawing::DrawingFile;
 use crate::machine::{clock_bits, header_of, read_machine_of, speed};
 use clap::{Args, ValueEnum};
-use plotter_motion::{Machine, MachineKind, PenMove, targets};
+use plotter_motion::{Machine, PenMove, config::MachineKind, toolpath::targets};
 use plotter_replay::live::{
     Command, Line, LinkChoice, LivePage, MachineLog, PortLine, Recording, Server, Session, SessionSettings,
     SimulatedMachine, State, Telemetry, terminal,
 };
 use plotter_replay::log::{self, FileWriter, LogFile};
 use plotter_replay::serial::{Port, find};
-use plotter_replay::{DrawingMark, PlotterSettings, ResumePoint};
+use plotter_replay::{PlotterSettings, ResumePoint, resume::DrawingMark};
 use std::cell::RefCell;
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -2,7 +2,7 @@
 
 use crate::commands::{MOST_MACHINE_BYTES, read_file};
 #[cfg(feature = "live")]
-use plotter_motion::{ControllerChoice, MachineKind};
+use plotter_motion::config::{ControllerChoice, MachineKind};
 use plotter_motion::{Machine, MachineConfig};
 #[cfg(feature = "live")]
 use plotter_replay::log::Header;

@@ -41,7 +41,7 @@ pub(crate) struct Record {
 impl Record {
     pub(crate) fn run(self, _: &mut impl Write) -> Done {
         Err(format!(
-            "{}: this program was built without serial ports: cargo install plotter-replay --features serial",
+            "{}: this program was built without serial ports: cargo install plotter-replay --features cli,serial",
             self.port
         ))
     }

@@ -5,7 +5,9 @@ use crate::drawing::{DrawingFile, USUAL_COUNTS_PER_MM};
 use clap::Args;
 use plotter_motion::{Pen, PlotOp};
 use plotter_replay::{
-    CanvasStyle, Chart, Layer, Leg, PageSettings, RecordingPage, Sketch, VirtualPlotter, Visibility,
+    CanvasStyle, Chart, PageSettings, RecordingPage, VirtualPlotter,
+    draw::{Layer, Sketch, Visibility},
+    virtual_plotter::Leg,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -5,7 +5,11 @@ use crate::commands::{Contents, Done, Verdict, is_free, open, read, say, say_dam
 use clap::Args;
 use plotter_replay::export;
 use plotter_replay::log::{self, Header, Record};
-use plotter_replay::{Decoder, Pace, PaceSettings, Player, Stuck};
+use plotter_replay::{
+    Player,
+    compare::Decoder,
+    player::{Pace, PaceSettings, Stuck},
+};
 use std::io::{BufRead, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

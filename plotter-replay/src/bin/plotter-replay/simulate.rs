@@ -3,7 +3,7 @@
 use crate::commands::{Done, is_free, say};
 use crate::machine::{clock_bits, header_of, read_machine_of};
 use clap::Args;
-use plotter_motion::{Machine, MachineKind};
+use plotter_motion::{Machine, config::MachineKind};
 use plotter_replay::live::{MachineLog, PortLine, SimulatedMachine};
 use plotter_replay::log::{self, LogFile};
 use plotter_replay::serial::Port;

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, clippy::unwrap_used, reason = "each test uses its part of this, and may panic")]
 
-use plotter_motion::{ControllerChoice, Machine, MachineConfig, Pen, PenMove, StepPoint};
+use plotter_motion::{Machine, MachineConfig, Pen, PenMove, StepPoint, config::ControllerChoice};
 
 /// A house, 10 mm wide; in encoder counts of 1/40 mm. The pen ends at the origin.
 pub(crate) fn house() -> Vec<PenMove> {

@@ -4,8 +4,9 @@
 
 use plotter_motion::{Axis, Point, Vec2};
 use plotter_stitch::{
-    Crossing, FrameTransform, JointEstimate, MarkSearch, Optics, PublishedSearch, ReferenceLines, RigidFit,
-    SearchSettings, SensedJoint, SensorNoise,
+    Crossing, FrameTransform, JointEstimate, MarkSearch, Optics, ReferenceLines, RigidFit,
+    sense::{PublishedSearch, SearchSettings},
+    sheet::{SensedJoint, SensorNoise},
 };
 
 /// Greatest rotation of a sheet, rad, and greatest error of rewinding, mm (source, section II).
@@ -14,11 +15,11 @@ const SHIFT_MM: f64 = 5.0;
 
 /// Five points of the border, from end to end.
 const BORDER: [Point; 5] = [
-    Point::new(20.0, 0.0),
-    Point::new(20.0, 250.0),
-    Point::new(20.0, 500.0),
-    Point::new(20.0, 750.0),
-    Point::new(20.0, 1000.0),
+    Point::new(10.0, 20.0),
+    Point::new(505.0, 20.0),
+    Point::new(1000.0, 20.0),
+    Point::new(1495.0, 20.0),
+    Point::new(1990.0, 20.0),
 ];
 
 /// Marsaglia's xorshift: how the sheets lie.

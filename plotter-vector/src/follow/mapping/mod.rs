@@ -16,7 +16,7 @@ use super::search::Search;
 use super::seated::Seats;
 use super::trail::{self, Start};
 use super::{End, FollowReport, LineFollower, Lost, MappingSettings, Step, Tool};
-use crate::{Gray, PxPoint};
+use crate::{PxVec, picture::Gray, stroke::PxPoint};
 
 /// Half of the side of what a glance looks at, px.
 const GLANCE_PX: usize = 100;
@@ -66,7 +66,7 @@ enum Doing {
     /// At a node, with the tool lifted: moves to and fro to feel the play of the axes.
     Feeling { node: u32, turn: usize },
     /// On a line: the last node, the link that is being followed and the node at its end, and the way that it came.
-    Following { node: u32, link: Option<(u32, u32)>, heading: (f64, f64) },
+    Following { node: u32, link: Option<(u32, u32)>, heading: PxVec },
     /// On the way to a place that no window has shown.
     Searching(PxPoint),
 }
@@ -97,7 +97,7 @@ enum Doing {
 /// assert_eq!((end, follower.report().lifts), (End::Complete, 0));
 /// let judged = judge(&[ring], table.strokes(), 2.0);
 /// assert!(judged.coverage > 0.995 && judged.rms_px < 0.4, "{judged:?}");
-/// # Ok::<(), plotter_vector::GrayError>(())
+/// # Ok::<(), plotter_vector::picture::GrayError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct MappingFollower {
@@ -257,7 +257,7 @@ impl MappingFollower {
         let most = self.window_px.map_or(100.0, |(width, height)| share * f64::from(width.min(height)));
         let way = self.place.distance(to);
         let part = if way > most { most / way } else { 1.0 };
-        let next = self.place.along(to.minus(self.place), part);
+        let next = self.place + (to - self.place) * part;
         self.go(&[next], Tool::Up)
     }
 
@@ -339,7 +339,7 @@ impl MappingFollower {
                         self.doing = Doing::Feeling { node, turn: 0 };
                         return self.decide(at, looked);
                     }
-                    self.doing = Doing::Following { node, link: None, heading: (0.0, 0.0) };
+                    self.doing = Doing::Following { node, link: None, heading: PxVec::default() };
                     return self.decide(at, looked);
                 }
                 if way < 20.0 {
@@ -363,15 +363,15 @@ impl MappingFollower {
     }
 
     /// The nearest place of the line at a node that was reached: before or behind it where the line goes straight on.
-    fn on_line(&self, node: u32, heading: (f64, f64)) -> PxPoint {
+    fn on_line(&self, node: u32, heading: PxVec) -> PxPoint {
         let here = self.map.at(node);
         let next = trail::next(&self.map, node, heading).filter(|(_, near, _)| *near == node);
         let Some((_, _, far)) = next else { return here };
         let there = self.map.at(far);
-        if cosine(heading, there.minus(here)) < STRAIGHT_ON {
+        if cosine(heading, there - here) < STRAIGHT_ON {
             return here;
         }
-        let places = [nearest(self.place, here.along(heading, -1.0), here), nearest(self.place, here, there)];
+        let places = [nearest(self.place, here - heading, here), nearest(self.place, here, there)];
         let distance = |at: &PxPoint| self.place.distance(*at);
         places.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(here)
     }
@@ -381,7 +381,7 @@ impl MappingFollower {
         at: PxPoint,
         node: u32,
         link: Option<(u32, u32)>,
-        heading: (f64, f64),
+        heading: PxVec,
         looked: bool,
     ) -> Option<Step> {
         // An axis that stands still at its limit would let the other one take the tool off the line.
@@ -415,7 +415,7 @@ impl MappingFollower {
         if is_off && self.fixes < MOST_FIXES {
             self.fixes += 1;
             let share = self.axes.share(on_line);
-            let part = self.place.along(on_line.minus(self.place), share);
+            let part = self.place + (on_line - self.place) * share;
             return Some(self.go(&[part], Tool::Down));
         }
         let (mut node, mut link, mut heading) = (node, link, heading);
@@ -474,7 +474,7 @@ impl MappingFollower {
                 // The play is not known yet: a small move, and a look.
                 if path.is_empty() {
                     self.fixes += 1;
-                    path.push(from.along(to.minus(from), share));
+                    path.push(from + (to - from) * share);
                     link = Some((id, far));
                 }
                 break;
@@ -483,7 +483,7 @@ impl MappingFollower {
             self.idle = 0;
             self.map.set_state(id, State::Followed);
             length += from.distance(to);
-            heading = to.minus(self.map.at(node));
+            heading = to - self.map.at(node);
             path.push(to);
             (node, link, from) = (far, None, to);
         }

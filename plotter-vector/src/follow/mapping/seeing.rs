@@ -8,7 +8,7 @@ use super::super::lines::Lines;
 use super::super::prior::{Information, Prior, moved_sd_px};
 use super::super::registration::{View, registered};
 use super::MappingFollower;
-use crate::PxPoint;
+use crate::stroke::PxPoint;
 
 /// A line ends where the machine would have to go farther than this beyond its area, px.
 const BEYOND_PX: f64 = 0.5;
@@ -73,12 +73,12 @@ impl MappingFollower {
         let place = self.keyframes.choose(flat, middle, self.place, self.told, 0.1 * self.width_px);
         let shifts = self.keyframes.settled();
         self.map.keyframe = self.keyframes.number();
-        let place = shifts.as_ref().map_or(place, |by| place.along(by.of(self.map.keyframe), 1.0));
+        let place = shifts.as_ref().map_or(place, |by| place + by.of(self.map.keyframe));
         if let Some(by) = shifts {
             self.map.move_with(&by);
             self.seats.forget();
         }
-        self.axes.shift(place.minus(self.place));
+        self.axes.shift(place - self.place);
         self.place = place;
         let lines = Lines::of(flat, self.settings.max_line_px);
         self.looked_at = Some(place);
@@ -94,7 +94,7 @@ impl MappingFollower {
         }
         self.last_seen = if lines.has_ink { Lost::TooThick } else { Lost::OneColour };
         if let Some(area) = lines.area {
-            let at = place.along(area.minus(middle), 1.0);
+            let at = place + (area - middle);
             if self.report.areas.iter().all(|known| known.distance(at) > 60.0)
                 && self.report.areas.len() < 1000
             {
@@ -103,7 +103,7 @@ impl MappingFollower {
         }
         let mut pieces = lines.pieces;
         for at in pieces.iter_mut().flat_map(|piece| &mut piece.places) {
-            *at = place.along(at.minus(middle), 1.0);
+            *at = place + (*at - middle);
         }
         let (known, first_link) = (self.map.nodes.len(), self.map.links.len());
         aligned(&mut self.map, flat, &pieces, middle, place, self.margin_px);
@@ -112,7 +112,7 @@ impl MappingFollower {
         } else {
             self.looks_again = 0;
         }
-        let dark_at = |at: PxPoint| flat.at(middle.along(at.minus(place), 1.0));
+        let dark_at = |at: PxPoint| flat.at(middle + (at - place));
         let mut darks: Vec<f32> =
             pieces.iter().flat_map(|piece| &piece.places).step_by(7).map(|at| dark_at(*at)).collect();
         darks.sort_by(f32::total_cmp);
@@ -175,7 +175,7 @@ impl MappingFollower {
     pub(super) fn find_ghosts(&mut self, flat: &Flat, middle: PxPoint, known: usize) {
         let reach = libm::hypot(middle.x, middle.y);
         for id in self.map.near(self.place, reach) {
-            let seen_at = middle.along(self.map.at(id).minus(self.place), 1.0);
+            let seen_at = middle + (self.map.at(id) - self.place);
             let is_ahead =
                 self.map.links_of(id).any(|(_, link, _)| link.state == State::Ahead && !link.contact);
             let inside = flat.holds(seen_at, self.margin_px + 8.0);

@@ -5,7 +5,7 @@
 use avr_firmware::board::Board;
 use plotter_motion::control::{LineTracking, LineTrackingSettings};
 use plotter_motion::firmware::{Gantry, GantrySettings};
-use plotter_motion::{Axis, LimitSwitches, PublishedConfig, QuadratureX4, SafetyGate, StepPoint, SyncStop};
+use plotter_motion::{Axis, LimitSwitches, SafetyGate, StepPoint, config::PublishedConfig, control::SyncStop, encoder::QuadratureX4};
 
 /// The documented gantry.
 const GANTRY: GantrySettings =

@@ -14,7 +14,7 @@ use cortex_m::singleton;
 use heapless::Deque;
 use plotter_hal::Quadrature;
 use plotter_motion::plant::AxisPlant;
-use plotter_motion::{Axis, Direction, Duty, Phases};
+use plotter_motion::{Axis, Direction, Duty, encoder::Phases};
 
 /// Time step of the motors.
 const TIME_STEP_US: u64 = 10;

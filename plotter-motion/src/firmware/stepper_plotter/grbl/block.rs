@@ -1,13 +1,13 @@
 //! A line of G-code becomes commands.
 
 use super::super::{Command, Link, Setting, SettingProblem, StoredSettings, area};
-use super::codes::{Alarm, Code};
+use super::codes::{Alarm, Code, takes_axes};
 use super::listing::is_listed;
 use super::words::{read, whole};
 use super::{Grbl, Mode, Pens, Wait, send};
 use crate::PlotOp;
 use crate::decimal::Decimal;
-use crate::gcode::{Block, Outcomes, SYSTEMS, Word, Words};
+use crate::gcode::{Block, Modes, Outcomes, SYSTEMS, Word, Words};
 use crate::geom::Vec2Single;
 
 /// Slower is not slower, mm/s: a step of 0.01 mm takes ten seconds.
@@ -34,7 +34,7 @@ impl<P: Pens> Grbl<P> {
     /// A movement by hand, with the pen up. Of its line only the place is kept.
     #[inline(never)]
     pub(super) fn jog(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
-        let block = read(text, Words::Grbl)?.ok_or(Code::NO_FEED)?;
+        let block = read(text, Words::GrblOnSheet)?.ok_or(Code::NO_FEED)?;
         let is_allowed = |word: &Word| match word.letter {
             b'G' => matches!(word.tenths(), Some(200 | 210 | 530 | 900 | 910)),
             b'X' | b'Y' | b'Z' | b'F' | b'N' => true,
@@ -85,11 +85,11 @@ impl<P: Pens> Grbl<P> {
         let before = self.interpreter.modes();
         let mut outcomes = Outcomes::none();
         let known = P::read(&self.settings, |options| options.words);
-        if known == Words::Grbl {
-            check(block)?;
+        if known.is_grbl() {
+            check(block, known, &before)?;
         }
         P::read(&self.settings, |options| self.interpreter.carry_out(block, options, &mut outcomes))?;
-        if known == Words::Grbl && has_unused(block) {
+        if known.is_grbl() && has_unused(block) {
             return Err(Code::UNUSED);
         }
         self.interpreter.lift(&mut outcomes);
@@ -173,7 +173,9 @@ impl<P: Pens> Grbl<P> {
 
 /// What Grbl asks of the words of a line together.
 #[inline(never)]
-fn check(block: &Block) -> Result<(), Code> {
+fn check(block: &Block, known: Words, modes: &Modes) -> Result<(), Code> {
+    /// The axes of each plane.
+    const PLANES: [(u16, &[u8]); 3] = [(170, b"XY"), (180, b"XZ"), (190, b"YZ")];
     /// Above the greatest number of a line, 9,999,999: Grbl's.
     const MOST_LINES: f64 = 1e7;
     let has = |letters: &[u8]| block.words().iter().any(|word| letters.contains(&word.letter));
@@ -181,13 +183,35 @@ fn check(block: &Block) -> Result<(), Code> {
         |tenths: u16| block.words().iter().any(|word| word.letter == b'G' && word.tenths() == Some(tenths));
     let (has_axes, sets) = (has(b"XYZ"), asks(100));
     let is_arc = asks(20) || asks(30);
+    // Ours draws a whole circle by its centre alone.
+    let (mut has_ends, mut draws_circle) = (true, has(b"IJ"));
+    if known == Words::Grbl {
+        let plane = PLANES.iter().find(|plane| asks(plane.0));
+        let plane = plane.or(PLANES.get(usize::from(modes.plane.wrapping_sub(17))));
+        if let Some(&(plane, ends)) = plane {
+            (has_ends, draws_circle) = (has(ends), draws_circle && plane == 170);
+        }
+    }
     let too_many = |letter, most| block.number(letter).is_some_and(|number| number >= most);
     if too_many(b'N', MOST_LINES) {
         return Err(Code::LINE_NUMBER);
     }
-    // Ours draws a whole circle by its centre alone.
-    if !has_axes && (sets || asks(920) || (is_arc && !has(b"IJ"))) {
+    if !has_axes && (sets || asks(920) || (is_arc && !draws_circle)) {
         return Err(Code::NO_AXES);
+    }
+    if has_axes && is_arc && !has_ends {
+        return Err(Code::NO_AXES_IN_PLANE);
+    }
+    if known == Words::Grbl && (asks(431) || asks(490)) {
+        let others = block.words().iter().filter(|word| word.letter == b'G');
+        let takes =
+            |word: &Word| takes_axes(*word) || word.tenths() == Some(if asks(431) { 490 } else { 431 });
+        if others.into_iter().any(takes) {
+            return Err(Code::AXIS_CONFLICT);
+        }
+        if asks(431) && (has(b"XY") || !has(b"Z")) {
+            return Err(Code::LENGTH_AXIS);
+        }
     }
     if sets && too_many(b'P', f64::from(SYSTEMS + 1)) {
         return Err(Code::NO_SYSTEM);

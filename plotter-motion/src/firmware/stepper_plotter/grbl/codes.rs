@@ -2,9 +2,9 @@
 //!
 //! Source: the Grbl project's wiki, "Grbl v1.1 Interface", and its tables of errors and alarms (`doc/csv`).
 
-use crate::HomingError;
 use crate::decimal_text::Thousandths;
 use crate::gcode::{Complaint, Position, Problem, Word};
+use crate::homing::HomingError;
 use crate::whole::is_whole;
 
 /// What stands after `error:`.
@@ -58,6 +58,8 @@ impl Code {
     pub(super) const NOT_STRAIGHT: Self = Self(30);
     /// Axis words that no command uses.
     pub(super) const AXIS_UNUSED: Self = Self(31);
+    /// None of the axes of an arc's plane is named.
+    pub(super) const NO_AXES_IN_PLANE: Self = Self(32);
     /// The target of a motion is invalid.
     pub(super) const TARGET: Self = Self(33);
     /// The radius of an arc is invalid.
@@ -66,6 +68,8 @@ impl Code {
     pub(super) const CENTRE: Self = Self(35);
     /// Words that nothing uses.
     pub(super) const UNUSED: Self = Self(36);
+    /// The length of a tool is along z, and nothing else.
+    pub(super) const LENGTH_AXIS: Self = Self(37);
     /// The value of a setting is out of its range. Grbl 1.1 has no number for it; this is that of its successor grblHAL.
     pub(super) const SETTING_RANGE: Self = Self(52);
     /// `M0`, which is carried out: the interpreter leaves it to who is in charge of the machine.
@@ -114,7 +118,7 @@ impl Complaint for Code {
 }
 
 /// Whether a command takes the axis words of its line: G0 to G3, G10, G28, G30, G92.
-fn takes_axes(command: Word) -> bool {
+pub(super) fn takes_axes(command: Word) -> bool {
     command.letter == b'G' && matches!(command.tenths(), Some(0 | 10 | 20 | 30 | 100 | 280 | 300 | 920))
 }
 

@@ -2,7 +2,7 @@
 
 use super::super::output::Output;
 use super::super::settings::FULL_POWER;
-use super::super::{COMMANDS, Setting, StepperPlotterSettings};
+use super::super::{COMMANDS, Setting, StartupLines, StepperPlotterSettings};
 use super::codes::coordinates;
 use super::rx_buffer::RX_BYTES;
 use super::{MOST_COMMANDS, OUTPUT};
@@ -23,18 +23,22 @@ pub(super) enum Listing {
     Startup,
 }
 
+/// What is told of.
+pub(super) struct About<'a> {
+    pub(super) settings: &'a StepperPlotterSettings,
+    pub(super) interpreter: &'a LineInterpreter,
+    pub(super) lines: Option<&'a StartupLines>,
+    /// Whether settings can be restored.
+    pub(super) restores: bool,
+}
+
 /// Blocks that are free when nothing is queued.
 pub(super) const BLOCKS: usize = COMMANDS - MOST_COMMANDS;
 
 impl Listing {
     /// Writes a line of it; says whether there was one left.
-    pub(super) fn line(
-        self,
-        index: u8,
-        settings: &StepperPlotterSettings,
-        interpreter: &LineInterpreter,
-        out: &mut Output<OUTPUT>,
-    ) -> bool {
+    pub(super) fn line(self, index: u8, about: &About<'_>, out: &mut Output<OUTPUT>) -> bool {
+        let &About { settings, interpreter, lines, restores } = about;
         match self {
             Self::Settings => {
                 let Some((number, value, is_whole)) = setting(index, settings) else { return false };
@@ -47,17 +51,21 @@ impl Listing {
             }
             Self::Build => match index {
                 0 => out.line(format_args!("[VER:1.1h.20190830:plotter-motion]")),
-                // Variable spindle, origin where it was homed, both ends with switches; no settings restored by $RST, nothing stored by
-                // $I=, no wait for it.
+                // Variable spindle, origin where it was homed, both ends with switches; no settings restored
+                // by $RST, where it is so; nothing stored by $I=, no wait for it.
                 1 => out.line(format_args!(
-                    "[OPT:VZT*$IEW,{},{}]",
+                    "[OPT:VZT{}IEW,{},{}]",
+                    Plain(if restores { "" } else { "*$" }),
                     Whole(BLOCKS as u64),
                     Whole(RX_BYTES as u64)
                 )),
                 _ => return false,
             },
             Self::Startup => match index {
-                0 | 1 => out.line(format_args!("$N{}=", Whole(index.into()))),
+                0 | 1 => {
+                    let line = lines.map_or("", |lines| lines.get(index));
+                    out.line(format_args!("$N{}={}", Whole(index.into()), Plain(line)));
+                }
                 _ => return false,
             },
             Self::Offsets => match index {
@@ -79,7 +87,9 @@ impl Listing {
                     let (x, y) = coordinates(shift.x, shift.y);
                     out.line(format_args!("[G92:{x},{y},0.000]"));
                 }
-                9 => out.line(format_args!("[TLO:0.000]")),
+                9 => {
+                    out.line(format_args!("[TLO:{}]", Thousandths::of(interpreter.modes().length_mm)));
+                }
                 10 => out.line(format_args!("[PRB:0.000,0.000,0.000:0]")),
                 _ => return false,
             },

@@ -2,6 +2,7 @@
 
 mod block;
 mod codes;
+mod kept;
 mod line_buffer;
 mod listing;
 mod overrides;
@@ -15,11 +16,13 @@ use super::output::Output;
 use super::{Activity, Command, Link, Report, Signal, Status, StepperPlotterSettings, Stop, StoredSettings};
 use crate::decimal_text::{Plain, Thousandths, Whole};
 use crate::gcode::LineInterpreter;
+use crate::planner::Keep as _;
 use crate::{PlotOp, Point};
 use codes::{Alarm, Code};
 use core::marker::PhantomData;
+use kept::Kept;
 use line_buffer::LineBuffer;
-use listing::Listing;
+use listing::{About, Listing};
 use overrides::Overrides;
 pub use pens::{AnyPen, Pens, SpindlePen};
 use rx_buffer::RxBuffer;
@@ -42,6 +45,8 @@ enum Wait {
     End,
     /// `$n=value`.
     Set,
+    /// `$RST=$`, `$RST=*`.
+    Restore,
 }
 
 /// What is done with lines.
@@ -76,11 +81,20 @@ pub struct Grbl<P: Pens = AnyPen> {
     /// What was sent to the motion side last is a jog.
     jogs: bool,
     greeting: bool,
+    kept: P::Kept<Kept>,
     out: Output<OUTPUT>,
 }
 
 impl<P: Pens> Grbl<P> {
     pub(super) fn new(settings: StepperPlotterSettings) -> Self {
+        let mut kept = P::Kept::<Kept>::default();
+        if let Some(kept) = kept.get_mut() {
+            kept.begin_with(&settings);
+        }
+        Self::keeping(settings, kept)
+    }
+
+    fn keeping(settings: StepperPlotterSettings, kept: P::Kept<Kept>) -> Self {
         Self {
             pens: PhantomData,
             settings,
@@ -98,6 +112,7 @@ impl<P: Pens> Grbl<P> {
             overrides: Overrides::default(),
             jogs: false,
             greeting: true,
+            kept,
             out: Output::new(),
         }
     }
@@ -112,7 +127,11 @@ impl<P: Pens> Grbl<P> {
 
     /// The port has been opened anew, at `at`.
     pub(super) fn restart(&mut self, at: Point) {
-        *self = Self::new(self.settings);
+        let mut kept = core::mem::take(&mut self.kept);
+        if let Some(kept) = kept.get_mut() {
+            kept.end();
+        }
+        *self = Self::keeping(self.settings, kept);
         self.interpreter.stand_at(at);
     }
 
@@ -125,6 +144,9 @@ impl<P: Pens> Grbl<P> {
                 self.rx.clear();
                 self.line.clear();
                 (self.wait, self.listing) = (None, None);
+                if let Some(kept) = self.kept.get_mut() {
+                    kept.end();
+                }
                 // As in Grbl: who sleeps may have been moved.
                 if core::mem::replace(&mut self.mode, Mode::Work) == Mode::Sleep {
                     self.alarm = Some(Alarm::LOCKED);
@@ -147,7 +169,9 @@ impl<P: Pens> Grbl<P> {
     pub(super) fn work(&mut self, status: &Status, link: &mut Link) {
         loop {
             self.gather();
-            if self.out.room() < MOST_ANSWER || !(self.tell(status, link) || self.carry_on(status, link)) {
+            if self.out.room() < MOST_ANSWER
+                || !(self.tell(status, link) || self.start(link) || self.carry_on(status, link))
+            {
                 return;
             }
         }
@@ -175,7 +199,10 @@ impl<P: Pens> Grbl<P> {
         } else if core::mem::take(&mut self.status_wanted) {
             self.tell_status(status, link);
         } else if let Some((listing, index)) = self.listing {
-            if listing.line(index, &self.settings, &self.interpreter, &mut self.out) {
+            let restores = self.restores(status);
+            let lines = self.kept.get().map(|kept| &kept.lines);
+            let about = About { settings: &self.settings, interpreter: &self.interpreter, lines, restores };
+            if listing.line(index, &about, &mut self.out) {
                 self.listing = Some((listing, index.saturating_add(1)));
             } else {
                 self.listing = None;
@@ -190,6 +217,7 @@ impl<P: Pens> Grbl<P> {
     /// Carries out the line that is there, and answers it; says whether there was one, and room for all that comes of it.
     fn carry_on(&mut self, status: &Status, link: &mut Link) -> bool {
         if self.wait.is_some()
+            || self.is_starting()
             || self.mode == Mode::Sleep
             || !self.line.has_ended()
             || link.commands.room() < MOST_COMMANDS
@@ -208,12 +236,12 @@ impl<P: Pens> Grbl<P> {
         match done {
             Ok(()) if self.wait.is_some() || self.listing.is_some() => {}
             Ok(()) => {
-                self.out.line(format_args!("ok"));
+                self.answer(Ok(()));
                 if self.mode == Mode::Sleep {
                     self.out.line(format_args!("[MSG:Sleeping]"));
                 }
             }
-            Err(code) => self.error(code),
+            Err(code) => self.answer(Err(code)),
         }
         true
     }
@@ -227,6 +255,7 @@ impl<P: Pens> Grbl<P> {
         if self.alarm.is_some() {
             self.out.line(format_args!("[MSG:'$H'|'$X' to unlock]"));
         }
+        self.begin_startup(false);
     }
 
     fn alarm(&mut self, alarm: Alarm) {
@@ -245,7 +274,7 @@ impl<P: Pens> Grbl<P> {
                     self.out.line(format_args!("[MSG:Pgm End]"));
                 }
                 if waited.is_some() {
-                    self.out.line(format_args!("ok"));
+                    self.answer(Ok(()));
                 }
             }
             Report::Homed { at, result } => {
@@ -259,7 +288,8 @@ impl<P: Pens> Grbl<P> {
                 }
                 match (self.wait.take(), result) {
                     (None, _) => {}
-                    (Some(_), Ok(_)) => self.out.line(format_args!("ok")),
+                    (Some(_), Ok(_)) if self.begin_startup(true) => {}
+                    (Some(_), Ok(_)) => self.answer(Ok(())),
                     (Some(_), Err(_)) => self.error(Code::LOCKED),
                 }
             }
@@ -270,8 +300,13 @@ impl<P: Pens> Grbl<P> {
             }
             Report::Set { at } => {
                 self.interpreter.stand_at(at);
-                if self.wait.take() == Some(Wait::Set) {
-                    self.out.line(format_args!("ok"));
+                match self.wait.take() {
+                    Some(Wait::Set) => self.answer(Ok(())),
+                    Some(Wait::Restore) => {
+                        self.answer(Ok(()));
+                        self.begin_anew(at);
+                    }
+                    _ => {}
                 }
             }
             Report::Stopped { at, why } => {
@@ -295,7 +330,7 @@ impl<P: Pens> Grbl<P> {
                     self.out.line(format_args!("[MSG:{why}]"));
                 }
                 if self.wait.take().is_some() {
-                    self.error(Code::LOCKED);
+                    self.answer(Err(Code::LOCKED));
                 }
             }
         }
@@ -325,7 +360,9 @@ impl<P: Pens> Grbl<P> {
             }
             // In no alarm there is nothing to unlock.
             b"X" if !is_idle => {}
-            b"$" | b"#" | b"I" | b"N" | b"H" | b"SLP" | b"RST=#" if !is_idle => return Err(Code::NOT_IDLE),
+            b"$" | b"#" | b"I" | b"N" | b"H" | b"SLP" | b"RST=#" | b"RST=$" | b"RST=*" if !is_idle => {
+                return Err(Code::NOT_IDLE);
+            }
             [b'H', ..] if !self.settings.homing => return Err(Code::NO_HOMING),
             b"SLP" => {
                 if self.alarm.is_none() {
@@ -339,12 +376,18 @@ impl<P: Pens> Grbl<P> {
                 self.interpreter.restore_origins();
                 self.begin_anew(status.at);
             }
+            b"RST=$" | b"RST=*" if self.restores(status) => {
+                self.out.line(format_args!("[MSG:Restoring defaults]"));
+                self.restore(command == b"RST=*", link);
+            }
             b"$" => self.listing = Some((Listing::Settings, 0)),
             b"#" => self.listing = Some((Listing::Offsets, 0)),
             b"I" => self.listing = Some((Listing::Build, 0)),
             b"N" => self.listing = Some((Listing::Startup, 0)),
-            // There is no line that is carried out at the start: it stays so.
-            [b'N', b'0' | b'1', b'='] => {}
+            [b'N', b'0'..=b'9', b'=', ..] if !is_idle => return Err(Code::NOT_IDLE),
+            [b'N', number @ (b'0' | b'1'), b'=', line @ ..] => {
+                return self.keep_line(number - b'0', line, link);
+            }
             [b'J', ..] if self.alarm.is_some() || checks => return Err(Code::NOT_IDLE),
             [b'J', b'=', ..] if !is_idle && !self.is_jogging(status, link) => return Err(Code::NOT_IDLE),
             [b'J', b'=', jog @ ..] => return self.jog(jog, link),
@@ -403,9 +446,10 @@ impl<P: Pens> Grbl<P> {
         let modes = self.interpreter.modes();
         let feed = modes.feed_mm_s.unwrap_or(0.0) * 60.0 / if modes.inches { 25.4 } else { 1.0 };
         self.out.line(format_args!(
-            "[GC:G{} G{} G17 G{} G{} G{} M{} M9 T{} F{} S{}]",
+            "[GC:G{} G{} G{} G{} G{} G{} M{} M9 T{} F{} S{}]",
             Whole(modes.motion.into()),
             Whole(54 + u64::from(modes.system)),
+            Whole(modes.plane.into()),
             Plain(if modes.inches { "20" } else { "21" }),
             Plain(if modes.relative { "91" } else { "90" }),
             Plain(if modes.inverse_time { "93" } else { "94" }),
@@ -425,7 +469,7 @@ fn send(link: &mut Link, command: Command) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Axis, Direction, HomingError};
+    use crate::{Axis, Direction, homing::HomingError};
     use std::format;
 
     #[test]

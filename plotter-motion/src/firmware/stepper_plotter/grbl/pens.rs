@@ -2,12 +2,18 @@
 
 use super::super::StepperPlotterSettings;
 use crate::gcode::{BlockDelete, DwellUnit, LaserCommand, PenConvention, ReadOptions, ServoCommand, Words};
+use crate::planner::{Here, Keep, Nowhere, Part};
 use core::time::Duration;
 
-/// By which words hosts may lift the pen: [`AnyPen`], or [`SpindlePen`] for a small program. What both understand they carry out alike.
+/// By which words hosts may lift the pen, and how much of Grbl is there: [`AnyPen`], or [`SpindlePen`] for a
+/// small program. What both understand they carry out alike.
 ///
 /// Nobody else implements it.
 pub trait Pens: sealed::Sealed {
+    /// Memory that only a whole Grbl needs: start-up lines, settings to go back to.
+    #[doc(hidden)]
+    type Kept<T: Part>: Keep<T>;
+
     /// Whether these settings ask for no other words.
     #[doc(hidden)]
     fn fit(settings: &StepperPlotterSettings) -> bool;
@@ -17,11 +23,13 @@ pub trait Pens: sealed::Sealed {
     fn read<R>(settings: &StepperPlotterSettings, read: impl FnOnce(&ReadOptions) -> R) -> R;
 }
 
-/// All words, and a laser: [`StepperPlotterSettings`] choose.
+/// All words, and a laser: [`StepperPlotterSettings`] choose. All of Grbl that a plotter can do: start-up
+/// lines, `$RST=$` and `$RST=*`, arcs in other planes, `G43.1`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct AnyPen;
 
-/// `M3` and `M5` ([`PenConvention::Spindle`]), no laser. The firmware of the stepper plotter takes 1.3 KB less program memory with it.
+/// `M3` and `M5` ([`PenConvention::Spindle`]), no laser, and none of what [`AnyPen`] has more of Grbl: a line
+/// that needs it is `error:20` or `error:3`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct SpindlePen;
 
@@ -38,7 +46,7 @@ static OPTIONS: ReadOptions = ReadOptions {
     dwell_unit: DwellUnit::Seconds,
     settle: Duration::from_millis(500),
     block_delete: BlockDelete::CarryOut,
-    words: Words::Grbl,
+    words: Words::GrblOnSheet,
 };
 
 /// Where the pen is lifted by words of another firmware, its drawings have others of its words, too.
@@ -53,6 +61,8 @@ const fn words(pen: PenConvention) -> Words {
 }
 
 impl Pens for AnyPen {
+    type Kept<T: Part> = Here<T>;
+
     fn fit(_: &StepperPlotterSettings) -> bool {
         true
     }
@@ -64,6 +74,8 @@ impl Pens for AnyPen {
 }
 
 impl Pens for SpindlePen {
+    type Kept<T: Part> = Nowhere<T>;
+
     fn fit(settings: &StepperPlotterSettings) -> bool {
         settings.convention() == PenConvention::Spindle
     }

@@ -4,7 +4,9 @@ mod line;
 mod refusal;
 
 use super::output::Output;
-use super::{Command, Link, Report, Signal, Status, StepperPlotterSettings, Stop, StoredSettings};
+use super::{
+    Command, Link, Report, Signal, StartupLines, Status, StepperPlotterSettings, Stop, StoredSettings,
+};
 use crate::protocol::SUBSTITUTE;
 use crate::{PlotOp, Point};
 use core::fmt;
@@ -84,6 +86,15 @@ impl MDraw {
     pub(super) fn transmit(&mut self) -> Option<u8> {
         self.out.pop()
     }
+
+    /// It knows no lines that are carried out at its start.
+    #[expect(clippy::unused_self, reason = "as the other dialect has it")]
+    pub(super) fn startup_lines(&self) -> StartupLines {
+        StartupLines::default()
+    }
+
+    #[expect(clippy::unused_self, reason = "as the other dialect has it")]
+    pub(super) const fn set_startup_lines(&mut self, _: &StartupLines) {}
 
     /// The port has been opened anew, at `at`.
     pub(super) fn restart(&mut self, at: Point) {

@@ -1,7 +1,7 @@
 //! [`Refusal`]: why a line is not carried out.
 
 use super::super::Stop;
-use crate::HomingError;
+use crate::homing::HomingError;
 use core::fmt;
 
 /// Why a line is not carried out, told in the line before its `OK`. No text may hold the letters `OK`: mDraw looks for them

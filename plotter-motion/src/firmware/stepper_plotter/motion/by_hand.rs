@@ -1,6 +1,6 @@
 //! What a person does on the way: jogs that are cancelled, other shares of the speeds, other settings.
 
-use super::super::{Command, Dialect, Link, Percents, Report, Setting};
+use super::super::{Command, Dialect, Link, Percents, Report, Setting, StepperPlotterSettings};
 use super::{Motion, State, darken, step_gen};
 use crate::planner::{Keep as _, Modes};
 use crate::{Pen, Planner};
@@ -48,6 +48,17 @@ impl<M: Modes> Motion<M> {
             debug_assert!(false, "the receive side has looked at {setting:?}");
             return;
         };
+        self.hold_to(settings);
+    }
+
+    /// The machine is again what it was switched on as.
+    pub(super) fn restore(&mut self) {
+        if let Some(&built) = self.built.get() {
+            self.hold_to(built);
+        }
+    }
+
+    fn hold_to(&mut self, settings: StepperPlotterSettings) {
         self.settings = settings;
         self.put_pen(Pen::Up);
         debug_assert!(settings.dialect == Dialect::Grbl, "in which the limits are those of the planner");

@@ -1,0 +1,103 @@
+//! How well a vectorization meets what was drawn.
+//!
+//! `draw_corpus` writes pictures with the strokes that they were drawn from. Trace one of them, with ours or any other program, and
+//! this says how far the result and those strokes are from each other: on the average, at the worst place, at the junctions, how much
+//! is missing and how much is there that should not be. Look at the junctions first: there programs differ most.
+//!
+//! Without a file it draws the corpus, traces it with ours as it is set from the start, and prints a line for each picture:
+//!
+//! ```text
+//! cargo run --release --example judge
+//! cargo run --release --example judge -- traced.svg --truth target/corpus/junctions_w5.json
+//! cargo run --release --example judge -- traced.svg --truth DIR/flag_1px.json --picture DIR/flag_1px.png --report figures.json
+//! cargo run --release --example judge -- traced.plt --mm-per-px 0.1 --truth DIR/flag_1px.json
+//! ```
+
+use clap::Parser;
+use plotter_examples::shared::{at, is_standard, print, read_file, run, write_output};
+use plotter_judging::corpus::Truth;
+use plotter_judging::{JudgedDrawing, Judgement, judged_corpus};
+use plotter_vector::{Bitmap, Vectorizer, decode};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Compares a vector drawing with the strokes that its picture was drawn from.
+#[derive(Debug, Parser)]
+#[command(after_help = "Examples:\n  judge traced.svg --truth target/corpus/junctions_w5.json\n  \
+                  judge traced.svg --truth flag_1px.json --picture flag_1px.png --report figures.json\n\n\
+                  What each figure is: the page of `Judgement`. Lengths are px of the picture.")]
+struct Arguments {
+    /// SVG whose sheet is the picture, y down, pixel centres at .5; or HPGL, y up from the centre of the lower left pixel [default:
+    /// what ours makes of each picture of the corpus]
+    #[arg(requires = "truth")]
+    drawing: Option<PathBuf>,
+    /// What is known about the picture, as `draw_corpus` writes it
+    #[arg(long, value_name = "F.json", requires = "drawing")]
+    truth: Option<PathBuf>,
+    /// The picture: measures how far its ink lies from the drawing too, which says something of lines 1 px wide
+    #[arg(long, value_name = "F.png", requires = "drawing")]
+    picture: Option<PathBuf>,
+    /// Size of a pixel in HPGL, mm
+    #[arg(long, value_name = "MM", default_value_t = 0.1, allow_negative_numbers = true)]
+    mm_per_px: f64,
+    /// Writes the figures as JSON; - is the standard output, in place of the table
+    #[arg(long, value_name = "F.json")]
+    report: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    run("judge", || judge(&arguments))
+}
+
+fn judge(arguments: &Arguments) -> Result<(), String> {
+    let judged = match (&arguments.drawing, &arguments.truth) {
+        (Some(drawing), Some(truth)) => vec![judged(drawing, truth, arguments)?],
+        _ => judged_corpus()?.into_iter().map(|(truth, judgement)| (truth.name, judgement)).collect(),
+    };
+    if let Some(file) = &arguments.report {
+        let figures: Vec<_> =
+            judged.iter().map(|(name, figures)| json!({ "picture": name, "figures": figures })).collect();
+        write_output(file, format!("{:#}\n", json!(figures)))?;
+        if is_standard(file) {
+            return Ok(());
+        }
+    }
+    let rows: String = judged.iter().map(|(name, figures)| figures.row(name)).collect();
+    print(&format!("{}{rows}", Judgement::HEAD))
+}
+
+fn judged(file: &Path, truth_file: &Path, arguments: &Arguments) -> Result<(String, Judgement), String> {
+    let truth = Truth::from_json(&read_file(truth_file)?).map_err(|error| at(truth_file, &error))?;
+    let bytes = read_file(file)?;
+    let size = (truth.width, truth.height);
+    let is_svg = bytes.iter().find(|byte| !byte.is_ascii_whitespace() && **byte < 0x80) == Some(&b'<');
+    let read = if is_svg {
+        JudgedDrawing::from_svg(&bytes, size)
+    } else {
+        JudgedDrawing::from_hpgl(&bytes, size, arguments.mm_per_px)
+    };
+    let JudgedDrawing { drawing, pens } = read.map_err(|error| at(file, &error))?;
+    let ink = arguments.picture.as_deref().map(|picture| ink(picture, &truth)).transpose()?;
+    let figures = Judgement::new(&drawing, &pens, &truth, ink.as_ref()).map_err(|error| at(file, &error))?;
+    Ok((truth.name, figures))
+}
+
+fn ink(picture: &Path, truth: &Truth) -> Result<Bitmap, String> {
+    let gray = decode(&read_file(picture)?).map_err(|error| at(picture, &error))?;
+    let ink = Vectorizer::default().ink(&gray);
+    if (ink.width(), ink.height()) != (truth.width, truth.height) {
+        return Err(at(
+            picture,
+            &format!(
+                "{} x {} px, but the truth is of {} x {} px",
+                ink.width(),
+                ink.height(),
+                truth.width,
+                truth.height
+            ),
+        ));
+    }
+    Ok(ink)
+}

@@ -1,0 +1,16 @@
+//! For development: pictures of which every line is known ([`corpus`]), and how well a drawing meets them
+//! ([`Judgement`]).
+//!
+//! The examples `draw_corpus` and `judge` are its commands; `peers/` runs other programs on the same
+//! pictures.
+
+pub mod corpus;
+mod judged_corpus;
+mod judged_drawing;
+mod judgement;
+mod near_lines;
+
+pub use judged_corpus::judged_corpus;
+pub use judged_drawing::JudgedDrawing;
+pub use judgement::{Judgement, JunctionFigures};
+pub use near_lines::{LinePiece, NearLines};

@@ -1,0 +1,19 @@
+//! `follow` and `follow_sweep`: a tool that follows lines under a camera.
+
+mod gif;
+mod machine;
+mod moves;
+mod outcome;
+mod pictures;
+#[cfg(all(feature = "camera", target_os = "linux"))]
+mod v4l_camera;
+mod window_source;
+mod wrong_choices;
+
+pub use gif::FollowGif;
+pub use machine::FollowMachine;
+pub use moves::MovesFile;
+pub use outcome::FollowOutcome;
+pub use pictures::{FollowFrame, follow_page, follow_svg};
+pub use window_source::WindowSource;
+pub use wrong_choices::{WrongChoices, wrong_choices};

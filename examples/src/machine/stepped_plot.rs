@@ -1,0 +1,343 @@
+//! [`SteppedPlot`]: a drawing as a machine with stepper motors plots it, walked through step by step.
+
+use crate::machine::{Moment, MostAccel, PathDeviation, SpeedAudit};
+use plotter_motion::kinematics::{Cartesian, Kinematics as _, MotorScale};
+use plotter_motion::{
+    Pen, Planner, PlannerSettings, PlotOp, Point, StepGen, StepPair, StepPoint,
+    planner::{Action, PlanError},
+    stepgen::{MotorEvent, PlotTime, StepGenSettings, TimedEvent},
+    toolpath::chords,
+};
+
+/// Blocks of look-ahead: more than a controller has, less than what makes a difference.
+pub const BLOCKS: usize = 64;
+
+/// How finely arcs are compared with what is drawn, mm.
+const CHORD_MM: f64 = 1e-4;
+
+/// What came of it. All of it is from the steps but for the lengths, which are those of the planned path.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SteppedFigures {
+    /// Time in motion, s: without pen and pauses.
+    pub motion_s: f64,
+    /// Time of the machine, s: with all.
+    pub total_s: f64,
+    /// Pauses that the drawing asks for, s.
+    pub dwell_s: f64,
+    /// Planned path with the pen down and up, mm.
+    pub draw_mm: f64,
+    /// See above.
+    pub travel_mm: f64,
+    /// Lines and arcs that were planned.
+    pub courses: u64,
+    /// Times that either motor or both stepped.
+    pub steps: u64,
+    /// Times that the pen was lowered.
+    pub strokes: u64,
+    /// Times that the pen was lifted.
+    pub pen_lifts: u64,
+    /// Greatest speed, mm/s.
+    pub max_speed_mm_s: f64,
+    /// Greatest accelerations.
+    pub max_accel: MostAccel,
+    /// Time over which accelerations are the differences of speeds, ms.
+    pub accel_window_ms: usize,
+    /// Farthest that a step with the pen down is from the drawing, mm.
+    pub from_drawing_mm: f64,
+    /// Farthest that a vertex of the drawing is from the steps, mm.
+    pub from_steps_mm: f64,
+}
+
+impl From<&PlotTime> for SteppedFigures {
+    /// Of a plan: nothing is known of steps.
+    fn from(time: &PlotTime) -> Self {
+        Self {
+            motion_s: time.motion.as_secs_f64(),
+            total_s: time.total.as_secs_f64(),
+            dwell_s: time.dwell.as_secs_f64(),
+            draw_mm: time.draw_mm,
+            travel_mm: time.travel_mm,
+            courses: time.courses,
+            strokes: time.strokes,
+            pen_lifts: time.pen_lifts,
+            ..Self::default()
+        }
+    }
+}
+
+/// Something that happens, for those who draw or write it down.
+#[derive(Clone, Copy, Debug)]
+pub enum Happening {
+    /// The pen is lifted or lowered.
+    Pen(Pen),
+    /// Another pen.
+    SelectPen(u8),
+    /// A new sheet.
+    NewPage,
+    /// A step by dx and dy at a tick of a microsecond, to a place on the sheet.
+    Step(u64, i8, i8, Point),
+    /// Speed and acceleration of a moment some milliseconds ago, and the pen.
+    Moment(Moment, Pen),
+}
+
+/// A planner and a step generator, and an audit of what they do.
+#[derive(Debug)]
+pub struct SteppedPlot {
+    planner: Planner<BLOCKS>,
+    kinematics: Cartesian,
+    steps: StepGen<Cartesian>,
+    deviation: PathDeviation,
+    audit: SpeedAudit,
+    figures: SteppedFigures,
+    /// Where the drawing's pen is, before planning.
+    drawn_to: Point,
+    /// The motors, and the pen.
+    at: StepPoint,
+    pen: Pen,
+    last_tick: u64,
+}
+
+impl SteppedPlot {
+    /// A machine that stands at the origin.
+    ///
+    /// # Errors
+    ///
+    /// A setting out of range.
+    pub fn new(
+        settings: PlannerSettings,
+        timing: StepGenSettings,
+        motors: [MotorScale; 2],
+    ) -> Result<Self, String> {
+        let planner = Planner::new(settings).map_err(|error| error.to_string())?;
+        let kinematics = Cartesian::new(motors[0], motors[1]).map_err(|error| error.to_string())?;
+        let reach_mm = match settings.path {
+            plotter_motion::PathMode::Tolerance { path_tolerance_mm } => 2.0 * path_tolerance_mm,
+            _ => 2.0 * settings.allowance_mm,
+        };
+        let coarsest = motors[0].steps_per_mm.min(motors[1].steps_per_mm);
+        let timing = StepGenSettings { clock_hz: 1_000_000, ..timing };
+        Ok(Self {
+            planner,
+            kinematics,
+            steps: StepGen::new(kinematics, timing),
+            deviation: PathDeviation::new(reach_mm.max(2.0 / coarsest)),
+            audit: SpeedAudit::new(
+                Point::ORIGIN,
+                1.0 / coarsest,
+                settings.accel_mm_s2,
+                settings.path == plotter_motion::PathMode::Exact,
+            ),
+            figures: SteppedFigures::default(),
+            drawn_to: Point::ORIGIN,
+            at: StepPoint::default(),
+            pen: Pen::Up,
+            last_tick: 0,
+        })
+    }
+
+    /// Takes the next operation; tells what happens meanwhile.
+    ///
+    /// # Errors
+    ///
+    /// An operation that cannot be planned, and is left out.
+    pub fn push(&mut self, op: PlotOp, each: &mut impl FnMut(Happening)) -> Result<(), PlanError> {
+        while !self.planner.has_room() && self.advance(each) {}
+        self.planner.push(op)?;
+        let from = self.drawn_to;
+        match op {
+            PlotOp::Travel { .. } | PlotOp::SelectPen { .. } | PlotOp::NewPage => self.deviation.lift(),
+            PlotOp::Draw { to, .. } => self.deviation.draw(from, to),
+            PlotOp::DrawArc { .. } => {
+                let mut at = from;
+                // The first operation takes the arc to its place.
+                for chord in chords([PlotOp::Travel { to: from }, op], CHORD_MM).skip(1) {
+                    if let Some(to) = chord.target() {
+                        self.deviation.draw(at, to);
+                        at = to;
+                    }
+                }
+            }
+            _ => {}
+        }
+        self.drawn_to = op.target().unwrap_or(from);
+        Ok(())
+    }
+
+    /// Nothing comes for now: the machine goes on until it stands, its pen as it is. More may be pushed afterwards.
+    ///
+    /// # Errors
+    ///
+    /// Never, as far as is known.
+    pub fn rest(&mut self, each: &mut impl FnMut(Happening)) -> Result<(), PlanError> {
+        while !self.planner.has_room() && self.advance(each) {}
+        self.planner.rest()?;
+        while self.advance(each) {}
+        Ok(())
+    }
+
+    /// Seconds since the machine began.
+    #[must_use]
+    pub fn now_s(&self) -> f64 {
+        seconds(self.steps.tick())
+    }
+
+    /// Nothing more comes: the machine goes on until it stands, and lifts its pen.
+    ///
+    /// # Errors
+    ///
+    /// Never, as far as is known.
+    pub fn finish(mut self, each: &mut impl FnMut(Happening)) -> Result<SteppedFigures, PlanError> {
+        self.rest(each)?;
+        self.planner.finish()?;
+        self.deviation.lift();
+        while self.advance(each) {}
+        let pen = self.pen;
+        self.audit.finish(self.steps.tick(), |moment| each(Happening::Moment(moment, pen)));
+        let (from_drawing_mm, from_steps_mm) = self.deviation.most_mm();
+        Ok(SteppedFigures {
+            max_speed_mm_s: self.audit.most_speed_mm_s(),
+            max_accel: self.audit.most_accel(),
+            accel_window_ms: self.audit.window_ms(),
+            from_drawing_mm,
+            from_steps_mm,
+            total_s: seconds(self.steps.tick()),
+            ..self.figures
+        })
+    }
+
+    /// Takes the next action and all its steps; says whether there was one.
+    fn advance(&mut self, each: &mut impl FnMut(Happening)) -> bool {
+        let Some(action) = self.planner.next_action() else { return false };
+        let figures = &mut self.figures;
+        let is_motion = match action {
+            Action::Course(course) => {
+                // A lift where the pen stands is neither line nor arc.
+                figures.courses += u64::from(course.pen == Pen::Down || course.length_mm > 0.0);
+                match course.pen {
+                    Pen::Up => figures.travel_mm += f64::from(course.length_mm),
+                    Pen::Down => figures.draw_mm += f64::from(course.length_mm),
+                }
+                self.put(course.pen, each);
+                false
+            }
+            Action::Phase(_) => true,
+            Action::Dwell(duration) => {
+                figures.dwell_s += duration.as_secs_f64();
+                false
+            }
+            _ => {
+                self.put(Pen::Up, each);
+                false
+            }
+        };
+        let before = self.steps.tick();
+        if self.steps.push(action).is_err() {
+            return false;
+        }
+        while let Some(TimedEvent { tick, event }) = self.steps.next_event() {
+            self.last_tick = tick;
+            match event {
+                MotorEvent::Step(StepPair { x, y }) => self.step(tick, x, y, each),
+                MotorEvent::SelectPen(pen) => each(Happening::SelectPen(pen)),
+                MotorEvent::NewPage => each(Happening::NewPage),
+                _ => {}
+            }
+        }
+        if is_motion {
+            self.figures.motion_s += seconds(self.steps.tick() - before);
+        }
+        true
+    }
+
+    fn put(&mut self, pen: Pen, each: &mut impl FnMut(Happening)) {
+        if self.pen == pen {
+            return;
+        }
+        self.pen = pen;
+        match pen {
+            Pen::Down => {
+                self.figures.strokes += 1;
+                self.deviation.step(self.place());
+            }
+            Pen::Up => {
+                self.figures.pen_lifts += 1;
+                self.deviation.lifted();
+            }
+        }
+        each(Happening::Pen(pen));
+    }
+
+    fn step(&mut self, tick: u64, dx: i8, dy: i8, each: &mut impl FnMut(Happening)) {
+        self.figures.steps += 1;
+        self.at =
+            StepPoint::new(self.at.x.saturating_add(i32::from(dx)), self.at.y.saturating_add(i32::from(dy)));
+        let (place, pen) = (self.place(), self.pen);
+        if pen == Pen::Down {
+            self.deviation.step(place);
+        }
+        self.audit.step(tick, place, |moment| each(Happening::Moment(moment, pen)));
+        each(Happening::Step(tick, dx, dy, place));
+    }
+
+    fn place(&self) -> Point {
+        self.kinematics.point_at(self.at.into())
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "2^53 microseconds are 285 years")]
+fn seconds(ticks: u64) -> f64 {
+    ticks as f64 * 1e-6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn figures(settings: PlannerSettings, ops: &[PlotOp]) -> SteppedFigures {
+        let motor = MotorScale { steps_per_mm: 100.0, inverted: false };
+        let mut plot = SteppedPlot::new(settings, StepGenSettings::default(), [motor; 2]).unwrap();
+        for op in ops {
+            plot.push(*op, &mut |_| {}).unwrap();
+        }
+        plot.finish(&mut |_| {}).unwrap()
+    }
+
+    #[test]
+    fn a_line_there_and_a_way_back_are_what_the_book_says() {
+        let ops = [
+            PlotOp::Draw { to: Point::new(60.0, 80.0), feed_mm_s: None },
+            PlotOp::Travel { to: Point::ORIGIN },
+        ];
+        let found = figures(PlannerSettings::default(), &ops);
+        // 100 mm at 100 mm/s and 1000 mm/s²: 1 s and 0.1 s for the ramps, twice
+        assert!((found.motion_s - 2.2).abs() < 1e-4, "{found:?}");
+        // the pen goes down and up, 200 ms each
+        assert!((found.total_s - 2.6).abs() < 1e-4, "{found:?}");
+        assert!((found.draw_mm - 100.0).abs() < 1e-9 && (found.travel_mm - 100.0).abs() < 1e-9);
+        assert_eq!((found.strokes, found.pen_lifts, found.steps), (1, 1, 16_000));
+        assert!((found.max_speed_mm_s - 100.0).abs() < 1.0, "{found:?}");
+        assert!((found.max_accel.along_mm_s2 - 1000.0).abs() < 50.0, "{found:?}");
+        assert!(found.from_drawing_mm <= 0.0051 && found.from_steps_mm <= 0.0051, "{found:?}");
+    }
+
+    #[test]
+    fn a_lift_where_the_pen_stands_ends_a_stroke() {
+        let draw = |x, y| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None };
+        let lift = PlotOp::Travel { to: Point::new(50.0, 0.0) };
+        let found = figures(PlannerSettings::default(), &[draw(50.0, 0.0), lift, lift, draw(50.0, 50.0)]);
+        assert_eq!((found.strokes, found.pen_lifts), (2, 2), "and the end lifts it");
+        // Each stroke is compared with its own steps.
+        assert!(found.from_drawing_mm < 0.01 && found.from_steps_mm < 0.01, "{found:?}");
+    }
+
+    #[test]
+    fn rounded_corners_stay_within_the_tolerance_and_near_it() {
+        let path = plotter_motion::PathMode::Tolerance { path_tolerance_mm: 0.2 };
+        let ops: Vec<PlotOp> = [(20.0, 0.0), (20.0, 20.0), (0.0, 20.0)]
+            .map(|(x, y)| PlotOp::Draw { to: Point::new(x, y), feed_mm_s: None })
+            .to_vec();
+        let found = figures(PlannerSettings { path, ..PlannerSettings::default() }, &ops);
+        assert!(found.from_steps_mm > 0.1 && found.from_steps_mm < 0.21, "{found:?}");
+        assert!(found.from_drawing_mm < 0.21, "{found:?}");
+    }
+}

@@ -1,0 +1,9 @@
+//! `max_error`: where a pen was, beside where it should have been.
+
+mod followed_path;
+mod speed_trial;
+mod true_path;
+
+pub use followed_path::{FollowedPath, follow, predicted_s, rounding_mm, slowed};
+pub use speed_trial::{deviation_mm, speed_trial, test_figure};
+pub use true_path::TruePath;

@@ -1,0 +1,76 @@
+//! [`lost_ink`]: ink that a vectorization should have drawn, and did not.
+
+use plotter_vector::{Algorithm, FileRows, Pixel, Progress, TracedSheet, Vectorizer, trace::SheetErrors};
+use std::io::Cursor;
+
+/// How far beyond the promised error the farthest ink may lie from the strokes, as a multiple of the width of the lines.
+///
+/// An error is what a pixel's distance is more than half of the line's width, so it is 0 all over a line whose middle is drawn. Corners and
+/// junctions, where ink is wider than its lines, and blots take it up to about a line's width beyond the promise. The nearest line
+/// that could be drawn in its place has a row of paper between, so the far edge of a line that was not drawn has an error of at least
+/// a width and a pixel.
+const WIDTHS: f64 = 1.0;
+
+/// The width that is taken where no lines were found, only areas or dots, px.
+const USUAL_LINE_PX: u32 = 3;
+
+/// Says where ink was lost, if its farthest pixel lies far beyond what was promised of the vectorization; `line_px` is the width of the
+/// picture's lines. The published algorithm promises nothing.
+///
+/// # Errors
+///
+/// How far, where, and what may help.
+pub fn lost_ink(vectorizer: &Vectorizer, errors: &SheetErrors, line_px: Option<u32>) -> Result<(), String> {
+    let promised_px = vectorizer.ours.tolerance_px;
+    let most_px = promised_px + WIDTHS * f64::from(line_px.unwrap_or(USUAL_LINE_PX).max(1));
+    match errors.worst {
+        Some((Pixel { x, y }, error_px)) if vectorizer.algorithm == Algorithm::Ours && error_px > most_px => {
+            Err(format!(
+                "ink at ({x}, {y}) px lies {error_px:.1} px from the nearest stroke, where {promised_px} px were promised: \
+                 something was not drawn there; look at it (`trace --overlay F.png` circles it), then try a scan with more \
+                 dots per inch, another threshold, or another greatest width of lines (`trace --max-line-px`)"
+            ))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A picture file as strokes with their errors; where ink was lost, [`lost_ink`] tells.
+///
+/// # Errors
+///
+/// What is wrong with the file, in words.
+pub fn vectorized(vectorizer: &Vectorizer, file: Vec<u8>) -> Result<TracedSheet, String> {
+    let mut scan = FileRows::new(Cursor::new(file)).map_err(|error| error.to_string())?;
+    vectorizer
+        .vectorize_rows_with_errors(&mut scan, &mut Progress::silent())
+        .map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plotter_vector::stroke::Bounded;
+
+    fn errors(error_px: f64) -> SheetErrors {
+        SheetErrors { worst: Some((Pixel::new(12, 34), error_px)), ..SheetErrors::default() }
+    }
+
+    #[test]
+    fn ink_a_lines_width_beyond_the_promise_is_lost_and_said_with_its_place() {
+        let within_half = Vectorizer { ours: Bounded { tolerance_px: 0.5 }, ..Vectorizer::default() };
+        assert_eq!(lost_ink(&within_half, &errors(3.5), Some(3)), Ok(()));
+        // The far edge of a line that was not drawn beside one that was: a width and a pixel.
+        let said = lost_ink(&within_half, &errors(4.0), Some(3)).unwrap_err();
+        for part in ["(12, 34) px", "4.0 px", "0.5 px were promised", "--overlay", "--max-line-px"] {
+            assert!(said.contains(part), "{part}: {said}");
+        }
+        assert_eq!(lost_ink(&within_half, &SheetErrors::default(), Some(3)), Ok(()));
+    }
+
+    #[test]
+    fn the_published_algorithm_promises_nothing() {
+        let published = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
+        assert_eq!(lost_ink(&published, &errors(50.0), Some(1)), Ok(()));
+    }
+}

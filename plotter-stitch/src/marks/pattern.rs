@@ -1,0 +1,145 @@
+//! [`ReferenceLines::with_pattern`]: marks that no stroke of a drawing imitates.
+
+use crate::{MarkGroup, ReferenceLines};
+use plotter_motion::Axis;
+
+/// Two marks of an axis are moved by distances that differ by at least this, mm: what a fast pass needs, 0.3
+/// mm, to both sides of a stroke, and a little. Ten marks then stay within 3 mm of their places, which is
+/// what the ways of the scans leave.
+const STEP_MM: f64 = 0.65;
+
+/// Scans nearer than this to one another cross the same stroke, 8 mm to both sides of each, and no two
+/// strokes lie side by side, mm.
+const SAME_STROKE_MM: f64 = 20.0;
+
+/// Primes with a number whose powers give each remainder but 0 once.
+const PRIMES: [(u16, u16); 5] = [(5, 2), (7, 3), (11, 2), (17, 3), (23, 5)];
+
+impl ReferenceLines {
+    /// The same marks, each moved across its length by another distance: those of ours by up to 3 mm to
+    /// either side.
+    ///
+    /// Marks in straight rows are imitated by one straight stroke beside each row: wherever a scan meets a
+    /// mark it meets that stroke, always as far beside, and the sheet seems to lie there. Marks on both sides
+    /// of the field are imitated by lines that go across the paper, as far from each other as they are. Here
+    /// mark n of an axis stands at gⁿ mod p steps of 0.65 mm, for a prime p above the number of marks. Each
+    /// remainder comes once, so that a stroke along the rows has the distance of at most one mark; and the
+    /// way from one mark to another comes once, so that a slanted or bent one has hardly more. Scans that
+    /// cross one stroke still do.
+    ///
+    /// Source: L. R. Welch's construction of Costas arrays, in S. W. Golomb and H. Taylor, "Constructions and
+    /// properties of Costas arrays" (1984).
+    ///
+    /// ```
+    /// # use plotter_stitch::ReferenceLines;
+    /// let marks: Vec<_> = ReferenceLines::strip16().with_pattern().crossings().map(|c| c.mark_mm).collect();
+    /// // Powers of 2 mod 11 are 1, 2, 4, 8: from 5.5 steps of 0.65 mm before -34 mm, left and right, and before -8 mm.
+    /// for (mark_mm, at_mm) in marks.iter().zip([-36.925, -36.275, -8.975, -6.375]) {
+    ///     assert!((mark_mm - at_mm).abs() < 1e-9);
+    /// }
+    /// ```
+    #[must_use]
+    pub fn with_pattern(&self) -> Self {
+        let strokes_of = |axis: Axis| -> usize {
+            let of = self.marks.iter().filter(|group| group.axis == axis);
+            of.map(|group| group.at_mm.len() * strokes(&group.scans_mm).count()).sum()
+        };
+        let mut marks = alloc::vec::Vec::new();
+        let mut next = Axis::BOTH.map(|axis| Powers::above(strokes_of(axis)));
+        for group in &self.marks {
+            let powers = &mut next[usize::from(group.axis != Axis::BOTH[0])];
+            for &at_mm in &group.at_mm {
+                for scans_mm in strokes(&group.scans_mm) {
+                    marks.push(MarkGroup {
+                        axis: group.axis,
+                        at_mm: [at_mm + powers.next_mm()].into(),
+                        scans_mm: scans_mm.into(),
+                    });
+                }
+            }
+        }
+        Self { marks, ..self.clone() }
+    }
+}
+
+/// The scans over one stroke, stroke by stroke.
+fn strokes(scans_mm: &[f64]) -> impl Iterator<Item = &[f64]> {
+    scans_mm.chunk_by(|one, next| libm::fabs(next - one) < SAME_STROKE_MM)
+}
+
+/// Powers of a number, as distances.
+struct Powers {
+    prime: u16,
+    root: u16,
+    remainder: u16,
+}
+
+impl Powers {
+    fn above(count: usize) -> Self {
+        let [.., last] = PRIMES;
+        let (prime, root) = PRIMES.into_iter().find(|(prime, _)| usize::from(*prime) > count).unwrap_or(last);
+        Self { prime, root, remainder: 1 }
+    }
+
+    fn next_mm(&mut self) -> f64 {
+        let by_mm = STEP_MM * (f64::from(self.remainder) - 0.5 * f64::from(self.prime));
+        self.remainder = self.remainder * self.root % self.prime;
+        by_mm
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::ReferenceLines;
+    use plotter_motion::Axis;
+    use std::vec::Vec;
+
+    /// What is nearer than this to a stroke's place could be it, mm: what two fast passes differ by.
+    const NEAR_MM: f64 = 0.3;
+
+    /// Scan, and by how much its mark is moved; scans over one stroke once.
+    fn moved(lines: &ReferenceLines, axis: Axis) -> Vec<(f64, f64)> {
+        let with_pattern = lines.with_pattern();
+        assert_eq!(with_pattern.check(), Ok(()));
+        let mut moved: Vec<_> = lines
+            .crossings()
+            .zip(with_pattern.crossings())
+            .inspect(|(before, after)| assert_eq!(before.scan_at_mm, after.scan_at_mm))
+            .filter(|(before, _)| before.axis == axis)
+            .map(|(before, after)| (before.mark_mm, before.scan_at_mm, after.mark_mm - before.mark_mm))
+            .collect();
+        moved.dedup_by(|one, other| one.0 == other.0 && (one.1 - other.1).abs() < 20.0);
+        moved.into_iter().map(|(_, scan_at_mm, by_mm)| (scan_at_mm, by_mm)).collect()
+    }
+
+    #[test]
+    fn no_stroke_along_the_rows_is_beside_two_marks_alike() {
+        for lines in [ReferenceLines::strip16(), ReferenceLines::strip24(), ReferenceLines::strip32()] {
+            for axis in [Axis::X, Axis::Y] {
+                let moved = moved(&lines, axis);
+                for (index, (_, one)) in moved.iter().enumerate() {
+                    assert!(one.abs() < 3.0);
+                    assert!(moved[index + 1..].iter().all(|(_, other)| (one - other).abs() > 2.0 * NEAR_MM));
+                }
+            }
+        }
+    }
+
+    /// Lines across the paper, as far from one another as the marks and all of one slant, are each beside
+    /// both marks that they pass at most once in the ten.
+    #[test]
+    fn slanted_strokes_are_beside_few_marks_alike() {
+        let moved = moved(&ReferenceLines::strip16(), Axis::Y);
+        let pairs: Vec<[(f64, f64); 2]> = moved.chunks(2).map(|pair| [pair[0], pair[1]]).collect();
+        assert_eq!(pairs.len(), 5);
+        for one in &moved {
+            for other in moved.iter().filter(|other| other.0 != one.0) {
+                let slope = (other.1 - one.1) / (other.0 - one.0);
+                let is_beside =
+                    |mark: &&(f64, f64)| (mark.1 - one.1 - slope * (mark.0 - one.0)).abs() < NEAR_MM;
+                // The two that define it, and no other.
+                assert_eq!(moved.iter().filter(is_beside).count(), 2);
+            }
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! The middle of lines of any width: a graph over the thinned picture, whose strokes pass through their
+//! junctions.
+
+pub(crate) mod centrelines;
+pub(crate) mod graph;

@@ -1,0 +1,273 @@
+//! [`Threshold`]: which pixels are ink.
+//!
+//! A scan is dark lines on light paper, or light lines on a dark ground (a blueprint, a photograph's negative).
+//! A level splits the 256 grey levels in two, one for the whole sheet or, in uneven light, another in each place;
+//! the *searched colour* is the one that covers less, for lines are always the minority.
+
+use crate::parallel::each;
+use crate::{
+    ink::{RowThreshold, Survey},
+    picture::{Bitmap, Gray},
+};
+use core::{fmt, str};
+
+/// Which side of the level is ink.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum Polarity {
+    /// The side that covers fewer pixels; dark when both cover the same. In uneven light the side of the local
+    /// median on which more pixels lie.
+    #[default]
+    Minority,
+    /// Dark lines on light paper.
+    DarkInk,
+    /// Light lines on a dark ground.
+    LightInk,
+}
+
+/// Where the level comes from. In text, and with the feature `serde`, `otsu`, `adaptive`, or the number of a level.
+///
+/// ```
+/// # use plotter_vector::ThresholdMethod;
+/// assert_eq!("adaptive".parse(), Ok(ThresholdMethod::Adaptive));
+/// assert_eq!("128".parse(), Ok(ThresholdMethod::Level(128)));
+/// assert_eq!(
+///     "256".parse::<ThresholdMethod>().unwrap_err().to_string(),
+///     "threshold: 256 is neither otsu, adaptive nor a level from 0 to 255"
+/// );
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ThresholdMethod {
+    /// One level for the whole sheet, [`Histogram::otsu`](crate::picture::Histogram::otsu).
+    #[default]
+    Otsu,
+    /// For uneven light, such as a photographed sheet: each level is divided by that of the paper in the same place,
+    /// and Otsu's level taken there. Where the paper's level comes from is measured in tiles of
+    /// [`Threshold::window_px`].
+    ///
+    /// Ink may fill an area up to two tiles wide; a larger one comes out hollow, for it is taken as paper in a
+    /// shadow. A shadow narrower than two tiles is taken as ink when it is as dark.
+    ///
+    /// Source: S. Lu, B. Su, C. L. Tan, "Document image binarization using background estimation and stroke edges"
+    /// (2010), section 3.1.
+    Adaptive,
+    /// Levels up to this one are dark.
+    Level(u8),
+}
+
+/// A text that names no [`ThresholdMethod`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ThresholdMethodError {
+    /// What was given.
+    pub text: String,
+}
+
+impl fmt::Display for ThresholdMethodError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "threshold: {} is neither otsu, adaptive nor a level from 0 to 255", self.text)
+    }
+}
+
+impl core::error::Error for ThresholdMethodError {}
+
+impl fmt::Display for ThresholdMethod {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Otsu => f.write_str("otsu"),
+            Self::Adaptive => f.write_str("adaptive"),
+            Self::Level(level) => level.fmt(f),
+        }
+    }
+}
+
+impl str::FromStr for ThresholdMethod {
+    type Err = ThresholdMethodError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "otsu" => Ok(Self::Otsu),
+            "adaptive" => Ok(Self::Adaptive),
+            _ => text.parse().map(Self::Level).map_err(|_| ThresholdMethodError { text: text.to_owned() }),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for ThresholdMethod {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Level(level) => serializer.serialize_u8(*level),
+            named => serializer.collect_str(named),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for ThresholdMethod {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Method;
+        impl serde::de::Visitor<'_> for Method {
+            type Value = ThresholdMethod;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("otsu, adaptive or a level from 0 to 255")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Self::Value, E> {
+                text.parse().map_err(E::custom)
+            }
+
+            fn visit_u64<E: serde::de::Error>(self, level: u64) -> Result<Self::Value, E> {
+                u8::try_from(level)
+                    .map(ThresholdMethod::Level)
+                    .map_err(|_| E::custom(ThresholdMethodError { text: level.to_string() }))
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, level: i64) -> Result<Self::Value, E> {
+                u8::try_from(level)
+                    .map(ThresholdMethod::Level)
+                    .map_err(|_| E::custom(ThresholdMethodError { text: level.to_string() }))
+            }
+        }
+        deserializer.deserialize_any(Method)
+    }
+}
+
+/// How ink is told from paper. The default finds everything from the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Threshold {
+    /// Which side of the level is ink.
+    pub polarity: Polarity,
+    /// Where the level comes from.
+    pub method: ThresholdMethod,
+    /// Side of the tiles in which [`ThresholdMethod::Adaptive`] measures the paper, px, 8 to 1024. Larger than the
+    /// lines are wide, and smaller than the edge of a shadow is soft.
+    pub window_px: u32,
+    /// Least distance between the mean dark and the mean light level, in levels: below it the picture is an
+    /// empty sheet with noise, and nothing is ink. Not asked when the level is given. In uneven light ink is at
+    /// least half as far from the paper, too.
+    pub min_contrast: u8,
+}
+
+impl Default for Threshold {
+    /// Otsu's level; 24 levels of contrast, a hard pencil's faintest line, where a scanner's noise has 2 to 8. Tiles
+    /// of 32 px: 1.4 mm at 600 dots per inch, wide enough for lines of 1 mm, for half of a tile may be ink, and
+    /// the tiles around serve where it is more.
+    fn default() -> Self {
+        Self { polarity: Polarity::Minority, method: ThresholdMethod::Otsu, window_px: 32, min_contrast: 24 }
+    }
+}
+
+/// What was decided about a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Split {
+    /// Levels up to this one are dark; in uneven light, as it were in a place where the light is full: paper
+    /// white, or the dark ground black.
+    pub level: u8,
+    /// Whether the dark side is ink.
+    pub ink_is_dark: bool,
+    /// Whether there are more than two levels: then the rims of lines tell where these lie to a fraction of a pixel.
+    pub has_greys: bool,
+    /// Number of ink pixels.
+    pub ink_pixels: u64,
+}
+
+impl Threshold {
+    /// The ink of a picture, and how it was told; no split, and no ink, for a picture of one level or below the
+    /// least contrast. The same comes out row by row, and with any number
+    /// of threads.
+    ///
+    /// ```
+    /// # use plotter_vector::{Gray, Threshold};
+    /// let scan = Gray::new(4, 1, vec![250, 20, 240, 251])?;
+    /// let (ink, split) = Threshold::default().apply(&scan);
+    /// assert_eq!(ink.to_string(), ".#..\n");
+    /// assert!(split.unwrap().ink_is_dark);
+    /// # Ok::<(), plotter_vector::picture::GrayError>(())
+    /// ```
+    #[must_use]
+    pub fn apply(self, gray: &Gray) -> (Bitmap, Option<Split>) {
+        // A `Gray` has been checked against the same limits, so the empty picture below is never wrong.
+        let Ok(mut ink) = Bitmap::new(gray.width(), gray.height()) else {
+            return (Bitmap::empty(), None);
+        };
+        let mut survey = Survey::checked(self, gray.width(), gray.height());
+        survey.push_all(gray.pixels());
+        let Some(rows) = survey.finish() else {
+            return (ink, None);
+        };
+        fill(&rows, gray, &mut ink);
+        let split = rows.split(ink.count());
+        (ink, Some(split))
+    }
+}
+
+fn fill(threshold: &RowThreshold, gray: &Gray, ink: &mut Bitmap) {
+    const ROWS_TOGETHER: usize = 64; // enough work for a thread to begin
+    let mut rows: Vec<_> = (0..).zip(gray.rows()).zip(ink.rows_mut()).collect();
+    each(rows.chunks_mut(ROWS_TOGETHER).collect(), |some| {
+        for ((y, levels), words) in some {
+            threshold.row(*y, levels, words);
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::Pixel;
+
+    fn gray(width: u32, levels: &[u8]) -> Gray {
+        let height = u32::try_from(levels.len()).unwrap() / width;
+        Gray::new(width, height, levels.to_vec()).unwrap()
+    }
+
+    #[test]
+    fn one_level_is_an_empty_sheet() {
+        for level in [0, 127, 255] {
+            let (ink, split) = Threshold::default().apply(&gray(3, &[level; 9]));
+            assert_eq!((ink.count(), split), (0, None));
+        }
+    }
+
+    #[test]
+    fn the_minority_is_ink_on_either_ground() {
+        let dark = gray(4, &[9, 200, 200, 200]);
+        let light = gray(4, &[246, 55, 55, 55]);
+        for (scan, ink_is_dark) in [(dark, true), (light, false)] {
+            let (ink, split) = Threshold::default().apply(&scan);
+            assert_eq!(ink.to_string(), "#...\n");
+            assert_eq!(split.unwrap().ink_is_dark, ink_is_dark);
+        }
+    }
+
+    #[test]
+    fn dark_is_ink_when_both_cover_the_same() {
+        let (ink, _) = Threshold::default().apply(&gray(4, &[9, 9, 200, 200]));
+        assert_eq!(ink.to_string(), "##..\n");
+    }
+
+    #[test]
+    fn otsu_splits_two_peaks_in_the_middle_of_the_gap() {
+        let (_, split) = Threshold::default().apply(&gray(4, &[10, 10, 20, 201]));
+        assert_eq!(split.unwrap().level, (20 + 200) / 2);
+    }
+
+    #[test]
+    fn noise_on_an_empty_sheet_is_not_ink() {
+        let (ink, split) = Threshold::default().apply(&gray(4, &[250, 255, 252, 248]));
+        assert_eq!((ink.count(), split), (0, None));
+    }
+
+    #[test]
+    fn light_ink_does_not_leak_past_the_last_column() {
+        let mut levels = vec![255; 70];
+        levels[3] = 0;
+        let light = Threshold { polarity: Polarity::LightInk, ..Threshold::default() };
+        let (ink, split) = light.apply(&gray(70, &levels));
+        assert_eq!((ink.count(), split.unwrap().ink_pixels), (69, 69));
+        assert_eq!(ink.ink().last(), Some(Pixel::new(69, 0)));
+    }
+}

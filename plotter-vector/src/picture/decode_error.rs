@@ -1,0 +1,139 @@
+//! [`DecodeError`]: why a file is not a picture that can be traced.
+
+use crate::picture::{MAX_SHEET_ROWS, MAX_SIDE_PX, SizeError};
+use core::fmt;
+
+/// Why a file is not a picture that can be traced.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DecodeError {
+    /// The file cannot be opened or read.
+    Unreadable {
+        /// What the system says.
+        what: String,
+    },
+    /// No bytes at all.
+    Empty,
+    /// Not PNG, JPEG, TIFF, PBM, PGM or PPM.
+    UnknownFormat {
+        /// How the file begins.
+        first_bytes: Vec<u8>,
+    },
+    /// A picture of a kind that is not read.
+    Unsupported {
+        /// Which kind.
+        what: String,
+    },
+    /// Larger than a picture that is held whole may be.
+    TooLarge(SizeError),
+    /// More than [`MAX_SIDE_PX`] columns or [`MAX_SHEET_ROWS`] rows, which holds for reading by rows too.
+    TooLong {
+        /// Width, px.
+        width: u32,
+        /// Height, px.
+        height: u32,
+    },
+    /// Decoding it would take too much memory.
+    TooMuchMemory {
+        /// What it would take at least, bytes.
+        bytes: u64,
+    },
+    /// Damaged or cut off before the first row is known.
+    Damaged {
+        /// Length of the file, bytes.
+        length: u64,
+        /// What the decoder met.
+        what: String,
+    },
+    /// Damaged or cut off in a row; those above it have been read.
+    DamagedRow {
+        /// The row, 0 is the uppermost.
+        row: u32,
+        /// Rows of the picture.
+        rows: u32,
+        /// What the decoder met.
+        what: String,
+    },
+}
+
+impl fmt::Display for DecodeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable { what } => write!(f, "the picture cannot be read: {what}"),
+            Self::Empty => f.write_str("the picture is empty (0 bytes): scan or save it again"),
+            Self::UnknownFormat { first_bytes } => {
+                f.write_str("the picture begins with")?;
+                for byte in first_bytes {
+                    write!(f, " {byte:02x}")?;
+                }
+                f.write_str(", which is not PNG, JPEG, TIFF, PBM, PGM or PPM: save it as one of these")
+            }
+            Self::Unsupported { what } => write!(
+                f,
+                "the picture is {what}, which is not read: save it as PNG of 8-bit grey, or black and white as TIFF \
+                 of CCITT group 4"
+            ),
+            Self::TooLarge(error) => error.fmt(f),
+            Self::TooLong { width, height } => write!(
+                f,
+                "a picture of {width} x {height} px is too large: at most {MAX_SIDE_PX} px wide and {MAX_SHEET_ROWS} px high; \
+                 turn a wide one by 90 degrees, scan with fewer dots per inch, or cut it into sheets"
+            ),
+            Self::TooMuchMemory { bytes } => write!(
+                f,
+                "decoding the picture takes {} MiB or more, for this kind is decoded whole: save it as PNG of 8-bit \
+                 grey without interlacing",
+                bytes >> 20
+            ),
+            Self::Damaged { length, what } => {
+                write!(f, "the picture ({length} bytes) is damaged or cut off: {what}; scan or save it again")
+            }
+            Self::DamagedRow { row: 0, rows, what } if *rows > 0 => write!(
+                f,
+                "the picture is damaged or cut off at row 1 of {rows}: {what}; no row of it is good, scan or save it again"
+            ),
+            Self::DamagedRow { row, rows, what } if row < rows => write!(
+                f,
+                "the picture is damaged or cut off at row {} of {rows}: {what}; the rows above are good, scan or save \
+                 it again for the others",
+                row + 1
+            ),
+            Self::DamagedRow { rows, what, .. } => write!(
+                f,
+                "the picture is damaged behind the last of its {rows} rows: {what}; check them, or scan or save it \
+                 again"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for DecodeError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::TooLarge(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_damaged_row_is_counted_from_one() {
+        let error = DecodeError::DamagedRow { row: 0, rows: 7, what: "the file ends".into() };
+        assert_eq!(
+            error.to_string(),
+            "the picture is damaged or cut off at row 1 of 7: the file ends; no row of it is good, scan or save it again"
+        );
+        let error = DecodeError::DamagedRow { row: 1, rows: 7, what: "the file ends".into() };
+        assert_eq!(
+            error.to_string(),
+            "the picture is damaged or cut off at row 2 of 7: the file ends; the rows above are good, scan or save it \
+             again for the others"
+        );
+        let error = DecodeError::DamagedRow { row: 7, rows: 7, what: "a wrong checksum".into() };
+        assert!(error.to_string().starts_with("the picture is damaged behind the last of its 7 rows"));
+    }
+}

@@ -1,0 +1,14 @@
+//! How far a drawing lies from the ink, and ink from the drawing.
+
+pub(crate) mod coverage;
+pub(crate) mod covered_figures;
+mod drawn_error;
+mod error_chart;
+mod error_report;
+mod followed_lines;
+
+pub use coverage::{Beyond, beyond_ink, coverage, worst_pixel};
+pub use drawn_error::InkDistance;
+pub use error_chart::error_chart;
+pub use error_report::{Bin, ErrorReport, ErrorTally};
+pub use followed_lines::{FollowedLines, followed_lines};

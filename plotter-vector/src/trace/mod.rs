@@ -1,0 +1,12 @@
+//! From picture to drawing: the vectorizer, for whole pictures, for colours, and row by row.
+
+pub(crate) mod bare_ink;
+mod in_colour;
+pub(crate) mod pipeline;
+mod progress;
+mod sheet;
+
+pub use in_colour::VectorizedColour;
+pub use pipeline::{Algorithm, MAX_INK_PIXELS, Mode, Prefer, VectorizeError, Vectorized, Vectorizer};
+pub use progress::{Cancelled, Progress};
+pub use sheet::{MAX_LINE_PIXELS, MAX_SHEET_STROKES, SheetError, SheetErrors, TracedSheet};

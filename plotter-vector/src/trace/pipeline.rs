@@ -1,0 +1,651 @@
+//! [`Vectorizer`]: the whole way from grey levels to pen strokes.
+
+use crate::areas::{Islands, Opening};
+use crate::centreline::centrelines::Centring;
+use crate::ink::hairlines::Hairlines;
+use crate::ink::pen::Pen;
+use crate::ink::row_threshold::has_rims;
+use crate::raster::continuity::{Joined, join, link};
+use crate::raster::cut_at_turns::cut_at_turns;
+use crate::raster::raster_corner::{put_back, take_out};
+use crate::raster::straight_on::{GoneOn, straight_on};
+use crate::report::coverage::{AreaPen, Beyond, Index, add_coverage, beyond_hairlines, with_widths};
+use crate::report::covered_figures::Covered;
+use crate::stroke::clip_to_picture::within;
+use crate::stroke::simplify::SegmentKinds;
+use crate::trace::bare_ink::BareInk;
+use crate::{
+    areas::{AreaError, AreaPath, AreaStyle, Areas},
+    ink::{Despeckled, PensError, Split, Threshold, despeckle, smallest_mark_px},
+    order::{Lettering, Order},
+    picture::{Bitmap, Figures, Gray, Pixel},
+    raster::{OrderedTracking, ThinningMethod, TooManyFigures},
+    report::{ErrorReport, ErrorTally},
+    stroke::{Bounded, Curve, Drawing, DynamicThreshold, PxPoint, Simplify},
+    trace::{Cancelled, SheetErrors},
+};
+use core::fmt;
+use std::collections::BTreeSet;
+
+/// Which vectorization.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+pub enum Algorithm {
+    /// Ordered tracking, pre-elimination and [`DynamicThreshold`], drawn in tracking order: as published.
+    Published,
+    /// The middle of each line, its crossings and corners where they are, [`Bounded`], strokes ordered for little
+    /// travel. Drawings of lines one pixel wide are tracked pixel by pixel: there the raster is the line. Those with grey
+    /// rims are centred as wider ones are.
+    #[default]
+    Ours,
+}
+
+/// What ours draws of the ink.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+pub enum Mode {
+    /// A stroke down the middle of each line; what is far wider than the lines is outlined.
+    #[default]
+    Centreline,
+    /// The outlines of everything. What a pen of [`Areas::pen_px`] cannot go around inside, as lines up to its width, is
+    /// drawn along its middle.
+    Outline,
+    /// As `Centreline`, and areas begin already at three times the width of the lines; they are drawn in
+    /// [`Vectorizer::areas`]' style.
+    Mixed,
+}
+
+/// What ours gives up where one stroke a line leaves ink bare: lines that run into one, corners, counters
+/// that are filled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
+pub enum Prefer {
+    /// No stroke is added: fewest strokes, and what is bare by more than the tolerance is told by the errors.
+    Strokes,
+    /// Strokes are added where lines run into one, and wherever else more than spots are bare and the pen
+    /// fits into the ink. A spot is half a pixel off, which the raster leaves open, or no larger than what a
+    /// round pen leaves bare in the corner of a square.
+    #[default]
+    Both,
+    /// Strokes are added for spots too.
+    Ink,
+}
+
+/// Settings of the whole way from a picture to strokes.
+///
+/// ```
+/// use plotter_vector::{Bitmap, PxPoint, Vectorizer};
+/// let ink = Bitmap::from_picture("#####\n#...#\n#...#\n#####\n")?;
+/// let traced = Vectorizer::default().trace(&ink)?;
+/// let corners = [(0.5, 0.5), (4.5, 0.5), (4.5, 3.5), (0.5, 3.5), (0.5, 0.5)];
+/// assert_eq!(traced.drawing.stroke(0), corners.map(|(x, y)| PxPoint::new(x, y)));
+/// assert_eq!(traced.error.max_px, 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vectorizer {
+    /// Which vectorization.
+    pub algorithm: Algorithm,
+    /// How ink is told from paper.
+    pub threshold: Threshold,
+    /// How ink becomes figures: published, and ours on lines one pixel wide.
+    pub tracking: OrderedTracking,
+    /// The published simplification.
+    pub published: DynamicThreshold,
+    /// Ours: its tolerance is the promise that nothing lies farther from the segment that replaced it: of lines one
+    /// pixel wide each pixel, of wider ones each point of the line down their middle. Marks up to 32 px wide and high
+    /// (lettering) are then drawn again as a whole, their vertices where a pen leaves the ink that is there.
+    pub ours: Bounded,
+    /// Ours: whether curves become circular arcs and circles where that saves vertices, with the same promise.
+    pub arcs: bool,
+    /// Ours: whether curves become cubic curves where that saves vertices, with the same promise; not with arcs.
+    pub curves: bool,
+    /// What ours draws.
+    pub mode: Mode,
+    /// Ours: whether ink that one stroke a line leaves bare is worth more strokes.
+    pub prefer: Prefer,
+    /// Ours: smaller marks of ink are dirt, and smaller holes in it too, px; `None` for what a pen of the lines' width
+    /// cannot have made.
+    pub smallest_mark_px: Option<u32>,
+    /// Ours: what is wider is no line but an area, px; `None` for 6 times the lines' width, in mixed mode 3 times. It is
+    /// at least what the pen of [`Vectorizer::areas`] needs to find its way inside.
+    pub max_line_px: Option<u32>,
+    /// Ours: how lines are thinned.
+    pub thinning: ThinningMethod,
+    /// Ours: how areas are drawn.
+    pub areas: Areas,
+    /// Ours: the order of the strokes.
+    pub order: Order,
+    /// Ours: rows that are worked on at a time. A measure of memory alone: it changes no result.
+    pub band_rows: u32,
+}
+
+impl Default for Vectorizer {
+    /// Ours to half a pixel, everything found from the picture, straight lines only, areas outlined by a pen of one pixel.
+    fn default() -> Self {
+        Self {
+            algorithm: Algorithm::default(),
+            threshold: Threshold::default(),
+            tracking: OrderedTracking::default(),
+            published: DynamicThreshold::default(),
+            ours: Bounded::default(),
+            arcs: false,
+            curves: false,
+            mode: Mode::default(),
+            prefer: Prefer::default(),
+            smallest_mark_px: None,
+            max_line_px: None,
+            thinning: ThinningMethod::default(),
+            areas: Areas { style: AreaStyle::Outline, pen_px: 1.0 },
+            order: Order { lettering: Some(Lettering::default()), ..Order::default() },
+            band_rows: 2048,
+        }
+    }
+}
+
+/// What the vectorization found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Vectorized {
+    /// The strokes, all of them within the picture.
+    pub drawing: Drawing,
+    /// How far the pixels lie from them, but for dirt. Of areas, which are outlined or hatched, those at the
+    /// edge count, and not what is inside.
+    pub error: ErrorReport,
+    /// What the pens draw beside the ink.
+    pub beyond: Beyond,
+    /// How ink was told from paper; `None` for an empty sheet, or for a picture that came as a bitmap.
+    pub split: Option<Split>,
+    /// What was taken for dirt, and is not drawn: no error is told of it.
+    pub removed: Despeckled,
+}
+
+/// Most ink of a picture that is vectorized: 2²⁵ px, five times the lines of a dense A0 sheet at 300 dots per inch,
+/// take 6 s and 0.9 GB.
+pub const MAX_INK_PIXELS: u64 = 1 << 25;
+
+/// Why a picture cannot be vectorized.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum VectorizeError {
+    /// The promised error is no distance.
+    Tolerance {
+        /// What was asked, px.
+        tolerance_px: f64,
+    },
+    /// The picture has more ink than [`MAX_INK_PIXELS`]: it is no line drawing.
+    TooMuchInk {
+        /// Ink of the picture, px.
+        ink_pixels: u64,
+    },
+    /// The picture is noise.
+    TooManyFigures(TooManyFigures),
+    /// Both arcs and cubic curves are asked for.
+    ArcsAndCurves,
+    /// The style of the areas cannot be drawn.
+    Areas(AreaError),
+    /// There are no such pens.
+    Pens(PensError),
+    /// The one who asked for it stopped it.
+    Cancelled(Cancelled),
+}
+
+impl fmt::Display for VectorizeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tolerance { tolerance_px } => {
+                write!(f, "tolerance: {tolerance_px} px is not a positive number; 0.5 is half a pixel")
+            }
+            Self::TooMuchInk { ink_pixels } => write!(
+                f,
+                "{ink_pixels} px of ink where a line drawing has at most {MAX_INK_PIXELS}: set the threshold level by \
+                 hand, scan with fewer dots per inch, or cut the picture into sheets"
+            ),
+            Self::TooManyFigures(error) => error.fmt(f),
+            Self::ArcsAndCurves => f.write_str("arcs and curves: a stroke has one of them; leave one out"),
+            Self::Areas(error) => error.fmt(f),
+            Self::Pens(error) => error.fmt(f),
+            Self::Cancelled(error) => error.fmt(f),
+        }
+    }
+}
+
+impl From<Cancelled> for VectorizeError {
+    fn from(error: Cancelled) -> Self {
+        Self::Cancelled(error)
+    }
+}
+
+impl core::error::Error for VectorizeError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::TooManyFigures(error) => Some(error),
+            Self::Areas(error) => Some(error),
+            Self::Pens(error) => Some(error),
+            Self::Cancelled(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl Vectorizer {
+    /// Vectorizes a picture. An empty sheet (one level, no contrast, no pixels) gives an empty drawing.
+    ///
+    /// # Errors
+    /// [`VectorizeError`].
+    pub fn vectorize(&self, gray: &Gray) -> Result<Vectorized, VectorizeError> {
+        let (ink, split) = self.threshold.apply(gray);
+        // Of two levels the ink says all: its rims are no more exact, and dirt that was taken out is no rim.
+        let grey = split.filter(|split| split.has_greys).map(|split| (gray, split.ink_is_dark));
+        Ok(Vectorized { split, ..self.trace_ink(ink, grey)? })
+    }
+
+    /// The ink of a picture that is vectorized: told from the paper and, by ours, without dirt.
+    ///
+    /// ```
+    /// # use plotter_vector::{Gray, Vectorizer};
+    /// let line = [250, 250, 20, 20, 20, 20, 20, 20, 250, 250];
+    /// let scan = Gray::new(10, 2, [line, [250; 10]].concat())?;
+    /// assert_eq!(Vectorizer::default().ink(&scan).to_string(), "..######..\n..........\n");
+    /// # Ok::<(), plotter_vector::picture::GrayError>(())
+    /// ```
+    #[must_use]
+    pub fn ink(&self, gray: &Gray) -> Bitmap {
+        let (mut ink, _) = self.threshold.apply(gray);
+        if self.algorithm == Algorithm::Ours {
+            self.clean(&mut ink);
+        }
+        ink
+    }
+
+    /// Vectorizes ink.
+    ///
+    /// # Errors
+    /// [`VectorizeError`].
+    pub fn trace(&self, ink: &Bitmap) -> Result<Vectorized, VectorizeError> {
+        self.trace_ink(ink.clone(), None)
+    }
+
+    fn trace_ink(&self, mut ink: Bitmap, grey: Option<(&Gray, bool)>) -> Result<Vectorized, VectorizeError> {
+        let Unordered { drawing, errors, areas, removed } = self.unordered(&mut ink, grey)?;
+        let (drawing, errors) = self.completed(drawing, errors, &ink, areas.as_ref());
+        let drawing = if self.algorithm == Algorithm::Ours { self.order.apply(&drawing) } else { drawing };
+        let errors = self.known_or_measured(errors, &ink, &drawing, areas.as_ref());
+        Ok(Vectorized { drawing, error: errors.report, beyond: errors.beyond, split: None, removed })
+    }
+
+    /// The strokes, with more for the ink that those of ours leave bare. The errors stay known only where
+    /// none were added.
+    pub(crate) fn completed(
+        &self,
+        mut drawing: Drawing,
+        errors: Option<SheetErrors>,
+        ink: &Bitmap,
+        areas: Option<&Opening>,
+    ) -> (Drawing, Option<SheetErrors>) {
+        if !self.adds_strokes() {
+            return (drawing, errors);
+        }
+        let is_kept = errors.as_ref().is_some_and(|errors| errors.report.max_px <= self.ours.tolerance_px);
+        let mut added = Vec::new();
+        if !is_kept {
+            let drawn = with_widths(ink, &drawing, areas.map(|areas| self.area_pen(areas)));
+            let lines = areas.map(|areas| areas.split_of(ink).thin);
+            added = self.bare_ink(&drawn).strokes(ink, lines.as_ref().unwrap_or(ink), 0, &(0..ink.height()));
+        }
+        let errors = errors.filter(|_| added.is_empty());
+        added.into_iter().for_each(|stroke| drawing.push_curve(1, within(stroke, ink.width(), ink.height())));
+        (drawing, errors)
+    }
+
+    /// Whether strokes are added for what is bare.
+    pub(crate) fn adds_strokes(&self) -> bool {
+        self.algorithm == Algorithm::Ours && self.mode != Mode::Outline && self.prefer != Prefer::Strokes
+    }
+
+    /// What strokes leave bare.
+    pub(crate) fn bare_ink<'a>(&self, drawn: &'a Index) -> BareInk<'a> {
+        let spots = self.prefer == Prefer::Ink;
+        BareInk { drawn, within_px: self.ours.tolerance_px, segment_kinds: self.segment_kinds(), spots }
+    }
+
+    /// The errors of a drawing: what is known of lines one pixel wide from their figures, or measured.
+    pub(crate) fn known_or_measured(
+        &self,
+        known: Option<SheetErrors>,
+        ink: &Bitmap,
+        drawing: &Drawing,
+        areas: Option<&Opening>,
+    ) -> SheetErrors {
+        match known {
+            Some(errors) => SheetErrors { beyond: beyond_hairlines(ink, drawing), ..errors },
+            None => self.errors(ink, drawing, areas),
+        }
+    }
+
+    /// The errors of a drawing, with the areas that were told from lines.
+    fn errors(&self, ink: &Bitmap, drawing: &Drawing, areas: Option<&Opening>) -> SheetErrors {
+        let mut tally = ErrorTally::default();
+        let beyond = add_coverage(ink, drawing, areas.map(|areas| self.area_pen(areas)), &mut tally);
+        SheetErrors { report: tally.report(), worst: tally.worst(), beyond }
+    }
+
+    /// The pen that draws areas.
+    pub(crate) fn area_pen<'a>(&self, opening: &'a Opening) -> AreaPen<'a> {
+        AreaPen { opening, pen_px: self.areas.pen_px, is_raster: false }
+    }
+
+    /// The strokes as they are found; takes the dirt out of `ink`.
+    pub(crate) fn unordered(
+        &self,
+        ink: &mut Bitmap,
+        grey: Option<(&Gray, bool)>,
+    ) -> Result<Unordered, VectorizeError> {
+        if self.algorithm == Algorithm::Published {
+            let (drawing, errors) = self.published(ink)?;
+            let removed = Despeckled::default();
+            return Ok(Unordered { drawing, errors: Some(errors), areas: None, removed });
+        }
+        self.check()?;
+        let ink_pixels = ink.count();
+        let (pen, removed) = self.clean(ink);
+        if self.keeps_pixels(pen, || grey.is_some_and(|(gray, _)| has_rims(gray, ink_pixels))) {
+            let (drawing, errors) = self.tracked(ink, pen.hairlines)?;
+            // Of what is not straight the errors are not known from the figures.
+            let errors = drawing.is_straight().then_some(errors);
+            return Ok(Unordered { drawing, errors, areas: None, removed });
+        }
+        let strokes = self.strokes(ink, grey, pen)?;
+        let mut drawing = Drawing::new(ink.width(), ink.height());
+        for stroke in strokes {
+            drawing.push_curve(1, within(stroke, ink.width(), ink.height()));
+        }
+        let areas = Some(self.opening(pen.width_px));
+        Ok(Unordered { drawing, errors: None, areas, removed })
+    }
+
+    /// Takes the dirt out of ink; the pen that drew it, and what was taken.
+    fn clean(&self, ink: &mut Bitmap) -> (Pen, Despeckled) {
+        let pen = Pen::of(ink);
+        (pen, despeckle(ink, self.smallest_mark_px(pen.width_px)))
+    }
+
+    /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Where these are is better known of grey
+    /// rims.
+    pub(crate) fn keeps_pixels(&self, pen: Pen, has_rims: impl Fn() -> bool) -> bool {
+        let is_raster = pen.width_px <= 1 && pen.hairlines != Hairlines::Pen;
+        is_raster && self.mode != Mode::Outline && !has_rims()
+    }
+
+    /// Pixels of the smallest mark of ours that is no dirt.
+    pub(crate) fn smallest_mark_px(&self, pen_px: u32) -> u32 {
+        self.smallest_mark_px.unwrap_or(smallest_mark_px(pen_px))
+    }
+
+    /// The strokes of lines and areas.
+    fn strokes(
+        &self,
+        ink: &Bitmap,
+        grey: Option<(&Gray, bool)>,
+        pen: Pen,
+    ) -> Result<Vec<Curve>, VectorizeError> {
+        let split = self.opening(pen.width_px).split_of(ink);
+        let centring = self.centring_of(pen);
+        let mut strokes = centring.strokes(&split.thin, grey);
+        let areas = &split.thick;
+        let mut islands = Islands::new(areas.width());
+        for y in 0..areas.height() {
+            if let Some((first_row, areas)) = islands.push(areas.row(y)) {
+                strokes.extend(self.area_strokes(first_row, &areas)?);
+            }
+        }
+        if let Some((first_row, areas)) = islands.finish() {
+            strokes.extend(self.area_strokes(first_row, &areas)?);
+        }
+        Ok(strokes)
+    }
+
+    /// Whether ours can be done as asked.
+    pub(crate) fn check(&self) -> Result<(), VectorizeError> {
+        let tolerance_px = self.ours.tolerance_px;
+        if !(tolerance_px > 0.0 && tolerance_px.is_finite()) {
+            return Err(VectorizeError::Tolerance { tolerance_px });
+        }
+        if self.arcs && self.curves {
+            return Err(VectorizeError::ArcsAndCurves);
+        }
+        self.areas.paths(&Bitmap::empty()).map(drop).map_err(VectorizeError::Areas)
+    }
+
+    /// Widest line, px.
+    pub(crate) fn max_line_px(&self, pen_px: u32) -> u32 {
+        let lines = self.max_line_px.unwrap_or(match self.mode {
+            Mode::Mixed => (3 * pen_px).max(6),
+            Mode::Centreline | Mode::Outline => (6 * pen_px).max(12),
+        });
+        lines.max(self.areas.narrowest_px())
+    }
+
+    /// What tells areas from lines.
+    pub(crate) fn opening(&self, pen_px: u32) -> Opening {
+        match self.mode {
+            Mode::Outline => Opening::of_pen(self.areas.pen_px),
+            Mode::Centreline | Mode::Mixed => Opening::of_lines(self.max_line_px(pen_px)),
+        }
+    }
+
+    /// How lines of a pen become strokes.
+    pub(crate) fn centring_of(&self, pen: Pen) -> Centring {
+        let centring = self.centring(self.max_line_px(pen.width_px));
+        Centring { redraw: true, hairlines: pen.hairlines, ..centring }
+    }
+
+    /// How lines become strokes.
+    pub(crate) fn centring(&self, max_line_px: u32) -> Centring {
+        // The promise holds for the middle of the ink; part of it goes for the jumps of its edges from pixel to pixel.
+        let bounded = Bounded { tolerance_px: 0.85 * self.ours.tolerance_px };
+        // What is left of an area's rim may be as wide again.
+        let centring = Centring::new(self.thinning, max_line_px, bounded, self.band_rows);
+        Centring { segment_kinds: self.segment_kinds(), ..centring }
+    }
+
+    /// What strokes are made of.
+    fn segment_kinds(&self) -> SegmentKinds {
+        if self.arcs {
+            SegmentKinds::Arcs
+        } else if self.curves {
+            SegmentKinds::Curves
+        } else {
+            SegmentKinds::Lines
+        }
+    }
+
+    /// The strokes of the areas in some rows, of which the first is row `first_row` of the picture.
+    pub(crate) fn area_strokes(&self, first_row: u32, areas: &Bitmap) -> Result<Vec<Curve>, VectorizeError> {
+        let paths = self.areas.paths(areas).map_err(VectorizeError::Areas)?;
+        let top = f64::from(first_row);
+        let stroke = |path: AreaPath| {
+            let mut stroke = self.simplified(&path.sites, path.closed);
+            stroke.move_down(top);
+            stroke
+        };
+        Ok(paths.map(stroke).collect())
+    }
+
+    /// A stroke through sites, by ours.
+    fn simplified(&self, sites: &[PxPoint], closed: bool) -> Curve {
+        self.ours.stroke(sites, closed, self.segment_kinds())
+    }
+
+    /// Ours for lines one pixel wide.
+    fn tracked(&self, ink: &Bitmap, hairlines: Hairlines) -> Result<(Drawing, SheetErrors), VectorizeError> {
+        let mut bare = ink.clone();
+        let corners = if hairlines == Hairlines::Stairs { take_out(&mut bare) } else { Vec::new() };
+        let figures = put_back(&link(&self.figures(&bare)?), &corners, ink.width(), ink.height());
+        drop(bare);
+        let cut = cut_at_turns(&figures, ink);
+        drop(figures);
+        // Of a sheet full of ink each step's figures are large: none outlives its use.
+        let GoneOn { figures: straight, shared } = straight_on(&cut, ink);
+        drop(cut);
+        let linked = link(&straight);
+        drop(straight);
+        let Joined { figures, borrowed } = join(&linked, ink);
+        drop(linked);
+        let lent = |index: usize| borrowed.get(index).copied().unwrap_or_default();
+        // Arcs and curves do not pass where the straight segments do.
+        let covered_px = (self.segment_kinds() == SegmentKinds::Lines).then_some(self.ours.tolerance_px);
+        let (straight, errors) = simplify(ink, &figures, lent, &shared, &self.ours, covered_px);
+        let drawing = match self.segment_kinds() {
+            SegmentKinds::Lines => straight,
+            _ => self.bent(&figures, &straight),
+        };
+        Ok((drawing, errors))
+    }
+
+    /// The strokes of figures, with arcs or curves where they save vertices.
+    fn bent(&self, figures: &Figures, straight: &Drawing) -> Drawing {
+        let mut drawing = Drawing::new(straight.width_px(), straight.height_px());
+        // Each figure has pixels, so each has its stroke.
+        for (figure, stroke) in figures.iter().zip(straight.strokes()) {
+            let sites: Vec<PxPoint> = figure.iter().map(|pixel| PxPoint::from(*pixel)).collect();
+            let closed = sites.len() > 3 && sites.first() == sites.last();
+            let curve = self.ours.stroke(&sites, closed, self.segment_kinds());
+            let curve = within(curve, straight.width_px(), straight.height_px());
+            let pays = !curve.is_straight() && curve.vertices.len() < stroke.len();
+            drawing.push_curve(1, if pays { curve } else { stroke.to_vec().into() });
+        }
+        drawing
+    }
+
+    fn published(&self, ink: &Bitmap) -> Result<(Drawing, SheetErrors), VectorizeError> {
+        Ok(simplify(ink, &self.figures(ink)?, |_| (false, false), &Bitmap::empty(), &self.published, None))
+    }
+
+    fn figures(&self, ink: &Bitmap) -> Result<Figures, VectorizeError> {
+        let ink_pixels = ink.count();
+        if ink_pixels > MAX_INK_PIXELS {
+            return Err(VectorizeError::TooMuchInk { ink_pixels });
+        }
+        self.tracking.track(ink).map_err(VectorizeError::TooManyFigures)
+    }
+}
+
+/// The strokes of a picture as they are found.
+pub(crate) struct Unordered {
+    pub(crate) drawing: Drawing,
+    /// The errors, where they are known from the figures, but for what is drawn beside the ink.
+    pub(crate) errors: Option<SheetErrors>,
+    /// What told areas from lines, where something did.
+    pub(crate) areas: Option<Opening>,
+    /// What was taken for dirt.
+    pub(crate) removed: Despeckled,
+}
+
+/// A stroke of each figure, but for what others draw within `covered_px`, and the errors; of pixels that figures share those of the
+/// first of them.
+fn simplify(
+    ink: &Bitmap,
+    figures: &Figures,
+    borrowed: impl Fn(usize) -> (bool, bool),
+    shared: &Bitmap,
+    algorithm: &impl Simplify,
+    covered_px: Option<f64>,
+) -> (Drawing, SheetErrors) {
+    let kept: Vec<Vec<usize>> = figures.iter().map(|figure| algorithm.keep(figure)).collect();
+    let covered = covered_px.map(|tolerance_px| Covered::of(figures, &kept, ink, tolerance_px));
+    let is_covered = |index: usize| covered.as_ref().is_some_and(|covered| covered.has(index));
+    let mut drawing = Drawing::new(ink.width(), ink.height());
+    let mut tally = ErrorTally::default();
+    let mut seen = BTreeSet::new();
+    let mut counts = |at: Pixel| !shared.get(at) || seen.insert(at);
+    for (index, (figure, kept)) in
+        figures.iter().zip(&kept).enumerate().filter(|(index, _)| !is_covered(*index))
+    {
+        tally.add_those(figure, kept, borrowed(index), &mut counts);
+        let vertex = |index: &usize| figure.get(*index).copied().map(|pixel: Pixel| PxPoint::from(pixel));
+        drawing.push(kept.iter().filter_map(vertex));
+    }
+    for (index, figure) in figures.iter().enumerate().filter(|(index, _)| is_covered(*index)) {
+        let (first, last) = borrowed(index);
+        let own = usize::from(first)..figure.len() - usize::from(last);
+        for at in figure.get(own).unwrap_or(&[]).iter().filter(|at| counts(**at)) {
+            let off_px = covered.as_ref().and_then(|covered| covered.off_px(*at));
+            tally.add_pixel(*at, off_px.unwrap_or_default());
+        }
+    }
+    (drawing, SheetErrors { report: tally.report(), worst: tally.worst(), ..SheetErrors::default() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with(algorithm: Algorithm, tolerance_px: f64) -> Vectorizer {
+        Vectorizer { algorithm, ours: Bounded { tolerance_px }, ..Vectorizer::default() }
+    }
+
+    #[test]
+    fn a_tolerance_that_is_no_distance_is_refused_by_ours_only() {
+        let dot = Bitmap::from_picture("#").unwrap();
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let error = with(Algorithm::Ours, bad).trace(&dot).unwrap_err();
+            assert_eq!(
+                error.to_string(),
+                format!("tolerance: {bad} px is not a positive number; 0.5 is half a pixel")
+            );
+            assert!(with(Algorithm::Published, bad).trace(&dot).is_ok());
+        }
+    }
+
+    #[test]
+    fn arcs_and_curves_exclude_each_other() {
+        let both = Vectorizer { arcs: true, curves: true, ..Vectorizer::default() };
+        assert_eq!(
+            both.trace(&Bitmap::empty()).unwrap_err().to_string(),
+            "arcs and curves: a stroke has one of them; leave one out"
+        );
+    }
+
+    #[test]
+    fn a_large_black_area_is_refused_before_memory_is_taken_by_who_follows_it_pixel_by_pixel() {
+        let (width, height) = (8192, 4097);
+        let mut black = Bitmap::new(width, height).unwrap();
+        (0..height).for_each(|y| black.row_mut(y).fill(u64::MAX));
+        let published = Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() };
+        assert_eq!(
+            published.trace(&black).unwrap_err(),
+            VectorizeError::TooMuchInk { ink_pixels: 8192 * 4097 }
+        );
+    }
+
+    #[test]
+    fn beside_a_large_area_a_line_is_centred_and_the_area_outlined() {
+        let mut ink = Bitmap::new(400, 300).unwrap();
+        for (x, y) in (0..300).flat_map(|y| (0..400).map(move |x| (x, y))) {
+            let is_area = (50..250).contains(&x) && (40..260).contains(&y);
+            let is_line = (260..390).contains(&x) && (100..105).contains(&y);
+            ink.set(Pixel::new(x, y), is_area || is_line);
+        }
+        let traced = Vectorizer::default().trace(&ink).unwrap();
+        let mut vertices: Vec<usize> = traced.drawing.strokes().map(<[PxPoint]>::len).collect();
+        vertices.sort_unstable();
+        assert_eq!(vertices, [2, 5]);
+        // All of the line, and of the area its edge, where the pen goes.
+        assert_eq!(traced.error.pixels, 130 * 5 + 2 * (200 + 218));
+        // A round pen leaves the corners of the line's square end bare.
+        assert!(traced.error.max_px < 1.1, "{:?}", traced.error);
+    }
+
+    #[test]
+    fn a_sheet_without_ink_gives_an_empty_drawing_of_its_size() {
+        for (width, height) in [(0, 0), (0, 3), (1, 1), (3, 2)] {
+            for level in [0, 255] {
+                let levels = vec![level; (width * height) as usize];
+                let traced =
+                    Vectorizer::default().vectorize(&Gray::new(width, height, levels).unwrap()).unwrap();
+                assert_eq!((traced.drawing.width_px(), traced.drawing.height_px()), (width, height));
+                assert_eq!((traced.drawing.vertices(), traced.error.pixels, traced.split), (0, 0, None));
+            }
+        }
+    }
+}
