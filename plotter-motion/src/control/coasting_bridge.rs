@@ -21,6 +21,8 @@ use core::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct CoastingBridge {
+    /// Period of the pulses, s.
+    pub period_s: f32,
     /// L/R as a share of the pulses' period.
     pub tau_periods: f32,
     /// Back EMF as a share of the supply, by speed in counts/s.
@@ -36,6 +38,7 @@ impl CoastingBridge {
         let rad_per_count = TAU / axis.counts_per_turn();
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         (motor.enable_pwm_hz > 0.0).then(|| Self {
+            period_s: (1.0 / motor.enable_pwm_hz) as f32,
             tau_periods: (motor.inductance_h / motor.resistance_ohm * motor.enable_pwm_hz) as f32,
             back_emf_s: (motor.back_emf_v_s * rad_per_count / motor.supply_v) as f32,
             clamps: (CLAMPS_V / motor.supply_v) as f32,
@@ -49,6 +52,27 @@ impl CoastingBridge {
             return back_emf; // no current
         }
         back_emf + libm::copysignf(self.pull(duty.abs(), libm::copysignf(1.0, duty) * back_emf).0, duty)
+    }
+
+    /// How fast pulses of `duty` push on a shaft that stands again before the next one, counts/s: one whose dry friction holds it
+    /// against their mean, but not against their peaks. Friction, and what the whole supply accelerates it by, are in counts/s^2.
+    ///
+    /// The current of a short pulse rises to its peak and falls to nothing as straight lines. While it is above the friction the shaft
+    /// gains speed, under a push that is a triangle; then friction takes it again, which the rest of the current helps half away.
+    pub(super) fn creep(&self, duty: Duty, friction: f32, accel: f32) -> f32 {
+        let (value, Circuit { rise, fall }) = (duty.value().abs(), self.circuit(0.0));
+        // 1 - exp(-x) to 3 % for x up to 1, as short pulses have it
+        let x = value / self.tau_periods;
+        let peak = rise * x / (1.0 + 0.55 * x);
+        let push = accel * peak;
+        if push <= friction {
+            return 0.0;
+        }
+        let (falls, held) = (self.tau_periods * peak / (fall + 0.5 * peak), friction / push);
+        let above_s = (value + falls) * (1.0 - held) * self.period_s;
+        let speed = 0.5 * (push - friction) * above_s;
+        let tail_s = falls * held * self.period_s;
+        libm::copysignf(0.5 * speed * (above_s + tail_s + speed / friction) / self.period_s, duty.value())
     }
 
     /// The duty, -1 to 1, whose pulses do at `speed` what the share `voltage` of the supply does.
@@ -149,6 +173,25 @@ mod tests {
                     "{speed} {voltage}: {duty}, {found}"
                 );
             }
+        }
+    }
+
+    /// A shaft that friction holds against the mean of the pulses, and not against their peaks.
+    #[test]
+    fn a_shaft_creeps_under_pulses_below_its_friction() {
+        let axis = axis();
+        let (bridge, model) = (CoastingBridge::of(&axis).unwrap(), crate::control::ShaftModel::new(&axis));
+        let accel = model.accel_per_volt * model.supply_v;
+        let friction = model.dry_friction;
+        for share in [0.5_f32, 0.8, 0.95] {
+            let duty = Duty::saturating(bridge.duty(share * friction / accel, 0.0));
+            let mut plant = AxisPlant::new(&axis, 1e-6);
+            for _ in 0..400_000 {
+                plant.step(duty, |_| ());
+            }
+            let counts_s = (plant.position_counts() - AxisPlant::new(&axis, 1e-6).position_counts()) / 0.4;
+            let found = f64::from(bridge.creep(duty, friction, accel));
+            assert!((found / counts_s - 1.0).abs() < 0.15, "{share}: {found} counts/s, {counts_s} counts/s");
         }
     }
 

@@ -55,10 +55,21 @@ use core::time::Duration;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contouring {
-    settings: ContouringSettings,
+    law: Law,
     x: LedAxis,
     y: LedAxis,
     line: LinePlan,
+}
+
+/// What its runs need of the settings: the rest goes to plan and axes when they are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Law {
+    period_us: u32,
+    along: PositionGains,
+    across: PositionGains,
+    tolerance_counts: f32,
+    settle_us: u32,
+    wait: Wait,
 }
 
 /// What [`Contouring`] must know of a machine: numbers that a firmware keeps in its program memory. A plan is made
@@ -121,6 +132,12 @@ impl PositionGains {
         #[expect(clippy::cast_possible_truncation, reason = "f32 is the precision of the control loop")]
         let w = (natural_hz * TAU) as f32;
         Self { position: w * w, speed: 2.0 * w }
+    }
+}
+
+impl Law {
+    const fn period(&self) -> Duration {
+        Duration::from_micros(self.period_us as u64)
     }
 }
 
@@ -212,11 +229,14 @@ impl Contouring {
     /// The same from settings.
     #[must_use]
     pub fn with_settings(settings: ContouringSettings) -> Self {
+        let ContouringSettings { limits, period_us, along, across, tolerance_counts, settle_us, .. } =
+            settings;
+        let wait = Wait { from_counts: settings.wait_from_counts, counts: settings.wait_counts };
         Self {
-            settings,
+            law: Law { period_us, along, across, tolerance_counts, settle_us, wait },
             x: LedAxis::new(settings.x),
             y: LedAxis::new(settings.y),
-            line: LinePlan::at_rest(settings.limits),
+            line: LinePlan::at_rest(limits),
         }
     }
 
@@ -237,9 +257,8 @@ impl Contouring {
             self.y.stop();
             return;
         }
-        let ContouringSettings { along, across, tolerance_counts, period_us, .. } = self.settings;
-        let wait = Wait { from_counts: self.settings.wait_from_counts, counts: self.settings.wait_counts };
-        let period = self.settings.period();
+        let Law { along, across, tolerance_counts, period_us, wait, .. } = self.law;
+        let period = self.law.period();
         let (start, target, [ux, uy]) = (self.line.start(), self.line.target(), self.line.direction());
         let point = self.line.at(self.line.plan_s());
 
@@ -295,7 +314,7 @@ impl Contouring {
 
 impl LineController for Contouring {
     fn period(&self) -> Option<Duration> {
-        Some(self.settings.period())
+        Some(self.law.period())
     }
 
     fn start(&mut self, now: Duration, target: StepPoint) -> Demand {
@@ -336,7 +355,7 @@ impl LineController for Contouring {
     }
 
     fn has_arrived(&self) -> bool {
-        self.line.has_settled(self.settings.settle_us)
+        self.line.has_settled(self.law.settle_us)
     }
 
     fn trouble(&self) -> Option<AxisTrouble> {

@@ -153,7 +153,7 @@ mod tests {
                     last.edge();
                 }
                 motion.offset = 0.5;
-                motion.stands();
+                motion.stands(1.0);
             }
         }
         None

@@ -3,7 +3,7 @@
 use super::coasting_bridge::CoastingBridge;
 use super::last_counts::LastCounts;
 use super::rounded_duty::RoundedDuty;
-use super::{AxisTrouble, ShaftEstimator, ShaftSettings};
+use super::{AxisTrouble, ShaftEstimator, ShaftModel, ShaftSettings};
 use crate::{Axis, Direction, Duty, config::Decoding};
 use core::time::Duration;
 
@@ -54,11 +54,19 @@ impl LedAxis {
     pub(super) fn predict(&mut self, now: Duration) {
         let dt_s = now.saturating_sub(self.estimated_at).as_secs_f32();
         self.estimated_at = self.estimated_at.max(now);
+        let ShaftModel { accel_per_volt, supply_v, dry_friction, .. } = *self.estimator.model();
+        let speed = self.estimator.speed_counts_s();
         let share = match &self.coasting {
-            Some(bridge) => bridge.voltage(self.applied, self.estimator.speed_counts_s()),
+            Some(bridge) => bridge.voltage(self.applied, speed),
             None => self.applied.value(),
         };
-        self.estimator.predict(dt_s, share * self.estimator.model().supply_v);
+        let creep = match &self.coasting {
+            Some(bridge) if speed == 0.0 => {
+                bridge.creep(self.applied, dry_friction, accel_per_volt * supply_v)
+            }
+            _ => 0.0,
+        };
+        self.estimator.predict_pulses(dt_s, share * supply_v, creep);
     }
 
     /// Takes an edge; how far from the resting place of the count that it leads into it lies, counts.

@@ -23,7 +23,7 @@ pub(super) struct LinePlan {
 }
 
 /// From which lag on the reference slows down, and at which it waits, counts.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wait {
     pub(super) from_counts: f32,
     pub(super) counts: f32,

@@ -186,7 +186,7 @@ impl ShaftEstimator {
 
     /// Takes the shaft for one that stands where it is thought to be.
     pub const fn stands(&mut self) {
-        self.motion.stands();
+        self.motion.stands(self.model.dry_friction);
         self.disturbance = 0.0;
         self.rested = true;
     }
@@ -194,6 +194,11 @@ impl ShaftEstimator {
     /// Moves the estimate on by `dt_s` under `voltage_v`; nothing happens unless the time is above 0 and both are
     /// finite.
     pub fn predict(&mut self, dt_s: f32, voltage_v: f32) {
+        self.predict_pulses(dt_s, voltage_v, 0.0);
+    }
+
+    /// The same for a shaft that pulses push on at `creep` counts/s while their mean does not move it.
+    pub(super) fn predict_pulses(&mut self, dt_s: f32, voltage_v: f32, creep: f32) {
         if dt_s <= 0.0 || !dt_s.is_finite() || !voltage_v.is_finite() {
             return;
         }
@@ -213,6 +218,7 @@ impl ShaftEstimator {
         let push = drive + self.disturbance.clamp(-doubt, doubt);
         if speed == 0.0 && push.abs() <= dry_friction {
             self.fit.interrupted();
+            self.motion.creeps(creep * dt_s);
             return;
         }
         let sense = if speed == 0.0 { push } else { speed };
@@ -251,7 +257,7 @@ impl ShaftEstimator {
 
     /// Takes note that no edge came up to the moment that was predicted last.
     pub fn no_edge(&mut self) {
-        self.motion.without_edge();
+        self.motion.without_edge(self.model.dry_friction);
         if let Some(model) = self.fit.found() {
             self.model = model;
         }

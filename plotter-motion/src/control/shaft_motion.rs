@@ -18,11 +18,16 @@ pub(super) struct ShaftMotion {
     overrun: f32,
     /// How far `speed` may be off, counts/s, since the last edge said how fast it was.
     speed_doubt: f32,
+    /// How far `offset` may be off, counts, since the last edge said where it was.
+    place_doubt: f32,
     /// Where it was when that was last known, relative to `count`: at an edge, or at rest.
     from: f32,
     /// Whether it may have gone up or down from there.
     up: bool,
     down: bool,
+    /// Whether it rests so near to the upper or the lower end of A's high half that it may be on either side of it.
+    at_upper: bool,
+    at_lower: bool,
 }
 
 /// How much of a difference a filter takes, by the time since it took the last.
@@ -47,9 +52,12 @@ impl ShaftMotion {
             since_correction_s: 0.0,
             overrun: 0.0,
             speed_doubt: 0.0,
+            place_doubt: 0.0,
             from: offset,
             up: false,
             down: false,
+            at_upper: false,
+            at_lower: false,
         }
     }
 
@@ -86,6 +94,13 @@ impl ShaftMotion {
         self.speed * sense > self.speed_doubt * sense.abs()
     }
 
+    /// Pulses push it on by so many counts, and it stands between them.
+    pub(super) fn creeps(&mut self, counts: f32) {
+        self.offset += counts;
+        self.up |= counts > 0.0;
+        self.down |= counts < 0.0;
+    }
+
     /// Takes note of a drive of `accel` counts/s^2 against a dry friction; says whether it may have turned the shaft round.
     pub(super) fn may_turn_under(&mut self, accel: f32, dry_friction: f32) -> bool {
         // A push of less than this share of the friction as it is known moves no shaft.
@@ -99,6 +114,7 @@ impl ShaftMotion {
 
     /// Its acceleration may be off by so much, counts/s^2, for `dt_s`.
     pub(super) fn doubts(&mut self, accel: f32, dt_s: f32) {
+        self.place_doubt += (self.speed_doubt + 0.5 * accel * dt_s) * dt_s;
         self.speed_doubt += accel * dt_s;
     }
 
@@ -114,9 +130,10 @@ impl ShaftMotion {
     pub(super) fn enter(&mut self, direction: Direction) -> f32 {
         let (count, place) = self.edge_place(direction);
         (self.up, self.down) = (direction == Direction::Plus, direction == Direction::Minus);
+        (self.at_upper, self.at_lower) = (false, false);
         #[expect(clippy::cast_precision_loss, reason = "0, 1 or -1")]
         let counts = count.saturating_sub(self.count) as f32;
-        (self.count, self.from) = (count, place);
+        (self.count, self.from, self.place_doubt) = (count, place, 0.0);
         self.offset -= counts;
         place
     }
@@ -125,13 +142,17 @@ impl ShaftMotion {
     ///
     /// That it is late says that it was slower since the last edge, by what it is short of over that time. That it has not come where
     /// the shaft should have long been far beyond it says that something holds the shaft.
-    pub(super) fn without_edge(&mut self) -> bool {
+    pub(super) fn without_edge(&mut self, dry_friction: f32) -> bool {
         // So far beyond the edge it would have to be, counts, if nothing held it.
         const HELD_COUNTS: f32 = 1.5;
         let (least, most) = match self.decoding {
             // up from below A's high half there is an edge at its start, down from above it one at its end
-            Decoding::X1 if self.up && !self.down => (self.from, if self.from < 0.0 { 0.0 } else { 1.0 }),
-            Decoding::X1 if self.down && !self.up => (if self.from > 0.5 { 0.5 } else { -0.5 }, self.from),
+            Decoding::X1 if self.up && !self.down => {
+                (self.from, if self.from < 0.0 && !self.at_lower { 0.0 } else { 1.0 })
+            }
+            Decoding::X1 if self.down && !self.up => {
+                (if self.from > 0.5 && !self.at_upper { 0.5 } else { -0.5 }, self.from)
+            }
             Decoding::X1 => (-0.5, 1.0),
             Decoding::X2 | Decoding::X4 => (0.0, 1.0),
         };
@@ -144,7 +165,7 @@ impl ShaftMotion {
         self.overrun += beyond.abs();
         if self.overrun > HELD_COUNTS + self.speed.abs() / self.observer_rad_s {
             self.overrun = 0.0;
-            self.stands();
+            self.stands(dry_friction);
         } else {
             let (_, speed_gain, _) = self.gains();
             self.speed -= speed_gain * beyond;
@@ -152,10 +173,20 @@ impl ShaftMotion {
         true
     }
 
-    /// From here on it stands where it is thought to be.
-    pub(super) const fn stands(&mut self) {
-        (self.speed, self.speed_doubt) = (0.0, 0.0);
-        (self.from, self.up, self.down) = (self.offset, false, false);
+    /// From here on it stands, as near to where it is thought to be as its speed was known: a dry friction brought it to rest.
+    ///
+    /// So near to an edge it may stand on either side of it, and meet it however it goes on.
+    pub(super) const fn stands(&mut self, dry_friction: f32) {
+        if self.speed_doubt > 0.0 {
+            self.place_doubt += self.speed_doubt * self.speed_doubt / (2.0 * dry_friction);
+        }
+        (self.speed, self.speed_doubt, self.from) = (0.0, 0.0, self.offset);
+        if matches!(self.decoding, Decoding::X1) {
+            // It came from below to the upper end, and from above to the lower one: from the other side it would have met them.
+            self.at_upper = (self.up || self.at_upper) && (self.offset - 0.5).abs() <= self.place_doubt;
+            self.at_lower = (self.down || self.at_lower) && self.offset.abs() <= self.place_doubt;
+        }
+        (self.up, self.down) = (false, false);
     }
 
     /// The count after an edge, and the edge's place relative to it.
@@ -168,9 +199,19 @@ impl ShaftMotion {
                 Decoding::X2 | Decoding::X4 => 1.0,
             },
         };
-        // One way only, it met the first edge on its way; else the one that is nearer to where it is thought to be.
+        // Between the edge that it may have rested at and the next one is at least a whole count of way, and a slow shaft's way is known to
+        // a third of it.
+        const AT_ONCE_COUNTS: f32 = 0.25;
+        // One way only, it met the first edge on its way; from a rest at an edge that one at once or not at all. Else it met the one that is
+        // nearer to where it is thought to be.
         let is_next = match (self.decoding, direction) {
             (Decoding::X2 | Decoding::X4, _) => true,
+            (Decoding::X1, Direction::Plus) if !self.down && self.at_lower => {
+                self.offset > self.from + AT_ONCE_COUNTS
+            }
+            (Decoding::X1, Direction::Minus) if !self.up && self.at_upper => {
+                self.offset < self.from - AT_ONCE_COUNTS
+            }
             (Decoding::X1, Direction::Plus) if !self.down => self.from >= 0.0,
             (Decoding::X1, Direction::Minus) if !self.up => self.from <= 0.5,
             (Decoding::X1, Direction::Plus) => self.offset >= 0.5,
@@ -200,3 +241,51 @@ impl ShaftMotion {
 
 /// Below a few timer ticks a difference says nothing of the speed, s.
 const SHORTEST_S: f32 = 2e-5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRICTION: f32 = 1e5;
+
+    /// A shaft that came up into count 1 and rests where it was thought to be within 0.03 counts.
+    fn rests_at(offset: f32) -> ShaftMotion {
+        let mut motion = ShaftMotion::at_rest(Decoding::X1, 900.0);
+        motion.enter(Direction::Plus);
+        motion.doubts(3e3, 4.5e-3); // 3000 * 0.0045^2 / 2 = 0.03 counts, and 13.5 counts/s
+        motion.offset = offset;
+        motion.stands(FRICTION);
+        motion
+    }
+
+    /// The count after an edge that comes `way` counts down from the rest.
+    fn count_after_an_edge_down(mut motion: ShaftMotion, way: f32) -> i32 {
+        motion.may_turn_under(-FRICTION, FRICTION);
+        motion.offset -= way;
+        motion.enter(Direction::Minus);
+        motion.count
+    }
+
+    /// A rises on the way down at 0.5 of a count, and on the way up at 0: a shaft that rests about 0.5 may have 0.5 or -0.5 next.
+    #[test]
+    fn a_shaft_that_rests_at_an_edge_meets_it_at_once_or_not_at_all() {
+        for offset in [0.48, 0.497, 0.5, 0.52] {
+            assert_eq!(count_after_an_edge_down(rests_at(offset), 0.01), 1, "{offset}");
+            assert_eq!(count_after_an_edge_down(rests_at(offset), 0.4), 0, "{offset}");
+        }
+        // surely below it, and surely above it
+        assert_eq!(count_after_an_edge_down(rests_at(0.44), 0.01), 0);
+        assert_eq!(count_after_an_edge_down(rests_at(0.56), 0.06), 1);
+        assert_eq!(count_after_an_edge_down(rests_at(0.56), 0.4), 1);
+    }
+
+    #[test]
+    fn a_shaft_that_has_just_met_an_edge_does_not_meet_it_again_on_the_same_way() {
+        let mut motion = rests_at(0.25);
+        motion.may_turn_under(-FRICTION, FRICTION);
+        motion.enter(Direction::Minus); // count 0, at its 0.5
+        motion.offset = 0.5;
+        motion.stands(FRICTION);
+        assert_eq!(count_after_an_edge_down(motion, 0.01), -1);
+    }
+}

@@ -268,6 +268,34 @@ fn seed_of_the_day() -> u64 {
     std::env::var("PROPTEST_RNG_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(1)
 }
 
+/// How many of many drawings lose counts, on every bench that promises that none does.
+#[test]
+#[ignore = "a minute a seed in a release build, by hand: PROFILE_SEEDS of them, from PROPTEST_RNG_SEED on"]
+fn survey_of_lost_counts() {
+    let seeds: u64 = std::env::var("PROFILE_SEEDS").ok().and_then(|seeds| seeds.parse().ok()).unwrap_or(10);
+    for bench in &BENCHES {
+        let (mut drawn, mut failed) = (0, 0);
+        for seed in (seed_of_the_day()..).take(usize::try_from(seeds).unwrap()) {
+            let bed = bench.bed(0.25, seed);
+            for drawing in &drawings(&bed, seed) {
+                for controller in ["contouring", "cross-coupled"] {
+                    let figures = entry(controller).run(&bed, drawing, |_| ());
+                    drawn += 1;
+                    if figures.lost_counts > 0 || figures.settled.is_none() || !figures.is_finished() {
+                        failed += 1;
+                        println!(
+                            "{}, {controller}, {}, seed {seed}: {figures:?}",
+                            bench.about(),
+                            drawing.name
+                        );
+                    }
+                }
+            }
+        }
+        println!("{}: {failed} of {drawn}", bench.about());
+    }
+}
+
 /// The worst of several seeds that nothing was tuned with.
 #[derive(Default)]
 struct Worst {
