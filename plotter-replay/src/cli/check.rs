@@ -1,15 +1,15 @@
 //! `check`: the controller again, compared with its recording.
 
-use crate::commands::{Contents, Done, Verdict, open, read, say, say_damage};
-use crate::machine::read_machine;
-use clap::Args;
-use plotter_motion::Machine;
-use plotter_replay::log::{Header, Record};
-use plotter_replay::{
+use super::commands::{Contents, Done, Verdict, open, read, say, say_damage};
+use super::machine::read_machine;
+use crate::log::{Header, Record};
+use crate::{
     AnyController, CompareSettings, Controller, Outcome, Player, PlayerSettings,
     compare::{Decoder, compare},
     player::{EdgeSource, RecordingTraits},
 };
+use clap::Args;
+use plotter_motion::Machine;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

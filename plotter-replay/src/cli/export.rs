@@ -1,9 +1,9 @@
 //! `export`: a log for other programs.
 
-use crate::commands::{Done, Verdict, cannot, is_free, open, read, say, say_damage};
+use super::commands::{Done, Verdict, cannot, is_free, open, read, say, say_damage};
+use crate::export;
+use crate::log::Record;
 use clap::{Args, ValueEnum};
-use plotter_replay::export;
-use plotter_replay::log::Record;
 use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::PathBuf;
@@ -76,7 +76,7 @@ impl Export {
 
 #[cfg(feature = "mcap")]
 fn write_mcap(
-    header: &plotter_replay::log::Header,
+    header: &crate::log::Header,
     records: impl Iterator<Item = Record>,
     file: BufWriter<File>,
 ) -> Result<(), String> {
@@ -88,9 +88,9 @@ fn write_mcap(
 
 #[cfg(not(feature = "mcap"))]
 fn write_mcap(
-    _: &plotter_replay::log::Header,
+    _: &crate::log::Header,
     _: impl Iterator<Item = Record>,
     _: BufWriter<File>,
 ) -> Result<(), String> {
-    Err(String::from("this program was built without MCAP: cargo install plotter-replay --features cli,mcap"))
+    Err(format!("this program was built without MCAP: {}", super::with_feature("mcap")))
 }

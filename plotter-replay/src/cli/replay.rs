@@ -1,15 +1,15 @@
 //! `replay`: a recording, or the controller again on it, as fast as wanted.
 
-use crate::check::Rerunnable;
-use crate::commands::{Contents, Done, Verdict, is_free, open, read, say, say_damage, seconds};
-use clap::Args;
-use plotter_replay::export;
-use plotter_replay::log::{self, Header, Record};
-use plotter_replay::{
+use super::check::Rerunnable;
+use super::commands::{Contents, Done, Verdict, is_free, open, read, say, say_damage, seconds};
+use crate::export;
+use crate::log::{self, Header, Record};
+use crate::{
     Player,
     compare::Decoder,
     player::{Pace, PaceSettings, Stuck},
 };
+use clap::Args;
 use std::io::{BufRead, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

@@ -1,17 +1,17 @@
 //! `live`: a machine watched and driven while it draws.
 
-use crate::commands::{Done, Verdict, say, say_first};
-use crate::drawing::DrawingFile;
-use crate::machine::{clock_bits, header_of, read_machine_of, speed};
-use clap::{Args, ValueEnum};
-use plotter_motion::{Machine, PenMove, config::MachineKind, toolpath::targets};
-use plotter_replay::live::{
+use super::commands::{Done, Verdict, say, say_first};
+use super::drawing::DrawingFile;
+use super::machine::{clock_bits, header_of, read_machine_of, speed};
+use crate::live::{
     Command, Line, LinkChoice, LivePage, MachineLog, PortLine, Recording, Server, Session, SessionSettings,
     SimulatedMachine, State, Telemetry, terminal,
 };
-use plotter_replay::log::{self, FileWriter, LogFile};
-use plotter_replay::serial::{Port, find};
-use plotter_replay::{PlotterSettings, ResumePoint, resume::DrawingMark};
+use crate::log::{self, FileWriter, LogFile};
+use crate::serial::{Port, find};
+use crate::{PlotterSettings, ResumePoint, resume::DrawingMark};
+use clap::{Args, ValueEnum};
+use plotter_motion::{Machine, PenMove, config::MachineKind, toolpath::targets};
 use std::cell::RefCell;
 use std::io::Write;
 use std::path::{Path, PathBuf};

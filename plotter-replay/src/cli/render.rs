@@ -1,14 +1,14 @@
 //! `render`: pictures and a page of what the motors did.
 
-use crate::commands::{Contents, Done, Verdict, cannot, plotter_for, read_all, say, say_damage, say_first};
-use crate::drawing::{DrawingFile, USUAL_COUNTS_PER_MM};
-use clap::Args;
-use plotter_motion::{Pen, PlotOp};
-use plotter_replay::{
+use super::commands::{Contents, Done, Verdict, cannot, plotter_for, read_all, say, say_damage, say_first};
+use super::drawing::{DrawingFile, USUAL_COUNTS_PER_MM};
+use crate::{
     CanvasStyle, Chart, PageSettings, RecordingPage, VirtualPlotter,
     draw::{Layer, Sketch, Visibility},
     virtual_plotter::Leg,
 };
+use clap::Args;
+use plotter_motion::{Pen, PlotOp};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
