@@ -116,6 +116,11 @@ impl Command {
         })
     }
 
+    /// Whether a file goes to the standard output, which is then no place for words.
+    pub(crate) fn prints_file(&self) -> bool {
+        matches!(self, Self::Export(export) if export.prints_file())
+    }
+
     /// Does it.
     ///
     /// # Errors

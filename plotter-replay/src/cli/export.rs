@@ -34,6 +34,11 @@ enum To {
 }
 
 impl Export {
+    /// Whether it goes to the standard output.
+    pub(crate) fn prints_file(&self) -> bool {
+        self.out.is_none()
+    }
+
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
         let contents = read(&self.log, |_| {})?;
         let header = &contents.header;

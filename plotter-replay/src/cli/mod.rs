@@ -28,15 +28,19 @@ mod replay;
 #[cfg(all(feature = "live", unix))]
 mod simulate;
 
-use clap::{ArgMatches, CommandFactory as _, Parser};
+use clap::{Arg, ArgAction, ArgMatches, CommandFactory as _, Parser};
 use commands::{Command, Verdict};
-use output::Output;
+use output::{Output, Shown};
 use std::io::Write as _;
 use std::process::ExitCode;
 use std::sync::OnceLock;
 
 /// What the program of this crate is called, as its words and examples have it.
 const OWN_NAME: &str = "plotter-replay";
+
+/// The options of what a command tells.
+const QUIET: &str = "quiet";
+const JSON: &str = "json";
 
 /// What the running program is called, which some answers name.
 static PROGRAM: OnceLock<String> = OnceLock::new();
@@ -56,6 +60,29 @@ struct Arguments {
     command: Command,
 }
 
+/// The whole command line.
+fn command() -> clap::Command {
+    let line = Arguments::command();
+    let names: Vec<String> = line.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    names.iter().fold(line, |line, name| line.mut_subcommand(name, telling))
+}
+
+/// A command with the options of what it tells, which are alike in all of them.
+fn telling(command: clap::Command) -> clap::Command {
+    let flag = |name: &'static str, help: &'static str| {
+        Arg::new(name).long(name).help(help).action(ArgAction::SetTrue)
+    };
+    command
+        .arg(flag(
+            QUIET,
+            "Say nothing but what is wrong; a file on the standard output is written all the same",
+        ))
+        .arg(
+            flag(JSON, "Say it as a JSON object: command, said (a list of lines), exit_status")
+                .conflicts_with(QUIET),
+        )
+}
+
 /// The commands, for the program of that name to take among its own; their examples name it.
 #[must_use]
 pub fn subcommands(program: &str) -> Vec<clap::Command> {
@@ -67,7 +94,7 @@ pub fn subcommands(program: &str) -> Vec<clap::Command> {
             None => command,
         }
     };
-    Arguments::command().get_subcommands().map(named).collect()
+    command().get_subcommands().map(named).collect()
 }
 
 /// Runs the command `subcommand` of [`subcommands`] in the program of that name.
@@ -76,18 +103,44 @@ pub fn subcommands(program: &str) -> Vec<clap::Command> {
 /// written, or there is no such command.
 #[must_use]
 pub fn run(program: &str, subcommand: &str, matches: &ArgMatches) -> ExitCode {
-    match Command::of_subcommand(subcommand, matches) {
-        Ok(command) => end(program, command),
-        Err(error) => told(&error),
+    let _ = PROGRAM.set(program.to_owned());
+    let command = match Command::of_subcommand(subcommand, matches) {
+        Ok(command) => command,
+        Err(error) => return told(&error),
+    };
+    let is_asked = |flag| matches.try_get_one::<bool>(flag).ok().flatten().is_some_and(|asked| *asked);
+    let shown = match (is_asked(QUIET), is_asked(JSON)) {
+        _ if command.prints_file() => Shown::Lines,
+        (true, _) => Shown::Nothing,
+        (_, true) => Shown::Json,
+        _ => Shown::Lines,
+    };
+    let mut out = Output::new(shown, subcommand);
+    let done = command.run(&mut out);
+    let (status, error) = match &done {
+        Ok(Verdict::Clean) => (0, None),
+        Ok(Verdict::Found) => (1, None),
+        Err(message) => (2, Some(message.as_str())),
+    };
+    let finished = out.finish(status, error);
+    match done.and(finished) {
+        Ok(()) => status.into(),
+        Err(message) => {
+            // Nobody is left to tell when standard error is closed.
+            let _ = writeln!(std::io::stderr(), "{program}: {message}");
+            ExitCode::from(2)
+        }
     }
 }
 
 /// The program `plotter-replay`.
 #[must_use]
 pub fn main() -> ExitCode {
-    let parsed = Arguments::try_parse();
-    match parsed {
-        Ok(arguments) => end(OWN_NAME, arguments.command),
+    match command().try_get_matches() {
+        Ok(matches) => match matches.subcommand() {
+            Some((name, given)) => run(OWN_NAME, name, given),
+            None => ExitCode::from(2),
+        },
         Err(error) => told(&error),
     }
 }
@@ -97,21 +150,6 @@ fn told(error: &clap::Error) -> ExitCode {
     // Nobody is left to tell when the stream is closed.
     let _ = error.print();
     u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from)
-}
-
-fn end(program: &str, command: Command) -> ExitCode {
-    let _ = PROGRAM.set(program.to_owned());
-    let mut out = Output::default();
-    let done = command.run(&mut out);
-    match done.and_then(|verdict| out.finish().map(|()| verdict)) {
-        Ok(Verdict::Clean) => ExitCode::SUCCESS,
-        Ok(Verdict::Found) => ExitCode::from(1),
-        Err(message) => {
-            // Nobody is left to tell when standard error is closed.
-            let _ = writeln!(std::io::stderr(), "{program}: {message}");
-            ExitCode::from(2)
-        }
-    }
 }
 
 /// How the running program comes by what it was built without.
