@@ -1,7 +1,7 @@
 //! The command line of the contest.
 
 use super::contest::compare;
-use crate::shared::run;
+use crate::shared::{Telling, run};
 use clap::Parser;
 use plotter_motion::testbed::Entry;
 use std::path::PathBuf;
@@ -10,6 +10,8 @@ use std::process::ExitCode;
 /// Lets controllers draw on simulated machines whose descriptions are wrong, and ranks them by how near to the lines the pen truly was.
 #[derive(Debug, Parser)]
 #[command(
+    version,
+    max_term_width = 100,
     name = "compare_controllers",
     after_help = "Examples:\n  plotter compare\n  \
                   plotter compare --drawing builtin --html target/controllers.html\n  \
@@ -40,6 +42,8 @@ pub struct CompareCommand {
     /// Writes the figures of every line
     #[arg(long, value_name = "FILE")]
     pub(super) csv: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) telling: Telling,
 }
 
 impl CompareCommand {

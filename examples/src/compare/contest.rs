@@ -2,14 +2,14 @@
 
 use super::command::CompareCommand;
 use super::page::{Page, Trace};
-use crate::shared::{at, fit_drawing, lost_ink, print, read_file, vectorized, vectorizer, write_file};
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::shared::{WorkShown, at, fit_drawing, lost_ink, read_file, vectorized, vectorizer, write_file};
 use plotter_motion::{
     Machine, PlotOp, config::MachineKind, hpgl, testbed::Drawing, testbed::Entry, testbed::Ranking,
     testbed::Score, testbed::TestBed, testbed::TestBedSettings,
 };
 use plotter_vector::{FileRows, picture::RowSource as _};
 use rayon::prelude::*;
+use serde_json::json;
 use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::Path;
@@ -36,20 +36,17 @@ pub(super) fn compare(args: &CompareCommand, more: Vec<Entry>) -> Result<(), Str
     }
     let jobs: Vec<(usize, usize)> =
         (0..plants.len()).flat_map(|plant| (0..entries.len()).map(move |entry| (plant, entry))).collect();
-    let bar = ProgressBar::new(jobs.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("drawing {bar:40} {pos}/{len} controllers, {elapsed}") {
-        bar.set_style(style);
-    }
+    let bar = WorkShown::of(args.telling, "drawing", jobs.len() as u64, "controllers");
     let wants_traces = args.html.is_some();
     let results: Vec<Outcome> = jobs
         .par_iter()
         .map(|&(plant, entry)| {
             let result = result(&plants[plant], &entries[entry], wants_traces);
-            bar.inc(1);
+            bar.next();
             result
         })
         .collect();
-    bar.finish_and_clear();
+    bar.finish();
 
     let mut text = String::new();
     let mut csv = String::from("controller,plant,line,rms_um,max_um,settle_s,time_s,finished\n");
@@ -74,7 +71,13 @@ pub(super) fn compare(args: &CompareCommand, more: Vec<Entry>) -> Result<(), Str
         write_file(path, page.finish())?;
         let _ = writeln!(text, "look at {}", path.display());
     }
-    print(&text)
+    args.telling.tell(&text, || {
+        let plants = plants.iter().zip(results.chunks(entries.len().max(1)));
+        let rows: Vec<_> = plants
+            .flat_map(|(plant, results)| results.iter().flat_map(|r| json_rows(plant, &r.score)))
+            .collect();
+        serde_json::to_string_pretty(&rows).map_err(|error| error.to_string())
+    })
 }
 
 /// Number of lines of the star, which come first among the drawings of a plant.
@@ -216,6 +219,22 @@ pub(super) fn csv_rows(csv: &mut String, plant: &Plant, score: &Score) {
             figures.is_finished()
         );
     }
+}
+
+/// The same rows as JSON, lengths and times as in the CSV.
+fn json_rows(plant: &Plant, score: &Score) -> impl Iterator<Item = serde_json::Value> {
+    score.drawings.iter().map(|(line, figures)| {
+        json!({
+            "controller": score.entry,
+            "plant": plant.name,
+            "line": line,
+            "rms_um": figures.rms_mm() * 1e3,
+            "max_um": figures.max_mm * 1e3,
+            "settle_s": figures.settled.map(|at| at.as_secs_f64()),
+            "time_s": figures.time.as_secs_f64(),
+            "finished": figures.is_finished(),
+        })
+    })
 }
 
 /// A name in CSV: in quotes where it would break the row.

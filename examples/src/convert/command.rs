@@ -4,9 +4,10 @@ use super::writer::{At, Writer};
 use crate::drawings::{
     Arrangement, Diagnostic, Diagnostics, DrawingFile, Language, PenLines, Reading, Severity, SvgReading,
 };
-use crate::shared::{print, run};
+use crate::shared::{ExitStatus, Telling, run};
 use clap::{Parser, ValueEnum};
 use plotter_motion::{PlotOp, gcode::LaserCommand, gcode::PenConvention, gcode::ServoCommand};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -21,6 +22,8 @@ use std::process::ExitCode;
 /// set in the font of HPGL's labels.
 #[derive(Debug, Parser)]
 #[command(
+    version,
+    max_term_width = 100,
     name = "convert",
     after_help = "Examples:\n  \
                   plotter convert drawing.plt drawing.gcode\n  \
@@ -74,6 +77,8 @@ pub struct ConvertCommand {
     /// Ends at the first error, with exit status 1; notices pass
     #[arg(long)]
     pub(super) strict: bool,
+    #[command(flatten)]
+    pub(super) telling: Telling,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -125,18 +130,18 @@ impl ConvertCommand {
                 "convert: {}: no suffix that tells the language: give --to hpgl, gcode, svg or thesis",
                 arguments.output.display()
             );
-            return ExitCode::from(2);
+            return ExitStatus::WrongUse.into();
         };
         if matches!(language, Language::CammGl | Language::GpGl | Language::Dxf) {
             eprintln!(
                 "convert: {} is read, not written: give --to hpgl, gcode, svg or thesis",
                 language.name()
             );
-            return ExitCode::from(2);
+            return ExitStatus::WrongUse.into();
         }
         if is_same(&arguments.input, &arguments.output) {
             eprintln!("convert: {}: the drawing would be written over itself", arguments.output.display());
-            return ExitCode::from(2);
+            return ExitStatus::WrongUse.into();
         }
         run("convert", || convert(&arguments, language))
     }
@@ -223,11 +228,17 @@ pub(super) fn convert(arguments: &ConvertCommand, language: Language) -> Result<
     };
     writer.finish(&colours, &mut said)?;
     said.complain(name);
-    if arguments.output != Path::new("-") {
-        let (from, to) = (drawing.language().name(), language.name());
-        print(&format!("{}: {drawn} lines and arcs, {from} to {to}\n", arguments.output.display()))?;
+    let (from, to) = (drawing.language().name(), language.name());
+    let json = || {
+        let written = arguments.output.display().to_string();
+        let figures = json!({ "written": written, "lines_and_arcs": drawn, "from": from, "to": to });
+        Ok(figures.to_string())
+    };
+    if arguments.output == Path::new("-") {
+        return arguments.telling.tell_aside("", json);
     }
-    Ok(())
+    let said = format!("{}: {drawn} lines and arcs, {from} to {to}\n", arguments.output.display());
+    arguments.telling.tell(&said, json)
 }
 
 pub(super) fn convention(choice: Convention) -> PenConvention {

@@ -1,7 +1,7 @@
 //! The command line of `follow`.
 
 use super::course::follow;
-use crate::shared::run;
+use crate::shared::{ExitStatus, Telling, run};
 use clap::{Parser, ValueEnum};
 use plotter_vector::{follow::CameraSettings, follow::Lens, follow::MappingFollower};
 use std::path::{Path, PathBuf};
@@ -19,6 +19,8 @@ pub(super) const LEAST_SIDE_PX: f64 = MappingFollower::LEAST_WINDOW_PX as f64;
 /// Follows the lines of a picture with a simulated camera on a simulated table, or what a real camera sees.
 #[derive(Debug, Parser)]
 #[command(
+    version,
+    max_term_width = 100,
     name = "follow",
     after_help = "Examples:\n  \
                   plotter follow --svg follow.svg\n  \
@@ -92,6 +94,8 @@ pub struct FollowCommand {
     /// Writes the figures and the path as JSON
     #[arg(long, value_name = "F.json")]
     pub(super) report: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) telling: Telling,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -162,12 +166,12 @@ impl FollowCommand {
                 "follow: {}: the animation is a picture or a page: name it F.gif or F.html",
                 path.display()
             );
-            return ExitCode::from(2);
+            return ExitStatus::WrongUse.into();
         }
         // The library of options would let it pass beside an image.
         if arguments.window.is_some() && arguments.from.is_none() {
             eprintln!("follow: --window is for --from; the simulated camera's is --camera size=PX");
-            return ExitCode::from(2);
+            return ExitStatus::WrongUse.into();
         }
         if arguments.hand.is_some() && arguments.method == Method::Ours {
             eprintln!(

@@ -6,8 +6,7 @@ use super::files::write_files;
 use super::follower::{Eyes, Follower};
 use super::sheet::sheet;
 use crate::follow::{FollowFrame, FollowGif, FollowMachine, FollowOutcome, MovesFile, WindowSource};
-use crate::shared::{at, print, read_file};
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::shared::{WorkShown, at, read_file};
 use plotter_motion::{Machine, config::MachineKind};
 use plotter_vector::{
     follow::CameraSettings, follow::Correction, follow::End, follow::Paper, follow::SimulatedCamera,
@@ -60,10 +59,7 @@ pub(super) fn follow(arguments: &FollowCommand) -> Result<(), String> {
         Follower::Published(..) => arguments.windows.unwrap_or(PUBLISHED_WINDOWS),
     };
 
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("following: {pos} windows, {elapsed}") {
-        bar.set_style(style);
-    }
+    let bar = WorkShown::endless(arguments.telling, "following", "windows");
     let is_gif = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "gif");
     let mut film = arguments.animation.as_ref().filter(|path| is_gif(path)).map(|_| FollowGif::default());
     let (mut windows, mut moves, mut lost) = (0_u64, 0_u64, 0_u64);
@@ -94,7 +90,7 @@ pub(super) fn follow(arguments: &FollowCommand) -> Result<(), String> {
             film.see(&window, frames.len());
         }
         windows += 1;
-        bar.set_position(windows);
+        bar.set(windows);
         match follower.observe(&window, table.commanded()) {
             Step::Move { path, tool } => {
                 moves += 1;
@@ -113,7 +109,7 @@ pub(super) fn follow(arguments: &FollowCommand) -> Result<(), String> {
             Step::Done(end) => break Ended::Said(end),
         }
     };
-    bar.finish_and_clear();
+    bar.finish();
     let map = if let Follower::Ours(ours) = &follower { Some(ours.report()) } else { None };
     let reached_none = map.as_ref().is_some_and(|map| map.followed_px == 0.0);
     let end = if end == Ended::Said(End::Complete) && reached_none { Ended::OutOfReach } else { end };
@@ -137,9 +133,9 @@ pub(super) fn follow(arguments: &FollowCommand) -> Result<(), String> {
     };
     write_files(arguments, sheet, table.strokes(), (&frames, film), window_px, &outcome)?;
     if arguments.from.is_none() || arguments.moves.is_some() {
-        print(&outcome.table())?;
+        arguments.telling.tell(&outcome.table(), || outcome.json(table.strokes()))?;
     } else {
-        eprint!("{}", outcome.table());
+        arguments.telling.tell_aside(&outcome.table(), || outcome.json(table.strokes()))?;
     }
     match end {
         Ended::Said(End::Complete) | Ended::Stopped => Ok(()),

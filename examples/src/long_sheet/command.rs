@@ -3,7 +3,7 @@
 use super::course::draw_sheet;
 use crate::drawings::{Arrangement, Language, PenLines, SvgReading};
 use crate::long_sheet::{CrossingSet, told_joints};
-use crate::shared::run;
+use crate::shared::{Telling, run};
 use clap::{Parser, ValueEnum};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -19,6 +19,8 @@ pub(super) const MOST_FRAMES: u32 = 100_000;
 /// refused with the reason.
 #[derive(Debug, Parser)]
 #[command(
+    version,
+    max_term_width = 100,
     name = "long_sheet",
     after_help = "Examples:\n  \
                   plotter long-sheet --svg sheet.svg\n  \
@@ -94,6 +96,8 @@ pub struct LongSheetCommand {
     /// Where the list of their joints is written; - is the standard output
     #[arg(long, value_name = "F.json", default_value = "-", requires = "traces")]
     pub(super) out: PathBuf,
+    #[command(flatten)]
+    pub(super) telling: Telling,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -157,7 +161,7 @@ impl LongSheetCommand {
                 Set::Paper => CrossingSet::Paper,
                 Set::Strip16 => CrossingSet::Strip16,
             };
-            told_joints(&arguments.traces, set, &arguments.out)
+            told_joints(&arguments.traces, set, &arguments.out, arguments.telling)
         })
     }
 }

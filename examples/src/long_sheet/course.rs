@@ -5,8 +5,7 @@ use crate::drawings::{Diagnostics, DrawingFile, Reading, Severity};
 use crate::long_sheet::{
     JointFigures, LongSheetMachine, LongSheetReport, LongSheetRun, TextilePattern, long_sheet_svg,
 };
-use crate::shared::{at, print, read_file, write_file};
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::shared::{WorkShown, at, read_file, write_file};
 use plotter_motion::{Machine, MachineConfig, PlotOp, config::MachineKind};
 use plotter_stitch::{sheet::JoinFrames, split::FramePasses};
 
@@ -96,10 +95,10 @@ pub(super) fn draw_with<M: JoinFrames, I: Iterator<Item = PlotOp>>(
     let layout = sheet.layout;
     let mut sheet = LongSheetRun::new(sheet, join, arguments.seed)?;
     let mut frames = FramePasses::new(drawing, layout);
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} frame {pos}, {elapsed}") {
-        bar.set_style(style);
-    }
+    let bar = match arguments.frames {
+        Some(all) => WorkShown::of(arguments.telling, "drawing", all.into(), "frames"),
+        None => WorkShown::endless(arguments.telling, "drawing", "frames"),
+    };
     if arguments.change.is_some() {
         sheet.shown.0 = arguments.change_frame;
     }
@@ -115,9 +114,9 @@ pub(super) fn draw_with<M: JoinFrames, I: Iterator<Item = PlotOp>>(
             break;
         }
         joints.push(sheet.next(frame.as_ref())?);
-        bar.inc(1);
+        bar.next();
     }
-    bar.finish_and_clear();
+    bar.finish();
 
     let report = LongSheetReport::new(name, method, arguments.seed, layout.frame_mm, &joints, &sheet.frames);
     if let Some(path) = &arguments.svg {
@@ -134,5 +133,7 @@ pub(super) fn draw_with<M: JoinFrames, I: Iterator<Item = PlotOp>>(
         let text = serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?;
         write_file(path, text + "\n")?;
     }
-    print(&report.table())
+    arguments
+        .telling
+        .tell(&report.table(), || serde_json::to_string_pretty(&report).map_err(|error| error.to_string()))
 }

@@ -4,9 +4,8 @@ use super::figures::{Report, picture, report_refusal};
 use super::plan::{Refusal, broken_lines, plan};
 use super::scan::Scan;
 use crate::max_error::follow;
-use crate::shared::{at, print, read_file, run, write_file};
+use crate::shared::{Telling, WorkShown, at, read_file, run, write_file};
 use clap::Parser;
-use indicatif::{ProgressBar, ProgressStyle};
 use plotter_motion::{Machine, MachineConfig};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,6 +13,8 @@ use std::process::ExitCode;
 /// Draws a scan so that nothing of it is farther off than you say.
 #[derive(Debug, Parser)]
 #[command(
+    version,
+    max_term_width = 100,
     name = "max_error",
     after_help = "Examples:\n  plotter max-error\n  plotter max-error scan.png --max-error-mm 0.2 --picture drawn.svg\n  \
                   plotter max-error scan.png --max-error-mm 0.05 --machine examples/machines/marking-board.toml --report plot.json\n\n\
@@ -46,6 +47,8 @@ pub struct MaxErrorCommand {
     /// Writes what was drawn, on a band about the scan's lines as wide as the error allows
     #[arg(long, value_name = "F.svg")]
     pub(super) picture: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) telling: Telling,
 }
 
 impl MaxErrorCommand {
@@ -59,18 +62,14 @@ impl MaxErrorCommand {
 pub(super) fn draw(args: &MaxErrorCommand) -> Result<(), String> {
     let machine = machine(args)?;
     let scan = Scan::read(args, &machine)?;
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed}") {
-        bar.set_style(style);
-    }
-    bar.enable_steady_tick(core::time::Duration::from_millis(100));
+    let bar = WorkShown::said(args.telling);
     let planned = plan(args, &machine, &scan, &bar);
-    bar.set_message("drawing");
+    bar.say("drawing");
     let drawn = planned.and_then(|plan| {
         let path = follow(&plan.machine, &plan.ops, plan.budget.blend_mm)?;
         Ok((plan, path))
     });
-    bar.finish_and_clear();
+    bar.finish();
     let (plan, path) = drawn.map_err(|refusal: Refusal| {
         report_refusal(args, &machine, &refusal);
         refusal.to_string()
@@ -82,7 +81,7 @@ pub(super) fn draw(args: &MaxErrorCommand) -> Result<(), String> {
     if let Some(file) = &args.picture {
         write_file(file, picture(&scan, &path, args.max_error_mm))?;
     }
-    print(&report.table())?;
+    args.telling.tell(&report.table(), || Ok(format!("{:#}\n", report.json())))?;
     if let Some(dirt) = report.dirt()
         && !args.allow_dirt
         && report.measured_mm() > args.max_error_mm

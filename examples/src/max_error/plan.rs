@@ -3,7 +3,7 @@
 use super::command::MaxErrorCommand;
 use super::scan::{Scan, Traced, candidates};
 use crate::max_error::{TruePath, predicted_s, rounding_mm, slowed, speed_trial};
-use indicatif::ProgressBar;
+use crate::shared::WorkShown;
 use plotter_motion::{
     Machine, PlotOp, budget::Budget, budget::BudgetError, budget::BudgetLimits, config::MachineKind,
 };
@@ -104,17 +104,17 @@ pub(super) fn plan(
     args: &MaxErrorCommand,
     machine: &Machine,
     scan: &Scan,
-    bar: &ProgressBar,
+    bar: &WorkShown,
 ) -> Result<Plan, Refusal> {
     let asked_mm = args.max_error_mm;
     // Whether it is a length at all comes before all work.
     if let Err(error @ BudgetError::NoLength { .. }) = Budget::split(asked_mm, &BudgetLimits::default()) {
         return Err(Refusal::Other(format!("--max-error-mm: {error}")));
     }
-    bar.set_message("trying the machine on its test figure");
+    bar.say("trying the machine on its test figure");
     let control = Control::measured(machine, scan.diagonal_mm())?;
     let blends = machine.kind() == MachineKind::Steppers;
-    bar.set_message("tracing");
+    bar.say("tracing");
     let mut best: Option<(f64, Budget, Traced)> = None;
     let mut refusal: Option<BudgetError> = None;
     // Of those with lines that run together, the one with the fewest.
@@ -150,7 +150,7 @@ pub(super) fn plan(
         }
         return Err(refusal.map_or_else(|| Refusal::Other("nothing to draw".into()), Refusal::Budget));
     };
-    bar.set_message("trying the machine as it is to draw");
+    bar.say("trying the machine as it is to draw");
     let (budget, machine) = confirmed(machine, scan, budget, &control)?;
     let ops = traced.drawing.plot_ops(scan.scale).collect();
     Ok(Plan { budget, machine, traced, ops, control })

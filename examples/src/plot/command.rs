@@ -4,7 +4,7 @@ use super::figures::Summary;
 use super::pictures::Pictures;
 use super::recording::{record, replay};
 use crate::shared::{
-    Figure, at, fit_drawing, html_page, lost_ink, print, read_file, run, vectorized, vectorizer, write_file,
+    Figure, Telling, at, fit_drawing, html_page, lost_ink, read_file, run, vectorized, vectorizer, write_file,
 };
 use clap::{Parser, ValueEnum};
 use plotter_motion::{
@@ -22,6 +22,8 @@ use std::time::Instant;
 /// Draws a picture on a simulated pen plotter and shows what its motors did.
 #[derive(Debug, Parser)]
 #[command(
+    version,
+    max_term_width = 100,
     name = "plot",
     after_help = "Examples:\n  plotter plot\n  \
                   plotter plot scan.png --controller published --out target/published\n  \
@@ -62,6 +64,8 @@ pub struct PlotCommand {
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "target/plot")]
     pub(super) out: PathBuf,
+    #[command(flatten)]
+    pub(super) telling: Telling,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -175,7 +179,8 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
     for notice in &outcome.notices {
         let _ = writeln!(text, "noticed at {notice}");
     }
-    print(&format!("{text}look at {}\n", file("report.html").display()))?;
+    let said = format!("{text}look at {}\n", file("report.html").display());
+    args.telling.tell(&said, || Ok(summary.json()))?;
     if outcome.reached < outcome.targets {
         let missed = outcome.targets - outcome.reached;
         eprintln!("warning: {missed} of {} targets were not reached", outcome.targets);

@@ -6,8 +6,7 @@ use crate::machine::{
     simulate_board,
 };
 use crate::plot::{PortLanguage, plot_on_port};
-use crate::shared::at;
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::shared::{WorkShown, at};
 use plotter_motion::{Machine, PenMove, config::MachineKind};
 use plotter_replay::{BenchRecorder, PlotterSettings, VirtualPlotter, log, log::Header};
 use std::path::Path;
@@ -29,13 +28,10 @@ pub(super) fn record(
         .with_text("controller", controller_name(machine))
         .with_text("clock", if is_real { "host" } else { "simulated" });
     let writer = log::create(path, &header).map_err(|error| at(path, &error))?;
-    let bar = ProgressBar::new(moves.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("plotting {bar:40} {pos}/{len} targets, {elapsed}") {
-        bar.set_style(style);
-    }
+    let bar = WorkShown::of(args.telling, "plotting", moves.len() as u64, "targets");
     let mut recorder = BenchRecorder::new(writer);
     let recorded = Recorded { drive: args.record_drive };
-    let progress = |reached: u32| bar.set_position(reached.into());
+    let progress = |reached: u32| bar.set(reached.into());
     let outcome = match args.firmware.as_deref() {
         None if is_belt => Ok(simulate_board(machine, moves, recorded, &mut recorder, progress)),
         None => Ok(simulate(machine, moves, recorded, &mut recorder, progress)),
@@ -50,7 +46,7 @@ pub(super) fn record(
             plot_on_port(machine, port, language, moves, &mut recorder, progress)
         }
     };
-    bar.finish_and_clear();
+    bar.finish();
     let outcome = outcome?;
     recorder.finish().map_err(|error| at(path, &error))?;
     Ok(outcome)

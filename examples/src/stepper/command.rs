@@ -2,7 +2,7 @@
 
 use super::course::plot;
 use crate::drawings::{Arrangement, Language, PenLines, SvgReading};
-use crate::shared::run;
+use crate::shared::{ExitStatus, Telling, run};
 use clap::{Parser, ValueEnum};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -13,6 +13,8 @@ use std::process::ExitCode;
 /// The time in motion is that without pen and pauses.
 #[derive(Debug, Parser)]
 #[command(
+    version,
+    max_term_width = 100,
     name = "stepper",
     after_help = "Examples:\n  \
                   plotter stepper --svg plot.svg --speed-plot speed.svg\n  \
@@ -99,6 +101,8 @@ pub struct StepperCommand {
     /// Stops at the first error, or point outside of the area, with exit status 1; notices pass
     #[arg(long)]
     pub(super) strict: bool,
+    #[command(flatten)]
+    pub(super) telling: Telling,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -144,7 +148,7 @@ impl StepperCommand {
         let arguments = self;
         if arguments.mode == Some(Mode::Exact) && arguments.tolerance_mm.is_some() {
             eprintln!("stepper: --tolerance-mm does not go with --mode exact: leave one of them out");
-            return ExitCode::from(2);
+            return ExitStatus::WrongUse.into();
         }
         run("stepper", || plot(&arguments))
     }

@@ -5,7 +5,7 @@ use super::command::{Mode, StepperCommand};
 use super::walk::{Writers, walk};
 use crate::drawings::{Diagnostic, Diagnostics, DrawingFile, Reading, Severity};
 use crate::machine::{BLOCKS, SteppedPlot};
-use crate::shared::{at, print, read_file, write_file};
+use crate::shared::{at, read_file, write_file};
 use crate::stepper::{DrawnExtent, PlotFigures, SpeedChart, StepFile, SteppedPreview, SteppedReport};
 use plotter_motion::{
     Machine, MachineConfig, PathMode, Pen, PlannerSettings, Point, config::AccelChoice, config::MachineKind,
@@ -107,7 +107,9 @@ pub(super) fn tell(
         let text = serde_json::to_string_pretty(report).map_err(|error| error.to_string())?;
         write_file(path, text + "\n")?;
     }
-    print(&report.table())?;
+    arguments
+        .telling
+        .tell(&report.table(), || serde_json::to_string_pretty(report).map_err(|error| error.to_string()))?;
     said.complain(drawing.name());
     Ok(())
 }

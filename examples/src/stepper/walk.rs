@@ -3,8 +3,8 @@
 use super::command::{Outside, StepperCommand};
 use crate::drawings::{Diagnostic, Diagnostics, DrawingFile, Ops, Severity};
 use crate::machine::Happening;
+use crate::shared::WorkShown;
 use crate::stepper::{DrawnExtent, SpeedChart, StepFile, SteppedPreview};
-use indicatif::{ProgressBar, ProgressStyle};
 use plotter_motion::{Pen, PlotOp, Point, planner::PlanError};
 
 /// Greatest side of a machine's area, mm: beyond it nothing is planned.
@@ -21,11 +21,8 @@ pub(super) fn walk(
     mut push: impl FnMut(PlotOp) -> Result<Result<(), PlanError>, String>,
 ) -> Result<Vec<[u8; 3]>, String> {
     let colours = std::mem::take(&mut ops.colours);
-    let bar = ProgressBar::new(drawing.length_bytes());
-    bar.set_prefix(if arguments.estimate { "estimating" } else { "plotting" });
-    if let Ok(style) = ProgressStyle::with_template("{prefix} {bar:40} {bytes}/{total_bytes}, {elapsed}") {
-        bar.set_style(style);
-    }
+    let what = if arguments.estimate { "estimating" } else { "plotting" };
+    let bar = WorkShown::of_bytes(arguments.telling, what, drawing.length_bytes());
     // Whether the pen is not where the next line begins, because an operation was left out.
     let mut is_lost = false;
     let mut shown = 0;
@@ -33,7 +30,7 @@ pub(super) fn walk(
     while let Some(item) = ops.next() {
         if ops.bytes() != shown {
             shown = ops.bytes();
-            bar.set_position(shown);
+            bar.set(shown);
         }
         let op = match item {
             Ok(op) => op,
@@ -77,7 +74,7 @@ pub(super) fn walk(
             is_lost = true;
         }
     }
-    bar.finish_and_clear();
+    bar.finish();
     Ok(colours)
 }
 

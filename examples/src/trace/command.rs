@@ -4,8 +4,8 @@ use super::figures::{BeyondReport, Dirt, RASTER_PX, Report, peak_rss_mb, pen_rep
 use super::files::{check_size, prints_file, write_files};
 use super::settings::settings;
 use super::traced::{by_rows, in_colour, picture_bytes};
-use crate::shared::{at, is_standard, lost_ink, print, run, write_output};
-use crate::trace::{INTERRUPTED, Interrupt, Overlay, overlay_png};
+use crate::shared::{ExitStatus, Telling, at, is_standard, lost_ink, run, write_output};
+use crate::trace::{Interrupt, Overlay, overlay_png};
 use clap::{Parser, ValueEnum};
 use plotter_vector::{Algorithm, ErrorReport, trace::SheetErrors};
 use std::fs::File;
@@ -19,6 +19,8 @@ pub(super) const FLAG: &[u8] = include_bytes!("../../data/flag.png");
 /// Traces a scanned line drawing into pen strokes.
 #[derive(Debug, Parser)]
 #[command(
+    version,
+    max_term_width = 100,
     after_help = "Examples:\n  plotter trace scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt --report scan.json\n  \
                   plotter trace photo.jpg --threshold adaptive --mode mixed --hatch 0.5 --overlay look.png\n  \
                   plotter trace drawing.png --pens 3 --svg pens.svg --hpgl pens.plt\n  \
@@ -106,6 +108,8 @@ pub struct TraceCommand {
     /// Writes the strokes on the pale picture, with the pixel of the greatest error circled unless --no-errors is given
     #[arg(long, value_name = "F.png")]
     pub(super) overlay: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) telling: Telling,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -162,7 +166,7 @@ impl TraceCommand {
     pub fn run(self) -> ExitCode {
         let mut stopped = false;
         let code = run("trace", || trace(&self, &mut stopped));
-        if stopped { INTERRUPTED.into() } else { code }
+        if stopped { ExitStatus::Interrupted.into() } else { code }
     }
 }
 
@@ -256,10 +260,11 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
         None => None,
     };
     let table = table(&format!("{name}: {width} x {height} px{empty}"), &report, megapixels, circled);
+    let json = || serde_json::to_string_pretty(&report).map_err(|error| error.to_string());
     if prints_file {
-        eprint!("{table}");
+        arguments.telling.tell_aside(&table, json)?;
     } else {
-        print(&table)?;
+        arguments.telling.tell(&table, json)?;
     }
     // Everything is written: what was traced may still be of use.
     match &traced.errors {

@@ -9,5 +9,5 @@ mod settings;
 mod traced;
 
 pub use command::TraceCommand;
-pub use interrupt::{INTERRUPTED, Interrupt};
+pub use interrupt::Interrupt;
 pub use overlay::{Overlay, overlay_png, overlay_step};

@@ -2,9 +2,8 @@
 
 use super::command::{FLAG, TraceCommand};
 use super::settings::Settings;
-use crate::shared::{is_standard, read_file, read_input};
+use crate::shared::{WorkShown, is_standard, read_file, read_input};
 use crate::trace::{Interrupt, overlay_step};
-use indicatif::{ProgressBar, ProgressStyle};
 use plotter_vector::{
     Colour, DecodeError, Drawing, FileRows, Palette, Pixel, Progress, decode_colour, ink::Despeckled,
     ink::Pens, ink::pen_width_px, picture::Row, picture::RowSource as _, trace::SheetErrors,
@@ -14,8 +13,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Steps of the progress bar.
-pub(super) const STEPS: f64 = 1000.0;
+/// Parts of the work that are told apart: hundredths.
+pub(super) const STEPS: f64 = 100.0;
 
 /// What the overlay shows below the strokes.
 #[derive(Debug)]
@@ -79,9 +78,9 @@ pub(super) fn by_rows<R: Read + Seek>(
 ) -> Result<Traced, String> {
     let start = Instant::now();
     let mut scan = FileRows::new(file).map_err(|error| error.to_string())?;
-    let bar = progress_bar();
+    let bar = progress(arguments);
     let mut report = |done: f64| {
-        bar.set_position(steps(done));
+        bar.set(steps(done));
         go_on(interrupt)
     };
     let (vectorizer, mut progress) = (&settings.vectorizer, Progress::new(&mut report));
@@ -90,7 +89,7 @@ pub(super) fn by_rows<R: Read + Seek>(
     } else {
         vectorizer.vectorize_rows_with_errors(&mut scan, &mut progress)
     };
-    bar.finish_and_clear();
+    bar.finish();
     let sheet = sheet.map_err(|error| error.to_string())?;
     let time = start.elapsed();
     let picture = settings.overlay.as_ref().map(|_| thumbnail(&mut scan)).transpose()?;
@@ -110,15 +109,11 @@ pub(super) fn go_on(interrupt: Interrupt) -> ControlFlow<()> {
     if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
-pub(super) fn progress_bar() -> ProgressBar {
-    let bar = ProgressBar::new(steps(1.0));
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent:>3} % {eta:>4}") {
-        bar.set_style(style);
-    }
-    bar
+pub(super) fn progress(arguments: &TraceCommand) -> WorkShown {
+    WorkShown::of(arguments.telling, "tracing", steps(1.0), "%")
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a thousand steps")]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a hundred")]
 pub(super) fn steps(share: f64) -> u64 {
     (STEPS * share) as u64
 }
@@ -164,14 +159,14 @@ pub(super) fn in_colour(
     })?;
     drop(read);
     let start = Instant::now();
-    let bar = progress_bar();
+    let bar = progress(arguments);
     let mut report = |done: f64| {
-        bar.set_position(steps(done));
+        bar.set(steps(done));
         go_on(interrupt)
     };
     let found =
         settings.vectorizer.vectorize_colour_with_progress(&colour, pens, &mut Progress::new(&mut report));
-    bar.finish_and_clear();
+    bar.finish();
     let found = found.map_err(|error| error.to_string())?;
     let time = start.elapsed();
     let drawing = found.traced.drawing;

@@ -1,6 +1,6 @@
 //! The command line of `tune`, and its course.
 
-use crate::shared::{at, print, read_file, run, write_file};
+use crate::shared::{Telling, at, read_file, run, write_file};
 use crate::tune::{TunedAxis, TuningMethod, TuningReport, TuningSettings, loop_charts_svg, tuned_lines};
 use clap::{Parser, ValueEnum};
 use plotter_motion::{Axis, Machine, MachineConfig, config::MachineKind};
@@ -14,6 +14,8 @@ use std::process::ExitCode;
 /// gains stand beside ours as they are in the machine's file, called as often as our loop.
 #[derive(Debug, Parser)]
 #[command(
+    version,
+    max_term_width = 100,
     name = "tune",
     after_help = "Methods:\n  \
                   lambda  from the motor's data in the file: lambda tuning (internal model control) by Skogestad's rules\n  \
@@ -61,6 +63,8 @@ pub struct TuneCommand {
     /// Writes all figures as JSON
     #[arg(long, value_name = "F.json")]
     pub(super) report: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) telling: Telling,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -147,13 +151,14 @@ pub(super) fn tune(arguments: &TuneCommand) -> Result<(), String> {
         let charts: Vec<_> = axes.iter().map(|axis| axis.chart(&settings)).collect();
         write_file(path, loop_charts_svg(&charts))?;
     }
-    if let Some(path) = &arguments.report {
+    let json = || {
         let report = TuningReport::new(&settings, config, &axes, &lines);
-        let json = serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?;
-        write_file(path, json + "\n")?;
+        serde_json::to_string_pretty(&report).map(|json| json + "\n").map_err(|error| error.to_string())
+    };
+    if let Some(path) = &arguments.report {
+        write_file(path, json()?)?;
     }
-    print(text.trim_end())?;
-    print("\n")?;
+    arguments.telling.tell(&format!("{}\n", text.trim_end()), json)?;
     let failures: Vec<_> = axes.iter().flat_map(TunedAxis::failures).collect();
     if !axes.iter().any(TunedAxis::is_tuned) {
         return Err(format!("no method gave gains: {}", failures.first().map_or("none was tried", |f| f)));

@@ -2,15 +2,18 @@
 //!
 //! Each subcommand is the code behind the example of the same name, so both give the same bytes.
 
+mod papers;
 mod recordings;
 
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
+use papers::{Completions, Man};
 use plotter_examples::compare::CompareCommand;
 use plotter_examples::convert::ConvertCommand;
 use plotter_examples::follow::FollowCommand;
 use plotter_examples::long_sheet::LongSheetCommand;
 use plotter_examples::max_error::MaxErrorCommand;
 use plotter_examples::plot::PlotCommand;
+use plotter_examples::shared::ExitStatus;
 use plotter_examples::stepper::StepperCommand;
 use plotter_examples::trace::TraceCommand;
 use plotter_examples::tune::TuneCommand;
@@ -18,7 +21,17 @@ use std::process::ExitCode;
 
 /// Pen plotters: from a picture to strokes, from strokes to motion, and what a machine made of them.
 #[derive(Debug, Parser)]
-#[command(name = "plotter", version, propagate_version = true)]
+#[command(
+    name = "plotter",
+    version,
+    propagate_version = true,
+    max_term_width = 100,
+    after_help = format!(
+        "Examples:\n  plotter trace scan.png --svg scan.svg --hpgl scan.plt\n  plotter stepper scan.plt --svg plot.svg\n\n\
+         `plotter COMMAND --help` has more of them.\n\n{}",
+        ExitStatus::table()
+    )
+)]
 struct Plotter {
     #[command(subcommand)]
     tool: Tool,
@@ -36,6 +49,8 @@ enum Tool {
     LongSheet(Box<LongSheetCommand>),
     Tune(Box<TuneCommand>),
     Compare(Box<CompareCommand>),
+    Completions(Completions),
+    Man(Man),
 }
 
 impl Tool {
@@ -50,6 +65,8 @@ impl Tool {
             Self::LongSheet(tool) => tool.run(),
             Self::Tune(tool) => tool.run(),
             Self::Compare(tool) => tool.run(),
+            Self::Completions(papers) => papers.run(command()),
+            Self::Man(papers) => papers.run(command()),
         }
     }
 }
