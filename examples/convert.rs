@@ -1,11 +1,12 @@
-//! One language of plotters into another: HPGL, G-code, SVG and the thesis' text; from CAMM-GL and GP-GL of cutters, and DXF of CAD programs, too.
+//! One language of plotters into another: HPGL, G-code, SVG and the thesis' text; from CAMM-GL and GP-GL of
+//! cutters, and DXF of CAD programs, too.
 //!
-//! All of them say the same few things: take a pen, go there, draw there, along a line or an arc. What one language says and the
-//! other cannot is told on the standard error, with its line and column; the rest is converted. HPGL and G-code stream through:
-//! a file of any size needs the same memory.
+//! All of them say the same few things: take a pen, go there, draw there, along a line or an arc. What one
+//! language says and the other cannot is told on the standard error, with its line and column; the rest is
+//! converted. HPGL and G-code stream through: a file of any size needs the same memory.
 //!
-//! Look at how an arc fares: `AA` in HPGL, `G2` and `G3` in G-code and `A` in SVG are the same arc, and stay one; where there are
-//! none, chords take its place within a tolerance.
+//! Look at how an arc fares: `AA` in HPGL, `G2` and `G3` in G-code and `A` in SVG are the same arc, and stay
+//! one; where there are none, chords take its place within a tolerance.
 //!
 //! ```text
 //! cargo run --release --example convert -- drawing.plt drawing.gcode

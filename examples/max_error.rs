@@ -1,11 +1,13 @@
 //! One greatest error, from the scan to the ink.
 //!
-//! You say how far the drawing may be from the scan, in mm. How finely the lines are traced, how far corners are rounded, and how
-//! fast the machine may go follow from it: the rest of the example finds the split with which the drawing is done soonest. Then
-//! the simulated machine draws, and what it drew is compared with the scan's ink, both ways.
+//! You say how far the drawing may be from the scan, in mm. How finely the lines are traced, how far corners
+//! are rounded, and how fast the machine may go follow from it: the rest of the example finds the split with
+//! which the drawing is done soonest. Then the simulated machine draws, and what it drew is compared with the
+//! scan's ink, both ways.
 //!
-//! Look at `--picture`: the pale band is as wide as the error that you allowed, and the ink stays in it. Ask for less and less:
-//! it takes longer and longer, until you are told what is in the way, and what the smallest error is.
+//! Look at `--picture`: the pale band is as wide as the error that you allowed, and the ink stays in it. Ask
+//! for less and less: it takes longer and longer, until you are told what is in the way, and what the
+//! smallest error is.
 //!
 //! Near some ink is not enough: each line of the scan, from where it meets others to where it meets others
 //! again, is followed from its beginning to its end by something drawn that stands for no other line. Where

@@ -1,12 +1,13 @@
 //! From a scanned line drawing to pen strokes: vectorization alone, without a machine.
 //!
-//! Shows the published vectorization and ours side by side on the same picture: trace it with both and compare the
-//! vertices, the error and the travel with the pen up. Look at the SVG beside the picture: the published strokes
-//! wander off slow curves and leave a pixel open where lines meet; ours stay within the promised error and close.
+//! Shows the published vectorization and ours side by side on the same picture: trace it with both and
+//! compare the vertices, the error and the travel with the pen up. Look at the SVG beside the picture: the
+//! published strokes wander off slow curves and leave a pixel open where lines meet; ours stay within the
+//! promised error and close.
 //!
-//! The picture is read by rows and never held whole, so a sheet may have any size: look at the last line of an A1 scan,
-//! whose memory is that of a small picture. Only `--pens` needs all of it at once. Ctrl-C stops it between two bands, and
-//! nothing is written.
+//! The picture is read by rows and never held whole, so a sheet may have any size: look at the last line of
+//! an A1 scan, whose memory is that of a small picture. Only `--pens` needs all of it at once. Ctrl-C stops
+//! it between two bands, and nothing is written.
 //!
 //! Without a picture it traces the flag that comes with the examples:
 //!

@@ -7,7 +7,8 @@ use plotter_motion::testbed::Entry;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Lets controllers draw on simulated machines whose descriptions are wrong, and ranks them by how near to the lines the pen truly was.
+/// Lets controllers draw on simulated machines whose descriptions are wrong, and ranks them by how near to
+/// the lines the pen truly was.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -21,10 +22,12 @@ use std::process::ExitCode;
                   In a checkout of the project, `cargo run --release --example compare_controllers --` stands for `plotter compare`."
 )]
 pub struct CompareCommand {
-    /// A machine's TOML file; may be given several times [default: the loaded gantry, with its encoders decoded x1 and x4]
+    /// A machine's TOML file; may be given several times [default: the loaded gantry, with its encoders
+    /// decoded x1 and x4]
     #[arg(long, value_name = "FILE")]
     pub(super) machine: Vec<PathBuf>,
-    /// What is drawn besides the eight lines: a picture (PNG, JPEG, PBM, PGM), HPGL (.plt, .hpgl), or `builtin` for a flag as line art
+    /// What is drawn besides the eight lines: a picture (PNG, JPEG, PBM, PGM), HPGL (.plt, .hpgl), or
+    /// `builtin` for a flag as line art
     #[arg(long, value_name = "FILE|builtin")]
     pub(super) drawing: Option<PathBuf>,
     /// Width of a drawn picture, mm
@@ -59,7 +62,8 @@ impl CompareCommand {
     }
 }
 
-/// Runs the command line of `compare_controllers` with the controllers that are always there and `more` of one's own.
+/// Runs the command line of `compare_controllers` with the controllers that are always there and `more` of
+/// one's own.
 #[must_use]
 pub fn compare_controllers(more: Vec<Entry>) -> ExitCode {
     CompareCommand::parse().run_with(more)

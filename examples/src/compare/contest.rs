@@ -4,8 +4,10 @@ use super::command::CompareCommand;
 use super::page::{Page, Trace};
 use crate::shared::{WorkShown, at, fit_drawing, lost_ink, read_file, vectorized, vectorizer, write_file};
 use plotter_motion::{
-    Machine, PlotOp, config::MachineKind, hpgl, testbed::Drawing, testbed::Entry, testbed::Ranking,
-    testbed::Score, testbed::TestBed, testbed::TestBedSettings,
+    Machine, PlotOp,
+    config::MachineKind,
+    hpgl,
+    testbed::{Drawing, Entry, Ranking, Score, TestBed, TestBedSettings},
 };
 use plotter_vector::{FileRows, picture::RowSource as _};
 use rayon::prelude::*;
@@ -88,7 +90,7 @@ pub(super) fn drawing_name(plant: &Plant) -> &str {
 }
 
 /// The ranking by the eight lines, and by the drawing if there is one.
-pub(super) fn split(plant: &Plant, results: &[Outcome]) -> (Ranking, Option<Ranking>) {
+fn split(plant: &Plant, results: &[Outcome]) -> (Ranking, Option<Ranking>) {
     let part = |range: core::ops::Range<usize>| {
         let of = |result: &Outcome| Score {
             entry: result.score.entry.clone(),
@@ -100,7 +102,7 @@ pub(super) fn split(plant: &Plant, results: &[Outcome]) -> (Ranking, Option<Rank
     (part(0..STAR.min(all)), (all > STAR).then(|| part(STAR..all)))
 }
 
-pub(super) fn entries(only: &[String], more: Vec<Entry>) -> Result<Vec<Entry>, String> {
+fn entries(only: &[String], more: Vec<Entry>) -> Result<Vec<Entry>, String> {
     let mut entries = Entry::standard();
     for entry in &more {
         if entries.iter().any(|other| other.name() == entry.name()) {
@@ -118,7 +120,7 @@ pub(super) fn entries(only: &[String], more: Vec<Entry>) -> Result<Vec<Entry>, S
     Ok(entries)
 }
 
-pub(super) fn plants(args: &CompareCommand) -> Result<Vec<Plant>, String> {
+fn plants(args: &CompareCommand) -> Result<Vec<Plant>, String> {
     if !(0.0..=0.5).contains(&args.wrong) {
         return Err(format!("--wrong {}: give a share of 0 to 0.5", args.wrong));
     }
@@ -170,12 +172,7 @@ pub(super) fn drawing(args: &CompareCommand, path: &Path, bed: &TestBed) -> Resu
 }
 
 /// A picture as HPGL, as the example `plot` makes it with ours on this machine.
-pub(super) fn traced(
-    args: &CompareCommand,
-    path: &Path,
-    bytes: &[u8],
-    bed: &TestBed,
-) -> Result<String, String> {
+fn traced(args: &CompareCommand, path: &Path, bytes: &[u8], bed: &TestBed) -> Result<String, String> {
     let scan = FileRows::new(Cursor::new(bytes)).map_err(|error| at(path, &error))?;
     let scale = fit_drawing((scan.width(), scan.height()), bed.machine(), args.width_mm)?;
     let vectorizer =
@@ -205,7 +202,7 @@ pub(super) fn result(plant: &Plant, entry: &Entry, wants_traces: bool) -> Outcom
     Outcome { score: Score { entry: entry.name().to_owned(), drawings }, traces }
 }
 
-pub(super) fn csv_rows(csv: &mut String, plant: &Plant, score: &Score) {
+fn csv_rows(csv: &mut String, plant: &Plant, score: &Score) {
     for (line, figures) in &score.drawings {
         let settled = figures.settled.map_or_else(String::new, |at| format!("{:.4}", at.as_secs_f64()));
         let _ = writeln!(
@@ -238,7 +235,7 @@ fn json_rows(plant: &Plant, score: &Score) -> impl Iterator<Item = serde_json::V
 }
 
 /// A name in CSV: in quotes where it would break the row.
-pub(super) fn field(name: &str) -> String {
+fn field(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", name.replace('"', "\"\""))
     } else {

@@ -4,19 +4,22 @@ use super::contest::{Outcome, Plant, STAR, drawing_name};
 use crate::shared::escaped;
 use core::time::Duration;
 use plotter_motion::{
-    Pen, PenMove, Point, testbed::Drawing, testbed::Figures, testbed::Moment, testbed::Ranking,
-    testbed::TestBed,
+    Pen, PenMove, Point,
+    testbed::{Drawing, Figures, Moment, Ranking, TestBed},
 };
-use plotter_replay::{Chart, draw::Curve, draw::Panel, draw::Role, draw::Run};
+use plotter_replay::{
+    Chart,
+    draw::{Curve, Panel, Role, Run},
+};
 use std::fmt::Write as _;
 
 /// What the pictures show of a run: of each stretch of time the moment with the greatest error.
 pub(super) struct Trace {
     pub(super) most: usize,
-    pub(super) moments: Vec<Moment>,
+    moments: Vec<Moment>,
     /// Time steps in a stretch; grows with the run, so that memory does not.
     pub(super) every: usize,
-    pub(super) passed: usize,
+    passed: usize,
 }
 
 impl Trace {
@@ -45,7 +48,7 @@ impl Trace {
     }
 
     /// Both coordinates over time, desired beside actual, and the distance from the line.
-    pub(super) fn response(&self, title: &str) -> String {
+    fn response(&self, title: &str) -> String {
         let end = self.moments.last().map_or(Duration::ZERO, |moment| moment.time);
         let span = (Duration::ZERO, end);
         let curve = |label: &str, role: Role, value: &dyn Fn(&Moment) -> f64| {
@@ -74,7 +77,7 @@ impl Trace {
     }
 }
 
-pub(super) fn worse(one: &Moment, other: &Moment) -> Moment {
+fn worse(one: &Moment, other: &Moment) -> Moment {
     if other.error_mm > one.error_mm { *other } else { *one }
 }
 
@@ -182,7 +185,7 @@ impl Page {
         self.html.push_str("</table>\n");
     }
 
-    pub(super) fn phase(&mut self, entry: &str, drawings: &[Drawing], traces: &[Trace], bed: &TestBed) {
+    fn phase(&mut self, entry: &str, drawings: &[Drawing], traces: &[Trace], bed: &TestBed) {
         let (svg, magnified) = phase_picture(drawings, traces, bed);
         let names = match drawings {
             [one] => one.name.as_str(),
@@ -191,7 +194,7 @@ impl Page {
         self.figure(&svg, &format!("{entry}, {names}: distance from the line × {magnified}"));
     }
 
-    pub(super) fn figure(&mut self, svg: &str, caption: &str) {
+    fn figure(&mut self, svg: &str, caption: &str) {
         let svg = svg.find("<svg").and_then(|start| svg.get(start..)).unwrap_or_default();
         let _ = writeln!(self.html, "<figure>{svg}<figcaption>{}</figcaption></figure>", escaped(caption));
     }
@@ -202,9 +205,9 @@ impl Page {
     }
 }
 
-/// The desired lines, pale, and the way of the pen with its distance from them magnified by a round number, which comes
-/// with it: so that the greatest distance is a twelfth of the picture at most.
-pub(super) fn phase_picture(drawings: &[Drawing], traces: &[Trace], bed: &TestBed) -> (String, f64) {
+/// The desired lines, pale, and the way of the pen with its distance from them magnified by a round number,
+/// which comes with it: so that the greatest distance is a twelfth of the picture at most.
+fn phase_picture(drawings: &[Drawing], traces: &[Trace], bed: &TestBed) -> (String, f64) {
     const WIDTH: f64 = 480.0;
     const MARGIN: f64 = 50.0;
     let config = bed.machine().config();
@@ -265,7 +268,7 @@ pub(super) fn phase_picture(drawings: &[Drawing], traces: &[Trace], bed: &TestBe
 }
 
 /// The next lower of 1, 2 and 5 times a power of ten.
-pub(super) fn round_down(number: f64) -> f64 {
+fn round_down(number: f64) -> f64 {
     let power = libm::pow(10.0, libm::floor(libm::log10(number)));
     [5.0, 2.0, 1.0].into_iter().map(|n| n * power).find(|&round| round <= number).unwrap_or(power)
 }

@@ -6,20 +6,24 @@ use crate::drawings::{
 };
 use crate::shared::{ExitStatus, Telling, run};
 use clap::{Parser, ValueEnum};
-use plotter_motion::{PlotOp, gcode::LaserCommand, gcode::PenConvention, gcode::ServoCommand};
+use plotter_motion::{
+    PlotOp,
+    gcode::{LaserCommand, PenConvention, ServoCommand},
+};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Converts a drawing between HPGL, G-code, SVG and the thesis' text; reads DXF, CAMM-GL and GP-GL too.
 ///
-/// Lines and arcs, pens, speeds and pauses are converted as far as the target knows them. Arcs stay arcs in HPGL (AA), G-code (G2,
-/// G3) and SVG (A). SVG is read in mm by width, height and viewBox, with the lower left corner as the origin: along strokes, and
-/// along the border of what is only filled; each colour is a pen, 1, 2, … in the order in which they come, or each layer (--pens). Clip
-/// paths and masks cut it, and white is taken for the paper (--paper). Its texts are set in the fonts that --font gives, and never in
-/// others, or drawn in letters of one line (--single-stroke): so a file becomes the same strokes everywhere. In SVG written here each pen
-/// is a group, and is that pen when it is read again; the sheet of an SVG stays as large as it is. Layers of a DXF are pens, its texts are
-/// set in the font of HPGL's labels.
+/// Lines and arcs, pens, speeds and pauses are converted as far as the target knows them. Arcs stay arcs in
+/// HPGL (AA), G-code (G2, G3) and SVG (A). SVG is read in mm by width, height and viewBox, with the lower
+/// left corner as the origin: along strokes, and along the border of what is only filled; each colour is a
+/// pen, 1, 2, … in the order in which they come, or each layer (--pens). Clip paths and masks cut it, and
+/// white is taken for the paper (--paper). Its texts are set in the fonts that --font gives, and never in
+/// others, or drawn in letters of one line (--single-stroke): so a file becomes the same strokes everywhere.
+/// In SVG written here each pen is a group, and is that pen when it is read again; the sheet of an SVG stays
+/// as large as it is. Layers of a DXF are pens, its texts are set in the font of HPGL's labels.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -42,7 +46,7 @@ use std::process::ExitCode;
 )]
 pub struct ConvertCommand {
     /// Drawing to read; - is the standard input
-    pub(super) input: PathBuf,
+    input: PathBuf,
     /// Drawing to write; - is the standard output
     pub(super) output: PathBuf,
     /// What the drawing is written in [default: told by its contents]
@@ -56,33 +60,34 @@ pub struct ConvertCommand {
     pub(super) tolerance_mm: f64,
     /// How G-code that is read lifts its pen [default: told by its contents]
     #[arg(long, value_enum, value_name = "C")]
-    pub(super) convention: Option<Convention>,
+    convention: Option<Convention>,
     /// How G-code that is written lifts its pen
     #[arg(long, value_enum, default_value = "servo")]
     pub(super) gcode_pen: GcodePen,
-    // The pen of G-code in other words: where G-code is written, instead of --gcode-pen; and where it is read, if it has them
+    // The pen of G-code in other words: where G-code is written, instead of --gcode-pen; and where it is
+    // read, if it has them
     #[command(flatten)]
     pub(super) pen_lines: PenLines,
     /// Encoder counts to the millimetre in the thesis' text
     #[arg(long, value_name = "N", default_value = "40", value_parser = positive, allow_negative_numbers = true)]
     pub(super) counts_per_mm: f64,
-    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025, 0.1, Silhouette's 0.05; what
-    /// the DXF says, else 1]
+    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025,
+    /// 0.1, Silhouette's 0.05; what the DXF says, else 1]
     #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
-    pub(super) step_mm: Option<f64>,
+    step_mm: Option<f64>,
     #[command(flatten)]
-    pub(super) svg_reading: SvgReading,
+    svg_reading: SvgReading,
     #[command(flatten)]
-    pub(super) arrangement: Arrangement,
+    arrangement: Arrangement,
     /// Ends at the first error, with exit status 1; notices pass
     #[arg(long)]
-    pub(super) strict: bool,
+    strict: bool,
     #[command(flatten)]
-    pub(super) telling: Telling,
+    telling: Telling,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Convention {
+enum Convention {
     /// M3 lowers, M5 lifts
     Spindle,
     /// The Z axis, down at 0 and below
@@ -115,7 +120,7 @@ pub(super) enum GcodePen {
     Laser,
 }
 
-pub(super) fn positive(text: &str) -> Result<f64, String> {
+fn positive(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| String::from("give a number"))?;
     if (1e-6..=1e6).contains(&number) { Ok(number) } else { Err("give a number above 0".into()) }
 }
@@ -147,12 +152,12 @@ impl ConvertCommand {
     }
 }
 
-pub(super) fn is_same(input: &Path, output: &Path) -> bool {
+fn is_same(input: &Path, output: &Path) -> bool {
     let real = |path: &Path| path.canonicalize().ok();
     real(input).is_some_and(|input| real(output) == Some(input)) && output.is_file()
 }
 
-pub(super) fn convert(arguments: &ConvertCommand, language: Language) -> Result<(), String> {
+fn convert(arguments: &ConvertCommand, language: Language) -> Result<(), String> {
     let mut drawing = DrawingFile::open(&arguments.input, arguments.from)?
         .with_svg(&arguments.svg_reading)?
         .arranged(&arguments.arrangement);
@@ -241,7 +246,7 @@ pub(super) fn convert(arguments: &ConvertCommand, language: Language) -> Result<
     arguments.telling.tell(&said, json)
 }
 
-pub(super) fn convention(choice: Convention) -> PenConvention {
+fn convention(choice: Convention) -> PenConvention {
     match choice {
         Convention::Spindle => PenConvention::Spindle,
         Convention::Z => PenConvention::Height { threshold_mm: 0.0 },

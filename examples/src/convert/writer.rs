@@ -15,37 +15,37 @@ use std::rc::Rc;
 use std::time::Duration;
 
 /// Greatest coordinate in an SVG: beyond it the single precision of viewers is coarser than a plotter, mm.
-pub(super) const SVG_MOST_MM: f64 = 100_000.0;
+const SVG_MOST_MM: f64 = 100_000.0;
 
 /// Where the drawing's pen is, and whether it can be drawn from there.
 #[derive(Default)]
 pub(super) struct At {
-    pub(super) place: Point,
-    pub(super) is_lost: bool,
+    place: Point,
+    is_lost: bool,
 }
 
 /// What is written.
 pub(super) struct Writer<'a> {
-    pub(super) target: Target<'a>,
+    target: Target<'a>,
     pub(super) tolerance_mm: f64,
     /// Whether arcs have to be chords.
-    pub(super) has_chords: bool,
+    has_chords: bool,
     pub(super) counts_per_mm: f64,
     pub(super) path: &'a Path,
     /// Why the sink, which the target keeps to itself, has refused text.
-    pub(super) failure: Rc<RefCell<Option<io::Error>>>,
-    pub(super) has_drawn: bool,
+    failure: Rc<RefCell<Option<io::Error>>>,
+    has_drawn: bool,
     /// The line at which a new sheet was asked for, on which nothing has been drawn yet.
-    pub(super) sheet_owed: Option<Option<u32>>,
+    sheet_owed: Option<Option<u32>>,
     /// What has been said once already.
-    pub(super) said_pens: bool,
-    pub(super) said_pages: bool,
-    pub(super) said_dwells: bool,
-    pub(super) said_power: bool,
-    pub(super) has_laser: bool,
+    said_pens: bool,
+    said_pages: bool,
+    said_dwells: bool,
+    said_power: bool,
+    has_laser: bool,
 }
 
-pub(super) enum Target<'a> {
+enum Target<'a> {
     Hpgl(hpgl::Writer<Sink>),
     Gcode(gcode::Writer<'a, Sink>),
     Thesis(Sink, StepPoint),
@@ -53,9 +53,9 @@ pub(super) enum Target<'a> {
 }
 
 /// Text goes to a file or the standard output.
-pub(super) struct Sink {
-    pub(super) out: BufWriter<Box<dyn Write>>,
-    pub(super) failure: Rc<RefCell<Option<io::Error>>>,
+struct Sink {
+    out: BufWriter<Box<dyn Write>>,
+    failure: Rc<RefCell<Option<io::Error>>>,
 }
 
 impl fmt::Write for Sink {
@@ -127,8 +127,8 @@ impl<'a> Writer<'a> {
         })
     }
 
-    /// Takes the next operation. Plotters that advance their paper do so when they are told; nobody is asked for a sheet before
-    /// something is drawn on it, nor before anything has been drawn at all.
+    /// Takes the next operation. Plotters that advance their paper do so when they are told; nobody is asked
+    /// for a sheet before something is drawn on it, nor before anything has been drawn at all.
     pub(super) fn push(&mut self, op: PlotOp, line: Option<u32>, at: &mut At, said: &mut Diagnostics) {
         let advances = matches!(self.target, Target::Hpgl(_));
         match op {
@@ -148,7 +148,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Writes an operation, or says why not.
-    pub(super) fn put(&mut self, op: PlotOp, line: Option<u32>, at: &mut At, said: &mut Diagnostics) {
+    fn put(&mut self, op: PlotOp, line: Option<u32>, at: &mut At, said: &mut Diagnostics) {
         let from = at.place;
         at.place = op.target().unwrap_or(from);
         if let Some((is_said, text)) = self.unknown(op) {
@@ -157,7 +157,8 @@ impl<'a> Writer<'a> {
             }
             return;
         }
-        // Nothing is drawn that the drawing does not hold: the way from what is left out is made with the pen up.
+        // Nothing is drawn that the drawing does not hold: the way from what is left out is made with the pen
+        // up.
         let op = match op.target() {
             Some(to) if std::mem::take(&mut at.is_lost) => PlotOp::Travel { to },
             _ => op,
@@ -177,7 +178,7 @@ impl<'a> Writer<'a> {
     }
 
     /// What to say where the target has no word for an operation, and whether that has been said.
-    pub(super) fn unknown(&mut self, op: PlotOp) -> Option<(&mut bool, &'static str)> {
+    fn unknown(&mut self, op: PlotOp) -> Option<(&mut bool, &'static str)> {
         let is_thesis = matches!(self.target, Target::Thesis(..));
         let is_svg = matches!(self.target, Target::Svg(..));
         let is_gcode = matches!(self.target, Target::Gcode(..));
@@ -259,7 +260,7 @@ impl<'a> Writer<'a> {
 }
 
 /// Without the number of the operation, which says nothing to a reader of the file.
-pub(super) fn reason(text: &str) -> String {
+fn reason(text: &str) -> String {
     let rest = text.strip_prefix("operation ").and_then(|rest| rest.split_once(": "));
     rest.map_or(text, |(_, rest)| rest).to_owned()
 }

@@ -3,7 +3,7 @@
 use super::course::follow;
 use crate::shared::{ExitStatus, Telling, run};
 use clap::{Parser, ValueEnum};
-use plotter_vector::{follow::CameraSettings, follow::Lens, follow::MappingFollower};
+use plotter_vector::follow::{CameraSettings, Lens, MappingFollower};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -14,7 +14,7 @@ pub(super) const PUBLISHED_WINDOWS: u64 = 400;
 pub(super) const WINDOWS: u64 = 2_000_000;
 
 /// Fewest pixels of a window a side.
-pub(super) const LEAST_SIDE_PX: f64 = MappingFollower::LEAST_WINDOW_PX as f64;
+const LEAST_SIDE_PX: f64 = MappingFollower::LEAST_WINDOW_PX as f64;
 
 /// Follows the lines of a picture with a simulated camera on a simulated table, or what a real camera sees.
 #[derive(Debug, Parser)]
@@ -40,7 +40,8 @@ pub struct FollowCommand {
     /// Which follower
     #[arg(long, value_enum, default_value = "ours")]
     pub(super) method: Method,
-    /// What is wrong with the camera: blur (px), noise (levels), rim (share of light at the corners), barrel (of the lens), size (px)
+    /// What is wrong with the camera: blur (px), noise (levels), rim (share of light at the corners), barrel
+    /// (of the lens), size (px)
     #[arg(long, value_name = "K=V,..", value_parser = camera, default_value = "blur=1.5,noise=4,rim=0.6,barrel=0,size=300")]
     pub(super) camera: Box<CameraSettings>,
     /// Standard deviation of the table's error over 150 px of way, px
@@ -49,7 +50,8 @@ pub struct FollowCommand {
     /// What each axis of the table loses where it turns round, px [default: 3 times the table's error]
     #[arg(long, value_name = "PX", value_parser = error_px, allow_negative_numbers = true)]
     pub(super) play: Option<f64>,
-    /// On which hand the published follower turns off [default: right]; ours goes straight on, and takes no hand
+    /// On which hand the published follower turns off [default: right]; ours goes straight on, and takes no
+    /// hand
     #[arg(long, value_enum)]
     pub(super) hand: Option<Side>,
     /// Where the camera stands at first, px [default: the middle of the picture, or of the machine]
@@ -73,7 +75,8 @@ pub struct FollowCommand {
     /// The lens' correction, as `calibrate_camera` writes it
     #[arg(long, value_name = "F.json")]
     pub(super) correction: Option<PathBuf>,
-    /// Takes the windows from a camera (built with --features camera), or from a folder's pictures in the order of their names
+    /// Takes the windows from a camera (built with --features camera), or from a folder's pictures in the
+    /// order of their names
     #[arg(long, value_name = "/dev/videoN|FOLDER", conflicts_with_all = ["camera", "table_error", "play", "seed"])]
     pub(super) from: Option<PathBuf>,
     /// With --from: side of the square cut out of each picture's middle, px [default: the shorter side]
@@ -82,7 +85,8 @@ pub struct FollowCommand {
     /// With --from a camera: pause after each move, until the machine stands still, ms
     #[arg(long, value_name = "MS", default_value = "100", value_parser = clap::value_parser!(u32).range(0..=60_000))]
     pub(super) settle_ms: u32,
-    /// Writes the moves as they come: a table as .csv, otherwise G-code [default with --from: a table on the standard output]
+    /// Writes the moves as they come: a table as .csv, otherwise G-code [default with --from: a table on the
+    /// standard output]
     #[arg(long, value_name = "F.csv|F.gcode")]
     pub(super) moves: Option<PathBuf>,
     /// Writes the path over the drawing, with the windows
@@ -114,17 +118,17 @@ pub(super) enum Side {
     Right,
 }
 
-pub(super) fn number(text: &str, range: std::ops::RangeInclusive<f64>) -> Result<f64, String> {
+fn number(text: &str, range: std::ops::RangeInclusive<f64>) -> Result<f64, String> {
     let number: f64 = text.trim().parse().map_err(|_| format!("{text:?} is no number"))?;
     let (low, high) = (range.start(), range.end());
     if range.contains(&number) { Ok(number) } else { Err(format!("{number} is not from {low} to {high}")) }
 }
 
-pub(super) fn error_px(text: &str) -> Result<f64, String> {
+fn error_px(text: &str) -> Result<f64, String> {
     number(text, 0.0..=30.0)
 }
 
-pub(super) fn pixel_mm(text: &str) -> Result<f64, String> {
+fn pixel_mm(text: &str) -> Result<f64, String> {
     number(text, 0.001..=10.0)
 }
 

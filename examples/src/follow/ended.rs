@@ -3,7 +3,7 @@
 use plotter_vector::{PxPoint, follow::End};
 
 /// What helps where the machine reaches none of the lines.
-pub(super) const REACH_REMEDY: &str =
+const REACH_REMEDY: &str =
     "all that were seen lie outside of the machine's area; a smaller --mm-per-px or another --start may help";
 
 /// How a run ended.

@@ -4,8 +4,11 @@ use super::command::{FollowCommand, Method, Side, WINDOWS};
 use crate::follow::WindowSource;
 use plotter_vector::follow::LineFollower as _;
 use plotter_vector::{
-    Gray, PxPoint, follow::Correction, follow::Hand, follow::MappingFollower, follow::MappingSettings,
-    follow::PublishedFollower, follow::PublishedSettings, follow::SimulatedCamera, follow::Step,
+    Gray, PxPoint,
+    follow::{
+        Correction, Hand, MappingFollower, MappingSettings, PublishedFollower, PublishedSettings,
+        SimulatedCamera, Step,
+    },
 };
 
 /// Where windows come from.

@@ -4,11 +4,12 @@ use super::command::FollowCommand;
 use crate::shared::{at, read_file};
 use plotter_vector::{Gray, PxPoint, Vectorizer, decode, follow::Paper, stroke::Bounded};
 
-/// Farther than this the true lines are not from the middle of the picture's lines, px: less than what the tool is off.
-pub(super) const TRUTH_PX: f64 = 0.1;
+/// Farther than this the true lines are not from the middle of the picture's lines, px: less than what the
+/// tool is off.
+const TRUTH_PX: f64 = 0.1;
 
 /// A drawing with a bit of everything: loops within loops, crossings, sharp tips, hatching.
-pub(super) fn built_in() -> Result<Paper, String> {
+fn built_in() -> Result<Paper, String> {
     let circle = |x: f64, y: f64, r: f64| -> Vec<PxPoint> {
         let at = |i: i32| f64::from(i) * std::f64::consts::TAU / 120.0;
         (0..=120).map(|i| PxPoint::new(x + r * libm::cos(at(i)), y + r * libm::sin(at(i)))).collect()

@@ -11,12 +11,12 @@ use std::process::ExitCode;
 /// Most frames of one run: a joint of ours takes some milliseconds.
 pub(super) const MOST_FRAMES: u32 = 100_000;
 
-/// Draws a drawing of any length on a simulated sheet, frame by frame, and measures the joints; or tells from recorded scans how a
-/// sheet lies between two frames.
+/// Draws a drawing of any length on a simulated sheet, frame by frame, and measures the joints; or tells from
+/// recorded scans how a sheet lies between two frames.
 ///
-/// Recorded scans are stitch-trace/1 (one joint) and stitch-batch/1 (many). Of them a list is written with an object for each
-/// joint: theta (rad), tx and ty (mm) of machine = R(theta) frame + t, their standard deviations and the crossings that agree, or
-/// refused with the reason.
+/// Recorded scans are stitch-trace/1 (one joint) and stitch-batch/1 (many). Of them a list is written with an
+/// object for each joint: theta (rad), tx and ty (mm) of machine = R(theta) frame + t, their standard
+/// deviations and the crossings that agree, or refused with the reason.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -34,14 +34,14 @@ pub(super) const MOST_FRAMES: u32 = 100_000;
                   In a checkout of the project, `cargo run --release --example long_sheet --` stands for `plotter long-sheet`."
 )]
 pub struct LongSheetCommand {
-    /// Drawing in HPGL, G-code, SVG, DXF, CAMM-GL, GP-GL or the thesis' text, of any length; - is the standard input [default: a
-    /// textile pattern of 30 m]
+    /// Drawing in HPGL, G-code, SVG, DXF, CAMM-GL, GP-GL or the thesis' text, of any length; - is the
+    /// standard input [default: a textile pattern of 30 m]
     pub(super) file: Option<PathBuf>,
     /// What the file is written in [default: told by its contents]
     #[arg(long, value_enum)]
     pub(super) language: Option<Language>,
-    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025, 0.1, Silhouette's 0.05; what
-    /// the DXF says, else 1]
+    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025,
+    /// 0.1, Silhouette's 0.05; what the DXF says, else 1]
     #[arg(long, value_name = "S", value_parser = step, allow_negative_numbers = true)]
     pub(super) step_mm: Option<f64>,
     #[command(flatten)]
@@ -53,7 +53,8 @@ pub struct LongSheetCommand {
     /// The machine's TOML file [default: machines/textile-plotter.toml]
     #[arg(long, value_name = "FILE")]
     pub(super) machine: Option<PathBuf>,
-    /// Frames to draw; beyond the drawing's end they stay blank, but for their marks [default: as many as the drawing has]
+    /// Frames to draw; beyond the drawing's end they stay blank, but for their marks [default: as many as the
+    /// drawing has]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_FRAMES)))]
     pub(super) frames: Option<u32>,
     /// The procedure at a frame change
@@ -89,19 +90,19 @@ pub struct LongSheetCommand {
     pub(super) report: Option<PathBuf>,
     /// Recorded scans, in place of a drawing
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["file", "frames", "method", "svg", "change", "report", "machine", "paper_edges"])]
-    pub(super) traces: Vec<PathBuf>,
+    traces: Vec<PathBuf>,
     /// Which crossings of the traces are used, and by which method
     #[arg(long, value_enum, default_value = "strip16", requires = "traces")]
-    pub(super) set: Set,
+    set: Set,
     /// Where the list of their joints is written; - is the standard output
     #[arg(long, value_name = "F.json", default_value = "-", requires = "traces")]
-    pub(super) out: PathBuf,
+    out: PathBuf,
     #[command(flatten)]
     pub(super) telling: Telling,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Set {
+enum Set {
     /// The three crossings of the published procedure, by the published method
     Paper,
     /// Sixteen crossings in the strip that can still be reached, by ours
@@ -116,12 +117,12 @@ pub(super) enum Method {
     Ours,
 }
 
-pub(super) fn in_range(text: &str, least: f64, most: f64) -> Result<f64, String> {
+fn in_range(text: &str, least: f64, most: f64) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| String::from("give a number"))?;
     if (least..=most).contains(&number) { Ok(number) } else { Err(format!("give {least} to {most}")) }
 }
 
-pub(super) fn edges(text: &str) -> Result<[f64; 2], String> {
+fn edges(text: &str) -> Result<[f64; 2], String> {
     let numbers: Vec<f64> = text
         .split(',')
         .map(|number| number.trim().parse().map_err(|_| String::from("give two numbers, as 300,1500")))
@@ -132,19 +133,19 @@ pub(super) fn edges(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-pub(super) fn share(text: &str) -> Result<f64, String> {
+fn share(text: &str) -> Result<f64, String> {
     in_range(text, 0.0, 1.0)
 }
 
-pub(super) fn metres(text: &str) -> Result<f64, String> {
+fn metres(text: &str) -> Result<f64, String> {
     in_range(text, 0.1, 10_000.0)
 }
 
-pub(super) fn chord(text: &str) -> Result<f64, String> {
+fn chord(text: &str) -> Result<f64, String> {
     in_range(text, 0.001, 100.0)
 }
 
-pub(super) fn step(text: &str) -> Result<f64, String> {
+fn step(text: &str) -> Result<f64, String> {
     in_range(text, 1e-6, 1e6)
 }
 

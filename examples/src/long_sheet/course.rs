@@ -84,7 +84,7 @@ pub(super) fn draw<I: Iterator<Item = PlotOp>>(
     }
 }
 
-pub(super) fn draw_with<M: JoinFrames, I: Iterator<Item = PlotOp>>(
+fn draw_with<M: JoinFrames, I: Iterator<Item = PlotOp>>(
     arguments: &LongSheetCommand,
     sheet: LongSheetMachine,
     method: &str,

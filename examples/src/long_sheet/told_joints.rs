@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 /// Joints that are printed; a batch may have thousands.
 const MOST_PRINTED: usize = 20;
 
-/// Tells the joints of recorded scans, one file after the other, and writes them as a list; `-` is the standard output.
+/// Tells the joints of recorded scans, one file after the other, and writes them as a list; `-` is the
+/// standard output.
 ///
 /// # Errors
 ///

@@ -48,7 +48,7 @@ pub struct MaxErrorCommand {
     #[arg(long, value_name = "F.svg")]
     pub(super) picture: Option<PathBuf>,
     #[command(flatten)]
-    pub(super) telling: Telling,
+    telling: Telling,
 }
 
 impl MaxErrorCommand {

@@ -5,7 +5,10 @@ use super::plan::{Plan, Refusal, SAFETY};
 use super::scan::Scan;
 use crate::max_error::{FollowedPath, TruePath};
 use crate::shared::write_file;
-use plotter_motion::{Machine, budget::Budget, budget::BudgetError, budget::BudgetPart};
+use plotter_motion::{
+    Machine,
+    budget::{Budget, BudgetError, BudgetPart},
+};
 use plotter_replay::{Canvas, CanvasStyle, draw::Layer};
 use plotter_vector::{ink::Despeckled, report::FollowedLines};
 use serde_json::json;
@@ -16,7 +19,7 @@ pub(super) struct Report<'a> {
     pub(super) name: String,
     pub(super) mm_per_px: f64,
     pub(super) plan: Plan,
-    pub(super) duration_s: f64,
+    duration_s: f64,
     /// The ink from what was drawn, and that from the ink, mm.
     pub(super) measured: [f64; 2],
     /// Line by line.
@@ -64,7 +67,7 @@ impl<'a> Report<'a> {
     }
 
     /// The part that takes most of what was promised.
-    pub(super) fn largest_part(&self) -> BudgetPart {
+    fn largest_part(&self) -> BudgetPart {
         let Budget { vectorization_mm, blend_mm, control_mm, .. } = self.plan.budget;
         if control_mm >= vectorization_mm.max(blend_mm) {
             BudgetPart::Control

@@ -5,16 +5,20 @@ use super::scan::{Scan, Traced, candidates};
 use crate::max_error::{TruePath, predicted_s, rounding_mm, slowed, speed_trial};
 use crate::shared::WorkShown;
 use plotter_motion::{
-    Machine, PlotOp, budget::Budget, budget::BudgetError, budget::BudgetLimits, config::MachineKind,
+    Machine, PlotOp,
+    budget::{Budget, BudgetError, BudgetLimits},
+    config::MachineKind,
 };
 use plotter_vector::report::FollowedLines;
 
-/// How much worse a drawing may be than the test figure, which was drawn with the same motors but other lines.
+/// How much worse a drawing may be than the test figure, which was drawn with the same motors but other
+/// lines.
 pub(super) const SAFETY: f64 = 1.5;
 
-/// Share of the speed at which the machine is tried a second time, and which is the least that is proposed: a quarter of the
-/// speed and a sixteenth of the acceleration. Far below that a motor is no more exact, since its encoder is seldom heard of.
-pub(super) const SLOW_SHARE: f64 = 0.25;
+/// Share of the speed at which the machine is tried a second time, and which is the least that is proposed: a
+/// quarter of the speed and a sixteenth of the acceleration. Far below that a motor is no more exact, since
+/// its encoder is seldom heard of.
+const SLOW_SHARE: f64 = 0.25;
 
 /// What is drawn, and how.
 pub(super) struct Plan {
@@ -30,7 +34,7 @@ pub(super) struct Plan {
 pub(super) struct Control {
     pub(super) rounding_mm: f64,
     /// Greatest share of the machine's speed at which it finishes the figure.
-    pub(super) most_share: f64,
+    most_share: f64,
     /// Measured at that share, and at a quarter of it.
     pub(super) fast_mm: f64,
     pub(super) slow_mm: f64,
@@ -59,12 +63,13 @@ impl Control {
         Ok(Self { rounding_mm: rounding_mm(machine), most_share, fast_mm, slow_mm })
     }
 
-    /// What is promised when the test figure is `trial_mm` off. The places of the pen are kept within a micrometre.
+    /// What is promised when the test figure is `trial_mm` off. The places of the pen are kept within a
+    /// micrometre.
     pub(super) fn promised_mm(&self, trial_mm: f64) -> f64 {
         self.rounding_mm + SAFETY * (trial_mm + TruePath::TOLERANCE_MM)
     }
 
-    pub(super) fn limits(&self) -> BudgetLimits {
+    fn limits(&self) -> BudgetLimits {
         // A machine that is less exact when it is slow has nothing to gain from slowness.
         let grows_mm = SAFETY * (self.fast_mm - self.slow_mm).max(0.0);
         let moving_mm = grows_mm / (1.0 - SLOW_SHARE * SLOW_SHARE);
@@ -156,9 +161,9 @@ pub(super) fn plan(
     Ok(Plan { budget, machine, traced, ops, control })
 }
 
-/// The budget with a speed at which the test figure keeps it: what was measured at two speeds says nothing sure of those between,
-/// nor of rounded corners.
-pub(super) fn confirmed(
+/// The budget with a speed at which the test figure keeps it: what was measured at two speeds says nothing
+/// sure of those between, nor of rounded corners.
+fn confirmed(
     machine: &Machine,
     scan: &Scan,
     mut budget: Budget,
@@ -189,7 +194,7 @@ pub(super) fn confirmed(
 }
 
 /// The one that could promise more.
-pub(super) fn least(before: Option<BudgetError>, error: BudgetError) -> BudgetError {
+fn least(before: Option<BudgetError>, error: BudgetError) -> BudgetError {
     let smallest = |error: &BudgetError| match error {
         BudgetError::TooSmall { smallest_mm, .. } => *smallest_mm,
         _ => f64::INFINITY,

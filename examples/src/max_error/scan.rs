@@ -4,18 +4,19 @@ use super::command::MaxErrorCommand;
 use crate::shared::{at, fit_drawing, read_file, vectorizer};
 use plotter_motion::{Machine, Point, config::VectorizeConfig};
 use plotter_vector::{
-    Bitmap, Drawing, Gray, PxPoint, Scale, Vectorized, decode, ink::Despeckled, report::FollowedLines,
-    report::InkDistance, report::followed_lines,
+    Bitmap, Drawing, Gray, PxPoint, Scale, Vectorized, decode,
+    ink::Despeckled,
+    report::{FollowedLines, InkDistance, followed_lines},
 };
 use std::path::Path;
 
-/// Tolerances that the vectorization is tried with, px: from the finest, each a fifth more than the one before, so that a
-/// greater error has all choices of a smaller one.
-pub(super) const FINEST_PX: f64 = 0.125;
-pub(super) const STEPS: u32 = 48;
+/// Tolerances that the vectorization is tried with, px: from the finest, each a fifth more than the one
+/// before, so that a greater error has all choices of a smaller one.
+const FINEST_PX: f64 = 0.125;
+const STEPS: u32 = 48;
 
 /// Tolerance of the strokes that the ink's widths are measured along, px.
-pub(super) const REFERENCE_PX: f64 = 0.5;
+const REFERENCE_PX: f64 = 0.5;
 
 /// The scan, and where it lies on the sheet.
 pub(super) struct Scan {
@@ -25,7 +26,7 @@ pub(super) struct Scan {
     pub(super) all_ink: Bitmap,
     pub(super) dirt: Despeckled,
     pub(super) scale: Scale,
-    pub(super) vectorize: VectorizeConfig,
+    vectorize: VectorizeConfig,
     /// Strokes along which the ink's widths are measured.
     pub(super) reference: Drawing,
 }
@@ -109,7 +110,8 @@ pub(super) fn candidates(scan: &Scan, max_error_mm: f64) -> Result<Vec<Traced>, 
         if found.last().is_some_and(|before| before.drawing == drawing) {
             continue;
         }
-        // Measured on this very scan, both ways: what was asked of the vectorization is the most that it can be.
+        // Measured on this very scan, both ways: what was asked of the vectorization is the most that it can
+        // be.
         let [ink_mm, drawn_mm] = scan.distance_mm(&scan.ink, &drawing);
         found.push(Traced { tolerance_px, drawing, error_mm: ink_mm.max(drawn_mm) });
     }

@@ -4,15 +4,18 @@ use super::figures::Summary;
 use super::pictures::Pictures;
 use super::recording::{record, replay};
 use crate::shared::{
-    Figure, Telling, at, fit_drawing, html_page, lost_ink, read_file, run, vectorized, vectorizer, write_file,
+    Telling, at, fit_drawing, html_page, lost_ink, read_file, run, vectorized, vectorizer, write_file,
 };
 use clap::{Parser, ValueEnum};
 use plotter_motion::{
-    Machine, MachineConfig, PenMove, PlotOp, config::ControllerChoice, config::MachineKind,
-    firmware::MarkingBoardSettings, hpgl, toolpath::OutOfReach, toolpath::targets,
+    Machine, MachineConfig, PenMove, PlotOp,
+    config::{ControllerChoice, MachineKind},
+    firmware::MarkingBoardSettings,
+    hpgl,
+    toolpath::{OutOfReach, targets},
 };
 use plotter_replay::compare::Ways;
-use plotter_vector::{Algorithm, FileRows, TracedSheet, Vectorizer, picture::RowSource as _};
+use plotter_vector::{Algorithm, Drawing, FileRows, TracedSheet, Vectorizer, picture::RowSource as _};
 use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -35,21 +38,22 @@ use std::time::Instant;
 )]
 pub struct PlotCommand {
     /// PNG, JPEG, PBM or PGM picture; without one, a flag as line art
-    pub(super) image: Option<PathBuf>,
+    image: Option<PathBuf>,
     /// The machine's TOML file, whose table [vectorize] ours takes too [default: the semi-virtual gantry]
     #[arg(long, value_name = "FILE")]
     pub(super) machine: Option<PathBuf>,
     /// The controller, whatever the machine's file says
     #[arg(long)]
-    pub(super) controller: Option<ControllerArg>,
-    /// The vectorization; the published one is for lines one pixel wide, and draws the wider lines of a scan two or three times
+    controller: Option<ControllerArg>,
+    /// The vectorization; the published one is for lines one pixel wide, and draws the wider lines of a scan
+    /// two or three times
     #[arg(long, default_value = "ours")]
-    pub(super) algorithm: AlgorithmArg,
+    algorithm: AlgorithmArg,
     /// Width of the drawing on the sheet, mm; less where the machine is smaller
     #[arg(long, value_name = "MM", default_value_t = 50.0, allow_negative_numbers = true)]
-    pub(super) width_mm: f64,
-    /// Plots with a firmware instead of the simulated machine: `qemu` for the one in examples/firmware, in the emulator, or the
-    /// serial port of a machine that speaks the published protocol or the reliable link
+    width_mm: f64,
+    /// Plots with a firmware instead of the simulated machine: `qemu` for the one in examples/firmware, in
+    /// the emulator, or the serial port of a machine that speaks the published protocol or the reliable link
     #[arg(long, value_name = "qemu|PORT")]
     pub(super) firmware: Option<String>,
     /// What is spoken with a machine on a port
@@ -69,7 +73,7 @@ pub struct PlotCommand {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum ControllerArg {
+enum ControllerArg {
     /// PID line tracking as in the thesis
     Published,
     /// A planned speed, errors along and across the line
@@ -85,7 +89,7 @@ pub(super) enum LinkArg {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub(super) enum AlgorithmArg {
+enum AlgorithmArg {
     /// Ordered tracking, pre-elimination and dynamic threshold, as in the thesis
     Published,
     /// Fewest vertices within a promised error
@@ -111,21 +115,7 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
         .map_err(|error| at(&args.out, &format!("this folder cannot be made: {error}")))?;
     let file = |name: &str| args.out.join(name);
 
-    // The drawing goes through the plotter's own language, so what is plotted is what the file says.
-    let size_px = (traced.drawing.width_px(), traced.drawing.height_px());
-    let scale = fit_drawing(size_px, &machine, args.width_mm)?;
-    let mut text = String::new();
-    plotter_vector::hpgl(&traced.drawing, scale, &mut text).map_err(|error| error.to_string())?;
-    write_file(&file("drawing.hpgl"), &text)?;
-    let ops: Vec<PlotOp> =
-        hpgl::plot_ops(text.as_bytes()).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
-    let moves: Result<Vec<PenMove>, OutOfReach> = if machine.kind() == MachineKind::Belt {
-        MarkingBoardSettings::of(&machine).moves(ops).collect()
-    } else {
-        targets(&machine, ops).collect()
-    };
-    let moves = moves.map_err(|error| error.to_string())?;
-
+    let moves = moves(args, &machine, &traced.drawing)?;
     let log_file = file("session.plog");
     let outcome = record(args, &machine, moves, &log_file)?;
     // From here on, the recording is all there is.
@@ -146,19 +136,6 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
     };
     write_file(&file("report.json"), summary.json())?;
     let table = summary.table();
-    let figures = [
-        Figure::Svg(&pictures.drawing, "The strokes, in pixels of the picture"),
-        Figure::Svg(
-            &pictures.plotted,
-            "What the motors drew (dark) on what was meant (pale), from the recording",
-        ),
-        Figure::Svg(
-            &pictures.response,
-            "Both coordinates over time, desired beside actual, and the contour error",
-        ),
-        Figure::Svg(&pictures.errors, "Distance of the picture's pixels from the strokes"),
-        Figure::Png(&pictures.plotted_png, "The plot once more, as PNG"),
-    ];
     let introduction = format!(
         "A picture, vectorized with the {} algorithm and drawn by the {} {} with the {} controller.",
         name(&args.algorithm),
@@ -170,7 +147,7 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
         machine.config().name,
         controller_name(&machine)
     );
-    write_file(&file("report.html"), html_page("Plot report", &introduction, &table, &figures))?;
+    write_file(&file("report.html"), html_page("Plot report", &introduction, &table, &pictures.figures()))?;
 
     let mut text = String::new();
     for (name, value) in &table {
@@ -186,6 +163,24 @@ pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
         eprintln!("warning: {missed} of {} targets were not reached", outcome.targets);
     }
     lost_ink(&vectorizer, &errors, traced.pen_px).map_err(|error| at(picture_path(args), &error))
+}
+
+/// What the machine is to do; the drawing is written on the way.
+fn moves(args: &PlotCommand, machine: &Machine, drawing: &Drawing) -> Result<Vec<PenMove>, String> {
+    // The drawing goes through the plotter's own language, so what is plotted is what the file says.
+    let size_px = (drawing.width_px(), drawing.height_px());
+    let scale = fit_drawing(size_px, machine, args.width_mm)?;
+    let mut text = String::new();
+    plotter_vector::hpgl(drawing, scale, &mut text).map_err(|error| error.to_string())?;
+    write_file(&args.out.join("drawing.hpgl"), &text)?;
+    let ops: Vec<PlotOp> =
+        hpgl::plot_ops(text.as_bytes()).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
+    let moves: Result<Vec<PenMove>, OutOfReach> = if machine.kind() == MachineKind::Belt {
+        MarkingBoardSettings::of(machine).moves(ops).collect()
+    } else {
+        targets(machine, ops).collect()
+    };
+    moves.map_err(|error| error.to_string())
 }
 
 pub(super) fn controller_name(machine: &Machine) -> &'static str {
@@ -229,11 +224,11 @@ pub(super) fn machine(args: &PlotCommand) -> Result<Machine, String> {
     Machine::new(config).map_err(|error| error.to_string())
 }
 
-pub(super) fn picture_path(args: &PlotCommand) -> &Path {
+fn picture_path(args: &PlotCommand) -> &Path {
     args.image.as_deref().unwrap_or(Path::new("flag.png"))
 }
 
-pub(super) fn trace(args: &PlotCommand, machine: &Machine) -> Result<(Vectorizer, TracedSheet), String> {
+fn trace(args: &PlotCommand, machine: &Machine) -> Result<(Vectorizer, TracedSheet), String> {
     let bytes = match &args.image {
         Some(path) => read_file(path)?,
         None => include_bytes!("../../data/flag.png").to_vec(),

@@ -66,6 +66,6 @@ impl Summary<'_> {
     }
 }
 
-pub(super) fn known_mm(value: Option<f64>) -> String {
+fn known_mm(value: Option<f64>) -> String {
     value.map_or_else(|| String::from("only the machine knows"), |value| format!("{value:.4} mm"))
 }

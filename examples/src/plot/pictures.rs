@@ -1,6 +1,6 @@
 //! The files that show something.
 
-use crate::shared::write_file;
+use crate::shared::{Figure, write_file};
 use plotter_replay::{Canvas, Chart, VirtualPlotter};
 use plotter_vector::{Drawing, ErrorReport, report::error_chart, svg};
 use std::path::Path;
@@ -10,8 +10,8 @@ pub(super) struct Pictures {
     pub(super) drawing: String,
     pub(super) errors: String,
     pub(super) plotted: String,
-    pub(super) plotted_png: Vec<u8>,
-    pub(super) response: String,
+    plotted_png: Vec<u8>,
+    response: String,
 }
 
 impl Pictures {
@@ -36,6 +36,23 @@ impl Pictures {
             plotted_png: canvas.to_png(&style).map_err(|error| error.to_string())?,
             response: Chart::response("Response", plotter).to_svg(),
         })
+    }
+
+    /// All of them with their captions, for the page.
+    pub(super) fn figures(&self) -> [Figure<'_>; 5] {
+        [
+            Figure::Svg(&self.drawing, "The strokes, in pixels of the picture"),
+            Figure::Svg(
+                &self.plotted,
+                "What the motors drew (dark) on what was meant (pale), from the recording",
+            ),
+            Figure::Svg(
+                &self.response,
+                "Both coordinates over time, desired beside actual, and the contour error",
+            ),
+            Figure::Svg(&self.errors, "Distance of the picture's pixels from the strokes"),
+            Figure::Png(&self.plotted_png, "The plot once more, as PNG"),
+        ]
     }
 
     pub(super) fn write(&self, out: &Path) -> Result<(), String> {

@@ -1,4 +1,5 @@
-//! The plot itself: on a simulated machine or with a firmware, recorded; and the recording on the virtual plotter.
+//! The plot itself: on a simulated machine or with a firmware, recorded; and the recording on the virtual
+//! plotter.
 
 use super::command::{EMULATED, LinkArg, PlotCommand, controller_name};
 use crate::machine::{
@@ -53,13 +54,13 @@ pub(super) fn record(
 }
 
 /// Bits that are others each time.
-pub(super) fn clock_bits() -> u16 {
+fn clock_bits() -> u16 {
     let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
     u16::try_from(since.as_millis() & 0xffff).unwrap_or(1)
 }
 
 /// What a log says of its line: that of the published protocol, or of the reliable link.
-pub(super) fn line_header(machine: &Machine, may_be_linked: bool) -> Header {
+fn line_header(machine: &Machine, may_be_linked: bool) -> Header {
     let config = machine.config();
     Header::new()
         .with_number("baud", config.serial.baud.into())

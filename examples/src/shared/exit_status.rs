@@ -31,7 +31,8 @@ impl ExitStatus {
         }
     }
 
-    /// What it means. Commands on recordings tell a recording that is unlike another, 1, from one that cannot be read, 2.
+    /// What it means. Commands on recordings tell a recording that is unlike another, 1, from one that cannot
+    /// be read, 2.
     #[must_use]
     pub const fn meaning(self) -> &'static str {
         match self {

@@ -7,10 +7,11 @@ use clap::{Parser, ValueEnum};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Plots a drawing on a simulated plotter with stepper motors: how long it takes, and how fast the pen goes where.
+/// Plots a drawing on a simulated plotter with stepper motors: how long it takes, and how fast the pen goes
+/// where.
 ///
-/// The file is planned with look-ahead and turned into timed steps; all figures but the lengths are measured from the steps.
-/// The time in motion is that without pen and pauses.
+/// The file is planned with look-ahead and turned into timed steps; all figures but the lengths are measured
+/// from the steps. The time in motion is that without pen and pauses.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -27,14 +28,14 @@ use std::process::ExitCode;
                   In a checkout of the project, `cargo run --release --example stepper --` stands for `plotter stepper`."
 )]
 pub struct StepperCommand {
-    /// Drawing in HPGL, G-code, SVG, DXF, CAMM-GL, GP-GL or the thesis' text; - is the standard input [default: a spiral, hatching
-    /// and letters]
+    /// Drawing in HPGL, G-code, SVG, DXF, CAMM-GL, GP-GL or the thesis' text; - is the standard input
+    /// [default: a spiral, hatching and letters]
     pub(super) file: Option<PathBuf>,
     /// What the file is written in [default: told by its contents]
     #[arg(long, value_enum)]
     pub(super) language: Option<Language>,
-    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025, 0.1, Silhouette's 0.05; what
-    /// the DXF says, else 1]
+    /// Size of a step in CAMM-GL and GP-GL, or of the unit of a DXF, mm: 25.4 for inches [default: 0.025,
+    /// 0.1, Silhouette's 0.05; what the DXF says, else 1]
     #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     pub(super) step_mm: Option<f64>,
     #[command(flatten)]
@@ -52,8 +53,8 @@ pub struct StepperCommand {
     /// How far the pen may be from the drawing, mm; chooses --mode tolerance [default: the machine's]
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     pub(super) tolerance_mm: Option<f64>,
-    /// How far the pen may miss a vertex in the mode exact, because rounding did, mm [default: half the last digit that the file
-    /// writes, or a step, whichever is greater]
+    /// How far the pen may miss a vertex in the mode exact, because rounding did, mm [default: half the last
+    /// digit that the file writes, or a step, whichever is greater]
     #[arg(long, value_name = "A", value_parser = allowance, allow_negative_numbers = true)]
     pub(super) allowance_mm: Option<f64>,
     /// Limits the jerk too
@@ -68,7 +69,8 @@ pub struct StepperCommand {
     /// Greatest acceleration of each motor instead, mm/s²; of a belt machine mm of the belt
     #[arg(long, value_names = ["X", "Y"], num_args = 2, value_parser = positive, allow_negative_numbers = true, conflicts_with = "accel")]
     pub(super) accel_axes: Option<Vec<f64>>,
-    /// How far from a corner the circle passes whose speed the corner is taken with, mm [default: the machine's, 0.01]
+    /// How far from a corner the circle passes whose speed the corner is taken with, mm [default: the
+    /// machine's, 0.01]
     #[arg(long, value_name = "D", value_parser = not_negative, allow_negative_numbers = true)]
     pub(super) junction_deviation: Option<f64>,
     /// Greatest jerk, mm/s³; counts with --s-curve [default: the machine's, 10000]
@@ -77,16 +79,19 @@ pub struct StepperCommand {
     /// Steps to the millimetre of both motors [default: the machine's, 87.58]
     #[arg(long, value_name = "N", value_parser = steps_per_mm, allow_negative_numbers = true)]
     pub(super) steps_per_mm: Option<f64>,
-    /// Plans at the machine's speed whatever speeds (F, VS) the file asks for; otherwise they count where they are lower
+    /// Plans at the machine's speed whatever speeds (F, VS) the file asks for; otherwise they count where
+    /// they are lower
     #[arg(long)]
     pub(super) ignore_feed: bool,
     /// What becomes of what lies outside of the machine's area; there is a warning either way
     #[arg(long, value_enum, default_value = "draw")]
     pub(super) outside: Outside,
-    /// Tells the times and lengths from the plan alone, without making its steps: as they would be, in a hundredth of the time
+    /// Tells the times and lengths from the plan alone, without making its steps: as they would be, in a
+    /// hundredth of the time
     #[arg(long, conflicts_with_all = ["svg", "speed_plot", "steps"])]
     pub(super) estimate: bool,
-    /// Writes the picture that the pen draws: true scale in mm, pen-up ways dashed, the machine's area as frame
+    /// Writes the picture that the pen draws: true scale in mm, pen-up ways dashed, the machine's area as
+    /// frame
     #[arg(long, value_name = "F.svg")]
     pub(super) svg: Option<PathBuf>,
     /// Writes speed and acceleration over time as a chart
@@ -121,17 +126,17 @@ pub(super) enum Outside {
     LeaveOut,
 }
 
-pub(super) fn positive(text: &str) -> Result<f64, String> {
+fn positive(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| String::from("give a number"))?;
     if (1e-3..=1e12).contains(&number) { Ok(number) } else { Err("give 0.001 or more".into()) }
 }
 
-pub(super) fn not_negative(text: &str) -> Result<f64, String> {
+fn not_negative(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| String::from("give a number"))?;
     if number >= 0.0 && number.is_finite() { Ok(number) } else { Err("give 0 or more".into()) }
 }
 
-pub(super) fn allowance(text: &str) -> Result<f64, String> {
+fn allowance(text: &str) -> Result<f64, String> {
     let number = not_negative(text)?;
     if number <= 1000.0 { Ok(number) } else { Err("give 0 to 1000".into()) }
 }

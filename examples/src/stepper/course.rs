@@ -8,8 +8,11 @@ use crate::machine::{BLOCKS, SteppedPlot};
 use crate::shared::{at, read_file, write_file};
 use crate::stepper::{DrawnExtent, PlotFigures, SpeedChart, StepFile, SteppedPreview, SteppedReport};
 use plotter_motion::{
-    Machine, MachineConfig, PathMode, Pen, PlannerSettings, Point, config::AccelChoice, config::MachineKind,
-    kinematics::MotorScale, planner::AccelLimit, stepgen::Estimator, stepgen::StepGenSettings,
+    Machine, MachineConfig, PathMode, Pen, PlannerSettings, Point,
+    config::{AccelChoice, MachineKind},
+    kinematics::MotorScale,
+    planner::AccelLimit,
+    stepgen::{Estimator, StepGenSettings},
 };
 use std::path::Path;
 
@@ -86,18 +89,14 @@ pub(super) fn plot(arguments: &StepperCommand) -> Result<(), String> {
 }
 
 /// That something is drawn.
-pub(super) fn check_drawn(
-    drawing: &DrawingFile,
-    read: &DrawnExtent,
-    said: &Diagnostics,
-) -> Result<(), String> {
+fn check_drawn(drawing: &DrawingFile, read: &DrawnExtent, said: &Diagnostics) -> Result<(), String> {
     if read.drawn > 0 {
         return Ok(());
     }
     Err(drawing.nothing_drawn(said))
 }
 
-pub(super) fn tell(
+fn tell(
     arguments: &StepperCommand,
     drawing: &DrawingFile,
     report: &SteppedReport,

@@ -8,10 +8,10 @@ use crate::stepper::{DrawnExtent, SpeedChart, StepFile, SteppedPreview};
 use plotter_motion::{Pen, PlotOp, Point, planner::PlanError};
 
 /// Greatest side of a machine's area, mm: beyond it nothing is planned.
-pub(super) const FARTHEST_MM: f64 = 100_000.0;
+const FARTHEST_MM: f64 = 100_000.0;
 
-/// Reads the drawing, and hands over its operations one by one to be planned; gives the colours of its pens. `push` says what is wrong
-/// with an operation, or why it cannot go on at all.
+/// Reads the drawing, and hands over its operations one by one to be planned; gives the colours of its pens.
+/// `push` says what is wrong with an operation, or why it cannot go on at all.
 pub(super) fn walk(
     arguments: &StepperCommand,
     drawing: &DrawingFile,
@@ -66,7 +66,8 @@ pub(super) fn walk(
             is_lost = true;
             continue;
         }
-        // Nothing is drawn that the drawing does not hold: the way from what is left out is made with the pen up.
+        // Nothing is drawn that the drawing does not hold: the way from what is left out is made with the pen
+        // up.
         let op = if std::mem::take(&mut is_lost) { PlotOp::Travel { to } } else { op };
         if plan(op, ops.line(), &mut push, said)? {
             read.drawn += u64::from(!matches!(op, PlotOp::Travel { .. }));
@@ -78,7 +79,7 @@ pub(super) fn walk(
     Ok(colours)
 }
 
-pub(super) fn is_near(place: Point) -> bool {
+fn is_near(place: Point) -> bool {
     place.x.abs() <= FARTHEST_MM && place.y.abs() <= FARTHEST_MM
 }
 

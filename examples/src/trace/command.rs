@@ -1,13 +1,12 @@
 //! The command line of `trace`, and its course.
 
-use super::figures::{BeyondReport, Dirt, RASTER_PX, Report, peak_rss_mb, pen_report, table};
+use super::figures::{Report, table};
 use super::files::{check_size, prints_file, write_files};
 use super::settings::settings;
 use super::traced::{by_rows, in_colour, picture_bytes};
 use crate::shared::{ExitStatus, Telling, at, is_standard, lost_ink, run, write_output};
 use crate::trace::{Interrupt, Overlay, overlay_png};
 use clap::{Parser, ValueEnum};
-use plotter_vector::{Algorithm, ErrorReport, trace::SheetErrors};
 use std::fs::File;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -30,19 +29,21 @@ pub(super) const FLAG: &[u8] = include_bytes!("../../data/flag.png");
                   In a checkout of the project, `cargo run --release --example trace --` stands for `plotter trace`."
 )]
 pub struct TraceCommand {
-    /// PNG, JPEG, TIFF, PBM, PGM or PPM picture of lines, of any size but for --pens; - is the standard input [default: the flag
-    /// that comes with the examples]
-    pub(super) image: Option<PathBuf>,
+    /// PNG, JPEG, TIFF, PBM, PGM or PPM picture of lines, of any size but for --pens; - is the standard input
+    /// [default: the flag that comes with the examples]
+    image: Option<PathBuf>,
     /// Vectorization
     #[arg(long, value_enum, default_value = "ours")]
     pub(super) algorithm: Choice,
     /// Greatest distance of a pixel from the line that replaces it, px (ours only) [default: 0.5]
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub(super) max_error_px: Option<f64>,
-    /// Circular arcs and circles where they save vertices, within the same error (ours only): CI and AA, G2 and G3, A
+    /// Circular arcs and circles where they save vertices, within the same error (ours only): CI and AA, G2
+    /// and G3, A
     #[arg(long)]
     pub(super) arcs: bool,
-    /// Cubic curves instead of arcs where they save vertices, within the same error (ours only): C in SVG, chords in HPGL and G-code
+    /// Cubic curves instead of arcs where they save vertices, within the same error (ours only): C in SVG,
+    /// chords in HPGL and G-code
     #[arg(long)]
     pub(super) curves: bool,
     /// What is drawn of the ink (ours only) [default: centreline, with --hatch mixed]
@@ -55,7 +56,8 @@ pub struct TraceCommand {
     /// How ink is told from paper: otsu, adaptive (uneven light), or a level from 0 to 255 [default: otsu]
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(super) threshold: Option<String>,
-    /// Pens told apart by colour: how many, auto, or a palette's TOML file (ours only) [default: 1, by grey level]
+    /// Pens told apart by colour: how many, auto, or a palette's TOML file (ours only) [default: 1, by grey
+    /// level]
     #[arg(long, value_name = "N|auto|F.toml", allow_negative_numbers = true)]
     pub(super) pens: Option<String>,
     /// How hard an order with little travel is searched for (ours only) [default: best]
@@ -64,7 +66,8 @@ pub struct TraceCommand {
     /// Hatches areas with lines this far apart, mm on the sheet (ours only)
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) hatch: Option<f64>,
-    /// Width of the pen that areas are outlined and hatched with, mm on the sheet: its ink ends at their edge (ours only) [default: a pixel]
+    /// Width of the pen that areas are outlined and hatched with, mm on the sheet: its ink ends at their edge
+    /// (ours only) [default: a pixel]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) pen_mm: Option<f64>,
     /// What is wider is an area, px (ours only) [default: found from the picture]
@@ -91,9 +94,9 @@ pub struct TraceCommand {
     /// How the G-code lifts the pen
     #[arg(long, value_enum, default_value = "servo")]
     pub(super) gcode_pen: GcodePen,
-    /// Writes the vertices as text: x and y a line, in px as in the SVG, an empty line between strokes; where an arc begins
-    /// its bulge too, the tangent of a quarter of its angle, positive from x towards y; where a cubic curve begins the x and y
-    /// of its two handles too
+    /// Writes the vertices as text: x and y a line, in px as in the SVG, an empty line between strokes; where
+    /// an arc begins its bulge too, the tangent of a quarter of its angle, positive from x towards y; where a
+    /// cubic curve begins the x and y of its two handles too
     #[arg(long, value_name = "F")]
     pub(super) points: Option<PathBuf>,
     /// Writes all figures as JSON
@@ -105,7 +108,8 @@ pub struct TraceCommand {
     /// Leaves out how far the ink lies from the strokes: the file is read twice less
     #[arg(long, conflicts_with = "error_plot")]
     pub(super) no_errors: bool,
-    /// Writes the strokes on the pale picture, with the pixel of the greatest error circled unless --no-errors is given
+    /// Writes the strokes on the pale picture, with the pixel of the greatest error circled unless
+    /// --no-errors is given
     #[arg(long, value_name = "F.png")]
     pub(super) overlay: Option<PathBuf>,
     #[command(flatten)]
@@ -207,39 +211,7 @@ pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), 
     }
     let traced = traced?;
     let drawing = &traced.drawing;
-    let errors: Option<&ErrorReport> = traced.errors.as_ref().map(|errors| &errors.report);
-    let ours = settings.vectorizer.algorithm == Algorithm::Ours;
-    let report = Report {
-        mode: ours.then_some(settings.vectorizer.mode),
-        pens: traced.palette.pens().iter().map(|pen| pen_report(pen, drawing)).collect(),
-        vertices: drawing.vertices(),
-        strokes: drawing.strokes().len(),
-        pen_px: traced.pen_px,
-        mean_px: errors.map(|errors| errors.mean_px),
-        max_px: errors.map(|errors| errors.max_px),
-        sd_px: errors.map(|errors| errors.sd_px),
-        histogram: errors.map(|errors| errors.histogram.as_slice()),
-        beyond_ink: traced.errors.as_ref().map(|SheetErrors { beyond, .. }| BeyondReport {
-            px: beyond.pixels,
-            max_px: beyond.max_px,
-            at: beyond.worst.map(|at| [at.x, at.y]),
-        }),
-        kept: traced.errors.as_ref().filter(|_| ours).map(|errors| {
-            let tolerance_px = settings.vectorizer.ours.tolerance_px;
-            traced.removed.removed_marks == 0
-                && errors.report.max_px <= tolerance_px
-                && errors.beyond.max_px <= tolerance_px.max(RASTER_PX)
-        }),
-        dirt: Dirt {
-            marks: traced.removed.removed_marks,
-            px: traced.removed.removed_px,
-            largest_px: traced.removed.largest_removed_px,
-        },
-        pen_down_px: drawing.pen_down_px(),
-        pen_up_px: drawing.pen_up_px(),
-        time_ms: traced.time.as_secs_f64() * 1e3,
-        peak_rss_mb: peak_rss_mb(),
-    };
+    let report = Report::new(&settings, &traced);
     check_size(arguments, drawing)?;
     write_files(arguments, &traced, &report, &name)?;
     let mut worst = None;

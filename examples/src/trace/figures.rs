@@ -1,71 +1,112 @@
 //! The figures of a tracing, as JSON and as a table.
 
-use plotter_vector::{Drawing, report::Bin};
+use super::settings::Settings;
+use super::traced::Traced;
+use plotter_vector::{Algorithm, Drawing, ErrorReport, report::Bin, trace::SheetErrors};
 use serde::Serialize;
 use std::fmt::Write as _;
 
 /// Part of a pixel that a raster leaves open: the border of ink passes anywhere between the middles of two
 /// pixels.
-pub(super) const RASTER_PX: f64 = 0.5;
+const RASTER_PX: f64 = 0.5;
 
 /// The figures of a tracing.
 #[derive(Debug, Serialize)]
 pub(super) struct Report<'a> {
     /// What was drawn of the ink; the published algorithm has no choice.
-    pub(super) mode: Option<plotter_vector::Mode>,
-    pub(super) pens: Vec<PenReport<'a>>,
-    pub(super) vertices: usize,
-    pub(super) strokes: usize,
+    mode: Option<plotter_vector::Mode>,
+    pens: Vec<PenReport<'a>>,
+    vertices: usize,
+    strokes: usize,
     /// Width of the lines; unknown where pens were told apart, and without lines.
-    pub(super) pen_px: Option<u32>,
-    pub(super) mean_px: Option<f64>,
-    pub(super) max_px: Option<f64>,
-    pub(super) sd_px: Option<f64>,
-    pub(super) histogram: Option<&'a [Bin]>,
+    pen_px: Option<u32>,
+    mean_px: Option<f64>,
+    max_px: Option<f64>,
+    sd_px: Option<f64>,
+    histogram: Option<&'a [Bin]>,
     /// What the pens draw beside the ink.
-    pub(super) beyond_ink: Option<BeyondReport>,
+    beyond_ink: Option<BeyondReport>,
     /// Whether all ink is drawn within the greatest error, and nothing else: no ink lies farther from the
     /// strokes, nothing drawn farther from the ink than that or the half pixel that the raster leaves open,
     /// and nothing was taken for dirt.
-    pub(super) kept: Option<bool>,
-    pub(super) dirt: Dirt,
-    pub(super) pen_down_px: f64,
-    pub(super) pen_up_px: f64,
+    kept: Option<bool>,
+    dirt: Dirt,
+    pen_down_px: f64,
+    pen_up_px: f64,
     /// From the file to ordered strokes and their errors, without writing them; of pens without reading it.
-    pub(super) time_ms: f64,
-    pub(super) peak_rss_mb: Option<f64>,
+    time_ms: f64,
+    peak_rss_mb: Option<f64>,
+}
+
+impl<'a> Report<'a> {
+    pub(super) fn new(settings: &Settings, traced: &'a Traced) -> Self {
+        let drawing = &traced.drawing;
+        let errors: Option<&ErrorReport> = traced.errors.as_ref().map(|errors| &errors.report);
+        let ours = settings.vectorizer.algorithm == Algorithm::Ours;
+        Self {
+            mode: ours.then_some(settings.vectorizer.mode),
+            pens: traced.palette.pens().iter().map(|pen| pen_report(pen, drawing)).collect(),
+            vertices: drawing.vertices(),
+            strokes: drawing.strokes().len(),
+            pen_px: traced.pen_px,
+            mean_px: errors.map(|errors| errors.mean_px),
+            max_px: errors.map(|errors| errors.max_px),
+            sd_px: errors.map(|errors| errors.sd_px),
+            histogram: errors.map(|errors| errors.histogram.as_slice()),
+            beyond_ink: traced.errors.as_ref().map(|SheetErrors { beyond, .. }| BeyondReport {
+                px: beyond.pixels,
+                max_px: beyond.max_px,
+                at: beyond.worst.map(|at| [at.x, at.y]),
+            }),
+            kept: traced.errors.as_ref().filter(|_| ours).map(|errors| {
+                let tolerance_px = settings.vectorizer.ours.tolerance_px;
+                traced.removed.removed_marks == 0
+                    && errors.report.max_px <= tolerance_px
+                    && errors.beyond.max_px <= tolerance_px.max(RASTER_PX)
+            }),
+            dirt: Dirt {
+                marks: traced.removed.removed_marks,
+                px: traced.removed.removed_px,
+                largest_px: traced.removed.largest_removed_px,
+            },
+            pen_down_px: drawing.pen_down_px(),
+            pen_up_px: drawing.pen_up_px(),
+            time_ms: traced.time.as_secs_f64() * 1e3,
+            peak_rss_mb: peak_rss_mb(),
+        }
+    }
 }
 
 /// What is drawn and is no ink.
 #[derive(Debug, Serialize)]
-pub(super) struct BeyondReport {
-    pub(super) px: u64,
+struct BeyondReport {
+    px: u64,
     /// Greatest distance from ink.
-    pub(super) max_px: f64,
+    max_px: f64,
     /// Where that is.
-    pub(super) at: Option<[u32; 2]>,
+    at: Option<[u32; 2]>,
 }
 
 /// Ink that was taken for dirt, and is not drawn.
 #[derive(Debug, Serialize)]
-pub(super) struct Dirt {
-    pub(super) marks: u64,
-    pub(super) px: u64,
+struct Dirt {
+    marks: u64,
+    px: u64,
     /// Of the largest mark.
-    pub(super) largest_px: u64,
+    largest_px: u64,
 }
 
 /// What one pen draws.
 #[derive(Debug, Serialize)]
-pub(super) struct PenReport<'a> {
-    pub(super) number: u8,
-    pub(super) name: &'a str,
-    pub(super) colour: String,
-    pub(super) strokes: usize,
-    pub(super) pen_down_px: f64,
+struct PenReport<'a> {
+    number: u8,
+    name: &'a str,
+    colour: String,
+    strokes: usize,
+    pen_down_px: f64,
 }
 
-pub(super) fn pen_report<'a>(pen: &'a plotter_vector::ink::PalettePen, drawing: &Drawing) -> PenReport<'a> {
+fn pen_report<'a>(pen: &'a plotter_vector::ink::PalettePen, drawing: &Drawing) -> PenReport<'a> {
     let own = drawing.of_pen(pen.number);
     PenReport {
         number: pen.number,
@@ -77,7 +118,7 @@ pub(super) fn pen_report<'a>(pen: &'a plotter_vector::ink::PalettePen, drawing: 
 }
 
 /// What was taken for dirt, if anything.
-pub(super) fn dirt_of(report: &Report<'_>) -> Option<String> {
+fn dirt_of(report: &Report<'_>) -> Option<String> {
     let Dirt { marks, px, largest_px } = report.dirt;
     let of = if marks == 1 { "mark" } else { "marks" };
     (marks > 0).then(|| format!("{marks} {of} left out: {px} px of ink, the largest {largest_px} px"))
@@ -118,7 +159,7 @@ pub(super) fn table(title: &str, report: &Report<'_>, megapixels: f64, circled: 
 }
 
 /// Most memory the process has had, MB; known on Linux only.
-pub(super) fn peak_rss_mb() -> Option<f64> {
+fn peak_rss_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kib: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;

@@ -5,7 +5,11 @@ use super::figures::Report;
 use super::settings::Settings;
 use super::traced::Traced;
 use crate::shared::{is_standard, write_output};
-use plotter_motion::{Point, gcode::PenControl, gcode::WriteOptions, hpgl::UNITS_PER_MM};
+use plotter_motion::{
+    Point,
+    gcode::{PenControl, WriteOptions},
+    hpgl::UNITS_PER_MM,
+};
 use plotter_vector::{Drawing, PxPoint, Scale, gcode, hpgl, report::error_chart, write::svg_in_colour};
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -13,17 +17,17 @@ use std::path::Path;
 use std::time::Duration;
 
 /// Farthest that the chords for a machine without arcs are from them, mm.
-pub(super) const MDRAW_CHORD_MM: f64 = 0.01;
+const MDRAW_CHORD_MM: f64 = 0.01;
 
 /// What HPGL and G-code, as they are written here, tell apart, mm: a plotter unit, and the third decimal.
-pub(super) const UNIT_MM: f64 = 1.0 / UNITS_PER_MM;
-pub(super) const GCODE_MM: f64 = 0.001;
+const UNIT_MM: f64 = 1.0 / UNITS_PER_MM;
+const GCODE_MM: f64 = 0.001;
 
 /// Drawings up to this side are dots, px.
-pub(super) const DOT_PX: f64 = 3.0;
+const DOT_PX: f64 = 3.0;
 
 /// With more pixels to that step shapes fall together.
-pub(super) const COARSE_PX: f64 = 4.0;
+const COARSE_PX: f64 = 4.0;
 
 /// Whether one of the files is the standard output; two would be mixed.
 pub(super) fn prints_file(arguments: &TraceCommand, settings: &Settings) -> Result<bool, String> {
@@ -45,7 +49,8 @@ pub(super) fn prints_file(arguments: &TraceCommand, settings: &Settings) -> Resu
     }
 }
 
-/// Refuses a size of pixels with which a drawing becomes a point, and warns of one with which its shapes fall together.
+/// Refuses a size of pixels with which a drawing becomes a point, and warns of one with which its shapes fall
+/// together.
 pub(super) fn check_size(arguments: &TraceCommand, drawing: &Drawing) -> Result<(), String> {
     let mm_per_px = arguments.mm_per_px;
     let bounds = drawing.strokes().flatten().fold(None, |bounds: Option<(PxPoint, PxPoint)>, at| {
@@ -122,7 +127,7 @@ pub(super) fn sheet(arguments: &TraceCommand, drawing: &Drawing) -> Result<Scale
     Scale::new(drawing.height_px(), mm_per_px, corner).map_err(|error| error.to_string())
 }
 
-pub(super) fn gcode_text(drawing: &Drawing, scale: Scale, pen: GcodePen) -> Result<String, String> {
+fn gcode_text(drawing: &Drawing, scale: Scale, pen: GcodePen) -> Result<String, String> {
     let usual = WriteOptions::default();
     let options = match pen {
         GcodePen::Servo => usual,

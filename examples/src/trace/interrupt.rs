@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 static ASKED: AtomicBool = AtomicBool::new(false);
 static WRITING: AtomicBool = AtomicBool::new(false);
 
-/// Ctrl-C, as a request that long work looks at. A second one ends the process at once, unless files are being written.
+/// Ctrl-C, as a request that long work looks at. A second one ends the process at once, unless files are
+/// being written.
 #[derive(Clone, Copy, Debug)]
 pub struct Interrupt(());
 

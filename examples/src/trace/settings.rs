@@ -3,21 +3,24 @@
 use super::command::{Choice, ModeChoice, OrderChoice, PreferChoice, TraceCommand};
 use crate::shared::{at, read_file, vectorizer};
 use plotter_motion::{
-    Machine, config::PensChoice, config::StrokeOrder, config::ThresholdChoice, config::VectorizeConfig,
-    config::VectorizeMode,
+    Machine,
+    config::{PensChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode},
 };
-use plotter_vector::{Algorithm, Palette, Prefer, ThresholdMethod, Vectorizer, ink::MAX_PENS, ink::Pens};
+use plotter_vector::{
+    Algorithm, Palette, Prefer, ThresholdMethod, Vectorizer,
+    ink::{MAX_PENS, Pens},
+};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 /// Greatest errors that may be asked for, px: those of the machine's file.
-pub(super) const MAX_ERRORS_PX: RangeInclusive<f64> = 0.01..=100.0;
+const MAX_ERRORS_PX: RangeInclusive<f64> = 0.01..=100.0;
 
 /// Widest pen that may be asked for, mm: that of the machine's file.
-pub(super) const MAX_PEN_MM: f64 = 100.0;
+const MAX_PEN_MM: f64 = 100.0;
 
 /// Most threads that are started.
-pub(super) const MAX_THREADS: usize = 1024;
+const MAX_THREADS: usize = 1024;
 
 /// What the options and the machine's file ask for.
 #[derive(Debug)]
@@ -138,7 +141,7 @@ pub(super) fn settings(arguments: &TraceCommand) -> Result<Settings, String> {
 }
 
 /// Refuses options that the published algorithm does not have.
-pub(super) fn refuse_ours(arguments: &TraceCommand) -> Result<(), String> {
+fn refuse_ours(arguments: &TraceCommand) -> Result<(), String> {
     let given = [
         ("--max-error-px", "has no error bound", arguments.max_error_px.is_some()),
         ("--arcs", "draws straight lines", arguments.arcs),
@@ -184,7 +187,8 @@ pub(super) fn pens(arguments: &TraceCommand, in_file: PensChoice) -> Result<Opti
             Err(_) => Some(Pens::Given(palette("--pens", Path::new(text))?)),
         },
     };
-    // What the machine's file says of the threshold rests when pens are asked for; the option would go unheard.
+    // What the machine's file says of the threshold rests when pens are asked for; the option would go
+    // unheard.
     if pens.is_some() && arguments.threshold.is_some() {
         return Err(
             "--threshold: pens are told apart by colour, without a level; leave it out, or take --pens 1"
@@ -194,7 +198,7 @@ pub(super) fn pens(arguments: &TraceCommand, in_file: PensChoice) -> Result<Opti
     Ok(pens)
 }
 
-pub(super) fn count(pens: usize) -> Option<Pens> {
+fn count(pens: usize) -> Option<Pens> {
     (pens > 1).then_some(Pens::Count(pens))
 }
 

@@ -5,8 +5,10 @@ use super::settings::Settings;
 use crate::shared::{WorkShown, is_standard, read_file, read_input};
 use crate::trace::{Interrupt, overlay_step};
 use plotter_vector::{
-    Colour, DecodeError, Drawing, FileRows, Palette, Pixel, Progress, decode_colour, ink::Despeckled,
-    ink::Pens, ink::pen_width_px, picture::Row, picture::RowSource as _, trace::SheetErrors,
+    Colour, DecodeError, Drawing, FileRows, Palette, Pixel, Progress, decode_colour,
+    ink::{Despeckled, Pens, pen_width_px},
+    picture::{Row, RowSource as _},
+    trace::SheetErrors,
 };
 use std::io::{Read, Seek};
 use std::ops::ControlFlow;
@@ -14,7 +16,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Parts of the work that are told apart: hundredths.
-pub(super) const STEPS: f64 = 100.0;
+const STEPS: f64 = 100.0;
 
 /// What the overlay shows below the strokes.
 #[derive(Debug)]
@@ -105,11 +107,11 @@ pub(super) fn by_rows<R: Read + Seek>(
     })
 }
 
-pub(super) fn go_on(interrupt: Interrupt) -> ControlFlow<()> {
+fn go_on(interrupt: Interrupt) -> ControlFlow<()> {
     if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
-pub(super) fn progress(arguments: &TraceCommand) -> WorkShown {
+fn progress(arguments: &TraceCommand) -> WorkShown {
     WorkShown::of(arguments.telling, "tracing", steps(1.0), "%")
 }
 
@@ -119,7 +121,7 @@ pub(super) fn steps(share: f64) -> u64 {
 }
 
 /// What the overlay shows of a scan.
-pub(super) fn thumbnail<R: Read + Seek>(scan: &mut FileRows<R>) -> Result<Picture, String> {
+fn thumbnail<R: Read + Seek>(scan: &mut FileRows<R>) -> Result<Picture, String> {
     let step = overlay_step(scan.width(), scan.height()) as usize;
     let columns = (scan.width() as usize).div_ceil(step);
     let mut levels = Vec::new();

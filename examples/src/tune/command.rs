@@ -10,8 +10,9 @@ use std::process::ExitCode;
 
 /// Finds gains for the DC motors of a machine, simulated from its file, and the margins that they leave.
 ///
-/// Of every loop the margins are those on the motor as it is, sampled, its duties held, its derivative filtered. The published
-/// gains stand beside ours as they are in the machine's file, called as often as our loop.
+/// Of every loop the margins are those on the motor as it is, sampled, its duties held, its derivative
+/// filtered. The published gains stand beside ours as they are in the machine's file, called as often as our
+/// loop.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -31,44 +32,44 @@ use std::process::ExitCode;
 pub struct TuneCommand {
     /// The machine's TOML file [default: machines/semi-virtual-gantry.toml]
     #[arg(long, value_name = "FILE")]
-    pub(super) machine: Option<PathBuf>,
+    machine: Option<PathBuf>,
     /// How the gains are found
     #[arg(long, value_enum, default_value = "all")]
-    pub(super) method: TuningMethod,
+    method: TuningMethod,
     /// Which motor
     #[arg(long, value_enum, default_value = "both")]
-    pub(super) axis: Axes,
+    axis: Axes,
     /// Greatest sensitivity Ms, 1.1 to 3; 1.7 promises a gain margin of 2.43 and a phase margin of 34 degrees
     #[arg(long, value_name = "MS", default_value = "1.7", value_parser = sensitivity, allow_negative_numbers = true)]
-    pub(super) margin: f64,
+    margin: f64,
     /// Phase margin for the relay's gains, degrees, 10 to 70
     #[arg(long, value_name = "DEG", default_value = "45", value_parser = phase_margin, allow_negative_numbers = true)]
-    pub(super) phase_margin: f64,
-    /// How far the simulated motors are from their description, as a share: heavier, rougher, of more resistance, on less
-    /// voltage
+    phase_margin: f64,
+    /// How far the simulated motors are from their description, as a share: heavier, rougher, of more
+    /// resistance, on less voltage
     #[arg(long, value_name = "SHARE", default_value = "0", value_parser = share, allow_negative_numbers = true)]
-    pub(super) motor_off: f64,
+    motor_off: f64,
     /// Runs of the loop a second [default: the machine's]
     #[arg(long, value_name = "HZ", value_parser = loop_hz, allow_negative_numbers = true)]
-    pub(super) loop_hz: Option<f64>,
+    loop_hz: Option<f64>,
     /// How far the experiments may go to either side, mm [default: a tenth of the axis]
     #[arg(long, value_name = "MM", value_parser = length_mm, allow_negative_numbers = true)]
-    pub(super) travel_mm: Option<f64>,
+    travel_mm: Option<f64>,
     /// Step of the setpoint that the loops are tried with, mm [default: 2, or 80 counts if that is more]
     #[arg(long, value_name = "MM", value_parser = length_mm, allow_negative_numbers = true)]
-    pub(super) step_mm: Option<f64>,
+    step_mm: Option<f64>,
     /// Writes the loops as a picture: steps, Bode's and Nyquist's
     #[arg(long, value_name = "F.svg")]
-    pub(super) svg: Option<PathBuf>,
+    svg: Option<PathBuf>,
     /// Writes all figures as JSON
     #[arg(long, value_name = "F.json")]
-    pub(super) report: Option<PathBuf>,
+    report: Option<PathBuf>,
     #[command(flatten)]
-    pub(super) telling: Telling,
+    telling: Telling,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Axes {
+enum Axes {
     /// The first
     X,
     /// The second
@@ -78,7 +79,7 @@ pub(super) enum Axes {
 }
 
 impl Axes {
-    pub(super) const fn list(self) -> &'static [Axis] {
+    const fn list(self) -> &'static [Axis] {
         match self {
             Self::X => &[Axis::X],
             Self::Y => &[Axis::Y],
@@ -87,28 +88,28 @@ impl Axes {
     }
 }
 
-pub(super) fn within(text: &str, least: f64, most: f64) -> Result<f64, String> {
+fn within(text: &str, least: f64, most: f64) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| String::from("give a number"))?;
     if (least..=most).contains(&number) { Ok(number) } else { Err(format!("give {least} to {most}")) }
 }
 
-pub(super) fn sensitivity(text: &str) -> Result<f64, String> {
+fn sensitivity(text: &str) -> Result<f64, String> {
     within(text, 1.1, 3.0)
 }
 
-pub(super) fn phase_margin(text: &str) -> Result<f64, String> {
+fn phase_margin(text: &str) -> Result<f64, String> {
     within(text, 10.0, 70.0)
 }
 
-pub(super) fn share(text: &str) -> Result<f64, String> {
+fn share(text: &str) -> Result<f64, String> {
     within(text, -0.5, 2.0)
 }
 
-pub(super) fn loop_hz(text: &str) -> Result<f64, String> {
+fn loop_hz(text: &str) -> Result<f64, String> {
     within(text, 10.0, 100_000.0)
 }
 
-pub(super) fn length_mm(text: &str) -> Result<f64, String> {
+fn length_mm(text: &str) -> Result<f64, String> {
     within(text, 0.001, 100_000.0)
 }
 
@@ -121,7 +122,7 @@ impl TuneCommand {
     }
 }
 
-pub(super) fn tune(arguments: &TuneCommand) -> Result<(), String> {
+fn tune(arguments: &TuneCommand) -> Result<(), String> {
     let machine = machine(arguments)?;
     let config = machine.config();
     let loop_hz = arguments.loop_hz.unwrap_or(config.control.contouring.loop_hz);
@@ -169,7 +170,7 @@ pub(super) fn tune(arguments: &TuneCommand) -> Result<(), String> {
     Ok(())
 }
 
-pub(super) fn machine(arguments: &TuneCommand) -> Result<Machine, String> {
+fn machine(arguments: &TuneCommand) -> Result<Machine, String> {
     let Some(path) = &arguments.machine else {
         return Machine::new(MachineConfig::default()).map_err(|error| error.to_string());
     };

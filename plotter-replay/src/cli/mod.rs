@@ -45,7 +45,8 @@ const JSON: &str = "json";
 /// What the running program is called, which some answers name.
 static PROGRAM: OnceLock<String> = OnceLock::new();
 
-/// Records a plotter's serial line, shows what a log of it holds, draws it, and runs the controller again on it.
+/// Records a plotter's serial line, shows what a log of it holds, draws it, and runs the controller again on
+/// it.
 ///
 /// Exit status: 0 clean, 1 damage or a difference found, 2 unreadable, not writable or a wrong command line.
 #[derive(Debug, Parser)]
@@ -99,8 +100,8 @@ pub fn subcommands(program: &str) -> Vec<clap::Command> {
 
 /// Runs the command `subcommand` of [`subcommands`] in the program of that name.
 ///
-/// The exit code is 0 where all is clean, 1 where damage or a difference was found, and 2 where something cannot be read or
-/// written, or there is no such command.
+/// The exit code is 0 where all is clean, 1 where damage or a difference was found, and 2 where something
+/// cannot be read or written, or there is no such command.
 #[must_use]
 pub fn run(program: &str, subcommand: &str, matches: &ArgMatches) -> ExitCode {
     let _ = PROGRAM.set(program.to_owned());

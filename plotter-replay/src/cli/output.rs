@@ -14,8 +14,8 @@ pub(crate) enum Shown {
     Nothing,
 }
 
-/// The standard output, with the first failure to write to it. A closed pipe is none, and who writes on is told of it: whoever closed
-/// it has seen enough.
+/// The standard output, with the first failure to write to it. A closed pipe is none, and who writes on is
+/// told of it: whoever closed it has seen enough.
 #[derive(Debug, Default)]
 pub(crate) struct Output {
     shown: Shown,

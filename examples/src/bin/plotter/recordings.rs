@@ -7,8 +7,8 @@ use std::process::ExitCode;
 /// The program that the commands' examples name.
 const PROGRAM: &str = "plotter";
 
-/// What plotter-replay calls the comparison of two recordings, and what it is called here, where `compare` is that of
-/// controllers.
+/// What plotter-replay calls the comparison of two recordings, and what it is called here, where `compare` is
+/// that of controllers.
 const COMPARE: (&str, &str) = ("compare", "compare-logs");
 
 /// Where they begin in the list of commands: clap counts each list from 0, and the tools are fewer.
