@@ -1,8 +1,8 @@
 //! What the firmwares do when something goes wrong.
 //!
-//! The gantry's firmware runs in the emulator and is sent a line of 40 mm. Its watchdog bites half way, its emergency
-//! stop is pressed when it is switched on, or its receiver loses a byte. After each, look at what the motors get, and at
-//! what a person is told. Build the firmware first: see examples/firmware/README.md.
+//! The gantry's firmware runs in the emulator and is sent a line of 40 mm. Its watchdog bites half way, its
+//! emergency stop is pressed when it is switched on, or its receiver loses a byte. After each, look at what
+//! the motors get, and at what a person is told. Build the firmware first: see examples/firmware/README.md.
 
 use clap::Parser;
 use core::time::Duration;
@@ -74,8 +74,8 @@ fn bad_day() -> Result<(), String> {
     let line = Line::draw(BenchSwitches::default())?;
     good &= expect("an undisturbed line is drawn", line.reached == 1 && line.notices.is_empty());
 
-    // The target is complete after 91 ms, and the line takes some 350 ms. Between two of the controller's ticks, so that what
-    // is recorded from then on comes after the bite.
+    // The target is complete after 91 ms, and the line takes some 350 ms. Between two of the controller's
+    // ticks, so that what is recorded from then on comes after the bite.
     const BITE_US: u32 = 250_150;
     let bite = Duration::from_micros(BITE_US.into());
     let line = Line::draw(BenchSwitches { bite_at_us: BITE_US, ..BenchSwitches::default() })?;

@@ -1,8 +1,8 @@
 //! What a camera's lens does to straight lines, from the picture of a printed grid.
 //!
-//! Print the grid (`--print-grid`), lay it under the camera, take a picture, and give it. The correction goes into a file; the
-//! figures say how far the lens moved the grid's crossings, and how far they are off after the correction. Without a picture a
-//! simulated camera with a bad lens takes one.
+//! Print the grid (`--print-grid`), lay it under the camera, take a picture, and give it. The correction goes
+//! into a file; the figures say how far the lens moved the grid's crossings, and how far they are off after
+//! the correction. Without a picture a simulated camera with a bad lens takes one.
 //!
 //! ```text
 //! cargo run --release --example calibrate_camera -- --print-grid grid.svg

@@ -1,8 +1,10 @@
-//! Draws `docs/pictures/crossing.png`: two pen lines that cross, as scanned, as thinned, and as drawn by ours.
+//! Draws `docs/pictures/crossing.png`: two pen lines that cross, as scanned, as thinned, and as drawn by
+//! ours.
 //!
-//! Left the scan, pixel by pixel. In the middle what thinning alone makes of it: the two lines run into each other and
-//! share a stretch, `>--<`, which a plotter would draw. Right our strokes: two lines, each straight through the other.
-//! Look at the figures as well: how far each drawing lies from the lines that were scanned.
+//! Left the scan, pixel by pixel. In the middle what thinning alone makes of it: the two lines run into each
+//! other and share a stretch, `>--<`, which a plotter would draw. Right our strokes: two lines, each straight
+//! through the other. Look at the figures as well: how far each drawing lies from the lines that were
+//! scanned.
 //!
 //! ```text
 //! cargo run --release --example draw_crossing                 # rewrites docs/pictures/crossing.png
@@ -102,7 +104,8 @@ fn thinned(scan: &Gray) -> Result<Vec<Vec<(f32, f32)>>, String> {
 
 /// Thinning as published, and nothing else.
 ///
-/// Source: Zhang and Suen, "A fast parallel algorithm for thinning digital patterns", Commun. ACM 27 (3), 1984.
+/// Source: Zhang and Suen, "A fast parallel algorithm for thinning digital patterns", Commun. ACM 27 (3),
+/// 1984.
 fn thinned_plainly(mut ink: Bitmap) -> Bitmap {
     loop {
         let before = ink.count();

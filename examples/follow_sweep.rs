@@ -1,8 +1,9 @@
 //! Where line following still works: followers, cameras and tables, two things changed at a time.
 //!
-//! Three sweeps over small drawings: how badly the camera is focused against the width of the lines; how badly against its noise; and
-//! how much the table misses against the gap between parallel lines. Each run is a cell of a picture: green where the follower
-//! made no wrong choice and did all of it, yellow where little is wrong, red where it does not work.
+//! Three sweeps over small drawings: how badly the camera is focused against the width of the lines; how
+//! badly against its noise; and how much the table misses against the gap between parallel lines. Each run is
+//! a cell of a picture: green where the follower made no wrong choice and did all of it, yellow where little
+//! is wrong, red where it does not work.
 //!
 //! ```text
 //! cargo run --release --example follow_sweep -- --svg sweep.svg --csv sweep.csv
@@ -76,8 +77,8 @@ impl Method {
     }
 }
 
-/// What is changed. The rest is as in the tests: 1.5 px of blur, noise of 4 levels, light falling to 60 %, lines of 5 px, a table error
-/// of 1 px with 3 px of play; parallel lines are 4 px wide.
+/// What is changed. The rest is as in the tests: 1.5 px of blur, noise of 4 levels, light falling to 60 %,
+/// lines of 5 px, a table error of 1 px with 3 px of play; parallel lines are 4 px wide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Condition {
     blur_px: f64,

@@ -1,8 +1,8 @@
 //! The same steps on the desk and in the firmware.
 //!
-//! G-code is streamed to the stepper plotter's controller, once as it runs on this computer and once in its firmware on an
-//! emulated Cortex-M4. Each step's time and direction goes into a checksum. Both must be the same: then what is planned
-//! and simulated here is what the board does.
+//! G-code is streamed to the stepper plotter's controller, once as it runs on this computer and once in its
+//! firmware on an emulated Cortex-M4. Each step's time and direction goes into a checksum. Both must be the
+//! same: then what is planned and simulated here is what the board does.
 //!
 //! Look at the last column. Build the firmware first: see examples/firmware/README.md.
 
@@ -66,7 +66,8 @@ fn stream(args: &Args) -> Result<(), String> {
     let mut different = 0;
     for (name, gcode) in &drawings {
         let firmware = streamed_in_emulator(&machine, &elf, BenchSwitches::default(), gcode)?;
-        // The firmware looks at its switches first: the controller's time begins a byte before its first word is through.
+        // The firmware looks at its switches first: the controller's time begins a byte before its first word
+        // is through.
         let byte = Duration::from_micros(10_000_000_u64.div_ceil(machine.config().serial.baud.into()));
         let desk = streamed_on_the_desk(&machine, firmware.first_byte.saturating_sub(byte), gcode)?;
         if desk.steps == 0 || !desk.refused.is_empty() {

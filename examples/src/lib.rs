@@ -6,14 +6,15 @@
 //! | room | what is in it |
 //! |---|---|
 //! | [`shared`] | errors in one line, files, pages with pictures, pens' colours, how pictures are traced |
-//! | [`drawings`] | a drawing in any language: read, arranged, written; all that `convert` does |
+//! | [`drawings`] | a drawing in any language: read, arranged, written |
 //! | [`machine`] | a drawing on a machine: simulated, emulated, step by step; all that `stream` and `bad_day` do |
-//! | [`plot`], [`trace`], [`stepper`] | the tools of these names |
+//! | [`plot`], [`trace`], [`convert`], [`stepper`] | the tools of these names |
 //! | [`tune`], [`max_error`], [`long_sheet`] | the tools of these names |
 //! | [`follow`] | `follow` and `follow_sweep` |
 //! | [`compare`] | `compare_controllers` and `my_controller` |
 
 pub mod compare;
+pub mod convert;
 pub mod drawings;
 pub mod follow;
 pub mod long_sheet;

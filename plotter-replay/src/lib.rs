@@ -5,6 +5,8 @@
 mod frames;
 mod number;
 
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod compare;
 pub mod draw;
 pub mod export;

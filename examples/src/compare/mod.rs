@@ -1,5 +1,7 @@
 //! `compare_controllers` and `my_controller`: controllers ranked on simulated machines.
 
-mod controller_contest;
+mod command;
+mod contest;
+mod page;
 
-pub use controller_contest::compare_controllers;
+pub use command::{CompareCommand, compare_controllers};

@@ -1,4 +1,5 @@
-//! [`Arrangement`]: what is done with a drawing between reading and writing it, as options of the command line.
+//! [`Arrangement`]: what is done with a drawing between reading and writing it, as options of the command
+//! line.
 
 use crate::drawings::drawing_file::{Diagnostic, Ops, Severity};
 use clap::ValueEnum;
@@ -59,7 +60,8 @@ pub struct Arrangement {
     /// Joins strokes whose ends are so near, mm [default with --order: 0.05]
     #[arg(long, value_name = "MM", value_parser = not_negative, allow_negative_numbers = true)]
     pub merge_mm: Option<f64>,
-    /// Draws strokes in an order with less travel, pen by pen, joined where they meet [default with --merge-mm: fast]
+    /// Draws strokes in an order with less travel, pen by pen, joined where they meet [default with
+    /// --merge-mm: fast]
     #[arg(long, value_enum, value_name = "HOW")]
     pub order: Option<Effort>,
     /// Changes the pen wherever that shortens the way, instead of once for each pen; in an SVG each pen is

@@ -33,7 +33,8 @@ impl Diagnostics {
         }
     }
 
-    /// Why nothing is drawn by a file: its first error, else its first warning, else its first notice; empty where there is none.
+    /// Why nothing is drawn by a file: its first error, else its first warning, else its first notice; empty
+    /// where there is none.
     #[must_use]
     pub fn why_nothing(&self) -> String {
         let kinds = [Severity::Error, Severity::Warning, Severity::Notice];

@@ -83,8 +83,9 @@ pub struct Reading {
     pub counts_per_mm: f64,
     /// How G-code lifts the pen; `None` finds it out.
     pub pen: Option<gcode::PenConvention>,
-    /// Size of a step in the languages of cutters, and of the unit of a DXF, mm; `None` takes that of a machine as it is delivered, and what
-    /// the DXF says, or a millimetre. Where it is not said, there is a notice.
+    /// Size of a step in the languages of cutters, and of the unit of a DXF, mm; `None` takes that of a
+    /// machine as it is delivered, and what the DXF says, or a millimetre. Where it is not said, there is a
+    /// notice.
     pub step_mm: Option<f64>,
 }
 
@@ -432,8 +433,9 @@ impl DrawingFile {
 /// Farthest from the origin that a drawing of a CAD program may begin, mm: no table is as large.
 const FARTHEST_MM: f64 = 10_000.0;
 
-/// By how much a DXF is moved, what there is to say of that, and the colours of its pens. Drawings of CAD programs lie anywhere;
-/// what begins to the left of the origin, below it, or far from it is put there with its lower left corner.
+/// By how much a DXF is moved, what there is to say of that, and the colours of its pens. Drawings of CAD
+/// programs lie anywhere; what begins to the left of the origin, below it, or far from it is put there with
+/// its lower left corner.
 fn placed(drawing: &dxf::Drawing, options: dxf::ReadOptions) -> (Vec2, Option<Diagnostic>, Vec<[u8; 3]>) {
     let mut ops = drawing.plot_ops(options);
     let least = chords(ops.by_ref().flatten(), FARTHEST_MM)
@@ -542,7 +544,8 @@ pub struct Ops<'a> {
     place: Rc<Place>,
     /// Colours of the pens from 1 on, as red, green and blue, if the drawing says them.
     pub colours: Vec<[u8; 3]>,
-    /// What the last digit of a place is worth that the file writes, mm, if the file tells: places are rounded to it.
+    /// What the last digit of a place is worth that the file writes, mm, if the file tells: places are
+    /// rounded to it.
     pub digit_mm: Option<f64>,
     /// Width and height of its sheet, mm, if it has one: the lower left corner is the origin.
     pub sheet_mm: Option<(f64, f64)>,
@@ -563,14 +566,16 @@ impl<'a> Ops<'a> {
         self.place.layer.get()
     }
 
-    /// Other operations and what there is to say, with what these tell besides; no line of the file belongs to them.
+    /// Other operations and what there is to say, with what these tell besides; no line of the file belongs
+    /// to them.
     pub(crate) fn with(self, said: Vec<Diagnostic>, ops: impl Iterator<Item = PlotOp> + 'a) -> Self {
         let inner = Box::new(said.into_iter().map(Err).chain(ops.map(Ok)));
         self.place.line.set(0);
         Ops { inner, failed: false, ..self }
     }
 
-    /// From a line on, with the pen, the power and the place that hold there; a line that is cut is drawn from there on.
+    /// From a line on, with the pen, the power and the place that hold there; a line that is cut is drawn
+    /// from there on.
     pub(crate) fn beginning_at(mut self, line: u32) -> Self {
         let place = Rc::clone(&self.place);
         let (mut before, mut at, mut begun) = (Vec::new(), Point::ORIGIN, false);
@@ -607,8 +612,8 @@ impl<'a> Ops<'a> {
         self
     }
 
-    /// The line that has been read up to, from 1: that of the operation given last, or near it; `None` where the whole file
-    /// was read before the first operation.
+    /// The line that has been read up to, from 1: that of the operation given last, or near it; `None` where
+    /// the whole file was read before the first operation.
     #[must_use]
     pub fn line(&self) -> Option<u32> {
         Some(self.place.line.get()).filter(|line| *line > 0)
@@ -772,7 +777,8 @@ mod tests {
 
     #[test]
     fn a_file_for_a_3d_printer_is_refused_unless_it_is_wanted() {
-        // As slicers write: heat, a retraction, which moves nothing in the plane, and then the first line of plastic.
+        // As slicers write: heat, a retraction, which moves nothing in the plane, and then the first line of
+        // plastic.
         let text =
             "; sliced\nM104 S215\nG28\nM83\nG1 E-0.8 F2100\nG1 Z.2\nG1 X10 Y10 F9000\nG1 X20 Y10 E.52\n";
         let refused = DrawingFile::held("cube.gcode", text.into(), None).unwrap_err();

@@ -16,12 +16,13 @@ const MOST_BYTES: usize = 1 << 30;
 /// The options `--font` and `--single-stroke`.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct FontFiles {
-    /// Font for the texts of an SVG picture, which are left out without: a file (TrueType, OpenType), or a folder for all fonts in
-    /// it, as /usr/share/fonts; may be given several times
+    /// Font for the texts of an SVG picture, which are left out without: a file (TrueType, OpenType), or a
+    /// folder for all fonts in it, as /usr/share/fonts; may be given several times
     #[arg(long = "font", value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Draws the texts of an SVG picture in letters of one line each, as labels of HPGL. With --font too, texts that name one of
-    /// those fonts are set in it, and letters that are not in Latin-1 taken from them: a font is given to be used
+    /// Draws the texts of an SVG picture in letters of one line each, as labels of HPGL. With --font too,
+    /// texts that name one of those fonts are set in it, and letters that are not in Latin-1 taken from them:
+    /// a font is given to be used
     #[arg(long)]
     pub single_stroke: bool,
 }
@@ -33,8 +34,8 @@ impl FontFiles {
         self.files.is_empty() && !self.single_stroke
     }
 
-    /// Those of the files, in the order in which they are named, and of a folder's files by their names; of each folder with files
-    /// that are called fonts and are none, what there is to say about these.
+    /// Those of the files, in the order in which they are named, and of a folder's files by their names; of
+    /// each folder with files that are called fonts and are none, what there is to say about these.
     ///
     /// # Errors
     ///

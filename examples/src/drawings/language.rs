@@ -87,15 +87,16 @@ impl Language {
     }
 }
 
-/// Whether a text begins as DM/PL does, Houston Instrument's language: `;:`, with which a program takes hold of the plotter.
+/// Whether a text begins as DM/PL does, Houston Instrument's language: `;:`, with which a program takes hold
+/// of the plotter.
 #[must_use]
 pub(crate) fn is_dm_pl(head: &[u8]) -> bool {
     let mut signs = head.iter().filter(|byte| !byte.is_ascii_whitespace() && !byte.is_ascii_control());
     signs.next() == Some(&b';') && signs.next() == Some(&b':')
 }
 
-/// Whether a text begins as DXF does: a section, or comments (999) before it. What DXF is in other forms counts too, so that it can be
-/// refused by name.
+/// Whether a text begins as DXF does: a section, or comments (999) before it. What DXF is in other forms
+/// counts too, so that it can be refused by name.
 fn is_dxf(head: &[u8]) -> bool {
     if head.starts_with(b"AutoCAD Binary DXF") {
         return true;
@@ -117,7 +118,8 @@ fn is_dxf(head: &[u8]) -> bool {
 /// Lines that may stand before the first movement.
 const MOST_HEADERS: usize = 16;
 
-/// Less than this share of what makes sense is chance: of two letters, every seventh pair is a command of HPGL.
+/// Less than this share of what makes sense is chance: of two letters, every seventh pair is a command of
+/// HPGL.
 const LEAST_SENSE: f64 = 0.5;
 
 fn contains(text: &[u8], word: &[u8]) -> bool {
@@ -157,7 +159,8 @@ fn sense_in_hpgl(text: &[u8]) -> f64 {
     share(good, bad)
 }
 
-/// Share of the lines that G-code knows. Commands by their names say nothing: other languages have words, too.
+/// Share of the lines that G-code knows. Commands by their names say nothing: other languages have words,
+/// too.
 fn sense_in_gcode(text: &[u8]) -> f64 {
     let plain = |line: &&[u8]| {
         let is_reckoned = line.iter().any(|byte| matches!(byte, b'#' | b'['));

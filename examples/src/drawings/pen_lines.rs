@@ -5,8 +5,8 @@ use plotter_motion::gcode;
 /// The options `--pen-up` and `--pen-down`.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct PenLines {
-    /// Line of G-code that lifts the pen, such as "M42 P4 S0", M9 or `PEN_UP`, where G-code is read or written; for reading it may be
-    /// given several times
+    /// Line of G-code that lifts the pen, such as "M42 P4 S0", M9 or `PEN_UP`, where G-code is read or
+    /// written; for reading it may be given several times
     #[arg(long = "pen-up", value_name = "LINE", requires = "down")]
     pub up: Vec<String>,
     /// Line of G-code that lowers the pen

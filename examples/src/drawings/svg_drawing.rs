@@ -13,7 +13,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
-/// Finest and coarsest that curves of an SVG are cut into chords, mm: single precision, in which they are parsed, says no more.
+/// Finest and coarsest that curves of an SVG are cut into chords, mm: single precision, in which they are
+/// parsed, says no more.
 const TOLERANCES_MM: (f64, f64) = (0.001, 10.0);
 
 /// Farthest beyond the sheet that nobody is told of, mm.
@@ -44,9 +45,9 @@ impl fmt::Debug for SvgOps {
 
 /// What an SVG picture has to draw; [`read_svg_with_fonts`] says what becomes of it. Arcs stay arcs.
 ///
-/// Each colour is a pen, in the order in which they come, unless `how` says otherwise; in a picture that was written here, of which
-/// each pen is a group, the pens are those that they were. Where a layer asks for it, the pen waits before
-/// it. `hatch` fills closed shapes, as large as the file has them.
+/// Each colour is a pen, in the order in which they come, unless `how` says otherwise; in a picture that was
+/// written here, of which each pen is a group, the pens are those that they were. Where a layer asks for it,
+/// the pen waits before it. `hatch` fills closed shapes, as large as the file has them.
 ///
 /// # Errors
 ///
@@ -120,7 +121,8 @@ pub fn svg_drawing(
     Ok(SvgOps { ops: Box::new(ops(svg, numbers)), diagnostics, colours, sheet_mm, layers })
 }
 
-/// Its operations by pens of these numbers, one for each of its own; where a layer asks for it, the pen waits before it.
+/// Its operations by pens of these numbers, one for each of its own; where a layer asks for it, the pen waits
+/// before it.
 fn ops(svg: SvgDrawing, numbers: Vec<u8>) -> impl Iterator<Item = PlotOp> {
     let SvgDrawing { drawing, scale, pens, layers, .. } = svg;
     let mut waits_ms: BTreeMap<usize, u32> = BTreeMap::new();

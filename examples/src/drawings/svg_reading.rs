@@ -11,12 +11,13 @@ pub struct SvgReading {
     /// Fonts of its texts.
     #[command(flatten)]
     pub fonts: FontFiles,
-    /// What is a pen in an SVG picture or a DXF: each colour, in the order in which they come; each layer, by the number that its name
-    /// begins with; each layer, in their order [default: colour in SVG, where pictures written here have their own pens; order in DXF]
+    /// What is a pen in an SVG picture or a DXF: each colour, in the order in which they come; each layer, by
+    /// the number that its name begins with; each layer, in their order [default: colour in SVG, where
+    /// pictures written here have their own pens; order in DXF]
     #[arg(long, value_enum, value_name = "P")]
     pub pens: Option<PensBy>,
-    /// Colour of the paper, which leaves no ink: what an SVG picture has in it is not drawn. As white, black or #ff8800; none draws
-    /// all
+    /// Colour of the paper, which leaves no ink: what an SVG picture has in it is not drawn. As white, black
+    /// or #ff8800; none draws all
     #[arg(long, value_name = "COLOUR", default_value = "white")]
     pub paper: Paper,
     /// Draws what clip paths, masks and the edges of nested sheets of an SVG picture cut off
@@ -25,7 +26,8 @@ pub struct SvgReading {
     /// Hides what lies below filled shapes of an SVG picture, or below closed strokes of another drawing
     #[arg(long)]
     pub occlude: bool,
-    /// Pixels to the inch of an SVG picture: 90 and 72 are those of older programs. Sizes in mm and inches stay what they are
+    /// Pixels to the inch of an SVG picture: 90 and 72 are those of older programs. Sizes in mm and inches
+    /// stay what they are
     #[arg(long, value_name = "N", default_value = "96", value_parser = px_per_inch, allow_negative_numbers = true)]
     pub px_per_inch: f64,
 }

@@ -12,8 +12,8 @@ const PEN_MM: f64 = 0.3;
 /// A turn that is nearly whole has two ends in one place, which an SVG's arc cannot say, rad.
 const NEARLY_WHOLE_RAD: f64 = 0.9 * TAU;
 
-/// Gathers strokes, one path each, in a group for each pen. Millimetres from the lower left corner of the picture, which lies at
-/// the origin, or farther left and down if something is drawn there; arcs stay arcs.
+/// Gathers strokes, one path each, in a group for each pen. Millimetres from the lower left corner of the
+/// picture, which lies at the origin, or farther left and down if something is drawn there; arcs stay arcs.
 #[derive(Clone, Debug, Default)]
 pub struct SvgText {
     pens: BTreeMap<u8, String>,
@@ -31,7 +31,8 @@ impl SvgText {
         Self { pen: 1, ..Self::default() }
     }
 
-    /// A sheet of this width and height, mm, with its lower left corner at the origin: as large stays the picture, whatever is drawn.
+    /// A sheet of this width and height, mm, with its lower left corner at the origin: as large stays the
+    /// picture, whatever is drawn.
     #[must_use]
     pub fn on_sheet(self, sheet_mm: Option<(f64, f64)>) -> Self {
         Self { sheet_mm, ..self }
@@ -51,7 +52,8 @@ impl SvgText {
             PlotOp::DrawArc { centre, sweep_rad, to, .. } => {
                 self.begin();
                 let out = self.at - centre;
-                // An arc whose ends are unequally far from its centre is none in SVG; nor is one without a radius.
+                // An arc whose ends are unequally far from its centre is none in SVG; nor is one without a
+                // radius.
                 let radius_mm = out.length();
                 if (radius_mm - to.distance(centre)).abs() > 0.01 || radius_mm < 1e-6 {
                     let arc = [PlotOp::Travel { to: self.at }, op];

@@ -1,5 +1,5 @@
-//! [`FollowGif`]: a line follower's run as an animated picture: the drawing, the path as it grows, the camera's window, and what
-//! the camera sees.
+//! [`FollowGif`]: a line follower's run as an animated picture: the drawing, the path as it grows, the
+//! camera's window, and what the camera sees.
 
 use crate::follow::FollowFrame;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
@@ -25,14 +25,16 @@ const LAST_DELAY: u16 = 250;
 /// Levels of grey; the noise of more would only make the file larger.
 const GREYS: u8 = 8;
 
-/// The colours behind the greys: the path, the ways with the tool lifted, the window; and what did not change.
+/// The colours behind the greys: the path, the ways with the tool lifted, the window; and what did not
+/// change.
 const COLOURS: [[u8; 3]; 4] = [[208, 24, 24], [90, 160, 90], [42, 111, 176], [255, 0, 255]];
 const PATH: u8 = GREYS;
 const LIFTED: u8 = GREYS + 1;
 const WINDOW: u8 = GREYS + 2;
 const SAME: u8 = GREYS + 3;
 
-/// Gathers what the camera saw on the way. Memory is bounded: of a long run every second, fourth, eighth window is kept.
+/// Gathers what the camera saw on the way. Memory is bounded: of a long run every second, fourth, eighth
+/// window is kept.
 #[derive(Clone, Debug, Default)]
 pub struct FollowGif {
     shots: Vec<Shot>,

@@ -6,14 +6,16 @@ use plotter_motion::{Machine, Pen, PlannerSettings, PlotOp, Point, stepgen::Step
 use plotter_vector::PxPoint;
 use plotter_vector::follow::Tool;
 
-/// A drawing lies so far inside of the machine's area where there is room, px: a table that misses could not go to its rim otherwise.
+/// A drawing lies so far inside of the machine's area where there is room, px: a table that misses could not
+/// go to its rim otherwise.
 const AROUND_PX: f64 = 40.0;
 
 /// Steps are told in ways of this length, px: less than what a picture shows.
 const TOLD_PX: f64 = 0.5;
 
-/// A machine that makes a line follower's moves, each planned from rest to rest, since the next picture decides what comes then.
-/// Places are in pixels on the paper, y down; the machine has its origin at the lower left, a little outside of the drawing.
+/// A machine that makes a line follower's moves, each planned from rest to rest, since the next picture
+/// decides what comes then. Places are in pixels on the paper, y down; the machine has its origin at the
+/// lower left, a little outside of the drawing.
 #[derive(Debug)]
 pub struct FollowMachine {
     plot: SteppedPlot,
@@ -26,7 +28,8 @@ pub struct FollowMachine {
 }
 
 impl FollowMachine {
-    /// A machine whose camera has gone from the origin to `start`, over a drawing of `size_px`, or over all of its area.
+    /// A machine whose camera has gone from the origin to `start`, over a drawing of `size_px`, or over all
+    /// of its area.
     ///
     /// # Errors
     ///

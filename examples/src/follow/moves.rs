@@ -43,7 +43,8 @@ enum Form {
 }
 
 impl MovesFile {
-    /// A file: a table where its name ends in `.csv`, otherwise G-code. `None` is a table on the standard output.
+    /// A file: a table where its name ends in `.csv`, otherwise G-code. `None` is a table on the standard
+    /// output.
     ///
     /// # Errors
     ///

@@ -11,7 +11,8 @@ use std::time::{Duration, Instant};
 /// What is asked of a camera; it takes the nearest that it has.
 const SIZE_PX: (u32, u32) = (640, 480);
 
-/// Pictures that were exposed while the machine moved, at most: those in the driver's buffers, and the one in progress.
+/// Pictures that were exposed while the machine moved, at most: those in the driver's buffers, and the one in
+/// progress.
 const STALE: usize = 3;
 
 /// A camera that gives no picture by then is unplugged, or used by another program.

@@ -15,7 +15,8 @@ const ON_OTHER_PX: f64 = 6.0;
 /// So far back it has turned round, px.
 const BACK_PX: f64 = 12.0;
 
-/// Ends, junctions and sharp corners are near within this distance, px, and half of the line's width: there one may turn.
+/// Ends, junctions and sharp corners are near within this distance, px, and half of the line's width: there
+/// one may turn.
 const NEAR_END_PX: f64 = 20.0;
 
 /// What a follower did wrong.
@@ -37,7 +38,8 @@ impl WrongChoices {
     }
 }
 
-/// Counts the wrong choices of a tool whose strokes have a place at least each pixel, over lines of one width.
+/// Counts the wrong choices of a tool whose strokes have a place at least each pixel, over lines of one
+/// width.
 #[must_use]
 pub fn wrong_choices(lines: &[Vec<PxPoint>], line_px: f64, strokes: &[Vec<PxPoint>]) -> WrongChoices {
     let route = Route::of(lines);
@@ -53,7 +55,8 @@ pub fn wrong_choices(lines: &[Vec<PxPoint>], line_px: f64, strokes: &[Vec<PxPoin
     let mut wrong = WrongChoices::default();
     for stroke in strokes {
         let mut outside = 0.0;
-        // The line it is on, the farthest place along it in its direction, and the direction (0: not known yet).
+        // The line it is on, the farthest place along it in its direction, and the direction (0: not known
+        // yet).
         let mut on: Option<(usize, f64, f64)> = None;
         let mut other_px = 0.0;
         for pair in stroke.windows(2) {

@@ -1,5 +1,7 @@
 //! `long_sheet`: a drawing longer than the table, and recorded joints of one.
 
+mod command;
+mod course;
 mod frame_change_svg;
 mod json_place;
 mod report;
@@ -9,6 +11,7 @@ mod svg;
 mod textile_pattern;
 mod told_joints;
 
+pub use command::LongSheetCommand;
 pub use frame_change_svg::FrameChange;
 pub use json_place::JsonPlace;
 pub use report::{JointRow, LongSheetReport};

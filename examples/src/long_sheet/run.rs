@@ -151,11 +151,13 @@ pub struct JointFigures {
     pub report: JointReport,
     /// How many lines go over the joint.
     pub breaks: usize,
-    /// The greatest distance between the two ends of a line, mm; at the ends of the joint where no line goes over it.
+    /// The greatest distance between the two ends of a line, mm; at the ends of the joint where no line goes
+    /// over it.
     pub worst_mm: f64,
     /// Root of the mean square, mm.
     pub rms_mm: f64,
-    /// Around the worst break point: the lines of the frame before, and of the frame after, in the machine's coordinates.
+    /// Around the worst break point: the lines of the frame before, and of the frame after, in the machine's
+    /// coordinates.
     pub view: Option<(Point, [Vec<Vec<Point>>; 2])>,
     /// What the first look for a fold said.
     pub fold: FoldCheck,
@@ -275,7 +277,8 @@ impl<M: JoinFrames> LongSheetRun<M> {
         Ok(JointFigures { report, breaks: breaks.len(), worst_mm, rms_mm, view, fold, fits })
     }
 
-    /// The worst of the break points around which lines have been kept, with both frames' lines on the machine.
+    /// The worst of the break points around which lines have been kept, with both frames' lines on the
+    /// machine.
     fn view(&self, report: &JointReport, frame: &Frame) -> Option<(Point, [Vec<Vec<Point>>; 2])> {
         let off_mm = |view: &View| report.discrepancy(view.place).length();
         // The end of the frame before is a frame's length farther in its own coordinates.

@@ -1,7 +1,7 @@
 //! Recorded scans over the marks of a joint, as JSON: how the sheet lay, or why that cannot be told.
 //!
-//! Two forms are read: `stitch-trace/1`, one joint with all its tacts and intensities, and `stitch-batch/1`, many joints with how
-//! often a line was seen in each tact. `docs/stitch-traces.md` has both.
+//! Two forms are read: `stitch-trace/1`, one joint with all its tacts and intensities, and `stitch-batch/1`,
+//! many joints with how often a line was seen in each tact. `docs/stitch-traces.md` has both.
 
 use crate::long_sheet::JsonPlace;
 use plotter_motion::{Axis, Point};
@@ -89,7 +89,8 @@ impl JointAnswer {
 ///
 /// # Errors
 ///
-/// What is wrong with the text as a whole. What is wrong with one joint is in its answer, and the others are told.
+/// What is wrong with the text as a whole. What is wrong with one joint is in its answer, and the others are
+/// told.
 pub fn answer_traces(text: &str, name: &str, set: CrossingSet) -> Result<Vec<JointAnswer>, String> {
     let value = JsonPlace::parse(text)?;
     let root = JsonPlace::root(&value);
@@ -441,7 +442,8 @@ fn joint_of(crossings: &[Crossing], feed: Axis) -> [Point; 2] {
     })
 }
 
-/// Three crossings, by the published method: shift from the border and the left Y marker, rotation from both Y markers.
+/// Three crossings, by the published method: shift from the border and the left Y marker, rotation from both
+/// Y markers.
 fn published(scanned: &[Scanned<'_>], optics: &Optics) -> Result<JointPose, String> {
     let mut tact_mm = 0.0_f64;
     let mut read = |scanned: &Scanned<'_>| {

@@ -30,7 +30,8 @@ pub struct TextilePattern {
 }
 
 impl TextilePattern {
-    /// The operations, in the order of the sheet: each stroke begins at most three repeats behind the farthest place before it.
+    /// The operations, in the order of the sheet: each stroke begins at most three repeats behind the
+    /// farthest place before it.
     pub fn ops(self) -> impl Iterator<Item = PlotOp> {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped, and whole")]
         let repeats = (self.length_mm / REPEAT_MM).ceil().clamp(1.0, 1e7) as u32;

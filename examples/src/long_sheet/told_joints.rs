@@ -1,7 +1,7 @@
 //! [`told_joints`]: recorded scans in files, poses or refusals in another.
 
 use crate::long_sheet::{CrossingSet, JointAnswer, answer_traces};
-use crate::shared::{at, print, read_file, write_file};
+use crate::shared::{Telling, at, print, read_file, write_file};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -9,12 +9,13 @@ use std::path::{Path, PathBuf};
 /// Joints that are printed; a batch may have thousands.
 const MOST_PRINTED: usize = 20;
 
-/// Tells the joints of recorded scans, one file after the other, and writes them as a list; `-` is the standard output.
+/// Tells the joints of recorded scans, one file after the other, and writes them as a list; `-` is the
+/// standard output.
 ///
 /// # Errors
 ///
 /// What could not be read, or written. Files that could be read are told all the same.
-pub fn told_joints(traces: &[PathBuf], set: CrossingSet, out: &Path) -> Result<(), String> {
+pub fn told_joints(traces: &[PathBuf], set: CrossingSet, out: &Path, telling: Telling) -> Result<(), String> {
     let (mut answers, mut unread) = (Vec::new(), Vec::new());
     for path in traces {
         let name = path
@@ -38,8 +39,8 @@ pub fn told_joints(traces: &[PathBuf], set: CrossingSet, out: &Path) -> Result<(
         if traces.iter().any(|trace| is_same(trace, out)) {
             return Err(at(out, &"the traces would be written over"));
         }
-        write_file(out, text)?;
-        print(&summary(&answers))?;
+        write_file(out, &text)?;
+        telling.tell(&summary(&answers), || Ok(text))?;
     }
     match &unread[..] {
         [] => Ok(()),

@@ -18,8 +18,9 @@ pub struct Recorded {
     pub drive: bool,
 }
 
-/// Sends `moves` to the firmware in `elf`. The emulator's time is the host's: each goes on only as far as the other has
-/// said all that it has to say until then, so the recording is the same each time, and that of the simulated machine.
+/// Sends `moves` to the firmware in `elf`. The emulator's time is the host's: each goes on only as far as the
+/// other has said all that it has to say until then, so the recording is the same each time, and that of the
+/// simulated machine.
 ///
 /// # Errors
 ///

@@ -11,7 +11,8 @@ const MOST: usize = 1 << 16;
 
 type Cell = (i64, i64);
 
-/// Compares strokes with the places that were stepped for them, while both come in. The strokes must be ahead of the steps.
+/// Compares strokes with the places that were stepped for them, while both come in. The strokes must be ahead
+/// of the steps.
 #[derive(Clone, Debug)]
 pub struct PathDeviation {
     cell_mm: f64,
@@ -76,7 +77,8 @@ impl PathDeviation {
         self.is_open &= !self.strokes.is_empty();
     }
 
-    /// Farthest of a step from the path, and of a vertex of the path from the steps, mm; without the strokes in progress.
+    /// Farthest of a step from the path, and of a vertex of the path from the steps, mm; without the strokes
+    /// in progress.
     #[must_use]
     pub fn most_mm(&self) -> (f64, f64) {
         (self.from_path_mm, self.from_steps_mm)

@@ -1,4 +1,5 @@
-//! A drawing on a simulated marking board: its controller, two motors on one belt, and everything that they did recorded.
+//! A drawing on a simulated marking board: its controller, two motors on one belt, and everything that they
+//! did recorded.
 
 use crate::machine::{PlotOutcome, Recorded};
 use core::time::Duration;

@@ -7,7 +7,8 @@ use std::collections::VecDeque;
 const BIN_TICKS: u64 = 1000;
 const BIN_S: f64 = 1e-3;
 
-/// Bins between the places that a speed is the difference of. A step of 0.01 mm more or less changes it by some 0.3 mm/s.
+/// Bins between the places that a speed is the difference of. A step of 0.01 mm more or less changes it by
+/// some 0.3 mm/s.
 const SPEED_BINS: usize = 10;
 
 /// Fewest and most bins between the speeds that an acceleration is the difference of.
@@ -16,7 +17,8 @@ const ACCEL_BINS: (f64, f64) = (10.0, 100.0);
 /// Share of the acceleration that a step more or less may make.
 const STEP_SHARE: f64 = 0.03;
 
-/// Where the direction turns by more than this from one window to the next is a corner, of which these windows say nothing, rad.
+/// Where the direction turns by more than this from one window to the next is a corner, of which these
+/// windows say nothing, rad.
 const SHARP_RAD: f64 = 0.35;
 
 /// Slower than this, a direction says nothing, mm/s.
@@ -36,9 +38,9 @@ pub struct Moment {
     pub along_mm_s2: f64,
 }
 
-/// Differences of the place of a pen, which is told from step to step: means over 1 ms, compared over 10 ms for the speed. The
-/// acceleration is compared over a window that is wider the slower the machine: over a time t, a step of length s more or less
-/// looks like s/t².
+/// Differences of the place of a pen, which is told from step to step: means over 1 ms, compared over 10 ms
+/// for the speed. The acceleration is compared over a window that is wider the slower the machine: over a
+/// time t, a step of length s more or less looks like s/t².
 #[derive(Clone, Debug)]
 pub struct SpeedAudit {
     /// Bins of the window of accelerations.
@@ -200,7 +202,8 @@ impl SpeedAudit {
         each(Moment { time_s, speed_mm_s, along_mm_s2 });
     }
 
-    /// Velocity over a window that ends `ago` bins ago: from the mean over its half before to that at its end.
+    /// Velocity over a window that ends `ago` bins ago: from the mean over its half before to that at its
+    /// end.
     fn velocity(&self, ago: usize, window: usize) -> Vec2 {
         let half = window / 2;
         let sum = |ago: usize| {

@@ -163,7 +163,8 @@ impl SteppedPlot {
         Ok(())
     }
 
-    /// Nothing comes for now: the machine goes on until it stands, its pen as it is. More may be pushed afterwards.
+    /// Nothing comes for now: the machine goes on until it stands, its pen as it is. More may be pushed
+    /// afterwards.
     ///
     /// # Errors
     ///

@@ -1,4 +1,5 @@
-//! A G-code drawing, streamed to the stepper plotter's controller: on the desk, and in its firmware in the emulator.
+//! A G-code drawing, streamed to the stepper plotter's controller: on the desk, and in its firmware in the
+//! emulator.
 
 use crate::machine::{BenchSwitches, Emulator, Told};
 use core::time::Duration;
@@ -24,7 +25,8 @@ const RX_BUFFER: usize = 128;
 pub struct StreamedSteps {
     /// How many: one of either motor or of both.
     pub steps: u64,
-    /// CRC-64/XZ over each step's time in microseconds (8 bytes, the lowest first) and the steps of x and y (a byte each).
+    /// CRC-64/XZ over each step's time in microseconds (8 bytes, the lowest first) and the steps of x and y
+    /// (a byte each).
     pub crc: u64,
     /// Where the motors stand in the end.
     pub position: StepPoint,
@@ -36,7 +38,8 @@ pub struct StreamedSteps {
     pub notes: Vec<String>,
 }
 
-/// A program that streams to Grbl: it sends as many lines as its receive buffer holds, and counts the answers.
+/// A program that streams to Grbl: it sends as many lines as its receive buffer holds, and counts the
+/// answers.
 #[derive(Debug)]
 struct Streamer {
     lines: VecDeque<Vec<u8>>,
@@ -96,7 +99,8 @@ impl Streamer {
     }
 }
 
-/// Streams `gcode` to the controller on the desk, built as its firmware is; `start` is when it is switched on.
+/// Streams `gcode` to the controller on the desk, built as its firmware is; `start` is when it is switched
+/// on.
 ///
 /// # Errors
 ///

@@ -24,7 +24,8 @@ const WORST_PHASES: [f64; 2] = [0.0, 0.0];
 /// A move of a marking board that is not done by then never is.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// After the last step before the pen is lifted the rotors still swing; so long that is seen, in steps of a millisecond.
+/// After the last step before the pen is lifted the rotors still swing; so long that is seen, in steps of a
+/// millisecond.
 const SWING_MS: u64 = 20;
 
 /// Rounding of corners from which on a planner is asked for it, mm: less is what it cannot do.
@@ -76,7 +77,8 @@ pub fn slowed(machine: &Machine, budget: &Budget) -> Result<Machine, String> {
     Machine::new(config).map_err(|error| error.to_string())
 }
 
-/// Draws `ops` on the simulated machine; corners are rounded by up to `blend_mm` by a machine that does not stop in them.
+/// Draws `ops` on the simulated machine; corners are rounded by up to `blend_mm` by a machine that does not
+/// stop in them.
 ///
 /// # Errors
 ///

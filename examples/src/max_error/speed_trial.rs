@@ -11,8 +11,9 @@ const HEADINGS: u32 = 16;
 /// Size of the figure, mm, where the machine has the room.
 const REACH_MM: f64 = 10.0;
 
-/// The test figure: three lines as long as the drawing, `length_mm` or what the area has room for; lines of two lengths in all directions there and back, a circle of short chords both ways round, and a
-/// staircase whose steps shrink, in the middle of the machine's area.
+/// The test figure: three lines as long as the drawing, `length_mm` or what the area has room for; lines of
+/// two lengths in all directions there and back, a circle of short chords both ways round, and a staircase
+/// whose steps shrink, in the middle of the machine's area.
 #[must_use]
 pub fn test_figure(machine: &Machine, length_mm: f64) -> Vec<PlotOp> {
     let area = machine.config().area;
@@ -81,7 +82,8 @@ pub fn deviation_mm(path: &FollowedPath) -> f64 {
     most_mm
 }
 
-/// Draws the test figure for a drawing `length_mm` long on the simulated machine; how far the pen left it, mm: infinite if the machine does not finish it.
+/// Draws the test figure for a drawing `length_mm` long on the simulated machine; how far the pen left it,
+/// mm: infinite if the machine does not finish it.
 ///
 /// # Errors
 ///

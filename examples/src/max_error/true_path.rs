@@ -9,7 +9,8 @@ const TOLERANCE_MM: f64 = 0.001;
 /// Places that are held before they are thinned.
 const HELD: usize = 4096;
 
-/// Gathers the places of a pen as one path for each stroke, none of which is farther than 1 um from any place.
+/// Gathers the places of a pen as one path for each stroke, none of which is farther than 1 um from any
+/// place.
 #[derive(Clone, Debug, Default)]
 pub struct TruePath {
     strokes: Vec<Vec<Point>>,

@@ -16,8 +16,8 @@ const LISTEN: Duration = Duration::from_millis(5);
 /// What is spoken with a machine on a port.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PortLanguage {
-    /// The reliable link if the machine knows it, else digits. The number is another one for each session, such as the low bits
-    /// of a clock.
+    /// The reliable link if the machine knows it, else digits. The number is another one for each session,
+    /// such as the low bits of a clock.
     Link(u16),
     /// Ten digits a target, as published; the machine is not asked for anything else.
     #[default]
@@ -83,8 +83,8 @@ impl Sender {
     }
 }
 
-/// Sends `moves` to the machine on `port`, in digits at the pace of its `serial.byte_gap_ms`; the recording's times are this
-/// computer's.
+/// Sends `moves` to the machine on `port`, in digits at the pace of its `serial.byte_gap_ms`; the recording's
+/// times are this computer's.
 ///
 /// # Errors
 ///

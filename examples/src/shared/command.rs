@@ -1,5 +1,6 @@
 //! A tool's end and words: what it prints, and one clear line for an error.
 
+use super::exit_status::ExitStatus;
 use std::fmt::Display;
 use std::io::Write as _;
 use std::path::Path;
@@ -8,11 +9,11 @@ use std::process::ExitCode;
 /// Runs the example `name`: an error is one line on the standard error, and a failed exit.
 pub fn run(name: &str, main: impl FnOnce() -> Result<(), String>) -> ExitCode {
     match main() {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => ExitStatus::Done.into(),
         Err(message) => {
             // One line, whatever a path or a decoder put into it.
             eprintln!("{name}: {}", message.split_whitespace().collect::<Vec<_>>().join(" "));
-            ExitCode::FAILURE
+            ExitStatus::Failed.into()
         }
     }
 }

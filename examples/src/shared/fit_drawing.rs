@@ -3,7 +3,8 @@
 use plotter_motion::{Machine, Point};
 use plotter_vector::Scale;
 
-/// The drawing's place: its left lower corner a little off the origin, as large as asked and as the area allows.
+/// The drawing's place: its left lower corner a little off the origin, as large as asked and as the area
+/// allows.
 ///
 /// # Errors
 ///

@@ -3,19 +3,20 @@
 use plotter_vector::{Algorithm, FileRows, Pixel, Progress, TracedSheet, Vectorizer, trace::SheetErrors};
 use std::io::Cursor;
 
-/// How far beyond the promised error the farthest ink may lie from the strokes, as a multiple of the width of the lines.
+/// How far beyond the promised error the farthest ink may lie from the strokes, as a multiple of the width of
+/// the lines.
 ///
-/// An error is what a pixel's distance is more than half of the line's width, so it is 0 all over a line whose middle is drawn. Corners and
-/// junctions, where ink is wider than its lines, and blots take it up to about a line's width beyond the promise. The nearest line
-/// that could be drawn in its place has a row of paper between, so the far edge of a line that was not drawn has an error of at least
-/// a width and a pixel.
+/// An error is what a pixel's distance is more than half of the line's width, so it is 0 all over a line
+/// whose middle is drawn. Corners and junctions, where ink is wider than its lines, and blots take it up to
+/// about a line's width beyond the promise. The nearest line that could be drawn in its place has a row of
+/// paper between, so the far edge of a line that was not drawn has an error of at least a width and a pixel.
 const WIDTHS: f64 = 1.0;
 
 /// The width that is taken where no lines were found, only areas or dots, px.
 const USUAL_LINE_PX: u32 = 3;
 
-/// Says where ink was lost, if its farthest pixel lies far beyond what was promised of the vectorization; `line_px` is the width of the
-/// picture's lines. The published algorithm promises nothing.
+/// Says where ink was lost, if its farthest pixel lies far beyond what was promised of the vectorization;
+/// `line_px` is the width of the picture's lines. The published algorithm promises nothing.
 ///
 /// # Errors
 ///

@@ -1,19 +1,25 @@
-//! What every tool needs: one clear line for every error, files, pages with pictures, how pictures are
-//! traced.
+//! What every tool needs: one clear line for every error, exit codes, figures as a table or JSON, progress,
+//! files, pages with pictures, how pictures are traced.
 
 mod command;
+mod exit_status;
 mod files;
 mod fit_drawing;
 mod lost_ink;
 mod pen_colours;
 mod report;
+mod telling;
 mod vectorize_settings;
+mod work_shown;
 
 pub use command::{at, print, run};
+pub use exit_status::ExitStatus;
 pub use files::{is_standard, read_file, read_input, write_file, write_output};
 pub use fit_drawing::fit_drawing;
 pub use lost_ink::{lost_ink, vectorized};
 pub use pen_colours::{pen_colour, usual_colour};
 pub(crate) use report::escaped;
 pub use report::{Figure, html_page};
+pub use telling::Telling;
 pub use vectorize_settings::vectorizer;
+pub use work_shown::WorkShown;

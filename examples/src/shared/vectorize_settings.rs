@@ -8,7 +8,8 @@ use plotter_vector::{
     stroke::Bounded,
 };
 
-/// The vectorizer, ours, that a machine's file asks for; `mm_per_px` is the size of the picture's pixels on the sheet.
+/// The vectorizer, ours, that a machine's file asks for; `mm_per_px` is the size of the picture's pixels on
+/// the sheet.
 ///
 /// # Errors
 ///

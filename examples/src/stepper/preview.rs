@@ -11,7 +11,8 @@ const PEN_MM: f64 = 0.3;
 /// Blank paper about the frame, mm.
 const MARGIN_MM: f64 = 5.0;
 
-/// Gathers the places of a pen, step by step, as paths of straight lines that are no farther than a tolerance from them.
+/// Gathers the places of a pen, step by step, as paths of straight lines that are no farther than a tolerance
+/// from them.
 #[derive(Clone, Debug)]
 pub struct SteppedPreview {
     tolerance_mm: f64,
@@ -21,7 +22,8 @@ pub struct SteppedPreview {
     pen: u8,
     down: Pen,
     at: Point,
-    /// The line in progress: where it began, the directions that pass all its places, and the way to the farthest of them.
+    /// The line in progress: where it began, the directions that pass all its places, and the way to the
+    /// farthest of them.
     from: Point,
     cone: Option<(Vec2, Vec2)>,
     reach_mm: f64,

@@ -33,8 +33,8 @@ fn joined(one: Option<(f64, f64)>, other: Option<(f64, f64)>) -> Option<(f64, f6
     }
 }
 
-/// Speed and acceleration over time. The stretches of which only the least and the greatest value are kept grow with the
-/// drawing, so that memory does not.
+/// Speed and acceleration over time. The stretches of which only the least and the greatest value are kept
+/// grow with the drawing, so that memory does not.
 #[derive(Clone, Debug)]
 pub struct SpeedChart {
     stretch_s: f64,
@@ -78,7 +78,8 @@ impl SpeedChart {
         }
     }
 
-    /// The picture: speed with the pen down and up below their limits, and the acceleration along the path between its.
+    /// The picture: speed with the pen down and up below their limits, and the acceleration along the path
+    /// between its.
     #[must_use]
     pub fn to_svg(&self, title: &str, limits: &plotter_motion::PlannerSettings) -> String {
         let end = self.time(self.stretches.len());

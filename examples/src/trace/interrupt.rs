@@ -1,15 +1,14 @@
 //! [`Interrupt`]: Ctrl-C asks a tool to stop; what it writes is whole or not there.
 
+use crate::shared::ExitStatus;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// What a shell sees of a tool that was stopped by Ctrl-C: 128 and the number of the signal.
-pub const INTERRUPTED: u8 = 130;
 
 /// Whether the tool is to stop, and whether it may be ended on the spot.
 static ASKED: AtomicBool = AtomicBool::new(false);
 static WRITING: AtomicBool = AtomicBool::new(false);
 
-/// Ctrl-C, as a request that long work looks at. A second one ends the process at once, unless files are being written.
+/// Ctrl-C, as a request that long work looks at. A second one ends the process at once, unless files are
+/// being written.
 #[derive(Clone, Copy, Debug)]
 pub struct Interrupt(());
 
@@ -22,7 +21,7 @@ impl Interrupt {
     pub fn new() -> Result<Self, String> {
         let asked = || {
             if ASKED.swap(true, Ordering::SeqCst) && !WRITING.load(Ordering::SeqCst) {
-                std::process::exit(INTERRUPTED.into());
+                std::process::exit(ExitStatus::Interrupted.code().into());
             }
         };
         ctrlc::set_handler(asked).map_err(|error| format!("Ctrl-C cannot be waited for: {error}"))?;

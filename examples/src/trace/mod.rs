@@ -1,7 +1,13 @@
-//! `trace`: strokes over the picture that they were made from, whole or not written.
+//! `trace`: a picture as strokes, and these over the picture; whole, or not written.
 
+mod command;
+mod figures;
+mod files;
 mod interrupt;
 mod overlay;
+mod settings;
+mod traced;
 
-pub use interrupt::{INTERRUPTED, Interrupt};
+pub use command::TraceCommand;
+pub use interrupt::Interrupt;
 pub use overlay::{Overlay, overlay_png, overlay_step};

@@ -36,8 +36,8 @@ pub fn overlay_step(width: u32, height: u32) -> u32 {
     width.max(height).max(1).div_ceil(LONGEST_PX)
 }
 
-/// Draws strokes on a pale picture, as PNG: enlarged two to four times where it stays below 2000 px, and then with
-/// a dot on each vertex. `level` gives the picture's colours.
+/// Draws strokes on a pale picture, as PNG: enlarged two to four times where it stays below 2000 px, and then
+/// with a dot on each vertex. `level` gives the picture's colours.
 ///
 /// # Errors
 ///

@@ -198,8 +198,8 @@ impl ContouringReport {
     }
 }
 
-/// Lines for a machine's file. The gains are comments: the published program is called at every edge, where a sum and a difference
-/// by the call are something else.
+/// Lines for a machine's file. The gains are comments: the published program is called at every edge, where a
+/// sum and a difference by the call are something else.
 #[must_use]
 pub fn tuned_lines(axes: &[TunedAxis], loop_hz: f64) -> String {
     let mut text = String::new();

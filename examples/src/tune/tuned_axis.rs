@@ -1,4 +1,5 @@
-//! [`SimulatedAxis`]: an axis of a machine on which the tuning experiments and position loops run, through the gate.
+//! [`SimulatedAxis`]: an axis of a machine on which the tuning experiments and position loops run, through
+//! the gate.
 
 use plotter_motion::control::tuning::{
     Compensator, ExperimentSettings, IdentifiedMotor, RelayExperiment, RelayPoint, StepExperiment,

@@ -29,6 +29,7 @@ mod max_error_command;
 #[path = "../../../plotter-motion/tests/all/papers.rs"]
 mod papers;
 mod plot_command;
+mod program_command;
 #[path = "../../../plotter-motion/tests/all/real_files/mod.rs"]
 mod real_files;
 mod rooms;

@@ -134,8 +134,9 @@ fn language(path: &Path, head: &[u8]) -> Result<Language, String> {
         return Err(String::from("the file is empty"));
     }
     if text.starts_with(b"plotter-log ") {
-        return Err(String::from(
-            "this is a recording, not a drawing: look at it with `plotter-replay render`",
+        return Err(format!(
+            "this is a recording, not a drawing: look at it with `{} render`",
+            super::program()
         ));
     }
     if text.starts_with(&[0x1f, 0x8b]) {

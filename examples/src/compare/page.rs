@@ -1,290 +1,37 @@
-//! A contest of controllers on simulated machines: table, CSV and a page with pictures.
+//! The page: tables, the ways of the controllers with their errors magnified, and both coordinates over time.
 
-use crate::shared::{
-    at, escaped, fit_drawing, lost_ink, print, read_file, run, vectorized, vectorizer, write_file,
-};
-use clap::Parser;
+use super::contest::{Outcome, Plant, STAR, drawing_name};
+use crate::shared::escaped;
 use core::time::Duration;
-use indicatif::{ProgressBar, ProgressStyle};
-use plotter_motion::testbed::{Drawing, Entry, Figures, Moment, Ranking, Score, TestBed, TestBedSettings};
-use plotter_motion::{Machine, Pen, PenMove, PlotOp, Point, config::MachineKind, hpgl};
+use plotter_motion::{
+    Pen, PenMove, Point,
+    testbed::{Drawing, Figures, Moment, Ranking, TestBed},
+};
 use plotter_replay::{
     Chart,
     draw::{Curve, Panel, Role, Run},
 };
-use plotter_vector::{FileRows, picture::RowSource as _};
-use rayon::prelude::*;
 use std::fmt::Write as _;
-use std::io::Cursor;
-use std::path::{Path, PathBuf};
-use std::process::ExitCode;
-
-/// Lets controllers draw on simulated machines whose descriptions are wrong, and ranks them by how near to the lines the pen truly was.
-#[derive(Parser)]
-#[command(
-    name = "compare_controllers",
-    after_help = "Examples:\n  cargo run --release --example compare_controllers\n  \
-                  cargo run --release --example compare_controllers -- --drawing builtin --html target/controllers.html\n  \
-                  cargo run --release --example compare_controllers -- --machine examples/machines/loaded-gantry.toml \
-                  --machine mine.toml --csv figures.csv\n\n\
-                  A controller of your own: copy examples/my_controller.rs."
-)]
-struct Args {
-    /// A machine's TOML file; may be given several times [default: the loaded gantry, with its encoders decoded x1 and x4]
-    #[arg(long, value_name = "FILE")]
-    machine: Vec<PathBuf>,
-    /// What is drawn besides the eight lines: a picture (PNG, JPEG, PBM, PGM), HPGL (.plt, .hpgl), or `builtin` for a flag as line art
-    #[arg(long, value_name = "FILE|builtin")]
-    drawing: Option<PathBuf>,
-    /// Width of a drawn picture, mm
-    #[arg(long, value_name = "MM", default_value_t = 50.0, allow_negative_numbers = true)]
-    width_mm: f64,
-    /// By which share the description that controllers are given is wrong in each of its figures, 0 to 0.5
-    #[arg(long, value_name = "SHARE", default_value_t = 0.25, allow_negative_numbers = true)]
-    wrong: f64,
-    /// Only these controllers, by their names with commas between them
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    only: Vec<String>,
-    /// Writes a page with tables and pictures, which needs no other file
-    #[arg(long, value_name = "FILE")]
-    html: Option<PathBuf>,
-    /// Writes the figures of every line
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-}
-
-/// Runs the command line of `compare_controllers` with the controllers that are always there and `more` of one's own.
-pub fn compare_controllers(more: Vec<Entry>) -> ExitCode {
-    run("compare_controllers", || compare(&Args::parse(), more))
-}
-
-/// A machine and what it draws.
-struct Plant {
-    name: String,
-    bed: TestBed,
-    drawings: Vec<Drawing>,
-}
-
-/// What an entry did on a plant, with a trace of each drawing.
-struct Outcome {
-    score: Score,
-    traces: Vec<Trace>,
-}
-
-fn compare(args: &Args, more: Vec<Entry>) -> Result<(), String> {
-    let entries = entries(&args.only, more)?;
-    let plants = plants(args)?;
-    // What cannot be written is better known before the work than after it.
-    for path in [&args.html, &args.csv].into_iter().flatten() {
-        write_file(path, "")?;
-    }
-    let jobs: Vec<(usize, usize)> =
-        (0..plants.len()).flat_map(|plant| (0..entries.len()).map(move |entry| (plant, entry))).collect();
-    let bar = ProgressBar::new(jobs.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("drawing {bar:40} {pos}/{len} controllers, {elapsed}") {
-        bar.set_style(style);
-    }
-    let wants_traces = args.html.is_some();
-    let results: Vec<Outcome> = jobs
-        .par_iter()
-        .map(|&(plant, entry)| {
-            let result = result(&plants[plant], &entries[entry], wants_traces);
-            bar.inc(1);
-            result
-        })
-        .collect();
-    bar.finish_and_clear();
-
-    let mut text = String::new();
-    let mut csv = String::from("controller,plant,line,rms_um,max_um,settle_s,time_s,finished\n");
-    let mut page = Page::new(args.wrong);
-    for (plant, results) in plants.iter().zip(results.chunks(entries.len().max(1))) {
-        let (lines, drawn) = split(plant, results);
-        let _ = writeln!(text, "{}: eight lines of 60 mm\n{lines}", plant.name);
-        if let Some(drawn) = &drawn {
-            let _ = writeln!(text, "{}: {}\n{drawn}", plant.name, drawing_name(plant));
-        }
-        for result in results {
-            csv_rows(&mut csv, plant, &result.score);
-        }
-        if wants_traces {
-            page.plant(plant, &lines, drawn.as_ref(), results);
-        }
-    }
-    if let Some(path) = &args.csv {
-        write_file(path, csv)?;
-    }
-    if let Some(path) = &args.html {
-        write_file(path, page.finish())?;
-        let _ = writeln!(text, "look at {}", path.display());
-    }
-    print(&text)
-}
-
-/// Number of lines of the star, which come first among the drawings of a plant.
-const STAR: usize = 8;
-
-fn drawing_name(plant: &Plant) -> &str {
-    plant.drawings.get(STAR).map_or("", |drawing| drawing.name.as_str())
-}
-
-/// The ranking by the eight lines, and by the drawing if there is one.
-fn split(plant: &Plant, results: &[Outcome]) -> (Ranking, Option<Ranking>) {
-    let part = |range: core::ops::Range<usize>| {
-        let of = |result: &Outcome| Score {
-            entry: result.score.entry.clone(),
-            drawings: result.score.drawings.get(range.clone()).unwrap_or_default().to_vec(),
-        };
-        Ranking::new(results.iter().map(of).collect())
-    };
-    let all = plant.drawings.len();
-    (part(0..STAR.min(all)), (all > STAR).then(|| part(STAR..all)))
-}
-
-fn entries(only: &[String], more: Vec<Entry>) -> Result<Vec<Entry>, String> {
-    let mut entries = Entry::standard();
-    for entry in &more {
-        if entries.iter().any(|other| other.name() == entry.name()) {
-            return Err(format!("there is a controller `{}` already: give yours another name", entry.name()));
-        }
-    }
-    entries.extend(more);
-    let known = || entries.iter().map(Entry::name).collect::<Vec<_>>().join(", ");
-    if let Some(name) = only.iter().find(|name| !entries.iter().any(|entry| entry.name() == name.as_str())) {
-        return Err(format!("--only {name}: there is no such controller; there are {}", known()));
-    }
-    if !only.is_empty() {
-        entries.retain(|entry| only.iter().any(|name| name == entry.name()));
-    }
-    Ok(entries)
-}
-
-fn plants(args: &Args) -> Result<Vec<Plant>, String> {
-    if !(0.0..=0.5).contains(&args.wrong) {
-        return Err(format!("--wrong {}: give a share of 0 to 0.5", args.wrong));
-    }
-    let built_in = [
-        ("loaded-gantry.toml", include_str!("../../machines/loaded-gantry.toml")),
-        ("loaded-gantry-x4.toml", include_str!("../../machines/loaded-gantry-x4.toml")),
-    ];
-    if args.machine.is_empty() {
-        return built_in.iter().map(|(path, text)| plant(args, Path::new(path), text)).collect();
-    }
-    args.machine
-        .iter()
-        .map(|path| {
-            let text = String::from_utf8(read_file(path)?)
-                .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
-            plant(args, path, &text)
-        })
-        .collect()
-}
-
-fn plant(args: &Args, path: &Path, text: &str) -> Result<Plant, String> {
-    let machine = Machine::from_toml(text).map_err(|error| at(path, &error))?;
-    machine.require(MachineKind::Gantry, "the contest of controllers").map_err(|error| at(path, &error))?;
-    let settings = TestBedSettings { wrong_share: args.wrong, ..TestBedSettings::default() };
-    let bed = TestBed::new(&machine, settings).map_err(|error| {
-        at(path, &format!("cannot be described so wrongly (--wrong {}): {error}", args.wrong))
-    })?;
-    let mut drawings = Drawing::star(&bed);
-    if let Some(path) = &args.drawing {
-        drawings.push(drawing(args, path, &bed)?);
-    }
-    Ok(Plant { name: machine.config().name.as_str().to_owned(), bed, drawings })
-}
-
-fn drawing(args: &Args, path: &Path, bed: &TestBed) -> Result<Drawing, String> {
-    let is_builtin = path.as_os_str() == "builtin";
-    let bytes = if is_builtin { include_bytes!("../../data/flag.png").to_vec() } else { read_file(path)? };
-    let is_hpgl = path
-        .extension()
-        .is_some_and(|ending| ["plt", "hpgl"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
-    let name =
-        if is_builtin { "flag".into() } else { path.file_stem().unwrap_or_default().to_string_lossy() };
-    let text = if is_hpgl { bytes } else { traced(args, path, &bytes, bed)?.into_bytes() };
-    let ops: Vec<PlotOp> =
-        hpgl::plot_ops(text.as_slice()).collect::<Result<_, _>>().map_err(|error| at(path, &error))?;
-    // A name stands in a table and in CSV.
-    let name = name.replace([',', '"', '\n', '\r'], "_");
-    Drawing::from_ops(&name, bed, ops).map_err(|error| at(path, &error))
-}
-
-/// A picture as HPGL, as the example `plot` makes it with ours on this machine.
-fn traced(args: &Args, path: &Path, bytes: &[u8], bed: &TestBed) -> Result<String, String> {
-    let scan = FileRows::new(Cursor::new(bytes)).map_err(|error| at(path, &error))?;
-    let scale = fit_drawing((scan.width(), scan.height()), bed.machine(), args.width_mm)?;
-    let vectorizer =
-        vectorizer(&bed.machine().config().vectorize, scale.mm_per_px()).map_err(|error| at(path, &error))?;
-    let traced = vectorized(&vectorizer, bytes.to_vec()).map_err(|error| at(path, &error))?;
-    let errors = traced.errors.unwrap_or_default();
-    lost_ink(&vectorizer, &errors, traced.pen_px).map_err(|error| at(path, &error))?;
-    let mut text = String::new();
-    plotter_vector::hpgl(&traced.drawing, scale, &mut text).map_err(|error| error.to_string())?;
-    Ok(text)
-}
-
-fn result(plant: &Plant, entry: &Entry, wants_traces: bool) -> Outcome {
-    let mut traces = Vec::new();
-    let mut drawings = Vec::new();
-    for drawing in &plant.drawings {
-        let most = if drawing.moves.len() > 1 { Trace::OF_A_DRAWING } else { Trace::OF_A_LINE };
-        let mut trace = Trace::new(most);
-        let figures = entry.run(&plant.bed, drawing, |moment| {
-            if wants_traces {
-                trace.note(moment);
-            }
-        });
-        drawings.push((drawing.name.clone(), figures));
-        traces.push(trace);
-    }
-    Outcome { score: Score { entry: entry.name().to_owned(), drawings }, traces }
-}
-
-fn csv_rows(csv: &mut String, plant: &Plant, score: &Score) {
-    for (line, figures) in &score.drawings {
-        let settled = figures.settled.map_or_else(String::new, |at| format!("{:.4}", at.as_secs_f64()));
-        let _ = writeln!(
-            csv,
-            "{},{},{line},{:.4},{:.4},{settled},{:.4},{}",
-            field(&score.entry),
-            field(&plant.name),
-            figures.rms_mm() * 1e3,
-            figures.max_mm * 1e3,
-            figures.time.as_secs_f64(),
-            figures.is_finished()
-        );
-    }
-}
-
-/// A name in CSV: in quotes where it would break the row.
-fn field(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", name.replace('"', "\"\""))
-    } else {
-        name.to_owned()
-    }
-}
 
 /// What the pictures show of a run: of each stretch of time the moment with the greatest error.
-struct Trace {
-    most: usize,
+pub(super) struct Trace {
+    pub(super) most: usize,
     moments: Vec<Moment>,
     /// Time steps in a stretch; grows with the run, so that memory does not.
-    every: usize,
+    pub(super) every: usize,
     passed: usize,
 }
 
 impl Trace {
     /// Moments kept of a line, and of a drawing of many.
-    const OF_A_LINE: usize = 600;
-    const OF_A_DRAWING: usize = 8000;
+    pub(super) const OF_A_LINE: usize = 600;
+    pub(super) const OF_A_DRAWING: usize = 8000;
 
-    fn new(most: usize) -> Self {
+    pub(super) fn new(most: usize) -> Self {
         Self { most, moments: Vec::new(), every: 1, passed: 0 }
     }
 
-    fn note(&mut self, moment: &Moment) {
+    pub(super) fn note(&mut self, moment: &Moment) {
         match self.moments.last_mut().filter(|_| self.passed > 0) {
             Some(last) if last.is_measured == moment.is_measured => *last = worse(last, moment),
             _ => self.moments.push(*moment),
@@ -335,12 +82,12 @@ fn worse(one: &Moment, other: &Moment) -> Moment {
 }
 
 /// The page, as it grows plant by plant.
-struct Page {
-    html: String,
+pub(super) struct Page {
+    pub(super) html: String,
 }
 
 impl Page {
-    fn new(wrong: f64) -> Self {
+    pub(super) fn new(wrong: f64) -> Self {
         let mut html = String::from(
             "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>Controllers compared</title>\n<style>\n\
              body { font: 16px/1.5 system-ui, sans-serif; max-width: 80rem; margin: 2rem auto; padding: 0 1rem; color: #222 }\n\
@@ -363,7 +110,13 @@ impl Page {
         Self { html }
     }
 
-    fn plant(&mut self, plant: &Plant, lines: &Ranking, drawn: Option<&Ranking>, results: &[Outcome]) {
+    pub(super) fn plant(
+        &mut self,
+        plant: &Plant,
+        lines: &Ranking,
+        drawn: Option<&Ranking>,
+        results: &[Outcome],
+    ) {
         let name = escaped(&plant.name);
         let _ = writeln!(self.html, "<h2>{name}</h2>\n<h3>Eight lines of 60 mm</h3>");
         self.table(lines);
@@ -401,7 +154,7 @@ impl Page {
         self.html.push_str("</div>\n");
     }
 
-    fn table(&mut self, ranking: &Ranking) {
+    pub(super) fn table(&mut self, ranking: &Ranking) {
         let published =
             ranking.scores().iter().find(|score| score.entry == "published").map(|s| s.total().rms_mm());
         self.html.push_str(
@@ -446,14 +199,14 @@ impl Page {
         let _ = writeln!(self.html, "<figure>{svg}<figcaption>{}</figcaption></figure>", escaped(caption));
     }
 
-    fn finish(mut self) -> String {
+    pub(super) fn finish(mut self) -> String {
         self.html.push_str("</body></html>\n");
         self.html
     }
 }
 
-/// The desired lines, pale, and the way of the pen with its distance from them magnified by a round number, which comes
-/// with it: so that the greatest distance is a twelfth of the picture at most.
+/// The desired lines, pale, and the way of the pen with its distance from them magnified by a round number,
+/// which comes with it: so that the greatest distance is a twelfth of the picture at most.
 fn phase_picture(drawings: &[Drawing], traces: &[Trace], bed: &TestBed) -> (String, f64) {
     const WIDTH: f64 = 480.0;
     const MARGIN: f64 = 50.0;
@@ -527,12 +280,6 @@ mod tests {
     #[test]
     fn magnifications_are_round() {
         assert_eq!([1.0, 1.9, 4.99, 5.0, 999.0].map(round_down), [1.0, 1.0, 2.0, 5.0, 500.0]);
-    }
-
-    #[test]
-    fn a_name_with_a_comma_is_quoted() {
-        assert_eq!(field("mine"), "mine");
-        assert_eq!(field("mine, \"new\""), "\"mine, \"\"new\"\"\"");
     }
 
     #[test]

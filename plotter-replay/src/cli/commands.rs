@@ -1,16 +1,16 @@
 //! The commands, and what they share.
 
-use crate::check::Check;
-use crate::compare::Compare;
-use crate::export::Export;
-use crate::import::Import;
-use crate::info::Info;
-use crate::record::Record;
-use crate::render::Render;
-use crate::replay::Replay;
-use clap::Subcommand;
-use plotter_replay::log::{self, Damage, FileReader, Header, Summary};
-use plotter_replay::{PlotterSettings, VirtualPlotter};
+use super::check::Check;
+use super::compare::Compare;
+use super::export::Export;
+use super::import::Import;
+use super::info::Info;
+use super::record::Record;
+use super::render::Render;
+use super::replay::Replay;
+use crate::log::{self, Damage, FileReader, Header, Summary};
+use crate::{PlotterSettings, VirtualPlotter};
+use clap::{ArgMatches, FromArgMatches as _, Subcommand};
 use std::io::{Read as _, Write};
 use std::path::Path;
 use std::time::Duration;
@@ -70,11 +70,11 @@ pub(crate) enum Command {
         plotter-replay live --port /dev/ttyUSB0 drawing.hpgl    on a real one\n  \
         plotter-replay live --port auto --terminal drawing.hpgl over ssh"
     )]
-    Live(crate::live::Live),
+    Live(super::live::Live),
     /// Put a simulated machine on a pseudo terminal, for any program that drives a plotter.
     #[cfg(all(feature = "live", unix))]
     #[command(after_help = "Example: plotter-replay simulate semi-virtual-gantry.toml")]
-    Simulate(crate::simulate::Simulate),
+    Simulate(super::simulate::Simulate),
     /// Drive or watch a machine: not in this program, which was built without the feature `live`.
     #[cfg(not(feature = "live"))]
     #[command(disable_help_flag = true)]
@@ -91,6 +91,36 @@ pub(crate) enum Command {
 pub(crate) type Done = Result<Verdict, String>;
 
 impl Command {
+    /// The command of that name, with what was given to it.
+    ///
+    /// # Errors
+    ///
+    /// There is none of that name, or something is missed in it.
+    pub(crate) fn of_subcommand(name: &str, matches: &ArgMatches) -> Result<Self, clap::Error> {
+        Ok(match name {
+            "render" => Self::Render(Render::from_arg_matches(matches)?),
+            "check" => Self::Check(Check::from_arg_matches(matches)?),
+            "replay" => Self::Replay(Replay::from_arg_matches(matches)?),
+            "compare" => Self::Compare(Compare::from_arg_matches(matches)?),
+            "record" => Self::Record(Record::from_arg_matches(matches)?),
+            "import" => Self::Import(Import::from_arg_matches(matches)?),
+            "export" => Self::Export(Export::from_arg_matches(matches)?),
+            "info" => Self::Info(Info::from_arg_matches(matches)?),
+            #[cfg(feature = "live")]
+            "live" => Self::Live(super::live::Live::from_arg_matches(matches)?),
+            #[cfg(all(feature = "live", unix))]
+            "simulate" => Self::Simulate(super::simulate::Simulate::from_arg_matches(matches)?),
+            #[cfg(not(feature = "live"))]
+            "live" => Self::Live { arguments: Vec::new() },
+            _ => return Err(clap::Error::new(clap::error::ErrorKind::InvalidSubcommand)),
+        })
+    }
+
+    /// Whether a file goes to the standard output, which is then no place for words.
+    pub(crate) fn prints_file(&self) -> bool {
+        matches!(self, Self::Export(export) if export.prints_file())
+    }
+
     /// Does it.
     ///
     /// # Errors
@@ -111,8 +141,9 @@ impl Command {
             #[cfg(all(feature = "live", unix))]
             Self::Simulate(simulate) => simulate.run(out),
             #[cfg(not(feature = "live"))]
-            Self::Live { .. } => Err(String::from(
-                "this program was built without the feature live: cargo install plotter-replay --features cli,live",
+            Self::Live { .. } => Err(format!(
+                "this program was built without the feature live: {}",
+                super::with_feature("live")
             )),
         }
     }

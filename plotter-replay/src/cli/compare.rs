@@ -1,8 +1,8 @@
 //! `compare`: one log with another.
 
-use crate::commands::{Done, Verdict, open, read, say, say_damage};
+use super::commands::{Done, Verdict, open, read, say, say_damage};
+use crate::{CompareSettings, compare::compare};
 use clap::Args;
-use plotter_replay::{CompareSettings, compare::compare};
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Duration;

@@ -1,12 +1,12 @@
 //! `simulate`: a machine that is not there, on a pseudo terminal.
 
-use crate::commands::{Done, is_free, say};
-use crate::machine::{clock_bits, header_of, read_machine_of};
+use super::commands::{Done, is_free, say};
+use super::machine::{clock_bits, header_of, read_machine_of};
+use crate::live::{MachineLog, PortLine, SimulatedMachine};
+use crate::log::{self, LogFile};
+use crate::serial::Port;
 use clap::Args;
 use plotter_motion::{Machine, config::MachineKind};
-use plotter_replay::live::{MachineLog, PortLine, SimulatedMachine};
-use plotter_replay::log::{self, LogFile};
-use plotter_replay::serial::Port;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -16,12 +16,13 @@ pub(crate) struct Simulate {
     /// The machine's description [default: the semi-virtual gantry].
     machine: Option<PathBuf>,
     /// Seconds of the machine in one of ours; the host's patience is in ours.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = crate::machine::speed)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = super::machine::speed)]
     speed: f64,
     /// Speak the published digits only, as a machine without the reliable link does.
     #[arg(long)]
     digits: bool,
-    /// Record what happens inside it, each edge and duty too, so that `check` can run its controller again to the same bytes.
+    /// Record what happens inside it, each edge and duty too, so that `check` can run its controller again to
+    /// the same bytes.
     #[arg(short, long, value_name = "LOG")]
     output: Option<PathBuf>,
     /// Write over LOG if it is there.
@@ -38,7 +39,7 @@ impl Simulate {
         let log = self.output.as_deref().map(|path| self.log(path, &machine, boot)).transpose()?;
         let (end, port) = Port::pseudo_terminal().map_err(|error| error.to_string())?;
         say(out, &format!("{} is simulated on {}", machine.config().name, port.name()));
-        say(out, &format!("try: plotter-replay live --port {} drawing.hpgl", port.name()));
+        say(out, &format!("try: {} live --port {} drawing.hpgl", super::program(), port.name()));
         let _ = out.flush(); // who closed it has seen enough: the machine goes on
         let line = PortLine::new(end).map_err(|error| error.to_string())?;
         let error = match &log {

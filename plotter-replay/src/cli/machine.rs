@@ -1,11 +1,11 @@
 //! The machine that a command line names.
 
-use crate::commands::{MOST_MACHINE_BYTES, read_file};
+use super::commands::{MOST_MACHINE_BYTES, read_file};
+#[cfg(feature = "live")]
+use crate::log::Header;
 #[cfg(feature = "live")]
 use plotter_motion::config::{ControllerChoice, MachineKind};
 use plotter_motion::{Machine, MachineConfig};
-#[cfg(feature = "live")]
-use plotter_replay::log::Header;
 use std::path::Path;
 
 /// The machine of a file, or the semi-virtual gantry.

@@ -1,12 +1,12 @@
 //! `info`: what a log holds.
 
-use crate::commands::{Done, Verdict, open, read, say, say_damage, say_first};
-use clap::Args;
-use plotter_replay::log::{Event, Record};
-use plotter_replay::{
+use super::commands::{Done, Verdict, open, read, say, say_damage, say_first};
+use crate::log::{Event, Record};
+use crate::{
     PlotterSettings, VirtualPlotter,
     compare::{ContourTally, Ways},
 };
+use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -128,7 +128,6 @@ impl Info {
                     }
                     (8, 1)
                 }
-                _ => (8, 1),
             };
             if let Some((_, count)) = counts.get_mut(place) {
                 *count = count.saturating_add(amount as u64);

@@ -1,6 +1,6 @@
 //! `record`: between a host program and a plotter.
 
-use crate::commands::{Done, seconds};
+use super::commands::{Done, seconds};
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
@@ -8,7 +8,8 @@ use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(crate) struct Record {
-    /// The port that the plotter is on: a name, a part of one that only it has, or `auto` for the only one there is.
+    /// The port that the plotter is on: a name, a part of one that only it has, or `auto` for the only one
+    /// there is.
     #[arg(long, value_name = "NAME", default_value = "auto")]
     port: String,
     /// Bits a second, any number that the port can.
@@ -41,8 +42,9 @@ pub(crate) struct Record {
 impl Record {
     pub(crate) fn run(self, _: &mut impl Write) -> Done {
         Err(format!(
-            "{}: this program was built without serial ports: cargo install plotter-replay --features cli,serial",
-            self.port
+            "{}: this program was built without serial ports: {}",
+            self.port,
+            super::with_feature("serial")
         ))
     }
 }
@@ -50,21 +52,22 @@ impl Record {
 #[cfg(feature = "serial")]
 impl Record {
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
-        use crate::commands::{Verdict, is_free, say};
-        use plotter_replay::record::{Recorder, RelayStop, relay};
-        use plotter_replay::serial::{Port, find};
+        use super::commands::{Verdict, is_free, say};
+        use crate::record::{Recorder, RelayStop, relay};
+        use crate::serial::{Port, find};
         use std::sync::Arc;
         use std::sync::atomic::{AtomicBool, Ordering};
 
         is_free(&self.out, self.force)?;
-        let words = |error: plotter_replay::serial::PortError| error.to_string();
+        let words = |error: crate::serial::PortError| error.to_string();
         let name = find(&self.port).map_err(words)?;
         let controller = Port::open(&name, self.baud).and_then(Port::into_relay_end).map_err(words)?;
         let (host, link) = self.host_end()?;
         let recorder = Recorder::create(&self.out, &self.header(&name), |error| {
             let told = writeln!(
                 std::io::stderr(),
-                "plotter-replay: {error}: nothing is recorded any more; the bytes still go on between host and plotter"
+                "{}: {error}: nothing is recorded any more; the bytes still go on between host and plotter",
+                super::program()
             );
             drop(told);
         })
@@ -111,8 +114,8 @@ impl Record {
         }
     }
 
-    fn header(&self, port: &str) -> plotter_replay::log::Header {
-        let mut header = plotter_replay::log::Header::new()
+    fn header(&self, port: &str) -> crate::log::Header {
+        let mut header = crate::log::Header::new()
             .with_number("baud", u64::from(self.baud))
             .with_text("protocol", &self.protocol)
             .with_text("clock", "monotonic")
@@ -128,8 +131,8 @@ impl Record {
     }
 
     /// The host's end, and what must be kept as long as it is used.
-    fn host_end(&self) -> Result<(plotter_replay::record::RelayEnd, Option<PtyLink>), String> {
-        use plotter_replay::serial::{Port, find};
+    fn host_end(&self) -> Result<(crate::record::RelayEnd, Option<PtyLink>), String> {
+        use crate::serial::{Port, find};
         match (&self.host_port, &self.pty) {
             (Some(name), _) => {
                 let name = find(name).map_err(|error| error.to_string())?;
@@ -163,7 +166,7 @@ impl Drop for PtyLink {
 }
 
 #[cfg(all(feature = "serial", unix))]
-fn pty_end(link: &std::path::Path) -> Result<(plotter_replay::record::RelayEnd, PtyLink), String> {
+fn pty_end(link: &std::path::Path) -> Result<(crate::record::RelayEnd, PtyLink), String> {
     use serialport::{SerialPort, TTYPort};
     use std::os::unix::fs::OpenOptionsExt as _;
     let cannot = |error: serialport::Error| format!("a port for the host cannot be made: {error}");
@@ -176,7 +179,7 @@ fn pty_end(link: &std::path::Path) -> Result<(plotter_replay::record::RelayEnd, 
         .write(true)
         .custom_flags(libc::O_NOCTTY)
         .open(&name)
-        .map_err(|error| crate::commands::cannot("opened", name.as_ref(), &error))?;
+        .map_err(|error| super::commands::cannot("opened", name.as_ref(), &error))?;
     drop(other);
     ours.set_timeout(Duration::from_millis(200)).map_err(cannot)?;
     let writer = ours.try_clone_native().map_err(cannot)?;
@@ -184,8 +187,8 @@ fn pty_end(link: &std::path::Path) -> Result<(plotter_replay::record::RelayEnd, 
         // Left by one that was killed; anything else of this name is refused below.
         let _ = std::fs::remove_file(link);
     }
-    std::os::unix::fs::symlink(&name, link).map_err(|error| crate::commands::cannot("made", link, &error))?;
-    let end = plotter_replay::record::RelayEnd {
+    std::os::unix::fs::symlink(&name, link).map_err(|error| super::commands::cannot("made", link, &error))?;
+    let end = crate::record::RelayEnd {
         name: link.display().to_string(),
         reader: Box::new(ours),
         writer: Box::new(writer),
@@ -194,7 +197,7 @@ fn pty_end(link: &std::path::Path) -> Result<(plotter_replay::record::RelayEnd, 
 }
 
 #[cfg(all(feature = "serial", not(unix)))]
-fn pty_end(_: &std::path::Path) -> Result<(plotter_replay::record::RelayEnd, PtyLink), String> {
+fn pty_end(_: &std::path::Path) -> Result<(crate::record::RelayEnd, PtyLink), String> {
     Err(String::from(
         "--pty: this system has no pseudo terminals: use --host-port with a pair of virtual ports",
     ))

@@ -1,9 +1,9 @@
 //! `import`: what another tool recorded, as a log.
 
-use crate::commands::{Done, Verdict, cannot, is_free, say, say_first};
+use super::commands::{Done, Verdict, cannot, is_free, say, say_first};
+use crate::import::{ImportSettings, Imported, Side, Source, Tool, detect, import};
+use crate::log::{self, Header};
 use clap::{Args, ValueEnum};
-use plotter_replay::import::{ImportSettings, Imported, Side, Source, Tool, detect, import};
-use plotter_replay::log::{self, Header};
 use std::fs::File;
 use std::io::{BufReader, Read as _, Write};
 use std::path::{Path, PathBuf};
@@ -31,7 +31,8 @@ pub(crate) struct Import {
     /// Bits a second on the line.
     #[arg(long, value_name = "RATE", default_value_t = 256_000, value_parser = clap::value_parser!(u32).range(50..))]
     baud: u32,
-    /// Samples a second of the logic analyzer, for sigrok [default: from the baud rate and the length of a byte].
+    /// Samples a second of the logic analyzer, for sigrok [default: from the baud rate and the length of a
+    /// byte].
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
     /// What the tool calls the host (a port, an analyzer) [default: by its name, else who speaks first].
@@ -125,7 +126,7 @@ impl Import {
         let mut writer = log::create(&self.out, &header).map_err(failed)?;
         let mut troubles = Vec::new();
         let imported = import(sources, &settings, &mut writer, |trouble| {
-            if troubles.len() < crate::commands::MOST_SHOWN {
+            if troubles.len() < super::commands::MOST_SHOWN {
                 troubles.push(trouble);
             }
         });

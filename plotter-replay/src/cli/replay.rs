@@ -1,15 +1,15 @@
 //! `replay`: a recording, or the controller again on it, as fast as wanted.
 
-use crate::check::Rerunnable;
-use crate::commands::{Contents, Done, Verdict, is_free, open, read, say, say_damage, seconds};
-use clap::Args;
-use plotter_replay::export;
-use plotter_replay::log::{self, Header, Record};
-use plotter_replay::{
+use super::check::Rerunnable;
+use super::commands::{Contents, Done, Verdict, is_free, open, read, say, say_damage, seconds};
+use crate::export;
+use crate::log::{self, Header, Record};
+use crate::{
     Player,
     compare::Decoder,
     player::{Pace, PaceSettings, Stuck},
 };
+use clap::Args;
 use std::io::{BufRead, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -24,13 +24,15 @@ pub(crate) struct Replay {
     /// Show what was recorded, and run no controller.
     #[arg(long, conflicts_with = "machine")]
     recorded: bool,
-    /// Keep what the controller says and does now as a log; nothing is shown then, unless a speed or steps are asked for.
+    /// Keep what the controller says and does now as a log; nothing is shown then, unless a speed or steps
+    /// are asked for.
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Write over FILE if it is there.
     #[arg(long, requires = "out")]
     force: bool,
-    /// How many times as fast as it was [default: without waiting; time is that of the log, no clock is read].
+    /// How many times as fast as it was [default: without waiting; time is that of the log, no clock is
+    /// read].
     #[arg(long, value_name = "FACTOR", value_parser = speed)]
     speed: Option<f64>,
     /// Show what comes from here on, seconds; what is before is run without waiting.

@@ -1,15 +1,15 @@
 //! `check`: the controller again, compared with its recording.
 
-use crate::commands::{Contents, Done, Verdict, open, read, say, say_damage};
-use crate::machine::read_machine;
-use clap::Args;
-use plotter_motion::Machine;
-use plotter_replay::log::{Header, Record};
-use plotter_replay::{
+use super::commands::{Contents, Done, Verdict, open, read, say, say_damage};
+use super::machine::read_machine;
+use crate::log::{Header, Record};
+use crate::{
     AnyController, CompareSettings, Controller, Outcome, Player, PlayerSettings,
     compare::{Decoder, compare},
     player::{EdgeSource, RecordingTraits},
 };
+use clap::Args;
+use plotter_motion::Machine;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -21,7 +21,8 @@ pub(crate) struct Check {
     /// The machine's description [default: the preset of the controller that the log's header names].
     #[arg(long, value_name = "FILE.toml")]
     machine: Option<PathBuf>,
-    /// How far the time of an answer may be off, microseconds [default: 0; for a log without edges 50000, or 1000000 if it is one of frames].
+    /// How far the time of an answer may be off, microseconds [default: 0; for a log without edges 50000, or
+    /// 1000000 if it is one of frames].
     #[arg(long, value_name = "US")]
     tolerance_us: Option<u64>,
 }

@@ -1,9 +1,9 @@
 //! `export`: a log for other programs.
 
-use crate::commands::{Done, Verdict, cannot, is_free, open, read, say, say_damage};
+use super::commands::{Done, Verdict, cannot, is_free, open, read, say, say_damage};
+use crate::export;
+use crate::log::Record;
 use clap::{Args, ValueEnum};
-use plotter_replay::export;
-use plotter_replay::log::Record;
 use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::PathBuf;
@@ -34,6 +34,11 @@ enum To {
 }
 
 impl Export {
+    /// Whether it goes to the standard output.
+    pub(crate) fn prints_file(&self) -> bool {
+        self.out.is_none()
+    }
+
     pub(crate) fn run(self, out: &mut impl Write) -> Done {
         let contents = read(&self.log, |_| {})?;
         let header = &contents.header;
@@ -76,7 +81,7 @@ impl Export {
 
 #[cfg(feature = "mcap")]
 fn write_mcap(
-    header: &plotter_replay::log::Header,
+    header: &crate::log::Header,
     records: impl Iterator<Item = Record>,
     file: BufWriter<File>,
 ) -> Result<(), String> {
@@ -88,9 +93,9 @@ fn write_mcap(
 
 #[cfg(not(feature = "mcap"))]
 fn write_mcap(
-    _: &plotter_replay::log::Header,
+    _: &crate::log::Header,
     _: impl Iterator<Item = Record>,
     _: BufWriter<File>,
 ) -> Result<(), String> {
-    Err(String::from("this program was built without MCAP: cargo install plotter-replay --features cli,mcap"))
+    Err(format!("this program was built without MCAP: {}", super::with_feature("mcap")))
 }

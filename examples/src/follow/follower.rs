@@ -1,0 +1,54 @@
+//! Where windows come from, and who follows the lines in them.
+
+use super::command::{FollowCommand, Method, Side, WINDOWS};
+use crate::follow::WindowSource;
+use plotter_vector::follow::LineFollower as _;
+use plotter_vector::{
+    Gray, PxPoint,
+    follow::{
+        Correction, Hand, MappingFollower, MappingSettings, PublishedFollower, PublishedSettings,
+        SimulatedCamera, Step,
+    },
+};
+
+/// Where windows come from.
+pub(super) enum Eyes {
+    Simulated(Box<SimulatedCamera>),
+    Real(WindowSource),
+}
+
+/// Either follower, with its correction of the lens.
+pub(super) enum Follower {
+    Ours(Box<MappingFollower>),
+    Published(PublishedFollower, Option<Box<Correction>>),
+}
+
+impl Follower {
+    pub(super) fn new(arguments: &FollowCommand, area: [PxPoint; 2], correction: Option<Correction>) -> Self {
+        if arguments.method == Method::Ours {
+            return Self::Ours(Box::new(MappingFollower::new(MappingSettings {
+                area: Some(area),
+                max_windows: arguments.windows.unwrap_or(WINDOWS),
+                correction,
+                ..MappingSettings::default()
+            })));
+        }
+        let settings = PublishedSettings {
+            hand: if arguments.hand == Some(Side::Left) { Hand::Left } else { Hand::Right },
+            only_connected: arguments.method == Method::Connected,
+            area: Some(area),
+            ..PublishedSettings::for_lines(arguments.thinnest)
+        };
+        Self::Published(PublishedFollower::new(settings), correction.map(Box::new))
+    }
+
+    pub(super) fn observe(&mut self, window: &Gray, pose: PxPoint) -> Step {
+        match self {
+            Self::Ours(follower) => follower.observe(window, pose),
+            Self::Published(follower, Some(correction)) => {
+                follower.observe(&correction.corrected(window), pose)
+            }
+            Self::Published(follower, None) => follower.observe(window, pose),
+        }
+    }
+}

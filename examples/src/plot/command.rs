@@ -1,0 +1,259 @@
+//! The command line of `plot`, and its course.
+
+use super::figures::Summary;
+use super::pictures::Pictures;
+use super::recording::{record, replay};
+use crate::shared::{
+    Telling, at, fit_drawing, html_page, lost_ink, read_file, run, vectorized, vectorizer, write_file,
+};
+use clap::{Parser, ValueEnum};
+use plotter_motion::{
+    Machine, MachineConfig, PenMove, PlotOp,
+    config::{ControllerChoice, MachineKind},
+    firmware::MarkingBoardSettings,
+    hpgl,
+    toolpath::{OutOfReach, targets},
+};
+use plotter_replay::compare::Ways;
+use plotter_vector::{Algorithm, Drawing, FileRows, TracedSheet, Vectorizer, picture::RowSource as _};
+use std::fmt::Write as _;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Draws a picture on a simulated pen plotter and shows what its motors did.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    max_term_width = 100,
+    name = "plot",
+    after_help = "Examples:\n  plotter plot\n  \
+                  plotter plot scan.png --controller published --out target/published\n  \
+                  plotter plot --algorithm published --controller published\n  \
+                  plotter plot scan.png --machine examples/machines/marking-board.toml\n  \
+                  plotter plot --firmware qemu\n  \
+                  plotter plot scan.png --firmware /dev/ttyUSB0\n\n\
+                  In a checkout of the project, `cargo run --release --example plot --` stands for `plotter plot`."
+)]
+pub struct PlotCommand {
+    /// PNG, JPEG, PBM or PGM picture; without one, a flag as line art
+    image: Option<PathBuf>,
+    /// The machine's TOML file, whose table [vectorize] ours takes too [default: the semi-virtual gantry]
+    #[arg(long, value_name = "FILE")]
+    pub(super) machine: Option<PathBuf>,
+    /// The controller, whatever the machine's file says
+    #[arg(long)]
+    controller: Option<ControllerArg>,
+    /// The vectorization; the published one is for lines one pixel wide, and draws the wider lines of a scan
+    /// two or three times
+    #[arg(long, default_value = "ours")]
+    algorithm: AlgorithmArg,
+    /// Width of the drawing on the sheet, mm; less where the machine is smaller
+    #[arg(long, value_name = "MM", default_value_t = 50.0, allow_negative_numbers = true)]
+    width_mm: f64,
+    /// Plots with a firmware instead of the simulated machine: `qemu` for the one in examples/firmware, in
+    /// the emulator, or the serial port of a machine that speaks the published protocol or the reliable link
+    #[arg(long, value_name = "qemu|PORT")]
+    pub(super) firmware: Option<String>,
+    /// What is spoken with a machine on a port
+    #[arg(long, value_name = "auto|digits", default_value = "auto")]
+    pub(super) link: LinkArg,
+    /// The firmware for --firmware qemu [default: the gantry's, as built in examples/firmware]
+    #[arg(long, value_name = "ELF", requires = "firmware")]
+    pub(super) elf: Option<PathBuf>,
+    /// Records the duty of the motors too: twice as much
+    #[arg(long)]
+    pub(super) record_drive: bool,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "target/plot")]
+    pub(super) out: PathBuf,
+    #[command(flatten)]
+    pub(super) telling: Telling,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ControllerArg {
+    /// PID line tracking as in the thesis
+    Published,
+    /// A planned speed, errors along and across the line
+    Contouring,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub(super) enum LinkArg {
+    /// The reliable link if the machine knows it, else the ten digits; it is called at its origin
+    Auto,
+    /// The published ten digits
+    Digits,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum AlgorithmArg {
+    /// Ordered tracking, pre-elimination and dynamic threshold, as in the thesis
+    Published,
+    /// Fewest vertices within a promised error
+    Ours,
+}
+
+/// The one name that `--firmware` does not take as a port's.
+pub(super) const EMULATED: &str = "qemu";
+
+impl PlotCommand {
+    /// Runs it; what the exit code means stands in its help.
+    #[must_use]
+    pub fn run(self) -> ExitCode {
+        run("plot", || plot(&self))
+    }
+}
+
+pub(super) fn plot(args: &PlotCommand) -> Result<(), String> {
+    let began = Instant::now();
+    let machine = machine(args)?;
+    let (vectorizer, traced) = trace(args, &machine)?;
+    std::fs::create_dir_all(&args.out)
+        .map_err(|error| at(&args.out, &format!("this folder cannot be made: {error}")))?;
+    let file = |name: &str| args.out.join(name);
+
+    let moves = moves(args, &machine, &traced.drawing)?;
+    let log_file = file("session.plog");
+    let outcome = record(args, &machine, moves, &log_file)?;
+    // From here on, the recording is all there is.
+    let plotter = replay(&log_file)?;
+
+    let errors = traced.errors.clone().unwrap_or_default();
+    let pictures = Pictures::new(&traced.drawing, &errors.report, &promises(&vectorizer), &plotter)?;
+    pictures.write(&args.out)?;
+    let summary = Summary {
+        drawing: &traced.drawing,
+        error: &errors.report,
+        beyond: errors.beyond,
+        dirt: traced.removed,
+        outcome: &outcome,
+        plotted: plotter.contour_error(Ways::Drawn),
+        anomalies: plotter.anomaly_count(),
+        wall_s: began.elapsed().as_secs_f64(),
+    };
+    write_file(&file("report.json"), summary.json())?;
+    let table = summary.table();
+    let introduction = format!(
+        "A picture, vectorized with the {} algorithm and drawn by the {} {} with the {} controller.",
+        name(&args.algorithm),
+        match args.firmware.as_deref() {
+            None => "simulated",
+            Some(EMULATED) => "emulated",
+            Some(_) => "real",
+        },
+        machine.config().name,
+        controller_name(&machine)
+    );
+    write_file(&file("report.html"), html_page("Plot report", &introduction, &table, &pictures.figures()))?;
+
+    let mut text = String::new();
+    for (name, value) in &table {
+        let _ = writeln!(text, "{name:28} {value:>22}");
+    }
+    for notice in &outcome.notices {
+        let _ = writeln!(text, "noticed at {notice}");
+    }
+    let said = format!("{text}look at {}\n", file("report.html").display());
+    args.telling.tell(&said, || Ok(summary.json()))?;
+    if outcome.reached < outcome.targets {
+        let missed = outcome.targets - outcome.reached;
+        eprintln!("warning: {missed} of {} targets were not reached", outcome.targets);
+    }
+    lost_ink(&vectorizer, &errors, traced.pen_px).map_err(|error| at(picture_path(args), &error))
+}
+
+/// What the machine is to do; the drawing is written on the way.
+fn moves(args: &PlotCommand, machine: &Machine, drawing: &Drawing) -> Result<Vec<PenMove>, String> {
+    // The drawing goes through the plotter's own language, so what is plotted is what the file says.
+    let size_px = (drawing.width_px(), drawing.height_px());
+    let scale = fit_drawing(size_px, machine, args.width_mm)?;
+    let mut text = String::new();
+    plotter_vector::hpgl(drawing, scale, &mut text).map_err(|error| error.to_string())?;
+    write_file(&args.out.join("drawing.hpgl"), &text)?;
+    let ops: Vec<PlotOp> =
+        hpgl::plot_ops(text.as_bytes()).collect::<Result<_, _>>().map_err(|error| error.to_string())?;
+    let moves: Result<Vec<PenMove>, OutOfReach> = if machine.kind() == MachineKind::Belt {
+        MarkingBoardSettings::of(machine).moves(ops).collect()
+    } else {
+        targets(machine, ops).collect()
+    };
+    moves.map_err(|error| error.to_string())
+}
+
+pub(super) fn controller_name(machine: &Machine) -> &'static str {
+    match machine.config().control.controller {
+        ControllerChoice::Published => "published",
+        _ => "contouring",
+    }
+}
+
+pub(super) fn name(value: &impl ValueEnum) -> String {
+    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
+pub(super) fn machine(args: &PlotCommand) -> Result<Machine, String> {
+    let mut config = match &args.machine {
+        Some(path) => {
+            let text = String::from_utf8(read_file(path)?)
+                .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
+            let machine = Machine::from_toml(&text).map_err(|error| at(path, &error))?;
+            let refusal = match (machine.kind(), &args.firmware) {
+                (MachineKind::Steppers, _) => Some(("plot", "plan for this one with the example `stepper`")),
+                (MachineKind::Belt, Some(_)) => {
+                    Some(("--firmware", "leave --firmware out to simulate this one"))
+                }
+                (MachineKind::Gantry, _) | (MachineKind::Belt, None) => None,
+            };
+            if let Some((user, instead)) = refusal {
+                machine
+                    .require(MachineKind::Gantry, user)
+                    .map_err(|error| at(path, &format!("{error}; or {instead}")))?;
+            }
+            *machine.config()
+        }
+        None => MachineConfig::default(),
+    };
+    match args.controller {
+        Some(ControllerArg::Published) => config.control.controller = ControllerChoice::Published,
+        Some(ControllerArg::Contouring) => config.control.controller = ControllerChoice::Contouring,
+        None => {}
+    }
+    Machine::new(config).map_err(|error| error.to_string())
+}
+
+fn picture_path(args: &PlotCommand) -> &Path {
+    args.image.as_deref().unwrap_or(Path::new("flag.png"))
+}
+
+fn trace(args: &PlotCommand, machine: &Machine) -> Result<(Vectorizer, TracedSheet), String> {
+    let bytes = match &args.image {
+        Some(path) => read_file(path)?,
+        None => include_bytes!("../../data/flag.png").to_vec(),
+    };
+    let path = picture_path(args);
+    let vectorizer = match args.algorithm {
+        AlgorithmArg::Published => Vectorizer { algorithm: Algorithm::Published, ..Vectorizer::default() },
+        // One pen, whatever the file says: this machine has no carousel.
+        AlgorithmArg::Ours => {
+            let scan = FileRows::new(Cursor::new(&bytes)).map_err(|error| at(path, &error))?;
+            let scale = fit_drawing((scan.width(), scan.height()), machine, args.width_mm)?;
+            vectorizer(&machine.config().vectorize, scale.mm_per_px())?
+        }
+    };
+    let traced = vectorized(&vectorizer, bytes).map_err(|error| at(path, &error))?;
+    Ok((vectorizer, traced))
+}
+
+/// What the chart of the errors says beside them: the thesis' figures, or what ours promises.
+pub(super) fn promises(vectorizer: &Vectorizer) -> Vec<String> {
+    match vectorizer.algorithm {
+        Algorithm::Published => vec![
+            "published: flag mean 0.0991, max 2.0392, sd 0.2435 px;".into(),
+            "technical drawing mean 0.0042, max 0.5547, sd 0.0386 px".into(),
+        ],
+        Algorithm::Ours => vec![format!("promised: {} px at most", vectorizer.ours.tolerance_px)],
+    }
+}

@@ -1,0 +1,71 @@
+//! All figures of a plot, as JSON and as a table.
+
+use crate::machine::PlotOutcome;
+use plotter_replay::compare::ContourError;
+use plotter_vector::{Drawing, ErrorReport, ink::Despeckled, report::Beyond};
+use serde_json::json;
+
+/// All figures of a plot.
+pub(super) struct Summary<'a> {
+    pub(super) drawing: &'a Drawing,
+    pub(super) error: &'a ErrorReport,
+    pub(super) beyond: Beyond,
+    pub(super) dirt: Despeckled,
+    pub(super) outcome: &'a PlotOutcome,
+    pub(super) plotted: ContourError,
+    pub(super) anomalies: u64,
+    pub(super) wall_s: f64,
+}
+
+impl Summary<'_> {
+    pub(super) fn json(&self) -> String {
+        let ErrorReport { mean_px, max_px, sd_px, .. } = *self.error;
+        let report = json!({
+            "vertices": self.drawing.vertices(),
+            "strokes": self.drawing.strokes().len(),
+            "vector_error_px": { "mean": mean_px, "max": max_px, "sd": sd_px },
+            "beyond_ink": { "px": self.beyond.pixels, "max_px": self.beyond.max_px },
+            "dirt": {
+                "marks": self.dirt.removed_marks,
+                "px": self.dirt.removed_px,
+                "largest_px": self.dirt.largest_removed_px,
+            },
+            "contour_error_mm": { "rms": self.plotted.rms_mm, "max": self.plotted.max_mm },
+            "true_contour_error_mm": { "rms": self.outcome.true_rms_mm, "max": self.outcome.true_max_mm },
+            "targets": self.outcome.targets,
+            "reached": self.outcome.reached,
+            "anomalies": self.anomalies,
+            "simulated_s": self.outcome.duration.as_secs_f64(),
+            "wall_s": self.wall_s,
+        });
+        format!("{report:#}\n")
+    }
+
+    pub(super) fn table(&self) -> Vec<(&'static str, String)> {
+        let Self { error, outcome, .. } = *self;
+        let Despeckled { removed_marks, largest_removed_px, .. } = self.dirt;
+        let dirt = (removed_marks > 0)
+            .then(|| ("marks left out as dirt", format!("{removed_marks}, up to {largest_removed_px} px")));
+        let figures = vec![
+            ("vertices", self.drawing.vertices().to_string()),
+            ("strokes", self.drawing.strokes().len().to_string()),
+            ("vector error, mean", format!("{:.4} px", error.mean_px)),
+            ("vector error, max", format!("{:.4} px", error.max_px)),
+            ("vector error, sd", format!("{:.4} px", error.sd_px)),
+            ("drawn beyond ink, max", format!("{:.4} px", self.beyond.max_px)),
+            ("contour error counted, rms", format!("{:.4} mm", self.plotted.rms_mm)),
+            ("contour error counted, max", format!("{:.4} mm", self.plotted.max_mm)),
+            ("contour error true, rms", known_mm(outcome.true_rms_mm)),
+            ("contour error true, max", known_mm(outcome.true_max_mm)),
+            ("targets reached", format!("{} of {}", outcome.reached, outcome.targets)),
+            ("anomalies", self.anomalies.to_string()),
+            ("time of the machine", format!("{:.2} s", outcome.duration.as_secs_f64())),
+            ("wall time", format!("{:.2} s", self.wall_s)),
+        ];
+        figures.into_iter().chain(dirt).collect()
+    }
+}
+
+fn known_mm(value: Option<f64>) -> String {
+    value.map_or_else(|| String::from("only the machine knows"), |value| format!("{value:.4} mm"))
+}

@@ -1,0 +1,248 @@
+//! The command line of `trace`, and its course.
+
+use super::figures::{Report, table};
+use super::files::{check_size, prints_file, write_files};
+use super::settings::settings;
+use super::traced::{by_rows, in_colour, picture_bytes};
+use crate::shared::{ExitStatus, Telling, at, is_standard, lost_ink, run, write_output};
+use crate::trace::{Interrupt, Overlay, overlay_png};
+use clap::{Parser, ValueEnum};
+use std::fs::File;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// The picture that is traced when none is given.
+pub(super) const FLAG: &[u8] = include_bytes!("../../data/flag.png");
+
+/// Traces a scanned line drawing into pen strokes.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    max_term_width = 100,
+    after_help = "Examples:\n  plotter trace scan.png --max-error-px 0.4 --svg scan.svg --hpgl scan.plt --report scan.json\n  \
+                  plotter trace photo.jpg --threshold adaptive --mode mixed --hatch 0.5 --overlay look.png\n  \
+                  plotter trace drawing.png --pens 3 --svg pens.svg --hpgl pens.plt\n  \
+                  scanimage --format png | plotter trace - --hpgl - > scan.plt\n  \
+                  plotter trace a0.tif --no-errors --svg a0.svg\n\n\
+                  One of the files that are written may be -, the standard output; the figures then go to the standard error.\n\n\
+                  In a checkout of the project, `cargo run --release --example trace --` stands for `plotter trace`."
+)]
+pub struct TraceCommand {
+    /// PNG, JPEG, TIFF, PBM, PGM or PPM picture of lines, of any size but for --pens; - is the standard input
+    /// [default: the flag that comes with the examples]
+    image: Option<PathBuf>,
+    /// Vectorization
+    #[arg(long, value_enum, default_value = "ours")]
+    pub(super) algorithm: Choice,
+    /// Greatest distance of a pixel from the line that replaces it, px (ours only) [default: 0.5]
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    pub(super) max_error_px: Option<f64>,
+    /// Circular arcs and circles where they save vertices, within the same error (ours only): CI and AA, G2
+    /// and G3, A
+    #[arg(long)]
+    pub(super) arcs: bool,
+    /// Cubic curves instead of arcs where they save vertices, within the same error (ours only): C in SVG,
+    /// chords in HPGL and G-code
+    #[arg(long)]
+    pub(super) curves: bool,
+    /// What is drawn of the ink (ours only) [default: centreline, with --hatch mixed]
+    #[arg(long, value_enum)]
+    pub(super) mode: Option<ModeChoice>,
+
+    /// What is given up where one stroke a line leaves ink bare (ours only) [default: both]
+    #[arg(long, value_name = "WHAT")]
+    pub(super) prefer: Option<PreferChoice>,
+    /// How ink is told from paper: otsu, adaptive (uneven light), or a level from 0 to 255 [default: otsu]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub(super) threshold: Option<String>,
+    /// Pens told apart by colour: how many, auto, or a palette's TOML file (ours only) [default: 1, by grey
+    /// level]
+    #[arg(long, value_name = "N|auto|F.toml", allow_negative_numbers = true)]
+    pub(super) pens: Option<String>,
+    /// How hard an order with little travel is searched for (ours only) [default: best]
+    #[arg(long, value_enum)]
+    pub(super) order: Option<OrderChoice>,
+    /// Hatches areas with lines this far apart, mm on the sheet (ours only)
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub(super) hatch: Option<f64>,
+    /// Width of the pen that areas are outlined and hatched with, mm on the sheet: its ink ends at their edge
+    /// (ours only) [default: a pixel]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub(super) pen_mm: Option<f64>,
+    /// What is wider is an area, px (ours only) [default: found from the picture]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(super) max_line_px: Option<i64>,
+    /// Size of a pixel on the sheet, mm: 0.1 is 254 dots per inch, 4 plotter units a pixel
+    #[arg(long, value_name = "MM", default_value_t = 0.1, allow_negative_numbers = true)]
+    pub(super) mm_per_px: f64,
+    /// A machine's TOML file, whose table [vectorize] is taken where no option says otherwise
+    #[arg(long, value_name = "F.toml")]
+    pub(super) config: Option<PathBuf>,
+    /// Threads to work with; the result is the same with any number [default: one a core]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(super) threads: Option<i64>,
+    /// Writes the strokes as SVG: the picture's size in px, y down, pixel centres at .5
+    #[arg(long, value_name = "F")]
+    pub(super) svg: Option<PathBuf>,
+    /// Writes the strokes as HPGL, y up from the centre of the lower left pixel
+    #[arg(long, value_name = "F")]
+    pub(super) hpgl: Option<PathBuf>,
+    /// Writes the strokes as G-code in mm, y up as in the HPGL
+    #[arg(long, value_name = "F")]
+    pub(super) gcode: Option<PathBuf>,
+    /// How the G-code lifts the pen
+    #[arg(long, value_enum, default_value = "servo")]
+    pub(super) gcode_pen: GcodePen,
+    /// Writes the vertices as text: x and y a line, in px as in the SVG, an empty line between strokes; where
+    /// an arc begins its bulge too, the tangent of a quarter of its angle, positive from x towards y; where a
+    /// cubic curve begins the x and y of its two handles too
+    #[arg(long, value_name = "F")]
+    pub(super) points: Option<PathBuf>,
+    /// Writes all figures as JSON
+    #[arg(long, value_name = "F.json")]
+    pub(super) report: Option<PathBuf>,
+    /// Writes the distribution of the errors as a bar chart
+    #[arg(long, value_name = "F.svg")]
+    pub(super) error_plot: Option<PathBuf>,
+    /// Leaves out how far the ink lies from the strokes: the file is read twice less
+    #[arg(long, conflicts_with = "error_plot")]
+    pub(super) no_errors: bool,
+    /// Writes the strokes on the pale picture, with the pixel of the greatest error circled unless
+    /// --no-errors is given
+    #[arg(long, value_name = "F.png")]
+    pub(super) overlay: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) telling: Telling,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Choice {
+    /// Ordered tracking, pre-elimination, dynamic threshold: as published, without an error bound
+    Published,
+    /// Fewest vertices within the greatest error
+    Ours,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum ModeChoice {
+    /// The middle of lines; what is far wider is outlined
+    Centreline,
+    /// The outlines of everything
+    Outline,
+    /// The middle of lines, and areas already at three times their width
+    Mixed,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum PreferChoice {
+    /// Fewest strokes: ink that stays bare is told
+    Strokes,
+    /// Strokes are added where more than spots are bare and the pen fits into the ink
+    Both,
+    /// Strokes are added for spots too, until the ink is covered within the greatest error
+    Ink,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum GcodePen {
+    /// M3 S90 down, M5 up: GRBL with a servo as its spindle
+    Servo,
+    /// G1 Z0 down, G0 Z5 up
+    Z,
+    /// M1 90 down, M1 160 up: mDraw, which knows no arcs and gets chords
+    Mdraw,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum OrderChoice {
+    /// As they are found
+    None,
+    /// From each end to the nearest stroke
+    Fast,
+    /// With all improvements
+    Best,
+}
+
+impl TraceCommand {
+    /// Runs it; what the exit code means stands in its help.
+    #[must_use]
+    pub fn run(self) -> ExitCode {
+        let mut stopped = false;
+        let code = run("trace", || trace(&self, &mut stopped));
+        if stopped { ExitStatus::Interrupted.into() } else { code }
+    }
+}
+
+/// Traces and writes; `stopped` says that Ctrl-C came before anything was written.
+pub(super) fn trace(arguments: &TraceCommand, stopped: &mut bool) -> Result<(), String> {
+    let settings = settings(arguments)?;
+    let interrupt = Interrupt::new()?;
+    let prints_file = prints_file(arguments, &settings)?;
+    let name = match arguments.image.as_deref() {
+        Some(path) if is_standard(path) => "standard input".into(),
+        given => given.unwrap_or(Path::new("flag.png")).display().to_string(),
+    };
+    let here = |error: &dyn std::fmt::Display| format!("{name}: {error}");
+    let work = || match (&settings.pens, &arguments.image) {
+        (Some(pens), path) => {
+            in_colour(&settings, pens, path.as_deref(), arguments, interrupt).map_err(|error| here(&error))
+        }
+        (None, Some(path)) if path.is_file() => {
+            let file = File::open(path).map_err(|error| at(path, &format!("cannot be read: {error}")))?;
+            by_rows(&settings, file, arguments, interrupt).map_err(|error| here(&error))
+        }
+        // What cannot be read twice, as a pipe, is kept.
+        (None, Some(path)) => {
+            let bytes = Cursor::new(picture_bytes(path)?);
+            by_rows(&settings, bytes, arguments, interrupt).map_err(|error| here(&error))
+        }
+        (None, None) => {
+            by_rows(&settings, Cursor::new(FLAG), arguments, interrupt).map_err(|error| here(&error))
+        }
+    };
+    let traced = match &settings.threads {
+        Some(pool) => pool.install(work),
+        None => work(),
+    };
+    if !interrupt.may_write() {
+        *stopped = true;
+        return Err(format!("{name}: stopped; nothing is written"));
+    }
+    let traced = traced?;
+    let drawing = &traced.drawing;
+    let report = Report::new(&settings, &traced);
+    check_size(arguments, drawing)?;
+    write_files(arguments, &traced, &report, &name)?;
+    let mut worst = None;
+    if let (Some(path), Some(picture)) = (&settings.overlay, &traced.picture) {
+        worst = traced.errors.as_ref().and_then(|errors| errors.worst);
+        let palette = settings.pens.as_ref().map(|_| &traced.palette);
+        let overlay = Overlay { drawing, palette, worst: worst.map(|(pixel, _)| pixel) };
+        write_output(path, overlay_png(overlay, |pixel| picture.level(pixel))?)?;
+    }
+    let (width, height) = (drawing.width_px(), drawing.height_px());
+    let empty = if drawing.strokes().len() == 0 { " (an empty sheet)" } else { "" };
+    let megapixels = f64::from(width) * f64::from(height) / 1e6;
+    let circled = match worst {
+        Some((pixel, error_px)) => Some(format!("{error_px:.4} px at {}, {}", pixel.x, pixel.y)),
+        None if settings.overlay.is_some() && arguments.no_errors => {
+            Some("- no pixel: --no-errors leaves out which lies farthest".into())
+        }
+        None => None,
+    };
+    let table = table(&format!("{name}: {width} x {height} px{empty}"), &report, megapixels, circled);
+    let json = || serde_json::to_string_pretty(&report).map_err(|error| error.to_string());
+    if prints_file {
+        arguments.telling.tell_aside(&table, json)?;
+    } else {
+        arguments.telling.tell(&table, json)?;
+    }
+    // Everything is written: what was traced may still be of use.
+    match &traced.errors {
+        Some(errors) => {
+            lost_ink(&settings.vectorizer, errors, traced.widest_px).map_err(|error| here(&error))
+        }
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,220 @@
+//! What the options and the machine's file ask for.
+
+use super::command::{Choice, ModeChoice, OrderChoice, PreferChoice, TraceCommand};
+use crate::shared::{at, read_file, vectorizer};
+use plotter_motion::{
+    Machine,
+    config::{PensChoice, StrokeOrder, ThresholdChoice, VectorizeConfig, VectorizeMode},
+};
+use plotter_vector::{
+    Algorithm, Palette, Prefer, ThresholdMethod, Vectorizer,
+    ink::{MAX_PENS, Pens},
+};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+/// Greatest errors that may be asked for, px: those of the machine's file.
+const MAX_ERRORS_PX: RangeInclusive<f64> = 0.01..=100.0;
+
+/// Widest pen that may be asked for, mm: that of the machine's file.
+const MAX_PEN_MM: f64 = 100.0;
+
+/// Most threads that are started.
+const MAX_THREADS: usize = 1024;
+
+/// What the options and the machine's file ask for.
+#[derive(Debug)]
+pub(super) struct Settings {
+    pub(super) vectorizer: Vectorizer,
+    /// By colour; without, one pen draws all ink.
+    pub(super) pens: Option<Pens>,
+    pub(super) threads: Option<rayon::ThreadPool>,
+    pub(super) overlay: Option<PathBuf>,
+}
+
+/// The machine's file, then the options: what they say wins.
+pub(super) fn settings(arguments: &TraceCommand) -> Result<Settings, String> {
+    let mut config = match &arguments.config {
+        Some(path) => {
+            let text = String::from_utf8(read_file(path)?)
+                .map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
+            Machine::from_toml(&text).map_err(|error| at(path, &error))?.config().vectorize
+        }
+        None => VectorizeConfig::default(),
+    };
+    let mm_per_px = arguments.mm_per_px;
+    if !(mm_per_px > 0.0 && mm_per_px.is_finite()) {
+        return Err(format!(
+            "--mm-per-px: {mm_per_px} mm is not a positive number; 0.1 gives 254 dots per inch"
+        ));
+    }
+    if let Some(text) = &arguments.threshold {
+        config.threshold = match text.parse::<ThresholdMethod>().map_err(|error| format!("--{error}"))? {
+            ThresholdMethod::Otsu => ThresholdChoice::Otsu,
+            ThresholdMethod::Adaptive => ThresholdChoice::Adaptive,
+            ThresholdMethod::Level(level) => ThresholdChoice::Level(level),
+        };
+    }
+    let in_file = Some(i64::from(config.threads)).filter(|number| *number > 0);
+    let threads = arguments.threads.or(in_file).map(threads).transpose()?;
+    let in_file =
+        Some(config.overlay).filter(|path| !path.is_none()).map(|path| PathBuf::from(path.as_str()));
+    let overlay = arguments.overlay.clone().or(in_file);
+    if matches!(arguments.algorithm, Choice::Published) {
+        refuse_ours(arguments)?;
+        let threshold =
+            vectorizer(&VectorizeConfig { threshold: config.threshold, ..Default::default() }, 1.0)?;
+        let vectorizer = Vectorizer { algorithm: Algorithm::Published, ..threshold };
+        return Ok(Settings { vectorizer, pens: None, threads, overlay });
+    }
+    match arguments.max_error_px {
+        Some(bad) if !(bad > 0.0 && bad.is_finite()) => {
+            return Err(format!("--max-error-px: {bad} px is not a positive number; 0.5 is half a pixel"));
+        }
+        Some(bad) if !MAX_ERRORS_PX.contains(&bad) => {
+            let (least, most) = (MAX_ERRORS_PX.start(), MAX_ERRORS_PX.end());
+            return Err(format!(
+                "--max-error-px: {bad} px lies outside {least}..={most} px; 0.5 is half a pixel"
+            ));
+        }
+        given => config.max_error_px = given.unwrap_or(config.max_error_px),
+    }
+    // An option wins over the file, which may ask for the other.
+    if arguments.arcs || arguments.curves {
+        (config.arcs, config.curves) = (arguments.arcs, arguments.curves);
+    }
+    match arguments.hatch {
+        Some(bad) if !(bad >= 0.0 && bad.is_finite()) => {
+            return Err(format!(
+                "--hatch: {bad} mm is no distance; give a pen's width, as 0.5, or 0 for none"
+            ));
+        }
+        Some(hatch_mm) => {
+            config.hatch_mm = hatch_mm;
+            if hatch_mm > 0.0 {
+                config.mode = VectorizeMode::Mixed;
+            }
+        }
+        None => {}
+    }
+    match arguments.pen_mm {
+        Some(bad) if !(0.0..=MAX_PEN_MM).contains(&bad) => {
+            return Err(format!(
+                "--pen-mm: {bad} mm lies outside 0..={MAX_PEN_MM} mm; a fineliner draws 0.3 to 0.8"
+            ));
+        }
+        given => config.pen_mm = given.unwrap_or(config.pen_mm),
+    }
+    match arguments.mode {
+        Some(ModeChoice::Centreline) => config.mode = VectorizeMode::Centreline,
+        Some(ModeChoice::Outline) => config.mode = VectorizeMode::Outline,
+        Some(ModeChoice::Mixed) => config.mode = VectorizeMode::Mixed,
+        None => {}
+    }
+    match arguments.order {
+        Some(OrderChoice::None) => config.order = StrokeOrder::None,
+        Some(OrderChoice::Fast) => config.order = StrokeOrder::Fast,
+        Some(OrderChoice::Best) => config.order = StrokeOrder::Best,
+        None => {}
+    }
+    if let Some(given) = arguments.max_line_px {
+        let fits = u32::try_from(given).ok().filter(|px| *px <= plotter_vector::areas::MAX_LINE_PX);
+        config.max_line_px = fits.ok_or_else(|| {
+            format!(
+                "--max-line-px: {given} px lies outside 0..={} px; 0 finds it from the picture",
+                plotter_vector::areas::MAX_LINE_PX
+            )
+        })?;
+    }
+    // The file's own, for options exclude each other.
+    if let (Some(path), true) = (&arguments.config, config.arcs && config.curves && !arguments.arcs) {
+        return Err(at(path, &"[vectorize] arcs and curves: strokes have one of them; leave one out"));
+    }
+    let pens = pens(arguments, config.pens)?;
+    let prefer = match arguments.prefer {
+        Some(PreferChoice::Strokes) => Prefer::Strokes,
+        Some(PreferChoice::Both) | None => Prefer::Both,
+        Some(PreferChoice::Ink) => Prefer::Ink,
+    };
+    let vectorizer = Vectorizer { prefer, ..vectorizer(&config, mm_per_px)? };
+    Ok(Settings { vectorizer, pens, threads, overlay })
+}
+
+/// Refuses options that the published algorithm does not have.
+fn refuse_ours(arguments: &TraceCommand) -> Result<(), String> {
+    let given = [
+        ("--max-error-px", "has no error bound", arguments.max_error_px.is_some()),
+        ("--arcs", "draws straight lines", arguments.arcs),
+        ("--curves", "draws straight lines", arguments.curves),
+        ("--prefer", "adds no strokes", arguments.prefer.is_some()),
+        ("--mode", "always follows the middle of lines", arguments.mode.is_some()),
+        ("--pens", "draws with one pen", arguments.pens.is_some()),
+        ("--order", "draws in the order of tracking", arguments.order.is_some()),
+        ("--hatch", "has no areas", arguments.hatch.is_some()),
+        ("--pen-mm", "has no areas", arguments.pen_mm.is_some()),
+        ("--max-line-px", "has no areas", arguments.max_line_px.is_some()),
+    ];
+    match given.iter().find(|(.., given)| *given) {
+        Some((option, why, _)) => Err(format!(
+            "{option}: the published algorithm {why}; take --algorithm ours, or leave the option out"
+        )),
+        None => Ok(()),
+    }
+}
+
+/// The pens that the option names, else those that the machine's file says; none: one pen, by grey level.
+pub(super) fn pens(arguments: &TraceCommand, in_file: PensChoice) -> Result<Option<Pens>, String> {
+    let pens = match arguments.pens.as_deref() {
+        None => match in_file {
+            PensChoice::Count(number) => count(number as usize),
+            PensChoice::Auto => Some(Pens::Found),
+            PensChoice::Palette(path) => {
+                Some(Pens::Given(palette("vectorize.pens", Path::new(path.as_str()))?))
+            }
+            _ => None,
+        },
+        Some("auto") => Some(Pens::Found),
+        Some(text) => match text.parse::<i64>() {
+            Ok(number) => match usize::try_from(number).ok().filter(|number| (1..=MAX_PENS).contains(number))
+            {
+                Some(number) => count(number),
+                None => {
+                    return Err(format!(
+                        "--pens: {number} pens cannot be found: ask for 1 to {MAX_PENS}, or auto"
+                    ));
+                }
+            },
+            Err(_) => Some(Pens::Given(palette("--pens", Path::new(text))?)),
+        },
+    };
+    // What the machine's file says of the threshold rests when pens are asked for; the option would go
+    // unheard.
+    if pens.is_some() && arguments.threshold.is_some() {
+        return Err(
+            "--threshold: pens are told apart by colour, without a level; leave it out, or take --pens 1"
+                .into(),
+        );
+    }
+    Ok(pens)
+}
+
+fn count(pens: usize) -> Option<Pens> {
+    (pens > 1).then_some(Pens::Count(pens))
+}
+
+pub(super) fn palette(asked: &str, path: &Path) -> Result<Palette, String> {
+    let bytes = read_file(path)
+        .map_err(|error| format!("{asked}: {error}; give 1 to {MAX_PENS}, auto, or a palette's TOML file"))?;
+    let text =
+        String::from_utf8(bytes).map_err(|error| at(path, &format!("this is not a text file: {error}")))?;
+    Palette::from_toml(&text).map_err(|error| at(path, &error))
+}
+
+pub(super) fn threads(given: i64) -> Result<rayon::ThreadPool, String> {
+    let number = usize::try_from(given).ok().filter(|number| (1..=MAX_THREADS).contains(number));
+    let number = number.ok_or_else(|| {
+        format!("--threads: {given} lies outside 1..={MAX_THREADS}; leave it out for one a core")
+    })?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(number).build();
+    pool.map_err(|error| format!("--threads: {number} cannot be started: {error}; take fewer"))
+}

@@ -1,0 +1,181 @@
+//! A picture as strokes: by rows, or whole where pens are told apart.
+
+use super::command::{FLAG, TraceCommand};
+use super::settings::Settings;
+use crate::shared::{WorkShown, is_standard, read_file, read_input};
+use crate::trace::{Interrupt, overlay_step};
+use plotter_vector::{
+    Colour, DecodeError, Drawing, FileRows, Palette, Pixel, Progress, decode_colour,
+    ink::{Despeckled, Pens, pen_width_px},
+    picture::{Row, RowSource as _},
+    trace::SheetErrors,
+};
+use std::io::{Read, Seek};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Parts of the work that are told apart: hundredths.
+const STEPS: f64 = 100.0;
+
+/// What the overlay shows below the strokes.
+#[derive(Debug)]
+pub(super) enum Picture {
+    /// Of every `step`th column and row the level; `columns` in a row.
+    Gray {
+        levels: Vec<u8>,
+        columns: usize,
+        step: usize,
+    },
+    Colour(Colour),
+}
+
+impl Picture {
+    /// The colour of a pixel; white outside.
+    pub(super) fn level(&self, at: Pixel) -> [u8; 3] {
+        match self {
+            Self::Gray { levels, columns, step } => {
+                let index = at.y as usize / step * columns + at.x as usize / step;
+                levels.get(index).map(|level| [*level; 3])
+            }
+            Self::Colour(colour) => {
+                colour.pixels().get(at.y as usize * colour.width() as usize + at.x as usize).copied()
+            }
+        }
+        .unwrap_or([u8::MAX; 3])
+    }
+}
+
+/// What was traced.
+#[derive(Debug)]
+pub(super) struct Traced {
+    pub(super) drawing: Drawing,
+    pub(super) errors: Option<SheetErrors>,
+    /// What was taken for dirt.
+    pub(super) removed: Despeckled,
+    pub(super) palette: Palette,
+    /// Width of the lines, px; unknown where pens were told apart, and without lines.
+    pub(super) pen_px: Option<u32>,
+    /// The same of the widest pen's, also where pens were told apart.
+    pub(super) widest_px: Option<u32>,
+    /// For the overlay, where one is asked for.
+    pub(super) picture: Option<Picture>,
+    pub(super) time: Duration,
+}
+
+pub(super) fn picture_bytes(path: &Path) -> Result<Vec<u8>, String> {
+    if is_standard(path) {
+        read_input().map_err(|error| format!("standard input: {error}"))
+    } else {
+        read_file(path)
+    }
+}
+
+/// One pen, told by grey level: the file is read by rows, as often as it takes.
+pub(super) fn by_rows<R: Read + Seek>(
+    settings: &Settings,
+    file: R,
+    arguments: &TraceCommand,
+    interrupt: Interrupt,
+) -> Result<Traced, String> {
+    let start = Instant::now();
+    let mut scan = FileRows::new(file).map_err(|error| error.to_string())?;
+    let bar = progress(arguments);
+    let mut report = |done: f64| {
+        bar.set(steps(done));
+        go_on(interrupt)
+    };
+    let (vectorizer, mut progress) = (&settings.vectorizer, Progress::new(&mut report));
+    let sheet = if arguments.no_errors {
+        vectorizer.vectorize_rows(&mut scan, &mut progress)
+    } else {
+        vectorizer.vectorize_rows_with_errors(&mut scan, &mut progress)
+    };
+    bar.finish();
+    let sheet = sheet.map_err(|error| error.to_string())?;
+    let time = start.elapsed();
+    let picture = settings.overlay.as_ref().map(|_| thumbnail(&mut scan)).transpose()?;
+    Ok(Traced {
+        drawing: sheet.drawing,
+        errors: sheet.errors,
+        removed: sheet.removed,
+        palette: Palette::default(),
+        pen_px: sheet.pen_px,
+        widest_px: sheet.pen_px,
+        picture,
+        time,
+    })
+}
+
+fn go_on(interrupt: Interrupt) -> ControlFlow<()> {
+    if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
+fn progress(arguments: &TraceCommand) -> WorkShown {
+    WorkShown::of(arguments.telling, "tracing", steps(1.0), "%")
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a hundred")]
+pub(super) fn steps(share: f64) -> u64 {
+    (STEPS * share) as u64
+}
+
+/// What the overlay shows of a scan.
+fn thumbnail<R: Read + Seek>(scan: &mut FileRows<R>) -> Result<Picture, String> {
+    let step = overlay_step(scan.width(), scan.height()) as usize;
+    let columns = (scan.width() as usize).div_ceil(step);
+    let mut levels = Vec::new();
+    let failed = |error: DecodeError| error.to_string();
+    scan.rewind().map_err(failed)?;
+    let mut y = 0;
+    while let Some(row) = scan.next_row().map_err(failed)? {
+        if y % step == 0 {
+            let level = |x: usize| match row {
+                Row::Grey(row) => row.get(x).copied(),
+                Row::Bits(words) => {
+                    words.get(x / 64).map(|word| if word >> (x % 64) & 1 == 1 { 0 } else { 255 })
+                }
+            };
+            levels.extend((0..columns).map(|column| level(column * step).unwrap_or(u8::MAX)));
+        }
+        y += 1;
+    }
+    Ok(Picture::Gray { levels, columns, step })
+}
+
+/// Pens told apart by colour, on the whole picture.
+pub(super) fn in_colour(
+    settings: &Settings,
+    pens: &Pens,
+    path: Option<&Path>,
+    arguments: &TraceCommand,
+    interrupt: Interrupt,
+) -> Result<Traced, String> {
+    let read = path.map(picture_bytes).transpose()?;
+    let colour = decode_colour(read.as_deref().unwrap_or(FLAG)).map_err(|error| match error {
+        DecodeError::TooLarge(_) | DecodeError::TooMuchMemory { .. } => format!(
+            "--pens: colours are told apart on the whole picture, but {error}; or take --pens 1, which is traced by \
+             rows at any size"
+        ),
+        other => other.to_string(),
+    })?;
+    drop(read);
+    let start = Instant::now();
+    let bar = progress(arguments);
+    let mut report = |done: f64| {
+        bar.set(steps(done));
+        go_on(interrupt)
+    };
+    let found =
+        settings.vectorizer.vectorize_colour_with_progress(&colour, pens, &mut Progress::new(&mut report));
+    bar.finish();
+    let found = found.map_err(|error| error.to_string())?;
+    let time = start.elapsed();
+    let drawing = found.traced.drawing;
+    let errors = SheetErrors { report: found.traced.error, worst: found.worst, beyond: found.traced.beyond };
+    let errors = (!arguments.no_errors).then_some(errors);
+    let picture = settings.overlay.is_some().then_some(Picture::Colour(colour));
+    let widest_px = found.inks.iter().filter_map(pen_width_px).max();
+    let removed = found.traced.removed;
+    Ok(Traced { errors, removed, palette: found.palette, pen_px: None, widest_px, picture, time, drawing })
+}
