@@ -4,13 +4,16 @@
 use std::fs;
 use std::path::Path;
 
-use crate::data::{Held, Table, Topic};
+use crate::data::{Held, Part, Table, Topic};
 
 /// What is wrong with the commands of all tables.
 pub(crate) fn problems(root: &Path, topics: &[Topic]) -> Vec<String> {
     let ci = fs::read_to_string(root.join(".ci/run")).unwrap_or_default();
     let mut problems = Vec::new();
     for topic in topics {
+        let commands = topic.parts.iter().flat_map(named);
+        let wrong = commands.flat_map(|command| missing(root, &command));
+        problems.extend(wrong.map(|wrong| format!("results/{}.toml: {wrong}", topic.name)));
         for table in topic.tables() {
             let mut wrong = missing(root, &table.command);
             if let Some(tests) = &table.by {
@@ -24,6 +27,15 @@ pub(crate) fn problems(root: &Path, topics: &[Topic]) -> Vec<String> {
         }
     }
     problems
+}
+
+/// The commands that a part of a page names besides those of tables: in its list, and in its text between
+/// backquotes.
+fn named(part: &Part) -> Vec<String> {
+    let listed = part.run.iter().flatten().filter_map(|line| line.split(" #").next());
+    let text = part.text.as_deref().unwrap_or_default();
+    let told = text.split('`').skip(1).step_by(2).filter(|span| span.starts_with("cargo "));
+    listed.chain(told).map(str::to_owned).collect()
 }
 
 /// What of a command is not in the repository.
@@ -44,7 +56,7 @@ fn missing(root: &Path, command: &str) -> Vec<String> {
     };
     if !folder.is_empty() {
         want(&[format!("{folder}/Cargo.toml")], &format!("package {folder}"));
-        for word in words.iter().filter(|word| word.contains("::")) {
+        for word in words.iter().filter(|word| word.contains("::") && !words.contains(&"--lib")) {
             let module = word.split("::").next().unwrap_or_default();
             let tests = format!("{folder}/tests/all/{module}");
             want(&[format!("{tests}.rs"), tests.clone()], &format!("{tests}.rs"));
@@ -104,6 +116,17 @@ mod tests {
         ] {
             assert_eq!(missing(&root, command).len(), wrong, "{command}: {:?}", missing(&root, command));
         }
+    }
+
+    #[test]
+    fn commands_of_the_text_and_of_lists_are_looked_at() {
+        let text = "`no` words, `cargo test -p plotter-motion --test all\nsim_stepgen::`.";
+        let topic = |parts: &str| Topic::read("lines", &format!("title = \"\"\n{parts}")).unwrap();
+        let told = topic(&format!("[[part]]\ntext = '''{text}'''"));
+        assert_eq!(named(&told.parts[0]), ["cargo test -p plotter-motion --test all\nsim_stepgen::"]);
+        let listed = topic("[[part]]\nrun = [\"cargo run --example plott   # draws\"]");
+        let found = problems(&crate::root(), &[told, listed]);
+        assert_eq!(found, ["results/lines.toml: there is no example plott"]);
     }
 
     #[test]
