@@ -162,7 +162,7 @@ fn what_is_wrong_is_said_in_one_line() {
     assert!(help.status.success() && said.contains("Examples:") && said.contains("--report"), "{said}");
 }
 
-/// All of docs/results.md, "One maximum error": prints its table.
+/// All of docs/results/maximum-error.md: prints its table.
 #[test]
 #[ignore = "24 drawings: two minutes on two cores in release, run by .ci/run"]
 fn every_error_is_kept_on_every_machine_and_less_takes_longer() {
@@ -221,7 +221,7 @@ fn every_error_is_kept_on_every_machine_and_less_takes_longer() {
         before = Some((same, time_s));
     }
     for (begins, cells) in rows {
-        assert_in("docs/results.md", &begins, &cells);
+        assert_in("docs/results/maximum-error.md", &begins, &cells);
     }
 }
 

@@ -57,7 +57,7 @@ fn compare(name: &str, picture: &[u8], paper: Figures, order: Figures) {
         let counts = [drawing.vertices(), drawing.strokes().len()].map(|count| count.to_string());
         let cells = [mean, max, sd].into_iter().chain(counts).chain([format!("{:.0}", drawing.pen_up_px())]);
         let cells: Vec<String> = cells.collect();
-        for paper in ["docs/results.md", "plotter-vector/README.md"] {
+        for paper in ["docs/results/vectorization.md", "plotter-vector/README.md"] {
             assert_in(paper, &format!("{name}, {who}"), &cells);
         }
         if name == "flag" {

@@ -1,6 +1,6 @@
 //! The published controller and ours on the same simulated gantry, line by line.
 //!
-//! `cargo test -p plotter-motion --test all sim_contour:: -- --nocapture` prints the tables of docs/results.md.
+//! `cargo test -p plotter-motion --test all sim_contour:: -- --nocapture` prints the tables of docs/results/line-control.md.
 
 use crate::closed_loop;
 use crate::figure::Figure;

@@ -1,6 +1,6 @@
 //! The marking board: published, with the equalizer, and ours, on the same two unequal motors and rails.
 //!
-//! `cargo test -p plotter-motion --test all sim_marking_board:: -- --nocapture --test-threads 1` prints the tables of docs/results.md.
+//! `cargo test -p plotter-motion --test all sim_marking_board:: -- --nocapture --test-threads 1` prints the tables of docs/results/marking-board.md.
 
 use crate::marking;
 

@@ -1,7 +1,7 @@
 //! Auto-tuning on simulated motors: what the experiments find beside what is true, the margins that are reached, and whether
 //! a loop swings where its margins say so.
 //!
-//! `cargo test -p plotter-motion --test all sim_tuning:: -- --nocapture` prints the tables of docs/results.md.
+//! `cargo test -p plotter-motion --test all sim_tuning:: -- --nocapture` prints the tables of docs/results/tuning.md.
 
 use crate::closed_loop;
 use crate::tuning_bench;

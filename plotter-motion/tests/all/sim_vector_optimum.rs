@@ -126,7 +126,7 @@ fn short_drawings_take_hardly_longer_than_their_path_needs() {
 }
 
 #[test]
-#[ignore = "seconds in a release build: .ci/run runs it, and it is a table of docs/results.md"]
+#[ignore = "seconds in a release build: .ci/run runs it, and it is a table of docs/results/stepper-motion.md"]
 fn table_of_whole_drawings() {
     for drawing in drawings::built().into_iter().chain(drawings::real()) {
         let planned_s = check(&drawing);

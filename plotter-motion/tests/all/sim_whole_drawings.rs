@@ -1,7 +1,7 @@
 //! Whole drawings on motors that nobody measured: every constant of the description is wrong by a share, up or down by chance.
 //!
 //! `cargo test --release -p plotter-motion --test all sim_whole_drawings:: -- --ignored --nocapture` prints the tables of
-//! docs/results.md, with all controllers and twenty seeds.
+//! docs/results/whole-drawings.md, with all controllers and twenty seeds.
 
 #![cfg(all(feature = "alloc", feature = "toml"))]
 
@@ -231,7 +231,7 @@ const BENCHES: [Bench; 10] = [
 fn whole_drawings_lose_no_count_on_motors_a_quarter_off() {
     let seed = seed_of_the_day();
     if let Some(row) =
-        row_of("README.md", "[whole drawings](docs/results.md#whole-drawings) on four machines")
+        row_of("README.md", "[whole drawings](docs/results/whole-drawings.md) on four machines")
     {
         let [rms_mm, max_mm] = X1_MM;
         assert!(row.iter().any(|cell| cell.contains(&format!("within {rms_mm}, {max_mm} mm"))), "{row:?}");
@@ -329,9 +329,9 @@ fn seeds(name: &str, share: f64) -> usize {
     }
 }
 
-/// The tables of docs/results.md.
+/// The tables of docs/results/whole-drawings.md.
 #[test]
-#[ignore = "a quarter of an hour in a release build, by hand: the tables of docs/results.md, with the command that stands there"]
+#[ignore = "a quarter of an hour in a release build, by hand: the tables of docs/results/whole-drawings.md, with the command that stands there"]
 fn table_of_whole_drawings() {
     const FIRST_SEED: u64 = 7001;
     let ours = ["contouring", "feed-forward", "cross-coupled", "learning"];

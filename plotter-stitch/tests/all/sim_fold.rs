@@ -31,7 +31,7 @@ fn folds_of_a_fifth_of_a_millimetre_are_seen_and_flat_paper_is_flat() {
 }
 
 #[test]
-#[ignore = "some 100,000 probes, for the table in docs/results.md; run by .ci/run"]
+#[ignore = "some 100,000 probes, for the table in docs/results/long-sheets.md; run by .ci/run"]
 fn missed_folds_and_false_alarms() {
     println!("strokes apart, mm   taken for a fold   with dust on every tenth scan");
     for apart_mm in [0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5, 1.0, 2.0] {
@@ -118,7 +118,7 @@ fn other_pens_on_other_papers_are_judged_alike() {
 }
 
 #[test]
-#[ignore = "table of docs/results.md: 20,000 probes of flat paper and of each fold, with other pens and papers; run by .ci/run"]
+#[ignore = "table of docs/results/long-sheets.md: 20,000 probes of flat paper and of each fold, with other pens and papers; run by .ci/run"]
 fn other_pens_on_other_papers() {
     let seeds = std::env::var("SEEDS").ok().and_then(|text| {
         let (from, to) = text.split_once("..")?;

@@ -138,7 +138,7 @@ fn strokes_of_the_drawing_are_never_taken_for_marks() {
 }
 
 #[test]
-#[ignore = "tables of docs/results.md: some 800,000 joints, twenty minutes in release, by hand with the commands above"]
+#[ignore = "tables of docs/results/joints.md: some 800,000 joints, twenty minutes in release, by hand with the commands above"]
 fn tables() {
     let (straight, lines) = (ReferenceLines::strip16(), ReferenceLines::strip16().with_pattern());
     let wanted = |part: &str| std::env::var("TABLE").is_ok_and(|table| table == part);

@@ -86,7 +86,7 @@ fn the_same_seed_draws_the_same_sheet() {
 }
 
 #[test]
-#[ignore = "12 sheets of 1.8 km, 1895 joints each, with each procedure, for the table in docs/results.md; run by .ci/run"]
+#[ignore = "12 sheets of 1.8 km, 1895 joints each, with each procedure, for the table in docs/results/long-sheets.md; run by .ci/run"]
 fn sheets_of_1800_m() {
     const SHEETS: u64 = 12;
     const JOINTS: u32 = 1_895;

@@ -251,7 +251,7 @@ fn among_drawings<M: JoinFrames + Sync>(method: &M, noise: SensorNoise, joints: 
 
 /// The joints of the other tables once more, with a drawing under the head.
 #[test]
-#[ignore = "60,000 joints among drawings, for the table in docs/results.md; run by .ci/run"]
+#[ignore = "60,000 joints among drawings, for the table in docs/results/long-sheets.md; run by .ci/run"]
 fn joints_among_drawings() {
     const JOINTS: u64 = 20_000;
     let ours = StripJoin::new(&ReferenceLines::strip16(), SearchSettings::default());

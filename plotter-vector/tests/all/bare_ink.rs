@@ -2,7 +2,7 @@
 //! own measure.
 //!
 //! `cargo test --release -p plotter-vector --test all bare_ink:: -- --ignored --nocapture` prints the table
-//! of docs/results.md.
+//! of docs/results/bare-ink.md.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a failure shows")]
 
 use crate::figure::Figure;
@@ -241,7 +241,7 @@ fn two_lines_that_leave_the_picture_as_one_are_both_drawn() {
 }
 
 #[test]
-#[ignore = "minutes, the table of docs/results.md: cargo test --release -p plotter-vector --test all bare_ink::table -- --ignored --nocapture"]
+#[ignore = "minutes, the table of docs/results/bare-ink.md: cargo test --release -p plotter-vector --test all bare_ink::table -- --ignored --nocapture"]
 fn table_of_random_drawings() {
     println!(
         "| pen, px | kept | told / tolerance: median | 90 % | greatest | bare by the pen, px: median | 90 % | greatest | beyond ink, px: median | 90 % | greatest | strokes | `Prefer::Ink`: kept | strokes |"

@@ -5,7 +5,7 @@ use plotter_judging::{Judgement, judged_corpus};
 use plotter_vector::{Vectorizer, decode, stroke::Bounded};
 use std::io::Cursor;
 
-/// What a picture must reach. Where more was asked than is reached, `docs/results.md` says why, and the bound is a little above what
+/// What a picture must reach. Where more was asked than is reached, `docs/limits.md` says why, and the bound is a little above what
 /// is reached.
 struct Bounds {
     picture: &'static str,
