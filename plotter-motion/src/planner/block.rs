@@ -38,7 +38,8 @@ pub(super) enum Bend {
 
 /// A stretch of path with the square of its speeds, or something that is done at a standstill.
 ///
-/// Squares, because v² changes evenly along a path of constant acceleration: no roots are needed to look ahead.
+/// Squares, because v² changes evenly along a path of constant acceleration: no roots are needed to look
+/// ahead.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Block {
     to: Point,

@@ -6,33 +6,37 @@
 //!   ·      o         ·
 //! ```
 //!
-//! Digits that a file does not write move every vertex. On short lines that turns their directions by much more than the curve that was
-//! meant: a machine that obeys every vertex brakes for noise. What the file says is a vertex give or take the allowance, and a path
-//! that passes each within it says the same.
+//! Digits that a file does not write move every vertex. On short lines that turns their directions by much
+//! more than the curve that was meant: a machine that obeys every vertex brakes for noise. What the file says
+//! is a vertex give or take the allowance, and a path that passes each within it says the same.
 //!
-//! A piece begins at a given place. The circles through that place have two numbers: the slope t there, against a direction that is
-//! chosen, and the curvature k. With (x, y) a vertex in that frame and r its distance, a circle passes it at about
+//! A piece begins at a given place. The circles through that place have two numbers: the slope t there,
+//! against a direction that is chosen, and the curvature k. With (x, y) a vertex in that frame and r its
+//! distance, a circle passes it at about
 //!
 //! ```text
 //! y − t x − k r²/2
 //! ```
 //!
-//! which is linear in t and k and exact where it is 0. So each vertex keeps a strip of the (t, k) plane, and what all vertices leave is a
-//! convex polygon. As long as it is not empty one arc is enough, however many vertices there are. This is the method of J. O'Rourke, "An
-//! on-line algorithm for fitting straight lines between data ranges" (1981), with circles through a point in the place of lines.
+//! which is linear in t and k and exact where it is 0. So each vertex keeps a strip of the (t, k) plane, and
+//! what all vertices leave is a convex polygon. As long as it is not empty one arc is enough, however many
+//! vertices there are. This is the method of J. O'Rourke, "An on-line algorithm for fitting straight lines
+//! between data ranges" (1981), with circles through a point in the place of lines.
 //!
-//! The arc that reaches farthest has used up the allowance at its end, and the next would begin badly. So it is left some vertices
-//! earlier, where it is in the middle of them, and these are given to the next. A vertex that is far from where the arc goes is a
-//! corner of the drawing: there the piece ends at the vertex itself.
+//! The arc that reaches farthest has used up the allowance at its end, and the next would begin badly. So it
+//! is left some vertices earlier, where it is in the middle of them, and these are given to the next. A
+//! vertex that is far from where the arc goes is a corner of the drawing: there the piece ends at the vertex
+//! itself.
 
 use crate::Vec2;
 use crate::extremes::{greatest, least};
 use crate::geom::{Vec2Single, single};
 
-/// Vertices before the end of an arc that are given to the next. With 4 the seeded curves of the tests take at most 2 % longer than
-/// with 16.
+/// Vertices before the end of an arc that are given to the next. With 4 the seeded curves of the tests take
+/// at most 2 % longer than with 16.
 const GIVEN_BACK: usize = 4;
-/// Corners of the polygon that are kept. Where there are more, one is left out, which leaves a part of the polygon.
+/// Corners of the polygon that are kept. Where there are more, one is left out, which leaves a part of the
+/// polygon.
 const CORNERS: usize = 8;
 /// Greatest slope at the start: 76°, more than what an allowance turns a chord that is as long.
 const MOST_SLOPE: f32 = 4.0;
@@ -40,18 +44,22 @@ const MOST_SLOPE: f32 = 4.0;
 const MOST_CURVATURE: f32 = 0.125;
 /// Vertices as near to the start, as a share of the allowance, are passed by it.
 const NEAR_SHARE: f32 = 0.5;
-/// Share of the allowance by which the vertices may go back, and what is left of it then for the distance across: √(1 − (1/8)²), and
-/// a few hundredths for what is rounded, for arcs a little longer than the chords that they are measured by, and for [`FLAT_SHARE`].
+/// Share of the allowance by which the vertices may go back, and what is left of it then for the distance
+/// across: √(1 − (1/8)²), and a few hundredths for what is rounded, for arcs a little longer than the chords
+/// that they are measured by, and for [`FLAT_SHARE`].
 const BACK_SHARE: f32 = 0.125;
 const ACROSS_SHARE: f32 = 0.96;
-/// An arc that is no farther from a chord, as a share of the allowance, is not looked at where the chord begins.
+/// An arc that is no farther from a chord, as a share of the allowance, is not looked at where the chord
+/// begins.
 const FLAT_SHARE: f32 = 0.02;
-/// Farther than so many times the allowance from the arc, a vertex belongs to something else: both may be off by one, and so may be the
-/// vertex that the arc ends at.
+/// Farther than so many times the allowance from the arc, a vertex belongs to something else: both may be off
+/// by one, and so may be the vertex that the arc ends at.
 const CORNER_SHARE: f32 = 3.0;
-/// Longest piece of more than one line, as a multiple of the allowance: `f32` says where its vertices are to a 100th of the allowance.
+/// Longest piece of more than one line, as a multiple of the allowance: `f32` says where its vertices are to
+/// a 100th of the allowance.
 const LONGEST: f32 = 65_536.0;
-/// An arc that bends less is a line, and an end that is nearer to a vertex is that vertex; as a share of the allowance.
+/// An arc that bends less is a line, and an end that is nearer to a vertex is that vertex; as a share of the
+/// allowance.
 const ROUNDING_SHARE: f64 = 1.0 / 256.0;
 
 /// A circle through the start: its slope there, and its curvature, 1/mm; above 0 it turns counter-clockwise.
@@ -226,7 +234,8 @@ struct Vertex {
     y: f32,
     /// Half the square of its distance from the start, mm².
     half_square: f32,
-    /// For a curvature of 1, how far the arc is from its chord; and by how much the linear distance is too little.
+    /// For a curvature of 1, how far the arc is from its chord; and by how much the linear distance is too
+    /// little.
     bulge: f32,
     room_mm: f32,
 }
@@ -256,7 +265,8 @@ pub(super) struct Fitter {
     count: u16,
     /// Square of the greatest speed on it, mm²/s².
     cruise2: f32,
-    /// Direction against which slopes are reckoned; none before a vertex is so far from the start that this does not pass it.
+    /// Direction against which slopes are reckoned; none before a vertex is so far from the start that this
+    /// does not pass it.
     along: Option<Vec2Single>,
     circles: Polygon,
     /// The vertex that is farthest along, and the greatest distance of one, mm.
@@ -364,8 +374,8 @@ impl Fitter {
         }
     }
 
-    /// A vertex `beyond` has not been taken: ends the piece some vertices earlier, if the next one goes on as smoothly, and begins the
-    /// next with them. `None` at a corner of the drawing.
+    /// A vertex `beyond` has not been taken: ends the piece some vertices earlier, if the next one goes on as
+    /// smoothly, and begins the next with them. `None` at a corner of the drawing.
     pub(super) fn shorten(&mut self, beyond: Vec2Single, allowance_mm: f32) -> Option<Piece> {
         let along = self.along?;
         let circle = self.circles.middle();

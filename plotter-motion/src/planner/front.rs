@@ -196,8 +196,8 @@ impl<M: Modes> Front<M> {
         Ok(())
     }
 
-    /// Other shares of the speeds hold, for what is in the ring too. `under_way2` is the square of the greatest speed on the
-    /// course under way.
+    /// Other shares of the speeds hold, for what is in the ring too. `under_way2` is the square of the
+    /// greatest speed on the course under way.
     pub(super) fn rescale<const N: usize>(
         &mut self,
         shares: Shares,
@@ -298,7 +298,8 @@ impl<M: Modes> Front<M> {
         }
     }
 
-    /// Takes the next vertex in exact mode with an allowance; `from` is the one before. What no longer is one arc with it ends.
+    /// Takes the next vertex in exact mode with an allowance; `from` is the one before. What no longer is one
+    /// arc with it ends.
     fn fit<const N: usize>(
         &mut self,
         from: &Point,
@@ -333,7 +334,8 @@ impl<M: Modes> Front<M> {
         }
     }
 
-    /// Ends the piece in progress at its last vertex, or within the allowance of it. Gives the square of the greatest speed on it.
+    /// Ends the piece in progress at its last vertex, or within the allowance of it. Gives the square of the
+    /// greatest speed on it.
     fn end_fit<const N: usize>(&mut self, at: &Point, limits: &Limits, ring: &mut Ring<N>) -> Option<f32> {
         let (run, fitter) = (self.run?, self.put_off.fitter_mut()?);
         if fitter.is_empty() {

@@ -13,8 +13,9 @@ const ROUNDING: f32 = 1e-6;
 /// A part of a direction that is less is none.
 const LEAST_PART: f32 = 1e-6;
 
-/// What is the same for every block, computed once. Small numbers are `f32`, which small processors reckon with in hardware. Limits
-/// and their squares are rounded down; a speed made of them may be 2·10⁻⁷ of itself too much.
+/// What is the same for every block, computed once. Small numbers are `f32`, which small processors reckon
+/// with in hardware. Limits and their squares are rounded down; a speed made of them may be 2·10⁻⁷ of itself
+/// too much.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
     pub(super) settings: PlannerSettings,
@@ -138,8 +139,8 @@ impl Limits {
         }
     }
 
-    /// Square of a speed that is asked for, no more than this one; none if it is so slow that the square, or a share of it, were no number
-    /// with all its bits, or not finite.
+    /// Square of a speed that is asked for, no more than this one; none if it is so slow that the square, or
+    /// a share of it, were no number with all its bits, or not finite.
     pub(super) fn speed2(speed_mm_s: f64, most2: f32) -> Option<f32> {
         const LEAST_MM_S: f32 = 1e-16;
         let speed = single(speed_mm_s);

@@ -17,16 +17,17 @@ const MOST_SHARE: f64 = 100.0;
 
 /// Plans the motion along a tool path while it comes in: look-ahead over `N` blocks.
 ///
-/// Push operations until it is full, take actions when the motors want them, and so on; [`Planner::finish`] at the end lifts the pen. What
-/// is taken cannot be changed any more, so the more is known when it is taken, the faster the machine goes: keep it full. Whatever
-/// has been pushed, the machine can always stop within it, and does so where nothing more comes.
+/// Push operations until it is full, take actions when the motors want them, and so on; [`Planner::finish`]
+/// at the end lifts the pen. What is taken cannot be changed any more, so the more is known when it is taken,
+/// the faster the machine goes: keep it full. Whatever has been pushed, the machine can always stop within
+/// it, and does so where nothing more comes.
 ///
 /// - Strokes and travels begin and end at rest. A travel of several lines is one.
 /// - Corners and arcs obey the limits of [`PlannerSettings`]; see there for the ways to follow a path.
 /// - A line to where the pen stands is a dot, if the pen was up; a travel to there lifts it.
 ///
-/// Source of the look-ahead over squares of speeds, forwards and backwards: S. K. Jeon, documentation of the grbl project's
-/// planner (2011).
+/// Source of the look-ahead over squares of speeds, forwards and backwards: S. K. Jeon, documentation of the
+/// grbl project's planner (2011).
 ///
 /// ```
 /// # use plotter_motion::{Planner, PlannerSettings, PlotOp, Point, planner::Action};
@@ -118,8 +119,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.ring.room() >= Front::<M>::most_blocks(&self.limits.settings) && !self.front.has_chords()
     }
 
-    /// Whether nothing is left to be taken, also after a feed hold. Operations that were put off come after [`Planner::rest`] or
-    /// [`Planner::finish`].
+    /// Whether nothing is left to be taken, also after a feed hold. Operations that were put off come after
+    /// [`Planner::rest`] or [`Planner::finish`].
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.ring.len() == 0 && !self.front.has_chords() && self.time_law.is_over()
@@ -140,7 +141,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     ///
     /// # Errors
     ///
-    /// [`PlanError::Full`] when there is no room. Any other error says what is wrong with the operation, which is left out.
+    /// [`PlanError::Full`] when there is no room. Any other error says what is wrong with the operation,
+    /// which is left out.
     pub fn push(&mut self, op: PlotOp) -> Result<(), PlanError> {
         if !self.has_room() {
             return Err(PlanError::Full);
@@ -149,7 +151,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.front.push(op, &self.limits, &mut self.ring)
     }
 
-    /// Takes a travel at this speed, mm/s, or at that of travels if it is less; [`Planner::override_speeds`] does not change it.
+    /// Takes a travel at this speed, mm/s, or at that of travels if it is less; [`Planner::override_speeds`]
+    /// does not change it.
     ///
     /// # Errors
     ///
@@ -162,9 +165,10 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.front.jog(&to, speed_mm_s, &self.limits, &mut self.ring)
     }
 
-    /// From here on the speeds that operations ask for are multiplied by these shares, with the pen down and up: a person at the
-    /// machine has it go slower or faster. It changes its speed within its limits, along the path, from the end of the phase taken
-    /// last (47 ms at the most); no share makes it faster than the limits of [`PlannerSettings`]. Shares are taken as 0.01 to 100.
+    /// From here on the speeds that operations ask for are multiplied by these shares, with the pen down and
+    /// up: a person at the machine has it go slower or faster. It changes its speed within its limits, along
+    /// the path, from the end of the phase taken last (47 ms at the most); no share makes it faster than the
+    /// limits of [`PlannerSettings`]. Shares are taken as 0.01 to 100.
     ///
     /// Without [`AllModes`] nothing changes.
     ///
@@ -206,8 +210,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.time_law.change_speed((under_way2, next2), self.hold, &mut self.ring, &limits);
     }
 
-    /// The drawing is over: what has been put off to see what follows is planned, the machine stops at its end, and the pen is lifted
-    /// where it stands. Another drawing may be pushed afterwards.
+    /// The drawing is over: what has been put off to see what follows is planned, the machine stops at its
+    /// end, and the pen is lifted where it stands. Another drawing may be pushed afterwards.
     ///
     /// ```
     /// # use plotter_motion::{Pen, Planner, PlannerSettings, PlotOp, Point, planner::{Action, PlanError}};
@@ -233,8 +237,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         Ok(())
     }
 
-    /// No operation comes for now: what has been put off to see what follows is planned, and the machine stops at its end with the pen
-    /// as it is. More of the same drawing may be pushed afterwards.
+    /// No operation comes for now: what has been put off to see what follows is planned, and the machine
+    /// stops at its end with the pen as it is. More of the same drawing may be pushed afterwards.
     ///
     /// # Errors
     ///
@@ -248,7 +252,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         Ok(())
     }
 
-    /// Forgets everything: the machine has been stopped and stands at `position`, its pen up. The laser's power stays chosen.
+    /// Forgets everything: the machine has been stopped and stands at `position`, its pen up. The laser's
+    /// power stays chosen.
     pub fn clear(&mut self, position: Point) {
         self.front.restart(position);
         self.ring.clear();
@@ -256,10 +261,12 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.hold = false;
     }
 
-    /// Feed hold: the machine brakes within its limits, along the path, and stands as soon as it can. Actions go on to come until
-    /// it stands; then there are none until [`Planner::resume`]. More may be pushed meanwhile.
+    /// Feed hold: the machine brakes within its limits, along the path, and stands as soon as it can. Actions
+    /// go on to come until it stands; then there are none until [`Planner::resume`]. More may be pushed
+    /// meanwhile.
     ///
-    /// What has been taken is still carried out; a phase lasts 47 ms at the most, on a line that takes six years a little more.
+    /// What has been taken is still carried out; a phase lasts 47 ms at the most, on a line that takes six
+    /// years a little more.
     pub fn hold(&mut self) {
         self.hold = true;
         self.time_law.brake(&mut self.ring, &self.limits);
@@ -292,7 +299,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.after_ramps()
     }
 
-    /// As [`Planner::next_action`], for who does not want to hold the machine: a phase, and how many like it make the ramp.
+    /// As [`Planner::next_action`], for who does not want to hold the machine: a phase, and how many like it
+    /// make the ramp.
     pub(crate) fn next_ramp(&mut self) -> Option<(Action, u32)> {
         if let Some((phase, count)) = self.time_law.next_whole_ramp() {
             return Some((Action::Phase(phase), count));

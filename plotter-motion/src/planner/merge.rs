@@ -31,12 +31,13 @@ pub(super) struct Pace {
     pub(super) power: u16,
 }
 
-/// Joins segments as long as one straight line is near enough to all their vertices: the greedy form of polyline
-/// simplification (W. E. Reumann, A. P. M. Witkam 1974; here with the distance from the segment itself), with a bounded memory.
+/// Joins segments as long as one straight line is near enough to all their vertices: the greedy form of
+/// polyline simplification (W. E. Reumann, A. P. M. Witkam 1974; here with the distance from the segment
+/// itself), with a bounded memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Merger {
-    /// The vertices from the start on, to the one where the segment ends: ways from the start, mm, which single precision says far
-    /// better than any tolerance.
+    /// The vertices from the start on, to the one where the segment ends: ways from the start, mm, which
+    /// single precision says far better than any tolerance.
     points: [(f32, f32); MOST],
     count: u8,
     deviation_mm: f32,
@@ -44,8 +45,9 @@ pub(super) struct Merger {
 }
 
 impl Merger {
-    /// Takes the line from where the path is, `at`, to `to`. Gives the segment that ends at `at`, if it does. What is in progress
-    /// has begun at `start`; the line itself begins what comes next if nothing was in progress or it ends.
+    /// Takes the line from where the path is, `at`, to `to`. Gives the segment that ends at `at`, if it does.
+    /// What is in progress has begun at `start`; the line itself begins what comes next if nothing was in
+    /// progress or it ends.
     pub(super) fn push(
         &mut self,
         start: Point,

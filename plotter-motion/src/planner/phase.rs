@@ -28,8 +28,8 @@ pub enum Shape {
 
 /// A stretch of path, from where the one before ended.
 ///
-/// Places are `f64`, whatever the sheet's size; all else is `f32`, which says it to 6·10⁻⁸ of itself: the length of 10 m to half a
-/// micrometre.
+/// Places are `f64`, whatever the sheet's size; all else is `f32`, which says it to 6·10⁻⁸ of itself: the
+/// length of 10 m to half a micrometre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Course {
     /// Line, arc or parabola.
@@ -86,7 +86,8 @@ impl Phase {
         }
     }
 
-    /// How far it has come after `time_s`, mm, of a planner with these modes: without S-curves there is no jerk.
+    /// How far it has come after `time_s`, mm, of a planner with these modes: without S-curves there is no
+    /// jerk.
     pub(crate) fn way_mm<M: Modes>(&self, time_s: f32) -> f32 {
         let Self { speed_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j, .. } = *self;
         let t = time_s;

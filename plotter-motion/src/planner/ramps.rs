@@ -8,10 +8,12 @@ use super::modes::Modes;
 use crate::extremes::{greatest, least};
 use crate::root::root;
 
-/// Longest phase, s: a feed hold begins to act after that time at the latest. Only where a ramp lasts six years are they longer.
+/// Longest phase, s: a feed hold begins to act after that time at the latest. Only where a ramp lasts six
+/// years are they longer.
 const LONGEST_S: f32 = 3.0 / 64.0;
 const PER_LONGEST: f32 = 1.0 / LONGEST_S;
-/// A shorter part of a block, or a lesser change of speed, as a share, is what rounding leaves between two ramps.
+/// A shorter part of a block, or a lesser change of speed, as a share, is what rounding leaves between two
+/// ramps.
 const ROUNDING: f32 = 2.5e-7;
 /// Squares of speeds that differ less are alike.
 const ALIKE: f32 = 4e-7;
@@ -19,7 +21,8 @@ const ALIKE: f32 = 4e-7;
 /// Ramps of a part of a block: up, along, down.
 const RAMPS: u8 = 3;
 
-/// A time with a constant acceleration: to a place on the block, so far from its end, which is passed with a speed.
+/// A time with a constant acceleration: to a place on the block, so far from its end, which is passed with a
+/// speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Ramp {
     duration_s: f32,
@@ -33,8 +36,8 @@ struct Ramp {
 /// An arc is passed in several parts, each with the acceleration that the greatest speed on it leaves: see
 /// [`Law`]. A part is planned when the one before it is over.
 ///
-/// Places are told by what is left of the block behind them, so that they are right to the last bit where the least of it is left: there
-/// a speed is right for no other place.
+/// Places are told by what is left of the block behind them, so that they are right to the last bit where the
+/// least of it is left: there a speed is right for no other place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ramps {
     law: Law,
@@ -238,7 +241,8 @@ impl Ramps {
         self.put_ramp(up_mm, rest_mm - up_mm, (self.speed, peak), steepness);
     }
 
-    /// From a speed above the greatest one: brakes to that, goes on with it, and brakes for the end; or brakes all the way.
+    /// From a speed above the greatest one: brakes to that, goes on with it, and brakes for the end; or
+    /// brakes all the way.
     fn plan_down(&mut self, entry2: f32, (exit2, exit): (f32, f32), end_mm: f32, down: Law) {
         let (rest_mm, cruise2) = (self.rest_mm, self.cruise2);
         let steepness = Steepness::new(down.accel_at(entry2));
@@ -335,7 +339,8 @@ impl Ramps {
         }
     }
 
-    /// Plans to stop as soon as can be: where the block is too short for that, to leave it with this square of a speed.
+    /// Plans to stop as soon as can be: where the block is too short for that, to leave it with this square
+    /// of a speed.
     pub(super) fn brake(&mut self, exit2: f32) {
         (self.exit2, self.stops) = (exit2, true);
         self.brake_part();
@@ -362,7 +367,8 @@ impl Ramps {
         }
     }
 
-    /// Square of the speed at the end of the block, however hard it brakes from here on: no more than was planned, whatever the rounding.
+    /// Square of the speed at the end of the block, however hard it brakes from here on: no more than was
+    /// planned, whatever the rounding.
     pub(super) fn forced2(&self) -> f32 {
         let left = self.parts_left();
         let mut way_mm = self.rest_mm - f32::from(left) * self.part_mm;
@@ -417,7 +423,8 @@ impl Ramps {
         self.ramps.get(usize::from(self.next)).copied()
     }
 
-    /// The next phase. Those of a ramp are alike, and what is left of it is told by their number: nothing adds up, and it ends.
+    /// The next phase. Those of a ramp are alike, and what is left of it is told by their number: nothing
+    /// adds up, and it ends.
     pub(super) fn next<M: Modes>(&mut self) -> Option<Phase> {
         let ramp = self.ramp::<M>()?;
         let phase = self.phase(&ramp);

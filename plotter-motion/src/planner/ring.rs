@@ -8,9 +8,9 @@ use crate::geom::single;
 
 /// The blocks that are known ahead.
 ///
-/// Whatever it holds, the machine can stop at its end: the speed after the last block is 0. A backward pass keeps the
-/// braking, a forward pass the speeding up. Blocks before `planned` are as fast as they will ever be and are not looked at
-/// again.
+/// Whatever it holds, the machine can stop at its end: the speed after the last block is 0. A backward pass
+/// keeps the braking, a forward pass the speeding up. Blocks before `planned` are as fast as they will ever
+/// be and are not looked at again.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ring<const N: usize> {
     blocks: [Block; N],
@@ -74,8 +74,8 @@ impl<const N: usize> Ring<N> {
         (self.len, self.planned) = (0, 0);
     }
 
-    /// Whether the block after the head has an entry speed that nothing to come can raise: what has come since it was planned makes no
-    /// difference to it.
+    /// Whether the block after the head has an entry speed that nothing to come can raise: what has come
+    /// since it was planned makes no difference to it.
     pub(super) const fn next_is_settled(&self) -> bool {
         self.planned > 0
     }
@@ -114,9 +114,9 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// Other shares of the speeds that were asked for hold. `before2` is the square of the greatest speed on what comes before
-    /// the head, `forced2` that with which the head is entered however hard the machine brakes from now on. Gives the
-    /// square of the greatest speed on the last block.
+    /// Other shares of the speeds that were asked for hold. `before2` is the square of the greatest speed on
+    /// what comes before the head, `forced2` that with which the head is entered however hard the machine
+    /// brakes from now on. Gives the square of the greatest speed on the last block.
     pub(super) fn rescale(&mut self, shares: &Shares, limits: &Limits, before2: f32, forced2: f32) -> f32 {
         let (mut before2, mut forced2) = (before2, forced2);
         for index in 0..self.len {
@@ -146,7 +146,8 @@ impl<const N: usize> Ring<N> {
         self.plan(limits);
     }
 
-    /// Plans anew with a head that is entered with no more than this square of a speed; gives the one with which it is.
+    /// Plans anew with a head that is entered with no more than this square of a speed; gives the one with
+    /// which it is.
     pub(super) fn enter_at_most(&mut self, most2: f32, limits: &Limits) -> f32 {
         // What can be braked from within the blocks known, backwards.
         let mut entry2 = Sum::default();
@@ -227,7 +228,8 @@ mod tests {
     }
 
     proptest! {
-        /// However many blocks have come since it was planned, and whether it is planned for each of them or only when it must be.
+        /// However many blocks have come since it was planned, and whether it is planned for each of them or
+        /// only when it must be.
         #[test]
         fn the_next_speed_is_the_one_of_all_that_is_known(
             rows in prop::collection::vec((0.001_f32..5.0, prop_oneof![1 => Just(0.0), 3 => 0.0_f32..1e4, 3 => Just(1e4_f32)], 0_usize..3), 1..200),

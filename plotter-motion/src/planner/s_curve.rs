@@ -1,9 +1,10 @@
 //! [`SCurveState`]: jerk-limited motion through the blocks ahead.
 //!
-//! The speeds that corners and curves allow are points that the motion must not pass too fast. A state of motion (speed and
-//! acceleration) is *viable* if the hardest braking within acceleration and jerk would still be in time for each of them. From one
-//! short time to the next the motion takes the greatest jerk whose outcome is viable: so it speeds up as long as it may, and brakes as
-//! late as it must, whatever the lengths of the blocks.
+//! The speeds that corners and curves allow are points that the motion must not pass too fast. A state of
+//! motion (speed and acceleration) is *viable* if the hardest braking within acceleration and jerk would
+//! still be in time for each of them. From one short time to the next the motion takes the greatest jerk
+//! whose outcome is viable: so it speeds up as long as it may, and brakes as late as it must, whatever the
+//! lengths of the blocks.
 
 use super::Phase;
 use super::ring::Ring;
@@ -81,7 +82,8 @@ impl State {
         speed + if accel > 0.0 { 0.5 * accel * accel / limits.jerk } else { 0.0 }
     }
 
-    /// Jerk and time, s, of the next phase of the quickest way to the cruising speed; none if it would go beyond it.
+    /// Jerk and time, s, of the next phase of the quickest way to the cruising speed; none if it would go
+    /// beyond it.
     fn next_to_cruise(self, cruise: f64, limits: Limits) -> Option<(f64, f64)> {
         if self.cruises(cruise, limits) {
             return None;
@@ -111,7 +113,8 @@ impl State {
         self.accel.abs() <= 1e-9 * limits.accel && self.speed >= cruise * (1.0 - 1e-9)
     }
 
-    /// The hardest braking to a speed with no acceleration left; none if that speed is not exceeded in any case.
+    /// The hardest braking to a speed with no acceleration left; none if that speed is not exceeded in any
+    /// case.
     fn braking(self, to: f64, limits: Limits) -> Braking {
         let Self { speed, accel } = self;
         let Limits { accel: most, jerk } = limits;
@@ -148,7 +151,8 @@ impl State {
     }
 }
 
-/// The speeds that are allowed ahead: the first `count` places with their distance from the present one, mm and mm/s.
+/// The speeds that are allowed ahead: the first `count` places with their distance from the present one, mm
+/// and mm/s.
 #[derive(Clone, Copy, Debug)]
 struct Ahead<const N: usize> {
     places: [(f64, f64); N],
@@ -183,8 +187,8 @@ impl<const N: usize> Ahead<N> {
         self.places.get(..self.count).unwrap_or(&[])
     }
 
-    /// Leaves out the places that a state keeps with room to spare: every state that is slower, has less acceleration and has not come so far
-    /// keeps them too, for all of its brakings are shorter.
+    /// Leaves out the places that a state keeps with room to spare: every state that is slower, has less
+    /// acceleration and has not come so far keeps them too, for all of its brakings are shorter.
     fn leave_out_kept(&mut self, state: State, way_mm: f64, limits: Limits) {
         /// Share of a speed, and a way, mm, that are far more than what rounding makes of them.
         const SPARE: f64 = 1e-9;
@@ -248,7 +252,8 @@ enum Chosen {
 }
 
 impl Chosen {
-    /// The phase after so many: its jerk and its length; and the speed at the end of the block, if it goes there.
+    /// The phase after so many: its jerk and its length; and the speed at the end of the block, if it goes
+    /// there.
     fn phase(&self, taken: usize, jerk: f64) -> Option<(f64, f64)> {
         match *self {
             Self::None => None,
@@ -430,7 +435,8 @@ impl SCurveState {
         {
             return phase;
         }
-        // The quickest way to full speed, as long as nothing has to be braked for at the end of its next phase.
+        // The quickest way to full speed, as long as nothing has to be braked for at the end of its next
+        // phase.
         if let Some((jerk, time_s)) = state.next_to_cruise(ahead.cruise, limits) {
             let (after, way_mm) = state.after(jerk, time_s);
             if way_mm <= rest_mm && ahead.is_viable(after, way_mm, limits) {

@@ -16,7 +16,8 @@ use core::time::Duration;
 
 type Make = dyn for<'a> Fn(&Machine, &'a mut [LearnedBin]) -> Box<dyn LineController + 'a> + Send + Sync;
 
-/// What a learning controller may remember of a drawing, bins: half a minute of it. What comes after is drawn without.
+/// What a learning controller may remember of a drawing, bins: half a minute of it. What comes after is drawn
+/// without.
 const STORE: usize = 1 << 16;
 
 /// A controller that takes part: a name, and how one is made for a machine's description.
@@ -54,7 +55,8 @@ impl Entry {
         Self::line(name, move |machine| PlannedLine::new(machine, make(machine)))
     }
 
-    /// A control law for both axes that [`Learning`] helps, after so many runs of the same drawing for practice.
+    /// A control law for both axes that [`Learning`] helps, after so many runs of the same drawing for
+    /// practice.
     #[must_use]
     pub fn learning<C: ContourController + 'static>(
         name: &str,
@@ -86,8 +88,8 @@ impl Entry {
         bed.run(&mut *controller, moves(), watch)
     }
 
-    /// The published controllers and ours, as the thesis and the marking board's report have them and from the plainest of ours to the
-    /// best:
+    /// The published controllers and ours, as the thesis and the marking board's report have them and from
+    /// the plainest of ours to the best:
     ///
     /// | name | what |
     /// |---|---|

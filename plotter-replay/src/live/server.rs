@@ -70,8 +70,8 @@ struct Site {
 }
 
 impl Server {
-    /// Serves `session` on `port` of 127.0.0.1, or on any that is free for 0. `page` makes the page, given the address at which
-    /// it may open its socket.
+    /// Serves `session` on `port` of 127.0.0.1, or on any that is free for 0. `page` makes the page, given
+    /// the address at which it may open its socket.
     ///
     /// # Errors
     ///
@@ -165,7 +165,8 @@ impl Site {
         }
     }
 
-    /// The token, a host name that only this computer has (against names that others bind to it), and no other origin.
+    /// The token, a host name that only this computer has (against names that others bind to it), and no
+    /// other origin.
     fn is_ours(&self, request: &Request) -> bool {
         let Self { port, .. } = self;
         let names = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];

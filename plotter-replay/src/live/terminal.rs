@@ -30,8 +30,8 @@ pub struct Heading {
     pub area_mm: [f64; 4],
 }
 
-/// Shows a session in the terminal until it ends or the user quits; says whether he did. Enter starts, space pauses and
-/// resumes, Esc stops, c clears, q quits.
+/// Shows a session in the terminal until it ends or the user quits; says whether he did. Enter starts, space
+/// pauses and resumes, Esc stops, c clears, q quits.
 ///
 /// # Errors
 ///

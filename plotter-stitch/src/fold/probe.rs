@@ -3,7 +3,8 @@
 use super::FoldDirection;
 use plotter_motion::{PlotOp, Point, Vec2};
 
-/// How far the strokes reach to both sides of their middle, mm: within the square in any direction, with the pen's width.
+/// How far the strokes reach to both sides of their middle, mm: within the square in any direction, with the
+/// pen's width.
 const HALF_STROKE_MM: f64 = 9.0;
 /// Scans are spread this far to both sides of the middle, mm.
 const HALF_SPREAD_MM: f64 = 6.0;
@@ -51,8 +52,8 @@ impl FoldProbe {
         Self { middle, along: direction.along(width_mm, length_mm) }
     }
 
-    /// The line from one end, and the same line from the other, in the frame's coordinates. The pen is lifted between them, so
-    /// that the paper may spring back.
+    /// The line from one end, and the same line from the other, in the frame's coordinates. The pen is lifted
+    /// between them, so that the paper may spring back.
     #[must_use]
     pub fn strokes(&self) -> [[PlotOp; 2]; 2] {
         let [from, to] = [-HALF_STROKE_MM, HALF_STROKE_MM].map(|way_mm| self.middle + self.along * way_mm);

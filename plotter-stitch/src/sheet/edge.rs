@@ -7,7 +7,8 @@ const BEND_MM: f64 = 400.0;
 
 /// The edge of a roll of paper: straight on the whole, and a little wavy.
 ///
-/// Between places 400 mm apart, at which it is off by normal numbers, it runs straight. The same seed gives the same paper.
+/// Between places 400 mm apart, at which it is off by normal numbers, it runs straight. The same seed gives
+/// the same paper.
 ///
 /// ```
 /// use plotter_stitch::sheet::PaperEdge;

@@ -74,8 +74,8 @@ impl Span {
         }
     }
 
-    /// The operation that draws the part from `t0` to `t1`, when the pen stands at its start. The whole is the operation
-    /// itself, to the last bit.
+    /// The operation that draws the part from `t0` to `t1`, when the pen stands at its start. The whole is
+    /// the operation itself, to the last bit.
     pub(super) fn part(&self, t0: f64, t1: f64) -> PlotOp {
         if t0 <= 0.0 && t1 >= 1.0 {
             return self.op;
@@ -122,7 +122,8 @@ impl Span {
         }
     }
 
-    /// A box that holds it, perhaps with room to spare: the corners with the least and the greatest coordinates.
+    /// A box that holds it, perhaps with room to spare: the corners with the least and the greatest
+    /// coordinates.
     pub(super) fn bounds(&self) -> (Point, Point) {
         match self.shape {
             Shape::Line { to } => (

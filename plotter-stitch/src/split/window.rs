@@ -14,7 +14,8 @@ const CORNER_RAD: f64 = 0.35; // 20 degrees
 const CORNER_COST: f64 = 1.0;
 const CROSSING_COST: f64 = 1.0;
 const SHALLOW_COST: f64 = 1.0;
-/// What a cut costs at the end of the window: little, so that it only decides between cuts that do equal harm.
+/// What a cut costs at the end of the window: little, so that it only decides between cuts that do equal
+/// harm.
 const FAR_COST: f64 = 0.1;
 
 /// Places looked at in a window's half, for a line straight across.
@@ -112,8 +113,8 @@ impl Window {
 
     /// Divides everything between the frames on both sides of the border at `border_mm`.
     ///
-    /// A line that comes from one frame and goes to the other is cut once, where that does least harm; one that begins or ends in
-    /// the window, or comes back, is not cut at all.
+    /// A line that comes from one frame and goes to the other is cut once, where that does least harm; one
+    /// that begins or ends in the window, or comes back, is not cut at all.
     pub(super) fn divide(
         self,
         layout: &FrameLayout,
@@ -277,7 +278,8 @@ fn nearest_corner(corners: &[f64], way_mm: f64) -> f64 {
     behind.min(ahead)
 }
 
-/// Distance from a place of a run to the nearest other line, or to another part of its own; infinite beyond `reach_mm`.
+/// Distance from a place of a run to the nearest other line, or to another part of its own; infinite beyond
+/// `reach_mm`.
 fn nearest_line(neighbours: &RTree<Strand>, place: Point, run: usize, way_mm: f64, reach_mm: f64) -> f64 {
     let Point { x, y } = place;
     let around = AABB::from_corners([x - reach_mm, y - reach_mm], [x + reach_mm, y + reach_mm]);

@@ -21,7 +21,8 @@ pub(crate) struct Check {
     /// The machine's description [default: the preset of the controller that the log's header names].
     #[arg(long, value_name = "FILE.toml")]
     machine: Option<PathBuf>,
-    /// How far the time of an answer may be off, microseconds [default: 0; for a log without edges 50000, or 1000000 if it is one of frames].
+    /// How far the time of an answer may be off, microseconds [default: 0; for a log without edges 50000, or
+    /// 1000000 if it is one of frames].
     #[arg(long, value_name = "US")]
     tolerance_us: Option<u64>,
 }

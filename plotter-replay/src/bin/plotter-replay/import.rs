@@ -31,7 +31,8 @@ pub(crate) struct Import {
     /// Bits a second on the line.
     #[arg(long, value_name = "RATE", default_value_t = 256_000, value_parser = clap::value_parser!(u32).range(50..))]
     baud: u32,
-    /// Samples a second of the logic analyzer, for sigrok [default: from the baud rate and the length of a byte].
+    /// Samples a second of the logic analyzer, for sigrok [default: from the baud rate and the length of a
+    /// byte].
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
     /// What the tool calls the host (a port, an analyzer) [default: by its name, else who speaks first].

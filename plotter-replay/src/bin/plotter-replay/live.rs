@@ -29,7 +29,8 @@ const LOOK_EVERY: Duration = Duration::from_millis(200);
 pub(crate) struct Live {
     /// The drawing: HPGL, G-code or the thesis' text. Without one, the machine is watched only.
     drawing: Option<PathBuf>,
-    /// The serial port of a machine: a name, a part of one that only it has, or `auto` for the only one there is.
+    /// The serial port of a machine: a name, a part of one that only it has, or `auto` for the only one there
+    /// is.
     #[arg(long, value_name = "DEV", conflicts_with = "simulate")]
     port: Option<String>,
     /// Simulate the machine of this file instead [default without --port: the semi-virtual gantry].
@@ -41,8 +42,8 @@ pub(crate) struct Live {
     /// What is spoken with the machine.
     #[arg(long, value_enum, default_value_t)]
     link: Link,
-    /// Go on with the drawing that the host of this log was sending when it ended; the machine must have been on since, and speak
-    /// frames.
+    /// Go on with the drawing that the host of this log was sending when it ended; the machine must have been
+    /// on since, and speak frames.
     #[arg(long, value_name = "LOG", requires_all = ["drawing", "port"])]
     resume: Option<PathBuf>,
     /// Seconds of a simulated machine in one of ours; more than this computer can is as fast as it goes.
@@ -317,7 +318,8 @@ fn moves(
     Ok(Box::new(targets(machine, ops).filter_map(Result::ok)))
 }
 
-/// Goes through a drawing once, for its length and picture; says what of it cannot be drawn, and how much that is.
+/// Goes through a drawing once, for its length and picture; says what of it cannot be drawn, and how much
+/// that is.
 fn look_through(
     drawing: &DrawingFile,
     path: &Path,

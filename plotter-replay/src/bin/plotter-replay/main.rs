@@ -1,4 +1,5 @@
-//! Records a plotter's serial line, shows what a log of it holds, draws it, and runs the controller again on it.
+//! Records a plotter's serial line, shows what a log of it holds, draws it, and runs the controller again on
+//! it.
 //!
 //! Exit status: 0 clean, 1 damage or a difference found, 2 unreadable, not writable or a wrong command line.
 
@@ -23,7 +24,8 @@ use commands::{Command, Verdict};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// Records a plotter's serial line, shows what a log of it holds, draws it, and runs the controller again on it.
+/// Records a plotter's serial line, shows what a log of it holds, draws it, and runs the controller again on
+/// it.
 ///
 /// Exit status: 0 clean, 1 damage or a difference found, 2 unreadable, not writable or a wrong command line.
 #[derive(Debug, Parser)]
@@ -47,8 +49,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// The standard output, with the first failure to write to it. A closed pipe is none, and who writes on is told of it: whoever closed
-/// it has seen enough.
+/// The standard output, with the first failure to write to it. A closed pipe is none, and who writes on is
+/// told of it: whoever closed it has seen enough.
 #[derive(Debug, Default)]
 struct Output {
     failure: Option<io::Error>,

@@ -8,7 +8,8 @@ use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(crate) struct Record {
-    /// The port that the plotter is on: a name, a part of one that only it has, or `auto` for the only one there is.
+    /// The port that the plotter is on: a name, a part of one that only it has, or `auto` for the only one
+    /// there is.
     #[arg(long, value_name = "NAME", default_value = "auto")]
     port: String,
     /// Bits a second, any number that the port can.

@@ -21,8 +21,8 @@ const HAND_ON_AFTER: u64 = 4_096;
 pub(crate) struct Render {
     /// The log; packed if its name ends in .gz.
     log: PathBuf,
-    /// Write plotted.svg, plotted.png, response.svg and recording.html into this directory [default: the current
-    /// one, unless a single file is asked for].
+    /// Write plotted.svg, plotted.png, response.svg and recording.html into this directory [default: the
+    /// current one, unless a single file is asked for].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Write the drawing as SVG.
@@ -37,7 +37,8 @@ pub(crate) struct Render {
     /// Write a page for a browser, which plays the recording and needs no network.
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// The drawing that was sent, in HPGL, G-code or the thesis' text: tells the pen, and what should have been drawn.
+    /// The drawing that was sent, in HPGL, G-code or the thesis' text: tells the pen, and what should have
+    /// been drawn.
     #[arg(long, value_name = "FILE")]
     drawing: Option<PathBuf>,
     /// Mark what was drawn farther than this from its line, mm.

@@ -24,13 +24,15 @@ pub(crate) struct Replay {
     /// Show what was recorded, and run no controller.
     #[arg(long, conflicts_with = "machine")]
     recorded: bool,
-    /// Keep what the controller says and does now as a log; nothing is shown then, unless a speed or steps are asked for.
+    /// Keep what the controller says and does now as a log; nothing is shown then, unless a speed or steps
+    /// are asked for.
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Write over FILE if it is there.
     #[arg(long, requires = "out")]
     force: bool,
-    /// How many times as fast as it was [default: without waiting; time is that of the log, no clock is read].
+    /// How many times as fast as it was [default: without waiting; time is that of the log, no clock is
+    /// read].
     #[arg(long, value_name = "FACTOR", value_parser = speed)]
     speed: Option<f64>,
     /// Show what comes from here on, seconds; what is before is run without waiting.

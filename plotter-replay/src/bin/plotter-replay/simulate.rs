@@ -21,7 +21,8 @@ pub(crate) struct Simulate {
     /// Speak the published digits only, as a machine without the reliable link does.
     #[arg(long)]
     digits: bool,
-    /// Record what happens inside it, each edge and duty too, so that `check` can run its controller again to the same bytes.
+    /// Record what happens inside it, each edge and duty too, so that `check` can run its controller again to
+    /// the same bytes.
     #[arg(short, long, value_name = "LOG")]
     output: Option<PathBuf>,
     /// Write over LOG if it is there.

@@ -120,8 +120,8 @@ impl MarkSearch {
     ///
     /// # Errors
     ///
-    /// [`SearchError::NotDone`] before the search is over, [`SearchError::TooFew`] with the first missed mark if too few
-    /// were found.
+    /// [`SearchError::NotDone`] before the search is over, [`SearchError::TooFew`] with the first missed mark
+    /// if too few were found.
     pub fn found(&self) -> Result<&[Found], SearchError> {
         if self.step != Step::Done {
             return Err(SearchError::NotDone);

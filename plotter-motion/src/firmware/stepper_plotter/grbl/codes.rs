@@ -70,7 +70,8 @@ impl Code {
     pub(super) const UNUSED: Self = Self(36);
     /// The length of a tool is along z, and nothing else.
     pub(super) const LENGTH_AXIS: Self = Self(37);
-    /// The value of a setting is out of its range. Grbl 1.1 has no number for it; this is that of its successor grblHAL.
+    /// The value of a setting is out of its range. Grbl 1.1 has no number for it; this is that of its
+    /// successor grblHAL.
     pub(super) const SETTING_RANGE: Self = Self(52);
     /// `M0`, which is carried out: the interpreter leaves it to who is in charge of the machine.
     pub(super) const PAUSE: Self = Self(0);

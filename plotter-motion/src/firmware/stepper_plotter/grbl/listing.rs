@@ -98,7 +98,8 @@ impl Listing {
     }
 }
 
-/// The numbers of Grbl's settings, and the values of those that this machine has no use for, as Grbl comes with them; 0 for the others.
+/// The numbers of Grbl's settings, and the values of those that this machine has no use for, as Grbl comes
+/// with them; 0 for the others.
 static NUMBERS: [(u8, u8); 34] = [
     (0, 10),
     (1, 255), // the motors hold

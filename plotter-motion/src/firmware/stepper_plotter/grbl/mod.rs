@@ -60,7 +60,8 @@ enum Mode {
     Sleep,
 }
 
-/// The receive side for programs that stream to Grbl. Each line is answered by one `ok` or `error`, in their order.
+/// The receive side for programs that stream to Grbl. Each line is answered by one `ok` or `error`, in their
+/// order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grbl<P: Pens = AnyPen> {
     pens: PhantomData<P>,
@@ -179,7 +180,8 @@ impl<P: Pens> Grbl<P> {
 
     /// Gathers the line that is coming in.
     ///
-    /// As in Grbl a line that has ended has left the receive buffer, whatever it waits for: programs count with that.
+    /// As in Grbl a line that has ended has left the receive buffer, whatever it waits for: programs count
+    /// with that.
     fn gather(&mut self) {
         while self.wait.is_none()
             && self.listing.is_none()
@@ -214,7 +216,8 @@ impl<P: Pens> Grbl<P> {
         true
     }
 
-    /// Carries out the line that is there, and answers it; says whether there was one, and room for all that comes of it.
+    /// Carries out the line that is there, and answers it; says whether there was one, and room for all that
+    /// comes of it.
     fn carry_on(&mut self, status: &Status, link: &mut Link) -> bool {
         if self.wait.is_some()
             || self.is_starting()

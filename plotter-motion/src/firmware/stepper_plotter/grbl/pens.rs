@@ -39,8 +39,8 @@ mod sealed {
     impl Sealed for super::SpindlePen {}
 }
 
-/// As Grbl reads: seconds, and `/` at the begin of a line means nothing. In one place, so that the compiler sees that no others are read
-/// with.
+/// As Grbl reads: seconds, and `/` at the begin of a line means nothing. In one place, so that the compiler
+/// sees that no others are read with.
 static OPTIONS: ReadOptions = ReadOptions {
     pen: PenConvention::Spindle,
     dwell_unit: DwellUnit::Seconds,

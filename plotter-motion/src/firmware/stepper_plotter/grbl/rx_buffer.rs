@@ -2,22 +2,26 @@
 
 use super::super::bytes::Bytes;
 
-/// Bytes that the controller keeps, as many as Grbl: a program that counts characters sends no more before they are answered.
+/// Bytes that the controller keeps, as many as Grbl: a program that counts characters sends no more before
+/// they are answered.
 pub(super) const RX_BYTES: usize = 128;
-/// Stands for the rest of a line that was lost: makes the line too long, and ends it. No byte of this value is let in otherwise.
+/// Stands for the rest of a line that was lost: makes the line too long, and ends it. No byte of this value
+/// is let in otherwise.
 pub(super) const LOST: u8 = 0xFF;
 /// Room for the end of a line of which everything else has found room.
 const SPARE: usize = 1;
-/// A byte of this value and above stands for lines that were lost in this place; the other bits are their number.
+/// A byte of this value and above stands for lines that were lost in this place; the other bits are their
+/// number.
 const LINES: u8 = 0x80;
-/// Most lines that one such byte counts. Of more in a row, sent without waiting for any answer, only these are answered.
+/// Most lines that one such byte counts. Of more in a row, sent without waiting for any answer, only these
+/// are answered.
 const MOST_LINES: u8 = 0x7F;
 
 /// Bytes that have come and wait to be read. An LF after a CR belongs to it and takes no room.
 ///
-/// What finds no room is lost, as in Grbl. There it is single bytes, and what is left may be a line that means something else. Here a line
-/// is lost as a whole, the part of it that had found room makes no line, and each line that was lost is told in its place: it is read as
-/// [`LOST`].
+/// What finds no room is lost, as in Grbl. There it is single bytes, and what is left may be a line that
+/// means something else. Here a line is lost as a whole, the part of it that had found room makes no line,
+/// and each line that was lost is told in its place: it is read as [`LOST`].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RxBuffer {
     bytes: Bytes<{ RX_BYTES + SPARE }>,

@@ -5,8 +5,8 @@ use crate::decimal::Decimal;
 use crate::gcode::{Block, MOST, Position, Word, Words, is_control, is_text};
 
 /// The words of a line without blanks and comments, in capitals; none if it has no words. What a
-/// [`Reader`](crate::gcode::Reader) makes of it, byte by byte, in a third of the program memory. Checksums, texts and programs are only
-/// for [`Words::Any`].
+/// [`Reader`](crate::gcode::Reader) makes of it, byte by byte, in a third of the program memory. Checksums,
+/// texts and programs are only for [`Words::Any`].
 #[inline(never)]
 pub(super) fn read(text: &[u8], known: Words) -> Result<Option<Block>, Code> {
     let knows_any = known == Words::Any;
@@ -40,8 +40,8 @@ pub(super) fn read(text: &[u8], known: Words) -> Result<Option<Block>, Code> {
             {
                 rest = after;
             }
-            // A second point, a comma, an exponent, of which Grbl takes the first two for no letters and the third for one; no digit at all;
-            // too great.
+            // A second point, a comma, an exponent, of which Grbl takes the first two for no letters and the
+            // third for one; no digit at all; too great.
             let ends = !knows_any || !matches!(rest.first(), Some(b'.' | b',' | b'E'));
             let value = decimal.value().filter(|value| ends && value.abs() <= MOST);
             number = Some(value.ok_or(Code::BAD_NUMBER)?);
