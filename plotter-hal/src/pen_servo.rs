@@ -71,15 +71,19 @@ impl Default for PenServoSettings {
     }
 }
 
-/// Widths of pulses that some servo understands, us.
+/// Least and greatest pulse width, us: beyond what common servos understand, 1000 to 2000 us, on either side,
+/// as some turn farther.
 const PULSES_US: (f32, f32) = (400.0, 2600.0);
-/// The least distance of two angles that a line through them is worth something, degrees.
+/// Least distance of the two calibrated angles, degrees: nearer ones would multiply the error of reading them
+/// over the whole range.
 const LEAST_APART_DEG: f32 = 10.0;
-/// Frames that a servo follows, us: 300 to 25 Hz.
+/// Shortest and longest frame, us: 300 Hz, as digital servos take, to 25 Hz, half of the usual rate.
 const FRAMES_US: (u32, u32) = (3_333, 40_000);
-/// Slower than this a pen that is lowered has been forgotten, degrees/s.
+/// Least lowering speed, degrees/s: at it a pen takes more than a minute for 70 degrees, so a lower one is a
+/// mistake.
 const SLOWEST_DEG_S: f32 = 1.0;
-/// The least number of the PWM's steps from up to down.
+/// Least number of PWM steps between up and down. With fewer the pen would be lowered in jerks, and its
+/// places would be off by an eighth of the stroke or more.
 const LEAST_STEPS: u16 = 4;
 
 impl PenServoSettings {

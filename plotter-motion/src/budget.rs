@@ -271,6 +271,8 @@ impl Budget {
 
     /// The share of the speed at which control makes `control_mm`.
     fn speed_share(control_mm: f64, limits: &BudgetLimits) -> f64 {
+        /// Relative rounding of a sum of errors that still counts as equal: far above the last bits of `f64`,
+        /// far below any error.
         const ROUNDING: f64 = 1e-12;
         if control_mm >= (limits.standing_mm + limits.moving_mm) * (1.0 - ROUNDING) {
             return 1.0;

@@ -91,7 +91,7 @@ impl Affine {
 
 /// Sine and cosine: exact at quarters of a turn, in which most drawings, blocks and texts are turned.
 pub(crate) fn sin_cos(angle_rad: f64) -> (f64, f64) {
-    /// Share of an angle that degrees lose as radians: some last bits.
+    /// Greatest relative error of an angle that was converted from degrees: some last bits of `f64`.
     const NEAR: f64 = 1e-15;
     let quarters = angle_rad / core::f64::consts::FRAC_PI_2;
     let nearest = libm::round(quarters);

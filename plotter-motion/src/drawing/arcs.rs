@@ -29,7 +29,8 @@ const ENDS: usize = 4;
 /// of the best.
 const ROUNDS: usize = 16;
 
-/// Share of the tolerance within which curves are looked at as lines.
+/// Greatest distance of a cubic curve from the lines that are taken for it, as a share of the tolerance:
+/// small, so that nearly all of it is left for the arc.
 const CURVES: f64 = 0.125;
 
 /// Least of a turn that an arc whose ends differ leaves open, rad; below, rounding decides where its centre

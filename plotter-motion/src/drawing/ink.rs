@@ -14,7 +14,7 @@ use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
 use core::ops::RangeInclusive;
 
-/// Least tolerance, mm: below, places of a metre are rounded by more than a thousandth of it.
+/// Least tolerance, mm: a nanometre, below any motor's step.
 const LEAST_TOLERANCE_MM: f64 = 1e-6;
 
 /// Farthest place that is looked at, mm: above, places are rounded by more than a tenth of the least
@@ -25,23 +25,25 @@ const FARTHEST_MM: f64 = 1e9;
 /// may have any direction; a curve made of short lines would be cut wherever it crosses a line.
 const STEEPEST: f64 = 0.03;
 
-/// Sectors of half a turn: a sector is little narrower than the greatest angle.
+/// Sectors of half a turn, each 1.4 degrees: a little narrower than the greatest angle, whose sine is
+/// [`STEEPEST`].
 const SECTORS: i32 = 128;
 
 /// Sectors on each side of its own in which a line may lie on another: the greatest angle ends in the second.
 const REACH: i32 = 2;
 
-/// Parts of a turn by which arcs are kept.
+/// Cells of a turn by which arcs are kept. A finer division makes more cells for each arc, a coarser one more
+/// arcs in each cell.
 const ARC_CELLS: f64 = 64.0;
 
 /// Rows of cells that are looked at one by one. Where a line crosses more, all of its level between the first
 /// and the last are.
 const MOST_ROWS: f64 = 256.0;
 
-/// Share of the tolerance that one line may lose when it stands for another.
+/// Share of the tolerance that a line may lose when it stands for another: a millionth, for rounding.
 const NEARLY: f64 = 1e-6;
 
-/// Length that is none, mm: a thousandth of the least tolerance.
+/// Shorter lengths count as none, mm: a thousandth of the least tolerance.
 pub(super) const NO_LENGTH_MM: f64 = 1e-9;
 
 /// What has been drawn.
@@ -442,6 +444,8 @@ impl Ink {
 impl Curve {
     /// Whether another one is the same within a tolerance, either way round.
     fn is_same(&self, other: &Self, tolerance_mm: f64) -> bool {
+        /// Turns of two curves that differ by less are equal, rad; places decide the rest within the
+        /// tolerance.
         const SAME_RAD: f64 = 1e-3;
         let [a, b, c, d] = other.places;
         [([a, b, c, d], other.turn_rad), ([d, c, b, a], -other.turn_rad)].iter().any(|(places, turn_rad)| {

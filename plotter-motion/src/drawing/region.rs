@@ -337,9 +337,9 @@ fn turning_points(
 /// The chord between the two is followed to 0; an end that stays twice counts half (M. Dowell and P. Jarratt,
 /// "A modified regula falsi method for computing the root of an equation", 1971, the Illinois method).
 fn zero(mut begin: (f64, f64), mut end: (f64, f64), value: impl Fn(f64) -> f64) -> f64 {
-    /// Each step gains a bit at least in the usual case: as many as a share has, and some.
+    /// Most steps. A step usually gains at least one bit, and a share has 53.
     const MOST_STEPS: u32 = 64;
-    /// A hundredth of the width of the border.
+    /// The search ends within this distance, mm: a hundredth of the width of the border.
     const EXACT_MM: f64 = 0.01 * BORDER_MM;
     for _ in 0..MOST_STEPS {
         let chord = (begin.0 * end.1 - end.0 * begin.1) / (end.1 - begin.1);

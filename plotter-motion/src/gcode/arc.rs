@@ -14,7 +14,7 @@ const LEAST_MM: f32 = 0.005;
 const MOST_MM: f32 = 0.5;
 const MOST_SHARE: f32 = 0.001;
 
-/// A sweep below this is a whole turn, rad.
+/// A smaller sweep is a whole turn, rad: it is the last bit of 2π in `f32`.
 const NO_SWEEP_RAD: f32 = 5e-7;
 
 /// What a chord may be longer than the diameter and still be taken for it, mm: both are rounded to

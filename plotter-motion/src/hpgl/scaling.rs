@@ -193,6 +193,8 @@ impl Scaling {
 
     /// Whether circles stay circles.
     pub(super) fn keeps_circles(&self) -> bool {
+        /// Relative difference of both factors that still counts as equal: rounding of `f64`, far below a
+        /// plotter unit on any sheet.
         const ROUNDING: f64 = 1e-9;
         let (factor, _) = self.factors();
         let (x, y) = (libm::fabs(factor.x), libm::fabs(factor.y));

@@ -63,7 +63,8 @@ impl Corner {
     }
 }
 
-/// A turn that is smaller cannot be told from none in `f32`, rad.
+/// Least turn, rad. `f32` cannot tell a smaller one from none: it is some last bits of a direction's
+/// components.
 const LEAST_TURN: f32 = 4e-7;
 
 /// The greatest square of the speed with which a corner between two directions (of length 1) may be taken,

@@ -32,7 +32,8 @@ pub(super) const MOST_FORM_SHARE: f32 = 0.998;
 /// Least share of the acceleration that is reckoned with: rounding may put a speed on the very limit of its
 /// form.
 const LEAST_SHARE: f32 = 1e-3;
-/// What the roots and quotients below may have been rounded up by.
+/// Greatest relative amount by which the roots and quotients below are rounded up: about eight last bits of
+/// `f32`.
 const ROUNDING: f32 = 1e-6;
 
 /// See the head of this file: how hard the machine may speed up and brake.

@@ -8,9 +8,11 @@ use crate::geom::single;
 use crate::root::root;
 use core::f32::consts::FRAC_1_SQRT_2;
 
-/// What directions and quotients may have been rounded by.
+/// Greatest relative rounding of directions and quotients: about eight last bits of `f32`, for the few
+/// operations that each has been through.
 const ROUNDING: f32 = 1e-6;
-/// A part of a direction that is less is none.
+/// Least component of a direction. A smaller one counts as 0, since it is no more than the rounding above and
+/// would be divided by.
 const LEAST_PART: f32 = 1e-6;
 
 /// What is the same for every block, computed once. Small numbers are `f32`, which small processors reckon
@@ -36,7 +38,8 @@ pub(super) struct Limits {
 
 impl Limits {
     pub(super) fn of<M: Modes>(settings: &PlannerSettings) -> Self {
-        /// What the pen does of a belt's way along its diagonal: √½, rounded down.
+        /// The pen's share of a belt's motion along its diagonal: √½, rounded down so that no limit is
+        /// exceeded.
         const OF_BELT: f32 = FRAC_1_SQRT_2.next_down();
         let PlannerSettings { speed_mm_s, travel_speed_mm_s, accel_mm_s2, accel_limit, .. } = *settings;
         let (motors, belts) = match accel_limit {
@@ -142,6 +145,8 @@ impl Limits {
     /// Square of a speed that is asked for, no more than this one; none if it is so slow that the square, or
     /// a share of it, were no number with all its bits, or not finite.
     pub(super) fn speed2(speed_mm_s: f64, most2: f32) -> Option<f32> {
+        /// Least speed, mm/s. Its square, 1e-32, times the square of the least override, 1e-4, still has all
+        /// bits of an `f32`.
         const LEAST_MM_S: f32 = 1e-16;
         let speed = single(speed_mm_s);
         (LEAST_MM_S..f32::INFINITY).contains(&speed).then(|| least(speed * speed, most2))

@@ -3,14 +3,15 @@
 use crate::geom::single;
 use crate::{Point, Segment};
 
-/// Most vertices that one segment stands for.
+/// Most vertices that one segment stands for. It bounds memory and the work for each vertex, which checks all
+/// that were left out.
 const MOST: usize = 8;
 
 /// Least share of a segment's length by which it is made longer within the line that ends it. A smooth curve
 /// allows more, so that segments along it are equally long and not a whole number of its chords; behind a
 /// corner there is less, and the segment ends in the corner.
 const LONGER_SHARE: f64 = 0.1;
-/// Halvings of that line in the search for the place: to a 32nd.
+/// Halvings of that line in the search for the place, which is then known to a 32nd of the line.
 const HALVINGS: u32 = 5;
 
 /// A straight segment that stands for one or more of the path. It begins where the one before it ends.

@@ -11,28 +11,30 @@ use super::ring::Ring;
 use crate::geom::single;
 use crate::{MotionLimits, profile::SCurve};
 
-/// Longest phase, s.
+/// Longest phase, s (47 ms): a feed hold begins to act after this time at the latest, as with trapezoids.
 const LONGEST_S: f64 = 3.0 / 64.0;
-/// Parts of the time from no acceleration to the greatest, for each of which a jerk is chosen.
+/// Parts of the time from no acceleration to the greatest. A jerk is chosen for each part.
 const PARTS: f64 = 32.0;
 /// Shortest part, s: with great jerks the motion is nearly a trapezoid, and finer parts would only be more.
 const SHORTEST_S: f64 = 0.000_2;
 /// How much longer a part may be while nothing lies in the way: tried in this order.
 const LONGER: [f64; 4] = [64.0, 16.0, 4.0, 1.0];
-/// Halvings of the range of jerks in the search for the greatest viable one.
+/// Halvings of the range of jerks in the search for the greatest viable one: to 6e-8 of the range, as fine as
+/// `f32`.
 const HALVINGS: u32 = 24;
-/// How much too late a braking may be by rounding, mm.
+/// Distance by which rounding may make a braking end too late, mm: `f64` holds a block of a kilometre to a
+/// tenth of it.
 const SLACK_MM: f64 = 1e-9;
-/// A braking that ends no farther than this from where it should is begun as a whole, mm.
+/// A braking that ends this near to its place is begun as a whole, mm: a nanometre, below any motor's step.
 const TIGHT_MM: f64 = 1e-6;
-/// What is left of a block when it counts as done, mm.
+/// A block with less than this left is done, mm: as [`SLACK_MM`].
 const DONE_MM: f64 = 1e-9;
-/// A phase that is no longer than this is rounding, s.
+/// A phase no longer than this is rounding, s: a thousandth of a tick of a microsecond.
 const SHORTEST_PHASE_S: f64 = 1e-9;
 /// The acceleration rises to its greatest in no less than this, s, whatever jerk is allowed: a thousand of
 /// the phases above.
 const SHORTEST_RISE_S: f64 = 1e-6;
-/// Slower than this is a standstill, mm/s.
+/// A lower speed is a standstill, mm/s: four orders below the least limit that is planned with.
 const STANDSTILL_MM_S: f64 = 1e-7;
 
 /// The limits along the path.
@@ -190,7 +192,7 @@ impl<const N: usize> Ahead<N> {
     /// Leaves out the places that a state keeps with room to spare: every state that is slower, has less
     /// acceleration and has not come so far keeps them too, for all of its brakings are shorter.
     fn leave_out_kept(&mut self, state: State, way_mm: f64, limits: Limits) {
-        /// Share of a speed, and a way, mm, that are far more than what rounding makes of them.
+        /// Margins, as a share of a speed and as a distance in mm, far above the rounding of either.
         const SPARE: f64 = 1e-9;
         const SPARE_MM: f64 = 1e-6;
         let peak = state.peak(limits);

@@ -140,9 +140,10 @@ crate::checked_serde::checked_deserialize!(
 
 /// Least and greatest limit that a motion is planned with: a micrometre a second to ten kilometres a second.
 const LIMITS: (f64, f64) = (1e-3, 1e7);
-/// Greatest jerk, mm/s³.
+/// Greatest jerk, mm/s³: a motion with it is a trapezoid for any machine.
 const MOST_JERK: f64 = 1e12;
-/// Least and greatest tolerance, mm.
+/// Least and greatest tolerance, mm: a nanometre, below any motor's step, and a metre, beyond any drawing's
+/// detail.
 pub(super) const LEAST_TOLERANCE_MM: f64 = 1e-6;
 const MOST_TOLERANCE_MM: f64 = 1e3;
 
@@ -193,7 +194,7 @@ impl PlannerSettings {
     /// ```
     #[must_use]
     pub fn for_digits_of(self, digit_mm: f64) -> Self {
-        /// Greatest digit that is taken for rounding, mm.
+        /// Greatest last digit that counts as rounding, mm. Of a coarser one only this much is allowed for.
         const MOST_DIGIT_MM: f64 = 0.1;
         let half_mm = if digit_mm > 0.0 { 0.5 * digit_mm.min(MOST_DIGIT_MM) } else { 0.0 };
         Self { allowance_mm: self.allowance_mm.max(half_mm), ..self }

@@ -169,6 +169,7 @@ impl<I: Iterator<Item = PenMove>, C: BenchController> Bench<I, C> {
     #[must_use]
     pub fn with_controller(machine: &Machine, settings: BenchSettings, controller: C, moves: I) -> Self {
         let config = machine.config();
+        /// Shortest time step: the resolution of all recorded times.
         const SHORTEST: Duration = Duration::from_micros(1);
         const LONGEST: Duration = Duration::from_millis(1); // a few of the position loop's runs
         let time_step = Duration::from_micros(micros(settings.time_step.clamp(SHORTEST, LONGEST)));

@@ -15,13 +15,14 @@ use core::fmt;
 use core::marker::PhantomData;
 use core::time::Duration;
 
-/// Farthest that a chord may be from its course, steps.
+/// Greatest distance of a chord from its course, steps: with the half step of rounding a motor stays within
+/// one step.
 const CHORD_STEPS: f32 = 0.25;
-/// A phase that ends nearer than this to the end of its course ends there, mm.
+/// A phase that ends nearer than this to the end of its course ends there, mm: far below a motor's step.
 const LATE_MM: f32 = 2e-6;
-/// The same as a share of the course, which is what rounding makes of a long one.
+/// The same as a share of the course, for long ones: two last bits of `f32`.
 const LATE_SHARE: f32 = 2.5e-7;
-/// What ends slower ends at rest, mm/s.
+/// A course that ends slower than this ends at rest, mm/s: the least limit that is planned with.
 const STANDSTILL_MM_S: f32 = 1e-3;
 
 /// How steps are timed.

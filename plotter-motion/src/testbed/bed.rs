@@ -103,6 +103,8 @@ impl TestBed {
     /// A bench with a description of one's own, wrong in whichever way; `settings.wrong_share` is not used.
     #[must_use]
     pub fn with_description(machine: &Machine, described: &Machine, settings: TestBedSettings) -> Self {
+        /// Bounds of the time step, as for `plant::Bench`: the resolution of its times, and a few runs of the
+        /// position loop.
         const SHORTEST: Duration = Duration::from_micros(1);
         const LONGEST: Duration = Duration::from_millis(1);
         let time_step = settings.time_step.clamp(SHORTEST, LONGEST);

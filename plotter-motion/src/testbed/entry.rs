@@ -110,6 +110,8 @@ impl Entry {
         vec![
             Self::line("published", LineTracking::new),
             Self::line("published-60", |machine| {
+                /// Greatest duty of y, in steps of 255, in place of the published 255: a weaker variant of
+                /// the published controller for comparison.
                 const LOWER_LIMIT: f32 = 60.0;
                 let mut settings = LineTrackingSettings::of(machine);
                 settings.published.duty_limit_y = settings.published.duty_limit_y.min(LOWER_LIMIT);
@@ -127,6 +129,8 @@ impl Entry {
 
 /// As published, at the level of drive that holds the machine's feed on the axis that needs more of it.
 fn point_to_point(machine: &Machine) -> PointToPointSettings {
+    /// Allowed error, mm. Source: Khan and McGinn, "2D Controlled Marking Board", which draws its circle with
+    /// it.
     const ALLOWED_MM: f64 = 0.45;
     let config = machine.config();
     let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);

@@ -3,10 +3,12 @@
 use crate::{FrameTransform, joint::TransformError};
 use plotter_motion::{Point, Vec2};
 
-/// In how many frames an offset is to be gone, where that takes no more than may be added.
+/// Number of frames over which an offset is taken back, unless a joint may add less. Fewer would bend the
+/// drawing more sharply at each joint.
 const FRAMES_TO_RETURN: f64 = 8.0;
 
-/// Two places of the edge this near to each other tell no direction, mm.
+/// Least distance of two places of the edge that tell its direction, mm: over less, the edge's bends of some
+/// tenths of a millimetre are all that is seen.
 const SHORTEST_EDGE_MM: f64 = 10.0;
 
 /// What an anchor knows of its sheet, and how much it may add at a joint.

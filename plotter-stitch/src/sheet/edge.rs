@@ -2,7 +2,7 @@
 
 use super::noise::Noise;
 
-/// How far from one another the edge's bends are, mm.
+/// Distance between the bends of an edge, mm.
 const BEND_MM: f64 = 400.0;
 
 /// The edge of a roll of paper: straight on the whole, and a little wavy.

@@ -3,10 +3,11 @@
 use core::f64::consts::{FRAC_PI_2, TAU};
 use plotter_motion::{PlotOp, Point, Vec2};
 
-/// Steps of a bisection: from an interval of 1 down to the last bit.
+/// Steps of a bisection. 60 halve an interval of 1 to below its last bit in `f64`.
 const HALVINGS: u32 = 60;
 
-/// A circle's radius changes by no more than this share of it.
+/// Greatest change of a circle's radius, as a share, that counts as rounding: thousands of last bits of
+/// `f64`.
 const ROUNDING: f64 = 1e-12;
 
 /// What one operation draws: a line or an arc, with a parameter from 0 at its start to 1 at its end.

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use plotter_motion::{Point, Segment};
 use rstar::{AABB, RTree, RTreeObject};
 
-/// A vertex turns the way by more than this: a corner, rad.
+/// A vertex that turns the path by more than this is a corner, rad: 20 degrees.
 const CORNER_RAD: f64 = 0.35; // 20 degrees
 
 /// What a cut costs in a corner, on another line, and along the border; between these it falls in proportion.
@@ -18,13 +18,14 @@ const SHALLOW_COST: f64 = 1.0;
 /// harm.
 const FAR_COST: f64 = 0.1;
 
-/// Places looked at in a window's half, for a line straight across.
+/// Places that are tried in each half of a window, for a line straight across.
 const STEPS: f64 = 8.0;
-/// Most places on one operation.
+/// Most places that are tried on one operation. It bounds the time for lines along the border.
 const MOST_STEPS: f64 = 64.0;
-/// Most chords of an arc in the search for crossings.
+/// Most chords of an arc in the search for crossings. It bounds the time; the cost of a cut needs no exact
+/// crossing.
 const MOST_CHORDS: f64 = 16.0;
-/// Most neighbours that are looked at around a place.
+/// Most neighbours that are checked around a place. It bounds the time where lines are dense.
 const MOST_NEIGHBOURS: usize = 64;
 
 /// From which frame a line comes into the window, or to which it leaves.

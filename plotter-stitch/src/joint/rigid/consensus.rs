@@ -172,6 +172,7 @@ impl Spread {
 
     /// The row around which most others lie.
     fn densest(&self, shifts_mm: &[f32; MOST_CROSSINGS], from: usize, to: usize) -> (f32, u64) {
+        /// One over the square of [`NEAR_MM`], 1/mm²: a product in place of a quotient in the inner loop.
         const PER_SQUARE: f32 = 1.0 / (NEAR_MM * NEAR_MM);
         let turned_mm = &shifts_mm[from..to];
         let mut best = (0.0, 0.0);

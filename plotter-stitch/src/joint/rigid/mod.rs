@@ -14,22 +14,24 @@ use equations::{Pose, Row, Solution, in_radians, moved_by, single, solve};
 use plotter_motion::{Axis, Point, Vec2};
 use rival::rival;
 
-/// No machine is so large, mm. Up to here nothing below overflows.
+/// Farthest place, mm: a kilometre, larger than any machine. No product below overflows up to there.
 const FARTHEST_MM: f64 = 1e6;
 
-/// Rounds of fitting and choosing anew at the most; two are usual.
+/// Most rounds of fitting and choosing anew. Two are usual; the bound ends a choice that goes to and fro.
 const MOST_ROUNDS: u32 = 10;
 
-/// Places are sorted out by no more than this times the deviation that is expected.
+/// Greatest ratio of the deviation by which outliers are sorted out to the expected one. Without it many
+/// outliers would widen the bound that should find them.
 const GREATEST_SCALE: f64 = 3.0;
 
-/// More than this many of its standard deviations no paper swells.
+/// Greatest swelling, in its standard deviations. By chance one paper in 16,000 swells more.
 const GREATEST_SWELLING: f64 = 4.0;
 
-/// What is within so many of its deviations may be so.
+/// A value within this many of its standard deviations may be so: 99.7 % of normal values are.
 const SURE: f64 = 3.0;
 
-/// A sheet that is turned by more than this many standard deviations has moved.
+/// A sheet that is turned by more than this many standard deviations has moved: by chance once in 500
+/// million.
 const STILL: f64 = 6.0;
 
 /// Fits a turned and shifted sheet to where its marks were found.
