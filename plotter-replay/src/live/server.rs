@@ -14,9 +14,9 @@ use tungstenite::handshake::derive_accept_key;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket};
 
-/// Twenty updates a second.
+/// Time between two updates of a page: twenty a second look like motion.
 const UPDATE_EVERY: Duration = Duration::from_millis(50);
-/// Longest head of a request, bytes.
+/// Longest head of a request, bytes. It bounds memory, and no browser sends this much to the page.
 const MOST_HEAD_BYTES: usize = 8_192;
 /// Browsers at the same time.
 const MOST_CONNECTIONS: usize = 32;

@@ -8,7 +8,8 @@ use std::io::Write;
 
 /// Greatest age, in record time, of a record that is not written through yet.
 const FLUSH_AFTER: Duration = Duration::from_millis(500);
-/// Text that is gathered before it is handed on, bytes.
+/// Text that is gathered before it is handed on, bytes: a disk's block or two, so that a record costs no
+/// write of its own.
 const GATHER_BYTES: usize = 8_192;
 
 /// Appends records to a log, whole lines at a time.

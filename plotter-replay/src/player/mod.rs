@@ -41,7 +41,7 @@ use core::time::Duration;
 use run::{Did, Run};
 use std::collections::VecDeque;
 
-/// Records that a difference shows before and after the place.
+/// Records that a difference shows on each side of its place.
 const CONTEXT: usize = 10;
 
 /// How a recording is re-run.

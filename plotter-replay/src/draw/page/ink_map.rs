@@ -4,9 +4,9 @@ use super::numbers::zipped;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 
-/// Cells a side at most.
+/// Most cells a side. A drawing that needs more gets cells of twice the side, so that the page stays small.
 const MOST_CELLS: i32 = 512;
-/// Side of a cell at first, mm.
+/// Side of a cell at first, mm: the line of a fine pen.
 const FINEST_MM: f64 = 0.1;
 
 /// The sheet in square cells, each with the time of its first ink. Cells are as fine as the extent of the
