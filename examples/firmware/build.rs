@@ -1,5 +1,5 @@
-//! Reads the machines' TOML files on the host, with the checks of `plotter-motion`, and writes what the firmwares need
-//! of them as constants. So neither a parser nor a check is in their program memory.
+//! Reads the machines' TOML files on the host, with the checks of `plotter-motion`, and writes what the
+//! firmwares need of them as constants. So neither a parser nor a check is in their program memory.
 
 use plotter_motion::control::{ContouringSettings, LineTrackingSettings};
 use plotter_motion::firmware::GantrySettings;
@@ -42,7 +42,8 @@ fn machine(variable: &str, default: &str, kind: MachineKind) -> Result<Machine, 
     Ok(machine)
 }
 
-/// Floats are written as Rust's shortest text that reads as the same bits; a plain struct's `Debug` text is its own Rust.
+/// Floats are written as Rust's shortest text that reads as the same bits; a plain struct's `Debug` text is
+/// its own Rust.
 fn gantry_constants(machine: &Machine, text: &mut String) -> Result<(), Box<dyn Error>> {
     let config = machine.config();
     writeln!(

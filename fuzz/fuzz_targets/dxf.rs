@@ -1,4 +1,5 @@
-//! Any bytes read as DXF: no panic, no end of entities, no place that is none, and complaints that have a line of the text.
+//! Any bytes read as DXF: no panic, no end of entities, no place that is none, and complaints that have a
+//! line of the text.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

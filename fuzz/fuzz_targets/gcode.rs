@@ -1,4 +1,5 @@
-//! Any bytes read as G-code give places and speeds that are numbers; what is read can be written and read again.
+//! Any bytes read as G-code give places and speeds that are numbers; what is read can be written and read
+//! again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

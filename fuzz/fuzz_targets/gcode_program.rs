@@ -1,5 +1,6 @@
-//! Any row of words of a G-code program, with its variables, formulas, loops, subprograms and curves, is read to an end: places are
-//! numbers, errors have a place in the text. The first byte chooses; each other one is a word, or itself.
+//! Any row of words of a G-code program, with its variables, formulas, loops, subprograms and curves, is read
+//! to an end: places are numbers, errors have a place in the text. The first byte chooses; each other one is
+//! a word, or itself.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,11 +1,13 @@
-//! Any bytes read as HPGL: no panic, no end of reports, no place that is none; and what was read is written and read again.
+//! Any bytes read as HPGL: no panic, no end of reports, no place that is none; and what was read is written
+//! and read again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use plotter_motion::PlotOp;
 use plotter_motion::hpgl::{Coordinates, Interpreter, PlotOps, ReadOptions, WriteOptions, Writer, plot_ops};
 
-/// Operations after which a text has shown what it can do: there are texts that fill sheets with dots for a few bytes.
+/// Operations after which a text has shown what it can do: there are texts that fill sheets with dots for a
+/// few bytes.
 const MOST_OPS: usize = 20_000;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,4 +1,5 @@
-//! Any bytes from the line: neither end of the reliable link panics or speaks for ever, and nothing is read that was not sent.
+//! Any bytes from the line: neither end of the reliable link panics or speaks for ever, and nothing is read
+//! that was not sent.
 #![no_main]
 
 use core::time::Duration;

@@ -1,5 +1,5 @@
-//! Any bytes read as a log: no panic, every byte is in a record or told as damage, time never goes back, and what was read is written
-//! and read again.
+//! Any bytes read as a log: no panic, every byte is in a record or told as damage, time never goes back, and
+//! what was read is written and read again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,5 @@
-//! Any bytes between host and machine, run again on the machine's controller: no panic, an end, and the same twice.
+//! Any bytes between host and machine, run again on the machine's controller: no panic, an end, and the same
+//! twice.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -9,8 +10,8 @@ use plotter_replay::log::{Event, Header, Record};
 use plotter_replay::{AnyController, Player, PlayerSettings, compare::Decoder, player::RecordingTraits};
 use std::time::Duration;
 
-// Three bytes make a record: who says it, how long after the last, and what. A host's call and greeting come first, so that frames of
-// session 9 are understood; the machine's own are those of a recording.
+// Three bytes make a record: who says it, how long after the last, and what. A host's call and greeting come
+// first, so that frames of session 9 are understood; the machine's own are those of a recording.
 fuzz_target!(|bytes: &[u8]| {
     let mut records = Vec::new();
     let mut time = Duration::ZERO;

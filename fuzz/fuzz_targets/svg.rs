@@ -1,4 +1,5 @@
-//! Any bytes read as SVG, in each way: no panic, no place that is none, and no more vertices than are allowed.
+//! Any bytes read as SVG, in each way: no panic, no place that is none, and no more vertices than are
+//! allowed.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,16 +1,19 @@
-//! The drivers in asynchronous tasks, as with Embassy: four tasks of a pen plotter, none of which ever blocks.
+//! The drivers in asynchronous tasks, as with Embassy: four tasks of a pen plotter, none of which ever
+//! blocks.
 //!
-//! The controller draws two lines of G-code that come over the serial line. One byte of the second line comes broken, so that it
-//! is refused and the host sends it again; then somebody presses the emergency stop while the pen is down. Look at the
-//! servo: it is lowered slowly, the motors wait for it, and the stop lifts it within a frame.
+//! The controller draws two lines of G-code that come over the serial line. One byte of the second line comes
+//! broken, so that it is refused and the host sends it again; then somebody presses the emergency stop while
+//! the pen is down. Look at the servo: it is lowered slowly, the motors wait for it, and the stop lifts it
+//! within a frame.
 //!
 //! ```text
 //! cargo run -p plotter-hal --example embassy_tasks
 //! ```
 //!
-//! On a board the tasks stay as they are: `clock.until(at)` is `Timer::at(at)`, the cell with the controller a
-//! `Mutex<ThreadModeRawMutex, RefCell<_>>`, and `#[embassy_executor::task]` and the spawner take the place of [`run`]. There
-//! is a clock here that jumps from one appointment to the next, so this runs in no time, and the same each time.
+//! On a board the tasks stay as they are: `clock.until(at)` is `Timer::at(at)`, the cell with the controller
+//! a `Mutex<ThreadModeRawMutex, RefCell<_>>`, and `#[embassy_executor::task]` and the spawner take the place
+//! of [`run`]. There is a clock here that jumps from one appointment to the next, so this runs in no time,
+//! and the same each time.
 
 mod desk;
 

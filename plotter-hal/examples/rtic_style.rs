@@ -1,16 +1,18 @@
 //! The drivers in interrupts, as with RTIC: three of a laser plotter, each of which does its bit and returns.
 //!
-//! The controller burns two lines that come over the serial line. In the middle of the second one the switch at the right end is
-//! pressed: the step that would lead farther into it is not made, and in its place the laser goes dark. Look at its duty,
-//! which follows the speed: it grows as the machine accelerates and fades as it brakes.
+//! The controller burns two lines that come over the serial line. In the middle of the second one the switch
+//! at the right end is pressed: the step that would lead farther into it is not made, and in its place the
+//! laser goes dark. Look at its duty, which follows the speed: it grows as the machine accelerates and fades
+//! as it brakes.
 //!
 //! ```text
 //! cargo run -p plotter-hal --example rtic_style
 //! ```
 //!
-//! With RTIC the struct [`Shared`] gets `#[shared]`, the three functions `#[task(binds = .., priority = ..)]`, and the
-//! hardware the part of [`main`] that calls whichever is due next; what they do stays as it is. The highest priority
-//! makes the steps: whatever else goes on, they come in time.
+//! With RTIC the struct [`Shared`] gets `#[shared]`, the three functions
+//! `#[task(binds = .., priority = ..)]`, and the hardware the part of [`main`] that calls whichever is due
+//! next; what they do stays as it is. The highest priority makes the steps: whatever else goes on, they come
+//! in time.
 
 mod desk;
 
@@ -41,8 +43,8 @@ const END: Duration = Duration::from_millis(2000);
 /// No step is longer than this in a line (see [`Laser::new`]).
 const LASER_TIMEOUT: Duration = Duration::from_millis(20);
 
-/// The timer's compare interrupt, priority 3: the steps that are due, and the laser with each of them. Says when it wants to
-/// be called again.
+/// The timer's compare interrupt, priority 3: the steps that are due, and the laser with each of them. Says
+/// when it wants to be called again.
 fn timer(shared: &mut Shared, clock: &Clock) -> Duration {
     let now = clock.now();
     let Shared { plotter, motors, laser } = shared;
@@ -121,7 +123,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let plotter = StepperPlotter::new(settings, SafetyGate::new(switches.limits(), false))?;
     let mut shared = Shared { plotter, motors, laser: Laser::new(pwm, LASER_TIMEOUT) };
 
-    // The interrupt controller: the next one that is due, and of two at the same time the one with the higher priority.
+    // The interrupt controller: the next one that is due, and of two at the same time the one with the higher
+    // priority.
     let mut due = [Duration::ZERO; 3];
     while let Some((priority, &at)) =
         due.iter().enumerate().rev().min_by_key(|(_, at)| **at).filter(|(_, at)| **at < END)

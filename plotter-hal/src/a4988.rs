@@ -9,16 +9,16 @@
 //!                    hold
 //! ```
 //!
-//! Two forms of the same driver. Without waiting: [`step`](A4988::step) takes a step, [`tick`](A4988::tick) ends
-//! the pulse, and [`due`](A4988::due) says when to call it. With waiting: [`step_blocking`](A4988::step_blocking)
-//! comes back when the chip is ready for the next one.
+//! Two forms of the same driver. Without waiting: [`step`](A4988::step) takes a step, [`tick`](A4988::tick)
+//! ends the pulse, and [`due`](A4988::due) says when to call it. With waiting:
+//! [`step_blocking`](A4988::step_blocking) comes back when the chip is ready for the next one.
 //!
-//! A step that comes before the chip is ready is put off, never lost: [`due`](A4988::due) says to when. One can be
-//! put off at a time; a second is refused with [`Error::Busy`], and is still the caller's.
+//! A step that comes before the chip is ready is put off, never lost: [`due`](A4988::due) says to when. One
+//! can be put off at a time; a second is refused with [`Error::Busy`], and is still the caller's.
 //!
 //! Sources, named at each figure: Allegro, *A4988 DMOS Microstepping Driver with Translator and
-//! Overcurrent Protection*, A4988-DS; Texas Instruments, *DRV8825 Stepper Motor Controller IC*, SLVSA73F; Trinamic,
-//! *TMC2209 Datasheet*, Rev. 1.09.
+//! Overcurrent Protection*, A4988-DS; Texas Instruments, *DRV8825 Stepper Motor Controller IC*, SLVSA73F;
+//! Trinamic, *TMC2209 Datasheet*, Rev. 1.09.
 
 mod error;
 mod microsteps;
@@ -37,9 +37,9 @@ use plotter_motion::{Axis, Direction, safety::Pulse};
 
 /// One stepper motor. It steps by nothing but a [`Pulse`], which only a safety gate makes.
 ///
-/// Nothing moves, and no step is taken, before [`start`](Self::start). Whatever pin fails, the motor makes no further
-/// step until it is started anew: see [`Error`]. Dropping the driver leaves the pins as they are; call
-/// [`stop`](Self::stop) first.
+/// Nothing moves, and no step is taken, before [`start`](Self::start). Whatever pin fails, the motor makes no
+/// further step until it is started anew: see [`Error`]. Dropping the driver leaves the pins as they are;
+/// call [`stop`](Self::stop) first.
 ///
 /// ```
 /// use core::time::Duration;
@@ -107,8 +107,8 @@ enum Level {
 }
 
 impl<Step: OutputPin, Dir> A4988<Step, Dir, NoPin<Step::Error>, NoPin<Step::Error>> {
-    /// The motor of `axis`, on a board that has ENABLE and SLEEP wired so that the chip is always on. Leaves the pins
-    /// as they are.
+    /// The motor of `axis`, on a board that has ENABLE and SLEEP wired so that the chip is always on. Leaves
+    /// the pins as they are.
     #[inline(always)] // so that a chip's times become whole numbers while the program is compiled
     pub const fn new(axis: Axis, step: Step, dir: Dir, timing: Timing) -> Self {
         Self {
@@ -136,7 +136,8 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
         A4988 { has_enable: true, ..self.with_pins(|_, sleep| (enable, sleep)) }
     }
 
-    /// With a pin on SLEEP: low puts the chip to sleep. On RESET it does as well, for low holds the chip in reset.
+    /// With a pin on SLEEP: low puts the chip to sleep. On RESET it does as well, for low holds the chip in
+    /// reset.
     pub fn with_sleep<Pin>(self, sleep: Pin) -> A4988<Step, Dir, Enable, Pin> {
         A4988 { has_sleep: true, ..self.with_pins(|enable, _| (enable, sleep)) }
     }
@@ -187,8 +188,8 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
         self.falls_at().or(self.rises_at()).map(Duration::from_nanos)
     }
 
-    /// Takes back a step that has been taken and has not been made, and says which. The motor keeps its current, so that
-    /// it stands where it is: for an end of motion that is not an emergency.
+    /// Takes back a step that has been taken and has not been made, and says which. The motor keeps its
+    /// current, so that it stands where it is: for an end of motion that is not an emergency.
     pub const fn cancel(&mut self) -> Option<Direction> {
         self.waiting.take()
     }
@@ -213,8 +214,8 @@ impl<Step, Dir, Enable, Sleep> A4988<Step, Dir, Enable, Sleep> {
         self.level == Level::Low && self.waiting.is_some() && now_ns >= self.earliest
     }
 
-    /// How long a blocking form has to wait, ns. Each begins at time 0, so that `earliest` is how long; what the other form
-    /// has left behind is over after the longest time of all.
+    /// How long a blocking form has to wait, ns. Each begins at time 0, so that `earliest` is how long; what
+    /// the other form has left behind is over after the longest time of all.
     pub(crate) fn settling(&self) -> u32 {
         u32::try_from(self.earliest).unwrap_or(u32::MAX).min(self.timing.longest())
     }
@@ -245,8 +246,8 @@ where
     Enable: OutputPin<Error = Step::Error>,
     Sleep: OutputPin<Error = Step::Error>,
 {
-    /// Brings every pin into a known state, whatever was before: STEP low, awake, outputs on. The motor holds; the first
-    /// step rises when the chip has woken up.
+    /// Brings every pin into a known state, whatever was before: STEP low, awake, outputs on. The motor
+    /// holds; the first step rises when the chip has woken up.
     ///
     /// # Errors
     ///
@@ -273,24 +274,26 @@ where
         Ok(())
     }
 
-    /// Takes the motor's share of a pulse; none is no step. Makes at once what can be made at once; the rest is
-    /// [`tick`](Self::tick)'s.
+    /// Takes the motor's share of a pulse; none is no step. Makes at once what can be made at once; the rest
+    /// is [`tick`](Self::tick)'s.
     ///
-    /// `now` is the time just before the call. An edge that comes later after its reading than the next one after its own
-    /// shortens what lies between by the difference: where that counts, add it to the [`Timing`], as
-    /// [`Timing::on_clock`] adds a tick of the clock.
+    /// `now` is the time just before the call. An edge that comes later after its reading than the next one
+    /// after its own shortens what lies between by the difference: where that counts, add it to the
+    /// [`Timing`], as [`Timing::on_clock`] adds a tick of the clock.
     ///
     /// # Errors
     ///
-    /// [`Error::Off`] before the start and after a stop or a fault; [`Error::Busy`] while another step is put off. The
-    /// step has then not been taken. [`Error::Pin`] and [`Error::StillOn`] when a pin fails: steps may be lost.
+    /// [`Error::Off`] before the start and after a stop or a fault; [`Error::Busy`] while another step is put
+    /// off. The step has then not been taken. [`Error::Pin`] and [`Error::StillOn`] when a pin fails: steps
+    /// may be lost.
     pub fn step(&mut self, pulse: Pulse, now: Duration) -> Result<(), Error<Step::Error>> {
         self.can_take(pulse)?;
         self.take(pulse);
         self.tick(now)
     }
 
-    /// Does what is due: ends a pulse, begins one that was put off. Never more than one edge of STEP in a call.
+    /// Does what is due: ends a pulse, begins one that was put off. Never more than one edge of STEP in a
+    /// call.
     ///
     /// # Errors
     ///
@@ -322,13 +325,13 @@ where
         Ok(())
     }
 
-    /// Sets the resolution of the chip; the next step waits for the setup time. Count and place of the motor are in other
-    /// units afterwards, so set it before the first step.
+    /// Sets the resolution of the chip; the next step waits for the setup time. Count and place of the motor
+    /// are in other units afterwards, so set it before the first step.
     ///
     /// # Errors
     ///
-    /// [`Error::Busy`] within a pulse and while a step is put off; [`Error::Microsteps`] for a resolution that the chip
-    /// does not have; [`Error::Pin`] and [`Error::StillOn`] when a pin fails.
+    /// [`Error::Busy`] within a pulse and while a step is put off; [`Error::Microsteps`] for a resolution
+    /// that the chip does not have; [`Error::Pin`] and [`Error::StillOn`] when a pin fails.
     pub fn set_microsteps<Ms1, Ms2, Ms3>(
         &mut self,
         pins: &mut MicrostepPins<Ms1, Ms2, Ms3>,
@@ -349,9 +352,10 @@ where
         Ok(())
     }
 
-    /// Switches the outputs off at once: the motor has no current and turns freely, its place is lost. Without a pin on
-    /// ENABLE the chip is put to sleep, and without either the motor gets no more steps and holds. A step put off is
-    /// dropped, a pulse on STEP left to [`tick`](Self::tick). [`start`](Self::start) makes the motor ready again.
+    /// Switches the outputs off at once: the motor has no current and turns freely, its place is lost.
+    /// Without a pin on ENABLE the chip is put to sleep, and without either the motor gets no more steps and
+    /// holds. A step put off is dropped, a pulse on STEP left to [`tick`](Self::tick). [`start`](Self::start)
+    /// makes the motor ready again.
     ///
     /// # Errors
     ///
@@ -475,8 +479,8 @@ pub(crate) fn wait(time_ns: u32, delay: &mut impl DelayNs) {
     }
 }
 
-/// The time as whole nanoseconds: a comparison and a sum of these are few instructions in the interrupt. Exact for 584
-/// years, and then begins anew.
+/// The time as whole nanoseconds: a comparison and a sum of these are few instructions in the interrupt.
+/// Exact for 584 years, and then begins anew.
 pub(crate) fn nanos(now: Duration) -> u64 {
     now.as_secs().wrapping_mul(1_000_000_000).wrapping_add(now.subsec_nanos().into())
 }

@@ -5,11 +5,12 @@
 //!             ──Pulse──▶ StepperAxes ─▶ STEP and DIR of x, STEP and DIR of y
 //! ```
 //!
-//! A fault of one motor stops both: with one alone the pen would leave its line. Both are tried whatever fails, and
-//! [`Error`] says what became of either.
+//! A fault of one motor stops both: with one alone the pen would leave its line. Both are tried whatever
+//! fails, and [`Error`] says what became of either.
 //!
-//! A step may be held back for its setup time. The gate has let it through, and may have been stopped since: so whoever stops the
-//! gate calls `stop` here as well. A drive is never held back: for its dead time none is given, and then it is asked for anew.
+//! A step may be held back for its setup time. The gate has let it through, and may have been stopped since:
+//! so whoever stops the gate calls `stop` here as well. A drive is never held back: for its dead time none is
+//! given, and then it is asked for anew.
 
 mod dc_axes;
 mod stepper_axes;

@@ -15,8 +15,9 @@ use embedded_hal::digital::{InputPin, PinState};
 /// How a switch is wired, and how long its contact bounces.
 ///
 /// A press is taken at once and a release only when it has lasted. That is the safe side: what is late is the
-/// permission to move. A press believed 20 ms late would be 1.8 mm of travel into the end of an axis at 90 mm/s.
-/// The price is that one spike on the wire counts as a press; where that happens, `press_after` asks for more.
+/// permission to move. A press believed 20 ms late would be 1.8 mm of travel into the end of an axis at 90
+/// mm/s. The price is that one spike on the wire counts as a press; where that happens, `press_after` asks
+/// for more.
 ///
 /// ```
 /// # use core::time::Duration;
@@ -27,9 +28,9 @@ use embedded_hal::digital::{InputPin, PinState};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SwitchSettings {
-    /// Level of the pin while the switch is pressed. A normally closed switch from the pin to ground, with a pull-up,
-    /// shows [`PinState::High`] then, and so does a broken wire; a normally open one shows [`PinState::Low`], and
-    /// its broken wire is found by nobody.
+    /// Level of the pin while the switch is pressed. A normally closed switch from the pin to ground, with a
+    /// pull-up, shows [`PinState::High`] then, and so does a broken wire; a normally open one shows
+    /// [`PinState::Low`], and its broken wire is found by nobody.
     pub pressed_at: PinState,
     /// For how long the pin must show that it is pressed before that is believed; 0 is at once.
     pub press_after: Duration,
@@ -40,8 +41,8 @@ pub struct SwitchSettings {
 impl Default for SwitchSettings {
     /// Normally closed; pressed at once, released after 20 ms.
     ///
-    /// Switches of 18 kinds were measured to bounce for at most 6.2 ms, an outlier apart (J. Ganssle, "A Guide to
-    /// Debouncing", 2004); 20 ms leave room for a worn one.
+    /// Switches of 18 kinds were measured to bounce for at most 6.2 ms, an outlier apart (J. Ganssle, "A
+    /// Guide to Debouncing", 2004); 20 ms leave room for a worn one.
     fn default() -> Self {
         Self {
             pressed_at: PinState::High,
@@ -152,8 +153,8 @@ impl Debounce {
     }
 }
 
-/// Whether that time has come, or passed. On a small processor each comparison of two [`Duration`]s is 44 bytes wherever it stands, and
-/// half of that where it is called.
+/// Whether that time has come, or passed. On a small processor each comparison of two [`Duration`]s is 44
+/// bytes wherever it stands, and half of that where it is called.
 #[cfg_attr(target_os = "none", inline(never))]
 pub(crate) fn has_come(at: Duration, now: Duration) -> bool {
     at <= now

@@ -1,8 +1,9 @@
 //! The emergency stop button on an input pin.
 //!
-//! Wire it as a limit switch (see [`limit_switch`](crate::limit_switch)): normally closed to ground with a pull-up, so
-//! that a cut wire stops the machine. A press is taken at once and latched by the safety gate, which takes all drive away
-//! until somebody resets it. ISO 13850 asks for both: a stop that stays, and a release that by itself starts nothing.
+//! Wire it as a limit switch (see [`limit_switch`](crate::limit_switch)): normally closed to ground with a
+//! pull-up, so that a cut wire stops the machine. A press is taken at once and latched by the safety gate,
+//! which takes all drive away until somebody resets it. ISO 13850 asks for both: a stop that stays, and a
+//! release that by itself starts nothing.
 //!
 //! ```text
 //!            power on    first tick          release_after      pressed          let go
@@ -18,11 +19,11 @@ use core::fmt;
 use core::time::Duration;
 use embedded_hal::digital::{self, InputPin};
 
-/// The button. Pressed until it has shown that it is not, so a machine that is switched on with its stop pressed, or with
-/// its wire cut, never starts.
+/// The button. Pressed until it has shown that it is not, so a machine that is switched on with its stop
+/// pressed, or with its wire cut, never starts.
 ///
-/// It remembers nothing of a press that is over: pass what it says to the gate, or to the controller that has one,
-/// after every [`tick`](Self::tick), *and once before the first*.
+/// It remembers nothing of a press that is over: pass what it says to the gate, or to the controller that has
+/// one, after every [`tick`](Self::tick), *and once before the first*.
 ///
 /// ```
 /// use core::time::Duration;
@@ -58,8 +59,8 @@ pub struct EstopInput<Pin> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum EstopChange {
-    /// It is known to be free, and has not been seen pressed since the machine was switched on. Comes once at most. A
-    /// firmware without a reset button may reset the safety gate now, or start its controller
+    /// It is known to be free, and has not been seen pressed since the machine was switched on. Comes once at
+    /// most. A firmware without a reset button may reset the safety gate now, or start its controller
     /// ([`StepperPlotter::restart`](plotter_motion::firmware::StepperPlotter::restart)).
     FreeSinceStart,
     /// It is pressed, or its wire is cut.

@@ -9,11 +9,12 @@
 //!              └─────────────┘         high    low      low    │ brakes: its ends short-circuited
 //! ```
 //!
-//! Source: Texas Instruments, *L293x Quadruple Half-H Drivers*, SLRS008D, "Bidirectional DC Motor Control" and
-//! its table. The thesis on the semi-virtual gantry wires it so, and runs the PWM at 2.5 kHz (sections 6.3, 6.7).
+//! Source: Texas Instruments, *L293x Quadruple Half-H Drivers*, SLRS008D, "Bidirectional DC Motor Control"
+//! and its table. The thesis on the semi-virtual gantry wires it so, and runs the PWM at 2.5 kHz (sections
+//! 6.3, 6.7).
 //!
-//! Bridges of other kinds: [`Drv8871`] with a PWM on either input, [`Tb6612`] with a PWM, two inputs and a standby.
-//! What all have in common is a [`Bridge`]; [`DeadTime`] makes any of them wait before it reverses.
+//! Bridges of other kinds: [`Drv8871`] with a PWM on either input, [`Tb6612`] with a PWM, two inputs and a
+//! standby. What all have in common is a [`Bridge`]; [`DeadTime`] makes any of them wait before it reverses.
 
 mod dead_time;
 mod drv8871;
@@ -60,18 +61,19 @@ pub trait Bridge {
 
 /// One motor on an H-bridge. It turns by nothing but a [`Drive`], which only a safety gate makes.
 ///
-/// The direction is never changed under duty: first the duty is taken away, then the pin that was high goes low,
-/// then the other one goes high, and only then the new duty is set. So the supply is never reversed on a motor
-/// that is being driven, and both inputs are never high together. (A timer that buffers its compare value takes
-/// the zero over at the end of its period; a PWM that must stop at once has to be set up without that buffer.)
+/// The direction is never changed under duty: first the duty is taken away, then the pin that was high goes
+/// low, then the other one goes high, and only then the new duty is set. So the supply is never reversed on a
+/// motor that is being driven, and both inputs are never high together. (A timer that buffers its compare
+/// value takes the zero over at the end of its period; a PWM that must stop at once has to be set up without
+/// that buffer.)
 ///
 /// Between the pulses, and at rest, the motor coasts. A controller must know that: write the PWM's frequency
 /// as [`enable_pwm_hz`](plotter_motion::config::MotorConfig::enable_pwm_hz) into the machine's file, and let
 /// it be at least that of the control loop. A motor that brakes in between, as the mean of its voltage would
 /// turn it, takes a bridge with the PWM on its inputs: [`Drv8871`] with [`Decay::Slow`].
 ///
-/// Whatever pin fails, the motor does not run on: see [`Error`]. Dropping the driver leaves the pins as they are;
-/// [`coast`](Self::coast) first.
+/// Whatever pin fails, the motor does not run on: see [`Error`]. Dropping the driver leaves the pins as they
+/// are; [`coast`](Self::coast) first.
 ///
 /// ```
 /// use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Set};
@@ -217,7 +219,8 @@ where
         }
     }
 
-    /// The PWM failed: tries it once more, and then takes the direction away, which stops a motor at any duty.
+    /// The PWM failed: tries it once more, and then takes the direction away, which stops a motor at any
+    /// duty.
     fn after_pwm(&mut self, cause: Enable::Error) -> Error<Forward::Error, Enable::Error> {
         self.direction = None;
         if self.enable.set_duty_cycle_fully_off().is_ok() || self.both_low().is_ok() {

@@ -9,9 +9,10 @@
 //!          ────┘                        └──         one that stands still burns a hole
 //! ```
 //!
-//! The documented stepper plotter drives its laser with 1 kHz, mDraw's 0 to 255 as 0 to 999 steps (spec 5.1). Its
-//! straight lines came out dotted because they were faster than its curves (spec 5.4); here the power follows the
-//! speed: [`StepGen`](plotter_motion::StepGen) gives out a power that does, and [`power_at_speed`] makes one of a
+//! The documented stepper plotter drives its laser with 1 kHz, mDraw's 0 to 255 as 0 to 999 steps (Dounaev
+//! and Phan, "X-Y Plotter Project", section 2.2.4.3). Its straight lines came out dotted because they were
+//! faster than its curves (section 3.1); here the power follows the speed:
+//! [`StepGen`](plotter_motion::StepGen) gives out a power that does, and [`power_at_speed`] makes one of a
 //! measured speed.
 
 use core::fmt;
@@ -22,14 +23,15 @@ use plotter_motion::safety::Beam;
 /// A laser. Dark unless it was given a [`Beam`] and the machine moves.
 ///
 /// [`moved`](Self::moved) tells it of every step or encoder edge. When none has come for the time given to
-/// [`new`](Self::new), the next call of whatever kind darkens it, and a beam asked for before that pause is forgotten:
-/// the last power of a movement that broke off must not light the next one. Times never go back.
+/// [`new`](Self::new), the next call of whatever kind darkens it, and a beam asked for before that pause is
+/// forgotten: the last power of a movement that broke off must not light the next one. Times never go back.
 ///
 /// Nothing is switched while nothing is called. A program that may hang with the beam on wants
-/// [`tick`](Self::tick) in the interrupt of a timer, or the chip's watchdog and a pin that is dark after a reset.
+/// [`tick`](Self::tick) in the interrupt of a timer, or the chip's watchdog and a pin that is dark after a
+/// reset.
 ///
-/// It goes dark when it is dropped, too. The beam is kept until another is asked for: whoever stops the gate gives
-/// [`Beam::OFF`] here, or calls [`off`](Self::off).
+/// It goes dark when it is dropped, too. The beam is kept until another is asked for: whoever stops the gate
+/// gives [`Beam::OFF`] here, or calls [`off`](Self::off).
 ///
 /// ```
 /// use core::time::Duration;
@@ -81,11 +83,12 @@ pub struct Laser<Pwm: SetDutyCycle> {
 }
 
 impl<Pwm: SetDutyCycle> Laser<Pwm> {
-    /// The laser on `pwm`, which is darkened; if that fails, the first [`tick`](Self::tick) tries again and tells.
+    /// The laser on `pwm`, which is darkened; if that fails, the first [`tick`](Self::tick) tries again and
+    /// tells.
     ///
-    /// `timeout` after a step or edge the machine stands: longer than the time between two steps of a line, short
-    /// enough that the beam does not burn in. At 250 mm/s² the first step of 1/87.58 mm takes √(2 s/a) = 9.6 ms, and
-    /// no later one as long; 20 ms suit that machine.
+    /// `timeout` after a step or edge the machine stands: longer than the time between two steps of a line,
+    /// short enough that the beam does not burn in. At 250 mm/s² the first step of 1/87.58 mm takes √(2
+    /// s/a) = 9.6 ms, and no later one as long; 20 ms suit that machine.
     pub fn new(pwm: Pwm, timeout: Duration) -> Self {
         let mut laser = Self { pwm: Some(pwm), timeout, beam: None, last_motion: None, light: None };
         // What fails here stays unknown, and is tried again.
@@ -125,8 +128,8 @@ impl<Pwm: SetDutyCycle> Laser<Pwm> {
         self.update()
     }
 
-    /// When [`tick`](Self::tick) has to be called if nothing moves before: then a laser that is lit goes out. `None`
-    /// while it is dark.
+    /// When [`tick`](Self::tick) has to be called if nothing moves before: then a laser that is lit goes out.
+    /// `None` while it is dark.
     pub fn due(&self) -> Option<Duration> {
         let at = self.last_motion.map_or(Duration::ZERO, |at| at.saturating_add(self.timeout));
         self.is_lit().then_some(at)
@@ -147,9 +150,9 @@ impl<Pwm: SetDutyCycle> Laser<Pwm> {
         self.light != Some(0)
     }
 
-    /// Darkens it, says whether that went well, and gives the PWM back. It is always there: it is an [`Option`] since a
-    /// thing that goes dark when dropped cannot be taken apart. Who lends the PWM, `Laser::new(&mut pwm, ..)`, has it
-    /// back without that when the laser is dropped.
+    /// Darkens it, says whether that went well, and gives the PWM back. It is always there: it is an
+    /// [`Option`] since a thing that goes dark when dropped cannot be taken apart. Who lends the PWM,
+    /// `Laser::new(&mut pwm, ..)`, has it back without that when the laser is dropped.
     pub fn release(mut self) -> (Option<Pwm>, Result<(), Error<Pwm::Error>>) {
         let dark = self.off();
         (self.pwm.take(), dark)
@@ -212,8 +215,8 @@ fn steps(power: u16, full: u16) -> u16 {
     u16::try_from(steps).unwrap_or(full)
 }
 
-/// The power that burns a line as dark at `speed_mm_s` as `power` does at `full_speed_mm_s`: in proportion to the speed,
-/// and `power` at most. 0 for a speed that is no number.
+/// The power that burns a line as dark at `speed_mm_s` as `power` does at `full_speed_mm_s`: in proportion to
+/// the speed, and `power` at most. 0 for a speed that is no number.
 ///
 /// For machines that measure their speed. A [`StepGen`](plotter_motion::StepGen) does this by itself.
 ///

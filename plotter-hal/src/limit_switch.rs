@@ -9,9 +9,9 @@
 //!       └──o/o── ground             wire   │        drives towards that end
 //! ```
 //!
-//! Read it by [`LimitSwitch::tick`] every millisecond or so, or from an interrupt at both edges of the pin and
-//! at [`LimitSwitch::due`]. A drive towards a pressed switch is what the safety gate takes away (spec 2.6); the
-//! group hands it [`LimitSwitches`].
+//! Read it by [`LimitSwitch::tick`] every millisecond or so, or from an interrupt at both edges of the pin
+//! and at [`LimitSwitch::due`]. A drive towards a pressed switch is what the safety gate takes away (after
+//! Khan and McGinn, "2D Controlled Marking Board", section 0.3); the group hands it [`LimitSwitches`].
 
 use crate::SwitchSettings;
 use crate::debounce::Contact;
@@ -20,8 +20,8 @@ use core::time::Duration;
 use embedded_hal::digital::{self, InputPin};
 use plotter_motion::{Axis, Direction, LimitSwitches};
 
-/// One switch. Until it has shown for [`SwitchSettings::release_after`] that it is free, it counts as pressed; and
-/// so does one whose pin cannot be read.
+/// One switch. Until it has shown for [`SwitchSettings::release_after`] that it is free, it counts as
+/// pressed; and so does one whose pin cannot be read.
 ///
 /// ```
 /// use core::time::Duration;
@@ -63,8 +63,8 @@ impl<Pin: InputPin> LimitSwitch<Pin> {
         self.contact.is_pressed()
     }
 
-    /// When to call [`tick`](Self::tick) next if no edge of the pin comes before; `None` if only an edge changes
-    /// anything.
+    /// When to call [`tick`](Self::tick) next if no edge of the pin comes before; `None` if only an edge
+    /// changes anything.
     pub fn due(&self) -> Option<Duration> {
         self.contact.due()
     }

@@ -12,9 +12,10 @@
 //!                     │◀ settle ▶│                   has changed
 //! ```
 //!
-//! Source: the documented stepper plotter, 50 Hz and 1 to 2 ms (spec 5.1), 200 ms from the pen's movement to the
-//! motors', "or dots get tails" (spec 5.4). Which width turns a servo to which angle differs from one to the next: it is
-//! measured at two angles ([`ServoPoint`]), and a straight line goes through both.
+//! Source: Dounaev and Phan, "X-Y Plotter Project". Its servo takes 50 Hz and 1 to 2 ms (section 2.1.2). Its
+//! motors wait 200 ms after the pen has moved, because otherwise each dot gets a tail (section 3.3). The
+//! pulse width for an angle differs from one servo to the next: it is measured at two angles
+//! ([`ServoPoint`]), and a straight line goes through both.
 
 use crate::debounce::has_come;
 use core::fmt;
@@ -47,7 +48,8 @@ pub struct ServoPoint {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PenServoSettings {
-    /// Two angles, at least 10 degrees apart, and their pulses of 400 to 2600 us. It is never turned beyond them.
+    /// Two angles, at least 10 degrees apart, and their pulses of 400 to 2600 us. It is never turned beyond
+    /// them.
     pub calibration: [ServoPoint; 2],
     /// From one pulse to the next, as the PWM has been set up, us.
     pub frame_us: u32,
@@ -55,10 +57,11 @@ pub struct PenServoSettings {
     pub up_deg: f32,
     /// Angle with the pen down, degrees.
     pub down_deg: f32,
-    /// How fast it is turned in the sense that lowers the pen, 1 degree/s or more; infinity is at once, as it is always
-    /// raised.
+    /// How fast it is turned in the sense that lowers the pen, 1 degree/s or more; infinity is at once, as it
+    /// is always raised.
     pub lowering_deg_s: f32,
-    /// From the last change of the pulse until the pen is taken to stand still. The last pulse may begin a frame later.
+    /// From the last change of the pulse until the pen is taken to stand still. The last pulse may begin a
+    /// frame later.
     pub settle: Duration,
 }
 
@@ -68,20 +71,25 @@ impl Default for PenServoSettings {
     }
 }
 
-/// Widths of pulses that some servo understands, us.
+/// Least and greatest pulse width, us: beyond what common servos understand, 1000 to 2000 us, on either side,
+/// as some turn farther.
 const PULSES_US: (f32, f32) = (400.0, 2600.0);
-/// The least distance of two angles that a line through them is worth something, degrees.
+/// Least distance of the two calibrated angles, degrees: nearer ones would multiply the error of reading them
+/// over the whole range.
 const LEAST_APART_DEG: f32 = 10.0;
-/// Frames that a servo follows, us: 300 to 25 Hz.
+/// Shortest and longest frame, us: 300 Hz, as digital servos take, to 25 Hz, half of the usual rate.
 const FRAMES_US: (u32, u32) = (3_333, 40_000);
-/// Slower than this a pen that is lowered has been forgotten, degrees/s.
+/// Least lowering speed, degrees/s: at it a pen takes more than a minute for 70 degrees, so a lower one is a
+/// mistake.
 const SLOWEST_DEG_S: f32 = 1.0;
-/// The least number of the PWM's steps from up to down.
+/// Least number of PWM steps between up and down. With fewer the pen would be lowered in jerks, and its
+/// places would be off by an eighth of the stroke or more.
 const LEAST_STEPS: u16 = 4;
 
 impl PenServoSettings {
-    /// 1 to 2 ms for 0 to 180 degrees every 20 ms (spec 5.1); up at 160 and down at 90 degrees, as mDraw's machine has
-    /// it; lowered at once; 200 ms (spec 5.4).
+    /// 1 to 2 ms for 0 to 180 degrees every 20 ms; up at 160 and down at 90 degrees, as mDraw's
+    /// machine has it; lowered at once; 200 ms until the motors move. Source: Dounaev and Phan, "X-Y Plotter
+    /// Project", sections 2.1.2 and 3.3.
     pub const DEFAULT: Self = Self {
         calibration: [ServoPoint { deg: 0.0, pulse_us: 1000.0 }, ServoPoint { deg: 180.0, pulse_us: 2000.0 }],
         frame_us: 20_000,
@@ -113,7 +121,8 @@ impl PenServoSettings {
         }
     }
 
-    /// Looks at them for a PWM of so many steps in a frame: a program whose settings are constants has the compiler do that.
+    /// Looks at them for a PWM of so many steps in a frame: a program whose settings are constants has the
+    /// compiler do that.
     ///
     /// ```
     /// # use plotter_hal::PenServoSettings;
@@ -263,8 +272,8 @@ enum State {
 }
 
 impl<Pwm: SetDutyCycle> PenServo<Pwm> {
-    /// The pen on the servo on `pwm`, which has been set up for pulses every [`PenServoSettings::frame_us`], and is
-    /// first set by [`tick`](Self::tick) or a movement.
+    /// The pen on the servo on `pwm`, which has been set up for pulses every [`PenServoSettings::frame_us`],
+    /// and is first set by [`tick`](Self::tick) or a movement.
     ///
     /// # Errors
     ///
@@ -298,8 +307,8 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
         ((b.deg - a.deg) / (b.pulse_us - a.pulse_us)).abs() * step_us
     }
 
-    /// From [`lower`](Self::lower) of a pen that is up until it has settled, if [`tick`](Self::tick) comes in time: what a
-    /// controller has to wait before it moves
+    /// From [`lower`](Self::lower) of a pen that is up until it has settled, if [`tick`](Self::tick) comes in
+    /// time: what a controller has to wait before it moves
     /// ([`pen_settle`](plotter_motion::firmware::stepper_plotter::StepperPlotterSettings::pen_settle)).
     pub fn lowering_time(&self) -> Duration {
         let PenServoSettings { up_deg, down_deg, lowering_deg_s, settle, .. } = self.settings;
@@ -386,7 +395,8 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
         }
     }
 
-    /// Whether the pen is where it was last told to go, and stands still, as of the last call: the motors may move.
+    /// Whether the pen is where it was last told to go, and stands still, as of the last call: the motors may
+    /// move.
     pub fn is_settled(&self) -> bool {
         self.state == State::Settled
     }
@@ -436,7 +446,8 @@ impl<Pwm: SetDutyCycle> PenServo<Pwm> {
         self.is_lowered() && self.settings.lowering_deg_s.is_finite()
     }
 
-    /// Where a slow way has got to. A frame or two at a time: a call that comes late must not let the pen drop.
+    /// Where a slow way has got to. A frame or two at a time: a call that comes late must not let the pen
+    /// drop.
     fn lowered_deg(&self, passed: Duration) -> f32 {
         let left_deg = self.target_deg - self.at_deg;
         let way_deg = self.settings.lowering_deg_s * passed.min(self.frame() * 2).as_secs_f32();

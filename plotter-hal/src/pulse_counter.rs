@@ -1,8 +1,9 @@
 //! An encoder with one phase on an input pin, or on a hardware counter.
 //!
-//! It counts up, and the sign of the voltage that the motor gets, or got last, says which way that is: the logic, and what it
-//! cannot see, are [`PulseCounter`]'s. Use [`PulseInput`] where the program sees the edges itself, from an
-//! interrupt or polled at least twice in a half of a period; and [`CounterDelta`] where a timer counts them.
+//! It counts up, and the sign of the voltage that the motor gets, or got last, says which way that is: the
+//! logic, and what it cannot see, are [`PulseCounter`]'s. Use [`PulseInput`] where the program sees the edges
+//! itself, from an interrupt or polled at least twice in a half of a period; and [`CounterDelta`] where a
+//! timer counts them.
 
 use core::fmt;
 use embedded_hal::digital::{self, InputPin};

@@ -6,10 +6,11 @@
 //! | x2 | both edges of A | 4 |
 //! | x4 | every edge of both | 4 |
 //!
-//! In an interrupt call [`Quadrature::poll`], which reads both pins; or [`Quadrature::update`], where the program has both
-//! levels at hand, from a port register, say. (A decoder of rising edges has to see the falling ones too, or it takes
-//! two rising edges for one.) A shaft at 100 turns/s with 500 lines has 50 000 periods a second: 100 000 interrupts
-//! with x2, 200 000 with x4. Beyond what the chip can do, a timer in encoder mode counts by itself.
+//! In an interrupt call [`Quadrature::poll`], which reads both pins; or [`Quadrature::update`], where the
+//! program has both levels at hand, from a port register, say. (A decoder of rising edges has to see the
+//! falling ones too, or it takes two rising edges for one.) A shaft at 100 turns/s with 500 lines has 50 000
+//! periods a second: 100 000 interrupts with x2, 200 000 with x4. Beyond what the chip can do, a timer in
+//! encoder mode counts by itself.
 //!
 //! # What can go wrong
 //!
@@ -19,8 +20,8 @@
 //! | both phases have changed at once: an edge was missed | [`illegal`](Quadrature::illegal) | [`illegal`](Quadrature::illegal) |
 //! | a phase is lost: a broken wire | counts on in one direction, or not at all | counts forth and back, so stands |
 //!
-//! A lost phase cannot be told from a shaft that trembles about one edge, but that does not happen to one that is driven
-//! over more than a period: see [`lost_phase`](Quadrature::lost_phase).
+//! A lost phase cannot be told from a shaft that trembles about one edge, but that does not happen to one
+//! that is driven over more than a period: see [`lost_phase`](Quadrature::lost_phase).
 
 use core::fmt;
 use embedded_hal::digital::{self, InputPin};
@@ -135,23 +136,26 @@ where
         counted
     }
 
-    /// Where the shaft is, counts from where it was first seen. Wraps at the ends of `i32`: at 40 counts/mm after 53 km.
+    /// Where the shaft is, counts from where it was first seen. Wraps at the ends of `i32`: at 40 counts/mm
+    /// after 53 km.
     pub const fn position(&self) -> i32 {
         self.position
     }
 
-    /// How many times both phases had changed at once, which no shaft does: edges were missed, and the position is wrong by
-    /// half a period or more. Poll more often, or look for noise on the wires. Only where both phases' edges are
-    /// looked at; with interrupts at the edges of A alone B changes between two of them as it should.
+    /// How many times both phases had changed at once, which no shaft does: edges were missed, and the
+    /// position is wrong by half a period or more. Poll more often, or look for noise on the wires. Only
+    /// where both phases' edges are looked at; with interrupts at the edges of A alone B changes between two
+    /// of them as it should.
     pub const fn illegal(&self) -> u32 {
         self.illegal
     }
 
     /// The phase that has not changed while the other one did so `edges` times in a row or more.
     ///
-    /// While a motor is driven over more than a period, 8 edges are enough to say that a phase is lost: stop it, for
-    /// its position is not known any more. A shaft at rest may tremble about an edge for ever, so ask only while
-    /// there is drive. What looks like a shaft that stands, with both phases lost, is for the controller to notice.
+    /// While a motor is driven over more than a period, 8 edges are enough to say that a phase is lost: stop
+    /// it, for its position is not known any more. A shaft at rest may tremble about an edge for ever, so ask
+    /// only while there is drive. What looks like a shaft that stands, with both phases lost, is for the
+    /// controller to notice.
     pub fn lost_phase(&self, edges: u32) -> Option<Phase> {
         match self.alone {
             Some((Phase::A, count)) if count >= edges => Some(Phase::B),

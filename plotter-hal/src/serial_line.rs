@@ -7,8 +7,9 @@
 //!  port ◀── send ◀── controller.transmit(), as long as the port takes it
 //! ```
 //!
-//! A byte that came broken is not data, and leaving it out is no better: `G1 X12` would become `G1 X1`. In its place the
-//! controller gets [`SUBSTITUTE`], for which both controllers of [`plotter_motion`] drop what it belongs to, and say so.
+//! A byte that came broken is not data, and leaving it out is no better: `G1 X12` would become `G1 X1`. In
+//! its place the controller gets [`SUBSTITUTE`], for which both controllers of [`plotter_motion`] drop what
+//! it belongs to, and say so.
 
 use core::fmt;
 use embedded_io::{Error as _, ErrorKind, Read, ReadReady, Write, WriteReady};
@@ -85,8 +86,8 @@ pub struct SerialLine<Port> {
     unsent: Option<u8>,
 }
 
-/// After so many faults without a good byte [`SerialLine::receive`] gives nothing once: a port that fails for ever must not
-/// keep its reader for ever.
+/// After so many faults without a good byte [`SerialLine::receive`] gives nothing once: a port that fails for
+/// ever must not keep its reader for ever.
 const MOST_IN_A_ROW: u8 = 8;
 
 /// A byte for the controller.
@@ -99,8 +100,8 @@ pub struct Received {
     pub fault: Option<Fault>,
 }
 
-/// What was wrong with a serial port. `embedded-io` has few kinds of errors, and chips' crates use them differently: what
-/// they call other may be any of these.
+/// What was wrong with a serial port. `embedded-io` has few kinds of errors, and chips' crates use them
+/// differently: what they call other may be any of these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -203,7 +204,8 @@ impl<Port: Read + ReadReady + Write + WriteReady> SerialLine<Port> {
         }
     }
 
-    /// Sends what `next` gives, as much as the port takes now. Never waits; asks for no byte before there is room for it.
+    /// Sends what `next` gives, as much as the port takes now. Never waits; asks for no byte before there is
+    /// room for it.
     ///
     /// # Errors
     ///

@@ -14,13 +14,14 @@ pub(crate) struct Bezier {
 }
 
 impl Bezier {
-    /// The curve from the first point to the last, drawn towards the ones between, as so many lines of equal parameter that
-    /// none is farther than `tolerance_units` from it, at most 4096.
+    /// The curve from the first point to the last, drawn towards the ones between, as so many lines of equal
+    /// parameter that none is farther than `tolerance_units` from it, at most 4096.
     ///
-    /// A cubic divided into n parts lies within M · 6/8 / n² of its chords, with M the greatest second difference of its
-    /// points.
+    /// A cubic divided into n parts lies within M · 6/8 / n² of its chords, with M the greatest second
+    /// difference of its points.
     ///
-    /// Source: G. Wang, "The subdivision method for finding the intersection between two Bézier curves or surfaces" (1984).
+    /// Source: G. Wang, "The subdivision method for finding the intersection between two Bézier curves or
+    /// surfaces" (1984).
     pub(crate) fn new(points: [Vec2; 4], tolerance_units: f64) -> Self {
         let [a, b, c, d] = points;
         let bend = libm::fmax(((a - b) + (c - b)).length(), ((b - c) + (d - c)).length());

@@ -7,12 +7,13 @@
 //!    └──────────────▶ x
 //! ```
 //!
-//! Source: J. E. Bresenham, "Algorithm for computer control of a digital plotter", IBM Systems Journal 4 (1965),
-//! pages 25 to 30.
+//! Source: J. E. Bresenham, "Algorithm for computer control of a digital plotter", IBM Systems Journal 4
+//! (1965), pages 25 to 30.
 
 use crate::StepPoint;
 
-/// What both motors do at one time: each a step forwards (1), a step back (-1) or none (0); never none of both.
+/// What both motors do at one time: each a step forwards (1), a step back (-1) or none (0); never none of
+/// both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct StepPair {
     /// First motor: -1, 0 or 1.
@@ -23,9 +24,9 @@ pub struct StepPair {
 
 /// The steps of two motors along the straight line between two positions.
 ///
-/// The major axis, the one with more steps, steps every time: max(|dx|, |dy|) steps in all. The other axis is then
-/// never more than half a step off the line, and halves go towards the target. In integers, so without any error
-/// at the end, for any two positions of 32 bits.
+/// The major axis, the one with more steps, steps every time: max(|dx|, |dy|) steps in all. The other axis is
+/// then never more than half a step off the line, and halves go towards the target. In integers, so without
+/// any error at the end, for any two positions of 32 bits.
 ///
 /// ```
 /// # use plotter_motion::{Bresenham, StepPair, StepPoint};

@@ -10,9 +10,10 @@ use core::fmt;
 
 /// What the parts of an error cost, and how much of each is of use. All lengths in mm, none negative.
 ///
-/// Control is taken as `standing + moving k²`: what is there however slowly the machine moves (counts or steps, play,
-/// friction), and what its speed adds. A motion made slower as a whole by the factor k has k times its speed and k²
-/// times its acceleration; what pushes the pen off its line grows with the latter, and the pen gives way in proportion.
+/// Control is taken as `standing + moving k²`: what is there however slowly the machine moves (counts or
+/// steps, play, friction), and what its speed adds. A motion made slower as a whole by the factor k has k
+/// times its speed and k² times its acceleration; what pushes the pen off its line grows with the latter, and
+/// the pen gives way in proportion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BudgetLimits {
     /// Least distance of ink and strokes that a vectorization keeps, mm.
@@ -32,8 +33,8 @@ pub struct BudgetLimits {
 }
 
 impl Default for BudgetLimits {
-    /// A scan at 20 pixels to the millimetre, from half a pixel up, on a machine that stops in each corner, stands within
-    /// half a count of 0.025 mm on both axes, and goes as exactly when it is fast.
+    /// A scan at 20 pixels to the millimetre, from half a pixel up, on a machine that stops in each corner,
+    /// stands within half a count of 0.025 mm on both axes, and goes as exactly when it is fast.
     fn default() -> Self {
         Self {
             vectorization_least_mm: 0.025,
@@ -157,16 +158,18 @@ pub struct Budget {
     pub blend_mm: f64,
     /// For control, mm.
     pub control_mm: f64,
-    /// Share of the machine's own speed at which control keeps that, above 0 and up to 1: see [`Budget::slowed`].
+    /// Share of the machine's own speed at which control keeps that, above 0 and up to 1: see
+    /// [`Budget::slowed`].
     pub speed_share: f64,
 }
 
 impl Budget {
     /// Divides the error `max_error_mm`.
     ///
-    /// Every part gets the least that it needs. Of what is left, control takes up to half to come to the machine's own
-    /// speed; vectorization and blends share the rest as `vectorization_share` says. What a part cannot use goes to the
-    /// others, and what none can use is left over. A greater error gives no part less.
+    /// Every part gets the least that it needs. Of what is left, control takes up to half to come to the
+    /// machine's own speed; vectorization and blends share the rest as `vectorization_share` says. What a
+    /// part cannot use goes to the others, and what none can use is left over. A greater error gives no part
+    /// less.
     ///
     /// # Errors
     ///
@@ -268,6 +271,8 @@ impl Budget {
 
     /// The share of the speed at which control makes `control_mm`.
     fn speed_share(control_mm: f64, limits: &BudgetLimits) -> f64 {
+        /// Relative rounding of a sum of errors that still counts as equal: far above the last bits of `f64`,
+        /// far below any error.
         const ROUNDING: f64 = 1e-12;
         if control_mm >= (limits.standing_mm + limits.moving_mm) * (1.0 - ROUNDING) {
             return 1.0;

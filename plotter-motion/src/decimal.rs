@@ -5,7 +5,8 @@ use core::fmt;
 /// Digits kept. An `f64` holds 15 to 17, and 18 fit into a `u64`.
 const MAX_DIGITS: u8 = 18;
 
-/// Most places behind the point. 10 to this power is the greatest that is a float without rounding, as are all before it.
+/// Most places behind the point. 10 to this power is the greatest that is a float without rounding, as are
+/// all before it.
 const MOST_PLACES: u8 = 22;
 
 /// A decimal number in progress: sign, digits, point.

@@ -1,4 +1,5 @@
-//! Numbers as text. The standard library's way for all of them, in any width, takes 14 KB of a microcontroller's flash.
+//! Numbers as text. The standard library's way for all of them, in any width, takes 14 KB of a
+//! microcontroller's flash.
 
 use crate::whole::nearest;
 use core::fmt::{self, Write as _};
@@ -6,7 +7,8 @@ use core::fmt::{self, Write as _};
 /// Digits of a `u64`.
 const MOST_DIGITS: usize = 20;
 
-/// A number rounded to thousandths, halves away from zero; beyond ±9·10¹⁵ it is cut off. `-0.000` is told as `0.000`.
+/// A number rounded to thousandths, halves away from zero; beyond ±9·10¹⁵ it is cut off. `-0.000` is told as
+/// `0.000`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Thousandths(i64);
 

@@ -1,5 +1,5 @@
-//! The greater and the smaller of two numbers. On a small processor, which has no `f64`, each is 60 bytes wherever it stands, and
-//! 16 where it is called.
+//! The greater and the smaller of two numbers. On a small processor, which has no `f64`, each is 60 bytes
+//! wherever it stands, and 16 where it is called.
 
 /// [`f64::max`].
 #[cfg_attr(target_os = "none", inline(never))]

@@ -57,8 +57,8 @@ impl Point {
         self + (other - self) * t
     }
 
-    /// The way to another place, rounded: a metre is right to 60 nm. By reference: to move four `f64` takes a small processor eight
-    /// instructions.
+    /// The way to another place, rounded: a metre is right to 60 nm. By reference: to move four `f64` takes a
+    /// small processor eight instructions.
     #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn way_to(&self, other: &Self) -> Vec2Single {
         Vec2Single { x: single(other.x - self.x), y: single(other.y - self.y) }
@@ -90,7 +90,8 @@ impl Vec2 {
         libm::hypot(self.x, self.y)
     }
 
-    /// The length of a way of 10⁻¹⁵⁰ to 10¹⁵⁰ mm: without the scaling of `hypot`, which costs more than all the rest.
+    /// The length of a way of 10⁻¹⁵⁰ to 10¹⁵⁰ mm: without the scaling of `hypot`, which costs more than all
+    /// the rest.
     pub(crate) fn length_near(self) -> f64 {
         libm::sqrt(self.length_squared())
     }
@@ -140,8 +141,8 @@ impl Vec2 {
     }
 }
 
-/// A displacement in `f32`, which small processors reckon with in hardware: enough for the length and the direction of a way, where
-/// only its end has to be exact. mm.
+/// A displacement in `f32`, which small processors reckon with in hardware: enough for the length and the
+/// direction of a way, where only its end has to be exact. mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Vec2Single {
     pub(crate) x: f32,

@@ -9,10 +9,11 @@
 //!      ┃  0 ◀━━━━━━━━━━━━━━━━━━━ back to the origin ━━━━━━━━━━━━━━━━┃
 //! ```
 //!
-//! x first, then y. It owns no motor: it says which step it wants ([`Homing::update`]) and is told when it was made
-//! ([`Homing::made`]). No step is asked for into a pressed switch. A motor that stops at once from a high rate loses
-//! steps, so a switch is only ever met at a rate that may be started and stopped at once: the way is fast where the
-//! axis is known to be longer, and slow after that, as in the source (spec 5.3).
+//! x first, then y. It owns no motor: it says which step it wants ([`Homing::update`]) and is told when it
+//! was made ([`Homing::made`]). No step is asked for into a pressed switch. A motor that stops at once from a
+//! high rate loses steps, so a switch is only ever met at a rate that may be started and stopped at once. The
+//! carriage moves fast for as long as the axis is known to go on, and slowly after that. Source: Dounaev and
+//! Phan, "X-Y Plotter Project", section 2.2.3.3.
 
 use crate::decimal_text::{Plain, Whole};
 use crate::{Axis, Direction, LimitSwitches, Machine, StepPair, config::StepperConfig};
@@ -32,13 +33,14 @@ pub struct HomingAxis {
     pub slow_hz: u32,
     /// Acceleration, pulses/s^2.
     pub accel_hz_s: u32,
-    /// From the lower switch to the origin; and how far it goes off a switch before touching it again. At least 1.
+    /// From the lower switch to the origin; and how far it goes off a switch before touching it again. At
+    /// least 1.
     pub pull_off_steps: u32,
     /// Within how many steps a switch must open when it is left.
     pub release_steps: u32,
-    /// How long the axis is known to be at least: from an earlier homing, or by construction; 0 if not at all. On the
-    /// way to the upper switch it is fast up to here, so leave a little; if the switch comes before, the axis is
-    /// homed once more without.
+    /// How long the axis is known to be at least: from an earlier homing, or by construction; 0 if not at
+    /// all. On the way to the upper switch it is fast up to here, so leave a little; if the switch comes
+    /// before, the axis is homed once more without.
     pub known_steps: u32,
     /// How long it may be at most: a switch that has not come by then is missing.
     pub most_steps: u32,
@@ -91,8 +93,8 @@ impl HomingAxis {
     }
 }
 
-/// Steps between the two switches of each axis, the lower one touched downwards and the upper one upwards: with any play
-/// of the axis in it once.
+/// Steps between the two switches of each axis, the lower one touched downwards and the upper one upwards:
+/// with any play of the axis in it once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Homed {
     /// Of x.
@@ -340,7 +342,8 @@ impl Homing {
         self.progress.update([&self.x, &self.y], limits)
     }
 
-    /// The step that was wanted has been made. A step that was not made (an emergency stop) is simply not told.
+    /// The step that was wanted has been made. A step that was not made (an emergency stop) is simply not
+    /// told.
     pub fn made(&mut self) {
         self.progress.made();
     }
@@ -433,8 +436,8 @@ impl HomingProgress {
                     return Ok(Some(end));
                 }
                 if end == Direction::Plus && self.taken < settings.known_steps {
-                    // Met where the axis was said to go on, perhaps at a rate that cannot be stopped without losing
-                    // steps: all over again, without that knowledge.
+                    // Met where the axis was said to go on, perhaps at a rate that cannot be stopped without
+                    // losing steps: all over again, without that knowledge.
                     self.is_shorter = true;
                     self.enter(Phase::Seek(Direction::Minus));
                 } else {
@@ -487,7 +490,8 @@ impl HomingProgress {
         }
     }
 
-    /// The switch at `end` was met slowly: the lower one is where counting begins, the upper one where it ends.
+    /// The switch at `end` was met slowly: the lower one is where counting begins, the upper one where it
+    /// ends.
     fn touched(&mut self, settings: &HomingAxis, end: Direction) -> Result<(), HomingError> {
         if end == Direction::Minus {
             self.count = 0;
@@ -506,7 +510,8 @@ impl HomingProgress {
         Ok(())
     }
 
-    /// Watches the switch at `end`, which this phase goes away from: pressed, it opens soon; open, it stays so.
+    /// Watches the switch at `end`, which this phase goes away from: pressed, it opens soon; open, it stays
+    /// so.
     fn leave(&mut self, settings: &HomingAxis, end: Direction, pressed: bool) -> Result<(), HomingError> {
         let (axis, steps) = (self.axis, self.taken);
         let is_near = steps < settings.release_steps;
@@ -530,7 +535,8 @@ impl HomingProgress {
         }
     }
 
-    /// How fast the next step may be: v² = v0² + 2 a s from where the phase began, and from where it must be slow.
+    /// How fast the next step may be: v² = v0² + 2 a s from where the phase began, and from where it must be
+    /// slow.
     fn rate_hz(&self, settings: &HomingAxis) -> u32 {
         let start_hz = settings.start_hz.min(settings.fast_hz).max(1);
         let slow_hz = settings.slow_hz.clamp(1, start_hz);

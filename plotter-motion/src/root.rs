@@ -1,9 +1,11 @@
-//! Square roots in `f32`. `libm`'s and its table take half a kilobyte of a microcontroller's flash, this a tenth of it and no more time.
+//! Square roots in `f32`. `libm`'s and its table take half a kilobyte of a microcontroller's flash, this a
+//! tenth of it and no more time.
 
-/// The square root of a number not below 0: right to the last bit but one, and of squares of small whole numbers exactly, from 2⁻¹²⁶ on.
-/// Below, where an `f32` has fewer bits, it is less right.
+/// The square root of a number not below 0: right to the last bit but one, and of squares of small whole
+/// numbers exactly, from 2⁻¹²⁶ on. Below, where an `f32` has fewer bits, it is less right.
 ///
-/// Heron's method. The bits of a float are nearly its logarithm, and half of that is the logarithm of the root: right to a 28th.
+/// Heron's method. The bits of a float are nearly its logarithm, and half of that is the logarithm of the
+/// root: right to a 28th.
 #[cfg_attr(target_os = "none", inline(never))]
 pub(crate) fn root(square: f32) -> f32 {
     /// Half of the exponent's offset, less what makes the error as great below as above.

@@ -7,8 +7,9 @@
 //!            limit switches       emergency stop (latched), the host's stop
 //! ```
 //!
-//! Drivers take nothing but a [`Drive`], a [`Pulse`] or a [`Beam`]. Only a gate makes one, and a gate is made from readings of the
-//! machine's switches and its stop button. So a program that goes round the limit switches does not compile:
+//! Drivers take nothing but a [`Drive`], a [`Pulse`] or a [`Beam`]. Only a gate makes one, and a gate is made
+//! from readings of the machine's switches and its stop button. So a program that goes round the limit
+//! switches does not compile:
 //!
 //! ```
 //! # use plotter_motion::{Demand, Duty, LimitSwitches, SafetyGate};
@@ -51,7 +52,8 @@
 //! let drive = gate.pass(Demand::NONE);
 //! ```
 //!
-//! A drive, a step or a beam from before a stop, in use after it: each borrows its gate, so it ends when the gate is told anything.
+//! A drive, a step or a beam from before a stop, in use after it: each borrows its gate, so it ends when the
+//! gate is told anything.
 //!
 //! ```compile_fail,E0502
 //! # use plotter_motion::{Demand, Duty, LimitSwitches, SafetyGate};
@@ -78,11 +80,12 @@
 //! assert_eq!(beam.power(), 65_535);
 //! ```
 //!
-//! No type can see whether the readings are true. A program gets what it should not have if it makes a gate from switches that it has
-//! not read, if it makes a second gate beside the one that is told of them, or if it does not tell the gate what changed.
+//! No type can see whether the readings are true. A program gets what it should not have if it makes a gate
+//! from switches that it has not read, if it makes a second gate beside the one that is told of them, or if
+//! it does not tell the gate what changed.
 //!
-//! Source of the block between every controller and the motors: the marking board's collision prevention
-//! (spec 2.6).
+//! The block between every controller and the motors is the collision prevention of the marking board.
+//! Source: Khan and McGinn, "2D Controlled Marking Board", section 0.3.
 
 use crate::kinematics::BeltSigns;
 use crate::{Axis, Direction, StepPair};
@@ -182,7 +185,8 @@ impl Demand {
     pub const NONE: Self = Self { x: Duty::ZERO, y: Duty::ZERO };
 }
 
-/// What both motors get: made by [`SafetyGate::pass`] only. It ends when its gate is told anything; the default is none at all.
+/// What both motors get: made by [`SafetyGate::pass`] only. It ends when its gate is told anything; the
+/// default is none at all.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drive<'gate> {
     x: Duty,
@@ -218,8 +222,8 @@ impl Drive<'_> {
         [self.x, self.y]
     }
 
-    /// The same without its end: for a controller that keeps its gate in the same place, and passes the demand again whenever it
-    /// tells the gate anything. It lends the drive no longer than itself.
+    /// The same without its end: for a controller that keeps its gate in the same place, and passes the
+    /// demand again whenever it tells the gate anything. It lends the drive no longer than itself.
     pub(crate) const fn kept(self) -> Drive<'static> {
         drive(self.x, self.y)
     }
@@ -229,7 +233,8 @@ const fn drive(x: Duty, y: Duty) -> Drive<'static> {
     Drive { x, y, gate: PhantomData }
 }
 
-/// A step of either motor or of both that may be made: by [`SafetyGate::pass_step`] only. It ends when its gate is told anything.
+/// A step of either motor or of both that may be made: by [`SafetyGate::pass_step`] only. It ends when its
+/// gate is told anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Pulse<'gate> {
     x: i8,
@@ -266,8 +271,8 @@ const fn pulse(step: StepPair) -> Pulse<'static> {
     Pulse { x: step.x, y: step.y, gate: PhantomData }
 }
 
-/// Power of a laser, in 65535ths, that may be switched on: by [`SafetyGate::pass_laser`] only. It ends when its gate is told anything;
-/// the default is off.
+/// Power of a laser, in 65535ths, that may be switched on: by [`SafetyGate::pass_laser`] only. It ends when
+/// its gate is told anything; the default is off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Beam<'gate> {
     power: u16,
@@ -374,10 +379,11 @@ impl LimitSwitches {
 /// The only way from a [`Demand`] to a [`Drive`].
 ///
 /// A pressed limit switch takes the drive *towards* it and leaves every other. The emergency stop takes all
-/// drive at once and latches: letting the button go changes nothing until [`SafetyGate::reset`]. The host's stop takes all drive until
-/// the host takes it back. Neither ends the other.
+/// drive at once and latches: letting the button go changes nothing until [`SafetyGate::reset`]. The host's
+/// stop takes all drive until the host takes it back. Neither ends the other.
 ///
-/// A machine has one gate. It is made when switches and button have been read, it moves, and it is not copied.
+/// A machine has one gate. It is made when switches and button have been read, it moves, and it is not
+/// copied.
 ///
 /// ```
 /// # use plotter_motion::{Demand, Duty, LimitSwitches, SafetyGate};
@@ -410,9 +416,9 @@ pub struct SafetyGate {
 }
 
 impl SafetyGate {
-    /// The gate of a machine, from what its limit switches and its emergency stop button say now. A button that is pressed, or that
-    /// has not been read yet, latches from the start. A machine without switches or without a button says so by
-    /// [`LimitSwitches::RELEASED`] and `false`.
+    /// The gate of a machine, from what its limit switches and its emergency stop button say now. A button
+    /// that is pressed, or that has not been read yet, latches from the start. A machine without switches or
+    /// without a button says so by [`LimitSwitches::RELEASED`] and `false`.
     ///
     /// ```
     /// # use plotter_motion::{LimitSwitches, SafetyGate, StepPair, safety::Blocked};
@@ -481,7 +487,8 @@ impl SafetyGate {
         self.button_pressed
     }
 
-    /// Unlatches the emergency stop, unless the button is still pressed; says whether it did. The host's stop stays.
+    /// Unlatches the emergency stop, unless the button is still pressed; says whether it did. The host's stop
+    /// stays.
     pub const fn reset(&mut self) -> bool {
         self.latched = self.button_pressed;
         self.note();
@@ -494,22 +501,23 @@ impl SafetyGate {
         drive(self.pass_axis(Axis::X, demand.x), self.pass_axis(Axis::Y, demand.y))
     }
 
-    /// The same for a machine whose two motors share a belt: `demand` is that of the *axes* (x to the right, y up), the drive
-    /// is that of the *motors*.
+    /// The same for a machine whose two motors share a belt: `demand` is that of the *axes* (x to the right,
+    /// y up), the drive is that of the *motors*.
     ///
     /// ```text
     ///   axes ──▶ towards a pressed switch? taken ──▶ mixed into motors ──▶ along a pressed switch? the motor that ──▶ Drive
     ///                                                                      pushes at it gets less
     /// ```
     ///
-    /// A switch belongs to a sum of both motors, so it must be asked before they are mixed. What asks for more than the
-    /// supply is made smaller as a whole, so that it keeps its direction.
+    /// A switch belongs to a sum of both motors, so it must be asked before they are mixed. What asks for
+    /// more than the supply is made smaller as a whole, so that it keeps its direction.
     ///
-    /// A move *along* a pressed switch drives one motor towards it and the other away from it, equally. If the first is the
-    /// stronger one the carriage goes into the switch all the same. `unequal_share` is by how much each motor's speed may
-    /// differ from their mean, 0 to 1 (NaN counts as 1): the motor that pushes gets (1 − share)/(1 + share) of what the other gets, so
-    /// that whatever they are the carriage stays or retreats. Where both ends of one axis are pressed nothing can retreat,
-    /// and nothing is let through.
+    /// A move *along* a pressed switch drives one motor towards it and the other away from it, equally. If
+    /// the first is the stronger one the carriage goes into the switch all the same. `unequal_share` is by
+    /// how much each motor's speed may differ from their mean, 0 to 1 (NaN counts as 1): the motor that
+    /// pushes gets (1 − share)/(1 + share) of what the other gets, so that whatever they are the carriage
+    /// stays or retreats. Where both ends of one axis are pressed nothing can retreat, and nothing is let
+    /// through.
     ///
     /// ```
     /// # use plotter_motion::{Demand, Duty, LimitSwitches, SafetyGate, kinematics::BeltSigns};
@@ -547,8 +555,8 @@ impl SafetyGate {
         drive(Duty::saturating(motors.0), Duty::saturating(motors.1))
     }
 
-    /// Lets a step of stepper motors through. One that leads into a switch with either motor is not made with the other: the pen
-    /// would leave its line.
+    /// Lets a step of stepper motors through. One that leads into a switch with either motor is not made with
+    /// the other: the pen would leave its line.
     ///
     /// ```
     /// # use plotter_motion::{Axis, Direction, LimitSwitches, SafetyGate, StepPair, safety::Blocked};

@@ -6,8 +6,9 @@ use core::time::Duration;
 /// Longest one, s: what a whole number of 63 bits holds in nanoseconds, 285 years.
 const MOST_S: f64 = 9e9;
 
-/// The nearest nanosecond; none for what is below zero, too long or no number. [`Duration::try_from_secs_f64`] takes 0.4 KB of a
-/// microcontroller's flash, and differs by the last nanosecond where a number lies half way between two of them.
+/// The nearest nanosecond; none for what is below zero, too long or no number.
+/// [`Duration::try_from_secs_f64`] takes 0.4 KB of a microcontroller's flash, and differs by the last
+/// nanosecond where a number lies half way between two of them.
 #[inline(never)]
 pub(crate) fn duration(seconds: f64) -> Option<Duration> {
     if !(0.0..=MOST_S).contains(&seconds) {
@@ -16,8 +17,8 @@ pub(crate) fn duration(seconds: f64) -> Option<Duration> {
     Some(Duration::from_nanos(nearest(seconds * 1e9).unsigned_abs()))
 }
 
-/// Whether that time has come. On a small processor each comparison of two [`Duration`]s is 44 bytes wherever it stands, and half of
-/// that where it is called.
+/// Whether that time has come. On a small processor each comparison of two [`Duration`]s is 44 bytes wherever
+/// it stands, and half of that where it is called.
 #[cfg_attr(target_os = "none", inline(never))]
 pub(crate) fn has_come(at: Duration, now: Duration) -> bool {
     at <= now

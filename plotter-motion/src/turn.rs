@@ -1,5 +1,5 @@
-//! Sine and cosine of an angle within a few turns, and the angle of a direction, in `f32`, which small processors reckon with in hardware;
-//! `libm`'s are for any angle, and longer.
+//! Sine and cosine of an angle within a few turns, and the angle of a direction, in `f32`, which small
+//! processors reckon with in hardware; `libm`'s are for any angle, and longer.
 
 use crate::root::root;
 use core::f32::consts::{FRAC_2_PI, FRAC_PI_2, PI};
@@ -25,8 +25,8 @@ pub(crate) fn sin_cos(angle_rad: f32) -> (f32, f32) {
     }
 }
 
-/// The power series, within an eighth of a turn: 1 − x²/(2·1) (1 − x²/(4·3) (…)) is the cosine, and with 3·2, 5·4, … the sine is x times
-/// it.
+/// The power series, within an eighth of a turn: 1 − x²/(2·1) (1 − x²/(4·3) (…)) is the cosine, and with 3·2,
+/// 5·4, … the sine is x times it.
 fn series(first: f32, square: f32) -> f32 {
     let (mut sum, mut n) = (1.0, first + 8.0);
     while n >= first {
@@ -50,7 +50,8 @@ pub(crate) fn atan2(y: f32, x: f32) -> f32 {
 
 /// The angle whose tangent is `tangent`, which is from -1 to 1.
 pub(crate) fn atan(tangent: f32) -> f32 {
-    // tan(φ/2) = t / (1 + √(1 + t²)), twice: then it is below 0.2, and five terms of t - t³/3 + t⁵/5 - … are enough.
+    // tan(φ/2) = t / (1 + √(1 + t²)), twice: then it is below 0.2, and five terms of t - t³/3 + t⁵/5 - … are
+    // enough.
     let mut t = tangent;
     for _ in 0..2 {
         t /= 1.0 + root(1.0 + t * t);

@@ -1,7 +1,7 @@
 //! Floats as whole numbers, in one place: a small processor has no `f64`, and reckons with its bits.
 
-/// The magnitude: the whole number, and the 2^64ths that are left, never none of them where something is left. What does not fit becomes
-/// the greatest; a NaN 0.
+/// The magnitude: the whole number, and the 2^64ths that are left, never none of them where something is
+/// left. What does not fit becomes the greatest; a NaN 0.
 #[cfg_attr(target_os = "none", inline(never))]
 fn parts(value: f64) -> (u64, u64) {
     const MANTISSA_BITS: u64 = 52;

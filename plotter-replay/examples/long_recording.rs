@@ -1,8 +1,9 @@
-//! Writes a recording of as many pulses as asked for: what pages and tools do with long ones is measured on it.
+//! Writes a recording of as many pulses as asked for: what pages and tools do with long ones is measured on
+//! it.
 //!
-//! A rosette is drawn again and again, each round turned a little, target by target, with the pen up between petals. The
-//! motors follow as well as motors do: a pulse to the side now and then, a silence at every thousandth target, one pulse in a
-//! million lost on the line.
+//! A rosette is drawn again and again, each round turned a little, target by target, with the pen up between
+//! petals. The motors follow as well as motors do: a pulse to the side now and then, a silence at every
+//! thousandth target, one pulse in a million lost on the line.
 //!
 //! ```text
 //! cargo run --release -p plotter-replay --example long_recording -- 10000000 long.plog

@@ -1,4 +1,5 @@
-//! [`FrameReader`]: the frames of a recorded reliable link, both directions, and [`FrameStream`], their payloads in order.
+//! [`FrameReader`]: the frames of a recorded reliable link, both directions, and [`FrameStream`], their
+//! payloads in order.
 
 use crate::import::Side;
 use crate::log::{Event, Record};
@@ -164,7 +165,8 @@ impl FrameStream {
         messages
     }
 
-    /// The other side has all payloads before this number: those that are not here are missing in the recording.
+    /// The other side has all payloads before this number: those that are not here are missing in the
+    /// recording.
     pub(crate) fn acknowledged(&mut self, until: u8) -> Vec<Result<Message, MessageError>> {
         let mut messages = Vec::new();
         while matches!(until.wrapping_sub(self.next), 1..=WINDOW) {

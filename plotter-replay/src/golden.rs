@@ -9,8 +9,8 @@
 //! golden::assert_replays("tests/golden/square.plog", || MachineController::new(&machine));
 //! ```
 //!
-//! With `UPDATE_GOLDEN=1` in the environment the recording is renewed: the same inputs, and what the controller
-//! answers now.
+//! With `UPDATE_GOLDEN=1` in the environment the recording is renewed: the same inputs, and what the
+//! controller answers now.
 //!
 //! A first recording comes from a machine (`plotter-replay live -o session.plog`), from a simulated one
 //! (`plotter-replay simulate`), or from a list of inputs and the controller itself: [`record`]. Look through
@@ -49,14 +49,16 @@ pub enum GoldenError {
         path: PathBuf,
         /// Where what it does now was written to.
         actual: PathBuf,
-        /// Where what is different was written to: the first difference with what is round it, and all in numbers.
+        /// Where what is different was written to: the first difference with what is round it, and all in
+        /// numbers.
         written: PathBuf,
         /// Where it begins to differ.
         difference: Box<Difference>,
     },
     /// The controller cannot be run to the end.
     Stuck(Stuck),
-    /// A recording of frames without edges cannot be renewed: it is run message by message, and that gives no frames.
+    /// A recording of frames without edges cannot be renewed: it is run message by message, and that gives no
+    /// frames.
     NoEdges {
         /// The file.
         path: PathBuf,
@@ -231,7 +233,8 @@ pub fn assert_replays<C: Controller>(path: impl AsRef<Path>, controller: impl Fn
     }
 }
 
-/// `session.plog` to `session.plog.actual`, and `session.plog.gz` to `session.plog.actual.gz`, so that it stays packed.
+/// `session.plog` to `session.plog.actual`, and `session.plog.gz` to `session.plog.actual.gz`, so that it
+/// stays packed.
 fn beside(path: &Path, what: &str) -> PathBuf {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let packed = name.strip_suffix(".gz").map_or("", |_| ".gz");

@@ -89,8 +89,8 @@ impl core::error::Error for ResumeError {
 }
 
 impl ResumePoint {
-    /// What a log says: of the drawing's begin, if it goes on with one already, else the first word of its machine. Damaged lines
-    /// are passed over.
+    /// What a log says: of the drawing's begin, if it goes on with one already, else the first word of its
+    /// machine. Damaged lines are passed over.
     ///
     /// # Errors
     ///

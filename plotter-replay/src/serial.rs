@@ -94,8 +94,8 @@ impl fmt::Display for PortError {
 
 impl core::error::Error for PortError {}
 
-/// The serial port that is meant: `auto` is the only one on USB, else the only one at all; a name that no port has may be a
-/// part of its name or of what the device on USB calls itself, if only one has it.
+/// The serial port that is meant: `auto` is the only one on USB, else the only one at all; a name that no
+/// port has may be a part of its name or of what the device on USB calls itself, if only one has it.
 ///
 /// # Errors
 ///
@@ -151,7 +151,8 @@ fn choose(wanted: &str, ports: &[Known]) -> Result<String, PortError> {
 const SEND_WITHIN: Duration = Duration::from_secs(5);
 
 impl Port {
-    /// Opens the port `name` (`/dev/ttyUSB0`, `COM3`, …) at `baud` bits a second, and forgets what came before.
+    /// Opens the port `name` (`/dev/ttyUSB0`, `COM3`, …) at `baud` bits a second, and forgets what came
+    /// before.
     ///
     /// # Errors
     ///
@@ -196,7 +197,8 @@ impl Port {
         ports.into_iter().map(|port| port.port_name).collect()
     }
 
-    /// A pseudo terminal: its machine's end, and the port at the other end, which any program may open by its name.
+    /// A pseudo terminal: its machine's end, and the port at the other end, which any program may open by its
+    /// name.
     ///
     /// # Errors
     ///

@@ -1,5 +1,5 @@
-//! The whole way, in pixels a second: from the levels of a scan to ordered strokes and their errors; held whole and by rows,
-//! and from a scan in colour to the strokes of three pens.
+//! The whole way, in pixels a second: from the levels of a scan to ordered strokes and their errors; held
+//! whole and by rows, and from a scan in colour to the strokes of three pens.
 //!
 //! `cargo bench -p plotter-vector --bench chain`
 

@@ -62,7 +62,8 @@ fn windows(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Follows the whole paper with a table that goes where it is sent: how many windows that takes, and how long the follower itself.
+/// Follows the whole paper with a table that goes where it is sent: how many windows that takes, and how long
+/// the follower itself.
 fn followed() -> (u64, Duration) {
     let mut camera = SimulatedCamera::new(&paper(), CameraSettings::default());
     let mut follower = MappingFollower::new(MappingSettings::default());

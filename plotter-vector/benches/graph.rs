@@ -1,5 +1,5 @@
-//! Ink to strokes, in pixels of the sheet a second: cleaned, thinned, made a graph of centrelines with their crossings and
-//! corners, and simplified; not ordered, and without the errors.
+//! Ink to strokes, in pixels of the sheet a second: cleaned, thinned, made a graph of centrelines with their
+//! crossings and corners, and simplified; not ordered, and without the errors.
 //!
 //! `cargo bench -p plotter-vector --bench graph`
 

@@ -1,6 +1,7 @@
 //! How fast a scan is read by rows: an A4 sheet at 600 dots per inch, 4960 x 7016 px, 35 million of them.
 //!
-//! `cargo bench -p plotter-vector --bench rows`; the throughput is in pixels, so Gelem/s are thousand megapixels.
+//! `cargo bench -p plotter-vector --bench rows`; the throughput is in pixels, so Gelem/s are thousand
+//! megapixels.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use plotter_vector::{

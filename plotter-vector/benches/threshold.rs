@@ -1,4 +1,5 @@
-//! Megapixels a second of each stage from grey levels to clean ink, on a sheet A4 at 150, 300 and 600 dots per inch.
+//! Megapixels a second of each stage from grey levels to clean ink, on a sheet A4 at 150, 300 and 600 dots
+//! per inch.
 //!
 //!     cargo bench -p plotter-vector --bench threshold
 #![allow(clippy::unwrap_used, reason = "a failure shows, and levels are made to fit")]

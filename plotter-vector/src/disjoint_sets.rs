@@ -1,7 +1,7 @@
 //! [`DisjointSets`]: things that belong together.
 
-/// Trees over numbered things: those that belong together share a root (B. A. Galler and M. J. Fischer, "An improved
-/// equivalence algorithm", 1964).
+/// Trees over numbered things: those that belong together share a root (B. A. Galler and M. J. Fischer, "An
+/// improved equivalence algorithm", 1964).
 #[derive(Clone, Debug)]
 pub(crate) struct DisjointSets(Vec<usize>);
 

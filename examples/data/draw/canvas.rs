@@ -56,8 +56,8 @@ pub(crate) fn thick(sheet: &mut GrayImage, from: At, to: At, width: u32) {
     }
 }
 
-/// The part of a circle for which `keep` says yes, 1 px thin: in each column where the circle is flatter than 45
-/// degrees the row nearest to it, and in each row where it is steeper the column nearest to it.
+/// The part of a circle for which `keep` says yes, 1 px thin: in each column where the circle is flatter than
+/// 45 degrees the row nearest to it, and in each row where it is steeper the column nearest to it.
 pub(crate) fn circle(sheet: &mut GrayImage, centre: At, radius: f64, keep: impl Fn(f64, f64) -> bool) {
     let reach = libm::ceil(radius * core::f64::consts::FRAC_1_SQRT_2);
     for flat in [true, false] {

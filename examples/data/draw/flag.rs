@@ -1,9 +1,9 @@
 //! The flag, by the proportions of the Turkish flag law (no. 2893 of 1983) and its regulation.
 //!
-//! With G the width (at the hoist): length 3/2 G; centre of the outer circle of the crescent G/2 from the hoist's
-//! seam, its diameter G/2; centre of the inner circle G/16 further to the fly, its diameter 2/5 G; the star's
-//! circle begins G/3 from the inner circle's edge, its diameter G/4, and one point of the star looks to the hoist;
-//! white hem at the hoist G/30.
+//! With G the width (at the hoist): length 3/2 G; centre of the outer circle of the crescent G/2 from the
+//! hoist's seam, its diameter G/2; centre of the inner circle G/16 further to the fly, its diameter 2/5 G;
+//! the star's circle begins G/3 from the inner circle's edge, its diameter G/4, and one point of the star
+//! looks to the hoist; white hem at the hoist G/30.
 
 use crate::canvas::{At, circle, line, lines, paper};
 use image::GrayImage;

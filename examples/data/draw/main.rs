@@ -1,9 +1,9 @@
 //! Draws the two pictures that the examples trace when they are given none.
 //!
-//! `flag.png` is the line art of the Turkish flag in its official proportions; `technical.png` is the drawing of a
-//! bearing bracket with its dimensions, frame and title block. Both look like a scan after thresholding: lines of
-//! 1 to 3 px without grey borders. The program only uses whole numbers and square roots, so it draws the same
-//! pixels everywhere:
+//! `flag.png` is the line art of the Turkish flag in its official proportions; `technical.png` is the drawing
+//! of a bearing bracket with its dimensions, frame and title block. Both look like a scan after thresholding:
+//! lines of 1 to 3 px without grey borders. The program only uses whole numbers and square roots, so it draws
+//! the same pixels everywhere:
 //!
 //! ```text
 //! cargo run --release --example draw_data            # rewrites examples/data/*.png

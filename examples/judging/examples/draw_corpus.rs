@@ -1,9 +1,9 @@
 //! Draws pictures of which every line is known, so that a vectorization of them can be judged.
 //!
-//! Each `NAME.png` comes with a `NAME.json` that holds the strokes it was drawn from, their pen widths and the points
-//! where they cross or meet: `judge` compares with it. Look at the pictures where tracers usually fail: lines that cross at small
-//! angles, tiny marks, lettering, grey edges, and the noise of a scan. The second form writes a technical sheet of any size row by
-//! row, to measure time and memory:
+//! Each `NAME.png` comes with a `NAME.json` that holds the strokes it was drawn from, their pen widths and
+//! the points where they cross or meet: `judge` compares with it. Look at the pictures where tracers usually
+//! fail: lines that cross at small angles, tiny marks, lettering, grey edges, and the noise of a scan. The
+//! second form writes a technical sheet of any size row by row, to measure time and memory:
 //!
 //! ```text
 //! cargo run --release --example draw_corpus                                  # into target/corpus

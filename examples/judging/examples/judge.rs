@@ -1,10 +1,12 @@
 //! How well a vectorization meets what was drawn.
 //!
-//! `draw_corpus` writes pictures with the strokes that they were drawn from. Trace one of them, with ours or any other program, and
-//! this says how far the result and those strokes are from each other: on the average, at the worst place, at the junctions, how much
-//! is missing and how much is there that should not be. Look at the junctions first: there programs differ most.
+//! `draw_corpus` writes pictures with the strokes that they were drawn from. Trace one of them, with ours or
+//! any other program, and this says how far the result and those strokes are from each other: on the average,
+//! at the worst place, at the junctions, how much is missing and how much is there that should not be. Look
+//! at the junctions first: there programs differ most.
 //!
-//! Without a file it draws the corpus, traces it with ours as it is set from the start, and prints a line for each picture:
+//! Without a file it draws the corpus, traces it with ours as it is set from the start, and prints a line for
+//! each picture:
 //!
 //! ```text
 //! cargo run --release --example judge
@@ -28,14 +30,15 @@ use std::process::ExitCode;
                   judge traced.svg --truth flag_1px.json --picture flag_1px.png --report figures.json\n\n\
                   What each figure is: the page of `Judgement`. Lengths are px of the picture.")]
 struct Arguments {
-    /// SVG whose sheet is the picture, y down, pixel centres at .5; or HPGL, y up from the centre of the lower left pixel [default:
-    /// what ours makes of each picture of the corpus]
+    /// SVG whose sheet is the picture, y down, pixel centres at .5; or HPGL, y up from the centre of the
+    /// lower left pixel [default: what ours makes of each picture of the corpus]
     #[arg(requires = "truth")]
     drawing: Option<PathBuf>,
     /// What is known about the picture, as `draw_corpus` writes it
     #[arg(long, value_name = "F.json", requires = "drawing")]
     truth: Option<PathBuf>,
-    /// The picture: measures how far its ink lies from the drawing too, which says something of lines 1 px wide
+    /// The picture: measures how far its ink lies from the drawing too, which says something of lines 1 px
+    /// wide
     #[arg(long, value_name = "F.png", requires = "drawing")]
     picture: Option<PathBuf>,
     /// Size of a pixel in HPGL, mm

@@ -7,8 +7,8 @@ use plotter_vector::{Vectorizer, decode};
 use rayon::prelude::*;
 use std::io::Cursor;
 
-/// Draws the corpus, vectorizes each picture with the default settings, in colour where it has several, and compares with what was
-/// drawn. The greatest distance of the ink is measured on lines 1 px wide.
+/// Draws the corpus, vectorizes each picture with the default settings, in colour where it has several, and
+/// compares with what was drawn. The greatest distance of the ink is measured on lines 1 px wide.
 ///
 /// # Errors
 ///

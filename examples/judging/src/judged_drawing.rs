@@ -54,8 +54,8 @@ impl JudgedDrawing {
         Ok(Self { drawing, pens: svg.pens })
     }
 
-    /// From HPGL whose origin is the centre of the picture's lower left pixel, y up, as `trace` writes it. Pens have the usual
-    /// colours.
+    /// From HPGL whose origin is the centre of the picture's lower left pixel, y up, as `trace` writes it.
+    /// Pens have the usual colours.
     ///
     /// # Errors
     ///

@@ -22,9 +22,10 @@ const CENTRE_PX: f64 = 0.5;
 
 /// Figures of a drawing beside the truth.
 ///
-/// The truth *T* and the drawing *D* are cut into pieces of at most ½ px, those of a segment equal. A piece stands for its length
-/// *l* with its middle *p*, and *d*(*p*, *X*) is the distance of that from the nearest point of the lines *X*. Greatest distances are
-/// known to a quarter of a pixel in the worst case, for ends lie so far from the last middle.
+/// The truth *T* and the drawing *D* are cut into pieces of at most ½ px, those of a segment equal. A piece
+/// stands for its length *l* with its middle *p*, and *d*(*p*, *X*) is the distance of that from the nearest
+/// point of the lines *X*. Greatest distances are known to a quarter of a pixel in the worst case, for ends
+/// lie so far from the last middle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judgement {
     /// Vertices of all strokes, a closed one's first counted again at its end, a dot's once.
@@ -35,7 +36,8 @@ pub struct Judgement {
     pub pen_down_px: f64,
     /// From each stroke's end to the next one's beginning, px.
     pub pen_up_px: f64,
-    /// Mean of both directed mean distances, px: ½ (Σ<sub>T</sub> *l d*(*p*, *D*) / Σ<sub>T</sub> *l* + Σ<sub>D</sub> *l d*(*p*, *T*) / Σ<sub>D</sub> *l*).
+    /// Mean of both directed mean distances, px: ½ (Σ<sub>T</sub> *l d*(*p*, *D*) / Σ<sub>T</sub> *l* +
+    /// Σ<sub>D</sub> *l d*(*p*, *T*) / Σ<sub>D</sub> *l*).
     pub mean_px: f64,
     /// Hausdorff distance, px: the greatest *d*(*p*, *D*) of *T* and *d*(*p*, *T*) of *D*.
     pub hausdorff_px: f64,
@@ -45,16 +47,18 @@ pub struct Judgement {
     pub precision: f64,
     /// At the junctions of the truth, where there are any.
     pub junctions: Option<JunctionFigures>,
-    /// Share of the drawing's length that lies less than 3 px from the truth and whose pen has, of all colours of the truth, the
-    /// nearest stroke's as its nearest; `None` where the truth has a single colour, or the drawing's are not known.
+    /// Share of the drawing's length that lies less than 3 px from the truth and whose pen has, of all
+    /// colours of the truth, the nearest stroke's as its nearest; `None` where the truth has a single colour,
+    /// or the drawing's are not known.
     pub right_pen: Option<f64>,
-    /// Greatest distance of an ink pixel's centre from the drawing, px. On lines 1 px wide, what is promised; on wider ones half
-    /// of their width is in it.
+    /// Greatest distance of an ink pixel's centre from the drawing, px. On lines 1 px wide, what is promised;
+    /// on wider ones half of their width is in it.
     pub ink_max_px: Option<f64>,
 }
 
-/// Figures at junctions. The deviation at a junction is the greatest distance, either way, of the pieces whose middle is in a disc
-/// of 1.5 *w* + 4 px about it, *w* the width of the widest pen; the disc's radius, where one side has none there.
+/// Figures at junctions. The deviation at a junction is the greatest distance, either way, of the pieces
+/// whose middle is in a disc of 1.5 *w* + 4 px about it, *w* the width of the widest pen; the disc's radius,
+/// where one side has none there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct JunctionFigures {
     /// How many there are.
@@ -66,8 +70,8 @@ pub struct JunctionFigures {
 }
 
 impl Judgement {
-    /// Compares a drawing of straight lines with the truth, and with the picture's ink where that is given. `pens` are those of
-    /// the drawing, with their colours, where they are known.
+    /// Compares a drawing of straight lines with the truth, and with the picture's ink where that is given.
+    /// `pens` are those of the drawing, with their colours, where they are known.
     ///
     /// # Errors
     ///
@@ -285,7 +289,8 @@ mod tests {
         let truth = truth(&[("#000000", &[(0.0, 5.0), (20.0, 5.0)])], &[]);
         // Half of the line, 10 px, and as much somewhere else.
         let half = judge(&drawing(&[(1, &[(0.5, 5.5), (10.5, 5.5)])]), &truth);
-        assert_eq!((half.recall, half.precision), (0.55, 1.0)); // what lies within a pixel of its end is found
+        // What lies within a pixel of its end is found.
+        assert_eq!((half.recall, half.precision), (0.55, 1.0));
         let more =
             judge(&drawing(&[(1, &[(0.5, 5.5), (20.5, 5.5)]), (1, &[(0.5, 25.5), (20.5, 25.5)])]), &truth);
         assert_eq!((more.recall, more.precision, more.hausdorff_px), (1.0, 0.5, 20.0));

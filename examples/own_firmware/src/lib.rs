@@ -1,8 +1,8 @@
-//! A controller of one's own: it reads targets of ten digits as the semi-virtual gantry does, drives one motor after the
-//! other with full duty, and slows down near the target.
+//! A controller of one's own: it reads targets of ten digits as the semi-virtual gantry does, drives one
+//! motor after the other with full duty, and slows down near the target.
 //!
-//! It knows nothing of logs or tests: this is what would run on the microcontroller. What makes it testable is its shape:
-//! bytes, edges and time go in, bytes and duty cycles come out, and it reads no clock.
+//! It knows nothing of logs or tests: this is what would run on the microcontroller. What makes it testable
+//! is its shape: bytes, edges and time go in, bytes and duty cycles come out, and it reads no clock.
 
 #![no_std]
 #![forbid(unsafe_code)]

@@ -1,5 +1,5 @@
-//! How the golden log was made: the firmware and two motors of a line each, simulated. Who has a machine records its line
-//! instead (`plotter-replay record`), and puts that beside the tests.
+//! How the golden log was made: the firmware and two motors of a line each, simulated. Who has a machine
+//! records its line instead (`plotter-replay record`), and puts that beside the tests.
 //!
 //! ```text
 //! cargo test --test record -- --ignored

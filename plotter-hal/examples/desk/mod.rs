@@ -1,4 +1,5 @@
-//! A board on the desk: a clock that somebody sets, pins that print what is done to them, a serial port that hears what it is told.
+//! A board on the desk: a clock that somebody sets, pins that print what is done to them, a serial port that
+//! hears what it is told.
 
 #![allow(dead_code, reason = "each example uses what it needs")]
 #![allow(clippy::print_stdout, reason = "the pins of this board are seen on the screen")]

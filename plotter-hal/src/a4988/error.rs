@@ -20,8 +20,8 @@ pub enum Error<Pin> {
     Microsteps(u16),
     /// A pin failed; the outputs are off, the motor has no current. Its place is lost.
     Pin(Pin),
-    /// A pin failed and the outputs could not be switched off, or have no pin for that: the motor gets no more steps and
-    /// may hold.
+    /// A pin failed and the outputs could not be switched off, or have no pin for that: the motor gets no
+    /// more steps and may hold.
     StillOn(Pin),
 }
 

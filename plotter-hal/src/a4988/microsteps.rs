@@ -16,11 +16,11 @@ pub enum Chip {
 }
 
 impl Chip {
-    /// Levels of the first, second and third pin (true: high) for `microsteps` to a full step; `None` for a number that
-    /// the chip does not have.
+    /// Levels of the first, second and third pin (true: high) for `microsteps` to a full step; `None` for a
+    /// number that the chip does not have.
     ///
-    /// Sources: A4988-DS, Table 1 "Microstepping Resolution Truth Table" (page 6); SLVSA73F, Table 1 "Stepping
-    /// Format"; TMC2209 Rev. 1.09, section 3.4 "Configuration Pins", table of MS1 and MS2.
+    /// Sources: A4988-DS, Table 1 "Microstepping Resolution Truth Table" (page 6); SLVSA73F, Table 1
+    /// "Stepping Format"; TMC2209 Rev. 1.09, section 3.4 "Configuration Pins", table of MS1 and MS2.
     ///
     /// ```
     /// # use plotter_hal::a4988::Chip;
@@ -50,8 +50,8 @@ impl Chip {
 }
 
 /// The pins MS1, MS2, MS3 of a chip (MODE0, MODE1, MODE2); for
-/// [`A4988::set_microsteps`](super::A4988::set_microsteps), which keeps their times. Apart from the driver, because most
-/// boards have them wired. [`NoPin`](crate::NoPin) stands for one that the chip does not have.
+/// [`A4988::set_microsteps`](super::A4988::set_microsteps), which keeps their times. Apart from the driver,
+/// because most boards have them wired. [`NoPin`](crate::NoPin) stands for one that the chip does not have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MicrostepPins<Ms1, Ms2, Ms3> {
     chip: Chip,

@@ -4,8 +4,8 @@ use core::time::Duration;
 
 /// Shortest times between the edges that a chip with STEP and DIR sees.
 ///
-/// Every field may be made longer, for a slow optocoupler or a long wire. A pulse lasts for the longer of `high` and
-/// `hold`, because DIR changes only while STEP is low.
+/// Every field may be made longer, for a slow optocoupler or a long wire. A pulse lasts for the longer of
+/// `high` and `hold`, because DIR changes only while STEP is low.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Timing {
@@ -24,8 +24,9 @@ pub struct Timing {
 impl Timing {
     /// Allegro A4988, and the A4983 before it.
     ///
-    /// A4988-DS, Figure 1 "Logic Interface Timing Diagram" and its table (page 6): STEP high `t_A` and low `t_B`
-    /// 1 us, setup `t_C` and hold `t_D` 200 ns. Section "Sleep Mode": allow 1 ms before a step, for the charge pump.
+    /// A4988-DS, Figure 1 "Logic Interface Timing Diagram" and its table (page 6): STEP high `t_A` and low
+    /// `t_B` 1 us, setup `t_C` and hold `t_D` 200 ns. Section "Sleep Mode": allow 1 ms before a step, for the
+    /// charge pump.
     pub const A4988: Self = Self {
         high: Duration::from_micros(1),
         low: Duration::from_micros(1),
@@ -36,9 +37,9 @@ impl Timing {
 
     /// Texas Instruments DRV8825.
     ///
-    /// SLVSA73F, section 6.6 "Timing Requirements": `t_WH(STEP)` and `t_WL(STEP)` 1.9 us, `t_SU(STEP)` and `t_H(STEP)`
-    /// 650 ns, `t_WAKE` 1.7 ms. There `f_STEP` is at most 250 kHz as well, a period of 4 us, so that STEP is low for
-    /// 2.1 us after the shortest pulse.
+    /// SLVSA73F, section 6.6 "Timing Requirements": `t_WH(STEP)` and `t_WL(STEP)` 1.9 us, `t_SU(STEP)` and
+    /// `t_H(STEP)` 650 ns, `t_WAKE` 1.7 ms. There `f_STEP` is at most 250 kHz as well, a period of 4 us, so
+    /// that STEP is low for 2.1 us after the shortest pulse.
     pub const DRV8825: Self = Self {
         high: Duration::from_nanos(1_900),
         low: Duration::from_nanos(2_100),
@@ -49,8 +50,8 @@ impl Timing {
 
     /// Trinamic TMC2209, on its internal clock; the TMC2208 and TMC2225 alike.
     ///
-    /// Rev. 1.09, section 13.1 "Timing": `t_SH` and `t_SL` a period of the clock and 20 ns, so 103 ns at 12 MHz and
-    /// 110 ns down to 11.1 MHz; `t_DSU` and `t_DSH` 20 ns. It has no SLEEP.
+    /// Rev. 1.09, section 13.1 "Timing": `t_SH` and `t_SL` a period of the clock and 20 ns, so 103 ns at
+    /// 12 MHz and 110 ns down to 11.1 MHz; `t_DSU` and `t_DSH` 20 ns. It has no SLEEP.
     pub const TMC2209: Self = Self {
         high: Duration::from_nanos(110),
         low: Duration::from_nanos(110),
@@ -59,8 +60,8 @@ impl Timing {
         wake: Duration::ZERO,
     };
 
-    /// The same on a clock that counts in whole ticks of `tick`: each time is longer by one. Two readings that differ by
-    /// 1 us on a clock of microseconds may be 1 ns apart.
+    /// The same on a clock that counts in whole ticks of `tick`: each time is longer by one. Two readings
+    /// that differ by 1 us on a clock of microseconds may be 1 ns apart.
     ///
     /// ```
     /// # use core::time::Duration;

@@ -40,14 +40,15 @@ pub struct DcAxes<X, Y> {
 }
 
 impl<X: Bridge, Y: Bridge<Error = X::Error>> DcAxes<X, Y> {
-    /// Both motors, which wait for `dead_time` before they are reversed; 0 for bridges that need none. Each takes the share
-    /// of its own axis. Leaves the pins as they are: call [`start`](Self::start) for a known state.
+    /// Both motors, which wait for `dead_time` before they are reversed; 0 for bridges that need none. Each
+    /// takes the share of its own axis. Leaves the pins as they are: call [`start`](Self::start) for a known
+    /// state.
     pub const fn new(x: X, y: Y, dead_time: Duration) -> Self {
         Self { x: DeadTime::new(x, dead_time), y: DeadTime::new(y, dead_time) }
     }
 
-    /// When [`drive`](Self::drive) is to be called again, with what the gate lets through then; later does no harm. `None` while
-    /// no motor waits for its drive.
+    /// When [`drive`](Self::drive) is to be called again, with what the gate lets through then; later does no
+    /// harm. `None` while no motor waits for its drive.
     pub fn due(&self) -> Option<Duration> {
         match (self.x.due(), self.y.due()) {
             (Some(x), Some(y)) => Some(x.min(y)),

@@ -12,9 +12,10 @@ use plotter_motion::{Direction, StepPair, safety::Pulse};
 
 /// Two stepper motors on chips of the A4988 kind, fed by a [`Pulse`].
 ///
-/// When both step, STEP rises at both at the same time: when one of them must wait, for its setup time or the end of its
-/// last pulse, the other one waits with it. As with [one motor](A4988), one pulse can be put off; a second is refused. So ask
-/// [`drivers`](StepperAxes::drivers) before a pulse is taken from its source: a loop that comes late finds several due.
+/// When both step, STEP rises at both at the same time: when one of them must wait, for its setup time or the
+/// end of its last pulse, the other one waits with it. As with [one motor](A4988), one pulse can be put off;
+/// a second is refused. So ask [`drivers`](StepperAxes::drivers) before a pulse is taken from its source: a
+/// loop that comes late finds several due.
 ///
 /// ```
 /// use core::time::Duration;
@@ -77,7 +78,8 @@ where
         self.x.is_waiting() || self.y.is_waiting()
     }
 
-    /// Whether both take a pulse now: what [`StepperPlotter::poll`] asks before it gives one, so that none is refused and lost.
+    /// Whether both take a pulse now: what [`StepperPlotter::poll`] asks before it gives one, so that none is
+    /// refused and lost.
     pub const fn drivers(&self) -> Drivers {
         if self.is_waiting() { Drivers::Busy } else { Drivers::Ready }
     }
@@ -119,8 +121,8 @@ where
     ///
     /// # Errors
     ///
-    /// As [`A4988::step`]. A pulse that one motor cannot take is not taken by the other; after a fault of a pin both have
-    /// been stopped.
+    /// As [`A4988::step`]. A pulse that one motor cannot take is not taken by the other; after a fault of a
+    /// pin both have been stopped.
     pub fn step(&mut self, pulse: Pulse, now: Duration) -> Outcome<XStep::Error> {
         self.take(pulse)?;
         self.tick(now)
@@ -160,8 +162,8 @@ where
         Ok(())
     }
 
-    /// Takes back a pulse that has been taken and has not been made, and says which. The motors keep their current, so that
-    /// they stand where they are: for an end of motion that is not an emergency.
+    /// Takes back a pulse that has been taken and has not been made, and says which. The motors keep their
+    /// current, so that they stand where they are: for an end of motion that is not an emergency.
     pub const fn cancel(&mut self) -> Option<StepPair> {
         match (self.x.cancel(), self.y.cancel()) {
             (None, None) => None,
@@ -169,8 +171,8 @@ where
         }
     }
 
-    /// Switches the outputs of both motors off at once, as [`A4988::stop`]: for an emergency. A pulse that was put off is
-    /// dropped.
+    /// Switches the outputs of both motors off at once, as [`A4988::stop`]: for an emergency. A pulse that
+    /// was put off is dropped.
     ///
     /// # Errors
     ///

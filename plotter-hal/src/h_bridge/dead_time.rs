@@ -5,15 +5,15 @@ use core::time::Duration;
 use embedded_hal::delay::DelayNs;
 use plotter_motion::{Axis, Direction, Drive};
 
-/// A motor that gets no drive for a time before it is reversed, so that the switches of the bridge have opened and the
-/// motor's current has run out.
+/// A motor that gets no drive for a time before it is reversed, so that the switches of the bridge have
+/// opened and the motor's current has run out.
 ///
-/// Bridges with a dead time of their own need none, and a motor with a bridge alone has none. One that is large
-/// for its supply may need some milliseconds.
+/// Bridges with a dead time of their own need none, and a motor with a bridge alone has none. One that is
+/// large for its supply may need some milliseconds.
 ///
-/// Without waiting: [`drive`](Self::drive) takes a drive and the time. A motor that must wait gets none, and [`due`](Self::due) says
-/// when to call it again, with what the gate lets through then: no drive is kept here, which could be out of date. With
-/// waiting: [`drive_blocking`](Self::drive_blocking).
+/// Without waiting: [`drive`](Self::drive) takes a drive and the time. A motor that must wait gets none, and
+/// [`due`](Self::due) says when to call it again, with what the gate lets through then: no drive is kept
+/// here, which could be out of date. With waiting: [`drive_blocking`](Self::drive_blocking).
 ///
 /// ```
 /// # use core::time::Duration;
@@ -61,7 +61,8 @@ impl<Motor: Bridge> DeadTime<Motor> {
         self.motor.axis()
     }
 
-    /// When [`drive`](Self::drive) is to be called again; later does no harm. `None` while the motor waits for none.
+    /// When [`drive`](Self::drive) is to be called again; later does no harm. `None` while the motor waits
+    /// for none.
     pub fn due(&self) -> Option<Duration> {
         self.free_since.filter(|_| self.waits).map(|since| since.saturating_add(self.dead_time))
     }

@@ -1,4 +1,5 @@
-//! A DC motor on a bridge with two inputs and no enable, of the DRV8871 kind: the PWM goes to one of the inputs.
+//! A DC motor on a bridge with two inputs and no enable, of the DRV8871 kind: the PWM goes to one of the
+//! inputs.
 //!
 //! ```text
 //!  IN1   IN2  │ motor                           fast decay          slow decay
@@ -9,9 +10,9 @@
 //!  high  high │ brakes: short-circuited
 //! ```
 //!
-//! Source: Texas Instruments, *DRV8871 3.6-A Brushed DC Motor Driver*, SLVSCY9B, section 7.3.1 "Bridge Control",
-//! Table 1 "H-Bridge Control"; the same table in the DRV8870, SLVSCY8. The chip keeps the dead time of its own
-//! transistors (220 ns, section 7.3.4).
+//! Source: Texas Instruments, *DRV8871 3.6-A Brushed DC Motor Driver*, SLVSCY9B, section 7.3.1 "Bridge
+//! Control", Table 1 "H-Bridge Control"; the same table in the DRV8870, SLVSCY8. The chip keeps the dead time
+//! of its own transistors (220 ns, section 7.3.4).
 
 use super::{Bridge, Error, steps};
 use core::convert::Infallible;
@@ -30,10 +31,11 @@ pub enum Decay {
 
 /// One motor on two PWM inputs. It turns by nothing but a [`Drive`], which only a safety gate makes.
 ///
-/// From rest to any drive, from any drive to rest, and through rest to the other direction, one input changes at a time
-/// and none of these steps drives the motor elsewhere than asked. Between coast and brake there is no such way: one
-/// input is always first. So each decay has its own rest, and the first drive with slow decay, which begins at coast,
-/// gives the motor the whole supply in its own direction until the second input is set.
+/// From rest to any drive, from any drive to rest, and through rest to the other direction, one input changes
+/// at a time and none of these steps drives the motor elsewhere than asked. Between coast and brake there is
+/// no such way: one input is always first. So each decay has its own rest, and the first drive with slow
+/// decay, which begins at coast, gives the motor the whole supply in its own direction until the second input
+/// is set.
 ///
 /// The chip has no enable, so that a motor whose PWM fails twice cannot be stopped by another pin: see
 /// [`Error::NotStopped`]. Dropping the driver leaves the pins as they are; [`stop`](Bridge::stop) first.
@@ -119,8 +121,9 @@ where
         self.axis
     }
 
-    /// As [`stop`](Self::stop); before the first drive, the motor coasts. Inputs that are both high when a new driver takes
-    /// them over go low one after the other, which drives the motor in between; after a reset of the chip they are low.
+    /// As [`stop`](Self::stop); before the first drive, the motor coasts. Inputs that are both high when a
+    /// new driver takes them over go low one after the other, which drives the motor in between; after a
+    /// reset of the chip they are low.
     fn start(&mut self) -> Result<(), Self::Error> {
         self.stop()
     }

@@ -21,11 +21,11 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::pwm::SetDutyCycle;
 use plotter_motion::{Axis, Direction, Drive};
 
-/// One motor on a channel with PWM, IN1, IN2 and STBY. It turns by nothing but a [`Drive`], which only a safety gate
-/// makes.
+/// One motor on a channel with PWM, IN1, IN2 and STBY. It turns by nothing but a [`Drive`], which only a
+/// safety gate makes.
 ///
-/// The direction is never changed under duty, and both inputs are never high together. STBY belongs to both channels
-/// of the chip: [give it](Self::with_standby) to one of two motors, and that one's fault stops both.
+/// The direction is never changed under duty, and both inputs are never high together. STBY belongs to both
+/// channels of the chip: [give it](Self::with_standby) to one of two motors, and that one's fault stops both.
 ///
 /// Dropping the driver leaves the pins as they are; [`stop`](Bridge::stop) first.
 ///
@@ -82,7 +82,8 @@ where
     In2: OutputPin<Error = In1::Error>,
     Stby: OutputPin<Error = In1::Error>,
 {
-    /// Lets the motor coast: no duty, both inputs low, and the PWM high, which without a direction drives nothing.
+    /// Lets the motor coast: no duty, both inputs low, and the PWM high, which without a direction drives
+    /// nothing.
     ///
     /// # Errors
     ///

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-/// The crates that this one depends on by its manifest, and whether they are optional. Those of tests and builds are left out.
+/// The crates that this one depends on by its manifest, and whether they are optional. Those of tests and
+/// builds are left out.
 fn dependencies(manifest: &str) -> BTreeMap<&str, bool> {
     let mut found = BTreeMap::new();
     let mut section = "";

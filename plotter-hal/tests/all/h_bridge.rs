@@ -275,8 +275,8 @@ fn after_a_fault_the_direction_is_set_anew() {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever is driven and whichever accesses fail: the inputs are never both high, the direction never changes
-    /// under duty, and after an error the motor has no voltage unless the error says that it may.
+    /// Whatever is driven and whichever accesses fail: the inputs are never both high, the direction never
+    /// changes under duty, and after an error the motor has no voltage unless the error says that it may.
     #[test]
     fn no_fault_drives_a_motor(
         duties in prop::collection::vec(-1.0_f32..=1.0, 1..12),

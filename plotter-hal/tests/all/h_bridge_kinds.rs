@@ -1,5 +1,5 @@
-//! Every kind of bridge by what its motor sees: the voltage that follows from the levels of the pins by the tables of the
-//! datasheets, at every access, with faults put in.
+//! Every kind of bridge by what its motor sees: the voltage that follows from the levels of the pins by the
+//! tables of the datasheets, at every access, with faults put in.
 
 use crate::logic_analyser;
 
@@ -155,7 +155,8 @@ fn no_access_on_the_way_drives_the_motor_elsewhere_than_asked() {
             let analyser = Analyser::default();
             kind.run(&analyser, Drives(&EVERYTHING[..=number])).unwrap();
             let (old, asked) = (kind.now(&before), kind.now(&analyser));
-            // At the first drive after coasting, slow decay passes by the whole supply in the direction asked.
+            // At the first drive after coasting, slow decay passes by the whole supply in the direction
+            // asked.
             let is_first_slow = number == 0 && kind == Kind::Drv8871(Decay::Slow);
             let most = if is_first_slow { asked.signum() * i32::from(FULL) } else { asked };
             let on_the_way = analyser.history()[before.accesses()..]
@@ -182,7 +183,8 @@ fn whichever_access_fails_the_motor_has_no_voltage_or_the_error_says_so() {
             if failed == Failed::Stopped {
                 assert_eq!(kind.now(&analyser), 0, "{kind:?} {fault:?}");
             }
-            // A fault that passes never leaves the motor driven; nor does one pin, where there is another way.
+            // A fault that passes never leaves the motor driven; nor does one pin, where there is another
+            // way.
             let has_another_way = !matches!(kind, Kind::Drv8871(_));
             match fault {
                 Fault::Once { .. } => assert_eq!(failed, Failed::Stopped, "{kind:?} {fault:?}"),

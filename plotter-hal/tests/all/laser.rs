@@ -244,8 +244,8 @@ fn call() -> impl Strategy<Value = Call> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever is called and whichever accesses fail: there is light only as asked for and within `TIMEOUT` of a motion,
-    /// and an error that does not say otherwise leaves it dark.
+    /// Whatever is called and whichever accesses fail: there is light only as asked for and within `TIMEOUT`
+    /// of a motion, and an error that does not say otherwise leaves it dark.
     #[test]
     fn it_is_never_lit_without_motion(
         calls in prop::collection::vec((0..40_u64, call(), prop::bool::weighted(0.1)), 1..60),

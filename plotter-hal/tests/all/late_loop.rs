@@ -1,4 +1,5 @@
-//! The stepper plotter's controller in main loops that are too slow for its steps, with real drivers on pins: no step is lost.
+//! The stepper plotter's controller in main loops that are too slow for its steps, with real drivers on pins:
+//! no step is lost.
 
 use core::convert::Infallible;
 use core::time::Duration;

@@ -158,8 +158,8 @@ fn one_error_is_told_from_the_other() {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever the pin shows and however it is read: a press and a fault count in the same call, and it is free only after it
-    /// has been seen free for the whole time.
+    /// Whatever the pin shows and however it is read: a press and a fault count in the same call, and it is
+    /// free only after it has been seen free for the whole time.
     #[test]
     fn it_is_free_only_after_it_has_shown_so(
         reads in prop::collection::vec((0..10_u64, prop::option::weighted(0.95, any::<bool>())), 1..200),

@@ -245,8 +245,8 @@ fn a_failing_pin_is_named_by_its_own_error() {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever is ordered and however late the ticks come: it never goes down faster than it may, and it settles where it was
-    /// ordered to.
+    /// Whatever is ordered and however late the ticks come: it never goes down faster than it may, and it
+    /// settles where it was ordered to.
     #[test]
     fn it_never_goes_down_too_fast_and_always_arrives(
         orders in prop::collection::vec((0..400_u64, 0.0..180.0_f32), 1..20),

@@ -1,5 +1,5 @@
-//! One machine with every kind of motor driver and a laser, under any sequence of calls, clock and faults: what must hold
-//! on its pins at all times.
+//! One machine with every kind of motor driver and a laser, under any sequence of calls, clock and faults:
+//! what must hold on its pins at all times.
 
 use crate::logic_analyser;
 
@@ -86,7 +86,8 @@ type Two<'a> = DcAxes<Drv8871<Wire<'a>, Wire<'a>>, Drv8871<Wire<'a>, Wire<'a>>>;
 type Tb6612s<'a> =
     DcAxes<Tb6612<Wire<'a>, Wire<'a>, Wire<'a>, Wire<'a>>, Tb6612<Wire<'a>, Wire<'a>, Wire<'a>, Wire<'a>>>;
 
-/// What both motors of a pair have last said of themselves: whether either may have drive that it should not have.
+/// What both motors of a pair have last said of themselves: whether either may have drive that it should not
+/// have.
 #[derive(Clone, Copy, Debug, Default)]
 struct MayRun([bool; 2]);
 
@@ -381,9 +382,10 @@ fn is_refusal(error: plotter_hal::a4988::Error<Broken>) -> bool {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever is called, whenever, and whatever fails: no motor is driven and no laser lit while the stop is latched; no
-    /// laser is lit without motion; no STEP pulse, pause, setup or hold time is shorter than the chip's; no bridge is
-    /// reversed under duty or before its dead time; and no step that was taken is lost, or made twice.
+    /// Whatever is called, whenever, and whatever fails: no motor is driven and no laser lit while the stop
+    /// is latched; no laser is lit without motion; no STEP pulse, pause, setup or hold time is shorter than
+    /// the chip's; no bridge is reversed under duty or before its dead time; and no step that was taken is
+    /// lost, or made twice.
     #[test]
     fn nothing_that_is_called_makes_a_machine_unsafe(calls in calls()) {
         let analyser = Analyser::default();

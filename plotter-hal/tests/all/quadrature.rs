@@ -90,7 +90,8 @@ fn shown(decoding: Decoding, levels: impl IntoIterator<Item = Phases>) -> Quadra
 
 #[test]
 fn an_edge_that_bounces_counts_once_with_x2_and_x4_and_drifts_with_x1() {
-    // Over ten periods each rising edge of A bounces three times. (Were its falling ones as bad, x1 would count them down.)
+    // Over ten periods each rising edge of A bounces three times. (Were its falling ones as bad, x1 would
+    // count them down.)
     let bouncing = (0..40).flat_map(|quarter: i64| {
         let bounces = if quarter % 4 == 0 { 3 } else { 0 };
         [quarter, quarter - 1].repeat(bounces).into_iter().chain([quarter]).map(Phases::of_quarter)
@@ -174,8 +175,8 @@ fn whichever_read_fails_the_position_is_right_again_at_the_next_one() {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// A shaft that goes where it likes, by a quarter at most between two looks: x4 is right to the count, and x2 to its half
-    /// period; nothing is illegal.
+    /// A shaft that goes where it likes, by a quarter at most between two looks: x4 is right to the count,
+    /// and x2 to its half period; nothing is illegal.
     #[test]
     fn x2_and_x4_follow_any_shaft(turns in prop::collection::vec(-1..=1_i64, 0..500)) {
         let mut quarters = vec![1_i64];

@@ -1,4 +1,5 @@
-//! The serial line byte by byte: framing errors, overruns, a port that fails for good; and what the controllers make of it.
+//! The serial line byte by byte: framing errors, overruns, a port that fails for good; and what the
+//! controllers make of it.
 
 use core::time::Duration;
 use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write, WriteReady};
@@ -151,7 +152,8 @@ fn a_line_of_g_code_with_a_broken_byte_is_refused_and_the_next_one_is_drawn() {
             let incoming = text.iter().enumerate();
             let incoming =
                 incoming.map(|(at, &byte)| if at == broken { Err(ErrorKind::InvalidData) } else { Ok(byte) });
-            // Where the end of the line was broken the host waits for its answer, and a person presses return.
+            // Where the end of the line was broken the host waits for its answer, and a person presses
+            // return.
             let incoming = incoming.chain(b"\nG1 X1 F600\n".iter().map(|&byte| Ok(byte)));
             let mut line = SerialLine::new(Port::receiving(incoming));
             let mut now = Duration::ZERO;
@@ -240,8 +242,8 @@ fn a_notice_of_the_gantry_is_one_of_a_dropped_target() {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Bytes come broken or are lost in an overrun; the host sends each target again until it is taken. Nothing is ever taken
-    /// that it has not sent.
+    /// Bytes come broken or are lost in an overrun; the host sends each target again until it is taken.
+    /// Nothing is ever taken that it has not sent.
     #[test]
     fn only_targets_that_were_sent_are_taken(
         targets in prop::collection::vec((0..100_000_i32, 0..100_000_i32), 1..5),

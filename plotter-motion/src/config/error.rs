@@ -63,7 +63,8 @@ pub enum ConfigError {
         /// What it does not go with, and what would be right.
         remedy: &'static str,
     },
-    /// A good description of a machine of another kind than is needed: see [`Machine::require`](super::Machine::require).
+    /// A good description of a machine of another kind than is needed: see
+    /// [`Machine::require`](super::Machine::require).
     OtherKind {
         /// The machine's kind.
         found: MachineKind,
@@ -156,8 +157,8 @@ impl core::error::Error for ConfigError {}
 /// A number as a person would write it.
 ///
 /// Some settings are held in single precision. Written as the `f64` that they become, 0.1 would read
-/// 0.10000000149011612; so a number that single precision can hold is written with its digits only. Very small
-/// and very large ones take an exponent.
+/// 0.10000000149011612; so a number that single precision can hold is written with its digits only. Very
+/// small and very large ones take an exponent.
 struct Number(f64);
 
 impl fmt::Display for Number {

@@ -1,7 +1,8 @@
-//! How the motors move the pen: each its axis, or both by one belt, and what only a machine with a belt needs.
+//! How the motors move the pen: each its axis, or both by one belt, and what only a machine with a belt
+//! needs.
 //!
-//! The defaults are the documented marking board. A machine whose motors each move an axis does not read `[belt]` and
-//! `[point_to_point]`.
+//! The defaults are the documented marking board. A machine whose motors each move an axis does not read
+//! `[belt]` and `[point_to_point]`.
 
 use super::{AxisConfig, MachineConfig, MotorConfig};
 use crate::config::LoadConfig;
@@ -15,7 +16,8 @@ pub enum KinematicsChoice {
     /// `x` moves the pen to the right and `y` up.
     #[default]
     Cartesian,
-    /// `x` and `y` are the first and the second motor of one belt, each of which moves the pen along a diagonal.
+    /// `x` and `y` are the first and the second motor of one belt, each of which moves the pen along a
+    /// diagonal.
     CoreXy,
 }
 
@@ -94,7 +96,8 @@ impl Default for BeltConfig {
     }
 }
 
-/// The published controller of a machine with a belt, from point to point in eight directions: `[point_to_point]`.
+/// The published controller of a machine with a belt, from point to point in eight directions:
+/// `[point_to_point]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -114,7 +117,8 @@ pub struct PointToPointConfig {
     pub drive_step_ms: f64,
     /// Greatest drive, 0 to 1.
     pub drive_most: f64,
-    /// Within so many mm of where an axis gets no drive the drive falls back to that at the start; 0 for never.
+    /// Within so many mm of where an axis gets no drive the drive falls back to that at the start; 0 for
+    /// never.
     pub slow_mm: f64,
     /// Factor for the drive of the first motor, found by hand, 0 to 1.
     pub factor_x: f64,
@@ -161,8 +165,8 @@ impl Default for PointToPointConfig {
 }
 
 impl MachineConfig {
-    /// How much farther a motor's belt goes than the pen, at most: 1 where each motor moves an axis, √2 along a diagonal of a
-    /// machine with one belt, where one motor does it alone.
+    /// How much farther a motor's belt goes than the pen, at most: 1 where each motor moves an axis, √2 along
+    /// a diagonal of a machine with one belt, where one motor does it alone.
     pub(crate) fn motor_mm_per_mm(&self) -> f64 {
         match self.kinematics.kind {
             KinematicsChoice::Cartesian => 1.0,
@@ -170,10 +174,11 @@ impl MachineConfig {
         }
     }
 
-    /// The description of the two motors as a controller takes them that leads them along a line of *their* counts.
+    /// The description of the two motors as a controller takes them that leads them along a line of *their*
+    /// counts.
     ///
-    /// On a belt a line of the motors is √2 times as long as that of the pen in any direction, so speed, acceleration and
-    /// jerk are.
+    /// On a belt a line of the motors is √2 times as long as that of the pen in any direction, so speed,
+    /// acceleration and jerk are.
     pub(crate) fn led_motors(&self) -> Self {
         let mut led = *self;
         let times = self.motor_mm_per_mm();

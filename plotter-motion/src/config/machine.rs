@@ -36,17 +36,18 @@ impl Machine {
     ///   Kt V / R: otherwise the axis could never start;
     /// - under the contouring controller, the feed lies below the speed at which the motor's back EMF
     ///   reaches the supply: V / Ke rad/s at the shaft;
-    /// - a belt that stretches pulls at a carriage with a mass, and the rail's friction is less than the motor can pull.
+    /// - a belt that stretches pulls at a carriage with a mass, and the rail's friction is less than the
+    ///   motor can pull.
     ///
-    /// With one belt the area and the start lie within what both motors can turn, and what is common to both motors is the
-    /// same: see `docs/machine-config.md`. Its serial line is not read.
+    /// With one belt the area and the start lie within what both motors can turn, and what is common to both
+    /// motors is the same: see `docs/machine-config.md`. Its serial line is not read.
     ///
     /// With stepper motors, for each axis:
     ///
     /// - it starts at no more than its greatest rate, and homing runs at no more than that either;
     /// - neither speed of the planner asks for more than its greatest rate;
-    /// - the far corner of the area has a number of steps that 32 bits hold, and the area lies between the limit
-    ///   switches that homing expects;
+    /// - the far corner of the area has a number of steps that 32 bits hold, and the area lies between the
+    ///   limit switches that homing expects;
     ///
     /// Where frames of a long sheet are drawn, each lies in the area with the windows at its borders,
     /// and the simulated motor has torque up to some rate, more than its friction.
@@ -377,7 +378,8 @@ mod tests {
 
     #[test]
     fn a_feed_beyond_the_no_load_speed_is_refused_for_the_controller_that_runs_at_it() {
-        // 12 V / 13.369e-3 V s = 897.6 rad/s = 142.86 turns/s, at 500 counts a turn and 40 counts/mm 1785.7 mm/s.
+        // 12 V / 13.369e-3 V s = 897.6 rad/s = 142.86 turns/s, at 500 counts a turn and 40 counts/mm 1785.7
+        // mm/s.
         let at = |feed_mm_s, controller| {
             let contouring = ContouringConfig { feed_mm_s, ..ContouringConfig::default() };
             let control = ControlConfig { controller, contouring, ..ControlConfig::default() };

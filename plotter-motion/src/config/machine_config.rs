@@ -10,8 +10,8 @@ use crate::plant::StepperSettings;
 /// What a machine's description says, not yet checked: [`Machine::new`](crate::Machine::new) does that.
 ///
 /// The default is the semi-virtual gantry: two small DC motors on an L293D, 40 encoder counts to the
-/// millimetre, so that an encoder count is an HPGL plotter unit. What only a machine with stepper motors reads defaults to
-/// the documented stepper plotter; [`MachineConfig::stepper_plotter`] is that machine.
+/// millimetre, so that an encoder count is an HPGL plotter unit. What only a machine with stepper motors
+/// reads defaults to the documented stepper plotter; [`MachineConfig::stepper_plotter`] is that machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -231,11 +231,11 @@ impl Decoding {
         }
     }
 
-    /// Where, within the interval of a count, a shaft should rest so that no trembling moves it across an edge: in
-    /// the middle of the part between the edges that count forwards and backwards, in counts.
+    /// Where, within the interval of a count, a shaft should rest so that no trembling moves it across an
+    /// edge: in the middle of the part between the edges that count forwards and backwards, in counts.
     ///
-    /// With x1 decoding that part is A's high half, a quarter of a period after the rising edge; with x2 and x4 half
-    /// an interval.
+    /// With x1 decoding that part is A's high half, a quarter of a period after the rising edge; with x2 and
+    /// x4 half an interval.
     #[must_use]
     pub const fn rest_offset_counts(self) -> f32 {
         match self {
@@ -326,7 +326,8 @@ impl AxisConfig {
 }
 
 impl MachineConfig {
-    /// The documented stepper plotter: a Makeblock XY plotter of 380 x 310 mm, driven by mDraw over 115200 baud.
+    /// The documented stepper plotter: a Makeblock XY plotter of 380 x 310 mm, driven by mDraw over 115200
+    /// baud.
     ///
     /// ```
     /// # use plotter_motion::{Machine, MachineConfig, config::DriveChoice};
@@ -346,8 +347,8 @@ impl MachineConfig {
         }
     }
 
-    /// The documented textile plotter: a flatbed of 2000 x 1000 mm (mechanically 2100 x 1100), over which the paper is moved from roll to
-    /// roll, with drives that take step and direction, up to 10 m/s.
+    /// The documented textile plotter: a flatbed of 2000 x 1000 mm (mechanically 2100 x 1100), over which the
+    /// paper is moved from roll to roll, with drives that take step and direction, up to 10 m/s.
     ///
     /// ```
     /// # use plotter_motion::{Machine, MachineConfig};
@@ -403,11 +404,13 @@ impl MachineConfig {
 }
 
 impl MachineConfig {
-    /// The documented marking board: two DC motors on one belt, 46.3 pulses to the millimetre, 300 mm by 200 mm.
+    /// The documented marking board: two DC motors on one belt, 46.3 pulses to the millimetre, 300 mm by 200
+    /// mm.
     ///
-    /// The report names no motor: both are the gantry's, which at 24 pulses a turn make 30 mm/s at 5 V, with 2e-6 kg m² of gear
-    /// and pulley, so that a motor at 30 mm/s runs down for 0.6 mm. They differ as two of a kind may: the second has a
-    /// tenth more field, as with weaker and stronger magnets, and half as much friction again.
+    /// The report names no motor: both are the gantry's, which at 24 pulses a turn make 30 mm/s at 5 V, with
+    /// 2e-6 kg m² of gear and pulley, so that a motor at 30 mm/s runs down for 0.6 mm. They differ as two of
+    /// a kind may: the second has a tenth more field, as with weaker and stronger magnets, and half as much
+    /// friction again.
     ///
     /// ```
     /// # use plotter_motion::{Machine, MachineConfig, config::KinematicsChoice};

@@ -3,7 +3,8 @@
 use super::{ConfigError, DriveChoice, KinematicsChoice, Machine};
 use core::fmt;
 
-/// Which motors a machine has, and how they move its pen: what a program must know before it leads, simulates or speaks with one.
+/// Which motors a machine has, and how they move its pen: what a program must know before it leads, simulates
+/// or speaks with one.
 ///
 /// A new kind is a breaking change on purpose: whoever matches on it must say what becomes of such a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -73,8 +74,9 @@ impl Machine {
         }
     }
 
-    /// Refuses a machine of another kind than `wanted`. Whoever builds on one kind asks this first: the keys of all kinds stand
-    /// in every description, so a program that reads those of one would take any machine for it.
+    /// Refuses a machine of another kind than `wanted`. Whoever builds on one kind asks this first: the keys
+    /// of all kinds stand in every description, so a program that reads those of one would take any machine
+    /// for it.
     ///
     /// `user` is what needs that kind, for the message.
     ///

@@ -1,7 +1,7 @@
 //! Every key of a machine's description with its unit, its range and what would be right.
 //!
-//! This is the only list of keys: the check of a [`MachineConfig`], the reader of TOML files and the test of the
-//! page `docs/machine-config.md` all read it.
+//! This is the only list of keys: the check of a [`MachineConfig`], the reader of TOML files and the test of
+//! the page `docs/machine-config.md` all read it.
 
 use super::belt_rules::BELT;
 use super::transmission::{LATENCY, X_TRANSMISSION, Y_TRANSMISSION};

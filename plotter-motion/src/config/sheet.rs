@@ -22,7 +22,8 @@ pub struct SheetConfig {
     pub cut_window_mm: f64,
     /// A cut nearer than this to a corner or to another line does harm, mm.
     pub cut_clear_mm: f64,
-    /// The most that lines may be moved at a joint to keep the drawing parallel to the paper's edge, mm; 0 for not at all.
+    /// The most that lines may be moved at a joint to keep the drawing parallel to the paper's edge, mm; 0
+    /// for not at all.
     pub anchor_mm: f64,
     /// Speed at which the optical head looks for reference lines, mm/s.
     pub sensing_mm_s: f64,

@@ -95,8 +95,8 @@ const CONVERSIONS: [(&str, &str, f64, f64); 32] = [
     ("Hz", "kHz", 1.0, 1_000.0),
 ];
 
-/// What the writer of the unknown key `word` in the table `table` (empty: the top) may have meant; `value` is the
-/// number behind it, if it is one.
+/// What the writer of the unknown key `word` in the table `table` (empty: the top) may have meant; `value` is
+/// the number behind it, if it is one.
 pub(super) fn remedy(table: &str, word: &str, value: Option<f64>) -> String {
     let known = keys_of(table);
     if let Some(text) = another_unit(word, value, &known) {
@@ -204,8 +204,8 @@ pub(super) fn nearest(word: &str, known: &[&'static str]) -> Option<&'static str
 /// How many letters must be added, dropped, changed or swapped with their neighbour to make one word of the
 /// other, regardless of case.
 ///
-/// Source: F. J. Damerau, "A technique for computer detection and correction of spelling errors" (1964); computed
-/// row by row, each letter taking part in one swap at most.
+/// Source: F. J. Damerau, "A technique for computer detection and correction of spelling errors" (1964);
+/// computed row by row, each letter taking part in one swap at most.
 fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().map(|letter| letter.to_ascii_lowercase()).collect();
     // The rows for all of `a` but its last letter (`above`) and last two letters (`two_above`).

@@ -1,17 +1,20 @@
-//! What a plotter with stepper motors needs: how its motors step, how it is planned for, its pen, laser and homing.
+//! What a plotter with stepper motors needs: how its motors step, how it is planned for, its pen, laser and
+//! homing.
 //!
-//! The defaults are the documented stepper plotter: a Makeblock XY plotter with A4988 drivers, a pen on a servo and a
-//! laser. A machine with other motors does not read them.
+//! The defaults are the documented stepper plotter: a Makeblock XY plotter with A4988 drivers, a pen on a
+//! servo and a laser. A machine with other motors does not read them.
 
 /// How the motors are driven.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum DriveChoice {
-    /// DC motors with encoders: `[control]`, `[sync_stop]` and the motors, encoders and loads of the axes hold.
+    /// DC motors with encoders: `[control]`, `[sync_stop]` and the motors, encoders and loads of the axes
+    /// hold.
     #[default]
     Dc,
-    /// Stepper motors: `[planner]`, `[pen]`, `[laser]`, `[homing]`, `[stepper_motor]` and the steppers of the axes hold.
+    /// Stepper motors: `[planner]`, `[pen]`, `[laser]`, `[homing]`, `[stepper_motor]` and the steppers of the
+    /// axes hold.
     Stepper,
 }
 
@@ -86,8 +89,8 @@ pub struct PlannerConfig {
     pub s_curve: bool,
     /// How far the pen may be from the path with [`PathChoice::Tolerance`], mm.
     pub path_tolerance_mm: f64,
-    /// How far from a corner the circle passes whose speed the corner is taken with, mm; the pen itself does not leave the
-    /// corner.
+    /// How far from a corner the circle passes whose speed the corner is taken with, mm; the pen itself does
+    /// not leave the corner.
     pub junction_deviation_mm: f64,
     /// Greatest speed while drawing, mm/s.
     pub speed_mm_s: f64,
@@ -107,8 +110,8 @@ pub struct PlannerConfig {
 }
 
 impl Default for PlannerConfig {
-    /// 45 mm/s drawing and 90 mm/s travelling: 4000 and 8000 pulses/s at 87.58 steps/mm, rounded down. 250 mm/s^2
-    /// reach the latter from 2000 pulses/s within half of 2750 steps.
+    /// 45 mm/s drawing and 90 mm/s travelling: 4000 and 8000 pulses/s at 87.58 steps/mm, rounded down.
+    /// 250 mm/s^2 reach the latter from 2000 pulses/s within half of 2750 steps.
     fn default() -> Self {
         Self {
             mode: PathChoice::Exact,

@@ -1,4 +1,5 @@
-//! What lies between a DC motor's shaft and the pen: `[x.transmission]` and `[y.transmission]`; and how late its drive acts.
+//! What lies between a DC motor's shaft and the pen: `[x.transmission]` and `[y.transmission]`; and how late
+//! its drive acts.
 
 use super::error::Bound;
 use super::rules::{Rule, number, whole};

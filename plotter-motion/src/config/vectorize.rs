@@ -28,8 +28,8 @@ pub struct VectorizeConfig {
     pub order: StrokeOrder,
     /// From line to line of the hatching of areas, mm on the sheet; 0 for none.
     pub hatch_mm: f64,
-    /// Width of the pen that areas are outlined and hatched with, mm on the sheet: its ink ends at their edge. 0 for that of
-    /// a pixel.
+    /// Width of the pen that areas are outlined and hatched with, mm on the sheet: its ink ends at their
+    /// edge. 0 for that of a pixel.
     pub pen_mm: f64,
     /// What is wider is an area, px of the picture; 0 finds it.
     pub max_line_px: u32,
@@ -72,7 +72,8 @@ pub enum VectorizeMode {
     Mixed,
 }
 
-/// Which pens are told apart by their colours. In a file a number, `"auto"`, or the path of a palette's TOML file.
+/// Which pens are told apart by their colours. In a file a number, `"auto"`, or the path of a palette's TOML
+/// file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum PensChoice {

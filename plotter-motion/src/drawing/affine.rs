@@ -2,8 +2,8 @@
 
 use crate::{Point, Vec2};
 
-/// A map of the plane that keeps straight lines straight and parallel ones parallel: x and y of a place count along its axes, from its
-/// origin.
+/// A map of the plane that keeps straight lines straight and parallel ones parallel: x and y of a place count
+/// along its axes, from its origin.
 ///
 /// ```
 /// use plotter_motion::{Point, drawing::Affine};
@@ -69,7 +69,8 @@ impl Affine {
         self.origin + self.x * place.x + self.y * place.y
     }
 
-    /// Whether circles stay circles: 1 or −1 for whether they turn as before; `None` where they become ellipses.
+    /// Whether circles stay circles: 1 or −1 for whether they turn as before; `None` where they become
+    /// ellipses.
     pub(crate) fn turns_circles(&self) -> Option<f64> {
         /// Share of a length by which axes may differ: what rounding makes of maps within maps, and a
         /// millionth of a millimetre of a metre.
@@ -90,7 +91,7 @@ impl Affine {
 
 /// Sine and cosine: exact at quarters of a turn, in which most drawings, blocks and texts are turned.
 pub(crate) fn sin_cos(angle_rad: f64) -> (f64, f64) {
-    /// Share of an angle that degrees lose as radians: some last bits.
+    /// Greatest relative error of an angle that was converted from degrees: some last bits of `f64`.
     const NEAR: f64 = 1e-15;
     let quarters = angle_rad / core::f64::consts::FRAC_PI_2;
     let nearest = libm::round(quarters);

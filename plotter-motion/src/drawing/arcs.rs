@@ -1,7 +1,8 @@
 //! [`Drawing::fit_arcs`]: lines and curves that lie on a circle become arcs.
 //!
-//! From each place the longest arc is sought: its length is doubled until it does not fit, and then halved in (so a run of n lines takes n log n
-//! looks at most). An arc that fits goes through both its ends, so only where on the chord's bisector its centre lies is free: least squares of
+//! From each place the longest arc is sought: its length is doubled until it does not fit, and then halved in
+//! (so a run of n lines takes n log n looks at most). An arc that fits goes through both its ends, so only
+//! where on the chord's bisector its centre lies is free: least squares of
 //! |q − c|² − r² is linear in it, and where that misses, the middle of all centres that are possible for every place is tried.
 //!
 //! Places that are rounded, to units of HPGL as an example, are off by less than the tolerance, but an arc
@@ -28,19 +29,23 @@ const ENDS: usize = 4;
 /// of the best.
 const ROUNDS: usize = 16;
 
-/// Share of the tolerance within which curves are looked at as lines.
+/// Greatest distance of a cubic curve from the lines that are taken for it, as a share of the tolerance:
+/// small, so that nearly all of it is left for the arc.
 const CURVES: f64 = 0.125;
 
-/// Least of a turn that an arc whose ends differ leaves open, rad; below, rounding decides where its centre is.
+/// Least of a turn that an arc whose ends differ leaves open, rad; below, rounding decides where its centre
+/// is.
 const LEAST_OPEN_RAD: f64 = 1e-3;
 
 impl Drawing {
-    /// Replaces runs of lines and curves that lie on a circle by arcs, none of which is farther than `tolerance_mm` from what was drawn, nor
-    /// is anything that was drawn farther from them. Returns how many arcs were made.
+    /// Replaces runs of lines and curves that lie on a circle by arcs, none of which is farther than
+    /// `tolerance_mm` from what was drawn, nor is anything that was drawn farther from them. Returns how many
+    /// arcs were made.
     ///
-    /// An arc stands for at least four lines, of which none takes more than a twelfth of a turn, or for a curve. It begins and ends exactly
-    /// where they did. What is straight within the tolerance, and lines of different speeds or powers, stay. A circle is one arc
-    /// of a whole turn. A tolerance of 0 or below, or that is no number, changes nothing.
+    /// An arc stands for at least four lines, of which none takes more than a twelfth of a turn, or for a
+    /// curve. It begins and ends exactly where they did. What is straight within the tolerance, and lines of
+    /// different speeds or powers, stay. A circle is one arc of a whole turn. A tolerance of 0 or below, or
+    /// that is no number, changes nothing.
     ///
     /// ```
     /// use plotter_motion::{Point, drawing::{Drawing, Stroke}};
@@ -197,7 +202,8 @@ impl<'a> Run<'a> {
         };
         let middle = from.lerp(*to, 0.5);
         let up = along.perpendicular();
-        // A centre is `middle + up · s`. Of a place (x, y) from the middle, |q − c|² − r² is x² + y² − half² − 2 y s.
+        // A centre is `middle + up · s`. Of a place (x, y) from the middle, |q − c|² − r² is x² + y² − half²
+        // − 2 y s.
         let terms = || {
             places.iter().map(|&place| {
                 let out = place - middle;
@@ -324,7 +330,8 @@ fn best_circle(places: &[Point], mut centre: Point) -> Option<Point> {
     best.1.is_finite().then_some(best.1)
 }
 
-/// The centre of the circle through the first of places that fits the others best, by least squares of |q|² − 2 q·c, with q from the first.
+/// The centre of the circle through the first of places that fits the others best, by least squares of |q|² −
+/// 2 q·c, with q from the first.
 fn circle_through(places: &[Point]) -> Option<Point> {
     let first = *places.first()?;
     let (mut xx, mut xy, mut yy, mut right) = (0.0, 0.0, 0.0, Vec2::default());

@@ -84,7 +84,8 @@ impl BoxTree {
         self.items.get(node.begin..node.end).unwrap_or_default()
     }
 
-    /// The numbers of the boxes that are met, in no order. Where `meets` is false of a box it must be false of all boxes within that.
+    /// The numbers of the boxes that are met, in no order. Where `meets` is false of a box it must be false
+    /// of all boxes within that.
     pub(super) fn each(&self, meets: impl Fn(&Bounds) -> bool, mut found: impl FnMut(usize)) {
         let mut at = 0;
         while let Some(node) = self.nodes.get(at) {

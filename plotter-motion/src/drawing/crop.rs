@@ -7,10 +7,12 @@ use crate::Point;
 use alloc::vec::Vec;
 
 impl Drawing {
-    /// Leaves of it what lies on one side of the border of a region; lines, arcs and curves are cut where they cross it.
+    /// Leaves of it what lies on one side of the border of a region; lines, arcs and curves are cut where
+    /// they cross it.
     ///
-    /// Arcs stay arcs and curves curves, and each piece has the pen, layer, speed and power that it had. Lines on the border count as
-    /// inside. Pieces of less than a tenth of a micrometre go. What happens before a stroke that goes happens before the next one.
+    /// Arcs stay arcs and curves curves, and each piece has the pen, layer, speed and power that it had.
+    /// Lines on the border count as inside. Pieces of less than a tenth of a micrometre go. What happens
+    /// before a stroke that goes happens before the next one.
     ///
     /// ```
     /// use plotter_motion::{Point, drawing::{Bounds, Drawing, Keep, Region, Stroke}};
@@ -50,7 +52,8 @@ impl Drawing {
     /// assert!((drawing.length_mm() - std::f64::consts::PI).abs() < 1e-9);
     /// ```
     pub fn crop_to_rectangle(&mut self, rectangle: Bounds) -> CutCount {
-        // No farther out than 1 mm beyond all that is drawn: the places of sides at infinity cannot be reckoned.
+        // No farther out than 1 mm beyond all that is drawn: the places of sides at infinity cannot be
+        // reckoned.
         let all = self.bounds().wider(1.0);
         let least = Point::new(
             libm::fmax(rectangle.least.x, all.least.x),
@@ -61,7 +64,8 @@ impl Drawing {
         self.crop(&Region::rectangle(Bounds { least, most }), Keep::Inside)
     }
 
-    /// Leaves what lies in a polygon or on its sides, of which the last one leads back to the first corner: see [`crop`](Self::crop).
+    /// Leaves what lies in a polygon or on its sides, of which the last one leads back to the first corner:
+    /// see [`crop`](Self::crop).
     ///
     /// ```
     /// use plotter_motion::{Point, drawing::{Drawing, Stroke}};

@@ -16,21 +16,24 @@ pub struct Doubles {
 }
 
 impl Drawing {
-    /// Leaves out what has been drawn already by the same pen on the same sheet, within `tolerance_mm`; all of what was drawn is within that of
-    /// what is left, and nothing new is drawn.
+    /// Leaves out what has been drawn already by the same pen on the same sheet, within `tolerance_mm`; all
+    /// of what was drawn is within that of what is left, and nothing new is drawn.
     ///
-    /// - Lines on one straight line, whichever way they go: each part of it is drawn once. Two lines that cross, or
-    ///   lie within the tolerance at a few places only, are not on one.
-    /// - Arcs on one circle, whose centres and radii are the same within the tolerance together: each part of it once.
+    /// - Lines on one straight line, whichever way they go: each part of it is drawn once. Two lines that
+    ///   cross, or lie within the tolerance at a few places only, are not on one.
+    /// - Arcs on one circle, whose centres and radii are the same within the tolerance together: each part of
+    ///   it once.
     /// - Curves, if both their ends and handles are the same within the tolerance, either way round.
     /// - Dots on one place. A dot on a line stays, because a pen that rests leaves more than one that passes.
     ///
-    /// A stroke that loses its middle becomes two; of a closed one, what is left on both sides of its start stays one. What is shorter
-    /// than the tolerance is not cut out of a stroke, for the pen would be lifted for nothing. With a laser, lines of different
-    /// powers or speeds are not the same. What happens before a stroke that vanishes happens before the next one. A stroke that is
-    /// drawn by the pen that is there (pen 0) keeps the pen it had.
+    /// A stroke that loses its middle becomes two; of a closed one, what is left on both sides of its start
+    /// stays one. What is shorter than the tolerance is not cut out of a stroke, for the pen would be lifted
+    /// for nothing. With a laser, lines of different powers or speeds are not the same. What happens before a
+    /// stroke that vanishes happens before the next one. A stroke that is drawn by the pen that is there
+    /// (pen 0) keeps the pen it had.
     ///
-    /// What lies farther than 10⁹ mm from the origin stays as it is. A tolerance below 10⁻⁶ mm, or that is no number, is 10⁻⁶ mm.
+    /// What lies farther than 10⁹ mm from the origin stays as it is. A tolerance below 10⁻⁶ mm, or that is no
+    /// number, is 10⁻⁶ mm.
     ///
     /// ```
     /// use plotter_motion::{Point, drawing::{Drawing, Stroke}};

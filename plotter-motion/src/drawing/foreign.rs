@@ -33,7 +33,8 @@ mod of_kurbo {
     }
 
     impl From<&Stroke> for BezPath {
-        /// Arcs become cubic curves of an eighth of a turn at most, within 4·10⁻⁶ of their radius; one that ends where it begins is closed.
+        /// Arcs become cubic curves of an eighth of a turn at most, within 4·10⁻⁶ of their radius; one that
+        /// ends where it begins is closed.
         fn from(stroke: &Stroke) -> Self {
             let mut path = Self::new();
             path.move_to(stroke.from);

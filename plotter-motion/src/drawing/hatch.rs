@@ -23,7 +23,8 @@ pub enum HatchTogether {
     Within,
 }
 
-/// How closed strokes are filled: by default with lines at 45 degrees and 1 mm from each other, within 0.01 mm.
+/// How closed strokes are filled: by default with lines at 45 degrees and 1 mm from each other, within 0.01
+/// mm.
 ///
 /// ```
 /// let mut hatching = plotter_motion::drawing::Hatching::default();
@@ -41,8 +42,8 @@ pub struct Hatching {
     pub distance_mm: f64,
     /// Direction of the lines, rad, counter-clockwise from the right.
     pub angle_rad: f64,
-    /// How far the ends of lines may lie from an arc or a curve, and how far the ends of a closed stroke from each other, mm. A tenth of a
-    /// micrometre at least.
+    /// How far the ends of lines may lie from an arc or a curve, and how far the ends of a closed stroke from
+    /// each other, mm. A tenth of a micrometre at least.
     pub tolerance_mm: f64,
     /// Which closed strokes are filled together.
     pub together: HatchTogether,
@@ -102,14 +103,17 @@ impl core::fmt::Display for HatchError {
 impl core::error::Error for HatchError {}
 
 impl Drawing {
-    /// Fills closed strokes with parallel lines, and gives their number. Only strokes that are `wanted` count.
+    /// Fills closed strokes with parallel lines, and gives their number. Only strokes that are `wanted`
+    /// count.
     ///
-    /// The strokes of one pen, layer and sheet are filled together: what lies within an odd number of them. So a ring's inner stroke is
-    /// the border of its hole. The lines are strokes of the same pen and layer, and have the speed and the power of the first segment
-    /// of the first of these strokes. They stand behind the last of them, and every other one runs the other way, for short ways between.
+    /// The strokes of one pen, layer and sheet are filled together: what lies within an odd number of them.
+    /// So a ring's inner stroke is the border of its hole. The lines are strokes of the same pen and layer,
+    /// and have the speed and the power of the first segment of the first of these strokes. They stand behind
+    /// the last of them, and every other one runs the other way, for short ways between.
     /// [`HatchTogether::Within`] fills each stroke by itself.
     ///
-    /// The lines of all shapes lie at odd multiples of half the distance from the origin, so that those of neighbours go on in each other.
+    /// The lines of all shapes lie at odd multiples of half the distance from the origin, so that those of
+    /// neighbours go on in each other.
     ///
     /// # Errors
     ///

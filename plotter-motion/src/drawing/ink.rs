@@ -1,10 +1,11 @@
 //! [`Ink`]: what has been drawn, so that it is found where something is to be drawn again.
 //!
-//! A line is kept by its direction (one of 128 sectors of half a turn), its length (levels of a factor 4), and a cell of a grid that
-//! is turned as the sector is: four times as long as the line at most, and as narrow as the tolerance or the sector's spread allow. So a line is
-//! in four cells at most, and what it may lie on is in a few cells of each level. A line of which a part had been drawn is kept as a whole, for
-//! all of it is drawn now, and what it covers is forgotten: so a line that is drawn a million times in parts costs no more than in
-//! one. Arcs are kept by their circle and sixty-fourths of a turn.
+//! A line is kept by its direction (one of 128 sectors of half a turn), its length (levels of a factor 4),
+//! and a cell of a grid that is turned as the sector is: four times as long as the line at most, and as
+//! narrow as the tolerance or the sector's spread allow. So a line is in four cells at most, and what it may
+//! lie on is in a few cells of each level. A line of which a part had been drawn is kept as a whole, for all
+//! of it is drawn now, and what it covers is forgotten: so a line that is drawn a million times in parts
+//! costs no more than in one. Arcs are kept by their circle and sixty-fourths of a turn.
 
 use super::{PathSegment, Shape};
 use crate::{Point, Vec2};
@@ -13,32 +14,36 @@ use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
 use core::ops::RangeInclusive;
 
-/// Least tolerance, mm: below, places of a metre are rounded by more than a thousandth of it.
+/// Least tolerance, mm: a nanometre, below any motor's step.
 const LEAST_TOLERANCE_MM: f64 = 1e-6;
 
-/// Farthest place that is looked at, mm: above, places are rounded by more than a tenth of the least tolerance.
+/// Farthest place that is looked at, mm: above, places are rounded by more than a tenth of the least
+/// tolerance.
 const FARTHEST_MM: f64 = 1e9;
 
-/// Sine of the greatest angle between lines of which one lies on the other. Within a tolerance, a short line may have any direction; a curve made
-/// of short lines would be cut wherever it crosses a line.
+/// Sine of the greatest angle between lines of which one lies on the other. Within a tolerance, a short line
+/// may have any direction; a curve made of short lines would be cut wherever it crosses a line.
 const STEEPEST: f64 = 0.03;
 
-/// Sectors of half a turn: a sector is little narrower than the greatest angle.
+/// Sectors of half a turn, each 1.4 degrees: a little narrower than the greatest angle, whose sine is
+/// [`STEEPEST`].
 const SECTORS: i32 = 128;
 
 /// Sectors on each side of its own in which a line may lie on another: the greatest angle ends in the second.
 const REACH: i32 = 2;
 
-/// Parts of a turn by which arcs are kept.
+/// Cells of a turn by which arcs are kept. A finer division makes more cells for each arc, a coarser one more
+/// arcs in each cell.
 const ARC_CELLS: f64 = 64.0;
 
-/// Rows of cells that are looked at one by one. Where a line crosses more, all of its level between the first and the last are.
+/// Rows of cells that are looked at one by one. Where a line crosses more, all of its level between the first
+/// and the last are.
 const MOST_ROWS: f64 = 256.0;
 
-/// Share of the tolerance that one line may lose when it stands for another.
+/// Share of the tolerance that a line may lose when it stands for another: a millionth, for rounding.
 const NEARLY: f64 = 1e-6;
 
-/// Length that is none, mm: a thousandth of the least tolerance.
+/// Shorter lengths count as none, mm: a thousandth of the least tolerance.
 pub(super) const NO_LENGTH_MM: f64 = 1e-9;
 
 /// What has been drawn.
@@ -165,7 +170,8 @@ impl Ink {
             }
             Shape::Arc { centre, sweep_rad } => {
                 let (radius_mm, end_mm) = (from.distance(centre), to.distance(centre));
-                // Rounded numbers of files are off by a fraction of the tolerance; a spiral is no part of a circle.
+                // Rounded numbers of files are off by a fraction of the tolerance; a spiral is no part of a
+                // circle.
                 let is_round = libm::fabs(end_mm - radius_mm) <= 0.25 * self.tolerance_mm;
                 if !(is_near(centre) && libm::fabs(sweep_rad) <= TAU) {
                     return Rest::All;
@@ -247,7 +253,8 @@ impl Ink {
         (longest_mm, libm::fmax(2.0 * self.tolerance_mm, 0.5 * PI / f64::from(SECTORS) * longest_mm))
     }
 
-    /// What of a line lies on lines that have been drawn, and those of them that lie on it as a whole, with their distance.
+    /// What of a line lies on lines that have been drawn, and those of them that lie on it as a whole, with
+    /// their distance.
     fn lines_under(&mut self, tool: u32, line: &Drawn, length_mm: f64) -> (Vec<Cover>, Vec<(usize, f64)>) {
         let (mut covers, mut within) = (Vec::new(), Vec::new());
         let sector = sector_of(line.to - line.from);
@@ -437,6 +444,8 @@ impl Ink {
 impl Curve {
     /// Whether another one is the same within a tolerance, either way round.
     fn is_same(&self, other: &Self, tolerance_mm: f64) -> bool {
+        /// Turns of two curves that differ by less are equal, rad; places decide the rest within the
+        /// tolerance.
         const SAME_RAD: f64 = 1e-3;
         let [a, b, c, d] = other.places;
         [([a, b, c, d], other.turn_rad), ([d, c, b, a], -other.turn_rad)].iter().any(|(places, turn_rad)| {

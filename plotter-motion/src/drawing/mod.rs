@@ -6,11 +6,13 @@
 //!                                   placed, cropped, ordered, hatched, …
 //! ```
 //!
-//! A stroke is what is drawn without lifting the pen: lines, arcs and cubic curves, with the speed and the power of each. It has a pen
-//! and a layer, and what happens before it: a dwell, a new sheet. The way of the lifted pen is no part of a drawing.
+//! A stroke is what is drawn without lifting the pen: lines, arcs and cubic curves, with the speed and the
+//! power of each. It has a pen and a layer, and what happens before it: a dwell, a new sheet. The way of the
+//! lifted pen is no part of a drawing.
 //!
-//! A drawing is cut to a [`Region`] or a rectangle by [`Drawing::crop`] and [`Drawing::crop_to_rectangle`]. [`Drawing::occlude`] takes away
-//! what later closed strokes hide, and [`Drawing::hatch`] fills closed strokes with lines. Arcs stay arcs and curves curves.
+//! A drawing is cut to a [`Region`] or a rectangle by [`Drawing::crop`] and [`Drawing::crop_to_rectangle`].
+//! [`Drawing::occlude`] takes away what later closed strokes hide, and [`Drawing::hatch`] fills closed
+//! strokes with lines. Arcs stay arcs and curves curves.
 //!
 //! ```
 //! use plotter_motion::{gcode, hpgl, drawing::{Affine, Drawing}};
@@ -24,8 +26,9 @@
 //! # Ok::<(), gcode::WriteError>(())
 //! ```
 //!
-//! Less to draw and to send: [`Drawing::drop_doubles`] draws nothing twice, [`Drawing::simplify`] leaves out places of lines, and
-//! [`Drawing::fit_arcs`] makes arcs of lines that lie on a circle. In this order, with `fit_arcs` before `simplify`, each finds most.
+//! Less to draw and to send: [`Drawing::drop_doubles`] draws nothing twice, [`Drawing::simplify`] leaves out
+//! places of lines, and [`Drawing::fit_arcs`] makes arcs of lines that lie on a circle. In this order, with
+//! `fit_arcs` before `simplify`, each finds most.
 
 pub(crate) mod affine;
 mod arcs;
@@ -155,7 +158,8 @@ impl Drawing {
         Self { strokes, after: self.after.clone(), layers: self.layers.clone() }
     }
 
-    /// What is wrong with it: a stroke without a segment, a number that is none, an arc of more than a turn, a layer without a name.
+    /// What is wrong with it: a stroke without a segment, a number that is none, an arc of more than a turn,
+    /// a layer without a name.
     ///
     /// # Errors
     ///

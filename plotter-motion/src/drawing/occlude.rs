@@ -42,8 +42,8 @@ struct Cover {
 }
 
 impl Cover {
-    /// Takes away the parts of a segment that lie in or on the border of any region from `first` on. The last one, which most likely is
-    /// in sight, comes first; nothing is asked any more when all is hidden.
+    /// Takes away the parts of a segment that lie in or on the border of any region from `first` on. The last
+    /// one, which most likely is in sight, comes first; nothing is asked any more when all is hidden.
     fn hide(&self, first: usize, from: Point, segment: &PathSegment, shares: &mut Vec<(f64, f64)>) {
         let bounds = segment.bounds(from);
         self.tree.back_from_last(
@@ -60,12 +60,14 @@ impl Cover {
 }
 
 impl Drawing {
-    /// Takes away what is hidden: what lies in a closed stroke that is drawn later, as in a picture of opaque things of which the last one
-    /// lies on top. Dots are hidden too, and so are lines on the border of a later stroke.
+    /// Takes away what is hidden: what lies in a closed stroke that is drawn later, as in a picture of opaque
+    /// things of which the last one lies on top. Dots are hidden too, and so are lines on the border of a
+    /// later stroke.
     ///
-    /// A stroke is closed if its ends are at most `tolerance_mm` apart; its arcs and curves hide as lines within that, and what runs along
-    /// them so near is hidden. A tolerance below a tenth of a micrometre is raised to that. Strokes that cross themselves hide what lies
-    /// within them an odd number of times. Strokes on other sheets hide nothing. Open strokes hide nothing and are hidden.
+    /// A stroke is closed if its ends are at most `tolerance_mm` apart; its arcs and curves hide as lines
+    /// within that, and what runs along them so near is hidden. A tolerance below a tenth of a micrometre is
+    /// raised to that. Strokes that cross themselves hide what lies within them an odd number of times.
+    /// Strokes on other sheets hide nothing. Open strokes hide nothing and are hidden.
     ///
     /// ```
     /// use plotter_motion::{Point, drawing::{Bounds, Drawing, Hides, Stroke}};

@@ -7,14 +7,16 @@ use crate::{Point, Segment};
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-/// How near the border of straight lines a place lies on it, mm: a thousand times what the crossings on a sheet of 500 mm are rounded by.
+/// How near the border of straight lines a place lies on it, mm: a thousand times what the crossings on a
+/// sheet of 500 mm are rounded by.
 const BORDER_MM: f64 = 1e-10;
 /// The same as a share of the greatest coordinate, for drawings beyond 10 m: 45 units in its last place.
 const BORDER_SHARE: f64 = 1e-14;
-/// Length that no pen draws and no motor steps, mm: a tenth of a micrometre. Where a circle of 1 m touches an edge, it lies within the
-/// rounding of a crossing, a hundredth of [`BORDER_MM`], for 0.00009 mm.
+/// Length that no pen draws and no motor steps, mm: a tenth of a micrometre. Where a circle of 1 m touches an
+/// edge, it lies within the rounding of a crossing, a hundredth of [`BORDER_MM`], for 0.00009 mm.
 pub(super) const DUST_MM: f64 = 1e-4;
-/// The finest tolerance that curves are divided by, mm: a tenth of a micrometre, so that a circle of 10 mm has some 700 lines at most.
+/// The finest tolerance that curves are divided by, mm: a tenth of a micrometre, so that a circle of 10 mm
+/// has some 700 lines at most.
 const FINEST_MM: f64 = 1e-4;
 
 /// Which side of a region is kept.
@@ -64,7 +66,8 @@ impl Region {
         if bounds.is_empty() { Self::default() } else { Self::polygons([bounds.corners()]) }
     }
 
-    /// Within an odd number of these polygons. The last corner of each is joined to its first; corners that are no numbers are left out.
+    /// Within an odd number of these polygons. The last corner of each is joined to its first; corners that
+    /// are no numbers are left out.
     #[must_use]
     pub fn polygons<P: IntoIterator<Item = Point>>(polygons: impl IntoIterator<Item = P>) -> Self {
         Self::with_border(polygons, 0.0)
@@ -148,14 +151,16 @@ impl Region {
 
     /// Where the part of a segment between two shares lies, none of which crosses the border.
     fn side_of(&self, from: Point, segment: &PathSegment, (begin, end): (f64, f64)) -> Side {
-        // The middle tells, unless the segment touches the border there; then other places do. All on the border, it runs along it.
-        // Shares that no drawing has, lest each of them meets a tooth of the same comb.
+        // The middle tells, unless the segment touches the border there; then other places do. All on the
+        // border, it runs along it. Shares that no drawing has, lest each of them meets a tooth of the same
+        // comb.
         const PLACES: [f64; 4] = [0.5, 0.309_016_994, 0.786_151_378, 0.135_335_283];
         let sides = PLACES.iter().map(|share| self.side(segment.at(from, begin + (end - begin) * share)));
         sides.into_iter().find(|side| *side != Side::Border).unwrap_or(Side::Border)
     }
 
-    /// Leaves those parts of a segment, by their shares in rising order, that lie on the side to keep. `bounds` is the box round the segment.
+    /// Leaves those parts of a segment, by their shares in rising order, that lie on the side to keep.
+    /// `bounds` is the box round the segment.
     pub(super) fn keep(
         &self,
         keep: Keep,
@@ -199,7 +204,8 @@ impl Region {
         *shares = kept;
     }
 
-    /// Shares at which a segment crosses the border, in no order, and others besides: whoever uses them tests the parts between.
+    /// Shares at which a segment crosses the border, in no order, and others besides: whoever uses them tests
+    /// the parts between.
     fn crossings(&self, from: Point, segment: &PathSegment, bounds: &Bounds) -> Vec<f64> {
         let mut cuts = Vec::new();
         self.tree.each(
@@ -214,7 +220,8 @@ impl Region {
     }
 }
 
-/// Whether a segment can reach into a box that its own box meets: not, where the box lies on one side of its line.
+/// Whether a segment can reach into a box that its own box meets: not, where the box lies on one side of its
+/// line.
 pub(super) fn is_near(bounds: &Bounds, from: Point, segment: &PathSegment) -> bool {
     if segment.shape != Shape::Line {
         return true;
@@ -238,7 +245,8 @@ fn crossings(from: Point, segment: &PathSegment, edge: Segment, border_mm: f64, 
     };
     let height = |place: Point| way.cross(place - edge.from);
     if segment.shape == Shape::Line {
-        // Heights are linear along a line; without a difference it runs beside the edge, and the edges next to this one cut it.
+        // Heights are linear along a line; without a difference it runs beside the edge, and the edges next
+        // to this one cut it.
         let (begin, end) = (height(from), height(segment.to));
         if begin != end {
             cut(begin / (begin - end));
@@ -259,7 +267,8 @@ fn crossings(from: Point, segment: &PathSegment, edge: Segment, border_mm: f64, 
     }
 }
 
-/// Most turning points of the height of a curve over a line: an arc of a whole turn has two, one that grows as a spiral a third.
+/// Most turning points of the height of a curve over a line: an arc of a whole turn has two, one that grows
+/// as a spiral a third.
 const MOST_TURNS: usize = 4;
 
 /// Shares between 0 and 1 at which the height of a curve turns, and their number.
@@ -280,9 +289,9 @@ fn turning_points(
     };
     match segment.shape {
         Shape::Line => {}
-        // At the radius r₀ (1 + g t) and the angle a = a₀ + s t from the upright, the height r cos a turns where
-        // tan a = g / (s (1 + g t)): of a circle, at g = 0, each half turn. The right side changes little with t: it is put in again
-        // until it stays.
+        // At the radius r₀ (1 + g t) and the angle a = a₀ + s t from the upright, the height r cos a turns
+        // where tan a = g / (s (1 + g t)): of a circle, at g = 0, each half turn. The right side changes
+        // little with t: it is put in again until it stays.
         Shape::Arc { centre, sweep_rad } if sweep_rad != 0.0 => {
             let (zero, out) = (height(centre), from - centre);
             let upright = height(centre + out) - zero;
@@ -293,7 +302,8 @@ fn turning_points(
             let (low, high) = (libm::fmin(begin, begin + sweep_rad), libm::fmax(begin, begin + sweep_rad));
             // The arc tangent is at most a quarter of a turn.
             let mut half_turns = libm::ceil(low / PI - 0.5);
-            // A whole turn has three half turns in it at most, its ends included; an arc that is none must end too.
+            // A whole turn has three half turns in it at most, its ends included; an arc that is none must
+            // end too.
             for _ in 0..4 {
                 if half_turns > high / PI + 0.5 {
                     break;
@@ -324,12 +334,12 @@ fn turning_points(
 
 /// Where a function is 0 that rises or falls from one place to another and has different signs there.
 ///
-/// The chord between the two is followed to 0; an end that stays twice counts half (M. Dowell and P. Jarratt, "A modified regula falsi
-/// method for computing the root of an equation", 1971, the Illinois method).
+/// The chord between the two is followed to 0; an end that stays twice counts half (M. Dowell and P. Jarratt,
+/// "A modified regula falsi method for computing the root of an equation", 1971, the Illinois method).
 fn zero(mut begin: (f64, f64), mut end: (f64, f64), value: impl Fn(f64) -> f64) -> f64 {
-    /// Each step gains a bit at least in the usual case: as many as a share has, and some.
+    /// Most steps. A step usually gains at least one bit, and a share has 53.
     const MOST_STEPS: u32 = 64;
-    /// A hundredth of the width of the border.
+    /// The search ends within this distance, mm: a hundredth of the width of the border.
     const EXACT_MM: f64 = 0.01 * BORDER_MM;
     for _ in 0..MOST_STEPS {
         let chord = (begin.0 * end.1 - end.0 * begin.1) / (end.1 - begin.1);
@@ -354,8 +364,8 @@ fn tolerance(tolerance_mm: f64) -> f64 {
     libm::fmax(tolerance_mm, FINEST_MM)
 }
 
-/// The corners of a stroke whose ends are at most `tolerance_mm` apart; its arcs and curves are lines within that. `None` of another
-/// stroke, of one that is not finite, and of one without an area.
+/// The corners of a stroke whose ends are at most `tolerance_mm` apart; its arcs and curves are lines within
+/// that. `None` of another stroke, of one that is not finite, and of one without an area.
 pub(super) fn outline(stroke: &Stroke, tolerance_mm: f64) -> Option<Vec<Point>> {
     let tolerance_mm = tolerance(tolerance_mm);
     if !(stroke.from.distance(stroke.to()) <= tolerance_mm && stroke.is_sound()) {

@@ -5,7 +5,8 @@ use alloc::vec::Vec;
 
 /// Most rows over one area: 10 m of them at 0.1 mm.
 const MOST_ROWS: f64 = 100_000.0;
-/// Most pieces of rows in one area: a row each 0.3 mm of an A0 sheet may have 350. As strokes they take 200 MB.
+/// Most pieces of rows in one area: a row each 0.3 mm of an A0 sheet may have 350. As strokes they take 200
+/// MB.
 pub(super) const MOST_SPANS: f64 = 1_000_000.0;
 
 /// Parallel lines at equal distances, numbered: row 0 goes through `base`.
@@ -72,9 +73,9 @@ impl Rows {
         self.base + self.way.perpendicular() * (self.distance_mm * row) + self.way * along_mm
     }
 
-    /// The pieces of the rows within an odd number of outlines, which are closed: the number of the row, and from where to where along it,
-    /// mm; row by row, each in rising order. A row is within from its first crossing of the outlines to the second, from the third to
-    /// the fourth, and so on.
+    /// The pieces of the rows within an odd number of outlines, which are closed: the number of the row, and
+    /// from where to where along it, mm; row by row, each in rising order. A row is within from its first
+    /// crossing of the outlines to the second, from the third to the fourth, and so on.
     ///
     /// # Errors
     ///

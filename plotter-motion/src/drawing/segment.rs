@@ -114,7 +114,8 @@ impl PathSegment {
         }
     }
 
-    /// Its length, mm. That of a cubic curve is that of its lines within a nanometre, which is less by some billionths.
+    /// Its length, mm. That of a cubic curve is that of its lines within a nanometre, which is less by some
+    /// billionths.
     #[must_use]
     pub fn length_mm(&self, from: Point) -> f64 {
         match self.shape {
@@ -123,6 +124,7 @@ impl PathSegment {
                 0.5 * (from.distance(centre) + self.to.distance(centre)) * libm::fabs(sweep_rad)
             }
             Shape::Cubic { .. } => {
+                /// Greatest distance of the chords by which a curve's length is measured, mm: a nanometre.
                 const EXACT_MM: f64 = 1e-6;
                 let mut at = from;
                 self.places(from, EXACT_MM)
@@ -131,7 +133,8 @@ impl PathSegment {
         }
     }
 
-    /// The ends of its lines, of which none is farther than `tolerance_mm` from it; the last one is where it ends.
+    /// The ends of its lines, of which none is farther than `tolerance_mm` from it; the last one is where it
+    /// ends.
     pub fn places(&self, from: Point, tolerance_mm: f64) -> impl Iterator<Item = Point> + use<> {
         let segment = *self;
         let count = match self.shape {
@@ -223,8 +226,8 @@ impl PathSegment {
         bounds
     }
 
-    /// It as `map` shows it. An arc that becomes one of an ellipse is cubic curves, of an eighth of a turn at most, which are within
-    /// 4·10⁻⁶ of the radius.
+    /// It as `map` shows it. An arc that becomes one of an ellipse is cubic curves, of an eighth of a turn at
+    /// most, which are within 4·10⁻⁶ of the radius.
     pub(crate) fn mapped(&self, from: Point, map: &Affine, into: &mut Vec<Self>) {
         let to = map.apply(self.to);
         match self.shape {

@@ -1,33 +1,36 @@
 //! [`Drawing::simplify`]: lines with fewer places.
 //!
-//! A run of lines is replaced by lines through some of its places. Such a line may stand for those between its ends if each of their places
-//! is within the tolerance of it: then each place of the line is within the tolerance of them as well, because they lead from one of its
-//! ends to the other.
+//! A run of lines is replaced by lines through some of its places. Such a line may stand for those between
+//! its ends if each of their places is within the tolerance of it: then each place of the line is within the
+//! tolerance of them as well, because they lead from one of its ends to the other.
 //!
-//! Which lines may: from one place, the rays that pass a later place within the tolerance are a cone, and the rays that pass all of them are the
-//! cones' common part, which only shrinks (W. Chan and F. Chin, "Approximation of polygonal curves with minimum number of line segments or
-//! minimum error", 1996). So all lines from one place are known after one look at each place that follows, until the cone is empty.
-//! Of all lines found, the fewest that lead from end to end are taken (H. Imai and M. Iri, 1988). Douglas and Peucker's halving
-//! is not used: it takes a square of the number of places at worst.
+//! Which lines may: from one place, the rays that pass a later place within the tolerance are a cone, and the
+//! rays that pass all of them are the cones' common part, which only shrinks (W. Chan and F. Chin,
+//! "Approximation of polygonal curves with minimum number of line segments or minimum error", 1996). So all
+//! lines from one place are known after one look at each place that follows, until the cone is empty. Of all
+//! lines found, the fewest that lead from end to end are taken (H. Imai and M. Iri, 1988). Douglas and
+//! Peucker's halving is not used: it takes a square of the number of places at worst.
 
 use super::{Drawing, PathSegment, Shape, Stroke};
 use crate::{Point, Segment, Vec2};
 use alloc::vec::Vec;
 
-/// Places that are tried as the end of a line that begins at any place. Only along one chain, of longest lines, are more tried. It bounds
-/// the time: a straight line of a million places would take a million for each.
+/// Places that are tried as the end of a line that begins at any place. Only along one chain, of longest
+/// lines, are more tried. It bounds the time: a straight line of a million places would take a million for
+/// each.
 const WINDOW: usize = 64;
 
 impl Drawing {
-    /// Replaces runs of lines by fewer lines, none of which is farther than `tolerance_mm` from what was drawn, nor is anything that was drawn
-    /// farther from them. Returns how many places were left out.
+    /// Replaces runs of lines by fewer lines, none of which is farther than `tolerance_mm` from what was
+    /// drawn, nor is anything that was drawn farther from them. Returns how many places were left out.
     ///
-    /// The places left are places of before; ends of strokes stay. Arcs and curves are left as they are, and lines of different speeds
-    /// or powers stay apart. What is closed stays closed. A tolerance of 0 or below, or that is no number, changes nothing.
+    /// The places left are places of before; ends of strokes stay. Arcs and curves are left as they are, and
+    /// lines of different speeds or powers stay apart. What is closed stays closed. A tolerance of 0 or
+    /// below, or that is no number, changes nothing.
     ///
-    /// The result is the least number of lines, for runs of which no line stands for more than 64; it is never
-    /// more than that of taking the longest line again and again.
-    /// The time is proportional to the number of places, whatever they are.
+    /// The result is the least number of lines, for runs of which no line stands for more than 64; it is
+    /// never more than that of taking the longest line again and again. The time is proportional to the
+    /// number of places, whatever they are.
     ///
     /// ```
     /// use plotter_motion::{Point, drawing::{Drawing, Stroke}};
@@ -130,13 +133,15 @@ fn lines_from(places: &[Point], begin: usize, is_far: bool, tolerance_mm: f64, m
     let mut cone = Cone::All;
     // The farthest place so far.
     let mut farthest_mm: f64 = 0.0;
-    // Places passed to the last end found, and to the last of those that were not looked at because they are many.
+    // Places passed to the last end found, and to the last of those that were not looked at because they are
+    // many.
     let (mut best, mut perhaps) = (0, 0);
     for (passed, &to) in rest.iter().enumerate() {
         let way = to - from;
         let length_mm = way.length_near();
         if cone.has(way) {
-            // A place farther than the line's end must be near that end, but where all are near its beginning.
+            // A place farther than the line's end must be near that end, but where all are near its
+            // beginning.
             let is_end = length_mm >= farthest_mm || matches!(cone, Cone::All);
             let turns_back = !is_end && length_mm + tolerance_mm >= farthest_mm;
             if is_end || (turns_back && passed <= WINDOW && stands_for(passed)) {

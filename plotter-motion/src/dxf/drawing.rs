@@ -74,7 +74,8 @@ enum Section {
 }
 
 impl Drawing {
-    /// Reads a text from its bytes. What is wrong with single entities is told by [`plot_ops`](Self::plot_ops); they are left out.
+    /// Reads a text from its bytes. What is wrong with single entities is told by
+    /// [`plot_ops`](Self::plot_ops); they are left out.
     ///
     /// Memory is in proportion to the text.
     ///
@@ -112,10 +113,11 @@ impl Drawing {
         Ok(reading.finish(pairs.line()))
     }
 
-    /// Its strokes as plot operations, mm, and in their place what there is to say. What the reading of it has found comes first.
+    /// Its strokes as plot operations, mm, and in their place what there is to say. What the reading of it
+    /// has found comes first.
     ///
-    /// Entities come in the order of the file, and blocks where they stand; a layer that draws is a pen, unless the options say
-    /// otherwise. Arcs and circles stay arcs where they are not seen askew.
+    /// Entities come in the order of the file, and blocks where they stand; a layer that draws is a pen,
+    /// unless the options say otherwise. Arcs and circles stay arcs where they are not seen askew.
     #[must_use]
     pub fn plot_ops(&self, options: ReadOptions) -> PlotOps<'_> {
         PlotOps::new(self, options)
@@ -248,7 +250,8 @@ impl Reading {
     }
 
     fn entity(&mut self, record: &Record, shape: Result<Option<Shape>, &'static str>) {
-        // Definitions of attributes stand for nothing but the attributes themselves; hidden ones are not seen.
+        // Definitions of attributes stand for nothing but the attributes themselves; hidden ones are not
+        // seen.
         let is_hidden = record.whole(60) == Some(1)
             || (record.kind == "ATTRIB" && record.whole(70).unwrap_or(0) & 1 != 0)
             || matches!(&*record.kind, "ATTDEF" | "VIEWPORT" | "VERTEX");

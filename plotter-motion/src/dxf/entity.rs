@@ -130,7 +130,8 @@ pub(super) struct LineType {
 
 /// Red, green and blue of a colour of AutoCAD's index on white paper: 7 is black there.
 ///
-/// The index is a rule: from 10 on each ten is a hue 15° further, of which each second one is darker and the odd ones are paler.
+/// The index is a rule: from 10 on each ten is a hue 15° further, of which each second one is darker and the
+/// odd ones are paler.
 pub(super) fn of_index(index: u8) -> [u8; 3] {
     const FIRST: [[u8; 3]; 10] = [
         [0, 0, 0],

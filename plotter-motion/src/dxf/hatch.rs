@@ -10,7 +10,8 @@ use alloc::vec::Vec;
 
 /// Most repetitions of the dashes of one line: 10 m of them at 0.1 mm.
 const MOST_DASHES: f64 = 100_000.0;
-/// The shortest dashes as a share of how far the line runs from where they begin: millions of times the rounding of their ends.
+/// The shortest dashes as a share of how far the line runs from where they begin: millions of times the
+/// rounding of their ends.
 const LEAST_DASHES: f64 = 1e-9;
 /// Most lines and dashes of one area, but for the dashes of the last line: a dash each mm² of an A0 sheet.
 const MOST_DRAWN: usize = 1_000_000;
@@ -105,7 +106,8 @@ impl Family {
         let stretch = seen.length();
         let (Some(way), offset) = (seen.normalized(), plane.way(self.offset)) else { return Ok(()) };
         let rows = Rows { base: plane.apply(self.base), way, distance_mm: way.perpendicular().dot(offset) };
-        // The dashes of each line begin where the offset, which need not be across the lines, has carried them.
+        // The dashes of each line begin where the offset, which need not be across the lines, has carried
+        // them.
         let shift_mm = way.dot(offset);
         rows.fill(outlines, |row, from, to| {
             let begins = shift_mm * row;

@@ -2,7 +2,8 @@
 //!
 //! # The format in short
 //!
-//! A text is a row of groups of two lines: a code, and a value that the code gives its meaning. A group of code 0 begins something:
+//! A text is a row of groups of two lines: a code, and a value that the code gives its meaning. A group of
+//! code 0 begins something:
 //!
 //! ```text
 //!   0            a section begins,
@@ -41,19 +42,20 @@
 //! | `SOLID` `TRACE` `3DFACE` `LEADER`, nets and faces of polylines | their outlines and edges |
 //! | `POINT` | a dot |
 //!
-//! Layers that are off, frozen or not for plots are left out, told with their number of entities; so is the paper space where the
-//! model has something. Line types are drawn as dashes. Other entities (splines of solids, pictures, lines without an end) are counted
-//! by their kind and told with what helps.
+//! Layers that are off, frozen or not for plots are left out, told with their number of entities; so is the
+//! paper space where the model has something. Line types are drawn as dashes. Other entities (splines of
+//! solids, pictures, lines without an end) are counted by their kind and told with what helps.
 //!
 //! Attributes, texts and blocks of programs (codes from 1000 on) are passed over.
 //!
-//! It is read here and not by the crate `dxf` (0.6), which brings some thirty crates along and gives up a whole file at the first number
-//! that is wrong.
+//! It is read here and not by the crate `dxf` (0.6), which brings some thirty crates along and gives up a
+//! whole file at the first number that is wrong.
 //!
 //! # Bad input
 //!
-//! An [`Error`] says the line, what is wrong and what would be right. An entity without what it needs is left out, and reading goes on
-//! with the next one. Blocks that hold themselves end 32 deep, and all together after 4 million entities.
+//! An [`Error`] says the line, what is wrong and what would be right. An entity without what it needs is left
+//! out, and reading goes on with the next one. Blocks that hold themselves end 32 deep, and all together
+//! after 4 million entities.
 
 mod drawing;
 mod entity;

@@ -4,8 +4,8 @@ use super::{Error, Problem};
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-/// Longest value, bytes; DXF has 2049 letters at most (Autodesk, *DXF Reference*, "Group codes in numerical order"). What follows is
-/// passed over.
+/// Longest value, bytes; DXF has 2049 letters at most (Autodesk, *DXF Reference*, "Group codes in numerical
+/// order"). What follows is passed over.
 const MOST_VALUE_BYTES: usize = 4096;
 
 /// A group: what it means, and its value.

@@ -170,8 +170,8 @@ impl Iterator for Dashes<'_> {
 
 /// The arc of a polyline by its bulge: the tangent of a quarter of the angle.
 ///
-/// Source: Autodesk, *DXF Reference*, group 42 of LWPOLYLINE. With half the chord h and the bulge b the radius is h (1 + b²) / 2b, so that
-/// the centre lies h (1 − b²) / 2b to the left of the chord.
+/// Source: Autodesk, *DXF Reference*, group 42 of LWPOLYLINE. With half the chord h and the bulge b the
+/// radius is h (1 + b²) / 2b, so that the centre lies h (1 − b²) / 2b to the left of the chord.
 pub(super) fn of_bulge(from: Point, to: Point, bulge: f64) -> Option<Bow> {
     let chord = to - from;
     // Straighter than this, the arc leaves its chord by less than a millionth of its length.
@@ -187,7 +187,8 @@ pub(super) fn of_bulge(from: Point, to: Point, bulge: f64) -> Option<Bow> {
 /// From one angle counter-clockwise to another: above 0, at most a whole turn.
 pub(super) fn sweep(from_rad: f64, to_rad: f64) -> f64 {
     let sweep = libm::fmod(to_rad - from_rad, TAU);
-    /// An arc shorter than this is a whole turn: programs write one as 0° to 360°, or from an angle to itself.
+    /// An arc shorter than this is a whole turn: programs write one as 0° to 360°, or from an angle to
+    /// itself.
     const NONE_RAD: f64 = 1e-9;
     let sweep = if sweep < 0.0 { sweep + TAU } else { sweep };
     if (NONE_RAD..=TAU - NONE_RAD).contains(&sweep) { sweep } else { TAU }

@@ -11,8 +11,8 @@ use alloc::vec::Vec;
 
 /// Deepest that blocks may lie in each other.
 const MOST_DEPTH: usize = 32;
-/// Most entities of blocks that are drawn, each time that they are: more than drawings have, so that blocks that hold each other many
-/// times end some time.
+/// Most entities of blocks that are drawn, each time that they are: more than drawings have, so that blocks
+/// that hold each other many times end some time.
 const MOST_ENTITIES: u32 = 1 << 22;
 
 /// The plot operations of a [`Drawing`], as they are asked for; made by [`Drawing::plot_ops`].

@@ -26,7 +26,8 @@ pub enum Pens {
 pub struct ReadOptions {
     /// Farthest that lines may be from the curves that they stand for, mm; above 0.
     pub tolerance_mm: f64,
-    /// Size of a unit of the drawing, mm; `None` takes what the file says (`$INSUNITS`), or a millimetre, and tells so.
+    /// Size of a unit of the drawing, mm; `None` takes what the file says (`$INSUNITS`), or a millimetre, and
+    /// tells so.
     pub unit_mm: Option<f64>,
     /// By how much all is moved, mm.
     pub moved_mm: Vec2,

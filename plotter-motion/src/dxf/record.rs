@@ -13,7 +13,8 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
-/// Farthest that a place may be, in units of the drawing: beyond it single steps of a motor are lost in the rounding.
+/// Farthest that a place may be, in units of the drawing: beyond it single steps of a motor are lost in the
+/// rounding.
 const MOST_UNITS: f64 = 1e9;
 /// Most rows or columns of a block.
 const MOST_ROWS: i64 = 32_767;

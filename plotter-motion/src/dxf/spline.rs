@@ -46,8 +46,9 @@ impl Spline {
 
     /// Its places, so that no line between two of them is farther than `tolerance` from it.
     ///
-    /// Each stretch between knots is made a Bézier curve by inserting its ends as knots (W. Boehm, "Inserting new knots into B-spline
-    /// curves", 1980), and halved until its points lie near enough to its chord: the curve is a mean of them.
+    /// Each stretch between knots is made a Bézier curve by inserting its ends as knots (W. Boehm, "Inserting
+    /// new knots into B-spline curves", 1980), and halved until its points lie near enough to its chord: the
+    /// curve is a mean of them.
     pub(super) fn places(&self, tolerance: f64) -> Vec<Vec3> {
         let weight = |index: usize| self.weights.get(index).copied().unwrap_or(1.0);
         let points: Vec<Weighted<Vec3>> = self
@@ -108,8 +109,8 @@ fn flatten(piece: &[Weighted<Vec3>], tolerance: f64, halvings: u32, places: &mut
     flatten(&right, tolerance, halvings - 1, places);
 }
 
-/// Most that the points between the ends count in any place of a Bézier curve: 1 − t^p − (1 − t)^p is at most 1 − 2^(1 − p), and more
-/// where their weights are greater.
+/// Most that the points between the ends count in any place of a Bézier curve: 1 − t^p − (1 − t)^p is at most
+/// 1 − 2^(1 − p), and more where their weights are greater.
 fn inner_share(piece: &[Weighted<Vec3>]) -> f64 {
     let [first, inner @ .., last] = piece else { return 0.0 };
     let ends = libm::exp2(-f64::from(u8::try_from(inner.len()).unwrap_or(u8::MAX)));
@@ -126,7 +127,8 @@ fn distance(place: Vec3, from: Vec3, to: Vec3) -> f64 {
     (out - way * share).length()
 }
 
-/// The curve through places that has no corner and no bend at its ends: a natural cubic spline by lengths of chords.
+/// The curve through places that has no corner and no bend at its ends: a natural cubic spline by lengths of
+/// chords.
 ///
 /// Source: C. de Boor, *A Practical Guide to Splines* (1978), chapter IV; as cubic Bézier curves.
 pub(super) fn through(places: &[Vec3], is_closed: bool) -> Option<Spline> {

@@ -174,7 +174,8 @@ fn similar(letter: char) -> Option<char> {
     })
 }
 
-/// The letters of a text of one line: `%%d`, `%%p`, `%%c`, `%%nnn`, `\U+nnnn`; lines under and over it (`%%u`, `%%o`, `%%k`) are left out.
+/// The letters of a text of one line: `%%d`, `%%p`, `%%c`, `%%nnn`, `\U+nnnn`; lines under and over it
+/// (`%%u`, `%%o`, `%%k`) are left out.
 pub(super) fn plain(text: &str) -> String {
     let mut plain = String::new();
     let mut rest = text;
@@ -217,7 +218,8 @@ fn unicode(text: &str) -> Option<(char, &str)> {
     Some((letter, code.get(4..)?))
 }
 
-/// The lines of a text with formats: paragraphs stay, fractions are written with a stroke, other formats are without effect.
+/// The lines of a text with formats: paragraphs stay, fractions are written with a stroke, other formats are
+/// without effect.
 ///
 /// Source: Autodesk, *AutoCAD Customization Guide*, "Format codes for multiline text".
 pub(super) fn lines(text: &str) -> Vec<String> {

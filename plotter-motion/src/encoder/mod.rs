@@ -7,12 +7,13 @@
 //!   B  ┘   └───┘   └────       ×1: rising edges of A   ×2: every edge of A   ×4: every edge
 //! ```
 //!
-//! [`QuadratureX1`] is the published decoder (spec 1.10): at each rising edge of A, B high counts up and B low
-//! counts down. It has a weakness that its author did not meet or did not mention: the rising edge lies at the
-//! *start* of A's high half when the shaft turns forwards and at its *end* when it turns backwards. A shaft that
-//! trembles about the start of the high half rises again and again and is counted up each time, though
-//! it goes nowhere. [`QuadratureX2`] counts at the same edges in both directions and does not drift, with an interrupt on
-//! one pin still; [`QuadratureX4`] has an edge of its own for every quarter of a period, and sees when it missed one.
+//! [`QuadratureX1`] is the published decoder (Öcal's thesis, section 6.4.1): at each rising edge of A, B high
+//! counts up and B low counts down. It has a weakness that its author did not meet or did not mention: the
+//! rising edge lies at the *start* of A's high half when the shaft turns forwards and at its *end* when it
+//! turns backwards. A shaft that trembles about the start of the high half rises again and again and is
+//! counted up each time, though it goes nowhere. [`QuadratureX2`] counts at the same edges in both directions
+//! and does not drift, with an interrupt on one pin still; [`QuadratureX4`] has an edge of its own for every
+//! quarter of a period, and sees when it missed one.
 
 mod pulse_counter;
 
@@ -83,8 +84,8 @@ impl QuadratureX1 {
     }
 }
 
-/// ×2 decoding: both edges of phase A. Right after one, B is at A's level if the shaft turns forwards, and at the other one
-/// if it turns backwards.
+/// ×2 decoding: both edges of phase A. Right after one, B is at A's level if the shaft turns forwards, and at
+/// the other one if it turns backwards.
 ///
 /// ```
 /// # use plotter_motion::{Direction, encoder::{Phases, QuadratureX2}};

@@ -1,4 +1,5 @@
-//! Encoders with one phase: they count up whichever way the motor turns, and the motor's voltage says which way that was.
+//! Encoders with one phase: they count up whichever way the motor turns, and the motor's voltage says which
+//! way that was.
 //!
 //! ```text
 //!  voltage   ┌───────────┐                          P(t + dt) = P(t) + sgn(V) dP
@@ -8,9 +9,10 @@
 //!  counted    + + + + + + + +  +     - - - -
 //! ```
 //!
-//! Source: the marking board's motors (spec 2.2), 46.3 pulses a millimetre. What this cannot see: a motor that still runs
-//! on when its voltage has been reversed is counted the wrong way until it has turned round, and one that is turned by
-//! hand as it was driven last. Stop it before it is reversed.
+//! Source: Khan and McGinn, "2D Controlled Marking Board", section 0.2.3: motors of the marking board, 46.3
+//! pulses a millimetre. What this cannot see: a motor that still runs on when its voltage has been reversed
+//! is counted the wrong way until it has turned round, and one that is turned by hand as it was driven last.
+//! Stop it before it is reversed.
 
 use crate::{Direction, Duty};
 
@@ -65,7 +67,8 @@ impl PulseCounter {
         self.direction
     }
 
-    /// Pulses that came before the motor had ever been driven: nobody knows which way, and they are not counted.
+    /// Pulses that came before the motor had ever been driven: nobody knows which way, and they are not
+    /// counted.
     #[must_use]
     pub const fn undirected(&self) -> u32 {
         self.undirected

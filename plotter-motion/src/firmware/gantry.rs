@@ -41,12 +41,13 @@ impl fmt::Display for Notice {
 /// Notices that were not fetched yet; the oldest are kept.
 const MOST_NOTICES: usize = 8;
 
-/// The whole controller of the semi-virtual gantry (spec 1.6 to 1.10), sans-IO.
+/// The whole controller of the semi-virtual gantry, sans-IO. Source: Öcal's thesis, sections 4.4, 4.5, 5.2
+/// and 6.4, and the program in its appendix A.
 ///
 /// Inputs: [`receive`](Self::receive), [`edge`](Self::edge), [`limit_switch`](Self::limit_switch),
-/// [`emergency_stop`](Self::emergency_stop), [`tick`](Self::tick) at [`next_tick`](Self::next_tick). After each
-/// of them, fetch the bytes for the line ([`transmit`](Self::transmit)) and the motors' [`drive`](Self::drive).
-/// Times never go back.
+/// [`emergency_stop`](Self::emergency_stop), [`tick`](Self::tick) at [`next_tick`](Self::next_tick). After
+/// each of them, fetch the bytes for the line ([`transmit`](Self::transmit)) and the motors'
+/// [`drive`](Self::drive). Times never go back.
 ///
 /// The host is told of every count, and of `+` when all counts of a reached target are told, so that its
 /// position is the controller's when it compares. Where the published program answered a target at which the
@@ -71,7 +72,8 @@ const MOST_NOTICES: usize = 8;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A drive ends when the gantry is told anything, and there is no copy of a gantry, because its gate has none:
+/// A drive ends when the gantry is told anything, and there is no copy of a gantry, because its gate has
+/// none:
 ///
 /// ```compile_fail,E0502
 /// # use plotter_motion::{LimitSwitches, Machine, MachineConfig, SafetyGate, firmware::Gantry};
@@ -151,7 +153,8 @@ impl GantrySettings {
 }
 
 impl Gantry {
-    /// The controller of `machine`, with its motors at rest at the origin and its switches and its button as the gate has them.
+    /// The controller of `machine`, with its motors at rest at the origin and its switches and its button as
+    /// the gate has them.
     #[must_use]
     pub fn new(machine: &Machine, gate: SafetyGate) -> Self {
         Self::with_settings(GantrySettings::of(machine), ChosenController::of(machine), gate)
@@ -204,9 +207,9 @@ impl<C: LineController> Gantry<C> {
         }
     }
 
-    /// Takes a byte from the host. A target that comes before the one before is reached takes its place, as in the
-    /// published program: so a host can go on after a target that cannot be reached. [`Order::Stop`] and [`Order::GoOn`] are
-    /// obeyed at once, whatever came of a target before them, and answered.
+    /// Takes a byte from the host. A target that comes before the one before is reached takes its place, as
+    /// in the published program: so a host can go on after a target that cannot be reached. [`Order::Stop`]
+    /// and [`Order::GoOn`] are obeyed at once, whatever came of a target before them, and answered.
     pub fn receive(&mut self, now: Duration, byte: u8) {
         if let Some(order @ (Order::Stop | Order::GoOn)) = Order::from_byte(byte) {
             self.tell_stopped = true;
@@ -283,15 +286,17 @@ impl<C: LineController> Gantry<C> {
         self.apply(self.demand);
     }
 
-    /// Lets the motors go on after an emergency stop, unless the button is still pressed; says whether it did.
+    /// Lets the motors go on after an emergency stop, unless the button is still pressed; says whether it
+    /// did.
     pub fn reset_emergency_stop(&mut self, _now: Duration) -> bool {
         let free = self.gate.reset();
         self.apply(self.demand);
         free
     }
 
-    /// Takes the host's own emergency stop: both motors stay off until the host takes it back, whatever is done at the machine;
-    /// and what was stopped at the machine stays stopped, whatever the host says. Position and target are kept.
+    /// Takes the host's own emergency stop: both motors stay off until the host takes it back, whatever is
+    /// done at the machine; and what was stopped at the machine stays stopped, whatever the host says.
+    /// Position and target are kept.
     pub fn stop_by_host(&mut self, stopped: bool) {
         self.gate.stop_by_host(stopped);
         self.apply(self.demand);

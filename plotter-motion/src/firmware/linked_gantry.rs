@@ -14,15 +14,15 @@ const MOST_MOVED: usize = 1 + 2 * 5;
 /// How long digits wait, lest they are part of a call.
 const DIGITS_WAIT: Duration = Duration::from_millis(5);
 
-/// A [`Gantry`] whose host may speak either protocol: the digits from the first byte on, or frames once it has called.
-/// After the first session it knows frames only, until it is switched off.
+/// A [`Gantry`] whose host may speak either protocol: the digits from the first byte on, or frames once it
+/// has called. After the first session it knows frames only, until it is switched off.
 ///
-/// The next targets wait in the link's window, so the motors need not wait for the line. The host is told every 20 ms where
-/// the motors are, and of each target reached. Orders pass the window by: a stop has acted when [`receive`](Self::receive) of its
-/// last byte returns.
+/// The next targets wait in the link's window, so the motors need not wait for the line. The host is told
+/// every 20 ms where the motors are, and of each target reached. Orders pass the window by: a stop has acted
+/// when [`receive`](Self::receive) of its last byte returns.
 ///
-/// Time, edges and switches go to the gantry itself ([`gantry_mut`](Self::gantry_mut)); after each of them, and after each byte,
-/// [`poll`](Self::poll) this one, and fetch the bytes for the line.
+/// Time, edges and switches go to the gantry itself ([`gantry_mut`](Self::gantry_mut)); after each of them,
+/// and after each byte, [`poll`](Self::poll) this one, and fetch the bytes for the line.
 #[derive(Debug, PartialEq)]
 pub struct LinkedGantry<const WINDOW: usize, const PAYLOAD: usize, C = ChosenController> {
     gantry: Gantry<C>,
@@ -55,8 +55,8 @@ pub struct LinkedGantry<const WINDOW: usize, const PAYLOAD: usize, C = ChosenCon
 }
 
 impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> LinkedGantry<WINDOW, PAYLOAD, C> {
-    /// Puts `gantry`, with its motors at rest, behind the link. `boot` is another number each time that the machine is switched
-    /// on: a count in non-volatile memory, or noise.
+    /// Puts `gantry`, with its motors at rest, behind the link. `boot` is another number each time that the
+    /// machine is switched on: a count in non-volatile memory, or noise.
     #[must_use]
     pub fn new(gantry: Gantry<C>, boot: u32, settings: LinkSettings) -> Self {
         Self {
@@ -101,8 +101,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> LinkedGantry<
         &self.link
     }
 
-    /// Where the pen belongs: as the target under way has it, and up where none is, at the end, in a hold or a stop. The digits
-    /// protocol does not say: up.
+    /// Where the pen belongs: as the target under way has it, and up where none is, at the end, in a hold or
+    /// a stop. The digits protocol does not say: up.
     #[must_use]
     pub const fn pen(&self) -> Pen {
         if self.under_way && !self.gantry.is_stopped() { self.pen } else { Pen::Up }
@@ -151,8 +151,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> LinkedGantry<
         (self.held_length, self.held_at) = (self.held_length.saturating_add(1), now);
     }
 
-    /// A host of digits sends a target, ten bytes at most, and waits for its answer; more in a row are a call, or what became
-    /// of one.
+    /// A host of digits sends a target, ten bytes at most, and waits for its answer; more in a row are a
+    /// call, or what became of one.
     fn let_digits_pass(&mut self, now: Duration) {
         let length = usize::from(core::mem::take(&mut self.held_length));
         let held = self.held;
@@ -286,7 +286,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> LinkedGantry<
         byte
     }
 
-    /// When [`poll`](Self::poll) or [`transmit`](Self::transmit) has something to do, unless something happens before.
+    /// When [`poll`](Self::poll) or [`transmit`](Self::transmit) has something to do, unless something
+    /// happens before.
     #[must_use]
     pub fn next_wake(&self) -> Option<Duration> {
         // What finds no room is told when some comes, with a byte of the host.

@@ -25,19 +25,22 @@ pub struct MarkingBoardSettings {
     /// [`SafetyGate::pass_belt`]. If the counts say that the carriage goes towards a pressed switch all the
     /// same, 1 is taken until no switch is pressed.
     pub unequal_share: f32,
-    /// How long no pulse must have come from a motor until it is driven the other way. Before that it may still run down, and its
-    /// pulses would be counted the wrong way. 0 for the published controller, which did not wait.
+    /// How long no pulse must have come from a motor until it is driven the other way. Before that it may
+    /// still run down, and its pulses would be counted the wrong way. 0 for the published controller, which
+    /// did not wait.
     pub run_down: Duration,
-    /// Speed of the pen from which on the speed meters' window has its full length, mm/s (spec 2.3).
+    /// Speed of the pen from which on the speed meters' window has its full length, mm/s. Source: Khan and
+    /// McGinn, "2D Controlled Marking Board", section 0.2.5: 100 ms do at 30 mm/s.
     pub speed_window_mm_s: f64,
 }
 
 impl MarkingBoardSettings {
     /// Those of a machine with a belt; run-down and share are those of the controller that it names.
     ///
-    /// The documented board has 30 ms for the run-down: when no mark has come for 30 ms from a motor that friction slows down by a counts/s², it has made less
-    /// than a count in that time and so turns by at most (1 − a 0.03²/2)/0.03 counts/s now: with a = 500/s² 26 counts/s, which end
-    /// after two thirds of a count, with the 1930/s² of the simulated motors after a hundredth.
+    /// The documented board has 30 ms for the run-down: when no mark has come for 30 ms from a motor that
+    /// friction slows down by a counts/s², it has made less than a count in that time and so turns by at most
+    /// (1 − a 0.03²/2)/0.03 counts/s now: with a = 500/s² 26 counts/s, which end after two thirds of a count,
+    /// with the 1930/s² of the simulated motors after a hundredth.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
         let config = machine.config();
@@ -59,13 +62,14 @@ impl MarkingBoardSettings {
         }
     }
 
-    /// The moves of a tool path in counts of both motors, from where the pen is when it is switched on; arcs become chords that lie within half a
-    /// count of them. Operations that do not move the pen are left out.
+    /// The moves of a tool path in counts of both motors, from where the pen is when it is switched on; arcs
+    /// become chords that lie within half a count of them. Operations that do not move the pen are left out.
     ///
     /// # Errors
     ///
-    /// [`OutOfReach`] for a point outside the board or one that is not finite. The moves after it follow; the line that would
-    /// have begun there is a move with the pen up, so that nothing is drawn that the tool path does not hold.
+    /// [`OutOfReach`] for a point outside the board or one that is not finite. The moves after it follow; the
+    /// line that would have begun there is a move with the pen up, so that nothing is drawn that the tool
+    /// path does not hold.
     ///
     /// ```
     /// # use plotter_motion::firmware::MarkingBoardSettings;
@@ -123,7 +127,7 @@ impl BoardMotor {
     }
 }
 
-/// The whole controller of the marking board (spec 2), sans-IO, round a controller of its two motors.
+/// The whole controller of the marking board, sans-IO, round a controller of its two motors.
 ///
 /// ```text
 ///   PenMove ─▶ LineController ─▶ drive of motors ─▶ none that reverses a running motor ─▶ as axes ─▶ SafetyGate ─▶ Drive
@@ -132,9 +136,9 @@ impl BoardMotor {
 /// ```
 ///
 /// Inputs: [`start`](Self::start), [`pulse`](Self::pulse), [`limit_switches`](Self::limit_switches),
-/// [`emergency_stop`](Self::emergency_stop), [`tick`](Self::tick) at [`next_tick`](Self::next_tick). After each of them the
-/// motors get [`drive`](Self::drive), the pen goes where [`pen`](Self::pen) says. Times never go back. A move is done when
-/// [`has_arrived`](Self::has_arrived) says so.
+/// [`emergency_stop`](Self::emergency_stop), [`tick`](Self::tick) at [`next_tick`](Self::next_tick). After
+/// each of them the motors get [`drive`](Self::drive), the pen goes where [`pen`](Self::pen) says. Times
+/// never go back. A move is done when [`has_arrived`](Self::has_arrived) says so.
 ///
 /// ```
 /// # use plotter_motion::firmware::MarkingBoard;
@@ -173,7 +177,8 @@ pub struct MarkingBoard<C> {
 }
 
 impl MarkingBoard<ChosenController> {
-    /// The controller of `machine`, at rest where it is switched on, with its switches and its button as the gate has them.
+    /// The controller of `machine`, at rest where it is switched on, with its switches and its button as the
+    /// gate has them.
     #[must_use]
     pub fn of(machine: &Machine, gate: SafetyGate) -> Self {
         Self::new(MarkingBoardSettings::of(machine), ChosenController::of(machine), gate)
@@ -208,8 +213,8 @@ impl<C: LineController> MarkingBoard<C> {
         }
     }
 
-    /// Takes the next move, in counts of both motors as [`MarkingBoardSettings::moves`] makes them. One that comes before
-    /// the last has arrived takes its place.
+    /// Takes the next move, in counts of both motors as [`MarkingBoardSettings::moves`] makes them. One that
+    /// comes before the last has arrived takes its place.
     pub fn start(&mut self, now: Duration, next: PenMove) {
         self.pen = next.pen;
         self.under_way = true;
@@ -217,8 +222,8 @@ impl<C: LineController> MarkingBoard<C> {
         self.apply(now, demand);
     }
 
-    /// Takes a pulse of the first motor's encoder (`X`) or of the second's (`Y`). One that comes before that motor was ever driven
-    /// is not counted: nobody knows which way it was turned.
+    /// Takes a pulse of the first motor's encoder (`X`) or of the second's (`Y`). One that comes before that
+    /// motor was ever driven is not counted: nobody knows which way it was turned.
     pub fn pulse(&mut self, now: Duration, motor: Axis) {
         let [first, second] = &mut self.motors;
         let pulsed = match motor {
@@ -257,8 +262,8 @@ impl<C: LineController> MarkingBoard<C> {
         self.next_run.map_or(self.next_sample, |run| run.min(self.next_sample))
     }
 
-    /// Samples the speeds and runs the control loop, if it is time. One that was held up runs once, and from then on in its
-    /// period.
+    /// Samples the speeds and runs the control loop, if it is time. One that was held up runs once, and from
+    /// then on in its period.
     pub fn tick(&mut self, now: Duration) {
         if now >= self.next_sample {
             self.next_sample = next(self.next_sample, SpeedMeter::PERIOD, now);
@@ -292,7 +297,8 @@ impl<C: LineController> MarkingBoard<C> {
         self.apply(now, self.demand);
     }
 
-    /// Lets the motors go on after an emergency stop, unless the button is still pressed; says whether it did.
+    /// Lets the motors go on after an emergency stop, unless the button is still pressed; says whether it
+    /// did.
     pub fn reset_emergency_stop(&mut self, now: Duration) -> bool {
         let free = self.gate.reset();
         self.apply(now, self.demand);
@@ -310,8 +316,8 @@ impl<C: LineController> MarkingBoard<C> {
         let axes = Demand { x: Duty::saturating(0.5 * x), y: Duty::saturating(0.5 * y) };
         let unequal_share = if self.goes_into_switch { 1.0 } else { unequal_share };
         let drive = self.gate.pass_belt(axes, belt.signs(), unequal_share).kept();
-        // What the gate took of one axis may have left a motor to be reversed. To take the drive of that motor alone could lead
-        // into the switch, so neither gets any until it stands.
+        // What the gate took of one axis may have left a motor to be reversed. To take the drive of that
+        // motor alone could lead into the switch, so neither gets any until it stands.
         self.drive =
             if waits(first, drive.x()) || waits(second, drive.y()) { Drive::default() } else { drive };
         let [first, second] = &mut self.motors;
@@ -330,8 +336,9 @@ impl<C: LineController> MarkingBoard<C> {
         self.drive
     }
 
-    /// Whether the pen is to be on the sheet: as the move under way has it, and up when it is done or an emergency stop is latched. The
-    /// move after it is to be started in the same turn if the pen is to stay down.
+    /// Whether the pen is to be on the sheet: as the move under way has it, and up when it is done or an
+    /// emergency stop is latched. The move after it is to be started in the same turn if the pen is to stay
+    /// down.
     #[must_use]
     pub const fn pen(&self) -> Pen {
         if self.under_way && !self.gate.is_stopped() { self.pen } else { Pen::Up }
@@ -460,7 +467,8 @@ mod tests {
     #[test]
     fn a_switch_that_would_reverse_a_running_motor_stops_both() {
         let mut board = moving();
-        board.start(20 * MS, PenMove { pen: Pen::Down, target: StepPoint::new(0, 926) }); // right and up: motor 2 alone
+        // Right and up: motor 2 alone.
+        board.start(20 * MS, PenMove { pen: Pen::Down, target: StepPoint::new(0, 926) });
         board.tick(25 * MS);
         assert!(board.drive().x().value() == 0.0 && board.drive().y().value() > 0.0);
         // up alone would need motor 1 backwards, which ran forwards 15 ms ago

@@ -8,19 +8,21 @@ use crate::geom::single;
 use crate::root::root;
 use crate::turn::atan2;
 
-/// How much farther from the centre one end may be than the other, mm: always, and where it is a thousandth of the radius.
+/// How much farther from the centre one end may be than the other, mm: always, and where it is a thousandth
+/// of the radius.
 const LEAST_MM: f32 = 0.005;
 const MOST_MM: f32 = 0.5;
 const MOST_SHARE: f32 = 0.001;
 
-/// A sweep below this is a whole turn, rad.
+/// A smaller sweep is a whole turn, rad: it is the last bit of 2π in `f32`.
 const NO_SWEEP_RAD: f32 = 5e-7;
 
-/// What a chord may be longer than the diameter and still be taken for it, mm: both are rounded to thousandths.
+/// What a chord may be longer than the diameter and still be taken for it, mm: both are rounded to
+/// thousandths.
 const ROUNDED_MM: f32 = 0.005;
 
-/// How far round an arc goes, rad, above 0 to the `left`; right to 5·10⁻⁷ of itself. One that ends where it begins is a whole
-/// circle, exactly.
+/// How far round an arc goes, rad, above 0 to the `left`; right to 5·10⁻⁷ of itself. One that ends where it
+/// begins is a whole circle, exactly.
 ///
 /// The limits are GRBL's (`gcode.c`, version 1.1).
 pub(super) fn sweep_rad<C: Complaint>(
@@ -62,7 +64,8 @@ fn quarters(angle: f32) -> (i8, f32) {
     (quarters, angle - f32::from(quarters) * FRAC_PI_2)
 }
 
-/// The centre of an arc with this radius, mm: the one of less than half a turn, or with a negative radius of more.
+/// The centre of an arc with this radius, mm: the one of less than half a turn, or with a negative radius of
+/// more.
 pub(super) fn centre<C: Complaint>(
     from: Point,
     to: Point,
@@ -142,7 +145,8 @@ mod tests {
     #[test]
     fn the_radius_says_the_centre() {
         let (from, to) = (Point::new(10.0, 0.0), Point::new(0.0, 10.0));
-        // Counter-clockwise by a quarter about the origin; by three quarters about (10, 10); clockwise the other way.
+        // Counter-clockwise by a quarter about the origin; by three quarters about (10, 10); clockwise the
+        // other way.
         for (radius, left, x) in
             [(10.0, true, 0.0), (-10.0, true, 10.0), (10.0, false, 10.0), (-10.0, false, 0.0)]
         {

@@ -42,7 +42,8 @@ impl fmt::Display for Word {
     }
 }
 
-/// What a comment says that a program acts upon: [`Writer`](super::Writer) writes these after `M0`, or a pen in a line of its own.
+/// What a comment says that a program acts upon: [`Writer`](super::Writer) writes these after `M0`, or a pen
+/// in a line of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Remark {
     /// `(new sheet)`.

@@ -2,7 +2,8 @@
 
 use super::{Word, Words};
 
-/// What a `G` or `M` word asks for. The upper half is its group: of each of the first [`EXCLUSIVE`] groups a line has one word at most.
+/// What a `G` or `M` word asks for. The upper half is its group: of each of the first [`EXCLUSIVE`] groups a
+/// line has one word at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum Code {
@@ -239,8 +240,8 @@ static MISCELLANEOUS_UNDONE: &[Range] = &[
 ];
 
 impl Code {
-    /// What a `G` or `M` word with this number, times ten, asks for, and whether that is done. As tables: for a small processor they are
-    /// a third of the decisions.
+    /// What a `G` or `M` word with this number, times ten, asks for, and whether that is done. As tables: for
+    /// a small processor they are a third of the decisions.
     pub(super) fn of(letter: u8, tenths: u16, known: Words) -> Option<(Self, bool)> {
         let is_general = letter == b'G';
         let (number, tenth) = (tenths / 10, tenths % 10);

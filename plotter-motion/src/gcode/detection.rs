@@ -117,7 +117,8 @@ impl Spindles {
     }
 }
 
-/// Finds out by which words a text lifts its pen: takes the text's lines, one after the other, in constant memory.
+/// Finds out by which words a text lifts its pen: takes the text's lines, one after the other, in constant
+/// memory.
 ///
 /// The first of these rules that fits holds:
 ///
@@ -135,13 +136,13 @@ impl Spindles {
 /// | `M106` | [`LaserCommand::Fan`] |
 /// | none of them | [`PenConvention::Motion`] |
 ///
-/// A servo or a Z axis is up where it is at the first `G0` across the sheet, or else at the first movement; if it had not been
-/// told a place by then, the first place it is told is down, and of heights the highest is up. The other place is the one farthest
-/// from that; of heights, the lowest. `G53` tells no height. Heights above and below 0 are told apart there, others half way
-/// between the lowest and the lowest `G0`.
+/// A servo or a Z axis is up where it is at the first `G0` across the sheet, or else at the first movement;
+/// if it had not been told a place by then, the first place it is told is down, and of heights the highest is
+/// up. The other place is the one farthest from that; of heights, the lowest. `G53` tells no height. Heights
+/// above and below 0 are told apart there, others half way between the lowest and the lowest `G0`.
 ///
-/// The full power of a laser is 1000, as GRBL has it, or the greatest `S` if that is more; 255 for a fan and for mDraw.
-/// `G4 P` counts milliseconds if every P is a whole number from 20 up, or 0.
+/// The full power of a laser is 1000, as GRBL has it, or the greatest `S` if that is more; 255 for a fan and
+/// for mDraw. `G4 P` counts milliseconds if every P is a whole number from 20 up, or 0.
 ///
 /// ```
 /// # use plotter_motion::gcode::{PenConvention, detect};
@@ -395,8 +396,8 @@ impl Detection {
         PenConvention::Height { threshold_mm }
     }
 
-    /// What the last digit of its places is worth, mm: they are rounded to it. `None` if all are whole numbers, which say nothing of
-    /// what was rounded.
+    /// What the last digit of its places is worth, mm: they are rounded to it. `None` if all are whole
+    /// numbers, which say nothing of what was rounded.
     ///
     /// Zeros at the end do not count, so it is that of the place with most decimals.
     ///

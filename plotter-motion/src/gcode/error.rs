@@ -174,8 +174,8 @@ pub enum Problem {
     ArcForm,
     /// An arc with a radius that ends where it begins: any circle would do.
     ArcWithoutEnd,
-    /// An arc of which both ends are unequally far from its centre, by more than 0.5 mm, or by more than 0.005 mm and a
-    /// thousandth.
+    /// An arc of which both ends are unequally far from its centre, by more than 0.5 mm, or by more than
+    /// 0.005 mm and a thousandth.
     ArcRadii {
         /// How far its start is, mm.
         start_mm: f64,

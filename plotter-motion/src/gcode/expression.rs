@@ -4,7 +4,8 @@ use super::variables::Variables;
 use super::{Problem, Text};
 use crate::decimal::Decimal;
 
-/// Deepest nesting of brackets: a line of `LinuxCNC` holds 255 bytes, and no program's formula needs more than a few.
+/// Deepest nesting of brackets: a line of `LinuxCNC` holds 255 bytes, and no program's formula needs more
+/// than a few.
 const MOST_DEPTH: u8 = 32;
 
 /// Functions, in capitals.

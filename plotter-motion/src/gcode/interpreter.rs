@@ -1,4 +1,5 @@
-//! [`Interpreter`]: lines in, plot operations out; [`LineInterpreter`]: the same without a memory for what a line has given.
+//! [`Interpreter`]: lines in, plot operations out; [`LineInterpreter`]: the same without a memory for what a
+//! line has given.
 
 #[cfg(feature = "alloc")]
 use super::PenConvention;
@@ -104,11 +105,12 @@ impl Outcomes<Error> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// - A line is carried out whole or not at all; but the end of an arc that is none is gone to, with the pen up. Within it speed, tool and pen come first, then `G4`, `G28` or `G92`, then the
-///   movement, then `M0` or `M2`: the order of the standard.
+/// - A line is carried out whole or not at all; but the end of an arc that is none is gone to, with the pen
+///   up. Within it speed, tool and pen come first, then `G4`, `G28` or `G92`, then the movement, then `M0` or
+///   `M2`: the order of the standard.
 /// - A pen that is lowered and lifted again without a movement leaves a dot, a line to where it stands.
-/// - A pen that is lifted goes up with the travel that follows. Where a dwell, a pause or the end of the text or program follows
-///   instead, a travel to where it stands lifts it.
+/// - A pen that is lifted goes up with the travel that follows. Where a dwell, a pause or the end of the text
+///   or program follows instead, a travel to where it stands lifts it.
 /// - A line drawn by `G0`, and one before the first `F`, leaves its speed to the machine.
 /// - The power of a laser is told before the first line that needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,8 +136,8 @@ impl Default for Interpreter {
 }
 
 impl Interpreter {
-    /// A machine that has just been switched on, with the default options: pen up at the origin, `G0`, `G17`, `G21`, `G90`,
-    /// `G91.1`, `G94`.
+    /// A machine that has just been switched on, with the default options: pen up at the origin, `G0`, `G17`,
+    /// `G21`, `G90`, `G91.1`, `G94`.
     #[must_use]
     pub fn new() -> Self {
         Self::with_options(ReadOptions::default())
@@ -194,7 +196,8 @@ impl Interpreter {
         self.expansion.carry_out(block, line, options, out)
     }
 
-    /// Leaves a line out, or what is left of it. The end of an arc that is none is gone to with the pen up: what follows begins there.
+    /// Leaves a line out, or what is left of it. The end of an arc that is none is gone to with the pen up:
+    /// what follows begins there.
     fn refuse(&mut self, block: Option<&Block>, error: Error) {
         self.outcomes = Outcomes::none();
         self.expansion.forget();
@@ -216,8 +219,8 @@ impl Interpreter {
         self.ended
     }
 
-    /// Ends the drawing: a pen that has been lowered and never moved leaves its dot, one that has been lifted since its last line is
-    /// lifted.
+    /// Ends the drawing: a pen that has been lowered and never moved leaves its dot, one that has been lifted
+    /// since its last line is lifted.
     ///
     /// # Errors
     ///
@@ -261,8 +264,8 @@ impl Interpreter {
         Modes { position: self.expansion.frame.apply(modes.position), ..modes }
     }
 
-    /// The machine has been moved by something else, or stopped on its way: the pen stands at `point`, in mm on the sheet. What has
-    /// been set by `G92` stays.
+    /// The machine has been moved by something else, or stopped on its way: the pen stands at `point`, in mm
+    /// on the sheet. What has been set by `G92` stays.
     pub fn stand_at(&mut self, point: Point) {
         self.line.stand_at(self.expansion.frame.inverse(point));
     }
@@ -282,7 +285,8 @@ impl LineInterpreter {
         Self { machine: Machine::new() }
     }
 
-    /// Nothing of the line is left to come: a pen that it lifts goes up now, whatever the next line says and whenever it comes.
+    /// Nothing of the line is left to come: a pen that it lifts goes up now, whatever the next line says and
+    /// whenever it comes.
     pub(crate) fn lift<C: Complaint>(&mut self, out: &mut Outcomes<C>) {
         self.machine.lift(out);
     }
@@ -356,19 +360,21 @@ impl LineInterpreter {
         self.machine.leave_out(&Line::read(block, options.words)?, options, out)
     }
 
-    /// Puts a pen down that was told to go down and has not moved since: the operation that does so, and leaves its dot.
+    /// Puts a pen down that was told to go down and has not moved since: the operation that does so, and
+    /// leaves its dot.
     pub(crate) fn put_down(&mut self) -> Option<PlotOp> {
         self.machine.put_down()
     }
 
-    /// Where a line would have the pen travel, if it names a place, and its speed in mm/s: what a movement by hand is told. Nothing of it
-    /// holds afterwards.
+    /// Where a line would have the pen travel, if it names a place, and its speed in mm/s: what a movement by
+    /// hand is told. Nothing of it holds afterwards.
     pub(crate) fn travel<C: Complaint>(mut self, block: &Block) -> Result<(Option<Point>, Option<f64>), C> {
         let to = self.machine.travel(&Line::read(block, Words::GrblOnSheet)?)?;
         Ok((to, self.machine.modes().feed_mm_s))
     }
 
-    /// Carries a line out. After an error neither the interpreter nor `out` is to be used: the line is left out as a whole.
+    /// Carries a line out. After an error neither the interpreter nor `out` is to be used: the line is left
+    /// out as a whole.
     #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn carry_out<C: Complaint>(
         &mut self,

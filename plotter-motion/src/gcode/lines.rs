@@ -34,13 +34,15 @@ impl<I: Iterator<Item = u8>> Lines<I> {
         Self { program: self.program.with_pen_words(words), ..self }
     }
 
-    /// The next line that has words, which is the [block](Self::block) until that is [cleared](Self::clear), or what is wrong with it.
+    /// The next line that has words, which is the [block](Self::block) until that is [cleared](Self::clear),
+    /// or what is wrong with it.
     #[cfg(feature = "alloc")]
     pub(super) fn advance(&mut self) -> Option<Result<(), Error>> {
         self.program.advance(&mut self.bytes, &mut self.reader)
     }
 
-    /// The next line that has words, which is the [block](Self::block) until that is [cleared](Self::clear), or what is wrong with it.
+    /// The next line that has words, which is the [block](Self::block) until that is [cleared](Self::clear),
+    /// or what is wrong with it.
     #[cfg(not(feature = "alloc"))]
     pub(super) fn advance(&mut self) -> Option<Result<(), Error>> {
         let ended = self.bytes.by_ref().find_map(|byte| self.reader.advance(byte));

@@ -1,9 +1,10 @@
-//! G-code, the language of machine tools, as pen plotters and lasers understand it: reader, interpreter and writer.
+//! G-code, the language of machine tools, as pen plotters and lasers understand it: reader, interpreter and
+//! writer.
 //!
 //! # The language in short
 //!
-//! A text is a row of lines, each a few words of a letter and a number. Numbers are decimal, in mm and mm/min; what is in
-//! parentheses or after `;` is a comment:
+//! A text is a row of lines, each a few words of a letter and a number. Numbers are decimal, in mm and
+//! mm/min; what is in parentheses or after `;` is a comment:
 //!
 //! ```text
 //! G21                        millimetres
@@ -24,10 +25,10 @@
 //!           └──────────── plot_ops ────────────┘  mm
 //! ```
 //!
-//! [`plot_ops`] does it for a text in memory, [`PlotOps`] for any iterator of bytes. [`Reader`] and [`Interpreter`] are what
-//! both are made of: they take one byte and one line at a time, and own neither a port nor a buffer, so that a text of any
-//! length needs the same memory. A controller that is sent its lines one by one takes them from a [`Reader`] as [`Block`]s.
-//! [`Writer`] and [`write_ops`] go the other way.
+//! [`plot_ops`] does it for a text in memory, [`PlotOps`] for any iterator of bytes. [`Reader`] and
+//! [`Interpreter`] are what both are made of: they take one byte and one line at a time, and own neither a
+//! port nor a buffer, so that a text of any length needs the same memory. A controller that is sent its lines
+//! one by one takes them from a [`Reader`] as [`Block`]s. [`Writer`] and [`write_ops`] go the other way.
 //!
 //! ```
 //! use plotter_motion::{PlotOp, gcode};
@@ -52,8 +53,8 @@
 //!
 //! # How pens are lifted
 //!
-//! The language knows no pens, so every machine has its own way. The writer is told it by [`PenControl`], the interpreter by
-//! [`PenConvention`]; [`Detection`] finds it out from a text.
+//! The language knows no pens, so every machine has its own way. The writer is told it by [`PenControl`], the
+//! interpreter by [`PenConvention`]; [`Detection`] finds it out from a text.
 //!
 //! | machine | up, down | written by | read by |
 //! |---|---|---|---|
@@ -71,8 +72,8 @@
 //! | none of these: G0 travels, G1 draws | | | [`PenConvention::Motion`] |
 //! | any other words, as `M42 P4 S0` or Klipper's `PEN_UP` | a person says them | [`PenControl::Commands`] | `PenWords` |
 //!
-//! mDraw leaves G2, G3 and G4 undone without a word: give it chords, and no time to settle. Its firmware takes words apart at
-//! blanks only: [`Spacing::Required`].
+//! mDraw leaves G2, G3 and G4 undone without a word: give it chords, and no time to settle. Its firmware
+//! takes words apart at blanks only: [`Spacing::Required`].
 //!
 //! # What is carried out
 //!
@@ -111,28 +112,33 @@
 //! | coordinates alone | | the last of `G0` to `G3` again; `G0` at first |
 //! | `N`, `O`, `%` | | nothing |
 //!
-//! Nothing is done for `G17 G40 G49 G61 G64 G94`, coolant, drives (`M17 M18 M84`), and questions and settings of
-//! printers and of mDraw; what else is known by name is reported as [`Problem::Unsupported`], a notice; the end of a movement that is
-//! left out, and of an arc that is none, is gone to with the pen up, so that what follows stands where it should. All `G` and `M` words of a line are done, but two that
-//! exclude each other are an error.
+//! Nothing is done for `G17 G40 G49 G61 G64 G94`, coolant, drives (`M17 M18 M84`), and questions and settings
+//! of printers and of mDraw; what else is known by name is reported as [`Problem::Unsupported`], a notice;
+//! the end of a movement that is left out, and of an arc that is none, is gone to with the pen up, so that
+//! what follows stands where it should. All `G` and `M` words of a line are done, but two that exclude each
+//! other are an error.
 //!
 //! # Bad input
 //!
-//! An [`Error`] says where (line, column, byte), what is wrong and what would be right. Its line is left out as a whole, and
-//! reading goes on with the next one; [`PlotOps::strict`] stops instead. Arcs are refused as GRBL refuses them, whose ends lie
-//! more than 0.5 mm unequally far from the centre, or more than 0.005 mm and a thousandth.
+//! An [`Error`] says where (line, column, byte), what is wrong and what would be right. Its line is left out
+//! as a whole, and reading goes on with the next one; [`PlotOps::strict`] stops instead. Arcs are refused as
+//! GRBL refuses them, whose ends lie more than 0.5 mm unequally far from the centre, or more than 0.005 mm
+//! and a thousandth.
 //!
-//! Variables, loops and subprograms need memory, and with it the feature `alloc`: loops and subprograms of a text are held, 16 MiB of them
-//! at most, and repeat a million lines at most. Without it they are errors. [`Reader`] and [`Interpreter`] by themselves do without.
+//! Variables, loops and subprograms need memory, and with it the feature `alloc`: loops and subprograms of a
+//! text are held, 16 MiB of them at most, and repeat a million lines at most. Without it they are errors.
+//! [`Reader`] and [`Interpreter`] by themselves do without.
 //!
 //! # Why not the crate `gcode`
 //!
-//! Version 0.7 of that crate takes words apart without allocation, with a line number and offset for each. It reads a `&str`
-//! that holds whole lines in UTF-8, so bytes from a serial line have to be gathered first. Numbers are `f32`, of 7 digits.
-//! It finds commands and their arguments, and no arcs, units or pens, which are the larger part here. Of the dialects above it
-//! reports `M1 90`, `/`, `$` and checksums as wrong; `X1e3` it takes for an X and an E.
+//! Version 0.7 of that crate takes words apart without allocation, with a line number and offset for each. It
+//! reads a `&str` that holds whole lines in UTF-8, so bytes from a serial line have to be gathered first.
+//! Numbers are `f32`, of 7 digits. It finds commands and their arguments, and no arcs, units or pens, which
+//! are the larger part here. Of the dialects above it reports `M1 90`, `/`, `$` and checksums as wrong;
+//! `X1e3` it takes for an X and an E.
 //!
-//! Sources: the `LinuxCNC` project's G-code and O-code reference; NIST, *The NIST RS274NGC Interpreter, Version 3* (2000); the GRBL project's wiki on version 1.1.
+//! Sources: the `LinuxCNC` project's G-code and O-code reference; NIST, *The NIST RS274NGC Interpreter,
+//! Version 3* (2000); the GRBL project's wiki on version 1.1.
 
 pub use crate::decimal::WrittenNumber;
 mod arc;

@@ -7,19 +7,19 @@
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum PenConvention {
-    /// `M3` or `M4` lowers, `M5` lifts, whatever stands after `S`: GRBL with a servo for its spindle. `G0` with the pen
-    /// down draws.
+    /// `M3` or `M4` lowers, `M5` lifts, whatever stands after `S`: GRBL with a servo for its spindle. `G0`
+    /// with the pen down draws.
     Spindle,
-    /// `M3`, `M4` and `M5` in another sense: one of them lifts, one lowers, whatever stands after `S`; the third does neither. A servo
-    /// that lets the pen fall when it is switched off has `up: 3, down: 5`.
+    /// `M3`, `M4` and `M5` in another sense: one of them lifts, one lowers, whatever stands after `S`; the
+    /// third does neither. A servo that lets the pen fall when it is switched off has `up: 3, down: 5`.
     SpindleWords {
         /// The number after `M` that lifts: 3, 4 or 5.
         up: u8,
         /// The one that lowers.
         down: u8,
     },
-    /// The Z axis: the pen is down at this height and below. A line that changes Z on its way marks if the pen is down at
-    /// both of its ends.
+    /// The Z axis: the pen is down at this height and below. A line that changes Z on its way marks if the
+    /// pen is down at both of its ends.
     Height {
         /// The height, mm.
         threshold_mm: f64,
@@ -33,7 +33,8 @@ pub enum PenConvention {
         /// With the pen down.
         down: f64,
     },
-    /// A laser marks while its power is above 0. That of a spindle is dark in `G0`, as in GRBL's laser mode (`$32=1`).
+    /// A laser marks while its power is above 0. That of a spindle is dark in `G0`, as in GRBL's laser mode
+    /// (`$32=1`).
     Laser {
         /// By which word it is switched.
         command: LaserCommand,

@@ -4,12 +4,12 @@ use super::{Block, Error, Problem, Reader};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-/// The lines that lift and lower the pen, as somebody says who knows the machine: `M42 P4 S0` and `M42 P4 S255`, `M9` and `M8`,
-/// `M107` and `M106`, or commands by name such as `PEN_UP` and `PEN_DOWN`.
+/// The lines that lift and lower the pen, as somebody says who knows the machine: `M42 P4 S0` and
+/// `M42 P4 S255`, `M9` and `M8`, `M107` and `M106`, or commands by name such as `PEN_UP` and `PEN_DOWN`.
 ///
-/// A line of the text lifts or lowers the pen if it has all these words, in any order and beside others; where more than one fits,
-/// the longest does. A command by its name fits with all that follows the name, but for blanks and case. `M3`, `M4` and `M5` mean
-/// nothing beside them, unless they are these words.
+/// A line of the text lifts or lowers the pen if it has all these words, in any order and beside others;
+/// where more than one fits, the longest does. A command by its name fits with all that follows the name, but
+/// for blanks and case. `M3`, `M4` and `M5` mean nothing beside them, unless they are these words.
 ///
 /// ```
 /// use plotter_motion::{PlotOp, Point, gcode};
@@ -124,8 +124,8 @@ fn plain(line: &[u8]) -> Vec<u8> {
     bytes.map(u8::to_ascii_uppercase).collect()
 }
 
-/// Whether a line is a command by its name, as Klipper's macros are: letters, digits and `_`, of which two letters or a `_` come first;
-/// without a `_` nothing follows it but `NAME=`.
+/// Whether a line is a command by its name, as Klipper's macros are: letters, digits and `_`, of which two
+/// letters or a `_` come first; without a `_` nothing follows it but `NAME=`.
 ///
 /// ```
 /// # use plotter_motion::gcode::is_named;

@@ -22,8 +22,9 @@ enum Stage {
 
 /// The plot operations of a G-code text, read from an iterator of bytes as they are asked for.
 ///
-/// Memory is constant, whatever the length of the text; but for loops and subprograms, which are held, 16 MiB at most. An [`Error`] stands in the place of what could not be
-/// carried out, and the operations after it follow, unless reading is [strict](PlotOps::strict).
+/// Memory is constant, whatever the length of the text; but for loops and subprograms, which are held, 16 MiB
+/// at most. An [`Error`] stands in the place of what could not be carried out, and the operations after it
+/// follow, unless reading is [strict](PlotOps::strict).
 #[derive(Clone, Debug)]
 pub struct PlotOps<I> {
     lines: Lines<I>,

@@ -5,8 +5,8 @@ use core::time::Duration;
 
 /// What the machine that a text was written for makes of it.
 ///
-/// The default is the reader's side of [`WriteOptions`](super::WriteOptions)' default: GRBL with a pen servo as its
-/// spindle.
+/// The default is the reader's side of [`WriteOptions`](super::WriteOptions)' default: GRBL with a pen servo
+/// as its spindle.
 ///
 /// ```
 /// # use plotter_motion::gcode::{DwellUnit, PenConvention, PlotOps, ReadOptions};
@@ -30,8 +30,8 @@ pub struct ReadOptions {
     pub pen: PenConvention,
     /// What the `P` of a `G4` counts.
     pub dwell_unit: DwellUnit,
-    /// The first `G4` after the pen was lifted or lowered belongs to its way if it is no longer than this, and is no
-    /// [`PlotOp::Dwell`](crate::PlotOp::Dwell).
+    /// The first `G4` after the pen was lifted or lowered belongs to its way if it is no longer than this,
+    /// and is no [`PlotOp::Dwell`](crate::PlotOp::Dwell).
     pub settle: Duration,
     /// What becomes of lines that begin with `/`.
     pub block_delete: BlockDelete,
@@ -55,7 +55,8 @@ impl Default for ReadOptions {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum BlockDelete {
-    /// They are left out, without a word: a machine whose switch for it is on; and Makeblock's, to which they are comments.
+    /// They are left out, without a word: a machine whose switch for it is on; and Makeblock's, to which they
+    /// are comments.
     #[default]
     LeaveOut,
     /// They are carried out: GRBL.
@@ -69,8 +70,8 @@ pub enum Words {
     /// Those of every machine: a text is read for what it draws.
     #[default]
     Any,
-    /// Those of GRBL, of which a plotter carries out all that move it, and `M6`; any other, and a number below 0 where GRBL takes none,
-    /// is an error: a program that finds out what it talks to is to be told.
+    /// Those of GRBL, of which a plotter carries out all that move it, and `M6`; any other, and a number
+    /// below 0 where GRBL takes none, is an error: a program that finds out what it talks to is to be told.
     Grbl,
     /// The same without `G18`, `G19`, `G43.1` and `G49`, for a small program: arcs lie in the sheet.
     GrblOnSheet,

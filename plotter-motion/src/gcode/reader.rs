@@ -12,8 +12,8 @@ pub(crate) const MOST: f64 = 1e9;
 /// Commands whose words are a text for people, or the name of a file.
 const TEXT_COMMANDS: [f64; 3] = [23.0, 117.0, 118.0];
 
-/// How `sub`, `endsub`, `call`, `if`, `do`, `while`, `repeat`, `break` and `return` begin, which `LinuxCNC` has after an `O` with its
-/// number.
+/// How `sub`, `endsub`, `call`, `if`, `do`, `while`, `repeat`, `break` and `return` begin, which `LinuxCNC`
+/// has after an `O` with its number.
 const CONTROL_WORDS: &[u8] = b"SECIDWRB";
 
 /// The mark that some editors put before a text.
@@ -25,8 +25,9 @@ pub enum Spacing {
     /// Nothing needs to: `G1X10Y5` has three words.
     #[default]
     Free,
-    /// Blanks only, as the firmware of mDraw's machines has it: what follows a number up to the next blank is lost, so that
-    /// `G1X10 Y5` has two words. There are neither comments nor errors, and numbers may lack their letter anywhere.
+    /// Blanks only, as the firmware of mDraw's machines has it: what follows a number up to the next blank is
+    /// lost, so that `G1X10 Y5` has two words. There are neither comments nor errors, and numbers may lack
+    /// their letter anywhere.
     Required,
 }
 
@@ -55,11 +56,13 @@ const START: State = State::Between { after_m: false };
 
 /// Splits G-code into lines and their words, byte by byte, in constant memory.
 ///
-/// It takes words with and without blanks, also within numbers, in either case; numbers with sign and point; comments in `( )` and after `;`; `%`
-/// and `/` before a line; checksums (`*71`, the bytes before it by exclusive or), which must be right; lines that end with
-/// LF, CR or both. Control characters are blanks. Lines without words give nothing, but for `(pen 2)`.
+/// It takes words with and without blanks, also within numbers, in either case; numbers with sign and point;
+/// comments in `( )` and after `;`; `%` and `/` before a line; checksums (`*71`, the bytes before it by
+/// exclusive or), which must be right; lines that end with LF, CR or both. Control characters are blanks.
+/// Lines without words give nothing, but for `(pen 2)`.
 ///
-/// An error ends the line: what stands in it is not carried out, and the next one is read as if nothing had been.
+/// An error ends the line: what stands in it is not carried out, and the next one is read as if nothing had
+/// been.
 ///
 /// ```
 /// # use plotter_motion::gcode::Reader;
@@ -137,8 +140,8 @@ impl Reader {
         Some(ended.map(|()| self.take_block()))
     }
 
-    /// As [`Reader::push`]; the line that has ended is the [block](Self::block), until that is [cleared](Self::clear_block), which must be
-    /// before the next byte.
+    /// As [`Reader::push`]; the line that has ended is the [block](Self::block), until that is
+    /// [cleared](Self::clear_block), which must be before the next byte.
     #[cfg_attr(not(target_os = "none"), inline)]
     pub(crate) fn advance(&mut self, byte: u8) -> Option<Result<(), Error>> {
         // Most bytes are digits: such a one changes nothing but its number.
@@ -225,7 +228,8 @@ impl Reader {
         })
     }
 
-    /// Ends the text; gives its last line, if no line end has done so. The reader then waits for another line.
+    /// Ends the text; gives its last line, if no line end has done so. The reader then waits for another
+    /// line.
     pub fn finish(&mut self) -> Option<Result<Block, Error>> {
         let ended = self.end_line()?;
         Some(ended.map(|()| self.take_block()))

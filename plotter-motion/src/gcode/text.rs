@@ -7,7 +7,8 @@ use core::fmt;
 /// Most bytes that are kept of a text: a line of a small display, as most machines have it, holds 20 to 40.
 const MOST_BYTES: usize = 60;
 
-/// The beginning of a text for people, without the blanks before it: what a pause asks for, or the name of a command.
+/// The beginning of a text for people, without the blanks before it: what a pause asks for, or the name of a
+/// command.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Text {
     bytes: [u8; MOST_BYTES],

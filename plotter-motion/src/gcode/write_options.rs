@@ -35,8 +35,8 @@ pub struct WriteOptions<'a> {
     pub settle: Duration,
     /// What the number of a `G4` counts.
     pub dwell_unit: DwellUnit,
-    /// Decimals of coordinates, up to 6. GRBL refuses arcs whose ends lie 0.005 mm unequally far from the centre, so 3
-    /// are needed for arcs.
+    /// Decimals of coordinates, up to 6. GRBL refuses arcs whose ends lie 0.005 mm unequally far from the
+    /// centre, so 3 are needed for arcs.
     pub decimals: u8,
     /// Greatest coordinate, mm, and with a minus the least; at most 10⁹.
     pub limit_mm: f64,
@@ -72,8 +72,9 @@ pub enum PenControl<'a> {
         /// With the pen down, mm.
         down_mm: f64,
     },
-    /// A laser where GRBL has its spindle: `M4 S…` burns, so that corners get no more than lines, and `M5` ends. A dot, at
-    /// which `M4` would be dark, is burnt by `M3 S…` for the time to settle; a stroke has none.
+    /// A laser where GRBL has its spindle: `M4 S…` burns, so that corners get no more than lines, and `M5`
+    /// ends. A dot, at which `M4` would be dark, is burnt by `M3 S…` for the time to settle; a stroke has
+    /// none.
     ///
     /// ```
     /// # use plotter_motion::{PlotOp, Point, gcode};

@@ -24,14 +24,16 @@ type Steps = (i64, i64);
 /// Writes plot operations as G-code: see the [module](super) for the words.
 ///
 /// - `G21` and `G90` come first, and the pen is lifted; [`Writer::finish`] lifts it and writes `M2`.
-/// - One move a line, both coordinates, rounded to [`WriteOptions::decimals`], halves away from zero, without trailing
-///   zeros and never with an exponent. Nothing is clamped: a point out of range is refused with [`WriteError::Point`].
-/// - A travel is `G0` with the pen up. A line is `G1` with the pen down, with `F` in mm/min where the speed changes. A line
-///   to where the pen stands is a dot, or nothing within a stroke.
+/// - One move a line, both coordinates, rounded to [`WriteOptions::decimals`], halves away from zero, without
+///   trailing zeros and never with an exponent. Nothing is clamped: a point out of range is refused with
+///   [`WriteError::Point`].
+/// - A travel is `G0` with the pen up. A line is `G1` with the pen down, with `F` in mm/min where the speed
+///   changes. A line to where the pen stands is a dot, or nothing within a stroke.
 /// - An arc is `G2` or `G3` with its centre from where it begins.
 /// - The power of a laser is written where the next line begins, for [`PenControl::Laser`] only.
-/// - Another pen is asked for with the pen up, as [`WriteOptions::pen_change`] says; pen 0 is none to ask for. The pen that draws
-///   first is in the holder already: it is named, `(pen 1)`, and nothing waits. A new sheet is `M0 (new sheet)`. A dwell is `G4`.
+/// - Another pen is asked for with the pen up, as [`WriteOptions::pen_change`] says; pen 0 is none to ask
+///   for. The pen that draws first is in the holder already: it is named, `(pen 1)`, and nothing waits. A new
+///   sheet is `M0 (new sheet)`. A dwell is `G4`.
 ///
 /// ```
 /// # use plotter_motion::{PlotOp, Point, gcode};
@@ -88,8 +90,8 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
     ///
     /// # Errors
     ///
-    /// A point or speed that cannot be written is refused and left out; the writer goes on with the next operation as if it
-    /// had not been there.
+    /// A point or speed that cannot be written is refused and left out; the writer goes on with the next
+    /// operation as if it had not been there.
     pub fn push(&mut self, op: PlotOp) -> Result<(), WriteError> {
         let index = self.index;
         self.index += 1;
@@ -137,15 +139,17 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         Ok(())
     }
 
-    /// Draws an arc about `centre` from where the pen stands to `to`, counter-clockwise for a sweep above 0: as `G3`, or `G2`.
-    /// One of more than three quarters of a turn is written as two halves, for where both ends are nearly one place the text
-    /// would hardly say which way round is meant. An arc that rises less than half the last decimal over its chord is a line.
+    /// Draws an arc about `centre` from where the pen stands to `to`, counter-clockwise for a sweep above 0:
+    /// as `G3`, or `G2`. One of more than three quarters of a turn is written as two halves, for where both
+    /// ends are nearly one place the text would hardly say which way round is meant. An arc that rises less
+    /// than half the last decimal over its chord is a line.
     ///
     /// The circle is the one about `centre` through `to`; where the pen stands ought to be on it.
     ///
     /// # Errors
     ///
-    /// As [`Writer::push`]; and [`WriteError::Point`] of the centre where the sweep is no angle of at most a whole turn.
+    /// As [`Writer::push`]; and [`WriteError::Point`] of the centre where the sweep is no angle of at most a
+    /// whole turn.
     pub fn arc(
         &mut self,
         centre: Point,
@@ -188,7 +192,8 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
     ///
     /// # Errors
     ///
-    /// [`WriteError::Output`] when the sink refuses the text, [`WriteError::Height`] when the pen has no height.
+    /// [`WriteError::Output`] when the sink refuses the text, [`WriteError::Height`] when the pen has no
+    /// height.
     pub fn finish(mut self) -> Result<W, WriteError> {
         self.put(Pen::Up)?;
         self.out.write_str("M2\n")?;
@@ -316,7 +321,8 @@ impl<'a, W: fmt::Write> Writer<'a, W> {
         self.out.write_str("\n")
     }
 
-    /// The pen down where it stands, at the origin if nothing else was said, for a line or for a dot, which does not move.
+    /// The pen down where it stands, at the origin if nothing else was said, for a line or for a dot, which
+    /// does not move.
     fn begin_line(&mut self, moves: bool, feed: i64) -> Result<(), WriteError> {
         self.start()?;
         self.holder.get_or_insert(0);
@@ -389,7 +395,8 @@ fn whole(number: f64) -> i64 {
 ///
 /// # Errors
 ///
-/// The first operation that G-code cannot say ends the writing: the text so far stays in `out`, and is not a whole drawing.
+/// The first operation that G-code cannot say ends the writing: the text so far stays in `out`, and is not a
+/// whole drawing.
 ///
 /// ```
 /// # use plotter_motion::{PlotOp, Point, gcode};

@@ -3,8 +3,8 @@
 use super::UNITS_PER_MM;
 use crate::{Point, StepPoint, Vec2, toolpath::from_mm};
 
-/// Farthest that an arc as written may be from the one meant, plotter units; and farthest that the plotter's chords may be
-/// from the arc as written.
+/// Farthest that an arc as written may be from the one meant, plotter units; and farthest that the plotter's
+/// chords may be from the arc as written.
 pub(super) const GREATEST_UNITS: f64 = 1.0;
 const CHORD_UNITS: f64 = 0.5;
 
@@ -28,8 +28,8 @@ pub(super) struct ArcUnits {
 }
 
 impl ArcUnits {
-    /// The arc from one place to another on the grid that is nearest to one meant: `centre` in mm, `middle` the place
-    /// half way along. It spans less than half a circle, counter-clockwise if `left`.
+    /// The arc from one place to another on the grid that is nearest to one meant: `centre` in mm, `middle`
+    /// the place half way along. It spans less than half a circle, counter-clockwise if `left`.
     pub(super) fn nearest(
         from: StepPoint,
         to: StepPoint,
@@ -65,8 +65,8 @@ impl ArcUnits {
     }
 }
 
-/// The chord angle with which a circle of this radius is drawn near enough, whole degrees where it can be; `None` where the
-/// plotter's own does. A chord of the angle a is r (1 − cos(a / 2)) from its arc.
+/// The chord angle with which a circle of this radius is drawn near enough, whole degrees where it can be;
+/// `None` where the plotter's own does. A chord of the angle a is r (1 − cos(a / 2)) from its arc.
 pub(super) fn chord_angle_deg(radius_units: f64) -> Option<f64> {
     let finest_deg = 2.0 * libm::acos(1.0 - (CHORD_UNITS / radius_units).min(1.0)).to_degrees();
     if finest_deg >= USUAL_CHORD_DEG {

@@ -1,4 +1,5 @@
-//! [`CharacterSets`]: what the bytes of labels mean: `CS`, `CA`, `SS`, `SA`, `SD`, `AD`, shift out and shift in.
+//! [`CharacterSets`]: what the bytes of labels mean: `CS`, `CA`, `SS`, `SA`, `SD`, `AD`, shift out and shift
+//! in.
 
 /// In the place of a byte of Latin-1: a character that the text has drawn itself with `DL`, by its number.
 pub(super) const OWN: u16 = 0x100;
@@ -22,9 +23,11 @@ pub(super) enum CharacterSet {
 /// Signs of ASCII that the national versions of ISO 646 replace.
 const REPLACED: [u8; 12] = *b"#$@[\\]^`{|}~";
 
-/// Those versions: the number of `CS`, that of a printer (`SD1`), and what stands in the place of each sign, in Latin-1.
+/// Those versions: the number of `CS`, that of a printer (`SD1`), and what stands in the place of each sign,
+/// in Latin-1.
 ///
-/// Source: the ISO International Register of Coded Character Sets, registrations 2, 4, 10, 11, 14 to 17, 21, 25, 60, 61.
+/// Source: the ISO International Register of Coded Character Sets, registrations 2, 4, 10, 11, 14 to 17, 21,
+/// 25, 60, 61.
 const NATIONAL: [(u16, u16, [u8; 12]); 12] = [
     (6, 11, *b"#$@[\xA5]^`{|}\xAF"),                             // Japan
     (9, 85, *b"#\xA4@[\\]^`{|}\xAF"),                            // international
@@ -48,7 +51,8 @@ const ROMAN_EXTENSIONS: [u8; 94] = *b"\xC0\xC2\xC8\xCA\xCB\xCE\xCF\xB4`^\xA8~\xD
     \xF8\xE6\xC4\xEC\xD6\xDC\xC9\xEF\xDF\xD4\xC1\xC3\xE3\xD0\xF0\xCD\xCC\xD3\xD2\xD5\xF5Ss\xDAY\xFF\xDE\xFE\xB7\xB5\xB6\
     \xBE-\xBC\xBD\xAA\xBA\xAB\xA0\xBB\xB1";
 
-/// Numbers of fonts with letters as wide as they are lie this much higher than those with letters of one width.
+/// Numbers of fonts with letters as wide as they are lie this much higher than those with letters of one
+/// width.
 const VARIABLE_SPACE: u16 = 10;
 /// Characters of one's own as a printer numbers its fonts.
 const PRINTERS_OWN: u16 = 531;
@@ -71,7 +75,8 @@ impl CharacterSet {
         Self::national(|(known, _, _)| is(*known))
     }
 
-    /// The set that `SD` and `AD` know by this number: Latin-1 if it is not known here, as a printer takes what it has.
+    /// The set that `SD` and `AD` know by this number: Latin-1 if it is not known here, as a printer takes
+    /// what it has.
     pub(super) fn of_printer(number: f64) -> Self {
         let is = |known: u16| number == f64::from(known);
         if is(PRINTERS_OWN) {

@@ -51,7 +51,8 @@ impl Mnemonic {
         &self.0
     }
 
-    /// What the command does, in a few words; `None` for one that neither HPGL nor HP-GL/2 knows, nor a cutter.
+    /// What the command does, in a few words; `None` for one that neither HPGL nor HP-GL/2 knows, nor a
+    /// cutter.
     ///
     /// ```
     /// # use plotter_motion::hpgl::Mnemonic;
@@ -90,9 +91,9 @@ impl fmt::Debug for Mnemonic {
 
 use Syntax::{Comment, Encoded, Label, Numbers, Quoted, Symbol, Terminator};
 
-/// Every command of HPGL (pen plotters of the 1980s) and HP-GL/2, in alphabetical order, and `FC`, `FD` and `TB`, which
-/// programs take over into HPGL from GP-GL, the other language of Graphtec's cutters. Only the reading depends on it: what a
-/// command *does* is the interpreter's business.
+/// Every command of HPGL (pen plotters of the 1980s) and HP-GL/2, in alphabetical order, and `FC`, `FD` and
+/// `TB`, which programs take over into HPGL from GP-GL, the other language of Graphtec's cutters. Only the
+/// reading depends on it: what a command *does* is the interpreter's business.
 const TABLE: &[(&[u8; 2], Syntax, &str)] = &[
     (b"AA", Numbers, "arc about an absolute centre"),
     (b"AC", Numbers, "anchor corner of the fill"),

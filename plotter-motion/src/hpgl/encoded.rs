@@ -43,9 +43,10 @@ pub(super) enum Bytes {
 
 /// Reads the data of one `PE`.
 ///
-/// A number is written in digits of six bits (five with the flag `7`), the lowest first. A digit d is the byte 63 + d, the
-/// last one 191 + d (95 + d). An even number n means n/2, an odd one −(n − 1)/2; after a fraction flag `>` all of them are
-/// divided by a power of two. The flags `<` (pen up), `=` (absolute) hold for the next point, `:` is followed by a pen.
+/// A number is written in digits of six bits (five with the flag `7`), the lowest first. A digit d is the
+/// byte 63 + d, the last one 191 + d (95 + d). An even number n means n/2, an odd one −(n − 1)/2; after a
+/// fraction flag `>` all of them are divided by a power of two. The flags `<` (pen up), `=` (absolute) hold
+/// for the next point, `:` is followed by a pen.
 ///
 /// ```text
 /// 1     →  2·1 = 2            →  191 + 2 = 193
@@ -70,7 +71,8 @@ pub(super) struct Decoder {
 }
 
 impl Decoder {
-    /// A decoder at the start of the data; what is known of the text's bytes is kept from one `PE` to the next.
+    /// A decoder at the start of the data; what is known of the text's bytes is kept from one `PE` to the
+    /// next.
     pub(super) fn new(bytes: Bytes) -> Self {
         Self {
             seven_bits: false,
@@ -106,14 +108,15 @@ impl Decoder {
         (self.value, self.digits) = (0, 0);
     }
 
-    /// Takes the next byte. One byte can complete two numbers: where a pair turns out not to be one, its first byte counts
-    /// before it.
+    /// Takes the next byte. One byte can complete two numbers: where a pair turns out not to be one, its
+    /// first byte counts before it.
     pub(super) fn push(&mut self, byte: u8) -> Result<[Option<Step>; 2], Misplaced> {
         if self.seven_bits || self.bytes == Bytes::Whole {
             return Ok([self.digit(byte)?, None]);
         }
-        // Damaged, a byte from 0xC0 is 0xC3 and one from 0x80 to 0xBF; only 0xBF is 0xC2 and itself. As digits, bytes from
-        // 0x80 to 0xBE do not exist, so that a pair with one of them gives the damage away.
+        // Damaged, a byte from 0xC0 is 0xC3 and one from 0x80 to 0xBF; only 0xBF is 0xC2 and itself. As
+        // digits, bytes from 0x80 to 0xBE do not exist, so that a pair with one of them gives the damage
+        // away.
         match self.lead.take() {
             Some(lead) if matches!(byte, 0x80..=0xBE) || (self.bytes == Bytes::Damaged && byte == 0xBF) => {
                 self.bytes = Bytes::Damaged;

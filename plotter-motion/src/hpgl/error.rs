@@ -127,7 +127,8 @@ pub enum Error {
         /// How many places the buffer has.
         places: u32,
     },
-    /// A set of characters whose signs are not known here. Only a notice: labels are drawn in ASCII. See [`Error::is_notice`].
+    /// A set of characters whose signs are not known here. Only a notice: labels are drawn in ASCII. See
+    /// [`Error::is_notice`].
     UnknownSigns {
         /// The first letter of the command.
         at: Position,
@@ -136,8 +137,8 @@ pub enum Error {
         /// Which set.
         set_number: f64,
     },
-    /// A character of `DL` for which there is no room: 255 numbers each, and all together a byte for each place of the polygon
-    /// buffer. It is left out.
+    /// A character of `DL` for which there is no room: 255 numbers each, and all together a byte for each
+    /// place of the polygon buffer. It is left out.
     NoRoomForCharacter {
         /// The first letter of the command.
         at: Position,
@@ -160,8 +161,8 @@ pub enum Error {
         /// Distance of the lines, mm.
         spacing_mm: f64,
     },
-    /// A label whose place depends on its length, or that is drawn later (`BL`), has more than 150 characters: the others are left
-    /// out.
+    /// A label whose place depends on its length, or that is drawn later (`BL`), has more than 150
+    /// characters: the others are left out.
     LabelTooLong {
         /// Its first letter.
         at: Position,

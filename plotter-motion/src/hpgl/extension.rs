@@ -14,7 +14,8 @@ const ETX: u8 = 3;
 
 /// The signs of an extension, and what it does on its devices.
 ///
-/// Source: Roland's *CAMM-GL III Programmer's Manual* and *CAMM-GL II Programmer's Manual*, on the common commands.
+/// Source: Roland's *CAMM-GL III Programmer's Manual* and *CAMM-GL II Programmer's Manual*, on the common
+/// commands.
 const KNOWN: [([u8; 3], &str); 16] = [
     (*b"!CT", "cutting mode"),
     (*b"!DW", "wait"),

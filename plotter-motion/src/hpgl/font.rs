@@ -1,8 +1,8 @@
 //! The strokes of characters: one line wide, for pens.
 //!
-//! A capital letter is 8 steps wide and 12 high. A place is two characters: its x as a digit from 0 to 8, its y as a letter
-//! from `a` for −4 over `e` for the line the letters stand on to `u` for 16. Places that follow one another are joined; a
-//! blank lifts the pen; a place alone is a dot.
+//! A capital letter is 8 steps wide and 12 high. A place is two characters: its x as a digit from 0 to 8, its
+//! y as a letter from `a` for −4 over `e` for the line the letters stand on to `u` for 16. Places that follow
+//! one another are joined; a blank lifts the pen; a place alone is a dot.
 //!
 //! ```text
 //! u 16 ─ accents of capitals      "0e4q8e 1h7h" is the A:
@@ -222,9 +222,10 @@ pub(super) fn strokes(character: u8) -> (&'static str, &'static str) {
     }
 }
 
-/// The strokes of a letter of the labels' font, one line wide, for texts of other languages: rows of places in steps, of which a
-/// capital letter is 8 wide and 12 high. The line that letters stand on is at y = 0, the y axis points up, and a row of one place is a
-/// dot. A blank has no stroke; `None` for what the font does not have: it has Latin-1, without control characters.
+/// The strokes of a letter of the labels' font, one line wide, for texts of other languages: rows of places
+/// in steps, of which a capital letter is 8 wide and 12 high. The line that letters stand on is at y = 0, the
+/// y axis points up, and a row of one place is a dot. A blank has no stroke; `None` for what the font does
+/// not have: it has Latin-1, without control characters.
 ///
 /// ```
 /// use plotter_motion::{Point, hpgl::letter_strokes};

@@ -46,7 +46,8 @@ pub(super) struct Hatch {
     lay: Lay,
     /// To the left of the lines.
     across: Vec2,
-    /// Number of the first line, counted from the anchor; of the line in progress and of the last, counted from that.
+    /// Number of the first line, counted from the anchor; of the line in progress and of the last, counted
+    /// from that.
     first: f64,
     line: f64,
     last: f64,
@@ -160,8 +161,8 @@ impl Hatch {
         let mut number = 0_u32;
         let mut consider = |from: f64, to: f64, at: &dyn Fn() -> f64| {
             number += 1;
-            // An end belongs to the side that comes up to it from below, so that a corner is crossed once or twice, as
-            // it should be, and a side along the line not at all.
+            // An end belongs to the side that comes up to it from below, so that a corner is crossed once or
+            // twice, as it should be, and a side along the line not at all.
             if (from <= height) == (to <= height) {
                 return;
             }

@@ -22,8 +22,8 @@ const CAPITAL_WIDTH: f64 = 0.7;
 pub const LETTER_HEIGHT: f64 = 12.0;
 /// Width of a capital letter in the steps of [`letter_strokes`](crate::hpgl::letter_strokes).
 pub const LETTER_WIDTH: f64 = 8.0;
-/// From one letter to the next in the steps of [`letter_strokes`](crate::hpgl::letter_strokes): one and a half widths, as labels
-/// have them when nothing is said.
+/// From one letter to the next in the steps of [`letter_strokes`](crate::hpgl::letter_strokes): one and a
+/// half widths, as labels have them when nothing is said.
 pub const LETTER_ADVANCE: f64 = 1.5 * LETTER_WIDTH;
 
 /// Characters that are kept where the place of a label depends on its length: as many as a 7550A keeps.
@@ -170,9 +170,11 @@ impl Lettering {
         }
     }
 
-    /// Whether the pen stays at the end of a label, where the next one goes on; elsewhere it goes back to where it was.
+    /// Whether the pen stays at the end of a label, where the next one goes on; elsewhere it goes back to
+    /// where it was.
     ///
-    /// Source: *The HP-GL/2 and HP RTL Reference Guide*, on `LO`: the combinations of `DV` and `LO` that concatenate.
+    /// Source: *The HP-GL/2 and HP RTL Reference Guide*, on `LO`: the combinations of `DV` and `LO` that
+    /// concatenate.
     pub(super) fn goes_on(&self) -> bool {
         let place = self.origin % 10;
         match self.path {

@@ -72,7 +72,8 @@ pub(super) enum LineType {
         pattern: Pattern,
         length: f64,
     },
-    /// As many whole patterns on each line as fit best, each beginning and ending in the middle of its first dash.
+    /// As many whole patterns on each line as fit best, each beginning and ending in the middle of its first
+    /// dash.
     Fitted {
         pattern: Pattern,
         length: f64,

@@ -2,8 +2,8 @@
 //!
 //! # The language in short
 //!
-//! A text is a row of commands. A command is two letters, in either case, and what it needs; a `;` ends it, and
-//! so does the next command. Numbers are decimal and stand between commas or blanks:
+//! A text is a row of commands. A command is two letters, in either case, and what it needs; a `;` ends it,
+//! and so does the next command. Numbers are decimal and stand between commas or blanks:
 //!
 //! ```text
 //! IN;                        start afresh: pen up, absolute coordinates
@@ -34,9 +34,9 @@
 //! ```
 //!
 //! [`plot_ops`] does it for a text in memory, [`PlotOps`] for any iterator of bytes. [`Reader`] and
-//! [`Interpreter`] are what both are made of: they take one byte and one event at a time, and own neither a port
-//! nor a buffer, so that a text of any length needs the same few hundred bytes. [`Writer`] and [`write_ops`] go
-//! the other way.
+//! [`Interpreter`] are what both are made of: they take one byte and one event at a time, and own neither a
+//! port nor a buffer, so that a text of any length needs the same few hundred bytes. [`Writer`] and
+//! [`write_ops`] go the other way.
 //!
 //! ```
 //! use plotter_motion::{PlotOp, hpgl};
@@ -81,23 +81,25 @@
 //! | `XT` `YT` `TL` | ticks |
 //! | `ESC .` `ESC %` `ESC E` | device control is passed over; so is what another language says; `ESC E` starts afresh |
 //!
-//! Labels and symbols need the feature `font` (part of `std`), 5 KiB of strokes; without it they are reported as
-//! unsupported.
+//! Labels and symbols need the feature `font` (part of `std`), 5 KiB of strokes; without it they are reported
+//! as unsupported.
 //!
-//! What means nothing to a machine with one pen that draws what it is told is passed over without a word: colours and their order
-//! (`PC` `NP` `CR` `TR` `MC` …), ends and joins of thick lines (`LA`), the looks of fonts (`FI` `CF` …), accelerations, and motion
-//! without stops (`CV`), which is the planner's business, questions to the plotter (`OE` `OP` `OS` …), its display, comments. What
-//! would be seen and is not done is said, as [`Error::Unsupported`]: `RP` (replot: whoever has the text can read it again; a reader in
+//! What means nothing to a machine with one pen that draws what it is told is passed over without a word:
+//! colours and their order (`PC` `NP` `CR` `TR` `MC` …), ends and joins of thick lines (`LA`), the looks of
+//! fonts (`FI` `CF` …), accelerations, and motion without stops (`CV`), which is the planner's business,
+//! questions to the plotter (`OE` `OP` `OS` …), its display, comments. What would be seen and is not done is
+//! said, as [`Error::Unsupported`]: `RP` (replot: whoever has the text can read it again; a reader in
 //! constant memory has not kept it), `NR` (wait), `SV` (screened lines), `PP`, `TD`, digitizing.
 //!
-//! What is for cutters is named, with what it does there: force (`FS`), blade (`FC`, `FD`), registration marks (`TB`), and as
-//! [`Error::Extension`] what begins with `!` (Roland's own: `!ST` `!FS` `!PG` …), `@`, and a byte 3 between commands. Each kind is named
-//! once, but for the marks. The one-letter languages of cutters are in [`cutter`].
+//! What is for cutters is named, with what it does there: force (`FS`), blade (`FC`, `FD`), registration
+//! marks (`TB`), and as [`Error::Extension`] what begins with `!` (Roland's own: `!ST` `!FS` `!PG` …), `@`,
+//! and a byte 3 between commands. Each kind is named once, but for the marks. The one-letter languages of
+//! cutters are in [`cutter`].
 //!
 //! # Bad input
 //!
-//! An [`Error`] says where (line, column, byte), which command, what is wrong and what would be right. What had
-//! been read of the command stands, the rest of it is skipped, and reading goes on with the next one;
+//! An [`Error`] says where (line, column, byte), which command, what is wrong and what would be right. What
+//! had been read of the command stands, the rest of it is skipped, and reading goes on with the next one;
 //! [`PlotOps::strict`] stops instead.
 
 pub use crate::decimal::WrittenNumber;

@@ -4,11 +4,12 @@
 const LIFT: i8 = -128;
 /// Steps of the grid of `DL` in a capital letter's width and height.
 ///
-/// Source: *HP 7550A Interfacing and Programming Manual*, chapter 11: a cell of 48 by 64 steps, half again as wide and
-/// twice as high as a capital letter.
+/// Source: *HP 7550A Interfacing and Programming Manual*, chapter 11: a cell of 48 by 64 steps, half again as
+/// wide and twice as high as a capital letter.
 pub(super) const GRID: f64 = 32.0;
 
-/// Characters of the text's own, one after the other in `BYTES` bytes: its byte, how many numbers it has, the numbers.
+/// Characters of the text's own, one after the other in `BYTES` bytes: its byte, how many numbers it has, the
+/// numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct OwnCharacters<const BYTES: usize> {
     store: [i8; BYTES],

@@ -8,8 +8,8 @@ use crate::Vec2;
 /// Dashes and dots that one event may give: where there would be more, lines are drawn whole.
 const MOST_PARTS: u32 = 1 << 20;
 
-/// Takes pieces one at a time, divides them by the line type, cuts them at the window, and adds the travels that this makes
-/// necessary.
+/// Takes pieces one at a time, divides them by the line type, cuts them at the window, and adds the travels
+/// that this makes necessary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PenPath {
     pub(super) line_type: LineType,

@@ -49,7 +49,8 @@ impl Piece {
         }
     }
 
-    /// The part from the share `first` of its length to the share `last`; its own ends where these are 0 and 1.
+    /// The part from the share `first` of its length to the share `last`; its own ends where these are 0
+    /// and 1.
     pub(super) fn part(self, first: f64, last: f64) -> Self {
         match self {
             Self::Travel { .. } => self,
@@ -95,8 +96,8 @@ impl Arc {
         }
     }
 
-    /// The share of the way round after which the arc first comes in this direction from its centre, from 0; above 1 if
-    /// it does not come so far.
+    /// The share of the way round after which the arc first comes in this direction from its centre, from 0;
+    /// above 1 if it does not come so far.
     pub(super) fn share_at(self, direction_rad: f64) -> f64 {
         let out = self.from - self.centre;
         let start_rad = libm::atan2(out.y, out.x);

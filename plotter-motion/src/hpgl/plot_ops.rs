@@ -19,8 +19,8 @@ enum Stage {
 /// The plot operations of an HPGL text, read from an iterator of bytes as they are asked for.
 ///
 /// Memory is constant, whatever the length of the text. An [`Error`] stands in the place of what could not be
-/// carried out, and the operations after it follow, unless reading is [strict](PlotOps::strict). `VERTICES` is the room for a
-/// polygon: see [`Interpreter`].
+/// carried out, and the operations after it follow, unless reading is [strict](PlotOps::strict). `VERTICES`
+/// is the room for a polygon: see [`Interpreter`].
 #[derive(Clone, Debug)]
 pub struct PlotOps<I, const VERTICES: usize = USUAL_VERTICES> {
     bytes: I,
@@ -45,8 +45,8 @@ impl<I: Iterator<Item = u8>> PlotOps<I> {
 }
 
 impl<I: Iterator<Item = u8>, const VERTICES: usize> PlotOps<I, VERTICES> {
-    /// The operations of the text `bytes` as an interpreter carries it out, which may have more or less room for polygons
-    /// than the usual one.
+    /// The operations of the text `bytes` as an interpreter carries it out, which may have more or less room
+    /// for polygons than the usual one.
     pub fn with_interpreter(
         bytes: impl IntoIterator<Item = u8, IntoIter = I>,
         interpreter: Interpreter<VERTICES>,

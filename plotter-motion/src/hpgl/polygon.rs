@@ -93,7 +93,8 @@ impl<const VERTICES: usize> Polygon<VERTICES> {
     ///
     /// # Errors
     ///
-    /// What there was no room for, to be drawn as it comes; the buffer takes nothing more until it is emptied.
+    /// What there was no room for, to be drawn as it comes; the buffer takes nothing more until it is
+    /// emptied.
     pub(super) fn push(&mut self, piece: Piece, drawn: bool) -> Result<(), Piece> {
         if self.is_closed() {
             return self.start_at(piece.to());
@@ -123,8 +124,9 @@ impl<const VERTICES: usize> Polygon<VERTICES> {
         self.store([(at, Kind::Start)]).then_some(()).ok_or(Piece::Travel { to: at })
     }
 
-    /// Closes the subpolygon, with a side to its start where there is none yet. It is drawn with the pen down, but not where
-    /// what has been drawn since the pen was last lowered is closed in itself: a hole without a `PM1` before it.
+    /// Closes the subpolygon, with a side to its start where there is none yet. It is drawn with the pen
+    /// down, but not where what has been drawn since the pen was last lowered is closed in itself: a hole
+    /// without a `PM1` before it.
     ///
     /// # Errors
     ///

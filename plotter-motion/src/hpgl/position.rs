@@ -29,7 +29,8 @@ impl Position {
     }
 }
 
-/// Where a reader stands in its text. A byte changes one number, but for line ends, and the [`Position`] is reckoned when it is wanted.
+/// Where a reader stands in its text. A byte changes one number, but for line ends, and the [`Position`] is
+/// reckoned when it is wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Cursor {
     offset: u64,

@@ -2,7 +2,8 @@
 
 /// The plotter that a text is meant for, as far as the text leaves it open, and how finely curves are drawn.
 ///
-/// The default is a Hewlett-Packard 7475A with a sheet of A4, which is what `SC` without `IP` is mostly meant for:
+/// The default is a Hewlett-Packard 7475A with a sheet of A4, which is what `SC` without `IP` is mostly meant
+/// for:
 ///
 /// ```text
 ///            P2 (10603, 7721)      the sheet: 0 to 11040, 0 to 7721;
@@ -28,8 +29,8 @@
     serde(deny_unknown_fields, default)
 )]
 pub struct ReadOptions {
-    /// How far lines may be from the curves `BZ` and `BR`, and from circles stretched to ellipses, mm, above 0. A curve has
-    /// at most 4096 lines all the same.
+    /// How far lines may be from the curves `BZ` and `BR`, and from circles stretched to ellipses, mm,
+    /// above 0. A curve has at most 4096 lines all the same.
     pub tolerance_mm: f64,
     /// The scaling point P1 while `IP` has not moved it, plotter units.
     pub p1_units: (i32, i32),

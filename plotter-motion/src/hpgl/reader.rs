@@ -48,9 +48,9 @@ pub enum Event {
     },
     /// The command ends.
     End,
-    /// The encoded data of a command ended without their `;` where these commands begin: their letters looked like digits of a number
-    /// until a byte came that is none, and have been given as [`Event::Byte`] before. The last number has to be forgotten. Of the
-    /// commands each but the last has ended too.
+    /// The encoded data of a command ended without their `;` where these commands begin: their letters looked
+    /// like digits of a number until a byte came that is none, and have been given as [`Event::Byte`] before.
+    /// The last number has to be forgotten. Of the commands each but the last has ended too.
     EndedBy {
         /// The commands.
         commands: Commands,
@@ -99,7 +99,8 @@ enum State {
     Quoted { command: Mnemonic },
     /// Within bytes that only `;` ends.
     UntilSemicolon { command: Mnemonic },
-    /// Within what a cutter is told about itself, as `!ST1`, before its `;`: after the `!`, or one letter more, or behind its letters.
+    /// Within what a cutter is told about itself, as `!ST1`, before its `;`: after the `!`, or one letter
+    /// more, or behind its letters.
     Cutter { at: Position, letters: CutterLetters },
     /// After an error, before the next `;` or letter.
     Skip,
@@ -133,12 +134,12 @@ enum Comma {
 /// It owns no buffer: a `PD` with a hundred thousand coordinates is a hundred thousand events. It takes
 /// - either case, a missing `;`, and a lone `;` anywhere;
 /// - numbers with sign and point, separated by commas, blanks or line ends, or by nothing before a sign;
-/// - what begins with `!` up to its `;` (a Roland's own settings, as `!ST1;`), and `@` and a byte 3 between commands, as programs for
-///   cutters write them ([`Event::Extension`]);
-/// - encoded data without their `;` where the next commands begin, as AutoCAD writes them ([`Event::EndedBy`]), or where the text
-///   ends;
-/// - labels up to their terminator, which `DT` sets and `IN` and `DF` set back, so that a label is never read as
-///   commands; strings, comments, and encoded data likewise;
+/// - what begins with `!` up to its `;` (a Roland's own settings, as `!ST1;`), and `@` and a byte 3 between
+///   commands, as programs for cutters write them ([`Event::Extension`]);
+/// - encoded data without their `;` where the next commands begin, as AutoCAD writes them
+///   ([`Event::EndedBy`]), or where the text ends;
+/// - labels up to their terminator, which `DT` sets and `IN` and `DF` set back, so that a label is never read
+///   as commands; strings, comments, and encoded data likewise;
 /// - escape sequences: device control (`ESC .`) between any two bytes, and the change of a printer's language
 ///   (`ESC %0A` … `ESC %0B`), between which nothing is read.
 ///
@@ -226,7 +227,8 @@ impl Reader {
         }
     }
 
-    /// Ends the text; gives the piece that the end completes, if it does. The reader is then between commands.
+    /// Ends the text; gives the piece that the end completes, if it does. The reader is then between
+    /// commands.
     pub fn finish(&mut self) -> Option<Result<Event, Error>> {
         let (state, at) = (self.state, self.cursor.here());
         self.state = State::Idle;
@@ -444,8 +446,8 @@ impl Reader {
         byte: u8,
         at: Position,
     ) -> Result<Option<Event>, Error> {
-        // The byte is not part of a number in progress, which takes its own at once: it decides where the reader goes, and whether the
-        // number before it, if there is one, is the last.
+        // The byte is not part of a number in progress, which takes its own at once: it decides where the
+        // reader goes, and whether the number before it, if there is one, is the last.
         let begun = Decimal::begin(byte).map(|digits| (digits, at));
         let (next, last) = if let Some(begun) = begun {
             (State::Numbers { command, number: Some(begun), comma: Comma::No }, false)

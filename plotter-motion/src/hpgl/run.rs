@@ -34,11 +34,12 @@ impl Commands {
 /// PE<=k@\u{BF}PUSP0;      after the number k@\u{BF}: P U S P, digits all four, and 0, which is none
 /// ```
 ///
-/// A digit of encoded data is a byte from 63 on, letters among them; a number ends with one from 191 on (in seven bits from 95 on).
-/// Commands are what a number that breaks off has been if all of its bytes are pairs of letters that are known as commands.
+/// A digit of encoded data is a byte from 63 on, letters among them; a number ends with one from 191 on (in
+/// seven bits from 95 on). Commands are what a number that breaks off has been if all of its bytes are pairs
+/// of letters that are known as commands.
 ///
-/// Source: *The HP-GL/2 and HP RTL Reference Guide*, on `PE`, which must be ended by a `;`. AutoCAD's driver leaves it out
-/// before `PU`.
+/// Source: *The HP-GL/2 and HP RTL Reference Guide*, on `PE`, which must be ended by a `;`. AutoCAD's driver
+/// leaves it out before `PU`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Run {
     letters: [[u8; 2]; MOST],
@@ -57,8 +58,8 @@ impl Run {
     pub(super) const START: Self =
         Self { letters: [[0; 2]; MOST], count: 0, start: Position::START, seven_bits: false };
 
-    /// Takes one more byte of data; the commands before it, if it shows that they are some: it is then the first byte behind the
-    /// letters of the last one.
+    /// Takes one more byte of data; the commands before it, if it shows that they are some: it is then the
+    /// first byte behind the letters of the last one.
     pub(super) fn push(&mut self, byte: u8, at: Position) -> Option<(Commands, Position)> {
         let byte = if self.seven_bits { byte & 0x7F } else { byte };
         let is_last_digit = if self.seven_bits { (95..=126).contains(&byte) } else { byte > 127 };

@@ -3,8 +3,8 @@
 use super::ReadOptions;
 use crate::Vec2;
 
-/// Farthest place from the origin, plotter units: 2^40, or 27,000 km. What would lie beyond lies there, so that no text
-/// makes a number that is none.
+/// Farthest place from the origin, plotter units: 2^40, or 27,000 km. What would lie beyond lies there, so
+/// that no text makes a number that is none.
 const FARTHEST_UNITS: f64 = 1_099_511_627_776.0;
 
 /// How user units become plotter units.
@@ -12,7 +12,8 @@ const FARTHEST_UNITS: f64 = 1_099_511_627_776.0;
 pub(super) enum Kind {
     /// The corners P1 and P2 are those of the user's area, however it is stretched.
     Stretched,
-    /// The user's area lies within P1 and P2 undistorted, with so much of the room that is left at its left and below, %.
+    /// The user's area lies within P1 and P2 undistorted, with so much of the room that is left at its left
+    /// and below, %.
     Undistorted { left: f64, bottom: f64 },
     /// The user's first corner is P1, and these are the factors.
     Factors { x: f64, y: f64 },
@@ -35,9 +36,9 @@ pub(super) struct UserArea {
 ///                       (turned axes)
 /// ```
 ///
-/// P1 and P2 are counted along the turned axes, and keep their numbers when the axes turn: they turn with them. What goes by the
-/// sheet (`IR`, and `IP` without numbers) goes by the sheet as the turned axes see it, whose width and height change places with
-/// each quarter.
+/// P1 and P2 are counted along the turned axes, and keep their numbers when the axes turn: they turn with
+/// them. What goes by the sheet (`IR`, and `IP` without numbers) goes by the sheet as the turned axes see it,
+/// whose width and height change places with each quarter.
 ///
 /// Source: *PCL 5 Printer Language Technical Reference Manual*, part II, chapter 19, on `IP`, `IR` and `RO`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,7 +88,8 @@ impl Scaling {
         (self.p1, self.p2) = self.usual_now();
     }
 
-    /// P1 and P2 when nothing has been said, along the turned axes: P1 is where least is counted of what lay between the two.
+    /// P1 and P2 when nothing has been said, along the turned axes: P1 is where least is counted of what lay
+    /// between the two.
     fn usual_now(&self) -> (Vec2, Vec2) {
         let (p1, p2) = self.usual;
         let [a, b] = [p1, p2].map(|place| self.back(place - self.corner()));
@@ -191,6 +193,8 @@ impl Scaling {
 
     /// Whether circles stay circles.
     pub(super) fn keeps_circles(&self) -> bool {
+        /// Relative difference of both factors that still counts as equal: rounding of `f64`, far below a
+        /// plotter unit on any sheet.
         const ROUNDING: f64 = 1e-9;
         let (factor, _) = self.factors();
         let (x, y) = (libm::fabs(factor.x), libm::fabs(factor.y));
@@ -222,7 +226,8 @@ impl Scaling {
         }
     }
 
-    /// The corner of the sheet that the turned origin is moved to; none while the size of the sheet is not known.
+    /// The corner of the sheet that the turned origin is moved to; none while the size of the sheet is not
+    /// known.
     fn shift(&self) -> Vec2 {
         if self.sheet_said { self.corner() } else { Vec2::default() }
     }

@@ -297,7 +297,8 @@ impl Reader {
         None
     }
 
-    /// Ends the text; gives its last line, if that has no line feed. The reader is then at the start of a line.
+    /// Ends the text; gives its last line, if that has no line feed. The reader is then at the start of a
+    /// line.
     pub fn finish(&mut self) -> Option<Result<Line, Error>> {
         if self.at.column == 1 {
             return None;

@@ -52,8 +52,8 @@ pub enum Coordinates {
     /// `PR;`, then each point from the one before, then `PA;`: shorter for long strokes of small steps.
     Relative,
     /// `PE`: strokes and the ways between them in a few letters each, for HP-GL/2 only. Nine real drawings
-    /// take a quarter to two fifths of what they take in plain numbers. The numbers are in the base 32, of which every byte is a printable one, so that no
-    /// conversion of a text harms them.
+    /// take a quarter to two fifths of what they take in plain numbers. The numbers are in the base 32, of
+    /// which every byte is a printable one, so that no conversion of a text harms them.
     ///
     /// ```
     /// # use plotter_motion::{PlotOp, Point, hpgl};

@@ -10,8 +10,9 @@ use crate::{Direction, Machine, StepPoint, config::StepperConfig, toolpath::from
 
 /// The play of both axes, in steps of their motors; 0 for none.
 ///
-/// *Logical* positions are those of the carriage, in steps; *motor* positions are what the motors have stepped. They
-/// differ by the play while an axis is driven in the direction other than that in which it was found (homed).
+/// *Logical* positions are those of the carriage, in steps; *motor* positions are what the motors have
+/// stepped. They differ by the play while an axis is driven in the direction other than that in which it was
+/// found (homed).
 ///
 /// ```
 /// # use plotter_motion::kinematics::{Backlash, BacklashState};
@@ -60,7 +61,8 @@ pub struct Takeup {
 }
 
 impl Default for BacklashState {
-    /// At the origin, both axes driven backwards last: so homing leaves them, which comes back from the upper switches.
+    /// At the origin, both axes driven backwards last: so homing leaves them, which comes back from the upper
+    /// switches.
     fn default() -> Self {
         Self::at(StepPoint::default(), Direction::Minus, Direction::Minus)
     }
@@ -90,8 +92,8 @@ impl Backlash {
         Self { x_steps: steps(&machine.config().x.stepper), y_steps: steps(&machine.config().y.stepper) }
     }
 
-    /// The next move, to the logical position `target`: how many extra steps each motor makes first, and where
-    /// the motors then go. An axis that does not move keeps its side of the gap.
+    /// The next move, to the logical position `target`: how many extra steps each motor makes first, and
+    /// where the motors then go. An axis that does not move keeps its side of the gap.
     pub fn next(self, state: &mut BacklashState, target: StepPoint) -> Takeup {
         let from = state.logical;
         state.logical = target;

@@ -12,9 +12,9 @@
 //!       down                   M1' and M2': that motor backwards
 //! ```
 //!
-//! The report gives both and they look as if they disagreed: with A for motor 1 and B for motor 2 "right" would be up.
-//! They agree when A is motor 2 and B is motor 1 counted the other way round, A = M2 and B = −M1. [`BeltSigns`] has a name for
-//! either, and everything that mixes axes into motors says which it means.
+//! The report gives both and they look as if they disagreed: with A for motor 1 and B for motor 2 "right"
+//! would be up. They agree when A is motor 2 and B is motor 1 counted the other way round, A = M2 and B =
+//! −M1. [`BeltSigns`] has a name for either, and everything that mixes axes into motors says which it means.
 
 use super::cartesian::{LEAST_STEPS_PER_MM, MOST_STEPS_PER_MM};
 use super::{Kinematics, MotorPoint, ScaleError};
@@ -40,8 +40,8 @@ pub enum BeltSigns {
 }
 
 impl BeltSigns {
-    /// What both motors do for a move by (`x`, `y`). The sums must be within the range of the numbers: counts of 32
-    /// bits are taken as `i64`.
+    /// What both motors do for a move by (`x`, `y`). The sums must be within the range of the numbers: counts
+    /// of 32 bits are taken as `i64`.
     pub fn motors<T: Copy + Add<Output = T> + Sub<Output = T>>(self, x: T, y: T) -> (T, T) {
         match self {
             Self::DirectionTable => (x - y, x + y),
@@ -94,12 +94,13 @@ impl TryFrom<Unchecked> for CoreXy {
 }
 
 impl CoreXy {
-    /// A machine whose motors make `steps_per_mm` steps (or encoder counts) when the pen moves a millimetre along an axis.
+    /// A machine whose motors make `steps_per_mm` steps (or encoder counts) when the pen moves a millimetre
+    /// along an axis.
     ///
     /// # Errors
     ///
-    /// [`ScaleError`] for steps per millimetre outside 1e-9 to 1e9; NaN lies outside. It names axis x, though both have
-    /// the same scale.
+    /// [`ScaleError`] for steps per millimetre outside 1e-9 to 1e9; NaN lies outside. It names axis x, though
+    /// both have the same scale.
     pub fn new(signs: BeltSigns, steps_per_mm: f64) -> Result<Self, ScaleError> {
         if (LEAST_STEPS_PER_MM..=MOST_STEPS_PER_MM).contains(&steps_per_mm) {
             Ok(Self { signs, steps_per_mm })

@@ -1,4 +1,5 @@
-//! From places on the sheet to positions of the motors, and back: the one border between millimetres and steps.
+//! From places on the sheet to positions of the motors, and back: the one border between millimetres and
+//! steps.
 //!
 //! ```text
 //!   Point, mm ──motors_at──▶ MotorPoint, steps with fraction ──rounded──▶ StepPoint ──Backlash──▶ pulses
@@ -42,9 +43,9 @@ impl From<StepPoint> for MotorPoint {
 
 /// How a machine's two motors move its pen.
 ///
-/// Both maps are linear and leave the origin where it is, so they turn velocities and accelerations (mm/s into
-/// steps/s, as a place that many millimetres from the origin) as well as places. One undoes the other up to
-/// rounding of the last bit; whole steps survive the way to millimetres and back exactly.
+/// Both maps are linear and leave the origin where it is, so they turn velocities and accelerations (mm/s
+/// into steps/s, as a place that many millimetres from the origin) as well as places. One undoes the other up
+/// to rounding of the last bit; whole steps survive the way to millimetres and back exactly.
 pub trait Kinematics {
     /// Where the motors stand when the pen is at `point`. What is not finite stays so.
     fn motors_at(&self, point: Point) -> MotorPoint;

@@ -8,12 +8,12 @@ use crate::root::root;
 use crate::{Pen, Point};
 use core::time::Duration;
 
-/// What a block is.
+/// The kinds of block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Kind {
     #[default]
     Line,
-    /// A line with the pen up, at a speed that shares of the speeds do not change.
+    /// A jog: a line with the pen up, whose speed is not changed by overrides.
     Jog,
     Arc,
     Parabola,
@@ -23,61 +23,60 @@ pub(super) enum Kind {
     NewPage,
 }
 
-/// How a stretch of path turns, and what that leaves of the acceleration.
+/// How a stretch of path turns, and how much acceleration is left along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Bend {
     /// Greatest acceleration along it, mm/s².
     Line { accel: f32 },
-    /// How far it turns, rad, and the square of the speed at which that takes all of the acceleration,
-    /// mm²/s².
+    /// Its turn, rad, and the square of the speed at which turning takes all of the acceleration, mm²/s².
     Arc { sweep_rad: f32, form2: f32 },
-    /// Sine of half of its turn, the part along the first motor's axis of the direction towards its inside,
-    /// and as of an arc.
+    /// Sine of half of its turn; the component along the first motor's axis of the direction towards its
+    /// inside; and the square of the speed as of an arc.
     Parabola { lean: f32, inwards: f32, form2: f32 },
 }
 
-/// A stretch of path with the square of its speeds, or something that is done at a standstill.
+/// A stretch of path with the squares of its speeds, or something that is done at a standstill.
 ///
-/// Squares, because v² changes evenly along a path of constant acceleration: no roots are needed to look ahead.
+/// Squares, because v² changes linearly along a path of constant acceleration: looking ahead needs no roots.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Block {
     to: Point,
-    /// From its end to the centre of an arc, or to the control point of a parabola, mm. What `f32` rounds is
-    /// small against the way along it.
+    /// From its end to the centre of an arc, or to the control point of a parabola, mm. The rounding of `f32`
+    /// is small beside its length.
     to_centre: Vec2Single,
-    /// mm; seconds of a dwell. In f32 a metre is right to 60 nm.
+    /// Length, mm; of a dwell its time, s. In `f32` a metre is right to 60 nm.
     length: f32,
-    /// Speed that was asked for, mm/s.
+    /// Requested speed, mm/s.
     feed_mm_s: f32,
-    /// Of an arc how far it turns, rad; f32 says ±2π to 5e-7, and the end is said by `to`. Of a parabola the
-    /// sine of half of that.
+    /// Turn of an arc, rad: `f32` holds ±2π to 5e-7, and `to` has the exact end. Of a parabola the sine of
+    /// half of its turn.
     form: f32,
-    /// Of a line the greatest acceleration along it, mm/s². Of a parabola the part along the first motor's
-    /// axis of the direction towards its inside.
+    /// Of a line the greatest acceleration along it, mm/s². Of a parabola the component along the first
+    /// motor's axis of the direction towards its inside.
     accel: f32,
-    /// One over the square of the greatest speed of its form, s²/mm²; 0 on a line. See [`Law`].
+    /// One over the square of the greatest speed that its form allows, s²/mm²; 0 on a line. See [`Law`].
     per_form2: f32,
-    /// Square of the speed at its start as it is planned, and the greatest that its corner allows.
+    /// Squares of the speed at its start: as it is planned, and the greatest that is allowed there.
     pub(super) entry2: f32,
     pub(super) max_entry2: f32,
-    /// Square of the greatest speed at its start for the corner there.
+    /// Square of the greatest speed that the corner at its start allows.
     pub(super) corner2: f32,
     /// Square of the greatest speed on it.
     pub(super) cruise2: f32,
     pub(super) kind: Kind,
     pen: Pen,
-    /// Power of the laser, in 65535ths; the number of a pen that is taken.
+    /// Power of the laser in 65535ths, or the number of the pen to take.
     power: u16,
 }
 
-/// Greatest part of an arc that is passed with one acceleration, rad. From rest to the greatest speed of a
-/// circle the machine needs an eighth of it at least; in parts of so much it comes within 1 % of that speed
-/// after a sixth.
+/// Greatest part of an arc that is passed with one acceleration, rad. A machine at rest needs at least an
+/// eighth of a circle to reach the greatest speed on it. With parts of this size it comes within 1 % of that
+/// speed after a sixth.
 const ARC_PIECE_RAD: f32 = 0.2;
-/// The same of a parabola, of which a curve in short chords has one after the other. With parts of 0.1 rad
-/// such drawings take 0.3 % longer.
+/// The same for a parabola, rad. It is smaller because a curve in short chords is a row of parabolas: with
+/// parts of 0.1 rad such drawings take 0.3 % longer.
 const PARABOLA_PIECE_RAD: f32 = 0.05;
-/// Most parts of a parabola: sharp corners are passed at nearly one speed.
+/// Most parts of a parabola. More gain nothing, since a sharp corner is passed at nearly one speed.
 const MOST_PARABOLA_PIECES: u16 = 6;
 
 impl Block {
@@ -127,7 +126,7 @@ impl Block {
         Self { kind: Kind::NewPage, ..Self::default() }
     }
 
-    /// mm; seconds of a dwell.
+    /// Length, mm; of a dwell its time, s.
     pub(super) const fn length(&self) -> f32 {
         self.length
     }
@@ -141,7 +140,7 @@ impl Block {
         u8::try_from(self.power).unwrap_or(u8::MAX)
     }
 
-    /// What its speed is made of.
+    /// The values that its greatest speed follows from.
     pub(super) fn wish(&self) -> Wish {
         let share = match (self.kind, self.pen) {
             (Kind::Jog, _) => Share::Jog,
@@ -156,7 +155,7 @@ impl Block {
         if self.per_form2 > 0.0 { MOST_FORM_SHARE / self.per_form2 } else { f32::INFINITY }
     }
 
-    /// How hard it may be sped up and braked along it.
+    /// How hard the machine may speed up and brake along it.
     pub(super) fn law(&self, limits: &Limits) -> Law {
         match self.kind {
             Kind::Arc => limits.arc(self.per_form2),
@@ -165,7 +164,7 @@ impl Block {
         }
     }
 
-    /// In how many parts of equal length it is passed, each with one acceleration at a time.
+    /// Number of its parts of equal length. Each part is passed with one acceleration at a time.
     pub(super) fn pieces(&self) -> u16 {
         let (turn_rad, piece_rad, most) = match self.kind {
             Kind::Arc => (self.form.abs(), ARC_PIECE_RAD, u16::MAX),
@@ -178,8 +177,8 @@ impl Block {
         (whole + 1).min(most)
     }
 
-    /// Square of the greatest speed at its end if it is entered with this one; and at its start, if it is
-    /// left with this one. What is at least `enough2` may be any such number.
+    /// Square of the greatest speed at its end if it is entered at `from2`, or at its start if it is left at
+    /// that. A result above `enough2` need not be exact: it may be any number from `enough2` on.
     pub(super) fn reach2(&self, from2: f32, enough2: f32, limits: &Limits) -> f32 {
         let (law, pieces) = (self.law(limits), self.pieces());
         let piece_mm = self.length / f32::from(pieces);
@@ -193,7 +192,7 @@ impl Block {
         speed2
     }
 
-    /// Whether it can be sped up by as much at every speed: how much the square of the speed changes then.
+    /// If its acceleration is the same at every speed: how much the square of the speed can change along it.
     pub(super) fn even_reach2(&self) -> Option<f32> {
         if !self.is_path() {
             return Some(0.0);
@@ -201,8 +200,8 @@ impl Block {
         (self.per_form2 <= 0.0).then(|| twice(self.accel) * self.length)
     }
 
-    /// Square of the speed with which it is left at the least if it is entered with this one: however hard
-    /// the machine brakes.
+    /// Square of the least speed at which it can be left if it is entered at `from2`, with the machine
+    /// braking as hard as it can.
     pub(super) fn forced2(&self, from2: f32, limits: &Limits) -> f32 {
         let (law, pieces) = (self.law(limits), self.pieces());
         let twice_mm = 2.0 * self.length / f32::from(pieces);

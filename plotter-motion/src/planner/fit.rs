@@ -1,4 +1,4 @@
-//! [`Fitter`]: lines and arcs through vertices that are known within an allowance only.
+//! [`Fitter`]: lines and arcs through vertices that are known only within an allowance.
 //!
 //! ```text
 //!        o   ·  o          o vertices, each rounded to the last digit of a file
@@ -6,52 +6,59 @@
 //!   ·      o         ·
 //! ```
 //!
-//! Digits that a file does not write move every vertex. On short lines that turns their directions by much more than the curve that was
-//! meant: a machine that obeys every vertex brakes for noise. What the file says is a vertex give or take the allowance, and a path
-//! that passes each within it says the same.
+//! A file rounds each vertex to its last digit. On short lines this turns the directions far more than the
+//! meant curve does, so a machine that obeys every vertex brakes for noise. A path that passes each vertex
+//! within the allowance says the same as the file.
 //!
-//! A piece begins at a given place. The circles through that place have two numbers: the slope t there, against a direction that is
-//! chosen, and the curvature k. With (x, y) a vertex in that frame and r its distance, a circle passes it at about
+//! A piece begins at a given place. A circle through that place has two parameters: its slope t there,
+//! against a chosen direction, and its curvature k. If (x, y) is a vertex in that frame and r its distance,
+//! the circle passes it at about
 //!
 //! ```text
 //! y − t x − k r²/2
 //! ```
 //!
-//! which is linear in t and k and exact where it is 0. So each vertex keeps a strip of the (t, k) plane, and what all vertices leave is a
-//! convex polygon. As long as it is not empty one arc is enough, however many vertices there are. This is the method of J. O'Rourke, "An
-//! on-line algorithm for fitting straight lines between data ranges" (1981), with circles through a point in the place of lines.
+//! which is linear in t and k and exact where it is 0. Each vertex thus allows a strip of the (t, k) plane,
+//! and all vertices together a convex polygon. As long as the polygon is not empty, one arc is enough for any
+//! number of vertices. This is the method of J. O'Rourke, "An on-line algorithm for fitting straight lines
+//! between data ranges" (1981), with circles through a point in the place of lines.
 //!
-//! The arc that reaches farthest has used up the allowance at its end, and the next would begin badly. So it is left some vertices
-//! earlier, where it is in the middle of them, and these are given to the next. A vertex that is far from where the arc goes is a
-//! corner of the drawing: there the piece ends at the vertex itself.
+//! The arc that reaches farthest has used up the allowance at its end, and the next arc would begin badly. So
+//! the arc ends some vertices earlier, where it passes in the middle of them, and the next arc gets these
+//! vertices. A vertex far from the arc is a corner of the drawing: there the piece ends at the vertex itself.
 
 use crate::Vec2;
 use crate::extremes::{greatest, least};
 use crate::geom::{Vec2Single, single};
 
-/// Vertices before the end of an arc that are given to the next. With 4 the seeded curves of the tests take at most 2 % longer than
-/// with 16.
+/// Vertices before the end of an arc that the next arc gets. Measured: with 4 the seeded curves of the tests
+/// take at most 2 % longer than with 16.
 const GIVEN_BACK: usize = 4;
-/// Corners of the polygon that are kept. Where there are more, one is left out, which leaves a part of the polygon.
+/// Most corners of the polygon. If there are more, one is dropped; the rest is a part of the polygon, so the
+/// arcs stay within the allowance. It bounds memory and time.
 const CORNERS: usize = 8;
-/// Greatest slope at the start: 76°, more than what an allowance turns a chord that is as long.
+/// Greatest slope at the start: 76°. An allowance turns a chord of its own length by less.
 const MOST_SLOPE: f32 = 4.0;
-/// Greatest curvature, as a share of 1 / allowance: narrower arcs are corners.
+/// Greatest curvature, as a share of 1 / allowance. Narrower arcs, with a radius below 8 allowances, are
+/// corners of the drawing.
 const MOST_CURVATURE: f32 = 0.125;
-/// Vertices as near to the start, as a share of the allowance, are passed by it.
+/// Vertices nearer to the start than this share of the allowance are passed by the start itself.
 const NEAR_SHARE: f32 = 0.5;
-/// Share of the allowance by which the vertices may go back, and what is left of it then for the distance across: √(1 − (1/8)²), and
-/// a few hundredths for what is rounded, for arcs a little longer than the chords that they are measured by, and for [`FLAT_SHARE`].
+/// Share of the allowance by which vertices may go back along the path. [`ACROSS_SHARE`] is what that leaves
+/// for the distance across: √(1 − (1/8)²), less some hundredths for rounding, for arcs that are a little
+/// longer than the chords they are measured by, and for [`FLAT_SHARE`].
 const BACK_SHARE: f32 = 0.125;
 const ACROSS_SHARE: f32 = 0.96;
-/// An arc that is no farther from a chord, as a share of the allowance, is not looked at where the chord begins.
+/// An arc nearer to a chord than this share of the allowance is not checked at the beginning of the chord.
 const FLAT_SHARE: f32 = 0.02;
-/// Farther than so many times the allowance from the arc, a vertex belongs to something else: both may be off by one, and so may be the
-/// vertex that the arc ends at.
+/// A vertex farther from the arc than this many allowances does not belong to it. Arc, vertex and the vertex
+/// at the end of the arc may each be off by one allowance, which makes 3.
 const CORNER_SHARE: f32 = 3.0;
-/// Longest piece of more than one line, as a multiple of the allowance: `f32` says where its vertices are to a 100th of the allowance.
+/// Longest piece of more than one line, in allowances: 2¹⁶. Up to there `f32` holds its vertices to a
+/// hundredth of the allowance.
 const LONGEST: f32 = 65_536.0;
-/// An arc that bends less is a line, and an end that is nearer to a vertex is that vertex; as a share of the allowance.
+/// As a share of the allowance: an arc that bends less is a line, and an end nearer to a vertex is that
+/// vertex.
 const ROUNDING_SHARE: f64 = 1.0 / 256.0;
 
 /// A circle through the start: its slope there, and its curvature, 1/mm; above 0 it turns counter-clockwise.
@@ -219,14 +226,15 @@ impl Polygon {
     }
 }
 
-/// A vertex as a polygon is cut by it.
+/// A vertex, in the form that cuts a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Vertex {
     x: f32,
     y: f32,
     /// Half the square of its distance from the start, mm².
     half_square: f32,
-    /// For a curvature of 1, how far the arc is from its chord; and by how much the linear distance is too little.
+    /// At a curvature of 1: the distance of the arc from its chord, and by how much the linear distance is
+    /// too small.
     bulge: f32,
     room_mm: f32,
 }
@@ -239,30 +247,31 @@ pub(super) struct Piece {
     /// Directions at its ends, of length 1.
     pub(super) entry: Vec2,
     pub(super) exit: Vec2,
-    /// How far it turns, rad; 0 on a line.
+    /// Its turn, rad; 0 on a line.
     pub(super) sweep_rad: f64,
-    /// To the centre from the start, and how far that is, mm.
+    /// Vector from the start to the centre, and its length, mm.
     pub(super) to_centre: Vec2,
     pub(super) radius_mm: f64,
     pub(super) length_mm: f64,
-    /// Whether it ends at the vertex that was asked for.
+    /// Whether it ends exactly at the requested vertex.
     pub(super) at_vertex: bool,
 }
 
-/// Finds how far one arc is enough. All ways are from the start of the piece.
+/// Finds how far one arc reaches. All vectors begin at the start of the piece.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Fitter {
     /// Vertices of the piece.
     count: u16,
     /// Square of the greatest speed on it, mm²/s².
     cruise2: f32,
-    /// Direction against which slopes are reckoned; none before a vertex is so far from the start that this does not pass it.
+    /// Direction that slopes are measured against; none until a vertex lies so far from the start that the
+    /// start does not pass it.
     along: Option<Vec2Single>,
     circles: Polygon,
-    /// The vertex that is farthest along, and the greatest distance of one, mm.
+    /// The vertex that lies farthest along, and the greatest distance of a vertex, mm.
     farthest: Vec2Single,
     farthest_mm: f32,
-    /// The last vertices, the newest last, and the one before them.
+    /// The last vertices, the newest last, and the vertex before them.
     last: [Vec2Single; GIVEN_BACK + 1],
 }
 
@@ -271,17 +280,17 @@ impl Fitter {
         self.count == 0
     }
 
-    /// Square of the greatest speed on what there is, mm²/s².
+    /// Square of the greatest speed on the vertices taken so far, mm²/s².
     pub(super) const fn cruise2(&self) -> f32 {
         self.cruise2
     }
 
-    /// Whether another speed was asked for on what there is.
+    /// Whether the vertices taken so far were asked for at another speed.
     pub(super) fn is_other(&self, cruise2: f32) -> bool {
         self.count > 0 && self.cruise2.total_cmp(&cruise2).is_ne()
     }
 
-    /// Takes the next vertex, if one arc is enough for it too. As the first it is always taken.
+    /// Takes the next vertex if one arc is enough with it. The first vertex is always taken.
     pub(super) fn take(&mut self, way: Vec2Single, cruise2: f32, allowance_mm: f32) -> bool {
         let distance_mm = way.length_near();
         let Some(circles) = self.with(way, distance_mm, allowance_mm) else { return false };
@@ -291,7 +300,7 @@ impl Fitter {
         true
     }
 
-    /// What is left of the circles with another vertex; `None` for nothing.
+    /// The circles that are left with another vertex; `None` if there are none.
     fn with(&mut self, way: Vec2Single, distance_mm: f32, allowance_mm: f32) -> Option<Polygon> {
         let near_mm = NEAR_SHARE * allowance_mm;
         let is_free = self.farthest_mm <= near_mm;
@@ -330,7 +339,7 @@ impl Fitter {
         };
         if let Some(along) = self.along {
             let left = passing(along, &self.circles);
-            // Beside an arc that has turned, a vertex is farther from the start without being farther along.
+            // After a turn, a vertex may lie farther from the start without lying farther along.
             let ahead = left.middle().tangent_at(along.dot(way), along.cross(way));
             let step = way.plus(self.farthest.times(-1.0));
             let step_mm = ahead.dot(Vec2Single { x: along.dot(step), y: along.cross(step) });
@@ -342,7 +351,7 @@ impl Fitter {
                 return None;
             }
         }
-        // Nothing but the start holds it: it may go straight to there.
+        // Only the start binds it: it may go there in a straight line.
         let along = way.times(1.0 / distance_mm);
         self.along = Some(along);
         let left = passing(along, &Polygon::whole(allowance_mm));
@@ -364,8 +373,8 @@ impl Fitter {
         }
     }
 
-    /// A vertex `beyond` has not been taken: ends the piece some vertices earlier, if the next one goes on as smoothly, and begins the
-    /// next with them. `None` at a corner of the drawing.
+    /// The vertex `beyond` was not taken. Ends the piece some vertices earlier, if the next piece goes on as
+    /// smoothly, and begins the next piece with them. `None` at a corner of the drawing.
     pub(super) fn shorten(&mut self, beyond: Vec2Single, allowance_mm: f32) -> Option<Piece> {
         let along = self.along?;
         let circle = self.circles.middle();
@@ -393,7 +402,7 @@ impl Fitter {
         if let (Some(end), Some(newest)) = (given.next(), next.last.last_mut()) {
             *newest = end;
         }
-        // The arc before passes them, and goes on from here as it is: what does not fit is rounding.
+        // The previous arc passes these vertices, and goes on from here unchanged: a misfit is rounding.
         if !given.all(|vertex| next.take(vertex, self.cruise2, allowance_mm)) {
             return None;
         }
@@ -401,8 +410,8 @@ impl Fitter {
         Some(piece)
     }
 
-    /// Where no arc ends at the last vertex: ends the piece some vertices earlier, so that one of the next
-    /// does. With its greatest speed's square.
+    /// If no arc ends at the last vertex: ends the piece some vertices earlier, so that an arc of the next
+    /// piece does. Gives the square of its greatest speed, too.
     pub(super) fn shorten_to_end(&mut self, allowance_mm: f32) -> Option<(Piece, f32)> {
         let (along, end, cruise2) = (self.along?, self.newest(), self.cruise2);
         let half_square = 0.5 * end.dot(end);
@@ -412,7 +421,7 @@ impl Fitter {
         self.shorten(end, allowance_mm).map(|piece| (piece, cruise2))
     }
 
-    /// Ends the piece at its last vertex, and begins anew there.
+    /// Ends the piece at its last vertex and starts the next one there.
     pub(super) fn end(&mut self, allowance_mm: f32) -> Option<Piece> {
         let Self { count, along, circles, .. } = *self;
         let end = self.newest();
@@ -424,7 +433,7 @@ impl Fitter {
             .unwrap_or_else(|| circles.middle());
         let piece = Piece::new(along, circle, end, allowance_mm);
         if let Some(newest) = self.last.last_mut().filter(|_| !piece.at_vertex) {
-            // The drawing goes on from beside the start.
+            // The drawing goes on beside the start.
             *newest = Vec2Single { x: end.x - single(piece.way.x), y: end.y - single(piece.way.y) };
         }
         Some(piece)

@@ -1,4 +1,4 @@
-//! [`Front`]: plot operations in, blocks out. Finds the corners, and in tolerance mode rounds them.
+//! [`Front`] makes blocks of plot operations. It finds the corners, and rounds them in tolerance mode.
 
 use super::block::{Bend, Block, Kind};
 use super::fit::{Fitter, Piece};
@@ -17,9 +17,10 @@ use crate::whole::nearest;
 use crate::{Pen, PlotOp, Point};
 use core::f32::consts::TAU;
 
-/// Farthest place, mm.
+/// Farthest place that is accepted, mm: 10 km, far beyond any sheet, while squares of lengths within it stay
+/// far from the greatest `f32`.
 const FARTHEST_MM: f32 = 1e7;
-/// What the radius of an arc, and the product with it, may have been rounded by, as a share.
+/// Greatest relative rounding of an arc's radius and of a product with it: four last bits of `f32`.
 const RADIUS_ROUNDING: f32 = 5e-7;
 
 /// The end of the last block of a run.
@@ -30,27 +31,27 @@ struct Exit {
     cruise2: f32,
 }
 
-/// What the machine does without a stop as far as the front is concerned: lines and arcs with the same pen.
+/// Lines and arcs with the same pen, which the machine passes without a stop unless a corner asks for one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Run {
     pen: Pen,
-    /// The end of the blocks given so far.
+    /// The end of the blocks that were given out.
     at: Point,
     exit: Option<Exit>,
 }
 
-/// Makes blocks of plot operations.
+/// Makes blocks of plot operations, with the next segments held back until it is known what follows.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Front<M: Modes> {
     position: Point,
     pen: Pen,
     power: u16,
     run: Option<Run>,
-    /// Square of the greatest speed of a segment too short for a block, which is still to come.
+    /// Square of the greatest speed on a segment that is too short for a block and is held back.
     short_cruise2: Option<f32>,
     put_off: M::Kept<PutOff>,
     shares: M::Kept<Shares>,
-    /// Lines are jogs.
+    /// Whether lines are jogs.
     jogs: bool,
 }
 
@@ -72,22 +73,22 @@ impl<M: Modes> Front<M> {
         }
     }
 
-    /// Where the path that was pushed ends.
+    /// The end of the path that was pushed.
     pub(super) fn position(&self) -> Point {
         self.arc_end().unwrap_or(self.position)
     }
 
-    /// Where an arc ends whose chords have not all come.
+    /// The end of an arc whose chords have not all been given out.
     fn arc_end(&self) -> Option<Point> {
         self.put_off.rounding().and_then(|rounding| rounding.arc).map(|(arc, _)| arc.to)
     }
 
-    /// Whether an arc has chords that are still to come: nothing else is taken before them.
+    /// Whether an arc has chords left. They come before anything else is taken.
     pub(super) fn has_chords(&self) -> bool {
         M::ALL && self.arc_end().is_some()
     }
 
-    /// Takes chords of the arc as long as there is room; says whether there were any.
+    /// Takes chords of the arc as long as there is room. Says whether there were any.
     pub(super) fn take_chords<const N: usize>(&mut self, limits: &Limits, ring: &mut Ring<N>) -> bool {
         let mut any = false;
         while ring.room() >= Self::most_blocks(&limits.settings)
@@ -108,15 +109,16 @@ impl<M: Modes> Front<M> {
         any
     }
 
-    /// Begins anew at another place, with the pen up.
+    /// Starts again at another place, with the pen up.
     pub(super) fn restart(&mut self, position: Point) {
         let shares = core::mem::take(&mut self.shares);
         *self = Self { power: self.power, shares, ..Self::at(position) };
     }
 
-    /// Most blocks that one operation gives: in exact mode a short segment that was put off and the new one;
-    /// with an allowance two arcs, the rest of the way to the last vertex and the new one; else what ends a
-    /// run (twice a line and a parabola, the line held back) and the new one.
+    /// Most blocks that one operation gives. In exact mode: a short segment that was held back, and the new
+    /// one. With an allowance: two arcs, the rest of the way to the last vertex, and the new one. In
+    /// tolerance mode: the end of a run (twice a line and a parabola, and the line held back), and the new
+    /// one.
     pub(super) const fn most_blocks(settings: &PlannerSettings) -> usize {
         match settings.path_of::<M>() {
             PathMode::Exact if settings.allowance_of::<M>() > 0.0 => 4,
@@ -152,7 +154,7 @@ impl<M: Modes> Front<M> {
                 check(&centre)?;
                 let feed2 = feed2(feed_mm_s)?;
                 let sweep_single = single(sweep_rad);
-                // A whole turn is one by its last bit, 5·10⁻⁷.
+                // A sweep counts as a whole turn within its last bit, 5·10⁻⁷.
                 if !(-TAU..=TAU).contains(&sweep_single) {
                     return Err(PlanError::Sweep { sweep_rad });
                 }
@@ -164,7 +166,7 @@ impl<M: Modes> Front<M> {
                     return Err(PlanError::Power { share });
                 }
                 let power = u16::try_from(nearest(share * f64::from(u16::MAX))).unwrap_or(u16::MAX);
-                // What was put off is still of the old power; within a tolerance each line has its own.
+                // The segment that was held back has the old power; in tolerance mode each line has its own.
                 if limits.settings.path_of::<M>() == PathMode::Exact {
                     self.flush(limits, ring);
                 }
@@ -177,7 +179,7 @@ impl<M: Modes> Front<M> {
         Ok(())
     }
 
-    /// A travel at this speed, or at that of travels if it is less, whatever the shares of the speeds are.
+    /// A travel at this speed, or at the travel speed if that is lower. Overrides do not change it.
     pub(super) fn jog<const N: usize>(
         &mut self,
         to: &Point,
@@ -196,8 +198,8 @@ impl<M: Modes> Front<M> {
         Ok(())
     }
 
-    /// Other shares of the speeds hold, for what is in the ring too. `under_way2` is the square of the greatest speed on the
-    /// course under way.
+    /// Applies other overrides, to the blocks in the ring too. `under_way2` is the square of the greatest
+    /// speed on the course under way.
     pub(super) fn rescale<const N: usize>(
         &mut self,
         shares: Shares,
@@ -215,7 +217,7 @@ impl<M: Modes> Front<M> {
         }
     }
 
-    /// Ends the run: what has been put off comes, and the machine stops.
+    /// Ends the run: segments that were held back are given out, and the machine stops.
     pub(super) fn end_run<const N: usize>(&mut self, limits: &Limits, ring: &mut Ring<N>) {
         self.flush(limits, ring);
         self.run = None;
@@ -241,7 +243,7 @@ impl<M: Modes> Front<M> {
         ring.push(block);
     }
 
-    /// The run with this pen: the one in progress, or a new one.
+    /// The run with this pen: the current one, or a new one.
     fn run<const N: usize>(&mut self, pen: Pen, limits: &Limits, ring: &mut Ring<N>) -> Run {
         match self.run {
             Some(run) if run.pen == pen => run,
@@ -298,7 +300,8 @@ impl<M: Modes> Front<M> {
         }
     }
 
-    /// Takes the next vertex in exact mode with an allowance; `from` is the one before. What no longer is one arc with it ends.
+    /// Takes the next vertex in exact mode with an allowance; `from` is the previous one. If no single arc
+    /// fits with it, the piece in progress ends.
     fn fit<const N: usize>(
         &mut self,
         from: &Point,
@@ -333,7 +336,8 @@ impl<M: Modes> Front<M> {
         }
     }
 
-    /// Ends the piece in progress at its last vertex, or within the allowance of it. Gives the square of the greatest speed on it.
+    /// Ends the piece in progress at its last vertex or within the allowance of it. Gives the square of the
+    /// greatest speed on it.
     fn end_fit<const N: usize>(&mut self, at: &Point, limits: &Limits, ring: &mut Ring<N>) -> Option<f32> {
         let (run, fitter) = (self.run?, self.put_off.fitter_mut()?);
         if fitter.is_empty() {
@@ -345,7 +349,7 @@ impl<M: Modes> Front<M> {
                 let end = if piece.at_vertex { *at } else { run.at + piece.way };
                 self.emit_piece(piece, &end, cruise2, limits, ring);
             }
-            // All of a stroke may be nearer to its start than the allowance, and end there.
+            // A whole stroke may lie within the allowance of its start. It ends there.
             None if *at == run.at && run.exit.is_none() => self.dot(run.pen, ring),
             None => self.emit_line(at, cruise2, limits, ring),
         }
@@ -425,18 +429,18 @@ impl<M: Modes> Front<M> {
         self.flush(limits, ring);
         self.pen = Pen::Down;
         self.position = *to;
-        // A quarter turn ahead of the radius, or behind it.
+        // The tangent: a quarter turn ahead of the radius, or behind it.
         let side = if sweep_rad > 0.0 { 1.0 } else { -1.0 };
         let ahead = |radius: Vec2Single| Way::new(radius.perpendicular().times(side)).direction;
         let shape = Shape::Arc { centre: *centre, sweep_rad };
-        // Less what the radius may have been rounded by.
+        // Reduced by the rounding of the radius.
         let form2 = limits.turning_round() * near_mm * (1.0 - RADIUS_ROUNDING);
         let (entry, exit) = (ahead(out), ahead(end));
         let bend = Bend::Arc { sweep_rad, form2 };
         self.emit(Stretch { shape, to: *to, length_mm, entry, exit, feed2: cruise2, bend }, limits, ring);
     }
 
-    /// Gives out what has been put off. The run goes on.
+    /// Gives out the segments that were held back. The run goes on.
     fn flush<const N: usize>(&mut self, limits: &Limits, ring: &mut Ring<N>) {
         if let Some(cruise2) = self.short_cruise2.take() {
             let at = self.position;
@@ -451,7 +455,7 @@ impl<M: Modes> Front<M> {
             self.emit_piece(piece, &end, cruise2, limits, ring);
         }
         if let Some(cruise2) = self.end_fit(&at, limits, ring) {
-            // Where no arc within the allowance ends there, the last bit.
+            // If no arc within the allowance ends there, the last bit is a line.
             self.emit_line(&at, cruise2, limits, ring);
             if let Some(fitter) = self.put_off.fitter_mut() {
                 *fitter = Fitter::default();
@@ -471,8 +475,8 @@ impl<M: Modes> Front<M> {
         }
     }
 
-    /// Takes the next segment in tolerance mode: the corner before it may now be moved, so the one before
-    /// that is rounded.
+    /// Takes the next segment in tolerance mode. The corner before it may now be moved, so the corner before
+    /// that one is rounded.
     fn blend<const N: usize>(
         &mut self,
         next: Merged,
@@ -485,7 +489,7 @@ impl<M: Modes> Front<M> {
         let within_mm = rounding.within_mm(path_tolerance_mm);
         let (asked, moved) = rounding.corner.map_or((run.at, run.at), |corner| (corner.asked, corner.moved));
         let before = rounding.corner;
-        // There must be room for the curve there, and for the one before.
+        // Both the curve at this corner and the one before it need room.
         let may_be = |vertex: &Vertex| {
             let in_mm = (vertex.moved - moved).length_near();
             let tangent_mm = if before.is_some() { 0.5 * in_mm } else { in_mm };
@@ -502,24 +506,24 @@ impl<M: Modes> Front<M> {
         }
     }
 
-    /// Rounds the last corner, from which the path goes on to `to`: the next one, which can use no more than
-    /// `next_mm` of the line between.
+    /// Rounds the last corner. From there the path goes on to `to`, the next corner, which can use no more
+    /// than `next_mm` of the line between.
     fn round<const N: usize>(&mut self, to: &Point, next_mm: f64, limits: &Limits, ring: &mut Ring<N>) {
         let corner = self.put_off.rounding_mut().and_then(|rounding| rounding.corner.take());
         let (Some(corner), Some(run)) = (corner, self.run) else { return };
         let power = core::mem::replace(&mut self.power, corner.before.power);
-        // The blocks given so far reach to where the corner before has been left.
+        // The blocks given out so far reach to the end of the curve at the previous corner.
         let (way_in, way_out) = (corner.moved - run.at, *to - corner.moved);
         let (in_mm, out_mm) = (way_in.length_near(), way_out.length_near());
         let (along, after) = (way_in * (1.0 / in_mm), way_out * (1.0 / out_mm));
         let blend = if in_mm > 0.0 && out_mm > 0.0 {
-            // The next corner is left its half of the line between, or what it can use.
+            // The next corner keeps its half of the line between, or as much as it can use.
             corner.blend((along, after), in_mm.min((0.5 * out_mm).max(out_mm - next_mm)), limits)
         } else {
             None
         };
         if let Some((tangent_mm, curve)) = blend {
-            // However short: a curve that begins elsewhere is another curve.
+            // Given out however short it is: the curve must begin exactly here.
             if in_mm - tangent_mm > SHORTEST_MM {
                 let begin = corner.moved - along * tangent_mm;
                 let way = Way { length_mm: single(in_mm - tangent_mm), direction: direction(along) };
@@ -538,7 +542,7 @@ impl<M: Modes> Front<M> {
         }
     }
 
-    /// Gives out a line, if it has a length.
+    /// Gives out a line unless its length is 0.
     fn emit_way<const N: usize>(
         &mut self,
         to: &Point,
@@ -581,8 +585,8 @@ impl<M: Modes> Front<M> {
         if let Some(before) = run.exit {
             let shorter_mm = least(before.length_mm, length_mm);
             let ([x, y], [u, v]) = (before.direction, entry);
-            // A way nearly straight back has no room for a curve: within a tolerance, where no velocity
-            // jumps, it is a stop.
+            // A path that turns nearly straight back has no room for a curve. In tolerance mode no velocity
+            // may jump, so the machine stops there.
             let is_stop = limits.settings.path_of::<M>() != PathMode::Exact && x * u + y * v < 0.0;
             let corner2 = corner_speed2(before.direction, entry, shorter_mm, limits);
             block.corner2 = if is_stop { 0.0 } else { corner2 };
@@ -594,7 +598,7 @@ impl<M: Modes> Front<M> {
     }
 }
 
-/// Whether a place is near enough.
+/// Checks that a place is near enough.
 #[cfg_attr(target_os = "none", inline(never))]
 fn check(place: &Point) -> Result<(), PlanError> {
     let near = single(place.x).abs() <= FARTHEST_MM && single(place.y).abs() <= FARTHEST_MM;

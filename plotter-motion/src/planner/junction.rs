@@ -14,16 +14,17 @@ use crate::root::root;
 
 /// Greatest speed, mm/s, at which a corner may be taken.
 ///
-/// A machine that does not stop at a vertex rounds it. The rounding is taken for an arc that touches both segments and passes
-/// the vertex at `deviation_mm`; on it the centripetal acceleration v² / r must not exceed `accel_mm_s2`. With θ the angle
-/// between the segments and s = sin(θ/2) its radius is r = δ s / (1 − s), so that
+/// A machine that does not stop at a vertex rounds it. The rounding is taken for an arc that touches both
+/// segments and passes the vertex at `deviation_mm`; on it the centripetal acceleration v² / r must not
+/// exceed `accel_mm_s2`. With θ the angle between the segments and s = sin(θ/2) its radius is r = δ s / (1 −
+/// s), so that
 ///
 /// ```text
 /// v² = a δ s / (1 − s)
 /// ```
 ///
-/// `cos_theta` runs from −1 (straight on: the speed is infinite) to 1 (back the same way: 0). Both other arguments must be
-/// finite and not negative; the result is then never NaN.
+/// `cos_theta` runs from −1 (straight on: the speed is infinite) to 1 (back the same way: 0). Both other
+/// arguments must be finite and not negative; the result is then never NaN.
 ///
 /// Source: S. K. Jeon, "Improving Grbl's cornering algorithm" (2011).
 ///
@@ -52,7 +53,8 @@ impl Corner {
         Self { sin_half: libm::sqrt(0.5 * (1.0 - cos_theta)), cos_half: libm::sqrt(0.5 * (1.0 + cos_theta)) }
     }
 
-    /// Radius of the arc that touches both segments and passes the vertex at this distance, mm; infinite straight on.
+    /// Radius of the arc that touches both segments and passes the vertex at this distance, mm; infinite
+    /// straight on.
     pub(super) fn radius_mm(self, deviation_mm: f64) -> f64 {
         // 1 − s = c² / (1 + s), without the cancellation.
         let over = deviation_mm * self.sin_half * (1.0 + self.sin_half);
@@ -61,15 +63,17 @@ impl Corner {
     }
 }
 
-/// A turn that is smaller cannot be told from none in `f32`, rad.
+/// Least turn, rad. `f32` cannot tell a smaller one from none: it is some last bits of a direction's
+/// components.
 const LEAST_TURN: f32 = 4e-7;
 
-/// The greatest square of the speed with which a corner between two directions (of length 1) may be taken, mm²/s²: that of
-/// [`junction_speed`], and no faster than on an arc that touches the segments no farther than half their length from the vertex, so
-/// that a curve of many short segments is taken no faster than the curve that it stands for.
+/// The greatest square of the speed with which a corner between two directions (of length 1) may be taken,
+/// mm²/s²: that of [`junction_speed`], and no faster than on an arc that touches the segments no farther than
+/// half their length from the vertex, so that a curve of many short segments is taken no faster than the
+/// curve that it stands for.
 ///
-/// In `f32`, which small processors reckon with in hardware, and rounded to the safe side. From the sine of the turn, so that a small
-/// one is not lost in the difference of its cosine from 1.
+/// In `f32`, which small processors reckon with in hardware, and rounded to the safe side. From the sine of
+/// the turn, so that a small one is not lost in the difference of its cosine from 1.
 ///
 /// The second rule is that of Klipper (K. O'Connor, its documentation of kinematics, "look-ahead").
 pub(super) fn corner_speed2(before: [f32; 2], after: [f32; 2], shorter_mm: f32, limits: &Limits) -> f32 {

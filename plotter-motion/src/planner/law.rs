@@ -1,22 +1,22 @@
-//! [`Law`]: how hard the machine may speed up and brake along a stretch of path at a speed.
+//! [`Law`]: how hard the machine may speed up and brake along a stretch of path, at each speed.
 //!
-//! What is felt is one vector: along the path the change of the speed, across it what the turning takes. With
-//! A the limit, w = v² and W the square of the speed at which the turning takes all of A, u = w / W of it
-//! goes across, and what is left along an arc is
+//! The acceleration is one vector: along the path it changes the speed, across the path it turns. Let A be
+//! the limit, w = v², and W the square of the speed at which turning takes all of A. Then the share u = w / W
+//! goes across, and along an arc this is left:
 //!
 //! ```text
 //! a = A √(1 − u²)
 //! ```
 //!
-//! On a parabola that turns by 2h both are not at right angles: at a share ξ of the way from its apex to its
-//! end what turns leans forwards by λ = ξ sin h, which is below 0 before the apex, and
+//! On a parabola that turns by 2h the two are not at right angles. At a share ξ of the way from its apex to
+//! its end the turning acceleration leans forwards by λ = ξ sin h, which is negative before the apex, and
 //!
 //! ```text
 //! a² (cos² h + λ²) + 2 a A u λ + A² u² = A²        no less than with        a = A (√(1 − u² (1 − λ²)) − u λ)
 //! ```
 //!
-//! Where each motor is limited for itself, with A, it may move the path along by b = A / |p′| of its axis,
-//! less what the turning takes of it: a = b (1 − u) with u of that axis; of both the lesser one holds.
+//! If each motor is limited for itself, with A, it allows b = A / |p′| of its axis along the path, less the
+//! share that turning takes: a = b (1 − u) with u of that axis. The lesser of both holds.
 //!
 //! A change of speed along a stretch is made with one acceleration: the one for the faster of its ends. From
 //! w₀ to w₁ = w₀ + 2 a l, with a at w₁, is a quadratic equation in a, so no step forwards or backwards in the
@@ -29,10 +29,11 @@ use crate::root::root;
 /// would go across, nothing were left to begin braking with, and a feed hold would not end. 0.998 leaves a
 /// sixteenth, and costs a thousandth of the speed on tight curves.
 pub(super) const MOST_FORM_SHARE: f32 = 0.998;
-/// Least share of the acceleration that is reckoned with: rounding may put a speed on the very limit of its
-/// form.
+/// Least share of the acceleration that is used. Rounding may put a speed exactly on the limit of its form,
+/// where nothing would be left; a sixteenth is left at [`MOST_FORM_SHARE`].
 const LEAST_SHARE: f32 = 1e-3;
-/// What the roots and quotients below may have been rounded up by.
+/// Greatest relative amount by which the roots and quotients below are rounded up: about eight last bits of
+/// `f32`.
 const ROUNDING: f32 = 1e-6;
 
 /// See the head of this file: how hard the machine may speed up and brake.
@@ -68,7 +69,7 @@ impl Law {
         }
     }
 
-    /// Which of two laws of the same curve allows less, at every speed.
+    /// The stricter of two laws of the same curve, at every speed.
     pub(super) fn stricter(self, other: Self) -> Self {
         match (self, other) {
             (Self::Curve { lean: one, .. }, Self::Curve { lean, .. }) if one < lean => other,
@@ -76,7 +77,7 @@ impl Law {
         }
     }
 
-    /// The greatest acceleration along the path at a square of a speed.
+    /// The greatest acceleration along the path at a speed, given by its square.
     pub(super) fn accel_at(&self, speed2: f32) -> f32 {
         match *self {
             Self::Line(accel) => accel,
@@ -94,8 +95,8 @@ impl Law {
         }
     }
 
-    /// Square of the greatest speed after a way, mm, with one acceleration all along it; and of the greatest
-    /// one before it, for who brakes.
+    /// Square of the greatest speed after a distance, mm, with one acceleration all along it. Seen backwards,
+    /// it is that of the greatest speed before a braking.
     pub(super) fn reach2(&self, from2: f32, way_mm: f32) -> f32 {
         match *self {
             Self::Line(accel) => from2 + 2.0 * accel * way_mm,
@@ -121,12 +122,12 @@ impl Law {
     }
 }
 
-/// 2 A, so much less that no product with a length is rounded above the true one.
+/// 2 A, reduced so far that no product with a length is rounded above the true one.
 pub(super) fn twice(accel: f32) -> f32 {
     2.0 * accel * (1.0 - f32::EPSILON)
 }
 
-/// The x of a x² + 2 b x = 1 − u², without a difference of like numbers.
+/// Solves a x² + 2 b x = 1 − u² for x, without a difference of nearly equal numbers.
 fn quadratic(b: f32, a: f32, u: f32) -> f32 {
     let over = (1.0 - u) * (1.0 + u);
     let root = root(b * b + a * over);

@@ -1,4 +1,4 @@
-//! [`Limits`]: a planner's settings as it reckons with them for every block.
+//! [`Limits`]: a planner's settings in the form that every block needs.
 
 use super::law::{Law, MOST_FORM_SHARE};
 use super::ring::narrow;
@@ -8,17 +8,20 @@ use crate::geom::single;
 use crate::root::root;
 use core::f32::consts::FRAC_1_SQRT_2;
 
-/// What directions and quotients may have been rounded by.
+/// Greatest relative rounding of directions and quotients: about eight last bits of `f32`, for the few
+/// operations that each has been through.
 const ROUNDING: f32 = 1e-6;
-/// A part of a direction that is less is none.
+/// Least component of a direction. A smaller one counts as 0, since it is no more than the rounding above and
+/// would be divided by.
 const LEAST_PART: f32 = 1e-6;
 
-/// What is the same for every block, computed once. Small numbers are `f32`, which small processors reckon with in hardware. Limits
-/// and their squares are rounded down; a speed made of them may be 2·10⁻⁷ of itself too much.
+/// Values that are the same for every block, computed once. They are `f32`, which small processors have in
+/// hardware. Limits and their squares are rounded down; a speed computed from them may be too high by 2·10⁻⁷
+/// of itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
     pub(super) settings: PlannerSettings,
-    /// What may be had in every direction, mm/s².
+    /// Greatest acceleration that every direction allows, mm/s².
     pub(super) accel: f32,
     /// Greatest accelerations along the axes of the motors, where each is limited for itself.
     pub(super) motors: Option<[f32; 2]>,
@@ -35,7 +38,8 @@ pub(super) struct Limits {
 
 impl Limits {
     pub(super) fn of<M: Modes>(settings: &PlannerSettings) -> Self {
-        /// What the pen does of a belt's way along its diagonal: √½, rounded down.
+        /// The pen's share of a belt's motion along its diagonal: √½, rounded down so that no limit is
+        /// exceeded.
         const OF_BELT: f32 = FRAC_1_SQRT_2.next_down();
         let PlannerSettings { speed_mm_s, travel_speed_mm_s, accel_mm_s2, accel_limit, .. } = *settings;
         let (motors, belts) = match accel_limit {
@@ -59,7 +63,7 @@ impl Limits {
         }
     }
 
-    /// A direction along the axes of the motors.
+    /// A direction, in the axes of the motors.
     pub(super) fn of_motors(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         if self.belts { [(x + y) * FRAC_1_SQRT_2, (x - y) * FRAC_1_SQRT_2] } else { [x, y] }
     }
@@ -71,8 +75,8 @@ impl Limits {
         greatest(self.accel, (1.0 - ROUNDING) / greatest(one.abs() / most_one, other.abs() / most_other))
     }
 
-    /// How hard the machine may be sped up and braked along an arc: see [`Block`](super::block::Block) for
-    /// what it is told by.
+    /// How hard the machine may speed up and brake along an arc. [`Block`](super::block::Block) documents the
+    /// arguments.
     pub(super) fn arc(&self, per_form2: f32) -> Law {
         let accel = self.accel;
         if self.motors.is_some() {
@@ -117,9 +121,9 @@ impl Limits {
         self.accel * if self.has_jerk { self.across_share(0.0) / MOST_FORM_SHARE } else { 1.0 }
     }
 
-    /// Share of the acceleration that motion with a limited jerk uses along the path. What it leaves for
-    /// turning is the same at every speed, since such a motion looks ahead with one limit. Within a tolerance
-    /// a path is curves for the most part, in exact mode lines.
+    /// Share of the acceleration that motion with a limited jerk uses along the path. The rest, for turning,
+    /// is the same at every speed, since such a motion looks ahead with one limit. In tolerance mode most of
+    /// a path is curves, in exact mode lines.
     const fn along_share(&self) -> f32 {
         match self.settings.path {
             PathMode::Exact => 0.9,
@@ -127,7 +131,7 @@ impl Limits {
         }
     }
 
-    /// What is left for turning where the acceleration along the path is [`Limits::along_share`] of its
+    /// Acceleration that is left for turning if the one along the path is [`Limits::along_share`] of the
     /// limit.
     fn across_share(&self, lean: f32) -> f32 {
         let along = self.along_share();
@@ -138,16 +142,18 @@ impl Limits {
         }
     }
 
-    /// Square of a speed that is asked for, no more than this one; none if it is so slow that the square, or a share of it, were no number
-    /// with all its bits, or not finite.
+    /// Square of a requested speed, at most `most2`. None if the speed is not finite, or so low that its
+    /// square, or an override of it, would lose bits.
     pub(super) fn speed2(speed_mm_s: f64, most2: f32) -> Option<f32> {
+        /// Least speed, mm/s. Its square, 1e-32, times the square of the least override, 1e-4, still has all
+        /// bits of an `f32`.
         const LEAST_MM_S: f32 = 1e-16;
         let speed = single(speed_mm_s);
         (LEAST_MM_S..f32::INFINITY).contains(&speed).then(|| least(speed * speed, most2))
     }
 }
 
-/// Squares of the shares of the speeds that operations ask for, as a person at the machine sets them.
+/// Squares of the overrides that a person at the machine sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shares {
     pub(super) draw2: f32,
@@ -160,18 +166,18 @@ impl Default for Shares {
     }
 }
 
-/// Which share holds.
+/// Which override applies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Share {
     Draw,
     #[default]
     Travel,
-    /// None: it is as fast as was asked for.
+    /// None: the requested speed holds.
     Jog,
 }
 
 impl Shares {
-    /// The square of a speed that was asked for, as it is then; no more than the machine's.
+    /// The square of a requested speed with the override, at most the machine's.
     pub(super) fn of(&self, share: Share, feed2: f32, limits: &Limits) -> f32 {
         match share {
             Share::Draw => least(feed2 * self.draw2, limits.speed2),
@@ -181,7 +187,7 @@ impl Shares {
     }
 }
 
-/// What the greatest speed on a block is made of.
+/// The values that the greatest speed on a block follows from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Wish {
     pub(super) feed_mm_s: f32,
@@ -191,7 +197,7 @@ pub(super) struct Wish {
 }
 
 impl Wish {
-    /// Square of the greatest speed at these shares.
+    /// Square of the greatest speed with these overrides.
     pub(super) fn cruise2(&self, shares: &Shares, limits: &Limits) -> f32 {
         least(shares.of(self.share, self.feed_mm_s * self.feed_mm_s, limits), self.form2)
     }

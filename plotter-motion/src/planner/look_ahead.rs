@@ -11,22 +11,24 @@ use crate::extremes::smaller;
 use crate::seconds::duration;
 use crate::{PlotOp, Point};
 
-/// What a speed may be multiplied by.
+/// Least and greatest override, as shares of a speed: a hundredth to a hundredfold. They keep squares of
+/// speeds finite and above 0; Grbl's own overrides are 0.1 to 2.
 const LEAST_SHARE: f64 = 0.01;
 const MOST_SHARE: f64 = 100.0;
 
 /// Plans the motion along a tool path while it comes in: look-ahead over `N` blocks.
 ///
-/// Push operations until it is full, take actions when the motors want them, and so on; [`Planner::finish`] at the end lifts the pen. What
-/// is taken cannot be changed any more, so the more is known when it is taken, the faster the machine goes: keep it full. Whatever
-/// has been pushed, the machine can always stop within it, and does so where nothing more comes.
+/// Push operations until it is full, and take actions when the motors want them; [`Planner::finish`] at the
+/// end lifts the pen. An action that was taken cannot be changed. The more is known by then, the faster the
+/// machine goes, so keep the planner full. The machine can always stop within the path that was pushed, and
+/// does so if nothing more comes.
 ///
 /// - Strokes and travels begin and end at rest. A travel of several lines is one.
 /// - Corners and arcs obey the limits of [`PlannerSettings`]; see there for the ways to follow a path.
 /// - A line to where the pen stands is a dot, if the pen was up; a travel to there lifts it.
 ///
-/// Source of the look-ahead over squares of speeds, forwards and backwards: S. K. Jeon, documentation of the grbl project's
-/// planner (2011).
+/// Source of the look-ahead over squares of speeds, forwards and backwards: S. K. Jeon, documentation of the
+/// grbl project's planner (2011).
 ///
 /// ```
 /// # use plotter_motion::{Planner, PlannerSettings, PlotOp, Point, planner::Action};
@@ -48,13 +50,13 @@ pub struct Planner<const N: usize, M: Modes = AllModes> {
     limits: Limits,
     front: Front<M>,
     ring: Ring<N>,
-    /// Whether blocks have come since the ring was planned.
+    /// Whether blocks were added since the ring was planned.
     stale: bool,
-    /// What is left of the course given last.
+    /// The rest of the course that was given out last.
     time_law: TimeLaw<M>,
     /// Whether the machine is to stop on the path.
     hold: bool,
-    /// The course given last, for its greatest speed at other shares.
+    /// The course that was given out last, whose greatest speed changes with the overrides.
     under_way: M::Kept<Wish>,
 }
 
@@ -70,7 +72,7 @@ impl<const N: usize> Planner<N> {
 }
 
 impl<const N: usize, M: Modes> Planner<N, M> {
-    /// Room for what one operation can become.
+    /// Room for all blocks that one operation can give.
     const ENOUGH: () = assert!(N >= 8, "a planner needs at least 8 blocks");
 
     /// As [`Planner::new`], with the modes of its type.
@@ -118,19 +120,19 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.ring.room() >= Front::<M>::most_blocks(&self.limits.settings) && !self.front.has_chords()
     }
 
-    /// Whether nothing is left to be taken, also after a feed hold. Operations that were put off come after [`Planner::rest`] or
-    /// [`Planner::finish`].
+    /// Whether no action is left, also after a feed hold. Operations that are held back come after
+    /// [`Planner::rest`] or [`Planner::finish`].
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.ring.len() == 0 && !self.front.has_chords() && self.time_law.is_over()
     }
 
-    /// How many blocks are known and not begun.
+    /// Number of blocks that are known and not begun.
     pub(crate) const fn blocks(&self) -> usize {
         self.ring.len()
     }
 
-    /// Where the path that was pushed ends, mm.
+    /// The end of the path that was pushed, mm.
     #[must_use]
     pub fn position(&self) -> Point {
         self.front.position()
@@ -140,7 +142,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
     ///
     /// # Errors
     ///
-    /// [`PlanError::Full`] when there is no room. Any other error says what is wrong with the operation, which is left out.
+    /// [`PlanError::Full`] when there is no room. Any other error says what is wrong with the operation,
+    /// which is then left out.
     pub fn push(&mut self, op: PlotOp) -> Result<(), PlanError> {
         if !self.has_room() {
             return Err(PlanError::Full);
@@ -149,7 +152,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.front.push(op, &self.limits, &mut self.ring)
     }
 
-    /// Takes a travel at this speed, mm/s, or at that of travels if it is less; [`Planner::override_speeds`] does not change it.
+    /// Takes a travel at this speed, mm/s, or at the travel speed if that is lower.
+    /// [`Planner::override_speeds`] does not change it.
     ///
     /// # Errors
     ///
@@ -162,9 +166,10 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.front.jog(&to, speed_mm_s, &self.limits, &mut self.ring)
     }
 
-    /// From here on the speeds that operations ask for are multiplied by these shares, with the pen down and up: a person at the
-    /// machine has it go slower or faster. It changes its speed within its limits, along the path, from the end of the phase taken
-    /// last (47 ms at the most); no share makes it faster than the limits of [`PlannerSettings`]. Shares are taken as 0.01 to 100.
+    /// Multiplies the requested speeds by these shares from now on, with the pen down and up: a person at the
+    /// machine makes it slower or faster. The speed changes within the limits, along the path, from the end
+    /// of the phase that was taken last (47 ms at most). No share makes the machine faster than the limits of
+    /// [`PlannerSettings`]. Shares are clamped to 0.01 to 100.
     ///
     /// Without [`AllModes`] nothing changes.
     ///
@@ -206,8 +211,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.time_law.change_speed((under_way2, next2), self.hold, &mut self.ring, &limits);
     }
 
-    /// The drawing is over: what has been put off to see what follows is planned, the machine stops at its end, and the pen is lifted
-    /// where it stands. Another drawing may be pushed afterwards.
+    /// Ends the drawing. Operations that were held back are planned, the machine stops at the end of the
+    /// path, and the pen is lifted there. Another drawing may be pushed afterwards.
     ///
     /// ```
     /// # use plotter_motion::{Pen, Planner, PlannerSettings, PlotOp, Point, planner::{Action, PlanError}};
@@ -233,8 +238,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         Ok(())
     }
 
-    /// No operation comes for now: what has been put off to see what follows is planned, and the machine stops at its end with the pen
-    /// as it is. More of the same drawing may be pushed afterwards.
+    /// Says that no operation comes for now. Operations that were held back are planned, and the machine
+    /// stops at the end of the path with the pen as it is. More of the same drawing may be pushed afterwards.
     ///
     /// # Errors
     ///
@@ -248,7 +253,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         Ok(())
     }
 
-    /// Forgets everything: the machine has been stopped and stands at `position`, its pen up. The laser's power stays chosen.
+    /// Forgets everything: the machine has been stopped and stands at `position`, its pen up. The laser's
+    /// power stays chosen.
     pub fn clear(&mut self, position: Point) {
         self.front.restart(position);
         self.ring.clear();
@@ -256,10 +262,11 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.hold = false;
     }
 
-    /// Feed hold: the machine brakes within its limits, along the path, and stands as soon as it can. Actions go on to come until
-    /// it stands; then there are none until [`Planner::resume`]. More may be pushed meanwhile.
+    /// Feed hold: the machine brakes along the path within its limits and stops as soon as it can. Actions
+    /// come until it stands; then there are none until [`Planner::resume`]. More may be pushed meanwhile.
     ///
-    /// What has been taken is still carried out; a phase lasts 47 ms at the most, on a line that takes six years a little more.
+    /// Phases that were taken are still carried out. A phase lasts 47 ms at most, or a little more on a line
+    /// that takes six years.
     pub fn hold(&mut self) {
         self.hold = true;
         self.time_law.brake(&mut self.ring, &self.limits);
@@ -278,13 +285,13 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         }
     }
 
-    /// Plans what has come.
+    /// Plans the blocks that were added.
     fn plan(&mut self) {
         self.stale = false;
         self.ring.plan(&self.limits);
     }
 
-    /// The next thing for the motors to do; `None` when nothing is known, or the machine is held.
+    /// The next action for the motors; `None` when nothing is known, or the machine is held.
     pub fn next_action(&mut self) -> Option<Action> {
         if let Some(phase) = self.time_law.next_ramp() {
             return Some(Action::Phase(phase));
@@ -292,7 +299,8 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.after_ramps()
     }
 
-    /// As [`Planner::next_action`], for who does not want to hold the machine: a phase, and how many like it make the ramp.
+    /// As [`Planner::next_action`], for a caller that never holds the machine: a phase, and how many like it
+    /// make the ramp.
     pub(crate) fn next_ramp(&mut self) -> Option<(Action, u32)> {
         if let Some((phase, count)) = self.time_law.next_whole_ramp() {
             return Some((Action::Phase(phase), count));
@@ -300,7 +308,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
         self.after_ramps().map(|action| (action, 1))
     }
 
-    /// The next thing that is no phase with a constant acceleration.
+    /// The next action other than a phase with constant acceleration.
     fn after_ramps(&mut self) -> Option<Action> {
         if let Some(phase) = self.time_law.next_s_curve(&mut self.ring, &self.limits, self.hold) {
             return Some(Action::Phase(phase));
@@ -322,7 +330,7 @@ impl<const N: usize, M: Modes> Planner<N, M> {
             if let Some(under_way) = self.under_way.get_mut() {
                 *under_way = head.wish();
             }
-            // What has come is planned when it must be: once for many blocks, if they are short.
+            // Blocks are planned only when an action needs it: once for many blocks, if they are short.
             if self.stale && head.is_path() && !self.ring.next_is_settled() {
                 self.plan();
             }

@@ -3,26 +3,28 @@
 use crate::geom::single;
 use crate::{Point, Segment};
 
-/// Most vertices that one segment stands for.
+/// Most vertices that one segment stands for. It bounds memory and the work for each vertex, which checks all
+/// that were left out.
 const MOST: usize = 8;
 
-/// Least share of a segment's length by which it is made longer within the line that ends it. A smooth curve
-/// allows more, so that segments along it are equally long and not a whole number of its chords; behind a
-/// corner there is less, and the segment ends in the corner.
+/// Least share of a segment's length by which it is prolonged into the line that ends it. On a smooth curve
+/// more is possible; segments along it then have equal lengths instead of whole numbers of chords. Behind a
+/// corner less is possible, and the segment ends in the corner.
 const LONGER_SHARE: f64 = 0.1;
-/// Halvings of that line in the search for the place: to a 32nd.
+/// Halvings of that line in the search for the place, which is then known to a 32nd of the line.
 const HALVINGS: u32 = 5;
 
-/// A straight segment that stands for one or more of the path. It begins where the one before it ends.
+/// A straight segment that stands for one or more segments of the path. It begins where the previous one
+/// ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Merged {
     pub(super) to: Point,
-    /// Farthest that a vertex left out is from it, mm; rounded up.
+    /// Greatest distance of a vertex left out, mm; rounded up.
     pub(super) deviation_mm: f32,
     pub(super) pace: Pace,
 }
 
-/// What holds along a line.
+/// The values that hold along a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Pace {
     /// Square of the greatest speed, mm²/s².
@@ -31,11 +33,12 @@ pub(super) struct Pace {
     pub(super) power: u16,
 }
 
-/// Joins segments as long as one straight line is near enough to all their vertices: the greedy form of polyline
-/// simplification (W. E. Reumann, A. P. M. Witkam 1974; here with the distance from the segment itself), with a bounded memory.
+/// Joins segments as long as one straight line is near enough to all their vertices: the greedy form of
+/// polyline simplification (W. E. Reumann, A. P. M. Witkam 1974; here with the distance from the segment
+/// itself), with a bounded memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Merger {
-    /// The vertices from the start on, to the one where the segment ends: ways from the start, mm, which single precision says far
+    /// The vertices from the start to the segment's end, as vectors from the start, mm. `f32` holds them far
     /// better than any tolerance.
     points: [(f32, f32); MOST],
     count: u8,
@@ -44,8 +47,8 @@ pub(super) struct Merger {
 }
 
 impl Merger {
-    /// Takes the line from where the path is, `at`, to `to`. Gives the segment that ends at `at`, if it does. What is in progress
-    /// has begun at `start`; the line itself begins what comes next if nothing was in progress or it ends.
+    /// Takes the line from the end of the path, `at`, to `to`. Gives the segment in progress, which began at
+    /// `start`, if it ends at `at`. The line begins the next segment if there was none or that one ends.
     pub(super) fn push(
         &mut self,
         start: Point,
@@ -94,7 +97,7 @@ impl Merger {
         Some(at + way * found.0)
     }
 
-    /// Ends the segment in progress, where the path is.
+    /// Ends the segment in progress at the end of the path.
     pub(super) fn end(&mut self, at: Point) -> Option<Merged> {
         let Self { deviation_mm, pace, .. } = *self;
         if core::mem::take(&mut self.count) == 0 {
@@ -111,7 +114,7 @@ impl Merger {
         }
     }
 
-    /// How far the vertices are from a segment that ends at `to`; `None` for farther than the tolerance.
+    /// Greatest distance of the vertices from a segment that ends at `to`; `None` beyond the tolerance.
     fn deviation(&self, start: Point, to: Point, tolerance_mm: f64) -> Option<f32> {
         let segment = Segment::new(Point::ORIGIN, Point::ORIGIN + (to - start));
         let mut most2 = 0.0_f64;

@@ -8,7 +8,8 @@
 //!      | block 1 |2 |   3   | 4 |
 //! ```
 //!
-//! [`Planner`] takes [`PlotOp`](crate::PlotOp)s and gives [`Action`]s: stretches of path, and the time law along them.
+//! [`Planner`] takes [`PlotOp`](crate::PlotOp)s and gives [`Action`]s: stretches of path, and the time law
+//! along them.
 
 mod blend;
 mod block;

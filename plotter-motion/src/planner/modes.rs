@@ -5,8 +5,8 @@ use super::{PathMode, PlannerSettings};
 use core::fmt::Debug;
 use core::marker::PhantomData;
 
-/// Which ways of planning a program is built with: [`AllModes`], or [`ExactOnly`] or [`ExactPen`] for a small one. What they can do they
-/// do alike, to the last bit.
+/// Which ways of planning a program is built with: [`AllModes`], or [`ExactOnly`] or [`ExactPen`] for a small
+/// one. What they can do they do alike, to the last bit.
 ///
 /// Nobody else implements it.
 pub trait Modes: sealed::Sealed {
@@ -25,12 +25,13 @@ pub trait Modes: sealed::Sealed {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct AllModes;
 
-/// [`PathMode::Exact`] with constant accelerations and nothing else. The firmware of the stepper plotter takes a quarter less program
-/// memory with it.
+/// [`PathMode::Exact`] with constant accelerations and nothing else. The firmware of the stepper plotter
+/// takes a quarter less program memory with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ExactOnly;
 
-/// [`ExactOnly`], of a machine without a laser. The firmware of the stepper plotter takes another kilobyte less with it.
+/// [`ExactOnly`], of a machine without a laser. The firmware of the stepper plotter takes another kilobyte
+/// less with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ExactPen;
 

@@ -1,4 +1,4 @@
-//! What a planner gives out: [`Action`], [`Course`], [`Phase`].
+//! The output of a planner: [`Action`], [`Course`], [`Phase`].
 
 use super::Modes;
 use crate::{Pen, Point};
@@ -11,11 +11,11 @@ pub enum Shape {
     /// Straight.
     #[default]
     Line,
-    /// About a centre. Where the ends are not equally far from it, the radius changes evenly.
+    /// An arc about a centre. If the ends are not equally far from it, the radius changes linearly.
     Arc {
         /// The centre, mm.
         centre: Point,
-        /// How far round, rad; counter-clockwise above 0.
+        /// The angle swept, rad; positive is counter-clockwise.
         sweep_rad: f32,
     },
     /// A parabola with a control point, the vertex that it rounds: it touches the lines from there to both of
@@ -26,10 +26,10 @@ pub enum Shape {
     },
 }
 
-/// A stretch of path, from where the one before ended.
+/// A stretch of path, from the end of the previous one.
 ///
-/// Places are `f64`, whatever the sheet's size; all else is `f32`, which says it to 6·10⁻⁸ of itself: the length of 10 m to half a
-/// micrometre.
+/// Places are `f64`, for sheets of any size. All else is `f32`, which holds a value to 6·10⁻⁸ of itself: a
+/// length of 10 m to half a micrometre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Course {
     /// Line, arc or parabola.
@@ -42,13 +42,13 @@ pub struct Course {
     pub length_mm: f32,
     /// The pen on it.
     pub pen: Pen,
-    /// Speed that was asked for, mm/s; corners and curves make it slower.
+    /// Requested speed, mm/s; corners and curves make the machine slower.
     pub feed_mm_s: f32,
     /// Power of the laser at that speed, in 65535ths.
     pub laser_power: u16,
 }
 
-/// A time along the course in force, with constant jerk.
+/// A time along the current course, with constant jerk.
 ///
 /// After t seconds of it the speed is v + a t + j t²/2, and the way v t + a t²/2 + j t³/6.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,7 +86,8 @@ impl Phase {
         }
     }
 
-    /// How far it has come after `time_s`, mm, of a planner with these modes: without S-curves there is no jerk.
+    /// Distance from the start of the course after `time_s`, mm, for a planner with these modes: without
+    /// S-curves there is no jerk.
     pub(crate) fn way_mm<M: Modes>(&self, time_s: f32) -> f32 {
         let Self { speed_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j, .. } = *self;
         let t = time_s;
@@ -100,13 +101,13 @@ impl Phase {
     }
 }
 
-/// One thing for the motors to do.
+/// One action of the motors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Action {
-    /// A course begins. Where its pen differs from that of the course before, the machine stands.
+    /// A course begins. If its pen differs from that of the previous course, the machine stands.
     Course(Course),
-    /// So the course goes on. The phases of a course reach its end.
+    /// The next phase of the current course. Its phases reach its end.
     Phase(Phase),
     /// The machine stands for this long.
     Dwell(Duration),

@@ -8,18 +8,21 @@ use super::modes::Modes;
 use crate::extremes::{greatest, least};
 use crate::root::root;
 
-/// Longest phase, s: a feed hold begins to act after that time at the latest. Only where a ramp lasts six years are they longer.
+/// Longest phase, s (47 ms): a feed hold begins to act after this time at the latest. The number is exact in
+/// `f32`, as is its inverse to a last bit. Phases are longer only on a ramp of six years.
 const LONGEST_S: f32 = 3.0 / 64.0;
 const PER_LONGEST: f32 = 1.0 / LONGEST_S;
-/// A shorter part of a block, or a lesser change of speed, as a share, is what rounding leaves between two ramps.
+/// As a share: a shorter part of a block, or a smaller change of speed, is only what rounding leaves between
+/// two ramps. About two last bits of `f32`.
 const ROUNDING: f32 = 2.5e-7;
-/// Squares of speeds that differ less are alike.
+/// As a share: squares of speeds that differ less count as equal. About three last bits of `f32`.
 const ALIKE: f32 = 4e-7;
 
-/// Ramps of a part of a block: up, along, down.
+/// Most ramps of a part of a block: up, along, down.
 const RAMPS: u8 = 3;
 
-/// A time with a constant acceleration: to a place on the block, so far from its end, which is passed with a speed.
+/// A stretch with constant acceleration: the place on the block where it ends, told by its distance from the
+/// block's end, and the speed there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Ramp {
     duration_s: f32,
@@ -28,35 +31,35 @@ struct Ramp {
     speed: f32,
 }
 
-/// Speeding up, cruising, braking: what is left of a block.
+/// The rest of a block: speeding up, cruising, braking.
 ///
-/// An arc is passed in several parts, each with the acceleration that the greatest speed on it leaves: see
-/// [`Law`]. A part is planned when the one before it is over.
+/// An arc is passed in several parts. The greatest speed on a part says which acceleration is left on it: see
+/// [`Law`]. A part is planned when the previous one is over.
 ///
-/// Places are told by what is left of the block behind them, so that they are right to the last bit where the least of it is left: there
-/// a speed is right for no other place.
+/// Places are told by the distance to the block's end. So they are exact to the last bit near the end, where
+/// the speed fits one place only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ramps {
     law: Law,
     length_mm: f32,
-    /// How many parts it has, and how long they are.
+    /// Number and length of its parts.
     parts: u16,
     part_mm: f32,
     cruise2: f32,
-    /// The greatest speed on it.
+    /// The greatest speed on the block.
     cruise: f32,
     /// Square of the speed at its end.
     exit2: f32,
-    /// How much the phases taken so far leave of it, and the speed there.
+    /// Length that the phases taken so far leave, and the speed there.
     rest_mm: f32,
     speed: f32,
-    /// How many phases of the ramp under way are left, and how long each of them is.
+    /// Number of phases left of the current ramp, and the duration of each.
     left: u32,
     phase_s: f32,
-    /// What is to come of the part under way, from `next` on.
+    /// The ramps of the current part; those from `next` on are to come.
     ramps: [Ramp; 3],
     next: u8,
-    /// Whether it stops as soon as it can.
+    /// Whether the machine stops as soon as it can.
     stops: bool,
 }
 
@@ -72,7 +75,7 @@ impl Steepness {
         Self { accel, per_accel: 1.0 / accel }
     }
 
-    /// The way over which the square of a speed changes by so much.
+    /// The distance over which the square of a speed changes by `change2`.
     fn way_mm(self, change2: f32) -> f32 {
         change2 * (0.5 * self.per_accel)
     }
@@ -97,13 +100,14 @@ impl Ramps {
         stops: false,
     };
 
-    /// Begins the next block: the quickest way along it that leaves it with the given square of a speed.
+    /// Begins the next block: the quickest motion along it that leaves it at `exit2`.
     pub(super) fn begin<M: Modes>(&mut self, block: &Block, exit2: f32, limits: &Limits) {
         if !(block.is_path() && block.length() > 0.0 && block.cruise2 > 0.0) {
             *self = Self::OVER;
             return;
         }
-        // Most blocks are entered as the one before was left, and have the same greatest speed.
+        // Most blocks are entered at the speed at which the previous one was left, and have the same greatest
+        // speed.
         if self.exit2 != block.entry2 || self.rest_mm > 0.0 {
             self.speed = root(block.entry2);
         }
@@ -112,7 +116,7 @@ impl Ramps {
         }
         self.law = block.law(limits);
         (self.length_mm, self.rest_mm) = (block.length(), block.length());
-        // Most sharp corners are passed at one speed. An arc may be long: whoever holds the machine wants to
+        // Most sharp corners are passed at one speed. An arc may be long, and a machine that is held should
         // brake harder as it gets slower.
         let cruise2 = block.cruise2;
         let is_even = block.kind == Kind::Parabola && block.entry2 == cruise2 && exit2 == cruise2;
@@ -122,27 +126,27 @@ impl Ramps {
         self.plan_part::<M>(block.entry2);
     }
 
-    /// Plans what is left of the block.
+    /// Plans the rest of the block.
     pub(super) fn plan<M: Modes>(&mut self, exit2: f32) {
         (self.exit2, self.stops) = (exit2, false);
         self.plan_part::<M>(self.speed2());
     }
 
-    /// How many parts are left behind the one under way.
+    /// Number of parts after the current one.
     fn parts_left(&self) -> u16 {
-        /// What their number may have been rounded by.
+        /// Greatest rounding of that number.
         const ROUNDING: f32 = 1e-3;
         if self.parts > 1 { whole(self.rest_mm / self.part_mm - ROUNDING) } else { 0 }
     }
 
-    /// How hard it may be sped up, and braked, on the part with so many behind it.
+    /// How hard the machine may speed up and brake on the part that has `parts_left` parts after it.
     fn laws(&self, parts_left: u16) -> (Law, Law) {
         let before = self.parts.saturating_sub(1).saturating_sub(parts_left);
         (self.law.on_part(before, self.parts), self.law.on_part(parts_left, self.parts))
     }
 
-    /// Square of the greatest speed with which the last so many parts can be entered, for who leaves the
-    /// block as it should be.
+    /// Square of the greatest speed at which the last `parts` parts can be entered, if the block is left as
+    /// planned.
     fn before2(&self, parts: u16) -> f32 {
         let mut speed2 = self.exit2;
         for part in 0..parts {
@@ -154,7 +158,7 @@ impl Ramps {
         speed2
     }
 
-    /// Square of the greatest speed with which the block can be left.
+    /// Square of the greatest speed at which the block can be left.
     pub(super) fn most_exit2(&self) -> f32 {
         let left = self.parts_left();
         let mut way_mm = self.rest_mm - f32::from(left) * self.part_mm;
@@ -169,7 +173,7 @@ impl Ramps {
         speed2
     }
 
-    /// Plans the part that begins here, with this square of a speed.
+    /// Plans the part that begins here, entered at `entry2`.
     fn plan_part<M: Modes>(&mut self, entry2: f32) {
         let (left, cruise2) = (self.parts_left(), self.cruise2);
         let end_mm = f32::from(left) * self.part_mm;
@@ -178,7 +182,7 @@ impl Ramps {
         let exit2 = if left > 0 {
             let most2 = least(self.before2(left), cruise2);
             if entry2 > cruise2 {
-                // The greatest speed has become less meanwhile.
+                // The greatest speed was lowered meanwhile.
                 greatest(most2, entry2 - 2.0 * laws.1.accel_at(entry2) * way_mm)
             } else {
                 least(most2, laws.0.reach2(entry2, way_mm))
@@ -188,13 +192,13 @@ impl Ramps {
         };
         let exit = if exit2 == cruise2 { self.cruise } else { root(exit2) };
         self.begin_anew();
-        // By another share of the speed: that comes first.
+        // An override has lowered the speed: braking to it comes first.
         if M::ALL && entry2 > cruise2 * (1.0 + ALIKE) {
             self.plan_down(entry2, (exit2, exit), end_mm, laws.1);
         } else {
             self.plan_up(entry2, (exit2, exit), end_mm, laws);
         }
-        // Whatever rounding has left out, the part ends where and as it should.
+        // Whatever was rounded, the part ends at its place and speed.
         if self.has_none() {
             (self.rest_mm, self.speed) = (end_mm, exit);
         } else if let Some(last) = self.ramps.last_mut() {
@@ -202,11 +206,11 @@ impl Ramps {
         }
     }
 
-    /// From a square of a speed to another speed, of which both the square and the root are given.
+    /// From one speed, given by its square, to another, given by its square and its root.
     fn plan_up(&mut self, entry2: f32, (exit2, exit): (f32, f32), end_mm: f32, (up, down): (Law, Law)) {
         let (rest_mm, cruise2) = (self.rest_mm, self.cruise2);
         let way_mm = rest_mm - end_mm;
-        // Where speeding up and braking meet, for the stricter of both.
+        // The place where speeding up and braking meet, for the stricter of both laws.
         let law = up.stricter(down);
         let peak2 = law.reach2(0.5 * (entry2 + exit2), 0.5 * way_mm);
         let faster2 = greatest(entry2, exit2);
@@ -216,7 +220,7 @@ impl Ramps {
             return self.put_through(exit, end_mm, Steepness::new(law.accel_at(faster2)));
         }
         let steepness = Steepness::new(law.accel_at(least(peak2, cruise2)));
-        // By rounding one end may be faster than the cruise.
+        // Rounding may make one end faster than the cruise.
         let down_mm = steepness.way_mm(greatest(cruise2 - exit2, 0.0));
         let up_mm = steepness.way_mm(greatest(cruise2 - entry2, 0.0));
         let cruise_mm = way_mm - down_mm - up_mm;
@@ -229,8 +233,8 @@ impl Ramps {
         let (peak2, peak) = if peak2 >= cruise2 { (cruise2, self.cruise) } else { (peak2, root(peak2)) };
         let split = match law {
             Law::Line(_) => steepness,
-            // What is left along a curve where it is fast is known to some hundred thousandths: from the way
-            // that there is.
+            // On a fast curve the acceleration is known only to some hundred thousandths, so the time comes
+            // from the distance.
             _ => Steepness::new((2.0 * peak2 - entry2 - exit2) / (2.0 * way_mm)),
         };
         let up_mm = least(greatest(split.way_mm(peak2 - entry2), 0.0), way_mm);
@@ -238,7 +242,8 @@ impl Ramps {
         self.put_ramp(up_mm, rest_mm - up_mm, (self.speed, peak), steepness);
     }
 
-    /// From a speed above the greatest one: brakes to that, goes on with it, and brakes for the end; or brakes all the way.
+    /// From a speed above the greatest one: brakes to that, keeps it, and brakes for the end, or brakes all
+    /// the way.
     fn plan_down(&mut self, entry2: f32, (exit2, exit): (f32, f32), end_mm: f32, down: Law) {
         let (rest_mm, cruise2) = (self.rest_mm, self.cruise2);
         let steepness = Steepness::new(down.accel_at(entry2));
@@ -258,19 +263,19 @@ impl Ramps {
         (self.left, self.next) = (0, RAMPS);
     }
 
-    /// Another greatest speed holds on what is left of the block.
+    /// Another greatest speed holds on the rest of the block.
     pub(super) fn cruise_at(&mut self, cruise2: f32) {
         (self.cruise2, self.cruise) = (cruise2, root(cruise2));
     }
 
-    /// Whether a part of what is left of the block is longer than what rounding leaves.
+    /// Whether a distance is more than rounding leaves of the rest of the block.
     fn counts(&self, way_mm: f32) -> bool {
         way_mm > ROUNDING * self.rest_mm
     }
 
-    /// Puts a change of speed all the way to the end of the part: a little less hard than could be, and never
-    /// harder. Where rounding would have it so, the place is left some last bits of the braking way before
-    /// the end, or after it.
+    /// Puts a change of speed all the way to the end of the part, a little less hard than allowed and never
+    /// harder. If rounding asks for it, the ramp ends some last bits of the braking distance before or after
+    /// that end.
     fn put_through(&mut self, exit: f32, end_mm: f32, steepness: Steepness) {
         let change = exit - self.speed;
         let even_s = self.even_s(self.rest_mm - end_mm, (self.speed, exit));
@@ -283,17 +288,17 @@ impl Ramps {
         }
     }
 
-    /// The time for a way along which the speed changes evenly.
+    /// The time for a distance along which the speed changes linearly.
     fn even_s(&self, way_mm: f32, (from, speed): (f32, f32)) -> f32 {
         2.0 * way_mm / (from + speed)
     }
 
-    /// The same on a curve. A change as small as rounding may take all of a part there: its way is known
-    /// better than its acceleration. Only of a time so short that rounding makes more than a thousandth of an
-    /// acceleration the latter holds.
+    /// The same on a curve. There a change as small as rounding may take a whole part, and its distance is
+    /// known better than its acceleration. The acceleration is used only if the time is so short that
+    /// rounding would change the acceleration by more than a thousandth.
     fn curve_s(&self, way_mm: f32, (from, speed): (f32, f32), steepness: Steepness) -> f32 {
-        /// Share of the time for all of the speed, and of what is left of the block: the last bits of two of
-        /// them, a thousand times.
+        /// As a share of the time for the whole speed, and of the rest of the block: a thousand times the
+        /// last bits of two `f32`.
         const SHORT: f32 = 1.2e-4;
         let even_s = self.even_s(way_mm, (from, speed));
         let is_long = even_s * self.law.accel_at(0.0) > SHORT * greatest(from, speed);
@@ -304,8 +309,8 @@ impl Ramps {
         }
     }
 
-    /// Puts a change of speed at full acceleration before those put so far: along so much of the block, to a
-    /// place with so much left of it.
+    /// Puts a change of speed at full acceleration before the ramps put so far: `way_mm` long, to a place
+    /// `rest_mm` before the block's end.
     fn put_ramp(&mut self, way_mm: f32, rest_mm: f32, (from, speed): (f32, f32), steepness: Steepness) {
         let change = speed - from;
         let changes = change.abs() > ROUNDING * greatest(from, speed);
@@ -321,7 +326,7 @@ impl Ramps {
         }
     }
 
-    /// Puts a way at the greatest speed before those put so far.
+    /// Puts a stretch at the greatest speed before the ramps put so far.
     fn put_cruise(&mut self, way_mm: f32, rest_mm: f32) {
         if self.counts(way_mm) {
             self.put(Ramp { duration_s: way_mm / self.cruise, accel: 0.0, rest_mm, speed: self.cruise });
@@ -335,7 +340,7 @@ impl Ramps {
         }
     }
 
-    /// Plans to stop as soon as can be: where the block is too short for that, to leave it with this square of a speed.
+    /// Plans to stop as soon as possible. If the block is too short for that, it is left at `exit2`.
     pub(super) fn brake(&mut self, exit2: f32) {
         (self.exit2, self.stops) = (exit2, true);
         self.brake_part();
@@ -362,7 +367,8 @@ impl Ramps {
         }
     }
 
-    /// Square of the speed at the end of the block, however hard it brakes from here on: no more than was planned, whatever the rounding.
+    /// Square of the speed at the end of the block if the machine brakes as hard as it can from here on.
+    /// Rounding never makes it more than was planned.
     pub(super) fn forced2(&self) -> f32 {
         let left = self.parts_left();
         let mut way_mm = self.rest_mm - f32::from(left) * self.part_mm;
@@ -382,7 +388,7 @@ impl Ramps {
         self.speed * self.speed
     }
 
-    /// How much of the block is left.
+    /// Length that is left of the block.
     pub(super) const fn rest_mm(&self) -> f32 {
         self.rest_mm
     }
@@ -392,12 +398,12 @@ impl Ramps {
         self.next >= RAMPS
     }
 
-    /// Whether no phase is left, be it that the machine was held in the middle.
+    /// Whether no phase is left, also because the machine was held in the middle.
     pub(super) fn is_over(&self) -> bool {
         self.has_none() && (self.rest_mm <= 0.0 || (self.stops && self.speed <= 0.0))
     }
 
-    /// The ramp under way: that of the next part, if the one before is over.
+    /// The current ramp: the first one of the next part, if the previous part is over.
     fn ramp<M: Modes>(&mut self) -> Option<Ramp> {
         while self.has_none() {
             if self.is_over() {
@@ -410,14 +416,15 @@ impl Ramps {
                 self.plan_part::<M>(self.speed2());
             }
             if self.has_none() && self.rest_mm >= rest_mm && self.speed2() >= speed2 {
-                // Nothing of it can be passed.
+                // The machine can pass none of it.
                 self.rest_mm = 0.0;
             }
         }
         self.ramps.get(usize::from(self.next)).copied()
     }
 
-    /// The next phase. Those of a ramp are alike, and what is left of it is told by their number: nothing adds up, and it ends.
+    /// The next phase. All phases of a ramp are alike, and the rest of the ramp is told by their number, so
+    /// no rounding adds up and the ramp ends.
     pub(super) fn next<M: Modes>(&mut self) -> Option<Phase> {
         let ramp = self.ramp::<M>()?;
         let phase = self.phase(&ramp);
@@ -432,7 +439,7 @@ impl Ramps {
         Some(phase)
     }
 
-    /// The next phase, and how many like it are left of the ramp, with it: all of them are taken.
+    /// The next phase, and how many like it are left of the ramp, this one included. All of them are taken.
     pub(super) fn next_whole<M: Modes>(&mut self) -> Option<(Phase, u32)> {
         let ramp = self.ramp::<M>()?;
         let phase = self.phase(&ramp);
@@ -442,7 +449,7 @@ impl Ramps {
         Some((phase, count))
     }
 
-    /// The next phase of the ramp under way.
+    /// The next phase of the current ramp.
     fn phase(&mut self, ramp: &Ramp) -> Phase {
         if self.left == 0 {
             self.left = phases(ramp.duration_s);
@@ -458,14 +465,14 @@ impl Ramps {
     }
 }
 
-/// The whole number below a number of at most a few dozens; 0 for what is less than that.
+/// The whole number below a number of at most some dozens; 0 for negative ones.
 fn whole(number: f32) -> u16 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
     let whole = number as u16;
     whole
 }
 
-/// How many phases a time is, at least one; no more than a `u32` counts.
+/// How many phases a time takes: at least one, at most what a `u32` counts.
 fn phases(duration_s: f32) -> u32 {
     #[expect(
         clippy::cast_possible_truncation,
@@ -476,7 +483,7 @@ fn phases(duration_s: f32) -> u32 {
     whole.saturating_add(1)
 }
 
-/// To the last bit of an `f32`.
+/// Exact to the last bit of an `f32`.
 #[expect(clippy::cast_precision_loss, reason = "as it says")]
 fn number(phases: u32) -> f32 {
     phases as f32

@@ -8,15 +8,15 @@ use crate::geom::single;
 
 /// The blocks that are known ahead.
 ///
-/// Whatever it holds, the machine can stop at its end: the speed after the last block is 0. A backward pass keeps the
-/// braking, a forward pass the speeding up. Blocks before `planned` are as fast as they will ever be and are not looked at
-/// again.
+/// The machine can always stop at the end of the ring: the speed after the last block is 0. A backward pass
+/// keeps the limits of braking, a forward pass those of speeding up. Blocks before `planned` cannot become
+/// faster and are not planned again.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ring<const N: usize> {
     blocks: [Block; N],
     head: usize,
     len: usize,
-    /// How many blocks from the head have an entry speed that nothing to come can raise.
+    /// Number of blocks from the head whose entry speed no later block can raise.
     planned: usize,
 }
 
@@ -61,7 +61,7 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// Takes the head away: the next one's entry speed stands from here on.
+    /// Removes the head. The entry speed of the next block is final from here on.
     pub(super) fn pop(&mut self) {
         if self.len > 0 {
             self.head = self.slot(1);
@@ -74,18 +74,18 @@ impl<const N: usize> Ring<N> {
         (self.len, self.planned) = (0, 0);
     }
 
-    /// Whether the block after the head has an entry speed that nothing to come can raise: what has come since it was planned makes no
-    /// difference to it.
+    /// Whether the entry speed of the block after the head is final: blocks that were added since it was
+    /// planned do not change it.
     pub(super) const fn next_is_settled(&self) -> bool {
         self.planned > 0
     }
 
-    /// Plans anew after a change at the end; the head's entry speed stands.
+    /// Plans again after a change at the end. The head's entry speed stays.
     pub(super) fn plan(&mut self, limits: &Limits) {
         let first = self.planned.max(1);
         let mut exit2 = Sum::default();
         let mut index = self.len;
-        // The last block whose corner is what limits it, so far backwards.
+        // The last block, going backwards, that is limited by its corner.
         let mut last_limited = None;
         while index > first {
             index -= 1;
@@ -108,15 +108,16 @@ impl<const N: usize> Ring<N> {
             if settled {
                 self.planned = index;
             } else if last_limited.is_none_or(|last| index > last) {
-                // From here on it brakes for the end: each block is entered no faster than the one before it.
+                // From here on the machine brakes for the end: each block is entered no faster than the
+                // previous one.
                 break;
             }
         }
     }
 
-    /// Other shares of the speeds that were asked for hold. `before2` is the square of the greatest speed on what comes before
-    /// the head, `forced2` that with which the head is entered however hard the machine brakes from now on. Gives the
-    /// square of the greatest speed on the last block.
+    /// Other shares of the speeds that were asked for hold. `before2` is the square of the greatest speed on
+    /// what comes before the head, `forced2` that with which the head is entered however hard the machine
+    /// brakes from now on. Gives the square of the greatest speed on the last block.
     pub(super) fn rescale(&mut self, shares: &Shares, limits: &Limits, before2: f32, forced2: f32) -> f32 {
         let (mut before2, mut forced2) = (before2, forced2);
         for index in 0..self.len {
@@ -137,7 +138,7 @@ impl<const N: usize> Ring<N> {
         before2
     }
 
-    /// Plans anew with a head that is entered with exactly this square of a speed.
+    /// Plans again, with the head entered at exactly this speed, given by its square.
     pub(super) fn enter_with(&mut self, entry2: f32, limits: &Limits) {
         if let Some(head) = self.get_mut(0) {
             head.entry2 = entry2;
@@ -146,7 +147,8 @@ impl<const N: usize> Ring<N> {
         self.plan(limits);
     }
 
-    /// Plans anew with a head that is entered with no more than this square of a speed; gives the one with which it is.
+    /// Plans anew with a head that is entered with no more than this square of a speed; gives the one with
+    /// which it is.
     pub(super) fn enter_at_most(&mut self, most2: f32, limits: &Limits) -> f32 {
         // What can be braked from within the blocks known, backwards.
         let mut entry2 = Sum::default();
@@ -164,7 +166,7 @@ impl<const N: usize> Ring<N> {
     }
 }
 
-/// Square of the greatest speed at which a block may be entered that is left with the given one.
+/// Square of the greatest speed at which a block may be entered if it is left at the given one.
 fn before(exit2: Sum, block: &Block, limits: &Limits) -> Sum {
     let entry2 = match block.even_reach2() {
         Some(reach2) => exit2.plus(reach2),
@@ -177,7 +179,7 @@ fn before(exit2: Sum, block: &Block, limits: &Limits) -> Sum {
 fn after2(block: &Block, limits: &Limits) -> f32 {
     match block.even_reach2() {
         Some(reach2) => sum_down(block.entry2, reach2),
-        // Faster than its cruise it is only if it was told to be slower meanwhile.
+        // It is faster than its cruise only if it was slowed down meanwhile.
         None if block.entry2 >= block.cruise2 => block.reach2(block.entry2, f32::INFINITY, limits),
         None => block.reach2(block.entry2, block.cruise2, limits),
     }
@@ -227,7 +229,8 @@ mod tests {
     }
 
     proptest! {
-        /// However many blocks have come since it was planned, and whether it is planned for each of them or only when it must be.
+        /// However many blocks have come since it was planned, and whether it is planned for each of them or
+        /// only when it must be.
         #[test]
         fn the_next_speed_is_the_one_of_all_that_is_known(
             rows in prop::collection::vec((0.001_f32..5.0, prop_oneof![1 => Just(0.0), 3 => 0.0_f32..1e4, 3 => Just(1e4_f32)], 0_usize..3), 1..200),

@@ -24,13 +24,16 @@ use crate::{Point, Vec2};
 
 /// Share of the path tolerance that vertices may be left out for; corners are rounded within the rest.
 pub(super) const MERGED_SHARE: f64 = 0.5;
-/// Share of the path tolerance that the chords of an arc may be from it.
+/// Greatest distance of an arc's chords from the arc, as a share of the path tolerance: small beside the half
+/// of [`MERGED_SHARE`], so that arcs lose little of the rest.
 pub(super) const CHORD_SHARE: f64 = 1.0 / 32.0;
-/// A line that is shorter is left out between two curves, mm.
+/// Shortest line between two curves, mm: a shorter one is rounding of places up to a kilometre, and is left
+/// out.
 pub(super) const SHORTEST_MM: f64 = 1e-9;
-/// A corner is moved outwards by at most the tolerance over this.
+/// A corner is moved outwards by at most the tolerance divided by this, so by twice the tolerance.
 const LEAST_LEVEL: f64 = 0.5;
-/// How often it is tried half as far, where there is no room for the curve to come back to the corner.
+/// How often half the move is tried if the curve has no room to come back to the corner: down to a 16th of
+/// it.
 const TRIALS: u32 = 4;
 /// What a level is multiplied by for the share of the tolerance that a corner takes: all of it for turns of
 /// up to 151 degrees, none for a way straight back, which is drawn to its end. There is nothing to gain there

@@ -1,37 +1,40 @@
 //! [`SCurveState`]: jerk-limited motion through the blocks ahead.
 //!
-//! The speeds that corners and curves allow are points that the motion must not pass too fast. A state of motion (speed and
-//! acceleration) is *viable* if the hardest braking within acceleration and jerk would still be in time for each of them. From one
-//! short time to the next the motion takes the greatest jerk whose outcome is viable: so it speeds up as long as it may, and brakes as
-//! late as it must, whatever the lengths of the blocks.
+//! The speeds that corners and curves allow are points that the motion must not pass too fast. A state of
+//! motion (speed and acceleration) is *viable* if the hardest braking within acceleration and jerk would
+//! still be in time for each of them. From one short time to the next the motion takes the greatest jerk
+//! whose outcome is viable: so it speeds up as long as it may, and brakes as late as it must, whatever the
+//! lengths of the blocks.
 
 use super::Phase;
 use super::ring::Ring;
 use crate::geom::single;
 use crate::{MotionLimits, profile::SCurve};
 
-/// Longest phase, s.
+/// Longest phase, s (47 ms): a feed hold begins to act after this time at the latest, as with trapezoids.
 const LONGEST_S: f64 = 3.0 / 64.0;
-/// Parts of the time from no acceleration to the greatest, for each of which a jerk is chosen.
+/// Parts of the time from no acceleration to the greatest. A jerk is chosen for each part.
 const PARTS: f64 = 32.0;
 /// Shortest part, s: with great jerks the motion is nearly a trapezoid, and finer parts would only be more.
 const SHORTEST_S: f64 = 0.000_2;
 /// How much longer a part may be while nothing lies in the way: tried in this order.
 const LONGER: [f64; 4] = [64.0, 16.0, 4.0, 1.0];
-/// Halvings of the range of jerks in the search for the greatest viable one.
+/// Halvings of the range of jerks in the search for the greatest viable one: to 6e-8 of the range, as fine as
+/// `f32`.
 const HALVINGS: u32 = 24;
-/// How much too late a braking may be by rounding, mm.
+/// Distance by which rounding may make a braking end too late, mm: `f64` holds a block of a kilometre to a
+/// tenth of it.
 const SLACK_MM: f64 = 1e-9;
-/// A braking that ends no farther than this from where it should is begun as a whole, mm.
+/// A braking that ends this near to its place is begun as a whole, mm: a nanometre, below any motor's step.
 const TIGHT_MM: f64 = 1e-6;
-/// What is left of a block when it counts as done, mm.
+/// A block with less than this left is done, mm: as [`SLACK_MM`].
 const DONE_MM: f64 = 1e-9;
-/// A phase that is no longer than this is rounding, s.
+/// A phase no longer than this is rounding, s: a thousandth of a tick of a microsecond.
 const SHORTEST_PHASE_S: f64 = 1e-9;
 /// The acceleration rises to its greatest in no less than this, s, whatever jerk is allowed: a thousand of
 /// the phases above.
 const SHORTEST_RISE_S: f64 = 1e-6;
-/// Slower than this is a standstill, mm/s.
+/// A lower speed is a standstill, mm/s: four orders below the least limit that is planned with.
 const STANDSTILL_MM_S: f64 = 1e-7;
 
 /// The limits along the path.
@@ -81,7 +84,8 @@ impl State {
         speed + if accel > 0.0 { 0.5 * accel * accel / limits.jerk } else { 0.0 }
     }
 
-    /// Jerk and time, s, of the next phase of the quickest way to the cruising speed; none if it would go beyond it.
+    /// Jerk and time, s, of the next phase of the quickest way to the cruising speed; none if it would go
+    /// beyond it.
     fn next_to_cruise(self, cruise: f64, limits: Limits) -> Option<(f64, f64)> {
         if self.cruises(cruise, limits) {
             return None;
@@ -111,7 +115,8 @@ impl State {
         self.accel.abs() <= 1e-9 * limits.accel && self.speed >= cruise * (1.0 - 1e-9)
     }
 
-    /// The hardest braking to a speed with no acceleration left; none if that speed is not exceeded in any case.
+    /// The hardest braking to a speed with no acceleration left; none if that speed is not exceeded in any
+    /// case.
     fn braking(self, to: f64, limits: Limits) -> Braking {
         let Self { speed, accel } = self;
         let Limits { accel: most, jerk } = limits;
@@ -148,7 +153,8 @@ impl State {
     }
 }
 
-/// The speeds that are allowed ahead: the first `count` places with their distance from the present one, mm and mm/s.
+/// The speeds that are allowed ahead: the first `count` places with their distance from the present one, mm
+/// and mm/s.
 #[derive(Clone, Copy, Debug)]
 struct Ahead<const N: usize> {
     places: [(f64, f64); N],
@@ -183,10 +189,10 @@ impl<const N: usize> Ahead<N> {
         self.places.get(..self.count).unwrap_or(&[])
     }
 
-    /// Leaves out the places that a state keeps with room to spare: every state that is slower, has less acceleration and has not come so far
-    /// keeps them too, for all of its brakings are shorter.
+    /// Leaves out the places that a state keeps with room to spare: every state that is slower, has less
+    /// acceleration and has not come so far keeps them too, for all of its brakings are shorter.
     fn leave_out_kept(&mut self, state: State, way_mm: f64, limits: Limits) {
-        /// Share of a speed, and a way, mm, that are far more than what rounding makes of them.
+        /// Margins, as a share of a speed and as a distance in mm, far above the rounding of either.
         const SPARE: f64 = 1e-9;
         const SPARE_MM: f64 = 1e-6;
         let peak = state.peak(limits);
@@ -248,7 +254,8 @@ enum Chosen {
 }
 
 impl Chosen {
-    /// The phase after so many: its jerk and its length; and the speed at the end of the block, if it goes there.
+    /// The phase after so many: its jerk and its length; and the speed at the end of the block, if it goes
+    /// there.
     fn phase(&self, taken: usize, jerk: f64) -> Option<(f64, f64)> {
         match *self {
             Self::None => None,
@@ -430,7 +437,8 @@ impl SCurveState {
         {
             return phase;
         }
-        // The quickest way to full speed, as long as nothing has to be braked for at the end of its next phase.
+        // The quickest way to full speed, as long as nothing has to be braked for at the end of its next
+        // phase.
         if let Some((jerk, time_s)) = state.next_to_cruise(ahead.cruise, limits) {
             let (after, way_mm) = state.after(jerk, time_s);
             if way_mm <= rest_mm && ahead.is_viable(after, way_mm, limits) {

@@ -11,11 +11,12 @@ use crate::{
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum PathMode {
-    /// Through every vertex, give or take [`PlannerSettings::allowance_mm`]. Corners are taken at the speed of junction deviation.
+    /// Through every vertex, give or take [`PlannerSettings::allowance_mm`]. Corners are taken at the speed
+    /// of junction deviation.
     #[default]
     Exact,
-    /// Corners become arcs, and vertices that are not needed are left out, so that no place of the path is farther than this
-    /// from what was asked for, mm.
+    /// Corners become arcs, and vertices that are not needed are left out, so that no place of the path is
+    /// farther than this from what was asked for, mm.
     Tolerance {
         /// Greatest distance either way, mm; above 0.
         path_tolerance_mm: f64,
@@ -87,20 +88,21 @@ pub struct PlannerSettings {
     /// What that is a limit of. It holds at every instant but in a corner of [`PathMode::Exact`], which is a
     /// jump of the velocity.
     pub accel_limit: AccelLimit,
-    /// Greatest jerk along the path, mm/s³; `None` lets the acceleration change at once (trapezoidal profiles), a limit makes
-    /// them S-curves. As a vector the jerk is not limited: the acceleration across begins and ends at once
-    /// with a curve. With a limit 0.9 of the acceleration is used along the path in exact mode and 0.7 within
-    /// a tolerance; what that leaves is for turning.
+    /// Greatest jerk along the path, mm/s³; `None` lets the acceleration change at once (trapezoidal
+    /// profiles), a limit makes them S-curves. As a vector the jerk is not limited: the acceleration across
+    /// begins and ends at once with a curve. With a limit 0.9 of the acceleration is used along the path in
+    /// exact mode and 0.7 within a tolerance; what that leaves is for turning.
     pub jerk_mm_s3: Option<f64>,
-    /// How far a machine that rounds a corner by itself may miss its vertex, mm: see [`junction_speed`](super::junction_speed).
+    /// How far a machine that rounds a corner by itself may miss its vertex, mm: see
+    /// [`junction_speed`](super::junction_speed).
     pub junction_deviation_mm: f64,
-    /// Vertices nearer than this to the one before are left out unless they end a stroke, mm; 0 keeps all. Half a step is what a
-    /// motor cannot tell apart.
+    /// Vertices nearer than this to the one before are left out unless they end a stroke, mm; 0 keeps all.
+    /// Half a step is what a motor cannot tell apart.
     pub resolution_mm: f64,
-    /// How far a vertex may be missed in exact mode because it is known no better, mm: half of the last digit that its file writes, or a
-    /// motor step, whichever is greater. Within it one arc stands for vertices that are noise to it; what is more is a corner. Less than
-    /// a nanometre, as 0, takes every vertex as it is. [`ExactOnly`](super::ExactOnly) and [`ExactPen`](super::ExactPen) do that
-    /// whatever it is.
+    /// How far a vertex may be missed in exact mode because it is known no better, mm: half of the last digit
+    /// that its file writes, or a motor step, whichever is greater. Within it one arc stands for vertices
+    /// that are noise to it; what is more is a corner. Less than a nanometre, as 0, takes every vertex as it
+    /// is. [`ExactOnly`](super::ExactOnly) and [`ExactPen`](super::ExactPen) do that whatever it is.
     pub allowance_mm: f64,
 }
 
@@ -138,9 +140,10 @@ crate::checked_serde::checked_deserialize!(
 
 /// Least and greatest limit that a motion is planned with: a micrometre a second to ten kilometres a second.
 const LIMITS: (f64, f64) = (1e-3, 1e7);
-/// Greatest jerk, mm/s³.
+/// Greatest jerk, mm/s³: a motion with it is a trapezoid for any machine.
 const MOST_JERK: f64 = 1e12;
-/// Least and greatest tolerance, mm.
+/// Least and greatest tolerance, mm: a nanometre, below any motor's step, and a metre, beyond any drawing's
+/// detail.
 pub(super) const LEAST_TOLERANCE_MM: f64 = 1e-6;
 const MOST_TOLERANCE_MM: f64 = 1e3;
 
@@ -177,8 +180,9 @@ impl PlannerSettings {
         }
     }
 
-    /// The same for a drawing whose file writes places to `digit_mm`: half of that is the allowance, where it is more than the machine's.
-    /// Of a digit of more than 0.1 mm half of 0.1 mm is: who writes whole millimetres means corners.
+    /// The same for a drawing whose file writes places to `digit_mm`: half of that is the allowance, where it
+    /// is more than the machine's. Of a digit of more than 0.1 mm half of 0.1 mm is: who writes whole
+    /// millimetres means corners.
     ///
     /// ```
     /// # use plotter_motion::{Machine, MachineConfig, PlannerSettings};
@@ -190,7 +194,7 @@ impl PlannerSettings {
     /// ```
     #[must_use]
     pub fn for_digits_of(self, digit_mm: f64) -> Self {
-        /// Greatest digit that is taken for rounding, mm.
+        /// Greatest last digit that counts as rounding, mm. Of a coarser one only this much is allowed for.
         const MOST_DIGIT_MM: f64 = 0.1;
         let half_mm = if digit_mm > 0.0 { 0.5 * digit_mm.min(MOST_DIGIT_MM) } else { 0.0 };
         Self { allowance_mm: self.allowance_mm.max(half_mm), ..self }

@@ -29,9 +29,9 @@ pub(super) struct Way {
 
 impl Way {
     pub(super) fn new(way: Vec2Single) -> Self {
-        /// Shorter ways have squares with few bits, mm².
+        /// Squares below this may have too few bits in `f32`, mm²: those of lengths below 1e-12 mm.
         const LEAST_SQUARE: f32 = 1e-24;
-        /// By how much they are longer for it.
+        /// Factor for such short vectors: the shortest, of 1e-45 mm, becomes 1e-30 mm.
         const LONGER: f32 = 1e15;
         let square = way.dot(way);
         if square >= LEAST_SQUARE {

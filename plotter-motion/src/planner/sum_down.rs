@@ -5,7 +5,8 @@ use crate::extremes::least;
 #[cfg(not(target_os = "none"))]
 use crate::geom::single;
 
-/// The sum of two numbers not below 0, rounded down to an `f32`: what the rounding added is found without error.
+/// The sum of two numbers not below 0, rounded down to an `f32`: what the rounding added is found without
+/// error.
 ///
 /// Source: D. E. Knuth, "The Art of Computer Programming", volume 2, section 4.2.2, theorem B.
 pub(super) fn sum_down(a: f32, b: f32) -> f32 {
@@ -17,8 +18,9 @@ pub(super) fn sum_down(a: f32, b: f32) -> f32 {
 
 /// A square of a speed to which others are added one by one, each time with the outcome of [`sum_down`].
 ///
-/// Where `f64` is in hardware, a row of them takes a third of the time: the sum of two `f32`s of like size is exact in it, and what a
-/// lesser one adds to a far greater one is cut off, as are the bits that an `f32` does not have.
+/// Where `f64` is in hardware, a row of them takes a third of the time: the sum of two `f32`s of like size is
+/// exact in it, and what a lesser one adds to a far greater one is cut off, as are the bits that an `f32`
+/// does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Sum(#[cfg(target_os = "none")] f32, #[cfg(not(target_os = "none"))] f64);
 

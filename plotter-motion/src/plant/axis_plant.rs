@@ -14,9 +14,9 @@ use core::f64::consts::TAU;
 ///
 /// Friction is Coulomb's: constant against the motion, and at rest as much as is needed up to the static
 /// friction. The voltage is the mean of the pulse width modulation, `duty * supply` in whole steps of the
-/// timer, as in the thesis' transfer function (spec 1.8); or pulse by pulse, where they are on the bridge's
-/// enable pin ([`MotorConfig::enable_pwm_hz`](crate::config::MotorConfig::enable_pwm_hz)) and the motor
-/// coasts in between.
+/// timer, as in the transfer function of Öcal's thesis (section 4.6.1); or pulse by pulse, where they are on
+/// the bridge's enable pin ([`MotorConfig::enable_pwm_hz`](crate::config::MotorConfig::enable_pwm_hz)) and
+/// the motor coasts in between.
 ///
 /// Positions are counted as the encoder counts them, with the shaft in the middle of the interval that
 /// belongs to count 0 at the start (see [`Decoding::rest_offset_counts`]).
@@ -85,9 +85,9 @@ pub struct PhaseChange {
 }
 
 impl AxisPlant {
-    /// An axis at rest, over steps of `dt_s`: 1 us to 1 ms suit small motors. The axis must be one of a checked
-    /// [`Machine`](crate::Machine). In a step in which its shaft would turn by more than 10,000 quarters of a
-    /// period it stands still.
+    /// An axis at rest, over steps of `dt_s`: 1 us to 1 ms suit small motors. The axis must be one of a
+    /// checked [`Machine`](crate::Machine). In a step in which its shaft would turn by more than 10,000
+    /// quarters of a period it stands still.
     #[must_use]
     pub fn new(config: &AxisConfig, dt_s: f64) -> Self {
         let quarters_per_rad = f64::from(config.encoder.lines_per_turn) * 4.0 / TAU;
@@ -138,8 +138,9 @@ impl AxisPlant {
             - f64::from(decoding.rest_offset_counts())
     }
 
-    /// By how many whole counts `count` is wrong about where the shaft truly stands: 0 for one that a decoder may rightly have, which
-    /// with x1 may be either of two, as the edge of a count backwards lies half a count beyond that forwards.
+    /// By how many whole counts `count` is wrong about where the shaft truly stands: 0 for one that a decoder
+    /// may rightly have, which with x1 may be either of two, as the edge of a count backwards lies half a
+    /// count beyond that forwards.
     ///
     /// ```
     /// # use plotter_motion::{config::AxisConfig, plant::AxisPlant};
@@ -149,7 +150,8 @@ impl AxisPlant {
     #[must_use]
     pub fn counts_from(&self, count: i32) -> u32 {
         let decoding = self.config.encoder.decoding;
-        // The places of a count reach so far on both sides of where a shaft rests in it: x1 -0.5 to 1.0 about 0.25, else 0 to 1 about 0.5.
+        // The places of a count reach so far on both sides of where a shaft rests in it: x1 -0.5 to 1.0 about
+        // 0.25, else 0 to 1 about 0.5.
         let reach = match decoding {
             Decoding::X1 => 0.75,
             Decoding::X2 | Decoding::X4 => 0.5,
@@ -231,8 +233,8 @@ impl AxisPlant {
         self.decoder = decoder;
     }
 
-    /// As [`step`](Self::step), for a decoder elsewhere: `change` is told of every change on the encoder's pins, in
-    /// order, and nothing is counted here.
+    /// As [`step`](Self::step), for a decoder elsewhere: `change` is told of every change on the encoder's
+    /// pins, in order, and nothing is counted here.
     pub fn turn(&mut self, duty: Duty, mut change: impl FnMut(PhaseChange)) {
         let cuts = self.cuts;
         for cut in 0..cuts {

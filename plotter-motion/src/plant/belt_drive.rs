@@ -24,8 +24,8 @@ pub struct BeltDriveState {
     pub carriage_mm: f64,
 }
 
-/// Their equations over one fixed time step: exact for a voltage and friction held over the step, whether the belt pulls or
-/// the motor crosses the play; so the stiffest belt cannot become unstable.
+/// Their equations over one fixed time step: exact for a voltage and friction held over the step, whether the
+/// belt pulls or the motor crosses the play; so the stiffest belt cannot become unstable.
 ///
 /// ```
 /// # use plotter_motion::config::{AxisConfig, TransmissionConfig};
@@ -38,7 +38,8 @@ pub struct BeltDriveState {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeltDrive {
-    /// Next state from the present one and the inputs, while the belt pulls, while it does not, and with the motor held.
+    /// Next state from the present one and the inputs, while the belt pulls, while it does not, and with the
+    /// motor held.
     pulling: Step,
     free: Step,
     held: Step,
@@ -52,7 +53,8 @@ pub struct BeltDrive {
     half_play_mm: f64,
 }
 
-/// Columns: current, speed, angle, carriage's speed and place; voltage, friction of the motor and of the rail, end of the play.
+/// Columns: current, speed, angle, carriage's speed and place; voltage, friction of the motor and of the
+/// rail, end of the play.
 const SIZE: usize = 9;
 type Step = [[f64; SIZE]; 5];
 
@@ -82,7 +84,8 @@ impl Friction {
 }
 
 impl BeltDrive {
-    /// The drive of an axis of a checked [`Machine`](crate::Machine) whose `carriage_kg` is more than 0, over steps of `dt_s`.
+    /// The drive of an axis of a checked [`Machine`](crate::Machine) whose `carriage_kg` is more than 0, over
+    /// steps of `dt_s`.
     #[must_use]
     pub fn new(axis: &AxisConfig, dt_s: f64) -> Self {
         let AxisConfig { motor, load, transmission, .. } = axis;

@@ -52,7 +52,8 @@ pub trait BenchController {
     fn receive(&mut self, now: Duration, byte: u8);
     /// Takes an edge of an encoder.
     fn edge(&mut self, now: Duration, axis: Axis, direction: Direction);
-    /// When [`tick`](Self::tick) has something to do, if ever; what waits for the line is left out while that is busy.
+    /// When [`tick`](Self::tick) has something to do, if ever; what waits for the line is left out while that
+    /// is busy.
     fn next_tick(&self, line_is_free: bool) -> Option<Duration>;
     /// Does what is due.
     fn tick(&mut self, now: Duration);
@@ -120,7 +121,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> BenchControll
     }
 }
 
-/// A host, a serial line, a [`Gantry`] or another [`BenchController`] and its two simulated motors in one time.
+/// A host, a serial line, a [`Gantry`] or another [`BenchController`] and its two simulated motors in one
+/// time.
 ///
 /// Everything happens at whole microseconds; of what happens at the same one, the controller's tick comes
 /// first. A byte is through ten bit times after it was put on the line. The crate's page shows one at work.
@@ -153,8 +155,8 @@ enum Next {
 }
 
 impl<I: Iterator<Item = PenMove>> Bench<I> {
-    /// A machine at rest at the origin, none of its switches pressed, and a host with `moves` to send, at the pace of the machine's
-    /// `serial.byte_gap_ms`.
+    /// A machine at rest at the origin, none of its switches pressed, and a host with `moves` to send, at the
+    /// pace of the machine's `serial.byte_gap_ms`.
     #[must_use]
     pub fn new(machine: &Machine, settings: BenchSettings, moves: I) -> Self {
         let gate = SafetyGate::new(LimitSwitches::RELEASED, false);
@@ -167,6 +169,7 @@ impl<I: Iterator<Item = PenMove>, C: BenchController> Bench<I, C> {
     #[must_use]
     pub fn with_controller(machine: &Machine, settings: BenchSettings, controller: C, moves: I) -> Self {
         let config = machine.config();
+        /// Shortest time step: the resolution of all recorded times.
         const SHORTEST: Duration = Duration::from_micros(1);
         const LONGEST: Duration = Duration::from_millis(1); // a few of the position loop's runs
         let time_step = Duration::from_micros(micros(settings.time_step.clamp(SHORTEST, LONGEST)));

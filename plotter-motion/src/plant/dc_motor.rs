@@ -7,8 +7,8 @@
 //! Spec 1.8; the thesis' equations 4.1 to 4.12. Without load the transfer function is
 //! angle/V = Kt / (s (J L s² + J R s + Ke Kt)) and the final speed (V - R T/Kt)/Ke.
 //!
-//! Discretization: exact for a voltage and a torque held over the step (zero-order hold), by the exponential of
-//! the system's matrix, so a long step is as right as a short one and nothing can become unstable.
+//! Discretization: exact for a voltage and a torque held over the step (zero-order hold), by the exponential
+//! of the system's matrix, so a long step is as right as a short one and nothing can become unstable.
 
 use super::matrix::{Matrix, exponential};
 use crate::config::{LoadConfig, MotorConfig};
@@ -99,8 +99,8 @@ mod tests {
     /// Share of the final value; what is left is rounding.
     const RELATIVE_ERROR: f64 = 1e-9;
 
-    /// Speed and angle t after a step to V: w = V/Ke (1 + (p2 e^(p1 t) - p1 e^(p2 t))/(p1 - p2)) with the poles
-    /// p of L J s² + R J s + Ke Kt, and its integral.
+    /// Speed and angle t after a step to V: w = V/Ke (1 + (p2 e^(p1 t) - p1 e^(p2 t))/(p1 - p2)) with the
+    /// poles p of L J s² + R J s + Ke Kt, and its integral.
     fn analytic(motor: &MotorConfig, voltage_v: f64, t: f64) -> (f64, f64) {
         let (a, b) = (motor.inductance_h * motor.inertia_kg_m2, motor.resistance_ohm * motor.inertia_kg_m2);
         let root = libm::sqrt(b * b - 4.0 * a * motor.back_emf_v_s * motor.torque_n_m_per_a);

@@ -3,10 +3,12 @@
 use crate::{Drive, Duty, Machine};
 use core::time::Duration;
 
-/// Changes of the drive that are on their way; of more within one delay the last takes the place of the one before it.
+/// Changes of the drive that are on their way; of more within one delay the last takes the place of the one
+/// before it.
 const MOST: usize = 32;
 
-/// The latency of a controller: computing time, a serial bus to the drivers, a timer that takes a new duty with its next period.
+/// The latency of a controller: computing time, a serial bus to the drivers, a timer that takes a new duty
+/// with its next period.
 ///
 /// ```
 /// # use plotter_motion::plant::DriveDelay;
@@ -45,7 +47,8 @@ impl DriveDelay {
         Self::new(period * control.latency_periods)
     }
 
-    /// The duties of both motors that act at the time `now`, from which on `asked` is asked for. Times do not go back. They are no
+    /// The duties of both motors that act at the time `now`, from which on `asked` is asked for. Times do not
+    /// go back. They are no
     /// [`Drive`]: what acts late may have been stopped since, and is nothing for a driver of a real motor.
     pub fn pass(&mut self, now: Duration, asked: Drive) -> [Duty; 2] {
         let asked = asked.duties();

@@ -18,7 +18,8 @@ pub struct MarkingBoardPlantSettings {
     pub motors: [(MotorConfig, LoadConfig); 2],
     /// Pulses in a turn of a motor's shaft.
     pub pulses_per_turn: f64,
-    /// How far beyond a mark of its encoder each motor stands at first, pulses, 0 to 1: nobody knows it on a real board.
+    /// How far beyond a mark of its encoder each motor stands at first, pulses, 0 to 1: nobody knows it on a
+    /// real board.
     pub phases: [f64; 2],
     /// Friction of the rail along x, N: sliding, and at rest.
     pub x_rail_n: [f64; 2],
@@ -26,15 +27,16 @@ pub struct MarkingBoardPlantSettings {
     pub y_rail_n: [f64; 2],
     /// Where the pen is at first, mm.
     pub start: Point,
-    /// Where the switches at the upper and right end are pressed, mm; those at the left and lower end are at 0.
+    /// Where the switches at the upper and right end are pressed, mm; those at the left and lower end are
+    /// at 0.
     pub most: Point,
 }
 
 impl MarkingBoardPlantSettings {
     /// The motors, rails and places of a machine with a belt, each encoder in the middle between two marks.
     ///
-    /// The mass on the rails is left out: a kilogram moved by 0.52 mm a turn is 1.7e-9 kg m² at either motor, less than a
-    /// thousandth of the documented board's gear.
+    /// The mass on the rails is left out: a kilogram moved by 0.52 mm a turn is 1.7e-9 kg m² at either motor,
+    /// less than a thousandth of the documented board's gear.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
         let config = machine.config();
@@ -59,10 +61,10 @@ impl MarkingBoardPlantSettings {
 /// every tremble. Without drive the motors run down, short-circuited, against the friction of their gears and
 /// of the rails; the rails pull at both motors, so one that runs can drag the other.
 ///
-/// Friction is Coulomb's, at four places: both gears and both rails. In each time step the friction forces are those,
-/// within their limits, that bring each place to rest or slow it down; found by going round the four places until none
-/// changes (projected Gauss-Seidel). Source of the method: J. J. Moreau, "Unilateral contact and dry friction in finite freedom
-/// dynamics" (1988).
+/// Friction is Coulomb's, at four places: both gears and both rails. In each time step the friction forces
+/// are those, within their limits, that bring each place to rest or slow it down; found by going round the
+/// four places until none changes (projected Gauss-Seidel). Source of the method: J. J. Moreau, "Unilateral
+/// contact and dry friction in finite freedom dynamics" (1988).
 ///
 /// ```
 /// # use plotter_motion::plant::{MarkingBoardPlant, MarkingBoardPlantSettings};
@@ -149,8 +151,8 @@ impl MarkingBoardPlant {
         Self { settings: *settings, motors, contacts }
     }
 
-    /// Goes on by one time step with these duties of both motors; `pulse` is told of every mark that passes an encoder: of the first motor (`X`) or the
-    /// second (`Y`).
+    /// Goes on by one time step with these duties of both motors; `pulse` is told of every mark that passes
+    /// an encoder: of the first motor (`X`) or the second (`Y`).
     pub fn step(&mut self, duties: [Duty; 2], mut pulse: impl FnMut(Axis)) {
         let [first, second] = &mut self.motors;
         let volts = [first.voltage_v(duties[0]), second.voltage_v(duties[1])];
@@ -225,10 +227,11 @@ impl BoardMotor {
     }
 }
 
-/// The torque of all friction on both motors over a step, N m, from their speeds `now` and those that they would have at its
-/// end without it.
+/// The torque of all friction on both motors over a step, N m, from their speeds `now` and those that they
+/// would have at its end without it.
 fn friction(contacts: &[Contact; 4], loss: [f64; 2], now: [f64; 2], free: [f64; 2]) -> [f64; 2] {
-    // Two motors and four places: what is left after so many rounds is far below a thousandth of the friction.
+    // Two motors and four places: what is left after so many rounds is far below a thousandth of the
+    // friction.
     const ROUNDS: usize = 20;
     let mut speeds = free;
     let mut forces = [0.0; 4];

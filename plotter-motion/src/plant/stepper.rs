@@ -11,13 +11,14 @@
 //!          └──────────┴──▶ f
 //! ```
 //!
-//! with p pole pairs (a full step is a quarter of the spring's period, so 50 for 200 full steps a turn). A rotor that
-//! falls more than two full steps behind is drawn to the next place of rest, four full steps away: those are lost. So
-//! nothing here says *lose steps above this rate*; it follows from torque, inertia and friction, whether the field
-//! starts too suddenly (pull-in), turns too fast (pull-out) or changes its speed too quickly.
+//! with p pole pairs (a full step is a quarter of the spring's period, so 50 for 200 full steps a turn). A
+//! rotor that falls more than two full steps behind is drawn to the next place of rest, four full steps away:
+//! those are lost. So nothing here says *lose steps above this rate*; it follows from torque, inertia and
+//! friction, whether the field starts too suddenly (pull-in), turns too fast (pull-out) or changes its speed
+//! too quickly.
 //!
-//! Source: P. P. Acarnley, "Stepping Motors: A Guide to Theory and Practice" (4th edition, 2002), chapters 3 to 5
-//! (static torque, single-step response, pull-out torque over the stepping rate).
+//! Source: P. P. Acarnley, "Stepping Motors: A Guide to Theory and Practice" (4th edition, 2002), chapters 3
+//! to 5 (static torque, single-step response, pull-out torque over the stepping rate).
 
 use crate::{Axis, Direction};
 use core::f64::consts::TAU;
@@ -25,10 +26,11 @@ use core::time::Duration;
 
 /// A stepper motor, its driver and what it moves.
 ///
-/// The default is an axis of the documented stepper plotter: a 42BYG motor of 1.8 degrees on an A4988 in sixteenths of
-/// a step, and a belt that makes 87.58 of these to the millimetre. Documented there are the rates: 2000 pulses/s may
-/// start at once, up to 8000 were reached by acceleration, and 10,000 at once lose steps. Torque, mass and friction are
-/// not; they are those of common motors and rails, chosen so that the documented rates come out.
+/// The default is an axis of the documented stepper plotter: a 42BYG motor of 1.8 degrees on an A4988 in
+/// sixteenths of a step, and a belt that makes 87.58 of these to the millimetre. Documented there are the
+/// rates: 2000 pulses/s may start at once, up to 8000 were reached by acceleration, and 10,000 at once lose
+/// steps. Torque, mass and friction are not; they are those of common motors and rails, chosen so that the
+/// documented rates come out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -72,16 +74,17 @@ impl Default for StepperSettings {
 
 /// Longest time over which the rotor's equation is taken as one step, s.
 const LONGEST_STEP_S: f64 = 20e-6;
-/// The same as a share of the rotor's own time constant: within it the rotor turns a tenth of a radian of its swing.
+/// The same as a share of the rotor's own time constant: within it the rotor turns a tenth of a radian of its
+/// swing.
 const SHARE_OF_SWING: f64 = 0.1;
 /// Most steps over one pause. At 20 us they are 20 s: a rotor has come to rest long before.
 const MOST_STEPS_A_PAUSE: f64 = 1.0e6;
 
 /// One axis driven by a stepper motor: pulses in, true position out.
 ///
-/// The rotor's equation is taken in steps of at most 20 us from pulse to pulse, so the same pulses give the same bits;
-/// an axis takes about a second of computing for eight minutes of motion on a desktop (3.6 million pulses a second at
-/// 8000 pulses/s).
+/// The rotor's equation is taken in steps of at most 20 us from pulse to pulse, so the same pulses give the
+/// same bits; an axis takes about a second of computing for eight minutes of motion on a desktop (3.6 million
+/// pulses a second at 8000 pulses/s).
 ///
 /// Times are those of the caller's clock and never go back; one that does counts as the last one.
 ///
@@ -185,8 +188,8 @@ impl StepperAxis {
         self.angle_rad / self.rad_per_pulse
     }
 
-    /// How many steps (pulses) the rotor is behind for good, with sign: a multiple of four full steps. While it moves,
-    /// it may be up to two full steps behind without having lost any.
+    /// How many steps (pulses) the rotor is behind for good, with sign: a multiple of four full steps. While
+    /// it moves, it may be up to two full steps behind without having lost any.
     #[must_use]
     pub fn lost_steps(&self) -> i64 {
         let period = 4 * i64::from(self.settings.microsteps.max(1));
@@ -216,8 +219,8 @@ impl StepperAxis {
         }
     }
 
-    /// Goes on by `dt_s`; says whether anything moves. First the speed, then the angle with it (the symplectic Euler
-    /// method, which neither feeds the swing of a spring nor damps it).
+    /// Goes on by `dt_s`; says whether anything moves. First the speed, then the angle with it (the
+    /// symplectic Euler method, which neither feeds the swing of a spring nor damps it).
     fn turn(&mut self, most_n_m: f64, dt_s: f64) -> bool {
         let StepperSettings { inertia_kg_m2, coulomb_n_m, viscous_n_m_s, .. } = self.settings;
         #[expect(clippy::cast_precision_loss, reason = "pulses stay far below 2^53")]

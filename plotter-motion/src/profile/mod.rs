@@ -7,8 +7,9 @@
 //!   entry      Trapezoid                      SCurve               SCurve: the same without corners, at rest at both ends
 //! ```
 //!
-//! All three are closed forms: no iteration, so nothing that could fail to converge. They are written so that no
-//! difference of nearly equal numbers decides about a result: lengths and times are divided, not speeds subtracted.
+//! All three are closed forms: no iteration, so nothing that could fail to converge. They are written so that
+//! no difference of nearly equal numbers decides about a result: lengths and times are divided, not speeds
+//! subtracted.
 
 mod ramp;
 mod s_curve;

@@ -19,8 +19,8 @@ use super::{GREATEST, LEAST_LIMIT, ProfileError, ProfilePoint, within};
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ramp {
-    /// The lower and the higher end speed. All is computed from the lower one, where nothing cancels; a ramp that
-    /// slows down is one that speeds up, run backwards.
+    /// The lower and the higher end speed. All is computed from the lower one, where nothing cancels; a ramp
+    /// that slows down is one that speeds up, run backwards.
     low_mm_s: f64,
     high_mm_s: f64,
     slows: bool,
@@ -34,7 +34,8 @@ impl Ramp {
     ///
     /// # Errors
     ///
-    /// [`ProfileError`] names a speed outside 0 to 1e18 or an acceleration outside 1e-18 to 1e18; NaN lies outside.
+    /// [`ProfileError`] names a speed outside 0 to 1e18 or an acceleration outside 1e-18 to 1e18; NaN lies
+    /// outside.
     pub fn between(entry_mm_s: f64, exit_mm_s: f64, accel_mm_s2: f64) -> Result<Self, ProfileError> {
         within("entry_mm_s", entry_mm_s, 0.0, GREATEST)?;
         within("exit_mm_s", exit_mm_s, 0.0, GREATEST)?;

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Source: L. Biagiotti, C. Melchiorri, "Trajectory Planning for Automatic Machines and Robots" (2008),
-//! section 3.4 (double S velocity profile), for equal end speeds of zero. There it has a closed form: which phases
-//! have a length follows from the limits alone, and no equation needs an iteration.
+//! section 3.4 (double S velocity profile), for equal end speeds of zero. There it has a closed form: which
+//! phases have a length follows from the limits alone, and no equation needs an iteration.
 
 use super::{GREATEST, LEAST_LIMIT, ProfileError, ProfilePoint, within};
 
@@ -82,7 +82,8 @@ impl SCurve {
             if steady >= 0.0 {
                 (jerk_s, steady_s) = (full_jerk_s, steady);
             } else {
-                // length = 2 j tj³; by two roots, since the quotient of the shortest length there is has few bits
+                // length = 2 j tj³; by two roots, since the quotient of the shortest length there is has few
+                // bits
                 (jerk_s, steady_s) = (cube_root(length_mm) / cube_root(2.0 * jerk_mm_s3), 0.0);
             }
         }
@@ -101,8 +102,8 @@ impl SCurve {
         self.length_mm
     }
 
-    /// How long each of the seven phases takes, s: jerk forwards, none, backwards; cruise; jerk backwards, none,
-    /// forwards.
+    /// How long each of the seven phases takes, s: jerk forwards, none, backwards; cruise; jerk backwards,
+    /// none, forwards.
     #[must_use]
     pub const fn phases_s(&self) -> [f64; 7] {
         let Self { jerk_s, steady_s, cruise_s, .. } = *self;
@@ -151,11 +152,11 @@ impl SCurve {
     }
 }
 
-/// Cube root of a number above 0, to the last bit or the one before it. `libm::cbrt` is right to the last bit, and takes
-/// 2.8 KB of a firmware for that.
+/// Cube root of a number above 0, to the last bit or the one before it. `libm::cbrt` is right to the last
+/// bit, and takes 2.8 KB of a firmware for that.
 ///
-/// A third of the exponent, and of the fraction with it, is right to 5 bits; each turn of Halley's method triples them.
-/// Source of the start: W. Kahan, "Computing a Real Cube Root" (1991).
+/// A third of the exponent, and of the fraction with it, is right to 5 bits; each turn of Halley's method
+/// triples them. Source of the start: W. Kahan, "Computing a Real Cube Root" (1991).
 fn cube_root(value: f64) -> f64 {
     /// 2/3 of the exponent's bias less 0.033, which halves the greatest error of the start.
     const BIAS: u64 = 715_094_163 << 32;

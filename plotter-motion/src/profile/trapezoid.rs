@@ -26,13 +26,13 @@ pub struct TrapezoidMove {
 ///   v0 /  s1    s2   s3 \ v1
 /// ```
 ///
-/// Where the length is too short for the wanted exit speed, the whole length is one ramp at full acceleration: the
-/// motion ends as fast as it can become, or as slowly. [`Trapezoid::exit_mm_s`] says at which speed. (A planner that
-/// looks ahead never asks for such a motion.)
+/// Where the length is too short for the wanted exit speed, the whole length is one ramp at full
+/// acceleration: the motion ends as fast as it can become, or as slowly. [`Trapezoid::exit_mm_s`] says at
+/// which speed. (A planner that looks ahead never asks for such a motion.)
 ///
-/// Source: L. Biagiotti, C. Melchiorri, "Trajectory Planning for Automatic Machines and Robots" (2008), section 3.2
-/// (linear trajectory with parabolic blends), with lengths instead of speeds as unknowns, so that nothing cancels
-/// however short the motion.
+/// Source: L. Biagiotti, C. Melchiorri, "Trajectory Planning for Automatic Machines and Robots" (2008),
+/// section 3.2 (linear trajectory with parabolic blends), with lengths instead of speeds as unknowns, so that
+/// nothing cancels however short the motion.
 ///
 /// ```
 /// # use plotter_motion::profile::{Trapezoid, TrapezoidMove};
@@ -59,8 +59,8 @@ impl Trapezoid {
     ///
     /// # Errors
     ///
-    /// [`ProfileError`] names a limit outside 1e-18 to 1e18, a length outside 0 to 1e18, or an entry or exit speed
-    /// outside 0 to `speed_mm_s`; NaN lies outside.
+    /// [`ProfileError`] names a limit outside 1e-18 to 1e18, a length outside 0 to 1e18, or an entry or exit
+    /// speed outside 0 to `speed_mm_s`; NaN lies outside.
     pub fn plan(asked: TrapezoidMove) -> Result<Self, ProfileError> {
         let TrapezoidMove { length_mm, entry_mm_s, exit_mm_s, speed_mm_s, accel_mm_s2 } = asked;
         within("length_mm", length_mm, 0.0, GREATEST)?;

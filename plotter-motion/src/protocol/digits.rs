@@ -1,4 +1,5 @@
-//! The published protocol (spec 1.9): targets as ten raw digits, motion as single letters.
+//! The published protocol (Öcal's thesis, section 5.2 and appendix A): targets as ten raw digits, motion as
+//! single letters.
 //!
 //! ```text
 //!  host ──▶ controller   ten bytes a target, values 0 to 9: x then y, five digits each, units first
@@ -182,9 +183,9 @@ pub struct Received {
 /// The controller's end of the line: bytes in, targets out.
 ///
 /// Two things take up the thread again after a lost or an extra byte: a byte that is no digit drops what came
-/// of the present target, itself included; and a pause of more than `resync_gap` inside a target says that the
-/// rest of it is lost, so the next byte begins a new one. (The host waits for the answer to each target, so it
-/// is always silent for longer than that after a target that came short.)
+/// of the present target, itself included; and a pause of more than `resync_gap` inside a target says that
+/// the rest of it is lost, so the next byte begins a new one. (The host waits for the answer to each target,
+/// so it is always silent for longer than that after a target that came short.)
 ///
 /// ```
 /// # use plotter_motion::{StepPoint, protocol::digits::{Receiver, self}};

@@ -5,10 +5,11 @@
 //!   1      1          1              1       1        0 to 240      2, low first
 //! ```
 //!
-//! COBS (S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking, 1999) leaves no
-//! zero in a frame, so a zero ends it whatever came before, and a damaged frame costs no other. The check is CRC-16/X-25
-//! (`crc` 3, catalogue name `CRC-16/IBM-SDLC`) over the session's number and the frame up to the check: a frame of an earlier
-//! connection is as wrong as a damaged one. It finds every burst of up to 16 bits; bytes lost or doubled show in the length too.
+//! COBS (S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on
+//! Networking, 1999) leaves no zero in a frame, so a zero ends it whatever came before, and a damaged frame
+//! costs no other. The check is CRC-16/X-25 (`crc` 3, catalogue name `CRC-16/IBM-SDLC`) over the session's
+//! number and the frame up to the check: a frame of an earlier connection is as wrong as a damaged one. It
+//! finds every burst of up to 16 bits; bytes lost or doubled show in the length too.
 
 use core::fmt;
 use crc::{CRC_16_IBM_SDLC, Crc, Table};
@@ -19,7 +20,8 @@ pub const MOST_PAYLOAD: usize = 240;
 const HEADER: usize = 5;
 /// Bytes of the check.
 const CHECK: usize = 2;
-/// Bytes that a frame takes on the line besides its payload: header, check, one of COBS, and the zero at its end.
+/// Bytes that a frame takes on the line besides its payload: header, check, one of COBS, and the zero at its
+/// end.
 pub const OVERHEAD: usize = HEADER + CHECK + 2;
 /// Most bytes of a frame on the line.
 pub const MOST_BYTES: usize = MOST_PAYLOAD + OVERHEAD;
@@ -168,8 +170,8 @@ impl Decoder {
         Self { bytes: [0; MOST_BYTES], length: 0, overrun: false }
     }
 
-    /// Takes a byte; says what came to its end with it. A [`Kind::Hello`] is checked as of session 0, which is no
-    /// other frame's.
+    /// Takes a byte; says what came to its end with it. A [`Kind::Hello`] is checked as of session 0, which
+    /// is no other frame's.
     pub fn push(&mut self, byte: u8, session: u16) -> Option<Result<Frame<'_>, DecodeError>> {
         if byte != 0 {
             match self.bytes.get_mut(self.length) {

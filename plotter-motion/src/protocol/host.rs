@@ -82,8 +82,8 @@ pub enum HostNotice {
     Interrupted,
     /// The machine is heard again, and the drawing goes on.
     Resumed,
-    /// The machine was switched off in the middle of the drawing and does not know where its motors stand: nothing more is
-    /// sent.
+    /// The machine was switched off in the middle of the drawing and does not know where its motors stand:
+    /// nothing more is sent.
     MachineRestarted,
     /// The machine speaks another language: nothing more is sent.
     NotUnderstood(MessageError),

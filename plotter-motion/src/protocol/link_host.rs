@@ -1,4 +1,5 @@
-//! [`LinkHost`]: sends a drawing over the reliable link, or by the digits protocol to a machine that knows no other.
+//! [`LinkHost`]: sends a drawing over the reliable link, or by the digits protocol to a machine that knows no
+//! other.
 
 use super::link::{Link, LinkSettings, LinkState};
 use super::message::{Message, MessageDecoder};
@@ -6,14 +7,15 @@ use super::{Host, HostEvent, HostNotice, HostSettings, Order};
 use crate::{PenMove, StepPoint};
 use core::time::Duration;
 
-/// Targets that are sent ahead of the one that is drawn, at most; as many are kept to be sent again in another session.
+/// Targets that are sent ahead of the one that is drawn, at most; as many are kept to be sent again in
+/// another session.
 const AHEAD: usize = 32;
 
 /// Where a drawing was left that another host had begun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Resume {
-    /// The machine's number when the drawing was begun ([`LinkHost::progress`]): had it been switched off since, it would
-    /// not know where its motors stand.
+    /// The machine's number when the drawing was begun ([`LinkHost::progress`]): had it been switched off
+    /// since, it would not know where its motors stand.
     pub boot: u32,
     /// Targets that it had taken before the drawing's first.
     pub before: u32,
@@ -30,12 +32,13 @@ pub struct LinkProgress {
 
 /// Sends the moves of a drawing over a [`Link`], ahead of the machine as far as that has room; sans-IO.
 ///
-/// Every move is drawn once, whatever happens on the line; after a cable was out it goes on by itself. A host started anew
-/// goes on where the last one was, with the same moves and [`Resume`]: the machine says how many targets it has taken.
-/// To a machine that knows digits only, it is a [`Host`].
+/// Every move is drawn once, whatever happens on the line; after a cable was out it goes on by itself. A host
+/// started anew goes on where the last one was, with the same moves and [`Resume`]: the machine says how many
+/// targets it has taken. To a machine that knows digits only, it is a [`Host`].
 ///
-/// Feed it bytes ([`receive`](Self::receive)) and [`poll`](Self::poll) it after each, and at [`next_wake`](Self::next_wake),
-/// until it has nothing new; send what [`next_byte`](Self::next_byte) says as the line takes it.
+/// Feed it bytes ([`receive`](Self::receive)) and [`poll`](Self::poll) it after each, and at
+/// [`next_wake`](Self::next_wake), until it has nothing new; send what [`next_byte`](Self::next_byte) says as
+/// the line takes it.
 #[derive(Clone, Debug)]
 pub struct LinkHost<I, const WINDOW: usize, const PAYLOAD: usize> {
     moves: Option<I>,
@@ -70,8 +73,8 @@ pub struct LinkHost<I, const WINDOW: usize, const PAYLOAD: usize> {
 }
 
 impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> LinkHost<I, WINDOW, PAYLOAD> {
-    /// A host with a drawing to send. `nonce`: see [`Link::host`]. `byte_gap` and `host_settings` are for a machine that
-    /// knows digits only: see [`Host::new`].
+    /// A host with a drawing to send. `nonce`: see [`Link::host`]. `byte_gap` and `host_settings` are for a
+    /// machine that knows digits only: see [`Host::new`].
     #[must_use]
     pub fn new(
         nonce: u16,
@@ -115,8 +118,9 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
         self
     }
 
-    /// Gives an order, which goes out before anything else; what became of it, a notice says. An order that was not answered is
-    /// repeated, over frames. To a machine of digits a hold is nothing: it has one target at a time, so send it no other.
+    /// Gives an order, which goes out before anything else; what became of it, a notice says. An order that
+    /// was not answered is repeated, over frames. To a machine of digits a hold is nothing: it has one target
+    /// at a time, so send it no other.
     pub const fn order(&mut self, order: Order) {
         if self.digits.is_none() {
             self.link.order(order);
@@ -337,7 +341,8 @@ impl<I: Iterator<Item = PenMove>, const WINDOW: usize, const PAYLOAD: usize> Lin
         }
     }
 
-    /// When [`poll`](Self::poll) or [`next_byte`](Self::next_byte) has something to do, unless a byte comes before.
+    /// When [`poll`](Self::poll) or [`next_byte`](Self::next_byte) has something to do, unless a byte comes
+    /// before.
     #[must_use]
     pub fn next_wake(&self) -> Option<Duration> {
         match &self.digits {

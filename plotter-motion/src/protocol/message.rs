@@ -1,7 +1,7 @@
 //! [`Message`]: what host and machine say over the reliable link.
 //!
-//! A byte for its kind, then numbers in LEB128 (seven bits a byte, low ones first, the eighth set where more follow; DWARF 5,
-//! section 7.6); those that may be below 0 as 2n, or -2n-1.
+//! A byte for its kind, then numbers in LEB128 (seven bits a byte, low ones first, the eighth set where more
+//! follow; DWARF 5, section 7.6); those that may be below 0 as 2n, or -2n-1.
 
 use super::Order;
 use crate::{Pen, StepPoint};
@@ -11,8 +11,8 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Message {
-    /// Host: go to this target on a straight line. Sent as the difference from the target before it in the session, of
-    /// which the first counts from (0, 0).
+    /// Host: go to this target on a straight line. Sent as the difference from the target before it in the
+    /// session, of which the first counts from (0, 0).
     Target {
         /// Up or down on the way.
         pen: Pen,
@@ -36,8 +36,8 @@ pub enum Message {
     Reached(u32),
     /// Machine: the target after so many is outside its area; it was left out, and counts as reached.
     Refused(u32),
-    /// Machine: whether it is stopped or held now; said when that changes, after each order, and after the status of one that
-    /// is not free.
+    /// Machine: whether it is stopped or held now; said when that changes, after each order, and after the
+    /// status of one that is not free.
     Stands {
         /// The last order taken in this session, by its number; 0 for none.
         order: u32,
@@ -108,7 +108,8 @@ fn unzigzag(value: u32) -> i32 {
     (value >> 1).cast_signed() ^ -(value & 1).cast_signed()
 }
 
-/// A stream that is none of messages. A link loses and changes nothing, so the other side speaks another language.
+/// A stream that is none of messages. A link loses and changes nothing, so the other side speaks another
+/// language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum MessageError {

@@ -18,10 +18,11 @@ pub use message::{MOST_MESSAGE, Message, MessageDecoder, MessageError};
 pub use order::Order;
 pub use wire::Wire;
 
-/// What a firmware's serial driver hands to a controller in place of a byte that came broken, or of bytes that were lost:
-/// the character that ASCII has for it, SUB (0x1A; ECMA-48, section 8.3.148). No host sends it.
+/// What a firmware's serial driver hands to a controller in place of a byte that came broken, or of bytes
+/// that were lost: the character that ASCII has for it, SUB (0x1A; ECMA-48, section 8.3.148). No host sends
+/// it.
 ///
 /// A byte that is just left out makes `X1` of `X12`, or of two targets a third one. With this in its place
-/// [`digits::Receiver`] drops the target, and [`StepperPlotter`](crate::firmware::stepper_plotter::StepperPlotter) the
-/// line, and both say so.
+/// [`digits::Receiver`] drops the target, and
+/// [`StepperPlotter`](crate::firmware::stepper_plotter::StepperPlotter) the line, and both say so.
 pub const SUBSTITUTE: u8 = 0x1A;

@@ -2,8 +2,9 @@
 
 /// An order that passes targets by.
 ///
-/// In the digits protocol it is this byte by itself, of which no target has one, and the controller answers with the byte of what
-/// holds then. On the reliable link it is a frame outside the streams ([`Link::order`](super::Link::order)).
+/// In the digits protocol it is this byte by itself, of which no target has one, and the controller answers
+/// with the byte of what holds then. On the reliable link it is a frame outside the streams
+/// ([`Link::order`](super::Link::order)).
 ///
 /// ```
 /// # use plotter_motion::protocol::Order;
@@ -18,7 +19,8 @@ pub enum Order {
     GoOn,
     /// Finish the target under way, begin no other. A controller of digits has no other, and takes no notice.
     Hold,
-    /// Emergency stop: both motors off, and they stay off until [`GoOn`](Self::GoOn). What is counted is kept.
+    /// Emergency stop: both motors off, and they stay off until [`GoOn`](Self::GoOn). What is counted is
+    /// kept.
     Stop,
 }
 

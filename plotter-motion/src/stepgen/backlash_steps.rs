@@ -6,8 +6,9 @@ use crate::{Machine, StepPair};
 
 /// Inserts the steps that take up the play of an axis where it turns round.
 ///
-/// The path goes on meanwhile: an axis that turns round in the middle of a circle must not stop the other one. The extra steps come
-/// one by one in their own interval, so that a motor is never asked for more than its start rate on top of what the path asks.
+/// The path goes on meanwhile: an axis that turns round in the middle of a circle must not stop the other
+/// one. The extra steps come one by one in their own interval, so that a motor is never asked for more than
+/// its start rate on top of what the path asks.
 ///
 /// ```
 /// # use plotter_motion::kinematics::Backlash;
@@ -28,7 +29,8 @@ use crate::{Machine, StepPair};
 pub struct BacklashSteps {
     play: Backlash,
     interval_ticks: u64,
-    /// How much of the play each axis has taken up when all that is owed has been made, seen from where it is driven backwards.
+    /// How much of the play each axis has taken up when all that is owed has been made, seen from where it is
+    /// driven backwards.
     taken_up: (i32, i32),
     /// Extra steps to come, with sign.
     owed: (i32, i32),
@@ -38,13 +40,15 @@ pub struct BacklashSteps {
 }
 
 impl BacklashSteps {
-    /// Axes that have been driven backwards last, as homing leaves them. Extra steps of an axis come `interval_ticks` apart.
+    /// Axes that have been driven backwards last, as homing leaves them. Extra steps of an axis come
+    /// `interval_ticks` apart.
     #[must_use]
     pub const fn new(play: Backlash, interval_ticks: u64) -> Self {
         Self { play, interval_ticks, taken_up: (0, 0), owed: (0, 0), next_tick: 0, waiting: None }
     }
 
-    /// The play of a machine with stepper motors; extra steps come at the slower start rate of its axes, by a clock of `clock_hz`.
+    /// The play of a machine with stepper motors; extra steps come at the slower start rate of its axes, by a
+    /// clock of `clock_hz`.
     #[must_use]
     pub fn of(machine: &Machine, clock_hz: f64) -> Self {
         let (x, y) = (&machine.config().x.stepper, &machine.config().y.stepper);
@@ -73,7 +77,8 @@ impl BacklashSteps {
         Ok(())
     }
 
-    /// The next event: extra steps that are due before the one of the path, then that; `None` when the next one is wanted.
+    /// The next event: extra steps that are due before the one of the path, then that; `None` when the next
+    /// one is wanted.
     pub fn next_event(&mut self) -> Option<TimedEvent> {
         let waiting = self.waiting?;
         if self.owed != (0, 0) && self.next_tick <= waiting.tick {
@@ -91,8 +96,8 @@ impl BacklashSteps {
         Some(waiting)
     }
 
-    /// The motors have been stopped at once: nothing is owed any more, and of its play each axis has taken up so many steps, seen from
-    /// where it is driven backwards.
+    /// The motors have been stopped at once: nothing is owed any more, and of its play each axis has taken up
+    /// so many steps, seen from where it is driven backwards.
     pub fn clear(&mut self, x_taken_up: u16, y_taken_up: u16) {
         self.taken_up = (x_taken_up.into(), y_taken_up.into());
         (self.owed, self.waiting) = ((0, 0), None);

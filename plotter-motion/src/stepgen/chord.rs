@@ -80,8 +80,9 @@ impl Chords {
             // It is one chord.
             Shape::Line => (to, length_mm),
             Shape::Arc { centre, sweep_rad } => {
-                // All from where it begins, so that what rounding leaves is small against the way, not against the radius:
-                // cos φ − 1 = −2 sin²(φ/2), sin φ = 2 sin(φ/2) cos(φ/2); and of two radii b − a = (b² − a²) / (b + a).
+                // All from where it begins, so that what rounding leaves is small against the way, not
+                // against the radius: cos φ − 1 = −2 sin²(φ/2), sin φ = 2 sin(φ/2) cos(φ/2); and of two radii
+                // b − a = (b² − a²) / (b + a).
                 let (out, end) = (centre.way_to(&self.from), centre.way_to(&to));
                 let (begin_mm, end_mm) = (out.length_near(), end.length_near());
                 let growth = if begin_mm > 0.0 {

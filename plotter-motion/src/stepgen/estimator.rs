@@ -4,13 +4,15 @@ use super::{PlotTime, PlotTimer, StepGenSettings};
 use crate::planner::{AllModes, Modes};
 use crate::{Planner, PlannerSettings, PlotOp, planner::PlanError};
 
-/// How long a drawing takes, told as it comes in: a [`Planner`] with `N` blocks of look-ahead, and a [`PlotTimer`].
+/// How long a drawing takes, told as it comes in: a [`Planner`] with `N` blocks of look-ahead, and a
+/// [`PlotTimer`].
 ///
-/// With as many blocks as the machine has, it is the time in which a [`StepGen`](super::StepGen) plays the drawing, to the tick: the same
-/// plan, the same phases, the same clock, and only the steps are left out. So it takes a hundredth of the work, and as little memory for
-/// a drawing of any size.
+/// With as many blocks as the machine has, it is the time in which a [`StepGen`](super::StepGen) plays the
+/// drawing, to the tick: the same plan, the same phases, the same clock, and only the steps are left out. So
+/// it takes a hundredth of the work, and as little memory for a drawing of any size.
 ///
-/// Where a machine has other motors or other kinematics makes no difference to its time, but by [`PlannerSettings::resolution_mm`].
+/// Where a machine has other motors or other kinematics makes no difference to its time, but by
+/// [`PlannerSettings::resolution_mm`].
 ///
 /// ```
 /// # use plotter_motion::{PlannerSettings, PlotOp, Point, stepgen::{Estimator, StepGenSettings}};

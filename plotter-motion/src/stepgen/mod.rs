@@ -5,14 +5,16 @@
 //!           mm, s                  ticks
 //! ```
 //!
-//! A course is laid on the grid of the motors, an arc in chords that lie within a quarter of a step of it, and each chord is stepped
-//! as Bresenham's line: at each step of the motor that has the longer way, the other one steps or does not. Steps are due half
-//! way between the grid's lines, so that the motors are never farther than half a step from the path.
+//! A course is laid on the grid of the motors, an arc in chords that lie within a quarter of a step of it,
+//! and each chord is stepped as Bresenham's line: at each step of the motor that has the longer way, the
+//! other one steps or does not. Steps are due half way between the grid's lines, so that the motors are never
+//! farther than half a step from the path.
 //!
 //! [`timed_events`] is both in one call, for a desktop. [`Estimator`] tells the time without the steps: a
 //! [`PlotTimer`] adds up the same phases by the same clock.
 //!
-//! When a phase or a chord begins, floats are turned into whole numbers. From step to step there are only whole numbers.
+//! When a phase or a chord begins, floats are turned into whole numbers. From step to step there are only
+//! whole numbers.
 
 mod backlash_steps;
 mod chord;

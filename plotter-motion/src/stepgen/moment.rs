@@ -8,7 +8,8 @@ const NANOS: u64 = 1_000_000_000;
 /// 2^32 / 10⁹, with 31 bits of fraction.
 const PARTS_PER_NANO: u64 = 9_223_372_037;
 
-/// A time since the start: whole ticks of the clock, and the part of one, in 2^32ths. So times add up without error.
+/// A time since the start: whole ticks of the clock, and the part of one, in 2^32ths. So times add up without
+/// error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Moment {
     pub(super) tick: u64,

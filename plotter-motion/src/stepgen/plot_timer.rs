@@ -8,8 +8,8 @@ use core::time::Duration;
 
 /// How long a plot takes, and what on.
 ///
-/// [`PlotTime::total`] is what [`PlotTime::motion`], [`PlotTime::pen`] and [`PlotTime::dwell`] make together, but for a tick for each
-/// change between them.
+/// [`PlotTime::total`] is what [`PlotTime::motion`], [`PlotTime::pen`] and [`PlotTime::dwell`] make together,
+/// but for a tick for each change between them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -33,7 +33,8 @@ pub struct PlotTime {
     pub strokes: u64,
     /// Times that it was lifted.
     pub pen_lifts: u64,
-    /// Times that a pen was taken or put away. A machine that does this by itself takes its own time for it, which is not counted.
+    /// Times that a pen was taken or put away. A machine that does this by itself takes its own time for it,
+    /// which is not counted.
     pub pens: u64,
     /// New sheets. That somebody puts them in is not counted either.
     pub pages: u64,
@@ -41,8 +42,8 @@ pub struct PlotTime {
 
 /// Adds up the time of a [`Planner`](crate::Planner)'s actions.
 ///
-/// The clock is that of the [`StepGen`](super::StepGen): the time is the one at which its last action ends, to the tick. For who has a
-/// planner already; [`Estimator`](super::Estimator) has one of its own.
+/// The clock is that of the [`StepGen`](super::StepGen): the time is the one at which its last action ends,
+/// to the tick. For who has a planner already; [`Estimator`](super::Estimator) has one of its own.
 ///
 /// ```
 /// # use plotter_motion::{Planner, PlannerSettings, PlotOp, Point, stepgen::{PlotTimer, StepGenSettings}};

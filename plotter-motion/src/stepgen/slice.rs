@@ -41,7 +41,8 @@ pub(super) struct Slice {
 }
 
 impl Slice {
-    /// The first slice of `phase`, which starts a part of a tick after `tick`, in 2^32ths, and ends in the tick `ticks` after that.
+    /// The first slice of `phase`, which starts a part of a tick after `tick`, in 2^32ths, and ends in the
+    /// tick `ticks` after that.
     #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn new<M: Modes>(
         phase: &Phase,
@@ -103,8 +104,8 @@ impl Slice {
         product(accel, t, ACCEL_BITS - SPEED_BITS).saturating_add(self.speed)
     }
 
-    /// The tick nearest to the time at which the distance is `target`; `None` if that is after the slice. `from` is a tick at
-    /// which it has not been reached, `guess` one near to where it may be.
+    /// The tick nearest to the time at which the distance is `target`; `None` if that is after the slice.
+    /// `from` is a tick at which it has not been reached, `guess` one near to where it may be.
     pub(super) fn tick_of<M: Modes>(&self, target: i64, from: i64, guess: i64) -> Option<i64> {
         // Most guesses are good: the steps before say when the next is due.
         let mut at = guess.min(self.last).max(from);

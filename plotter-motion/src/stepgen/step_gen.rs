@@ -15,13 +15,14 @@ use core::fmt;
 use core::marker::PhantomData;
 use core::time::Duration;
 
-/// Farthest that a chord may be from its course, steps.
+/// Greatest distance of a chord from its course, steps: with the half step of rounding a motor stays within
+/// one step.
 const CHORD_STEPS: f32 = 0.25;
-/// A phase that ends nearer than this to the end of its course ends there, mm.
+/// A phase that ends nearer than this to the end of its course ends there, mm: far below a motor's step.
 const LATE_MM: f32 = 2e-6;
-/// The same as a share of the course, which is what rounding makes of a long one.
+/// The same as a share of the course, for long ones: two last bits of `f32`.
 const LATE_SHARE: f32 = 2.5e-7;
-/// What ends slower ends at rest, mm/s.
+/// A course that ends slower than this ends at rest, mm/s: the least limit that is planned with.
 const STANDSTILL_MM_S: f32 = 1e-3;
 
 /// How steps are timed.
@@ -64,7 +65,8 @@ impl StepGenSettings {
         Self { clock_hz: self.clock_hz.clamp(1_000, 1_000_000_000), laser: self.laser && M::LASER, ..self }
     }
 
-    /// How long the machine stands for a pen that goes from one state to another; none where it does not, and a laser never does.
+    /// How long the machine stands for a pen that goes from one state to another; none where it does not, and
+    /// a laser never does.
     pub(super) fn pen_time<M: Modes>(&self, from: Pen, to: Pen) -> Option<Duration> {
         (from != to && !(M::LASER && self.laser)).then_some(self.pen_settle)
     }
@@ -115,7 +117,8 @@ struct Running {
     /// Ticks to its end from the start of the slice.
     left: i64,
     slice: Slice,
-    /// Ticks of the slice at which the last step was, and until the next one is guessed to be due, and by how much that changes.
+    /// Ticks of the slice at which the last step was, and until the next one is guessed to be due, and by how
+    /// much that changes.
     at: i64,
     interval: i64,
     change: i64,
@@ -162,8 +165,8 @@ pub struct StepGen<K, M: Modes = AllModes> {
     /// Its speed in mm a tick, 52 bits of fraction.
     course_speed: i64,
     chords: Chords,
-    /// The chord in progress: its steps to come, and the distance along the course at which the next one is due, that of the
-    /// chord's end, and how the due distances go on.
+    /// The chord in progress: its steps to come, and the distance along the course at which the next one is
+    /// due, that of the chord's end, and how the due distances go on.
     line: Bresenham,
     due: Option<Due>,
     chord_from: i64,
@@ -180,7 +183,8 @@ pub struct StepGen<K, M: Modes = AllModes> {
     waiting: [Option<TimedEvent>; 2],
 }
 
-/// The distances at which the steps of a chord are due: evenly spaced, the first half a space after its start.
+/// The distances at which the steps of a chord are due: evenly spaced, the first half a space after its
+/// start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Due {
     /// mm with 32 bits of fraction, and the rest of the division.
@@ -226,7 +230,8 @@ impl<K: Kinematics> StepGen<K> {
 }
 
 impl<K: Kinematics, M: Modes> StepGen<K, M> {
-    /// As [`StepGen::new`], for a planner with the modes of its type; without a laser among them there is none.
+    /// As [`StepGen::new`], for a planner with the modes of its type; without a laser among them there is
+    /// none.
     pub fn with_modes(kinematics: K, settings: StepGenSettings) -> Self {
         let scale = |x, y| {
             let motors = kinematics.motors_at(Point::new(x, y));
@@ -273,8 +278,8 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         self.line.position()
     }
 
-    /// Forgets everything: the motors have been stopped and stand at `steps`, the pen is up and the laser off. The clock goes on
-    /// from where it is.
+    /// Forgets everything: the motors have been stopped and stand at `steps`, the pen is up and the laser
+    /// off. The clock goes on from where it is.
     pub fn clear(&mut self, steps: StepPoint) {
         let at = self.kinematics.point_at(steps.into());
         self.at = at;
@@ -385,8 +390,8 @@ impl<K: Kinematics, M: Modes> StepGen<K, M> {
         }
     }
 
-    /// The laser's power at a speed in mm a tick, 52 bits of fraction: proportional to it, in 256 grades; none for a pen that is
-    /// up.
+    /// The laser's power at a speed in mm a tick, 52 bits of fraction: proportional to it, in 256 grades;
+    /// none for a pen that is up.
     fn power(&self, speed: i64) -> u16 {
         let dark = self.course.pen == Pen::Up || self.course.laser_power == 0;
         if !M::LASER || !self.settings.laser || dark || self.course_speed <= 0 {

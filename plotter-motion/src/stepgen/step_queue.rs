@@ -1,4 +1,5 @@
-//! [`StepQueue`]: events between the main loop, which reckons them, and the timer's interrupt, which makes them.
+//! [`StepQueue`]: events between the main loop, which reckons them, and the timer's interrupt, which makes
+//! them.
 
 use super::{Busy, MotorEvent, TimedEvent};
 use crate::StepPair;
@@ -12,14 +13,16 @@ pub struct QueuedEvent {
     pub event: MotorEvent,
 }
 
-/// The next `N` events, in order; `N` is a power of two. The main loop fills it from a [`StepGen`](super::StepGen), a timer's interrupt empties it.
+/// The next `N` events, in order; `N` is a power of two. The main loop fills it from a
+/// [`StepGen`](super::StepGen), a timer's interrupt empties it.
 ///
 /// What is left to the interrupt is short: take an event, let its step through the
-/// [`SafetyGate`](crate::SafetyGate), set the pins, set the timer to the next. While the main loop puts an event in, the interrupt must be held
-/// off, as for every variable that both have.
+/// [`SafetyGate`](crate::SafetyGate), set the pins, set the timer to the next. While the main loop puts an
+/// event in, the interrupt must be held off, as for every variable that both have.
 ///
-/// An interrupt that comes late may find two steps due. Whoever has drivers that can refuse a step takes it out only when they are ready
-/// (`StepperAxes::drivers` of `plotter-hal`): what has been taken out is gone, what has not stays the next one.
+/// An interrupt that comes late may find two steps due. Whoever has drivers that can refuse a step takes it
+/// out only when they are ready (`StepperAxes::drivers` of `plotter-hal`): what has been taken out is gone,
+/// what has not stays the next one.
 ///
 /// ```
 /// # use plotter_motion::{StepPair, stepgen::{MotorEvent, StepQueue, TimedEvent}};
@@ -70,7 +73,8 @@ impl<const N: usize> StepQueue<N> {
         self.len == 0
     }
 
-    /// Takes the next event of a step generator. One that is due more than 2^32 ticks after the one before is due after 2^32 - 1.
+    /// Takes the next event of a step generator. One that is due more than 2^32 ticks after the one before is
+    /// due after 2^32 - 1.
     ///
     /// # Errors
     ///

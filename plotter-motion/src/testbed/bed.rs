@@ -19,7 +19,8 @@ use core::time::Duration;
 pub struct TestBedSettings {
     /// Time step of the motors; the nearest of 1 us to 1 ms counts.
     pub time_step: Duration,
-    /// How long a controller may take for a target before it is given the next one, and the line counts as never finished.
+    /// How long a controller may take for a target before it is given the next one, and the line counts as
+    /// never finished.
     pub limit: Duration,
     /// How long the pen is watched after the last arrival.
     pub watch_on: Duration,
@@ -32,8 +33,8 @@ pub struct TestBedSettings {
 }
 
 impl Default for TestBedSettings {
-    /// Steps of 10 us; 5 s a target; settled within 0.05 mm, two counts of the gantry's encoder, watched for 0.1 s; a
-    /// description that is a quarter wrong.
+    /// Steps of 10 us; 5 s a target; settled within 0.05 mm, two counts of the gantry's encoder, watched for
+    /// 0.1 s; a description that is a quarter wrong.
     fn default() -> Self {
         Self {
             time_step: Duration::from_micros(10),
@@ -53,7 +54,8 @@ pub struct Moment {
     pub time: Duration,
     /// Where the pen is to go, mm.
     pub target: Point,
-    /// Where the controller wants it to be now, mm; the nearest place of the line for a controller that does not say.
+    /// Where the controller wants it to be now, mm; the nearest place of the line for a controller that does
+    /// not say.
     pub desired: Point,
     /// Where it truly is, mm.
     pub pen: Point,
@@ -90,8 +92,8 @@ impl TestBed {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] where no machine can be as wrongly described as the settings ask, and for one whose DC motors do not each
-    /// move an axis.
+    /// [`ConfigError`] where no machine can be as wrongly described as the settings ask, and for one whose DC
+    /// motors do not each move an axis.
     pub fn new(machine: &Machine, settings: TestBedSettings) -> Result<Self, ConfigError> {
         machine.require(MachineKind::Gantry, "the control test bed")?;
         let described = misjudged(machine, settings.wrong_share)?;
@@ -101,6 +103,8 @@ impl TestBed {
     /// A bench with a description of one's own, wrong in whichever way; `settings.wrong_share` is not used.
     #[must_use]
     pub fn with_description(machine: &Machine, described: &Machine, settings: TestBedSettings) -> Self {
+        /// Bounds of the time step, as for `plant::Bench`: the resolution of its times, and a few runs of the
+        /// position loop.
         const SHORTEST: Duration = Duration::from_micros(1);
         const LONGEST: Duration = Duration::from_millis(1);
         let time_step = settings.time_step.clamp(SHORTEST, LONGEST);
@@ -130,7 +134,8 @@ impl TestBed {
         )
     }
 
-    /// Lets a controller that is at rest at the origin make `moves`, one after the other; `watch` sees every time step.
+    /// Lets a controller that is at rest at the origin make `moves`, one after the other; `watch` sees every
+    /// time step.
     ///
     /// A controller of the caller's own type and one behind `dyn` are run alike.
     pub fn run(

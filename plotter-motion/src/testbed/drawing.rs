@@ -42,6 +42,7 @@ impl Drawing {
     #[must_use]
     pub fn star(bed: &TestBed) -> Vec<Self> {
         const HEADINGS_DEG: [f64; 8] = [0.0, 30.0, 75.0, 90.0, 135.0, 195.0, 250.0, 315.0];
+        /// Length of each line, mm: the documented gantry passes most of it at its feed.
         const LENGTH_MM: f64 = 60.0;
         HEADINGS_DEG.iter().map(|&heading| Self::line(bed, heading, LENGTH_MM)).collect()
     }

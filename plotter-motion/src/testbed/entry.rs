@@ -16,7 +16,8 @@ use core::time::Duration;
 
 type Make = dyn for<'a> Fn(&Machine, &'a mut [LearnedBin]) -> Box<dyn LineController + 'a> + Send + Sync;
 
-/// What a learning controller may remember of a drawing, bins: half a minute of it. What comes after is drawn without.
+/// What a learning controller may remember of a drawing, bins: half a minute of it. What comes after is drawn
+/// without.
 const STORE: usize = 1 << 16;
 
 /// A controller that takes part: a name, and how one is made for a machine's description.
@@ -54,7 +55,8 @@ impl Entry {
         Self::line(name, move |machine| PlannedLine::new(machine, make(machine)))
     }
 
-    /// A control law for both axes that [`Learning`] helps, after so many runs of the same drawing for practice.
+    /// A control law for both axes that [`Learning`] helps, after so many runs of the same drawing for
+    /// practice.
     #[must_use]
     pub fn learning<C: ContourController + 'static>(
         name: &str,
@@ -86,8 +88,8 @@ impl Entry {
         bed.run(&mut *controller, moves(), watch)
     }
 
-    /// The published controllers and ours, as the thesis and the marking board's report have them and from the plainest of ours to the
-    /// best:
+    /// The published controllers and ours, as the thesis and the marking board's report have them and from
+    /// the plainest of ours to the best:
     ///
     /// | name | what |
     /// |---|---|
@@ -108,6 +110,8 @@ impl Entry {
         vec![
             Self::line("published", LineTracking::new),
             Self::line("published-60", |machine| {
+                /// Greatest duty of y, in steps of 255, in place of the published 255: a weaker variant of
+                /// the published controller for comparison.
                 const LOWER_LIMIT: f32 = 60.0;
                 let mut settings = LineTrackingSettings::of(machine);
                 settings.published.duty_limit_y = settings.published.duty_limit_y.min(LOWER_LIMIT);
@@ -125,6 +129,8 @@ impl Entry {
 
 /// As published, at the level of drive that holds the machine's feed on the axis that needs more of it.
 fn point_to_point(machine: &Machine) -> PointToPointSettings {
+    /// Allowed error, mm. Source: Khan and McGinn, "2D Controlled Marking Board", which draws its circle with
+    /// it.
     const ALLOWED_MM: f64 = 0.45;
     let config = machine.config();
     let counts_per_mm = config.x.counts_per_mm.min(config.y.counts_per_mm);

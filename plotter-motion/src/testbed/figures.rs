@@ -62,8 +62,8 @@ impl Figures {
 }
 
 impl core::iter::Sum for Figures {
-    /// Several runs as one: the distances of all of them together, times and energies added, the most lost counts. They have
-    /// settled if each of them has.
+    /// Several runs as one: the distances of all of them together, times and energies added, the most lost
+    /// counts. They have settled if each of them has.
     fn sum<I: Iterator<Item = Self>>(runs: I) -> Self {
         let none = Self { settled: Some(Duration::ZERO), ..Self::default() };
         runs.fold(none, |sum, run| Self {

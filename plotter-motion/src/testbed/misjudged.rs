@@ -2,8 +2,8 @@
 
 use crate::{ConfigError, Machine};
 
-/// The description of a machine by somebody who is off by `share` in every figure of its motors and loads, and each time in
-/// the direction that adds up.
+/// The description of a machine by somebody who is off by `share` in every figure of its motors and loads,
+/// and each time in the direction that adds up.
 ///
 /// Of x everything is taken too lightly, of y the other way round:
 ///
@@ -14,8 +14,9 @@ use crate::{ConfigError, Machine};
 /// | torque constant | 1 + 0.8 share | 1 - 0.8 share |
 /// | back EMF constant | 1 - 0.8 share | 1 + 0.8 share |
 ///
-/// With a quarter: inertia 25 %, friction 30 %, motor constants 20 %. What is reckoned with them adds up to more: the voltage for an
-/// acceleration, R J / Kt, comes out at 0.63 of the right one for x and at 1.56 for y. Encoders, gears and supplies are known.
+/// With a quarter: inertia 25 %, friction 30 %, motor constants 20 %. What is reckoned with them adds up to
+/// more: the voltage for an acceleration, R J / Kt, comes out at 0.63 of the right one for x and at 1.56 for
+/// y. Encoders, gears and supplies are known.
 ///
 /// ```
 /// # use plotter_motion::{Machine, MachineConfig, testbed::misjudged};
@@ -28,7 +29,8 @@ use crate::{ConfigError, Machine};
 ///
 /// # Errors
 ///
-/// [`ConfigError`] where such a machine could not be: a share far below 0 or above 0.8, or a motor that would not be strong enough.
+/// [`ConfigError`] where such a machine could not be: a share far below 0 or above 0.8, or a motor that would
+/// not be strong enough.
 pub fn misjudged(machine: &Machine, share: f64) -> Result<Machine, ConfigError> {
     let mut config = *machine.config();
     for (axis, sign) in [(&mut config.x, -share), (&mut config.y, share)] {

@@ -1,4 +1,5 @@
-//! The control test bed: a controller of one's own on simulated motors, ranked beside the published ones and ours.
+//! The control test bed: a controller of one's own on simulated motors, ranked beside the published ones and
+//! ours.
 //!
 //! ```text
 //!  a machine's file ──▶ TestBed ──▶ the machine as it is: motors, loads, friction, play, belt, encoders, latency
@@ -10,9 +11,10 @@
 //! ```
 //!
 //! A controller of one's own is an [`AxisController`](crate::control::AxisController) for each axis, a
-//! [`ContourController`](crate::control::ContourController) for both, or a whole [`LineController`](crate::control::LineController);
-//! the crate's page has a complete one of thirty lines. With pictures: `examples/my_controller.rs` of the repository, and
-//! `compare_controllers` for those that are there.
+//! [`ContourController`](crate::control::ContourController) for both, or a whole
+//! [`LineController`](crate::control::LineController); the crate's page has a complete one of thirty lines.
+//! With pictures: `examples/my_controller.rs` of the repository, and `compare_controllers` for those that are
+//! there.
 //!
 //! ```
 //! use plotter_motion::testbed::{Drawing, Entry, Ranking, TestBed, TestBedSettings};

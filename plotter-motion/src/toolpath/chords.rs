@@ -51,7 +51,8 @@ impl DividedArc {
     }
 }
 
-/// The same tool path with every arc as chords that are no farther than `tolerance_mm` from it, at most 65,536 of them.
+/// The same tool path with every arc as chords that are no farther than `tolerance_mm` from it, at most
+/// 65,536 of them.
 ///
 /// The chord over an angle a of a circle of radius r lies r (1 − cos(a/2)) from it at the farthest.
 ///
@@ -92,8 +93,8 @@ pub fn chords<I: IntoIterator<Item = PlotOp>>(
     })
 }
 
-/// Into how many chords an arc is divided so that none is farther than `tolerance_mm` from it: 1 to 65,536; 1 for what is no
-/// arc.
+/// Into how many chords an arc is divided so that none is farther than `tolerance_mm` from it: 1 to 65,536; 1
+/// for what is no arc.
 pub(crate) fn chord_count(radius_mm: f32, sweep_rad: f32, tolerance_mm: f32) -> u32 {
     let share = tolerance_mm / radius_mm;
     if share.is_nan() {

@@ -35,8 +35,8 @@ pub struct PenMove {
 }
 
 impl PenMove {
-    /// The movement of a plot operation; `None` for one that is no straight move: an arc becomes straight moves with
-    /// [`chords`]. Rounds as [`from_mm`] does.
+    /// The movement of a plot operation; `None` for one that is no straight move: an arc becomes straight
+    /// moves with [`chords`]. Rounds as [`from_mm`] does.
     ///
     /// ```
     /// # use plotter_motion::{Pen, PenMove, PlotOp, Point, StepPoint};
@@ -69,9 +69,9 @@ impl PenMove {
 
 /// One thing for a plotter to do. All coordinates are absolute, in mm on the sheet.
 ///
-/// Before the first operation the pen is up at the origin. After the last one it is lifted where it stands: whatever takes operations
-/// does so at its end ([`Planner::finish`](crate::Planner::finish), `finish` of the writers), so no drawing needs an operation for it.
-/// A travel to where the pen stands lifts it before.
+/// Before the first operation the pen is up at the origin. After the last one it is lifted where it stands:
+/// whatever takes operations does so at its end ([`Planner::finish`](crate::Planner::finish), `finish` of the
+/// writers), so no drawing needs an operation for it. A travel to where the pen stands lifts it before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
@@ -91,8 +91,8 @@ pub enum PlotOp {
     },
     /// Lowers the pen and draws an arc of a circle from where the pen stands.
     ///
-    /// The pen ought to stand as far from the centre as `to` lies; where it does not, the radius changes evenly along
-    /// the way.
+    /// The pen ought to stand as far from the centre as `to` lies; where it does not, the radius changes
+    /// evenly along the way.
     DrawArc {
         /// Centre of the circle.
         centre: Point,

@@ -36,15 +36,15 @@ impl fmt::Display for OutOfReach {
 
 impl core::error::Error for OutOfReach {}
 
-/// The moves of a tool path in encoder counts, each rounded to nearest. Arcs are chords that lie within half a count of them,
-/// each an operation of its own. Operations that do not move the pen are
-/// left out, and so is a travel to where the pen is.
+/// The moves of a tool path in encoder counts, each rounded to nearest. Arcs are chords that lie within half
+/// a count of them, each an operation of its own. Operations that do not move the pen are left out, and so is
+/// a travel to where the pen is.
 ///
 /// # Errors
 ///
-/// [`OutOfReach`] for a point outside the machine's area, or one that is not finite. The moves after it follow;
-/// the line that would have begun there is a move with the pen up to its end, so that nothing is drawn that the
-/// tool path does not hold.
+/// [`OutOfReach`] for a point outside the machine's area, or one that is not finite. The moves after it
+/// follow; the line that would have begun there is a move with the pen up to its end, so that nothing is
+/// drawn that the tool path does not hold.
 ///
 /// ```
 /// # use plotter_motion::{Machine, MachineConfig, Pen, PenMove, PlotOp, Point, StepPoint, toolpath::targets};

@@ -12,7 +12,8 @@ use std::time::Instant;
 
 const STEPS_PER_MM: f64 = 100.0;
 
-/// What the steps of a drawing take: the tick at which the last action ends, of a microsecond; the ticks in motion; strokes.
+/// What the steps of a drawing take: the tick at which the last action ends, of a microsecond; the ticks in
+/// motion; strokes.
 fn stepped<const N: usize>(
     settings: PlannerSettings,
     timing: StepGenSettings,

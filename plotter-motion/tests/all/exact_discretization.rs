@@ -1,5 +1,5 @@
-//! The simulated motor and belt against a solver that is not ours: nalgebra's matrix exponential (Padé approximants; ours is a
-//! Taylor series, scaled and squared).
+//! The simulated motor and belt against a solver that is not ours: nalgebra's matrix exponential (Padé
+//! approximants; ours is a Taylor series, scaled and squared).
 
 use nalgebra::{SMatrix, SVector};
 use plotter_motion::config::{AxisConfig, LoadConfig, MotorConfig, TransmissionConfig};
@@ -8,8 +8,8 @@ use proptest::prelude::*;
 
 /// Share of the greatest value that each state takes for the given inputs: rounding of some ten products.
 const RELATIVE_ERROR: f64 = 1e-10;
-/// The same for a belt: its matrix over 0.4 ms is up to 1e5 in size, so that its exponential is squared 18 times, and each
-/// time rounding doubles.
+/// The same for a belt: its matrix over 0.4 ms is up to 1e5 in size, so that its exponential is squared 18
+/// times, and each time rounding doubles.
 const STIFF_ERROR: f64 = 1e-8;
 /// Share of the greatest entry times the greatest input: some units in the last place.
 const UNITS_ERROR: f64 = 1e-14;
@@ -34,7 +34,8 @@ fn motor_exponential(motor: &MotorConfig, load: &LoadConfig, dt_s: f64) -> SMatr
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Any motor that a machine's file may describe within reason, any state, any step from a microsecond to a tenth of a second.
+    /// Any motor that a machine's file may describe within reason, any state, any step from a microsecond to
+    /// a tenth of a second.
     #[test]
     fn a_step_of_the_motor_is_the_matrix_exponential(
         resistance_ohm in 0.5..20.0_f64, inductance_h in 1e-5..1e-2_f64, constant in 1e-3..0.1_f64,
@@ -95,7 +96,8 @@ proptest! {
         let matrix = (a * dt_s).exp();
         let input = SVector::<f64, 6>::new(0.3, speed_rad_s, 0.0, carriage_mm_s, -stretch_mm, voltage_v);
         let (expected, size) = (matrix * input, matrix.abs() * input.abs());
-        // Amperes, radians and millimetres are of different sizes, and a matrix is as exact as its largest entry.
+        // Amperes, radians and millimetres are of different sizes, and a matrix is as exact as its largest
+        // entry.
         let rounding = UNITS_ERROR * matrix.abs().max() * input.abs().max();
         let found =
             [next.motor.current_a, next.motor.speed_rad_s, next.motor.angle_rad, next.carriage_mm_s, next.carriage_mm];

@@ -1,5 +1,5 @@
-//! What a person does while a stepper plotter draws for a program that streams to Grbl: other speeds, jogs, settings. And the play of
-//! its axes.
+//! What a person does while a stepper plotter draws for a program that streams to Grbl: other speeds, jogs,
+//! settings. And the play of its axes.
 
 use crate::stepper_bench;
 

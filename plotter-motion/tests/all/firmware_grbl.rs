@@ -126,8 +126,10 @@ fn flat_arcs_leave_the_area_where_they_do() {
     let small = stored(300, 200);
     // The area, where the arc begins, the arc, and whether it stays within.
     for (stored, begin, arc, stays) in [
-        (small, "M3\nG1 X0 Y199.996 F60000\n", "G2 X296.394 Y199.996 I148.1970 J-416660.671\n", false), // 0.022 mm
-        (small, "M3\nG1 X0 Y199.968 F60000\n", "G2 X286.118 Y199.968 I143.0590 J-532655.666\n", true), // 0.013 mm
+        // 0.022 mm.
+        (small, "M3\nG1 X0 Y199.996 F60000\n", "G2 X296.394 Y199.996 I148.1970 J-416660.671\n", false),
+        // 0.013 mm.
+        (small, "M3\nG1 X0 Y199.968 F60000\n", "G2 X286.118 Y199.968 I143.0590 J-532655.666\n", true),
         (small, "M3\nG1 X299.996 Y0 F60000\n", "G3 X299.996 Y196 I-416660.671 J98\n", false), // 0.008 mm
         (small, "M3\nG1 X0.02 Y0 F60000\n", "G2 X0.02 Y196 I416660.671 J98\n", true),         // 0.008 mm
     ] {

@@ -5,8 +5,9 @@ use core::time::Duration;
 use plotter_motion::firmware::stepper_plotter::{Dialect, StepperPlotterSettings};
 use std::fmt::Write as _;
 
-/// Lines, one after the other where `|` stands between them; Grbl's answers, where `|` ends a line of one and `/` one; and why ours is
-/// another one, where it is. Before each row the machine is reset, unlocked, and sent to the origin.
+/// Lines, one after the other where `|` stands between them; Grbl's answers, where `|` ends a line of one and
+/// `/` one; and why ours is another one, where it is. Before each row the machine is reset, unlocked, and
+/// sent to the origin.
 ///
 /// Source: Grbl 1.1h of the Grbl project in its simulator (grbl-sim), with its settings as it comes but for
 /// 30,000 mm/min and 1000 mm/s²; rows of start-up lines, of `$RST`, of planes beyond the first ones and of

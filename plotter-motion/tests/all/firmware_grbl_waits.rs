@@ -1,4 +1,5 @@
-//! What a program that streams to Grbl counts on: how much may be sent ahead, and which answers come when the motion is over.
+//! What a program that streams to Grbl counts on: how much may be sent ahead, and which answers come when the
+//! motion is over.
 
 use crate::stepper_bench;
 

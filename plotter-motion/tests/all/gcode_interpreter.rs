@@ -33,7 +33,8 @@ fn shown(op: Result<PlotOp, plotter_motion::gcode::Error>) -> String {
     }
 }
 
-/// Operations in short: `U` travel, `D` draw, `A` arc, `L` laser, `S` pen, `W` wait, `N` page; errors in `<>`.
+/// Operations in short: `U` travel, `D` draw, `A` arc, `L` laser, `S` pen, `W` wait, `N` page; errors in
+/// `<>`.
 fn by(options: ReadOptions, text: &str) -> String {
     PlotOps::with_options(text.bytes(), options).map(shown).collect::<Vec<_>>().join(" ")
 }
@@ -113,7 +114,8 @@ fn arcs_that_are_none_are_named() {
 fn a_spindle_for_a_pen_marks_while_it_is_on() {
     let text = "M5\nG0 X1\nM3 S90\nG4 P0.15\nG1 X2 F60\nG0 X3\nM5\nG4 P0.15\nG0 X9\nM03\nM05\nG4 P2";
     assert_eq!(by(ReadOptions::default(), text), "U1,0 D2,0@1 D3,0 U9,0 D9,0@1 U9,0 W2s");
-    // The first wait after the pen was moved is the pen's, if it is short; milliseconds where the text counts them.
+    // The first wait after the pen was moved is the pen's, if it is short; milliseconds where the text counts
+    // them.
     let millis = ReadOptions { dwell_unit: DwellUnit::Milliseconds, ..ReadOptions::default() };
     assert_eq!(by(millis, "M3\nG4 P150\nG4 P150\nG1 X1\nG4 P20\nG4 S1"), "D0,0 W150ms D1,0 W20ms W1s");
 }

@@ -111,7 +111,8 @@ fn a_printer_with_a_pen() {
         G1 F1500 X20 Y10 E0\nM280 P0 S60\nG4 P300\nM400\nM117 done, it's over\nM84 X Y E\n";
     let pen = PenConvention::Servo { command: ServoCommand::M280, up: 60.0, down: 20.0 };
     is_read_as(servo, pen, "[10 10]-20 10");
-    // Heights, where G0 draws too and the steps are relative; lowered and lifted at once, the pen leaves a dot.
+    // Heights, where G0 draws too and the steps are relative; lowered and lifted at once, the pen leaves a
+    // dot.
     let heights = "G28 ; Home all axes\nG1 Z2 ; no scratches\nG0 X110 Y110; go\nG0 Z0\nG91\nG1 Z1\nG0 Y13\nG1 Z-1\nG0 X4 Y-4\n\
         G0 X4 Y4\nG1 Z1\nG90\nG1 Z10\nG1 X0 Y220\nM84 X Y E";
     is_read_as(

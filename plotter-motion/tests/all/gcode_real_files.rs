@@ -60,7 +60,8 @@ fn has_all_its_strokes(text: &[u8], line: usize, byte: usize) {
             "line {line}, column 1 (byte {byte}): M1 (pause: Was registration test successful?) is not supported and is left out"
         )]
     );
-    // As many strokes as the file has `(pen down)` after its test of the pen, which leaves a dot where it stands.
+    // As many strokes as the file has `(pen down)` after its test of the pen, which leaves a dot where it
+    // stands.
     let strokes = ops
         .windows(2)
         .filter(|pair| matches!(pair, [PlotOp::Travel { .. }, PlotOp::Draw { .. } | PlotOp::DrawArc { .. }]));

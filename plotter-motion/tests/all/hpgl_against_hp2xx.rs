@@ -1,16 +1,19 @@
-//! HPGL files in the manner of programs, and of programs where they are at hand, as this reader and as hp2xx draw them.
+//! HPGL files in the manner of programs, and of programs where they are at hand, as this reader and as hp2xx
+//! draw them.
 //!
-//! hp2xx (H. W. Werntges and M. Kroeker, 3.4.4) is a reader that shares no code with this one. It writes what it has
-//! understood as plain `PU` and `PD`, from which the lines are taken here. Every place of every line must lie near a line
-//! of the other reader, in both directions.
+//! hp2xx (H. W. Werntges and M. Kroeker, 3.4.4) is a reader that shares no code with this one. It writes what
+//! it has understood as plain `PU` and `PD`, from which the lines are taken here. Every place of every line
+//! must lie near a line of the other reader, in both directions.
 //!
 //! Before, the text is changed where the two would be right to differ, alike for both:
 //!
-//! - labels become blanks, which move the pen but draw nothing, and symbols are left out: each reader has its own letters;
-//! - after `IN`, P1, P2 and the size of letters are set to those of a 7475A with A4, where hp2xx supposes a plotter for A0,
-//!   and pen 1 is taken, there and on each page, without which hp2xx draws nothing;
-//! - what is filled is left out (`FP`, `RA`, `RR`, `WG`): hp2xx begins its hatching at the polygon's lowest place, not at the
-//!   anchor, and takes the width of a pen in mm for one in plotter units. Filling is pinned in `hpgl_polygons.rs`.
+//! - labels become blanks, which move the pen but draw nothing, and symbols are left out: each reader has its
+//!   own letters;
+//! - after `IN`, P1, P2 and the size of letters are set to those of a 7475A with A4, where hp2xx supposes a
+//!   plotter for A0, and pen 1 is taken, there and on each page, without which hp2xx draws nothing;
+//! - what is filled is left out (`FP`, `RA`, `RR`, `WG`): hp2xx begins its hatching at the polygon's lowest
+//!   place, not at the anchor, and takes the width of a pen in mm for one in plotter units. Filling is pinned
+//!   in `hpgl_polygons.rs`.
 
 // Without the font, labels are left out, and do not move the pen.
 #![cfg(feature = "font")]
@@ -32,7 +35,8 @@ const ROUNDING_UNITS: f64 = 0.01;
 const CHORDS_MM: f64 = 0.01 / UNITS_PER_MM;
 /// Places are taken this far from each other along each line, plotter units.
 const EVERY_UNITS: f64 = 4.0;
-/// The square on the sheet that hp2xx is told to draw, and whose lower left corner is the origin of what it writes.
+/// The square on the sheet that hp2xx is told to draw, and whose lower left corner is the origin of what it
+/// writes.
 const FROM_UNITS: i32 = -20_000;
 const TO_UNITS: i32 = 60_000;
 /// What hp2xx would suppose otherwise.
@@ -40,7 +44,8 @@ const PLOTTER: &[u8] = b";IP603,521,10603,7721;SI0.19,0.27;SP1;";
 /// Left out in all files.
 const FILLED: [&str; 4] = ["FP", "RA", "RR", "WG"];
 
-/// A file that the two do not draw alike: what is left out of it, or how far they may be from each other, and why.
+/// A file that the two do not draw alike: what is left out of it, or how far they may be from each other, and
+/// why.
 struct Exception {
     file: &'static str,
     left_out: &'static [&'static str],
@@ -48,16 +53,18 @@ struct Exception {
 }
 
 const EXCEPTIONS: [Exception; 4] = [
-    // hp2xx draws each curve as 50 lines that end on it, which lie up to 0.75 · 7620 / 50² = 2.29 units beside it: 7620 is the
-    // greatest second difference of its points. Ours lie within 0.4 units (`ReadOptions::tolerance_mm`).
+    // hp2xx draws each curve as 50 lines that end on it, which lie up to 0.75 · 7620 / 50² = 2.29 units
+    // beside it: 7620 is the greatest second difference of its points. Ours lie within 0.4 units
+    // (`ReadOptions::tolerance_mm`).
     Exception { file: "hp2xx_bz.hp", left_out: &[], tolerance_units: 2.29 },
     // `IW` without numbers cuts at the edge of the sheet for hp2xx, which knows one; a mark lies beyond.
     Exception { file: "hp2xx_iw.hp", left_out: &["IW"], tolerance_units: TOLERANCE_UNITS },
-    // For hp2xx, letters of so many cm grow with `IP`; `SI` is in cm whatever P1 and P2 are. `IP` has no other effect here.
+    // For hp2xx, letters of so many cm grow with `IP`; `SI` is in cm whatever P1 and P2 are. `IP` has no
+    // other effect here.
     Exception { file: "hp2xx_lo.hp", left_out: &["IP"], tolerance_units: TOLERANCE_UNITS },
-    // Once turned, hp2xx does not turn back: it takes `RO0` after `RO90` for nothing, and all that follows is turned. And its
-    // window is wrong: of PU4200,700;PD5800,1500 in IW4400,700,5600,1500, a diagonal through two corners' sides, it draws
-    // nothing, and of a chord that enters from outside the outer end.
+    // Once turned, hp2xx does not turn back: it takes `RO0` after `RO90` for nothing, and all that follows is
+    // turned. And its window is wrong: of PU4200,700;PD5800,1500 in IW4400,700,5600,1500, a diagonal through
+    // two corners' sides, it draws nothing, and of a chord that enters from outside the outer end.
     Exception {
         file: "hpgl_rendering_feature_exercise.plt",
         left_out: &["RO", "IW"],

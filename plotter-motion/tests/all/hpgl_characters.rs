@@ -1,4 +1,5 @@
-//! Labels that are kept, sets of characters, characters of the text's own: `BL`, `PB`, `CS`, `CA`, `SS`, `SA`, `DL`.
+//! Labels that are kept, sets of characters, characters of the text's own: `BL`, `PB`, `CS`, `CA`, `SS`,
+//! `SA`, `DL`.
 #![cfg(feature = "font")]
 
 use crate::shown;

@@ -1,4 +1,5 @@
-//! What is for cutters: the one-letter languages CAMM-GL and GP-GL, and what cutters' programs write into HPGL.
+//! What is for cutters: the one-letter languages CAMM-GL and GP-GL, and what cutters' programs write into
+//! HPGL.
 
 use crate::shown;
 use plotter_motion::hpgl::cutter::{Dialect, PlotOps, ReadOptions, plot_ops};

@@ -1,7 +1,8 @@
-//! Where the data of `PE` end: at their `;`, at the next command where that is missing, at the end of the text, and at an escape
-//! sequence that leaves the language.
+//! Where the data of `PE` end: at their `;`, at the next command where that is missing, at the end of the
+//! text, and at an escape sequence that leaves the language.
 //!
-//! Source: *The HP-GL/2 and HP RTL Reference Guide*, on `PE`, which must be ended by a `;`. AutoCAD's driver leaves it out before `PU`.
+//! Source: *The HP-GL/2 and HP RTL Reference Guide*, on `PE`, which must be ended by a `;`. AutoCAD's driver
+//! leaves it out before `PU`.
 
 use crate::shown::ops;
 use plotter_motion::hpgl::plot_ops;

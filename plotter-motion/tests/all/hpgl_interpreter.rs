@@ -198,7 +198,8 @@ fn defaults_leave_p1_the_turn_and_the_pen() {
 
 #[test]
 fn encoded_data_that_became_letters_are_read_as_they_were() {
-    // 728, 338 and 106 to the right, in digits of six bits: gnuplot's, as a text editor's Latin-1 or UTF-8 has them
+    // 728, 338 and 106 to the right, in digits of six bits: gnuplot's, as a text editor's Latin-1 or UTF-8
+    // has them
     let whole = b"PE<=o\xD5c\xC9S\xC2\xBF;";
     let letters: String = whole.iter().map(|byte| char::from(*byte)).collect();
     let drawn = |text: &[u8]| plot_ops(text).collect::<Result<Vec<_>, _>>().unwrap();

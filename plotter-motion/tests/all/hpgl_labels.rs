@@ -5,7 +5,8 @@ use crate::shown;
 
 use shown::ops;
 
-/// A capital letter of 80 by 120 units: each step of the letters' grid is 10 units. To the next one 120, to the next line 240.
+/// A capital letter of 80 by 120 units: each step of the letters' grid is 10 units. To the next one 120, to
+/// the next line 240.
 const LETTERS: &str = "SI0.2,0.3;";
 
 fn label(text: &str) -> String {

@@ -114,7 +114,8 @@ fn curves_are_lines_within_the_tolerance() {
         .flatten()
         .filter_map(PlotOp::target)
         .collect();
-    // Second differences of 400 √2 units for a tolerance of 10: n = √(0.75 · 566 / 10) = 6.5, two curves of 7 lines
+    // Second differences of 400 √2 units for a tolerance of 10: n = √(0.75 · 566 / 10) = 6.5, two curves of 7
+    // lines
     assert_eq!(drawn.len(), 7 + 7 + 1);
     assert_eq!(
         (drawn[6], drawn[13], drawn[14]),
@@ -138,7 +139,8 @@ fn ticks_are_percent_of_p1_to_p2() {
 
 #[test]
 fn encoded_data_are_a_polyline() {
-    // 5-bit digits: `7`, pen up to (200, 100) absolute (400: 16 + 12 · 32; 200: 8 + 6 · 32), then 10 right and 10 down
+    // 5-bit digits: `7`, pen up to (200, 100) absolute (400: 16 + 12 · 32; 200: 8 + 6 · 32), then 10 right
+    // and 10 down
     assert_eq!(ops("PE7<=OkGest;PA0,0"), ops("PU200,100;PD210,90;PA0,0"));
     assert_eq!(ops("PE7:a<=OkGe;"), "S1 U200,100");
     assert_eq!(

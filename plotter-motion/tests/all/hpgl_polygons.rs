@@ -133,7 +133,8 @@ fn a_fill_that_is_too_fine_is_said() {
 
 #[test]
 fn a_raster_is_shaded_as_much_as_it_inks() {
-    // One dot of four has ink: as a shading of 25 %. Without dots it is forgotten, and what nobody has defined is solid.
+    // One dot of four has ink: as a shading of 25 %. Without dots it is forgotten, and what nobody has
+    // defined is solid.
     let pen = "PW0.25;PU0,0;";
     let shaded = ops(&format!("{pen}FT10,25;RA80,80;"));
     assert_eq!(ops(&format!("{pen}RF2,2,2,1,0,0,0;FT11,2;RA80,80;")), shaded);

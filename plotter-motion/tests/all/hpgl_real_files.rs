@@ -5,8 +5,8 @@ use plotter_motion::PlotOp;
 use plotter_motion::hpgl::plot_ops;
 use std::{fs, io};
 
-/// What is said about a file, and why it has to be. About the others nothing is: whatever they ask for is done, or means
-/// nothing to a machine with one pen.
+/// What is said about a file, and why it has to be. About the others nothing is: whatever they ask for is
+/// done, or means nothing to a machine with one pen.
 #[cfg(feature = "font")]
 const SAID: [(&str, &[&str]); 2] = [
     (
@@ -52,9 +52,9 @@ fn nothing_is_said_about_good_files() -> io::Result<()> {
     Ok(())
 }
 
-/// Lines of the files, as two readers that share no code with this one find them: one in another language, written
-/// for this comparison, and hp2xx 3.4.4, whose coordinates agree too, to the 0.014 units that its output resolves.
-/// Of ours the program that writes it counts them.
+/// Lines of the files, as two readers that share no code with this one find them: one in another language,
+/// written for this comparison, and hp2xx 3.4.4, whose coordinates agree too, to the 0.014 units that its
+/// output resolves. Of ours the program that writes it counts them.
 const LINES: [(&str, usize); 10] = [
     ("plan.plt", 80),
     ("hp2xx_acad.hp", 1987),

@@ -1,11 +1,13 @@
-//! `RO` together with whatever says what coordinates mean: `IP`, `IR`, all kinds of `SC`, `IW`, `PS`, each of them before the turn
-//! and after it, by every angle, on a sheet whose size is known and on one whose size is not.
+//! `RO` together with whatever says what coordinates mean: `IP`, `IR`, all kinds of `SC`, `IW`, `PS`, each of
+//! them before the turn and after it, by every angle, on a sheet whose size is known and on one whose size is
+//! not.
 //!
-//! The places are those of a small model of its own, in which a place is a complex number and a quarter of a turn a factor of i.
-//! Where hp2xx is at hand, its lines are compared too.
+//! The places are those of a small model of its own, in which a place is a complex number and a quarter of a
+//! turn a factor of i. Where hp2xx is at hand, its lines are compared too.
 //!
-//! Source of the rules: *PCL 5 Printer Language Technical Reference Manual*, part II, chapter 19. P1, P2 and the window keep their
-//! numbers when the axes turn, and so turn with them; `IP` without numbers, `IR` and the sheet go by the axes as they are now.
+//! Source of the rules: *PCL 5 Printer Language Technical Reference Manual*, part II, chapter 19. P1, P2 and
+//! the window keep their numbers when the axes turn, and so turn with them; `IP` without numbers, `IR` and
+//! the sheet go by the axes as they are now.
 
 #[cfg(feature = "font")]
 use crate::hpgl_against_hp2xx::{TOLERANCE_UNITS, compared, folder, has_hp2xx, prepared};
@@ -32,8 +34,8 @@ struct Model {
     p2: Place,
 }
 
-/// P1 and P2 of a 7475A with A4 as the turned axes count them, for each quarter: worked by hand from (603, 521), (10603, 7721) and
-/// the sheet of 11040 by 7721. At 90 degrees x' is y, and y' is 11040 - x.
+/// P1 and P2 of a 7475A with A4 as the turned axes count them, for each quarter: worked by hand from (603,
+/// 521), (10603, 7721) and the sheet of 11040 by 7721. At 90 degrees x' is y, and y' is 11040 - x.
 const USUAL: [[Place; 2]; 4] = [
     [(603.0, 521.0), (10_603.0, 7_721.0)],
     [(521.0, 437.0), (7_721.0, 10_437.0)],
@@ -105,7 +107,8 @@ impl Model {
                 let share = |index| room.get(index).copied().unwrap_or(50.0) / 100.0;
                 let (width, height) = ((x2 - x1).abs(), (y2 - y1).abs());
                 let unit = (frame.0.abs() / width).min(frame.1.abs() / height);
-                // Of the room that is left over, so much lies before the area on either axis, from P1 towards P2.
+                // Of the room that is left over, so much lies before the area on either axis, from P1 towards
+                // P2.
                 let along = |frame: f64, width: f64, share: f64, from: f64| {
                     frame.signum() * ((frame.abs() - unit * width) * share + unit * from)
                 };
@@ -155,8 +158,8 @@ const SAID: [(&str, &str); 14] = [
 const ANGLES: [&str; 4] = ["RO0;", "RO90;", "RO180;", "RO270;"];
 const SHEETS: [Option<(&str, Place)>; 2] = [None, Some(("PS8000,4000;", (8_000.0, 4_000.0)))];
 
-/// All rows: what is said, in which order, and the scale before or after all of it. The scale goes by P1 and P2 as they are when it
-/// is used.
+/// All rows: what is said, in which order, and the scale before or after all of it. The scale goes by P1 and
+/// P2 as they are when it is used.
 fn rows() -> impl Iterator<Item = (String, String)> {
     SHEETS.into_iter().flat_map(|sheet| {
         SAID.into_iter().flat_map(move |(said, scale)| {

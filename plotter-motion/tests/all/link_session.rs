@@ -1,4 +1,5 @@
-//! The bytes of a session, from the call to the first target reached, then a stop: what docs/serial-protocol.md shows.
+//! The bytes of a session, from the call to the first target reached, then a stop: what
+//! docs/serial-protocol.md shows.
 
 use core::fmt::Write;
 use core::time::Duration;

@@ -20,7 +20,8 @@ use stepper_bench::Bench;
 const UP_DEG: u8 = 160;
 const DOWN_DEG: u8 = 90;
 
-/// What the motors and the pen did, in short: `d` and `u` for the pen, `-` for steps, `P` for another pen, `N` for a new sheet.
+/// What the motors and the pen did, in short: `d` and `u` for the pen, `-` for steps, `P` for another pen,
+/// `N` for a new sheet.
 fn done(settings: PlannerSettings, ops: &[PlotOp]) -> String {
     let motor = MotorScale { steps_per_mm: 10.0, inverted: false };
     let mut planner = Planner::<16>::new(settings).unwrap();

@@ -61,7 +61,8 @@ fn touches() -> [fn(&mut Planner<16>); 4] {
 
 #[test]
 fn no_override_and_no_hold_near_the_end_of_a_line_is_too_hard() {
-    // Twice the change of speed of the longest phase, and a little more: then there is little left of the line where something is done.
+    // Twice the change of speed of the longest phase, and a little more: then there is little left of the
+    // line where something is done.
     let feeds = (0..16).map(|power| 2.0 * ACCEL_MM_S2 * 3.0 / 64.0 + 1e-3 * 1.5_f64.powi(power));
     for feed_mm_s in feeds {
         for length_mm in [10.0, 33.3, 100.0, 1_234.5, 10_000.0] {

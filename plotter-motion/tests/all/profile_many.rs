@@ -1,4 +1,5 @@
-//! Planned speeds on very many inputs: drawn over all decades, and at the borders where a phase begins to have a length.
+//! Planned speeds on very many inputs: drawn over all decades, and at the borders where a phase begins to
+//! have a length.
 //!
 //! `PROFILE_CASES` sets how many (200,000 by default, ten million in `.ci/run`).
 
@@ -39,7 +40,8 @@ impl Random {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A limit: over all decades that are allowed, over those of machines, a round number, or an end of the range.
+    /// A limit: over all decades that are allowed, over those of machines, a round number, or an end of the
+    /// range.
     fn limit(&mut self) -> f64 {
         match self.below(8) {
             0 => 1e-18,
@@ -96,8 +98,8 @@ fn check_s_curve(length_mm: f64, limits: MotionLimits) -> Result<(), String> {
         t += phase_s;
         peak_v = peak_v.max(v);
         peak_a = peak_a.max(a.abs());
-        // What the motion says at the same time. Between the phases of an hour's cruise a double cannot tell the
-        // milliseconds of the others apart: so much later or earlier it may be.
+        // What the motion says at the same time. Between the phases of an hour's cruise a double cannot tell
+        // the milliseconds of the others apart: so much later or earlier it may be.
         let blur_s = 4.0 * f64::EPSILON * duration_s;
         let point = motion.at(t);
         let finite =
@@ -156,8 +158,8 @@ fn s_curves_keep_their_limits_and_end_at_rest_on_all_inputs() {
     }
 }
 
-/// Two published planners fail on this input (pantor/ruckig 0.19.4 and rsruckig 3.0.1): full acceleration is reached
-/// at one place in the last bits.
+/// Two published planners fail on this input (pantor/ruckig 0.19.4 and rsruckig 3.0.1): full acceleration is
+/// reached at one place in the last bits.
 #[test]
 fn a_length_at_which_full_acceleration_is_just_reached_is_planned() {
     let limits = MotionLimits { speed_mm_s: 100.0, accel_mm_s2: 1_000.0, jerk_mm_s3: 20_000.0 };
@@ -178,7 +180,8 @@ fn check_trapezoid(asked: TrapezoidMove) -> Result<(), String> {
     must(duration_s.is_finite() && duration_s >= 0.0, "a time")?;
     must(peak_mm_s <= speed_mm_s && peak_mm_s >= entry_mm_s * (1.0 - ROUNDING), "speed limit")?;
 
-    // v² - v0² = 2 a s: over the whole length no greater change is possible, and less than that is done exactly.
+    // v² - v0² = 2 a s: over the whole length no greater change is possible, and less than that is done
+    // exactly.
     let most = 2.0 * accel_mm_s2 * length_mm;
     let square = |speed: f64| speed * speed;
     let wanted = square(exit_mm_s) - square(entry_mm_s);

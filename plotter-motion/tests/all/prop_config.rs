@@ -216,7 +216,8 @@ fn no_number_may_be_infinite_or_negative_or_none() {
     }
 }
 
-/// At the ends of its range a value may contradict another one, but it lies in its range; beyond, it does not.
+/// At the ends of its range a value may contradict another one, but it lies in its range; beyond, it does
+/// not.
 #[test]
 fn the_range_in_a_refusal_is_the_range_that_holds() {
     for (key, is_whole) in numbers().filter(|(key, _)| key != "schema" && key != MAY_BE_NEGATIVE) {

@@ -137,8 +137,8 @@ proptest! {
         }
     }
 
-    /// ×4 counts are the true position, rounded down. ×1 counts differ from it only by what it counts up or down
-    /// where a shaft turns round within one half period; without turning round they agree as well.
+    /// ×4 counts are the true position, rounded down. ×1 counts differ from it only by what it counts up or
+    /// down where a shaft turns round within one half period; without turning round they agree as well.
     #[test]
     fn the_counts_of_an_axis_are_where_its_shaft_is(
         decoding in decoding(),

@@ -238,7 +238,8 @@ proptest! {
             }
             length_mm += from.distance(to);
         }
-        // Each row stands for its strip, and each middle for its square: wrong where an outline runs through, at the most.
+        // Each row stands for its strip, and each middle for its square: wrong where an outline runs through,
+        // at the most.
         let area_mm2 = area_mm2(&polygons);
         let most = (distance_mm + 1.0) * perimeter_mm;
         prop_assert!((length_mm * distance_mm - area_mm2).abs() <= most, "{length_mm} {area_mm2}");

@@ -84,7 +84,8 @@ fn written(ops: &[PlotOp], options: WriteOptions<'_>) -> Result<String, WriteErr
     writer.finish()
 }
 
-/// What a text says of a drawing: no line twice, no pen twice, and the power of a laser where it is first needed.
+/// What a text says of a drawing: no line twice, no pen twice, and the power of a laser where it is first
+/// needed.
 fn meant(ops: &[PlotOp], write: &WriteOptions<'_>) -> Vec<PlotOp> {
     let mut meant = Vec::new();
     let (mut at, mut down, mut holder) = (None, false, 0);
@@ -108,8 +109,8 @@ fn meant(ops: &[PlotOp], write: &WriteOptions<'_>) -> Vec<PlotOp> {
                     told = Some(share);
                     meant.push(PlotOp::LaserPower { share });
                 }
-                // A dot has no speed; within a stroke it is nothing. One at the beginning of a stroke shows only where nothing
-                // follows it.
+                // A dot has no speed; within a stroke it is nothing. One at the beginning of a stroke shows
+                // only where nothing follows it.
                 if here != to || !down {
                     meant.push(PlotOp::Draw { to, feed_mm_s: feed_mm_s.or(Some(write.feed_mm_s)) });
                 }
@@ -199,7 +200,8 @@ proptest! {
     }
 }
 
-/// Arcs one after the other: each begins where the one before ended, and is a centre's place from there, mm, and a sweep.
+/// Arcs one after the other: each begins where the one before ended, and is a centre's place from there, mm,
+/// and a sweep.
 fn arcs() -> impl Strategy<Value = Vec<(Vec2, f64)>> {
     let centre = (1.0..2000.0_f64, 0.0..std::f64::consts::TAU)
         .prop_map(|(far, angle)| Vec2::new(far, 0.0).rotated(angle));
@@ -299,8 +301,8 @@ proptest! {
         let lines = text.iter().filter(|byte| matches!(byte, b'\n' | b'\r')).count() + 1;
         for options in [read, Detection::from_bytes(text.iter().copied()).options()] {
             let ops: Vec<_> = PlotOps::with_options(text.iter().copied(), options).collect();
-            // A line gives ten operations at most, besides the thousand turns that the P of an arc may ask for, and the end a dot with its
-            // power.
+            // A line gives ten operations at most, besides the thousand turns that the P of an arc may ask
+            // for, and the end a dot with its power.
             let turns = 1000 * text.iter().filter(|byte| byte.eq_ignore_ascii_case(&b'P')).count();
             prop_assert!(ops.len() <= 10 * lines + turns + 2);
             for op in &ops {
@@ -371,7 +373,8 @@ proptest! {
 
     #[test]
     fn bytes_may_come_in_any_portions(text in likely_text(), read in any_options()) {
-        // One byte at a time is all there is: a reader that is copied between any two bytes goes on as if it had not been.
+        // One byte at a time is all there is: a reader that is copied between any two bytes goes on as if it
+        // had not been.
         let whole = by_bytes(&text, read, false);
         let pieces = by_bytes(&text, read, true);
         prop_assert_eq!(pieces, whole);

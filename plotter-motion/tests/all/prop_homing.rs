@@ -22,7 +22,8 @@ enum Fault {
     Inverted,
 }
 
-/// An axis between two switches that close at 0 and at `length` and open some steps inside, with stops outside.
+/// An axis between two switches that close at 0 and at `length` and open some steps inside, with stops
+/// outside.
 #[derive(Clone, Copy, Debug)]
 struct SimulatedAxis {
     at: i32,
@@ -77,8 +78,8 @@ fn read(x: &SimulatedAxis, y: &SimulatedAxis) -> LimitSwitches {
     LimitSwitches { x_min, x_max, y_min, y_max }
 }
 
-/// What must hold of the rates on the way: started and ended at no more than the start rate, and between two steps no
-/// faster than the acceleration allows.
+/// What must hold of the rates on the way: started and ended at no more than the start rate, and between two
+/// steps no faster than the acceleration allows.
 struct RateLaw {
     settings: HomingAxis,
     before: Option<HomingStep>,
@@ -249,7 +250,8 @@ proptest! {
             (Fault::Sticks(stuck), HomingError::Stuck { end, .. }) => end == stuck,
             // It stuck before it was asked to, so the other one came with it.
             (Fault::Sticks(_), HomingError::Both { .. }) | (Fault::SharedWire, HomingError::Both { .. }) => true,
-            // The end that it meets is not the one it was sent to; or it stands on a switch and goes farther onto it.
+            // The end that it meets is not the one it was sent to; or it stands on a switch and goes farther
+            // onto it.
             (Fault::Inverted, HomingError::Wrong { end, .. }) => end == Direction::Plus || stands_on[0],
             (Fault::Inverted, HomingError::Stuck { .. }) => stands_on[0] || stands_on[1],
             _ => false,
@@ -280,7 +282,8 @@ proptest! {
     }
 }
 
-/// The documented machine with simulated motors: the rates of homing lose no step, and the known length saves time.
+/// The documented machine with simulated motors: the rates of homing lose no step, and the known length saves
+/// time.
 #[test]
 fn the_stepper_plotter_is_homed_without_losing_a_step() {
     let homed_after_s = |known_steps| {
@@ -317,8 +320,8 @@ fn the_stepper_plotter_is_homed_without_losing_a_step() {
     assert!(known_s < 0.8 * unknown_s);
 }
 
-/// Switches that a true rotor presses, met at 20,000 pulses/s where the axis was said to go on: a motor that is stopped from
-/// there at once loses steps, and the length is right all the same.
+/// Switches that a true rotor presses, met at 20,000 pulses/s where the axis was said to go on: a motor that
+/// is stopped from there at once loses steps, and the length is right all the same.
 #[test]
 fn a_length_known_wrongly_costs_steps_but_not_the_result() {
     /// How far a rotor lags behind its field in its friction: at most 2 steps at either end.

@@ -195,7 +195,8 @@ fn events(text: &[u8]) -> Vec<String> {
 const MOST_LINES: u64 = 200_000;
 /// A curve has 4096 lines, and the way to it.
 const MOST_OF_A_CURVE: usize = 4097;
-/// A rectangle that is filled crosswise with 16384 lines each way, each of them with a travel; and pens and complaints.
+/// A rectangle that is filled crosswise with 16384 lines each way, each of them with a travel; and pens and
+/// complaints.
 const MOST_OF_A_COMMAND: usize = 2 * 2 * 16_384 + 100;
 
 /// One command with a few numbers, great and small.
@@ -377,8 +378,8 @@ proptest! {
         // These have a meaning that reaches beyond a command: an escape or a label that swallows the rest.
         prop_assume!(byte != 0x1b);
         text[place] = byte;
-        // The stroke after the damage is drawn if it begins like a drawing of its own: the damage may have made a command
-        // that holds for all that follows, such as a scale.
+        // The stroke after the damage is drawn if it begins like a drawing of its own: the damage may have
+        // made a command that holds for all that follows, such as a scale.
         text.extend_from_slice(b";\x03;\";IN;PU4000,4000;PD4040,4000;PU;");
         let last: Vec<PlotOp> = plot_ops(&text).flatten().collect();
         let stroke = PlotOp::Travel { to: Point::new(100.0, 100.0) };
@@ -445,10 +446,12 @@ fn a_list_of_any_length_needs_no_more_memory() {
 
 /// How far the lines that are compared are from the arcs that are read back, mm.
 const CHORDS_MM: f64 = 0.1 / 40.0;
-/// What the writer promises for an arc, mm: one unit, and half a one for the plotter's chords; a rounded digit.
+/// What the writer promises for an arc, mm: one unit, and half a one for the plotter's chords; a rounded
+/// digit.
 const ARC_MM: f64 = 1.5 / 40.0 + 1e-4;
 
-/// Arcs one after the other: each begins where the one before ended, and is a centre's place from there, mm, and a sweep.
+/// Arcs one after the other: each begins where the one before ended, and is a centre's place from there, mm,
+/// and a sweep.
 fn arcs() -> impl Strategy<Value = Vec<(Vec2, f64)>> {
     let reach = prop_oneof![3 => 0.05..2.0_f64, 3 => 2.0..40.0_f64, 1 => 40.0..3000.0_f64];
     let centre =

@@ -1,4 +1,5 @@
-//! Laws of what makes fewer lines: doubles dropped, lines simplified, arcs fitted. Distances are reckoned here anew, from many places.
+//! Laws of what makes fewer lines: doubles dropped, lines simplified, arcs fitted. Distances are reckoned
+//! here anew, from many places.
 
 use core::f64::consts::{FRAC_PI_4, PI, TAU};
 use core::time::Duration;
@@ -502,7 +503,8 @@ fn circles_and_rounded_corners_are_arcs_and_corners_are_none() {
         drawing.fit_arcs(0.01);
         assert_eq!(drawing.strokes[0].segments.len(), segments, "{sides} {radius}");
     }
-    // A rectangle of 40 mm by 30 mm with corners of 5 mm, each of nine lines, and its sides of one line or ten.
+    // A rectangle of 40 mm by 30 mm with corners of 5 mm, each of nine lines, and its sides of one line or
+    // ten.
     for sides in [1, 10] {
         let mut places = vec![p(5.0, 0.0)];
         for (corner, to) in [p(35.0, 5.0), p(35.0, 25.0), p(5.0, 25.0), p(5.0, 5.0)].into_iter().zip([

@@ -172,7 +172,8 @@ proptest! {
     }
 }
 
-/// What a host with payloads of `PAYLOAD` says to a machine until the session is open, and the machine after it.
+/// What a host with payloads of `PAYLOAD` says to a machine until the session is open, and the machine after
+/// it.
 fn greeted<const PAYLOAD: usize>(host: &mut Link<8, PAYLOAD>) -> (Vec<u8>, LinkedGantry<4, 64>) {
     let machine = Machine::new(MachineConfig::default()).unwrap();
     let mut machine = LinkedGantry::<4, 64>::new(
@@ -195,7 +196,8 @@ fn greeted<const PAYLOAD: usize>(host: &mut Link<8, PAYLOAD>) -> (Vec<u8>, Linke
     (said, machine)
 }
 
-/// A machine without a session obeys the orders of the digits protocol: a greeting holds none, whatever its number.
+/// A machine without a session obeys the orders of the digits protocol: a greeting holds none, whatever its
+/// number.
 #[test]
 fn nobody_is_stopped_by_a_greeting() {
     let settings = LinkSettings::default();

@@ -99,8 +99,8 @@ impl LineController for Restless {
     }
 }
 
-/// After every one of the inputs: no drive into a pressed switch, none while stopped, and no motor reversed that may still
-/// turn.
+/// After every one of the inputs: no drive into a pressed switch, none while stopped, and no motor reversed
+/// that may still turn.
 fn holds<C: LineController>(
     settings: MarkingBoardSettings,
     controller: C,

@@ -21,7 +21,8 @@ const ROUNDING: f64 = 1e-6;
 
 /// The least acceleration that a planner takes, of the pen and of a motor.
 const LEAST_ACCEL_MM_S2: f64 = 1e-3;
-/// What rounding may leave between the end of one phase and the begin of the next, mm, mm/s; and mm/s² where jerk is limited.
+/// What rounding may leave between the end of one phase and the begin of the next, mm, mm/s; and mm/s² where
+/// jerk is limited.
 const GAP_MM: f64 = 2e-6;
 /// The same as a share of the length of a course: places on it are `f32`.
 const GAP_SHARE: f64 = f32::EPSILON as f64;
@@ -161,8 +162,8 @@ enum Touch {
     Shares(f64, f64),
 }
 
-/// All actions of a path; `touches` says after how many of them something is done, and `told` hears each action with the shares that
-/// held when it was taken.
+/// All actions of a path; `touches` says after how many of them something is done, and `told` hears each
+/// action with the shares that held when it was taken.
 fn actions_told<const N: usize>(
     settings: PlannerSettings,
     ops: &[PlotOp],
@@ -421,7 +422,8 @@ proptest! {
     fn an_allowance_is_kept_both_ways(places in polyline(), allowance_mm in 1e-3..0.1) {
         /// What `f32` leaves of places as far from each other as these, mm.
         const SINGLE_MM: f64 = 2e-5;
-        /// Between vertices an arc is compared with its chord, which may be a little longer than the drawing's.
+        /// Between vertices an arc is compared with its chord, which may be a little longer than the
+        /// drawing's.
         const SLANTED: f64 = 1.02;
         let most_mm = allowance_mm + SINGLE_MM;
         let settings = PlannerSettings { allowance_mm, resolution_mm: 0.0, ..PlannerSettings::default() };

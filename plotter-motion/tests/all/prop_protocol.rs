@@ -125,8 +125,8 @@ proptest! {
         prop_assert!(wire.send(Duration::ZERO) >= last); // an offer out of order waits
     }
 
-    /// Any points: every move lies in the machine's area, every refusal names a point that does not, and no line
-    /// is drawn but those of the tool path.
+    /// Any points: every move lies in the machine's area, every refusal names a point that does not, and no
+    /// line is drawn but those of the tool path.
     #[test]
     fn targets_hold_nothing_but_what_the_machine_reaches(
         path in prop::collection::vec(
@@ -199,7 +199,8 @@ fn a_slow_line_does_not_use_up_the_patience() {
         }
         bytes += u32::from(silent_at.is_none() && host.next_byte(now).is_some());
     }
-    assert_eq!((bytes, silent_at), (10, Some(Duration::from_micros(11_000_001)))); // 9 s of pauses, 2 s of silence
+    // 9 s of pauses, 2 s of silence.
+    assert_eq!((bytes, silent_at), (10, Some(Duration::from_micros(11_000_001))));
 }
 
 #[test]

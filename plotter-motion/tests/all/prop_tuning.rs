@@ -1,5 +1,5 @@
-//! Laws of auto-tuning for any plausible motor: an experiment ends in bounded time and travel, with an error or with gains that
-//! are stable on the true motor; margins are what the loop does.
+//! Laws of auto-tuning for any plausible motor: an experiment ends in bounded time and travel, with an error
+//! or with gains that are stable on the true motor; margins are what the loop does.
 
 use crate::tuning_bench;
 
@@ -122,7 +122,8 @@ proptest! {
         let found = found.without_friction(IntegratingProcess::dry_friction_duty(&axis));
         if let Ok(pid) = found.astrom_hagglund(45.0) {
             let reached = margins(&axis, &pid, tick_s);
-            // friction of up to a quarter of the relay's duty is put to account, but what it makes of the swing's shape is not
+            // friction of up to a quarter of the relay's duty is put to account, but what it makes of the
+            // swing's shape is not
             prop_assert!(reached.stable && reached.phase_margin_deg > 15.0, "{found:?} {reached:?} {process:?}");
         }
     }

@@ -16,7 +16,8 @@ const PLAY: Backlash = Backlash { x_steps: 20, y_steps: 20 };
 /// Extra steps 0.1 ms apart: 2 ms for all.
 const INTERVAL_TICKS: u64 = 100;
 
-/// An axis whose carriage is pushed by one flank of a gap or by the other: it follows the motor where that leaves the gap.
+/// An axis whose carriage is pushed by one flank of a gap or by the other: it follows the motor where that
+/// leaves the gap.
 #[derive(Default)]
 struct Carriage {
     motor: i32,
@@ -81,7 +82,8 @@ fn drawn(take_up: bool) -> (f64, Point) {
 fn extra_steps_take_up_the_play() {
     let (with, end) = drawn(true);
     let (without, _) = drawn(false);
-    // While the play is taken up the carriage waits: 2 ms at 20 mm/s are 0.04 mm, but across the circle far less.
+    // While the play is taken up the carriage waits: 2 ms at 20 mm/s are 0.04 mm, but across the circle far
+    // less.
     assert!(with < 0.03, "{with} mm off with extra steps");
     assert!(without > 0.15, "{without} mm off without");
     assert_eq!(end, Point::new(70.0, 50.0));

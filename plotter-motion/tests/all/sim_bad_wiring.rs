@@ -32,7 +32,8 @@ struct Outcome {
     /// What was told first, and how long after the fault made a difference.
     told: Option<(AxisTrouble, Duration)>,
     reached: usize,
-    /// How far the pen was from where the controller thought it to be, and its greatest speed since the fault.
+    /// How far the pen was from where the controller thought it to be, and its greatest speed since the
+    /// fault.
     astray_mm: f64,
     fastest_mm_s: f64,
 }
@@ -233,7 +234,8 @@ fn a_lost_phase_and_double_edges_stop_the_motors() {
         for trouble in told(fault) {
             // B high is right as long as the shaft goes forwards
             let is_right = fault == Fault::PhaseBHigh && trouble.is_none();
-            // a motor as slow as the marking board's may truly gain as much speed as double edges feign: it is told, no more
+            // a motor as slow as the marking board's may truly gain as much speed as double edges feign: it
+            // is told, no more
             let is_told = fault == Fault::EveryEdgeTwice && trouble == Some(Trouble::Changed);
             assert!(is_right || is_told || trouble.is_some_and(Trouble::stops), "{fault:?}: {trouble:?}");
         }

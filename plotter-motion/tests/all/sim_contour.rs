@@ -1,6 +1,7 @@
 //! The published controller and ours on the same simulated gantry, line by line.
 //!
-//! `cargo test -p plotter-motion --test all sim_contour:: -- --nocapture` prints the tables of docs/results/line-control.md.
+//! `cargo test -p plotter-motion --test all sim_contour:: -- --nocapture` prints the tables of
+//! docs/results/line-control.md.
 
 use crate::closed_loop;
 use crate::figure::Figure;

@@ -1,4 +1,5 @@
-//! The contouring controller ends every line, on motors far from their description: there is no place where it waits for ever.
+//! The contouring controller ends every line, on motors far from their description: there is no place where
+//! it waits for ever.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -40,7 +41,8 @@ fn described(is_loaded: bool, decoding: Decoding) -> MachineConfig {
     if is_loaded { loaded_gantry(decoding) } else { decoded(MachineConfig::default(), decoding) }
 }
 
-/// The axis as it is: every figure of motor and load off by up to `off`, and rest up to 1.8 times as hard to leave as motion.
+/// The axis as it is: every figure of motor and load off by up to `off`, and rest up to 1.8 times as hard to
+/// leave as motion.
 fn as_it_is(axis: &AxisConfig, off: f64, chance: &mut Chance) -> AxisConfig {
     let mut real = *axis;
     let mut by = || 1.0 + chance.between(-off, off);
@@ -120,7 +122,8 @@ fn every_line_ends(off: f64, lines: u64, limit: Duration) {
             println!(
                 "off by {off}, loaded {is_loaded}, {decoding:?}: {slowest_s:.2} s at most (seed {slow}), {farthest_counts:.1} counts off the target (seed {far})"
             );
-            // x1 counts may be lost where a shaft swings about an edge (see QuadratureX1); x4 counts are where the shaft is.
+            // x1 counts may be lost where a shaft swings about an edge (see QuadratureX1); x4 counts are
+            // where the shaft is.
             assert!(
                 decoding == Decoding::X1 || farthest_counts < 2.0,
                 "{farthest_counts} counts off the target"
@@ -139,7 +142,8 @@ fn every_line_ends_on_motors_a_quarter_off() {
     every_line_ends(0.25, 20, Duration::from_secs(2));
 }
 
-/// The gain of such a motor may be beyond the margin of the loop, which then swings about its reference: the line still ends.
+/// The gain of such a motor may be beyond the margin of the loop, which then swings about its reference: the
+/// line still ends.
 #[test]
 fn every_line_ends_on_motors_of_which_nothing_is_right() {
     every_line_ends(0.4, 20, Duration::from_secs(10));
@@ -152,7 +156,8 @@ fn every_line_of_many_ends() {
     every_line_ends(0.4, 1000, Duration::from_secs(30));
 }
 
-/// One shaft is held fast for the last millimetre and a second more: the line ends when it is let go, not before.
+/// One shaft is held fast for the last millimetre and a second more: the line ends when it is let go, not
+/// before.
 #[test]
 fn a_line_held_at_its_end_ends_when_it_is_let_go() {
     const LET_GO: Duration = Duration::from_millis(1500);

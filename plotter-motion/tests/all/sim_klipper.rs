@@ -1,8 +1,9 @@
 //! The exact mode beside the formulas of Klipper's look-ahead, to more digits than a table has.
 //!
-//! Klipper takes a corner on the circle of the junction deviation, and no faster than on an arc that begins half a segment from it; it
-//! looks ahead without end. Source: K. O'Connor, Klipper's documentation of kinematics, "Look-ahead". Here without what it adds for
-//! printers (smoothing by `minimum_cruise_ratio`), which makes it slower.
+//! Klipper takes a corner on the circle of the junction deviation, and no faster than on an arc that begins
+//! half a segment from it; it looks ahead without end. Source: K. O'Connor, Klipper's documentation of
+//! kinematics, "Look-ahead". Here without what it adds for printers (smoothing by `minimum_cruise_ratio`),
+//! which makes it slower.
 
 use crate::auditor;
 use crate::drawings;

@@ -1,6 +1,7 @@
 //! The marking board: published, with the equalizer, and ours, on the same two unequal motors and rails.
 //!
-//! `cargo test -p plotter-motion --test all sim_marking_board:: -- --nocapture --test-threads 1` prints the tables of docs/results/marking-board.md.
+//! `cargo test -p plotter-motion --test all sim_marking_board:: -- --nocapture --test-threads 1` prints the
+//! tables of docs/results/marking-board.md.
 
 use crate::marking;
 
@@ -101,8 +102,8 @@ fn rectangles(
     (done, spread)
 }
 
-/// The circle of radius 50 mm by 300 points: the difference of its greatest and least distance from the middle, and its
-/// size, true places, mm.
+/// The circle of radius 50 mm by 300 points: the difference of its greatest and least distance from the
+/// middle, and its size, true places, mm.
 fn circles(
     name: &str,
     phases: [f64; 2],
@@ -232,7 +233,8 @@ fn an_emergency_stop_ends_in_the_run_down() {
     assert!(run.plant.position_mm().distance(settings.start + Vec2::new(50.0, 0.0)) < 0.05);
 }
 
-/// Which motor is the stronger one, which rail the rougher one, and how the motors are wired does not matter to ours.
+/// Which motor is the stronger one, which rail the rougher one, and how the motors are wired does not matter
+/// to ours.
 #[test]
 fn other_boards_are_drawn_on_as_well() {
     const CORNER_MM: f64 = 0.05;

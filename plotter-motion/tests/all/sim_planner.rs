@@ -228,7 +228,8 @@ fn whole_drawings_lose_no_step() {
     }
 }
 
-/// Prints the table of docs/results/stepper-motion.md: `cargo test --release -p plotter-motion --test all sim_planner::table -- --ignored --nocapture`
+/// Prints the table of docs/results/stepper-motion.md:
+/// `cargo test --release -p plotter-motion --test all sim_planner::table -- --ignored --nocapture`
 #[test]
 #[ignore = "seconds in a release build: the table of docs/results/stepper-motion.md, with the command that stands there"]
 fn table_of_times() {

@@ -1,12 +1,14 @@
 //! How quick a jerk-limited motion along a planned path could be at all.
 //!
-//! Between two places that are passed at no more than V₁ and V₂ with the accelerations a₁ and a₂, a motion whose jerk is within ±J
-//! covers in the time T no more than one with the jerk +J, −J, +J: the distance is the integral of (T − t)²/2 times the jerk, the two
-//! speeds and accelerations fix those of 1 and T − t, and what maximizes the one under the others changes its sign where a
-//! parabola does; nor can its speed exceed what jerk and acceleration allow from either end. From that the least T for each stretch
-//! as a function of both accelerations; and since neighbours share one, the least sum over a whole stroke by dynamic programming over
-//! it. In cells, each with what favours the motion: so the sum is a bound. The speeds at those places are the trapezoids',
-//! which no motion within the same acceleration exceeds anywhere. A line from rest to rest has its optimum in closed form.
+//! Between two places that are passed at no more than V₁ and V₂ with the accelerations a₁ and a₂, a motion
+//! whose jerk is within ±J covers in the time T no more than one with the jerk +J, −J, +J: the distance is
+//! the integral of (T − t)²/2 times the jerk, the two speeds and accelerations fix those of 1 and T − t, and
+//! what maximizes the one under the others changes its sign where a parabola does; nor can its speed exceed
+//! what jerk and acceleration allow from either end. From that the least T for each stretch as a function of
+//! both accelerations; and since neighbours share one, the least sum over a whole stroke by dynamic
+//! programming over it. In cells, each with what favours the motion: so the sum is a bound. The speeds at
+//! those places are the trapezoids', which no motion within the same acceleration exceeds anywhere. A line
+//! from rest to rest has its optimum in closed form.
 
 use crate::auditor;
 use crate::drawings;
@@ -30,7 +32,8 @@ struct Stretch {
     exit: f64,
 }
 
-/// The ways from rest to rest of a drawing, with the speeds that trapezoids have at the ends of their stretches.
+/// The ways from rest to rest of a drawing, with the speeds that trapezoids have at the ends of their
+/// stretches.
 fn runs(settings: PlannerSettings, drawing: &Drawing) -> Vec<Vec<Stretch>> {
     let mut planner = Planner::<1024>::new(settings).expect("settings of a machine");
     let mut ops = drawing.ops.iter().copied().peekable();
@@ -70,7 +73,8 @@ fn runs(settings: PlannerSettings, drawing: &Drawing) -> Vec<Vec<Stretch>> {
 /// Points at which the greatest speeds are taken.
 const POINTS: u32 = 32;
 
-/// Integral of the greatest speed that either end allows, the acceleration and the cruising speed within their limits.
+/// Integral of the greatest speed that either end allows, the acceleration and the cruising speed within
+/// their limits.
 fn within_mm(t: f64, (entry, exit): (f64, f64), (a, b): (f64, f64), settings: PlannerSettings) -> f64 {
     let most = settings.accel_mm_s2;
     let reached = |from: f64, accel: f64, time: f64| {
@@ -85,7 +89,8 @@ fn within_mm(t: f64, (entry, exit): (f64, f64), (a, b): (f64, f64), settings: Pl
     points.sum::<f64>() * t / f64::from(POINTS)
 }
 
-/// Whether no motion covers `length_mm` in the time `t`, with the speeds at both ends and the accelerations there.
+/// Whether no motion covers `length_mm` in the time `t`, with the speeds at both ends and the accelerations
+/// there.
 fn is_too_far(
     length_mm: f64,
     t: f64,
@@ -95,15 +100,16 @@ fn is_too_far(
 ) -> bool {
     // Whatever the accelerations are: the jerk is -J all the way.
     let free_mm = 0.5 * (entry + exit) * t + JERK * t * t * t / 12.0;
-    // `a` is the most of its cell and `b` the least: only this way are they farther apart than the jerk reaches.
+    // `a` is the most of its cell and `b` the least: only this way are they farther apart than the jerk
+    // reaches.
     if free_mm < length_mm || b - a > JERK * t * (1.0 + 1e-9) {
         return true;
     }
     let middle = 0.5 * (t - (b - a) / JERK);
     if middle > 0.0 && middle < t {
         let begin = t - 0.5 * middle - (0.5 * t * t - (exit - entry - a * t) / JERK) / (2.0 * middle);
-        // What can be reached at all grows with both speeds and `a`, and shrinks with `b`. Where these cannot be reached, others of the
-        // cells may be: nothing is said then.
+        // What can be reached at all grows with both speeds and `a`, and shrinks with `b`. Where these cannot
+        // be reached, others of the cells may be: nothing is said then.
         if begin >= 0.0 && begin + middle <= t {
             // The integral of (T - t)²/2 times the jerk.
             let (late, early) = (t - begin - middle, t - begin);
@@ -189,7 +195,8 @@ fn no_motion_is_quicker_than_the_bound() {
     assert!((found / libm::cbrt(32.0 / JERK) - 1.0).abs() < RATIO - 1.0, "{found}");
 }
 
-/// Prints the table of docs/results/stepper-motion.md: no drawing is planned in less than the least time, nor that below the trapezoid's.
+/// Prints the table of docs/results/stepper-motion.md: no drawing is planned in less than the least time, nor that below the
+/// trapezoid's.
 #[test]
 #[ignore = "a minute: the table of docs/results/stepper-motion.md, with the command that stands there"]
 fn table_of_bounds() {

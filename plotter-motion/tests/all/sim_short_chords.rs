@@ -1,4 +1,5 @@
-//! Curves of many short chords, whose vertices are rounded to the last digit of a file: exact mode with an allowance.
+//! Curves of many short chords, whose vertices are rounded to the last digit of a file: exact mode with an
+//! allowance.
 
 use crate::auditor::{Lens, audit, planned};
 use crate::drawings;
@@ -9,7 +10,8 @@ use plotter_motion::{PathMode, Planner, PlannerSettings, PlotOp, Point, planner:
 const MEASURED: f64 = 1.05;
 /// By how much the exact mode may take longer than Grbl's rule.
 const OVER_GRBL: f64 = 1.1;
-/// Machines: speed, acceleration, step; mm and s. That of the motion table with fine steps, and the documented one.
+/// Machines: speed, acceleration, step; mm and s. That of the motion table with fine steps, and the
+/// documented one.
 const MACHINES: [(f64, f64, f64); 2] = [(100.0, 1000.0, 0.001), (45.0, 250.0, 1.0 / 87.58)];
 
 /// Settings that take every vertex as it is.
@@ -107,7 +109,8 @@ fn corners_of_the_drawing_stay_and_brake_as_before() {
             assert!((ours_s / exact_s - 1.0).abs() < SHARE, "{divided}: {ours_s} s, by vertices {exact_s} s");
         }
         let (_, courses) = planned::<64>(by_digits(machine, 3), &stroke(&places));
-        // One for each line, the way to the start and the lift at the end; between lines of a third of a millimetre, 5 degrees are a curve.
+        // One for each line, the way to the start and the lift at the end; between lines of a third of a
+        // millimetre, 5 degrees are a curve.
         assert!(courses <= turns.len() + 3, "{divided}: {courses}");
     }
 }
@@ -175,8 +178,8 @@ fn chords_end_on_the_arc_that_follows_them() {
 /// its chords.
 const LONGER: f64 = 1.003;
 
-/// The table of docs/results/stepper-motion.md, with blocks enough for the best: no row takes longer than Grbl's rule, and no drawing longer
-/// with an allowance than without.
+/// The table of docs/results/stepper-motion.md, with blocks enough for the best: no row takes longer than Grbl's rule, and
+/// no drawing longer with an allowance than without.
 #[test]
 #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn table_of_short_chords() {

@@ -167,7 +167,8 @@ fn a_lasers_power_follows_its_speed_and_is_none_at_rest() {
                 last = tick;
                 if power > 0 {
                     lit_mm += 1.0 / STEPS_PER_MM;
-                    // Of 65535: half at 50 mm/s; in 256 grades. The interval is that before the power: near rest that says little.
+                    // Of 65535: half at 50 mm/s; in 256 grades. The interval is that before the power: near
+                    // rest that says little.
                     let meant = 0.5 * f64::from(u16::MAX) * speed / 50.0;
                     let near = (f64::from(power) - meant).abs() < GRADE + INTERVALS * meant;
                     assert!(near || speed < SLOW_MM_S, "{power} at {speed} mm/s");

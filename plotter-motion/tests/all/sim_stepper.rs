@@ -7,8 +7,8 @@ use plotter_motion::{
     profile::{Trapezoid, TrapezoidMove},
 };
 
-/// Rest position of a rotor in friction, as a part of the holding torque: asin(0.04/0.28) of a quarter turn of the spring
-/// is 0.091 full steps, here 1.5 pulses; and the last swing leaves it anywhere within.
+/// Rest position of a rotor in friction, as a part of the holding torque: asin(0.04/0.28) of a quarter turn
+/// of the spring is 0.091 full steps, here 1.5 pulses; and the last swing leaves it anywhere within.
 const FRICTION_STEPS: f64 = 1.5;
 
 /// Pulses at the times that a planned speed gives, a step being its millimetre; and what was lost.
@@ -36,8 +36,8 @@ fn lost_at_once(rate_hz: f64, steps: f64) -> i64 {
     lost_along(asked, StepperSettings::default())
 }
 
-/// From the source's base speed over `length_steps`, with its acceleration: 8000 pulses/s within half of 2750 steps,
-/// (8000² - 2000²) / 2750 pulses/s².
+/// From the source's base speed over `length_steps`, with its acceleration: 8000 pulses/s within half of 2750
+/// steps, (8000² - 2000²) / 2750 pulses/s².
 fn ramped(length_steps: f64, speed_hz: f64) -> TrapezoidMove {
     TrapezoidMove {
         length_mm: length_steps,
@@ -63,7 +63,8 @@ fn the_documented_rates_keep_and_lose_steps_as_documented() {
 
 #[test]
 fn beyond_the_pull_out_curve_no_ramp_helps() {
-    // Friction 0.04 N m and 1e-3 N m s * 2 pi * f / 3200; torque 0.28 (40,000 - f) / 32,000 N m: equal at 28,900/s.
+    // Friction 0.04 N m and 1e-3 N m s * 2 pi * f / 3200; torque 0.28 (40,000 - f) / 32,000 N m: equal at
+    // 28,900/s.
     let far = |speed_hz| TrapezoidMove { accel_mm_s2: 1.0e5, ..ramped(20_000.0, speed_hz) };
     assert_eq!(lost_along(far(26_000.0), StepperSettings::default()), 0);
     assert!(lost_along(far(32_000.0), StepperSettings::default()) > 0);
@@ -80,8 +81,8 @@ fn a_ramp_steeper_than_torque_over_inertia_loses_steps() {
     assert!(lost_along(steep(1.3e6), heavy) > 0);
 }
 
-/// Energy decides at a sudden start: in the field's frame the rotor runs backwards with the field's speed w and must not
-/// climb over the spring: J w² / 2 < 2 T / p, without friction.
+/// Energy decides at a sudden start: in the field's frame the rotor runs backwards with the field's speed w
+/// and must not climb over the spring: J w² / 2 < 2 T / p, without friction.
 #[test]
 fn the_greatest_rate_to_start_at_is_what_energy_says() {
     let free = StepperSettings {
@@ -147,10 +148,12 @@ fn the_same_pulses_give_the_same_bits_and_odd_times_do_no_harm() {
     assert!(f64::from_bits(run()).is_finite());
 }
 
-/// A rotor one small step off its field swings like a mass on a spring: J d²x/dt² = -T p x, once in 2 pi sqrt(J / (T p)).
+/// A rotor one small step off its field swings like a mass on a spring: J d²x/dt² = -T p x, once in 2 pi
+/// sqrt(J / (T p)).
 #[test]
 fn a_small_swing_takes_as_long_as_a_spring_says() {
-    /// The sine of 1/16 of a full step (5.6 degrees) is a spring to 0.2 %, and the simulation goes on in steps of 20 us.
+    /// The sine of 1/16 of a full step (5.6 degrees) is a spring to 0.2 %, and the simulation goes on in
+    /// steps of 20 us.
     const DEVIATION: f64 = 0.005;
     let free = StepperSettings { coulomb_n_m: 0.0, viscous_n_m_s: 0.0, ..StepperSettings::default() };
     let swing_s = std::f64::consts::TAU * (free.inertia_kg_m2 / (free.holding_n_m * 50.0)).sqrt();

@@ -180,7 +180,8 @@ proptest! {
     }
 }
 
-/// The drawings that planning is measured on, at the source's rates: base 2000, lines 4000, travels 8000 pulses/s.
+/// The drawings that planning is measured on, at the source's rates: base 2000, lines 4000, travels 8000
+/// pulses/s.
 #[test]
 fn planned_drawings_lose_no_step_where_a_sudden_start_does() {
     for (draw_hz, travel_hz) in [(2_000.0, 8_000.0), (4_000.0, 8_000.0), (8_000.0, 8_000.0)] {

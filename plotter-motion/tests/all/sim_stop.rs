@@ -1,4 +1,5 @@
-//! The emergency stop that comes over the line: from its last byte on nothing drives the motors, until it is taken back.
+//! The emergency stop that comes over the line: from its last byte on nothing drives the motors, until it is
+//! taken back.
 
 #![cfg(feature = "alloc")]
 
@@ -19,7 +20,8 @@ fn machine() -> Machine {
     Machine::new(MachineConfig::default()).unwrap()
 }
 
-/// With the published controller, which counts each edge as it comes; ours knows better where an encoder was met twice.
+/// With the published controller, which counts each edge as it comes; ours knows better where an encoder was
+/// met twice.
 fn published() -> Machine {
     let mut config = MachineConfig::default();
     config.control.controller = ControllerChoice::Published;
@@ -213,7 +215,8 @@ fn a_stop_over_frames_passes_the_window_by() {
     let ordered = line.bench.now();
     line.until("stopped", |line| is_off(line.bench.controller()));
     let took = line.bench.now() - ordered;
-    // 00 21 00, after what is left of the byte on the line: not the frames before it, nor those in the window.
+    // 00 21 00, after what is left of the byte on the line: not the frames before it, nor those in the
+    // window.
     assert!(took <= Duration::from_micros(200), "{took:?}");
     line.until("told", |line| line.host.state() == Order::Stop);
     let stopped_at = line.bench.controller().gantry().position();

@@ -1,4 +1,5 @@
-//! The control test bed on the loaded gantry: how hard it is, and what ours make of it, beside the figures of a trial elsewhere.
+//! The control test bed on the loaded gantry: how hard it is, and what ours make of it, beside the figures of
+//! a trial elsewhere.
 //!
 //! `cargo test -p plotter-motion --test all sim_testbed:: -- --nocapture` prints the tables; in release,
 //! `cargo run --release --example compare_controllers` gives them with pictures.
@@ -27,7 +28,8 @@ fn described(decoding: Decoding) -> MachineConfig {
     config
 }
 
-/// The ranking of the entries with these names on the eight lines, with descriptions that are wrong by `share`.
+/// The ranking of the entries with these names on the eight lines, with descriptions that are wrong by
+/// `share`.
 fn ranking(decoding: Decoding, share: f64, names: &[&str]) -> Ranking {
     let machine = Machine::new(described(decoding)).unwrap();
     let settings = TestBedSettings { wrong_share: share, ..TestBedSettings::default() };
@@ -65,7 +67,8 @@ fn um(mm: f64) -> f64 {
     mm * 1e3
 }
 
-/// Figures of a trial elsewhere, um: its published PID, 393 rms and 1687 at worst, did not settle on two of eight lines.
+/// Figures of a trial elsewhere, um: its published PID, 393 rms and 1687 at worst, did not settle on two of
+/// eight lines.
 const TRIAL_PUBLISHED_UM: (f64, f64) = (393.0, 1687.0);
 
 /// Every line finished and settled, within these, um.
@@ -118,8 +121,9 @@ fn with_x4_encoders_ours_has_less_than_a_three_hundredth_and_with_learning_an_ei
             assert_shown(&ranking, 1);
         }
         let published = score(&ranking, "published").total().rms_mm();
-        // the trial's figures for each, and a tenth of a micrometre and two for the greatest of contouring and cross-coupled: what the
-        // first edges say of the motor is taken in later than it was by an estimator that was told less
+        // the trial's figures for each, and a tenth of a micrometre and two for the greatest of contouring
+        // and cross-coupled: what the first edges say of the motor is taken in later than it was by an
+        // estimator that was told less
         for (name, rms_um, max_um, times) in [
             ("planned-pid", 2.8, 12.0, 300.0),
             ("contouring", 1.1, 6.6, 300.0),

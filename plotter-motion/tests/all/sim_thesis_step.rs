@@ -16,7 +16,8 @@ fn the_linear_loop_of_the_thesis_settles_within_its_millisecond() {
     for step in 0..5_000 {
         let error = 1.0 - state.angle_rad;
         sum += error * DT_S;
-        // linear as in the thesis' MATLAB model: no limit of the voltage, and the step itself is differentiated
+        // linear as in the thesis' MATLAB model: no limit of the voltage, and the step itself is
+        // differentiated
         let volts = DRIVER_GAIN * (15.0 * error + 0.0001 * sum + 10.0 * (error - before) / DT_S);
         before = error;
         state = motor.step(state, volts, 0.0);
@@ -28,6 +29,6 @@ fn the_linear_loop_of_the_thesis_settles_within_its_millisecond() {
     }
     let settled_s = settled_s.unwrap();
     assert!(settled_s <= 0.001, "settled after {settled_s} s");
-    // It takes 10 V s in the first instant: no battery gives that, which is why the table of sim_contour looks
-    // different with 12 V.
+    // It takes 10 V s in the first instant: no battery gives that, which is why the table of sim_contour
+    // looks different with 12 V.
 }

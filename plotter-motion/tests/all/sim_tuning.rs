@@ -1,7 +1,8 @@
-//! Auto-tuning on simulated motors: what the experiments find beside what is true, the margins that are reached, and whether
-//! a loop swings where its margins say so.
+//! Auto-tuning on simulated motors: what the experiments find beside what is true, the margins that are
+//! reached, and whether a loop swings where its margins say so.
 //!
-//! `cargo test -p plotter-motion --test all sim_tuning:: -- --nocapture` prints the tables of docs/results/tuning.md.
+//! `cargo test -p plotter-motion --test all sim_tuning:: -- --nocapture` prints the tables of
+//! docs/results/tuning.md.
 
 use crate::closed_loop;
 use crate::tuning_bench;
@@ -173,7 +174,8 @@ fn tuned_loops_keep_their_margins_on_the_true_motor_and_settle() {
     }
 }
 
-/// The swing of a linear loop, motor and controller in their own programs, after a knock: its size late beside its size early.
+/// The swing of a linear loop, motor and controller in their own programs, after a knock: its size late
+/// beside its size early.
 fn swing_grows(axis: &AxisConfig, pid: &Pid, factor: f64, tick_s: f64, swing_hz: f64) -> f64 {
     let motor = DcMotor::new(&axis.motor, &axis.load, tick_s);
     let counts_per_rad = axis.counts_per_turn() / TAU;
@@ -214,8 +216,8 @@ fn a_loop_swings_at_its_gain_margin_and_not_below_it() {
     }
 }
 
-/// The published x loop at 2500 calls a second has a gain margin of 1.04: simulated linearly, it swings for a hundred
-/// periods and still dies out, and with a twentieth more gain it grows.
+/// The published x loop at 2500 calls a second has a gain margin of 1.04: simulated linearly, it swings for a
+/// hundred periods and still dies out, and with a twentieth more gain it grows.
 #[test]
 fn the_published_loop_is_as_near_to_swinging_as_its_margins_say() {
     let axis = AxisConfig::default();
@@ -233,8 +235,9 @@ fn the_published_loop_is_as_near_to_swinging_as_its_margins_say() {
     assert!(swing_grows(&axis, &pid, 1.05, TICK_S, reached.swing_hz) > 1.05);
 }
 
-/// The thesis' own loop (section 4.6.2): Kp = 15, Kd = 10, Ki = 0.0001 per volt and radian, behind a driver of 2.4. It settles
-/// within 0.001 s as it is published (`sim_thesis_step`) only because nothing in it takes time or runs out.
+/// The thesis' own loop (section 4.6.2): Kp = 15, Kd = 10, Ki = 0.0001 per volt and radian, behind a driver
+/// of 2.4. It settles within 0.001 s as it is published (`sim_thesis_step`) only because nothing in it takes
+/// time or runs out.
 #[test]
 fn the_loop_of_the_thesis_needs_what_no_machine_has() {
     let unloaded = LoadConfig { inertia_kg_m2: 0.0, coulomb_n_m: 0.0, static_n_m: 0.0, viscous_n_m_s: 0.0 };
@@ -281,8 +284,8 @@ fn the_loop_of_the_thesis_needs_what_no_machine_has() {
     assert!(in_a_millisecond < 0.075);
     assert!(ms_for_a_rad.unwrap() > 3.0);
 
-    // The largest step that could be over in 1 ms with the published gains taken by steps of 255, the rest left out:
-    // half of it speeding up, half braking, a quarter of what the whole millisecond gives.
+    // The largest step that could be over in 1 ms with the published gains taken by steps of 255, the rest
+    // left out: half of it speeding up, half braking, a quarter of what the whole millisecond gives.
     let counts = 0.25 * in_a_millisecond * counts_per_rad;
     println!("the largest step that 12 V can make within 1 ms: some {counts:.1} counts");
     assert!(counts < 2.0);
@@ -374,9 +377,9 @@ fn an_axis_that_is_held_on_the_way_ends_the_experiment() {
     assert_eq!(experiment.tick(bench.count), plotter_motion::Demand::NONE);
 }
 
-/// The margins of the contouring controller, which are reckoned for a linear loop, beside what the controller does, on a motor
-/// whose supply is so much stronger than described that the loop has more gain. The encoder is fine, so that there is an edge in
-/// every run, and none is miscounted where the shaft swings back.
+/// The margins of the contouring controller, which are reckoned for a linear loop, beside what the controller
+/// does, on a motor whose supply is so much stronger than described that the loop has more gain. The encoder
+/// is fine, so that there is an edge in every run, and none is miscounted where the shaft swings back.
 #[test]
 fn contouring_keeps_the_line_within_its_gain_margin_and_finds_out_a_motor_beyond_it() {
     let mut described = MachineConfig::default();
@@ -403,7 +406,8 @@ fn contouring_keeps_the_line_within_its_gain_margin_and_finds_out_a_motor_beyond
     };
     let (within, beyond) = (run(0.9), run(1.3));
     assert!(within.arrived_s.is_some() && within.max_mm < 0.01, "{within:?}");
-    // three and a half times as strong as described, it would swing for ever if it were believed to be as described
+    // three and a half times as strong as described, it would swing for ever if it were believed to be as
+    // described
     assert!(beyond.arrived_s.is_some() && beyond.max_mm < 0.05, "{beyond:?}");
 }
 
@@ -431,7 +435,8 @@ fn suggested_contouring_draws_as_the_default_does() {
     }
 }
 
-/// Lines of 60 mm in eight directions: how many end within 2 s, and the root mean square of the distance from them.
+/// Lines of 60 mm in eight directions: how many end within 2 s, and the root mean square of the distance from
+/// them.
 fn eight_lines(described: &MachineConfig, plant: &MachineConfig) -> (usize, f64) {
     const LENGTH_COUNTS: f64 = 2400.0;
     let lines = [0.0_f64, 30.0, 75.0, 90.0, 135.0, 195.0, 250.0, 315.0].map(|heading_deg| {
@@ -483,8 +488,8 @@ fn contouring_draws_worse_below_the_sensitivity_that_is_the_default() {
     }
 }
 
-/// Why `example tune` writes gains in the published form as comments: the published program is called at every edge, and a sum
-/// and a difference by the call are then something else.
+/// Why `example tune` writes gains in the published form as comments: the published program is called at
+/// every edge, and a sum and a difference by the call are then something else.
 #[test]
 fn the_published_program_is_not_helped_by_gains_for_a_loop_at_a_fixed_rate() {
     let mut machine = closed_loop::machine(ControllerChoice::Published);

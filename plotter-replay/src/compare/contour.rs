@@ -106,8 +106,8 @@ impl FromIterator<ContourSample> for ContourError {
 }
 
 impl VirtualPlotter {
-    /// Distance of each counted position from the line between the targets before and after it, mm. Ways without
-    /// a known target are left out.
+    /// Distance of each counted position from the line between the targets before and after it, mm. Ways
+    /// without a known target are left out.
     pub fn contour_samples(&self, ways: Ways) -> impl Iterator<Item = ContourSample> {
         samples_of(self.legs(), *self.settings(), ways)
     }

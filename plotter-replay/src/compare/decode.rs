@@ -67,8 +67,8 @@ impl Decoder {
         }
     }
 
-    /// The controller's frame that record `index` is in: the record that ends it, and what it says. `None` where no frames are spoken, or
-    /// the records end before it. `records` are those from the beginning.
+    /// The controller's frame that record `index` is in: the record that ends it, and what it says. `None`
+    /// where no frames are spoken, or the records end before it. `records` are those from the beginning.
     pub fn frame_at(
         header: &Header,
         records: impl IntoIterator<Item = Record>,

@@ -1,4 +1,5 @@
-//! [`Lane`]: two sequences of one kind, compared one by one, and brought together again after each difference.
+//! [`Lane`]: two sequences of one kind, compared one by one, and brought together again after each
+//! difference.
 
 use crate::log::SwitchName;
 use core::fmt;
@@ -132,8 +133,8 @@ impl Lane {
     }
 }
 
-/// How many to leave out on either side until both go on alike: as few as possible, and rather something else on both sides than
-/// something missing on one. The same number of both, if they do not within sight.
+/// How many to leave out on either side until both go on alike: as few as possible, and rather something else
+/// on both sides than something missing on one. The same number of both, if they do not within sight.
 fn meeting(left: &VecDeque<Entry>, right: &VecDeque<Entry>) -> (usize, usize) {
     let alike = |i: usize, j: usize| {
         let rest = left.len().saturating_sub(i).min(right.len().saturating_sub(j)).min(SURE);

@@ -35,12 +35,12 @@ const LANES: [&str; 8] = [
     "targets taken",
 ];
 
-/// Compares two logs: bytes with bytes whether they were written down one by one or together, and all else by its kind. Notes
-/// are for people and not compared. After a difference both are brought together again, so that a lost byte is one place
-/// and not all that follows.
+/// Compares two logs: bytes with bytes whether they were written down one by one or together, and all else by
+/// its kind. Notes are for people and not compared. After a difference both are brought together again, so
+/// that a lost byte is one place and not all that follows.
 ///
-/// Each log is gone through twice, the second time for what was round the first difference; so each is a function that
-/// begins it anew. Memory is bounded.
+/// Each log is gone through twice, the second time for what was round the first difference; so each is a
+/// function that begins it anew. Memory is bounded.
 ///
 /// ```
 /// # use plotter_replay::{CompareSettings, compare::compare};

@@ -2,8 +2,8 @@
 
 use plotter_motion::{Point, Vec2};
 
-/// Leaves out points of a path as long as every one stays within `tolerance_mm` of the lines that are left; the
-/// first and the last point always stay. One pass, constant memory.
+/// Leaves out points of a path as long as every one stays within `tolerance_mm` of the lines that are left;
+/// the first and the last point always stay. One pass, constant memory.
 ///
 /// From the last kept point each further one is seen under a cone of directions that pass it within the
 /// tolerance; while the cones have a direction in common and the way leads on, one line does for all of them.

@@ -53,8 +53,9 @@ fn schema(title: &str, properties: Value) -> Vec<u8> {
     json!({ "title": title, "type": "object", "properties": properties }).to_string().into_bytes()
 }
 
-/// Writes records as MCAP with four topics: `/plotter/position` (mm, counts, pen, next target), `/plotter/bytes` (direction,
-/// hex, words), `/plotter/drive` (duty cycles) and `/plotter/events` (switches, emergency stop, notes).
+/// Writes records as MCAP with four topics: `/plotter/position` (mm, counts, pen, next target),
+/// `/plotter/bytes` (direction, hex, words), `/plotter/drive` (duty cycles) and `/plotter/events` (switches,
+/// emergency stop, notes).
 ///
 /// # Errors
 ///

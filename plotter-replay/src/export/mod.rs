@@ -1,4 +1,5 @@
-//! Logs for other programs: a table ([`csv`]), words for people ([`text`]), and MCAP for Foxglove (feature `mcap`).
+//! Logs for other programs: a table ([`csv`]), words for people ([`text`]), and MCAP for Foxglove (feature
+//! `mcap`).
 
 #[cfg(feature = "mcap")]
 mod mcap;

@@ -4,8 +4,8 @@ use crate::compare::Decoder;
 use crate::log::{Event, Header, Record, write_line};
 use std::io::{self, Write};
 
-/// Writes records as CSV: `time_us,from,kind,value,words`. Bytes are in hex, one row a record; cells with a comma or a quote are
-/// quoted.
+/// Writes records as CSV: `time_us,from,kind,value,words`. Bytes are in hex, one row a record; cells with a
+/// comma or a quote are quoted.
 ///
 /// ```
 /// # use plotter_replay::{export, log::{Event, Header, Record}};

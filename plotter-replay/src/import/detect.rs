@@ -2,8 +2,8 @@
 
 use super::Tool;
 
-/// The tool that wrote a file, from its beginning (a few kilobytes); `None` if none of those known here did. Bare bytes
-/// look like nothing, so [`Tool::Raw`] is never found.
+/// The tool that wrote a file, from its beginning (a few kilobytes); `None` if none of those known here did.
+/// Bare bytes look like nothing, so [`Tool::Raw`] is never found.
 ///
 /// ```
 /// # use plotter_replay::import::{Tool, detect};

@@ -15,8 +15,8 @@ pub(super) fn hex_run(text: &str) -> Option<Vec<u8>> {
     (0..text.len()).step_by(2).map(|at| hex_byte(text.get(at..at.checked_add(2)?)?)).collect()
 }
 
-/// The bytes at the beginning of a line, two digits each and a space between, as many as there are; with `lead` a space
-/// comes before each.
+/// The bytes at the beginning of a line, two digits each and a space between, as many as there are; with
+/// `lead` a space comes before each.
 pub(super) fn pairs(line: &str, lead: bool) -> Vec<u8> {
     let mut out = Vec::new();
     let mut rest = line;
@@ -35,8 +35,8 @@ pub(super) fn pairs(line: &str, lead: bool) -> Vec<u8> {
     }
 }
 
-/// The bytes of a line that has their characters behind them. These may look like hex too, so as many bytes are
-/// taken as fit the characters; if none do, all that look like bytes.
+/// The bytes of a line that has their characters behind them. These may look like hex too, so as many bytes
+/// are taken as fit the characters; if none do, all that look like bytes.
 pub(super) fn pairs_with_characters(line: &str) -> Vec<u8> {
     let mut all = pairs(line, false);
     let fits = |count: usize| {

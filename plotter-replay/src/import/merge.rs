@@ -63,13 +63,15 @@ impl core::error::Error for ImportError {
     }
 }
 
-/// Bytes that tell whose they are: a host of the digits protocol sends nothing above 9, a controller nothing below.
+/// Bytes that tell whose they are: a host of the digits protocol sends nothing above 9, a controller nothing
+/// below.
 const MOST_SAMPLED: usize = 4_096;
 
 /// Imports recordings of one line into a log. Each [`Trouble`] is told as it is met; the rest goes on.
 ///
-/// The log begins when the first byte did. A file of one direction whose [`Source::side`] is not given is the host's or
-/// the controller's by its name (`_H`, `tx`, `host`, ...), else by its bytes, else by the order of two files.
+/// The log begins when the first byte did. A file of one direction whose [`Source::side`] is not given is the
+/// host's or the controller's by its name (`_H`, `tx`, `host`, ...), else by its bytes, else by the order of
+/// two files.
 ///
 /// ```
 /// # use plotter_replay::import::{ImportSettings, Source, Tool, import};
@@ -334,8 +336,8 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// When the log begins, if it begins with this chunk: where its first byte did on a clock that tells the time of
-    /// day; at zero on one that counts from the beginning of the recording, unless that came before.
+    /// When the log begins, if it begins with this chunk: where its first byte did on a clock that tells the
+    /// time of day; at zero on one that counts from the beginning of the recording, unless that came before.
     fn zero_ns(&self, chunk: &Chunk, settings: &ImportSettings) -> i128 {
         match self.tool {
             Tool::Socat | Tool::Jpnevulator | Tool::Candump => {

@@ -1,7 +1,7 @@
 //! Recordings of other tools, as logs of this crate.
 //!
-//! Serial lines are recorded with many tools, and each writes its own text. All of them say the same: at this time,
-//! in this direction, these bytes.
+//! Serial lines are recorded with many tools, and each writes its own text. All of them say the same: at this
+//! time, in this direction, these bytes.
 //!
 //! | tool | how it is run | what tells the direction |
 //! |---|---|---|
@@ -68,8 +68,8 @@ pub enum Side {
 pub struct ImportSettings {
     /// Bits a second on the line.
     pub baud: u32,
-    /// Samples a second of the logic analyzer, for sigrok; without it, it follows from the baud rate and the length of a
-    /// byte.
+    /// Samples a second of the logic analyzer, for sigrok; without it, it follows from the baud rate and the
+    /// length of a byte.
     pub sample_rate_hz: Option<f64>,
     /// What a tool calls the host (a port or an analyzer).
     pub host: Option<String>,

@@ -7,9 +7,9 @@
 //! "host","data",0.0001,0.0000390625,0x02,
 //! ```
 //!
-//! The value is as the program showed it: hex (`0x31`), binary, decimal, or a character, where what cannot be shown is
-//! `\n`, `\x02` or its number in quotes, `'2'`. A `1` is a character where every value is one, and a number where some
-//! have more digits.
+//! The value is as the program showed it: hex (`0x31`), binary, decimal, or a character, where what cannot be
+//! shown is `\n`, `\x02` or its number in quotes, `'2'`. A `1` is a character where every value is one, and a
+//! number where some have more digits.
 
 use super::clock::{date_s, fraction_ns, seconds_ns};
 use super::{Chunk, Format, ImportSettings, Lines, Saw};

@@ -1,7 +1,7 @@
 //! sigrok-cli's annotations of the UART decoder: `109-189 uart-1: 02`, samples from and to.
 //!
-//! A run without `-A uart=rx-data` also writes the bits (`0`, `1`), `Start bit`, `Stop bit` and errors: only two hex
-//! digits are a byte, or, with the decoder's `format=ascii`, `[02]`.
+//! A run without `-A uart=rx-data` also writes the bits (`0`, `1`), `Start bit`, `Stop bit` and errors: only
+//! two hex digits are a byte, or, with the decoder's `format=ascii`, `[02]`.
 
 use super::hex_dump::hex_byte;
 use super::{Chunk, Format, ImportSettings, Lines, Saw};

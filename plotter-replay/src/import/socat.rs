@@ -6,8 +6,8 @@
 //! --
 //! ```
 //!
-//! Version 1.7.4.4 writes the microseconds with nine digits, zeros before them: `18.000938437` is 18.938437 s. Where
-//! no record of a file has more than 999999 there, they are microseconds.
+//! Version 1.7.4.4 writes the microseconds with nine digits, zeros before them: `18.000938437` is 18.938437
+//! s. Where no record of a file has more than 999999 there, they are microseconds.
 
 use super::clock::{date_s, fraction_ns};
 use super::hex_dump::pairs;

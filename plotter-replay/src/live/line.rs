@@ -21,7 +21,8 @@ pub trait Line: Send + Sync + fmt::Debug {
     /// [`PortError`] if nothing will ever come any more.
     fn receive(&self, bytes: &mut [u8], wait: Duration) -> Result<usize, PortError>;
 
-    /// The time of the line, where that is not the clock's: that of a simulated machine, which passes while it is listened to.
+    /// The time of the line, where that is not the clock's: that of a simulated machine, which passes while
+    /// it is listened to.
     fn now(&self) -> Option<Duration> {
         None
     }

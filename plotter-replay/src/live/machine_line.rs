@@ -12,9 +12,9 @@ use std::time::Instant;
 
 /// The line to a simulated machine in this program.
 ///
-/// The machine's time passes while it is listened to, and by nothing else: host and machine share it. So the patience of both is
-/// right at any speed, and a session is the same, byte for byte, on a fast computer, a busy one and one that is asleep for a while.
-/// The clock on the wall only says how soon that time may pass.
+/// The machine's time passes while it is listened to, and by nothing else: host and machine share it. So the
+/// patience of both is right at any speed, and a session is the same, byte for byte, on a fast computer, a
+/// busy one and one that is asleep for a while. The clock on the wall only says how soon that time may pass.
 pub struct MachineLine<W: Write = Sink> {
     /// Bytes of the host that the machine has not seen.
     waiting: Mutex<Vec<u8>>,
@@ -26,7 +26,8 @@ pub struct MachineLine<W: Write = Sink> {
 const MOST_WAITING: usize = 1 << 20;
 /// Longest wait for the clock at once, so that a person at a slow machine is heard.
 const LONGEST_WAIT: Duration = Duration::from_millis(2);
-/// So much time passes at least whenever the machine is listened to, lest a host with something overdue stand still with it.
+/// So much time passes at least whenever the machine is listened to, lest a host with something overdue stand
+/// still with it.
 const LEAST_WAIT: Duration = Duration::from_micros(1);
 
 impl<W: Write> MachineLine<W> {

@@ -1,4 +1,5 @@
-//! [`Recording`]: where a session's log comes from; [`MachineLog`], the log that a simulated machine writes of itself.
+//! [`Recording`]: where a session's log comes from; [`MachineLog`], the log that a simulated machine writes
+//! of itself.
 
 use super::line::lock;
 use crate::BenchRecorder;
@@ -8,8 +9,9 @@ use plotter_motion::plant::BenchEvent;
 use std::io::Write;
 use std::sync::{Arc, Mutex};
 
-/// The log of a simulated machine as a recorder inside it sees it: each byte when it is through, each edge, each duty, in the
-/// machine's own time. With it the controller can be run again to the same bytes. Clones write into the same log.
+/// The log of a simulated machine as a recorder inside it sees it: each byte when it is through, each edge,
+/// each duty, in the machine's own time. With it the controller can be run again to the same bytes. Clones
+/// write into the same log.
 #[derive(Debug)]
 pub struct MachineLog<W: Write> {
     inside: Arc<Mutex<Inside<W>>>,

@@ -6,9 +6,10 @@
 //!      recording ◀┘  └──▶ Server ──▶ browser (127.0.0.1 only)     or a terminal
 //! ```
 //!
-//! A [`Session`] owns the line: it sends the drawing target by target, records every byte, and keeps what is to be seen in
-//! bounded memory. A [`Server`] or [`terminal::run`] shows that and hands on commands. The emergency stop goes past the
-//! session's own loop: whoever presses it writes it on the line at once ([`plotter_motion::protocol::Order::Stop`]).
+//! A [`Session`] owns the line: it sends the drawing target by target, records every byte, and keeps what is
+//! to be seen in bounded memory. A [`Server`] or [`terminal::run`] shows that and hands on commands. The
+//! emergency stop goes past the session's own loop: whoever presses it writes it on the line at once
+//! ([`plotter_motion::protocol::Order::Stop`]).
 
 mod commands;
 mod engine;

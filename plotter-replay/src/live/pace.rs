@@ -3,7 +3,8 @@
 use core::time::Duration;
 use std::time::Instant;
 
-/// Time of ours that is made up at most: a machine that is farther behind, on a computer too slow or asleep, stays so.
+/// Time of ours that is made up at most: a machine that is farther behind, on a computer too slow or asleep,
+/// stays so.
 const MOST_BEHIND: Duration = Duration::from_millis(50);
 
 /// Tells how long to wait until a time of the machine may come.
@@ -16,7 +17,8 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// So many seconds of the machine in one of ours; as fast as it goes where that is more than this computer can.
+    /// So many seconds of the machine in one of ours; as fast as it goes where that is more than this
+    /// computer can.
     pub(super) const fn new(speed: f64) -> Self {
         Self { speed, from: None }
     }

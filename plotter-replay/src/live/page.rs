@@ -12,8 +12,8 @@ const PROGRAM: &str = include_str!("../draw/page/assets/live.js");
 /// Points of the drawing that the page shows, at most.
 const MOST_DESIRED_POINTS: usize = 30_000;
 
-/// What a page shows that does not change: the drawing, and words about the machine. The moves go in one by one, in bounded
-/// memory.
+/// What a page shows that does not change: the drawing, and words about the machine. The moves go in one by
+/// one, in bounded memory.
 ///
 /// ```
 /// # use plotter_motion::{Pen, PenMove, StepPoint};

@@ -11,8 +11,8 @@ pub struct Plan {
     pub way_mm: f64,
 }
 
-/// Learns what a target and a millimetre take from those that are done: the time of a target is a + b · its length, with a and b
-/// by least squares over all targets so far.
+/// Learns what a target and a millimetre take from those that are done: the time of a target is a + b · its
+/// length, with a and b by least squares over all targets so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pace {
     targets: f64,

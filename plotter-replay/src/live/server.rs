@@ -14,9 +14,9 @@ use tungstenite::handshake::derive_accept_key;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket};
 
-/// Twenty updates a second.
+/// Time between two updates of a page: twenty a second look like motion.
 const UPDATE_EVERY: Duration = Duration::from_millis(50);
-/// Longest head of a request, bytes.
+/// Longest head of a request, bytes. It bounds memory, and no browser sends this much to the page.
 const MOST_HEAD_BYTES: usize = 8_192;
 /// Browsers at the same time.
 const MOST_CONNECTIONS: usize = 32;
@@ -70,8 +70,8 @@ struct Site {
 }
 
 impl Server {
-    /// Serves `session` on `port` of 127.0.0.1, or on any that is free for 0. `page` makes the page, given the address at which
-    /// it may open its socket.
+    /// Serves `session` on `port` of 127.0.0.1, or on any that is free for 0. `page` makes the page, given
+    /// the address at which it may open its socket.
     ///
     /// # Errors
     ///
@@ -165,7 +165,8 @@ impl Site {
         }
     }
 
-    /// The token, a host name that only this computer has (against names that others bind to it), and no other origin.
+    /// The token, a host name that only this computer has (against names that others bind to it), and no
+    /// other origin.
     fn is_ours(&self, request: &Request) -> bool {
         let Self { port, .. } = self;
         let names = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];

@@ -31,8 +31,8 @@ pub(super) struct Shared {
     pub(super) commands: Mutex<VecDeque<Command>>,
     /// Whether the machine may speak frames, so that a stop is `00 21 00`.
     pub(super) may_be_linked: AtomicBool,
-    /// Whether a stop is on the line that the session's loop has not taken note of: until then it sends nothing, lest it sends an
-    /// older order to go on.
+    /// Whether a stop is on the line that the session's loop has not taken note of: until then it sends
+    /// nothing, lest it sends an older order to go on.
     pub(super) stop_is_new: Mutex<bool>,
     pub(super) finished: Condvar,
 }
@@ -41,8 +41,8 @@ pub(super) struct Shared {
 pub(super) type Moves = Box<dyn Iterator<Item = PenMove> + Send>;
 
 impl Session {
-    /// Opens a session on `line`. With `moves` it waits for [`Command::Start`]; without, it only watches. What happens goes
-    /// to `recorder`. What no byte tells of a simulated machine comes from `telemetry`.
+    /// Opens a session on `line`. With `moves` it waits for [`Command::Start`]; without, it only watches.
+    /// What happens goes to `recorder`. What no byte tells of a simulated machine comes from `telemetry`.
     #[must_use]
     pub fn open<W: Write + Send + 'static>(
         line: Arc<dyn Line>,
@@ -124,7 +124,8 @@ impl Session {
 }
 
 impl Shared {
-    /// What stops the machine at once: a zero on either side makes a stop by itself of it where frames are spoken.
+    /// What stops the machine at once: a zero on either side makes a stop by itself of it where frames are
+    /// spoken.
     pub(super) fn stop_bytes(&self) -> &'static [u8] {
         const { &[0, Order::Stop.byte(), 0] }
             .get(if self.may_be_linked.load(Ordering::Relaxed) { 0..3 } else { 1..2 })

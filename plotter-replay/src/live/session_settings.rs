@@ -32,7 +32,8 @@ pub struct SessionSettings {
     pub pwm_steps: [u32; 2],
     /// What is spoken.
     pub link: LinkChoice,
-    /// Number of a session of frames: one that the last host is not likely to have taken, such as the low bits of a clock.
+    /// Number of a session of frames: one that the last host is not likely to have taken, such as the low
+    /// bits of a clock.
     pub nonce: u16,
     /// Bits a second of the line.
     pub baud: u32,

@@ -26,13 +26,14 @@ pub struct Telemetry {
     pub stopped: Option<(Duration, Option<Duration>)>,
 }
 
-/// How often a simulated machine and its host exchange their bytes, in the machine's time: the frame of full-speed USB, in which
-/// an adapter hands on what has come (USB 2.0, section 8.4.3).
+/// How often a simulated machine and its host exchange their bytes, in the machine's time: the frame of
+/// full-speed USB, in which an adapter hands on what has come (USB 2.0, section 8.4.3).
 pub(super) const EXCHANGE_EVERY: Duration = Duration::from_millis(1);
 /// How long a machine that is ahead of the clock listens at most at once.
 const LISTEN: Duration = Duration::from_millis(1);
 
-/// A simulated machine: controller, motors, and the near end of its line. Its time passes only as it is told to.
+/// A simulated machine: controller, motors, and the near end of its line. Its time passes only as it is told
+/// to.
 ///
 /// ```
 /// # use plotter_motion::{Machine, MachineConfig};
@@ -74,8 +75,8 @@ impl<C: BenchController> Steps for Bench<std::iter::Empty<PenMove>, C> {
 }
 
 impl SimulatedMachine {
-    /// `machine` at rest at its origin. It speaks digits, and with a `boot` frames with a host that calls; that is its number since
-    /// it was switched on, another one each time.
+    /// `machine` at rest at its origin. It speaks digits, and with a `boot` frames with a host that calls;
+    /// that is its number since it was switched on, another one each time.
     ///
     /// # Errors
     ///
@@ -118,15 +119,16 @@ impl<W: Write> SimulatedMachine<W> {
         Arc::clone(&self.telemetry)
     }
 
-    /// The line of a host in this program: its time is the machine's, so that nothing on it depends on how fast or busy this computer
-    /// is. At most `speed` seconds of it pass in one of ours.
+    /// The line of a host in this program: its time is the machine's, so that nothing on it depends on how
+    /// fast or busy this computer is. At most `speed` seconds of it pass in one of ours.
     #[must_use]
     pub fn line(self, speed: f64) -> MachineLine<W> {
         MachineLine::new(self, speed)
     }
 
-    /// Answers on `line` until that is closed; says how that was. `speed` seconds of the machine pass in one of ours; the host at the
-    /// other end goes by a clock of its own. On a computer too slow for that the machine falls behind, and stays so.
+    /// Answers on `line` until that is closed; says how that was. `speed` seconds of the machine pass in one
+    /// of ours; the host at the other end goes by a clock of its own. On a computer too slow for that the
+    /// machine falls behind, and stays so.
     #[must_use]
     pub fn serve(mut self, line: &dyn Line, speed: f64) -> PortError {
         let mut pace = Pace::new(speed);

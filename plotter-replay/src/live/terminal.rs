@@ -14,7 +14,7 @@ use ratatui::widgets::canvas::{Canvas, Circle, Line as Stroke};
 use ratatui::widgets::{Axis, Block, Chart, Dataset, Gauge, GraphType, Paragraph};
 use std::io;
 
-/// Twenty pictures a second.
+/// Time between two pictures in the terminal: twenty a second look like motion.
 const UPDATE_EVERY: Duration = Duration::from_millis(50);
 /// Seconds that the charts show.
 const CHART_S: f64 = 20.0;
@@ -30,8 +30,8 @@ pub struct Heading {
     pub area_mm: [f64; 4],
 }
 
-/// Shows a session in the terminal until it ends or the user quits; says whether he did. Enter starts, space pauses and
-/// resumes, Esc stops, c clears, q quits.
+/// Shows a session in the terminal until it ends or the user quits; says whether he did. Enter starts, space
+/// pauses and resumes, Esc stops, c clears, q quits.
 ///
 /// # Errors
 ///

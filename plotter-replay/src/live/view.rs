@@ -69,7 +69,8 @@ impl View {
         let tolerance_mm = 0.5 * settings.x_mm_per_pulse.max(settings.y_mm_per_pulse);
         let mut plotter = VirtualPlotter::new(settings);
         if state == State::Ready {
-            // A log is drawn with the pen down until it says otherwise; a drawing that waits for its start is not.
+            // A log is drawn with the pen down until it says otherwise; a drawing that waits for its start is
+            // not.
             plotter.push(&Record::at_us(0, Event::Pen(Pen::Up)));
         }
         Self {

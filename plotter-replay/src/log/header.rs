@@ -49,8 +49,8 @@ impl Header {
         Value::Object(self.settings.clone()).to_string()
     }
 
-    /// The first line of a log, without its end: magic, version, and the object with its checksum as the last key,
-    /// [`Header::SUM`].
+    /// The first line of a log, without its end: magic, version, and the object with its checksum as the last
+    /// key, [`Header::SUM`].
     pub(super) fn to_line(&self) -> String {
         let mut settings = self.settings.clone();
         settings.shift_remove(Self::SUM);
@@ -91,8 +91,8 @@ impl Header {
         }
     }
 
-    /// Key of the checksum of the first line: CRC-8/SMBUS of all of it that stands before the key and its comma, in two
-    /// hex digits. Readers take a header without it as it is.
+    /// Key of the checksum of the first line: CRC-8/SMBUS of all of it that stands before the key and its
+    /// comma, in two hex digits. Readers take a header without it as it is.
     pub const SUM: &str = "sum";
 
     /// With `key` saying `text`.

@@ -51,8 +51,8 @@ impl<R: BufRead> LineSource<R> {
         Ok(self.place.bytes > 0)
     }
 
-    /// The same, but gives a line up that is too long: what is none need not have line ends, and a device may go on
-    /// for ever.
+    /// The same, but gives a line up that is too long: what is none need not have line ends, and a device may
+    /// go on for ever.
     pub(crate) fn advance_short(&mut self) -> io::Result<bool> {
         self.begin();
         while !self.take_part()? && !self.place.is_too_long() {}

@@ -12,8 +12,8 @@
 //! └── microseconds since the start, never decreasing
 //! ```
 //!
-//! A person reads the difference of two logs, `grep` works, and a kill costs one line. The format is described
-//! in full in `docs/log-format.md`.
+//! A person reads the difference of two logs, `grep` works, and a kill costs one line. The format is
+//! described in full in `docs/log-format.md`.
 //!
 //! [`Writer`] appends whole lines; [`Reader`] goes on past any damage and says what was lost.
 

@@ -12,7 +12,8 @@ use std::io::BufRead;
 /// Reads a log record by record, in constant memory.
 ///
 /// Iterating gives every good record, and for each bad line what is wrong with it and where; it goes on after
-/// it. Line ends may be `\n` or `\r\n`. Where only a line end was hit, the records on both sides of it are read.
+/// it. Line ends may be `\n` or `\r\n`. Where only a line end was hit, the records on both sides of it are
+/// read.
 ///
 /// Who reads many millions takes [`Reader::next_ref`], which allocates nothing.
 ///
@@ -66,8 +67,8 @@ impl<R: BufRead> Reader<R> {
     ///
     /// # Errors
     ///
-    /// [`ReadError`] if this is no log or one of another version. A log whose header is damaged is read without it,
-    /// if a record follows; the damage comes first when iterating.
+    /// [`ReadError`] if this is no log or one of another version. A log whose header is damaged is read
+    /// without it, if a record follows; the damage comes first when iterating.
     pub fn new(inner: R) -> Result<Self, ReadError> {
         let mut reader = Self {
             source: LineSource::new(inner),
@@ -116,7 +117,8 @@ impl<R: BufRead> Reader<R> {
         let Some(error) = refused else {
             return Ok(());
         };
-        // One flipped bit in the first word must not cost all that follows: a record there can only be in a log.
+        // One flipped bit in the first word must not cost all that follows: a record there can only be in a
+        // log.
         if !self.source.place().ended || !self.source.advance_short().map_err(failed)? {
             return Err(error);
         }
@@ -195,7 +197,8 @@ impl<R: BufRead> Reader<R> {
         self.summary.last = Some(time);
     }
 
-    /// Takes the next record without allocating: it is good until the next call. The same as the iterator otherwise.
+    /// Takes the next record without allocating: it is good until the next call. The same as the iterator
+    /// otherwise.
     pub fn next_ref(&mut self) -> Option<Result<RecordRef<'_>, Damage>> {
         let waiting = match self.waiting.pop_front() {
             Some(waiting) => waiting,
@@ -238,7 +241,8 @@ impl<R: BufRead> Reader<R> {
             }
             _ => None,
         };
-        // Records of another time are no neighbours that a line end kept apart, and the line is counted as lost once.
+        // Records of another time are no neighbours that a line end kept apart, and the line is counted as
+        // lost once.
         let both = both.filter(|Both { records: [first, second], .. }| {
             self.in_order(first.time).is_ok() && first.time <= second.time
         });

@@ -12,8 +12,8 @@ pub(super) struct Both {
     pub(super) bytes: u64,
 }
 
-/// Where a record can end in a line: behind an asterisk and two hex digits. More places are not tried, so that a line
-/// of asterisks takes no longer than any other.
+/// Where a record can end in a line: behind an asterisk and two hex digits. More places are not tried, so
+/// that a line of asterisks takes no longer than any other.
 const MOST_PLACES: usize = 16;
 
 /// The two records of a line that is none, if it is so. Both must be whole, each by its own checksum.

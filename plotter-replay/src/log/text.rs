@@ -272,7 +272,8 @@ fn nibble(digit: u8) -> u8 {
     VALUES.get(usize::from(digit)).copied().unwrap_or(255)
 }
 
-/// The checksum's digits are lower case, as all writers write them: so that a single flipped bit in them shows.
+/// The checksum's digits are lower case, as all writers write them: so that a single flipped bit in them
+/// shows.
 fn sum_byte(high: u8, low: u8) -> Option<u8> {
     if high.is_ascii_uppercase() || low.is_ascii_uppercase() {
         return None;

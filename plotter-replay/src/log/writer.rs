@@ -8,14 +8,15 @@ use std::io::Write;
 
 /// Greatest age, in record time, of a record that is not written through yet.
 const FLUSH_AFTER: Duration = Duration::from_millis(500);
-/// Text that is gathered before it is handed on, bytes.
+/// Text that is gathered before it is handed on, bytes: a disk's block or two, so that a record costs no
+/// write of its own.
 const GATHER_BYTES: usize = 8_192;
 
 /// Appends records to a log, whole lines at a time.
 ///
 /// What is older than 0.5 s is always written through: each [`Writer::write`] looks after that by the time of
-/// its record, and on a silent line [`Writer::tick`] does. A killed program therefore leaves every older record
-/// readable, and at most one cut line.
+/// its record, and on a silent line [`Writer::tick`] does. A killed program therefore leaves every older
+/// record readable, and at most one cut line.
 ///
 /// ```
 /// # use plotter_replay::log::{Event, Header, Record, Writer};
@@ -85,8 +86,8 @@ impl<W: Write> Writer<W> {
     ///
     /// # Errors
     ///
-    /// [`WriteError`]. Except for [`WriteError::Sink`], nothing of the record is in the log then, and the next one
-    /// may be written.
+    /// [`WriteError`]. Except for [`WriteError::Sink`], nothing of the record is in the log then, and the
+    /// next one may be written.
     pub fn write(&mut self, record: &Record) -> Result<(), WriteError> {
         self.write_ref(&record.view())
     }

@@ -27,8 +27,8 @@ use std::path::Path;
 /// | other | DC motors | [`MachineController`] as the machine's description says |
 /// | `boot` | as of [`MachineController`] | [`LinkedController`]: a machine that spoke frames ([`LinkedMachine`]) |
 ///
-/// A machine that does not speak the header's `protocol` is refused: DC motors that each move an axis speak `digits` and `link`, a
-/// belt `counts`, steppers `grbl` and `mdraw`.
+/// A machine that does not speak the header's `protocol` is refused: DC motors that each move an axis speak
+/// `digits` and `link`, a belt `counts`, steppers `grbl` and `mdraw`.
 ///
 /// ```
 /// # use plotter_replay::{AnyController, Controller};
@@ -48,7 +48,8 @@ pub struct ControllerError {
 }
 
 impl AnyController {
-    /// A new controller for the log of this name: of a machine that speaks frames in it, one that does so, too.
+    /// A new controller for the log of this name: of a machine that speaks frames in it, one that does so,
+    /// too.
     ///
     /// # Errors
     ///
@@ -61,8 +62,8 @@ impl AnyController {
         Self::for_recording(&header, &traits, machine)
     }
 
-    /// The same for a recording that was looked through. One of frames that has no edges is run on motors that were where it tells:
-    /// how a controller leads them, it cannot show ([`EdgeSource::Messages`]).
+    /// The same for a recording that was looked through. One of frames that has no edges is run on motors
+    /// that were where it tells: how a controller leads them, it cannot show ([`EdgeSource::Messages`]).
     ///
     /// # Errors
     ///
@@ -118,8 +119,8 @@ impl AnyController {
     }
 }
 
-/// The machine whose controller made a log: as described, or the preset that the header names. One that does not speak the log's
-/// protocol is refused.
+/// The machine whose controller made a log: as described, or the preset that the header names. One that does
+/// not speak the log's protocol is refused.
 fn machine_of(header: &Header, machine: Option<&Machine>) -> Result<Machine, ControllerError> {
     let machine = machine.map_or_else(|| preset(header.text("controller")), |machine| Ok(*machine))?;
     let spoken_by = match header.text("protocol") {
@@ -202,7 +203,8 @@ mod tests {
              \"digits\" needs DC motors that each move an axis: take one with drive = \"dc\", kinematics.type = \"cartesian\", as \
              examples/machines/semi-virtual-gantry.toml"
         );
-        // Nor is one whose motors were where its messages tell, which reads nothing of the machine but its area.
+        // Nor is one whose motors were where its messages tell, which reads nothing of the machine but its
+        // area.
         let header = Header::new().with_text("protocol", "link");
         let belt = Machine::new(belt).unwrap();
         let refused = AnyController::for_recording(&header, &RecordingTraits::default(), Some(&belt));

@@ -11,8 +11,8 @@ use plotter_motion::{Axis, Direction, Pen, PenMove, StepPoint};
 /// Steps of the PWM timer: 8 bits.
 const PWM_STEPS: u16 = 255;
 
-/// The board has no serial line: its moves are the `@ pen` and `@ target` records. Its encoders only count up, so that the
-/// direction of an `@ edge` record is for people.
+/// The board has no serial line: its moves are the `@ pen` and `@ target` records. Its encoders only count
+/// up, so that the direction of an `@ edge` record is for people.
 impl<C: LineController> Controller for MarkingBoard<C> {
     fn receive(&mut self, _: Duration, _: u8) {}
 

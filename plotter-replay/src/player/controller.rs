@@ -4,8 +4,8 @@ use crate::log::SwitchName;
 use core::time::Duration;
 use plotter_motion::{Axis, Direction, Pen, StepPair, StepPoint};
 
-/// A whole controller as a state machine without port, thread or clock: inputs with their times in; bytes, duty
-/// cycles, steps and the pen out.
+/// A whole controller as a state machine without port, thread or clock: inputs with their times in; bytes,
+/// duty cycles, steps and the pen out.
 ///
 /// Times never decrease. After each input and each tick, the bytes for the line are fetched until there are
 /// no more, then the steps. Bytes come in and go out of every controller; of the rest it implements what its
@@ -64,14 +64,14 @@ pub trait Controller {
         self.transmit()
     }
 
-    /// Whether it is asked for a byte only when the line can take one, as an interrupt of a serial port asks: a frame says what is
-    /// true when it begins. Else all bytes are fetched at once, and wait.
+    /// Whether it is asked for a byte only when the line can take one, as an interrupt of a serial port asks:
+    /// a frame says what is true when it begins. Else all bytes are fetched at once, and wait.
     fn waits_for_line(&self) -> bool {
         false
     }
 
-    /// When one that [waits for the line](Self::waits_for_line) is to be [ticked](Self::tick) for what it has to say on a free line,
-    /// unless something happens before.
+    /// When one that [waits for the line](Self::waits_for_line) is to be [ticked](Self::tick) for what it has
+    /// to say on a free line, unless something happens before.
     fn next_transmission(&self) -> Option<Duration> {
         None
     }
@@ -81,12 +81,12 @@ pub trait Controller {
         0
     }
 
-    /// A move that does not come over the line but from the program itself: an `@ target` record, with the pen of the last
-    /// `@ pen` record.
+    /// A move that does not come over the line but from the program itself: an `@ target` record, with the
+    /// pen of the last `@ pen` record.
     fn target(&mut self, _now: Duration, _pen: Pen, _target: StepPoint) {}
 
-    /// Whether the machine has stepper motors: the log's `@ edge` records are then the steps that it made, and compared, not
-    /// encoder counts that it is told.
+    /// Whether the machine has stepper motors: the log's `@ edge` records are then the steps that it made,
+    /// and compared, not encoder counts that it is told.
     fn makes_steps(&self) -> bool {
         false
     }

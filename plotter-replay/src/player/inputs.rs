@@ -4,7 +4,8 @@ use super::EdgeSource;
 use super::unframed::Unframed;
 use crate::log::Record;
 
-/// The records of a log as they are; or, for a re-run message by message, what they say without frames, and with edges.
+/// The records of a log as they are; or, for a re-run message by message, what they say without frames, and
+/// with edges.
 #[derive(Debug)]
 pub struct Inputs<I>(Kind<I>);
 

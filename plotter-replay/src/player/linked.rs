@@ -64,10 +64,11 @@ impl<const WINDOW: usize, const PAYLOAD: usize, C: LineController> Controller
     }
 }
 
-/// The controller of a machine behind the reliable link, as the machine's description makes it: with digits from the first byte on,
-/// and frames once a host has called.
+/// The controller of a machine behind the reliable link, as the machine's description makes it: with digits
+/// from the first byte on, and frames once a host has called.
 ///
-/// Its window and its payload are part of what it says; those of a simulated machine are 4 frames and 64 bytes.
+/// Its window and its payload are part of what it says; those of a simulated machine are 4 frames and 64
+/// bytes.
 #[derive(Debug, PartialEq)]
 pub struct LinkedController<const WINDOW: usize = 4, const PAYLOAD: usize = 64> {
     linked: LinkedGantry<WINDOW, PAYLOAD>,
@@ -75,7 +76,8 @@ pub struct LinkedController<const WINDOW: usize = 4, const PAYLOAD: usize = 64> 
 }
 
 impl<const WINDOW: usize, const PAYLOAD: usize> LinkedController<WINDOW, PAYLOAD> {
-    /// The controller of this machine, at rest at (0, 0); `boot` is its number since it was switched on, which it tells its host.
+    /// The controller of this machine, at rest at (0, 0); `boot` is its number since it was switched on,
+    /// which it tells its host.
     #[must_use]
     pub fn new(machine: &Machine, boot: u32) -> Self {
         let linked = LinkedGantry::new(Gantry::new(machine, gate()), boot, LinkSettings::default());

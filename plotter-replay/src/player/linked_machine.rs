@@ -2,8 +2,8 @@
 
 use crate::log::Header;
 
-/// What a machine that spoke frames has said of itself, and its log does not say elsewhere. With it, and with the edges of the motors in
-/// the log, a re-run says the same again, byte for byte.
+/// What a machine that spoke frames has said of itself, and its log does not say elsewhere. With it, and with
+/// the edges of the motors in the log, a re-run says the same again, byte for byte.
 ///
 /// A log's header may have it, as the keys `boot`, `link_window` and `link_payload` (without the latter two:
 /// 4 and 64); the machine's greeting and its first word have it, too

@@ -8,8 +8,8 @@ use plotter_motion::{Axis, Direction, LimitSwitches, Machine, SafetyGate};
 
 /// [`Gantry`] as a machine's description makes it.
 ///
-/// Switches are known by name: `x-min`, `x-max`, `y-min`, `y-max` are the limits, and pressing `reset` lets the
-/// motors go on after an emergency stop. Other names do nothing.
+/// Switches are known by name: `x-min`, `x-max`, `y-min`, `y-max` are the limits, and pressing `reset` lets
+/// the motors go on after an emergency stop. Other names do nothing.
 #[derive(Debug, PartialEq)]
 pub struct MachineController {
     gantry: Gantry,

@@ -1,9 +1,9 @@
 //! [`Player`]: runs a controller again on what a log recorded, and compares every answer and its time.
 //!
-//! Time is the log's, in whole microseconds. Before a record is handed over, every tick that is due by then is
-//! run at its own time; among equal times the order of the records decides. The controller's bytes go over a
-//! line of their own, ten bit times each ([`plotter_motion::protocol::Wire`]), and are stamped when the last
-//! bit is through, as a log stamps them.
+//! Time is the log's, in whole microseconds. Before a record is handed over, every tick that is due by then
+//! is run at its own time; among equal times the order of the records decides. The controller's bytes go over
+//! a line of their own, ten bit times each ([`plotter_motion::protocol::Wire`]), and are stamped when the
+//! last bit is through, as a log stamps them.
 
 mod any;
 mod board;
@@ -41,7 +41,7 @@ use core::time::Duration;
 use run::{Did, Run};
 use std::collections::VecDeque;
 
-/// Records that a difference shows before and after the place.
+/// Records that a difference shows on each side of its place.
 const CONTEXT: usize = 10;
 
 /// How a recording is re-run.
@@ -49,8 +49,8 @@ const CONTEXT: usize = 10;
 pub struct PlayerSettings {
     /// Bits a second on the line.
     pub baud: u32,
-    /// How far the time of an answer may be off: zero for what a simulation recorded; a millisecond or two for a
-    /// real line, whose recorder groups bytes.
+    /// How far the time of an answer may be off: zero for what a simulation recorded; a millisecond or two
+    /// for a real line, whose recorder groups bytes.
     pub tolerance: Duration,
     /// Where the edges come from.
     pub edges: EdgeSource,

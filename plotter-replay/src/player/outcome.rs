@@ -140,8 +140,9 @@ impl fmt::Display for Compared {
 }
 
 impl Difference {
-    /// The same, with what each record says beside it, and the whole of the frame that the place is in. `records` are those of the
-    /// recording from its beginning, as [`Player::inputs`](super::Player::inputs) gives them, `header` is the one for these.
+    /// The same, with what each record says beside it, and the whole of the frame that the place is in.
+    /// `records` are those of the recording from its beginning, as [`Player::inputs`](super::Player::inputs)
+    /// gives them, `header` is the one for these.
     #[must_use]
     pub fn in_words<I: IntoIterator<Item = Record>>(
         &self,

@@ -7,8 +7,9 @@ use crate::log::{Event, Record};
 use core::time::Duration;
 use std::collections::VecDeque;
 
-/// Runs a controller on the inputs among recorded records, and gives the recording that comes of it: the same inputs, with what
-/// the controller says and does now. Its time never goes back, so that it can be written as a log.
+/// Runs a controller on the inputs among recorded records, and gives the recording that comes of it: the same
+/// inputs, with what the controller says and does now. Its time never goes back, so that it can be written as
+/// a log.
 #[derive(Debug)]
 pub struct Rerun<I, C> {
     records: Inputs<I>,
@@ -33,7 +34,8 @@ impl<I: Iterator<Item = Record>, C: Controller> Rerun<I, C> {
         let advanced = self.run.advance(record.time);
         let waits = self.run.controller.waits_for_line();
         if waits {
-            // What is through at the time of a record comes after what the controller takes then: it was not free before.
+            // What is through at the time of a record comes after what the controller takes then: it was not
+            // free before.
             if let Some(before) = record.time.checked_sub(Duration::from_micros(1)) {
                 self.tell(before);
             }

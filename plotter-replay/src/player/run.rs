@@ -11,7 +11,8 @@ use std::collections::VecDeque;
 
 /// Ticks in a row that may leave the next tick where it was.
 const MOST_TICKS_AT_ONCE: u32 = 1_000;
-/// Ticks in a row of a controller that waits for the line which may find nothing that they can do: a second of them.
+/// Ticks in a row of a controller that waits for the line which may find nothing that they can do: a second
+/// of them.
 const MOST_TICKS_OVERDUE: u32 = 1_000_000;
 /// Bytes that may wait for the line: 40 s of it at 256000 baud.
 const MOST_WAITING: usize = 1_000_000;
@@ -26,11 +27,11 @@ pub enum EdgeSource {
     /// The log's `@ edge` records: a re-run is exact.
     #[default]
     Records,
-    /// The controller's own pulse bytes, for a log without edges. They come one byte later than the edges came,
-    /// so that only the order of the other answers is exact.
+    /// The controller's own pulse bytes, for a log without edges. They come one byte later than the edges
+    /// came, so that only the order of the other answers is exact.
     Pulses,
-    /// The machine's messages on the reliable link, for a log of frames without edges: it is run again message by message, and its
-    /// answers are compared without their frames.
+    /// The machine's messages on the reliable link, for a log of frames without edges: it is run again
+    /// message by message, and its answers are compared without their frames.
     Messages,
 }
 
@@ -65,7 +66,8 @@ pub(super) struct Run<C> {
     /// When such a controller was ticked last.
     ticked: Option<Duration>,
     now: Duration,
-    /// How much later than recorded it is, of a re-run message by message: how long it was waited for answers.
+    /// How much later than recorded it is, of a re-run message by message: how long it was waited for
+    /// answers.
     late: Duration,
     /// Bytes of answers that were recorded and that were said.
     answers: [u64; 2],
@@ -120,8 +122,8 @@ impl<C: Controller> Run<C> {
         self.run_to(to.saturating_add(self.late))
     }
 
-    /// Where the motors were is only told every 20 ms, so what is recorded as done may need some more: edges of the next way must
-    /// not come before. All that follows is so much later.
+    /// Where the motors were is only told every 20 ms, so what is recorded as done may need some more: edges
+    /// of the next way must not come before. All that follows is so much later.
     fn wait_for_answers(&mut self) -> Result<(), Stuck> {
         let until = self.now.saturating_add(LONGEST_WAIT);
         let began = self.now;
@@ -157,8 +159,9 @@ impl<C: Controller> Run<C> {
         Ok(())
     }
 
-    /// The same for a controller that waits for the line, in the order of [`plotter_motion::plant::Bench`]: of what happens at
-    /// the same time the tick comes first, then what the records say, then the line is free.
+    /// The same for a controller that waits for the line, in the order of [`plotter_motion::plant::Bench`]:
+    /// of what happens at the same time the tick comes first, then what the records say, then the line is
+    /// free.
     fn advance_with_line(&mut self, to: Duration) -> Result<(), Stuck> {
         let mut overdue = 0;
         loop {

@@ -9,8 +9,8 @@ use plotter_motion::firmware::StepperPlotter;
 use plotter_motion::firmware::stepper_plotter::Drivers;
 use plotter_motion::{Pen, StepPair};
 
-/// Its steps are the log's `@ edge` records, the pen its `@ pen` records; both are compared. Pressing `reset` lets it go on after an
-/// emergency stop, `restart` is the host that opens the port.
+/// Its steps are the log's `@ edge` records, the pen its `@ pen` records; both are compared. Pressing `reset`
+/// lets it go on after an emergency stop, `restart` is the host that opens the port.
 impl Controller for StepperPlotter {
     fn receive(&mut self, now: Duration, byte: u8) {
         Self::receive(self, now, byte);

@@ -4,8 +4,8 @@ use core::time::Duration;
 use plotter_motion::control::LineController;
 use plotter_motion::{Axis, Demand, Direction, Drive, StepPoint};
 
-/// Counts, and has arrived at a target where the counts are its own. A controller of motors goes by when each edge came, which a
-/// recording without edges does not tell: all else of a firmware can be run on it again.
+/// Counts, and has arrived at a target where the counts are its own. A controller of motors goes by when each
+/// edge came, which a recording without edges does not tell: all else of a firmware can be run on it again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Told {
     position: StepPoint,

@@ -29,8 +29,9 @@ impl RecordingTraits {
         }
     }
 
-    /// How such a recording with this header is run again: with its edges if it has any, exactly; else with what the machine told of its
-    /// motors, within 50 ms by pulses and within 1 s by messages. A controller that `makes_steps` needs no edges.
+    /// How such a recording with this header is run again: with its edges if it has any, exactly; else with
+    /// what the machine told of its motors, within 50 ms by pulses and within 1 s by messages. A controller
+    /// that `makes_steps` needs no edges.
     #[must_use]
     pub fn settings(&self, header: &Header, makes_steps: bool) -> PlayerSettings {
         let (edges, tolerance) = match (self.has_edges || makes_steps, self.search.found) {
@@ -58,8 +59,8 @@ impl RecordingTraits {
         }
     }
 
-    /// Targets that the machine had taken and not reached when it was heard first: with them the recording begins in the middle of a way
-    /// that it does not show.
+    /// Targets that the machine had taken and not reached when it was heard first: with them the recording
+    /// begins in the middle of a way that it does not show.
     #[must_use]
     pub fn under_way_before(&self) -> u32 {
         self.search.found.map_or(0, |found| found.taken.wrapping_sub(found.reached))

@@ -1,8 +1,10 @@
-//! [`Unframed`]: what a recording of frames says, without the frames, for a re-run that has no edges to go by.
+//! [`Unframed`]: what a recording of frames says, without the frames, for a re-run that has no edges to go
+//! by.
 //!
-//! Which frames a machine sends depends on where its motors were when each began, and that is only told every 20 ms. So a recording
-//! without edges is run again message by message: a target comes when its frame was whole, an order when the machine took it, the
-//! edges of the motors are spread over the time of which a message tells, and the machine's answers are compared without its frames.
+//! Which frames a machine sends depends on where its motors were when each began, and that is only told every
+//! 20 ms. So a recording without edges is run again message by message: a target comes when its frame was
+//! whole, an order when the machine took it, the edges of the motors are spread over the time of which a
+//! message tells, and the machine's answers are compared without its frames.
 //!
 //! ```text
 //!   > 02 44 01 ... 00        > 02 88 0e b0 09        target 900 600, pen up
@@ -20,13 +22,13 @@ use std::collections::VecDeque;
 
 /// How often a machine tells where its motors are: what it tells has happened since then.
 const TOLD_EVERY: Duration = Duration::from_millis(20);
-/// Edges that may be told at once beyond one a microsecond since the beginning, which is more than any motor makes: where a machine stood
-/// before, and what it went on while a cable was out. More are left out.
+/// Edges that may be told at once beyond one a microsecond since the beginning, which is more than any motor
+/// makes: where a machine stood before, and what it went on while a cable was out. More are left out.
 const MOST_AT_ONCE: u64 = 1 << 18;
 /// Records that wait for edges before them.
 const MOST_WAITING: usize = 1 << 20;
-/// First byte by which a host opens a session in such a recording; the number of it follows, low byte first. No message begins
-/// with it.
+/// First byte by which a host opens a session in such a recording; the number of it follows, low byte first.
+/// No message begins with it.
 pub(crate) const SESSION: u8 = b'H';
 
 /// Takes the frames off a recording.
@@ -40,7 +42,8 @@ pub(super) struct Unframed<I> {
     /// The last order with its number, until the machine has taken it; and what the machine does.
     order: Option<(u32, Order)>,
     state: Order,
-    /// Whether the host has sent a stop by itself that is not answered; and whether the machine's own button has stopped it.
+    /// Whether the host has sent a stop by itself that is not answered; and whether the machine's own button
+    /// has stopped it.
     stop_is_new: bool,
     is_pressed: bool,
     /// Whether the machine has begun the session, and targets taken before the first.
@@ -220,8 +223,8 @@ impl<I: Iterator<Item = Record>> Unframed<I> {
     }
 }
 
-/// What a machine's message is in a recording without frames: the same, targets counted from `before`, no place, which depends on
-/// when a session began, and no number of an order.
+/// What a machine's message is in a recording without frames: the same, targets counted from `before`, no
+/// place, which depends on when a session began, and no number of an order.
 pub(super) fn answer_bytes(message: Message, before: u32) -> Option<Vec<u8>> {
     let message = match message {
         Message::Moved(_) | Message::Target { .. } => return None,

@@ -1,4 +1,5 @@
-//! [`Unlinked`]: a controller that speaks frames, with a host's end of the link before it, so that messages go in and come out.
+//! [`Unlinked`]: a controller that speaks frames, with a host's end of the link before it, so that messages
+//! go in and come out.
 
 use super::Controller;
 use super::unframed::{SESSION, answer_bytes};

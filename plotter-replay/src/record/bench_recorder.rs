@@ -8,7 +8,8 @@ use plotter_motion::protocol::HostEvent;
 use std::io::Write;
 
 /// Writes what happens on a simulated bench ([`plotter_motion::plant::Bench`]) into a log: bytes, edges and
-/// duty cycles with their exact times, the pen where it changes, and what host and controller notice as notes.
+/// duty cycles with their exact times, the pen where it changes, and what host and controller notice as
+/// notes.
 ///
 /// ```
 /// # use plotter_motion::plant::{Bench, BenchSettings};
@@ -63,8 +64,8 @@ impl<W: Write> BenchRecorder<W> {
         self.write(time, event);
     }
 
-    /// Takes what the bench does not tell of itself: a switch that was pressed, an emergency stop, a note. Call it
-    /// before the controller is told, so that the log has what comes of it afterwards.
+    /// Takes what the bench does not tell of itself: a switch that was pressed, an emergency stop, a note.
+    /// Call it before the controller is told, so that the log has what comes of it afterwards.
     pub fn write(&mut self, time: Duration, event: Event) {
         if self.error.is_none() {
             self.error = self.writer.write(&Record { time, event }).err();

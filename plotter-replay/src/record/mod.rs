@@ -7,8 +7,8 @@
 //!                             Recorder ──▶ log, written through five times a second
 //! ```
 //!
-//! What drives the plotter never waits for the disk: the bytes are handed over in memory, and a thread of its own writes
-//! them. If the disk is full, the recording ends with a word, and the drawing goes on.
+//! What drives the plotter never waits for the disk: the bytes are handed over in memory, and a thread of its
+//! own writes them. If the disk is full, the recording ends with a word, and the drawing goes on.
 
 mod bench_recorder;
 pub use bench_recorder::BenchRecorder;

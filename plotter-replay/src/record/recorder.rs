@@ -1,4 +1,5 @@
-//! [`Recorder`]: takes bytes from any thread, stamps them, and writes them into a log from a thread of its own.
+//! [`Recorder`]: takes bytes from any thread, stamps them, and writes them into a log from a thread of its
+//! own.
 
 use crate::import::Side;
 use crate::log::{self, EventRef, Header, RecordRef, WriteError, Writer};
@@ -10,8 +11,8 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-/// How often what came is written through: a kill costs no more than that, and the 0.5 s of the format are kept when a
-/// disk takes its time.
+/// How often what came is written through: a kill costs no more than that, and the 0.5 s of the format are
+/// kept when a disk takes its time.
 const WRITE_EVERY: Duration = Duration::from_millis(200);
 /// Most bytes of a record, as the format has it.
 const RECORD_BYTES: usize = 64;
@@ -29,7 +30,8 @@ pub struct Recorded {
     pub lost_bytes: u64,
 }
 
-/// Records what goes over a line. It is cheap to hand bytes over: they are stamped and copied. Clones record into the same log.
+/// Records what goes over a line. It is cheap to hand bytes over: they are stamped and copied. Clones record
+/// into the same log.
 ///
 /// ```
 /// # use plotter_replay::import::Side;
@@ -82,8 +84,8 @@ enum What {
 }
 
 impl Recorder {
-    /// Begins a recording in a new file, or an emptied one; packed if its name ends in `.gz`. `on_failure` is called once, from
-    /// another thread, if it cannot be written any further.
+    /// Begins a recording in a new file, or an emptied one; packed if its name ends in `.gz`. `on_failure` is
+    /// called once, from another thread, if it cannot be written any further.
     ///
     /// # Errors
     ///
@@ -94,8 +96,8 @@ impl Recorder {
         on_failure: impl FnOnce(&WriteError) + Send + 'static,
     ) -> Result<Self, WriteError> {
         let writer = log::create(path, header)?;
-        // What the system holds back must be on the disk when the computer loses its power, too. What is no file of a disk
-        // (a pipe) cannot be asked that.
+        // What the system holds back must be on the disk when the computer loses its power, too. What is no
+        // file of a disk (a pipe) cannot be asked that.
         let file = File::options().append(true).open(path).ok();
         let sync = move || match &file {
             Some(file) => file.sync_data().is_ok(),

@@ -9,11 +9,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// After bytes have come, so long is waited for more, which are then read together: the 64 bytes of a record at 256000 baud. A
-/// full line needs no 25 600 wake-ups a second. The first byte after a silence goes on at once.
+/// After bytes have come, so long is waited for more, which are then read together: the 64 bytes of a record
+/// at 256000 baud. A full line needs no 25 600 wake-ups a second. The first byte after a silence goes on at
+/// once.
 const TOGETHER: Duration = Duration::from_micros(2_500);
-/// Where more than a record's bytes come each time, the line is full, and nobody waits for the next byte: so long is waited then. (A
-/// wake-up with its reading and sending costs some 30 us, whatever is read.)
+/// Where more than a record's bytes come each time, the line is full, and nobody waits for the next byte: so
+/// long is waited then. (A wake-up with its reading and sending costs some 30 us, whatever is read.)
 const MOST_TOGETHER: Duration = Duration::from_millis(10);
 /// Bytes of a record.
 const RECORD_BYTES: usize = 64;
@@ -21,12 +22,12 @@ const RECORD_BYTES: usize = 64;
 const HOST_TAKES_WITHIN: Duration = Duration::from_secs(1);
 /// Bytes read at once.
 const READ_BYTES: usize = 4_096;
-/// Bytes sent at once: a line that takes some may not take many without waiting. A serial port of Linux has room for many times that
-/// whenever it says that it has any.
+/// Bytes sent at once: a line that takes some may not take many without waiting. A serial port of Linux has
+/// room for many times that whenever it says that it has any.
 const SEND_BYTES: usize = 256;
 
-/// One end of a line: what comes from it and what goes to it. Both have time-outs of some tenths of a second, or the relay
-/// cannot be stopped.
+/// One end of a line: what comes from it and what goes to it. Both have time-outs of some tenths of a second,
+/// or the relay cannot be stopped.
 pub struct RelayEnd {
     /// What it is called, for messages.
     pub name: String,
@@ -68,10 +69,11 @@ impl fmt::Display for RelayStop {
     }
 }
 
-/// Passes every byte on, both ways, and records it, until `stop` is set or an end goes away. Does not end the recording.
+/// Passes every byte on, both ways, and records it, until `stop` is set or an end goes away. Does not end the
+/// recording.
 ///
-/// A byte is recorded before it goes on, which costs a copy in memory: so an answer never stands before what it answers. If
-/// the recording fails, the bytes go on without it.
+/// A byte is recorded before it goes on, which costs a copy in memory: so an answer never stands before what
+/// it answers. If the recording fails, the bytes go on without it.
 #[must_use]
 pub fn relay(host: RelayEnd, controller: RelayEnd, recorder: &Recorder, stop: &Arc<AtomicBool>) -> RelayStop {
     let first: Mutex<Option<RelayStop>> = Mutex::new(None);

@@ -4,7 +4,8 @@ use super::Recorder;
 use crate::import::Side;
 use std::io::{self, Read, Write};
 
-/// A connection to a plotter that records what is sent and what comes: put it round a port, and use it as the port.
+/// A connection to a plotter that records what is sent and what comes: put it round a port, and use it as the
+/// port.
 ///
 /// ```
 /// # use plotter_replay::log::{Header, Writer};

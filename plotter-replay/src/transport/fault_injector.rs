@@ -4,7 +4,8 @@ use core::ops::Range;
 use core::time::Duration;
 use plotter_motion::SplitMix64;
 
-/// What happens to bytes on a bad line. Each probability is that of a byte, 0 to 1; of several faults a byte has one.
+/// What happens to bytes on a bad line. Each probability is that of a byte, 0 to 1; of several faults a byte
+/// has one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Faults {
     /// It is lost.
@@ -29,7 +30,8 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// Each fifth of `share` of all bytes is lost, changed, doubled, comes after another one, or is held back for 20 ms.
+    /// Each fifth of `share` of all bytes is lost, changed, doubled, comes after another one, or is held back
+    /// for 20 ms.
     ///
     /// ```
     /// # use plotter_replay::transport::Faults;
@@ -128,8 +130,8 @@ impl FaultInjector {
         self.counts
     }
 
-    /// What comes of a byte that would be through at `time`, and when: none, one or two bytes, never before those of
-    /// an earlier call.
+    /// What comes of a byte that would be through at `time`, and when: none, one or two bytes, never before
+    /// those of an earlier call.
     pub fn pass(&mut self, time: Duration, byte: u8) -> impl Iterator<Item = (Duration, u8)> + use<> {
         let mut came = [None, None];
         self.counts.bytes += 1;

@@ -74,7 +74,8 @@ pub enum AnomalyKind {
         /// Taken.
         taken: StepPoint,
     },
-    /// A frame of the reliable link came damaged, or of a session that began before the log; who sent it, sends it again.
+    /// A frame of the reliable link came damaged, or of a session that began before the log; who sent it,
+    /// sends it again.
     DamagedFrame {
         /// Who.
         side: Side,

@@ -20,8 +20,8 @@ impl Drawing {
         Self { stops, next: 0, passed_over: Vec::new() }
     }
 
-    /// The pen on the way to `target`; `None` if that is not among what comes next. A target sent again is the
-    /// one before.
+    /// The pen on the way to `target`; `None` if that is not among what comes next. A target sent again is
+    /// the one before.
     pub(super) fn pen(&mut self, target: StepPoint) -> Option<Pen> {
         // A rounding elsewhere may differ by one count.
         let near = |stop: StepPoint| stop.x.abs_diff(target.x) <= 1 && stop.y.abs_diff(target.y) <= 1;

@@ -17,9 +17,9 @@ pub(super) enum Decoded {
 
 /// Turns recorded host bytes into targets.
 ///
-/// A log may begin anywhere, so it is open where the first target begins until the controller answers, which it
-/// does only to a whole target: so many digits as are not a multiple of ten by then belong to a target that
-/// began before the log.
+/// A log may begin anywhere, so it is open where the first target begins until the controller answers, which
+/// it does only to a whole target: so many digits as are not a multiple of ten by then belong to a target
+/// that began before the log.
 #[derive(Clone, Debug)]
 pub(super) struct HostDigits {
     resync_gap: Duration,

@@ -32,7 +32,8 @@ pub struct Leg {
     pub target: Option<StepPoint>,
     /// The way as counted; the first point is where it began.
     pub points: Vec<TrackPoint>,
-    /// What is to be added to a counted position for the resynchronized one, which starts at each reached target.
+    /// What is to be added to a counted position for the resynchronized one, which starts at each reached
+    /// target.
     pub correction: StepPoint,
     /// How it ended, if the controller said so.
     pub reached: Option<Reached>,

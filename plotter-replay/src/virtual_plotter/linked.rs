@@ -31,7 +31,8 @@ pub(super) struct Linked {
     session: u16,
     /// Whether the machine has begun it: what comes before is of an earlier one.
     is_open: bool,
-    /// Targets sent and not reached, with their number since the machine was switched on, the first of them under way.
+    /// Targets sent and not reached, with their number since the machine was switched on, the first of them
+    /// under way.
     ahead: VecDeque<(u32, PenMove)>,
     next_number: u32,
     last_target: StepPoint,
@@ -66,7 +67,8 @@ impl VirtualPlotter {
                 if byte == 0 {
                     self.linked.speech = Speech::Calling(zeros.saturating_add(1));
                 } else if byte <= 9 {
-                    // Nobody has answered the calls, so that is a digit, as are the zeros after the last of them.
+                    // Nobody has answered the calls, so that is a digit, as are the zeros after the last of
+                    // them.
                     self.linked.speech = Speech::Digits;
                     for _ in 0..zeros % u32::from(CALL_ZEROS) {
                         let decoded = self.host.push(self.now, 0);

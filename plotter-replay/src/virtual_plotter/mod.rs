@@ -9,10 +9,11 @@
 //!             └─ target (2, 1) ─┘ └─ the way ────┘ └ position == target?
 //! ```
 //!
-//! The reliable link says the same in frames; there the pen is known, and nothing is lost that one side has not noticed.
+//! The reliable link says the same in frames; there the pen is known, and nothing is lost that one side has
+//! not noticed.
 //!
-//! Two tracks are kept: *as counted*, and *resynchronized*, which starts afresh at each reached target. A lost
-//! pulse shifts the first for ever and the second until the next `+`.
+//! Two tracks are kept: *as counted*, and *resynchronized*, which starts afresh at each reached target. A
+//! lost pulse shifts the first for ever and the second until the next `+`.
 
 mod anomaly;
 mod drawing;
@@ -195,8 +196,8 @@ impl VirtualPlotter {
         self.leg = self.begin_leg();
     }
 
-    /// Takes the ways so far out, so that a recording of any length is gone through in constant memory; the one under way goes on
-    /// from where the pen is. Position, pen and targets stay.
+    /// Takes the ways so far out, so that a recording of any length is gone through in constant memory; the
+    /// one under way goes on from where the pen is. Position, pen and targets stay.
     pub fn take_legs(&mut self) -> Vec<Leg> {
         // What of the present way comes later belongs to the same line.
         let from = self.from;
@@ -209,8 +210,9 @@ impl VirtualPlotter {
         core::mem::take(&mut self.legs)
     }
 
-    /// Gives away all ways, targets and anomalies so far, the beginning of the way under way too, and forgets them: so a
-    /// recording of any length is followed in constant memory. Position, pen, counts and the target under way stay.
+    /// Gives away all ways, targets and anomalies so far, the beginning of the way under way too, and forgets
+    /// them: so a recording of any length is followed in constant memory. Position, pen, counts and the
+    /// target under way stay.
     ///
     /// ```
     /// # use plotter_replay::{PlotterSettings, VirtualPlotter, log::{Event, Record}};
@@ -231,8 +233,8 @@ impl VirtualPlotter {
         }
     }
 
-    /// The lines of the drawing that the host passed over or has not come to: from, to, mm on the sheet. Only with a
-    /// drawing, and only with the pen down.
+    /// The lines of the drawing that the host passed over or has not come to: from, to, mm on the sheet. Only
+    /// with a drawing, and only with the pen down.
     pub fn undrawn(&self) -> impl Iterator<Item = (Point, Point)> {
         let settings = self.settings;
         let lines = self.drawing.iter().flat_map(Drawing::undrawn);
@@ -281,13 +283,15 @@ impl VirtualPlotter {
         (1.0 / self.settings.x_mm_per_pulse, 1.0 / self.settings.y_mm_per_pulse)
     }
 
-    /// The ways so far, each to one target; the one under way comes last once [`VirtualPlotter::finish`] was called.
+    /// The ways so far, each to one target; the one under way comes last once [`VirtualPlotter::finish`] was
+    /// called.
     #[must_use]
     pub fn legs(&self) -> &[Leg] {
         &self.legs
     }
 
-    /// Whether the line speaks the reliable link: the way is then known where the machine told it, every 20 ms and at each target.
+    /// Whether the line speaks the reliable link: the way is then known where the machine told it, every
+    /// 20 ms and at each target.
     #[must_use]
     pub fn is_linked(&self) -> bool {
         self.linked.speech == Speech::Frames

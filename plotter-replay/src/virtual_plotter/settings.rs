@@ -15,8 +15,8 @@ pub struct PlotterSettings {
     pub y_mm_per_pulse: f64,
     /// Where position (0, 0) of the motors lies on the sheet, mm: the origin offset P1.
     pub p1: Point,
-    /// Which way the two motors of a belt turn; `None` where each moves an axis. Counts are those of the motors either way, and
-    /// a belt has one scale, that of x.
+    /// Which way the two motors of a belt turn; `None` where each moves an axis. Counts are those of the
+    /// motors either way, and a belt has one scale, that of x.
     pub belt: Option<BeltSigns>,
     /// What says where the motors are.
     pub counted_by: CountedBy,
@@ -24,7 +24,8 @@ pub struct PlotterSettings {
     pub resync_gap: Duration,
     /// A silence with a target under way that is reported.
     pub stall_after: Duration,
-    /// How far from the target the pulses may lead when the controller says that it is reached, encoder counts.
+    /// How far from the target the pulses may lead when the controller says that it is reached, encoder
+    /// counts.
     pub reached_tolerance_counts: u32,
     /// Points of the path that are kept, 16 bytes each.
     pub max_points: usize,
@@ -38,17 +39,19 @@ pub enum CountedBy {
     /// The controller's answers on the serial line: the protocol `digits`.
     #[default]
     Answers,
-    /// The encoders' edges, for a controller that has no such line: the protocol `counts`. Targets are recorded as such, and its
-    /// only answer is `+`, when it has arrived; from a target that was missed the counts go on.
+    /// The encoders' edges, for a controller that has no such line: the protocol `counts`. Targets are
+    /// recorded as such, and its only answer is `+`, when it has arrived; from a target that was missed the
+    /// counts go on.
     Edges,
-    /// The machine's messages on the reliable link, or its answers in digits where it knew no other: the protocol `link`. A log of
-    /// [`Answers`](Self::Answers) in which a machine greets a host becomes one of these.
+    /// The machine's messages on the reliable link, or its answers in digits where it knew no other: the
+    /// protocol `link`. A log of [`Answers`](Self::Answers) in which a machine greets a host becomes one of
+    /// these.
     Link,
 }
 
 impl Default for PlotterSettings {
-    /// The semi-virtual gantry: 40 pulses a millimetre, origin at the lower left, 100 ms inside a target; up to
-    /// 8 million points (128 MB).
+    /// The semi-virtual gantry: 40 pulses a millimetre, origin at the lower left, 100 ms inside a target; up
+    /// to 8 million points (128 MB).
     fn default() -> Self {
         Self {
             x_mm_per_pulse: 0.025,

@@ -1,6 +1,7 @@
 //! The pages, as a person sees them: in a browser without a window.
 //!
-//! Needs Debian's package `chromium`, or another one named in `CHROMIUM`; screenshots go to `BROWSER_SCREENSHOTS`:
+//! Needs Debian's package `chromium`, or another one named in `CHROMIUM`; screenshots go to
+//! `BROWSER_SCREENSHOTS`:
 //!
 //! ```text
 //! cargo test --release -p plotter-replay --features cli,live --test all browser:: -- --ignored --test-threads 1 --nocapture
@@ -46,7 +47,8 @@ impl Running {
 
     /// Status and standard error.
     fn finish(&mut self) -> (Option<i32>, String) {
-        let until = Instant::now() + Duration::from_secs(180); // a drawing of half a minute, on a busy computer
+        // A drawing of half a minute, on a busy computer.
+        let until = Instant::now() + Duration::from_secs(180);
         let status = loop {
             if let Some(status) = self.0.try_wait().unwrap() {
                 break status;

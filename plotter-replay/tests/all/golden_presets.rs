@@ -1,12 +1,12 @@
-//! Every preset machine has golden logs: what its controller said and did once, it must say and do again, byte by byte and
-//! microsecond by microsecond.
+//! Every preset machine has golden logs: what its controller said and did once, it must say and do again,
+//! byte by byte and microsecond by microsecond.
 //!
 //! ```text
 //! UPDATE_GOLDEN=1 cargo test -p plotter-replay --test all golden_presets::    # from the motors on
 //! ```
 //!
-//! The machines are those of `examples/machines`, where they lie beside this crate; one with a belt has no serial line, and a log of
-//! its own.
+//! The machines are those of `examples/machines`, where they lie beside this crate; one with a belt has no
+//! serial line, and a log of its own.
 #![cfg(feature = "cli")] // machines as files
 
 use crate::house;
@@ -152,7 +152,8 @@ fn every_preset_replays_its_golden_logs() {
     }
 }
 
-/// The same tick mark by frames, over a line that damages two bytes in a hundred: what was lost is sent again, and is in the log.
+/// The same tick mark by frames, over a line that damages two bytes in a hundred: what was lost is sent
+/// again, and is in the log.
 #[test]
 fn the_gantry_behind_the_link_replays_its_golden_log() {
     let path = directory("tests/golden/semi-virtual-gantry.linked.plog");

@@ -133,7 +133,8 @@ fn saleae_logic_1_one_file_a_direction() {
         source("capture rx.csv", Tool::Saleae, None, controller.as_bytes()),
     ];
     let came = run(sources, &ImportSettings::default()).unwrap();
-    // Before the trigger, times are negative: the log begins there. A byte is through ten bits after its start.
+    // Before the trigger, times are negative: the log begins there. A byte is through ten bits after its
+    // start.
     assert_eq!(shown(&came.records), ["0 > 02", "100 > 00", "600 < 31", "700 < 33", "800 < 2b", "900 < 2c"]);
     assert_eq!(came.troubles, ["capture rx.csv line 3: the analyzer doubts this byte, 0x33: Error"]);
 }

@@ -191,7 +191,8 @@ fn a_host_that_was_killed_goes_on_from_its_log_and_every_target_is_drawn_once() 
     assert!(sent + before <= 41 && sent > 0, "{before} before, {sent} after\n{after}");
 }
 
-/// The machine's own log is run again to the same bytes; that of a recorder between the two, message by message; and so is the host's.
+/// The machine's own log is run again to the same bytes; that of a recorder between the two, message by
+/// message; and so is the host's.
 #[test]
 fn what_was_recorded_of_frames_in_the_machine_beside_it_and_at_the_host_is_run_again() {
     let directory = tempfile::tempdir().unwrap();

@@ -19,7 +19,8 @@ use std::time::Duration;
 
 /// As fast as it goes: nothing here goes by the clock on the wall.
 const AS_FAST_AS_IT_GOES: f64 = 1e6;
-/// Longer than any session here takes on a computer that is busy with other things; only what never ends is ended by it.
+/// Longer than any session here takes on a computer that is busy with other things; only what never ends is
+/// ended by it.
 const FOR_EVER: Duration = Duration::from_secs(600);
 
 /// The gantry with a host that does not pause between bytes.
@@ -259,7 +260,8 @@ fn a_full_disk_stops_the_recording_and_not_the_drawing() {
     }
 }
 
-/// What a simulated machine has recorded of itself is run again to the same bytes: by frames and by digits, with a stop in it.
+/// What a simulated machine has recorded of itself is run again to the same bytes: by frames and by digits,
+/// with a stop in it.
 #[test]
 fn a_session_with_a_simulated_machine_is_run_again_to_the_same_bytes() {
     let directory = tempfile::tempdir().unwrap();
@@ -318,7 +320,8 @@ impl Write for Kept {
     }
 }
 
-/// The log of a machine whose host draws a quarter at this speed and after each so many looks is away for a while.
+/// The log of a machine whose host draws a quarter at this speed and after each so many looks is away for a
+/// while.
 fn quarter_at(speed: f64, away: Option<u32>) -> Vec<u8> {
     let kept = Kept::default();
     let log = MachineLog::new(Writer::new(kept.clone(), &Header::new()).unwrap());
@@ -372,7 +375,8 @@ fn sent_again(log: &[u8], is_hosts: bool) -> u32 {
     again
 }
 
-/// Host and machine share the machine's time: neither is impatient with the other because this computer is slow, at any speed.
+/// Host and machine share the machine's time: neither is impatient with the other because this computer is
+/// slow, at any speed.
 #[test]
 fn a_session_is_the_same_at_any_speed_and_sends_nothing_twice() {
     let usual = quarter_at(AS_FAST_AS_IT_GOES, None);

@@ -74,7 +74,8 @@ fn a_curve_of_a_million_samples_is_a_small_picture() {
 #[cfg(feature = "image")]
 #[test]
 fn a_png_has_ink_where_the_line_is_and_paper_beside_it() {
-    let style = CanvasStyle { longest_px: 560, ..style() }; // 10 pixels a millimetre: 40 mm and two margins of 8
+    // 10 pixels a millimetre: 40 mm and two margins of 8.
+    let style = CanvasStyle { longest_px: 560, ..style() };
     let png = flag().to_png(&style).unwrap();
     let picture = tiny_skia::Pixmap::decode_png(&png).unwrap();
     assert_eq!(picture.width(), 560);

@@ -1,4 +1,5 @@
-//! `record` as a user runs it: between two pseudo terminals, killed, with a full disk, with a plotter that is unplugged.
+//! `record` as a user runs it: between two pseudo terminals, killed, with a full disk, with a plotter that is
+//! unplugged.
 #![cfg(all(feature = "cli", feature = "serial", target_os = "linux"))]
 
 use plotter_replay::log::{self, Event, Record};
@@ -46,7 +47,8 @@ fn start(plotter: &Plotter, here: &Path, more: &[&str]) -> (Child, Box<dyn Seria
     begin("", &arguments(plotter, more), here)
 }
 
-/// The far ends of pseudo terminals are inherited by every program that a test starts, and then never close: they are closed first.
+/// The far ends of pseudo terminals are inherited by every program that a test starts, and then never close:
+/// they are closed first.
 const CLOSE_OTHERS: &str =
     "for fd in /proc/$$/fd/*; do fd=${fd##*/}; [ $fd -gt 2 ] && eval \"exec $fd>&-\"; done;";
 
@@ -236,7 +238,8 @@ fn what_cannot_begin_is_said_in_one_line() {
     assert!(!PathBuf::from("y.plog").exists());
 }
 
-/// A full line at 256000 baud, both ways: 25 600 bytes a second each, in pieces as a USB adapter hands them over, each millisecond.
+/// A full line at 256000 baud, both ways: 25 600 bytes a second each, in pieces as a USB adapter hands them
+/// over, each millisecond.
 #[test]
 #[ignore = "the recorder's share of a core, ten seconds: cargo test --release -p plotter-replay --features cli,serial --test all record_command:: -- --ignored"]
 fn a_full_line_takes_below_a_hundredth_of_a_core() {
@@ -277,7 +280,8 @@ fn a_full_line_takes_below_a_hundredth_of_a_core() {
     }
     let counts: Vec<u64> = threads.into_iter().map(|thread| thread.join().unwrap()).collect();
     let stat = std::fs::read_to_string(format!("/proc/{}/stat", child.id())).unwrap();
-    // After the name: state is the third field, time in the program and in the system the 14th and 15th, in ticks of 10 ms.
+    // After the name: state is the third field, time in the program and in the system the 14th and 15th, in
+    // ticks of 10 ms.
     let fields: Vec<&str> = stat.rsplit_once(')').unwrap().1.split_whitespace().collect();
     let ticks: u64 = fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap();
     child.kill().unwrap();

@@ -1,5 +1,6 @@
-//! A machine behind the reliable link, recorded and run again: the same frames, byte by byte and microsecond by microsecond, over a good
-//! line and a bad one; and the same answers where the recorder knew nothing of its motors.
+//! A machine behind the reliable link, recorded and run again: the same frames, byte by byte and microsecond
+//! by microsecond, over a good line and a bad one; and the same answers where the recorder knew nothing of
+//! its motors.
 
 use crate::house;
 use crate::linked_session;

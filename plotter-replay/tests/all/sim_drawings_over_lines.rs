@@ -233,7 +233,8 @@ fn linked_line(
     Connection::new(BAUD, faults, seed, link_host(7, moves), Machine { inner: linked(runs) })
 }
 
-/// Where the machine was sent. A call torn in two by a held-up byte is one or two targets (0, 0) to it, where it stands.
+/// Where the machine was sent. A call torn in two by a held-up byte is one or two targets (0, 0) to it, where
+/// it stands.
 fn drawn(line: &Connection<ByLink, Machine<Linked>>) -> Vec<StepPoint> {
     let targets = &line.machine.inner.gantry().controller().targets;
     targets.iter().copied().skip_while(|&target| target == StepPoint::default()).collect()
@@ -285,8 +286,8 @@ fn drawings_by_frames_come_whole_over_a_bad_line() {
     drawings_by_frames(50, &Faults::mixed(0.01));
 }
 
-/// Damage that comes in bursts: two bytes of a hundred, from a few at a time to more than a frame has. Noise of
-/// so many bytes may be a stop by itself, three bytes, once in some hundred drawings; none of these is.
+/// Damage that comes in bursts: two bytes of a hundred, from a few at a time to more than a frame has. Noise
+/// of so many bytes may be a stop by itself, three bytes, once in some hundred drawings; none of these is.
 #[test]
 fn drawings_by_frames_come_whole_through_bursts() {
     for burst_bytes in [3, 10, 40, 150] {
@@ -396,7 +397,8 @@ fn published_is_right(number: u64) -> bool {
     line.run(60 * SECOND, |host, _| host.done) && line.machine.targets == targets_of(&moves)
 }
 
-/// Whether a drawing by digits with our host and controller is drawn as sent, and whether the host noticed anything.
+/// Whether a drawing by digits with our host and controller is drawn as sent, and whether the host noticed
+/// anything.
 fn checked_is_right(number: u64) -> (bool, bool) {
     let moves = drawing(number, 60);
     let settings = HostSettings { most_given_up: u8::MAX, ..HostSettings::default() };

@@ -22,8 +22,8 @@ impl FoldDirection {
     /// sheet is sheared, shortened along the rising diagonal and stretched along the falling one. Folds stand
     /// across the direction in which the paper is shortened, so their ridges fall.
     ///
-    /// Source: Ivanov, Gueorguiev, Georgieva, Nenova, "Sketch drawing on infinite paper sheets", section IV, for the use of the sign;
-    /// it does not say which sign means which diagonal.
+    /// Source: Ivanov, Gueorguiev, Georgieva, Nenova, "Sketch drawing on infinite paper sheets", section IV,
+    /// for the use of the sign; it does not say which sign means which diagonal.
     ///
     /// ```
     /// # use plotter_stitch::fold::FoldDirection;

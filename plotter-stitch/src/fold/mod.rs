@@ -1,4 +1,5 @@
-//! Whether the paper has folded: a line drawn twice, from either end, in an empty place on the diagonal along which a fold would lie.
+//! Whether the paper has folded: a line drawn twice, from either end, in an empty place on the diagonal along
+//! which a fold would lie.
 //!
 //! ```text
 //!    ┌────────────────────────┐      the ridge of a fold is held by the pen's friction to the side that the pen goes to:

@@ -3,9 +3,11 @@
 use super::FoldDirection;
 use plotter_motion::{PlotOp, Point, Vec2};
 
-/// How far the strokes reach to both sides of their middle, mm: within the square in any direction, with the pen's width.
+/// How far the strokes reach to both sides of their middle, mm: within the square in any direction, with the
+/// pen's width.
 const HALF_STROKE_MM: f64 = 9.0;
-/// Scans are spread this far to both sides of the middle, mm.
+/// Half of the length over which scans are spread, mm: two thirds of the half stroke, so that all scans meet
+/// the line well inside its ends.
 const HALF_SPREAD_MM: f64 = 6.0;
 /// A scan reaches this far to both sides of the line, mm: over folds of a millimetre, and within the square.
 const HALF_SCAN_MM: f64 = 3.0;
@@ -51,8 +53,8 @@ impl FoldProbe {
         Self { middle, along: direction.along(width_mm, length_mm) }
     }
 
-    /// The line from one end, and the same line from the other, in the frame's coordinates. The pen is lifted between them, so
-    /// that the paper may spring back.
+    /// The line from one end, and the same line from the other, in the frame's coordinates. The pen is lifted
+    /// between them, so that the paper may spring back.
     #[must_use]
     pub fn strokes(&self) -> [[PlotOp; 2]; 2] {
         let [from, to] = [-HALF_STROKE_MM, HALF_STROKE_MM].map(|way_mm| self.middle + self.along * way_mm);

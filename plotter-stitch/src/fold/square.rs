@@ -4,7 +4,8 @@ use super::FoldDirection;
 use alloc::vec::Vec;
 use plotter_motion::{PlotOp, Point, Segment, Vec2, toolpath::chords};
 
-/// Arcs are looked at as chords that are no farther from them, mm; the square is looked for with this to spare.
+/// Arcs are looked at as chords that are no farther from them, mm; the square is looked for with this to
+/// spare.
 const CHORD_MM: f64 = 0.05;
 
 /// Half of the published square's side, mm.
@@ -13,10 +14,11 @@ const HALF_MM: f64 = 10.0;
 /// Half of the pen's line, mm: what a stroke covers beside its middle.
 const HALF_LINE_MM: f64 = 0.25;
 
-/// Looks for a square of 20 x 20 mm in which a frame draws nothing, with its middle on the diagonal along which a fold would lie.
+/// Looks for a square of 20 x 20 mm in which a frame draws nothing, with its middle on the diagonal along
+/// which a fold would lie.
 ///
-/// Each line keeps the middle of the square out of an interval of the diagonal: that is computed exactly, so that a square is found
-/// wherever there is one. Only the intervals are kept.
+/// Each line keeps the middle of the square out of an interval of the diagonal: that is computed exactly, so
+/// that a square is found wherever there is one. Only the intervals are kept.
 ///
 /// ```
 /// use plotter_motion::{PlotOp, Point};
@@ -74,8 +76,8 @@ impl EmptySquare {
         self.at = op.target().unwrap_or(self.at);
     }
 
-    /// The middle of an empty square, as near to the middle of the diagonal as there is one; `None` if there is none. That is an answer
-    /// too: no probe can be drawn on this frame, and somebody has to look.
+    /// The middle of an empty square, as near to the middle of the diagonal as there is one; `None` if there
+    /// is none. That is an answer too: no probe can be drawn on this frame, and somebody has to look.
     #[must_use]
     pub fn find(&self) -> Option<Point> {
         let (first, last) = self.range_mm;
@@ -123,11 +125,11 @@ impl EmptySquare {
     }
 }
 
-/// For which middles `along · s` the square around it, `reach` to each side, meets the line from `a` to `b`: an interval of s, since
-/// both are convex.
+/// For which middles `along · s` the square around it, `reach` to each side, meets the line from `a` to `b`:
+/// an interval of s, since both are convex.
 ///
-/// In the plane of s and the parameter t of the line that is a polygon: the rectangle of all (s, t), cut by the four sides of the
-/// square (I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", 1974).
+/// In the plane of s and the parameter t of the line that is a polygon: the rectangle of all (s, t), cut by
+/// the four sides of the square (I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", 1974).
 fn taken_interval(along: Vec2, a: Vec2, b: Vec2, reach_mm: f64, range_mm: (f64, f64)) -> Option<(f64, f64)> {
     let way = b - a;
     let mut polygon = Polygon::rectangle(range_mm);

@@ -27,9 +27,9 @@ const OF_DEVIATION: f64 = 1.482_602_218_505_602;
 
 /// How a fold is told from none.
 ///
-/// Each scan is made twice, over the first stroke and over both. If the strokes lie beside each other by d, the line has become wider by
-/// d; whatever the paper does to the first stroke is the same both times and cancels. The median over all scans is
-/// compared with a limit,
+/// Each scan is made twice, over the first stroke and over both. If the strokes lie beside each other by d,
+/// the line has become wider by d; whatever the paper does to the first stroke is the same both times and
+/// cancels. The median over all scans is compared with a limit,
 ///
 /// ```text
 /// limit = mean + z √(common² + (1.2533 each)² / n)
@@ -56,8 +56,8 @@ const OF_DEVIATION: f64 = 1.482_602_218_505_602;
 pub struct FoldTest {
     /// Share of the flat sheets that may be taken for folded ones; above 0, below one half.
     pub false_alarms: f64,
-    /// By how much a second stroke widens the line of a flat sheet on average, mm: both strokes have rough edges, and the outer ones are
-    /// seen.
+    /// By how much a second stroke widens the line of a flat sheet on average, mm: both strokes have rough
+    /// edges, and the outer ones are seen.
     pub mean_mm: f64,
     /// Standard deviation of that, common to all scans, mm: how exactly the pen comes back.
     pub common_mm: f64,
@@ -68,8 +68,8 @@ pub struct FoldTest {
 }
 
 impl Default for FoldTest {
-    /// One false alarm in a thousand, with edges that are rough by 0.02 mm and a pen that comes back within 0.014 mm: found by
-    /// simulation (`cargo test --release --test all sim_fold:: -- --ignored --nocapture`).
+    /// One false alarm in a thousand, with edges that are rough by 0.02 mm and a pen that comes back within
+    /// 0.014 mm: found by simulation (`cargo test --release --test all sim_fold:: -- --ignored --nocapture`).
     fn default() -> Self {
         Self { false_alarms: 1e-3, mean_mm: 0.025, common_mm: 0.012, each_mm: 0.033, least_scans: 5 }
     }
@@ -134,7 +134,8 @@ impl FoldTest {
         Self { mean_mm: self.mean_mm * factor, each_mm: self.each_mm * factor, ..*self }
     }
 
-    /// What the scans over the first stroke and over both say; scan by scan, `None` where no line was seen. At most 64 are looked at.
+    /// What the scans over the first stroke and over both say; scan by scan, `None` where no line was seen.
+    /// At most 64 are looked at.
     #[must_use]
     pub fn judge(&self, once: &[Option<Seen>], twice: &[Option<Seen>]) -> FoldVerdict {
         let mut wider = [0.0; MOST_SCANS];
@@ -178,7 +179,8 @@ impl fmt::Display for FoldVerdict {
     }
 }
 
-/// What a normal number exceeds with the given probability, by halving the interval in which the complementary error function has it.
+/// What a normal number exceeds with the given probability, by halving the interval in which the
+/// complementary error function has it.
 fn normal_quantile(probability: f64) -> f64 {
     let (mut low, mut high) = (0.0, 38.0);
     for _ in 0..60 {

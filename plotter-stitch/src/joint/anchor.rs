@@ -3,10 +3,12 @@
 use crate::{FrameTransform, joint::TransformError};
 use plotter_motion::{Point, Vec2};
 
-/// In how many frames an offset is to be gone, where that takes no more than may be added.
+/// Number of frames over which an offset is taken back, unless a joint may add less. Fewer would bend the
+/// drawing more sharply at each joint.
 const FRAMES_TO_RETURN: f64 = 8.0;
 
-/// Two places of the edge this near to each other tell no direction, mm.
+/// Least distance of two places of the edge that tell its direction, mm: over less, the edge's bends of some
+/// tenths of a millimetre are all that is seen.
 const SHORTEST_EDGE_MM: f64 = 10.0;
 
 /// What an anchor knows of its sheet, and how much it may add at a joint.
@@ -47,19 +49,19 @@ pub struct JointSigma {
 
 /// Steers the frames of a sheet along its edge.
 ///
-/// Every joint is a little off, and nothing in the reference lines tells by how much: the turns add up to a random walk, and
-/// the lateral place is the sum of that walk, so that it grows with the power 1.5 of the number of frames. The edge of the paper is
-/// rough, but it does not drift. Two numbers are estimated, the offset e of a frame's beginning from the edge and the turn φ
-/// between them,
+/// Every joint is a little off, and nothing in the reference lines tells by how much: the turns add up to a
+/// random walk, and the lateral place is the sum of that walk, so that it grows with the power 1.5 of the
+/// number of frames. The edge of the paper is rough, but it does not drift. Two numbers are estimated, the
+/// offset e of a frame's beginning from the edge and the turn φ between them,
 ///
 /// ```text
 /// next frame:  e ← e - frame_mm φ + (error of the joint),   φ ← φ + (error of the joint)
 /// edge at y:   e - φ y + (roughness)
 /// ```
 ///
-/// by a Kalman filter (R. E. Kalman, "A new approach to linear filtering and prediction problems", 1960), and the frame is turned
-/// about the middle of its joint, towards an offset that dies away. A turn moves the ends of the joint by half its length times
-/// the turn, which is never more than [`AnchorSettings::most_mm`].
+/// by a Kalman filter (R. E. Kalman, "A new approach to linear filtering and prediction problems", 1960), and
+/// the frame is turned about the middle of its joint, towards an offset that dies away. A turn moves the ends
+/// of the joint by half its length times the turn, which is never more than [`AnchorSettings::most_mm`].
 ///
 /// ```
 /// use plotter_motion::Point;
@@ -87,8 +89,8 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// Looks at the edge before the first frame: places of the edge in the machine's coordinates, two or more. Gives how the first
-    /// frame must lie to be parallel to it.
+    /// Looks at the edge before the first frame: places of the edge in the machine's coordinates, two or
+    /// more. Gives how the first frame must lie to be parallel to it.
     ///
     /// # Errors
     ///
@@ -127,8 +129,8 @@ impl Anchor {
         Ok((anchor, first))
     }
 
-    /// How the next frame is drawn: `joint` is how it must lie to meet the last one, `edge` are places of the edge in the
-    /// machine's coordinates, none or more.
+    /// How the next frame is drawn: `joint` is how it must lie to meet the last one, `edge` are places of the
+    /// edge in the machine's coordinates, none or more.
     pub fn steer(&mut self, joint: &FrameTransform, sigma: JointSigma, edge: &[Point]) -> FrameTransform {
         self.predict(sigma);
         for place in edge.iter().filter(|place| place.is_finite()) {
@@ -178,7 +180,8 @@ impl Anchor {
         self.covariance = [ee - gain_e * he, ep - gain_e * hp, pp - gain_p * hp];
     }
 
-    /// The turn at this joint: towards a direction in which the offset dies away, slow enough to be stopped again.
+    /// The turn at this joint: towards a direction in which the offset dies away, slow enough to be stopped
+    /// again.
     fn wanted_turn(&self) -> f64 {
         let [one, other] = self.settings.joint;
         // The ends of the joint go round its middle; the chord is a little shorter than the arc.

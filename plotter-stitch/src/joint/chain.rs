@@ -3,8 +3,8 @@
 use crate::FrameTransform;
 use plotter_motion::{Point, Vec2};
 
-/// Frames that follow on one another: each lies in the coordinates of the one before as its joint says, and all together on the
-/// sheet.
+/// Frames that follow on one another: each lies in the coordinates of the one before as its joint says, and
+/// all together on the sheet.
 ///
 /// ```text
 /// sheet = step₁ · step₂ · … · stepₙ · frame n        each step: R(angle) · frame + shift
@@ -87,7 +87,8 @@ impl Chain {
 
     /// How the last frame lies on the sheet.
     ///
-    /// Sums of finite steps overflow only beyond any sheet; the frame lies nowhere then, and the first one's pose is told.
+    /// Sums of finite steps overflow only beyond any sheet; the frame lies nowhere then, and the first one's
+    /// pose is told.
     #[must_use]
     pub fn pose(&self) -> FrameTransform {
         let shift = Vec2::new(self.x_mm.value(), self.y_mm.value());

@@ -21,8 +21,8 @@ const FARTHEST_MM: f64 = 1e9;
 /// machine = R(angle) · sketch + shift
 /// ```
 ///
-/// with the angle counter-clockwise. [`from_readings`](Self::from_readings) finds it as published; the numbers of
-/// this example can be followed by hand:
+/// with the angle counter-clockwise. [`from_readings`](Self::from_readings) finds it as published; the
+/// numbers of this example can be followed by hand:
 ///
 /// ```
 /// use plotter_motion::Point;
@@ -78,22 +78,23 @@ impl FrameTransform {
     /// ```
     ///
     /// The sheet is taken to be turned about the place through which the first scans of both directions pass,
-    /// (x of the left scan, y of the border's scan): the head's start, (0, 0), in the published procedure. About
-    /// any other place a rotation would show in both shifts: by 0.1 mm for the frame's own corner, 50 mm away.
+    /// (x of the left scan, y of the border's scan): the head's start, (0, 0), in the published procedure.
+    /// About any other place a rotation would show in both shifts: by 0.1 mm for the frame's own corner,
+    /// 50 mm away.
     ///
-    /// What remains is the method's own error: a line that is both shifted by `s` across the scan and turned by α
-    /// is met a distance `s` tan α farther on, and a line at distance `a` by `a` (1/cos α - 1). With the greatest
-    /// shift of 5 mm and 0.002 rad that is 0.0101 mm in each direction and 0.0143 mm together, everywhere on the frame:
-    /// below the required 0.05 mm, and proved by a property test. The second border takes no part; see
-    /// [`Residual`](crate::joint::Residual).
+    /// What remains is the method's own error: a line that is both shifted by `s` across the scan and turned
+    /// by α is met a distance `s` tan α farther on, and a line at distance `a` by `a` (1/cos α - 1). With the
+    /// greatest shift of 5 mm and 0.002 rad that is 0.0101 mm in each direction and 0.0143 mm together,
+    /// everywhere on the frame: below the required 0.05 mm, and proved by a property test. The second border
+    /// takes no part; see [`Residual`](crate::joint::Residual).
     ///
-    /// Source: Ivanov, Gueorguiev, Georgieva, Nenova, "Sketch drawing on infinite paper sheets", section IV. The
-    /// source computes in 10-byte floats; in `f64` there and back over 30 m ends within 1e-9 mm (a test).
+    /// Source: Ivanov, Gueorguiev, Georgieva, Nenova, "Sketch drawing on infinite paper sheets", section IV.
+    /// The source computes in 10-byte floats; in `f64` there and back over 30 m ends within 1e-9 mm (a test).
     ///
     /// # Errors
     ///
-    /// [`TransformError`] if a reading is not finite or no place on a sheet, if the Y markers were scanned too near to each other, and
-    /// if the rotation is greater than any sheet's.
+    /// [`TransformError`] if a reading is not finite or no place on a sheet, if the Y markers were scanned
+    /// too near to each other, and if the rotation is greater than any sheet's.
     pub fn from_readings(readings: &FrameReadings) -> Result<Self, TransformError> {
         for mark in Mark::ALL {
             let reading = readings.reading(mark);

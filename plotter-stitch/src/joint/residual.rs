@@ -4,8 +4,8 @@ use crate::{FrameReadings, FrameTransform, Mark};
 
 /// Distance from where a transform puts each reference line to where it was found, along the scan, mm.
 ///
-/// Two lines and two markers tell four numbers, and a transform has three: what is left over is the stretch of
-/// the paper, a misread line, or the error of the method.
+/// Two lines and two markers tell four numbers, and a transform has three: what is left over is the stretch
+/// of the paper, a misread line, or the error of the method.
 ///
 /// ```
 /// use plotter_stitch::{FrameReadings, FrameTransform, Reading, joint::Residual};
@@ -40,8 +40,8 @@ pub struct Residual {
 impl Residual {
     /// Found minus transformed, for each line.
     ///
-    /// A frame turned by α and shifted by (sx, sy) is met by a scan along x at y = v on its line x = a, and by one
-    /// along y at x = u on its line y = b, at
+    /// A frame turned by α and shifted by (sx, sy) is met by a scan along x at y = v on its line x = a, and
+    /// by one along y at x = u on its line y = b, at
     ///
     /// ```text
     /// x = a / cos α - (v - sy) tan α + sx

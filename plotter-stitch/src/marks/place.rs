@@ -9,10 +9,11 @@ use plotter_motion::{Axis, Point};
 /// walks, and what rewinding misses with the turn of 0.002 rad over a field of 2 m.
 pub(crate) const ASTRAY_MM: [f64; 2] = [5.0, 9.0];
 
-/// The head sees ink this far from its middle, and a line's ink is this far from its own, mm.
+/// Distance from a line's middle at which the head sees its ink, mm: the head's disc of 0.6 mm and a line of
+/// 0.5 mm have these radii.
 const SEEN_MM: f64 = 0.3 + 0.25;
 
-/// Step of the search, mm.
+/// Step of the search for a place, mm: two widths of a pen's line.
 const STEP_MM: f64 = 1.0;
 
 /// Looks for a place for a mark among the lines of a frame.

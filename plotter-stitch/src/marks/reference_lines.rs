@@ -10,7 +10,8 @@ use plotter_motion::{Axis, Point};
 /// No machine is so large, mm.
 const FARTHEST_MM: f64 = 1e6;
 
-/// The marks of a frame that can still be reached when the next one is about to be drawn, and the scans over them.
+/// The marks of a frame that can still be reached when the next one is about to be drawn, and the scans over
+/// them.
 ///
 /// ```text
 ///         beside the field │ the field                  │ beside the field
@@ -204,8 +205,8 @@ impl ReferenceLines {
         })
     }
 
-    /// The strokes that draw the marks: `reach_mm` to both sides of each scan, so that a sheet may have moved by as much and
-    /// the scan still crosses them.
+    /// The strokes that draw the marks: `reach_mm` to both sides of each scan, so that a sheet may have moved
+    /// by as much and the scan still crosses them.
     ///
     /// ```
     /// # use plotter_motion::Point;

@@ -11,7 +11,7 @@ const KEPT_MM: f64 = 100.0;
 /// And what is so near to the field's sides, along the whole frame: published borders run there, mm.
 const BORDER_MM: f64 = 3.0;
 
-/// Arcs become chords that are no farther from them, mm.
+/// Greatest distance of an arc's chords from the arc, mm: a tenth of a pen's line.
 const CHORD_MM: f64 = 0.05;
 
 /// The lines at the end of a frame and along its sides, where they lie once the paper has been moved by a

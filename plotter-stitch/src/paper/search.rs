@@ -7,7 +7,8 @@ use crate::{
 };
 use plotter_motion::{Axis, Point};
 
-/// At how many places along the paper both edges are looked for.
+/// Number of places along the paper where both edges are looked for: two tell a straight edge, the others
+/// show torn places.
 const ROWS: usize = 5;
 
 /// How the paper is looked for.

@@ -10,9 +10,9 @@ use crate::{
 use alloc::vec::Vec;
 use plotter_motion::Point;
 
-/// Standard deviation of where the head is in a tact, mm.
+/// Standard deviation of the head's place in a tact, mm: as in the simulated joint.
 const SERVO_MM: f64 = 0.01;
-/// Standard deviation of the bends of an edge, mm.
+/// Standard deviation of the bends of an edge, mm: bends of rolls are some tenths.
 const EDGE_MM: f64 = 0.1;
 
 /// Simulated paper under the head: two wavy edges, torn places and stains. The same seed gives the same

@@ -3,10 +3,12 @@
 use crate::{FrameTransform, Optics, Sighting};
 use plotter_motion::Axis;
 
-/// Two passes that see the same line see it this near to each other, mm: seven times what two slow passes differ by.
+/// Two passes that see the same line see it this near to each other, mm: seven times what two slow passes
+/// differ by.
 const SAME_MM: f64 = 0.15;
 
-/// What a fast pass saw this near to something that a slow pass saw is the same thing, mm: a line's own width and a tact's half.
+/// What a fast pass saw this near to something that a slow pass saw is the same thing, mm: a line's own width
+/// and a tact's half.
 const NEAR_MM: f64 = 0.8;
 
 /// A pass is a slow one if there is another that is faster by this factor.
@@ -27,7 +29,8 @@ const DELAY_LEFT: f64 = 0.33;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Crossing {
-    /// The direction of the scan, and the coordinate by which the mark is known: a scan along x crosses a line of constant x.
+    /// The direction of the scan, and the coordinate by which the mark is known: a scan along x crosses a
+    /// line of constant x.
     pub axis: Axis,
     /// That coordinate in the frame about to be drawn, mm.
     pub mark_mm: f64,
@@ -67,7 +70,8 @@ impl Crossing {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Found {
-    /// Which of the crossings, counted from 0. Of several places found at one, at most one is taken to be the mark.
+    /// Which of the crossings, counted from 0. Of several places found at one, at most one is taken to be the
+    /// mark.
     pub crossing: usize,
     /// Machine coordinate along the scan, mm.
     pub at_mm: f64,
@@ -86,9 +90,10 @@ pub struct Passed {
 
 /// The places at which the mark of a crossing may lie, from all that its passes saw.
 ///
-/// What a slow pass saw each way becomes one place, the mean, in which the head's delay cancels. Of one way only it is one too,
-/// with the known delay taken off. What a fast pass saw counts only where no slow pass went: the slow ones may have been
-/// sent to a grain of dust while the mark lies elsewhere. What was not seen for as long as a line is left out.
+/// What a slow pass saw each way becomes one place, the mean, in which the head's delay cancels. Of one way
+/// only it is one too, with the known delay taken off. What a fast pass saw counts only where no slow pass
+/// went: the slow ones may have been sent to a grain of dust while the mark lies elsewhere. What was not seen
+/// for as long as a line is left out.
 ///
 /// ```
 /// # use plotter_stitch::{Optics, Sighting, sense::{Passed, found_at}};

@@ -2,12 +2,13 @@
 
 use super::noise::Noise;
 
-/// How far from one another the edge's bends are, mm.
+/// Distance between the bends of an edge, mm.
 const BEND_MM: f64 = 400.0;
 
 /// The edge of a roll of paper: straight on the whole, and a little wavy.
 ///
-/// Between places 400 mm apart, at which it is off by normal numbers, it runs straight. The same seed gives the same paper.
+/// Between places 400 mm apart, at which it is off by normal numbers, it runs straight. The same seed gives
+/// the same paper.
 ///
 /// ```
 /// use plotter_stitch::sheet::PaperEdge;

@@ -6,9 +6,9 @@ use plotter_motion::Vec2;
 
 /// How badly the paper is moved on.
 ///
-/// The default is a machine at the limits that its source gives: rewinding stops up to 5 mm beside its place, and the turn comes to
-/// 0.002 rad. The rolls lead a little: each time a part of walk and turn is taken back, so that a sheet of any length stays on the
-/// table.
+/// The default is a machine at the limits that its source gives: rewinding stops up to 5 mm beside its place,
+/// and the turn comes to 0.002 rad. The rolls lead a little: each time a part of walk and turn is taken back,
+/// so that a sheet of any length stays on the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -26,7 +26,8 @@ pub struct FeedSettings {
     pub most_turn_rad: f64,
     /// Share of walk and turn that the rolls take back at each move.
     pub led: f64,
-    /// Standard deviation of the paper's stretch between drawing and finding again, as a share of the length along the sheet.
+    /// Standard deviation of the paper's stretch between drawing and finding again, as a share of the length
+    /// along the sheet.
     pub stretch: f64,
     /// Share of the moves at which the paper folds.
     pub folds: f64,

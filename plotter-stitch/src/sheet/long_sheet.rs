@@ -18,8 +18,8 @@ use plotter_motion::{Axis, PlotOp, Point, Vec2};
 /// best.
 const EDGE_SCANS: [f64; 8] = [0.02, 0.13, 0.24, 0.35, 0.74, 0.85, 0.96, 1.07];
 
-/// What the joint of a method that does not say how well it knows it is taken for by the anchor: a tact's way, evenly spread, over the
-/// distance of both Y scans.
+/// What the joint of a method that does not say how well it knows it is taken for by the anchor: a tact's
+/// way, evenly spread, over the distance of both Y scans.
 const PUBLISHED_SIGMA: JointSigma = JointSigma { lateral_mm: 0.17, angle_rad: 1.2e-4 };
 
 /// What a simulated sheet is made of.
@@ -40,7 +40,8 @@ pub struct SheetSettings {
     pub edge_mm: f64,
     /// Where on the table each frame lies.
     pub field: Field,
-    /// The most that lines may be moved at a joint to keep the drawing along the edge, mm; 0 for a sheet without an anchor.
+    /// The most that lines may be moved at a joint to keep the drawing along the edge, mm; 0 for a sheet
+    /// without an anchor.
     pub anchor_mm: f64,
 }
 
@@ -78,15 +79,17 @@ pub struct JointReport {
 }
 
 impl JointReport {
-    /// From where a line of the frame before ends to where it goes on, at a place of the joint in the frame's own place on the table.
+    /// From where a line of the frame before ends to where it goes on, at a place of the joint in the frame's
+    /// own place on the table.
     #[must_use]
     pub fn discrepancy(&self, place: Point) -> Vec2 {
         self.drawn.to_machine(place) - self.truth.to_machine(place)
     }
 }
 
-/// A sheet that is drawn frame by frame on a simulated machine: paper that walks, an optical head that looks for marks, a procedure that
-/// tells how the next frame lies. An endless row of joints; the same seed gives the same ones.
+/// A sheet that is drawn frame by frame on a simulated machine: paper that walks, an optical head that looks
+/// for marks, a procedure that tells how the next frame lies. An endless row of joints; the same seed gives
+/// the same ones.
 ///
 /// ```
 /// use plotter_stitch::{LongSheet, ReferenceLines, SheetSettings, StripJoin, sense::SearchSettings};
@@ -142,7 +145,8 @@ pub(super) struct Change {
 }
 
 impl<M: JoinFrames> LongSheet<M> {
-    /// A sheet with its first frame drawn: along the edge if there is an anchor, otherwise as the machine stands.
+    /// A sheet with its first frame drawn: along the edge if there is an anchor, otherwise as the machine
+    /// stands.
     ///
     /// # Errors
     ///

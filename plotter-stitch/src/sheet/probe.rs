@@ -15,8 +15,9 @@ const REACH_MM: f64 = 3.0;
 
 /// A line drawn twice in simulated ink, the second time beside the first where the paper has folded.
 ///
-/// Both strokes have rough edges ([`SensorNoise::texture_mm`]), the pen comes back to its place with [`SensorNoise::servo_mm`] and
-/// [`SensorNoise::pen_mm`], and dust lies on the share [`SensorNoise::dust`] of the scans.
+/// Both strokes have rough edges ([`SensorNoise::texture_mm`]), the pen comes back to its place with
+/// [`SensorNoise::servo_mm`] and [`SensorNoise::pen_mm`], and dust lies on the share [`SensorNoise::dust`] of
+/// the scans.
 ///
 /// ```
 /// use plotter_stitch::{FoldTest, FoldVerdict, Optics, sheet::{SensedProbe, SensorNoise}};

@@ -17,17 +17,18 @@ use plotter_motion::{Axis, Point, Segment, Vec2};
     serde(deny_unknown_fields, default)
 )]
 pub struct SensorNoise {
-    /// Texture of the paper: standard deviation of where either edge of a mark lies at a crossing, mm. It is the same in each pass.
+    /// Texture of the paper: standard deviation of where either edge of a mark lies at a crossing, mm. It is
+    /// the same in each pass.
     pub texture_mm: f64,
     /// Standard deviation of where the head is in a tact, from where it is said to be, mm.
     pub servo_mm: f64,
-    /// Offset of the pen from the optical head, in each direction: standard deviation from joint to joint, mm. All marks of a
-    /// frame have it in common.
+    /// Offset of the pen from the optical head, in each direction: standard deviation from joint to joint,
+    /// mm. All marks of a frame have it in common.
     pub pen_mm: f64,
     /// Standard deviation of a whole mark at a crossing, each for itself, mm.
     pub mark_mm: f64,
-    /// Standard deviation of the detector's signal, in shares of the disc. At a fifth of the threshold (0.02) one joint in two
-    /// thousand has a sample that sees a line on blank paper.
+    /// Standard deviation of the detector's signal, in shares of the disc. At a fifth of the threshold (0.02)
+    /// one joint in two thousand has a sample that sees a line on blank paper.
     pub signal: f64,
     /// Whether the detector gives that signal; otherwise only how often a line was seen.
     pub gives_signal: bool,
@@ -42,7 +43,8 @@ pub struct SensorNoise {
 }
 
 impl Default for SensorNoise {
-    /// Paper, servo and pen 0.02, 0.01 and 0.01 mm, all marks there, no dust, a quiet detector that only counts: what the results are measured with.
+    /// Paper, servo and pen 0.02, 0.01 and 0.01 mm, all marks there, no dust, a quiet detector that only
+    /// counts: what the results are measured with.
     fn default() -> Self {
         Self {
             texture_mm: 0.02,
@@ -277,7 +279,8 @@ fn ends(line: &Segment) -> [[f64; 2]; 2] {
 
 /// Area that two discs have in common, mm².
 ///
-/// Source: the lens of two circles, <https://mathworld.wolfram.com/Circle-CircleIntersection.html>, equation 14.
+/// Source: the lens of two circles, <https://mathworld.wolfram.com/Circle-CircleIntersection.html>,
+/// equation 14.
 fn common_area(r: f64, s: f64, apart: f64) -> f64 {
     if apart >= r + s {
         return 0.0;
@@ -312,7 +315,8 @@ mod tests {
         let optics = Optics { latency_s: 0.0, ..Optics::default() };
         let noise = SensorNoise { gives_signal: true, ..SensorNoise::none() };
         let mut joint = SensedJoint::new(&[crossing], &FrameTransform::IDENTITY, optics, noise, 0);
-        // At 300 mm/s the samples lie 0.15 mm before and after the position: the first on the mark, the second 0.3 mm off.
+        // At 300 mm/s the samples lie 0.15 mm before and after the position: the first on the mark, the
+        // second 0.3 mm off.
         let tact = joint.tact(0, 20.15, 300.0);
         assert_eq!(tact.hits, 2);
         let [first, second] = tact.covered.unwrap();

@@ -42,7 +42,8 @@ pub enum SplitError {
         /// Where the first frame begins, mm.
         begin_mm: f64,
     },
-    /// A stroke goes back to a frame that has been given out: the operations are not in the order of the sheet.
+    /// A stroke goes back to a frame that has been given out: the operations are not in the order of the
+    /// sheet.
     OutOfOrder {
         /// Number of the operation.
         op: u64,

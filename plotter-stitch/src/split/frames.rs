@@ -6,14 +6,15 @@ use plotter_motion::PlotOp;
 
 /// The frames of a drawing whose strokes come in the order of the sheet, in one pass.
 ///
-/// A frame is given out as soon as something is drawn beyond the one after it, so that two frames at most are held, however
-/// long the drawing: a stroke may always go back by a frame's length from the farthest place yet. One that goes back to a frame
-/// that is gone is an error, which names it. For drawings in any other order there is [`FramePasses`].
+/// A frame is given out as soon as something is drawn beyond the one after it, so that two frames at most are
+/// held, however long the drawing: a stroke may always go back by a frame's length from the farthest place
+/// yet. One that goes back to a frame that is gone is an error, which names it. For drawings in any other
+/// order there is [`FramePasses`].
 ///
-/// Lines that cross a border are cut into two pieces that meet in one place, the *break point*; arcs are cut into arcs.
-/// Within [`FrameLayout::window_mm`] of the border a line that begins, ends or turns back is not cut at all, and one that goes
-/// through is cut where the least is spoilt if the frames do not meet perfectly: away from corners and other
-/// lines, and where it is not shallow to the border.
+/// Lines that cross a border are cut into two pieces that meet in one place, the *break point*; arcs are cut
+/// into arcs. Within [`FrameLayout::window_mm`] of the border a line that begins, ends or turns back is not
+/// cut at all, and one that goes through is cut where the least is spoilt if the frames do not meet
+/// perfectly: away from corners and other lines, and where it is not shallow to the border.
 ///
 /// ```
 /// use plotter_motion::{PlotOp, Point};
@@ -102,9 +103,10 @@ impl<I: Iterator<Item = PlotOp>> Iterator for Frames<I> {
 
 /// The frames of a drawing in any order, read once for each frame.
 ///
-/// The drawing is a function that gives its operations from the start: `|| file_again()`, or `|| ops.iter().copied()`. One
-/// frame is held at a time. The frames are those of [`Frames`], to the last bit, where strokes go back by no more than a frame's
-/// length; and any frame can be had by itself: after a stop the work goes on with [`FramePasses::frame`].
+/// The drawing is a function that gives its operations from the start: `|| file_again()`, or
+/// `|| ops.iter().copied()`. One frame is held at a time. The frames are those of [`Frames`], to the last
+/// bit, where strokes go back by no more than a frame's length; and any frame can be had by itself: after a
+/// stop the work goes on with [`FramePasses::frame`].
 ///
 /// ```
 /// use plotter_motion::{PlotOp, Point};
@@ -139,7 +141,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`SplitError`] for an operation that cannot be divided, wherever it lies; never [`SplitError::OutOfOrder`].
+    /// [`SplitError`] for an operation that cannot be divided, wherever it lies; never
+    /// [`SplitError::OutOfOrder`].
     pub fn frame(&mut self, index: u32) -> Result<Option<Frame>, SplitError> {
         self.layout.check()?;
         let mut gatherer = Gatherer::only(self.layout, index);

@@ -81,8 +81,8 @@ impl Gatherer {
         &self.layout
     }
 
-    /// The last frame into which something reaches by itself, not through the window of a border; `None` while nothing is
-    /// drawn.
+    /// The last frame into which something reaches by itself, not through the window of a border; `None`
+    /// while nothing is drawn.
     pub(super) const fn last(&self) -> Option<u32> {
         self.last
     }
@@ -159,7 +159,8 @@ impl Gatherer {
         Ok(())
     }
 
-    /// Whether the current operation goes beyond the open frames: one must be closed before the next operation.
+    /// Whether the current operation goes beyond the open frames: one must be closed before the next
+    /// operation.
     pub(super) const fn is_beyond(&self) -> bool {
         self.current.is_some()
     }
@@ -254,7 +255,8 @@ impl Gatherer {
         matches!(self.wanted, Wanted::From(first) if border <= first && first > 0)
     }
 
-    /// A pause belongs to the frame over which the pen stands, or the nearest one that is still open and drawn in.
+    /// A pause belongs to the frame over which the pen stands, or the nearest one that is still open and
+    /// drawn in.
     fn pause(&mut self, op: PlotOp) {
         self.order += 1;
         let frame = self.layout.frame_at(self.at.y).min(self.last.unwrap_or(0));

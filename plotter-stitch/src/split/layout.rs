@@ -34,8 +34,8 @@ pub struct FrameLayout {
     pub frame_mm: f64,
     /// What is drawn lies between x = 0 and this, mm: any width that the paper has.
     pub width_mm: f64,
-    /// How far from the border a line may be cut, mm, up to a quarter of the frame; 0 cuts at the border itself. The table
-    /// must reach this far beyond the frame on both sides.
+    /// How far from the border a line may be cut, mm, up to a quarter of the frame; 0 cuts at the border
+    /// itself. The table must reach this far beyond the frame on both sides.
     pub window_mm: f64,
     /// A cut nearer than this to a corner or to another line does harm there, mm.
     pub clear_mm: f64,

@@ -1,4 +1,5 @@
-//! A drawing of any length divided into frames: [`Frames`] in one pass, [`FramePasses`] with one pass for each frame.
+//! A drawing of any length divided into frames: [`Frames`] in one pass, [`FramePasses`] with one pass for
+//! each frame.
 
 mod error;
 mod frames;

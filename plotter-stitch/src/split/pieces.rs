@@ -1,4 +1,5 @@
-//! [`Pieces`]: what of a drawing belongs to one frame, gathered in any order; and [`Frame`], what becomes of it.
+//! [`Pieces`]: what of a drawing belongs to one frame, gathered in any order; and [`Frame`], what becomes of
+//! it.
 
 use alloc::vec::Vec;
 use core::cmp::Ordering;

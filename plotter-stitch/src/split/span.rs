@@ -3,10 +3,11 @@
 use core::f64::consts::{FRAC_PI_2, TAU};
 use plotter_motion::{PlotOp, Point, Vec2};
 
-/// Steps of a bisection: from an interval of 1 down to the last bit.
+/// Steps of a bisection. 60 halve an interval of 1 to below its last bit in `f64`.
 const HALVINGS: u32 = 60;
 
-/// A circle's radius changes by no more than this share of it.
+/// Greatest change of a circle's radius, as a share, that counts as rounding: thousands of last bits of
+/// `f64`.
 const ROUNDING: f64 = 1e-12;
 
 /// What one operation draws: a line or an arc, with a parameter from 0 at its start to 1 at its end.
@@ -74,8 +75,8 @@ impl Span {
         }
     }
 
-    /// The operation that draws the part from `t0` to `t1`, when the pen stands at its start. The whole is the operation
-    /// itself, to the last bit.
+    /// The operation that draws the part from `t0` to `t1`, when the pen stands at its start. The whole is
+    /// the operation itself, to the last bit.
     pub(super) fn part(&self, t0: f64, t1: f64) -> PlotOp {
         if t0 <= 0.0 && t1 >= 1.0 {
             return self.op;
@@ -122,7 +123,8 @@ impl Span {
         }
     }
 
-    /// A box that holds it, perhaps with room to spare: the corners with the least and the greatest coordinates.
+    /// A box that holds it, perhaps with room to spare: the corners with the least and the greatest
+    /// coordinates.
     pub(super) fn bounds(&self) -> (Point, Point) {
         match self.shape {
             Shape::Line { to } => (

@@ -7,23 +7,25 @@ use alloc::vec::Vec;
 use plotter_motion::{Point, Segment};
 use rstar::{AABB, RTree, RTreeObject};
 
-/// A vertex turns the way by more than this: a corner, rad.
+/// A vertex that turns the path by more than this is a corner, rad: 20 degrees.
 const CORNER_RAD: f64 = 0.35; // 20 degrees
 
 /// What a cut costs in a corner, on another line, and along the border; between these it falls in proportion.
 const CORNER_COST: f64 = 1.0;
 const CROSSING_COST: f64 = 1.0;
 const SHALLOW_COST: f64 = 1.0;
-/// What a cut costs at the end of the window: little, so that it only decides between cuts that do equal harm.
+/// What a cut costs at the end of the window: little, so that it only decides between cuts that do equal
+/// harm.
 const FAR_COST: f64 = 0.1;
 
-/// Places looked at in a window's half, for a line straight across.
+/// Places that are tried in each half of a window, for a line straight across.
 const STEPS: f64 = 8.0;
-/// Most places on one operation.
+/// Most places that are tried on one operation. It bounds the time for lines along the border.
 const MOST_STEPS: f64 = 64.0;
-/// Most chords of an arc in the search for crossings.
+/// Most chords of an arc in the search for crossings. It bounds the time; the cost of a cut needs no exact
+/// crossing.
 const MOST_CHORDS: f64 = 16.0;
-/// Most neighbours that are looked at around a place.
+/// Most neighbours that are checked around a place. It bounds the time where lines are dense.
 const MOST_NEIGHBOURS: usize = 64;
 
 /// From which frame a line comes into the window, or to which it leaves.
@@ -112,8 +114,8 @@ impl Window {
 
     /// Divides everything between the frames on both sides of the border at `border_mm`.
     ///
-    /// A line that comes from one frame and goes to the other is cut once, where that does least harm; one that begins or ends in
-    /// the window, or comes back, is not cut at all.
+    /// A line that comes from one frame and goes to the other is cut once, where that does least harm; one
+    /// that begins or ends in the window, or comes back, is not cut at all.
     pub(super) fn divide(
         self,
         layout: &FrameLayout,
@@ -277,7 +279,8 @@ fn nearest_corner(corners: &[f64], way_mm: f64) -> f64 {
     behind.min(ahead)
 }
 
-/// Distance from a place of a run to the nearest other line, or to another part of its own; infinite beyond `reach_mm`.
+/// Distance from a place of a run to the nearest other line, or to another part of its own; infinite beyond
+/// `reach_mm`.
 fn nearest_line(neighbours: &RTree<Strand>, place: Point, run: usize, way_mm: f64, reach_mm: f64) -> f64 {
     let Point { x, y } = place;
     let around = AABB::from_corners([x - reach_mm, y - reach_mm], [x + reach_mm, y + reach_mm]);

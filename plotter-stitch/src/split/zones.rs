@@ -73,7 +73,8 @@ impl Zones {
         Self { wanted: (begin, end + layout.window_mm), ..Self::all(layout) }
     }
 
-    /// From now on only what lies beyond one zone, if any, and up to the window after a frame is wanted. Gives the last zone.
+    /// From now on only what lies beyond one zone, if any, and up to the window after a frame is wanted.
+    /// Gives the last zone.
     pub(super) fn limit(&mut self, done: Option<Zone>, last: u32) -> Zone {
         let window = self.layout.window_mm;
         let next = last.saturating_add(1);
@@ -119,8 +120,8 @@ impl Zones {
         pending.map_or(Ok(()), each)
     }
 
-    /// The zone in which a span ends that has no part at its end, though that lies where something is wanted: it came as far, and
-    /// no farther.
+    /// The zone in which a span ends that has no part at its end, though that lies where something is wanted:
+    /// it came as far, and no farther.
     pub(super) fn end_zone(&self, span: &Span) -> Option<Zone> {
         let y = span.at(1.0).y;
         let (wanted_low, wanted_high) = self.wanted;

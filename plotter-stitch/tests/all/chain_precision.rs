@@ -5,8 +5,8 @@ use plotter_stitch::{Chain, FrameTransform};
 
 /// A number as an unevaluated sum of two, good to 106 bits.
 ///
-/// Source: T. J. Dekker, "A floating-point technique for extending the available precision" (1971); the products use the fused
-/// multiply-add.
+/// Source: T. J. Dekker, "A floating-point technique for extending the available precision" (1971); the
+/// products use the fused multiply-add.
 #[derive(Clone, Copy, Debug)]
 struct Double {
     high: f64,

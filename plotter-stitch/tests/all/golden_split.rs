@@ -79,7 +79,8 @@ fn picture() -> String {
     svg
 }
 
-/// After a change that is meant: look at the picture, and write it anew with `BLESS=1 cargo test --test all golden_split::`.
+/// After a change that is meant: look at the picture, and write it anew with
+/// `BLESS=1 cargo test --test all golden_split::`.
 #[test]
 fn a_small_drawing_is_cut_as_the_picture_shows() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/split.svg");

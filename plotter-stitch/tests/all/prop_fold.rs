@@ -1,4 +1,5 @@
-//! Laws of the search for an empty square: none that is found is drawn in, and one is found wherever there is one.
+//! Laws of the search for an empty square: none that is found is drawn in, and one is found wherever there is
+//! one.
 
 use plotter_motion::{PlotOp, Point, Segment};
 use plotter_stitch::{

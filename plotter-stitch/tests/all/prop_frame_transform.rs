@@ -24,8 +24,8 @@ fn stated_error_mm() -> f64 {
 /// Rounding of a few operations on coordinates up to 30 m, mm: 30000 * 2^-52 is 7e-12.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// Where a scan along x at `scan_y_mm` meets the frame's line x = `line_mm`: found by walking along the line, not by
-/// the formula under test.
+/// Where a scan along x at `scan_y_mm` meets the frame's line x = `line_mm`: found by walking along the line,
+/// not by the formula under test.
 fn scan_along_x(sheet: &FrameTransform, line_mm: f64, scan_y_mm: f64) -> Reading {
     let (from, to) =
         (sheet.to_machine(Point::new(line_mm, -2e3)), sheet.to_machine(Point::new(line_mm, 2e3)));

@@ -61,7 +61,8 @@ proptest! {
         prop_assert_eq!(estimate.inlier_count() as usize, crossings.len());
     }
 
-    /// Up to four of sixteen wrong by anything, two of them along each axis: what is told is what the others tell.
+    /// Up to four of sixteen wrong by anything, two of them along each axis: what is told is what the others
+    /// tell.
     #[test]
     fn outliers_change_nothing(
         sheet in sheets(),

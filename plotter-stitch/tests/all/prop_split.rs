@@ -144,7 +144,8 @@ fn windows() -> impl Strategy<Value = f64> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
-    /// Each operation is found again in the frames, whole or in pieces that meet: nothing is lost or drawn twice.
+    /// Each operation is found again in the frames, whole or in pieces that meet: nothing is lost or drawn
+    /// twice.
     #[test]
     fn joining_the_frames_gives_the_drawing(strokes in strokes(), window_mm in windows()) {
         let ops = ops_of(&strokes);
@@ -182,7 +183,8 @@ proptest! {
         prop_assert!((total_mm.0 - total_mm.1).abs() <= 1e-9 * total_mm.1.max(1.0));
     }
 
-    /// A frame draws within its borders and the window, lines meet in the same place on both sides, and pauses come once.
+    /// A frame draws within its borders and the window, lines meet in the same place on both sides, and
+    /// pauses come once.
     #[test]
     fn frames_keep_to_their_place(strokes in strokes(), window_mm in windows()) {
         let ops = ops_of(&strokes);
@@ -229,8 +231,8 @@ proptest! {
         prop_assert_eq!(pauses(&mut frames.iter().flat_map(Frame::sheet_ops)), pauses(&mut ops.iter().copied()));
     }
 
-    /// Where a stroke goes over from one frame to another, and only there, both tell a break point: also where vertices lie on
-    /// borders and on the ends of windows.
+    /// Where a stroke goes over from one frame to another, and only there, both tell a break point: also
+    /// where vertices lie on borders and on the ends of windows.
     #[test]
     fn a_stroke_goes_over_at_break_points_only(
         places in prop::collection::vec((0_u32..60, 0_u32..80), 2..20),

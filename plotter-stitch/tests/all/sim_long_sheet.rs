@@ -1,4 +1,5 @@
-//! Whole sheets, frame by frame, with both procedures: what is left at the joints, and how far the drawing drifts.
+//! Whole sheets, frame by frame, with both procedures: what is left at the joints, and how far the drawing
+//! drifts.
 
 use plotter_stitch::{
     LongSheet, ReferenceLines, SheetSettings, StripJoin,

@@ -1,4 +1,5 @@
-//! A sheet of a line drawing with soft rims, as a scanner sees it: what the benchmarks of the whole way work on.
+//! A sheet of a line drawing with soft rims, as a scanner sees it: what the benchmarks of the whole way work
+//! on.
 
 use plotter_vector::{Bitmap, Colour, Gray, Threshold};
 

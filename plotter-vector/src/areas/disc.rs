@@ -1,8 +1,8 @@
 //! [`Disc`]: a raster disc, and where it fits into ink.
 //!
-//! Erosion and dilation work on words of 64 px. A disc is taken column by column: all columns of one height ask
-//! for the same run of rows, so the rows are joined once and shifted once a column. Words that a vertical run
-//! already rules out, or that lie deep inside black, are not looked at any further.
+//! Erosion and dilation work on words of 64 px. A disc is taken column by column: all columns of one height
+//! ask for the same run of rows, so the rows are joined once and shifted once a column. Words that a vertical
+//! run already rules out, or that lie deep inside black, are not looked at any further.
 
 use crate::picture::Bitmap;
 use core::ops::Range;
@@ -17,8 +17,8 @@ const LOOK_EVERY: usize = 4;
 #[derive(Clone, Debug)]
 pub(super) struct Disc {
     side: usize,
-    /// Each column's number of empty rows above the disc (below it there are as many) and the column, the shortest
-    /// columns first.
+    /// Each column's number of empty rows above the disc (below it there are as many) and the column, the
+    /// shortest columns first.
     columns: Vec<(usize, usize)>,
 }
 
@@ -82,8 +82,8 @@ impl Disc {
         })
     }
 
-    /// Whether the convex hull of the columns holds the circle of radius `line` around the origin. Every edge must
-    /// then pass outside of it; the box sees to left and right. Ends, at the latest, with the full box.
+    /// Whether the convex hull of the columns holds the circle of radius `line` around the origin. Every edge
+    /// must then pass outside of it; the box sees to left and right. Ends, at the latest, with the full box.
     fn is_as_wide_everywhere(line: i64, reach_at: impl Fn(i64) -> i64) -> bool {
         let cross = |a: (i64, i64), b: (i64, i64)| a.0 * b.1 - a.1 * b.0;
         let minus = |a: (i64, i64), b: (i64, i64)| (a.0 - b.0, a.1 - b.1);
@@ -142,7 +142,8 @@ impl Disc {
         places
     }
 
-    /// Whether the disc fits anywhere into the ink: the same as for [`Disc::places`], without a picture of them.
+    /// Whether the disc fits anywhere into the ink: the same as for [`Disc::places`], without a picture of
+    /// them.
     pub(super) fn fits(&self, ink: &Bitmap) -> bool {
         let (mut any, mut scratch) = (false, Vec::new());
         let mut out = vec![0; ink.row(0).len()];
@@ -282,7 +283,8 @@ impl Disc {
     }
 }
 
-/// Joins each word of `out` with the pixels `ahead_px` to the right of its own in `row`; paper beyond the row's end.
+/// Joins each word of `out` with the pixels `ahead_px` to the right of its own in `row`; paper beyond the
+/// row's end.
 fn and_ahead(out: &mut [u64], row: &[u64], ahead_px: usize, join: impl Fn(u64, u64) -> u64) {
     let shift = ahead_px % BITS;
     let row = row.get(ahead_px / BITS..).unwrap_or(&[]);
@@ -298,8 +300,8 @@ fn and_ahead(out: &mut [u64], row: &[u64], ahead_px: usize, join: impl Fn(u64, u
     }
 }
 
-/// Adds to each word of `out` the pixels `behind_px` to the left of its own in `row`, which begins `lead` words
-/// earlier; paper before it.
+/// Adds to each word of `out` the pixels `behind_px` to the left of its own in `row`, which begins `lead`
+/// words earlier; paper before it.
 fn or_behind(out: &mut [u64], row: &[u64], lead: usize, behind_px: usize) {
     let (skip, shift) = (behind_px / BITS, behind_px % BITS);
     let join = |low: u64, high: u64| high << shift | low >> 1 >> (BITS - 1 - shift);
@@ -325,11 +327,12 @@ fn next_run(words: Range<usize>, wanted: impl Fn(usize) -> bool) -> Option<(usiz
     Some((from, (from..words.end).find(|word| !wanted(*word)).unwrap_or(words.end)))
 }
 
-/// Calls `found` with each row in which a pixel has ink below it for `side` rows, itself among them, and with the
-/// words of these pixels. Three operations a word, whatever the side.
+/// Calls `found` with each row in which a pixel has ink below it for `side` rows, itself among them, and with
+/// the words of these pixels. Three operations a word, whatever the side.
 ///
 /// Source: M. van Herk, "A fast algorithm for local minimum and maximum filters on rectangular and octagonal
-/// kernels" (1992): a run of `side` rows is the end of one block of `side` rows and the beginning of the next.
+/// kernels" (1992): a run of `side` rows is the end of one block of `side` rows and the beginning of the
+/// next.
 fn vertical_runs(ink: &Bitmap, side: usize, mut found: impl FnMut(usize, &[u64])) {
     let height = ink.height() as usize;
     let words = ink.row(0).len();

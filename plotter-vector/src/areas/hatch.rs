@@ -8,20 +8,20 @@
 
 use crate::stroke::PxPoint;
 
-/// How an area is hatched. The lines' distance from the picture's corner is the same in all areas, so that bands and
-/// neighbours fit together.
+/// How an area is hatched. The lines' distance from the picture's corner is the same in all areas, so that
+/// bands and neighbours fit together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Hatch {
-    /// From line to line, px; at least [`MIN_PITCH_PX`]. Up to the pen's width the ink closes, and the whole area
-    /// is covered.
+    /// From line to line, px; at least [`MIN_PITCH_PX`]. Up to the pen's width the ink closes, and the whole
+    /// area is covered.
     pub pitch_px: f64,
     /// Direction of the lines: 0 is along x, and positive angles turn counter-clockwise as seen on the sheet.
     pub angle_rad: f64,
     /// Whether a second set of lines crosses the first at a right angle.
     pub cross: bool,
-    /// Longest way along the area's border from one line to the next with the pen down, px; 0 lifts it after every
-    /// line.
+    /// Longest way along the area's border from one line to the next with the pen down, px; 0 lifts it after
+    /// every line.
     pub max_join_px: f64,
 }
 
@@ -29,8 +29,8 @@ pub struct Hatch {
 pub const MIN_PITCH_PX: f64 = 0.5;
 
 impl Default for Hatch {
-    /// Lines 8 px apart at 45°, 0.34 mm at 600 dots per inch: the width of a fine pen, so that areas are covered.
-    /// Joins of up to 100 px, which are drawn sooner than a pen goes up and down.
+    /// Lines 8 px apart at 45°, 0.34 mm at 600 dots per inch: the width of a fine pen, so that areas are
+    /// covered. Joins of up to 100 px, which are drawn sooner than a pen goes up and down.
     fn default() -> Self {
         Self { pitch_px: 8.0, angle_rad: core::f64::consts::FRAC_PI_4, cross: false, max_join_px: 100.0 }
     }
@@ -53,7 +53,8 @@ struct Crossing {
     line: i64,
     /// Place along the line, px.
     along: f64,
-    /// Neighbours along the border's path: crossings, and this one's own piece of border, which leads to the next.
+    /// Neighbours along the border's path: crossings, and this one's own piece of border, which leads to the
+    /// next.
     previous: usize,
     next: usize,
     /// Sites of the border up to the next crossing.
@@ -62,7 +63,8 @@ struct Crossing {
 }
 
 impl Hatch {
-    /// Strokes that fill the space inside the borders, closed paths of the pen's centre, by the even-odd rule.
+    /// Strokes that fill the space inside the borders, closed paths of the pen's centre, by the even-odd
+    /// rule.
     ///
     /// With a pitch up to the pen's width the pieces of border that no line comes near to are drawn as well.
     pub(super) fn strokes(&self, borders: &[Vec<PxPoint>], pen_px: f64) -> Vec<HatchStroke> {
@@ -76,7 +78,8 @@ impl Hatch {
     }
 }
 
-/// The picture turned so that the lines run along the first axis: line k lies at (k + ½) · pitch on the second.
+/// The picture turned so that the lines run along the first axis: line k lies at (k + ½) · pitch on the
+/// second.
 #[derive(Clone, Copy, Debug)]
 struct Axes {
     sin: f64,
@@ -98,8 +101,9 @@ impl Axes {
         (line as f64 + 0.5) * self.pitch_px
     }
 
-    /// The first line at or beyond this place. A segment crosses the lines from its lower end's to before its upper
-    /// end's: every vertex is on one side of every line, so closed paths cross each line an even number of times.
+    /// The first line at or beyond this place. A segment crosses the lines from its lower end's to before its
+    /// upper end's: every vertex is on one side of every line, so closed paths cross each line an even number
+    /// of times.
     #[expect(clippy::cast_possible_truncation, reason = "places on a picture, a few 10^4 px; `as` saturates")]
     fn line_from(self, across: f64) -> i64 {
         libm::ceil(across / self.pitch_px - 0.5) as i64
@@ -216,7 +220,8 @@ impl<'a> HatchLines<'a> {
         core::iter::once(self.place(index)).chain(between).chain(next)
     }
 
-    /// Whether the piece of border after a crossing leads to a neighbouring line, and is no longer than allowed.
+    /// Whether the piece of border after a crossing leads to a neighbouring line, and is no longer than
+    /// allowed.
     fn joins(&self, index: usize, max_join_px: f64) -> bool {
         let lines = self.crossing(index).and_then(|from| Some((from.line, self.crossing(from.next)?.line)));
         if lines.is_none_or(|(from, to)| from.abs_diff(to) != 1) {
@@ -229,7 +234,8 @@ impl<'a> HatchLines<'a> {
         })
     }
 
-    /// All strokes: first the joined lines in the order of their first ones, then what they leave open of the border.
+    /// All strokes: first the joined lines in the order of their first ones, then what they leave open of the
+    /// border.
     fn strokes(&self, hatch: &Hatch, pen_px: f64) -> Vec<HatchStroke> {
         let mut drawing = Zigzag {
             lines: self,
@@ -326,8 +332,8 @@ impl Zigzag<'_> {
         }
     }
 
-    /// The piece of border to take, whether along its own direction, and where it leads: to a line not yet drawn,
-    /// rather to a later than to an earlier one.
+    /// The piece of border to take, whether along its own direction, and where it leads: to a line not yet
+    /// drawn, rather to a later than to an earlier one.
     fn join(&self, at: usize) -> Option<(usize, bool, usize)> {
         let crossing = self.lines.crossing(at)?;
         let ways = [(at, true, crossing.next), (crossing.previous, false, crossing.previous)];

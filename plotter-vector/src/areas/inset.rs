@@ -1,4 +1,5 @@
-//! [`inset_outlines`]: borders moved inwards by half a pen's width, so that the pen's ink ends at the area's edge.
+//! [`inset_outlines`]: borders moved inwards by half a pen's width, so that the pen's ink ends at the area's
+//! edge.
 
 use super::disc::Disc;
 use super::outline::Outlines;
@@ -11,8 +12,8 @@ use std::borrow::Cow;
 /// From the centre of a paper pixel to its edge, px.
 const TO_EDGE_PX: f64 = 0.5;
 
-/// The outlines of all ink moved inwards by `inset_px`: dense sites about a pixel apart, closed (the first is not
-/// repeated), outer borders clockwise as seen and holes the other way round.
+/// The outlines of all ink moved inwards by `inset_px`: dense sites about a pixel apart, closed (the first is
+/// not repeated), outer borders clockwise as seen and holes the other way round.
 ///
 /// A pen of width 2 · `inset_px` whose centre follows them inks the rim of the area and no centre of a paper
 /// pixel: every site is `inset_px` + ½ px away from the nearest one (to within ¼ px, by linear interpolation
@@ -21,8 +22,8 @@ const TO_EDGE_PX: f64 = 0.5;
 /// them apart, and a [`Vectorizer`](crate::trace::Vectorizer) draws them along their middle. With 0 (or less,
 /// or NaN) the sites are the middles of the pixels' edges, and nothing is left out.
 ///
-/// Sources: erosion by a disc for the shape, then the distance to the nearest paper (P.-E. Danielsson, "Euclidean
-/// distance mapping", 1980) at the pixels along its border only.
+/// Sources: erosion by a disc for the shape, then the distance to the nearest paper (P.-E. Danielsson,
+/// "Euclidean distance mapping", 1980) at the pixels along its border only.
 ///
 /// ```
 /// # use plotter_vector::{Bitmap, areas::inset_outlines};
@@ -55,7 +56,8 @@ pub fn inset_outlines(ink: &Bitmap, inset_px: f64) -> impl Iterator<Item = Vec<P
     })
 }
 
-/// Distance of a path inset by `inset_px` from the nearest centre of a paper pixel, px; `None` without an inset.
+/// Distance of a path inset by `inset_px` from the nearest centre of a paper pixel, px; `None` without an
+/// inset.
 pub(super) fn pen_radius_px(inset_px: f64) -> Option<f64> {
     (inset_px > 0.0).then_some(inset_px.min(MAX_INSET_PX) + TO_EDGE_PX)
 }
@@ -63,8 +65,8 @@ pub(super) fn pen_radius_px(inset_px: f64) -> Option<f64> {
 /// Greatest inset, px.
 pub(super) const MAX_INSET_PX: f64 = 512.0;
 
-/// Distance from a pixel's centre to that of the nearest paper pixel, px, outside the picture counting as paper; a
-/// little more than `reach_px` + 1 where none is nearer.
+/// Distance from a pixel's centre to that of the nearest paper pixel, px, outside the picture counting as
+/// paper; a little more than `reach_px` + 1 where none is nearer.
 fn paper_distance(ink: &Bitmap, at: Pixel, reach_px: f64) -> f64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to MAX_INSET_PX + 3")]
     let limit = reach_px as u32 + 2;

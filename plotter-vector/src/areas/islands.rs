@@ -4,7 +4,8 @@ use crate::picture::{Bitmap, MAX_PIXELS};
 
 /// Cuts a picture at its empty rows: what lies in between is drawn by itself, as soon as it is complete.
 ///
-/// A stretch of more than [`MAX_PIXELS`] is cut where it reaches them, which no picture that is held whole does.
+/// A stretch of more than [`MAX_PIXELS`] is cut where it reaches them, which no picture that is held whole
+/// does.
 #[derive(Clone, Debug)]
 pub(crate) struct Islands {
     width: u32,

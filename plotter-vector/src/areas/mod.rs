@@ -46,8 +46,9 @@ pub enum AreaStyle {
 pub struct Areas {
     /// What is drawn.
     pub style: AreaStyle,
-    /// Width of the pen, px: borders are drawn half of it inside the area, so that its ink ends at the edge. 0 draws the
-    /// edge itself. Of parts narrower than the pen nothing is drawn: split lines off at the pen's width at least.
+    /// Width of the pen, px: borders are drawn half of it inside the area, so that its ink ends at the edge.
+    /// 0 draws the edge itself. Of parts narrower than the pen nothing is drawn: split lines off at the pen's
+    /// width at least.
     pub pen_px: f64,
 }
 
@@ -126,10 +127,11 @@ impl Areas {
 
     /// The paths for all ink of a picture: its areas, as [`split_by_width`] finds them, or all of it.
     ///
-    /// Outlines come first, one at a time as they are asked for; the hatching of all areas follows, in the order of its
-    /// lines. With [`AreaStyle::Hatch`] and a pitch up to the pen's width, the pen's ink covers every place where its
-    /// centre may be, to within a pixel; with [`AreaStyle::OutlineAndHatch`] also the rim. Memory: for outlines 1 byte per
-    /// pixel of the longest, for hatching 16 bytes per pixel of all of them.
+    /// Outlines come first, one at a time as they are asked for; the hatching of all areas follows, in the
+    /// order of its lines. With [`AreaStyle::Hatch`] and a pitch up to the pen's width, the pen's ink covers
+    /// every place where its centre may be, to within a pixel; with [`AreaStyle::OutlineAndHatch`] also the
+    /// rim. Memory: for outlines 1 byte per pixel of the longest, for hatching 16 bytes per pixel of all of
+    /// them.
     ///
     /// # Errors
     /// [`AreaError`], before anything is drawn.

@@ -8,7 +8,8 @@
 //!   └◄────────┘
 //! ```
 //!
-//! Ink is 8-connected and paper 4-connected: where two ink pixels meet at a corner only, one path goes through both.
+//! Ink is 8-connected and paper 4-connected: where two ink pixels meet at a corner only, one path goes
+//! through both.
 
 use crate::{
     picture::{Bitmap, Gray, Pixel},
@@ -107,14 +108,14 @@ impl Outline {
         self.enclosed_px() < 0
     }
 
-    /// The pixels' corners along the path, one after each crack's start; the first is not repeated. Filling these
-    /// polygons by the even-odd rule gives back exactly the ink.
+    /// The pixels' corners along the path, one after each crack's start; the first is not repeated. Filling
+    /// these polygons by the even-odd rule gives back exactly the ink.
     pub fn corners(&self) -> impl Iterator<Item = PxPoint> + '_ {
         self.walk().map(|(_, from)| PxPoint::new(f64::from(from.x), f64::from(from.y)))
     }
 
-    /// The middles of the cracks: half way between the centres of an ink and a paper pixel, so never more than half a
-    /// pixel from the true edge that the raster stands for.
+    /// The middles of the cracks: half way between the centres of an ink and a paper pixel, so never more
+    /// than half a pixel from the true edge that the raster stands for.
     pub fn midpoints(&self) -> impl Iterator<Item = PxPoint> + '_ {
         self.walk().map(|(heading, from)| {
             let to = heading.step(from);
@@ -136,8 +137,9 @@ impl Outline {
         })
     }
 
-    /// Where the grey level passes `level` between the ink and the paper pixel of each crack, by linear interpolation of
-    /// their centres; the crack's middle where the two do not lie on either side of it, and at the picture's border.
+    /// Where the grey level passes `level` between the ink and the paper pixel of each crack, by linear
+    /// interpolation of their centres; the crack's middle where the two do not lie on either side of it, and
+    /// at the picture's border.
     pub fn sub_pixel<'a>(&'a self, gray: &'a Gray, level: f64) -> impl Iterator<Item = PxPoint> + 'a {
         let at = |pixel: Pixel| {
             let inside = pixel.x < gray.width() && pixel.y < gray.height();
@@ -174,12 +176,12 @@ impl Outline {
 
 /// The borders of all ink, one at a time, ordered by their first crack with ink below it in reading order.
 ///
-/// Works on every picture: single pixels, holes in holes, all black, noise. Time is linear in the number of pixels (64
-/// at a time) and cracks. Memory: one bit a pixel, and the path that is being followed.
+/// Works on every picture: single pixels, holes in holes, all black, noise. Time is linear in the number of
+/// pixels (64 at a time) and cracks. Memory: one bit a pixel, and the path that is being followed.
 ///
-/// Sources: A. Rosenfeld, "Connectivity in digital pictures" (1970), for borders of 8-connected ink and 4-connected
-/// paper; S. Suzuki, K. Abe, "Topological structural analysis of digitized binary images by border following" (1985),
-/// for starting every border once in a single scan.
+/// Sources: A. Rosenfeld, "Connectivity in digital pictures" (1970), for borders of 8-connected ink and
+/// 4-connected paper; S. Suzuki, K. Abe, "Topological structural analysis of digitized binary images by
+/// border following" (1985), for starting every border once in a single scan.
 ///
 /// ```
 /// # use plotter_vector::{Bitmap, areas::Outlines};
@@ -209,7 +211,8 @@ impl<'a> Outlines<'a> {
         Self { ink, done, row: 0, word: 0 }
     }
 
-    /// The next pixel, in reading order, with paper above it and no path there yet. Every path has such cracks.
+    /// The next pixel, in reading order, with paper above it and no path there yet. Every path has such
+    /// cracks.
     fn next_start(&mut self) -> Option<Pixel> {
         while self.row < self.ink.height() {
             let row = self.ink.row(self.row);

@@ -25,21 +25,24 @@ const fn absorbed_px(line_px: u32) -> u32 {
 ///
 /// An area is what a disc of `max_line_px` + 1 px covers that is moved about inside the ink (a morphological
 /// *opening*), and what is left around it: corners, slivers and hairs whose farthest pixel is at most half
-/// the disc's side away from it. Leftovers that go on farther are lines, from the very edge of the disc's area. So:
+/// the disc's side away from it. Leftovers that go on farther are lines, from the very edge of the disc's
+/// area. So:
 ///
 /// * `thick | thin` is the ink and `thick & thin` is empty;
 /// * a straight line of up to `max_line_px` px, in any direction, is thin all along, unless an area is near;
-/// * a disc 3 px wider than `max_line_px` is thick (most are that are 1 px wider: it depends on where the centre lies),
-///   but for the outermost 2 px where a line runs into it.
+/// * a disc 3 px wider than `max_line_px` is thick (most are that are 1 px wider: it depends on where the
+///   centre lies), but for the outermost 2 px where a line runs into it.
 ///
-/// Where lines cross, the ink is wider than each of them (1.41 times at a right angle): to keep crossings out of the
-/// areas, ask for 1.5 times the widest line. With 0, all ink is thick.
+/// Where lines cross, the ink is wider than each of them (1.41 times at a right angle): to keep crossings out
+/// of the areas, ask for 1.5 times the widest line. With 0, all ink is thick.
 ///
 /// Each row depends on a few rows above and below it only, so bands can be split one by one.
-/// About 20 operations per word of 64 px where nothing is thick, and a few hundred per word along the edge of areas.
+/// About 20 operations per word of 64 px where nothing is thick, and a few hundred per word along the edge of
+/// areas.
 ///
-/// Sources: opening, J. Serra, *Image Analysis and Mathematical Morphology* (1982), ch. II; keeping the shape by growing
-/// back inside the ink, L. Vincent, "Morphological grayscale reconstruction in image analysis" (1993).
+/// Sources: opening, J. Serra, *Image Analysis and Mathematical Morphology* (1982), ch. II; keeping the shape
+/// by growing back inside the ink, L. Vincent, "Morphological grayscale reconstruction in image analysis"
+/// (1993).
 ///
 /// ```
 /// # use plotter_vector::{Bitmap, areas::split_by_width};
@@ -120,8 +123,8 @@ impl Opening {
         WidthSplit { thick: thick.unwrap_or_else(|| empty_like(ink)), thin }
     }
 
-    /// Ink without the insides of its areas, which are the pixels of areas with ink all around them: what strokes have to come
-    /// near.
+    /// Ink without the insides of its areas, which are the pixels of areas with ink all around them: what
+    /// strokes have to come near.
     pub(crate) fn without_insides(&self, ink: Bitmap) -> Bitmap {
         let WidthSplit { thick, .. } = self.split_of(&ink);
         let mut kept = ink.clone();
@@ -168,14 +171,16 @@ impl WidthSplit {
             layers.push(layer);
         }
         for (below, layer) in layers.iter().enumerate().rev() {
-            // Down from the layer above, and a step sideways for what lies in a line's lee; not along the area's rim.
+            // Down from the layer above, and a step sideways for what lies in a line's lee; not along the
+            // area's rim.
             for _ in 0..=usize::from(below > 0) {
                 let lines: Vec<_> =
                     layer.iter().filter_map(|part| Spread::touching(*part, &self.thin)).collect();
                 self.give_back(&lines);
             }
         }
-        // A pixel at a line's side may have none behind it; with only line before it, it is no part of the area.
+        // A pixel at a line's side may have none behind it; with only line before it, it is no part of the
+        // area.
         let stayed = |layer: &Vec<(WordIndex, u64)>| -> Vec<_> {
             layer.iter().map(|(place, bits)| (*place, bits & place.of(&self.thick))).collect()
         };
@@ -420,7 +425,8 @@ mod tests {
             count in 1_u32..60,
         ) {
             let whole = split_by_width(&ink, max_line_px);
-            prop_assert_eq!(Opening::of_lines(24).rows_of_context(), 76); // 24 for the disc of 25 px, 4 x 13 for what is left beside it
+            // 24 for the disc of 25 px, 4 x 13 for what is left beside it.
+            prop_assert_eq!(Opening::of_lines(24).rows_of_context(), 76);
             let context = Opening::of_lines(max_line_px).rows_of_context();
             let end = (start + count).min(ink.height());
             let (from, to) = (start.saturating_sub(context), (end + context).min(ink.height()));

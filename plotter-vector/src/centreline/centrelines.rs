@@ -1,8 +1,8 @@
 //! Ink to strokes along the middle of its lines, band after band.
 //!
-//! A band is thinned and taken apart with as many rows above and below as decide about its own; what it cuts at its
-//! border fits what the next one cuts. So the strokes are the same whatever the height of the bands, and however many
-//! threads work on them.
+//! A band is thinned and taken apart with as many rows above and below as decide about its own; what it cuts
+//! at its border fits what the next one cuts. So the strokes are the same whatever the height of the bands,
+//! and however many threads work on them.
 
 pub(crate) use crate::centreline::graph::CONTEXT_ROWS;
 use crate::centreline::graph::{Cuts, Fragment, Joiner, Rims, Scan, Stretch, Stroke, fragments};
@@ -65,8 +65,8 @@ impl Centring {
         (self.redraw && self.segment_kinds == SegmentKinds::Lines).then_some(self.bounded)
     }
 
-    /// The strokes of a picture in memory, in reading order of where they begin; `grey`, with whether dark is ink, makes
-    /// them more exact.
+    /// The strokes of a picture in memory, in reading order of where they begin; `grey`, with whether dark is
+    /// ink, makes them more exact.
     pub(crate) fn strokes(&self, ink: &Bitmap, grey: Option<(&Gray, bool)>) -> Vec<Curve> {
         let mut joiner = Joiner::default();
         let mut strokes = Vec::new();
@@ -121,7 +121,8 @@ impl Centring {
     }
 }
 
-/// Brings strokes into an order that depends on nothing but themselves: that of their vertices in turn, from the top.
+/// Brings strokes into an order that depends on nothing but themselves: that of their vertices in turn, from
+/// the top.
 pub(crate) fn sort(strokes: &mut [Curve]) {
     strokes.sort_unstable_by(compare);
 }

@@ -8,10 +8,11 @@
 //!   . . # # # # .      as under a pen that inks all pixels whose middle it comes over
 //! ```
 //!
-//! A pen of w px that goes in the direction θ, up to 45°, inks w / cos θ pixels in the mean of each column. A step comes once in
-//! 1 / tan θ columns, so the part (w / cos θ − 1) / tan θ of all steps is filled. That is tan(θ / 2), at most 0.414, for w = 1, and
-//! √(w² − 1) at least for a wider one: 0.458 for 1.1 px, whatever the direction. The raster of a line has none, but for the places
-//! where lines run into each other: fewer than one in eight.
+//! A pen of w px that goes in the direction θ, up to 45°, inks w / cos θ pixels in the mean of each column. A
+//! step comes once in 1 / tan θ columns, so the part (w / cos θ − 1) / tan θ of all steps is filled. That is
+//! tan(θ / 2), at most 0.414, for w = 1, and √(w² − 1) at least for a wider one: 0.458 for 1.1 px, whatever
+//! the direction. The raster of a line has none, but for the places where lines run into each other: fewer
+//! than one in eight.
 
 /// Of sixteen steps so many are filled under a pen: one of 1.09 px or more.
 const FILLED_OF_16: u64 = 7;
@@ -135,8 +136,8 @@ impl Around {
         }
     }
 
-    /// Blocks of two by two pixels in this row and the next one: where one begins a pixel to the left, here, and a pixel to the
-    /// right.
+    /// Blocks of two by two pixels in this row and the next one: where one begins a pixel to the left, here,
+    /// and a pixel to the right.
     fn blocks(self, next: Self) -> [u64; 3] {
         let both = |one: u64, other: u64| one & other;
         let [left, at] = [both(self.left[0], next.left[0]), both(self.at, next.at)];
@@ -155,9 +156,9 @@ fn bare_steps([_, _, here, below, _]: [Around; 5]) -> u64 {
     below.at & !here.at & (here.left[0] & !below.left[0] | here.right[0] & !below.right[0])
 }
 
-/// Pixels of the third of five rows in which a staircase one pixel wide turns from along the row to along a column: two of a step
-/// that a pixel fills, but one where both its neighbours lie across a corner. Beyond its neighbours it turns back; else the line has
-/// a corner of its own.
+/// Pixels of the third of five rows in which a staircase one pixel wide turns from along the row to along a
+/// column: two of a step that a pixel fills, but one where both its neighbours lie across a corner. Beyond
+/// its neighbours it turns back; else the line has a corner of its own.
 fn turns([first, above, here, below, last]: [Around; 5]) -> u64 {
     // From the left, on to the next row and the one after that.
     let to = |[back, next, far]: [Around; 3]| {
@@ -167,7 +168,8 @@ fn turns([first, above, here, below, last]: [Around; 5]) -> u64 {
     here.at & (to([above, below, last]) | to([below, above, first]))
 }
 
-/// Where a row or a column of blocks begins, between the second of four rows and the third, that is one block high or wide.
+/// Where a row or a column of blocks begins, between the second of four rows and the third, that is one block
+/// high or wide.
 fn overlaps([above, here, below, last]: [Around; 4]) -> u64 {
     let [left, at, right] = here.blocks(below);
     at & !left & !above.blocks(here)[1] & !(right & below.blocks(last)[1])

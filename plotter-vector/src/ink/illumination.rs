@@ -1,9 +1,10 @@
 //! Uneven light: the level of the paper, tile by tile, and what follows for each pixel.
 //!
-//! A photographed or badly lit sheet gets darker toward a side, and what is paper here is ink there. But light
-//! multiplies: ink reflects the same *share* of what paper reflects in the same place. So the paper's level is
-//! measured in tiles (their median, for lines are the minority), each level is divided by it (paper becomes white, ink keeps its share), Otsu's level of the
-//! whole sheet is taken there, and taken back to each place:
+//! A photographed or badly lit sheet gets darker toward a side, and what is paper here is ink there. But
+//! light multiplies: ink reflects the same *share* of what paper reflects in the same place. So the paper's
+//! level is measured in tiles (their median, for lines are the minority), each level is divided by it (paper
+//! becomes white, ink keeps its share), Otsu's level of the whole sheet is taken there, and taken back to
+//! each place:
 //!
 //! ```text
 //!  level                          share of the paper
@@ -13,9 +14,10 @@
 //!                       └─┘
 //! ```
 //!
-//! Source: the division by an estimated background is that of S. Lu, B. Su, C. L. Tan, "Document image binarization
-//! using background estimation and stroke edges" (2010), section 3.1; thresholds interpolated between tiles are
-//! C. K. Chow, T. Kaneko, "Automatic boundary detection of the left ventricle from cineangiograms" (1972).
+//! Source: the division by an estimated background is that of S. Lu, B. Su, C. L. Tan, "Document image
+//! binarization using background estimation and stroke edges" (2010), section 3.1; thresholds interpolated
+//! between tiles are C. K. Chow, T. Kaneko, "Automatic boundary detection of the left ventricle from
+//! cineangiograms" (1972).
 
 use crate::picture::histogram::count;
 use crate::picture::histogram::otsu;
@@ -51,8 +53,8 @@ pub(crate) struct Tiles {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Light {
     tiles: Tiles,
-    /// Greatest ink level in the middle of each tile, with [`FRACTION`] bits behind the point; of the inverted
-    /// picture for light ink.
+    /// Greatest ink level in the middle of each tile, with [`FRACTION`] bits behind the point; of the
+    /// inverted picture for light ink.
     greatest: Vec<i32>,
     pub(crate) ink_is_dark: bool,
     /// Otsu's level where the paper is white.
@@ -66,8 +68,8 @@ impl Tiles {
         Self { width: width as usize, height: height as usize, side, polarity, min_contrast }
     }
 
-    /// Number of tiles along a side of the picture. The last takes the rest: it is half a tile to one and a half
-    /// long, for a narrow one would measure little but noise.
+    /// Number of tiles along a side of the picture. The last takes the rest: it is half a tile to one and a
+    /// half long, for a narrow one would measure little but noise.
     fn along(self, length: usize) -> usize {
         ((length + self.side / 2) / self.side).max(1)
     }
@@ -128,16 +130,17 @@ impl Tiles {
         };
         let level = ink_level(flattened.counts(), self.min_contrast)?;
         let columns = self.columns();
-        // A closing: a tile that ink fills takes its level from the paper around it. The border that is put on first
-        // keeps the tiles at the edge of the sheet as they are where the light falls toward it.
+        // A closing: a tile that ink fills takes its level from the paper around it. The border that is put
+        // on first keeps the tiles at the edge of the sheet as they are where the light falls toward it.
         let lightest = around(&padded(&paper, columns, 2), columns + 4, |a, b| a.max(b));
         let paper = around(&lightest, columns + 2, |a, b| a.min(b));
         let greatest = paper
             .iter()
             .map(|paper| {
                 let paper = i32::from(*paper) << FRACTION;
-                // In the middle between the greatest level of ink, L, and the least of paper, L + 1; and where the
-                // light is poor, half the least contrast below the paper, or its noise would be ink.
+                // In the middle between the greatest level of ink, L, and the least of paper, L + 1; and
+                // where the light is poor, half the least contrast below the paper, or its noise would be
+                // ink.
                 let share = paper / 510 * (2 * i32::from(level) + 1);
                 share.min(paper - (i32::from(self.min_contrast) << FRACTION) / 2)
             })
@@ -146,11 +149,11 @@ impl Tiles {
     }
 }
 
-/// Otsu's level, unless what lies below it is but the tail of the paper: noise in poor light, or light that falls off
-/// within a tile. Ink has a peak of its own at its mean or, with several pens, below, or at least (lines thinner than a
-/// pixel) as many pixels there as at the level; a tail that falls like e^(−x/λ) has its mean at λ below any level, and
-/// there and below at most 1/e of the pixels. Between them, at half, lies the border; a tail is left out and the rest
-/// split again, for few lines may lie behind it.
+/// Otsu's level, unless what lies below it is but the tail of the paper: noise in poor light, or light that
+/// falls off within a tile. Ink has a peak of its own at its mean or, with several pens, below, or at least
+/// (lines thinner than a pixel) as many pixels there as at the level; a tail that falls like e^(−x/λ) has its
+/// mean at λ below any level, and there and below at most 1/e of the pixels. Between them, at half, lies the
+/// border; a tail is left out and the rest split again, for few lines may lie behind it.
 fn ink_level(mut counts: [u64; 256], min_contrast: u8) -> Option<u8> {
     loop {
         let level = otsu(&counts, min_contrast)?;
@@ -247,7 +250,8 @@ impl Light {
         levels.resize(width.min(side / 2), first);
         for (column, pair) in line.windows(2).enumerate() {
             if let [a, b] = *pair {
-                // The first pixel right of the tile's middle, and its distance from it in half pixels: 0 or 1.
+                // The first pixel right of the tile's middle, and its distance from it in half pixels: 0
+                // or 1.
                 let from = side * (2 * column + 1) / 2;
                 let to = side * (2 * column + 3) / 2;
                 let odd = 1 - i32::from(side * (2 * column + 1) % 2 == 1);

@@ -5,19 +5,20 @@ use crate::picture::Bitmap;
 /// Widest pen that is told from a filled area, px.
 const WIDEST_PX: u32 = 64;
 
-/// Widest pen, px, where areas are most of the ink, so that six times its width, up to which ink is a line, is no wider than they
-/// are.
+/// Widest pen, px, where areas are most of the ink, so that six times its width, up to which ink is a line,
+/// is no wider than they are.
 pub(crate) const WIDEST_BESIDE_AREAS_PX: u32 = WIDEST_PX / 6;
 
 /// Finds the width of the pen from the ink of a picture, row by row from the top.
 ///
-/// A straight line of width w that makes the angle θ with the rows is crossed by its columns in runs of w / cos θ, and
-/// by its rows in runs of w / sin θ; n·cos θ columns and n·sin θ rows meet a line of n px. Short runs are thus the most,
-/// and long ones (along a line, in a filled area) few. A third of all runs, horizontal and vertical, are no longer than
-/// w for lines along the axes, 1.03 w for lines in all directions, 1.41 w at worst, when all lie at 45°; and of a
-/// sheet with several pens it is the thinner one that counts, as long as it has drawn a third of the whole. Shorter
-/// runs come from ragged edges, a tenth or less. Pixels without neighbours are left out, so that salt and pepper
-/// does not count; of a sheet of nothing but noise, 1 or 2 px come out.
+/// A straight line of width w that makes the angle θ with the rows is crossed by its columns in runs of w /
+/// cos θ, and by its rows in runs of w / sin θ; n·cos θ columns and n·sin θ rows meet a line of n px. Short
+/// runs are thus the most, and long ones (along a line, in a filled area) few. A third of all runs,
+/// horizontal and vertical, are no longer than w for lines along the axes, 1.03 w for lines in all
+/// directions, 1.41 w at worst, when all lie at 45°; and of a sheet with several pens it is the thinner one
+/// that counts, as long as it has drawn a third of the whole. Shorter runs come from ragged edges, a tenth or
+/// less. Pixels without neighbours are left out, so that salt and pepper does not count; of a sheet of
+/// nothing but noise, 1 or 2 px come out.
 #[derive(Clone, Debug)]
 pub struct LineWidth {
     /// The row above the last one without its lonely pixels.
@@ -44,7 +45,8 @@ impl Runs {
         }
     }
 
-    /// The length that a third of all runs do not exceed, px; that of a longer run than any that is told is 65.
+    /// The length that a third of all runs do not exceed, px; that of a longer run than any that is told
+    /// is 65.
     fn shortest_third(&self) -> Option<u32> {
         let total: u64 = self.0.iter().sum();
         let mut below = 0;
@@ -91,7 +93,8 @@ impl LineWidth {
         self.runs.shortest_third().filter(|width| *width <= WIDEST_PX)
     }
 
-    /// Width of the pen, px, and where most of the ink is wider than 64 px that of what is not, at most 10 px; `None` without any of that.
+    /// Width of the pen, px, and where most of the ink is wider than 64 px that of what is not, at most 10
+    /// px; `None` without any of that.
     #[must_use]
     pub fn finish_beside_areas(mut self) -> Option<u32> {
         self.end();
@@ -109,7 +112,8 @@ impl LineWidth {
         self.push(&[]);
     }
 
-    /// Takes the lonely pixels out of the last row; counts its runs, and those of columns that ended above it.
+    /// Takes the lonely pixels out of the last row; counts its runs, and those of columns that ended above
+    /// it.
     fn settle(&mut self) {
         let Self { settled, above, last, next, since, y, runs } = self;
         let at = |row: &[u64], index: usize| row.get(index).copied().unwrap_or(0);

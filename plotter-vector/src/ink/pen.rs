@@ -62,8 +62,8 @@ impl PenSurvey {
     }
 }
 
-/// Whether ink with so many blocks of two by two pixels is lines one pixel wide: a few places where lines touch make no
-/// wide line.
+/// Whether ink with so many blocks of two by two pixels is lines one pixel wide: a few places where lines
+/// touch make no wide line.
 fn is_raster_lines(blocks: u64, ink_pixels: u64) -> bool {
     blocks * 20 <= ink_pixels
 }

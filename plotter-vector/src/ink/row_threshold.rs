@@ -8,8 +8,8 @@ use crate::{
     picture::{Gray, Histogram, Row},
 };
 
-/// The first pass over a picture, row by row from the top: what must be known of all of it before the first pixel
-/// can be told.
+/// The first pass over a picture, row by row from the top: what must be known of all of it before the first
+/// pixel can be told.
 ///
 /// It holds one row of tiles at most, [`Threshold::window_px`] × 3 / 2 rows of the picture, and for
 /// [`ThresholdMethod::Otsu`] and a fixed level no row at all.
@@ -38,8 +38,8 @@ pub(crate) struct RowThreshold {
     half_covered: u64,
 }
 
-/// Half covered pixels are rims where they are more than one in so many of the ink: not where noise, or a stain, is all
-/// that a drawing of black and white has of grey.
+/// Half covered pixels are rims where they are more than one in so many of the ink: not where noise, or a
+/// stain, is all that a drawing of black and white has of grey.
 const RIM_OF_INK: u64 = 20;
 
 impl Survey {
@@ -58,8 +58,8 @@ impl Survey {
         }
     }
 
-    /// The levels of the next row. A longer row is cut, a shorter one filled with its last level (an empty one with
-    /// white); rows below the picture are ignored.
+    /// The levels of the next row. A longer row is cut, a shorter one filled with its last level (an empty
+    /// one with white); rows below the picture are ignored.
     pub(crate) fn push(&mut self, levels: &[u8]) {
         let Some(rows_left) = self.rows_left.checked_sub(1) else {
             return;
@@ -168,7 +168,8 @@ impl RowThreshold {
         self.has_greys
     }
 
-    /// Whether many a pixel of the ink's rims is about half covered: the lines are drawn with grey levels, or scanned.
+    /// Whether many a pixel of the ink's rims is about half covered: the lines are drawn with grey levels, or
+    /// scanned.
     pub(crate) const fn has_rims(&self, ink_pixels: u64) -> bool {
         self.half_covered * RIM_OF_INK > ink_pixels
     }
@@ -264,8 +265,8 @@ fn measure_all(tiles: Tiles, rows: Vec<&[u8]>) -> Vec<TileRow> {
     each(rows, |levels| tiles.measure(levels))
 }
 
-/// Eight bytes of 0 or 1 gathered into the eight lowest bits, the first in the lowest: bit 8·k is moved to bit
-/// 56 + k by the factor's bit 56 − 7·k, and no two products meet there.
+/// Eight bytes of 0 or 1 gathered into the eight lowest bits, the first in the lowest: bit 8·k is moved to
+/// bit 56 + k by the factor's bit 56 − 7·k, and no two products meet there.
 fn gather(marks: [u8; 8]) -> u64 {
     u64::from_le_bytes(marks).wrapping_mul(0x0102_0408_1020_4080) >> 56
 }

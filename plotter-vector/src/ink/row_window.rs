@@ -55,7 +55,8 @@ impl<T: Copy + Default> RowWindow<T> {
         self.next_row().iter_mut().zip(row).for_each(|(to, from)| *to = *from);
     }
 
-    /// Forgets all rows above this one, and gives back their memory: other steps work before as many rows are here again.
+    /// Forgets all rows above this one, and gives back their memory: other steps work before as many rows are
+    /// here again.
     pub(crate) fn forget_before(&mut self, row: u32) {
         let row = row.clamp(self.first, self.end);
         if row > self.first {

@@ -1,11 +1,12 @@
 //! [`despeckle`]: no marks and no holes that a pen cannot have made.
 //!
-//! Dust, salt and pepper leave marks smaller than the pen's smallest, which is a dot; and holes as small in its
-//! lines. Marks hang together over eight neighbours, holes over four, so that a line one pixel wide closes a hole.
+//! Dust, salt and pepper leave marks smaller than the pen's smallest, which is a dot; and holes as small in
+//! its lines. Marks hang together over eight neighbours, holes over four, so that a line one pixel wide
+//! closes a hole.
 //!
-//! The runs of a row are joined to those of the row above as long as the mark is small; once it has enough pixels it
-//! is only known to be large. A mark of fewer than A pixels spans fewer than A rows, so what becomes of a pixel depends
-//! on no row farther than [`context_rows`].
+//! The runs of a row are joined to those of the row above as long as the mark is small; once it has enough
+//! pixels it is only known to be large. A mark of fewer than A pixels spans fewer than A rows, so what
+//! becomes of a pixel depends on no row farther than [`context_rows`].
 
 use crate::disjoint_sets::DisjointSets;
 use crate::parallel::{each, threads};
@@ -27,8 +28,8 @@ pub struct Despeckled {
     pub filled_px: u64,
 }
 
-/// Number of pixels that a mark needs to be one of a pen of this width: half of its dot, π/8·w² rounded up; 0 (all
-/// marks are the pen's) for a pen of 1 px.
+/// Number of pixels that a mark needs to be one of a pen of this width: half of its dot, π/8·w² rounded up; 0
+/// (all marks are the pen's) for a pen of 1 px.
 ///
 /// ```
 /// # use plotter_vector::ink::smallest_mark_px;
@@ -43,16 +44,16 @@ pub fn smallest_mark_px(pen_width_px: u32) -> u32 {
     if marks > 1 { marks } else { 0 }
 }
 
-/// How many rows above and below a row decide what [`despeckle`] does in it: a band of a picture with so many rows more
-/// on each side comes out the same as in the whole picture.
+/// How many rows above and below a row decide what [`despeckle`] does in it: a band of a picture with so many
+/// rows more on each side comes out the same as in the whole picture.
 #[must_use]
 pub(crate) const fn context_rows(smallest_px: u32) -> u32 {
     // Once for marks, and once for the holes between those that stay.
     smallest_px.saturating_sub(1).saturating_mul(2)
 }
 
-/// Removes marks of fewer than `smallest_px` pixels, then fills holes of fewer; 0 and 1 change nothing. Paper that
-/// reaches the border of the picture is no hole.
+/// Removes marks of fewer than `smallest_px` pixels, then fills holes of fewer; 0 and 1 change nothing. Paper
+/// that reaches the border of the picture is no hole.
 ///
 /// ```
 /// # use plotter_vector::{Bitmap, ink::despeckle};
@@ -245,7 +246,8 @@ impl Sweep {
         let above = core::mem::take(&mut self.above);
         let mut touching = above.as_slice();
         for (run, component) in row {
-            // Runs that end left of this one touch no later one either; the last that touches may touch the next.
+            // Runs that end left of this one touch no later one either; the last that touches may touch the
+            // next.
             while let [(first, _), rest @ ..] = touching {
                 if first.end + reach > run.start {
                     break;

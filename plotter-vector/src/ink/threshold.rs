@@ -1,8 +1,8 @@
 //! [`Threshold`]: which pixels are ink.
 //!
-//! A scan is dark lines on light paper, or light lines on a dark ground (a blueprint, a photograph's negative).
-//! A level splits the 256 grey levels in two, one for the whole sheet or, in uneven light, another in each place;
-//! the *searched colour* is the one that covers less, for lines are always the minority.
+//! A scan is dark lines on light paper, or light lines on a dark ground (a blueprint, a photograph's
+//! negative). A level splits the 256 grey levels in two, one for the whole sheet or, in uneven light, another
+//! in each place; the *searched colour* is the one that covers less, for lines are always the minority.
 
 use crate::parallel::each;
 use crate::{
@@ -15,8 +15,8 @@ use core::{fmt, str};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Polarity {
-    /// The side that covers fewer pixels; dark when both cover the same. In uneven light the side of the local
-    /// median on which more pixels lie.
+    /// The side that covers fewer pixels; dark when both cover the same. In uneven light the side of the
+    /// local median on which more pixels lie.
     #[default]
     Minority,
     /// Dark lines on light paper.
@@ -25,7 +25,8 @@ pub enum Polarity {
     LightInk,
 }
 
-/// Where the level comes from. In text, and with the feature `serde`, `otsu`, `adaptive`, or the number of a level.
+/// Where the level comes from. In text, and with the feature `serde`, `otsu`, `adaptive`, or the number of a
+/// level.
 ///
 /// ```
 /// # use plotter_vector::ThresholdMethod;
@@ -41,15 +42,15 @@ pub enum ThresholdMethod {
     /// One level for the whole sheet, [`Histogram::otsu`](crate::picture::Histogram::otsu).
     #[default]
     Otsu,
-    /// For uneven light, such as a photographed sheet: each level is divided by that of the paper in the same place,
-    /// and Otsu's level taken there. Where the paper's level comes from is measured in tiles of
+    /// For uneven light, such as a photographed sheet: each level is divided by that of the paper in the same
+    /// place, and Otsu's level taken there. Where the paper's level comes from is measured in tiles of
     /// [`Threshold::window_px`].
     ///
-    /// Ink may fill an area up to two tiles wide; a larger one comes out hollow, for it is taken as paper in a
-    /// shadow. A shadow narrower than two tiles is taken as ink when it is as dark.
+    /// Ink may fill an area up to two tiles wide; a larger one comes out hollow, for it is taken as paper in
+    /// a shadow. A shadow narrower than two tiles is taken as ink when it is as dark.
     ///
-    /// Source: S. Lu, B. Su, C. L. Tan, "Document image binarization using background estimation and stroke edges"
-    /// (2010), section 3.1.
+    /// Source: S. Lu, B. Su, C. L. Tan, "Document image binarization using background estimation and stroke
+    /// edges" (2010), section 3.1.
     Adaptive,
     /// Levels up to this one are dark.
     Level(u8),
@@ -141,19 +142,19 @@ pub struct Threshold {
     pub polarity: Polarity,
     /// Where the level comes from.
     pub method: ThresholdMethod,
-    /// Side of the tiles in which [`ThresholdMethod::Adaptive`] measures the paper, px, 8 to 1024. Larger than the
-    /// lines are wide, and smaller than the edge of a shadow is soft.
+    /// Side of the tiles in which [`ThresholdMethod::Adaptive`] measures the paper, px, 8 to 1024. Larger
+    /// than the lines are wide, and smaller than the edge of a shadow is soft.
     pub window_px: u32,
     /// Least distance between the mean dark and the mean light level, in levels: below it the picture is an
-    /// empty sheet with noise, and nothing is ink. Not asked when the level is given. In uneven light ink is at
-    /// least half as far from the paper, too.
+    /// empty sheet with noise, and nothing is ink. Not asked when the level is given. In uneven light ink is
+    /// at least half as far from the paper, too.
     pub min_contrast: u8,
 }
 
 impl Default for Threshold {
-    /// Otsu's level; 24 levels of contrast, a hard pencil's faintest line, where a scanner's noise has 2 to 8. Tiles
-    /// of 32 px: 1.4 mm at 600 dots per inch, wide enough for lines of 1 mm, for half of a tile may be ink, and
-    /// the tiles around serve where it is more.
+    /// Otsu's level; 24 levels of contrast, a hard pencil's faintest line, where a scanner's noise has 2
+    /// to 8. Tiles of 32 px: 1.4 mm at 600 dots per inch, wide enough for lines of 1 mm, for half of a tile
+    /// may be ink, and the tiles around serve where it is more.
     fn default() -> Self {
         Self { polarity: Polarity::Minority, method: ThresholdMethod::Otsu, window_px: 32, min_contrast: 24 }
     }
@@ -168,16 +169,16 @@ pub struct Split {
     pub level: u8,
     /// Whether the dark side is ink.
     pub ink_is_dark: bool,
-    /// Whether there are more than two levels: then the rims of lines tell where these lie to a fraction of a pixel.
+    /// Whether there are more than two levels: then the rims of lines tell where these lie to a fraction of a
+    /// pixel.
     pub has_greys: bool,
     /// Number of ink pixels.
     pub ink_pixels: u64,
 }
 
 impl Threshold {
-    /// The ink of a picture, and how it was told; no split, and no ink, for a picture of one level or below the
-    /// least contrast. The same comes out row by row, and with any number
-    /// of threads.
+    /// The ink of a picture, and how it was told; no split, and no ink, for a picture of one level or below
+    /// the least contrast. The same comes out row by row, and with any number of threads.
     ///
     /// ```
     /// # use plotter_vector::{Gray, Threshold};

@@ -49,13 +49,13 @@ pub enum OrderEffort {
 ///
 /// The pens come in rising order, each with all its strokes. Of what one pen draws,
 ///
-/// 1. ends that lie within `merge_gap_px` of each other are joined where the line goes on, so that a line cut at a
-///    crossing is whole again: the straightest pairs first, one partner an end;
-/// 2. with `one_stroke`, ends in exactly one place are joined whatever the angle, so that each connected part of the
-///    drawing takes the fewest strokes it can (Hierholzer 1873);
+/// 1. ends that lie within `merge_gap_px` of each other are joined where the line goes on, so that a line cut
+///    at a crossing is whole again: the straightest pairs first, one partner an end;
+/// 2. with `one_stroke`, ends in exactly one place are joined whatever the angle, so that each connected part
+///    of the drawing takes the fewest strokes it can (Hierholzer 1873);
 /// 3. the pen goes from each end to the nearest stroke, entering lines at either end and closed strokes
-///    anywhere, then changes of the order that shorten the travel are made (2-opt: Croes 1958; Or-opt: Or 1976;
-///    Johnson and McGeoch 1997).
+///    anywhere, then changes of the order that shorten the travel are made (2-opt: Croes 1958; Or-opt: Or
+///    1976; Johnson and McGeoch 1997).
 ///
 /// The travel, with `lift_px` for each stroke, is never longer than that of the given order; where there are
 /// several pens or lettering, than that of the given order with the strokes of each pen and of each block
@@ -81,14 +81,16 @@ pub enum OrderEffort {
 pub struct Order {
     /// How hard the order is searched for.
     pub effort: OrderEffort,
-    /// Most that [`OrderEffort::Best`] looks at: candidates for a change and strokes moved, of all pens together.
-    /// A count, so that a slow machine finds the same order as a fast one, later. At most 5000 for each stroke are used.
+    /// Most that [`OrderEffort::Best`] looks at: candidates for a change and strokes moved, of all pens
+    /// together. A count, so that a slow machine finds the same order as a fast one, later. At most 5000 for
+    /// each stroke are used.
     pub budget: u64,
     /// Width of the gaps over which a line goes on, px; 0 joins ends in exactly one place only.
     pub merge_gap_px: f64,
     /// Whether strokes are joined at corners too.
     pub one_stroke: bool,
-    /// Whether pens are changed wherever that shortens the way, and not only once each: for drawings of one tool.
+    /// Whether pens are changed wherever that shortens the way, and not only once each: for drawings of one
+    /// tool.
     #[cfg_attr(feature = "serde", serde(default))]
     pub across_pens: bool,
     /// Whether ends within `merge_gap_px` are joined at corners too, where `one_stroke` is set: for files
@@ -99,17 +101,18 @@ pub struct Order {
     /// the least sum of travel and lifts is taken.
     #[cfg_attr(feature = "serde", serde(default))]
     pub lift_px: f64,
-    /// How lettering is found, so that each block of it is drawn in one go, in reading order; `None` does not look.
+    /// How lettering is found, so that each block of it is drawn in one go, in reading order; `None` does not
+    /// look.
     pub lettering: Option<Lettering>,
 }
 
-/// Most that is looked at for a stroke. Fifty times as much shortened the travel by 0 to 2.7 per cent on eight drawings of
-/// 3 to 134 strokes, and took up to 70 ms.
+/// Most that is looked at for a stroke. Fifty times as much shortened the travel by 0 to 2.7 per cent on
+/// eight drawings of 3 to 134 strokes, and took up to 70 ms.
 const LOOKS_PER_STROKE: u64 = 5_000;
 
 impl Default for Order {
-    /// Best, within 100 million looks at some 10 ns each, about a second for 20 000 strokes and more. Lines go on over
-    /// half a pixel.
+    /// Best, within 100 million looks at some 10 ns each, about a second for 20 000 strokes and more. Lines
+    /// go on over half a pixel.
     fn default() -> Self {
         Self {
             effort: OrderEffort::Best,
@@ -349,8 +352,8 @@ pub fn order(drawing: &Drawing) -> Drawing {
     Order::default().apply(drawing)
 }
 
-/// Each stroke by itself, in the given order, but for the pens, and for blocks of lettering: those are drawn in reading
-/// order where their first stroke was.
+/// Each stroke by itself, in the given order, but for the pens, and for blocks of lettering: those are drawn
+/// in reading order where their first stroke was.
 fn as_given<'a>(
     strokes: &'a [Stroke<'a>],
     blocks: &[TextBlock],

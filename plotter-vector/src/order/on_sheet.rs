@@ -8,18 +8,20 @@ use core::f64::consts::TAU;
 use plotter_motion::drawing::{self, Bounds, Mark, PathSegment, Shape, Stroke};
 use std::collections::BTreeMap;
 
-/// Pixels to the millimetre: what is a pixel to the search, over which ends are compared, is the tenth of a millimetre here, about a
-/// third of a pen's line.
+/// Pixels to the millimetre: what is a pixel to the search, over which ends are compared, is the tenth of a
+/// millimetre here, about a third of a pen's line.
 const PX_PER_MM: f64 = 10.0;
 
 impl Order {
     /// What is a pixel in the settings is the tenth of a millimetre on the sheet.
     pub const PX_PER_MM: f64 = PX_PER_MM;
 
-    /// The drawing in an order with less travel. As [`Order::apply`], with `merge_gap_px` in tenths of a millimetre.
+    /// The drawing in an order with less travel. As [`Order::apply`], with `merge_gap_px` in tenths of a
+    /// millimetre.
     ///
-    /// Strokes are joined within one pen and one layer; one that is preceded by a dwell stays by itself. A new sheet, and a pen that is
-    /// put away, part what is ordered. Speeds and powers stay with their segments; a bridged gap has those of what follows it.
+    /// Strokes are joined within one pen and one layer; one that is preceded by a dwell stays by itself. A
+    /// new sheet, and a pen that is put away, part what is ordered. Speeds and powers stay with their
+    /// segments; a bridged gap has those of what follows it.
     ///
     /// ```
     /// use plotter_motion::{Point, drawing::{Drawing, Stroke}};

@@ -1,11 +1,13 @@
-//! What the search knows of a drawing ([`Stroke`]), what it answers ([`Trail`]), and [`rebuild`], the only place
-//! that makes a drawing of the answer. A drawing of a million lines has a million of each, so they are small.
+//! What the search knows of a drawing ([`Stroke`]), what it answers ([`Trail`]), and [`rebuild`], the only
+//! place that makes a drawing of the answer. A drawing of a million lines has a million of each, so they are
+//! small.
 
 use super::sites::{NONE, number};
 use crate::stroke::curve::{CHORD_ERROR_PX, Course, unit};
 use crate::stroke::{Curve, Drawing, PxPoint, PxVec};
 
-/// Way along a stroke over which the direction of its end is taken, px: enough for one stair of a gentle slope.
+/// Way along a stroke over which the direction of its end is taken, px: enough for one stair of a gentle
+/// slope.
 const END_REACH_PX: f64 = 4.0;
 
 /// Fewest vertices of a closed stroke of lines: there, back, and the first one again. A loop of one curve has

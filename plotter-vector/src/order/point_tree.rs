@@ -5,8 +5,8 @@ use crate::parallel::each;
 use crate::stroke::PxPoint;
 use core::cmp::Ordering;
 
-/// Points in a balanced k-d tree: the node of a range is its middle element, the halves are its subtrees, split by x
-/// and y in turn (J. L. Bentley, "Multidimensional binary search trees", 1975).
+/// Points in a balanced k-d tree: the node of a range is its middle element, the halves are its subtrees,
+/// split by x and y in turn (J. L. Bentley, "Multidimensional binary search trees", 1975).
 ///
 /// The tree knows the points by number only, four bytes each; where they lie is asked of `place`, which has
 /// to say the same at every call. The order of equal coordinates is that of the numbers, so the tree is the
@@ -100,8 +100,8 @@ impl PointTree {
         best
     }
 
-    /// Calls `found` with points nearer than the square root of `squared`, and with the square of their distance;
-    /// it returns the square below which it still wants points.
+    /// Calls `found` with points nearer than the square root of `squared`, and with the square of their
+    /// distance; it returns the square below which it still wants points.
     pub(crate) fn visit(
         &self,
         at: PxPoint,

@@ -3,11 +3,11 @@
 use super::sites::{Site, Sites, Visit, number};
 use crate::stroke::PxPoint;
 
-/// Things in a cycle, one more than there are: the last one is where the pen comes from and goes to. The way from its
-/// entry is free, so the way round the cycle is the way that is looked for.
+/// Things in a cycle, one more than there are: the last one is where the pen comes from and goes to. The way
+/// from its entry is free, so the way round the cycle is the way that is looked for.
 ///
-/// Turning a stretch round is the same as turning the rest round, read the other way; so the shorter one is turned.
-/// One-way things keep their direction as read from the last thing on.
+/// Turning a stretch round is the same as turning the rest round, read the other way; so the shorter one is
+/// turned. One-way things keep their direction as read from the last thing on.
 #[derive(Debug)]
 pub(crate) struct Route {
     /// Things in the order in which they stand in the cycle.
@@ -142,14 +142,15 @@ impl Route {
         if to >= from { to - from } else { to + self.order.len() - from }
     }
 
-    /// Whether a thing may be turned as if its way were the same from both ends. Turning the last thing turns all
-    /// others, so with one-way things among them it may not.
+    /// Whether a thing may be turned as if its way were the same from both ends. Turning the last thing turns
+    /// all others, so with one-way things among them it may not.
     pub(crate) fn may_turn(&self, site: u32) -> bool {
         self.one_way.is_empty() || (site as usize + 1 < self.order.len() && !self.is_one_way[site as usize])
     }
 
-    /// Turns the things from `first` to `last`, as read, round. Returns by how much the way grows because one-way
-    /// things keep their direction. The reading is changed so that it reads on as if only this stretch were turned.
+    /// Turns the things from `first` to `last`, as read, round. Returns by how much the way grows because
+    /// one-way things keep their direction. The reading is changed so that it reads on as if only this
+    /// stretch were turned.
     pub(crate) fn turn(&mut self, reading: &mut Reading, first: u32, last: u32) -> f64 {
         let count = self.steps(*reading, first, last) + 1;
         let (low, high) = if *reading == Reading::Up { (first, last) } else { (last, first) };

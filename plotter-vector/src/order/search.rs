@@ -1,5 +1,5 @@
-//! [`shorten`]: a route is changed piece by piece until no small change makes it shorter, then shaken and mended
-//! again as long as the budget lasts.
+//! [`shorten`]: a route is changed piece by piece until no small change makes it shorter, then shaken and
+//! mended again as long as the budget lasts.
 //!
 //! ```text
 //!   turn (2-opt)              move (Or-opt)                shake (double bridge)
@@ -8,13 +8,13 @@
 //!   d─c     d c
 //! ```
 //!
-//! Sources: G. A. Croes, "A method for solving traveling-salesman problems" (1958): two ways are replaced, what lies
-//! between them is turned round. I. Or, "Traveling salesman-type combinatorial problems" (1976): up to three stops are
-//! moved elsewhere. J. L. Bentley, "Fast algorithms for geometric traveling salesman problems" (1992) and
-//! D. S. Johnson and L. A. McGeoch, "The traveling salesman problem: a case study in local optimization" (1997):
-//! neighbour lists, a queue of the stops near a change, the array that turns its shorter side, and the limit of what is
-//! turned. O. Martin, S. W. Otto and E. W. Felten, "Large-step Markov chains for the traveling salesman problem" (1991):
-//! shaking with the double bridge, kept local.
+//! Sources: G. A. Croes, "A method for solving traveling-salesman problems" (1958): two ways are replaced,
+//! what lies between them is turned round. I. Or, "Traveling salesman-type combinatorial problems" (1976): up
+//! to three stops are moved elsewhere. J. L. Bentley, "Fast algorithms for geometric traveling salesman
+//! problems" (1992) and D. S. Johnson and L. A. McGeoch, "The traveling salesman problem: a case study in
+//! local optimization" (1997): neighbour lists, a queue of the stops near a change, the array that turns its
+//! shorter side, and the limit of what is turned. O. Martin, S. W. Otto and E. W. Felten, "Large-step Markov
+//! chains for the traveling salesman problem" (1991): shaking with the double bridge, kept local.
 
 use super::route::{Reading, Route};
 use super::sites::{NEIGHBOURS, Site, Sites};
@@ -35,7 +35,8 @@ const TURNED_LATER: usize = 1_000;
 /// Longest stretch that a shake moves.
 const SHAKEN: usize = 30;
 
-/// Most shakes for each thing, and at least so many; a small drawing has been through all that helps long before its budget ends.
+/// Most shakes for each thing, and at least so many; a small drawing has been through all that helps long
+/// before its budget ends.
 const SHAKES: u64 = 30;
 const FEWEST_SHAKES: u64 = 300;
 
@@ -241,7 +242,8 @@ impl<'a> Search<'a> {
         consider(best, left + put, reading, Change::Ring { site, after, place });
     }
 
-    /// Makes a change and queues what it touches; `None`, and nothing is changed, when it gains nothing after all.
+    /// Makes a change and queues what it touches; `None`, and nothing is changed, when it gains nothing after
+    /// all.
     fn make(&mut self, growth: f64, mut reading: Reading, change: Change) -> Option<f64> {
         let route = &mut self.route;
         let touched = match change {
@@ -317,8 +319,8 @@ fn consider(best: &mut Best, growth: f64, reading: Reading, change: Change) {
     }
 }
 
-/// What is the same for all stretches that go on from one thing outwards and are put after the same other thing: the sum for
-/// each is that of [`growth_of_move`].
+/// What is the same for all stretches that go on from one thing outwards and are put after the same other
+/// thing: the sum for each is that of [`growth_of_move`].
 struct Moved {
     outwards: Reading,
     /// Whether the stretch is read outwards too.
@@ -395,8 +397,8 @@ fn growth_of_move(
     left + route.distance(from, head) + route.distance(tail, to) - route.distance(from, to)
 }
 
-/// Puts a stretch after a thing, by turning it together with what lies between, and that back again. Returns the
-/// things whose ways are new.
+/// Puts a stretch after a thing, by turning it together with what lies between, and that back again. Returns
+/// the things whose ways are new.
 fn move_after(
     route: &mut Route,
     mut reading: Reading,
@@ -440,8 +442,8 @@ mod tests {
         (sites, visits)
     }
 
-    /// What is left when no small change gains any more, before anything is shaken: the things in order, negative less
-    /// one where drawn from their second place, and the way.
+    /// What is left when no small change gains any more, before anything is shaken: the things in order,
+    /// negative less one where drawn from their second place, and the way.
     fn settled((sites, visits): &(Sites<'_>, Vec<u32>)) -> (Vec<i64>, f64) {
         let mut search = Search::new(sites, visits, None, u64::MAX);
         search.settle();
@@ -454,8 +456,8 @@ mod tests {
 
     #[test]
     fn a_long_stretch_drawn_from_its_far_end_is_turned_round() {
-        // Three columns of five lines, each drawn downwards: 2 x 208 px between them where 2 x 200 do. To move three
-        // lines or fewer elsewhere makes it longer.
+        // Three columns of five lines, each drawn downwards: 2 x 208 px between them where 2 x 200 do. To
+        // move three lines or fewer elsewhere makes it longer.
         let down = |x: i32| (0..5).rev().map(move |k| ((x, 12 * k + 10), (x, 12 * k)));
         let (order, length) = settled(&lines([0, 200, 400].into_iter().flat_map(down)));
         assert_eq!(length, 2.0 * 200.0 + 3.0 * 4.0 * 2.0, "{order:?}");
@@ -463,7 +465,8 @@ mod tests {
 
     #[test]
     fn lines_left_behind_are_drawn_on_the_way() {
-        // One, two or three lines beside the way are drawn last: all of them are moved, in their order or turned.
+        // One, two or three lines beside the way are drawn last: all of them are moved, in their order or
+        // turned.
         for left in 1..=3 {
             for is_turned in [false, true] {
                 let mut beside: Vec<_> = (0..left).map(|k| ((200 + 4 * k, 6), (202 + 4 * k, 6))).collect();

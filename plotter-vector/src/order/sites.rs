@@ -1,11 +1,12 @@
-//! [`Sites`]: what the search of a short way orders, each thing with the places where the pen can enter and leave it.
+//! [`Sites`]: what the search of a short way orders, each thing with the places where the pen can enter and
+//! leave it.
 
 use super::point_tree::PointTree;
 use crate::parallel::each;
 use crate::stroke::PxPoint;
 
-/// Nearest things that each place knows: with more the search finds little more (D. S. Johnson and L. A. McGeoch,
-/// "The traveling salesman problem: a case study in local optimization", 1997, section 3.3).
+/// Nearest things that each place knows: with more the search finds little more (D. S. Johnson and L. A.
+/// McGeoch, "The traveling salesman problem: a case study in local optimization", 1997, section 3.3).
 pub(crate) const NEIGHBOURS: usize = 8;
 
 /// Most places of a ring that the search considers, and of all rings; of very many rings each has two.
@@ -29,7 +30,8 @@ pub(crate) enum Site {
     Ring,
 }
 
-/// A thing where it stands in the way: its number and the places (numbered as in [`Sites`]) of entry and exit.
+/// A thing where it stands in the way: its number and the places (numbered as in [`Sites`]) of entry and
+/// exit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Visit {
     pub(crate) site: u32,
@@ -191,8 +193,8 @@ impl<'a> Sites<'a> {
         Some(Visit { site, entry: place, exit })
     }
 
-    /// From each exit to the nearest thing not yet drawn, from a place if there is one, else with the first thing first.
-    /// Each by the place where it is entered.
+    /// From each exit to the nearest thing not yet drawn, from a place if there is one, else with the first
+    /// thing first. Each by the place where it is entered.
     pub(crate) fn nearest_first(&self, from: Option<PxPoint>) -> Vec<u32> {
         let place = |place: u32| self.place(place);
         let mut tree = PointTree::new(self.places.len(), &place);
@@ -209,8 +211,8 @@ impl<'a> Sites<'a> {
         entries
     }
 
-    /// For each place the nearest place of each of the nearest other things, nearest first; `NONE` where there are
-    /// no more.
+    /// For each place the nearest place of each of the nearest other things, nearest first; `NONE` where
+    /// there are no more.
     pub(crate) fn neighbours(&self) -> Vec<[u32; NEIGHBOURS]> {
         let place = |place: u32| self.place(place);
         let tree = PointTree::new(self.places.len(), &place);

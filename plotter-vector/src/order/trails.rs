@@ -7,12 +7,12 @@
 //!      d│                                               └──┘
 //! ```
 //!
-//! The strokes are the edges of a multigraph, the places where they end are its nodes. Each end gets at most one
-//! partner at its node; a choice of partners is a set of trails and rings. First the straightest pairs are made, then
-//! what is left of each node is paired, so that at most one end of it is free; then each ring that shares a node with
-//! another trail is spliced into it, as in Hierholzer's proof ("Ueber die Möglichkeit, einen Linienzug ohne
-//! Wiederholung und ohne Unterbrechung zu umfahren", Mathematische Annalen 6, 1873). A connected component with 2k
-//! ends in odd nodes then is max(1, k) trails, fewer is impossible.
+//! The strokes are the edges of a multigraph, the places where they end are its nodes. Each end gets at most
+//! one partner at its node; a choice of partners is a set of trails and rings. First the straightest pairs
+//! are made, then what is left of each node is paired, so that at most one end of it is free; then each ring
+//! that shares a node with another trail is spliced into it, as in Hierholzer's proof ("Ueber die
+//! Möglichkeit, einen Linienzug ohne Wiederholung und ohne Unterbrechung zu umfahren", Mathematische Annalen
+//! 6, 1873). A connected component with 2k ends in odd nodes then is max(1, k) trails, fewer is impossible.
 
 use super::chains::Chains;
 use super::plan::{Legs, Stroke, Trail, all_vertices};
@@ -24,11 +24,12 @@ use crate::stroke::curve::unit;
 use crate::stroke::{PxPoint, PxVec};
 use core::ops::Range;
 
-/// Greatest cosine between the outward directions of two ends that go on in each other: they bend by 45° at most.
+/// Greatest cosine between the outward directions of two ends that go on in each other: they bend by 45° at
+/// most.
 const STRAIGHT_COS: f64 = -core::f64::consts::FRAC_1_SQRT_2;
 
-/// Nodes within the gap that an end looks at, partners each node offers it on either side of straight on, and ends of
-/// a node of which all pairs are looked at: limits for drawings that meet in few places.
+/// Nodes within the gap that an end looks at, partners each node offers it on either side of straight on, and
+/// ends of a node of which all pairs are looked at: limits for drawings that meet in few places.
 const NEAR_NODES: usize = 16;
 const OFFERS: usize = 2;
 const OFFERED: usize = 2 * OFFERS + 2;
@@ -64,8 +65,8 @@ pub(crate) fn trails<'a>(strokes: &'a [Stroke<'a>], joining: &Joining) -> (Legs<
     meeting.into_chains().assemble()
 }
 
-/// Where the strokes' ends meet, and which goes on in which. An end is twice its stroke's number, and 1 more for the
-/// last vertex.
+/// Where the strokes' ends meet, and which goes on in which. An end is twice its stroke's number, and 1 more
+/// for the last vertex.
 struct Meeting<'a> {
     strokes: &'a [Stroke<'a>],
     /// Vertices of the whole drawing.
@@ -255,7 +256,8 @@ impl<'a> Meeting<'a> {
         libm::atan2(y, x)
     }
 
-    /// Cosine between the directions in which two ends point: −1 when the line goes straight on, 1 for a hairpin.
+    /// Cosine between the directions in which two ends point: −1 when the line goes straight on, 1 for a
+    /// hairpin.
     fn hairpin(&self, a: u32, b: u32) -> f64 {
         let (a, b) = (self.outward(a), self.outward(b));
         a.dot(b)
@@ -329,7 +331,8 @@ impl<'a> Meeting<'a> {
         (first..first + few).filter_map(move |index| ends.get(index % ends.len().max(1)).copied())
     }
 
-    /// Whether two ends are free, of the same pen and letter, and not those of one stroke too short to be closed.
+    /// Whether two ends are free, of the same pen and letter, and not those of one stroke too short to be
+    /// closed.
     fn may_join(&self, a: u32, b: u32, gap_px: f64) -> bool {
         let of = |end: u32| self.strokes.get(end as usize / 2);
         let (Some(of_a), Some(of_b)) = (of(a), of(b)) else {

@@ -110,8 +110,8 @@ struct Traversal {
     before: usize,
 }
 
-/// Turns the trails of a fixed order so that the travel between them is least: the shortest path through the ways to
-/// draw them, trail by trail (R. Bellman, "Dynamic programming", 1957).
+/// Turns the trails of a fixed order so that the travel between them is least: the shortest path through the
+/// ways to draw them, trail by trail (R. Bellman, "Dynamic programming", 1957).
 fn turn_well(legs: &Legs<'_>, trails: &mut [Trail]) {
     let mut layers: Vec<Vec<Traversal>> = Vec::with_capacity(trails.len());
     for trail in trails.iter() {

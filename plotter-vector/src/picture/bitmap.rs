@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-/// Longest side of a picture, px: 2¹⁷, or 2.7 m at 1200 dots per inch. Coordinates up to here keep every sum of the
-/// simplifiers exact in `f64`.
+/// Longest side of a picture, px: 2¹⁷, or 2.7 m at 1200 dots per inch. Coordinates up to here keep every sum
+/// of the simplifiers exact in `f64`.
 pub const MAX_SIDE_PX: u32 = 1 << 17;
 
 /// Most pixels of a picture: 2²⁸, that is 16 384 × 16 384, or 32 MiB as a [`Bitmap`].
@@ -183,8 +183,8 @@ impl Bitmap {
         })
     }
 
-    /// The words of row `y`, the leftmost pixel in the lowest bit; empty outside the picture. Bits right of the
-    /// picture are never set.
+    /// The words of row `y`, the leftmost pixel in the lowest bit; empty outside the picture. Bits right of
+    /// the picture are never set.
     #[must_use]
     pub fn row(&self, y: u32) -> &[u64] {
         let start = y as usize * self.words_per_row;
@@ -292,8 +292,8 @@ impl Bitmap {
         (up, down)
     }
 
-    /// The eight neighbours of a pixel, a bit each: right, lower right, below, lower left, left, upper left, above,
-    /// upper right, from the lowest bit on.
+    /// The eight neighbours of a pixel, a bit each: right, lower right, below, lower left, left, upper left,
+    /// above, upper right, from the lowest bit on.
     pub(crate) fn around(&self, at: Pixel) -> u8 {
         let ((word, _), bit) = (place(at.x), at.x % BITS);
         let inner = word < self.words_per_row && (1..BITS - 1).contains(&bit);

@@ -119,7 +119,8 @@ impl From<&Colour> for Gray {
     }
 }
 
-/// A colour (red, green, blue, alpha: 0 clear to 255 solid) seen on white paper: c·α + 255·(1 − α), to nearest.
+/// A colour (red, green, blue, alpha: 0 clear to 255 solid) seen on white paper: c·α + 255·(1 − α), to
+/// nearest.
 ///
 /// ```
 /// # use plotter_vector::{Rgb, picture::colour_on_white};

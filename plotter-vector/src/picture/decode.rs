@@ -7,7 +7,8 @@ use core::fmt;
 use image::{DynamicImage, GenericImageView, ImageError, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
 
-/// Most memory that decoding may take: 8 bytes (four channels of 16 bits) a pixel of the largest picture, bytes.
+/// Most memory that decoding may take: 8 bytes (four channels of 16 bits) a pixel of the largest picture,
+/// bytes.
 const MAX_ALLOC_BYTES: u64 = 8 * MAX_PIXELS;
 
 /// Decodes a PNG, JPEG, TIFF, PBM, PGM or PPM picture; the format is told from the bytes, not from a name.
@@ -17,8 +18,8 @@ const MAX_ALLOC_BYTES: u64 = 8 * MAX_PIXELS;
 /// [`FileRows`] reads larger ones by rows.
 ///
 /// # Errors
-/// [`DecodeError`]; never a panic. What is stored by rows takes a byte a pixel; JPEG and interlaced PNG never more
-/// than 9 bytes a pixel of the largest picture: 8 decoded, 1 as grey.
+/// [`DecodeError`]; never a panic. What is stored by rows takes a byte a pixel; JPEG and interlaced PNG never
+/// more than 9 bytes a pixel of the largest picture: 8 decoded, 1 as grey.
 ///
 /// ```
 /// # use plotter_vector::decode;
@@ -31,12 +32,12 @@ pub fn decode(bytes: &[u8]) -> Result<Gray, DecodeError> {
     FileRows::new(Cursor::new(bytes))?.into_gray()
 }
 
-/// As [`decode`], in colour: greys become three equal channels, palettes are looked up, 16 bits become 8, and what is
-/// transparent shows white paper ([`colour_on_white`]).
+/// As [`decode`], in colour: greys become three equal channels, palettes are looked up, 16 bits become 8, and
+/// what is transparent shows white paper ([`colour_on_white`]).
 ///
 /// # Errors
-/// [`DecodeError`]; never a panic. What is stored by rows takes 3 bytes a pixel; JPEG and interlaced PNG never more
-/// than 11 bytes a pixel of the largest picture: 8 decoded, 3 in colour.
+/// [`DecodeError`]; never a panic. What is stored by rows takes 3 bytes a pixel; JPEG and interlaced PNG
+/// never more than 11 bytes a pixel of the largest picture: 8 decoded, 3 in colour.
 ///
 /// ```
 /// # use plotter_vector::decode_colour;
@@ -87,9 +88,11 @@ fn picture(bytes: &[u8]) -> Result<DynamicImage, DecodeError> {
     decoder.decode().map_err(refused)
 }
 
-/// Whether a JPEG's last scan is followed by the end mark; the decoder itself would fill what is missing with grey.
+/// Whether a JPEG's last scan is followed by the end mark; the decoder itself would fill what is missing with
+/// grey.
 ///
-/// Within a scan the byte FF is never followed by that of a mark, so what is found is one (ITU-T T.81, B.1.1.5).
+/// Within a scan the byte FF is never followed by that of a mark, so what is found is one (ITU-T T.81,
+/// B.1.1.5).
 fn jpeg_has_its_end(bytes: &[u8]) -> bool {
     const SCAN: [u8; 2] = [0xff, 0xda];
     const END: [u8; 2] = [0xff, 0xd9];

@@ -2,8 +2,8 @@
 
 use crate::picture::Pixel;
 
-/// Chains of pixels, one after another in one piece of memory: a page of a million dots costs no more than its
-/// pixels.
+/// Chains of pixels, one after another in one piece of memory: a page of a million dots costs no more than
+/// its pixels.
 ///
 /// ```
 /// # use plotter_vector::{Pixel, picture::Figures};

@@ -24,8 +24,8 @@ impl Default for Histogram {
     }
 }
 
-/// Counts levels in four tables in turn: neighbours mostly have the same level, and an addition to the same place must
-/// wait for the one before.
+/// Counts levels in four tables in turn: neighbours mostly have the same level, and an addition to the same
+/// place must wait for the one before.
 pub(crate) fn count<T: AddAssign + From<u8>>(tables: &mut [[T; 256]; 4], levels: &[u8]) {
     let [a, b, c, d] = tables;
     let (fours, rest) = levels.as_chunks::<4>();
@@ -71,10 +71,10 @@ impl Histogram {
         counts
     }
 
-    /// The level L that splits the pixels into 0..=L and the rest with the greatest variance between the classes,
-    /// w₀·w₁·(μ₀ − μ₁)². Of a plateau of equal levels (no pixel between two peaks) the middle is taken, so that
-    /// neither class lies on the border. `None` when all pixels have one level, or |μ₀ − μ₁| is below
-    /// `min_contrast` levels. Never 255.
+    /// The level L that splits the pixels into 0..=L and the rest with the greatest variance between the
+    /// classes, w₀·w₁·(μ₀ − μ₁)². Of a plateau of equal levels (no pixel between two peaks) the middle is
+    /// taken, so that neither class lies on the border. `None` when all pixels have one level, or |μ₀ − μ₁|
+    /// is below `min_contrast` levels. Never 255.
     ///
     /// Source: N. Otsu, "A threshold selection method from gray-level histograms" (1979), eq. 18.
     #[must_use]
@@ -86,7 +86,8 @@ impl Histogram {
 /// As [`Histogram::otsu`], of bare counts.
 pub(crate) fn otsu(counts: &[u64; 256], min_contrast: u8) -> Option<u8> {
     let exact: u64 = counts.iter().sum();
-    // Of 2²⁸ px or more the squares below would not fit: a sample of each level serves, of the rarest one pixel.
+    // Of 2²⁸ px or more the squares below would not fit: a sample of each level serves, of the rarest one
+    // pixel.
     let shift = 36_u32.saturating_sub(exact.leading_zeros());
     let counts = &counts.map(|n| (n >> shift).max(n.min(1)));
     let count: u64 = counts.iter().sum();

@@ -89,12 +89,13 @@ fn linear(channel: u8) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
-/// A colour as lightness `l` (0 black, 1 white), and `a` (green to red) and `b` (blue to yellow), both 0 for greys.
+/// A colour as lightness `l` (0 black, 1 white), and `a` (green to red) and `b` (blue to yellow), both 0 for
+/// greys.
 ///
 /// Equal distances look about equally different; between two inks on paper they are 0.1 to 0.6.
 ///
-/// Source: B. Ottosson, "A perceptual color space for image processing" (2020), the matrices from linear sRGB to
-/// cone responses and from their cube roots to L, a, b.
+/// Source: B. Ottosson, "A perceptual color space for image processing" (2020), the matrices from linear sRGB
+/// to cone responses and from their cube roots to L, a, b.
 ///
 /// ```
 /// # use plotter_vector::Rgb;

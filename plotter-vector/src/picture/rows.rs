@@ -1,12 +1,12 @@
 //! [`RowSource`]: a picture that comes row by row, and can come again.
 //!
-//! A sheet of A0 at 1200 dots per inch has 39 732 x 56 173 px, 2.2 thousand million: too many to hold even at 1 bit
-//! each. What needs only a band of it at a time takes its rows from here.
+//! A sheet of A0 at 1200 dots per inch has 39 732 x 56 173 px, 2.2 thousand million: too many to hold even at
+//! 1 bit each. What needs only a band of it at a time takes its rows from here.
 
 use crate::picture::{Bitmap, DecodeError, Gray};
 
-/// Most rows of a picture that comes row by row: 2²², or 177 m at 600 dots per inch. Down there a place is still known to a
-/// thousand millionth of a pixel.
+/// Most rows of a picture that comes row by row: 2²², or 177 m at 600 dots per inch. Down there a place is
+/// still known to a thousand millionth of a pixel.
 pub const MAX_SHEET_ROWS: u32 = 1 << 22;
 
 /// What the pixels of a row are.
@@ -21,8 +21,8 @@ pub enum Depth {
 /// A row of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Row<'a> {
-    /// 64 px to a word, the leftmost in the lowest bit, a set bit is black; the bits right of the picture are clear.
-    /// So it is a row of a [`Bitmap`] whose ink is black.
+    /// 64 px to a word, the leftmost in the lowest bit, a set bit is black; the bits right of the picture are
+    /// clear. So it is a row of a [`Bitmap`] whose ink is black.
     Bits(&'a [u64]),
     /// A level a pixel, 0 black to 255 white, as in a [`Gray`].
     Grey(&'a [u8]),
@@ -30,7 +30,8 @@ pub enum Row<'a> {
 
 /// A picture that comes row by row from the top, as often as one likes.
 ///
-/// Twice is the usual: Otsu's level asks for a histogram of the whole sheet before its first row can become ink.
+/// Twice is the usual: Otsu's level asks for a histogram of the whole sheet before its first row can become
+/// ink.
 ///
 /// ```
 /// # use plotter_vector::{Bitmap, picture::{BitmapRows, Row, RowSource}};
@@ -62,8 +63,8 @@ pub trait RowSource {
     /// The next row; `None` behind the last one.
     ///
     /// # Errors
-    /// [`DecodeError::DamagedRow`] where the file is damaged or cut off. The rows before are good; every further call
-    /// gives the same error until the source is rewound.
+    /// [`DecodeError::DamagedRow`] where the file is damaged or cut off. The rows before are good; every
+    /// further call gives the same error until the source is rewound.
     fn next_row(&mut self) -> Result<Option<Row<'_>>, DecodeError>;
 
     /// Starts again at the top.

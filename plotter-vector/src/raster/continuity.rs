@@ -1,5 +1,5 @@
-//! Lines that are whole on the paper come out whole: [`link`] mends lines that the tracking met in their middle,
-//! [`join`] closes outlines and lets a branch end *on* the line it springs from.
+//! Lines that are whole on the paper come out whole: [`link`] mends lines that the tracking met in their
+//! middle, [`join`] closes outlines and lets a branch end *on* the line it springs from.
 //!
 //! ```text
 //!   tracked            linked             joined
@@ -22,8 +22,8 @@ const END_REACH_PX: usize = 6;
 /// Pixels of the same figure nearer than this along it are its own neighbours, not another line.
 const OWN_NEIGHBOURHOOD_PX: usize = 6;
 
-/// Whether a figure comes back to where it began: its last pixel touches its first one and it is long enough to
-/// go round something.
+/// Whether a figure comes back to where it began: its last pixel touches its first one and it is long enough
+/// to go round something.
 #[must_use]
 pub fn is_closed(figure: &[Pixel]) -> bool {
     let ends = figure.first().zip(figure.last());
@@ -65,7 +65,8 @@ pub(crate) fn neighbours(at: Pixel) -> impl Iterator<Item = Pixel> {
 /// Links figures whose ends touch into one, the straightest pairs first; every pixel stays, once.
 ///
 /// The tracking meets many a line in its middle and records it in two figures; linked, they are one stroke
-/// again, with one vertex less. Closed figures are left alone. Linear in the pixels, and n·log n in the figures.
+/// again, with one vertex less. Closed figures are left alone. Linear in the pixels, and n·log n in the
+/// figures.
 #[must_use]
 pub(crate) fn link(figures: &Figures) -> Figures {
     let mut ends: Vec<End> = Vec::new();
@@ -109,7 +110,8 @@ fn hairpin(figures: &Figures, a: usize, b: usize) -> f64 {
     direction(a).dot(direction(b))
 }
 
-/// Which end is linked with which; never a ring. An end is twice its figure's index, and 1 more for its last pixel.
+/// Which end is linked with which; never a ring. An end is twice its figure's index, and 1 more for its last
+/// pixel.
 pub(crate) struct Links {
     partners: Vec<Option<usize>>,
     /// The figures of one chain belong together.
@@ -139,7 +141,8 @@ impl Links {
         true
     }
 
-    /// The chains of linked figures; between two ends come the pixels of their gap, from the lesser end to the greater.
+    /// The chains of linked figures; between two ends come the pixels of their gap, from the lesser end to
+    /// the greater.
     pub(crate) fn assemble(&self, figures: &Figures, gaps: &BTreeMap<(usize, usize), Vec<Pixel>>) -> Figures {
         let mut whole = Figures::default();
         let mut done = vec![false; figures.len()];
@@ -186,9 +189,9 @@ pub(crate) struct Joined {
     pub(crate) borrowed: Vec<(bool, bool)>,
 }
 
-/// Closes closed figures with their first pixel, and lengthens every other figure's ends by the touching pixel of
-/// another line (or of a far stretch of its own) that lies straightest ahead, so that no gap of a pixel is left.
-/// Dots stay dots. Linear in the pixels, and n·log n in the figures.
+/// Closes closed figures with their first pixel, and lengthens every other figure's ends by the touching
+/// pixel of another line (or of a far stretch of its own) that lies straightest ahead, so that no gap of a
+/// pixel is left. Dots stay dots. Linear in the pixels, and n·log n in the figures.
 #[must_use]
 pub(crate) fn join(figures: &Figures, size: &Bitmap) -> Joined {
     let owners = Owners::of_touching_pixels(figures, size);

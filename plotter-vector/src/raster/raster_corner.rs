@@ -1,4 +1,5 @@
-//! [`take_out`] and [`put_back`]: pixels in the corners of a staircase belong to the line that passes beside them.
+//! [`take_out`] and [`put_back`]: pixels in the corners of a staircase belong to the line that passes beside
+//! them.
 //!
 //! ```text
 //!   # # c . .        the corners c are taken out before the lines are followed, so that each step is one across a
@@ -8,7 +9,8 @@
 
 use crate::picture::{Bitmap, Figures, Pixel};
 
-/// Takes the pixels of ink out that only fill a corner: what is left touches as it did. They are in reading order.
+/// Takes the pixels of ink out that only fill a corner: what is left touches as it did. They are in reading
+/// order.
 pub(crate) fn take_out(ink: &mut Bitmap) -> Vec<Pixel> {
     let mut corners = Vec::new();
     for y in 0..ink.height() {
@@ -28,7 +30,8 @@ pub(crate) fn take_out(ink: &mut Bitmap) -> Vec<Pixel> {
     corners
 }
 
-/// Whether a pixel has one neighbour in its row and one in its column, that touch, and all others touch these.
+/// Whether a pixel has one neighbour in its row and one in its column, that touch, and all others touch
+/// these.
 fn is_corner(ink: &Bitmap, at: Pixel) -> bool {
     let is_ink = |dx: i32, dy: i32| {
         let (x, y) = (at.x.checked_add_signed(dx), at.y.checked_add_signed(dy));
@@ -43,14 +46,15 @@ fn is_corner(ink: &Bitmap, at: Pixel) -> bool {
     if is_ink(dx, dy) || is_ink(-dx, -dy) {
         return false;
     }
-    // Beyond both neighbours a staircase goes on, beyond one of them at least across: else the line has a corner of its own here.
+    // Beyond both neighbours a staircase goes on, beyond one of them at least across: else the line has a
+    // corner of its own here.
     let across = [is_ink(2 * dx, -dy) || is_ink(dx, -dy), is_ink(-dx, 2 * dy) || is_ink(-dx, dy)];
     let goes_on = (across[0] || is_ink(2 * dx, 0)) && (across[1] || is_ink(0, 2 * dy));
     goes_on && across.contains(&true)
 }
 
-/// Puts corners back into figures, and figures of a single pixel that lie in one: each between two pixels that follow each other.
-/// What lies beside none is a figure of its own.
+/// Puts corners back into figures, and figures of a single pixel that lie in one: each between two pixels
+/// that follow each other. What lies beside none is a figure of its own.
 pub(crate) fn put_back(figures: &Figures, corners: &[Pixel], width: u32, height: u32) -> Figures {
     let Ok(mut out) = Bitmap::new(width, height) else { return figures.clone() };
     let single = figures.iter().filter(|figure| figure.len() == 1).flatten();
@@ -59,7 +63,8 @@ pub(crate) fn put_back(figures: &Figures, corners: &[Pixel], width: u32, height:
     let mut whole = Figures::default();
     for figure in figures.iter().filter(|figure| figure.len() > 1) {
         let mut pixels = Vec::with_capacity(figure.len() * 5 / 4);
-        // The end of a closed figure is followed by its start: there it may begin, as it would have with all its pixels.
+        // The end of a closed figure is followed by its start: there it may begin, as it would have with all
+        // its pixels.
         let before = figure.iter().rev().take(1).chain(figure);
         for (before, at) in before.zip(figure) {
             if let Some(corner) = corner(&out, *before, *at) {

@@ -9,8 +9,8 @@
 //!   b.....c              b.....a
 //! ```
 //!
-//! What it adds to a figure is ink, and the figure stays a chain of touching pixels: whatever is promised of figures holds
-//! of these too.
+//! What it adds to a figure is ink, and the figure stays a chain of touching pixels: whatever is promised of
+//! figures holds of these too.
 
 use crate::picture::PxVec;
 use crate::picture::{Bitmap, Figures, Pixel};
@@ -27,7 +27,8 @@ const LINE_PX: f64 = 0.75;
 /// Pixels at an end that may lie beside its line: where it comes to another one.
 const LOOSE_PX: usize = 3;
 
-/// What a pixel of the way from end to end counts: far less than a turn, but of two ends in line the nearer one is next.
+/// What a pixel of the way from end to end counts: far less than a turn, but of two ends in line the nearer
+/// one is next.
 const COST_PER_PX: f64 = 0.003;
 
 /// Longest way from end to end, px: lines that cross at some 3 degrees share as much.
@@ -40,8 +41,8 @@ pub(crate) struct GoneOn {
     pub(crate) shared: Bitmap,
 }
 
-/// Joins figures whose ends lie along one straight line with ink between them, the straightest pairs first. Linear in the
-/// pixels, and n·log n in the figures.
+/// Joins figures whose ends lie along one straight line with ink between them, the straightest pairs first.
+/// Linear in the pixels, and n·log n in the figures.
 pub(crate) fn straight_on(Cut { figures, ends: cut }: &Cut, ink: &Bitmap) -> GoneOn {
     let ends = Ends::of(figures, ink);
     let mut pairs = Vec::new();
@@ -179,7 +180,8 @@ fn moved(at: Pixel, by: PxVec) -> Option<Pixel> {
     Some(Pixel::new(at.x.checked_add_signed(whole(by.x))?, at.y.checked_add_signed(whole(by.y))?))
 }
 
-/// How far two tails lie from one line that they follow in opposite directions, px for each of the shorter one's pixels.
+/// How far two tails lie from one line that they follow in opposite directions, px for each of the shorter
+/// one's pixels.
 fn bend(a: &[Pixel], b: &[Pixel]) -> Option<f64> {
     let ahead = {
         let (here, there) = (*a.first()? - *a.last()?, *b.last()? - *b.first()?);

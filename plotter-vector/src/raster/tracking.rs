@@ -7,16 +7,17 @@
 //!                                      3 2 1
 //! ```
 //!
-//! Rows are scanned from the top, each from left to right. The first ink pixel met becomes the centre; the walk
-//! steps from centre to a neighbour, records each pixel in the order visited and erases it. A walk of fewer than
-//! `min_run` pixels is undone and left for a second scan from right to left: above, the first scan meets the
-//! line in its middle, while the second one meets it at its end. What is short again is a small figure and kept.
-//! At last the recorded walks are grouped: a jump between consecutive pixels starts a new figure.
+//! Rows are scanned from the top, each from left to right. The first ink pixel met becomes the centre; the
+//! walk steps from centre to a neighbour, records each pixel in the order visited and erases it. A walk of
+//! fewer than `min_run` pixels is undone and left for a second scan from right to left: above, the first scan
+//! meets the line in its middle, while the second one meets it at its end. What is short again is a small
+//! figure and kept. At last the recorded walks are grouped: a jump between consecutive pixels starts a new
+//! figure.
 //!
-//! Where the publication is silent this is decided: the *direction of travel* is the displacement over the last
-//! [`HISTORY`] steps; the walk takes the neighbour that turns least from it, of two equal ones the first in the
-//! order of the numbers above. The first step of a walk takes the first in that order, in the second scan
-//! mirrored (4, 3, 2, 1, 0, 7, 6, 5).
+//! Where the publication is silent this is decided: the *direction of travel* is the displacement over the
+//! last [`HISTORY`] steps; the walk takes the neighbour that turns least from it, of two equal ones the first
+//! in the order of the numbers above. The first step of a walk takes the first in that order, in the second
+//! scan mirrored (4, 3, 2, 1, 0, 7, 6, 5).
 //!
 //! Source: Öcal's thesis on a two-axis gantry, section 3.1.
 
@@ -43,7 +44,8 @@ pub struct OrderedTracking {
 }
 
 impl Default for OrderedTracking {
-    /// 10 px as published; 5 million figures, where a pen that lifts five times a second draws for twelve days.
+    /// 10 px as published; 5 million figures, where a pen that lifts five times a second draws for twelve
+    /// days.
     fn default() -> Self {
         Self { min_run: 10, max_figures: 5_000_000 }
     }
@@ -73,8 +75,8 @@ impl fmt::Display for TooManyFigures {
 impl core::error::Error for TooManyFigures {}
 
 impl OrderedTracking {
-    /// Follows all ink. Every ink pixel is in exactly one figure, once; the same picture always gives the same
-    /// figures. Each pixel is visited at most twice and asks its eight neighbours: the time is linear.
+    /// Follows all ink. Every ink pixel is in exactly one figure, once; the same picture always gives the
+    /// same figures. Each pixel is visited at most twice and asks its eight neighbours: the time is linear.
     ///
     /// # Errors
     /// [`TooManyFigures`] above `max_figures`.

@@ -26,8 +26,8 @@ pub(crate) struct Covered {
 }
 
 impl Covered {
-    /// Of figures and the indices of their pixels that are vertices: all pixels stay within the tolerance of a stroke. Linear in the length
-    /// of the figures, and n·log n in the number of the short ones.
+    /// Of figures and the indices of their pixels that are vertices: all pixels stay within the tolerance of
+    /// a stroke. Linear in the length of the figures, and n·log n in the number of the short ones.
     pub(crate) fn of(figures: &Figures, kept: &[Vec<usize>], ink: &Bitmap, tolerance_px: f64) -> Self {
         let vertices = |index: usize| -> Vec<Pixel> {
             let (figure, kept) = (figures.get(index), kept.get(index).map_or(&[][..], Vec::as_slice));

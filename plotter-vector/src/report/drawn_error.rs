@@ -64,9 +64,9 @@ impl<'a> InkDistance<'a> {
         tally.report()
     }
 
-    /// Greatest distance of what was drawn from the ink's lines, px: from those through the centres of pixels that touch, and 0
-    /// between them. Strokes are taken as their vertices joined by straight lines; with nothing drawn it is 0, without ink
-    /// infinite.
+    /// Greatest distance of what was drawn from the ink's lines, px: from those through the centres of pixels
+    /// that touch, and 0 between them. Strokes are taken as their vertices joined by straight lines; with
+    /// nothing drawn it is 0, without ink infinite.
     #[must_use]
     pub fn of_drawn(&self, drawn: &Drawing) -> f64 {
         let mut farthest_px = 0.0_f64;
@@ -86,7 +86,8 @@ impl<'a> InkDistance<'a> {
         farthest_px
     }
 
-    /// How far a place is from the ink's lines, px; some number up to `enough_px` if it is no farther than that.
+    /// How far a place is from the ink's lines, px; some number up to `enough_px` if it is no farther than
+    /// that.
     fn off_lines_px(&self, at: PxPoint, enough_px: f64) -> f64 {
         let (width, height) = (i64::from(self.ink.width()), i64::from(self.ink.height()));
         #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
@@ -95,7 +96,8 @@ impl<'a> InkDistance<'a> {
         let mut least_px = f64::INFINITY;
         let mut ring = 0;
         while ring <= farthest {
-            // The centre of a pixel in this ring is at least half a pixel less away, and a line from it half a pixel less again.
+            // The centre of a pixel in this ring is at least half a pixel less away, and a line from it half
+            // a pixel less again.
             #[expect(clippy::cast_precision_loss, reason = "far below 2^53")]
             let nearest_px = ring as f64 - 1.5;
             if least_px <= nearest_px.max(enough_px) {
@@ -111,7 +113,8 @@ impl<'a> InkDistance<'a> {
         least_px
     }
 
-    /// How far a place is from the lines that join the centre of a pixel to those after it that touch it; infinite for paper.
+    /// How far a place is from the lines that join the centre of a pixel to those after it that touch it;
+    /// infinite for paper.
     fn off_pixel_px(&self, x: i64, y: i64, at: PxPoint) -> f64 {
         let centre = |x: i64, y: i64| {
             let pixel = Pixel::new(u32::try_from(x).ok()?, u32::try_from(y).ok()?);

@@ -15,8 +15,8 @@ const BOTTOM: f64 = 60.0;
 /// Most marks with a number on the lower axis.
 const MAX_MARKS: usize = 9;
 
-/// Writes the distribution of the errors as an SVG bar chart: percent of the pixels over the error in px, with mean,
-/// maximum and standard deviation above.
+/// Writes the distribution of the errors as an SVG bar chart: percent of the pixels over the error in px,
+/// with mean, maximum and standard deviation above.
 ///
 /// `notes` are further lines of text under them, such as published figures to compare with.
 ///

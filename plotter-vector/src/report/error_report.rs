@@ -25,8 +25,9 @@ pub struct Bin {
 
 /// The distance of every pixel from the segment that replaced it, px.
 ///
-/// Only the pixels of the figures count, each once; a pixel that became a vertex has the error 0. The distance is
-/// that to the *segment*: |A·x + B·y + C| / √(A² + B²) beside it, and the distance to its end beyond.
+/// Only the pixels of the figures count, each once; a pixel that became a vertex has the error 0. The
+/// distance is that to the *segment*: |A·x + B·y + C| / √(A² + B²) beside it, and the distance to its end
+/// beyond.
 ///
 /// Source: Öcal's thesis on a two-axis gantry, section 3.4, eq. 3.5.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,8 +86,8 @@ impl Default for ErrorTally {
 }
 
 impl ErrorTally {
-    /// Adds a figure and the indices of the pixels that became vertices, rising; `borrowed` says whether the first
-    /// and the last pixel belong to another line and do not count.
+    /// Adds a figure and the indices of the pixels that became vertices, rising; `borrowed` says whether the
+    /// first and the last pixel belong to another line and do not count.
     pub fn add(&mut self, figure: &[Pixel], kept: &[usize], borrowed: (bool, bool)) {
         self.add_those(figure, kept, borrowed, |_| true);
     }
@@ -134,7 +135,8 @@ impl ErrorTally {
         }
     }
 
-    /// The pixel with the greatest error, the first of several in reading order, and its error, px; none without pixels.
+    /// The pixel with the greatest error, the first of several in reading order, and its error, px; none
+    /// without pixels.
     ///
     /// ```
     /// # use plotter_vector::{Pixel, report::ErrorTally};

@@ -1,8 +1,8 @@
 //! [`within`]: a stroke kept on its picture.
 //!
-//! Ink never lies outside of the picture, but what is drawn of it may: a junction where arms meet that were continued beyond
-//! the border, a line smoothed or simplified as its tolerance allows, an arc that bulges. Each point of such a stroke goes
-//! to the nearest one of the picture.
+//! Ink never lies outside of the picture, but what is drawn of it may: a junction where arms meet that were
+//! continued beyond the border, a line smoothed or simplified as its tolerance allows, an arc that bulges.
+//! Each point of such a stroke goes to the nearest one of the picture.
 //!
 //! ```text
 //!             V            V is outside: the line through it goes along the border instead, from a over v to b. Whatever
@@ -17,9 +17,9 @@ use crate::stroke::{Arc, Cubic, Curve, PxPoint, PxVec};
 /// What arcs and cubic curves may bulge over the border, px: they are no more exact.
 const ROUNDING_PX: f64 = 1e-6;
 
-/// A stroke each point of which is within a picture of this size, px: of what leaves it the nearest point on the border.
-/// Vertices are exactly within, arcs and curves but for rounding: one that bulges over the border gives way to its
-/// chords. The handles of a curve may lie outside, as long as the curve does not.
+/// A stroke each point of which is within a picture of this size, px: of what leaves it the nearest point on
+/// the border. Vertices are exactly within, arcs and curves but for rounding: one that bulges over the border
+/// gives way to its chords. The handles of a curve may lie outside, as long as the curve does not.
 pub(crate) fn within(stroke: Curve, width_px: u32, height_px: u32) -> Curve {
     let border = Border { x: width_px.into(), y: height_px.into() };
     if border.has_all(&stroke.vertices) && stroke.course().segments().all(|segment| border.has(&segment)) {
@@ -108,14 +108,16 @@ fn outermost(arc: &Arc) -> impl Iterator<Item = PxPoint> + '_ {
         .filter(|at| arc.distance(*at) <= ROUNDING_PX)
 }
 
-/// Where on its way, 0 to 1, a cubic curve goes no farther to one side: its speed is 3 (s² u + 2 s t v + t² w) with s = 1 − t.
+/// Where on its way, 0 to 1, a cubic curve goes no farther to one side: its speed is 3 (s² u + 2 s t v + t²
+/// w) with s = 1 − t.
 fn turns(cubic: &Cubic) -> impl Iterator<Item = f64> {
     let [b, c] = cubic.handles;
     let (u, v, w) = (b - cubic.from, c - b, cubic.to - c);
     let along = |u: f64, v: f64, w: f64| {
         let (square, half, whole) = (u - 2.0 * v + w, v - u, u);
         let root = libm::sqrt(half * half - square * whole);
-        // Of the two forms the one that does not take a number from one like it; what there is none of is no number.
+        // Of the two forms the one that does not take a number from one like it; what there is none of is no
+        // number.
         let sum = if half < 0.0 { half - root } else { half + root };
         [-sum / square, -whole / sum]
     };

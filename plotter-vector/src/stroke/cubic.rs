@@ -6,8 +6,8 @@ use crate::stroke::{PxPoint, PxVec};
 /// Farthest that the chords lie from a curve whose lengths are summed up for its own, px.
 const LENGTH_ERROR_PX: f64 = 1e-3;
 
-/// A cubic Bézier curve between two places: it leaves the first towards its first handle and comes to the second from its
-/// second handle.
+/// A cubic Bézier curve between two places: it leaves the first towards its first handle and comes to the
+/// second from its second handle.
 ///
 /// With a and d the places, b and c the handles, and t from 0 to 1:
 ///
@@ -125,8 +125,8 @@ impl Cubic {
         (0..count).map(|chord| place(chord).distance(place(chord + 1))).sum()
     }
 
-    /// Into how many chords of equal steps of t it has to be divided so that they lie no farther than this from it, or
-    /// 65536: a chord over a step h is at most h² / 8 of the greatest bend off.
+    /// Into how many chords of equal steps of t it has to be divided so that they lie no farther than this
+    /// from it, or 65536: a chord over a step h is at most h² / 8 of the greatest bend off.
     pub(crate) fn chords(&self, chord_error_px: f64) -> u32 {
         let (first, second) = self.bends();
         let most = first.length().max(second.length());

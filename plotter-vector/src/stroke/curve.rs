@@ -3,8 +3,8 @@
 use crate::stroke::{Cubic, PxPoint, PxVec};
 use core::f64::consts::{PI, TAU};
 
-/// Farthest that chords lie from their arc or cubic curve wherever these are taken as chords without a distance being asked for, px: a
-/// 25th of the usual tolerance.
+/// Farthest that chords lie from their arc or cubic curve wherever these are taken as chords without a
+/// distance being asked for, px: a 25th of the usual tolerance.
 pub(crate) const CHORD_ERROR_PX: f64 = 0.02;
 
 /// Most chords of one arc or cubic curve.
@@ -13,11 +13,12 @@ const MAX_CHORDS: f64 = 65_536.0;
 /// What the centres, the radii and the whole turn of a circle's arcs may be off, in parts of the radius.
 const SAME_CIRCLE: f64 = 1e-6;
 
-/// A pen stroke: vertices in order, each joined to the next by a straight line, a circular arc or a cubic curve.
+/// A pen stroke: vertices in order, each joined to the next by a straight line, a circular arc or a cubic
+/// curve.
 ///
-/// An arc is given as in DXF by its *bulge*, the tangent of a quarter of the angle that it spans: 0 is a straight line, 1
-/// half a circle. Positive bulges turn from x towards y, which on a picture, with y down, is clockwise. A cubic curve is
-/// given by its two *handles*, as in SVG: see [`Cubic`].
+/// An arc is given as in DXF by its *bulge*, the tangent of a quarter of the angle that it spans: 0 is a
+/// straight line, 1 half a circle. Positive bulges turn from x towards y, which on a picture, with y down, is
+/// clockwise. A cubic curve is given by its two *handles*, as in SVG: see [`Cubic`].
 ///
 /// ```
 /// # use plotter_vector::{Curve, PxPoint};
@@ -105,7 +106,8 @@ impl Curve {
         });
     }
 
-    /// The vertices with arcs and cubic curves replaced by chords that lie no farther than `chord_error_px` from them.
+    /// The vertices with arcs and cubic curves replaced by chords that lie no farther than `chord_error_px`
+    /// from them.
     ///
     /// ```
     /// # use plotter_vector::{Curve, PxPoint};
@@ -382,8 +384,8 @@ pub(crate) fn unit(from: PxPoint, to: PxPoint) -> PxVec {
 
 /// A circular arc between two places.
 ///
-/// With c the chord, b the bulge: the radius is c (1 + b²) / 4 |b|, and the centre lies c (1 − b²) / 4 b beside the
-/// chord's middle, to the side to which a positive arc turns.
+/// With c the chord, b the bulge: the radius is c (1 + b²) / 4 |b|, and the centre lies c (1 − b²) / 4 b
+/// beside the chord's middle, to the side to which a positive arc turns.
 ///
 /// ```
 /// # use plotter_vector::{PxPoint, stroke::Arc};
@@ -407,7 +409,8 @@ pub struct Arc {
 }
 
 impl Arc {
-    /// The arc between two places with this bulge; `None` for a straight line or a dot, or where a number overflows.
+    /// The arc between two places with this bulge; `None` for a straight line or a dot, or where a number
+    /// overflows.
     #[must_use]
     pub fn new(from: PxPoint, to: PxPoint, bulge: f64) -> Option<Self> {
         let chord = from.distance(to);
@@ -460,8 +463,8 @@ impl Arc {
         }
     }
 
-    /// Into how many equal chords it has to be divided so that they lie no farther than this from it. A chord of the
-    /// angle a is r (1 − cos(a / 2)) off.
+    /// Into how many equal chords it has to be divided so that they lie no farther than this from it. A chord
+    /// of the angle a is r (1 − cos(a / 2)) off.
     pub(crate) fn chords(&self, chord_error_px: f64) -> u32 {
         // Never more than a quarter turn: an arc is no chord.
         let half = libm::acos(1.0 - (chord_error_px / self.radius_px).max(0.0)).min(PI / 4.0);

@@ -7,9 +7,9 @@ use core::fmt;
 use plotter_motion::{PlotOp, Point};
 use std::borrow::Cow;
 
-/// Pen strokes in the order in which they are drawn, in pixel coordinates. A stroke of one vertex is a dot. Each stroke
-/// has a pen, a number in the carousel from 1. Vertices are joined by straight lines, arcs or cubic curves: see
-/// [`Curve`].
+/// Pen strokes in the order in which they are drawn, in pixel coordinates. A stroke of one vertex is a dot.
+/// Each stroke has a pen, a number in the carousel from 1. Vertices are joined by straight lines, arcs or
+/// cubic curves: see [`Curve`].
 ///
 /// ```
 /// # use plotter_vector::{Drawing, PxPoint};
@@ -96,7 +96,8 @@ impl Drawing {
         }
     }
 
-    /// Adds a stroke that may have arcs and cubic curves; one without vertices is left out. Pens as with [`Drawing::push_with_pen`].
+    /// Adds a stroke that may have arcs and cubic curves; one without vertices is left out. Pens as with
+    /// [`Drawing::push_with_pen`].
     ///
     /// ```
     /// # use plotter_vector::{Curve, Drawing, PxPoint};
@@ -142,7 +143,8 @@ impl Drawing {
         pens
     }
 
-    /// The vertices of one stroke; empty when there is no such stroke. What lies between them: [`Drawing::bulges`].
+    /// The vertices of one stroke; empty when there is no such stroke. What lies between them:
+    /// [`Drawing::bulges`].
     #[must_use]
     pub fn stroke(&self, index: usize) -> &[PxPoint] {
         self.range(index).and_then(|range| self.vertices.get(range)).unwrap_or(&[])
@@ -170,15 +172,16 @@ impl Drawing {
         self.pens.reserve_exact(other.pens.len());
     }
 
-    /// The bulges of one stroke, one for each vertex as in [`Curve::bulges`]; empty when all of it is straight.
+    /// The bulges of one stroke, one for each vertex as in [`Curve::bulges`]; empty when all of it is
+    /// straight.
     #[must_use]
     pub fn bulges(&self, index: usize) -> &[f64] {
         let bulges = self.range(index).and_then(|range| self.bulges.get(range)).unwrap_or(&[]);
         if bulges.iter().any(|bulge| is_bulge(*bulge)) { bulges } else { &[] }
     }
 
-    /// The handles of the cubic curves of one stroke, one entry for each vertex as in [`Curve::handles`]; empty when it has
-    /// none.
+    /// The handles of the cubic curves of one stroke, one entry for each vertex as in [`Curve::handles`];
+    /// empty when it has none.
     #[must_use]
     pub fn handles(&self, index: usize) -> &[Option<[PxPoint; 2]>] {
         let handles = self.range(index).and_then(|range| self.handles.get(range)).unwrap_or(&[]);
@@ -276,8 +279,8 @@ impl Drawing {
         (0..self.ends.len()).map(|index| self.course(index).length_px()).fold(0.0, |sum, px| sum + px)
     }
 
-    /// Length travelled with the pen up from each stroke's end to the next one's start, px. The ways from and to
-    /// the machine's home are not in it: the drawing does not know where that is.
+    /// Length travelled with the pen up from each stroke's end to the next one's start, px. The ways from and
+    /// to the machine's home are not in it: the drawing does not know where that is.
     #[must_use]
     pub fn pen_up_px(&self) -> f64 {
         let travel = |(from, to): (&[PxPoint], &[PxPoint])| Some(from.last()?.distance(*to.first()?));
@@ -296,10 +299,10 @@ impl Drawing {
         changes.then_some(PlotOp::SelectPen { pen })
     }
 
-    /// The operations that draw it on the sheet: to each stroke's start with the pen up, along it with the pen
-    /// down. A dot is drawn from its place to its place. The pen is selected where it changes, and before the first
-    /// stroke unless the whole drawing is of pen 1: that is the plotter's own. Arcs and cubic curves come as
-    /// chords no farther than 0.02 px from them.
+    /// The operations that draw it on the sheet: to each stroke's start with the pen up, along it with the
+    /// pen down. A dot is drawn from its place to its place. The pen is selected where it changes, and before
+    /// the first stroke unless the whole drawing is of pen 1: that is the plotter's own. Arcs and cubic
+    /// curves come as chords no farther than 0.02 px from them.
     pub fn plot_ops(&self, scale: Scale) -> impl Iterator<Item = PlotOp> + '_ {
         (0..self.ends.len()).flat_map(move |index| {
             let stroke = self.stroke_chords(index, CHORD_ERROR_PX);
@@ -331,7 +334,8 @@ impl Drawing {
             .flat_map(move |index| self.select_pen(index).into_iter().chain(stroke_ops(self, index, scale)))
     }
 
-    /// The same of a drawing that nobody else needs: a list of all operations takes some three times its memory.
+    /// The same of a drawing that nobody else needs: a list of all operations takes some three times its
+    /// memory.
     ///
     /// ```
     /// # use plotter_vector::{Drawing, PxPoint, Scale};
@@ -350,8 +354,8 @@ impl Drawing {
     }
 }
 
-/// Adds what belongs to the pieces of a stroke that begins at the vertex `before`, the last of `count`; nothing where it
-/// says nothing.
+/// Adds what belongs to the pieces of a stroke that begins at the vertex `before`, the last of `count`;
+/// nothing where it says nothing.
 fn add<T: Clone + Default + PartialEq>(all: &mut Vec<T>, before: usize, own: Vec<T>, count: usize) {
     if own.iter().any(|one| *one != T::default()) {
         all.resize(before, T::default());
@@ -435,8 +439,8 @@ impl Scale {
         Ok(Self { mm_per_px, upper_left })
     }
 
-    /// The largest scale at which the picture fits between two corners less a margin all round; centred. A picture
-    /// without pixels is taken as one of 1 px.
+    /// The largest scale at which the picture fits between two corners less a margin all round; centred. A
+    /// picture without pixels is taken as one of 1 px.
     ///
     /// # Errors
     /// [`ScaleError::NotFinite`] and [`ScaleError::NoRoom`].

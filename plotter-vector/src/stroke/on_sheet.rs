@@ -44,8 +44,8 @@ impl Drawing {
         drawing::Drawing { strokes: strokes.collect(), ..drawing::Drawing::default() }
     }
 
-    /// What is drawn on the sheet as a drawing on a picture of that size. Arcs and cubic curves stay what they are; layers, speeds and
-    /// what happens between strokes are left out.
+    /// What is drawn on the sheet as a drawing on a picture of that size. Arcs and cubic curves stay what
+    /// they are; layers, speeds and what happens between strokes are left out.
     #[must_use]
     pub fn of_sheet(sheet: &drawing::Drawing, (width_px, height_px): (u32, u32), scale: Scale) -> Self {
         let mut drawing = Self::new(width_px, height_px);

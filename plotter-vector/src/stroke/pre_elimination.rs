@@ -6,10 +6,10 @@ use crate::picture::Pixel;
 ///
 /// With AB and BC the displacements, tan γ = |AB × BC| / (AB · BC); B goes when tan γ is below the tolerance
 /// and the way does not turn back. Products in place of the published slopes give the same angle and hold on
-/// vertical lines too. What is dropped is gone: A is the tenth of the pixels that are *still there* before B, so on
-/// a slow curve A falls back until the turn shows, where ten pixels of the raster alone would never show it. The
-/// first and the last pixel always stay, and so do those that have no tenth pixel before or after: there is nothing
-/// to judge them by.
+/// vertical lines too. What is dropped is gone: A is the tenth of the pixels that are *still there* before B,
+/// so on a slow curve A falls back until the turn shows, where ten pixels of the raster alone would never
+/// show it. The first and the last pixel always stay, and so do those that have no tenth pixel before or
+/// after: there is nothing to judge them by.
 ///
 /// Source: Öcal's thesis on a two-axis gantry, section 3.2, eq. 3.1 to 3.3.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,8 @@ use crate::stroke::curve::{CHORD_ERROR_PX, Segment};
 use crate::stroke::{Drawing, Scale};
 use plotter_motion::PlotOp;
 
-/// The operations of one stroke: those of [`Drawing::plot_ops`], but for the arcs. Cubic curves come as chords, as there.
+/// The operations of one stroke: those of [`Drawing::plot_ops`], but for the arcs. Cubic curves come as
+/// chords, as there.
 pub(crate) fn stroke_ops(drawing: &Drawing, index: usize, scale: Scale) -> impl Iterator<Item = PlotOp> + '_ {
     let stroke = drawing.stroke(index);
     let draw = move |to| PlotOp::Draw { to: scale.to_sheet(to), feed_mm_s: None };

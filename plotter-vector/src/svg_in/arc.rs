@@ -4,22 +4,24 @@ use super::curve::Cubic;
 use crate::stroke::{PxPoint, PxVec};
 use core::f64::consts::FRAC_PI_2;
 
-/// How far a cubic that stands for a quarter of a circle is from it, as a share of the radius, and a little more. One that stands for
-/// less is nearer by the sixth power of the share.
+/// How far a cubic that stands for a quarter of a circle is from it, as a share of the radius, and a little
+/// more. One that stands for less is nearer by the sixth power of the share.
 ///
-/// Source: T. Dokken et al., "Good approximation of circles by curvature-continuous Bezier curves", Computer Aided Geometric
-/// Design 7 (1990).
+/// Source: T. Dokken et al., "Good approximation of circles by curvature-continuous Bezier curves", Computer
+/// Aided Geometric Design 7 (1990).
 const QUARTER_SHARE: f64 = 3e-4;
-/// An arc begins and ends alike: how much the lengths of its handles may differ as a share, and its turns, rad.
+/// An arc begins and ends alike: how much the lengths of its handles may differ as a share, and its turns,
+/// rad.
 const UNLIKE_SHARE: f64 = 0.02;
 const UNLIKE_RAD: f64 = 0.01;
-/// Least and greatest half of an arc's angle, rad: what turns less is a line, and nobody writes more than half a circle as one curve.
+/// Least and greatest half of an arc's angle, rad: what turns less is a line, and nobody writes more than
+/// half a circle as one curve.
 const HALVES_RAD: core::ops::RangeInclusive<f64> = 0.01..=1.6;
 /// Where the curve is compared with the circle.
 const SAMPLES: [f64; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
 
-/// The bulge of the arc that a curve stands for; `None` where there is no arc within the tolerance of it, or, since curves are what
-/// arcs are parsed into, within what such a curve is off.
+/// The bulge of the arc that a curve stands for; `None` where there is no arc within the tolerance of it, or,
+/// since curves are what arcs are parsed into, within what such a curve is off.
 pub(super) fn bulge(curve: Cubic, tolerance_px: f64) -> Option<f64> {
     let Cubic([from, first, second, to]) = curve;
     let (chord, into, out) = (to - from, first - from, to - second);
@@ -80,7 +82,8 @@ mod tests {
     #[test]
     fn a_flat_curve_is_no_arc_because_its_radius_would_be_large() {
         let at = PxPoint::new;
-        // Its greatest height is 3/4 of 40 px; the circle through it has a radius of 4182 px, of which 3e-4 would be 1.25 px.
+        // Its greatest height is 3/4 of 40 px; the circle through it has a radius of 4182 px, of which 3e-4
+        // would be 1.25 px.
         let flat = Cubic([at(0.0, 0.0), at(100.0, 40.0), at(900.0, 40.0), at(1000.0, 0.0)]);
         assert_eq!(bulge(flat, 0.01), None);
     }

@@ -1,7 +1,8 @@
 //! [`chunks`]: a large file as several small ones, each with what all of them refer to.
 //!
-//! The parser makes some 400 bytes of a small element, all elements at a time. What is drawn by a part of them does not depend on the
-//! others, so the parts are read one after the other, in their order; groups around them are opened and closed in each:
+//! The parser makes some 400 bytes of a small element, all elements at a time. What is drawn by a part of
+//! them does not depend on the others, so the parts are read one after the other, in their order; groups
+//! around them are opened and closed in each:
 //!
 //! ```text
 //!   svg ─ defs, g ─ a b c d        svg ─ defs, g ─ a b  and  svg ─ defs, g ─ c d
@@ -146,8 +147,8 @@ fn has_size(root: Node<'_, '_>) -> bool {
     root.has_attribute("viewBox") || (is_length("width") && is_length("height"))
 }
 
-/// Whether no element refers to one that is not shared, and no style sheet is anywhere else, asks what stands before an element, or
-/// clips.
+/// Whether no element refers to one that is not shared, and no style sheet is anywhere else, asks what stands
+/// before an element, or clips.
 fn can_be_divided(document: &Document<'_>) -> bool {
     let mut named: BTreeSet<&str> = BTreeSet::new();
     for node in document.descendants() {

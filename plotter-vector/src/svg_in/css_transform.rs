@@ -1,6 +1,7 @@
 //! [`as_svg`]: transforms of CSS, with units, as those of SVG.
 //!
-//! CSS Transforms Level 1 writes `translate(10px, 2mm) rotate(0.1turn)`; the parser knows numbers only, px and degrees.
+//! CSS Transforms Level 1 writes `translate(10px, 2mm) rotate(0.1turn)`; the parser knows numbers only, px
+//! and degrees.
 
 use std::str::FromStr;
 
@@ -20,7 +21,8 @@ pub(super) type Matrix = [f64; 6];
 
 pub(super) const IDENTITY: Matrix = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
 
-/// A transform in words that the parser knows. `sheet` is the size that percentages are of, px; `px_per_inch` that of mm and inches.
+/// A transform in words that the parser knows. `sheet` is the size that percentages are of, px; `px_per_inch`
+/// that of mm and inches.
 pub(super) fn as_svg(value: &str, sheet: (f64, f64), px_per_inch: f64) -> Plain {
     let (bare, important) = super::paint::without_important(value);
     if is_none(&bare.to_ascii_lowercase()) {
@@ -72,7 +74,8 @@ pub(super) fn transform(value: &str, whole: (f64, f64), px_per_inch: f64) -> Res
     }
 }
 
-/// What the properties `translate`, `rotate` and `scale` hold: as the functions of their names (CSS Transforms Level 2, section 5).
+/// What the properties `translate`, `rotate` and `scale` hold: as the functions of their names (CSS
+/// Transforms Level 2, section 5).
 pub(super) fn property(
     name: &str,
     value: &str,

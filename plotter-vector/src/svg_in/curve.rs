@@ -6,9 +6,9 @@
 //!   t ├───h───┤            distance of curve and chord ≤ h²/8 · max(|B''(t)|, |B''(t + h)|)
 //! ```
 //!
-//! Each chord spans the longest piece of which this is within the tolerance, so that tight bends get many and long
-//! ones few. Source of the bound: D. Filip, R. Magedson, R. Markot, "Surface algorithms using bounds on derivatives",
-//! Computer Aided Geometric Design 3 (1986), theorem 1.
+//! Each chord spans the longest piece of which this is within the tolerance, so that tight bends get many and
+//! long ones few. Source of the bound: D. Filip, R. Magedson, R. Markot, "Surface algorithms using bounds on
+//! derivatives", Computer Aided Geometric Design 3 (1986), theorem 1.
 
 use crate::stroke::PxPoint;
 
@@ -45,8 +45,8 @@ impl Cubic {
         [Self([p0, a, ab, middle]), Self([middle, bc, c, p3])]
     }
 
-    /// The ends of the chords, without the curve's start: every place of the curve is within `tolerance_px` of its
-    /// chord, and every place of the chord of the curve.
+    /// The ends of the chords, without the curve's start: every place of the curve is within `tolerance_px`
+    /// of its chord, and every place of the chord of the curve.
     pub(super) fn chords(self, tolerance_px: f64) -> impl Iterator<Item = PxPoint> {
         let straight = self.is_straight(tolerance_px);
         let mut t = 0.0;
@@ -59,8 +59,8 @@ impl Cubic {
         })
     }
 
-    /// Whether both handles lie within the tolerance of the chord: then the whole curve does, for it lies in the hull
-    /// of its control points, and what is near a segment is convex.
+    /// Whether both handles lie within the tolerance of the chord: then the whole curve does, for it lies in
+    /// the hull of its control points, and what is near a segment is convex.
     fn is_straight(&self, tolerance_px: f64) -> bool {
         let [start, p1, p2, end] = self.0;
         [p1, p2].into_iter().all(|handle| distance_to_segment(handle, start, end) <= tolerance_px)

@@ -13,8 +13,8 @@ pub(super) struct Dashes {
 }
 
 impl Dashes {
-    /// `None` when the pattern is no pattern: without lengths, with one that is negative or no number, or all zero.
-    /// The offset may be negative.
+    /// `None` when the pattern is no pattern: without lengths, with one that is negative or no number, or all
+    /// zero. The offset may be negative.
     pub(super) fn new(lengths: &[f32], offset: f32) -> Option<Self> {
         let lengths: Vec<f64> = lengths.iter().copied().map(f64::from).collect();
         let period: f64 = lengths.iter().sum();
@@ -34,8 +34,8 @@ impl Dashes {
         Some(Self { lengths, index: 0, left })
     }
 
-    /// Hands the dashes of a stroke to `draw`, in order. `own_length` measures a way on the sheet in the shape's own
-    /// unit. A dash of no length is a dot.
+    /// Hands the dashes of a stroke to `draw`, in order. `own_length` measures a way on the sheet in the
+    /// shape's own unit. A dash of no length is a dot.
     ///
     /// # Errors
     /// Those of `draw`: it must end the loop when the dashes are too many.

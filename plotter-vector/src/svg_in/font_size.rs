@@ -1,5 +1,5 @@
-//! [`numbered`]: sizes of letters that are named, as numbers. The parser takes `x-small` for a part of the size around it, as
-//! `smaller` is; it is a size of its own.
+//! [`numbered`]: sizes of letters that are named, as numbers. The parser takes `x-small` for a part of the
+//! size around it, as `smaller` is; it is a size of its own.
 
 use super::FONT_SIZE_PX;
 

@@ -60,13 +60,14 @@ impl fmt::Display for SvgFontError {
 impl core::error::Error for SvgFontError {}
 
 impl SvgFonts {
-    /// The letters of HPGL's labels, which are lines for a pen and not outlines, for all texts: they are set in these whatever font
-    /// they ask for, with anchors, spacing, `textPath` and all else as in other fonts. A dot of a letter is a dot, a line below letters
-    /// one line. Capitals are 0.7 em high, and letters about as wide as in Helvetica, or all equally wide where a text asks for
-    /// `monospace`. There are those of Latin-1, and for common quotation marks and dashes those that look nearly so.
+    /// The letters of HPGL's labels, which are lines for a pen and not outlines, for all texts: they are set
+    /// in these whatever font they ask for, with anchors, spacing, `textPath` and all else as in other fonts.
+    /// A dot of a letter is a dot, a line below letters one line. Capitals are 0.7 em high, and letters about
+    /// as wide as in Helvetica, or all equally wide where a text asks for `monospace`. There are those of
+    /// Latin-1, and for common quotation marks and dashes those that look nearly so.
     ///
-    /// Of fonts that are added, texts are set in those that they name, and letters taken that Latin-1 does not have: who gives a
-    /// font wants it used.
+    /// Of fonts that are added, texts are set in those that they name, and letters taken that Latin-1 does
+    /// not have: who gives a font wants it used.
     ///
     /// ```
     /// # use plotter_vector::{SvgOptions, svg_in::{SvgFonts, read_svg_with_fonts}};
@@ -135,8 +136,9 @@ impl SvgFonts {
         self.names.values().map(String::as_str)
     }
 
-    /// The first family of a text's list that is there. A kind of fonts (`serif`) is any: the first that was given, of those
-    /// for `monospace` the first whose letters are equally wide. Letters of one line are for any.
+    /// The first family of a text's list that is there. A kind of fonts (`serif`) is any: the first that was
+    /// given, of those for `monospace` the first whose letters are equally wide. Letters of one line are for
+    /// any.
     fn family_of(&self, font: &usvg::Font) -> Option<&str> {
         let first = self.first.as_deref();
         let named = font.families().iter().find_map(|family| match family {
@@ -171,8 +173,8 @@ impl SvgFonts {
         self.database.query(&Query { families: &families, weight, stretch, style })
     }
 
-    /// Where a text is set in the fonts that it asks for, each letter of it with an outline: how far from each other two ways along
-    /// one line of it may be.
+    /// Where a text is set in the fonts that it asks for, each letter of it with an outline: how far from
+    /// each other two ways along one line of it may be.
     fn draw_whole(&self, text: &usvg::Text, wanted: &Mutex<Wanted>) -> Option<f32> {
         let mut spans = text.chunks().iter().flat_map(usvg::TextChunk::spans);
         // What the font does not have is its glyph 0.
@@ -191,7 +193,8 @@ impl SvgFonts {
     }
 }
 
-/// How far from each other two ways along one line of a text may be: of its largest letters, as they are stretched.
+/// How far from each other two ways along one line of a text may be: of its largest letters, as they are
+/// stretched.
 fn slack(text: &usvg::Text) -> f32 {
     let sizes = text.layouted().iter().flat_map(|span| &span.positioned_glyphs).map(|glyph| {
         let (along, across) = glyph.transform().get_scale();
@@ -264,12 +267,13 @@ fn resolver<'a>(fonts: &'a SvgFonts, wanted: &'a Mutex<Wanted>) -> FontResolver<
 /// texts, too: along the outlines of their letters, or along their strokes. Letters that are lines and not
 /// areas, as those of [`SvgFonts::single_stroke`] and of fonts for pens are, are drawn once.
 ///
-/// A text is set in the first family of its list that is among `fonts`, in the weight and style that are nearest; a kind of
-/// fonts as `sans-serif`, or none at all, takes the first font. Letters that this one lacks are taken from the others. A text
-/// is drawn whole or not at all: where its families or one of its letters are in no font, or a letter is a picture or has
-/// several colours, it is counted in [`SvgLeftOut::texts`](crate::svg_in::SvgLeftOut::texts), and
-/// [`SvgDrawing::missing_fonts`] tells what it needs. Anchors, `tspan`, `textPath`, spacing, decoration, kerning and ligatures
-/// are done as the format and the font say.
+/// A text is set in the first family of its list that is among `fonts`, in the weight and style that are
+/// nearest; a kind of fonts as `sans-serif`, or none at all, takes the first font. Letters that this one
+/// lacks are taken from the others. A text is drawn whole or not at all: where its families or one of its
+/// letters are in no font, or a letter is a picture or has several colours, it is counted in
+/// [`SvgLeftOut::texts`](crate::svg_in::SvgLeftOut::texts), and [`SvgDrawing::missing_fonts`] tells what it
+/// needs. Anchors, `tspan`, `textPath`, spacing, decoration, kerning and ligatures are done as the format and
+/// the font say.
 ///
 /// # Errors
 /// [`SvgError`].

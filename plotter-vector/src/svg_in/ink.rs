@@ -92,7 +92,8 @@ impl<'a> Ink<'a> {
         }
     }
 
-    /// Draws a group and all that is in it, which is of this layer. As deep as the file is nested, which has been checked.
+    /// Draws a group and all that is in it, which is of this layer. As deep as the file is nested, which has
+    /// been checked.
     pub(super) fn group(&mut self, group: &usvg::Group, layer: Option<usize>) -> Result<(), SvgError> {
         if group.opacity().get() <= 0.0 {
             return Ok(());
@@ -193,7 +194,8 @@ impl<'a> Ink<'a> {
         }
     }
 
-    /// What leaves ink of a shape, its stroke or else its fill, and in which colour; what is in that of the paper is counted.
+    /// What leaves ink of a shape, its stroke or else its fill, and in which colour; what is in that of the
+    /// paper is counted.
     fn inked<'p>(&mut self, path: &'p usvg::Path) -> Option<(PenPath<'p>, Rgb)> {
         if !path.is_visible() {
             return None;
@@ -210,7 +212,8 @@ impl<'a> Ink<'a> {
         inked
     }
 
-    /// Notes a fill that hides what has been drawn before. What lies in none of the clip paths around is not filled.
+    /// Notes a fill that hides what has been drawn before. What lies in none of the clip paths around is not
+    /// filled.
     fn cover(&mut self, outline: &Path, matrix: Transform, fill: &usvg::Fill) -> Result<(), SvgError> {
         let below = self.drawing.strokes().len();
         if fill.opacity().get() * self.opacity < HIDES || below == 0 {

@@ -97,7 +97,8 @@ fn layers_are_pens_by_their_numbers_or_their_order() {
     assert_eq!(pens(&three, SvgPens::ByLayer), [3, 1, 2]);
     assert_eq!(pens(&three, SvgPens::ByOrder), [1, 2, 3]);
     assert_eq!(pens(&three, SvgPens::ByColour), [1, 1, 1]);
-    // Without a number, the next that none has; the same number is the same pen; layers in a group are layers.
+    // Without a number, the next that none has; the same number is the same pen; layers in a group are
+    // layers.
     let mixed = format!(
         "{}<g>{}{}</g>{}",
         layer("walls"),

@@ -1,10 +1,12 @@
 //! [`SvgLayer`]: a layer of a drawing, and what its name asks for.
 
-/// A layer: a group at the top of the file with an `id` or a label, or one that Inkscape calls a layer, wherever it is.
+/// A layer: a group at the top of the file with an `id` or a label, or one that Inkscape calls a layer,
+/// wherever it is.
 ///
-/// Its name is Inkscape's label, else Illustrator's `data-name`, else the `id`. It may begin as those of the `AxiDraw` do: `%` leaves the
-/// layer out, `!` asks for a pause before it, a number is its pen, and codes may follow: `+D` with milliseconds of waiting before
-/// it, `+S` with a share of the speed and `+H` with a share of the pen's height, both in percent.
+/// Its name is Inkscape's label, else Illustrator's `data-name`, else the `id`. It may begin as those of the
+/// `AxiDraw` do: `%` leaves the layer out, `!` asks for a pause before it, a number is its pen, and codes may
+/// follow: `+D` with milliseconds of waiting before it, `+S` with a share of the speed and `+H` with a share
+/// of the pen's height, both in percent.
 ///
 /// ```
 /// # use plotter_vector::svg_in::SvgLayer;

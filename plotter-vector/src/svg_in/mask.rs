@@ -1,7 +1,8 @@
 //! [`Painted`]: what a mask paints, and where it is light.
 //!
-//! A mask shows where luminance times alpha is at least one half (CSS Masking Level 1, section 6.1, "mask-type"): a pen draws or
-//! does not. What is painted is put together place by place, each colour over those before it.
+//! A mask shows where luminance times alpha is at least one half (CSS Masking Level 1, section 6.1,
+//! "mask-type"): a pen draws or does not. What is painted is put together place by place, each colour over
+//! those before it.
 
 use super::box_tree::Steps;
 use super::region::{Region, Shape};

@@ -53,17 +53,18 @@ const PX_PER_INCH: f64 = 96.0;
 const PX_PER_INCHES: core::ops::RangeInclusive<f64> = 10.0..=10_000.0;
 /// Millimetres to the inch.
 const MM_PER_INCH: f64 = 25.4;
-/// Farthest place from the origin, px: 277 m. Single precision, in which paths are parsed, still tells 0.1 px there.
+/// Farthest place from the origin, px: 277 m. Single precision, in which paths are parsed, still tells 0.1 px
+/// there.
 const MAX_PX: f64 = 1_048_576.0;
 /// Chords finer or coarser than this are not for pens, mm.
 const TOLERANCES_MM: core::ops::RangeInclusive<f64> = 0.001..=10.0;
-/// Size of letters, and with it the length of an em, where the file gives none, px: `medium` of CSS Fonts Level 4, section 2.5, as
-/// browsers have it.
+/// Size of letters, and with it the length of an em, where the file gives none, px: `medium` of CSS Fonts
+/// Level 4, section 2.5, as browsers have it.
 const FONT_SIZE_PX: f32 = 16.0;
 /// Stack of the parser, which recurses into nested elements: reserved, used as far as it is needed.
 const STACK_BYTES: usize = 128 << 20;
-/// Deepest nesting where no thread can be had, as on wasm32, and the caller's stack has to do: that is 1 MB there, of which a level
-/// takes some 10 kB.
+/// Deepest nesting where no thread can be had, as on wasm32, and the caller's stack has to do: that is 1 MB
+/// there, of which a level takes some 10 kB.
 const MAX_DEPTH_ON_CALLERS_STACK: usize = 48;
 
 /// Which strokes are of one pen.
@@ -74,9 +75,10 @@ pub enum SvgPens {
     /// [`MAX_PENS`](crate::ink::MAX_PENS) colours, the others are drawn by the pen of the nearest one.
     #[default]
     ByColour,
-    /// Those of one [`SvgLayer`]: the pen is the number that its name begins with. Layers without a number have the next free
-    /// one each, in the order of the file, and so has what is in no layer: its pen has no name. When there are more than
-    /// [`MAX_PENS`](crate::ink::MAX_PENS), the others are drawn by the pen of the nearest colour.
+    /// Those of one [`SvgLayer`]: the pen is the number that its name begins with. Layers without a number
+    /// have the next free one each, in the order of the file, and so has what is in no layer: its pen has no
+    /// name. When there are more than [`MAX_PENS`](crate::ink::MAX_PENS), the others are drawn by the pen of
+    /// the nearest colour.
     ByLayer,
     /// Those of one layer, whatever its name: the first that draws something is pen 1.
     ByOrder,
@@ -84,7 +86,8 @@ pub enum SvgPens {
     One,
 }
 
-/// How an SVG file is read. The default keeps curves within 0.025 mm, the unit of HPGL, and takes white for the paper.
+/// How an SVG file is read. The default keeps curves within 0.025 mm, the unit of HPGL, and takes white for
+/// the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -94,8 +97,8 @@ pub enum SvgPens {
 pub struct SvgOptions {
     /// Greatest distance of a curve from its chords, both ways, mm; 0.001 to 10.
     pub tolerance_mm: f64,
-    /// Curves that are arcs of a circle, within the tolerance or what a file's own arcs are parsed to, stay arcs instead of
-    /// chords; not in dashes.
+    /// Curves that are arcs of a circle, within the tolerance or what a file's own arcs are parsed to, stay
+    /// arcs instead of chords; not in dashes.
     pub arcs: bool,
     /// Which strokes are of one pen.
     pub pens: SvgPens,
@@ -105,15 +108,16 @@ pub struct SvgOptions {
     pub max_vertices: usize,
     /// Whether what clip paths, masks and the edges of nested `svg` elements cut off is drawn all the same.
     pub keeps_clipped: bool,
-    /// Whether filled shapes hide what lies below them, also those in the colour of the paper; those that are less than half
-    /// opaque do not.
+    /// Whether filled shapes hide what lies below them, also those in the colour of the paper; those that are
+    /// less than half opaque do not.
     pub occludes: bool,
     /// Fills each closed shape with lines, which fills that are drawn later hide with
     /// [`occludes`](Self::occludes), and clip paths cut. The distance is in mm of the sheet, the angle
     /// counter-clockwise as on the sheet; the lines of all shapes lie at odd multiples of half the distance
     /// from the sheet's upper left corner. Dashed shapes are left as they are.
     pub hatch: Option<Hatching>,
-    /// Pixels to the inch: 96 in the standard, 72 and 90 in files of older programs. Lengths in mm and inches are what they are.
+    /// Pixels to the inch: 96 in the standard, 72 and 90 in files of older programs. Lengths in mm and inches
+    /// are what they are.
     pub px_per_inch: f64,
 }
 
@@ -143,8 +147,8 @@ impl Default for SvgOptions {
 /// What an SVG file holds and a pen does not draw, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct SvgLeftOut {
-    /// Texts: they have no outlines without their fonts. Give them (`read_svg_with_fonts`, feature `svg-text`), or make them paths
-    /// in the editor.
+    /// Texts: they have no outlines without their fonts. Give them (`read_svg_with_fonts`, feature
+    /// `svg-text`), or make them paths in the editor.
     pub texts: usize,
     /// Line of the first of them in the file, from 1, where it can be told.
     pub text_line: Option<u32>,
@@ -152,8 +156,8 @@ pub struct SvgLeftOut {
     pub images: usize,
     /// Line of the first of them in the file, from 1.
     pub image_line: Option<u32>,
-    /// Groups of which a clip path cuts something off, or the edge of a nested `svg`, a `symbol` or a marker. With
-    /// [`SvgOptions::keeps_clipped`], none.
+    /// Groups of which a clip path cuts something off, or the edge of a nested `svg`, a `symbol` or a marker.
+    /// With [`SvgOptions::keeps_clipped`], none.
     pub clip_paths: usize,
     /// Groups of which a mask hides something.
     pub masks: usize,
@@ -168,7 +172,8 @@ pub struct SvgLeftOut {
     pub far: usize,
 }
 
-/// What the texts that are left out need. Without fonts, and without feature `svg-text`, it is not looked into which letters.
+/// What the texts that are left out need. Without fonts, and without feature `svg-text`, it is not looked
+/// into which letters.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct SvgMissingFonts {
     /// Families that are asked for, of each text the first of its list; up to 16.
@@ -378,18 +383,21 @@ impl core::error::Error for SvgError {
 
 /// Reads a drawing from the text of an SVG file.
 ///
-/// Shapes, paths, `use`, groups, nested `svg`, style sheets, transforms, `viewBox` and units (mm, in, pt, px at 96 an inch) are
-/// resolved as the format says. A shape is drawn along its stroke, however wide; one without a stroke along the border of its
-/// fill, once. Curves become chords, or arcs where [`SvgOptions::arcs`] asks for them, dashes strokes, markers shapes; a line of
-/// no length with round or square caps is a dot. What is hidden (`display`, `visibility`, opacity 0, no paint) is not drawn, nor
-/// is what has the colour of the paper, what clip paths, masks and nested `svg` elements cut off, or a layer whose name begins with
-/// `%`. A mask shows where luminance times alpha is at least one half. The colour of a gradient is that of its first visible stop, of
-/// a pattern or of a paint that is not known black. What no pen draws is counted in [`SvgLeftOut`], what is done otherwise than the
-/// file says told in [`SvgDrawing::problems`]. Other files are never opened.
+/// Shapes, paths, `use`, groups, nested `svg`, style sheets, transforms, `viewBox` and units (mm, in, pt, px
+/// at 96 an inch) are resolved as the format says. A shape is drawn along its stroke, however wide; one
+/// without a stroke along the border of its fill, once. Curves become chords, or arcs where
+/// [`SvgOptions::arcs`] asks for them, dashes strokes, markers shapes; a line of no length with round or
+/// square caps is a dot. What is hidden (`display`, `visibility`, opacity 0, no paint) is not drawn, nor is
+/// what has the colour of the paper, what clip paths, masks and nested `svg` elements cut off, or a layer
+/// whose name begins with `%`. A mask shows where luminance times alpha is at least one half. The colour of a
+/// gradient is that of its first visible stop, of a pattern or of a paint that is not known black. What no
+/// pen draws is counted in [`SvgLeftOut`], what is done otherwise than the file says told in
+/// [`SvgDrawing::problems`]. Other files are never opened.
 ///
 /// Where no thread can be had, as on wasm32, elements may be nested 48 deep instead of 1000.
 ///
-/// A text that is given away (`Vec<u8>`) is dropped as soon as it has been parsed: a large file takes less memory then.
+/// A text that is given away (`Vec<u8>`) is dropped as soon as it has been parsed: a large file takes less
+/// memory then.
 ///
 /// Coordinates are parsed in single precision: to 0.001 px or 0.0003 mm up to 4 m from the origin. Arcs are
 /// first made into cubic curves that are 0.03 % of the radius off at most, and no more than 0.1 of the file's
@@ -479,8 +487,8 @@ fn decoded(bytes: Cow<'_, [u8]>) -> Result<Cow<'_, str>, SvgError> {
 }
 
 /// `probe` is a parser that finds the boxes of elements, `parser` the one that reads the file.
-/// `draw_whole` tells the texts that the parser has all outlines of, and of these how far apart two ways along one line may be;
-/// without it, it has none.
+/// `draw_whole` tells the texts that the parser has all outlines of, and of these how far apart two ways
+/// along one line may be; without it, it has none.
 fn parse(
     mut text: Cow<'_, str>,
     options: &SvgOptions,
@@ -594,11 +602,12 @@ fn sheet_of(tree: &usvg::Tree, options: &SvgOptions) -> Result<(Drawing, Sheet),
     Ok((drawing, (width_mm, height_mm, scale)))
 }
 
-/// Whether a text is drawn, and then how far from each other two ways along one line of it may be, in the text's own unit.
+/// Whether a text is drawn, and then how far from each other two ways along one line of it may be, in the
+/// text's own unit.
 type DrawWhole<'a> = dyn Fn(&usvg::Text) -> Option<f32> + 'a;
 
-/// The elements of a file. Document types are common: entities in them are resolved, within the limits of the XML parser, but not
-/// those in other files.
+/// The elements of a file. Document types are common: entities in them are resolved, within the limits of the
+/// XML parser, but not those in other files.
 fn document_of(text: &str) -> Result<roxmltree::Document<'_>, SvgError> {
     let limit = survey::MAX_ELEMENTS;
     // Between elements, the ends of lines are nodes too.

@@ -1,7 +1,8 @@
 //! [`Moves`]: what moves an element, of all that CSS knows.
 //!
-//! The parser knows `transform` and `transform-origin` of the view box. CSS Transforms Levels 1 and 2 have more: the properties
-//! `translate`, `rotate` and `scale`, done before it in this order, and boxes of the element itself, which origins and shares are of:
+//! The parser knows `transform` and `transform-origin` of the view box. CSS Transforms Levels 1 and 2 have
+//! more: the properties `translate`, `rotate` and `scale`, done before it in this order, and boxes of the
+//! element itself, which origins and shares are of:
 //!
 //! ```text
 //!   origin · translate · rotate · scale · transform · back from the origin
@@ -10,8 +11,8 @@
 //!   │      │ fill-box│              │
 //! ```
 //!
-//! Where a file says any of it, the cascade is followed here, and each element that is moved gets one matrix. The boxes are
-//! those that the parser finds, the inner ones first: what is within a box has been moved then.
+//! Where a file says any of it, the cascade is followed here, and each element that is moved gets one matrix.
+//! The boxes are those that the parser finds, the inner ones first: what is within a box has been moved then.
 
 use super::css_transform::{self, Matrix, times};
 use super::rewrite::{declarations, sound};
@@ -122,7 +123,8 @@ impl Moves {
         moves
     }
 
-    /// How many boxes lie within each: those around come after those in them, also where these are drawn by a reference.
+    /// How many boxes lie within each: those around come after those in them, also where these are drawn by a
+    /// reference.
     fn find_levels(&mut self, document: &Document<'_>) {
         let boxed: BTreeMap<usize, usize> = self
             .moved
@@ -318,8 +320,8 @@ pub(super) fn has_any(document: &Document<'_>) -> bool {
     })
 }
 
-/// What an element's attributes, the style sheets and its `style` say of each property, the last word of these; `None` where it is
-/// nothing, or nothing that the parser does not know.
+/// What an element's attributes, the style sheets and its `style` say of each property, the last word of
+/// these; `None` where it is nothing, or nothing that the parser does not know.
 fn declared(
     node: Node<'_, '_>,
     sheet: &simplecss::StyleSheet<'_>,
@@ -430,8 +432,8 @@ pub(super) fn after_name(text: &str, range: Range<usize>) -> usize {
     range.start + end.unwrap_or(0)
 }
 
-/// The boxes of all elements with names, each without and with its stroke, in the unit of what they hold; a clone's without its `x`
-/// and `y`, as browsers have it.
+/// The boxes of all elements with names, each without and with its stroke, in the unit of what they hold; a
+/// clone's without its `x` and `y`, as browsers have it.
 fn find(group: &usvg::Group, boxes: &mut BTreeMap<String, (Area, Area)>) {
     for node in group.children() {
         if !node.id().is_empty() {

@@ -1,7 +1,9 @@
-//! [`parted`]: contours of letters that go along a line and back on it: the letters of fonts for pens, which are lines, and not areas.
+//! [`parted`]: contours of letters that go along a line and back on it: the letters of fonts for pens, which
+//! are lines, and not areas.
 //!
-//! A font has closed contours only, so one for pens and cutters goes back where it came, and a pen that follows it draws every line
-//! twice. Each segment that the next one, or what is left of those before it, takes back again is one line:
+//! A font has closed contours only, so one for pens and cutters goes back where it came, and a pen that
+//! follows it draws every line twice. Each segment that the next one, or what is left of those before it,
+//! takes back again is one line:
 //!
 //! ```text
 //!   a ──▶ b ──▶ c ──▶ b ──▶ d ──▶ b ──▶ a        lines: a b c, b d
@@ -12,8 +14,8 @@
 
 use usvg::tiny_skia_path::{Path, PathBuilder, PathSegment, Point};
 
-/// How far the way back may be from the way forth, and how large a dot may be, ems. The thinnest stems of letters that are areas are
-/// some ten times as wide.
+/// How far the way back may be from the way forth, and how large a dot may be, ems. The thinnest stems of
+/// letters that are areas are some ten times as wide.
 #[cfg(feature = "svg-text")]
 pub(super) const SLACK_EM: f32 = 0.001;
 
@@ -57,8 +59,8 @@ impl ContourSegment {
     }
 }
 
-/// The outlines and the lines of a text's path, where it has any lines; a dot is a line from its place to its place. `slack` is a
-/// length in the path's own unit.
+/// The outlines and the lines of a text's path, where it has any lines; a dot is a line from its place to its
+/// place. `slack` is a length in the path's own unit.
 pub(super) fn parted(path: &Path, slack: f32) -> Option<(Option<Path>, Path)> {
     let (mut outlines, mut lines) = (PathBuilder::new(), PathBuilder::new());
     let mut contour: Vec<ContourSegment> = Vec::new();

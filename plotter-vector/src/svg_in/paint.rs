@@ -1,13 +1,13 @@
-//! [`known`]: paints as the parser knows them. For a plotter any paint but `none` is ink: one that is not understood draws the line
-//! all the same, in black.
+//! [`known`]: paints as the parser knows them. For a plotter any paint but `none` is ink: one that is not
+//! understood draws the line all the same, in black.
 
 use crate::picture::Rgb;
 use std::str::FromStr;
 use svgtypes::Color;
 
 impl Rgb {
-    /// A colour as CSS writes it: by its name, or as `#f80`, `rgb(255 136 0)`, `hsl(32 100% 50%)`, `oklch(0.75 0.18 60)`; without
-    /// its alpha. `None` where it is not understood.
+    /// A colour as CSS writes it: by its name, or as `#f80`, `rgb(255 136 0)`, `hsl(32 100% 50%)`,
+    /// `oklch(0.75 0.18 60)`; without its alpha. `None` where it is not understood.
     ///
     /// ```
     /// # use plotter_vector::Rgb;

@@ -1,8 +1,8 @@
 //! [`Rewritten`]: a file in words that the parser knows.
 //!
-//! The parser leaves out without a word what it does not know: a paint, a transform with units, a layer without an `id`. What such
-//! a place holds is written anew before it reads the file, in attributes, `style` and style sheets alike; all lines stay where they
-//! were. What has no other words is told.
+//! The parser leaves out without a word what it does not know: a paint, a transform with units, a layer
+//! without an `id`. What such a place holds is written anew before it reads the file, in attributes, `style`
+//! and style sheets alike; all lines stay where they were. What has no other words is told.
 
 use super::blank_nodes::moved_by;
 use super::css_transform::{self, Plain};
@@ -92,8 +92,8 @@ struct Rewriter<'a> {
     edits: Vec<(Range<usize>, String)>,
     /// Attributes that elements get.
     added: Added,
-    /// Whether elements are moved otherwise than the parser knows: then what moves them is taken out of style sheets and `style`s,
-    /// and put together for each.
+    /// Whether elements are moved otherwise than the parser knows: then what moves them is taken out of style
+    /// sheets and `style`s, and put together for each.
     has_moves: bool,
     /// Byte in the file and text of each.
     problems: Vec<(usize, String)>,
@@ -230,8 +230,8 @@ fn variables<'a>(document: &'a Document<'a>) -> BTreeMap<&'a str, &'a str> {
     variables
 }
 
-/// Hands the places of name and value of each declaration of a style sheet, or of a `style`, to `visit`; without blanks around them.
-/// What has no colon is a name without a value.
+/// Hands the places of name and value of each declaration of a style sheet, or of a `style`, to `visit`;
+/// without blanks around them. What has no colon is a name without a value.
 pub(super) fn declarations(
     text: &str,
     is_sheet: bool,
@@ -455,8 +455,9 @@ impl<'a> Rewriter<'a> {
         self.edits.extend(edits.into_iter().map(|(part, new)| (placed(part), new)));
     }
 
-    /// The declarations of a `style` or a style sheet that the parser does not know as they stand; `place` is where a byte stands in
-    /// the file. One that is no declaration, or of a variable, gives way: the parser would leave out all that follows.
+    /// The declarations of a `style` or a style sheet that the parser does not know as they stand; `place` is
+    /// where a byte stands in the file. One that is no declaration, or of a variable, gives way: the parser
+    /// would leave out all that follows.
     fn declared(
         &mut self,
         text: &str,
@@ -488,7 +489,8 @@ impl<'a> Rewriter<'a> {
         edits
     }
 
-    /// A property's value in words that the parser knows, where it is not so already. What is not done is told at the byte.
+    /// A property's value in words that the parser knows, where it is not so already. What is not done is
+    /// told at the byte.
     fn value(&mut self, name: &str, value: &str, byte: usize, in_style: bool) -> Option<String> {
         let resolved = self.without_variables(value);
         let value = resolved.as_ref();

@@ -1,7 +1,9 @@
-//! [`font_file`]: the letters of HPGL's labels as a TrueType font, so that texts are set in them as in any other.
+//! [`font_file`]: the letters of HPGL's labels as a TrueType font, so that texts are set in them as in any
+//! other.
 //!
-//! A font's contours are closed, the strokes of these letters are not: each becomes a contour that goes along the stroke and comes
-//! back a hair beside it. Whoever draws the text takes such contours for strokes again (see [`one_line`](super::one_line)).
+//! A font's contours are closed, the strokes of these letters are not: each becomes a contour that goes along
+//! the stroke and comes back a hair beside it. Whoever draws the text takes such contours for strokes again
+//! (see [`one_line`](super::one_line)).
 //!
 //! ```text
 //!   p0 ●───────● p1      forth by the stroke's own places, back beside them:
@@ -20,16 +22,19 @@ pub(super) const FAMILY: &str = "Single Stroke";
 /// Name of the family whose letters are equally wide.
 pub(super) const MONOSPACED: &str = "Single Stroke Mono";
 
-/// Units to the em. Capitals, 12 steps high, have 0.7 em, as those of common fonts for drawings have: texts keep their size.
+/// Units to the em. Capitals, 12 steps high, have 0.7 em, as those of common fonts for drawings have: texts
+/// keep their size.
 const EM_UNITS: i16 = 12_000;
 /// Units to a step of the letters' grid.
 const STEP_UNITS: i16 = 700;
 /// How far beside a stroke its contour comes back, both ways, units: a 6000th of an em. Less than
-/// [`SLACK_EM`](super::one_line::SLACK_EM), and more than single precision loses some hundred ems from the origin.
+/// [`SLACK_EM`](super::one_line::SLACK_EM), and more than single precision loses some hundred ems from the
+/// origin.
 const BESIDE_UNITS: i16 = 2;
 /// Room between the ink of two letters, steps: with it words are about as long as in Helvetica.
 const GAP_STEPS: f64 = 3.0;
-/// Widths of the ink that digits have room for, so that columns of them stand in line, and of a blank less the gap, steps.
+/// Widths of the ink that digits have room for, so that columns of them stand in line, and of a blank less
+/// the gap, steps.
 const DIGIT_STEPS: f64 = 7.0;
 const BLANK_STEPS: f64 = 2.0;
 /// Width of the grid, which all letters have room for where they are equally wide, steps.
@@ -41,8 +46,8 @@ const DESCENT_STEPS: i16 = -4;
 const CAPITAL_STEPS: i16 = 12;
 const SMALL_STEPS: i16 = 8;
 
-/// Letters of texts that Latin-1 does not have, and those of it that look nearly so: what programs write for quotation marks,
-/// dashes and blanks.
+/// Letters of texts that Latin-1 does not have, and those of it that look nearly so: what programs write for
+/// quotation marks, dashes and blanks.
 const LOOKS: [(char, char); 22] = [
     ('\u{2002}', ' '),
     ('\u{2003}', ' '),
@@ -177,8 +182,8 @@ pub(super) fn font_file(is_monospaced: bool) -> Vec<u8> {
     }
     let count = short(glyphs.len());
     let (top, bottom) = (ASCENT_STEPS * STEP_UNITS, DESCENT_STEPS * STEP_UNITS);
-    // Version 1.0, revision, no checksum, the magic number; flags, the em; created and modified; the least and greatest x and y;
-    // no style, 8 px at least; mixed direction, long offsets, the usual format.
+    // Version 1.0, revision, no checksum, the magic number; flags, the em; created and modified; the least
+    // and greatest x and y; no style, 8 px at least; mixed direction, long offsets, the usual format.
     let head = Table::default().longs(&[0x0001_0000, 0, 0, 0x5f0f_3cf5]).shorts(&[0, EM_UNITS]);
     let head = head.longs(&[0; 4]).shorts(&[0, bottom, widest, top, 0, 8, 2, 1, 0]);
     // Ascender, descender, gap, the greatest advance; the rest is for slanted carets.
@@ -187,7 +192,8 @@ pub(super) fn font_file(is_monospaced: bool) -> Vec<u8> {
     let maxp = Table::default().longs(&[0x0001_0000]);
     let maxp =
         maxp.shorts(&[count, short(most_places), short(most_contours), 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0]);
-    // No names of glyphs, upright, the line below letters two steps down and as thin as a stroke's contour, for it is one line, too.
+    // No names of glyphs, upright, the line below letters two steps down and as thin as a stroke's contour,
+    // for it is one line, too.
     let post = Table::default().longs(&[0x0003_0000, 0]).shorts(&[-2 * STEP_UNITS, BESIDE_UNITS]);
     let post = post.longs(&[u32::from(is_monospaced), 0, 0, 0, 0]);
     let family = if is_monospaced { MONOSPACED } else { FAMILY };
@@ -226,8 +232,8 @@ fn long(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }
 
-/// A glyph: its box, the last place of each contour, no instructions, all places on the curve, each by its way from the one before.
-/// One without contours has no bytes.
+/// A glyph: its box, the last place of each contour, no instructions, all places on the curve, each by its
+/// way from the one before. One without contours has no bytes.
 fn outline(glyf: Table, contours: &[Vec<(i16, i16)>]) -> Table {
     let places: Vec<(i16, i16)> = contours.iter().flatten().copied().collect();
     let bounds =
@@ -262,11 +268,13 @@ fn code_map(codes: &[(char, u32)]) -> Table {
     header.longs(&[long(16 + groups.0.len()), 0, long(codes.len())]).bytes(&groups.0)
 }
 
-/// Table OS/2, version 4: where letters below and above the line stand, lines through them, how high they are.
+/// Table OS/2, version 4: where letters below and above the line stand, lines through them, how high they
+/// are.
 fn metrics(widest: i16) -> Table {
     let (half, above) = (EM_UNITS / 2, EM_UNITS / 3);
     let table = Table::default().shorts(&[4, widest, 400, 5, 0]);
-    // Lowered and raised letters: size, way to the right, and way down or up; the line through letters, half as high as small ones.
+    // Lowered and raised letters: size, way to the right, and way down or up; the line through letters, half
+    // as high as small ones.
     let table = table.shorts(&[half, half, 0, EM_UNITS / 7, half, half, 0, above]);
     let table = table.shorts(&[BESIDE_UNITS, SMALL_STEPS * STEP_UNITS / 2, 0]);
     // No classification, all of Latin-1 (two blocks), no vendor; regular, the first and last of its letters.

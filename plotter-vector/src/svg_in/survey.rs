@@ -1,7 +1,7 @@
 //! [`Survey`]: what a file holds, and whether it is safe to follow its references.
 //!
-//! A few lines of `<use>` can stand for more elements than there is memory for, and a chain of patterns for more
-//! nesting than there is stack. Both are counted here before anything is built, each element once.
+//! A few lines of `<use>` can stand for more elements than there is memory for, and a chain of patterns for
+//! more nesting than there is stack. Both are counted here before anything is built, each element once.
 
 use super::SvgError;
 use core::ops::Range;
@@ -171,8 +171,8 @@ fn check_references(document: &Document<'_>, sets_texts: bool, max_depth: usize)
     follow(document, root, &links, &mut costs)
 }
 
-/// Elements and nesting of one element with all that it refers to. A loop rather than a recursion: the stack is
-/// what is being checked.
+/// Elements and nesting of one element with all that it refers to. A loop rather than a recursion: the stack
+/// is what is being checked.
 fn follow(
     document: &Document<'_>,
     root: NodeId,
@@ -233,8 +233,8 @@ impl Open {
     }
 }
 
-/// Steps that setting a text takes; none for other elements. Of letters that follow each other without a place of their own the
-/// parser shapes all for each piece, and searches from the first for each letter.
+/// Steps that setting a text takes; none for other elements. Of letters that follow each other without a
+/// place of their own the parser shapes all for each piece, and searches from the first for each letter.
 fn text_steps(document: &Document<'_>, id: NodeId, links: &Links<'_>) -> usize {
     /// Letters that are passed over in the time in which one is shaped.
     const PASSED: usize = 256;
@@ -312,8 +312,8 @@ fn rules<'a>(document: &'a Document<'_>) -> Vec<Rule<'a>> {
 }
 
 impl Rule<'_> {
-    /// Whether the rule may be for this element: when its name, id or a class of it is in the selector, or the selector
-    /// is beyond this reading. Too often is safe: the reference is counted where it is not.
+    /// Whether the rule may be for this element: when its name, id or a class of it is in the selector, or
+    /// the selector is beyond this reading. Too often is safe: the reference is counted where it is not.
     fn may_select(&self, node: Node<'_, '_>) -> bool {
         let beyond = |letter: char| matches!(letter, '*' | '[' | ':' | '\\') || !letter.is_ascii();
         let mut words =

@@ -10,8 +10,8 @@ use crate::{
     trace::{Algorithm, Progress, VectorizeError, Vectorized, Vectorizer},
 };
 
-/// Where the work has come to when the pens are told apart, when they have their strokes, and when these are ordered, on a scan
-/// of three pens; the rest are the errors.
+/// Where the work has come to when the pens are told apart, when they have their strokes, and when these are
+/// ordered, on a scan of three pens; the rest are the errors.
 const TOLD_APART: f64 = 0.3;
 const TRACED: f64 = 0.8;
 const ORDERED: f64 = 0.9;
@@ -19,20 +19,21 @@ const ORDERED: f64 = 0.9;
 /// What the vectorization found on a picture in colour.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VectorizedColour {
-    /// The strokes of all pens and the errors of all their ink. No split: pens are told by colour, not by a level.
+    /// The strokes of all pens and the errors of all their ink. No split: pens are told by colour, not by a
+    /// level.
     pub traced: Vectorized,
     /// The pens, given or found; the numbers of the strokes' pens are theirs.
     pub palette: Palette,
-    /// The ink of each pen as it was vectorized, in the order of the palette: whole where other pens have crossed it,
-    /// and without dirt.
+    /// The ink of each pen as it was vectorized, in the order of the palette: whole where other pens have
+    /// crossed it, and without dirt.
     pub inks: Vec<Bitmap>,
     /// The pixel with the greatest error and its error, px; none without ink.
     pub worst: Option<(Pixel, f64)>,
 }
 
 impl Vectorizer {
-    /// Vectorizes a picture in colour, pen by pen; then all strokes are ordered, each pen's together. The threshold is
-    /// not asked. Where one pen crosses another, its lines go on under it.
+    /// Vectorizes a picture in colour, pen by pen; then all strokes are ordered, each pen's together. The
+    /// threshold is not asked. Where one pen crosses another, its lines go on under it.
     ///
     /// ```
     /// # use plotter_vector::{Colour, Vectorizer, ink::Pens};
@@ -57,7 +58,8 @@ impl Vectorizer {
         self.vectorize_colour_with_progress(picture, pens, &mut Progress::silent())
     }
 
-    /// The same, told and stopped between its steps: the telling apart, each pen's strokes, the order, each pen's errors.
+    /// The same, told and stopped between its steps: the telling apart, each pen's strokes, the order, each
+    /// pen's errors.
     ///
     /// # Errors
     /// [`VectorizeError`].

@@ -33,9 +33,9 @@ use std::collections::BTreeSet;
 pub enum Algorithm {
     /// Ordered tracking, pre-elimination and [`DynamicThreshold`], drawn in tracking order: as published.
     Published,
-    /// The middle of each line, its crossings and corners where they are, [`Bounded`], strokes ordered for little
-    /// travel. Drawings of lines one pixel wide are tracked pixel by pixel: there the raster is the line. Those with grey
-    /// rims are centred as wider ones are.
+    /// The middle of each line, its crossings and corners where they are, [`Bounded`], strokes ordered for
+    /// little travel. Drawings of lines one pixel wide are tracked pixel by pixel: there the raster is the
+    /// line. Those with grey rims are centred as wider ones are.
     #[default]
     Ours,
 }
@@ -47,8 +47,8 @@ pub enum Mode {
     /// A stroke down the middle of each line; what is far wider than the lines is outlined.
     #[default]
     Centreline,
-    /// The outlines of everything. What a pen of [`Areas::pen_px`] cannot go around inside, as lines up to its width, is
-    /// drawn along its middle.
+    /// The outlines of everything. What a pen of [`Areas::pen_px`] cannot go around inside, as lines up to
+    /// its width, is drawn along its middle.
     Outline,
     /// As `Centreline`, and areas begin already at three times the width of the lines; they are drawn in
     /// [`Vectorizer::areas`]' style.
@@ -92,23 +92,26 @@ pub struct Vectorizer {
     pub tracking: OrderedTracking,
     /// The published simplification.
     pub published: DynamicThreshold,
-    /// Ours: its tolerance is the promise that nothing lies farther from the segment that replaced it: of lines one
-    /// pixel wide each pixel, of wider ones each point of the line down their middle. Marks up to 32 px wide and high
-    /// (lettering) are then drawn again as a whole, their vertices where a pen leaves the ink that is there.
+    /// Ours: its tolerance is the promise that nothing lies farther from the segment that replaced it: of
+    /// lines one pixel wide each pixel, of wider ones each point of the line down their middle. Marks up to
+    /// 32 px wide and high (lettering) are then drawn again as a whole, their vertices where a pen leaves the
+    /// ink that is there.
     pub ours: Bounded,
-    /// Ours: whether curves become circular arcs and circles where that saves vertices, with the same promise.
+    /// Ours: whether curves become circular arcs and circles where that saves vertices, with the same
+    /// promise.
     pub arcs: bool,
-    /// Ours: whether curves become cubic curves where that saves vertices, with the same promise; not with arcs.
+    /// Ours: whether curves become cubic curves where that saves vertices, with the same promise; not with
+    /// arcs.
     pub curves: bool,
     /// What ours draws.
     pub mode: Mode,
     /// Ours: whether ink that one stroke a line leaves bare is worth more strokes.
     pub prefer: Prefer,
-    /// Ours: smaller marks of ink are dirt, and smaller holes in it too, px; `None` for what a pen of the lines' width
-    /// cannot have made.
+    /// Ours: smaller marks of ink are dirt, and smaller holes in it too, px; `None` for what a pen of the
+    /// lines' width cannot have made.
     pub smallest_mark_px: Option<u32>,
-    /// Ours: what is wider is no line but an area, px; `None` for 6 times the lines' width, in mixed mode 3 times. It is
-    /// at least what the pen of [`Vectorizer::areas`] needs to find its way inside.
+    /// Ours: what is wider is no line but an area, px; `None` for 6 times the lines' width, in mixed mode 3
+    /// times. It is at least what the pen of [`Vectorizer::areas`] needs to find its way inside.
     pub max_line_px: Option<u32>,
     /// Ours: how lines are thinned.
     pub thinning: ThinningMethod,
@@ -121,7 +124,8 @@ pub struct Vectorizer {
 }
 
 impl Default for Vectorizer {
-    /// Ours to half a pixel, everything found from the picture, straight lines only, areas outlined by a pen of one pixel.
+    /// Ours to half a pixel, everything found from the picture, straight lines only, areas outlined by a pen
+    /// of one pixel.
     fn default() -> Self {
         Self {
             algorithm: Algorithm::default(),
@@ -159,8 +163,8 @@ pub struct Vectorized {
     pub removed: Despeckled,
 }
 
-/// Most ink of a picture that is vectorized: 2²⁵ px, five times the lines of a dense A0 sheet at 300 dots per inch,
-/// take 6 s and 0.9 GB.
+/// Most ink of a picture that is vectorized: 2²⁵ px, five times the lines of a dense A0 sheet at 300 dots per
+/// inch, take 6 s and 0.9 GB.
 pub const MAX_INK_PIXELS: u64 = 1 << 25;
 
 /// Why a picture cannot be vectorized.
@@ -369,8 +373,8 @@ impl Vectorizer {
         (pen, despeckle(ink, self.smallest_mark_px(pen.width_px)))
     }
 
-    /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Where these are is better known of grey
-    /// rims.
+    /// Whether the pixels of the ink are followed as they are: lines one pixel wide. Where these are is
+    /// better known of grey rims.
     pub(crate) fn keeps_pixels(&self, pen: Pen, has_rims: impl Fn() -> bool) -> bool {
         let is_raster = pen.width_px <= 1 && pen.hairlines != Hairlines::Pen;
         is_raster && self.mode != Mode::Outline && !has_rims()
@@ -441,7 +445,8 @@ impl Vectorizer {
 
     /// How lines become strokes.
     pub(crate) fn centring(&self, max_line_px: u32) -> Centring {
-        // The promise holds for the middle of the ink; part of it goes for the jumps of its edges from pixel to pixel.
+        // The promise holds for the middle of the ink; part of it goes for the jumps of its edges from pixel
+        // to pixel.
         let bounded = Bounded { tolerance_px: 0.85 * self.ours.tolerance_px };
         // What is left of an area's rim may be as wide again.
         let centring = Centring::new(self.thinning, max_line_px, bounded, self.band_rows);
@@ -541,8 +546,8 @@ pub(crate) struct Unordered {
     pub(crate) removed: Despeckled,
 }
 
-/// A stroke of each figure, but for what others draw within `covered_px`, and the errors; of pixels that figures share those of the
-/// first of them.
+/// A stroke of each figure, but for what others draw within `covered_px`, and the errors; of pixels that
+/// figures share those of the first of them.
 fn simplify(
     ink: &Bitmap,
     figures: &Figures,

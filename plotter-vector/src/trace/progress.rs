@@ -23,8 +23,8 @@ impl core::error::Error for Cancelled {}
 
 /// How far long work has come: tells a function the done part, from 0 to 1, and lets it stop the work.
 ///
-/// The part never falls, and the function is asked about a thousand times in all. Work of several passes gives each
-/// its [`part`](Progress::part) of the whole.
+/// The part never falls, and the function is asked about a thousand times in all. Work of several passes
+/// gives each its [`part`](Progress::part) of the whole.
 ///
 /// ```
 /// use core::ops::ControlFlow;

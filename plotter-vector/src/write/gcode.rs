@@ -5,9 +5,9 @@ use crate::stroke::{Drawing, Scale};
 use core::fmt::Write;
 use plotter_motion::gcode::{WriteError, WriteOptions, Writer};
 
-/// Writes a drawing as G-code in mm, y up; arcs as G2 and G3, a circle as two halves. Each change of pen is asked for as the
-/// options say. A machine that knows no arcs takes [`Drawing::chords`]. Cubic curves, which GRBL does not know, are chords
-/// no farther than 0.02 px from them.
+/// Writes a drawing as G-code in mm, y up; arcs as G2 and G3, a circle as two halves. Each change of pen is
+/// asked for as the options say. A machine that knows no arcs takes [`Drawing::chords`]. Cubic curves, which
+/// GRBL does not know, are chords no farther than 0.02 px from them.
 ///
 /// # Errors
 /// [`WriteError`]: a point or a speed that the options do not allow, or an error of `out`.

@@ -7,9 +7,10 @@ use core::fmt::Write;
 use plotter_motion::hpgl::{UNITS_PER_MM, WriteError, Writer};
 use plotter_motion::{PenMove, PlotOp};
 
-/// Writes a drawing as HPGL in plotter units of 0.025 mm. Vertices that fall on the same unit as the one before
-/// are written once. Each change of pen is an `SP`. Arcs are `AA`, a circle is a `CI` about its centre: see [`Writer`].
-/// The language of these plotters knows no cubic curves: they are chords no farther than 0.02 px from them.
+/// Writes a drawing as HPGL in plotter units of 0.025 mm. Vertices that fall on the same unit as the one
+/// before are written once. Each change of pen is an `SP`. Arcs are `AA`, a circle is a `CI` about its
+/// centre: see [`Writer`]. The language of these plotters knows no cubic curves: they are chords no farther
+/// than 0.02 px from them.
 ///
 /// # Errors
 /// [`WriteError`]: a point farther out than a plotter's numbers go, or an error of `out`.

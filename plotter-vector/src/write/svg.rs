@@ -5,12 +5,14 @@ use crate::{ink::Palette, picture::Rgb, stroke::Drawing};
 use core::f64::consts::PI;
 use core::fmt::{self, Write};
 
-/// Most that one arc command spans, rad: nearer to half a circle the rounding of its radius would move its middle.
+/// Most that one arc command spans, rad: nearer to half a circle the rounding of its radius would move its
+/// middle.
 const MOST_RAD: f64 = 2.0 * PI / 3.0;
 
 /// Writes a drawing as SVG: the view box is the picture's size in px, y down, the centre of pixel (i, j) at
-/// (i + 0.5, j + 0.5); one polyline a stroke, with round caps so that dots show; a path for a stroke with arcs or
-/// cubic curves, a circle for a whole one. All pens are black, each in a group of its own, as with [`svg_in_colour`].
+/// (i + 0.5, j + 0.5); one polyline a stroke, with round caps so that dots show; a path for a stroke with
+/// arcs or cubic curves, a circle for a whole one. All pens are black, each in a group of its own, as with
+/// [`svg_in_colour`].
 ///
 /// # Errors
 /// Those of the writer.
@@ -28,8 +30,8 @@ pub fn svg(drawing: &Drawing, stroke_width_px: f64, out: &mut impl Write) -> fmt
     svg_in_colour(drawing, &Palette::default(), stroke_width_px, out)
 }
 
-/// As [`svg`], with a group for each pen in the colour that the palette gives it: in ascending order of their numbers,
-/// within each in the order of drawing. A pen that the palette does not have is black.
+/// As [`svg`], with a group for each pen in the colour that the palette gives it: in ascending order of their
+/// numbers, within each in the order of drawing. A pen that the palette does not have is black.
 ///
 /// # Errors
 /// Those of the writer.

@@ -1,4 +1,5 @@
-//! Corners in which three lines end, under a camera's blur: it takes the ink away from the outside of the corner and fills the inside.
+//! Corners in which three lines end, under a camera's blur: it takes the ink away from the outside of the
+//! corner and fills the inside.
 
 use crate::off_lines;
 

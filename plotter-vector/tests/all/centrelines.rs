@@ -8,8 +8,8 @@ use plotter_vector::{
 };
 use segment_distance::segment_distance;
 
-/// Distance of what is found from what was drawn that a raster of one bit explains: half a pixel, and half a pixel of
-/// tolerance.
+/// Distance of what is found from what was drawn that a raster of one bit explains: half a pixel, and half a
+/// pixel of tolerance.
 const NEAR_PX: f64 = 1.0;
 
 type Stroke = Vec<PxPoint>;
@@ -109,7 +109,8 @@ fn a_branch_meets_the_line_where_it_leaves_it() {
 
 #[test]
 fn an_arrow_head_comes_to_one_point() {
-    // The strokes of the head leave the tip at 17 degrees: at a pen of 2.5 px they are apart on half of their length.
+    // The strokes of the head leave the tip at 17 degrees: at a pen of 2.5 px they are apart on half of their
+    // length.
     for angle in [0.0, 20.0, 45.0, 75.0, 90.0] {
         let head = [-17.0, 17.0].map(|side| ray(angle + side, 15.7));
         let lines = [through(angle + 90.0, 12.0), ray(angle, 80.0)];
@@ -138,8 +139,8 @@ fn what_sticks_out_of_a_wide_pens_end_is_no_stroke() {
     }
 }
 
-/// What is found of lines that a pen `pen_px` wide drew, on 200 x 200 px with a level for each sixteenth of a pixel that it
-/// covers: the same by rows as of the whole picture.
+/// What is found of lines that a pen `pen_px` wide drew, on 200 x 200 px with a level for each sixteenth of a
+/// pixel that it covers: the same by rows as of the whole picture.
 fn traced_of_levels(lines: &[Stroke], pen_px: f64) -> Drawing {
     let covered = |x: u32, y: u32| {
         let inside = |step: u32| {

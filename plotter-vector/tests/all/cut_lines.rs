@@ -1,5 +1,5 @@
-//! Lines that cross, or end on one another, in a picture whose rim cuts them all: what a camera sees of a larger drawing, and a scan of a
-//! part of it.
+//! Lines that cross, or end on one another, in a picture whose rim cuts them all: what a camera sees of a
+//! larger drawing, and a scan of a part of it.
 #![allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -17,7 +17,8 @@ use random::Random;
 
 const SIDE: f64 = 300.0;
 
-/// Junctions lie at least as far within the picture, and the rim cuts lines at least as far from its corners and from each other, px.
+/// Junctions lie at least as far within the picture, and the rim cuts lines at least as far from its corners
+/// and from each other, px.
 const INSIDE_PX: f64 = 20.0;
 const APART_PX: f64 = 30.0;
 

@@ -8,13 +8,13 @@ use follow_figures::over;
 use plotter_vector::PxPoint;
 use plotter_vector::follow::{CameraSettings, End, MappingSettings, Paper, TableError};
 
-/// With an exact table: the least coverage (a tree whose twigs have several widths, and dots, which are no lines: .974), and the
-/// greatest rms (the tree again: .72 px).
+/// With an exact table: the least coverage (a tree whose twigs have several widths, and dots, which are no
+/// lines: .974), and the greatest rms (the tree again: .72 px).
 const LEAST_COVERAGE: f64 = 0.97;
 const MOST_RMS_PX: f64 = 0.75;
 
-/// The table of `docs/results/line-following.md`. `TABLE` is the table's error in px, `DRAWING` a drawing's name; `INTO` a folder into which the drawings
-/// are written as pictures.
+/// The table of `docs/results/line-following.md`. `TABLE` is the table's error in px, `DRAWING` a drawing's name; `INTO` a
+/// folder into which the drawings are written as pictures.
 #[test]
 #[ignore = "ten minutes in release: cargo test --release -p plotter-vector --test all follow_kinds:: -- --ignored --nocapture"]
 fn drawings_of_many_kinds() {

@@ -1,6 +1,8 @@
-//! Lines of 1 to 2 px at 1 bit a pixel: what a threshold leaves of a thin pen, columns of one pixel and of two in turn.
+//! Lines of 1 to 2 px at 1 bit a pixel: what a threshold leaves of a thin pen, columns of one pixel and of
+//! two in turn.
 //!
-//! `cargo test -p plotter-vector --test all hairline_widths:: -- --nocapture` prints what comes of each figure at each width.
+//! `cargo test -p plotter-vector --test all hairline_widths:: -- --nocapture` prints what comes of each
+//! figure at each width.
 #![allow(
     clippy::unwrap_used,
     clippy::cast_possible_truncation,

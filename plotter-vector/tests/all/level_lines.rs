@@ -1,5 +1,5 @@
-//! What a raster of one bit tells about the place of a line along its rows: `cargo test -p plotter-vector --test
-//! level_lines -- --nocapture`.
+//! What a raster of one bit tells about the place of a line along its rows:
+//! `cargo test -p plotter-vector --test level_lines -- --nocapture`.
 #![allow(
     clippy::unwrap_used,
     clippy::float_cmp,

@@ -1,4 +1,5 @@
-//! Where straight lines end whose pen was not lifted there: square ends, and lines that the picture's rim cuts.
+//! Where straight lines end whose pen was not lifted there: square ends, and lines that the picture's rim
+//! cuts.
 
 use crate::segment_distance;
 

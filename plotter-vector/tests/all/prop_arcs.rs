@@ -117,7 +117,8 @@ proptest! {
     }
 }
 
-/// Every piece of a drawing with its pen, in whichever direction it is drawn: an arc by its middle and its length.
+/// Every piece of a drawing with its pen, in whichever direction it is drawn: an arc by its middle and its
+/// length.
 fn pieces(drawing: &Drawing) -> Vec<String> {
     let mut all = Vec::new();
     for index in 0..drawing.strokes().len() {
@@ -220,7 +221,8 @@ fn arcs_take_few_pieces() {
             found.push((lines, pieces));
         }
     }
-    // Measured 123/17, 26/11, 20/6; with noise 135/20, 31/14, 21/8. Some room for a tuned search, none for a broken one.
+    // Measured 123/17, 26/11, 20/6; with noise 135/20, 31/14, 21/8. Some room for a tuned search, none for a
+    // broken one.
     let (lines, pieces) = found.iter().fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
     assert!(pieces * 4 < lines, "{pieces} of {lines}");
 }

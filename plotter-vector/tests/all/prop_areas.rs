@@ -20,7 +20,8 @@ const DISC_MARGIN_PX: f64 = 3.0;
 /// How far a line that runs into a disc may reach into it, px.
 const ROOT_PX: f64 = 2.0;
 
-/// What the path of a pen's centre may be nearer to the paper by than half the pen, px: rounding by interpolation.
+/// What the path of a pen's centre may be nearer to the paper by than half the pen, px: rounding by
+/// interpolation.
 const INSET_TOLERANCE_PX: f64 = 0.5;
 
 /// What a place may be farther by than half a pen from the hatching that covers it, px.
@@ -155,7 +156,8 @@ proptest! {
     }
 }
 
-/// Distance to the nearest centre of a paper pixel, px, outside of the picture too; [`FAR_PX`] when it is farther.
+/// Distance to the nearest centre of a paper pixel, px, outside of the picture too; [`FAR_PX`] when it is
+/// farther.
 fn nearest_paper(ink: &Bitmap, at: PxPoint) -> f64 {
     let (left, top) = ((at.x - FAR_PX).floor() as i64, (at.y - FAR_PX).floor() as i64);
     let reach = 2 * FAR_PX as i64 + 2;

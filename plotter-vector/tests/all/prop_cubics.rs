@@ -117,7 +117,8 @@ proptest! {
         let curve = bounded(tolerance_px).cubics(&sites, false);
         let backwards: Vec<PxPoint> = sites.iter().rev().copied().collect();
         let other = bounded(tolerance_px).cubics(&backwards, false);
-        // The farthest piece from one end is not that from the other: 10 and 16 are the farthest apart of 3000 lines.
+        // The farthest piece from one end is not that from the other: 10 and 16 are the farthest apart of
+        // 3000 lines.
         let (one, other) = (curve.vertices.len(), other.vertices.len());
         prop_assert!(one.abs_diff(other) <= 4 + one.min(other) / 2, "{} {}", one, other);
     }
@@ -246,8 +247,8 @@ fn curves_take_few_pieces() {
             found.push((lines, arcs, pieces));
         }
     }
-    // Measured 123/17/17, 26/11/4, 20/6/5, 87/59/40; with noise 135/20/18, 31/14/8, 21/8/5, 94/64/47. Some room for a
-    // tuned search, none for a broken one.
+    // Measured 123/17/17, 26/11/4, 20/6/5, 87/59/40; with noise 135/20/18, 31/14/8, 21/8/5, 94/64/47. Some
+    // room for a tuned search, none for a broken one.
     let (lines, arcs, pieces) =
         found.iter().fold((0, 0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1, sum.2 + one.2));
     assert!(10 * pieces < 3 * lines && 10 * pieces < 8 * arcs, "{pieces} of {lines} and {arcs}");

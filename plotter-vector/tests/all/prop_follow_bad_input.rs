@@ -1,4 +1,5 @@
-//! Bad input of the line followers: each ends in a state that says what and where, within a bound, inside of the machine's area.
+//! Bad input of the line followers: each ends in a state that says what and where, within a bound, inside of
+//! the machine's area.
 #![allow(clippy::cast_possible_truncation, reason = "small numbers, and bytes of noise")]
 
 use plotter_vector::follow::{
@@ -277,8 +278,8 @@ fn any_window() -> impl Strategy<Value = Gray> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 8, ..ProptestConfig::default() })]
 
-    /// Whatever the windows show, and of whatever size: ours ends within its limit, the published ones answer each, no move leaves the
-    /// area, and every place is a number (which `run` asserts).
+    /// Whatever the windows show, and of whatever size: ours ends within its limit, the published ones answer
+    /// each, no move leaves the area, and every place is a number (which `run` asserts).
     #[test]
     fn any_windows_are_answered_inside_of_the_area(
         windows in prop::collection::vec(any_window(), 1..6),

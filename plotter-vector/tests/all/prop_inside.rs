@@ -15,7 +15,8 @@ const ROUNDING_PX: f64 = 1e-6;
 /// How far the chords that stand for them may lie off, px.
 const CHORD_ERROR_PX: f64 = 1e-3;
 
-/// Noise of any density: of grey levels, of black and white, of a few levels, or of grey on white; or strokes of it.
+/// Noise of any density: of grey levels, of black and white, of a few levels, or of grey on white; or strokes
+/// of it.
 fn noise() -> impl Strategy<Value = Gray> {
     (1_usize..40, 1_usize..40, 0_u8..5, any::<u8>(), 1_usize..4)
         .prop_flat_map(|(width, height, kind, share, thick)| {
@@ -68,7 +69,8 @@ fn vectorizers() -> impl Strategy<Value = Vectorizer> {
     )
 }
 
-/// The first place of a drawing that lies outside of its picture: vertices not even by a rounding, nor what is no number.
+/// The first place of a drawing that lies outside of its picture: vertices not even by a rounding, nor what
+/// is no number.
 fn outside(drawing: &Drawing) -> Option<PxPoint> {
     let (width, height) = (f64::from(drawing.width_px()), f64::from(drawing.height_px()));
     let beyond = |by_px: f64| {

@@ -82,7 +82,8 @@ fn drawing() -> impl Strategy<Value = Drawing> {
     })
 }
 
-/// What is drawn with which pen and speed, whichever way round and in whatever order, sheet by sheet; dots on lines are not counted.
+/// What is drawn with which pen and speed, whichever way round and in whatever order, sheet by sheet; dots on
+/// lines are not counted.
 fn ink(drawing: &Drawing) -> Vec<String> {
     let mut ink = Vec::new();
     let mut sheet = 0;

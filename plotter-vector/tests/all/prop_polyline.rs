@@ -69,8 +69,8 @@ fn bounded(tolerance_px: f64) -> Bounded {
     Bounded { tolerance_px }
 }
 
-/// Chains of pixels that turn by no more than 45 degrees a step: where one turns back, the tolerance of the polyline
-/// on pixels asks for less, as it knows no order.
+/// Chains of pixels that turn by no more than 45 degrees a step: where one turns back, the tolerance of the
+/// polyline on pixels asks for less, as it knows no order.
 fn chains() -> impl Strategy<Value = Vec<Pixel>> {
     proptest::collection::vec(0_u8..9, 1..200).prop_map(|steps| {
         const ROUND: [(i32, i32); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];

@@ -1,4 +1,5 @@
-//! Two lines that meet at an acute angle: one stroke with a corner where the pen turned, although the ink between them is filled.
+//! Two lines that meet at an acute angle: one stroke with a corner where the pen turned, although the ink
+//! between them is filled.
 //!
 //! `cargo test -p plotter-vector --test all sharp_points:: -- --nocapture` prints what comes of each angle.
 #![allow(
@@ -52,8 +53,8 @@ fn picture([from, point, to]: [PxPoint; 3], width_px: f64, is_grey: bool) -> Gra
     Gray::new(SIDE, SIDE, levels.map(level).collect()).unwrap()
 }
 
-/// Of all directions: how often it came out as one stroke of three vertices, and how far the nearest vertex is from the point, px:
-/// the mean and the most.
+/// Of all directions: how often it came out as one stroke of three vertices, and how far the nearest vertex
+/// is from the point, px: the mean and the most.
 fn found(angle_deg: f64, width_px: f64, is_grey: bool) -> (u32, f64, f64) {
     let (mut right, mut sum, mut most) = (0, 0.0_f64, 0.0_f64);
     for turn in 0..TURNS {
@@ -67,7 +68,8 @@ fn found(angle_deg: f64, width_px: f64, is_grey: bool) -> (u32, f64, f64) {
     (right, sum / f64::from(TURNS), most)
 }
 
-/// Least of [`TURNS`] that are one stroke with one corner, from 10 degrees on: of a pen of 3 px all is as wide as the raster's error.
+/// Least of [`TURNS`] that are one stroke with one corner, from 10 degrees on: of a pen of 3 px all is as
+/// wide as the raster's error.
 const RIGHT: u32 = 9;
 
 /// Least share of all, and how far the corners are from the points in the mean, px.

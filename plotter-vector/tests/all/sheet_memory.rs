@@ -11,8 +11,9 @@ use plotter_vector::{
 const WIDTH_PX: u32 = 1024;
 const PITCH_PX: u32 = 32;
 
-/// Most memory that a sheet ten times as long may add, KiB: 32 lines of 144 000 places more would take 54 MB. How the
-/// allocator packs what it is given makes some MB of difference from run to run, and with the number of threads.
+/// Most memory that a sheet ten times as long may add, KiB: 32 lines of 144 000 places more would take 54 MB.
+/// How the allocator packs what it is given makes some MB of difference from run to run, and with the number
+/// of threads.
 const MOST_KIB: u64 = 16 << 10;
 
 /// Upright lines from the first row to the last.

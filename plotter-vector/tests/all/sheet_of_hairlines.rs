@@ -65,7 +65,8 @@ fn hairlines_of_a_huge_sheet_are_followed() -> Result<(), Box<dyn std::error::Er
     let traced = Vectorizer::default().vectorize_rows_with_errors(&mut sheet, &mut Progress::silent())?;
     let errors = traced.errors.unwrap_or_default().report;
     assert_eq!(traced.pen_px, Some(1));
-    // Four level lines, the upright one, the diagonal; where lines cross one of them may be drawn in two strokes.
+    // Four level lines, the upright one, the diagonal; where lines cross one of them may be drawn in two
+    // strokes.
     assert!((6..=10).contains(&traced.drawing.strokes().len()), "{}", traced.drawing.strokes().len());
     let length_px = 4.0 * 118_999.0 + 2099.0 + 2099.0 * 2.0_f64.sqrt();
     assert!((traced.drawing.pen_down_px() - length_px).abs() < 20.0, "{}", traced.drawing.pen_down_px());

@@ -13,7 +13,8 @@ const PITCH_PX: u32 = 4 * 4096;
 /// Rows that each figure lies in.
 const FIGURE: core::ops::Range<u32> = 900..1100;
 
-/// How far the same vertex of two figures may be apart, px: coordinates of 400 000 px are rounded to 6e-11 px.
+/// How far the same vertex of two figures may be apart, px: coordinates of 400 000 px are rounded to 6e-11
+/// px.
 const ROUNDING_PX: f64 = 1e-6;
 
 /// A line 3 px wide from the first row to the last, a slanted one and a frame at every `PITCH_PX` rows.

@@ -1,4 +1,5 @@
-//! Followers over drawings, under a camera that blurs and on a table that misses: the thesis' four kinds of figure.
+//! Followers over drawings, under a camera that blurs and on a table that misses: the thesis' four kinds of
+//! figure.
 
 use crate::follow_figures;
 
@@ -72,7 +73,8 @@ fn junctions_are_lifted_over_as_seldom_as_can_be() {
 
 #[test]
 fn dense_lines_are_followed_one_by_one() {
-    // An end of them is seen at the start: a line of which none is in view is begun in its middle, and takes a lift more.
+    // An end of them is seen at the start: a line of which none is in view is begun in its middle, and takes
+    // a lift more.
     let rows: Vec<[(f64, f64); 2]> =
         (0..5).map(|i| 70.3 + 8.0 * f64::from(i)).map(|y| [(70.2, y), (190.4, y)]).collect();
     let lines: Vec<&[(f64, f64)]> = rows.iter().map(<[_; 2]>::as_slice).collect();
@@ -81,7 +83,8 @@ fn dense_lines_are_followed_one_by_one() {
     assert!(run.judged.repeated < 0.01 && run.report.lifts == 4, "{:?} {:?}", run.judged, run.report);
 }
 
-/// From an end that is some px behind the line it meets the tool goes back to where they meet, not slantwise to what is ahead of that line.
+/// From an end that is some px behind the line it meets the tool goes back to where they meet, not slantwise
+/// to what is ahead of that line.
 #[test]
 fn from_an_end_behind_another_line_the_tool_goes_back_to_where_they_meet() {
     let mut greatest = 0.0_f64;
@@ -120,8 +123,9 @@ fn at_the_limits_of_the_machine_the_tool_stays_on_the_line() {
     assert!(greatest < 4.0 && leaves > 0, "{greatest} {leaves}");
 }
 
-/// Along bare walls windows do not tell how far the camera went, and the table misses 3 px on the way round: where the way meets its
-/// beginning all that was seen is settled anew, and the tool is on the lines, too, that are followed later.
+/// Along bare walls windows do not tell how far the camera went, and the table misses 3 px on the way round:
+/// where the way meets its beginning all that was seen is settled anew, and the tool is on the lines, too,
+/// that are followed later.
 #[test]
 #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn a_way_round_bare_walls_comes_back_to_its_beginning() {
@@ -144,7 +148,8 @@ fn a_way_round_bare_walls_comes_back_to_its_beginning() {
     assert!(greatest < 1.0, "{greatest}");
 }
 
-/// 1 px between lines is nothing under 1.5 px of blur, and no window shows where they end: no look for that goes on for ever.
+/// 1 px between lines is nothing under 1.5 px of blur, and no window shows where they end: no look for that
+/// goes on for ever.
 #[test]
 #[cfg_attr(debug_assertions, ignore = "long in a debug build: .ci/run has it in release")]
 fn lines_that_are_one_under_the_blur_come_to_an_end() {
@@ -201,8 +206,8 @@ fn the_published_follower_is_never_right_on_dense_lines() {
     assert!(shortcuts + turns > 5, "{shortcuts} {turns}");
 }
 
-/// Laps of each figure: the table of `docs/results/line-following.md`. `SEEDS=from..to` are the laps, `FIGURE` is a figure's name; each lap is
-/// a line, so that a run can be split, stopped and gone on with.
+/// Laps of each figure: the table of `docs/results/line-following.md`. `SEEDS=from..to` are the laps, `FIGURE` is a figure's
+/// name; each lap is a line, so that a run can be split, stopped and gone on with.
 #[test]
 #[ignore = "minutes in release: SEEDS=0..3 cargo test --release -p plotter-vector --test all sim_follow::laps -- --ignored --nocapture"]
 fn laps_of_the_four_figures() {

@@ -1,4 +1,5 @@
-//! The thesis' own idea for lines close together, never built there: only exits that are joined to the current place count.
+//! The thesis' own idea for lines close together, never built there: only exits that are joined to the
+//! current place count.
 
 use plotter_vector::PxPoint;
 use plotter_vector::follow::{

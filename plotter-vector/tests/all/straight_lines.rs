@@ -1,4 +1,5 @@
-//! Straight lines of a pen at 1 bit a pixel, turned a little against the raster: a segment each, that ends where the pen did.
+//! Straight lines of a pen at 1 bit a pixel, turned a little against the raster: a segment each, that ends
+//! where the pen did.
 //!
 //! `cargo test -p plotter-vector --test all straight_lines:: -- --nocapture` prints what comes of each width.
 #![allow(
@@ -23,8 +24,8 @@ const WIDTHS_PX: [f64; 6] = [2.0, 2.5, 3.0, 4.0, 5.0, 9.0];
 /// From steps of 330 px to those of a pixel.
 const ANGLES_RAD: [f64; 9] = [0.003, 0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.6, core::f64::consts::FRAC_PI_4];
 
-/// What a raster of one bit leaves open: half a pixel to each side of a line that rises by less than one, and along it where
-/// a round end stops.
+/// What a raster of one bit leaves open: half a pixel to each side of a line that rises by less than one, and
+/// along it where a round end stops.
 const BESIDE_PX: f64 = 0.75;
 const END_PX: f64 = 1.25;
 
@@ -132,8 +133,8 @@ fn a_polygon_of_straight_sides_has_its_corners_where_the_sides_meet() {
 
 #[test]
 fn an_arc_stays_as_round_as_it_was() {
-    // A chord whose ends lie t outside a circle and whose middle lies t inside is 4 √(t r) long: at 0.425 px 21 to 42 on a
-    // circle. Straight stretches of its raster would give it more, and move it off the circle.
+    // A chord whose ends lie t outside a circle and whose middle lies t inside is 4 √(t r) long: at 0.425 px
+    // 21 to 42 on a circle. Straight stretches of its raster would give it more, and move it off the circle.
     for (radius_px, most) in [(50.3, 21), (110.3, 27), (170.3, 34)] {
         let steps = 720;
         let place = |step: u32| {

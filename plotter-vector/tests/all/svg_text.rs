@@ -1,4 +1,5 @@
-//! Text of SVG files as outlines: places on the sheet to a hundredth of a millimetre, and what is said of missing fonts.
+//! Text of SVG files as outlines: places on the sheet to a hundredth of a millimetre, and what is said of
+//! missing fonts.
 #![cfg(feature = "svg-text")]
 
 use crate::made_font;

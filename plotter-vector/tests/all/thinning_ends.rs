@@ -1,5 +1,5 @@
-//! Where skeletons end: straight strokes with square and round ends, and wedges that taper to a point, at many angles.
-//! `cargo test -p plotter-vector --test all thinning_ends:: -- --nocapture` prints the tables.
+//! Where skeletons end: straight strokes with square and round ends, and wedges that taper to a point, at
+//! many angles. `cargo test -p plotter-vector --test all thinning_ends:: -- --nocapture` prints the tables.
 
 use plotter_vector::{
     Bitmap, Pixel, PxPoint,
@@ -80,8 +80,8 @@ fn largest_component(ink: &Bitmap) -> BTreeSet<Pixel> {
     largest
 }
 
-/// Of strokes of one width: the farthest that a skeleton's end lies from the ink's beyond half the width, px, and how
-/// many skeletons have more or fewer ends than two.
+/// Of strokes of one width: the farthest that a skeleton's end lies from the ink's beyond half the width, px,
+/// and how many skeletons have more or fewer ends than two.
 fn strokes(method: ThinningMethod, width: u32, round: bool) -> (f64, u32, u32) {
     const SIDE: u32 = 91;
     const LENGTH: f64 = 60.0;
@@ -106,7 +106,8 @@ fn strokes(method: ThinningMethod, width: u32, round: bool) -> (f64, u32, u32) {
 
 #[test]
 fn strokes_end_half_their_width_before_their_ink() {
-    /// Beyond half the width, px: of the two pixels an end lies between, and of the octagon that stands for a circle.
+    /// Beyond half the width, px: of the two pixels an end lies between, and of the octagon that stands for a
+    /// circle.
     const SQUARE_PX: f64 = 2.5;
     const ROUND_PX: f64 = 2.5;
     /// Zhang & Suen's peels diagonal sides slower.

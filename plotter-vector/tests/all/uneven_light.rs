@@ -31,7 +31,8 @@ fn coverage(x: u32, y: u32) -> f64 {
     (2.0 - nearest).clamp(0.0, 1.0)
 }
 
-/// Light in a place, 1 where it is best: a lamp on the right, a lens, and the shadow of a hand at the upper left.
+/// Light in a place, 1 where it is best: a lamp on the right, a lens, and the shadow of a hand at the upper
+/// left.
 fn light(x: u32, y: u32) -> f64 {
     let (x, y) = (f64::from(x) / f64::from(WIDTH), f64::from(y) / f64::from(HEIGHT));
     let gradient = 0.55 + 0.45 * x;
@@ -71,8 +72,8 @@ const ADAPTIVE: Threshold = Threshold {
     min_contrast: 24,
 };
 
-/// Pixels of the strokes that are missing, and pixels of paper that are ink, in units of the strokes' pixels. A pixel
-/// that is more than a quarter and less than three quarters covered may be either.
+/// Pixels of the strokes that are missing, and pixels of paper that are ink, in units of the strokes' pixels.
+/// A pixel that is more than a quarter and less than three quarters covered may be either.
 fn wrong(ink: &Bitmap) -> (f64, f64) {
     let (mut strokes, mut missing, mut extra) = (0, 0, 0);
     for (x, y) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y))) {

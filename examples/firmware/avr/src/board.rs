@@ -19,7 +19,8 @@ struct Register(u8);
 
 impl Register {
     fn read(self) -> u8 {
-        // SAFETY: every register below exists on this microcontroller, and reading one has no effect on memory.
+        // SAFETY: every register below exists on this microcontroller, and reading one has no effect on
+        // memory.
         unsafe { read_volatile(usize::from(self.0) as *const u8) }
     }
 
@@ -64,7 +65,8 @@ pub struct Board {
 impl Board {
     /// Sets the board up. There must be but one.
     pub fn new() -> Self {
-        // phase correct PWM on both outputs, so that a duty of 0 is no pulse at all; 16 MHz by 8 and 510: 3.9 kHz
+        // phase correct PWM on both outputs, so that a duty of 0 is no pulse at all; 16 MHz by 8 and 510:
+        // 3.9 kHz
         TCCR0A.write(0b1010_0001);
         TCCR0B.write(0b010);
         DDRD.write(1 << 4 | 1 << 5 | 1 << 6 | 1 << 7);

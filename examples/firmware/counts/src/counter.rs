@@ -1,7 +1,7 @@
 //! Counts instructions with the SysTick timer.
 //!
-//! QEMU with `-icount shift=8` lets 256 ns pass for every instruction, whatever it is; the timer of `mps2-an386` runs at 25 MHz, so
-//! an instruction is 6.4 of its ticks.
+//! QEMU with `-icount shift=8` lets 256 ns pass for every instruction, whatever it is; the timer of
+//! `mps2-an386` runs at 25 MHz, so an instruction is 6.4 of its ticks.
 
 use core::hint::black_box;
 use core::sync::atomic::{Ordering, compiler_fence};

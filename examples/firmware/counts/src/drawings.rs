@@ -1,4 +1,5 @@
-//! The drawings of `plotter-motion/tests/all/drawings`, made as they are asked for, and one like the owl there: short strokes.
+//! The drawings of `plotter-motion/tests/all/drawings`, made as they are asked for, and one like the owl
+//! there: short strokes.
 
 use core::f64::consts::TAU;
 use plotter_motion::{PlotOp, Point};
@@ -47,7 +48,8 @@ pub fn zigzag() -> impl Iterator<Item = PlotOp> {
     })
 }
 
-/// 60 strokes of 15 segments of 0.2 to 1.5 mm that bend a little from one to the next, somewhere on 100 x 100 mm.
+/// 60 strokes of 15 segments of 0.2 to 1.5 mm that bend a little from one to the next, somewhere on 100 x 100
+/// mm.
 pub fn strokes() -> impl Iterator<Item = PlotOp> {
     let (mut state, mut at, mut heading) = (SEED, Point::ORIGIN, 0.0);
     (0..60 * 16).map(move |index| {

@@ -1,7 +1,8 @@
-//! Instructions that the controllers take on a Cortex-M4F, counted by QEMU. Prints a line each: what, mean, worst, how many.
+//! Instructions that the controllers take on a Cortex-M4F, counted by QEMU. Prints a line each: what, mean,
+//! worst, how many.
 //!
-//! Counts of instructions are not cycles: a real Cortex-M4 takes two cycles for most loads, up to 14 for a division, and waits for
-//! its flash.
+//! Counts of instructions are not cycles: a real Cortex-M4 takes two cycles for most loads, up to 14 for a
+//! division, and waits for its flash.
 #![no_std]
 #![no_main]
 
@@ -115,8 +116,8 @@ fn next_action(planner: &mut Planner<16>) -> Option<Action> {
     planner.next_action()
 }
 
-/// Plans a drawing with a ring that is kept full; `each` gets the actions. Counts what a block takes, from pushing it to its last
-/// phase.
+/// Plans a drawing with a ring that is kept full; `each` gets the actions. Counts what a block takes, from
+/// pushing it to its last phase.
 fn plan(
     counter: &Counter,
     settings: PlannerSettings,
@@ -168,8 +169,8 @@ impl Registers {
     }
 }
 
-/// What the timer's interrupt does: the event that is due, through the safety gate to the pins, and the timer set to the next. Gives
-/// the events that are no steps to the main loop.
+/// What the timer's interrupt does: the event that is due, through the safety gate to the pins, and the timer
+/// set to the next. Gives the events that are no steps to the main loop.
 #[inline(never)]
 fn interrupt(queue: &mut StepQueue<64>, gate: &SafetyGate, registers: &Registers) -> Option<MotorEvent> {
     let due = queue.pop()?;

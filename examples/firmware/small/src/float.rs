@@ -1,5 +1,5 @@
-//! `f64` by whole numbers: a number is taken apart, reckoned exactly or with a last bit that says "and some more", and rounded
-//! once, in [`pack`].
+//! `f64` by whole numbers: a number is taken apart, reckoned exactly or with a last bit that says "and some
+//! more", and rounded once, in [`pack`].
 
 const SIGN: u64 = 1 << 63;
 const INFINITY: u64 = 0x7FF << 52;
@@ -33,8 +33,8 @@ fn unpack(bits: u64) -> Parts {
     Parts { exponent: 1 - 1075 - shift as i32, mantissa: mantissa << shift }
 }
 
-/// The nearest number without a sign, of two equally near ones the even one. The lowest bit of the mantissa may stand for what is
-/// below it, if it has 55 bits at least.
+/// The nearest number without a sign, of two equally near ones the even one. The lowest bit of the mantissa
+/// may stand for what is below it, if it has 55 bits at least.
 #[inline(never)]
 fn pack(Parts { exponent, mantissa }: Parts, format: Format) -> u64 {
     if mantissa == 0 {
@@ -54,7 +54,8 @@ fn pack(Parts { exponent, mantissa }: Parts, format: Format) -> u64 {
     }
     let (kept, lost) =
         if lost_bits == 64 { (0, mantissa) } else { (mantissa >> lost_bits, mantissa << (64 - lost_bits)) };
-    // The mantissa's own first bit adds one to the exponent, and so does rounding up to the next power of two.
+    // The mantissa's own first bit adds one to the exponent, and so does rounding up to the next power of
+    // two.
     let bits = (((exponent - 1).max(0) as u64) << format.mantissa_bits) + kept;
     bits + u64::from(lost > SIGN || (lost == SIGN && kept & 1 == 1))
 }
@@ -249,7 +250,8 @@ mod tests {
             self.0 ^ self.0 >> 33
         }
 
-        /// Any number; half of them near one, every so often with few bits, an eighth at the ends of what there is.
+        /// Any number; half of them near one, every so often with few bits, an eighth at the ends of what
+        /// there is.
         fn number(&mut self) -> u64 {
             let (bits, how) = (self.next(), self.next());
             let bits = if how & 8 == 0 { bits } else { bits & !(u64::MAX >> (12 + (how >> 8) % 52)) };

@@ -1,11 +1,13 @@
-//! What the compiler calls where the processor has no instruction: `f64`, division of 64 bits, memory. The compiler's own
-//! routines are made for speed and take 7.6 KB of flash, these 2.1 KB. Linking the crate puts them in place of the others:
+//! What the compiler calls where the processor has no instruction: `f64`, division of 64 bits, memory. The
+//! compiler's own routines are made for speed and take 7.6 KB of flash, these 2.1 KB. Linking the crate puts
+//! them in place of the others:
 //!
 //! ```text
 //! use small_runtime as _;
 //! ```
 //!
-//! The results are the same to the last bit (IEEE 754, to nearest, ties to even); only which NaN a NaN is may differ.
+//! The results are the same to the last bit (IEEE 754, to nearest, ties to even); only which NaN a NaN is may
+//! differ.
 #![no_std]
 
 mod float;

@@ -1,6 +1,7 @@
 //! The names under which the compiler looks for the routines.
 //!
-//! Source: "Run-time ABI for the Arm Architecture" (Arm, IHI 0043): `__aeabi_*`; the other names are those of GCC's library.
+//! Source: "Run-time ABI for the Arm Architecture" (Arm, IHI 0043): `__aeabi_*`; the other names are those of
+//! GCC's library.
 #![allow(unsafe_code, reason = "a name that the linker knows, and assembly, are unsafe by themselves")]
 
 use crate::float::{self, Order};

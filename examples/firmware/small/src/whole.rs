@@ -1,6 +1,7 @@
 //! Division of whole numbers of 64 bits.
 
-/// Quotient and rest, bit by bit: as many turns as the quotient has bits. A divisor of zero gives zero and `number`.
+/// Quotient and rest, bit by bit: as many turns as the quotient has bits. A divisor of zero gives zero and
+/// `number`.
 #[must_use]
 pub fn divide_u64(number: u64, divisor: u64) -> (u64, u64) {
     let (mut quotient, mut rest) = (0, number);

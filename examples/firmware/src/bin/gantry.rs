@@ -1,7 +1,9 @@
-//! The semi-virtual gantry's firmware: the published protocol on the serial line, two DC motors on an H-bridge each.
+//! The semi-virtual gantry's firmware: the published protocol on the serial line, two DC motors on an
+//! H-bridge each.
 //!
-//! The controller is `plotter_motion::firmware::Gantry`, the same that the desktop simulates; the drivers are those of
-//! `plotter-hal`. What is left for a firmware is this file: which pin is what, and what to do when something happens.
+//! The controller is `plotter_motion::firmware::Gantry`, the same that the desktop simulates; the drivers are
+//! those of `plotter-hal`. What is left for a firmware is this file: which pin is what, and what to do when
+//! something happens.
 #![no_std]
 #![no_main]
 
@@ -23,7 +25,8 @@ fn main() -> ! {
     let mut motors = DcAxes::new(
         HBridge::new(Axis::X, parts.x.enable, parts.x.forward, parts.x.reverse),
         HBridge::new(Axis::Y, parts.y.enable, parts.y.forward, parts.y.reverse),
-        Duration::ZERO, // the bridge takes the duty away before it turns the direction, and has a dead time of its own
+        // The bridge takes the duty away before it turns the direction, and has a dead time of its own.
+        Duration::ZERO,
     );
     // Whatever happened before, nothing turns.
     let started = motors.start().is_ok();
@@ -61,8 +64,8 @@ fn main() -> ! {
             let change = button.tick(now);
             gantry.emergency_stop(now, button.is_pressed());
             match change {
-                // Where the motors stand after a reset by the watchdog is not known: a person looks first, and
-                // switches the machine off and on.
+                // Where the motors stand after a reset by the watchdog is not known: a person looks first,
+                // and switches the machine off and on.
                 Ok(Some(EstopChange::FreeSinceStart)) if !was_bitten && !failed => {
                     gantry.reset_emergency_stop(now);
                 }
@@ -80,8 +83,8 @@ fn main() -> ! {
             board.notify(Notice::Controller(notice));
         }
         if motors.drive(gantry.drive(), now).is_err() || failed {
-            // A motor or an encoder that cannot be trusted: both motors stop, and stay so until the machine is
-            // switched off and on.
+            // A motor or an encoder that cannot be trusted: both motors stop, and stay so until the machine
+            // is switched off and on.
             let _ = motors.stop();
             board.notify(Notice::PinFailed);
             board::halt();

@@ -1,4 +1,5 @@
-//! The stepper plotter's firmware: Grbl's language on the serial line, two stepper motors, a pen on a servo, a laser.
+//! The stepper plotter's firmware: Grbl's language on the serial line, two stepper motors, a pen on a servo,
+//! a laser.
 //!
 //! The controller is `plotter_motion::firmware::StepperPlotter`, the drivers are those of `plotter-hal`.
 #![no_std]
@@ -21,7 +22,8 @@ use plotter_motion::{Axis, Direction, SafetyGate};
 
 /// How often the switches are looked at, and the watchdog is fed.
 const LOOK: Duration = Duration::from_millis(1);
-/// How long a laser may stay lit after a step: longer than from one step to the next, shorter than it takes to burn.
+/// How long a laser may stay lit after a step: longer than from one step to the next, shorter than it takes
+/// to burn.
 const STANDSTILL: Duration = Duration::from_millis(20);
 /// By then the switches have shown what they are.
 const BUTTONS_KNOWN: Duration = Duration::from_millis(25);
@@ -44,7 +46,8 @@ const ENDS: [(Axis, Direction); 4] = [
 
 type Controller = Result<StepperPlotter, SettingsError>;
 
-/// The controller, where it stays. By itself, so that the stack is free again of what it takes to put it there.
+/// The controller, where it stays. By itself, so that the stack is free again of what it takes to put it
+/// there.
 #[inline(never)]
 fn controller(gate: SafetyGate) -> Option<&'static mut StepperPlotter> {
     singleton!(CELL: Controller = StepperPlotter::from_checked(&CHECKED_PLOTTER, gate))?.as_mut().ok()

@@ -51,7 +51,8 @@ pub struct StepperPins<Step, Dir> {
     pub dir: Dir,
 }
 
-/// A pin that the drivers of both motors are wired to, and one of them has: so both are of one type, and what drives them is there once.
+/// A pin that the drivers of both motors are wired to, and one of them has: so both are of one type, and what
+/// drives them is there once.
 #[derive(Debug)]
 pub struct Wire<Pin>(pub Option<Pin>);
 

@@ -2,8 +2,8 @@
 
 use super::strokes::{At, Stroke};
 
-/// Points nearer to each other than this are one, px: ten times what rounding the points can move a crossing of
-/// lines that meet at 10 degrees.
+/// Points nearer to each other than this are one, px: ten times what rounding the points can move a crossing
+/// of lines that meet at 10 degrees.
 const SAME_PX: f64 = 0.05;
 
 /// A straight piece of a stroke.

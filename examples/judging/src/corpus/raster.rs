@@ -1,15 +1,16 @@
 //! From strokes to pixels: a round pen moved along each polyline.
 //!
-//! A pixel is ink when its centre lies within half a pen width of the stroke. Smooth pictures ask the same of 8 x 8
-//! points in each pixel, kept as the 64 bits of one word. A pen of 1 px draws one pixel per column where the line is
-//! flat and one per row where it is steep, as thinned line art looks.
+//! A pixel is ink when its centre lies within half a pen width of the stroke. Smooth pictures ask the same of
+//! 8 x 8 points in each pixel, kept as the 64 bits of one word. A pen of 1 px draws one pixel per column
+//! where the line is flat and one per row where it is steep, as thinned line art looks.
 
 use super::random::Random;
 use super::strokes::{At, Look, Picture, Stroke};
 use image::{DynamicImage, GrayImage, Luma};
 use image::{Rgb, RgbImage};
 
-/// So much farther than half a pen width still counts, px: rounding must not decide about whole rows of pixels.
+/// So much farther than half a pen width still counts, px: rounding must not decide about whole rows of
+/// pixels.
 const EDGE_PX: f64 = 1e-9;
 
 /// Paper light of the scan from the upper left to the lower right corner, and its ink likewise.
@@ -224,8 +225,8 @@ fn round((x, y): At) -> At {
     (libm::floor(x + 0.5), libm::floor(y + 0.5))
 }
 
-/// The pixels of a line of 1 px: its ends and corners, the nearest pixel in each column where it is flat and in each
-/// row where it is steep, and where one changes to the other what keeps them connected.
+/// The pixels of a line of 1 px: its ends and corners, the nearest pixel in each column where it is flat and
+/// in each row where it is steep, and where one changes to the other what keeps them connected.
 fn thin(points: &[At]) -> Vec<At> {
     let mut exact: Vec<At> = points.first().copied().into_iter().collect();
     for (index, pair) in points.windows(2).enumerate() {

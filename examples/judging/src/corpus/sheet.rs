@@ -1,7 +1,8 @@
 //! A technical sheet of any size, drawn row by row.
 //!
-//! Every row of pixels is made from the few lines and circles that cross it, so that two thousand million pixels need
-//! no more memory than one row. A line of a round pen is convex: it covers one run of pixels in a row.
+//! Every row of pixels is made from the few lines and circles that cross it, so that two thousand million
+//! pixels need no more memory than one row. A line of a round pen is convex: it covers one run of pixels in a
+//! row.
 
 use super::letters;
 use super::random::Random;

@@ -15,8 +15,8 @@ const MOST_PX: f64 = 4_294_967_295.0;
 
 /// The strokes that a picture was drawn from, and where they cross or meet.
 ///
-/// Places are as in its file, column and row: whole numbers are pixel **centres**, so that a [`PxPoint`](plotter_vector::PxPoint) is
-/// half a pixel more in both.
+/// Places are as in its file, column and row: whole numbers are pixel **centres**, so that a
+/// [`PxPoint`](plotter_vector::PxPoint) is half a pixel more in both.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
     /// Name of the picture.

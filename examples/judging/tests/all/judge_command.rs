@@ -12,7 +12,8 @@ const TRUTH: &str = r##"{"name":"line","width":40,"height":20,"convention":"pixe
 /// A quarter of a pixel below it.
 const SVG: &str = "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='20'>\
     <path d='M10.5 10.75H30.5' stroke='black'/></svg>";
-/// The same place: 9.5 px above the centre of the lowest row and a quarter below, 10 of the left column; 4 units a pixel.
+/// The same place: 9.5 px above the centre of the lowest row and a quarter below, 10 of the left column; 4
+/// units a pixel.
 const HPGL: &str = "IN;SP1;PU40,35;PD120,35;PU;";
 
 fn figures(arguments: &[&str]) -> Value {

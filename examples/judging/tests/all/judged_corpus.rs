@@ -1,12 +1,13 @@
-//! Every picture of the corpus, traced with the default settings and compared with what was drawn: prints the table of it.
+//! Every picture of the corpus, traced with the default settings and compared with what was drawn: prints the
+//! table of it.
 
 use plotter_judging::corpus::{Truth, all};
 use plotter_judging::{Judgement, judged_corpus};
 use plotter_vector::{Vectorizer, decode, stroke::Bounded};
 use std::io::Cursor;
 
-/// What a picture must reach. Where more was asked than is reached, `docs/limits.md` says why, and the bound is a little above what
-/// is reached.
+/// What a picture must reach. Where more was asked than is reached, `docs/limits.md` says why, and the bound
+/// is a little above what is reached.
 struct Bounds {
     picture: &'static str,
     vertices: usize,
@@ -103,7 +104,8 @@ const BOUNDS: [Bounds; 16] = [
     Bounds { picture: "sharp_ends", vertices: 50, strokes: 16, mean_px: 0.12, found: 0.985, ..ANY },
 ];
 
-/// Least recall of the small marks, and least share of the length that is drawn by the right pen, as they were asked for.
+/// Least recall of the small marks, and least share of the length that is drawn by the right pen, as they
+/// were asked for.
 const SMALL_MARKS_RECALL: f64 = 0.995;
 const RIGHT_PEN: f64 = 0.99;
 

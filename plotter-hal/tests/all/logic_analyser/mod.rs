@@ -1,5 +1,5 @@
-//! A logic analyser on all the pins of a driver: one log of their levels over one simulated clock, and a fault where
-//! it is wanted.
+//! A logic analyser on all the pins of a driver: one log of their levels over one simulated clock, and a
+//! fault where it is wanted.
 
 #![allow(dead_code, reason = "each test file uses its part")]
 

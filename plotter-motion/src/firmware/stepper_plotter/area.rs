@@ -6,12 +6,13 @@ use crate::turn::atan2;
 use crate::{PlotOp, Point};
 use core::f32::consts::FRAC_PI_2;
 
-/// What rounding may put outside, mm, and as a share of the area's side: together the micrometre in which coordinates are told at two
-/// metres, and 17 of them at 65 m, the longest side.
+/// What rounding may put outside, mm, and as a share of the area's side: together the micrometre in which
+/// coordinates are told at two metres, and 17 of them at 65 m, the longest side.
 const SLACK_MM: f32 = 5e-4;
 const SLACK_SHARE: f32 = 2.5e-7;
 
-/// Whether the way of `op` from `from` stays between (0, 0) and `most`, mm. An arc may go farther than its ends.
+/// Whether the way of `op` from `from` stays between (0, 0) and `most`, mm. An arc may go farther than its
+/// ends.
 pub(super) fn contains(most: Vec2Single, from: &Point, op: &PlotOp) -> bool {
     let inside = |place: &Point| is_within(single(place.x), most.x) && is_within(single(place.y), most.y);
     // A pen that stands outside may come back.
@@ -31,8 +32,8 @@ pub(super) fn contains(most: Vec2Single, from: &Point, op: &PlotOp) -> bool {
     for quarter in -6_i8..=6 {
         let angle = f32::from(quarter) * FRAC_PI_2;
         if angle >= low && angle <= high {
-            // From where it begins, so that what rounding leaves is small against the way, not against the radius:
-            // r − a = b² / (r + a), where r² = a² + b².
+            // From where it begins, so that what rounding leaves is small against the way, not against the
+            // radius: r − a = b² / (r + a), where r² = a² + b².
             let (along, across) = (out.dot(outwards), out.cross(outwards));
             let rise_mm = if along > 0.0 { across * across / (begin_mm + along) } else { begin_mm - along };
             let way = outwards.times(rise_mm + greatest(wider_mm, 0.0));

@@ -14,7 +14,8 @@ use core::fmt;
 pub enum Command {
     /// Plans and does this. What follows closely is planned together with it.
     Plot(PlotOp),
-    /// A travel by hand, at this speed in mm/s whatever the share of travels is; [`Signal::JogCancel`] ends it.
+    /// A travel by hand, at this speed in mm/s whatever the share of travels is; [`Signal::JogCancel`] ends
+    /// it.
     Jog {
         /// Where to, mm.
         to: Point,
@@ -25,7 +26,8 @@ pub enum Command {
     Set(Setting),
     /// As [`Command::Set`], but all of it becomes what the machine was switched on with.
     Restore,
-    /// Waits until all before is done, then turns the pen's servo there, degrees. What follows waits until the pen has settled.
+    /// Waits until all before is done, then turns the pen's servo there, degrees. What follows waits until
+    /// the pen has settled.
     Servo(u8),
     /// From here on these are the servo's degrees with the pen up and down.
     PenAngles {
@@ -42,8 +44,8 @@ pub enum Command {
     Finish,
     /// As [`Command::Finish`] at the end of a program: speeds and the laser's power are no longer overridden.
     End,
-    /// The receive side has learned of a stop: what comes from here on was meant for the machine as it stands now. After a stop all
-    /// before this is left out.
+    /// The receive side has learned of a stop: what comes from here on was meant for the machine as it stands
+    /// now. After a stop all before this is left out.
     GoOn,
     /// As [`Command::GoOn`], and ends an emergency stop if the button has been released.
     Unlock,
@@ -58,7 +60,8 @@ pub enum Signal {
     Resume,
     /// Stops at once and forgets all commands; [`Report::Stopped`] follows.
     Reset,
-    /// What is moved by hand brakes along its path and is forgotten; [`Report::Jogged`] follows. Nothing else is touched.
+    /// What is moved by hand brakes along its path and is forgotten; [`Report::Jogged`] follows. Nothing else
+    /// is touched.
     JogCancel,
     /// From here on speeds are this many percent of what they are asked to be.
     Speeds {
@@ -118,7 +121,8 @@ pub enum Report {
         /// How long the axes are, or why it gave up.
         result: Result<Homed, HomingError>,
     },
-    /// A jog has been cancelled: the machine stands, and leaves out what was commanded until [`Command::GoOn`].
+    /// A jog has been cancelled: the machine stands, and leaves out what was commanded until
+    /// [`Command::GoOn`].
     Jogged {
         /// Where the pen is now, mm.
         at: Point,

@@ -6,10 +6,11 @@ use core::time::Duration;
 
 /// Most commands that wait: fifteen, and those of one more line of G-code.
 pub const COMMANDS: usize = 27;
-/// Most commands that one line of G-code becomes: what the interpreter gives, and what goes before and after it.
+/// Most commands that one line of G-code becomes: what the interpreter gives, and what goes before and after
+/// it.
 pub(super) const COMMANDS_OF_A_LINE: usize = 12;
-/// Words that the commands of one line take at most, and some: an arc, two dots, the power of a laser for each, a pause, the pen that is
-/// lifted.
+/// Words that the commands of one line take at most, and some: an arc, two dots, the power of a laser for
+/// each, a pause, the pen that is lifted.
 const WORDS_OF_A_LINE: usize = 56;
 /// Words of a line that is drawn, and of the longest command, an arc.
 const WORDS_OF_A_DRAW: usize = 7;
@@ -19,7 +20,8 @@ const WORDS: usize = (COMMANDS - COMMANDS_OF_A_LINE) * WORDS_OF_A_DRAW + WORDS_O
 /// Most numbers of a command.
 const MOST_NUMBERS: usize = 6;
 
-/// The commands that wait, first in, first out: fifteen lines or eight arcs, and those of one more line of G-code.
+/// The commands that wait, first in, first out: fifteen lines or eight arcs, and those of one more line of
+/// G-code.
 ///
 /// ```
 /// # use plotter_motion::firmware::stepper_plotter::{Command, CommandQueue};
@@ -29,7 +31,8 @@ const MOST_NUMBERS: usize = 6;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandQueue {
-    /// Of each command first what it is, how many numbers follow, and two small ones; then those numbers, the bits of an `f64` in two words.
+    /// Of each command first what it is, how many numbers follow, and two small ones; then those numbers, the
+    /// bits of an `f64` in two words.
     words: [u32; WORDS],
     first: usize,
     used: usize,
@@ -255,7 +258,8 @@ mod tests {
             let mut queue = CommandQueue::new();
             let mut taken = 0;
             while queue.room() >= COMMANDS_OF_A_LINE {
-                // One after a stop: two dots and an arc of a laser, a pause for another pen, and the pen is lifted.
+                // One after a stop: two dots and an arc of a laser, a pause for another pen, and the pen is
+                // lifted.
                 let mut most = queue.clone();
                 let power = Command::Plot(PlotOp::LaserPower { share: 1.0 });
                 let dwell = Command::Plot(PlotOp::Dwell { duration: Duration::ZERO });

@@ -5,8 +5,8 @@ use core::time::Duration;
 
 /// Whether the drivers of both motors can take a step now: what a controller is told before it gives one.
 ///
-/// A driver needs some time for each step, and a main loop that comes late finds more than one due. A step that the drivers
-/// would refuse is not given and not counted; it stays due.
+/// A driver needs some time for each step, and a main loop that comes late finds more than one due. A step
+/// that the drivers would refuse is not given and not counted; it stays due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Drivers {
     /// Both can take a step. Simulated motors always can.
@@ -24,10 +24,11 @@ impl Drivers {
 
 /// How late steps have been given since the machine was switched on: whether the main loop is fast enough.
 ///
-/// A step that is given no more than [`Lateness::ALLOWED`] after its time changes nothing: the next one comes at its own time. Where a step
-/// is later, all that follows is put off by as much. So the machine slows down or pauses, and never hurries to catch up: two steps are
-/// never nearer to each other than planned by more than that. A motor may lose steps all the same when a loop stands still in the
-/// middle of a fast line, which stops it without a brake; the machine does not know.
+/// A step that is given no more than [`Lateness::ALLOWED`] after its time changes nothing: the next one comes
+/// at its own time. Where a step is later, all that follows is put off by as much. So the machine slows down
+/// or pauses, and never hurries to catch up: two steps are never nearer to each other than planned by more
+/// than that. A motor may lose steps all the same when a loop stands still in the middle of a fast line,
+/// which stops it without a brake; the machine does not know.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Lateness {
     steps: u32,
@@ -37,9 +38,10 @@ pub struct Lateness {
 impl Lateness {
     /// How late a step may be: 100 us.
     ///
-    /// It bounds how much nearer than planned two steps may be. The documented machine makes at most 8000 steps/s, 125 us from one
-    /// to the next: with 100 us there is never more than one step to catch up. With half of it a loop of 100 us
-    /// slows the machine down where it need not; with twice as much, steps come in pairs.
+    /// It bounds how much nearer than planned two steps may be. The documented machine makes at most 8000
+    /// steps/s, 125 us from one to the next: with 100 us there is never more than one step to catch up. With
+    /// half of it a loop of 100 us slows the machine down where it need not; with twice as much, steps come
+    /// in pairs.
     pub const ALLOWED: Duration = Duration::from_micros(100);
 
     /// Steps that were given later than [`Lateness::ALLOWED`].
@@ -54,7 +56,8 @@ impl Lateness {
         Duration::new(0, self.greatest_ns)
     }
 
-    /// A step that was due at `at` is given. Whether that is too late: then all that counts from `base` is put off by as much.
+    /// A step that was due at `at` is given. Whether that is too late: then all that counts from `base` is
+    /// put off by as much.
     #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn given(&mut self, at: Duration, now: Duration, base: &mut Duration) -> bool {
         let late = now.saturating_sub(at);

@@ -1,5 +1,5 @@
-//! The controller of a plotter with two stepper motors, a pen on a servo or a laser, and limit switches, which speaks to mDraw
-//! or to any program that streams G-code to Grbl.
+//! The controller of a plotter with two stepper motors, a pen on a servo or a laser, and limit switches,
+//! which speaks to mDraw or to any program that streams G-code to Grbl.
 //!
 //! # Two tasks and a queue
 //!
@@ -11,9 +11,10 @@
 //!                 ◀────── Status: what it does, where it is ─────────┘     limit switches, emergency stop
 //! ```
 //!
-//! The source runs these as two tasks of an RTOS. So can a firmware with [`Receive`] and [`Motion`]: each is fed by its own calls,
-//! and they share nothing but the two queues, the signals (a notification) and a [`Status`] (under a lock).
-//! [`StepperPlotter`] is both in one, for a firmware with a single loop, and for the desk:
+//! The source runs these as two tasks of an RTOS. So can a firmware with [`Receive`] and [`Motion`]: each is
+//! fed by its own calls, and they share nothing but the two queues, the signals (a notification) and a
+//! [`Status`] (under a lock). [`StepperPlotter`] is both in one, for a firmware with a single loop, and for
+//! the desk:
 //!
 //! ```
 //! # use core::time::Duration;
@@ -53,9 +54,9 @@
 //!
 //! # mDraw
 //!
-//! Makeblock's drawing program sends a line, waits for `OK`, and sends the next. So there is nothing to look ahead to: each line of a
-//! curve begins and ends at rest. Every line is answered by exactly one `OK`, and a move when it is complete; the answers are those
-//! of the plotter's own firmware (xybot), byte for byte.
+//! Makeblock's drawing program sends a line, waits for `OK`, and sends the next. So there is nothing to look
+//! ahead to: each line of a curve begins and ends at rest. Every line is answered by exactly one `OK`, and a
+//! move when it is complete; the answers are those of the plotter's own firmware (xybot), byte for byte.
 //!
 //! | line | what it does | answer before `OK` |
 //! |---|---|---|
@@ -72,8 +73,9 @@
 //! | `G91`, `G90` | X and Y of later lines are ways from where the pen is, or places again | |
 //! | anything else | nothing | |
 //!
-//! Where that firmware goes wrong, this one does not follow. What it refuses it says in a line `error: …` before the `OK`, since mDraw
-//! knows no other answer and passes over lines without `OK`; nothing moves then, and the position stays right:
+//! Where that firmware goes wrong, this one does not follow. What it refuses it says in a line `error: …`
+//! before the `OK`, since mDraw knows no other answer and passes over lines without `OK`; nothing moves then,
+//! and the position stays right:
 //!
 //! | | there | here |
 //! |---|---|---|
@@ -88,10 +90,10 @@
 //!
 //! # Grbl
 //!
-//! Programs that stream (UGS, bCNC, cncjs, `LaserGRBL`) send many lines ahead, which are planned together: curves are drawn
-//! without stops. A line is answered by `ok` or `error:n` when it lies in the queue, so a program may count characters or wait for each
-//! answer. Blanks and comments take no room in a line of 80 characters. A machine at rest gathers lines for
-//! [`StepperPlotterSettings::gather`] before it starts.
+//! Programs that stream (UGS, bCNC, cncjs, `LaserGRBL`) send many lines ahead, which are planned together:
+//! curves are drawn without stops. A line is answered by `ok` or `error:n` when it lies in the queue, so a
+//! program may count characters or wait for each answer. Blanks and comments take no room in a line of 80
+//! characters. A machine at rest gathers lines for [`StepperPlotterSettings::gather`] before it starts.
 //!
 //! - The receive buffer has 128 bytes. As in Grbl 1.1h a line that has ended leaves it, also one that waits
 //!   for room in the queue: all of the buffer is there for what comes behind that. While a line waits for its
@@ -110,7 +112,8 @@
 //! - Overrides act on the way, as soon as the phase in progress is over: feeds (`0x90` to `0x94`, 10 to 200
 //!   %), travels (`0x95` to `0x97`: 100, 50, 25 %), the laser's power (`0x99` to `0x9D`). The machine's
 //!   limits hold whatever they say. They are told as `Ov` when they have changed, and now and then; a reset
-//!   ends them. A controller with [`ExactOnly`](crate::planner::ExactOnly) overrides the laser only, and tells so.
+//!   ends them. A controller with [`ExactOnly`](crate::planner::ExactOnly) overrides the laser only, and
+//!   tells so.
 //! - `$J=` moves by hand at its own `F`, from rest or after another jog, while G-code is locked out
 //!   (`error:9`); `0x85` or `!` brakes along the path and forgets the jogs that wait, and the place stays
 //!   known.
@@ -144,29 +147,32 @@
 //!
 //! # Late steps
 //!
-//! A driver needs some microseconds for each step. A main loop that comes late finds several due, and hears from its drivers whether they
-//! can take one more ([`Drivers`]): what they cannot take is not counted, stays due, and is made in a later turn. So no step is lost,
-//! and the position is that of the motors. Nor does the machine hurry to catch up: a step that is more than 100 us late puts off all that
-//! follows by as much. [`StepperPlotter::lateness`] tells how many steps were late, and how late the latest was: with anything but zeros there, the loop
-//! is too slow for the speed of the machine.
+//! A driver needs some microseconds for each step. A main loop that comes late finds several due, and hears
+//! from its drivers whether they can take one more ([`Drivers`]): what they cannot take is not counted, stays
+//! due, and is made in a later turn. So no step is lost, and the position is that of the motors. Nor does the
+//! machine hurry to catch up: a step that is more than 100 us late puts off all that follows by as much.
+//! [`StepperPlotter::lateness`] tells how many steps were late, and how late the latest was: with anything
+//! but zeros there, the loop is too slow for the speed of the machine.
 //!
 //! # Play
 //!
-//! Where an axis turns round, extra steps take up its play ([`StepperPlotterSettings::backlash`]) while the path goes on. What is told
-//! as a place is that of the carriage, also after a stop within the play.
+//! Where an axis turns round, extra steps take up its play ([`StepperPlotterSettings::backlash`]) while the
+//! path goes on. What is told as a place is that of the carriage, also after a stop within the play.
 //!
 //! # Stops
 //!
-//! Every step passes [`SafetyGate::pass_step`](crate::SafetyGate::pass_step). The emergency stop takes the steps away in the same
-//! call, switches the laser off, lifts the pen, and latches: it ends by [`StepperPlotter::reset_emergency_stop`],
-//! [`StepperPlotter::restart`] or Grbl's `$X`, and only once the button has been released. A step towards a pressed limit switch is not
-//! made, and stops the machine; away from the switch it is free. A motor that is stopped at full speed may turn a little farther
-//! than its last step: home the machine if it was fast.
+//! Every step passes [`SafetyGate::pass_step`](crate::SafetyGate::pass_step). The emergency stop takes the
+//! steps away in the same call, switches the laser off, lifts the pen, and latches: it ends by
+//! [`StepperPlotter::reset_emergency_stop`], [`StepperPlotter::restart`] or Grbl's `$X`, and only once the
+//! button has been released. A step towards a pressed limit switch is not made, and stops the machine; away
+//! from the switch it is free. A motor that is stopped at full speed may turn a little farther than its last
+//! step: home the machine if it was fast.
 //!
-//! A reset by the host (ctrl-X) is the gate's, too: from its byte on no step passes, until [`Command::GoOn`] or [`Command::Unlock`] says
-//! that the receive side has heard of it.
+//! A reset by the host (ctrl-X) is the gate's, too: from its byte on no step passes, until [`Command::GoOn`]
+//! or [`Command::Unlock`] says that the receive side has heard of it.
 //!
-//! Sources: spec 5 (Dounaev and Phan); the firmware xybot and the program mDraw; the Grbl project's wiki on version 1.1.
+//! Sources: Dounaev and Phan, "X-Y Plotter Project"; the firmware xybot and the program mDraw; the Grbl
+//! project's wiki on version 1.1.
 
 mod area;
 mod bytes;

@@ -24,7 +24,8 @@ use core::time::Duration;
 /// Blocks of the look-ahead.
 const BLOCKS: usize = 16;
 
-/// A step of the motors that passed the safety gate, at the time at which it was due. It ends when the machine is told anything.
+/// A step of the motors that passed the safety gate, at the time at which it was due. It ends when the
+/// machine is told anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Step<'gate> {
     /// When it was due.
@@ -43,8 +44,9 @@ enum State {
 
 /// The motion side: takes commands from the queue, plans, and gives every step at its time.
 ///
-/// After each input, call [`poll`](Self::poll) until it gives no step, and say each time whether the drivers can take one; then arm a timer for [`due`](Self::due) and call it
-/// again at that time. After each call, the servo gets [`pen_deg`](Self::pen_deg) and the laser [`beam`](Self::beam).
+/// After each input, call [`poll`](Self::poll) until it gives no step, and say each time whether the drivers
+/// can take one; then arm a timer for [`due`](Self::due) and call it again at that time. After each call, the
+/// servo gets [`pen_deg`](Self::pen_deg) and the laser [`beam`](Self::beam).
 #[derive(Debug, PartialEq)]
 pub struct Motion<M: Modes = AllModes> {
     settings: StepperPlotterSettings,
@@ -86,8 +88,8 @@ pub struct Motion<M: Modes = AllModes> {
 }
 
 impl Motion {
-    /// A machine at rest at the origin, pen up, with its switches and its button as the gate has them. If the gate is stopped, the first
-    /// thing that is to move is refused and reported as [`Stop::Emergency`].
+    /// A machine at rest at the origin, pen up, with its switches and its button as the gate has them. If the
+    /// gate is stopped, the first thing that is to move is refused and reported as [`Stop::Emergency`].
     ///
     /// # Errors
     ///
@@ -102,7 +104,8 @@ impl<M: Modes> Motion<M> {
     ///
     /// # Errors
     ///
-    /// [`SettingsError`] for limits that no motion can be planned with, and for a mode that is not among them.
+    /// [`SettingsError`] for limits that no motion can be planned with, and for a mode that is not among
+    /// them.
     pub fn with_modes(settings: StepperPlotterSettings, gate: SafetyGate) -> Result<Self, SettingsError> {
         Ok(Self::from_checked(&settings.checked()?, gate))
     }
@@ -151,8 +154,8 @@ impl<M: Modes> Motion<M> {
         }
     }
 
-    /// The next step that is due by `now`, if there is one and the motors' drivers can take it. One that they cannot take is not counted,
-    /// and stays due.
+    /// The next step that is due by `now`, if there is one and the motors' drivers can take it. One that they
+    /// cannot take is not counted, and stays due.
     #[inline]
     pub fn poll(&mut self, now: Duration, drivers: Drivers, link: &mut Link) -> Option<Step<'_>> {
         self.next_step(now, drivers, link)
@@ -204,7 +207,8 @@ impl<M: Modes> Motion<M> {
         }
     }
 
-    /// When [`poll`](Self::poll) is to be called next, if nothing comes before; known after it has given no step.
+    /// When [`poll`](Self::poll) is to be called next, if nothing comes before; known after it has given no
+    /// step.
     #[must_use]
     pub const fn due(&self) -> Option<Duration> {
         self.due

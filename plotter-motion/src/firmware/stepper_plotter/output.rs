@@ -3,7 +3,8 @@
 use super::bytes::Bytes;
 use core::fmt;
 
-/// At most `N` bytes that wait for the line. Whoever writes has looked at [`Output::room`] before; what finds no room is lost.
+/// At most `N` bytes that wait for the line. Whoever writes has looked at [`Output::room`] before; what finds
+/// no room is lost.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Output<const N: usize>(Bytes<N>);
 
@@ -37,7 +38,8 @@ impl<const N: usize> fmt::Write for Output<N> {
         Ok(())
     }
 
-    /// Digits, signs and points; the standard library's way for every character there is takes 140 bytes of flash.
+    /// Digits, signs and points; the standard library's way for every character there is takes 140 bytes of
+    /// flash.
     fn write_char(&mut self, character: char) -> fmt::Result {
         let byte = u8::try_from(character).map_err(|_| fmt::Error)?;
         let written = self.0.push(byte);

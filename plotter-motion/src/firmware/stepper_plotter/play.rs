@@ -11,8 +11,8 @@ use crate::{
 /// Ticks of the step generator in a second.
 pub(super) const CLOCK_HZ: u32 = 1_000_000;
 
-/// Takes up the play of the axes, and knows at every step which flank of its gap a motor drives: so the place of the carriage is
-/// right also after a stop in the middle of a gap.
+/// Takes up the play of the axes, and knows at every step which flank of its gap a motor drives: so the place
+/// of the carriage is right also after a stop in the middle of a gap.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Play {
     steps: Option<BacklashSteps>,

@@ -8,12 +8,14 @@ use crate::planner::{AllModes, Modes};
 use crate::{Axis, Direction, Point, SafetyGate, StepPoint, safety::Beam};
 use core::time::Duration;
 
-/// The whole controller of a stepper plotter, sans-IO: the receive side and the motion side joined by their queues.
+/// The whole controller of a stepper plotter, sans-IO: the receive side and the motion side joined by their
+/// queues.
 ///
-/// Inputs: [`receive`](Self::receive), [`limit_switch`](Self::limit_switch), [`emergency_stop`](Self::emergency_stop). After
-/// each of them and at [`due`](Self::due), call [`poll`](Self::poll) until it gives no more steps, and say each time whether the drivers
-/// can take one; fetch the answers ([`transmit`](Self::transmit)) and set the servo ([`pen_deg`](Self::pen_deg)) and the laser ([`beam`](Self::beam)). Times
-/// never go back.
+/// Inputs: [`receive`](Self::receive), [`limit_switch`](Self::limit_switch),
+/// [`emergency_stop`](Self::emergency_stop). After each of them and at [`due`](Self::due), call
+/// [`poll`](Self::poll) until it gives no more steps, and say each time whether the drivers can take one;
+/// fetch the answers ([`transmit`](Self::transmit)) and set the servo ([`pen_deg`](Self::pen_deg)) and the
+/// laser ([`beam`](Self::beam)). Times never go back.
 ///
 /// For a small processor it is built for one language and fewer ways of planning:
 ///
@@ -37,8 +39,9 @@ pub struct StepperPlotter<H: Host = Receive, M: Modes = AllModes> {
 }
 
 impl StepperPlotter {
-    /// A machine that has just been switched on: at rest, its pen up, where it stands is (0, 0), its switches and its button as the
-    /// gate has them. If the gate is stopped, so is the machine, as after [`emergency_stop`](Self::emergency_stop).
+    /// A machine that has just been switched on: at rest, its pen up, where it stands is (0, 0), its switches
+    /// and its button as the gate has them. If the gate is stopped, so is the machine, as after
+    /// [`emergency_stop`](Self::emergency_stop).
     ///
     /// # Errors
     ///
@@ -80,8 +83,9 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         self.work(now);
     }
 
-    /// The next step that is due by `now`, if there is one and the motors' drivers can take it. It is for the drivers to make: it counts
-    /// as made from here on. While they are busy there is none; it stays due, and is given when they are ready.
+    /// The next step that is due by `now`, if there is one and the motors' drivers can take it. It is for the
+    /// drivers to make: it counts as made from here on. While they are busy there is none; it stays due, and
+    /// is given when they are ready.
     #[cfg_attr(target_os = "none", inline(never))]
     pub fn poll(&mut self, now: Duration, drivers: Drivers) -> Option<Step<'_>> {
         loop {
@@ -98,8 +102,8 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         }
     }
 
-    /// When [`poll`](Self::poll) is to be called next, if nothing comes before; known after it has given no step and
-    /// [`transmit`](Self::transmit) no byte.
+    /// When [`poll`](Self::poll) is to be called next, if nothing comes before; known after it has given no
+    /// step and [`transmit`](Self::transmit) no byte.
     #[must_use]
     pub const fn due(&self) -> Option<Duration> {
         self.motion.due()
@@ -117,15 +121,17 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         self.work(now);
     }
 
-    /// Lets the machine go on after an emergency stop, unless the button is still pressed; says whether it did.
+    /// Lets the machine go on after an emergency stop, unless the button is still pressed; says whether it
+    /// did.
     pub fn reset_emergency_stop(&mut self, now: Duration) -> bool {
         let free = self.motion.reset_emergency_stop();
         self.work(now);
         free
     }
 
-    /// Begins anew with what the host has stored, as after switching on, but where the pen is stays known. An emergency stop ends if
-    /// the button has been released. Call it when the host opens the port: mDraw does so after it has changed settings.
+    /// Begins anew with what the host has stored, as after switching on, but where the pen is stays known. An
+    /// emergency stop ends if the button has been released. Call it when the host opens the port: mDraw does
+    /// so after it has changed settings.
     pub fn restart(&mut self, now: Duration) {
         self.motion.reset_emergency_stop();
         self.link = Link::default();
@@ -168,8 +174,8 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         self.receive.set_startup_lines(lines);
     }
 
-    /// The settings as they hold now, also those that the host has changed in Grbl's dialect: to be kept by the firmware, for the next
-    /// start.
+    /// The settings as they hold now, also those that the host has changed in Grbl's dialect: to be kept by
+    /// the firmware, for the next start.
     #[must_use]
     pub fn settings(&self) -> StepperPlotterSettings {
         StepperPlotterSettings { stored: self.stored(), ..*self.motion.settings() }
@@ -193,8 +199,8 @@ impl<H: Host, M: Modes> StepperPlotter<H, M> {
         self.motion.beam()
     }
 
-    /// How late steps have been given since the machine was switched on: whether the firmware's loop is fast enough, and what became of it
-    /// if not.
+    /// How late steps have been given since the machine was switched on: whether the firmware's loop is fast
+    /// enough, and what became of it if not.
     #[must_use]
     pub const fn lateness(&self) -> Lateness {
         self.motion.lateness()

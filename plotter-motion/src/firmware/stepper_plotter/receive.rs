@@ -9,7 +9,8 @@ use crate::Point;
 
 /// A receive side: bytes from the host in, commands for the motion side out, and answers.
 ///
-/// After each byte and each report call [`work`](Self::work), and fetch the answers with [`transmit`](Self::transmit).
+/// After each byte and each report call [`work`](Self::work), and fetch the answers with
+/// [`transmit`](Self::transmit).
 pub trait Host: Clone + core::fmt::Debug + PartialEq + Sized {
     /// The receive side of a machine that has just been switched on.
     fn new(settings: StepperPlotterSettings) -> Self;

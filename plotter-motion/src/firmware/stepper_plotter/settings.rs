@@ -77,8 +77,8 @@ impl StoredSettings {
 
 /// A stepper plotter and how it is driven.
 ///
-/// The default is the documented machine: 87.58 steps/mm, up to 8000 pulses/s (91.3 mm/s), reached within 1375 steps
-/// (21,818 pulses/s², 249 mm/s²), 200 ms for the pen.
+/// The default is the documented machine: 87.58 steps/mm, up to 8000 pulses/s (91.3 mm/s), reached within
+/// 1375 steps (21,818 pulses/s², 249 mm/s²), 200 ms for the pen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StepperPlotterSettings {
@@ -98,13 +98,13 @@ pub struct StepperPlotterSettings {
     pub laser: bool,
     /// How a pen is lifted in Grbl's dialect. With `laser` it is [`PenConvention::GRBL_LASER`] instead.
     pub pen: PenConvention,
-    /// How long a machine at rest waits for more lines before it starts, so that it knows more than the first: it would stop at its
-    /// end otherwise.
+    /// How long a machine at rest waits for more lines before it starts, so that it knows more than the
+    /// first: it would stop at its end otherwise.
     pub gather: Duration,
     /// Play of both axes, in steps of their motors. It takes [`AllModes`](crate::planner::AllModes).
     pub backlash: Backlash,
-    /// Grbl's `$22`: `$H` homes, and a machine that is switched on takes no G-code until it has been homed or unlocked by `$X`. mDraw's
-    /// `G28` homes in any case.
+    /// Grbl's `$22`: `$H` homes, and a machine that is switched on takes no G-code until it has been homed or
+    /// unlocked by `$X`. mDraw's `G28` homes in any case.
     pub homing: bool,
     /// How x is homed.
     pub home_x: HomingAxis,
@@ -163,8 +163,8 @@ impl StepperPlotterSettings {
         Cartesian::of_checked(self.x_steps_per_mm, self.y_steps_per_mm)
     }
 
-    /// Looks at them once, at the latest when the controller is made: a program whose settings are constants has them looked at by the
-    /// compiler, and needs no memory for it.
+    /// Looks at them once, at the latest when the controller is made: a program whose settings are constants
+    /// has them looked at by the compiler, and needs no memory for it.
     ///
     /// ```
     /// # use plotter_motion::{LimitSwitches, SafetyGate, planner::ExactOnly};
@@ -179,7 +179,8 @@ impl StepperPlotterSettings {
     ///
     /// # Errors
     ///
-    /// [`SettingsError`] for limits that no motion can be planned with, and for a mode that is not among these.
+    /// [`SettingsError`] for limits that no motion can be planned with, and for a mode that is not among
+    /// these.
     pub const fn checked<M: Modes>(self) -> Result<CheckedSettings<M>, SettingsError> {
         let x = MotorScale { steps_per_mm: self.x_steps_per_mm, inverted: false };
         let y = MotorScale { steps_per_mm: self.y_steps_per_mm, inverted: false };
@@ -285,7 +286,8 @@ impl StepperPlotterSettings {
     }
 }
 
-/// Settings that a machine can be driven with, by a controller with these modes: what [`StepperPlotterSettings::checked`] gives.
+/// Settings that a machine can be driven with, by a controller with these modes: what
+/// [`StepperPlotterSettings::checked`] gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CheckedSettings<M: Modes = AllModes> {
     settings: StepperPlotterSettings,

@@ -1,4 +1,5 @@
-//! [`Expansion`]: words that stand for several movements, or change what coordinates mean, made lines that every machine knows.
+//! [`Expansion`]: words that stand for several movements, or change what coordinates mean, made lines that
+//! every machine knows.
 //!
 //! Firmware does without: it carries lines out by [`LineInterpreter`] alone.
 
@@ -18,7 +19,8 @@ use words::{
     unit_mm, without_movement,
 };
 
-/// Farthest place of the pen in the coordinates of a scaled drawing, mm: a thousand times what a number can say.
+/// Farthest place of the pen in the coordinates of a scaled drawing, mm: a thousand times what a number can
+/// say.
 const MOST_MM: f64 = 1e12;
 
 /// Most turns of an arc: so often no pen goes over its line.

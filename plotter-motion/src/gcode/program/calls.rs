@@ -92,8 +92,8 @@ impl Program {
         self.enter(start, count, false).err().map(|problem| Err(Error { at, problem }))
     }
 
-    /// Takes down where subprograms begin in what follows, all of which is held for that; once, so that a call of what is not there
-    /// costs no more than another one.
+    /// Takes down where subprograms begin in what follows, all of which is held for that; once, so that a
+    /// call of what is not there costs no more than another one.
     fn index(&mut self, bytes: &mut impl Iterator<Item = u8>, reader: &mut Reader) -> Result<(), Error> {
         if core::mem::replace(&mut self.is_indexed, true) {
             return Ok(());

@@ -10,7 +10,8 @@ use super::{Cursor, Error, Position, Problem, Reader, Text};
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
-/// Longest line that is held as a whole, bytes: 16 times that of `LinuxCNC`. A longer one is read byte by byte, and has no variables.
+/// Longest line that is held as a whole, bytes: 16 times that of `LinuxCNC`. A longer one is read byte by
+/// byte, and has no variables.
 const MOST_LINE: usize = 4096;
 
 /// Most bytes of loops and subprograms together: a thousand times what people write by hand.
@@ -22,7 +23,8 @@ const MOST_CALLS: usize = 10;
 /// Most loops and conditions in each other.
 const MOST_OPEN: usize = 100;
 
-/// Most lines that loops and subprograms repeat: as many as the greatest drawings have, so that a loop without an end ends.
+/// Most lines that loops and subprograms repeat: as many as the greatest drawings have, so that a loop
+/// without an end ends.
 const MOST_AGAIN: u32 = 1_000_000;
 
 const TOO_MANY_LINES: &str = "more than a million lines by loops and subprograms, and the program is ended here: check the \

@@ -12,7 +12,8 @@ pub enum Dialect {
     CammGl,
     /// Graphtec's GP-GL.
     GpGl,
-    /// GP-GL as the small cutters Craft Robo and Silhouette speak it, with finer steps; their texts begin with `ESC` and a byte 4.
+    /// GP-GL as the small cutters Craft Robo and Silhouette speak it, with finer steps; their texts begin
+    /// with `ESC` and a byte 4.
     Silhouette,
 }
 
@@ -26,8 +27,8 @@ const ETX: u8 = 3;
 impl Dialect {
     /// Size of a step while nothing else is known, mm.
     ///
-    /// It is 0.025 for CAMM-GL, 0.1 for GP-GL (what Graphtec's cutters are delivered with; their panel also has 0.05, 0.025 and
-    /// 0.01), and 0.05 for Silhouette.
+    /// It is 0.025 for CAMM-GL, 0.1 for GP-GL (what Graphtec's cutters are delivered with; their panel also
+    /// has 0.05, 0.025 and 0.01), and 0.05 for Silhouette.
     ///
     /// ```
     /// # use plotter_motion::hpgl::cutter::Dialect;
@@ -48,10 +49,11 @@ impl Dialect {
         matches!(self, Self::GpGl | Self::Silhouette)
     }
 
-    /// The dialect of a text that begins with `head`, and the share of its operations that make sense, above a half; `None` for
-    /// anything else.
+    /// The dialect of a text that begins with `head`, and the share of its operations that make sense, above
+    /// a half; `None` for anything else.
     ///
-    /// The two are told apart by what only one of them has. A text of nothing but `M` and `D` with line ends is CAMM-GL.
+    /// The two are told apart by what only one of them has. A text of nothing but `M` and `D` with line ends
+    /// is CAMM-GL.
     ///
     /// ```
     /// # use plotter_motion::hpgl::cutter::Dialect;

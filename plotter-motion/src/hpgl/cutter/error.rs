@@ -46,7 +46,8 @@ pub enum Problem {
         /// The byte.
         byte: u8,
     },
-    /// A sign or a point without a digit, a second point, or a number beyond ±2³⁰. The rest of the command is left out.
+    /// A sign or a point without a digit, a second point, or a number beyond ±2³⁰. The rest of the command is
+    /// left out.
     BadNumber {
         /// The command that holds it.
         command: Command,

@@ -1,4 +1,5 @@
-//! The one-letter languages of cutters and of the pen plotters they come from: Roland's CAMM-GL mode 1 and Graphtec's GP-GL.
+//! The one-letter languages of cutters and of the pen plotters they come from: Roland's CAMM-GL mode 1 and
+//! Graphtec's GP-GL.
 //!
 //! ```text
 //! CAMM-GL, one command a line        GP-GL, a byte 3 behind each
@@ -9,8 +10,8 @@
 //! C800,800,200,0,360                 W200,200,50,50,0,3600   a circle of 5 mm about (20, 20) mm
 //! ```
 //!
-//! Coordinates count steps, whose size the text does not say and the machine's panel may change: see [`Dialect::step_mm`] and
-//! [`ReadOptions::step_mm`].
+//! Coordinates count steps, whose size the text does not say and the machine's panel may change: see
+//! [`Dialect::step_mm`] and [`ReadOptions::step_mm`].
 //!
 //! | CAMM-GL | GP-GL | meaning |
 //! |---|---|---|
@@ -25,13 +26,15 @@
 //! | `J` | `J` | takes a pen |
 //! | | `^` | moves the origin |
 //!
-//! What else would be seen on the sheet is left out, and said with what to do: letters and marks (`P` `N`), curves through places
-//! (`Y`), axes and hatching (`X` `T`), line types (`L`: the lines are drawn, solid), what begins with `^` in CAMM-GL. Of force, speed and
-//! blade each kind is said once. Nothing is said about letters' sizes and questions to the machine.
+//! What else would be seen on the sheet is left out, and said with what to do: letters and marks (`P` `N`),
+//! curves through places (`Y`), axes and hatching (`X` `T`), line types (`L`: the lines are drawn, solid),
+//! what begins with `^` in CAMM-GL. Of force, speed and blade each kind is said once. Nothing is said about
+//! letters' sizes and questions to the machine.
 //!
 //! An [`Error`] stands in the place of what could not be carried out; reading goes on.
 //!
-//! Source: Roland's *DXY-1300 Command Reference Manual*, chapter 2; Graphtec's table of GP-GL for its Craft Robo cutters.
+//! Source: Roland's *DXY-1300 Command Reference Manual*, chapter 2; Graphtec's table of GP-GL for its Craft
+//! Robo cutters.
 //!
 //! ```
 //! use plotter_motion::hpgl::cutter::{Dialect, plot_ops};

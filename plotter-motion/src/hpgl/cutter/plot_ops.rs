@@ -20,7 +20,8 @@ const NUMBERS: usize = 10;
 const MOST: f64 = 1_073_741_824.0;
 /// Most that one byte gives: a travel, an arc and a complaint.
 const QUEUE: usize = 4;
-/// Chords of more than so many degrees are drawn as chords; narrower ones are only the machine's way to draw an arc.
+/// Chords of more than so many degrees are drawn as chords; narrower ones are only the machine's way to draw
+/// an arc.
 const USUAL_CHORD_DEG: f64 = 5.0;
 /// Steps to a degree of the angles of GP-GL.
 const TENTHS: f64 = 10.0;
@@ -39,7 +40,8 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// A text in this language for a machine as it is delivered: steps of [`Dialect::step_mm`], curves to 0.01 mm.
+    /// A text in this language for a machine as it is delivered: steps of [`Dialect::step_mm`], curves to
+    /// 0.01 mm.
     #[must_use]
     pub const fn for_dialect(dialect: Dialect) -> Self {
         Self { dialect, step_mm: dialect.step_mm(), tolerance_mm: 0.01 }
@@ -69,7 +71,8 @@ enum Job {
     Chords { centre: Point, out: Vec2, sweep_rad: f64, chords: u32, next: u32 },
 }
 
-/// The plot operations of a text of a cutter, read from an iterator of bytes as they are asked for, in constant memory.
+/// The plot operations of a text of a cutter, read from an iterator of bytes as they are asked for, in
+/// constant memory.
 ///
 /// An [`Error`] stands in the place of what could not be carried out, and the operations after it follow.
 #[derive(Clone, Debug)]
@@ -138,7 +141,8 @@ impl<I> PlotOps<I> {
                 if let Some(entry) = entry(self.options.dialect, first, Some(second)) {
                     return self.open(entry, start);
                 }
-                // By themselves these two take a number: with a letter they are a command of two that is not in the table.
+                // By themselves these two take a number: with a letter they are a command of two that is not
+                // in the table.
                 let is_pair = matches!(first, b'F' | b'T') && second.is_ascii_alphabetic();
                 match entry_of_one(self.options.dialect, first).filter(|_| !is_pair) {
                     Some(entry) => {
@@ -356,8 +360,8 @@ impl<I> PlotOps<I> {
         Ok(())
     }
 
-    /// An arc: its radius is number `from` (in GP-GL there are two, where it begins and ends), then come its angles and the
-    /// angle of its chords. Without a centre it begins where the pen is.
+    /// An arc: its radius is number `from` (in GP-GL there are two, where it begins and ends), then come its
+    /// angles and the angle of its chords. Without a centre it begins where the pen is.
     fn circle(&mut self, centre: Option<Vec2>, from: usize) -> Result<(), Wrong> {
         let is_gp_gl = self.options.dialect.is_gp_gl();
         let expected = if is_gp_gl { "two radii and two angles" } else { "a radius and two angles" };
@@ -522,8 +526,8 @@ impl<I: Iterator<Item = u8>> Iterator for PlotOps<I> {
 
 impl<I: Iterator<Item = u8>> core::iter::FusedIterator for PlotOps<I> {}
 
-/// The plot operations of a text of a cutter that is in memory, for a machine as it is delivered. For others see
-/// [`PlotOps::with_options`].
+/// The plot operations of a text of a cutter that is in memory, for a machine as it is delivered. For others
+/// see [`PlotOps::with_options`].
 ///
 /// ```
 /// # use plotter_motion::hpgl::cutter::{Dialect, plot_ops};

@@ -239,8 +239,10 @@ fn takes(letters: &[u8; 2]) -> Option<u32> {
     })
 }
 
-/// What says nothing to a machine with one pen that draws what it is told: colours, the order of drawing, accelerations, motion without a stop (which the planner sees to), ends and joins of thick lines, the looks of fonts, questions to the plotter, its display and its
-/// cutter. A person who reads what was left out of a drawing wants to read nothing of these.
+/// What says nothing to a machine with one pen that draws what it is told: colours, the order of drawing,
+/// accelerations, motion without a stop (which the planner sees to), ends and joins of thick lines, the looks
+/// of fonts, questions to the plotter, its display and its cutter. A person who reads what was left out of a
+/// drawing wants to read nothing of these.
 fn is_quiet(letters: &[u8; 2]) -> bool {
     matches!(
         letters,

@@ -1,5 +1,5 @@
-//! Labels, symbols, characters of the text's own, and ticks: `LB`, `BL`, `PB`, `SM`, `UC`, `DL`, `CP`, `XT`, `YT`; the sets that
-//! characters are taken from: `CS`, `CA`, `SS`, `SA`.
+//! Labels, symbols, characters of the text's own, and ticks: `LB`, `BL`, `PB`, `SM`, `UC`, `DL`, `CP`, `XT`,
+//! `YT`; the sets that characters are taken from: `CS`, `CA`, `SS`, `SA`.
 
 use super::super::character_set::CharacterSet;
 use super::super::lettering::MOST_KEPT;
@@ -27,8 +27,8 @@ const TAB_COLUMNS: f64 = 8.0;
 const SAME_COLUMN: f64 = 1e-6;
 /// Steps of the grid of `UC` in a capital letter's width and height.
 ///
-/// Source: *HP 7470A Interfacing and Programming Manual*, on `UC`: a sigma of the size of a capital letter is 4 steps wide
-/// and 8 high.
+/// Source: *HP 7470A Interfacing and Programming Manual*, on `UC`: a sigma of the size of a capital letter is
+/// 4 steps wide and 8 high.
 const CHARACTER_GRID: (f64, f64) = (4.0, 8.0);
 /// From here on, with either sign, a number of `UC` lowers or lifts the pen.
 const PEN_CONTROL: f64 = 99.0;
@@ -311,8 +311,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
                 self.lettering.line_start = self.at;
             }
             b"ES" => self.lettering.extra = Vec2::new(open.or(0, 0.0), open.or(1, 0.0)),
-            // SD and AD: pairs of a kind and a value, of which the set of characters is the first kind and the height in
-            // points the fourth.
+            // SD and AD: pairs of a kind and a value, of which the set of characters is the first kind and
+            // the height in points the fourth.
             _ => {
                 let last = |kind: f64| {
                     let mut pairs = open.numbers().chunks_exact(2).rev();

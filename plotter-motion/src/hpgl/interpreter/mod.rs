@@ -28,8 +28,8 @@ use polygons::Fill;
 
 /// Pens that have a speed and a width of their own.
 const PENS: usize = 8;
-/// Most that one event gives, apart from what is drawn piece by piece: two complaints, a dot, and a circle with the ways
-/// to it and back.
+/// Most that one event gives, apart from what is drawn piece by piece: two complaints, a dot, and a circle
+/// with the ways to it and back.
 const QUEUE: usize = 8;
 /// Places in the polygon buffer, unless one says otherwise.
 pub(super) const USUAL_VERTICES: usize = 1024;
@@ -92,23 +92,26 @@ enum Item {
 ///
 /// - The pen marks when it is lowered. A `PD` whose pen is lifted again without a line is a dot, a line to
 ///   where the pen stands.
-/// - `PU` and `PD` act when their two letters have been read, coordinates as each pair is complete. A pen that is lifted goes up with
-///   the travel that follows; where the text ends instead, a travel to where it stands lifts it.
-/// - A circle begins and ends on the same point, right of the centre (left of it for a negative radius), and runs
-///   counter-clockwise. It is drawn whether the pen is up or down; then the pen goes back to the centre and is
-///   as it was. Circles and arcs are [`PlotOp::DrawArc`], unless the text asks for chords of more than 5 degrees.
-/// - `IN` lifts the pen where it stands, and everything is as at the start but the place of the pen and the size of the
-///   sheet; `DF` leaves the pen, its speed, P1, P2 and the turn of `RO` as well.
+/// - `PU` and `PD` act when their two letters have been read, coordinates as each pair is complete. A pen
+///   that is lifted goes up with the travel that follows; where the text ends instead, a travel to where it
+///   stands lifts it.
+/// - A circle begins and ends on the same point, right of the centre (left of it for a negative radius), and
+///   runs counter-clockwise. It is drawn whether the pen is up or down; then the pen goes back to the centre
+///   and is as it was. Circles and arcs are [`PlotOp::DrawArc`], unless the text asks for chords of more than
+///   5 degrees.
+/// - `IN` lifts the pen where it stands, and everything is as at the start but the place of the pen and the
+///   size of the sheet; `DF` leaves the pen, its speed, P1, P2 and the turn of `RO` as well.
 /// - Nothing is cut at the edges of a sheet that nobody has described: only `IW` cuts.
 /// - What is not carried out is reported as [`Error::Unsupported`], and nothing else is lost by it.
 ///
 /// # Memory
 ///
-/// All of it is in the struct. The polygon buffer is what is big: 17 bytes for each of its `VERTICES` places, and one more for
-/// the characters that a text draws itself (`DL`). A corner takes
-/// a place and an arc three; a plotter of 1986 had room for a few hundred corners. The default is 1024 places, 22 KiB in
-/// all; a small controller takes `Interpreter<64>`, 5 KiB. At least 8 places are needed: what `EA` and `EW` draw lies there
-/// too. A side that does not fit is drawn as it comes, with a report ([`Error::PolygonTooLong`]): no line is lost.
+/// All of it is in the struct. The polygon buffer is what is big: 17 bytes for each of its `VERTICES` places,
+/// and one more for the characters that a text draws itself (`DL`). A corner takes a place and an arc three;
+/// a plotter of 1986 had room for a few hundred corners. The default is 1024 places, 22 KiB in all; a small
+/// controller takes `Interpreter<64>`, 5 KiB. At least 8 places are needed: what `EA` and `EW` draw lies
+/// there too. A side that does not fit is drawn as it comes, with a report ([`Error::PolygonTooLong`]): no
+/// line is lost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interpreter<const VERTICES: usize = USUAL_VERTICES> {
     // the pen
@@ -318,8 +321,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         Ok(())
     }
 
-    /// Ends the drawing: a pen that has been lowered and never moved leaves its dot, one that has been lifted since its last line is
-    /// lifted.
+    /// Ends the drawing: a pen that has been lowered and never moved leaves its dot, one that has been lifted
+    /// since its last line is lifted.
     ///
     /// # Errors
     ///

@@ -1,4 +1,5 @@
-//! The pen: where it goes, which one it is, how fast it draws; and curves and encoded data, which are many places.
+//! The pen: where it goes, which one it is, how fast it draws; and curves and encoded data, which are many
+//! places.
 
 use super::super::encoded::Step;
 use super::super::piece::Piece;

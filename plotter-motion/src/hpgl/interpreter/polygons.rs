@@ -226,7 +226,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
 
     /// The six patterns of lines that a printer has.
     ///
-    /// Source: Hewlett-Packard, *PCL 5 Printer Language Technical Reference Manual*, chapter 13, "HP-defined cross-hatch patterns".
+    /// Source: Hewlett-Packard, *PCL 5 Printer Language Technical Reference Manual*, chapter 13, "HP-defined
+    /// cross-hatch patterns".
     fn set_printers_lines(&mut self, open: &Open) -> Result<(), Error> {
         let expected = "lines that lie 1, stand 2, rise 3 or fall 4, or are crossed: upright 5 or slanting 6";
         let (kind, angle_deg) = match open.whole(1, 1, 1, 6, expected)? {

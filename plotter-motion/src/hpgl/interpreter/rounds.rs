@@ -1,4 +1,5 @@
-//! Circles, arcs and wedges: `CI`, `AA`, `AR`, `AT`, `RT`, `EW`, `WG`; and `CT`, which says how fine they are.
+//! Circles, arcs and wedges: `CI`, `AA`, `AR`, `AT`, `RT`, `EW`, `WG`; and `CT`, which says how fine they
+//! are.
 
 use super::super::Error;
 use super::super::piece::{Arc, Piece, rad, turned_deg};

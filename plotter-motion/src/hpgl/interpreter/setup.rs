@@ -1,4 +1,5 @@
-//! What coordinates and lines are: `IN`, `DF`, `IP`, `IR`, `SC`, `RO`, `PS`, `IW`, `LT`, `UL`, `PW`, `PT`, `WU`, `TL`.
+//! What coordinates and lines are: `IN`, `DF`, `IP`, `IR`, `SC`, `RO`, `PS`, `IW`, `LT`, `UL`, `PW`, `PT`,
+//! `WU`, `TL`.
 
 use super::super::character_set::CharacterSets;
 use super::super::line_type::{LineType, Pattern};
@@ -123,7 +124,8 @@ impl<const VERTICES: usize> Interpreter<VERTICES> {
         Ok(())
     }
 
-    /// A length and a width, units; or the number of a sheet on the old plotters. With nothing it stays as it is.
+    /// A length and a width, units; or the number of a sheet on the old plotters. With nothing it stays as it
+    /// is.
     pub(super) fn set_sheet(&mut self, open: &Open) -> Result<(), Error> {
         let Some(length) = open.get(0) else { return Ok(()) };
         let width = open.or(1, length);

@@ -29,8 +29,8 @@ enum Stroke {
 ///   before they select one. A first line without a travel starts at the origin, and says so: `PU0,0;`.
 /// - One command a line. A stroke is `PUx,y;` and one `PD` with all its points, broken after
 ///   [`WriteOptions::points_per_command`].
-/// - Coordinates are 40 units to the mm, rounded by [`from_mm`]: to nearest, halves away from zero. Nothing is
-///   clamped, which would bend a drawing unseen: a point out of range is refused with
+/// - Coordinates are 40 units to the mm, rounded by [`from_mm`]: to nearest, halves away from zero. Nothing
+///   is clamped, which would bend a drawing unseen: a point out of range is refused with
 ///   [`WriteError::Point`], and the caller decides.
 /// - A line to where the pen stands is a dot, `PD;PU;`; inside a stroke it is one more, equal, point.
 /// - A speed becomes `VS` in cm/s, in steps of 0.01 mm/s, whenever it changes; no speed becomes the bare
@@ -225,7 +225,8 @@ impl<W: fmt::Write> Writer<W> {
         let at = self.from()?;
         self.change_speed(speed)?;
         match self.stroke {
-            // Also where points are encoded: not every reader of `PE` knows that a step of no length is a dot.
+            // Also where points are encoded: not every reader of `PE` knows that a step of no length is a
+            // dot.
             Stroke::None if at == to => self.stroke = Stroke::Dot,
             stroke if self.options.coordinates == Coordinates::Encoded => {
                 if stroke == Stroke::Dot {

@@ -1,4 +1,5 @@
-//! Circles and arcs of [`Writer`]: as the plotter's own, and as chords where it has none that are near enough.
+//! Circles and arcs of [`Writer`]: as the plotter's own, and as chords where it has none that are near
+//! enough.
 
 use super::super::arc::{ArcUnits, FLAT_UNITS, GREATEST_UNITS, chord_angle_deg, chords};
 use super::{Coordinates, Stroke, UNITS_PER_MM, WriteError, Writer, speed_steps};
@@ -6,14 +7,14 @@ use crate::{Point, StepPoint, toolpath::from_mm};
 use core::f64::consts::{FRAC_PI_2, TAU};
 use core::fmt;
 
-/// Greatest radius of an arc that is left to the plotter, units: beyond it the centre may lie where the numbers of old
-/// plotters end.
+/// Greatest radius of an arc that is left to the plotter, units: beyond it the centre may lie where the
+/// numbers of old plotters end.
 const MAX_RADIUS_UNITS: f64 = 32_767.0;
 
 impl<W: fmt::Write> Writer<W> {
-    /// Writes a circle round `centre` as `CI`, which the plotter itself divides into chords: PU to the centre, the
-    /// circle, and the pen is up at the centre again. Above 13 mm it gets a chord angle, so that the chords stay within
-    /// half a unit of it; above 650 mm half a degree, the least there is.
+    /// Writes a circle round `centre` as `CI`, which the plotter itself divides into chords: PU to the
+    /// centre, the circle, and the pen is up at the centre again. Above 13 mm it gets a chord angle, so that
+    /// the chords stay within half a unit of it; above 650 mm half a degree, the least there is.
     ///
     /// ```
     /// # use plotter_motion::{Point, hpgl};
@@ -25,8 +26,8 @@ impl<W: fmt::Write> Writer<W> {
     ///
     /// # Errors
     ///
-    /// [`WriteError::Point`] if the centre or the circle's rightmost point lies out of range, or the radius is not
-    /// a number.
+    /// [`WriteError::Point`] if the centre or the circle's rightmost point lies out of range, or the radius
+    /// is not a number.
     pub fn circle(&mut self, centre: Point, radius_mm: f64) -> Result<(), WriteError> {
         let index = self.index;
         self.index += 1;
@@ -41,8 +42,8 @@ impl<W: fmt::Write> Writer<W> {
         Ok(())
     }
 
-    /// Draws an arc about `centre` from where the pen stands to `to`, counter-clockwise for a sweep above 0: as `AA`, which
-    /// the plotter itself divides into chords.
+    /// Draws an arc about `centre` from where the pen stands to `to`, counter-clockwise for a sweep above 0:
+    /// as `AA`, which the plotter itself divides into chords.
     ///
     /// The circle is the one about `centre` through `to`; where the pen stands ought to be on it. `AA` has
     /// its centre in whole units and begins where the pen is, so each piece of at most a quarter takes the
@@ -63,8 +64,8 @@ impl<W: fmt::Write> Writer<W> {
     ///
     /// # Errors
     ///
-    /// [`WriteError::Point`] if the end, the centre or the way round lies out of range, and for a centre where the sweep is
-    /// no angle of at most a whole turn.
+    /// [`WriteError::Point`] if the end, the centre or the way round lies out of range, and for a centre
+    /// where the sweep is no angle of at most a whole turn.
     pub fn arc(
         &mut self,
         centre: Point,

@@ -1,9 +1,10 @@
 //! [`Link`]: a line that loses, changes and invents bytes, made into two streams that lose none; sans-IO.
 //!
-//! Each side sends its stream in numbered frames, at most a window of them ahead of what the other has read. The other says
-//! up to where all have come, and which came after a gap. A line keeps the order of its bytes: where a frame was sent
-//! before one that has come, and has not come itself, it is lost and sent again at once; the last ones are sent again
-//! after a time learned from the answers. Where frames are lost, new ones are made shorter; where none are, longer.
+//! Each side sends its stream in numbered frames, at most a window of them ahead of what the other has read.
+//! The other says up to where all have come, and which came after a gap. A line keeps the order of its bytes:
+//! where a frame was sent before one that has come, and has not come itself, it is lost and sent again at
+//! once; the last ones are sent again after a time learned from the answers. Where frames are lost, new ones
+//! are made shorter; where none are, longer.
 //!
 //! ```text
 //!   host                                       machine
@@ -34,7 +35,8 @@ use outgoing::{LEAST_PAYLOAD, Outgoing};
 pub const LINK_VERSION: u8 = 1;
 /// Zeros by which a host asks whether a machine knows frames: two targets (0, 0) of the digits protocol.
 pub const CALL_ZEROS: u8 = 20;
-/// Zeros in a row that are a call, should some be lost. No host of digits sends more than a target, ten, at once.
+/// Zeros in a row that are a call, should some be lost. No host of digits sends more than a target, ten, at
+/// once.
 const CALLED_BY_ZEROS: u8 = 12;
 /// In a row are those that come no later than this after each other: at 9600 baud a byte takes 1 ms.
 const IN_A_ROW: Duration = Duration::from_millis(5);
@@ -73,16 +75,18 @@ struct OnTheLine {
     sequence: Option<u8>,
 }
 
-/// One end of the link. `WINDOW` frames of at most `PAYLOAD` bytes wait on the way out, and as many on the way in.
+/// One end of the link. `WINDOW` frames of at most `PAYLOAD` bytes wait on the way out, and as many on the
+/// way in.
 ///
-/// `WINDOW` is a power of two up to 32, `PAYLOAD` 12 to 240; the ends need not agree. Feed it every byte that comes
-/// ([`receive`](Self::receive)); whenever the line can take a byte, ask for one ([`transmit`](Self::transmit)); if it has
-/// none, ask again at [`next_wake`](Self::next_wake), or after the next byte that comes or is written or read. Times never go
-/// back. It takes `2 * WINDOW * (PAYLOAD + 24)` bytes of memory and about 700, and never more.
+/// `WINDOW` is a power of two up to 32, `PAYLOAD` 12 to 240; the ends need not agree. Feed it every byte that
+/// comes ([`receive`](Self::receive)); whenever the line can take a byte, ask for one
+/// ([`transmit`](Self::transmit)); if it has none, ask again at [`next_wake`](Self::next_wake), or after the
+/// next byte that comes or is written or read. Times never go back. It takes `2 * WINDOW * (PAYLOAD + 24)`
+/// bytes of memory and about 700, and never more.
 ///
-/// What is sent twice, changed, or comes from an earlier session is never read, and nothing is read twice: the check of
-/// a frame, 16 bits and its length, lets pass one damaged frame in 65,536 at worst, and none with a single burst of
-/// up to 16 bits.
+/// What is sent twice, changed, or comes from an earlier session is never read, and nothing is read twice:
+/// the check of a frame, 16 bits and its length, lets pass one damaged frame in 65,536 at worst, and none
+/// with a single burst of up to 16 bits.
 ///
 /// ```
 /// # use core::time::Duration;
@@ -166,8 +170,9 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
     }
 
     /// The host's end, which calls. `nonce` is the number of the session: one that a host started anew is not
-    /// likely to take again, such as the low bits of a clock. The next one is taken if the greeting would hold an
-    /// [`Order`] by this one: a machine without a session obeys those as it would in the digits protocol.
+    /// likely to take again, such as the low bits of a clock. The next one is taken if the greeting would
+    /// hold an [`Order`] by this one: a machine without a session obeys those as it would in the digits
+    /// protocol.
     #[must_use]
     pub fn host(nonce: u16, settings: LinkSettings) -> Self {
         let mut host = Self::new(Role::Host { nonce, calls: 0, zeros_left: 0 }, LinkState::Calling, settings);
@@ -205,8 +210,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         self.counts
     }
 
-    /// A host calls anew, for a session of the number `nonce`; what was written and not read by the machine is forgotten.
-    /// A machine takes no notice.
+    /// A host calls anew, for a session of the number `nonce`; what was written and not read by the machine
+    /// is forgotten. A machine takes no notice.
     pub fn call(&mut self, nonce: u16) {
         if self.role != Role::Machine {
             let Self { settings, counts, heard, spoke, given, .. } = *self;
@@ -214,8 +219,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         }
     }
 
-    /// Appends to the stream; says how many of `bytes` found room. A machine has no stream before its first session; a
-    /// host's can be begun at once.
+    /// Appends to the stream; says how many of `bytes` found room. A machine has no stream before its first
+    /// session; a host's can be begun at once.
     pub fn write(&mut self, bytes: &[u8]) -> usize {
         if self.state == LinkState::Idle {
             return 0;
@@ -247,11 +252,12 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         self.line.done < self.line.length
     }
 
-    /// A host's order to the machine, which takes the place of any before it; its number in this session. A frame on its way out
-    /// is cut for it, and it is sent again every [`LinkSettings::least_retry`] until [`order_taken`](Self::order_taken). A machine
-    /// gives none.
+    /// A host's order to the machine, which takes the place of any before it; its number in this session. A
+    /// frame on its way out is cut for it, and it is sent again every [`LinkSettings::least_retry`] until
+    /// [`order_taken`](Self::order_taken). A machine gives none.
     ///
-    /// [`Order::Stop`] is preceded by `00 21 00`: what can be no frame, and is obeyed by a machine in whatever session or none.
+    /// [`Order::Stop`] is preceded by `00 21 00`: what can be no frame, and is obeyed by a machine in
+    /// whatever session or none.
     pub const fn order(&mut self, order: Order) -> u8 {
         self.given.give(order)
     }
@@ -261,8 +267,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         self.given.answered(number);
     }
 
-    /// A machine's next order and its number; 0 for one that has none. It is there as soon as its last byte has come, whatever
-    /// waits in the streams.
+    /// A machine's next order and its number; 0 for one that has none. It is there as soon as its last byte
+    /// has come, whatever waits in the streams.
     pub const fn take_order(&mut self) -> Option<(u8, Order)> {
         self.taken.take()
     }
@@ -293,7 +299,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
             Some(Ok(frame)) => frame,
             Some(Err(error)) => {
                 counts.damaged = counts.damaged.saturating_add(1);
-                // A machine without a session cannot know a frame of one: that host does not know that it was off.
+                // A machine without a session cannot know a frame of one: that host does not know that it was
+                // off.
                 self.greet |= self.role == Role::Machine && *session == 0 && error == DecodeError::Check;
                 return;
             }
@@ -454,8 +461,9 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         Hello { version: LINK_VERSION, window, payload, session, capabilities }
     }
 
-    /// The first number of a session, from `from` on, by which a host greets without a byte that is an order. (256 numbers in a
-    /// row have `!` as their high byte; all fail only if the capabilities hold such a byte.)
+    /// The first number of a session, from `from` on, by which a host greets without a byte that is an order.
+    /// (256 numbers in a row have `!` as their high byte; all fail only if the capabilities hold such a
+    /// byte.)
     fn number(&self, from: u16) -> u16 {
         let numbers = (0..1_024).map(|on| from.wrapping_add(on)).filter(|&number| number > 0);
         let is_quiet = |&number: &u16| {
@@ -467,7 +475,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         numbers.clone().find(is_quiet).unwrap_or_else(|| from.max(1))
     }
 
-    /// Puts an order on the line, if one is due; what is on its way there is cut short for one that was not sent yet.
+    /// Puts an order on the line, if one is due; what is on its way there is cut short for one that was not
+    /// sent yet.
     fn order_frame(&mut self, now: Duration) -> bool {
         let is_open = matches!(self.state, LinkState::Open | LinkState::Interrupted);
         let Some((order, number)) =
@@ -543,7 +552,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Link<WINDOW, PAYLOAD> {
         true
     }
 
-    /// When [`transmit`](Self::transmit) has something to say, if nothing comes and nothing is written or read before.
+    /// When [`transmit`](Self::transmit) has something to say, if nothing comes and nothing is written or
+    /// read before.
     #[must_use]
     pub fn next_wake(&self) -> Option<Duration> {
         if self.is_sending() {

@@ -200,7 +200,8 @@ impl<const WINDOW: usize, const PAYLOAD: usize> Outgoing<WINDOW, PAYLOAD> {
             .min()
     }
 
-    /// The other side says up to where all has come, which came after the gap there, and up to where it takes more.
+    /// The other side says up to where all has come, which came after the gap there, and up to where it takes
+    /// more.
     pub(super) fn acknowledged(&mut self, now: Duration, until: u8, after_gap: u32, limit: u8) {
         if until.wrapping_sub(self.first) > self.open.wrapping_sub(self.first) {
             return; // an old one

@@ -2,8 +2,8 @@
 
 use core::time::Duration;
 
-/// Mean and mean deviation of the time from a frame's last byte to its answer (V. Jacobson, M. Karels, "Congestion Avoidance
-/// and Control", 1988; RFC 6298, section 2).
+/// Mean and mean deviation of the time from a frame's last byte to its answer (V. Jacobson, M. Karels,
+/// "Congestion Avoidance and Control", 1988; RFC 6298, section 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct RoundTrip {
     mean: Duration,

@@ -12,10 +12,11 @@ use core::time::Duration;
 pub struct LinkSettings {
     /// Time between two calls or greetings that are not answered, 100 ms by default.
     pub call_again: Duration,
-    /// How often a host calls before it takes the machine for one of the digits protocol, 10 times by default.
+    /// How often a host calls before it takes the machine for one of the digits protocol, 10 times by
+    /// default.
     pub most_calls: u8,
-    /// Shortest time after which a frame without answer is sent again, 30 ms by default: adapters of USB hold bytes back for
-    /// up to 16 ms.
+    /// Shortest time after which a frame without answer is sent again, 30 ms by default: adapters of USB hold
+    /// bytes back for up to 16 ms.
     pub least_retry: Duration,
     /// Longest such time, 500 ms by default: so long at most after a cable is plugged in again, it goes on.
     pub most_retry: Duration,
@@ -23,8 +24,8 @@ pub struct LinkSettings {
     pub keep_alive: Duration,
     /// Silence of the other side after which the link counts as interrupted, 1 s by default.
     pub interrupted_after: Duration,
-    /// What else this side can do; the link knows nothing of it. No byte of a host's may be an [`Order`](super::super::Order):
-    /// a machine without a session obeys it.
+    /// What else this side can do; the link knows nothing of it. No byte of a host's may be an
+    /// [`Order`](super::super::Order): a machine without a session obeys it.
     pub capabilities: u32,
 }
 

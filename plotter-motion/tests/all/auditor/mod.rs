@@ -1,4 +1,5 @@
-//! Looks at nothing but the emitted steps: where the motors are when, and from that speed, acceleration and jerk by differences.
+//! Looks at nothing but the emitted steps: where the motors are when, and from that speed, acceleration and
+//! jerk by differences.
 #![allow(
     dead_code,
     clippy::unwrap_used,
@@ -25,7 +26,8 @@ pub(crate) struct Lens {
     pub(crate) bin_s: f64,
     /// Bins between the places that are compared where no corner is.
     pub(crate) window: usize,
-    /// Bins between those that are compared across corners, so that a curve of many short segments counts as a curve.
+    /// Bins between those that are compared across corners, so that a curve of many short segments counts as
+    /// a curve.
     pub(crate) wide_window: usize,
 }
 
@@ -41,7 +43,8 @@ pub(crate) struct Audit {
     /// Along and across in wide windows that may hold corners, if the direction changes little in all.
     pub(crate) wide_along_mm_s2: f64,
     pub(crate) wide_across_mm_s2: f64,
-    /// Square of the speed at a corner as a share of what is allowed there: the greatest; and how many corners there were.
+    /// Square of the speed at a corner as a share of what is allowed there: the greatest; and how many
+    /// corners there were.
     pub(crate) corner_share: f64,
     pub(crate) corners: usize,
     /// The acceleration as a vector, as a share of its limit, in every window; in exact mode in those without
@@ -166,8 +169,8 @@ impl Bins {
 
 /// Turning by less is no corner, rad.
 const CORNER_RAD: f64 = 1e-3;
-/// Where the direction turns by more than this within a window, differences say too little, rad: speeds at corners and on curves
-/// are looked at step by step.
+/// Where the direction turns by more than this within a window, differences say too little, rad: speeds at
+/// corners and on curves are looked at step by step.
 const SHARP_RAD: f64 = 0.35;
 /// The same for narrow windows, where a chord must not be shorter than its curve by more than 0.2 %.
 const NARROW_SHARP_RAD: f64 = 0.2;
@@ -338,8 +341,8 @@ impl Stretch {
             let speed = self.end_speeds(lens.clock_hz)?[end];
             return Some(speed * speed - 2.0 * accel_mm_s2 * 1.5 * self.step_mm());
         }
-        // From one chord to the next the times of single steps jump by less than a step; and as on curves, the mean speed over
-        // some way is that in its middle.
+        // From one chord to the next the times of single steps jump by less than a step; and as on curves,
+        // the mean speed over some way is that in its middle.
         let (speed, way_mm) = self.curve_speeds(lens)?[end];
         Some(speed * speed - accel_mm_s2 * way_mm)
     }
@@ -415,11 +418,12 @@ impl Path {
         self.slowness[after - 1] + share * (self.slowness[after] - self.slowness[after - 1])
     }
 
-    /// Acceleration along and across, between the means that begin at `at`, a window and two windows later; the greater speed;
-    /// and how far the direction turns.
+    /// Acceleration along and across, between the means that begin at `at`, a window and two windows later;
+    /// the greater speed; and how far the direction turns.
     ///
-    /// The direction of a chord is that of the curve in the middle of its way. Where the radius is v² / a the direction turns by the
-    /// integral of a dt / v, so a is the turning divided by that of dt / v, whatever the speed does meanwhile.
+    /// The direction of a chord is that of the curve in the middle of its way. Where the radius is v² / a the
+    /// direction turns by the integral of a dt / v, so a is the turning divided by that of dt / v, whatever
+    /// the speed does meanwhile.
     fn difference(&self, at: usize, window: usize, bin_s: f64) -> (f64, f64, f64, f64) {
         let dt = window as f64 * bin_s;
         let speed = |at: usize| (self.smooth[at + window] - self.smooth[at]) * (1.0 / dt);

@@ -19,7 +19,8 @@ fn polyline(points: impl IntoIterator<Item = Point>) -> Vec<PlotOp> {
     ops
 }
 
-/// An Archimedean spiral about (70, 70) mm: radius from 1 mm on, 2.95 mm more and 250 segments a turn; with 20 turns to 60 mm.
+/// An Archimedean spiral about (70, 70) mm: radius from 1 mm on, 2.95 mm more and 250 segments a turn; with
+/// 20 turns to 60 mm.
 pub(crate) fn spiral(turns: u32) -> Drawing {
     let points = (0..=250 * turns).map(|index| {
         let turned = f64::from(index) / 250.0;
@@ -126,8 +127,8 @@ pub(crate) fn built() -> [Drawing; 4] {
     [spiral(20), hatch(60), zigzag(1000), circle()]
 }
 
-/// Those that are files of others, where `PLOTTER_REAL_FILES` names them: an owl, curves in short chords, the same in arcs, a space craft. Without the way home at
-/// their ends, and at the machine's own speed.
+/// Those that are files of others, where `PLOTTER_REAL_FILES` names them: an owl, curves in short chords, the
+/// same in arcs, a space craft. Without the way home at their ends, and at the machine's own speed.
 pub(crate) fn real() -> Vec<Drawing> {
     let files = [
         ("owl", "gcode", "unicorn_owl.gcode"),

@@ -67,8 +67,8 @@ impl<C: LineController> Run<C> {
         }
     }
 
-    /// Makes a move and waits until it is done; `seen` is told of every place of the pen on the way. Says whether it
-    /// was done within 20 s.
+    /// Makes a move and waits until it is done; `seen` is told of every place of the pen on the way. Says
+    /// whether it was done within 20 s.
     pub fn draw(&mut self, next: PenMove, mut seen: impl FnMut(Point)) -> bool {
         let limit = self.now + Duration::from_secs(20);
         self.board.start(self.now, next);

@@ -1,11 +1,12 @@
-//! Files of other programs: small ones in their manner, of our own making, which every test reads, and those of a folder
-//! that `PLOTTER_REAL_FILES` names, which are not in the repository.
+//! Files of other programs: small ones in their manner, of our own making, which every test reads, and those
+//! of a folder that `PLOTTER_REAL_FILES` names, which are not in the repository.
 //!
 //! ```text
 //! PLOTTER_REAL_FILES=../files cargo test --workspace     # holds the folders hpgl, gcode, logs, stitch
 //! ```
 //!
-//! A test that finds none of the latter says `skipped` with its own name and what it left out, whatever the test runner hides.
+//! A test that finds none of the latter says `skipped` with its own name and what it left out, whatever the
+//! test runner hides.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -13,7 +14,8 @@ use std::path::{Path, PathBuf};
 /// The variable that names the folder; a relative path counts from the workspace.
 const VARIABLE: &str = "PLOTTER_REAL_FILES";
 
-/// The folder of others' files of a kind, or `None` and a word of it. A folder that is named but not there fails the test.
+/// The folder of others' files of a kind, or `None` and a word of it. A folder that is named but not there
+/// fails the test.
 fn others(kind: &str) -> Option<PathBuf> {
     let Some(named) = std::env::var_os(VARIABLE).filter(|named| !named.is_empty()) else {
         let thread = std::thread::current();

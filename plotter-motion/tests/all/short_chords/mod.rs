@@ -98,7 +98,8 @@ pub(crate) enum Rule {
     Klipper,
 }
 
-/// Time of a stroke from rest to rest with a look-ahead without end, s. Accelerations are those along the path.
+/// Time of a stroke from rest to rest with a look-ahead without end, s. Accelerations are those along the
+/// path.
 pub(crate) fn rule_s(places: &[Point], settings: &PlannerSettings, rule: Rule) -> f64 {
     let (accel, cruise2) = (settings.accel_mm_s2, settings.speed_mm_s * settings.speed_mm_s);
     let ways: Vec<Vec2> =

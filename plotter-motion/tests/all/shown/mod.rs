@@ -3,8 +3,8 @@
 use plotter_motion::hpgl::{UNITS_PER_MM, plot_ops};
 use plotter_motion::{PlotOp, Point};
 
-/// The operations of a text in plotter units, rounded to a thousandth: `U` travel, `D` draw, `A` arc (to where, about which
-/// centre, by how many degrees), `S` pen, `N` page; errors in `<>`.
+/// The operations of a text in plotter units, rounded to a thousandth: `U` travel, `D` draw, `A` arc (to
+/// where, about which centre, by how many degrees), `S` pen, `N` page; errors in `<>`.
 pub(crate) fn ops(text: &str) -> String {
     let shown: Vec<String> = plot_ops(text.as_bytes())
         .map(|op| match op {

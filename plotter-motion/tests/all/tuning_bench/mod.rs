@@ -77,10 +77,11 @@ pub fn relay_experiment(bench: &mut Bench, settings: ExperimentSettings) -> Resu
 pub struct StepResult {
     /// Beyond the target, as a share of the step.
     pub overshoot: f64,
-    /// When the axis came within 2 % of the step, or two counts, for good: with more friction at rest than in motion an
-    /// integral never stands still.
+    /// When the axis came within 2 % of the step, or two counts, for good: with more friction at rest than in
+    /// motion an integral never stands still.
     pub settled_s: Option<f64>,
-    /// How far the counts are from the true place at the end: x1 decoding counts a shaft away that trembles about an edge.
+    /// How far the counts are from the true place at the end: x1 decoding counts a shaft away that trembles
+    /// about an edge.
     pub drift_counts: f64,
 }
 

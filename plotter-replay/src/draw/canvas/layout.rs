@@ -20,7 +20,7 @@ pub(super) struct Layout {
     pub(super) bar_mm: f64,
 }
 
-/// A stretch with nothing on it is shown as so wide, mm.
+/// Least extent that is shown, mm, also for a drawing without any.
 const LEAST_MM: f64 = 0.1;
 /// Coordinates are kept within this, mm, so that sums and 32 bit pixels stay exact enough.
 const MOST_MM: f64 = 1e6;

@@ -155,7 +155,8 @@ impl Canvas {
         Self::default()
     }
 
-    /// What a virtual plotter has drawn, the targets it had, and, where they differ, the resynchronized track.
+    /// What a virtual plotter has drawn, the targets it had, and, where they differ, the resynchronized
+    /// track.
     #[must_use]
     pub fn from_plotter(plotter: &VirtualPlotter, tolerance_mm: f64) -> Self {
         let mut sketch = Sketch::new(*plotter.settings(), tolerance_mm);
@@ -214,8 +215,8 @@ impl Canvas {
         })
     }
 
-    /// A style with line widths and margin that suit the size of what is drawn: for a drawing much smaller than
-    /// a sheet the 0.35 mm pen of the default would blot.
+    /// A style with line widths and margin that suit the size of what is drawn: for a drawing much smaller
+    /// than a sheet the 0.35 mm pen of the default would blot.
     #[must_use]
     pub fn fitted_style(&self) -> CanvasStyle {
         let base = CanvasStyle::default();

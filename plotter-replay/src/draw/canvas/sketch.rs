@@ -5,8 +5,8 @@ use crate::draw::thin::thin;
 use crate::{PlotterSettings, virtual_plotter::Leg};
 use plotter_motion::{Pen, Point, Segment, StepPoint};
 
-/// Puts the ways of a virtual plotter on a canvas as they come, thinned, so that a recording of any length can be drawn:
-/// see [`crate::VirtualPlotter::take_noted`].
+/// Puts the ways of a virtual plotter on a canvas as they come, thinned, so that a recording of any length
+/// can be drawn: see [`crate::VirtualPlotter::take_noted`].
 ///
 /// ```
 /// # use plotter_replay::{PlotterSettings, VirtualPlotter, draw::{Layer, Sketch}, log::{Event, Record}};

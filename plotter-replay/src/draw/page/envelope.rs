@@ -1,4 +1,5 @@
-//! [`Envelope`] and [`Tally`]: values over a time whose length is not known before, in a bounded number of stretches.
+//! [`Envelope`] and [`Tally`]: values over a time whose length is not known before, in a bounded number of
+//! stretches.
 
 use serde_json::{Value, json};
 
@@ -86,8 +87,8 @@ impl Tally {
         }
     }
 
-    /// How many a second in each stretch, as [`Envelope::to_json`] has values. Stretches shorter than `least_us` are
-    /// taken together: a rate needs a time over which it is one.
+    /// How many a second in each stretch, as [`Envelope::to_json`] has values. Stretches shorter than
+    /// `least_us` are taken together: a rate needs a time over which it is one.
     pub(super) fn to_json(&self, least_us: u64) -> Value {
         let group = usize::try_from(least_us.div_ceil(self.0.width_us)).unwrap_or(1).max(1);
         let width_us = self.0.width_us.saturating_mul(group as u64);

@@ -4,13 +4,13 @@ use super::numbers::zipped;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 
-/// Cells a side at most.
+/// Most cells a side. A drawing that needs more gets cells of twice the side, so that the page stays small.
 const MOST_CELLS: i32 = 512;
-/// Side of a cell at first, mm.
+/// Side of a cell at first, mm: the line of a fine pen.
 const FINEST_MM: f64 = 0.1;
 
-/// The sheet in square cells, each with the time of its first ink. Cells are as fine as the extent of the drawing allows:
-/// when it outgrows the map, each four become one.
+/// The sheet in square cells, each with the time of its first ink. Cells are as fine as the extent of the
+/// drawing allows: when it outgrows the map, each four become one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InkMap {
     cells: HashMap<(i32, i32), Cell>,
@@ -70,8 +70,8 @@ impl InkMap {
         there.differs |= cell.differs;
     }
 
-    /// Rows from below, of each cell 0 for no ink or 1 to 32767 for the share of the time from `first_us` to `last_us`, plus
-    /// 32768 if it differs; all high bytes, then all low bytes; zlib, base64.
+    /// Rows from below, of each cell 0 for no ink or 1 to 32767 for the share of the time from `first_us` to
+    /// `last_us`, plus 32768 if it differs; all high bytes, then all low bytes; zlib, base64.
     pub(super) fn to_json(&self, first_us: u64, last_us: u64) -> Value {
         let size = |low: i32, high: i32| usize::try_from(i64::from(high) - i64::from(low) + 1).unwrap_or(0);
         let (wide, high) = (size(self.low.0, self.high.0), size(self.low.1, self.high.1));

@@ -1,7 +1,7 @@
 //! Pages for a browser: a recording to look at, and a machine to watch.
 //!
-//! A page is one file: style, program and data are in it, and it asks nothing of any network. `assets/` holds what does
-//! not change; [`document`] puts it together.
+//! A page is one file: style, program and data are in it, and it asks nothing of any network. `assets/` holds
+//! what does not change; [`document`] puts it together.
 
 mod desired;
 mod envelope;
@@ -29,7 +29,8 @@ const COMMON: &str = include_str!("assets/common.js");
 /// A browser is told to load nothing from anywhere, and to connect to nothing but `connect`.
 pub(crate) fn document(title: &str, body: &str, program: &str, data: &str, connect: &str) -> String {
     let title = escape(title);
-    // In a script element nothing but its end, and what looks like a comment, needs care: JSON may write `<` otherwise.
+    // In a script element nothing but its end, and what looks like a comment, needs care: JSON may write `<`
+    // otherwise.
     let data = data.replace('<', "\\u003c");
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

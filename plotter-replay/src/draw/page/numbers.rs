@@ -27,9 +27,9 @@ pub(crate) fn along(points: &[TrailPoint]) -> Value {
     })
 }
 
-/// A trail with its times, in few bytes: times, x and y one after the other as differences in LEB128 (x and y as 2n, or -2n-1 below
-/// 0), then a byte of state for each point; zlib, base64. Places are in units of `unit_um` micrometres, times of as many
-/// microseconds: nothing here is faster than a metre a second.
+/// A trail with its times, in few bytes: times, x and y one after the other as differences in LEB128 (x and y
+/// as 2n, or -2n-1 below 0), then a byte of state for each point; zlib, base64. Places are in units of
+/// `unit_um` micrometres, times of as many microseconds: nothing here is faster than a metre a second.
 pub(super) fn packed(points: &[TrailPoint], unit_um: u32) -> Value {
     let unit_um = unit_um.max(1);
     let unit_us = i64::from(unit_um);

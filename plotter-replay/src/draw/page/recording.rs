@@ -23,7 +23,8 @@ const MOST_WAY_POINTS: usize = 400_000;
 const MOST_WAY_CHARACTERS: usize = 1_200_000;
 /// Points of a way that is exact to the micrometre.
 const FEW_POINTS: usize = 20_000;
-/// Lines farther than this from what was recorded are not shown as lines, mm: the page then has a map of the ink.
+/// Lines farther than this from what was recorded are not shown as lines, mm: the page then has a map of the
+/// ink.
 const MOST_LINE_ERROR_MM: f64 = 0.3;
 /// Ways of more points are not shown as lines either: a browser would paint them for more than a second.
 const MOST_LINE_POINTS: u64 = 40_000;
@@ -46,11 +47,11 @@ const LEAST_RATE_US: u64 = 10_000;
 /// How a page is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PageSettings {
-    /// How far the line in the page may be from the recorded one, mm; more, and said so in the page, where a long
-    /// recording would not fit otherwise. A count of the usual machine by default.
+    /// How far the line in the page may be from the recorded one, mm; more, and said so in the page, where a
+    /// long recording would not fit otherwise. A count of the usual machine by default.
     pub tolerance_mm: f64,
-    /// From what contour error on a way is marked as different from what was meant, mm; 0.1 by default, which an eye sees
-    /// beside a line of 0.35 mm.
+    /// From what contour error on a way is marked as different from what was meant, mm; 0.1 by default, which
+    /// an eye sees beside a line of 0.35 mm.
     pub mark_mm: f64,
     /// From what length on a silence of the line is a gap; half a second by default.
     pub gap_after: Duration,
@@ -62,8 +63,8 @@ impl Default for PageSettings {
     }
 }
 
-/// Makes a page of a recording, in constant memory: records go in one by one, and however many they are, the page stays
-/// below 2 MB.
+/// Makes a page of a recording, in constant memory: records go in one by one, and however many they are, the
+/// page stays below 2 MB.
 ///
 /// ```
 /// # use plotter_replay::{PageSettings, PlotterSettings, RecordingPage, log::{Event, Header, Record, Summary}};
@@ -151,8 +152,8 @@ impl RecordingPage {
         }
     }
 
-    /// Takes the drawing that was sent, in mm on the sheet: it tells the pen and what should have been drawn. To be
-    /// called before the first record.
+    /// Takes the drawing that was sent, in mm on the sheet: it tells the pen and what should have been drawn.
+    /// To be called before the first record.
     #[must_use]
     pub fn with_drawing(mut self, ops: &[PlotOp]) -> Self {
         self.has_drawing = true;
@@ -370,8 +371,8 @@ impl RecordingPage {
     }
 }
 
-/// The way in as many characters as a page has for it, and how far it is from the recorded one, mm. A way of few points is exact
-/// to the micrometre.
+/// The way in as many characters as a page has for it, and how far it is from the recorded one, mm. A way of
+/// few points is exact to the micrometre.
 fn packed_way(mut way: Trail) -> (Value, f64) {
     loop {
         let (points, error_mm) = way.clone().finish();

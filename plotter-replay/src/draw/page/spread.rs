@@ -5,8 +5,8 @@ use crate::virtual_plotter::TrackPoint;
 /// Time of a byte at the published 256000 baud, us.
 const BYTE_US: u64 = 40;
 
-/// The times of `points`, us. Pulses that came in one read have one time, that of the last byte: those before it are put a
-/// byte's time apart before that, as far back as the point before them allows.
+/// The times of `points`, us. Pulses that came in one read have one time, that of the last byte: those before
+/// it are put a byte's time apart before that, as far back as the point before them allows.
 pub(crate) fn spread(points: &[TrackPoint]) -> impl Iterator<Item = u64> {
     let mut before_us = None;
     points.chunk_by(|a, b| a.time_us == b.time_us).flat_map(move |run| {

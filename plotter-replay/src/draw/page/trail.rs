@@ -16,15 +16,16 @@ pub(crate) const DRAWN: u8 = 1;
 /// The pen was farther from its line than is let pass.
 pub(crate) const DIFFERS: u8 = 2;
 
-/// Keeps as few points of a way as give the place of the pen at every time within a tolerance, and never more than a
-/// given number: when there would be more, the tolerance is doubled and what is kept goes through it again.
+/// Keeps as few points of a way as give the place of the pen at every time within a tolerance, and never more
+/// than a given number: when there would be more, the tolerance is doubled and what is kept goes through it
+/// again.
 ///
-/// From the last kept point the place at each later time is seen through a door, wider by the tolerance than the
-/// place on either side, in x and in y alone. One straight stretch at one speed does as long as it passes all doors.
-/// One pass, constant memory.
+/// From the last kept point the place at each later time is seen through a door, wider by the tolerance than
+/// the place on either side, in x and in y alone. One straight stretch at one speed does as long as it passes
+/// all doors. One pass, constant memory.
 ///
-/// Source: the "swinging door" of process recorders: E. H. Bristol, "Swinging door trending: adaptive trend recording?",
-/// ISA National Conference Proceedings (1990).
+/// Source: the "swinging door" of process recorders: E. H. Bristol, "Swinging door trending: adaptive trend
+/// recording?", ISA National Conference Proceedings (1990).
 #[derive(Clone, Debug)]
 pub(crate) struct Trail {
     most: usize,
@@ -140,8 +141,8 @@ impl Trail {
         self.last = Some(point);
     }
 
-    /// Doubles the tolerance and lets what is kept through again. From then on a stretch smaller than the tolerance
-    /// takes the state of what is before it, too: ink over no ink, a difference over none.
+    /// Doubles the tolerance and lets what is kept through again. From then on a stretch smaller than the
+    /// tolerance takes the state of what is before it, too: ink over no ink, a difference over none.
     pub(crate) fn coarsen(&mut self) {
         self.tolerance_mm = (self.tolerance_mm * 2.0).max(1e-6);
         self.error_mm += self.tolerance_mm;

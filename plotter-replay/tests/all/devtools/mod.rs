@@ -193,7 +193,8 @@ impl Browser {
         }
     }
 
-    /// The screen of a telephone or a tablet, in its pixels, with fingers instead of a mouse; of a computer without.
+    /// The screen of a telephone or a tablet, in its pixels, with fingers instead of a mouse; of a computer
+    /// without.
     pub(crate) fn screen(&mut self, width: u32, height: u32, has_touch: bool) {
         let metrics = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": has_touch});
         self.ask("Emulation.setDeviceMetricsOverride", metrics);

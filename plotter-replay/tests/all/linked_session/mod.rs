@@ -50,8 +50,8 @@ impl LinkedSession {
         }
     }
 
-    /// Goes on until the drawing is done, and a little longer; `inside` is told of all that a recorder in the machine sees, and
-    /// `outside` of what the host sends and hears.
+    /// Goes on until the drawing is done, and a little longer; `inside` is told of all that a recorder in the
+    /// machine sees, and `outside` of what the host sends and hears.
     pub(crate) fn run(
         &mut self,
         most: Duration,

@@ -4,8 +4,8 @@ use super::equations::{Row, single};
 use crate::marks::MOST_CROSSINGS;
 use plotter_motion::Axis;
 
-/// Places of one pose lie this near to it, mm: a pair of crossings a fifth of the layout apart tells the angle well enough for
-/// that.
+/// Places of one pose lie this near to it, mm: a pair of crossings a fifth of the layout apart tells the
+/// angle well enough for that.
 const NEAR_MM: f32 = 0.15;
 
 /// Two crossings tell an angle if they lie at least this share of the layout's extent apart.
@@ -17,9 +17,10 @@ const SWOLLEN_GAIN: f32 = 1.5;
 
 /// The rows, as a mask, that agree best with one small turn and two shifts, and that turn, rad.
 ///
-/// For a turn α the shift that each row tells is `found - mark ± α · (place of the scan)`. All marks of one axis tell the same one, and
-/// dust tells any. So each pair of rows of one axis proposes an angle, and for each angle both axes are asked where most of
-/// their rows gather. A row that is off by d counts 1 - (d / 0.15 mm)². All pairs are tried, so nothing is left to chance.
+/// For a turn α the shift that each row tells is `found - mark ± α · (place of the scan)`. All marks of one
+/// axis tell the same one, and dust tells any. So each pair of rows of one axis proposes an angle, and for
+/// each angle both axes are asked where most of their rows gather. A row that is off by d counts 1 - (d /
+/// 0.15 mm)². All pairs are tried, so nothing is left to chance.
 ///
 /// On a wide field paper that swells carries marks at both sides farther apart than 0.15 mm. So once the turn
 /// is known, pairs of an axis propose a swelling too, and it is taken where it brings more than one further
@@ -27,8 +28,8 @@ const SWOLLEN_GAIN: f32 = 1.5;
 ///
 /// Single precision is enough to tell 0.15 mm, and a Cortex-M4 has it in hardware.
 ///
-/// Source: Fischler and Bolles, "Random sample consensus" (1981), with all samples instead of random ones; the score is Torr and
-/// Zisserman's, "MLESAC" (2000), section 4.
+/// Source: Fischler and Bolles, "Random sample consensus" (1981), with all samples instead of random ones;
+/// the score is Torr and Zisserman's, "MLESAC" (2000), section 4.
 pub(super) fn agreeing(rows: &[Row], greatest_angle_rad: f64, most_swelling: f64) -> (u64, f64) {
     let mut sheet = Spread::new(rows);
     let mut best = (0.0, 0, 0.0);
@@ -171,6 +172,7 @@ impl Spread {
 
     /// The row around which most others lie.
     fn densest(&self, shifts_mm: &[f32; MOST_CROSSINGS], from: usize, to: usize) -> (f32, u64) {
+        /// One over the square of [`NEAR_MM`], 1/mm²: a product in place of a quotient in the inner loop.
         const PER_SQUARE: f32 = 1.0 / (NEAR_MM * NEAR_MM);
         let turned_mm = &shifts_mm[from..to];
         let mut best = (0.0, 0.0);

@@ -10,8 +10,8 @@ const LEVER_MM: f64 = 1000.0;
 /// A multiplication is a quarter of a division where floats are computed by software.
 pub(super) const PER_LEVER: f64 = 1.0 / LEVER_MM;
 
-/// Steps of the iteration at the most; four are usual. The equations are nearly linear: with the matrix of the start, which is off by
-/// the turn, each step leaves a hundredth or less of the last one's error.
+/// Steps of the iteration at the most; four are usual. The equations are nearly linear: with the matrix of
+/// the start, which is off by the turn, each step leaves a hundredth or less of the last one's error.
 const MOST_STEPS: u32 = 16;
 
 /// After a step this small the next one would be a hundredth of it, mm: below all rounding that matters.
@@ -129,8 +129,8 @@ pub(super) struct Solution {
     pub(super) rows: u32,
 }
 
-/// The pose with the least weighted squares over those rows that are in `mask`; none if they do not determine it, or if the
-/// squares are seen to be above `most_squares` on the way.
+/// The pose with the least weighted squares over those rows that are in `mask`; none if they do not determine
+/// it, or if the squares are seen to be above `most_squares` on the way.
 ///
 /// Gauss and Newton's iteration with the matrix of its start. What is left of those rows is put into
 /// `residuals_mm`.

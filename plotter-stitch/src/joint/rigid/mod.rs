@@ -14,22 +14,24 @@ use equations::{Pose, Row, Solution, in_radians, moved_by, single, solve};
 use plotter_motion::{Axis, Point, Vec2};
 use rival::rival;
 
-/// No machine is so large, mm. Up to here nothing below overflows.
+/// Farthest place, mm: a kilometre, larger than any machine. No product below overflows up to there.
 const FARTHEST_MM: f64 = 1e6;
 
-/// Rounds of fitting and choosing anew at the most; two are usual.
+/// Most rounds of fitting and choosing anew. Two are usual; the bound ends a choice that goes to and fro.
 const MOST_ROUNDS: u32 = 10;
 
-/// Places are sorted out by no more than this times the deviation that is expected.
+/// Greatest ratio of the deviation by which outliers are sorted out to the expected one. Without it many
+/// outliers would widen the bound that should find them.
 const GREATEST_SCALE: f64 = 3.0;
 
-/// More than this many of its standard deviations no paper swells.
+/// Greatest swelling, in its standard deviations. By chance one paper in 16,000 swells more.
 const GREATEST_SWELLING: f64 = 4.0;
 
-/// What is within so many of its deviations may be so.
+/// A value within this many of its standard deviations may be so: 99.7 % of normal values are.
 const SURE: f64 = 3.0;
 
-/// A sheet that is turned by more than this many standard deviations has moved.
+/// A sheet that is turned by more than this many standard deviations has moved: by chance once in 500
+/// million.
 const STILL: f64 = 6.0;
 
 /// Fits a turned and shifted sheet to where its marks were found.
@@ -67,7 +69,8 @@ const STILL: f64 = 6.0;
 pub struct RigidFit {
     /// Both ends of the border where the frames meet, in the frame about to be drawn, mm.
     pub joint: [Point; 2],
-    /// Standard deviation of a found place apart from the sampling, each for itself, mm: the texture of the paper.
+    /// Standard deviation of a found place apart from the sampling, each for itself, mm: the texture of the
+    /// paper.
     pub place_mm: f64,
     /// The pen's offset from the optical head, as the head sees it: a mark seems to lie so much farther than
     /// the pen was sent, mm. [`with_pen_seen`](Self::with_pen_seen) measures it.
@@ -97,8 +100,9 @@ pub struct RigidFit {
 }
 
 impl Default for RigidFit {
-    /// For edges that are rough by 0.02 mm each, which moves their middle by 0.02 / √2, and a pen known to 0.01 mm; the joint of
-    /// [`ReferenceLines::strip16`](crate::ReferenceLines::strip16), asked to 0.05 mm and never off by more than half a pen's width.
+    /// For edges that are rough by 0.02 mm each, which moves their middle by 0.02 / √2, and a pen known to
+    /// 0.01 mm; the joint of [`ReferenceLines::strip16`](crate::ReferenceLines::strip16), asked to 0.05 mm
+    /// and never off by more than half a pen's width.
     fn default() -> Self {
         Self {
             joint: Field::default().joint(),
@@ -401,11 +405,12 @@ impl RigidFit {
 
     /// Whether any one place could be wrong, and move the joint, without being sorted out.
     ///
-    /// A place that is wrong by d has the residual r d only, with its redundancy r = 1 - (share of itself in its own fit): it draws the
-    /// fit along. So it stays within the gate up to d = gate / r, and what that moves at the joint is looked at. A place that nothing
-    /// else checks has r = 0.
+    /// A place that is wrong by d has the residual r d only, with its redundancy r = 1 - (share of itself in
+    /// its own fit): it draws the fit along. So it stays within the gate up to d = gate / r, and what that
+    /// moves at the joint is looked at. A place that nothing else checks has r = 0.
     ///
-    /// Source: W. Baarda, "A testing procedure for use in geodetic networks" (1968): redundancy numbers, external reliability.
+    /// Source: W. Baarda, "A testing procedure for use in geodetic networks" (1968): redundancy numbers,
+    /// external reliability.
     fn check_reliability(
         &self,
         rows: &[Row],
@@ -480,7 +485,8 @@ fn scale(solution: &Solution, distortion: &Distortion) -> f64 {
     )
 }
 
-/// How much greater the variance must be told because the scale itself is only estimated: the mean of 1 / scale², to first order.
+/// How much greater the variance must be told because the scale itself is only estimated: the mean of 1 /
+/// scale², to first order.
 fn unsteady(solution: &Solution) -> f64 {
     let free = f64::from(solution.rows.saturating_sub(3));
     let all = f64::from(PRIOR_RESIDUALS) + free;

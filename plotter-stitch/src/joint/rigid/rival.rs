@@ -5,7 +5,8 @@ use super::equations::Row;
 use crate::marks::MOST_CROSSINGS;
 use plotter_motion::Axis;
 
-/// What is nearer to a mark's place than this is that mark, smeared or roughly drawn, mm.
+/// Ink nearer to a mark's place than this is that mark, smeared or roughly drawn, mm: the width of a pen's
+/// line.
 const APART_MM: f32 = 0.5;
 
 /// Places of one pose are this near to each other, mm, and three of their deviations.

@@ -5,17 +5,19 @@ use super::{FindLine, Optics, Order, ScanError, Sighting, Tact};
 /// A line may flicker where its edge is about the threshold: gaps up to here are not its end, mm.
 const FLICKER_MM: f64 = 0.1;
 
-/// How much longer or shorter than a clean line a rough one may be seen, mm: four times what two edges vary by
-/// 0.02 mm each. To it comes what sampling does not tell.
+/// How much longer or shorter than a clean line a rough one may be seen, mm: four times what two edges vary
+/// by 0.02 mm each. To it comes what sampling does not tell.
 const ROUGH_MM: f64 = 0.12;
 
-/// What the head's and the detector's own noise make of the middle of hits, mm: each edge is unsteady by some 0.01 mm.
+/// What the head's and the detector's own noise make of the middle of hits, mm: each edge is unsteady by some
+/// 0.01 mm.
 const EDGES_NOISE_MM: f64 = 0.006;
 
 /// What the detector's own noise makes of a centroid, mm: 0.02 of the disc in each of some 30 samples.
 const CENTROID_NOISE_MM: f64 = 0.003;
 
-/// Standard deviation of a centroid for each millimetre between samples; found by simulation at 0.015 to 0.3 mm.
+/// Standard deviation of a centroid for each millimetre between samples; found by simulation at 0.015 to 0.3
+/// mm.
 const CENTROID_SPACING: f64 = 0.08;
 
 /// Finds a line as the middle between where it begins and where it ends.
@@ -30,13 +32,15 @@ const CENTROID_SPACING: f64 = 0.08;
 ///                  edge ^      ^at     ^ edge
 /// ```
 ///
-/// With a spacing d of samples each edge is known to d / √12, their middle to d / √24: 0.061 mm at 0.3 m/s, 0.006 mm in a second
-/// pass ten times slower. Near an edge an unsteady head may see the line, lose it and see it again, so all samples that saw it count: the
-/// middle is the mean of their places. Of a single hit in a tact the place follows from its neighbours: a line begins with the second
-/// sample and ends with the first.
+/// With a spacing d of samples each edge is known to d / √12, their middle to d / √24: 0.061 mm at 0.3 m/s,
+/// 0.006 mm in a second pass ten times slower. Near an edge an unsteady head may see the line, lose it and
+/// see it again, so all samples that saw it count: the middle is the mean of their places. Of a single hit in
+/// a tact the place follows from its neighbours: a line begins with the second sample and ends with the
+/// first.
 ///
-/// Where the detector tells *how much* is covered, each sample counts by what exceeds the threshold, which makes it the centroid; the
-/// coverage of a line is symmetric about its middle, so it is unbiased, and an error of one sample weighs little.
+/// Where the detector tells *how much* is covered, each sample counts by what exceeds the threshold, which
+/// makes it the centroid; the coverage of a line is symmetric about its middle, so it is unbiased, and an
+/// error of one sample weighs little.
 ///
 /// The head's delay carries the line along by velocity · latency; a second pass the other way takes that out.
 ///

@@ -4,9 +4,9 @@ use core::f64::consts::PI;
 
 /// Share of a disc that lies over a straight line of ink, 0 to 1, exactly.
 ///
-/// `disc_mm` is the disc's diameter; the ink goes from `from_mm` to `to_mm` across the line, both measured from the disc's
-/// centre. What lies left of x in a disc of radius r is a circular segment, and the line is what lies left of one edge less what lies
-/// left of the other:
+/// `disc_mm` is the disc's diameter; the ink goes from `from_mm` to `to_mm` across the line, both measured
+/// from the disc's centre. What lies left of x in a disc of radius r is a circular segment, and the line is
+/// what lies left of one edge less what lies left of the other:
 ///
 /// ```text
 /// F(x) = (r² acos(-x/r) + x √(r² - x²)) / π r²,   covered = F(to) - F(from)
@@ -55,7 +55,8 @@ mod tests {
 
     #[test]
     fn the_formula_is_the_sum_of_its_strips() {
-        /// A strip is 6e-6 mm wide, and two of them are cut by the line's edges: 4e-5 of the disc at the most.
+        /// A strip is 6e-6 mm wide, and two of them are cut by the line's edges: 4e-5 of the disc at the
+        /// most.
         const STRIP: f64 = 4e-5;
         for (from, to) in [(-0.25, 0.25), (0.0, 0.5), (-0.1, 0.05), (0.2, 0.7), (-0.9, -0.29)] {
             assert!(

@@ -1,7 +1,7 @@
 //! From what the optical head samples along a scan to where it saw a line.
 //!
-//! Published and ours stand behind one trait, [`FindLine`]: tacts are pushed in the order in which the head passes them, and
-//! each line, or what looks like one, comes out once it is over.
+//! Published and ours stand behind one trait, [`FindLine`]: tacts are pushed in the order in which the head
+//! passes them, and each line, or what looks like one, comes out once it is over.
 
 mod both_edges;
 mod coverage;
@@ -26,7 +26,8 @@ pub struct Tact {
     pub position_mm: f64,
     /// In how many of its two samples a line was seen: 0, 1 or 2.
     pub hits: u8,
-    /// Share of the disc that was covered in either sample, if the detector gives it; noise may carry it below 0 and above 1.
+    /// Share of the disc that was covered in either sample, if the detector gives it; noise may carry it
+    /// below 0 and above 1.
     pub covered: Option<[f64; 2]>,
 }
 
@@ -50,7 +51,8 @@ pub trait FindLine {
     ///
     /// # Errors
     ///
-    /// [`ScanError`] if the tact is none, or does not follow the last one. It is left out, the scan may go on.
+    /// [`ScanError`] if the tact is none, or does not follow the last one. It is left out, the scan may go
+    /// on.
     fn push(&mut self, tact: Tact) -> Result<Option<Sighting>, ScanError>;
 
     /// The scan is over: what was still under the head.

@@ -31,8 +31,8 @@ pub struct Optics {
 }
 
 impl Default for Optics {
-    /// The textile plotter of Ivanov, Gueorguiev, Georgieva and Nenova, section III: a disc of 0.6 mm, a line of 0.5 mm, 2 ms;
-    /// the source has two flashes a tact and does not tell when, nor threshold and delay.
+    /// The textile plotter of Ivanov, Gueorguiev, Georgieva and Nenova, section III: a disc of 0.6 mm, a line
+    /// of 0.5 mm, 2 ms; the source has two flashes a tact and does not tell when, nor threshold and delay.
     fn default() -> Self {
         Self {
             tact_s: 0.002,

@@ -10,13 +10,14 @@ use super::{FindLine, Optics, Order, ScanError, Sighting, Tact};
 ///  7c)  1 2     once in tact k, twice in tact k+1         in tact k+1
 /// ```
 ///
-/// The source says no more. What it leaves open is decided by the same idea, the tact that saw it most: of `1 2 1`
-/// the middle one, and of several with as many hits (`2 2`, slower scans) the first.
+/// The source says no more. What it leaves open is decided by the same idea, the tact that saw it most: of
+/// `1 2 1` the middle one, and of several with as many hits (`2 2`, slower scans) the first.
 ///
-/// A head of 0.3 m/s moves 0.6 mm a tact, so what is found may lie more than 0.3 mm beside the line: a standard deviation of
-/// 0.17 mm.
+/// A head of 0.3 m/s moves 0.6 mm a tact, so what is found may lie more than 0.3 mm beside the line: a
+/// standard deviation of 0.17 mm.
 ///
-/// Source: Ivanov, Gueorguiev, Georgieva, Nenova, "Sketch drawing on infinite paper sheets", section III, figure 7.
+/// Source: Ivanov, Gueorguiev, Georgieva, Nenova, "Sketch drawing on infinite paper sheets", section III,
+/// figure 7.
 ///
 /// ```
 /// use plotter_stitch::{FindLine, Optics, sense::{PublishedRule, Tact}};

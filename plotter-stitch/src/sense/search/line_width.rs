@@ -17,7 +17,7 @@ const ROUGH_MM: f64 = 0.12;
 /// From here on a line that is seen longer than the others is smeared, mm: three times what two edges vary.
 const SMEARED_MM: f64 = 0.085;
 
-/// A smear is no longer than this, mm; what is seen longer is no mark.
+/// Longest smear, mm. What is seen longer is no mark: it is more than a line's own width.
 const LONGEST_SMEAR_MM: f64 = 0.7;
 
 /// Says anew of each pass whether it saw a line, and how well a smeared one is known. Fast and slow passes

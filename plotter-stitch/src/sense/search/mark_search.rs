@@ -10,7 +10,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use plotter_motion::Point;
 
-/// Most things that are kept of one crossing; more dust than that is no mark.
+/// Most sightings that are kept of one crossing. It bounds memory; more dust than that hides any mark.
 const MOST_PASSED: usize = 16;
 
 /// A fast sighting this near to where the sheet has the mark is visited, mm: what a fast scan tells, and
@@ -120,8 +120,8 @@ impl MarkSearch {
     ///
     /// # Errors
     ///
-    /// [`SearchError::NotDone`] before the search is over, [`SearchError::TooFew`] with the first missed mark if too few
-    /// were found.
+    /// [`SearchError::NotDone`] before the search is over, [`SearchError::TooFew`] with the first missed mark
+    /// if too few were found.
     pub fn found(&self) -> Result<&[Found], SearchError> {
         if self.step != Step::Done {
             return Err(SearchError::NotDone);

@@ -1,7 +1,7 @@
 //! The search for the marks at a frame change, as state machines without a machine.
 //!
-//! A search *asks* for one thing at a time: a travel, or a scan whose tacts it wants to see. Whoever moves the head does it and says
-//! when it is done:
+//! A search *asks* for one thing at a time: a travel, or a scan whose tacts it wants to see. Whoever moves
+//! the head does it and says when it is done:
 //!
 //! ```text
 //!            ask() ──▶ Travel { to } ──▶ arrived()

@@ -10,12 +10,15 @@ use plotter_motion::Point;
 /// Sensing speed, mm/s.
 const SPEED_MM_S: f64 = 300.0;
 
-/// The procedure of the source: `X_border1`, `X_border2`, back to (0, 0), `Y_left`, `Y_right`, back to (0, 0).
+/// The procedure of the source: `X_border1`, `X_border2`, back to (0, 0), `Y_left`, `Y_right`, back to (0,
+/// 0).
 ///
-/// Each line is looked for from 50 mm before its expected place on, at 0.3 m/s, and the first thing that is seen is taken for it.
+/// Each line is looked for from 50 mm before its expected place on, at 0.3 m/s, and the first thing that is
+/// seen is taken for it.
 ///
-/// Source: Ivanov, Gueorguiev, Georgieva, Nenova, "Sketch drawing on infinite paper sheets", section IV. It says "(0, `X_border2` + 50)"
-/// for the start of the last scan; as the scan lies on the right, the coordinates must have been exchanged.
+/// Source: Ivanov, Gueorguiev, Georgieva, Nenova, "Sketch drawing on infinite paper sheets", section IV. It
+/// says "(0, `X_border2` + 50)" for the start of the last scan; as the scan lies on the right, the
+/// coordinates must have been exchanged.
 ///
 /// ```
 /// # use plotter_motion::Vec2;

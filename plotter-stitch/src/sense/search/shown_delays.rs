@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 /// A fast pass sees a line no farther from where a slow one does, mm: 4 ms at 285 mm/s more.
 const FARTHEST_AHEAD_MM: f64 = 1.2;
 
-/// Delays are not told from fewer crossings than this.
+/// Least number of crossings that tell delays: with fewer, dust at one of them would weigh too much.
 const LEAST_SEEN: usize = 6;
 
 /// What half the difference of both delays makes at the slow speed is seen from here on, mm: three times what

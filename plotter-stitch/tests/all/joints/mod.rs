@@ -200,8 +200,8 @@ impl core::fmt::Display for Outcome {
     }
 }
 
-/// The least mean square of any unbiased estimate at the border's ends, mm² (Cramér and Rao): each crossing is known to
-/// `place_mm`, and all have an offset of `common_mm` in common.
+/// The least mean square of any unbiased estimate at the border's ends, mm² (Cramér and Rao): each crossing
+/// is known to `place_mm`, and all have an offset of `common_mm` in common.
 pub fn least_mean_square_mm2(crossings: &[Crossing], place_mm: f64, common_mm: f64) -> f64 {
     // At the ends of the border, from the information of the three unknowns; the slopes at an unturned sheet.
     let mut n = [[0.0_f64; 3]; 3];

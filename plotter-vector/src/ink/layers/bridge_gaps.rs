@@ -7,11 +7,12 @@
 //!     oooo.##.oooo            oooo.##.oooo
 //! ```
 //!
-//! A pixel of another pen belongs to this one too when a straight line through it runs in the others' ink from one
-//! place of this pen's ink to another, and goes on in it at both: so the stroke comes in on one side and leaves on the
-//! other in the same direction. It must go on for three widths of the stroke, so that the line lies along it and not
-//! across, and for twice the gap: of parallel strokes as far apart as they are wide, a line that leaves one for the
-//! next would have to turn aside by two widths, and gets no farther than one and a half.
+//! A pixel of another pen belongs to this one too when a straight line through it runs in the others' ink
+//! from one place of this pen's ink to another, and goes on in it at both: so the stroke comes in on one side
+//! and leaves on the other in the same direction. It must go on for three widths of the stroke, so that the
+//! line lies along it and not across, and for twice the gap: of parallel strokes as far apart as they are
+//! wide, a line that leaves one for the next would have to turn aside by two widths, and gets no farther than
+//! one and a half.
 
 use crate::picture::{Bitmap, Pixel};
 
@@ -140,8 +141,8 @@ fn step(from: Pixel, (x, y): (i32, i32)) -> Option<Pixel> {
     Some(Pixel::new(from.x.checked_add_signed(x)?, from.y.checked_add_signed(y)?))
 }
 
-/// Width of the strokes of a picture: the area by half the length of its border; each border pixel's side counts, which
-/// is 4/π of the length over all directions.
+/// Width of the strokes of a picture: the area by half the length of its border; each border pixel's side
+/// counts, which is 4/π of the length over all directions.
 fn width_px(ink: &Bitmap) -> f64 {
     let (mut area, mut sides) = (0_u64, 0_u64);
     for y in 0..ink.height() {

@@ -1,12 +1,12 @@
 //! Finds the pens of a picture.
 //!
-//! A stroke with soft rims has every colour between paper and pen, so a pen is not a cluster of colours around a point
-//! but the line from the paper to it. Pens are the k such lines that explain the most ink: the first by greedy choice
-//! (each next pen is the colour whose line explains most of what is left), then moved as k-means moves its centres,
-//! each to the mean of the colours that are wholly its own.
+//! A stroke with soft rims has every colour between paper and pen, so a pen is not a cluster of colours
+//! around a point but the line from the paper to it. Pens are the k such lines that explain the most ink: the
+//! first by greedy choice (each next pen is the colour whose line explains most of what is left), then moved
+//! as k-means moves its centres, each to the mean of the colours that are wholly its own.
 //!
-//! Source: S. P. Lloyd, "Least squares quantization in PCM" (1982), for the turn of sharing out and moving; for lines
-//! in place of centres P. S. Bradley, O. L. Mangasarian, "k-plane clustering" (2000).
+//! Source: S. P. Lloyd, "Least squares quantization in PCM" (1982), for the turn of sharing out and moving;
+//! for lines in place of centres P. S. Bradley, O. L. Mangasarian, "k-plane clustering" (2000).
 
 use super::histogram::{Entry, Histogram};
 use super::mixing_line::{MixingLine, mixture};
@@ -18,9 +18,11 @@ use crate::{
 
 /// Most contrast that is asked for, however noisy the sheet: the half of its pixels may be ink.
 const MOST_CONTRAST: f64 = 0.25;
-/// Colours within this of a line belong to it, in Oklab: the noise of a scan and the bend of a line by another mixing.
+/// Colours within this of a line belong to it, in Oklab: the noise of a scan and the bend of a line by
+/// another mixing.
 pub(super) const SAME: f64 = 0.06;
-/// Least contrast between paper and a pen, in Oklab: a pale yellow marker has 0.1, 24 grey levels below white 0.08.
+/// Least contrast between paper and a pen, in Oklab: a pale yellow marker has 0.1, 24 grey levels below white
+/// 0.08.
 const LEAST_CONTRAST: f64 = 0.08;
 /// A pixel is wholly a pen's from this share on.
 pub(super) const WHOLE: f64 = 0.75;
@@ -48,8 +50,8 @@ pub(super) fn ink_contrast(histogram: &Histogram) -> f64 {
     (4.0 * histogram.noise).clamp(LEAST_CONTRAST, MOST_CONTRAST)
 }
 
-/// The lines of the pens, the darkest first: `count` of them, or fewer when there are no more; `None` finds as many
-/// as are distinct and draw something.
+/// The lines of the pens, the darkest first: `count` of them, or fewer when there are no more; `None` finds
+/// as many as are distinct and draw something.
 pub(super) fn find(histogram: &Histogram, count: Option<usize>, table: &OklabTable) -> Vec<MixingLine> {
     let ink = most_frequent_ink(histogram);
     let mut lines: Vec<MixingLine> = Vec::new();
@@ -114,7 +116,8 @@ fn drop_rims(lines: &mut Vec<MixingLine>, table: &OklabTable) {
     *lines = kept;
 }
 
-/// The lines of given pens, each moved to the colour that its ink has on this picture, as far as it may have faded.
+/// The lines of given pens, each moved to the colour that its ink has on this picture, as far as it may have
+/// faded.
 pub(super) fn seen(histogram: &Histogram, palette: &Palette, table: &OklabTable) -> Vec<MixingLine> {
     let ink = most_frequent_ink(histogram);
     let line = |pen: &PalettePen| MixingLine::new(histogram.paper, pen.colour, table);
@@ -203,8 +206,9 @@ pub(super) fn nearest(lines: &[MixingLine], colour: Rgb, oklab: Oklab) -> Option
     best.map(|(_, index, beside)| (index, beside))
 }
 
-/// Shares the ink out among the lines and moves each pen to the mean of the upper quarter of its own, by share: that is
-/// the colour of strokes with rims, and also of strokes so thin that they are all rim. A pen moves at most `farthest`.
+/// Shares the ink out among the lines and moves each pen to the mean of the upper quarter of its own, by
+/// share: that is the colour of strokes with rims, and also of strokes so thin that they are all rim. A pen
+/// moves at most `farthest`.
 fn move_lines(lines: &mut [MixingLine], ink: &[Entry], paper: Rgb, table: &OklabTable, farthest: f64) {
     let mut own: Vec<Vec<(f64, Entry)>> = vec![Vec::new(); lines.len()];
     for entry in ink {

@@ -60,7 +60,8 @@ impl Histogram {
     }
 }
 
-/// For each bin the sums of the lower bits of red, green and blue, at most 7 · 2²⁸ each, and the number of pixels.
+/// For each bin the sums of the lower bits of red, green and blue, at most 7 · 2²⁸ each, and the number of
+/// pixels.
 fn count(pixels: &[[u8; 3]]) -> Vec<[u32; 4]> {
     let mut counts = vec![[0; 4]; BINS];
     for pixel in pixels {
@@ -85,8 +86,8 @@ fn mean(bin: usize, [red, green, blue, count]: &[u32; 4]) -> Option<Rgb> {
     Some(Rgb([channel(2 * BITS, red)?, channel(BITS, green)?, channel(0, blue)?]))
 }
 
-/// The most frequent colour: the fullest bin with its 26 neighbours, so that a sheet whose noise lies across a border
-/// of bins is met in its middle. White for a picture without pixels.
+/// The most frequent colour: the fullest bin with its 26 neighbours, so that a sheet whose noise lies across
+/// a border of bins is met in its middle. White for a picture without pixels.
 fn paper(entries: &[Entry], counts: &[[u32; 4]]) -> Rgb {
     // Of equally full bins the lightest.
     let fullest = entries.iter().max_by(|a, b| a.count.cmp(&b.count).then(a.oklab.l.total_cmp(&b.oklab.l)));

@@ -1,8 +1,9 @@
 //! Gives each pixel to its pen.
 //!
-//! In a first pass a table over the colours of the picture tells paper, pixels that are wholly one pen's, and the rest:
-//! rims and mixtures. These are decided in a second pass by the whole pixels around them: a rim of black is grey, but
-//! it lies beside black, and where yellow meets blue the pixels between are grey too, but lie beside yellow and blue.
+//! In a first pass a table over the colours of the picture tells paper, pixels that are wholly one pen's, and
+//! the rest: rims and mixtures. These are decided in a second pass by the whole pixels around them: a rim of
+//! black is grey, but it lies beside black, and where yellow meets blue the pixels between are grey too, but
+//! lie beside yellow and blue.
 
 use super::bridge_gaps::grown;
 use super::find_pens::{SAME, WHOLE, ink_contrast, nearest};
@@ -130,8 +131,8 @@ fn tables(histogram: &Histogram, lines: &[MixingLine]) -> (Vec<Kind>, Vec<BinLin
     (kinds, places)
 }
 
-/// Makes rims of the whole pixels that have fewer than three neighbours of their own pen: a few pixels where two
-/// pens cross may have a third one's colour.
+/// Makes rims of the whole pixels that have fewer than three neighbours of their own pen: a few pixels where
+/// two pens cross may have a third one's colour.
 fn keep_supported(whole: &mut [Bitmap], rims: &mut Bitmap) {
     for bitmap in whole {
         let copy = bitmap.clone();
@@ -147,8 +148,8 @@ fn keep_supported(whole: &mut [Bitmap], rims: &mut Bitmap) {
                     [left, middle, right]
                 };
                 let ([a, b, c], [d, own, e], [f, g, h]) = (sides(above), sides(here), sides(below));
-                // Three or more of eight, counted in parallel: `one` and `two` are the bits of the sum, `more` says
-                // that it has gone beyond three.
+                // Three or more of eight, counted in parallel: `one` and `two` are the bits of the sum,
+                // `more` says that it has gone beyond three.
                 let (mut one, mut two, mut more) = (0_u64, 0_u64, 0_u64);
                 for neighbour in [a, b, c, d, e, f, g, h] {
                     let carry = one & neighbour;
@@ -199,8 +200,8 @@ impl Judge<'_> {
         if let Some((pen, share)) = self.mixed(near, near, colour) {
             return (share >= 0.5).then_some(pen);
         }
-        // What is on no line, which a smeared rim may be, goes to a pen beside it if that is likely; or it is a mixture
-        // with a pen that has no whole pixel here.
+        // What is on no line, which a smeared rim may be, goes to a pen beside it if that is likely; or it is
+        // a mixture with a pen that has no whole pixel here.
         if place.on_lines == 0 {
             if let Some(pen) = self.closest(near & place.by_lines, colour) {
                 return self.half(pen, colour);
@@ -225,7 +226,8 @@ impl Judge<'_> {
         pens.min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// The two pens, one of each set, that make the colour best: the one with the larger share, and their shares' sum.
+    /// The two pens, one of each set, that make the colour best: the one with the larger share, and their
+    /// shares' sum.
     fn mixed(&self, ones: u16, others: u16, colour: Rgb) -> Option<(usize, f64)> {
         let oklab = self.table.oklab(colour);
         let of = |pens: u16| self.lines.iter().enumerate().filter(move |(pen, _)| pens & 1 << pen != 0);

@@ -8,8 +8,8 @@ const SAMPLES: i32 = 16;
 /// How far beyond the pen's own colour the line goes, of its length: ink where the pen went twice is darker.
 const BEYOND: f64 = 1.25;
 
-/// The colours of a pixel that a pen covers from not at all to wholly: p + s·(c − p) for paper p, pen c and the share
-/// s, in encoded sRGB, as drawing programs and scanners' sharpened rims have it.
+/// The colours of a pixel that a pen covers from not at all to wholly: p + s·(c − p) for paper p, pen c and
+/// the share s, in encoded sRGB, as drawing programs and scanners' sharpened rims have it.
 #[derive(Clone, Debug)]
 pub(super) struct MixingLine {
     paper: [i32; 3],
@@ -60,7 +60,8 @@ impl MixingLine {
         2 * self.along(colour) >= self.square
     }
 
-    /// The share of a pixel of this colour that the pen covers; below 0 and above 1 for colours beyond the ends.
+    /// The share of a pixel of this colour that the pen covers; below 0 and above 1 for colours beyond the
+    /// ends.
     pub(super) fn share(&self, colour: Rgb) -> f64 {
         f64::from(self.along(colour)) / f64::from(self.square)
     }
@@ -90,8 +91,8 @@ impl MixingLine {
     }
 }
 
-/// The shares of two pens in a pixel, neither below 0, that come nearest to its colour (least squares in encoded
-/// sRGB), and the colour that they make with the paper.
+/// The shares of two pens in a pixel, neither below 0, that come nearest to its colour (least squares in
+/// encoded sRGB), and the colour that they make with the paper.
 pub(super) fn mixture(one: &MixingLine, other: &MixingLine, colour: Rgb) -> ([f64; 2], Rgb) {
     let (aa, bb, ab) = (f64::from(one.square), f64::from(other.square), f64::from(dot(one.way, other.way)));
     let (a, b) = (f64::from(one.along(colour)), f64::from(other.along(colour)));

@@ -1,7 +1,7 @@
 //! Finds the pens that are none: the colour of two others' mixture, always beside them.
 //!
-//! Where black is drawn over blue, a dark blue lies between; where a picture's colours are smeared, as in JPEG, it lies
-//! along the whole stroke. A dark blue pen has the same colour, but strokes of its own.
+//! Where black is drawn over blue, a dark blue lies between; where a picture's colours are smeared, as in
+//! JPEG, it lies along the whole stroke. A dark blue pen has the same colour, but strokes of its own.
 
 use super::bridge_gaps::grown;
 use super::find_pens::makers;

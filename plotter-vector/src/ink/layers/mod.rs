@@ -18,10 +18,10 @@ use mixing_line::MixingLine;
 
 /// Which pens have drawn a picture. The default finds them.
 ///
-/// The paper is the most frequent colour. A pixel is ink of a pen when the pen covers half of it or more on the way
-/// from the paper's colour to the pen's own. Rims, which are mixtures with the paper, go to the pen that they are a rim
-/// of by their direction from the paper, not to the nearest colour: the grey rim of a black stroke is black. Where two
-/// pens meet, a mixed pixel goes to the one that has more of it.
+/// The paper is the most frequent colour. A pixel is ink of a pen when the pen covers half of it or more on
+/// the way from the paper's colour to the pen's own. Rims, which are mixtures with the paper, go to the pen
+/// that they are a rim of by their direction from the paper, not to the nearest colour: the grey rim of a
+/// black stroke is black. Where two pens meet, a mixed pixel goes to the one that has more of it.
 ///
 /// ```
 /// # use plotter_vector::{Colour, Rgb, ink::Pens};
@@ -36,15 +36,15 @@ use mixing_line::MixingLine;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Pens {
-    /// As many as there are: colours whose lines to the paper differ and that draw at least 0.3 % of the ink. Greys are
-    /// one pen, and so are a colour and a paler one of the same hue: to tell these apart, give a palette. Without ink,
-    /// one black pen.
+    /// As many as there are: colours whose lines to the paper differ and that draw at least 0.3 % of the ink.
+    /// Greys are one pen, and so are a colour and a paler one of the same hue: to tell these apart, give a
+    /// palette. Without ink, one black pen.
     #[default]
     Found,
     /// This many, from 1 to [`MAX_PENS`]; fewer when the picture has fewer.
     Count(usize),
-    /// These. A pen may have faded, or the scanner be off, by a fifth of the way from black to white. Ink of no given
-    /// pen goes to the one that it is most like.
+    /// These. A pen may have faded, or the scanner be off, by a fifth of the way from black to white. Ink of
+    /// no given pen goes to the one that it is most like.
     Given(Palette),
 }
 
@@ -74,7 +74,8 @@ impl core::error::Error for PensError {}
 impl Pens {
     /// Shares the ink of a picture among the pens. Found pens are numbered from 1, the darkest first.
     ///
-    /// Takes one bit a pixel and pen three times over, and 1.5 MB. The result depends on nothing but the picture.
+    /// Takes one bit a pixel and pen three times over, and 1.5 MB. The result depends on nothing but the
+    /// picture.
     ///
     /// # Errors
     /// [`PensError`].
@@ -111,7 +112,8 @@ impl Pens {
     }
 }
 
-/// The ink of each pen of a picture. Every ink pixel is in exactly one of them, save after [`Layers::bridged`].
+/// The ink of each pen of a picture. Every ink pixel is in exactly one of them, save after
+/// [`Layers::bridged`].
 #[derive(Clone, Debug)]
 pub struct Layers {
     paper: Rgb,
@@ -145,20 +147,20 @@ impl Layers {
         self.ink.get(index)
     }
 
-    /// The ink of a pen with its strokes made whole where another pen has crossed them: pixels of other pens between
-    /// two ends that face each other count for this pen too.
+    /// The ink of a pen with its strokes made whole where another pen has crossed them: pixels of other pens
+    /// between two ends that face each other count for this pen too.
     ///
-    /// A gap is at most 4 widths of the crossing stroke long, and the stroke goes on for 2 of its own widths on both
-    /// sides. Strokes that end at another one, and parallel ones, are left as they are.
+    /// A gap is at most 4 widths of the crossing stroke long, and the stroke goes on for 2 of its own widths
+    /// on both sides. Strokes that end at another one, and parallel ones, are left as they are.
     #[must_use]
     pub fn bridged(&self, index: usize) -> Option<Bitmap> {
         let own = self.ink.get(index)?;
         Some(bridge_gaps::bridge(own, &self.others(index)))
     }
 
-    /// How much of each pixel a pen covers, as grey levels: 0 wholly, 255 not at all, so that a centreline can be set
-    /// between pixels. `ink` is the pen's ink, bridged or not; beyond it only the pixels that touch it are asked,
-    /// and where another pen's ink is bridged the pen covers all.
+    /// How much of each pixel a pen covers, as grey levels: 0 wholly, 255 not at all, so that a centreline
+    /// can be set between pixels. `ink` is the pen's ink, bridged or not; beyond it only the pixels that
+    /// touch it are asked, and where another pen's ink is bridged the pen covers all.
     ///
     /// `None` unless `picture` is of the size that was shared out, and there is such a pen.
     #[must_use]

@@ -21,8 +21,9 @@ use direction::{direction, median};
 use mark::{LIKE_SIZE, Mark, Placed};
 use row::Row;
 
-/// Parts of the letters' height: how exactly bottoms and tops are aligned; how far a letter may reach out of its line
-/// (the tail of a `g`), and a straight stroke that belongs to one; the space between the lines of a block.
+/// Parts of the letters' height: how exactly bottoms and tops are aligned; how far a letter may reach out of
+/// its line (the tail of a `g`), and a straight stroke that belongs to one; the space between the lines of a
+/// block.
 const ALIGNED: f64 = 0.1;
 const TAIL: f64 = 0.35;
 const STRAIGHT_TAIL: f64 = 0.15;
@@ -32,24 +33,24 @@ const LINE_SPACE: f64 = 1.0;
 const WIDEST: f64 = 2.0;
 const WIDE: f64 = 1.25;
 
-/// Limits for drawings with very many small strokes in few places: neighbours of a stroke that are looked at, blocks
-/// that may still go on.
+/// Limits for drawings with very many small strokes in few places: neighbours of a stroke that are looked at,
+/// blocks that may still go on.
 const NEAR: usize = 24;
 const OPEN_BLOCKS: usize = 32;
 
 /// Finds lettering among strokes, in any direction.
 ///
-/// A line of lettering is a row of at least two *bent* strokes of like height on a common base line, with gaps up to
-/// `max_gap_heights`, and of the smaller and the straight strokes in its band (the bar of an A, a full stop). Rows of
-/// straight strokes alone are hatching or dashes. The direction is the one in which most bottoms are aligned; it is read
-/// from the left or, if vertical, from below, as ISO 3098 and ISO 129 letter drawings. Lines less than their height
-/// apart, one below the other, are a block.
+/// A line of lettering is a row of at least two *bent* strokes of like height on a common base line, with
+/// gaps up to `max_gap_heights`, and of the smaller and the straight strokes in its band (the bar of an A, a
+/// full stop). Rows of straight strokes alone are hatching or dashes. The direction is the one in which most
+/// bottoms are aligned; it is read from the left or, if vertical, from below, as ISO 3098 and ISO 129 letter
+/// drawings. Lines less than their height apart, one below the other, are a block.
 ///
-/// What the letters *say* is not found. Of the crates that recognize text, `ocrs` (pure Rust) needs models that are
-/// fetched apart, `rusto-rs` runs its models on a C++ engine, `tesseract-rs` builds a C++ engine and fetches its data
-/// while it is built; `ocr` 0.1.0, pure Rust with its templates inside, knows one bitmap font of 5 × 7 dots, and
-/// `outis-core` embeds a model, for captchas. None reads a drawing's lettering with what a package brings along: it stays
-/// strokes, and HPGL gets no `LB`.
+/// What the letters *say* is not found. Of the crates that recognize text, `ocrs` (pure Rust) needs models
+/// that are fetched apart, `rusto-rs` runs its models on a C++ engine, `tesseract-rs` builds a C++ engine and
+/// fetches its data while it is built; `ocr` 0.1.0, pure Rust with its templates inside, knows one bitmap
+/// font of 5 × 7 dots, and `outis-core` embeds a model, for captchas. None reads a drawing's lettering with
+/// what a package brings along: it stays strokes, and HPGL gets no `LB`.
 ///
 /// ```
 /// use plotter_vector::{Drawing, PxPoint, order::Lettering};
@@ -120,7 +121,8 @@ impl Lettering {
     pub(crate) fn find_in(&self, strokes: &[Stroke<'_>]) -> Vec<TextBlock> {
         let marks: Vec<Mark<'_>> =
             strokes.iter().enumerate().filter_map(|(index, stroke)| Mark::new(index, stroke)).collect();
-        // A letter is at most as wide as it is high, so across a box it is 1.5 times as long in any direction.
+        // A letter is at most as wide as it is high, so across a box it is 1.5 times as long in any
+        // direction.
         let small: Vec<&Mark<'_>> =
             marks.iter().filter(|mark| mark.size() <= 1.5 * self.max_height_px).collect();
         let (bent, straight): (Vec<&Mark<'_>>, Vec<&Mark<'_>>) =
@@ -280,7 +282,8 @@ impl Lettering {
         joined
     }
 
-    /// The row from left to right, cut where the space is too wide; parts with fewer than two bent strokes are none.
+    /// The row from left to right, cut where the space is too wide; parts with fewer than two bent strokes
+    /// are none.
     fn split_at_gaps<'a>(&self, mut row: Row<'a>) -> Vec<Row<'a>> {
         row.letters.sort_by(|a, b| a.left.total_cmp(&b.left).then(a.mark.stroke.cmp(&b.mark.stroke)));
         let widest = self.max_gap_heights * row.height();

@@ -6,7 +6,8 @@ use super::{ALIGNED, WIDEST};
 /// How much of the narrower of two strokes lies above or below the other if both are of one letter.
 const SAME_LETTER: f64 = 0.25;
 
-/// Difference of the directions of two parts of one line, rad: three letters by themselves tell it to some degrees.
+/// Difference of the directions of two parts of one line, rad: three letters by themselves tell it to some
+/// degrees.
 const SAME_DIRECTION_RAD: f64 = 0.07;
 
 /// Letters on a line, and the band in which most of them lie.

@@ -50,8 +50,8 @@ impl<B: BufRead> Read for Codec<B> {
     }
 }
 
-/// The run-length code of the Macintosh: a count n, then n + 1 bytes for 0 to 127, 1 − n times one byte for −127 to
-/// −1; −128 is nothing.
+/// The run-length code of the Macintosh: a count n, then n + 1 bytes for 0 to 127, 1 − n times one byte for
+/// −127 to −1; −128 is nothing.
 ///
 /// Source: TIFF revision 6.0 (1992), section 9.
 #[derive(Debug)]

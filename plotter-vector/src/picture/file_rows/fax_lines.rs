@@ -20,8 +20,8 @@ pub(super) struct FaxLines<B> {
     given: usize,
 }
 
-/// The bytes of the block, as many of them for a row as the longest codes need: a row of endless codes would take
-/// endless memory.
+/// The bytes of the block, as many of them for a row as the longest codes need: a row of endless codes would
+/// take endless memory.
 struct Codes<B> {
     file: B,
     budget: Arc<AtomicU32>,
@@ -67,7 +67,8 @@ impl<B: BufRead> FaxLines<B> {
         Ok(Self { decoder: Some(decoder), budget, width, row, given })
     }
 
-    /// Two runs of one pixel take 12 bits at worst, so a row never needs a byte a pixel; the rest is for end marks.
+    /// Two runs of one pixel take 12 bits at worst, so a row never needs a byte a pixel; the rest is for end
+    /// marks.
     fn budget(width: u32) -> u32 {
         width.saturating_add(1024)
     }

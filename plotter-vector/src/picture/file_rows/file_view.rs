@@ -4,8 +4,8 @@ use super::one_line;
 use std::io::{Error, ErrorKind, Read, Result, Seek, SeekFrom};
 use std::sync::{Arc, Mutex, MutexGuard};
 
-/// A reader with a place of its own in a file that is shared: the decoders keep their reader for themselves, and
-/// this way the next pass has one too.
+/// A reader with a place of its own in a file that is shared: the decoders keep their reader for themselves,
+/// and this way the next pass has one too.
 #[derive(Debug)]
 pub(super) struct FileView<R> {
     file: Arc<Mutex<R>>,

@@ -41,10 +41,10 @@ const BUFFER_BYTES: usize = 1 << 16;
 /// others as [`Row::Grey`]. At most [`MAX_SIDE_PX`] columns and [`MAX_SHEET_ROWS`] rows; how many pixels
 /// there are in all does not matter.
 ///
-/// Of TIFF the first picture is read: strips and tiles; uncompressed, `PackBits`, LZW, Deflate and CCITT group 4;
-/// black and white, grey, palette and RGB. Memory is a few rows, whatever the file says, and 16 MiB at most for a
-/// band of tiles. JPEG, interlaced PNG and PAM cannot be decoded by rows: they are decoded whole, within the limits
-/// of [`decode`](crate::picture::decode()), and given by rows.
+/// Of TIFF the first picture is read: strips and tiles; uncompressed, `PackBits`, LZW, Deflate and CCITT
+/// group 4; black and white, grey, palette and RGB. Memory is a few rows, whatever the file says, and 16 MiB
+/// at most for a band of tiles. JPEG, interlaced PNG and PAM cannot be decoded by rows: they are decoded
+/// whole, within the limits of [`decode`](crate::picture::decode()), and given by rows.
 ///
 /// ```
 /// # use plotter_vector::{FileRows, picture::{Depth, Row, RowSource}};
@@ -315,7 +315,8 @@ impl<R: Read + Seek> RowSource for FileRows<R> {
     fn rewind(&mut self) -> Result<(), DecodeError> {
         match &mut self.rows {
             Rows::Whole(rows) => rows.rewind(),
-            // The headers are few bytes: reading them again costs less than code that remembers where rows begin.
+            // The headers are few bytes: reading them again costs less than code that remembers where rows
+            // begin.
             _ => {
                 let again = Self::read_header(self.file.at(0))?;
                 if (again.width, again.height, again.depth()) != (self.width, self.height, self.depth()) {

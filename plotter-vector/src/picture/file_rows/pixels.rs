@@ -71,8 +71,8 @@ pub(super) enum Pixels {
 }
 
 impl Pixels {
-    /// Numbers of `bits` bits whose levels are given. Where they are only black and white, it is bits; where they are
-    /// the levels already, they are copied.
+    /// Numbers of `bits` bits whose levels are given. Where they are only black and white, it is bits; where
+    /// they are the levels already, they are copied.
     pub(super) fn table(bits: u8, levels: [u8; 256]) -> Self {
         if bits == 8 && levels == Self::even_levels(8) {
             return Self::Samples { channels: Channels::Grey, sample: Sample::Byte, stride: 1 };
@@ -83,7 +83,8 @@ impl Pixels {
         Self::Table { bits, levels: Box::new(levels), colours: Box::new(levels.map(|level| [level; 3])) }
     }
 
-    /// Numbers of `bits` bits whose colours and alphas are given. Where all are grey, it is a table of levels.
+    /// Numbers of `bits` bits whose colours and alphas are given. Where all are grey, it is a table of
+    /// levels.
     pub(super) fn palette(bits: u8, colours: [[u8; 4]; 256]) -> Self {
         let levels = colours.map(gray_on_white);
         let colours = colours.map(|colour| colour_on_white(colour).0);
@@ -165,7 +166,8 @@ impl Pixels {
         }
     }
 
-    /// Adds the `width` pixels that the bytes mean in colour, three channels each; fewer when bytes are missing.
+    /// Adds the `width` pixels that the bytes mean in colour, three channels each; fewer when bytes are
+    /// missing.
     pub(super) fn colours(&self, bytes: &[u8], width: u32, to: &mut Vec<u8>) {
         let width = width as usize;
         match self {
@@ -236,8 +238,8 @@ fn to_8_bits(sample: u16) -> u8 {
     u8::try_from((u32::from(sample) + 128) / 257).unwrap_or(u8::MAX)
 }
 
-/// Bits, the leftmost in the highest bit of its byte, as words, the leftmost in the lowest; `zero` and `one` are what
-/// 64 pixels of the value become. The bits right of the picture are cleared.
+/// Bits, the leftmost in the highest bit of its byte, as words, the leftmost in the lowest; `zero` and `one`
+/// are what 64 pixels of the value become. The bits right of the picture are cleared.
 fn pack(bytes: &[u8], width: u32, zero: u64, one: u64, words: &mut [u64]) {
     let black = |eight: [u8; 8]| {
         let bits = u64::from_be_bytes(eight).reverse_bits();
@@ -410,6 +412,7 @@ mod tests {
         let big = Pixels::Samples { channels: Channels::Grey, sample: Sample::BigEndian16, stride: 1 };
         let little = Pixels::Samples { channels: Channels::Grey, sample: Sample::LittleEndian16, stride: 2 };
         assert_eq!(levels(&big, &[0xc8, 0xc8, 0xff, 0xff], 2), [200, 255]); // 200 · 257 = 0xc8c8
-        assert_eq!(levels(&little, &[0x00, 0xc8, 9, 9, 0xff, 0xff, 9, 9], 2), [199, 255]); // 51200 / 257 = 199.2
+        // 51200 / 257 = 199.2.
+        assert_eq!(levels(&little, &[0x00, 0xc8, 9, 9, 0xff, 0xff, 9, 9], 2), [199, 255]);
     }
 }

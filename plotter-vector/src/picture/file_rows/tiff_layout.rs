@@ -223,8 +223,8 @@ fn pixels<R: Read + Seek>(tags: &mut Tags<R>) -> Result<Pixels, Refused> {
 
 /// `ColorMap`, section 5: all reds, all greens, all blues, of 16 bits.
 ///
-/// The high byte is taken: writers make 16 bits of 8 by 256 or by 257, and it is right for both. Some old ones leave
-/// 8 bits as they are.
+/// The high byte is taken: writers make 16 bits of 8 by 256 or by 257, and it is right for both. Some old
+/// ones leave 8 bits as they are.
 fn palette(map: &[u64], bits: u8) -> Result<[[u8; 4]; 256], Refused> {
     let count = 1_usize << bits;
     if map.len() < 3 * count {

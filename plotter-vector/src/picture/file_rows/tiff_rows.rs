@@ -78,7 +78,8 @@ impl<R: Read + Seek> TiffRows<R> {
         let BlockSpan { offset, length } =
             *self.layout.places.get(number).ok_or("a strip or tile is missing")?;
         let file = Stored { file: self.file.at(offset).take(length), reversed: self.layout.reversed };
-        // Strips may be of a single row: a buffer longer than they are would read most of the file again and again.
+        // Strips may be of a single row: a buffer longer than they are would read most of the file again and
+        // again.
         let buffer = usize::try_from(length).unwrap_or(usize::MAX).clamp(1, BUFFER_BYTES);
         let file = BufReader::with_capacity(buffer, file);
         Codec::new(self.layout.compression, file, self.layout.block_width).map_err(|error| one_line(&error))

@@ -1,18 +1,19 @@
 //! Which pixels a step may delete, judged on the eight neighbours of 64 pixels at a time.
 //!
-//! A pixel is *simple* when deleting it changes neither the 8-connected ink components nor the 4-connected paper:
-//! C = 1 below. That holds for one pixel; for many at once it is enough, by C. Ronse, "Minimal test patterns for
-//! connectivity preservation in parallel thinning algorithms for binary digital images", Discrete Applied Mathematics
-//! 21 (1988), pp. 67-79, that
+//! A pixel is *simple* when deleting it changes neither the 8-connected ink components nor the 4-connected
+//! paper: C = 1 below. That holds for one pixel; for many at once it is enough, by C. Ronse, "Minimal test
+//! patterns for connectivity preservation in parallel thinning algorithms for binary digital images",
+//! Discrete Applied Mathematics 21 (1988), pp. 67-79, that
 //!
 //! 1. each deleted pixel is simple,
-//! 2. of two deleted pixels side by side, or one above the other, each is still simple when the other has gone, and
+//! 2. of two deleted pixels side by side, or one above the other, each is still simple when the other has
+//!    gone, and
 //! 3. no component that fits in a square of 2 x 2 goes as a whole.
 //!
 //! These are finitely many cases, and the tests below go through all of them for every step.
 
-/// The eight neighbours of 64 pixels in a row: bit i of each word is the neighbour of pixel i. The papers call them
-/// P2 … P9, clockwise from the north.
+/// The eight neighbours of 64 pixels in a row: bit i of each word is the neighbour of pixel i. The papers
+/// call them P2 … P9, clockwise from the north.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Neighbours {
     pub(super) n: u64,
@@ -40,8 +41,8 @@ impl Neighbours {
         Self { n: e, ne: se, e: s, se: sw, s: w, sw: nw, w: n, nw: ne }
     }
 
-    /// C = 1 of Guo & Hall: `¬P2(P3∨P4) + ¬P4(P5∨P6) + ¬P6(P7∨P8) + ¬P8(P9∨P2)`, the number of 8-connected pieces of
-    /// the ring, is one. The centre of solid ink has C = 0.
+    /// C = 1 of Guo & Hall: `¬P2(P3∨P4) + ¬P4(P5∨P6) + ¬P6(P7∨P8) + ¬P8(P9∨P2)`, the number of 8-connected
+    /// pieces of the ring, is one. The centre of solid ink has C = 0.
     #[inline]
     pub(super) const fn simple(self) -> u64 {
         let Self { n, ne, e, se, s, sw, w, nw } = self;
@@ -50,8 +51,9 @@ impl Neighbours {
         (a ^ b ^ c ^ d) & !(a & b | c & d)
     }
 
-    /// First half of a pass of algorithm A1 of Z. Guo and R. W. Hall, "Parallel thinning with two-subiteration
-    /// algorithms", Communications of the ACM 32 (1989), pp. 359-373; the second half is the same after half a turn.
+    /// First half of a pass of algorithm A1 of Z. Guo and R. W. Hall, "Parallel thinning with
+    /// two-subiteration algorithms", Communications of the ACM 32 (1989), pp. 359-373; the second half is the
+    /// same after half a turn.
     ///
     /// C = 1, 2 ≤ N ≤ 3 with N = min(N1, N2) the number of neighbours counted in pairs, and
     /// `(P2 ∨ P3 ∨ ¬P5) ∧ P4 = 0`: pixels of the north and east sides.
@@ -67,16 +69,17 @@ impl Neighbours {
         self.simple() & two_n1 & two_n2 & !(four_n1 & four_n2) & !((n | ne | !se) & e)
     }
 
-    /// First half of a pass of T. Y. Zhang and C. Y. Suen, "A fast parallel algorithm for thinning digital patterns",
-    /// Communications of the ACM 27 (1984), pp. 236-239, mended; the second half is the same after half a turn.
+    /// First half of a pass of T. Y. Zhang and C. Y. Suen, "A fast parallel algorithm for thinning digital
+    /// patterns", Communications of the ACM 27 (1984), pp. 236-239, mended; the second half is the same after
+    /// half a turn.
     ///
     /// As published: 2 ≤ B ≤ 6 neighbours, A = 1 change from paper to ink around the ring, P2·P4·P6 = 0 and
     /// P4·P6·P8 = 0. Mended twice:
     ///
-    /// - 3 ≤ B (H. E. Lü and P. S. P. Wang, "A comment on …", Communications of the ACM 29 (1986), pp. 239-242): with
-    ///   two, diagonal lines two pixels wide are eaten up from their ends.
-    /// - The north-west pixel of a square stays: a square of 2 x 2 would go as a whole, the only one of Ronse's
-    ///   cases in which the step is wrong. On a larger corner the pixel goes in the other half.
+    /// - 3 ≤ B (H. E. Lü and P. S. P. Wang, "A comment on …", Communications of the ACM 29 (1986), pp.
+    ///   239-242): with two, diagonal lines two pixels wide are eaten up from their ends.
+    /// - The north-west pixel of a square stays: a square of 2 x 2 would go as a whole, the only one of
+    ///   Ronse's cases in which the step is wrong. On a larger corner the pixel goes in the other half.
     #[inline]
     pub(super) const fn zhang_suen(self) -> u64 {
         let Self { n, ne, e, se, s, sw, w, nw } = self;
@@ -195,7 +198,8 @@ mod tests {
         ring(bits).simple() & 1 == 1
     }
 
-    /// Number of 8-connected components of ink and of 4-connected components of paper in a ring with its centre.
+    /// Number of 8-connected components of ink and of 4-connected components of paper in a ring with its
+    /// centre.
     fn pieces(bits: u32, centre: bool) -> (u32, u32) {
         const PLACES: [(i32, i32); 8] =
             [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1)];

@@ -13,21 +13,21 @@ use sweep::{Step, Sweeper};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum ThinningMethod {
-    /// Algorithm A1 of Z. Guo and R. W. Hall, "Parallel thinning with two-subiteration algorithms", Communications of
-    /// the ACM 32 (1989), pp. 359-373.
+    /// Algorithm A1 of Z. Guo and R. W. Hall, "Parallel thinning with two-subiteration algorithms",
+    /// Communications of the ACM 32 (1989), pp. 359-373.
     ///
     /// As published, each half of a pass keeps the topology. It peels diagonal sides slower than level ones
-    /// (0.7 px a pass), so that round ends of diagonal strokes would recede by the whole width; after each pass the
-    /// corners of diagonal edges are deleted as well, of one diagonal direction in odd passes and of the other in even
-    /// ones, which makes it 1.06 px.
+    /// (0.7 px a pass), so that round ends of diagonal strokes would recede by the whole width; after each
+    /// pass the corners of diagonal edges are deleted as well, of one diagonal direction in odd passes and of
+    /// the other in even ones, which makes it 1.06 px.
     #[default]
     GuoHall,
-    /// T. Y. Zhang and C. Y. Suen, "A fast parallel algorithm for thinning digital patterns", Communications of the ACM
-    /// 27 (1984), pp. 236-239, mended.
+    /// T. Y. Zhang and C. Y. Suen, "A fast parallel algorithm for thinning digital patterns", Communications
+    /// of the ACM 27 (1984), pp. 236-239, mended.
     ///
-    /// As published it deletes squares of 2 x 2 as a whole and eats diagonal lines two pixels wide from their ends.
-    /// Here pixels with two neighbours stay (Lü and Wang, Communications of the ACM 29 (1986), pp. 239-242), and so does
-    /// one pixel of a square.
+    /// As published it deletes squares of 2 x 2 as a whole and eats diagonal lines two pixels wide from their
+    /// ends. Here pixels with two neighbours stay (Lü and Wang, Communications of the ACM 29 (1986), pp.
+    /// 239-242), and so does one pixel of a square.
     ZhangSuen,
 }
 
@@ -46,29 +46,32 @@ pub enum ThinningMethod {
 ///
 /// For every picture, with every setting:
 ///
-/// - The skeleton is part of the ink, and has the same topology: in each 8-connected component of the ink lies
-///   exactly one of the skeleton, in each 4-connected component of the paper's exactly one of the skeleton's.
-/// - It is *local*: a pixel of the result depends only on ink at most [`Thinning::rows_of_context`] rows and columns away,
-///   and moving the ink moves the skeleton. It is not the same for turned or transposed ink: where a side has an even
-///   width, one of the two middle pixels must be taken.
+/// - The skeleton is part of the ink, and has the same topology: in each 8-connected component of the ink
+///   lies exactly one of the skeleton, in each 4-connected component of the paper's exactly one of the
+///   skeleton's.
+/// - It is *local*: a pixel of the result depends only on ink at most [`Thinning::rows_of_context`] rows and
+///   columns away, and moving the ink moves the skeleton. It is not the same for turned or transposed ink:
+///   where a side has an even width, one of the two middle pixels must be taken.
 ///
 /// And when [`Thinned::converged`] says so:
 ///
-/// - It is one pixel wide: no pixel with two or more neighbours can be deleted without changing the topology. Stairs
-///   become diagonals, the corner of an L and the middle of a T are cut. Squares of 2 x 2 are left only where the
-///   topology needs them, as where four branches leave one at its corners.
+/// - It is one pixel wide: no pixel with two or more neighbours can be deleted without changing the topology.
+///   Stairs become diagonals, the corner of an L and the middle of a T are cut. Squares of 2 x 2 are left
+///   only where the topology needs them, as where four branches leave one at its corners.
 /// - Thinning it again changes nothing.
 ///
 /// # Ends of strokes
 ///
-/// Both algorithms keep every tip that comes up, so that the corners of a square end and the hairs of a ragged edge grow
-/// into branches. Here a tip (one neighbour, or two side by side) is deleted after each half of a pass while there is
-/// thick ink beside it: a pixel with ink on all four sides, at most two columns and two rows away. So ends are peeled
-/// as fast as sides are, and a stroke ends about half its width before its ink; where it tapers to a point its tip is
-/// thin from the start, and stays. Branches of up to 3 px beside thick ink go as corners do.
+/// Both algorithms keep every tip that comes up, so that the corners of a square end and the hairs of a
+/// ragged edge grow into branches. Here a tip (one neighbour, or two side by side) is deleted after each half
+/// of a pass while there is thick ink beside it: a pixel with ink on all four sides, at most two columns and
+/// two rows away. So ends are peeled as fast as sides are, and a stroke ends about half its width before its
+/// ink; where it tapers to a point its tip is thin from the start, and stays. Branches of up to 3 px beside
+/// thick ink go as corners do.
 ///
-/// Of 840 straight strokes with square ends and 840 with round ends, 2 to 15 px wide, and 120 wedges 9 px wide at the
-/// base, at all angles (`cargo test -p plotter-vector --test all thinning_ends:: -- --nocapture`):
+/// Of 840 straight strokes with square ends and 840 with round ends, 2 to 15 px wide, and 120 wedges 9 px
+/// wide at the base, at all angles
+/// (`cargo test -p plotter-vector --test all thinning_ends:: -- --nocapture`):
 ///
 /// | | Guo & Hall | Zhang & Suen |
 /// | --- | --- | --- |
@@ -80,22 +83,23 @@ pub enum ThinningMethod {
 ///
 /// # Cost
 ///
-/// In place, with six bits for each word of 64 pixels and a few rows besides. Words without ink, and words where nothing
-/// has changed, are not looked at: 1.4 ms a megapixel for a sheet with 5 % ink in lines 4 to 10 px wide.
+/// In place, with six bits for each word of 64 pixels and a few rows besides. Words without ink, and words
+/// where nothing has changed, are not looked at: 1.4 ms a megapixel for a sheet with 5 % ink in lines 4 to
+/// 10 px wide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Thinning {
     /// Which algorithm.
     pub method: ThinningMethod,
-    /// Most passes. A pass takes about a pixel from each side, and one more (Guo & Hall: two more) finds that nothing is
-    /// left to do: lines w px wide need w / 2 + 3.
+    /// Most passes. A pass takes about a pixel from each side, and one more (Guo & Hall: two more) finds that
+    /// nothing is left to do: lines w px wide need w / 2 + 3.
     pub max_passes: u32,
 }
 
 /// Guo & Hall, for lines up to 60 px wide (2.5 mm at 600 dots per inch).
 ///
-/// With Guo & Hall ends of wide round strokes lie 2 px nearer to where they belong, see the table above, for a tenth to a
-/// fifth more time.
+/// With Guo & Hall ends of wide round strokes lie 2 px nearer to where they belong, see the table above, for
+/// a tenth to a fifth more time.
 impl Default for Thinning {
     fn default() -> Self {
         Self { method: ThinningMethod::GuoHall, max_passes: 32 }
@@ -107,10 +111,11 @@ impl Default for Thinning {
 pub struct Thinned {
     /// Lines one pixel wide; of the size of the ink.
     pub skeleton: Bitmap,
-    /// Passes that were done; the last one of a picture that converged (Guo & Hall: the last two) deleted nothing.
+    /// Passes that were done; the last one of a picture that converged (Guo & Hall: the last two) deleted
+    /// nothing.
     pub passes: u32,
-    /// Whether nothing is left to delete. If not, some ink is wider than twice [`Thinning::max_passes`], or a large sheet
-    /// of noise is not clean everywhere after the fixed number of rounds.
+    /// Whether nothing is left to delete. If not, some ink is wider than twice [`Thinning::max_passes`], or a
+    /// large sheet of noise is not clean everywhere after the fixed number of rounds.
     pub converged: bool,
 }
 
@@ -138,8 +143,8 @@ const CLEAN_UP: &[Step] = &[Step::BareLeft, Step::BareRight, Step::BareAbove, St
 
 /// Rounds of cleaning up, a fixed number so that the reach of a pixel is fixed.
 ///
-/// The second round finds nothing left to do in line drawings. Of 1500 pictures of noise, 90 x 40 px, 6 needed five and
-/// each further round was needed by a tenth as many.
+/// The second round finds nothing left to do in line drawings. Of 1500 pictures of noise, 90 x 40 px, 6
+/// needed five and each further round was needed by a tenth as many.
 const CLEAN_UP_ROUNDS: u32 = 8;
 
 /// How far a pixel's influence spreads in the steps.
@@ -156,8 +161,8 @@ impl Thinning {
         Thinned { skeleton, passes, converged }
     }
 
-    /// As [`Thinning::thin`], where the picture lies, with a tenth of its memory besides. Several threads can thin
-    /// bands of one picture at the same time, see [`Thinning::rows_of_context`].
+    /// As [`Thinning::thin`], where the picture lies, with a tenth of its memory besides. Several threads can
+    /// thin bands of one picture at the same time, see [`Thinning::rows_of_context`].
     pub fn thin_in_place(&self, ink: &mut Bitmap) -> ThinningProgress {
         let rows = 0..ink.height();
         self.thin_rows(ink, rows)
@@ -185,8 +190,8 @@ impl Thinning {
             quiet = if sweeper.pass(ink, within(to_come), steps) { 0 } else { quiet + 1 };
         }
         let peeled = quiet == all_turns;
-        // Nothing changed in the last pass of each turn, so more of them would change nothing: leaving early is as good
-        // as max_passes of them, which locality asks for. So it is with the rounds of cleaning up.
+        // Nothing changed in the last pass of each turn, so more of them would change nothing: leaving early
+        // is as good as max_passes of them, which locality asks for. So it is with the rounds of cleaning up.
         sweeper.keep_only(CLEAN_UP);
         let clean = (0..CLEAN_UP_ROUNDS)
             .rev()
@@ -194,9 +199,9 @@ impl Thinning {
         ThinningProgress { passes, converged: peeled && clean }
     }
 
-    /// How many rows above and below a pixel decide about it: what a band must bring along so that thinning it
-    /// gives the same as thinning the whole picture. It grows with [`Thinning::max_passes`], by 9 rows a pass (Zhang &
-    /// Suen: 8), whether the passes are needed or not.
+    /// How many rows above and below a pixel decide about it: what a band must bring along so that thinning
+    /// it gives the same as thinning the whole picture. It grows with [`Thinning::max_passes`], by 9 rows a
+    /// pass (Zhang & Suen: 8), whether the passes are needed or not.
     ///
     /// ```
     /// # use plotter_vector::raster::Thinning;

@@ -34,11 +34,13 @@ impl Step {
     }
 }
 
-/// Does steps on one picture. Holds a bit of marks a word of the picture for each step, and what goes of three rows.
+/// Does steps on one picture. Holds a bit of marks a word of the picture for each step, and what goes of
+/// three rows.
 ///
-/// Ink is only ever deleted. Whether a pixel goes in a step can therefore change only when one of its eight neighbours
-/// goes (thick ink near a tip, [`tips::shrinking`], can vanish but not appear): a step looks at all words with ink when it
-/// is done first, and then at those where a pixel in or beside the word has gone since it was last done there.
+/// Ink is only ever deleted. Whether a pixel goes in a step can therefore change only when one of its eight
+/// neighbours goes (thick ink near a tip, [`tips::shrinking`], can vanish but not appear): a step looks at
+/// all words with ink when it is done first, and then at those where a pixel in or beside the word has gone
+/// since it was last done there.
 #[derive(Debug)]
 pub(super) struct Sweeper {
     /// Words of marks a row.
@@ -114,8 +116,8 @@ impl Sweeper {
         self.sweep_rows(ink, step, |here, n| here & rule(n), |_, _, gone| gone)
     }
 
-    /// One step, row by row from the top: `rule` says which pixels of a word go, and `confirm` which of them really
-    /// do, given the rows from three above to three below (the first of them as the step has left it).
+    /// One step, row by row from the top: `rule` says which pixels of a word go, and `confirm` which of them
+    /// really do, given the rows from three above to three below (the first of them as the step has left it).
     fn sweep_rows(
         &mut self,
         ink: &mut Bitmap,
@@ -134,7 +136,8 @@ impl Sweeper {
             let [mut current, above, higher] = core::mem::take(&mut self.gone);
             judge_row(ink, y, self.open_words(step, y), &rule, &confirm, &mut current);
             changed |= !current.is_empty();
-            // The row two above is deleted from only now: until here it was to be seen as it was before the step.
+            // The row two above is deleted from only now: until here it was to be seen as it was before the
+            // step.
             let done = self.delete(ink, y.wrapping_sub(2), higher);
             self.gone = [done, current, above];
         }
@@ -152,7 +155,8 @@ impl Sweeper {
         open.and_then(|open| open.get_mut(start..start + self.per_row)).unwrap_or_default()
     }
 
-    /// Deletes what goes of row `y` and marks the words it is in and the words beside; hands the list back, empty.
+    /// Deletes what goes of row `y` and marks the words it is in and the words beside; hands the list back,
+    /// empty.
     fn delete(&mut self, ink: &mut Bitmap, y: u32, mut gone: Gone) -> Gone {
         if gone.is_empty() {
             return gone;

@@ -6,15 +6,17 @@ pub(super) const REACH: u32 = 3;
 /// Rows of a window, and columns.
 const SIDE: usize = 7;
 
-/// Those of the `tips` in word `at` of the middle row that go on shrinking: the ink next to them is still thick.
+/// Those of the `tips` in word `at` of the middle row that go on shrinking: the ink next to them is still
+/// thick.
 ///
-/// While a stroke is peeled from its sides its end is peeled too, as fast. Keeping every tip would keep each corner
-/// of a square end, and each hair of a ragged edge, as a branch; dropping every tip would eat the stroke. A tip is
-/// therefore the end of a stroke from the moment there is no pixel with ink on all four sides within two of it,
-/// counted in either direction: the stroke has become thin there, be it by thinning or by tapering.
+/// While a stroke is peeled from its sides its end is peeled too, as fast. Keeping every tip would keep each
+/// corner of a square end, and each hair of a ragged edge, as a branch; dropping every tip would eat the
+/// stroke. A tip is therefore the end of a stroke from the moment there is no pixel with ink on all four
+/// sides within two of it, counted in either direction: the stroke has become thin there, be it by thinning
+/// or by tapering.
 ///
-/// Ink with all four sides has no tip among them, so this does not depend on which tips have already gone. Of a
-/// component of two pixels both are tips, and both stay.
+/// Ink with all four sides has no tip among them, so this does not depend on which tips have already gone. Of
+/// a component of two pixels both are tips, and both stay.
 pub(super) fn shrinking(rows: [&[u64]; SIDE], at: usize, tips: u64) -> u64 {
     let mut rest = tips;
     let mut gone = 0;

@@ -34,15 +34,16 @@ const NUDGES: [f64; 3] = [0.4, 0.15, 0.05];
 /// Sites on either side over which the place of a vertex is averaged.
 const SMOOTHED: usize = 4;
 
-/// By how much more than the tolerance the mean error has to be so that no circle will do: it is the least one of the
-/// equation x² + y² + D x + E y + F = 0, whose errors are 2 r (1 + e / 2 r) times the distances e.
+/// By how much more than the tolerance the mean error has to be so that no circle will do: it is the least
+/// one of the equation x² + y² + D x + E y + F = 0, whose errors are 2 r (1 + e / 2 r) times the distances e.
 const SURELY: f64 = 1.2;
 
 /// Rounds of the search for the circle with the least greatest error.
 const CIRCLE_ROUNDS: usize = 30;
 
 impl Bounded {
-    /// Lines and circular arcs, few of them, such that the line through a sequence of sites is kept within the tolerance.
+    /// Lines and circular arcs, few of them, such that the line through a sequence of sites is kept within
+    /// the tolerance.
     ///
     /// The promise is that of [`Bounded::polyline`], for segments that may be arcs: a pen can run along them
     /// and along the sites, never back on either, so that both pens stay within `tolerance_px` of each other.
@@ -59,11 +60,11 @@ impl Bounded {
     /// more than [`MAX_REACH_PX`](super::MAX_REACH_PX) sites, so the work is bounded by sites × the logarithm
     /// of the reach: 0.3 to 11 µs a site, up to 50 times that of the polyline.
     ///
-    /// Sources: R. L. S. Drysdale, G. Rote, A. Sturm, "Approximation of an open polygonal curve with a minimum number of
-    /// circular arcs and biarcs" (2008): the arcs between two vertices are a family of one parameter, each site allows a
-    /// range of it; the circle of a whole ring with the least greatest error by C. L. Lawson's weights, "Contributions to the theory of linear least
-    /// maximum approximation" (1961), on the equation of I. Kåsa, "A circle fitting procedure and its error analysis"
-    /// (1976).
+    /// Sources: R. L. S. Drysdale, G. Rote, A. Sturm, "Approximation of an open polygonal curve with a
+    /// minimum number of circular arcs and biarcs" (2008): the arcs between two vertices are a family of one
+    /// parameter, each site allows a range of it; the circle of a whole ring with the least greatest error by
+    /// C. L. Lawson's weights, "Contributions to the theory of linear least maximum approximation" (1961), on
+    /// the equation of I. Kåsa, "A circle fitting procedure and its error analysis" (1976).
     ///
     /// ```
     /// # use plotter_vector::{PxPoint, stroke::Bounded};
@@ -84,8 +85,8 @@ impl Bounded {
         })
     }
 
-    /// What `bend` makes of a line's sites, beside the vertices of its polyline, where that saves vertices; a closed line
-    /// within the tolerance of one circle is that circle.
+    /// What `bend` makes of a line's sites, beside the vertices of its polyline, where that saves vertices; a
+    /// closed line within the tolerance of one circle is that circle.
     pub(super) fn bent(
         &self,
         sites: &[PxPoint],
@@ -223,7 +224,8 @@ fn round(promise: Promise, sites: &[PxPoint]) -> Option<Curve> {
         {
             return Some(circle.into());
         }
-        // The mean of the squares is the least of all circles, so no circle's greatest error is less than its root.
+        // The mean of the squares is the least of all circles, so no circle's greatest error is less than its
+        // root.
         if mean > SURELY * promise.radius_px || greatest.is_nan() || greatest == 0.0 {
             return None;
         }
@@ -290,9 +292,11 @@ fn weighted_circle(sites: &[PxPoint], weights: &[f64]) -> Option<(PxPoint, f64)>
     (centre.is_finite() && radius_px.is_finite()).then_some((centre, radius_px))
 }
 
-/// The sites, each the middle of the parabola through its neighbours: free of the raster's noise, and of its corners.
+/// The sites, each the middle of the parabola through its neighbours: free of the raster's noise, and of its
+/// corners.
 ///
-/// A. Savitzky, M. J. E. Golay, "Smoothing and differentiation of data by simplified least squares procedures" (1964).
+/// A. Savitzky, M. J. E. Golay, "Smoothing and differentiation of data by simplified least squares
+/// procedures" (1964).
 pub(super) fn smoothed(promise: Promise, sites: &[PxPoint], closed: bool) -> Vec<PxPoint> {
     let count = sites.len();
     let smooth = |(index, site): (usize, &PxPoint)| {
@@ -400,8 +404,9 @@ impl ArcFitter {
 
     /// The arc of this bulge, if it keeps the promise.
     ///
-    /// Were qᵢ places on the arc in order, each dᵢ from its site, then between two of them the arc is everywhere within
-    /// max(dᵢ, dᵢ₊₁) + h of the way from site to site, where h is how far it rises over the chord qᵢ qᵢ₊₁.
+    /// Were qᵢ places on the arc in order, each dᵢ from its site, then between two of them the arc is
+    /// everywhere within max(dᵢ, dᵢ₊₁) + h of the way from site to site, where h is how far it rises over the
+    /// chord qᵢ qᵢ₊₁.
     fn check(&self, from: &Vertex, to: &Vertex, bulge: f64) -> Option<FittedSegment> {
         let arc = Arc::new(from.at, to.at, bulge)?;
         let radius = arc.radius_px;
@@ -443,7 +448,8 @@ impl ArcFitter {
         whole.then_some(FittedSegment { bulge, squares })
     }
 
-    /// Moves the inner vertices to where the sum of the squared distances is less, each by itself, some times over.
+    /// Moves the inner vertices to where the sum of the squared distances is less, each by itself, some times
+    /// over.
     fn improve(&self, vertices: &mut [Vertex]) {
         let mut moved = vec![true; vertices.len()];
         for sweep in 0..SWEEPS {
@@ -517,8 +523,8 @@ impl ArcFitter {
     }
 }
 
-/// The arcs between two places, by their sagitta: how far they rise over the chord's middle to its left, px. With c the
-/// chord, a circle through both ends has its centre (s² − c²/4) / 2s over the chord.
+/// The arcs between two places, by their sagitta: how far they rise over the chord's middle to its left, px.
+/// With c the chord, a circle through both ends has its centre (s² − c²/4) / 2s over the chord.
 #[derive(Clone, Copy, Debug)]
 struct Fit {
     middle: PxPoint,
@@ -588,8 +594,8 @@ impl Fit {
         sagitta
     }
 
-    /// The sagittas of the arcs that pass every site within a distance; `None` when there are none. Sites near the ends say
-    /// nothing.
+    /// The sagittas of the arcs that pass every site within a distance; `None` when there are none. Sites
+    /// near the ends say nothing.
     fn range(&self, sites: &[PxPoint], near: f64, radius_px: f64) -> Option<(f64, f64)> {
         let half = 0.5 * self.chord_px;
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);

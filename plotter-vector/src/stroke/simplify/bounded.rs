@@ -7,8 +7,8 @@ use crate::stroke::PxVec;
 /// Longest range of pixels that one segment replaces, px: the work is bounded by pixels × reach.
 pub const MAX_REACH_PX: usize = 8192;
 
-/// Most pixels that are done in one go: with about 70 bytes each, 35 MiB. Twice as many would no longer keep the sums
-/// exact on the longest side of a picture.
+/// Most pixels that are done in one go: with about 70 bytes each, 35 MiB. Twice as many would no longer keep
+/// the sums exact on the longest side of a picture.
 const PIECE_PX: usize = 1 << 19;
 
 /// Added to the tolerance so that a pixel exactly on it passes in spite of rounding, px.
@@ -16,17 +16,17 @@ const ROUNDING_PX: f64 = 1e-9;
 
 /// The fewest vertices such that no pixel is farther than a tolerance from the segment that replaced it.
 ///
-/// The vertices are pixels of the figure, the first and the last among them. Each segment stands for the pixels
-/// between its ends, and each of them lies within `tolerance_px` of it (of the *segment*, not of its line). Of
-/// all such polylines this is one with the fewest vertices, and among those one with the least sum of squared
-/// distances from the pixels to their segments' lines. So it never has more vertices than the published
-/// algorithm at the published algorithm's own greatest error.
+/// The vertices are pixels of the figure, the first and the last among them. Each segment stands for the
+/// pixels between its ends, and each of them lies within `tolerance_px` of it (of the *segment*, not of its
+/// line). Of all such polylines this is one with the fewest vertices, and among those one with the least sum
+/// of squared distances from the pixels to their segments' lines. So it never has more vertices than the
+/// published algorithm at the published algorithm's own greatest error.
 ///
-/// Three limits keep time and memory in bounds; a line of a drawing meets none of them, and the tolerance holds all
-/// the same. No segment replaces more than [`MAX_REACH_PX`] pixels: a longer line gets a vertex there. A figure of
-/// more than 2¹⁹ pixels (a blot, not a line) is done piece by piece, with a vertex at each seam. And where a line
-/// turns back on itself so often that a pixel's candidates would have to be checked one by one over more than
-/// `MAX_REACH_PX` pixels, the rest of them is left out.
+/// Three limits keep time and memory in bounds; a line of a drawing meets none of them, and the tolerance
+/// holds all the same. No segment replaces more than [`MAX_REACH_PX`] pixels: a longer line gets a vertex
+/// there. A figure of more than 2¹⁹ pixels (a blot, not a line) is done piece by piece, with a vertex at each
+/// seam. And where a line turns back on itself so often that a pixel's candidates would have to be checked
+/// one by one over more than `MAX_REACH_PX` pixels, the rest of them is left out.
 ///
 /// Sources: H. Imai, M. Iri, "Polygonal approximations of a curve" (1988): shortest path over the allowed
 /// segments; W. S. Chan, F. Chin, "Approximation of polygonal curves with minimum number of line segments"
@@ -130,9 +130,9 @@ struct Chain<'a> {
     radius_px: f64,
     /// For each pixel the first one of the straight run that ends here: all steps equal.
     run_starts: Vec<u32>,
-    /// Sums over the pixels before each index, relative to the first pixel: x, y, x², xy, y². Whole numbers, exact
-    /// below 2⁵³: always so within the size limits of a picture, for a piece has 2¹⁹ + 1 pixels, none farther than
-    /// 2¹⁷ − 1 from its first.
+    /// Sums over the pixels before each index, relative to the first pixel: x, y, x², xy, y². Whole numbers,
+    /// exact below 2⁵³: always so within the size limits of a picture, for a piece has 2¹⁹ + 1 pixels, none
+    /// farther than 2¹⁷ − 1 from its first.
     sums: Vec<[f64; 5]>,
 }
 
@@ -165,9 +165,9 @@ impl<'a> Chain<'a> {
 
     /// The best way to reach `end`: `known` from its own straight run, which starts at `run`, or better.
     ///
-    /// Goes back from pixel to pixel while the cone of directions from `end` that pass all pixels so far is not
-    /// empty. Only the ends of straight runs narrow it: the distance to a segment or a ray, a convex set, is a
-    /// convex function, so along a straight run it is greatest at one of the run's ends.
+    /// Goes back from pixel to pixel while the cone of directions from `end` that pass all pixels so far is
+    /// not empty. Only the ends of straight runs narrow it: the distance to a segment or a ray, a convex set,
+    /// is a convex function, so along a straight run it is greatest at one of the run's ends.
     fn search_back(&self, end: usize, run: usize, known: Best, best: &[Best]) -> Best {
         let mut found = known;
         let Some(apex) = self.pixels.get(end).copied() else { return found };
@@ -208,8 +208,9 @@ impl<'a> Chain<'a> {
                 if !candidate.beats(&found) {
                     continue;
                 }
-                // The cone keeps the pixels near the ray from `end` through `start`. They are near the segment
-                // unless they lie beyond `start`, and none does if none is farther from `end` than `start` is.
+                // The cone keeps the pixels near the ray from `end` through `start`. They are near the
+                // segment unless they lie beyond `start`, and none does if none is farther from `end` than
+                // `start` is.
                 if farthest_squared <= direction.length_squared() || self.within(start, end, &mut budget) {
                     found = candidate;
                 }
@@ -219,7 +220,8 @@ impl<'a> Chain<'a> {
         found
     }
 
-    /// Whether all pixels between are within the radius of the segment from `start` to `end`, looked at one by one.
+    /// Whether all pixels between are within the radius of the segment from `start` to `end`, looked at one
+    /// by one.
     fn within(&self, start: usize, end: usize, budget: &mut usize) -> bool {
         let (Some(from), Some(to)) = (self.pixels.get(start), self.pixels.get(end)) else { return false };
         for pixel in self.pixels.get(start + 1..end).unwrap_or(&[]) {
@@ -232,8 +234,8 @@ impl<'a> Chain<'a> {
         true
     }
 
-    /// Sum over the pixels between of the squared distance to the line through `start` and `end`; to the point,
-    /// where both are one. With v the direction and d a pixel from `end`: Σ (v × d)² / v².
+    /// Sum over the pixels between of the squared distance to the line through `start` and `end`; to the
+    /// point, where both are one. With v the direction and d a pixel from `end`: Σ (v × d)² / v².
     fn squares(&self, start: usize, end: usize) -> f64 {
         let (Some(before), Some(after)) = (self.sums.get(start + 1), self.sums.get(end)) else { return 0.0 };
         let (Some(from), Some(to), Some(origin)) =
@@ -271,8 +273,8 @@ impl Cone {
         Self { borders: None }
     }
 
-    /// Keeps the directions whose ray passes within `radius_px` of the point `away` from the apex; `false` when
-    /// none is left.
+    /// Keeps the directions whose ray passes within `radius_px` of the point `away` from the apex; `false`
+    /// when none is left.
     fn narrow(&mut self, away: PxVec, radius_px: f64) -> bool {
         let tangent_squared = away.length_squared() - radius_px * radius_px;
         if tangent_squared <= 0.0 {
@@ -294,8 +296,8 @@ impl Cone {
         other.contains(new_right) && other.contains(new_left)
     }
 
-    /// The first and the last of `1..=steps` steps of a walk from `away` that may lie in the cone, up to one step
-    /// too many at either end; `None` when none does.
+    /// The first and the last of `1..=steps` steps of a walk from `away` that may lie in the cone, up to one
+    /// step too many at either end; `None` when none does.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -365,8 +367,8 @@ mod tests {
 
     #[test]
     fn a_cone_is_entered_and_left_where_its_borders_are_crossed() {
-        // The rays from (0, 0) that pass within 5 px of (10, 0) rise by up to 5 / sqrt(75), 30 degrees; a walk
-        // upwards at x = 20 from y = -50 is inside from y = -11.5 to 11.5, its steps 39 to 61.
+        // The rays from (0, 0) that pass within 5 px of (10, 0) rise by up to 5 / sqrt(75), 30 degrees; a
+        // walk upwards at x = 20 from y = -50 is inside from y = -11.5 to 11.5, its steps 39 to 61.
         let mut cone = Cone::full();
         let (away, step) = (PxVec::new(20.0, -50.0), PxVec::new(0.0, 1.0));
         assert_eq!(cone.steps_inside(away, step, 100), Some((1, 100)));

@@ -5,11 +5,12 @@ use crate::stroke::{MAX_REACH_PX, PxPoint, PxVec};
 
 /// Length of the shorter arm times the turn, in tolerances, above which a vertex is a corner.
 ///
-/// The longest chords within e on either side of a circle of radius r are 4 √(r e) long and turn by 4 √(e / r): their
-/// product is 16 e, whatever the circle; more where the bend changes.
+/// The longest chords within e on either side of a circle of radius r are 4 √(r e) long and turn by 4 √(e /
+/// r): their product is 16 e, whatever the circle; more where the bend changes.
 const CORNER: f64 = 40.0;
 
-/// Turn at a site between what comes and what goes, each a parabola of its own, above which it is a corner: 50 degrees.
+/// Turn at a site between what comes and what goes, each a parabola of its own, above which it is a corner:
+/// 50 degrees.
 const SHARP_COS: f64 = 0.643;
 
 /// Sites of each of the two parabolas, at most.
@@ -26,8 +27,8 @@ pub(super) struct Anchor {
     pub(super) is_corner: bool,
 }
 
-/// The vertices of a polyline as places along its sites, rising, the first and the last among them, each near enough to a
-/// site of its own. For a closed line the last one is the first one a round later.
+/// The vertices of a polyline as places along its sites, rising, the first and the last among them, each near
+/// enough to a site of its own. For a closed line the last one is the first one a round later.
 pub(super) fn anchors(
     promise: Promise,
     sites: &[PxPoint],
@@ -60,8 +61,8 @@ pub(super) fn anchors(
     anchors
 }
 
-/// The place of a vertex, or the nearest to it that is near enough to a site: between two sites it may be farther from both
-/// than from the way between them.
+/// The place of a vertex, or the nearest to it that is near enough to a site: between two sites it may be
+/// farther from both than from the way between them.
 fn near(promise: Promise, sites: &[PxPoint], vertex: PxPoint, site: usize) -> PxPoint {
     sites.get(site % sites.len().max(1)).map_or(vertex, |site| {
         let (off, most_px) = (site.distance(vertex), 0.99 * promise.radius_px);
@@ -111,8 +112,8 @@ fn is_corner(promise: Promise, sites: &[PxPoint], anchors: &[Anchor], index: usi
     })
 }
 
-/// The slope at a site of the parabola with the least squared distances through it and so many sites before or after it,
-/// away from it; the site's index is more by once round. None beyond the ends of an open line.
+/// The slope at a site of the parabola with the least squared distances through it and so many sites before
+/// or after it, away from it; the site's index is more by once round. None beyond the ends of an open line.
 fn slope(sites: &[PxPoint], site: usize, arm: usize, back: bool, closed: bool) -> Option<PxVec> {
     let count = sites.len();
     let own = site.checked_sub(count).filter(|own| closed || *own < count);

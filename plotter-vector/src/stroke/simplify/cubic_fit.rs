@@ -12,7 +12,8 @@ const HOPELESS: f64 = 4.0;
 /// And after the second round.
 const NEARLY: f64 = 1.5;
 
-/// What draws the handles to a third of the way between the ends, in sites: they are nowhere else when sites are few.
+/// What draws the handles to a third of the way between the ends, in sites: they are nowhere else when sites
+/// are few.
 const RIDGE: f64 = 1e-3;
 
 /// Least length of a handle whose direction is given, in parts of the way.
@@ -74,7 +75,8 @@ impl Fit {
         self.promise.link(from.at, to.at, self.between(from, to))
     }
 
-    /// The handles of a cubic curve between two joints that keeps the promise, and the sum of the squared distances.
+    /// The handles of a cubic curve between two joints that keeps the promise, and the sum of the squared
+    /// distances.
     pub(super) fn cubic(&self, from: &Joint, to: &Joint) -> Option<([PxPoint; 2], f64)> {
         let sites = self.between(from, to);
         if sites.len() < 2 {
@@ -91,19 +93,20 @@ impl Fit {
             if round > 1 && farthest > NEARLY * self.promise.radius_px {
                 return None;
             }
-            // Once the places are about right the farther sites count for more: the greatest distance is to be less, not the
-            // sum of all.
+            // Once the places are about right the farther sites count for more: the greatest distance is to
+            // be less, not the sum of all.
             let weigh = |place: &mut Sited| place.weight *= 0.2 + place.off / farthest;
             places.iter_mut().filter(|_| round > 0).for_each(weigh);
         }
         None
     }
 
-    /// Whether a curve keeps the promise, the sum of the squared distances, and the greatest of them; brings the sites' places on it, values of
-    /// t, nearer to the nearest ones. None if it is far off.
+    /// Whether a curve keeps the promise, the sum of the squared distances, and the greatest of them; brings
+    /// the sites' places on it, values of t, nearer to the nearest ones. None if it is far off.
     ///
-    /// Were qᵢ places on the curve in order, each dᵢ from its site, then between two of them the curve is everywhere within
-    /// max(dᵢ, dᵢ₊₁) + h of the way from site to site, where h is how far it is from the chord qᵢ qᵢ₊₁.
+    /// Were qᵢ places on the curve in order, each dᵢ from its site, then between two of them the curve is
+    /// everywhere within max(dᵢ, dᵢ₊₁) + h of the way from site to site, where h is how far it is from the
+    /// chord qᵢ qᵢ₊₁.
     fn check(
         &self,
         from: &Joint,
@@ -153,10 +156,12 @@ struct FootPoint {
     off: f64,
 }
 
-/// Whether a curve is within a distance of the way between two sites, from the place of one to that of the other.
+/// Whether a curve is within a distance of the way between two sites, from the place of one to that of the
+/// other.
 ///
-/// With the second derivative no more than m over a step of Δt, a curve is at most m Δt² / 8 off its chord at the same part
-/// of the way. Where it never goes back along the chord, only what is across the chord counts: its foot runs along it.
+/// With the second derivative no more than m over a step of Δt, a curve is at most m Δt² / 8 off its chord at
+/// the same part of the way. Where it never goes back along the chord, only what is across the chord counts:
+/// its foot runs along it.
 fn within(cubic: &Cubic, last: &FootPoint, next: &FootPoint, limit: f64) -> bool {
     let off = last.off.max(next.off);
     let step = next.t - last.t;
@@ -202,11 +207,12 @@ fn nearer(cubic: &Cubic, site: PxPoint, t: f64) -> f64 {
     if slope > 0.0 { t - gap.dot(speed) / slope } else { t }
 }
 
-/// The handles of the curve with the least squared distances from the sites to their places on it. A handle whose
-/// direction is given is no shorter than `least_px`.
+/// The handles of the curve with the least squared distances from the sites to their places on it. A handle
+/// whose direction is given is no shorter than `least_px`.
 ///
-/// With B₁ = 3 (1 − t)² t and B₂ = 3 (1 − t) t², u from the first end to its handle, v from the second one to its own, and
-/// r from the place that the ends alone would give: the least Σ w (r − B₁ u − B₂ v)² with the weights w.
+/// With B₁ = 3 (1 − t)² t and B₂ = 3 (1 − t) t², u from the first end to its handle, v from the second one to
+/// its own, and r from the place that the ends alone would give: the least Σ w (r − B₁ u − B₂ v)² with the
+/// weights w.
 fn handles(from: &Joint, to: &Joint, sites: &[PxPoint], places: &[Sited], least_px: f64) -> [PxPoint; 2] {
     let third = (to.at - from.at) / 3.0;
     let (mut s11, mut s12, mut s22) = (RIDGE, 0.0, RIDGE);

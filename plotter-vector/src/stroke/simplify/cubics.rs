@@ -34,7 +34,8 @@ const NUDGES: [f64; 2] = [0.3, 0.1];
 const TURNS: [f64; 2] = [0.1, 0.03];
 
 impl Bounded {
-    /// Lines and cubic curves, few of them, such that the line through a sequence of sites is kept within the tolerance.
+    /// Lines and cubic curves, few of them, such that the line through a sequence of sites is kept within the
+    /// tolerance.
     ///
     /// The promise is that of [`Bounded::polyline`], for segments that may be curved: a pen can run along
     /// them and along the sites, never back on either, so that both pens stay within `tolerance_px` of each
@@ -55,7 +56,8 @@ impl Bounded {
     /// times, so the work is bounded by sites × the logarithm of the reach: 1 to 31 µs a site, up to 15 times
     /// that of arcs.
     ///
-    /// Source: P. J. Schneider, "An algorithm for automatically fitting digitized curves", in Graphics Gems (1990).
+    /// Source: P. J. Schneider, "An algorithm for automatically fitting digitized curves", in Graphics Gems
+    /// (1990).
     ///
     /// ```
     /// # use plotter_vector::{PxPoint, stroke::Bounded};
@@ -193,8 +195,9 @@ fn ring(promise: Promise, mut sites: Vec<PxPoint>) -> Vec<Joint> {
     best
 }
 
-/// The direction of the line at each site: the slope of the straight line with the least squared distances, and so of the
-/// parabola too. None at the ends of an open line, where anything will do; a closed one has its first site once more.
+/// The direction of the line at each site: the slope of the straight line with the least squared distances,
+/// and so of the parabola too. None at the ends of an open line, where anything will do; a closed one has its
+/// first site once more.
 fn directions(sites: &[PxPoint], closed: bool) -> Vec<Option<PxVec>> {
     let count = sites.len();
     let direction = |index: usize| {
@@ -277,8 +280,8 @@ impl CubicFitter {
         if cubic.1.is_some() && reach(&cubic) >= reach(&line) { cubic } else { line }
     }
 
-    /// Turns the last joint so that a line can go on from there in its own direction; whether the curve before it still
-    /// does, and there is no bend.
+    /// Turns the last joint so that a line can go on from there in its own direction; whether the curve
+    /// before it still does, and there is no bend.
     fn turn(&mut self, joints: &mut [Joint], to: &Joint) -> bool {
         let Some(from) = joints.last().copied() else { return true };
         let direction = Some(unit(from.at, to.at)).filter(|way| *way != PxVec::default());
@@ -335,7 +338,8 @@ impl CubicFitter {
         along(from) && along(to)
     }
 
-    /// Moves the inner joints to where the sum of the squared distances is less, each by itself, some times over.
+    /// Moves the inner joints to where the sum of the squared distances is less, each by itself, some times
+    /// over.
     fn improve(&self, joints: &mut [Joint]) {
         let mut moved = vec![true; joints.len()];
         for sweep in 0..SWEEPS {
@@ -364,7 +368,8 @@ impl CubicFitter {
     /// A better joint between two: the handles of the segment before, and the joint with those of the segment
     /// after.
     fn better(&self, before: &Joint, joint: &Joint, after: &Joint) -> Option<(Option<[PxPoint; 2]>, Joint)> {
-        // Along a line beside it a joint may move, but not away from it: that would turn the line at its other end.
+        // Along a line beside it a joint may move, but not away from it: that would turn the line at its
+        // other end.
         let rail = match (before.handles, joint.handles) {
             (None, None) => return None,
             (None, Some(_)) => Some(unit(before.at, joint.at)),

@@ -3,17 +3,18 @@
 use super::Simplify;
 use crate::{picture::Pixel, stroke::PreElimination};
 
-/// The published simplification: a vertex where the way turns by more than a threshold that falls with distance.
+/// The published simplification: a vertex where the way turns by more than a threshold that falls with
+/// distance.
 ///
 /// ```text
 ///                  ___ C     base A, checking pixel B, following pixel C:
 ///     A ________ B            B goes when tan(angle of AB and AC) < 0.025 · K / |AC|
 /// ```
 ///
-/// [`PreElimination`] runs first, as published. `B` and `C` are consecutive pixels that it left; when B stays it
-/// is the next base. The rule says, in other words, that B goes while C is nearer than about 0.025 · K px to
-/// the line AB: it never looks back at what it dropped, so on a slow curve the error adds up **without bound**
-/// (2.04 px at worst in the publication). For a promise take [`Bounded`](super::Bounded).
+/// [`PreElimination`] runs first, as published. `B` and `C` are consecutive pixels that it left; when B stays
+/// it is the next base. The rule says, in other words, that B goes while C is nearer than about 0.025 · K px
+/// to the line AB: it never looks back at what it dropped, so on a slow curve the error adds up **without
+/// bound** (2.04 px at worst in the publication). For a promise take [`Bounded`](super::Bounded).
 ///
 /// K was found by experiment and is not given in the publication; see [`DynamicThreshold::default`].
 ///
@@ -35,9 +36,9 @@ pub struct DynamicThreshold {
 }
 
 impl Default for DynamicThreshold {
-    /// 0.025 as published, and K = 16 px by experiment: the greatest K of those tried at which the flag and the
-    /// technical drawing of `examples/data` both show errors of the published order. Mean, greatest error and
-    /// deviation, px:
+    /// 0.025 as published, and K = 16 px by experiment: the greatest K of those tried at which the flag and
+    /// the technical drawing of `examples/data` both show errors of the published order. Mean, greatest error
+    /// and deviation, px:
     ///
     /// | K  | flag                   | technical drawing      |
     /// | -- | ---------------------- | ---------------------- |
@@ -102,7 +103,8 @@ mod tests {
 
     #[test]
     fn a_rectangle_keeps_4_corners_a_triangle_3_and_a_line_2() {
-        // The tracking meets a closed figure at a corner and ends one pixel before it: the last index of each.
+        // The tracking meets a closed figure at a corner and ends one pixel before it: the last index of
+        // each.
         let rectangle = walk(&[(1, 0, 60), (0, 1, 40), (-1, 0, 60), (0, -1, 39)]);
         let triangle = walk(&[(1, 1, 40), (-1, 0, 80), (1, -1, 39)]);
         let line = walk(&[(1, 1, 70)]);

@@ -8,11 +8,11 @@ use super::ray_cone::unit;
 use crate::stroke::{PxPoint, PxVec};
 
 impl Bounded {
-    /// As [`polyline`](Self::polyline) of an open line, but its start, its end or both may lie anywhere within the tolerance
-    /// of the first or the last site where that saves a vertex.
+    /// As [`polyline`](Self::polyline) of an open line, but its start, its end or both may lie anywhere
+    /// within the tolerance of the first or the last site where that saves a vertex.
     ///
-    /// Where a pen stopped is known to half a pixel. A last site that lies beside its line would otherwise need a
-    /// vertex before it; here the link before goes on to the foot of the last site on it.
+    /// Where a pen stopped is known to half a pixel. A last site that lies beside its line would otherwise
+    /// need a vertex before it; here the link before goes on to the foot of the last site on it.
     pub(crate) fn loose(&self, sites: &[PxPoint], [start, end]: [bool; 2]) -> Vec<PxPoint> {
         let line = Self::cleaned(sites);
         let (Some(first), Some(last)) = (line.first().copied(), line.last().copied()) else { return line };
@@ -37,7 +37,8 @@ impl Bounded {
     }
 }
 
-/// Takes the second vertex out of a polyline if it may begin at the foot of the first site on its second link.
+/// Takes the second vertex out of a polyline if it may begin at the foot of the first site on its second
+/// link.
 fn drop_second(promise: Promise, sites: &[PxPoint], vertices: &mut Vec<Vertex>) {
     let [_, second, third, ..] = vertices.as_slice() else { return };
     let (Some(site), Some(passed)) = (sites.first(), sites.get(..third.done)) else { return };

@@ -31,8 +31,8 @@ pub(super) struct Vertex {
 /// ```
 ///
 /// Source: the window method for link distance in a simple polygon: S. Suri, "A linear time algorithm for
-/// minimum link paths inside a simple polygon" (1986); for ordered discs Guibas et al. (1993), section 4. Here each
-/// window is sampled at [`WINDOW_PLACES`] places instead of cut exactly.
+/// minimum link paths inside a simple polygon" (1986); for ordered discs Guibas et al. (1993), section 4.
+/// Here each window is sampled at [`WINDOW_PLACES`] places instead of cut exactly.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Search<'a> {
     pub(super) promise: Promise,
@@ -100,8 +100,8 @@ impl Search<'_> {
             }
             self.look_through(best, &mut window);
             if window.places.last().is_none_or(|place| place.done <= exit.done) {
-                // The way turns back somewhere under the farthest link, which no pen can follow. Straight to a site before
-                // that; to the next one is always allowed, so every link gains one.
+                // The way turns back somewhere under the farthest link, which no pen can follow. Straight to
+                // a site before that; to the next one is always allowed, so every link gains one.
                 let next = self.farthest_site(exit, best.done);
                 let Some(site) = self.sites.get(next) else { return vertices };
                 if best.from.done > 0 {
@@ -120,9 +120,9 @@ impl Search<'_> {
     /// The link through a window that reaches farthest; or one from which the end is reached, with the vertex
     /// between if there is one.
     ///
-    /// The places from which a line meets all discs up to a certain one are an interval of the window. A link that
-    /// fails does so for two discs that it would have to pass on different sides, and where the line that just does
-    /// so meets the window, the interval is cut.
+    /// The places from which a line meets all discs up to a certain one are an interval of the window. A link
+    /// that fails does so for two discs that it would have to pass on different sides, and where the line
+    /// that just does so meets the window, the interval is cut.
     fn through(&self, window: &mut Window, back: &[RayCone]) -> Option<(Reach, Option<Option<Vertex>>)> {
         let mut best: Option<Reach> = None;
         let mut place = window.places.last().copied()?;
@@ -163,7 +163,8 @@ impl Search<'_> {
         best.map(|best| (best, None))
     }
 
-    /// Where on the window the line starts that just passes both discs between which the farthest link failed.
+    /// Where on the window the line starts that just passes both discs between which the farthest link
+    /// failed.
     fn cut(&self, reach: &Reach, window: &Window) -> Option<f64> {
         let (touched, failed) = (self.sites.get(reach.touch)?, self.sites.get(reach.done)?);
         let way = *failed - *touched;
@@ -179,8 +180,8 @@ impl Search<'_> {
         (slope.abs() > 1e-9 && cut.is_finite()).then_some(cut)
     }
 
-    /// A site before `end` to which a straight link keeps the promise, the farthest of those whose distances are halves
-    /// of each other.
+    /// A site before `end` to which a straight link keeps the promise, the farthest of those whose distances
+    /// are halves of each other.
     fn farthest_site(&self, from: Vertex, end: usize) -> usize {
         let mut ahead = end.saturating_sub(from.done + 1);
         while ahead > 0 {
@@ -202,8 +203,8 @@ impl Search<'_> {
         RayCone::new(apex, self.promise.radius_px - 5e-10)
     }
 
-    /// The cones of directions in which rays from the end, backwards, meet all sites but the first n: for n from
-    /// all of them downwards, as far as there are any.
+    /// The cones of directions in which rays from the end, backwards, meet all sites but the first n: for n
+    /// from all of them downwards, as far as there are any.
     fn cones_to_the_end(&self) -> Vec<RayCone> {
         let mut cone = self.cone(self.end);
         let mut cones = vec![cone];

@@ -17,9 +17,9 @@ const DAMPING: f64 = 0.01;
 /// Steps that are tried on the way to the best place, each 0.4 times as long as the one before.
 const TRIALS: usize = 3;
 
-/// Moves each inner vertex in turn to where the sum of the squared distances of its two links is least, as far as
-/// the promise allows (Gauss-Seidel on the Gauss-Newton equations of a linear spline with free knots); up to
-/// `sweeps` times, there and back.
+/// Moves each inner vertex in turn to where the sum of the squared distances of its two links is least, as
+/// far as the promise allows (Gauss-Seidel on the Gauss-Newton equations of a linear spline with free knots);
+/// up to `sweeps` times, there and back.
 pub(super) fn polish(promise: Promise, sites: &[PxPoint], vertices: &mut [Vertex], sweeps: usize) {
     let mut moved = vec![true; vertices.len()];
     for sweep in 0..sweeps {
@@ -118,7 +118,8 @@ impl Corner<'_> {
         )
     }
 
-    /// A place with the nearest way between two sites that follow each other, looked for from the present one on.
+    /// A place with the nearest way between two sites that follow each other, looked for from the present one
+    /// on.
     fn attached(&self, at: PxPoint) -> Vertex {
         const LOOK_AHEAD: usize = 3;
         let first = self.before.done + 1;

@@ -17,31 +17,33 @@ const STARTS: usize = 3;
 const SHORT_RING: usize = 24;
 
 impl Bounded {
-    /// The fewest vertices, anywhere, such that the line through a sequence of sites is kept within the tolerance.
+    /// The fewest vertices, anywhere, such that the line through a sequence of sites is kept within the
+    /// tolerance.
     ///
-    /// The sites are places along a line, about one a pixel: centres of pixels, or sub-pixel points with their noise.
-    /// What is promised holds on any of them, whether the line crosses itself, turns back or is nothing but noise:
+    /// The sites are places along a line, about one a pixel: centres of pixels, or sub-pixel points with
+    /// their noise. What is promised holds on any of them, whether the line crosses itself, turns back or is
+    /// nothing but noise:
     ///
-    /// - a pen can run along the polyline and along the sites, never back on either, so that both pens stay within
-    ///   `tolerance_px` of each other. So every site is near the polyline, in order, and every point of the
-    ///   polyline is near the way through the sites (both ways of the Hausdorff distance);
+    /// - a pen can run along the polyline and along the sites, never back on either, so that both pens stay
+    ///   within `tolerance_px` of each other. So every site is near the polyline, in order, and every point
+    ///   of the polyline is near the way through the sites (both ways of the Hausdorff distance);
     /// - open: the first and the last vertex are the first and the last site;
     /// - closed: the first vertex is repeated at the end, and lies at a sharp corner if there is one.
     ///
-    /// The optimum aimed at is the minimum-link path within the Fréchet distance. The search takes the farthest
-    /// link each time, which for a simple corridor is optimal, from a place that it finds by bisection; the number of
-    /// links is within a few per cent of the bound from covering the sites with straight strips. Then the vertices
-    /// move to where the sum of the squared distances is least, as far as the promise allows: two straight runs
-    /// meet where their lines cross.
+    /// The optimum aimed at is the minimum-link path within the Fréchet distance. The search takes the
+    /// farthest link each time, which for a simple corridor is optimal, from a place that it finds by
+    /// bisection; the number of links is within a few per cent of the bound from covering the sites with
+    /// straight strips. Then the vertices move to where the sum of the squared distances is least, as far as
+    /// the promise allows: two straight runs meet where their lines cross.
     ///
-    /// Equal sites in sequence count as one, and sites that are not finite are left out. No sites make no vertices,
-    /// one makes one. No link stands for more than [`MAX_REACH_PX`](super::MAX_REACH_PX) sites, and a link is
-    /// searched at most a fixed number of times, so the work is bounded by sites × reach, and is linear in the
-    /// sites as long as a link is not far longer than the part of it that is new.
+    /// Equal sites in sequence count as one, and sites that are not finite are left out. No sites make no
+    /// vertices, one makes one. No link stands for more than [`MAX_REACH_PX`](super::MAX_REACH_PX) sites, and
+    /// a link is searched at most a fixed number of times, so the work is bounded by sites × reach, and is
+    /// linear in the sites as long as a link is not far longer than the part of it that is new.
     ///
-    /// Sources: L. J. Guibas, J. E. Hershberger, J. S. B. Mitchell, J. S. Snoeyink, "Approximating polygons and
-    /// subdivisions with minimum-link paths" (1993); S. Suri, "A linear time algorithm for minimum link paths inside a
-    /// simple polygon" (1986).
+    /// Sources: L. J. Guibas, J. E. Hershberger, J. S. B. Mitchell, J. S. Snoeyink, "Approximating polygons
+    /// and subdivisions with minimum-link paths" (1993); S. Suri, "A linear time algorithm for minimum link
+    /// paths inside a simple polygon" (1986).
     ///
     /// ```
     /// # use plotter_vector::{PxPoint, stroke::Bounded};
@@ -155,8 +157,8 @@ mod tests {
 
     #[test]
     fn a_circle_takes_hardly_more_than_the_polygon_between_two_circles() {
-        // An n-gon between the circles of radius r - t and r + t has cos(pi / n) = (r - t) / (r + t): n = 6.5, 10.02,
-        // 17.3, 24.4, 31.5 for these; the site next to a corner may lie a little beside it.
+        // An n-gon between the circles of radius r - t and r + t has cos(pi / n) = (r - t) / (r + t): n =
+        // 6.5, 10.02, 17.3, 24.4, 31.5 for these; the site next to a corner may lie a little beside it.
         let count = |(radius, sites): (f64, u32)| {
             let sites = circle(radius, sites);
             Bounded { tolerance_px: 0.5 }.polyline(&sites, true).len() - 1

@@ -7,11 +7,11 @@ const ROUNDING_PX: f64 = 1e-9;
 
 /// Decides whether a link keeps the tolerance: it meets the discs about its sites **in order**.
 ///
-/// Were p₁, p₂, … points on the link, none before the one before it, each within the radius of its site, then the
-/// way from pᵢ to pᵢ₊₁ is everywhere within the radius of the way from site i to site i + 1, for the distance
-/// between two points that move evenly is convex in time. So the check of the sites bounds the error both ways;
-/// it is the ordered stabbing of Guibas, Hershberger, Mitchell and Snoeyink, "Approximating polygons and
-/// subdivisions with minimum-link paths" (1993), sections 2 and 4 (Fréchet distance).
+/// Were p₁, p₂, … points on the link, none before the one before it, each within the radius of its site, then
+/// the way from pᵢ to pᵢ₊₁ is everywhere within the radius of the way from site i to site i + 1, for the
+/// distance between two points that move evenly is convex in time. So the check of the sites bounds the error
+/// both ways; it is the ordered stabbing of Guibas, Hershberger, Mitchell and Snoeyink, "Approximating
+/// polygons and subdivisions with minimum-link paths" (1993), sections 2 and 4 (Fréchet distance).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Promise {
     /// Radius of the discs, px.
@@ -112,8 +112,8 @@ mod tests {
 
     #[test]
     fn sites_must_come_in_order_up_to_the_tolerance_of_each() {
-        // Both sites on the link: the discs of radius 0.5 meet it within 0.5 px before and after, so a way back
-        // of 1 px is as much as two of them allow.
+        // Both sites on the link: the discs of radius 0.5 meet it within 0.5 px before and after, so a way
+        // back of 1 px is as much as two of them allow.
         let (from, to) = (PxPoint::new(0.0, 0.0), PxPoint::new(10.0, 0.0));
         let promise = Promise::new(0.5);
         assert!(promise.link(from, to, &points(&[(5.0, 0.0), (4.0, 0.0)])).is_some());

@@ -4,7 +4,8 @@ use crate::stroke::{PxPoint, PxVec};
 
 /// A cone of directions from an apex, less than a half turn wide; or all directions.
 ///
-/// Source: W. S. Chan, F. Chin, "Approximation of polygonal curves with minimum number of line segments" (1992).
+/// Source: W. S. Chan, F. Chin, "Approximation of polygonal curves with minimum number of line segments"
+/// (1992).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RayCone {
     pub(super) apex: PxPoint,

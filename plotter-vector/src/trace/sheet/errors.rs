@@ -1,8 +1,8 @@
 //! [`SheetErrors`]: how far the ink of a sheet lies from its strokes, band after band.
 //!
-//! Each pixel's error needs the ink's width all along the nearest segment, which may be as long as the sheet. So one pass
-//! measures the widths, the next the errors; both take the dirt out of the ink again, for a sheet without it would have to
-//! be kept whole.
+//! Each pixel's error needs the ink's width all along the nearest segment, which may be as long as the sheet.
+//! So one pass measures the widths, the next the errors; both take the dirt out of the ink again, for a sheet
+//! without it would have to be kept whole.
 
 use super::step::Step;
 use super::{SheetError, for_each_row, row_bytes};
@@ -24,8 +24,8 @@ use crate::{
 };
 use core::ops::Range;
 
-/// Pixels of a band: where widths are measured, and, fewer, where the error of each may have to be kept; and its fewest
-/// rows.
+/// Pixels of a band: where widths are measured, and, fewer, where the error of each may have to be kept; and
+/// its fewest rows.
 const WIDTH_BAND_PIXELS: u32 = 1 << 23;
 const ERROR_BAND_PIXELS: u32 = 1 << 21;
 const FEWEST_ROWS: u32 = 16;
@@ -167,8 +167,9 @@ impl Measure<'_> {
         self.area_rows.get(next).is_some_and(|areas| areas.start < rows.end)
     }
 
-    /// Bands of so many pixels of the sheet's ink without its dirt, with `more_context` rows above and below their own: what `work` makes of
-    /// them (the ink, which row of the sheet its first one is, the own rows) is taken in their order.
+    /// Bands of so many pixels of the sheet's ink without its dirt, with `more_context` rows above and below
+    /// their own: what `work` makes of them (the ink, which row of the sheet its first one is, the own rows)
+    /// is taken in their order.
     fn for_each_band<T: Send>(
         self,
         source: &mut impl RowSource,

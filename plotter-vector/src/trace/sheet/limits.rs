@@ -1,7 +1,8 @@
 //! [`SheetLimits`]: a sheet that is noise is refused before it takes more memory than a drawing.
 //!
-//! What a band takes grows with its lines' pixels, what stays of the sheet with its strokes; of either there is a limit. Both are
-//! counted in rows of the sheet, so that what is refused depends on neither bands nor threads.
+//! What a band takes grows with its lines' pixels, what stays of the sheet with its strokes; of either there
+//! is a limit. Both are counted in rows of the sheet, so that what is refused depends on neither bands nor
+//! threads.
 
 use super::SheetError;
 use crate::stroke::Curve;
@@ -9,12 +10,12 @@ use crate::stroke::Curve;
 /// Rows in which the pixels of lines are counted together, from each multiple of it to the next.
 const ROWS: u32 = 256;
 
-/// Most pixels of centrelines in so many rows of a sheet: 2²⁰, as if upright lines stood 4096 to a row. Noise takes some
-/// 250 bytes a pixel of them in a band, straight lines 80.
+/// Most pixels of centrelines in so many rows of a sheet: 2²⁰, as if upright lines stood 4096 to a row. Noise
+/// takes some 250 bytes a pixel of them in a band, straight lines 80.
 pub const MAX_LINE_PIXELS: u64 = 1 << 20;
 
-/// Most strokes of a sheet: 2²⁰, of which each takes some 700 bytes while they are ordered. A pen that lifts five times a
-/// second draws them in two and a half days.
+/// Most strokes of a sheet: 2²⁰, of which each takes some 700 bytes while they are ordered. A pen that lifts
+/// five times a second draws them in two and a half days.
 pub const MAX_SHEET_STROKES: u64 = 1 << 20;
 
 /// Pixels of the centrelines of some rows beyond which bands are worked on one by one.

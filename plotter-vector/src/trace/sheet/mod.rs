@@ -5,9 +5,9 @@
 //!                                       └──► areas, a stretch at a time ──► outlines, hatching
 //! ```
 //!
-//! Each step takes its rows with as much context as decides about them and hands on the rows themselves; it forgets what
-//! no later step needs. Several bands of a step are worked on at a time, one a thread. A stroke is simplified as soon as
-//! it is whole, so that what stays is the drawing.
+//! Each step takes its rows with as much context as decides about them and hands on the rows themselves; it
+//! forgets what no later step needs. Several bands of a step are worked on at a time, one a thread. A stroke
+//! is simplified as soon as it is whole, so that what stays is the drawing.
 
 mod errors;
 mod limits;
@@ -136,18 +136,19 @@ impl Vectorizer {
     /// [`Vectorizer::vectorize_rows_with_errors`] does.
     ///
     /// Memory is some bands of the sheet (of a large one fewer than there are threads) and the drawing, and
-    /// * of strokes that have begun but not ended, 12 bytes a pixel of their length, and of long ones at most those of some
-    ///   8000 rows: where a stroke comes to every 4096th row of the sheet it is cut and simplified so far, if 2048 px or
-    ///   more lie between two cuts. A cut on a straight line leaves no vertex;
+    /// * of strokes that have begun but not ended, 12 bytes a pixel of their length, and of long ones at most
+    ///   those of some 8000 rows: where a stroke comes to every 4096th row of the sheet it is cut and
+    ///   simplified so far, if 2048 px or more lie between two cuts. A cut on a straight line leaves no
+    ///   vertex;
     /// * of areas, the rows from one without any to the next, at most [`MAX_PIXELS`], at 1 bit;
-    /// * the published algorithm needs the whole sheet, and so do lines one pixel wide without grey rims as long as it is no
-    ///   larger than [`MAX_PIXELS`]. On a larger one they are followed band after band: through every
-    ///   pixel with the same promise, but in other strokes than of the whole.
+    /// * the published algorithm needs the whole sheet, and so do lines one pixel wide without grey rims as
+    ///   long as it is no larger than [`MAX_PIXELS`]. On a larger one they are followed band after band:
+    ///   through every pixel with the same promise, but in other strokes than of the whole.
     ///
     /// [`MAX_PIXELS`]: crate::picture::MAX_PIXELS
     ///
-    /// A page of noise is refused ([`MAX_LINE_PIXELS`], [`MAX_SHEET_STROKES`]), so that no sheet takes, by estimate, much
-    /// more than a gigabyte.
+    /// A page of noise is refused ([`MAX_LINE_PIXELS`], [`MAX_SHEET_STROKES`]), so that no sheet takes, by
+    /// estimate, much more than a gigabyte.
     ///
     /// ```
     /// use plotter_vector::{Bitmap, Progress, Vectorizer, picture::BitmapRows};
@@ -168,9 +169,10 @@ impl Vectorizer {
         self.traced_rows(source, false, progress)
     }
 
-    /// As [`Vectorizer::vectorize_rows`], and how far the ink lies from the strokes: what [`Vectorized::error`] and, of drawings
-    /// without areas, [`worst_pixel`] say of the whole picture, to the last bit. The sheet is read twice more; the memory, when the
-    /// bands are done, is 110 bytes a vertex and 1 bit for each 16 pixels.
+    /// As [`Vectorizer::vectorize_rows`], and how far the ink lies from the strokes: what
+    /// [`Vectorized::error`] and, of drawings without areas, [`worst_pixel`] say of the whole picture, to the
+    /// last bit. The sheet is read twice more; the memory, when the bands are done, is 110 bytes a vertex and
+    /// 1 bit for each 16 pixels.
     ///
     /// [`worst_pixel`]: crate::report::worst_pixel
     /// [`Vectorized::error`]: crate::trace::Vectorized::error

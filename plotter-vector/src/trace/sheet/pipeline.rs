@@ -19,8 +19,8 @@ use crate::{
 };
 use core::ops::Range;
 
-/// Own rows of a band, bytes at 1 bit a pixel, and the fewest rows: less, and the context costs more than the band; more,
-/// and the memory grows.
+/// Own rows of a band, bytes at 1 bit a pixel, and the fewest rows: less, and the context costs more than the
+/// band; more, and the memory grows.
 const BAND_BYTES: usize = 1 << 20;
 /// The same with grey levels, which take eight times as much.
 const GREY_BAND_BYTES: usize = 3 << 18;
@@ -230,7 +230,8 @@ impl<'a> SheetPipeline<'a> {
         Ok(())
     }
 
-    /// Follows the skeleton, and simplifies the strokes that are whole now: bands with many lines one after the other.
+    /// Follows the skeleton, and simplifies the strokes that are whole now: bands with many lines one after
+    /// the other.
     fn follow(&mut self, bands: Vec<Range<u32>>) -> Result<(), SheetError> {
         let end = bands.last().map_or(0, |own| own.end);
         let pixels: u64 = bands.iter().map(|own| ink_of(self.skeleton.rows(&self.follow.around(own)))).sum();

@@ -3,7 +3,8 @@
 use crate::parallel::threads;
 use core::ops::Range;
 
-/// Rows of all bands that are worked on at a time, bytes at 1 bit a pixel: of a large sheet they are fewer than the threads.
+/// Rows of all bands that are worked on at a time, bytes at 1 bit a pixel: of a large sheet they are fewer
+/// than the threads.
 const BANDS_BYTES: usize = 5 << 20;
 
 /// A step of the work: which rows it takes next.
@@ -13,8 +14,8 @@ pub(super) struct Step {
     /// Own rows of a band, and rows more that it needs above and below.
     band_rows: u32,
     context: u32,
-    /// Rows that a first band takes by itself: so many that the rows which are there are ever after just those that the
-    /// next step waits for, and no more of them lie about.
+    /// Rows that a first band takes by itself: so many that the rows which are there are ever after just
+    /// those that the next step waits for, and no more of them lie about.
     lead: u32,
     /// Bands that are worked on at a time.
     bands: u32,
@@ -40,8 +41,8 @@ impl Step {
         own.saturating_add(self.context.saturating_mul(2)).min(self.height)
     }
 
-    /// The bands that can be worked on when the rows before `end` are there: as many as are worked on at a time, or those
-    /// that are left at the end of the sheet.
+    /// The bands that can be worked on when the rows before `end` are there: as many as are worked on at a
+    /// time, or those that are left at the end of the sheet.
     pub(super) fn ready(&mut self, end: u32) -> Option<Vec<Range<u32>>> {
         let rows = if self.lead > 0 { self.lead } else { self.bands.saturating_mul(self.band_rows) };
         let own = self.next..self.next.saturating_add(rows).min(self.height);

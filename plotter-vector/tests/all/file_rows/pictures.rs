@@ -1,4 +1,5 @@
-//! Small synthetic picture files of every kind, built byte by byte, so that damaged and odd ones can be built too.
+//! Small synthetic picture files of every kind, built byte by byte, so that damaged and odd ones can be built
+//! too.
 
 use flate2::{Compression, Crc, write::ZlibEncoder};
 use std::io::Write;

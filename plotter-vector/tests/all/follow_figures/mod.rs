@@ -81,7 +81,8 @@ pub fn junctions() -> Figure {
     Figure { name: "junctions", width: 720, height: 660, lines, pen_px: 5.0 }
 }
 
-/// (d) Dense parallel lines: one to and fro with square turns, and hatching beside it; as much paper between lines as they are wide.
+/// (d) Dense parallel lines: one to and fro with square turns, and hatching beside it; as much paper between
+/// lines as they are wide.
 pub fn dense() -> Figure {
     dense_with(4.0, 4.0, false)
 }
@@ -127,7 +128,8 @@ pub fn sharper_tips() -> Figure {
     Figure { name: "sharper tips", width: 400, height: 500, lines: vec![polyline(&line)], pen_px: 5.0 }
 }
 
-/// The built-in drawing of the `follow` example: rings of three widths, a line through them, tips, a rectangle and hatching.
+/// The built-in drawing of the `follow` example: rings of three widths, a line through them, tips, a
+/// rectangle and hatching.
 pub fn mixed() -> Figure {
     let circle = |x: f64, y: f64, radius: f64| -> Vec<PxPoint> {
         let at = |i: i32| f64::from(i) * std::f64::consts::TAU / 120.0;
@@ -159,7 +161,8 @@ pub struct Run {
 }
 
 impl Run {
-    /// Coverage, followed twice, rms, greatest distance and its place, lifts, windows and end, as a table's cells.
+    /// Coverage, followed twice, rms, greatest distance and its place, lifts, windows and end, as a table's
+    /// cells.
     pub fn cells(&self) -> String {
         let Self { judged, report, end, .. } = self;
         format!(
@@ -246,8 +249,9 @@ pub fn length(line: &[PxPoint]) -> f64 {
     line.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
 }
 
-/// Wrong choices of a tool on its way: shortcuts (more than 4 px of way outside of the ink) and turning back on a line
-/// elsewhere than at its ends. In a sharp tip the arms' ink is one, and which arm the tool is on shows behind it only.
+/// Wrong choices of a tool on its way: shortcuts (more than 4 px of way outside of the ink) and turning back
+/// on a line elsewhere than at its ends. In a sharp tip the arms' ink is one, and which arm the tool is on
+/// shows behind it only.
 pub fn wrong_choices(figure: &Figure, strokes: &[Vec<PxPoint>]) -> (u32, u32) {
     let route = Route::of(&figure.lines);
     let ends: Vec<PxPoint> = figure.lines.iter().flat_map(|line| [line[0], line[line.len() - 1]]).collect();

@@ -1,4 +1,5 @@
-//! Decides whether two lines are near each other in order: the check of the promise, independent of the library's.
+//! Decides whether two lines are near each other in order: the check of the promise, independent of the
+//! library's.
 
 use plotter_vector::PxPoint;
 
@@ -56,7 +57,8 @@ pub(crate) fn within(p: &[PxPoint], q: &[PxPoint], limit_px: f64) -> bool {
     left.last().unwrap().is_some_and(|(_, high)| high >= 1.0 - 1e-9)
 }
 
-/// The sites of a ring from the one nearest to a place on, all ways round: where the two pens may have started.
+/// The sites of a ring from the one nearest to a place on, all ways round: where the two pens may have
+/// started.
 pub(crate) fn some_start_is_within(sites: &[PxPoint], line: &[PxPoint], limit_px: f64) -> bool {
     (0..sites.len()).any(|start| {
         // The pen may start between two sites: at the place nearest to the first vertex.

@@ -64,8 +64,9 @@ fn font_of(family: &str, missing: Corners) -> Vec<u8> {
     for _ in &glyphs {
         hmtx = hmtx.shorts(&[ADVANCE.cast_signed(), 0]);
     }
-    // Version 1.0, revision, no checksum, the magic number; flags, 1000 units an em; created and modified; the least
-    // and greatest x and y; no style, 8 px at least; mixed direction, long offsets, the usual format.
+    // Version 1.0, revision, no checksum, the magic number; flags, 1000 units an em; created and modified;
+    // the least and greatest x and y; no style, 8 px at least; mixed direction, long offsets, the usual
+    // format.
     let head = Table::default()
         .longs(&[0x0001_0000, 0, 0, 0x5f0f_3cf5])
         .shorts(&[0, 1000])
@@ -100,8 +101,8 @@ fn font_of(family: &str, missing: Corners) -> Vec<u8> {
     directory.bytes(&bodies.0).0
 }
 
-/// One contour of straight lines: its box, the last corner, no instructions, all corners on the curve, each by its way
-/// from the one before.
+/// One contour of straight lines: its box, the last corner, no instructions, all corners on the curve, each
+/// by its way from the one before.
 fn outline(glyf: Table, corners: &[(i16, i16)]) -> Table {
     let Some(last) = corners.len().checked_sub(1) else { return glyf };
     let range = |side: fn(&(i16, i16)) -> i16| {

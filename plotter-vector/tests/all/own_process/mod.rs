@@ -5,8 +5,8 @@ use std::process::Command;
 /// The variable by which a process knows that it runs one test alone.
 const ALONE: &str = "TEST_IN_ITS_OWN_PROCESS";
 
-/// Runs the test `name` (with its modules) in a new process and fails as it fails there; `true` within that process, where the
-/// measuring is to be done.
+/// Runs the test `name` (with its modules) in a new process and fails as it fails there; `true` within that
+/// process, where the measuring is to be done.
 pub(crate) fn is_alone(name: &str) -> bool {
     if std::env::var_os(ALONE).is_some() {
         return true;

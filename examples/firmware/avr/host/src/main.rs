@@ -223,8 +223,8 @@ const STEP_X: u8 = 1;
 const DIR_X: u8 = 2;
 const STEP_Y: u8 = 4;
 const DIR_Y: u8 = 8;
-/// The A4988's least times at the STEP pin, 1 us high and 1 us low, and 200 ns from DIR to STEP (Allegro A4988, table
-/// "Logic Interface"), at 16 MHz.
+/// The A4988's least times at the STEP pin, 1 us high and 1 us low, and 200 ns from DIR to STEP (Allegro
+/// A4988, table "Logic Interface"), at 16 MHz.
 const LEAST_PULSE_CYCLES: u32 = 16;
 const LEAST_SETUP_CYCLES: u32 = 4;
 

@@ -1,4 +1,5 @@
-//! The gantry's controller on 8 bits: published line tracking, published protocol, x4 decoding of the encoders.
+//! The gantry's controller on 8 bits: published line tracking, published protocol, x4 decoding of the
+//! encoders.
 #![no_std]
 #![no_main]
 

@@ -1,4 +1,5 @@
-//! Bresenham's line on 8 bits: targets by the published protocol, step pulses on pins, through the safety gate.
+//! Bresenham's line on 8 bits: targets by the published protocol, step pulses on pins, through the safety
+//! gate.
 #![no_std]
 #![no_main]
 

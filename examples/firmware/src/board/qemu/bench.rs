@@ -21,8 +21,8 @@
 //! | 12 | the processor starts | 1 after a reset by its watchdog, 0 otherwise |
 //! | 13 | the firmware has stopped for good | length, text |
 //!
-//! The answer to kind 0: how many bytes the host puts on the line now (they come over UART0), and how many microseconds
-//! later it is to be asked again, 0 for never; both LEB128.
+//! The answer to kind 0: how many bytes the host puts on the line now (they come over UART0), and how many
+//! microseconds later it is to be asked again, 0 for never; both LEB128.
 
 use super::registers::{self, Timer, Uart};
 use core::fmt;

@@ -1,7 +1,7 @@
 //! The simulated gantry: two motors, their encoders and the serial line, in the time of the bench.
 //!
-//! Everything happens as in `plotter_motion::plant::Bench`, in the same order and at the same microseconds, but that here
-//! each level goes through a driver and its pins.
+//! Everything happens as in `plotter_motion::plant::Bench`, in the same order and at the same microseconds,
+//! but that here each level goes through a driver and its pins.
 
 use super::bench::{Bench, Told};
 use super::connection::Connection;

@@ -1,4 +1,5 @@
-//! The simulated stepper plotter: two motors that follow every pulse, and the serial line, in the time of the bench.
+//! The simulated stepper plotter: two motors that follow every pulse, and the serial line, in the time of the
+//! bench.
 
 use super::bench::{Bench, Told};
 use super::connection::Connection;

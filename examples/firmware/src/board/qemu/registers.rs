@@ -1,14 +1,16 @@
-//! The registers of `mps2-an386` that the simulated plotter needs: the only file here that touches memory by its address.
+//! The registers of `mps2-an386` that the simulated plotter needs: the only file here that touches memory by
+//! its address.
 //!
-//! Source: Arm, *Cortex-M System Design Kit Technical Reference Manual* (DDI 0479), "APB UART", table 4-3; addresses:
-//! Arm, *Application Note AN386*, table 3-2. We know of no crate for these peripherals.
+//! Source: Arm, *Cortex-M System Design Kit Technical Reference Manual* (DDI 0479), "APB UART", table 4-3;
+//! addresses: Arm, *Application Note AN386*, table 3-2. We know of no crate for these peripherals.
 #![allow(unsafe_code, reason = "memory-mapped registers have no other access")]
 
 use core::ptr::{read_volatile, write_volatile};
 
 /// Reads the word at `address`, which must be one of those in this file.
 fn read(address: usize) -> u32 {
-    // SAFETY: a register, or memory that the linker script leaves free; aligned, and always there on this machine.
+    // SAFETY: a register, or memory that the linker script leaves free; aligned, and always there on this
+    // machine.
     unsafe { read_volatile(address as *const u32) }
 }
 
@@ -72,7 +74,8 @@ impl Uart {
     }
 }
 
-/// Words above the linker's memory, which QEMU sets at every reset (`-device loader`): how the bench is set up.
+/// Words above the linker's memory, which QEMU sets at every reset (`-device loader`): how the bench is set
+/// up.
 const SWITCHES: usize = 0x2030_0000;
 /// Words beside them that a reset leaves alone.
 const KEPT: usize = 0x2030_1000;

@@ -131,7 +131,8 @@ struct Encoders {
 
 static ENCODERS: Mutex<RefCell<Option<Encoders>>> = Mutex::new(RefCell::new(None));
 
-/// What they counted, and when. By itself, so that its memory is cleared at the start and not copied from flash.
+/// What they counted, and when. By itself, so that its memory is cleared at the start and not copied from
+/// flash.
 static EDGES: Mutex<RefCell<Queue<(u64, Axis, Direction), MOST_EDGES>>> =
     Mutex::new(RefCell::new(Queue::new()));
 
@@ -206,7 +207,8 @@ impl Rest {
 /// Lets an interrupt through.
 #[allow(unsafe_code, reason = "the crate cannot know that no lock is built on masking it")]
 pub(super) fn unmask(interrupt: Interrupt) {
-    // SAFETY: what an interrupt shares with the loop is behind a critical section, none of which is open here.
+    // SAFETY: what an interrupt shares with the loop is behind a critical section, none of which is open
+    // here.
     unsafe { cortex_m::peripheral::NVIC::unmask(interrupt) };
 }
 

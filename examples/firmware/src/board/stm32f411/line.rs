@@ -5,7 +5,8 @@ use critical_section::Mutex;
 use heapless::spsc::Queue;
 use stm32f4xx_hal::pac::{USART2, interrupt};
 
-/// Bytes that came and were not fetched: the loop takes less time than the line for these, a planned block included.
+/// Bytes that came and were not fetched: the loop takes less time than the line for these, a planned block
+/// included.
 const COME: usize = 32;
 /// Bytes that wait to be sent.
 const TO_SEND: usize = 128;
@@ -16,7 +17,8 @@ static CAME: Mutex<RefCell<Queue<Option<u8>, COME>>> = Mutex::new(RefCell::new(Q
 #[interrupt]
 #[allow(unsafe_code, reason = "the line's own half of the port is in the loop's hands")]
 fn USART2() {
-    // SAFETY: the interrupt reads what came, the loop writes what goes, and neither changes how the port is set up.
+    // SAFETY: the interrupt reads what came, the loop writes what goes, and neither changes how the port is
+    // set up.
     let port = unsafe { USART2::steal() };
     // The status first: it is cleared by reading the byte after it.
     let status = port.sr().read();

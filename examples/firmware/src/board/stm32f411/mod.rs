@@ -12,8 +12,8 @@
 //! | PA5 | lamp: look at the machine (the Nucleo's LD2) | the same |
 //! | PB10 | | ENABLE of both motor drivers |
 //!
-//! Every output needs a resistor to ground (ENABLE of the motor drivers: to 3.3 V) that holds it at rest while the processor
-//! starts, or has stopped: its pins are inputs then.
+//! Every output needs a resistor to ground (ENABLE of the motor drivers: to 3.3 V) that holds it at rest
+//! while the processor starts, or has stopped: its pins are inputs then.
 
 mod clock;
 pub mod gantry;

@@ -1,5 +1,5 @@
-//! Pins by their port and number. The board's library has a type for each pin, or one for all that says its port with every access;
-//! this takes less program memory than either.
+//! Pins by their port and number. The board's library has a type for each pin, or one for all that says its
+//! port with every access; this takes less program memory than either.
 
 use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};

@@ -1,11 +1,13 @@
-//! What the stepper plotter needs of its processor, register by register: with the board's library, which reckons it all at the start,
-//! it takes 1.6 KB of program memory more.
+//! What the stepper plotter needs of its processor, register by register: with the board's library, which
+//! reckons it all at the start, it takes 1.6 KB of program memory more.
 //!
-//! Source: "STM32F411xC/E reference manual" (ST, RM0383), sections 3.4 (flash), 6 (RCC), 8 (GPIO), 12 and 13 (timers), 19 (USART).
+//! Source: "STM32F411xC/E reference manual" (ST, RM0383), sections 3.4 (flash), 6 (RCC), 8 (GPIO), 12 and 13
+//! (timers), 19 (USART).
 
 use stm32f4xx_hal::pac::{FLASH, GPIOA, GPIOB, RCC, TIM1, TIM2, TIM3, USART2};
 
-/// The oscillator's 16 MHz, divided by 8, times 168, divided by 4; the lower of both peripheral buses at half of it.
+/// The oscillator's 16 MHz, divided by 8, times 168, divided by 4; the lower of both peripheral buses at half
+/// of it.
 const SYSTEM_HZ: u32 = 84_000_000;
 const OSCILLATOR_PARTS: u8 = 8;
 const OSCILLATOR_TIMES: u16 = 168;

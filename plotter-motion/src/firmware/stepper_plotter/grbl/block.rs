@@ -1,4 +1,4 @@
-//! A line of G-code becomes commands.
+//! A line of G-code becomes commands for the motion side.
 
 use super::super::{Command, Link, Setting, SettingProblem, StoredSettings, area};
 use super::codes::{Alarm, Code, takes_axes};
@@ -10,7 +10,8 @@ use crate::decimal::Decimal;
 use crate::gcode::{Block, Modes, Outcomes, SYSTEMS, Word, Words};
 use crate::geom::Vec2Single;
 
-/// Slower is not slower, mm/s: a step of 0.01 mm takes ten seconds.
+/// Least feed, mm/s: a lower one is raised to it. Chosen so that a step of 0.01 mm still takes no more than
+/// ten seconds; a feed of 0 would never end.
 const LEAST_FEED_MM_S: f64 = 1e-3;
 
 fn no_slower(feed_mm_s: f64) -> f64 {
@@ -18,7 +19,7 @@ fn no_slower(feed_mm_s: f64) -> f64 {
 }
 
 impl<P: Pens> Grbl<P> {
-    /// Carries a line out as a whole, or not at all.
+    /// Carries out a line as a whole, or not at all.
     #[inline(never)] // its memory on the stack is for its own time only, as that of a jog
     pub(super) fn block(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
         let known = P::read(&self.settings, |options| options.words);
@@ -31,7 +32,7 @@ impl<P: Pens> Grbl<P> {
         done
     }
 
-    /// A movement by hand, with the pen up. Of its line only the place is kept.
+    /// A jog: a movement by hand with the pen up. Only the place is kept; the modes of the line are not.
     #[inline(never)]
     pub(super) fn jog(&mut self, text: &[u8], link: &mut Link) -> Result<(), Code> {
         let block = read(text, Words::GrblOnSheet)?.ok_or(Code::NO_FEED)?;
@@ -62,7 +63,7 @@ impl<P: Pens> Grbl<P> {
         let setting = setting(text)?;
         match setting.checked(&self.settings) {
             Ok(settings) => self.settings = settings,
-            // Whoever sends all settings back changes none.
+            // A program may send back all settings that it has read: that changes none.
             Err(SettingProblem::Fixed) if is_listed(setting, &self.settings) => return Ok(()),
             Err(SettingProblem::Negative) => return Err(Code::NEGATIVE),
             Err(SettingProblem::OutOfRange) => return Err(Code::SETTING_RANGE),
@@ -126,11 +127,11 @@ impl<P: Pens> Grbl<P> {
         let mut at = before.position;
         for op in outcomes.iter().flatten() {
             if !area::contains(most, &at, op) {
-                // Where nothing moves there is nothing to stop.
+                // Nothing moves, so there is nothing to stop.
                 if self.mode == Mode::Check {
                     return Err(Code::TARGET);
                 }
-                // What has been answered by ok is still drawn, then the pen goes up.
+                // Lines that were answered by ok are still drawn; then the pen goes up.
                 self.command(link, Command::Plot(PlotOp::Travel { to: before.position }));
                 self.alarm(Alarm::SOFT_LIMIT);
                 return Err(Code::TARGET);
@@ -155,11 +156,11 @@ impl<P: Pens> Grbl<P> {
         if pauses {
             self.command(link, Command::Pause);
         }
-        // It waits for a pen that goes down, too.
+        // The wait covers a pen that is going down, too.
         if dwells && let Some(dot) = self.interpreter.put_down() {
             self.command(link, Command::Plot(dot));
         }
-        // As in Grbl these are answered when all is done: programs wait for the machine by them.
+        // As in Grbl, these are answered when all is done: programs use them to wait for the machine.
         if ends {
             self.command(link, Command::End);
             self.wait = Some(Wait::End);
@@ -171,19 +172,19 @@ impl<P: Pens> Grbl<P> {
     }
 }
 
-/// What Grbl asks of the words of a line together.
+/// Checks the words of a line against each other, as Grbl does.
 #[inline(never)]
 fn check(block: &Block, known: Words, modes: &Modes) -> Result<(), Code> {
     /// The axes of each plane.
     const PLANES: [(u16, &[u8]); 3] = [(170, b"XY"), (180, b"XZ"), (190, b"YZ")];
-    /// Above the greatest number of a line, 9,999,999: Grbl's.
+    /// Bound above the line numbers: Grbl's greatest is 9,999,999.
     const MOST_LINES: f64 = 1e7;
     let has = |letters: &[u8]| block.words().iter().any(|word| letters.contains(&word.letter));
     let asks =
         |tenths: u16| block.words().iter().any(|word| word.letter == b'G' && word.tenths() == Some(tenths));
     let (has_axes, sets) = (has(b"XYZ"), asks(100));
     let is_arc = asks(20) || asks(30);
-    // Ours draws a whole circle by its centre alone.
+    // This machine draws a whole circle by its centre alone.
     let (mut has_ends, mut draws_circle) = (true, has(b"IJ"));
     if known == Words::Grbl {
         let plane = PLANES.iter().find(|plane| asks(plane.0));
@@ -225,7 +226,8 @@ fn check(block: &Block, known: Words, modes: &Modes) -> Result<(), Code> {
     Ok(())
 }
 
-/// Whether a word stands there that nothing in its line uses, of those that Grbl knows and readers let pass.
+/// Whether the line has a word that no command in it uses, among the words that Grbl knows and readers let
+/// pass.
 fn has_unused(block: &Block) -> bool {
     block.words().iter().any(|word| {
         let users: &[u16] = match word.letter {

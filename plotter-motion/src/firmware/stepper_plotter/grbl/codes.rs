@@ -14,7 +14,7 @@ pub(super) struct Code(pub(super) u8);
 impl Code {
     /// G-code words consist of a letter and a value; the letter was not found.
     pub(super) const NO_LETTER: Self = Self(1);
-    /// The value of a word is missing, or no number.
+    /// The value of a word is missing, or is no number.
     pub(super) const BAD_NUMBER: Self = Self(2);
     /// A `$` command that is not known.
     pub(super) const BAD_STATEMENT: Self = Self(3);
@@ -70,14 +70,15 @@ impl Code {
     pub(super) const UNUSED: Self = Self(36);
     /// The length of a tool is along z, and nothing else.
     pub(super) const LENGTH_AXIS: Self = Self(37);
-    /// The value of a setting is out of its range. Grbl 1.1 has no number for it; this is that of its successor grblHAL.
+    /// The value of a setting is out of its range. Grbl 1.1 has no number for it; this is that of its
+    /// successor grblHAL.
     pub(super) const SETTING_RANGE: Self = Self(52);
-    /// `M0`, which is carried out: the interpreter leaves it to who is in charge of the machine.
+    /// `M0`. It is no error: the interpreter leaves it to the controller, which pauses.
     pub(super) const PAUSE: Self = Self(0);
 }
 
 impl Complaint for Code {
-    /// The number that fits best to what is complained of.
+    /// The number that fits a problem best.
     #[inline(always)] // what is complained of is known where that happens, so that one number is left of all this
     fn of(problem: Problem, _: Position) -> Self {
         match problem {
@@ -131,7 +132,7 @@ fn is_fraction(word: Word) -> bool {
 pub(super) struct Alarm(pub(super) u8);
 
 impl Alarm {
-    /// Switched on and not homed, or woken: it has no number, and is not told as one.
+    /// Switched on and not homed, or woken from sleep. It has no number and is not reported as an alarm.
     pub(super) const LOCKED: Self = Self(0);
     /// A limit switch stopped the machine.
     pub(super) const HARD_LIMIT: Self = Self(1);

@@ -1,17 +1,17 @@
-//! What a whole Grbl keeps, and a small one leaves out: start-up lines, and the settings to go back to.
+//! What a whole Grbl keeps and a small one leaves out: start-up lines, and the settings that `$RST` restores.
 
 use super::super::{Command, Link, StartupLines, Status, StepperPlotterSettings};
 use super::{Code, Grbl, MOST_COMMANDS, Mode, Pens, Wait, send};
 use crate::planner::Keep as _;
 use core::fmt::Write as _;
 
-/// What is kept, and how far the start-up lines have been carried out.
+/// The kept settings and start-up lines, and how far these lines have been carried out.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Kept {
     pub(super) lines: StartupLines,
-    /// What the controller was made with.
+    /// The settings that the controller was made with.
     built: StepperPlotterSettings,
-    /// The line that is to be carried out; none is from [`StartupLines::COUNT`] on.
+    /// The start-up line to carry out next; from [`StartupLines::COUNT`] on there is none.
     next: u8,
     /// The line that has not been answered yet.
     running: Option<u8>,
@@ -36,7 +36,7 @@ impl Kept {
         self.built = *settings;
     }
 
-    /// Forgets how far it has come.
+    /// Forgets how far the start-up lines have been carried out.
     pub(super) fn end(&mut self) {
         (self.next, self.running, self.owes_answer) = (StartupLines::COUNT, None, false);
     }
@@ -53,8 +53,8 @@ impl<P: Pens> Grbl<P> {
         }
     }
 
-    /// The start-up lines are carried out from the first on, unless the machine is locked. Says whether an
-    /// answer comes after them.
+    /// Begins with the first start-up line, unless the machine is locked. Says whether an answer comes after
+    /// them.
     pub(super) fn begin_startup(&mut self, owes_answer: bool) -> bool {
         let is_locked = self.alarm.is_some();
         let Some(kept) = self.kept.get_mut().filter(|_| !is_locked) else { return false };
@@ -62,7 +62,7 @@ impl<P: Pens> Grbl<P> {
         owes_answer
     }
 
-    /// Carries out the start-up line that is due; says whether there was one, or an answer that waited for
+    /// Carries out the start-up line that is due. Says whether there was one, or an answer that waited for
     /// it.
     pub(super) fn start(&mut self, link: &mut Link) -> bool {
         let is_free = self.wait.is_none() && link.commands.room() >= MOST_COMMANDS;
@@ -92,8 +92,8 @@ impl<P: Pens> Grbl<P> {
         self.kept.get().is_some_and(|kept| kept.next < StartupLines::COUNT || kept.owes_answer)
     }
 
-    /// `$N0=line`: as in Grbl it is carried out at once, and kept if it can be; in an alarm it is only looked
-    /// at.
+    /// `$N0=line`: as in Grbl, the line is carried out at once and kept if that succeeds. In an alarm it is
+    /// only checked.
     pub(super) fn keep_line(&mut self, number: u8, line: &[u8], link: &mut Link) -> Result<(), Code> {
         if self.kept.get().is_none() {
             return if line.is_empty() { Ok(()) } else { Err(Code::BAD_STATEMENT) };
@@ -110,7 +110,7 @@ impl<P: Pens> Grbl<P> {
         kept.ok_or(Code::OVERFLOW)
     }
 
-    /// Whether `$RST=$` can be done, by both sides.
+    /// Whether both sides can do `$RST=$`.
     pub(super) fn restores(&self, status: &Status) -> bool {
         status.restores && self.kept.get().is_some()
     }
@@ -127,13 +127,14 @@ impl<P: Pens> Grbl<P> {
         self.wait = Some(Wait::Restore);
     }
 
-    /// Answers the line in hand: one of the host, or a start-up line, which is told with it.
+    /// Answers the line in hand. That is a line of the host, or a start-up line, whose text is told with the
+    /// answer.
     pub(super) fn answer(&mut self, done: Result<(), Code>) {
         if let Some(kept) = self.kept.get_mut()
             && let Some(number) = kept.running.take()
         {
             let lines = kept.lines;
-            // Writing to it does not fail.
+            // Writing to this buffer does not fail.
             let _ = write!(self.out, ">{}:", crate::decimal_text::Plain(lines.get(number)));
         }
         match done {

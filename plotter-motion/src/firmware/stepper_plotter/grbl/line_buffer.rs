@@ -3,10 +3,10 @@
 use super::rx_buffer::LOST;
 use crate::protocol::SUBSTITUTE;
 
-/// Most characters of a line, without blanks and comments.
+/// Greatest length of a line in characters, without blanks and comments: as in Grbl 1.1.
 pub(super) const MOST: usize = 80;
 
-/// The line that is coming in, or that waits to be carried out.
+/// The line that is being received, or that waits to be carried out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LineBuffer {
     text: [u8; MOST],
@@ -45,13 +45,13 @@ impl LineBuffer {
                 if let Some(slot) = self.text.get_mut(self.len) {
                     *slot = byte.to_ascii_uppercase();
                 }
-                // Too long stays too long.
+                // A line that is too long stays so until it ends.
                 self.len = (self.len + 1).min(MOST + 1);
             }
         }
     }
 
-    /// Whether all of it is there.
+    /// Whether the line is complete.
     pub(super) const fn has_ended(&self) -> bool {
         self.ended
     }

@@ -23,7 +23,7 @@ pub(super) enum Listing {
     Startup,
 }
 
-/// What is told of.
+/// What a listing tells about.
 pub(super) struct About<'a> {
     pub(super) settings: &'a StepperPlotterSettings,
     pub(super) interpreter: &'a LineInterpreter,
@@ -32,11 +32,12 @@ pub(super) struct About<'a> {
     pub(super) restores: bool,
 }
 
-/// Blocks that are free when nothing is queued.
+/// Number of free blocks that is reported when nothing is queued: all commands of the queue but those that
+/// one line may need.
 pub(super) const BLOCKS: usize = COMMANDS - MOST_COMMANDS;
 
 impl Listing {
-    /// Writes a line of it; says whether there was one left.
+    /// Writes one line of the listing. Says whether there was one left.
     pub(super) fn line(self, index: u8, about: &About<'_>, out: &mut Output<OUTPUT>) -> bool {
         let &About { settings, interpreter, lines, restores } = about;
         match self {
@@ -98,7 +99,8 @@ impl Listing {
     }
 }
 
-/// The numbers of Grbl's settings, and the values of those that this machine has no use for, as Grbl comes with them; 0 for the others.
+/// The numbers of Grbl's settings. Settings without a use on this machine have the value that Grbl is
+/// delivered with; the others have 0 here.
 static NUMBERS: [(u8, u8); 34] = [
     (0, 10),
     (1, 255), // the motors hold
@@ -136,7 +138,7 @@ static NUMBERS: [(u8, u8); 34] = [
     (132, 1),
 ];
 
-/// A setting with its number, and whether it is told as a whole number.
+/// A setting with its number, and whether it is written as a whole number.
 fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, bool)> {
     let StepperPlotterSettings { planner, stored, home_x, .. } = settings;
     let &(number, fixed) = NUMBERS.get(usize::from(index))?;
@@ -165,9 +167,9 @@ fn setting(index: u8, settings: &StepperPlotterSettings) -> Option<(u8, f64, boo
     Some((number, value, !matches!(number, 11 | 12 | 24 | 25 | 27 | 100..)))
 }
 
-/// Whether this is what the settings already say.
+/// Whether the settings already have this value.
 pub(super) fn is_listed(setting: Setting, settings: &StepperPlotterSettings) -> bool {
-    /// Half of the last digit that is told.
+    /// Values nearer than this are alike: half of the last digit of a listing, which has three decimals.
     const ALIKE: f64 = 5e-4;
     (0..)
         .map_while(|index| self::setting(index, settings))

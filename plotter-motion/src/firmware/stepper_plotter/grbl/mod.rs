@@ -27,11 +27,13 @@ use overrides::Overrides;
 pub use pens::{AnyPen, Pens, SpindlePen};
 use rx_buffer::RxBuffer;
 
-/// Most bytes that are written at one time: an alarm with its message, and the line's answer.
+/// Most bytes that are written at one time: an alarm with its message, and the line's answer. Derived from
+/// the longest answers, which the test below writes.
 const MOST_ANSWER: usize = 208;
-/// Bytes that wait to be sent.
+/// Room for bytes that wait to be sent: the longest answer and the end of the one before.
 const OUTPUT: usize = 224;
-/// The longest way of telling the offset, or the overrides, only now and then: so many reports without it.
+/// So many reports come without the offset, or without the overrides, before one tells them again. Grbl does
+/// so every 10 to 30 reports, depending on whether it moves.
 const REPORTS_WITHOUT_OFFSET: u8 = 10;
 
 /// What the line in hand waits for before it is answered.
@@ -39,9 +41,9 @@ const REPORTS_WITHOUT_OFFSET: u8 = 10;
 enum Wait {
     /// `$H`.
     Home,
-    /// `G4`: until all before and the pause are over; `M0`: until it goes on.
+    /// `G4`: until all before it and the pause are over; `M0`: until a person goes on.
     Finish,
-    /// `M2`, `M30`: until all before is over.
+    /// `M2`, `M30`: until all before them is over.
     End,
     /// `$n=value`.
     Set,
@@ -52,15 +54,16 @@ enum Wait {
 /// What is done with lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
-    /// They are carried out.
+    /// Lines are carried out.
     Work,
-    /// `$C`: they are answered as if they were, and nothing moves.
+    /// `$C`: lines are answered as if they were carried out, and nothing moves.
     Check,
-    /// `$SLP`: they wait for a reset, which forgets them.
+    /// `$SLP`: lines wait for a reset, which drops them.
     Sleep,
 }
 
-/// The receive side for programs that stream to Grbl. Each line is answered by one `ok` or `error`, in their order.
+/// The receive side for programs that stream to Grbl. Each line is answered by one `ok` or `error`, in their
+/// order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grbl<P: Pens = AnyPen> {
     pens: PhantomData<P>,
@@ -72,13 +75,13 @@ pub struct Grbl<P: Pens = AnyPen> {
     wait: Option<Wait>,
     listing: Option<(Listing, u8)>,
     alarm: Option<Alarm>,
-    /// The motion side waits to hear that its stop has been heard of.
+    /// The motion side waits for word that its stop was received.
     stopped: bool,
     status_wanted: bool,
     reports_to_offset: u8,
     reports_to_overrides: u8,
     overrides: Overrides,
-    /// What was sent to the motion side last is a jog.
+    /// The last command for the motion side is a jog.
     jogs: bool,
     greeting: bool,
     kept: P::Kept<Kept>,
@@ -147,7 +150,7 @@ impl<P: Pens> Grbl<P> {
                 if let Some(kept) = self.kept.get_mut() {
                     kept.end();
                 }
-                // As in Grbl: who sleeps may have been moved.
+                // As in Grbl: a machine that sleeps may have been moved by hand.
                 if core::mem::replace(&mut self.mode, Mode::Work) == Mode::Sleep {
                     self.alarm = Some(Alarm::LOCKED);
                 }
@@ -155,7 +158,7 @@ impl<P: Pens> Grbl<P> {
                 return Some(Signal::Reset);
             }
             0x85 => return Some(Signal::JogCancel),
-            // Others are for what this machine has not: a door, coolant.
+            // Other bytes are for parts that this machine lacks: a door, coolant.
             0x80.. => {
                 let signal = self.overrides.take(byte)?;
                 self.reports_to_overrides = 0;
@@ -179,7 +182,8 @@ impl<P: Pens> Grbl<P> {
 
     /// Gathers the line that is coming in.
     ///
-    /// As in Grbl a line that has ended has left the receive buffer, whatever it waits for: programs count with that.
+    /// As in Grbl, a complete line has left the receive buffer, whatever it waits for. Programs that count
+    /// characters rely on that.
     fn gather(&mut self) {
         while self.wait.is_none()
             && self.listing.is_none()
@@ -190,7 +194,7 @@ impl<P: Pens> Grbl<P> {
         }
     }
 
-    /// Tells what comes by itself; says whether there was something.
+    /// Writes what is told without being asked. Says whether there was something.
     fn tell(&mut self, status: &Status, link: &mut Link) -> bool {
         if core::mem::take(&mut self.greeting) {
             self.greet();
@@ -214,7 +218,8 @@ impl<P: Pens> Grbl<P> {
         true
     }
 
-    /// Carries out the line that is there, and answers it; says whether there was one, and room for all that comes of it.
+    /// Carries out the complete line and answers it. Says whether there was one, and room for all its
+    /// commands.
     fn carry_on(&mut self, status: &Status, link: &mut Link) -> bool {
         if self.wait.is_some()
             || self.is_starting()
@@ -259,7 +264,7 @@ impl<P: Pens> Grbl<P> {
     }
 
     fn alarm(&mut self, alarm: Alarm) {
-        // It takes the place of checking, and of sleep.
+        // An alarm ends the check mode, and sleep.
         (self.alarm, self.mode) = (Some(alarm), Mode::Work);
         self.out.line(format_args!("ALARM:{}", Whole(alarm.0.into())));
     }
@@ -348,7 +353,7 @@ impl<P: Pens> Grbl<P> {
             b"G" => self.tell_modes(),
             b"$" if checks => self.listing = Some((Listing::Settings, 0)),
             b"C" if checks => {
-                // What has been read meanwhile has not been done.
+                // Lines that were read in check mode have not been carried out.
                 self.mode = Mode::Work;
                 self.begin_anew(status.at);
                 self.out.line(format_args!("[MSG:Disabled]"));
@@ -358,7 +363,7 @@ impl<P: Pens> Grbl<P> {
                 self.mode = Mode::Check;
                 self.out.line(format_args!("[MSG:Enabled]"));
             }
-            // In no alarm there is nothing to unlock.
+            // Without an alarm there is nothing to unlock.
             b"X" if !is_idle => {}
             b"$" | b"#" | b"I" | b"N" | b"H" | b"SLP" | b"RST=#" | b"RST=$" | b"RST=*" if !is_idle => {
                 return Err(Code::NOT_IDLE);
@@ -413,13 +418,13 @@ impl<P: Pens> Grbl<P> {
             [b'$' | b'#' | b'C' | b'G' | b'H' | b'I' | b'J' | b'N' | b'R' | b'S' | b'X', ..] => {
                 return Err(Code::BAD_STATEMENT);
             }
-            // Else it would be the number of a setting.
+            // Otherwise the text would be the number of a setting.
             _ => return Err(Code::BAD_NUMBER),
         }
         Ok(())
     }
 
-    /// As after a reset, of a machine that stands.
+    /// As after a reset of a machine at rest.
     fn begin_anew(&mut self, at: Point) {
         self.interpreter.reset();
         self.interpreter.stand_at(at);

@@ -1,19 +1,20 @@
-//! [`Overrides`]: shares of speeds and power that a person at the program sets on the way, by single bytes.
+//! [`Overrides`]: shares of speeds and of the laser's power that a person sets while the machine draws, by
+//! single bytes.
 
 use super::super::{Percents, Signal};
 
-/// What a person asks for.
+/// The shares that a person has asked for.
 ///
 /// Source: the Grbl project's wiki, "Grbl v1.1 Commands", on extended-ASCII realtime commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Overrides(Percents);
 
-/// Least and greatest share of feeds and of the laser's power.
+/// Least and greatest share of feeds and of the laser's power, in percent: those of Grbl 1.1.
 const LEAST: u8 = 10;
 const MOST: u8 = 200;
 
 impl Overrides {
-    /// Takes a byte; gives what the motion side must know if it is one of these.
+    /// Takes a byte. If it is an override, gives the signal for the motion side.
     pub(super) fn take(&mut self, byte: u8) -> Option<Signal> {
         let Percents { draw, travel, laser } = &mut self.0;
         match byte {
@@ -25,14 +26,14 @@ impl Overrides {
                 *laser = changed(*laser, byte - 0x99);
                 return Some(Signal::LaserPercent(*laser));
             }
-            // 0x9E stops the laser while the machine is held: there it is dark anyway.
+            // 0x9E stops the laser while the machine is held. Here the laser is dark then anyway.
             _ => return None,
         }
         Some(Signal::Speeds { draw_percent: *draw, travel_percent: *travel })
     }
 }
 
-/// Back to 100, or 10 or 1 more or less.
+/// The share set back to 100, or changed by 10 or 1.
 fn changed(percent: u8, how: u8) -> u8 {
     let percent = match how {
         0 => 100,

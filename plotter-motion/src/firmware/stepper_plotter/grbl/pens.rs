@@ -5,12 +5,12 @@ use crate::gcode::{BlockDelete, DwellUnit, LaserCommand, PenConvention, ReadOpti
 use crate::planner::{Here, Keep, Nowhere, Part};
 use core::time::Duration;
 
-/// By which words hosts may lift the pen, and how much of Grbl is there: [`AnyPen`], or [`SpindlePen`] for a
-/// small program. What both understand they carry out alike.
+/// The words by which hosts may lift the pen, and with them how much of Grbl is built in: [`AnyPen`], or
+/// [`SpindlePen`] for a small program. A line that both understand is carried out alike.
 ///
-/// Nobody else implements it.
+/// No other crate can implement this trait.
 pub trait Pens: sealed::Sealed {
-    /// Memory that only a whole Grbl needs: start-up lines, settings to go back to.
+    /// Memory that only a whole Grbl needs: start-up lines, and the settings to restore.
     #[doc(hidden)]
     type Kept<T: Part>: Keep<T>;
 
@@ -23,13 +23,13 @@ pub trait Pens: sealed::Sealed {
     fn read<R>(settings: &StepperPlotterSettings, read: impl FnOnce(&ReadOptions) -> R) -> R;
 }
 
-/// All words, and a laser: [`StepperPlotterSettings`] choose. All of Grbl that a plotter can do: start-up
-/// lines, `$RST=$` and `$RST=*`, arcs in other planes, `G43.1`.
+/// All words and a laser, as [`StepperPlotterSettings`] choose, and all of Grbl that a plotter can do:
+/// start-up lines, `$RST=$` and `$RST=*`, arcs in other planes, `G43.1`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct AnyPen;
 
-/// `M3` and `M5` ([`PenConvention::Spindle`]), no laser, and none of what [`AnyPen`] has more of Grbl: a line
-/// that needs it is `error:20` or `error:3`.
+/// `M3` and `M5` ([`PenConvention::Spindle`]) and no laser. A line that needs more of Grbl, which only
+/// [`AnyPen`] has, is answered by `error:20` or `error:3`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct SpindlePen;
 
@@ -39,8 +39,8 @@ mod sealed {
     impl Sealed for super::SpindlePen {}
 }
 
-/// As Grbl reads: seconds, and `/` at the begin of a line means nothing. In one place, so that the compiler sees that no others are read
-/// with.
+/// Reads as Grbl does: dwells in seconds, and `/` at the beginning of a line means nothing. It stands in one
+/// place, so that the compiler sees that no other options occur and leaves their code out.
 static OPTIONS: ReadOptions = ReadOptions {
     pen: PenConvention::Spindle,
     dwell_unit: DwellUnit::Seconds,
@@ -49,7 +49,7 @@ static OPTIONS: ReadOptions = ReadOptions {
     words: Words::GrblOnSheet,
 };
 
-/// Where the pen is lifted by words of another firmware, its drawings have others of its words, too.
+/// Drawings that lift the pen by words of another firmware have more of its words, so all are read then.
 const fn words(pen: PenConvention) -> Words {
     match pen {
         PenConvention::Servo {

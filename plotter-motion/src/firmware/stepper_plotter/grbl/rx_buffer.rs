@@ -1,29 +1,33 @@
-//! [`RxBuffer`]: bytes that have come and wait to be read.
+//! [`RxBuffer`]: received bytes that wait to be read.
 
 use super::super::bytes::Bytes;
 
-/// Bytes that the controller keeps, as many as Grbl: a program that counts characters sends no more before they are answered.
+/// Bytes that the controller keeps: as many as Grbl 1.1 does. A program that counts characters sends no more
+/// before they are answered.
 pub(super) const RX_BYTES: usize = 128;
-/// Stands for the rest of a line that was lost: makes the line too long, and ends it. No byte of this value is let in otherwise.
+/// Stands for the rest of a lost line: makes the line too long, and ends it. Received bytes of this value are
+/// not let in.
 pub(super) const LOST: u8 = 0xFF;
-/// Room for the end of a line of which everything else has found room.
+/// Room in bytes for the end of a line whose other bytes have found room.
 const SPARE: usize = 1;
-/// A byte of this value and above stands for lines that were lost in this place; the other bits are their number.
+/// A byte with this bit stands for lines that were lost in this place; its other bits are their number.
+/// Received bytes above 0x7F never come here: they are real-time commands.
 const LINES: u8 = 0x80;
-/// Most lines that one such byte counts. Of more in a row, sent without waiting for any answer, only these are answered.
+/// Most lines that one such byte counts: what seven bits hold. If more in a row are lost, because a host
+/// waits for no answer, only these are answered.
 const MOST_LINES: u8 = 0x7F;
 
-/// Bytes that have come and wait to be read. An LF after a CR belongs to it and takes no room.
+/// Received bytes that wait to be read. An LF after a CR belongs to it and takes no room.
 ///
-/// What finds no room is lost, as in Grbl. There it is single bytes, and what is left may be a line that means something else. Here a line
-/// is lost as a whole, the part of it that had found room makes no line, and each line that was lost is told in its place: it is read as
-/// [`LOST`].
+/// Bytes without room are lost, as in Grbl. Grbl loses single bytes, and the rest may be a line with another
+/// meaning. Here a line is lost as a whole: the part of it that found room makes no line, and each lost line
+/// is read in its place as [`LOST`].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RxBuffer {
     bytes: Bytes<{ RX_BYTES + SPARE }>,
-    /// The byte before.
+    /// The previous byte.
     last: u8,
-    /// The line that is coming in is being lost.
+    /// The line that is being received is lost.
     losing: bool,
     /// Lines that were lost before the first of the bytes, and after the last.
     lost_before: u8,
@@ -73,7 +77,7 @@ impl RxBuffer {
         Some(LOST)
     }
 
-    /// How many more bytes it keeps.
+    /// How many more bytes find room.
     pub(super) const fn room(&self) -> usize {
         self.bytes.room().saturating_sub(SPARE)
     }

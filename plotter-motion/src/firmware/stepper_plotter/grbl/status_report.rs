@@ -23,7 +23,8 @@ impl<P: Pens> Grbl<P> {
             Activity::Home => "Home",
         });
         let (x, y) = coordinates(status.at.x, status.at.y);
-        // As Grbl counts: of so many those that are not over, however many more there is room for.
+        // As Grbl counts: blocks that are not over, of the number that it reports, even if there is room for
+        // more.
         let queued = link.commands.room().saturating_sub(MOST_COMMANDS).min(BLOCKS);
         let blocks = Whole(queued.saturating_sub(status.planned.into()) as u64);
         let bytes = Whole(self.rx.room() as u64);
@@ -43,7 +44,7 @@ impl<P: Pens> Grbl<P> {
         ));
     }
 
-    /// Overrides are told when they have changed, and now and then; not together with the offset.
+    /// Overrides are told when they have changed, and every few reports, but not together with the offset.
     fn overrides_told(&mut self, percents: Percents, with_offset: bool) -> Told {
         if with_offset || self.reports_to_overrides > 0 {
             self.reports_to_overrides = self.reports_to_overrides.saturating_sub(1);
@@ -53,7 +54,7 @@ impl<P: Pens> Grbl<P> {
         Told(Some(percents))
     }
 
-    /// Offsets change seldom, and are told now and then.
+    /// Offsets change seldom and are told every few reports.
     fn offset(&mut self) -> Offset {
         if self.reports_to_offset > 0 {
             self.reports_to_offset -= 1;

@@ -4,9 +4,9 @@ use super::codes::Code;
 use crate::decimal::Decimal;
 use crate::gcode::{Block, MOST, Position, Word, Words, is_control, is_text};
 
-/// The words of a line without blanks and comments, in capitals; none if it has no words. What a
-/// [`Reader`](crate::gcode::Reader) makes of it, byte by byte, in a third of the program memory. Checksums, texts and programs are only
-/// for [`Words::Any`].
+/// The words of a line without blanks and comments, in capitals; none if it has no words. The result is that
+/// of a [`Reader`](crate::gcode::Reader), which takes byte by byte, in a third of its program memory.
+/// Checksums, texts and programs are only for [`Words::Any`].
 #[inline(never)]
 pub(super) fn read(text: &[u8], known: Words) -> Result<Option<Block>, Code> {
     let knows_any = known == Words::Any;
@@ -40,8 +40,8 @@ pub(super) fn read(text: &[u8], known: Words) -> Result<Option<Block>, Code> {
             {
                 rest = after;
             }
-            // A second point, a comma, an exponent, of which Grbl takes the first two for no letters and the third for one; no digit at all;
-            // too great.
+            // A second point, a comma or an exponent (Grbl takes the first two for no letter, the third for
+            // one), no digit at all, or a number that is too great.
             let ends = !knows_any || !matches!(rest.first(), Some(b'.' | b',' | b'E'));
             let value = decimal.value().filter(|value| ends && value.abs() <= MOST);
             number = Some(value.ok_or(Code::BAD_NUMBER)?);
@@ -58,7 +58,7 @@ pub(super) fn read(text: &[u8], known: Words) -> Result<Option<Block>, Code> {
     Ok((!block.words().is_empty()).then_some(block))
 }
 
-/// Whether `digits`, which stand behind the last `*` of a line, are the bytes before that by exclusive or.
+/// Whether `digits`, which stand behind the last `*` of a line, are the exclusive or of the bytes before it.
 fn checksum_fits(line: &[u8], digits: &[u8]) -> bool {
     let before = line.len().saturating_sub(digits.len() + 1);
     let sum = line.iter().take(before).fold(0, |sum, byte| sum ^ byte);
@@ -80,7 +80,7 @@ mod tests {
     use crate::gcode::{Complaint, Reader};
     use std::vec::Vec;
 
-    /// What lines are made of, good and bad.
+    /// Pieces of lines, good and bad.
     const PIECES: [&str; 40] = [
         "G",
         "M",
@@ -126,7 +126,7 @@ mod tests {
 
     type Found = Vec<(u8, Option<f64>)>;
 
-    /// As the reader that takes byte by byte tells it.
+    /// The result of the reader that takes byte by byte.
     fn by_bytes(text: &[u8]) -> Result<Option<Found>, Code> {
         let mut reader = Reader::new();
         for &byte in text {

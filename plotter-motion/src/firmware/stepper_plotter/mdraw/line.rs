@@ -1,7 +1,7 @@
 //! [`Request`]: what a line of mDraw's asks for.
 //!
-//! As C reads it: words are separated by spaces and nothing else, the command is a capital letter and the whole number after it,
-//! a number ends where it ceases to be one. What is unknown asks for nothing.
+//! As C reads it: words are separated by spaces and nothing else, the command is a capital letter and the
+//! whole number after it, a number ends where it ceases to be one. What is unknown asks for nothing.
 
 use crate::decimal::Decimal;
 
@@ -97,7 +97,8 @@ fn decimal(text: &[u8]) -> Option<f32> {
     value
 }
 
-/// Sign, digits and point, as far as they go. (The standard library's reader takes 14 KB of a microcontroller's flash.)
+/// Sign, digits and point, as far as they go. (The standard library's reader takes 14 KB of a
+/// microcontroller's flash.)
 fn number(text: &[u8]) -> Option<f64> {
     let (first, rest) = text.split_first()?;
     let mut number = Decimal::begin(*first)?;

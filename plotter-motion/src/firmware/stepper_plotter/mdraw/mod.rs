@@ -345,7 +345,8 @@ fn side(command: &'static str, value: Option<i32>, before: u16) -> Result<u16, R
     Ok(u16::try_from(value).unwrap_or(before))
 }
 
-/// A number as the original's library prints it: half a hundredth is added, and the rest is cut off, in single precision.
+/// A number as the original's library prints it: half a hundredth is added, and the rest is cut off, in
+/// single precision.
 struct TwoDecimals(f32);
 
 impl fmt::Display for TwoDecimals {

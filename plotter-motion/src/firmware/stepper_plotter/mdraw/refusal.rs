@@ -4,8 +4,8 @@ use super::super::Stop;
 use crate::homing::HomingError;
 use core::fmt;
 
-/// Why a line is not carried out, told in the line before its `OK`. No text may hold the letters `OK`: mDraw looks for them
-/// anywhere in a line.
+/// Why a line is not carried out, told in the line before its `OK`. No text may hold the letters `OK`: mDraw
+/// looks for them anywhere in a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Refusal {
     TooLong,
