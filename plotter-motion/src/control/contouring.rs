@@ -24,7 +24,7 @@ use core::time::Duration;
 ///
 /// There is no slope in it, so vertical and steep lines are like any other. Position and speed between the
 /// encoder's edges come from a [`ShaftEstimator`](super::ShaftEstimator) for each axis; the voltage that the plan needs comes from
-/// the motor's equation, solved for it (spec 1.8). When the pen lags behind the reference, the reference slows
+/// the motor's equation, solved for it (Öcal, section 4.6.1). When the pen lags behind the reference, the reference slows
 /// down and finally waits: if one motor stalls, the other waits, and both go on when it is freed.
 ///
 /// The pen arrives when both shafts have stood within the arrival tolerance of the middle of the target's

@@ -8,7 +8,7 @@ use crate::{
 };
 use core::time::Duration;
 
-/// PID line tracking as published (spec 1.6 and 1.7, and the thesis' appendix A, which settles the order of
+/// PID line tracking as published (Öcal, sections 4.4 and 4.5, and the thesis' appendix A, which settles the order of
 /// things).
 ///
 /// With `dx`, `dy` counted from the start of the line and `m` its slope:

@@ -1,6 +1,6 @@
 //! Proportional, integral, derivative: the published sum form and ours.
 //!
-//! | | [`SumPid`] (published, spec 1.6) | [`Pid`] (ours) |
+//! | | [`SumPid`] (published: Öcal, section 4.4) | [`Pid`] (ours) |
 //! |---|---|---|
 //! | integral | sum of errors, unlimited | limited with the output (anti-windup) |
 //! | derivative | difference of errors between two calls | of the measurement, filtered |

@@ -5,7 +5,7 @@ use crate::kinematics::BeltSigns;
 use crate::{Axis, Demand, Direction, Drive, Duty, Machine, StepPoint};
 use core::time::Duration;
 
-/// The published way from point to point (spec 2.4): each axis is driven towards its target until it is within the
+/// The published way from point to point (Khan and McGinn, section 0.2.4): each axis is driven towards its target until it is within the
 /// allowed error, then it gets no drive.
 ///
 /// ```text

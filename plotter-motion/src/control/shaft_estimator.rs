@@ -12,7 +12,7 @@ use core::f64::consts::TAU;
 /// Estimates position and speed of a motor's shaft, and what motor and load are, from the times of its encoder's edges and the
 /// voltage on it.
 ///
-/// An edge says exactly where the shaft is at that moment; between edges the motor's equation (spec 1.8, with
+/// An edge says exactly where the shaft is at that moment; between edges the motor's equation (Öcal, section 4.6.1, with
 /// the armature's quick current left out) says how it goes on. Each edge corrects the three states with the
 /// gains of a critically damped fading-memory filter of third order, `1 - z³`, `3/2 (1-z)²(1+z)/T`,
 /// `(1-z)³/T²` with `z = exp(-2 pi f T)` for the time `T` since the last edge. The third state is an acceleration beyond the model, of

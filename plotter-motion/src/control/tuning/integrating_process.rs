@@ -13,7 +13,7 @@ use core::f64::consts::TAU;
 ///           s (1 + T s (1 + Te s))                   Te: what the current takes before it, s
 /// ```
 ///
-/// For a DC motor under voltage (spec 1.8, with a load's inertia and viscous friction b) it is exact, with
+/// For a DC motor under voltage (Öcal, section 4.6.1, with a load's inertia and viscous friction b) it is exact, with
 ///
 /// ```text
 ///   c = Kt Ke + R b     K = V Kt / c     T = (R J + L b) / c     Te = L J / (R J + L b)

@@ -8,7 +8,7 @@
 //!
 //! | from | by | to |
 //! |---|---|---|
-//! | the motor's data (spec 1.8) | its transfer function | [`IntegratingProcess`] |
+//! | the motor's data (Öcal, section 4.6.1) | its transfer function | [`IntegratingProcess`] |
 //! | steps of the duty | [`StepExperiment`]: lag, dead time, gain and friction fitted to the counts | [`IdentifiedMotor`] |
 //! | a relay that swings the axis | [`RelayExperiment`] (Åström and Hägglund, 1984) | [`RelayPoint`] |
 //! | a process | [`Simc`]: lambda tuning to a stated sensitivity (Skogestad, 2003) | [`Pid`](crate::control::Pid) |
